@@ -1,0 +1,154 @@
+//! Boundary representation as CAD files state it, and its exact turn into [`Face`]s.
+//!
+//! A file says: *this analytic or spline surface, bounded by these edges in space*. The engine draws:
+//! *this rational B-spline surface, trimmed by these loops in its (u, v) domain*. This module is the
+//! bridge, shared by every file format; it knows no file syntax and no GPU.
+//!
+//! ```text
+//!   SurfaceGeometry ──carrier over the loops' box──▶ Surface          (exact)
+//!   Edge (3-D curve, two ends) ──invert on surface──▶ Bézier (u, v)   (closed form, or fitted with
+//!                                                                      a bound measured in 3-D)
+//!   seams, poles, periods ──────────────────────────▶ TrimLoop        (closed, oriented)
+//! ```
+
+use crate::spline::{BSpline, Surface};
+use glam::{DVec3, DVec4};
+
+/// A right-handed orthonormal frame.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Frame {
+    /// Its origin.
+    pub origin: DVec3,
+    /// Unit x axis (STEP: the reference direction made orthogonal to the axis).
+    pub x: DVec3,
+    /// Unit y axis, `z × x`.
+    pub y: DVec3,
+    /// Unit z axis.
+    pub z: DVec3,
+}
+
+/// A surface as files state it. Lengths in millimetres, angles in radians; parametrisations are
+/// those of ISO 10303-42.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum SurfaceGeometry {
+    /// `origin + u x + v y`
+    Plane {
+        frame: Frame,
+    },
+    /// `origin + r (cos u x + sin u y) + v z`
+    Cylinder {
+        frame: Frame,
+        radius: f64,
+    },
+    /// `origin + (r + v tan a)(cos u x + sin u y) + v z`
+    Cone {
+        frame: Frame,
+        radius: f64,
+        half_angle: f64,
+    },
+    /// `origin + r cos v (cos u x + sin u y) + r sin v z`
+    Sphere {
+        frame: Frame,
+        radius: f64,
+    },
+    /// `origin + (R + r cos v)(cos u x + sin u y) + r sin v z`
+    Torus {
+        frame: Frame,
+        major: f64,
+        minor: f64,
+    },
+    /// `profile(v)` turned by `u` about the axis through `origin`
+    Revolution {
+        profile: Box<CurveGeometry>,
+        origin: DVec3,
+        axis: DVec3,
+    },
+    /// `profile(u) + v direction`
+    Extrusion {
+        profile: Box<CurveGeometry>,
+        direction: DVec3,
+    },
+    BSpline(Surface),
+}
+
+/// A curve in space as files state it.
+#[derive(Clone, Debug, PartialEq)]
+#[allow(missing_docs)]
+pub enum CurveGeometry {
+    /// `origin + t direction` (direction not normalised)
+    Line {
+        origin: DVec3,
+        direction: DVec3,
+    },
+    /// `origin + r (cos t x + sin t y)`
+    Circle {
+        frame: Frame,
+        radius: f64,
+    },
+    /// `origin + a cos t x + b sin t y`
+    Ellipse {
+        frame: Frame,
+        semi_x: f64,
+        semi_y: f64,
+    },
+    /// `origin + a cosh t x + b sinh t y`
+    Hyperbola {
+        frame: Frame,
+        semi_x: f64,
+        semi_y: f64,
+    },
+    /// `origin + f t² x + 2 f t y`
+    Parabola {
+        frame: Frame,
+        focal: f64,
+    },
+    BSpline(BSpline<DVec4>),
+    /// Only the part of `basis` from parameter `start` to `end`; `forward` false runs it backwards.
+    Trimmed {
+        basis: Box<CurveGeometry>,
+        start: f64,
+        end: f64,
+        forward: bool,
+    },
+    /// Curves end to end (a polyline is a composite of trimmed lines or a degree-1 B-spline).
+    Composite(Vec<CurveGeometry>),
+}
+
+/// An edge: the part of a curve between two points.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Edge {
+    /// Number in the source, for messages.
+    pub id: u32,
+    /// The curve that carries it.
+    pub curve: CurveGeometry,
+    /// Start point; equal to `end` for a closed edge.
+    pub start: DVec3,
+    /// End point.
+    pub end: DVec3,
+    /// The edge runs along increasing parameters of the curve.
+    pub same_sense: bool,
+}
+
+/// One loop of a face, in the direction that keeps the face on its left when seen against the
+/// outward normal of the *surface* (bound orientation already applied).
+#[derive(Clone, Debug, PartialEq)]
+pub enum Boundary {
+    /// Indices into the edge list; `true` runs the edge from start to end.
+    Edges(Vec<(usize, bool)>),
+    /// A single point: the pole of a sphere, the tip of a cone.
+    Vertex(DVec3),
+}
+
+/// A face as files state it.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FaceGeometry {
+    /// Number in the source.
+    pub id: u32,
+    /// The surface that carries it.
+    pub surface: SurfaceGeometry,
+    /// Its loops, in any order; empty: the whole (closed) surface.
+    pub bounds: Vec<Boundary>,
+    /// The face's outward normal is the surface's.
+    pub same_sense: bool,
+}

@@ -1,0 +1,158 @@
+//! A face: one surface and the loops that trim it.
+
+use super::{Bounds, Colour};
+use crate::spline::{Bezier, Control, Surface};
+use glam::{DVec2, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// What a surface was in its source, before it became a rational B-spline.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[allow(missing_docs)]
+pub enum SurfaceKind {
+    Plane,
+    Cylinder,
+    Cone,
+    Sphere,
+    Torus,
+    Revolution,
+    Extrusion,
+    Offset,
+    BSpline,
+}
+
+/// A closed chain of rational Bézier curves in the `(u, v)` domain of its face.
+///
+/// Control points are homogeneous, `(w u, w v, w)`. The end of each curve is the start of the next,
+/// bit for bit, the last one's the first one's: [`TrimLoop::new`] sees to it.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct TrimLoop {
+    curves: Vec<Vec<DVec3>>,
+}
+
+/// One face.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Face {
+    /// Number in the source, written to the face-id image; for STEP `#123` is 123. Never 0.
+    pub id: u32,
+    /// What the surface was in the source.
+    pub kind: SurfaceKind,
+    /// The carrier surface.
+    pub surface: Surface,
+    /// Trim loops; empty when the face is its whole surface.
+    pub loops: Vec<TrimLoop>,
+    /// The outward normal is `S_u x S_v` when true, its opposite when false.
+    pub same_sense: bool,
+    /// The face's own colour, if it has one.
+    pub colour: Option<Colour>,
+}
+
+/// Why a face is not one.
+#[allow(missing_docs)] // the messages say what each field is
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum FaceError {
+    /// A loop without a curve.
+    #[error("trim loop has no curve")]
+    EmptyLoop,
+    /// Curve end and next start are farther apart than the loop's tolerance.
+    #[error("trim loop is open by {gap:e} in (u, v) after curve {curve}")]
+    OpenLoop { curve: usize, gap: f64 },
+    /// Not finite, or a weight that is not positive.
+    #[error("trim curve {curve} has a control point that is not finite or a weight that is not positive")]
+    ControlPoint { curve: usize },
+}
+
+impl TrimLoop {
+    /// Chains `curves`, snapping each start to the end before it when they are within `snap` (in
+    /// `(u, v)` units, per coordinate).
+    ///
+    /// # Errors
+    /// [`FaceError`] when the chain is empty, open by more than `snap`, or not made of numbers.
+    pub fn new(curves: Vec<Bezier<DVec3>>, snap: DVec2) -> Result<Self, FaceError> {
+        if curves.is_empty() {
+            return Err(FaceError::EmptyLoop);
+        }
+        if let Some(curve) =
+            curves.iter().position(|c| c.points.len() < 2 || c.points.iter().any(|p| !p.finite() || p.z <= 0.0))
+        {
+            return Err(FaceError::ControlPoint { curve });
+        }
+        let mut curves: Vec<Vec<DVec3>> = curves.into_iter().map(|c| c.points).collect();
+        let count = curves.len();
+        for curve in 0..count {
+            let end = *curves[curve].last().expect("checked above");
+            let start = &mut curves[(curve + 1) % count][0];
+            let gap = (end.point() - start.point()).abs();
+            if gap.x > snap.x || gap.y > snap.y {
+                return Err(FaceError::OpenLoop { curve, gap: gap.max_element() });
+            }
+            *start = DVec3::from_point(end.point(), start.z);
+        }
+        Ok(Self { curves })
+    }
+
+    /// The curves in order.
+    pub fn curves(&self) -> impl ExactSizeIterator<Item = Bezier<DVec3>> + '_ {
+        self.curves.iter().map(|points| Bezier { points: points.clone() })
+    }
+
+    /// Twice the signed area of the control polygons' enclosed region: positive when the loop runs
+    /// counter-clockwise. Exact for straight edges; the sign is right for every loop whose curves
+    /// stay near their chords.
+    pub fn signed_area(&self) -> f64 {
+        const STEPS: usize = 16;
+        let mut area = 0.0;
+        for c in self.curves() {
+            let steps = if c.degree() == 1 { 1 } else { STEPS };
+            let mut before = c.point(0.0);
+            for i in 1..=steps {
+                let p = c.point(i as f64 / steps as f64);
+                area += before.perp_dot(p);
+                before = p;
+            }
+        }
+        area
+    }
+
+    /// The loop run backwards.
+    pub fn reversed(mut self) -> Self {
+        self.curves.reverse();
+        self.curves.iter_mut().for_each(|c| c.reverse());
+        self
+    }
+
+    /// Box of the control points in `(u, v)`; it contains the loop.
+    pub fn bounds(&self) -> (DVec2, DVec2) {
+        let points = self.curves.iter().flatten().map(|p| p.point());
+        points.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)))
+    }
+}
+
+impl Face {
+    /// A box that contains the trimmed face: control points of the part of the surface that its
+    /// loops can reach.
+    pub fn bounds(&self) -> Bounds {
+        let (lo, hi) = self
+            .loops
+            .iter()
+            .map(TrimLoop::bounds)
+            .fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), (a, b)| (lo.min(a), hi.max(b)));
+        let grid = self.surface.patches();
+        let mut bounds = Bounds::EMPTY;
+        for p in &grid.patches {
+            let clip = |range: (f64, f64), a: f64, b: f64| {
+                let at = |x: f64| ((x - range.0) / (range.1 - range.0)).clamp(0.0, 1.0);
+                (at(a), at(b))
+            };
+            let (u, v) = if self.loops.is_empty() {
+                ((0.0, 1.0), (0.0, 1.0))
+            } else {
+                (clip(p.u, lo.x, hi.x), clip(p.v, lo.y, hi.y))
+            };
+            if u.1 > u.0 && v.1 > v.0 {
+                let (min, max): (DVec3, DVec3) = p.patch.rectangle(u, v).bounds();
+                bounds = bounds.with(min).with(max);
+            }
+        }
+        bounds
+    }
+}

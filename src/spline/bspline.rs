@@ -1,0 +1,238 @@
+//! B-spline curves, and the checks that every knot vector passes.
+
+use super::{Bezier, Control, MAX_DEGREE, Span};
+use serde::{Deserialize, Serialize};
+
+/// Why a spline is not one.
+#[allow(missing_docs)] // the messages say what each field is
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum SplineError {
+    /// Degree 0, or above [`MAX_DEGREE`].
+    #[error("degree {0} is not between 1 and {MAX_DEGREE}")]
+    Degree(usize),
+    /// `knots = points + degree + 1` does not hold.
+    #[error("{knots} knots do not fit {points} control points of degree {degree}")]
+    KnotCount { knots: usize, points: usize, degree: usize },
+    /// Fewer control points than the degree needs.
+    #[error("{points} control points are too few for degree {degree}")]
+    TooFewPoints { points: usize, degree: usize },
+    /// A knot below its predecessor, or not finite.
+    #[error("knot {index} is smaller than the one before it, or not a number")]
+    KnotOrder { index: usize },
+    /// An interior knot repeated more than `degree` times: the curve would break.
+    #[error("knot {value} has multiplicity {multiplicity}, more than the degree {degree}")]
+    Multiplicity { value: f64, multiplicity: usize, degree: usize },
+    /// First and last knot of the domain coincide.
+    #[error("the parameter domain is empty")]
+    EmptyDomain,
+    /// A coordinate or weight that is not finite, or a weight that is not positive.
+    #[error("control point {index} has a coordinate that is not finite or a weight that is not positive")]
+    ControlPoint { index: usize },
+}
+
+/// A rational B-spline curve.
+///
+/// Invariants, established by [`BSpline::new`]: `knots.len() == points.len() + degree + 1`, knots
+/// non-decreasing and finite, interior multiplicity at most the degree, weights positive.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct BSpline<P> {
+    degree: usize,
+    knots: Vec<f64>,
+    points: Vec<P>,
+}
+
+impl<P: Control> BSpline<P> {
+    /// Checks the invariants.
+    ///
+    /// # Errors
+    /// The first of [`SplineError`] that does not hold.
+    pub fn new(degree: usize, knots: Vec<f64>, points: Vec<P>) -> Result<Self, SplineError> {
+        check_knots(degree, &knots, points.len())?;
+        check_points(&points)?;
+        Ok(Self { degree, knots, points })
+    }
+
+    /// One Bézier segment over `[start, end]`.
+    pub fn from_bezier(bezier: Bezier<P>, start: f64, end: f64) -> Result<Self, SplineError> {
+        let n = bezier.points.len();
+        let knots = [start].repeat(n).into_iter().chain([end].repeat(n)).collect();
+        Self::new(n - 1, knots, bezier.points)
+    }
+
+    /// Polynomial degree.
+    pub fn degree(&self) -> usize {
+        self.degree
+    }
+
+    /// The knot vector, `points + degree + 1` long.
+    pub fn knots(&self) -> &[f64] {
+        &self.knots
+    }
+
+    /// Homogeneous control points.
+    pub fn points(&self) -> &[P] {
+        &self.points
+    }
+
+    /// The parameter interval.
+    pub fn domain(&self) -> (f64, f64) {
+        (self.knots[self.degree], self.knots[self.points.len()])
+    }
+
+    /// All weights equal: a polynomial curve.
+    pub fn is_polynomial(&self) -> bool {
+        let w = self.points[0].weight();
+        self.points.iter().all(|p| (p.weight() - w).abs() <= 1e-14 * w.abs())
+    }
+
+    /// Homogeneous value at `t`, clamped to the domain.
+    pub fn homogeneous(&self, t: f64) -> P {
+        let (a, b) = self.domain();
+        let t = t.clamp(a, b);
+        let k = find_span(self.degree, &self.knots, self.points.len(), t);
+        de_boor(self.degree, &self.knots, k, t, &self.points[k - self.degree..=k])
+    }
+
+    /// Point at `t`, clamped to the domain.
+    pub fn point(&self, t: f64) -> P::Point {
+        self.homogeneous(t).point()
+    }
+
+    /// The Bézier pieces, in order; spans of zero length are dropped.
+    pub fn beziers(&self) -> Vec<Span<Bezier<P>>> {
+        to_beziers(self.degree, &self.knots, &self.points)
+            .into_iter()
+            .map(|s| Span { start: s.start, end: s.end, piece: Bezier { points: s.piece } })
+            .collect()
+    }
+
+    /// The piece over `[a, b]` (inside the domain) as Bézier segments.
+    pub fn beziers_between(&self, a: f64, b: f64) -> Vec<Span<Bezier<P>>> {
+        self.beziers()
+            .into_iter()
+            .filter(|s| s.end > a && s.start < b)
+            .map(|s| {
+                let (lo, hi) = (a.max(s.start), b.min(s.end));
+                let len = s.end - s.start;
+                let piece = s.piece.segment((lo - s.start) / len, (hi - s.start) / len);
+                Span { start: lo, end: hi, piece }
+            })
+            .collect()
+    }
+
+    /// The same curve run backwards over the same domain.
+    pub fn reversed(&self) -> Self {
+        let (a, b) = self.domain();
+        Self {
+            degree: self.degree,
+            knots: self.knots.iter().rev().map(|k| a + b - k).collect(),
+            points: self.points.iter().rev().copied().collect(),
+        }
+    }
+}
+
+/// Degree, length, order, finiteness, multiplicity and domain of one knot vector.
+pub(super) fn check_knots(degree: usize, knots: &[f64], points: usize) -> Result<(), SplineError> {
+    if degree == 0 || degree > MAX_DEGREE {
+        return Err(SplineError::Degree(degree));
+    }
+    if points <= degree {
+        return Err(SplineError::TooFewPoints { points, degree });
+    }
+    if knots.len() != points + degree + 1 {
+        return Err(SplineError::KnotCount { knots: knots.len(), points, degree });
+    }
+    if !knots[0].is_finite() {
+        return Err(SplineError::KnotOrder { index: 0 });
+    }
+    if let Some(i) = (1..knots.len()).find(|&i| !(knots[i].is_finite() && knots[i] >= knots[i - 1])) {
+        return Err(SplineError::KnotOrder { index: i });
+    }
+    let (a, b) = (knots[degree], knots[points]);
+    if a >= b {
+        return Err(SplineError::EmptyDomain);
+    }
+    let inside = &knots[degree + 1..points];
+    for run in inside.chunk_by(|x, y| x == y) {
+        if run.len() > degree && run[0] > a && run[0] < b {
+            return Err(SplineError::Multiplicity { value: run[0], multiplicity: run.len(), degree });
+        }
+    }
+    Ok(())
+}
+
+/// Finite coordinates and positive weights.
+pub(super) fn check_points<P: Control>(points: &[P]) -> Result<(), SplineError> {
+    match points.iter().position(|p| !p.finite() || p.weight() <= 0.0) {
+        Some(index) => Err(SplineError::ControlPoint { index }),
+        None => Ok(()),
+    }
+}
+
+/// Index `k` with `knots[k] <= t < knots[k + 1]`; the last non-empty span at the end of the domain.
+pub(super) fn find_span(degree: usize, knots: &[f64], points: usize, t: f64) -> usize {
+    let inside = &knots[degree..=points];
+    let after = inside.partition_point(|&k| k <= t);
+    let mut k = degree + after.saturating_sub(1);
+    while k > degree && (k >= points || knots[k] == knots[k + 1]) {
+        k -= 1;
+    }
+    k
+}
+
+/// de Boor's algorithm on the `degree + 1` control points that act on span `k`.
+fn de_boor<P: Control>(degree: usize, knots: &[f64], k: usize, t: f64, points: &[P]) -> P {
+    let mut d = points.to_vec();
+    for r in 1..=degree {
+        for j in (r..=degree).rev() {
+            let lo = knots[j + k - degree];
+            let hi = knots[j + 1 + k - r];
+            let a = (t - lo) / (hi - lo);
+            d[j] = d[j - 1] * (1.0 - a) + d[j] * a;
+        }
+    }
+    d[degree]
+}
+
+/// The Bézier pieces of one knot vector applied to one row of control points.
+///
+/// Each piece is found by *blossoming*: control point `i` of the piece over `[a, b]` is the polar
+/// value at `degree - i` copies of `a` and `i` copies of `b`. Neighbouring pieces share their end
+/// control point bit for bit: the later piece takes the earlier one's.
+pub(super) fn to_beziers<P: Control>(degree: usize, knots: &[f64], points: &[P]) -> Vec<Span<Vec<P>>> {
+    let mut spans: Vec<Span<Vec<P>>> = Vec::new();
+    for k in degree..points.len() {
+        let (a, b) = (knots[k], knots[k + 1]);
+        if a >= b {
+            continue;
+        }
+        let local = &points[k - degree..=k];
+        let mut piece: Vec<P> = (0..=degree).map(|i| blossom(degree, knots, k, local, a, b, i)).collect();
+        if let Some(before) = spans.last() {
+            piece[0] = *before.piece.last().expect("a piece has points");
+        }
+        spans.push(Span { start: a, end: b, piece });
+    }
+    spans
+}
+
+/// Polar value at `degree - late` copies of `a` and `late` copies of `b`, on span `k`.
+fn blossom<P: Control>(degree: usize, knots: &[f64], k: usize, points: &[P], a: f64, b: f64, late: usize) -> P {
+    let mut d = points.to_vec();
+    for r in 1..=degree {
+        let t = if r <= degree - late { a } else { b };
+        for j in (r..=degree).rev() {
+            let lo = knots[j + k - degree];
+            let hi = knots[j + 1 + k - r];
+            let f = (t - lo) / (hi - lo);
+            d[j] = if f == 0.0 {
+                d[j - 1]
+            } else if f == 1.0 {
+                d[j]
+            } else {
+                d[j - 1] * (1.0 - f) + d[j] * f
+            };
+        }
+    }
+    d[degree]
+}

@@ -1,0 +1,116 @@
+//! One rational tensor-product Bézier patch.
+
+use super::{Control, bernstein};
+use glam::{DVec3, DVec4};
+
+/// A rational Bézier patch over `[0, 1]²`.
+///
+/// `points[j * (degree_u + 1) + i]` is the homogeneous control point `P_ij`, `i` along `u`.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Patch {
+    /// Degree along `u`.
+    pub degree_u: usize,
+    /// Degree along `v`.
+    pub degree_v: usize,
+    /// Control net, `u` fastest.
+    pub points: Vec<DVec4>,
+}
+
+/// Point and first derivatives of a surface in space.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Jet {
+    /// `S(u, v)`.
+    pub point: DVec3,
+    /// `∂S/∂u`.
+    pub du: DVec3,
+    /// `∂S/∂v`.
+    pub dv: DVec3,
+}
+
+impl Patch {
+    /// Row `j` of the control net.
+    pub fn row(&self, j: usize) -> &[DVec4] {
+        let n = self.degree_u + 1;
+        &self.points[j * n..(j + 1) * n]
+    }
+
+    /// Homogeneous value and both first derivatives `(P, P_u, P_v)`.
+    pub fn homogeneous_jet(&self, u: f64, v: f64) -> (DVec4, DVec4, DVec4) {
+        let rows: Vec<(DVec4, DVec4)> = (0..=self.degree_v).map(|j| bernstein::horner_jet(self.row(j), u)).collect();
+        let values: Vec<DVec4> = rows.iter().map(|r| r.0).collect();
+        let slopes: Vec<DVec4> = rows.iter().map(|r| r.1).collect();
+        let (p, dv) = bernstein::horner_jet(&values, v);
+        (p, bernstein::horner(&slopes, v), dv)
+    }
+
+    /// Homogeneous value.
+    pub fn homogeneous(&self, u: f64, v: f64) -> DVec4 {
+        let rows: Vec<DVec4> = (0..=self.degree_v).map(|j| bernstein::horner(self.row(j), u)).collect();
+        bernstein::horner(&rows, v)
+    }
+
+    /// Point at `(u, v)`; parameters outside `[0, 1]` extrapolate.
+    pub fn point(&self, u: f64, v: f64) -> DVec3 {
+        self.homogeneous(u, v).point()
+    }
+
+    /// Point and first derivatives, by the quotient rule.
+    pub fn jet(&self, u: f64, v: f64) -> Jet {
+        let (p, pu, pv) = self.homogeneous_jet(u, v);
+        let point = p.point();
+        let slope = |d: DVec4| (d.truncate() - point * d.w) / p.w;
+        Jet { point, du: slope(pu), dv: slope(pv) }
+    }
+
+    /// The patch with `u` and `v` exchanged.
+    pub fn transposed(&self) -> Self {
+        let (n, k) = (self.degree_u + 1, self.degree_v + 1);
+        let points = (0..n).flat_map(|i| (0..k).map(move |j| (i, j))).map(|(i, j)| self.points[j * n + i]).collect();
+        Self { degree_u: self.degree_v, degree_v: self.degree_u, points }
+    }
+
+    /// The halves over `u` in `[0, t]` and `[t, 1]`.
+    pub fn split_u(&self, t: f64) -> (Self, Self) {
+        let n = self.degree_u + 1;
+        let mut left = self.clone();
+        let mut right = self.clone();
+        for j in 0..=self.degree_v {
+            let range = j * n..(j + 1) * n;
+            right.points[range.clone()].copy_from_slice(&bernstein::split(&mut left.points[range], t));
+        }
+        (left, right)
+    }
+
+    /// The halves over `v` in `[0, t]` and `[t, 1]`.
+    pub fn split_v(&self, t: f64) -> (Self, Self) {
+        let (a, b) = self.transposed().split_u(t);
+        (a.transposed(), b.transposed())
+    }
+
+    /// The patch over `[u0, u1] x [v0, v1]`, re-parametrised to the unit square.
+    pub fn rectangle(&self, u: (f64, f64), v: (f64, f64)) -> Self {
+        let along_u = |p: &Self, (a, b): (f64, f64)| {
+            if a <= 0.0 && b >= 1.0 {
+                p.clone()
+            } else if a < 1.0 {
+                p.split_u(a).1.split_u((b - a) / (1.0 - a)).0
+            } else {
+                p.split_u(b).0.split_u(a / b).1
+            }
+        };
+        let half = along_u(self, u).transposed();
+        along_u(&half, v).transposed()
+    }
+
+    /// All weights equal within rounding: a polynomial patch.
+    pub fn is_polynomial(&self) -> bool {
+        let w = self.points[0].w;
+        self.points.iter().all(|p| (p.w - w).abs() <= 1e-14 * w.abs())
+    }
+
+    /// Smallest axis-aligned box of the (Euclidean) control points; it contains the patch.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        let first = self.points[0].point();
+        self.points.iter().map(|p| p.point()).fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p)))
+    }
+}

@@ -1,0 +1,173 @@
+//! Rational tensor-product B-spline surfaces and their cut into Bézier patches.
+
+use super::bspline::{SplineError, check_knots, check_points, to_beziers};
+use super::{Jet, Patch};
+use glam::{DVec3, DVec4};
+use serde::{Deserialize, Serialize};
+
+/// A rational B-spline surface.
+///
+/// `points[j * count_u + i]` is `P_ij`, `i` along `u`. The invariants of
+/// [`BSpline`](super::BSpline) hold in both directions.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Surface {
+    degree_u: usize,
+    degree_v: usize,
+    knots_u: Vec<f64>,
+    knots_v: Vec<f64>,
+    points: Vec<DVec4>,
+}
+
+/// A Bézier patch with the rectangle of the surface's domain that it covers.
+#[derive(Clone, Debug, PartialEq)]
+pub struct SurfacePatch {
+    /// Parameter range along `u`.
+    pub u: (f64, f64),
+    /// Parameter range along `v`.
+    pub v: (f64, f64),
+    /// The patch over the unit square.
+    pub patch: Patch,
+}
+
+/// The Bézier patches of a surface, row by row, `u` fastest.
+#[derive(Clone, Debug, PartialEq)]
+pub struct PatchGrid {
+    /// Patches along `u`.
+    pub count_u: usize,
+    /// Patches along `v`.
+    pub count_v: usize,
+    /// `patches[j * count_u + i]`.
+    pub patches: Vec<SurfacePatch>,
+}
+
+impl Surface {
+    /// Checks the invariants.
+    ///
+    /// # Errors
+    /// The first of [`SplineError`] that does not hold, `u` before `v`.
+    pub fn new(
+        degrees: (usize, usize),
+        knots_u: Vec<f64>,
+        knots_v: Vec<f64>,
+        points: Vec<DVec4>,
+    ) -> Result<Self, SplineError> {
+        let count_u = knots_u.len().saturating_sub(degrees.0 + 1);
+        let count_v = knots_v.len().saturating_sub(degrees.1 + 1);
+        check_knots(degrees.0, &knots_u, count_u)?;
+        check_knots(degrees.1, &knots_v, count_v)?;
+        if points.len() != count_u * count_v {
+            let (knots, degree) = (knots_v.len(), degrees.1);
+            return Err(SplineError::KnotCount { knots, points: points.len() / count_u, degree });
+        }
+        check_points(&points)?;
+        Ok(Self { degree_u: degrees.0, degree_v: degrees.1, knots_u, knots_v, points })
+    }
+
+    /// Degrees along `u` and `v`.
+    pub fn degrees(&self) -> (usize, usize) {
+        (self.degree_u, self.degree_v)
+    }
+
+    /// Knot vectors along `u` and `v`.
+    pub fn knots(&self) -> (&[f64], &[f64]) {
+        (&self.knots_u, &self.knots_v)
+    }
+
+    /// Control points along `u` and `v`.
+    pub fn counts(&self) -> (usize, usize) {
+        (self.knots_u.len() - self.degree_u - 1, self.knots_v.len() - self.degree_v - 1)
+    }
+
+    /// Homogeneous control net, `u` fastest.
+    pub fn points(&self) -> &[DVec4] {
+        &self.points
+    }
+
+    /// Parameter ranges `((u0, u1), (v0, v1))`.
+    pub fn domain(&self) -> ((f64, f64), (f64, f64)) {
+        let (nu, nv) = self.counts();
+        ((self.knots_u[self.degree_u], self.knots_u[nu]), (self.knots_v[self.degree_v], self.knots_v[nv]))
+    }
+
+    /// All weights equal within rounding: a polynomial surface.
+    pub fn is_polynomial(&self) -> bool {
+        let w = self.points[0].w;
+        self.points.iter().all(|p| (p.w - w).abs() <= 1e-14 * w.abs())
+    }
+
+    /// The surface cut at its knots, by blossoming; neighbours share their boundary control points
+    /// bit for bit.
+    pub fn patches(&self) -> PatchGrid {
+        let (nu, nv) = self.counts();
+        // rows first: each row of control points becomes a row of Bézier pieces along u
+        let rows: Vec<_> =
+            (0..nv).map(|j| to_beziers(self.degree_u, &self.knots_u, &self.points[j * nu..(j + 1) * nu])).collect();
+        let count_u = rows[0].len();
+        let ku = self.degree_u + 1;
+        let mut columns = Vec::new(); // columns[i * ku + c]: pieces along v of column c of strip i
+        for i in 0..count_u {
+            for c in 0..ku {
+                let column: Vec<DVec4> = rows.iter().map(|r| r[i].piece[c]).collect();
+                columns.push(to_beziers(self.degree_v, &self.knots_v, &column));
+            }
+        }
+        let count_v = columns[0].len();
+        let mut patches = Vec::with_capacity(count_u * count_v);
+        for j in 0..count_v {
+            for i in 0..count_u {
+                let strip = &columns[i * ku..(i + 1) * ku];
+                let points = (0..=self.degree_v).flat_map(|r| strip.iter().map(move |s| s[j].piece[r])).collect();
+                patches.push(SurfacePatch {
+                    u: (rows[0][i].start, rows[0][i].end),
+                    v: (strip[0][j].start, strip[0][j].end),
+                    patch: Patch { degree_u: self.degree_u, degree_v: self.degree_v, points },
+                });
+            }
+        }
+        PatchGrid { count_u, count_v, patches }
+    }
+
+    /// Point and first derivatives at `(u, v)`, clamped to the domain.
+    ///
+    /// Cuts the surface anew at every call: for many evaluations keep a [`PatchGrid`].
+    pub fn jet(&self, u: f64, v: f64) -> Jet {
+        self.patches().jet(u, v)
+    }
+
+    /// Smallest box of the Euclidean control points; it contains the surface.
+    pub fn bounds(&self) -> (DVec3, DVec3) {
+        use super::Control;
+        let first = self.points[0].point();
+        self.points.iter().map(|p| p.point()).fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p)))
+    }
+}
+
+impl PatchGrid {
+    /// The patch that holds `(u, v)`, clamped to the domain, and the local parameters.
+    pub fn locate(&self, u: f64, v: f64) -> (&SurfacePatch, f64, f64) {
+        let row = &self.patches[..self.count_u];
+        let i = row.partition_point(|p| p.u.0 <= u).clamp(1, self.count_u) - 1;
+        let j = (0..self.count_v)
+            .collect::<Vec<_>>()
+            .partition_point(|&j| self.patches[j * self.count_u].v.0 <= v)
+            .clamp(1, self.count_v)
+            - 1;
+        let p = &self.patches[j * self.count_u + i];
+        let s = ((u - p.u.0) / (p.u.1 - p.u.0)).clamp(0.0, 1.0);
+        let t = ((v - p.v.0) / (p.v.1 - p.v.0)).clamp(0.0, 1.0);
+        (p, s, t)
+    }
+
+    /// Point and first derivatives with respect to the surface's own `(u, v)`.
+    pub fn jet(&self, u: f64, v: f64) -> Jet {
+        let (p, s, t) = self.locate(u, v);
+        let jet = p.patch.jet(s, t);
+        Jet { point: jet.point, du: jet.du / (p.u.1 - p.u.0), dv: jet.dv / (p.v.1 - p.v.0) }
+    }
+
+    /// Point at `(u, v)`, clamped to the domain.
+    pub fn point(&self, u: f64, v: f64) -> DVec3 {
+        let (p, s, t) = self.locate(u, v);
+        p.patch.point(s, t)
+    }
+}
