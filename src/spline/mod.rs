@@ -22,12 +22,14 @@
 mod bernstein;
 mod bezier;
 mod bspline;
+mod derivative_bound;
 mod patch;
 mod surface;
 
 pub use bernstein::{MAX_DEGREE, binomial};
 pub use bezier::{Bezier, Span};
 pub use bspline::{BSpline, SplineError};
+pub use derivative_bound::DerivativeBound;
 pub use patch::{Jet, Patch};
 pub use surface::{PatchGrid, Surface, SurfacePatch};
 

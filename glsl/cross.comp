@@ -1,0 +1,96 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `cross`: every linear segment meets every scan line that it crosses. One thread a segment.
+//
+//        v ▲   ─────────── scan line        recorded twice: first counted (INSERT false), then, when
+//          │      b ●                       the rows have found their places, written (INSERT true)
+//          │   ────╱──────                  bottom-open, top-closed: v_a < v <= v_b, so a line through
+//          │   a ●                          a shared vertex counts one crossing, and a touch 0 or 2
+//
+// An intercept is u as order-preserving bits, its lowest bit the direction: 1 upwards.
+// Twin: src/twin/cross.rs.
+#include "scene.glsl"
+
+layout(constant_id = 1) const bool INSERT = false;
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer FaceInstances { FaceInstance face_instances[]; };
+layout(scalar, binding = 2) readonly buffer Faces { Face faces[]; };
+layout(scalar, binding = 3) readonly buffer Curves { Curve curves[]; };
+layout(scalar, binding = 4) readonly buffer CurvePoints { float curve_points[]; };
+layout(scalar, binding = 5) readonly buffer CurveItems { uint curve_face_instance[]; };
+layout(scalar, binding = 6) readonly buffer LineStarts { uint line_starts[]; };
+layout(scalar, binding = 7) readonly buffer SegmentStarts { uint segment_starts[]; };
+layout(scalar, binding = 8) buffer RowCounts { uint row_counts[]; };
+layout(scalar, binding = 9) readonly buffer RowStarts { uint row_starts[]; };
+layout(scalar, binding = 10) writeonly buffer Intercepts { uint intercepts[]; };
+layout(scalar, binding = 11) buffer CountersBuffer { Counters counters; };
+
+#include "curve.glsl"
+
+// The curve item whose segments hold `segment`.
+uint curve_of(uint segment) {
+    uint lo = 0u;
+    uint hi = frame.curve_count;
+    while (hi - lo > 1u) {
+        uint mid = (lo + hi) / 2u;
+        if (segment_starts[mid] <= segment) lo = mid;
+        else hi = mid;
+    }
+    return lo;
+}
+
+uint ordered_bits(float u) {
+    uint bits = floatBitsToUint(u);
+    return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
+}
+
+void main() {
+    uint segment = gl_GlobalInvocationID.x;
+    uint total = segment_starts[frame.curve_count];
+    if (segment >= total) return;
+    uint item = curve_of(segment);
+    uint n = segment_starts[item + 1u] - segment_starts[item];
+    uint i = segment - segment_starts[item];
+    FaceInstance fi = face_instances[curve_face_instance[item]];
+    Face face = faces[fi.face];
+    Curve curve = curves[face.first_curve + item - fi.first_curve];
+    vec2 a = curve_point(curve, i, n);
+    vec2 b = curve_point(curve, i + 1u, n);
+    uint upwards = a.y < b.y ? 1u : 0u;
+    if (upwards == 0u) {
+        vec2 swap = a;
+        a = b;
+        b = swap;
+    }
+    float strips = float(face.strip_count);
+    uint first = uint(clamp(floor(a.y * strips), 0.0, strips - 1.0));
+    uint last = uint(clamp(floor(b.y * strips), 0.0, strips - 1.0));
+    for (uint k = first; k <= last; ++k) {
+        uint base = line_starts[fi.first_strip + k];
+        uint count = line_starts[fi.first_strip + k + 1u] - base;
+        if (count == 0u) continue;
+        float mu = float(count);
+        // one line too many on each side: the comparison below decides
+        float lowest = floor((a.y * strips - float(k)) * mu - 0.5);
+        float highest = ceil((b.y * strips - float(k)) * mu - 0.5);
+        if (highest < 0.0 || lowest > mu - 1.0) continue;
+        uint from = uint(max(lowest, 0.0));
+        uint to = uint(min(highest, mu - 1.0));
+        for (uint line = from; line <= to; ++line) {
+            precise float v = (float(k) + (float(line) + 0.5) / mu) / strips;
+            if (!(a.y < v && v <= b.y)) continue;
+            uint row = base + line;
+            if (row >= frame.row_capacity) continue;
+            uint place = atomicAdd(row_counts[row], 1u);
+            if (INSERT) {
+                precise float u = a.x + (v - a.y) / (b.y - a.y) * (b.x - a.x);
+                u = clamp(u, min(a.x, b.x), max(a.x, b.x));
+                uint at = row_starts[row] + place;
+                if (at < frame.intercept_capacity) intercepts[at] = (ordered_bits(u) & ~1u) | upwards;
+            }
+        }
+    }
+}

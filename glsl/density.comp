@@ -1,0 +1,39 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `density`: pixels that each v-strip of a trimmed face can cover. One thread a cell.
+//
+//   |S_v| <= speed_v  and  W >= w over the cell   =>   strip height in pixels <= speed_v pixels / strips
+//
+// The largest over the strip's visible cells stands for the paper's sup rho; strips that nobody
+// sees get no scan line. Twin: src/twin/density.rs.
+#include "scene.glsl"
+#include "view.glsl"
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
+layout(scalar, binding = 3) readonly buffer FaceInstances { FaceInstance face_instances[]; };
+layout(scalar, binding = 4) readonly buffer Faces { Face faces[]; };
+layout(scalar, binding = 5) readonly buffer Cells { Cell cells[]; };
+layout(scalar, binding = 6) readonly buffer CellItems { uint cell_face_instance[]; };
+layout(scalar, binding = 7) buffer StripHeights { uint strip_heights[]; }; // float bits, pixels
+layout(scalar, binding = 8) buffer FaceSpeeds { uint face_speeds[]; };     // float bits, pixels per unit u, v
+
+void main() {
+    uint item = gl_GlobalInvocationID.x;
+    if (item >= frame.cell_count) return;
+    uint placed = cell_face_instance[item];
+    FaceInstance fi = face_instances[placed];
+    Face face = faces[fi.face];
+    Cell cell = cells[face.first_cell + item - fi.first_cell];
+    float w = visible_w(views[fi.instance], frame, cell.box_min, cell.box_max, frame.ring_px + 1.0);
+    if (w < 0.0) return;
+    float pixels = pixels_per_unit(frame, instances[fi.instance], w);
+    // positive floats order like their bits
+    float height = cell.speed_v * pixels / float(face.strip_count);
+    atomicMax(strip_heights[fi.first_strip + cell.strip], floatBitsToUint(max(height, 1e-6)));
+    atomicMax(face_speeds[2u * placed], floatBitsToUint(cell.speed_u * pixels));
+    atomicMax(face_speeds[2u * placed + 1u], floatBitsToUint(cell.speed_v * pixels));
+}

@@ -1,0 +1,35 @@
+// Trim curves in the normalised (u, v) domain. Twin of src/twin/curve.rs.
+// Needs a buffer `float curve_points[]`.
+#ifndef CURVE_GLSL
+#define CURVE_GLSL
+
+vec3 curve_control(Curve curve, uint i) {
+    uint at = curve.first + 3u * i;
+    return vec3(curve_points[at], curve_points[at + 1u], curve_points[at + 2u]);
+}
+
+// Point `i` of `n` equal steps. The ends are the stored ones, so that curves of a loop share them
+// bit for bit; inner points depend on (curve, i, n) alone, so that segments share theirs.
+vec2 curve_point(Curve curve, uint i, uint n) {
+    if (i == 0u) return curve.start;
+    if (i >= n) return curve.end;
+    precise float t = float(i) / float(n);
+    precise float s = 1.0 - t;
+    if (curve.degree == 1u) {
+        precise vec2 p = curve.start * s + curve.end * t;
+        return p;
+    }
+    precise float f = 1.0;
+    precise float c = 1.0;
+    precise vec3 sum = curve_control(curve, 0u) * s;
+    for (uint k = 1u; k < curve.degree; ++k) {
+        f = f * t;
+        c = c * (float(curve.degree - k + 1u) / float(k));
+        sum = (sum + curve_control(curve, k) * (f * c)) * s;
+    }
+    sum = sum + curve_control(curve, curve.degree) * (f * t);
+    precise vec2 p = sum.xy / sum.z;
+    return p;
+}
+
+#endif

@@ -1,0 +1,167 @@
+// The scene in GPU memory. Twin of src/abi/scene.rs; the build checks every offset.
+//
+//   Instance ◀── FaceInstance ──▶ Face ──▶ Patch[count_u * count_v] ──▶ points
+//                    │              ├────▶ Cell   (a patch within one v-strip: where it is, how fast)
+//                    │              └────▶ Curve  (rational Bézier in (u, v)) ──▶ curve_points
+//                    ├── first_item   + local patch  = item     (one patch of one placed face)
+//                    ├── first_cell   + local cell   = cell item
+//                    ├── first_curve  + local curve  = curve item
+//                    └── first_strip  + local strip  = strip item
+//
+// (u, v) of a face is normalised: its whole surface covers [0, 1] x [0, 1].
+#ifndef SCENE_GLSL
+#define SCENE_GLSL
+
+// Patch.shape: degree_u | degree_v << 4 | rational << 8 | side << 9 | borders << 11
+const uint SIDE_OUTSIDE = 0u;  // wholly trimmed away: never drawn
+const uint SIDE_INSIDE = 1u;   // no trim curve meets it: drawn without a test
+const uint SIDE_BOUNDARY = 2u; // the trim table decides per pixel
+const uint BORDER_U0 = 1u;     // the side u = 0 of the patch is a border of the face's surface
+const uint BORDER_U1 = 2u;
+const uint BORDER_V0 = 4u;
+const uint BORDER_V1 = 8u;
+
+struct Patch {
+    vec3 box_min;    // part coordinates, relative to the part's origin
+    uint first;      // index of the first float in points
+    vec3 box_max;
+    uint shape;
+    vec4 domain;     // u0, v0, u1 - u0, v1 - v0 within the face
+    vec3 bend;       // largest |S_uu|, |S_uv|, |S_vv| over the unit square, part units
+    uint face;
+};
+
+const uint FACE_CLOSED_U = 1u;   // the sides u = 0 and u = 1 coincide
+const uint FACE_CLOSED_V = 2u;
+const uint FACE_SAME_SENSE = 4u; // outward normal is S_u x S_v
+const uint FACE_SOLID = 8u;      // the part is closed: back faces are never seen
+
+struct Face {
+    vec4 domain;        // u0, v0, u1 - u0, v1 - v0 of the source's own parameters
+    uint first_patch;
+    uint count_u;
+    uint count_v;
+    uint flags;
+    uint id;
+    uint colour;        // linear light, unorm 8 bits each, red lowest
+    uint first_cell;
+    uint first_curve;
+    uint strip_count;   // uniform v-strips; 0 for an untrimmed face
+};
+
+struct FaceInstance {
+    uint face;
+    uint instance;
+    uint first_item;
+    uint first_strip;
+    uint first_cell;
+    uint first_curve;
+};
+
+struct Instance {
+    mat3 normal;   // part to model, for normals (columns)
+    float scale;   // largest stretch of the transform
+    uint colour;   // as Face.colour; opacity 0: the faces keep theirs
+    uint mirrored; // 1 when the transform turns the space inside out
+};
+
+// The part of a patch that lies in one v-strip.
+struct Cell {
+    vec3 box_min;
+    float speed_u; // largest |S_u|, |S_v| there, part units per unit of normalised u, v
+    vec3 box_max;
+    float speed_v;
+    uint strip;
+};
+
+struct Curve {
+    vec2 start;     // end points as every neighbour sees them, bit for bit
+    vec2 end;
+    uint first;     // index of the first float in curve_points, three a control point
+    uint degree;
+    vec2 bend;      // deviation from n equal chords is at most bend / n^2, in u and in v
+    vec2 range_v;   // lowest and highest v of the control polygon
+};
+
+// One frame's view.
+struct Frame {
+    vec2 size;          // pixels
+    float focal;        // pixels per unit slope; parallel view: pixels per model unit
+    float slant;        // largest stretch of a pixel towards the picture's corners, >= 1
+    float near;
+    float far;
+    uint perspective;
+    float deviation_px; // budget of the tessellation
+    float ring_px;      // how far a trimmed face reaches over its border to close cracks
+    float row_px;       // spacing of the trim table's scan lines
+    float chord_px;     // budget of a trim curve's linear segments
+    uint item_count;
+    uint cell_count;
+    uint strip_count;
+    uint curve_count;
+    uint draw_vertices; // most tessellated vertices in one draw
+    uint encode_srgb;   // 1: the colour target does not encode by itself
+    uint sub_patch_capacity;
+    uint draw_capacity;
+    uint row_capacity;
+    uint segment_capacity;
+    uint intercept_capacity;
+    vec3 right;         // camera axes in model space
+    vec3 up;
+    vec3 forward;
+    vec4 background;
+};
+
+// Written by the passes, read back by the host.
+struct Counters {
+    uint plain;        // sub-patches without and with a trim test
+    uint trimmed;
+    uint plain_draws;
+    uint trimmed_draws;
+    uint rows;
+    uint segments;
+    uint intercepts;
+    uint clamps;       // factors or densities above their hard limits
+    uint failed;       // one bit a buffer that was too small
+};
+
+const uint FAILED_SUB_PATCHES = 1u;
+const uint FAILED_DRAWS = 2u;
+const uint FAILED_ROWS = 4u;
+const uint FAILED_SEGMENTS = 8u;
+const uint FAILED_INTERCEPTS = 16u;
+
+// Tessellation of one item, decided by the split pass. Totals over the whole patch.
+struct Factors {
+    uint inner;  // along u | along v << 16
+    uint edge_u; // segments of the sides v = 0 | v = 1 << 16
+    uint edge_v; // segments of the sides u = 0 | u = 1 << 16
+    uint splits; // sub-patches along u | along v << 16; powers of two
+};
+
+struct SubPatch {
+    uint item;
+    uint place; // i | j << 8: which of the item's sub-patches
+};
+
+struct Strip {
+    uint first_row;
+    uint row_count;
+};
+
+struct Row {
+    uint first; // index into intercepts
+    uint count; // after the sort: places where inside and outside change
+};
+
+const uint MAX_FACTOR = 64u;   // the hardware's tessellation factor
+const uint MAX_SPLIT = 64u;    // sub-patches along one side
+const uint MAX_ROWS = 65536u;  // scan lines of one strip
+
+uint degree_u(uint shape) { return shape & 15u; }
+uint degree_v(uint shape) { return (shape >> 4) & 15u; }
+bool is_rational(uint shape) { return ((shape >> 8) & 1u) != 0u; }
+uint side_of(uint shape) { return (shape >> 9) & 3u; }
+uint borders_of(uint shape) { return (shape >> 11) & 15u; }
+
+#endif

@@ -1,0 +1,22 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `reset`: empty draws and zero counters. One thread a draw.
+#include "scene.glsl"
+
+layout(local_size_x = 64) in;
+struct Draw {
+    uint vertex_count;
+    uint instance_count;
+    uint first_vertex;
+    uint first_instance;
+};
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) writeonly buffer Draws { Draw draws[]; };
+layout(scalar, binding = 2) writeonly buffer CountersBuffer { Counters counters; };
+
+void main() {
+    uint draw = gl_GlobalInvocationID.x;
+    if (draw == 0u) counters = Counters(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+    if (draw < 2u * frame.draw_capacity) draws[draw] = Draw(0u, 1u, 0xffffffffu, 0u);
+}

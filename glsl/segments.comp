@@ -1,0 +1,43 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `segments`: linear segments of each trim curve. One thread a curve of a placed face.
+//
+// Enough that the chords deviate by at most chord_px on the screen, and that one segment crosses at
+// most LINES_PER_SEGMENT scan lines, so that the threads of pass `cross` have equal work.
+// Twin: src/twin/segments.rs.
+#include "scene.glsl"
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer FaceInstances { FaceInstance face_instances[]; };
+layout(scalar, binding = 2) readonly buffer Faces { Face faces[]; };
+layout(scalar, binding = 3) readonly buffer Curves { Curve curves[]; };
+layout(scalar, binding = 4) readonly buffer CurveItems { uint curve_face_instance[]; };
+layout(scalar, binding = 5) readonly buffer FaceSpeeds { uint face_speeds[]; };
+layout(scalar, binding = 6) readonly buffer LineStarts { uint line_starts[]; };
+layout(scalar, binding = 7) writeonly buffer SegmentCounts { uint segment_counts[]; };
+
+const uint LINES_PER_SEGMENT = 256u;
+const float MAX_SEGMENTS = 65536.0;
+
+void main() {
+    uint item = gl_GlobalInvocationID.x;
+    if (item >= frame.curve_count) return;
+    uint placed = curve_face_instance[item];
+    FaceInstance fi = face_instances[placed];
+    Face face = faces[fi.face];
+    Curve curve = curves[face.first_curve + item - fi.first_curve];
+    float strips = float(face.strip_count);
+    uint lo = uint(clamp(floor(curve.range_v.x * strips), 0.0, strips - 1.0));
+    uint hi = uint(clamp(floor(curve.range_v.y * strips), 0.0, strips - 1.0));
+    uint lines = line_starts[fi.first_strip + hi + 1u] - line_starts[fi.first_strip + lo];
+    if (lines == 0u) {
+        segment_counts[item] = 0u;
+        return;
+    }
+    vec2 speed = vec2(uintBitsToFloat(face_speeds[2u * placed]), uintBitsToFloat(face_speeds[2u * placed + 1u]));
+    float for_chords = ceil(sqrt(dot(curve.bend, speed) / frame.chord_px));
+    float for_lines = float((lines + LINES_PER_SEGMENT - 1u) / LINES_PER_SEGMENT);
+    segment_counts[item] = uint(clamp(max(for_chords, for_lines), 1.0, MAX_SEGMENTS));
+}

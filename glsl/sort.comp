@@ -1,0 +1,67 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `sort`: each row in order of u, reduced to the places where inside and outside change.
+// One thread a row; heap sort in place, so the result does not depend on the order of insertion.
+//
+//   intercepts   ↑  ↑  ↓  ↑  ↓  ↓        winding   0 1 2 1 2 1 0
+//   flips        |              |        inside    0 1 1 1 1 1 0
+//
+// Twin: src/twin/sort.rs.
+#include "scene.glsl"
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer RowStarts { uint row_starts[]; };
+layout(scalar, binding = 2) writeonly buffer RowCounts { uint row_counts[]; };
+layout(scalar, binding = 3) buffer Intercepts { uint intercepts[]; };
+layout(scalar, binding = 4) readonly buffer LineStarts { uint line_starts[]; };
+
+float from_ordered(uint bits) {
+    return uintBitsToFloat((bits & 0x80000000u) != 0u ? bits & 0x7fffffffu : ~bits);
+}
+
+void sift(uint first, uint root, uint count) {
+    uint value = intercepts[first + root];
+    while (true) {
+        uint child = 2u * root + 1u;
+        if (child >= count) break;
+        if (child + 1u < count && intercepts[first + child + 1u] > intercepts[first + child]) ++child;
+        if (intercepts[first + child] <= value) break;
+        intercepts[first + root] = intercepts[first + child];
+        root = child;
+    }
+    intercepts[first + root] = value;
+}
+
+void main() {
+    uint row = gl_GlobalInvocationID.x;
+    uint rows = min(line_starts[frame.strip_count], frame.row_capacity);
+    if (row >= rows) return;
+    uint first = row_starts[row];
+    uint end = row_starts[row + 1u];
+    if (end > frame.intercept_capacity) {
+        row_counts[row] = 0u; // the host grows the table and records again
+        return;
+    }
+    uint count = end - first;
+    for (uint i = count / 2u; i > 0u; --i) sift(first, i - 1u, count);
+    for (uint i = count; i > 1u; --i) {
+        uint top = intercepts[first];
+        intercepts[first] = intercepts[first + i - 1u];
+        intercepts[first + i - 1u] = top;
+        sift(first, 0u, i - 1u);
+    }
+    uint flips = 0u;
+    int winding = 0;
+    for (uint i = 0u; i < count; ++i) {
+        uint bits = intercepts[first + i];
+        int next = winding + ((bits & 1u) != 0u ? 1 : -1);
+        if ((winding == 0) != (next == 0)) {
+            intercepts[first + flips] = floatBitsToUint(from_ordered(bits & ~1u));
+            ++flips;
+        }
+        winding = next;
+    }
+    row_counts[row] = flips;
+}

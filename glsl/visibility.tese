@@ -1,0 +1,87 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `visibility`: the exact surface at the vertices of one sub-patch.
+//
+// Two sub-patches that share a side compute its vertices from the same integers (segment k of n),
+// so they agree bit for bit. On the border of a trimmed face the outermost vertices are pushed
+// ring_px beyond it: the surface continues, and the trim test finds material on both sides of an
+// edge even where rounding or chords leave a gap.
+#include "scene.glsl"
+#include "view.glsl"
+
+layout(constant_id = 2) const bool TRIMMED = false;
+
+layout(quads, equal_spacing, ccw) in;
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
+layout(scalar, binding = 6) readonly buffer Points { float points[]; };
+
+#include "patch.glsl"
+
+layout(location = 0) patch in uint in_item;
+layout(location = 1) patch in uint in_instance;
+layout(location = 2) patch in uint in_patch;
+layout(location = 3) patch in uvec2 in_place;
+layout(location = 4) patch in uvec2 in_splits;
+layout(location = 5) patch in uvec4 in_edges;
+layout(location = 0) out vec2 out_uv; // of the patch
+layout(location = 1) flat out uint out_item;
+
+// Most of a patch's width that its border may be pushed outwards.
+const float MAX_PUSH = 0.5;
+
+float along_side(float x, uint place, uint splits, uint edge) {
+    uint n = edge / splits;
+    return float(place * n + uint(x * float(n) + 0.5)) / float(edge);
+}
+
+void main() {
+    vec2 t = gl_TessCoord.xy;
+    vec2 uv = (vec2(in_place) + t) / vec2(in_splits);
+    // sides of the whole patch: canonical positions
+    bool left = t.x == 0.0 && in_place.x == 0u;
+    bool right = t.x == 1.0 && in_place.x + 1u == in_splits.x;
+    bool bottom = t.y == 0.0 && in_place.y == 0u;
+    bool top = t.y == 1.0 && in_place.y + 1u == in_splits.y;
+    if (left || right) {
+        uv.x = left ? 0.0 : 1.0;
+        if (!(bottom || top)) uv.y = along_side(t.y, in_place.y, in_splits.y, left ? in_edges.x : in_edges.z);
+    }
+    if (bottom || top) {
+        uv.y = bottom ? 0.0 : 1.0;
+        if (!(left || right)) uv.x = along_side(t.x, in_place.x, in_splits.x, bottom ? in_edges.y : in_edges.w);
+    }
+    Patch patch_ = patches[in_patch];
+    View view = views[in_instance];
+    Jet jet = patch_jet(patch_.first, patch_.shape, uv);
+    if (TRIMMED) {
+        uint borders = borders_of(patch_.shape);
+        left = left && (borders & BORDER_U0) != 0u;
+        right = right && (borders & BORDER_U1) != 0u;
+        bottom = bottom && (borders & BORDER_V0) != 0u;
+        top = top && (borders & BORDER_V1) != 0u;
+        if (left || right || bottom || top) {
+            vec4 q = to_pixel(view, vec4(jet.point, 1.0));
+            vec4 qu = to_pixel(view, vec4(jet.du, 0.0));
+            vec4 qv = to_pixel(view, vec4(jet.dv, 0.0));
+            float w = frame.perspective != 0u ? max(q.w, frame.near) : 1.0;
+            vec2 pu = (qu.xy - q.xy / w * qu.w) / w; // pixels per unit u
+            vec2 pv = (qv.xy - q.xy / w * qv.w) / w;
+            float area = abs(pu.x * pv.y - pu.y * pv.x);
+            // a step du moves the border by du * area / |pv| pixels across itself
+            vec2 push = min(vec2(MAX_PUSH), 2.0 * frame.ring_px * vec2(length(pv), length(pu)) / max(area, 1e-12));
+            uv.x += right ? push.x : left ? -push.x : 0.0;
+            uv.y += top ? push.y : bottom ? -push.y : 0.0;
+            jet.point = patch_jet(patch_.first, patch_.shape, uv).point;
+        }
+    }
+    vec4 q = to_pixel(view, vec4(jet.point, 1.0));
+    // reversed depth, 1 at the near plane: floats are densest where perspective needs them
+    float range = 1.0 / (frame.far - frame.near);
+    float z = (frame.far - q.z) * range * (frame.perspective != 0u ? frame.near : 1.0);
+    gl_Position = vec4(q.xy * 2.0 / frame.size - q.w, z, q.w);
+    out_uv = uv;
+    out_item = in_item;
+}

@@ -1,0 +1,77 @@
+//! What changes with every frame.
+
+use bytemuck::{Pod, Zeroable};
+
+/// From part coordinates to homogeneous pixels: rows `X`, `Y`, depth and `W`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct View {
+    pub x: [f32; 4],
+    pub y: [f32; 4],
+    pub depth: [f32; 4],
+    pub w: [f32; 4],
+}
+
+/// One frame's view and budgets; see the GLSL for the meaning of each field.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct Frame {
+    pub size: [f32; 2],
+    pub focal: f32,
+    pub slant: f32,
+    pub near: f32,
+    pub far: f32,
+    pub perspective: u32,
+    pub deviation_px: f32,
+    pub ring_px: f32,
+    pub row_px: f32,
+    pub chord_px: f32,
+    pub item_count: u32,
+    pub cell_count: u32,
+    pub strip_count: u32,
+    pub curve_count: u32,
+    pub draw_vertices: u32,
+    pub encode_srgb: u32,
+    pub sub_patch_capacity: u32,
+    pub draw_capacity: u32,
+    pub row_capacity: u32,
+    pub segment_capacity: u32,
+    pub intercept_capacity: u32,
+    pub right: [f32; 3],
+    pub up: [f32; 3],
+    pub forward: [f32; 3],
+    pub background: [f32; 4],
+}
+
+/// Written by the passes, read back by the host.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct Counters {
+    pub plain: u32,
+    pub trimmed: u32,
+    pub plain_draws: u32,
+    pub trimmed_draws: u32,
+    pub rows: u32,
+    pub segments: u32,
+    pub intercepts: u32,
+    pub clamps: u32,
+    pub failed: u32,
+}
+
+/// Tessellation of one item.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct Factors {
+    pub inner: u32,
+    pub edge_u: u32,
+    pub edge_v: u32,
+    pub splits: u32,
+}
+
+/// One entry of the draw list.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct SubPatch {
+    pub item: u32,
+    pub place: u32,
+}

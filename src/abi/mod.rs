@@ -1,0 +1,8 @@
+//! The structures that Rust and GLSL share, in scalar layout. Twins of `glsl/include/scene.glsl`
+//! and `view.glsl`; the build asserts every offset and stride against the compiled shaders.
+
+mod frame;
+mod scene;
+
+pub use frame::*;
+pub use scene::*;

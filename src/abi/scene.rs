@@ -1,0 +1,127 @@
+//! What stays in GPU memory while a model is loaded.
+
+use bytemuck::{Pod, Zeroable};
+
+/// How a patch lies to its face's trim loops.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[repr(u32)]
+pub enum Side {
+    /// Wholly trimmed away.
+    Outside = 0,
+    /// No trim curve meets it.
+    Inside = 1,
+    /// A trim curve may meet it.
+    Boundary = 2,
+}
+
+/// The side `u = 0` of the patch is a border of the face's surface.
+pub const BORDER_U0: u32 = 1;
+/// As [`BORDER_U0`], for `u = 1`.
+pub const BORDER_U1: u32 = 2;
+/// As [`BORDER_U0`], for `v = 0`.
+pub const BORDER_V0: u32 = 4;
+/// As [`BORDER_U0`], for `v = 1`.
+pub const BORDER_V1: u32 = 8;
+
+/// The sides `u = 0` and `u = 1` of the face's surface coincide.
+pub const FACE_CLOSED_U: u32 = 1;
+/// As [`FACE_CLOSED_U`], for `v`.
+pub const FACE_CLOSED_V: u32 = 2;
+/// The outward normal is `S_u x S_v`.
+pub const FACE_SAME_SENSE: u32 = 4;
+/// The face belongs to a closed part.
+pub const FACE_SOLID: u32 = 8;
+
+/// One Bézier patch.
+///
+/// ```text
+///   shape   bits 0-3 degree_u | 4-7 degree_v | 8 rational | 9-10 Side | 11-14 borders
+/// ```
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct Patch {
+    pub box_min: [f32; 3],
+    pub first: u32,
+    pub box_max: [f32; 3],
+    pub shape: u32,
+    pub domain: [f32; 4],
+    pub bend: [f32; 3],
+    pub face: u32,
+}
+
+impl Patch {
+    /// Packs [`Patch::shape`].
+    pub fn pack_shape(degrees: (usize, usize), rational: bool, side: Side, borders: u32) -> u32 {
+        degrees.0 as u32 | (degrees.1 as u32) << 4 | u32::from(rational) << 8 | (side as u32) << 9 | borders << 11
+    }
+
+    /// The side stored in [`Patch::shape`].
+    pub fn side(&self) -> Side {
+        match self.shape >> 9 & 3 {
+            0 => Side::Outside,
+            1 => Side::Inside,
+            _ => Side::Boundary,
+        }
+    }
+}
+
+/// One face.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct Face {
+    pub domain: [f32; 4],
+    pub first_patch: u32,
+    pub count_u: u32,
+    pub count_v: u32,
+    pub flags: u32,
+    pub id: u32,
+    pub colour: u32,
+    pub first_cell: u32,
+    pub first_curve: u32,
+    pub strip_count: u32,
+}
+
+/// One face of one placed part.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct FaceInstance {
+    pub face: u32,
+    pub instance: u32,
+    pub first_item: u32,
+    pub first_strip: u32,
+    pub first_cell: u32,
+    pub first_curve: u32,
+}
+
+/// One placed part.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct Instance {
+    pub normal: [[f32; 3]; 3],
+    pub scale: f32,
+    pub colour: u32,
+    pub mirrored: u32,
+}
+
+/// The part of a patch that lies in one v-strip.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct Cell {
+    pub box_min: [f32; 3],
+    pub speed_u: f32,
+    pub box_max: [f32; 3],
+    pub speed_v: f32,
+    pub strip: u32,
+}
+
+/// One trim curve.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct Curve {
+    pub start: [f32; 2],
+    pub end: [f32; 2],
+    pub first: u32,
+    pub degree: u32,
+    pub bend: [f32; 2],
+    pub range_v: [f32; 2],
+}
