@@ -1,0 +1,141 @@
+//! A buffer with its memory.
+
+use super::device::Registration;
+use super::memory::Memory;
+use super::{Device, GpuError, Home, Named, Pool};
+use ash::vk;
+use bytemuck::Pod;
+
+/// What a buffer is made from.
+#[derive(Clone, Copy, Debug)]
+pub struct BufferInfo<'a> {
+    /// Name in errors, validation messages and [`Device::objects`].
+    pub name: &'a str,
+    /// Size. A buffer of 0 bytes is given [`Buffer::LEAST_BYTES`], so that it can be bound.
+    pub bytes: u64,
+    /// What it is used for.
+    pub usage: vk::BufferUsageFlags,
+    /// How long it lives.
+    pub pool: Pool,
+    /// Where its memory is.
+    pub home: Home,
+}
+
+/// A buffer; frees itself and its memory on drop. The GPU must have finished with it by then.
+#[derive(Debug)]
+pub struct Buffer {
+    handle: vk::Buffer,
+    bytes: u64,
+    name: String,
+    // Declared in the order in which they go.
+    memory: Memory,
+    registration: Registration,
+}
+
+impl Buffer {
+    /// Vulkan has no empty buffers; an empty one is this large.
+    pub const LEAST_BYTES: u64 = 16;
+
+    /// Usage of a buffer that passes fill, read, copy and take arguments from.
+    pub const STORAGE: vk::BufferUsageFlags = vk::BufferUsageFlags::from_raw(
+        vk::BufferUsageFlags::STORAGE_BUFFER.as_raw()
+            | vk::BufferUsageFlags::TRANSFER_SRC.as_raw()
+            | vk::BufferUsageFlags::TRANSFER_DST.as_raw(),
+    );
+
+    /// Usage of a [`STORAGE`](Self::STORAGE) buffer that also holds indirect arguments.
+    pub const INDIRECT: vk::BufferUsageFlags =
+        vk::BufferUsageFlags::from_raw(Self::STORAGE.as_raw() | vk::BufferUsageFlags::INDIRECT_BUFFER.as_raw());
+
+    /// Makes a buffer of undefined contents.
+    ///
+    /// # Errors
+    /// [`GpuError::TooLarge`] for a storage buffer above the device's range, [`GpuError::Allocation`]
+    /// without memory, [`GpuError::Vulkan`].
+    pub fn new(device: &Device, info: &BufferInfo<'_>) -> Result<Self, GpuError> {
+        let bytes = info.bytes.max(Self::LEAST_BYTES);
+        let limit = u64::from(device.limits().max_storage_buffer_range);
+        if info.usage.contains(vk::BufferUsageFlags::STORAGE_BUFFER) && bytes > limit {
+            return Err(GpuError::TooLarge { resource: info.name.to_owned(), bytes, limit });
+        }
+        let create = vk::BufferCreateInfo::default().size(bytes).usage(info.usage);
+        // SAFETY: the device is alive while `Device` is.
+        let handle = unsafe { device.raw().create_buffer(&create, None) }.named("vkCreateBuffer", info.name)?;
+        // SAFETY: the buffer was just made from this device.
+        let requirements = unsafe { device.raw().get_buffer_memory_requirements(handle) };
+        let bound = Memory::new(device, info.name, requirements, info.pool, info.home, true).and_then(|memory| {
+            let (raw, offset) = memory.raw();
+            // SAFETY: memory and buffer belong to this device, neither is bound yet.
+            unsafe { device.raw().bind_buffer_memory(handle, raw, offset) }.named("vkBindBufferMemory", info.name)?;
+            Ok(memory)
+        });
+        let memory = bound.inspect_err(|_| {
+            // SAFETY: nobody else has seen the handle.
+            unsafe { device.raw().destroy_buffer(handle, None) }
+        })?;
+        device.set_name(handle, info.name);
+        let registration = device.register(info.name);
+        Ok(Self { handle, bytes, name: info.name.to_owned(), memory, registration })
+    }
+
+    /// A [`STORAGE`](Self::STORAGE) buffer in device memory.
+    ///
+    /// # Errors
+    /// See [`Buffer::new`].
+    pub fn storage(device: &Device, pool: Pool, name: &str, bytes: u64) -> Result<Self, GpuError> {
+        Self::new(device, &BufferInfo { name, bytes, usage: Self::STORAGE, pool, home: Home::Device })
+    }
+
+    /// An [`INDIRECT`](Self::INDIRECT) buffer in device memory.
+    ///
+    /// # Errors
+    /// See [`Buffer::new`].
+    pub fn indirect(device: &Device, pool: Pool, name: &str, bytes: u64) -> Result<Self, GpuError> {
+        Self::new(device, &BufferInfo { name, bytes, usage: Self::INDIRECT, pool, home: Home::Device })
+    }
+
+    /// The Vulkan buffer.
+    pub fn handle(&self) -> vk::Buffer {
+        self.handle
+    }
+
+    /// Size in bytes, at least [`LEAST_BYTES`](Self::LEAST_BYTES).
+    pub fn bytes(&self) -> u64 {
+        self.bytes
+    }
+
+    /// Its name.
+    pub fn name(&self) -> &str {
+        &self.name
+    }
+
+    /// Its pool.
+    pub fn pool(&self) -> Pool {
+        self.memory.pool()
+    }
+
+    /// The mapped contents; `None` where the CPU does not see the memory. What the GPU wrote is there
+    /// after a barrier to [`Access::HOST_READ`](super::Access::HOST_READ) and the frame's fence.
+    pub fn mapped(&self) -> Option<&[u8]> {
+        self.memory.mapped().map(|slice| &slice[..self.bytes as usize])
+    }
+
+    /// Writes `data` at `offset` bytes. The GPU must not be using the buffer.
+    ///
+    /// # Panics
+    /// When the buffer is not mapped, or `data` does not fit.
+    pub fn write<T: Pod>(&mut self, offset: u64, data: &[T]) {
+        let bytes: &[u8] = bytemuck::cast_slice(data);
+        let (start, end) = (offset as usize, offset as usize + bytes.len());
+        assert!(end as u64 <= self.bytes, "{} bytes at {offset} do not fit in `{}`", bytes.len(), self.name);
+        let Some(mapped) = self.memory.mapped_mut() else { panic!("`{}` is not mapped", self.name) };
+        mapped[start..end].copy_from_slice(bytes);
+    }
+}
+
+impl Drop for Buffer {
+    fn drop(&mut self) {
+        // SAFETY: owned here; the GPU has finished with it, as the type's contract says.
+        unsafe { self.registration.device().raw().destroy_buffer(self.handle, None) }
+    }
+}

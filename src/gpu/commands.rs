@@ -1,0 +1,201 @@
+//! Recording into a command buffer of the host's.
+
+use super::{Access, Attachment, Buffer, Device, Image, Pipeline, Resource, push};
+use ash::vk;
+use std::ffi::CString;
+
+/// A command buffer being recorded, and the device that it belongs to.
+///
+/// The methods are Vulkan's commands with the engine's types. They check what is cheap to check;
+/// Vulkan's other rules are the caller's, and the validation layers' to find broken.
+#[derive(Clone, Copy)]
+pub struct Commands<'a> {
+    device: &'a Device,
+    raw: vk::CommandBuffer,
+}
+
+impl<'a> Commands<'a> {
+    /// Records into `raw`.
+    ///
+    /// # Safety
+    /// `raw` belongs to `device` and its queue family, is in the recording state outside a render
+    /// pass, and is used by one thread. What is recorded outlives the GPU's work.
+    pub unsafe fn new(device: &'a Device, raw: vk::CommandBuffer) -> Self {
+        Self { device, raw }
+    }
+
+    /// The device.
+    pub fn device(&self) -> &'a Device {
+        self.device
+    }
+
+    /// The Vulkan command buffer.
+    pub fn raw(&self) -> vk::CommandBuffer {
+        self.raw
+    }
+
+    /// Binds a pipeline with its resources in binding order and its push constants.
+    ///
+    /// # Panics
+    /// When resources or push constants are not those that the pipeline was made for.
+    pub fn bind(&self, pipeline: &Pipeline, resources: &[Resource<'_>], push_constants: &[u8]) {
+        let device = self.device.raw();
+        // SAFETY: recording; the pipeline belongs to this device.
+        unsafe { device.cmd_bind_pipeline(self.raw, pipeline.point(), pipeline.handle()) };
+        push::resources(self, pipeline, resources);
+        self.push_constants(pipeline, push_constants);
+    }
+
+    /// Replaces the push constants of the pipeline bound last.
+    ///
+    /// # Panics
+    /// When their size is not the pipeline's.
+    pub fn push_constants(&self, pipeline: &Pipeline, bytes: &[u8]) {
+        assert_eq!(bytes.len(), pipeline.push_bytes() as usize, "push constants of `{}`", pipeline.name());
+        if !bytes.is_empty() {
+            // SAFETY: recording; the range is the layout's.
+            unsafe {
+                self.device.raw().cmd_push_constants(self.raw, pipeline.layout(), pipeline.stages(), 0, bytes);
+            }
+        }
+    }
+
+    /// Starts `groups` workgroups in x.
+    ///
+    /// # Panics
+    /// When there are more than `maxComputeWorkGroupCount`.
+    pub fn dispatch(&self, groups: u32) {
+        let limit = self.device.limits().max_compute_work_group_count[0];
+        assert!(groups <= limit, "{groups} workgroups where {limit} are the most");
+        // SAFETY: recording; a compute pipeline is bound.
+        unsafe { self.device.raw().cmd_dispatch(self.raw, groups, 1, 1) };
+    }
+
+    /// Starts a grid of workgroups.
+    pub fn dispatch_grid(&self, [x, y, z]: [u32; 3]) {
+        // SAFETY: recording; a compute pipeline is bound.
+        unsafe { self.device.raw().cmd_dispatch(self.raw, x, y, z) };
+    }
+
+    /// Starts the grid that stands at `offset` bytes of `arguments` (`VkDispatchIndirectCommand`).
+    pub fn dispatch_indirect(&self, arguments: &Buffer, offset: u64) {
+        // SAFETY: recording; a compute pipeline is bound.
+        unsafe { self.device.raw().cmd_dispatch_indirect(self.raw, arguments.handle(), offset) };
+    }
+
+    /// Draws `vertices` from `first_vertex`, `instances` times.
+    pub fn draw(&self, vertices: u32, first_vertex: u32, instances: u32) {
+        // SAFETY: recording within `rendering`; a graphics pipeline is bound.
+        unsafe { self.device.raw().cmd_draw(self.raw, vertices, instances, first_vertex, 0) };
+    }
+
+    /// Makes `draws` draws of `VkDrawIndirectCommand`, packed, at `offset` bytes of `arguments`.
+    pub fn draw_indirect(&self, arguments: &Buffer, offset: u64, draws: u32) {
+        let stride = size_of::<vk::DrawIndirectCommand>() as u32;
+        // SAFETY: recording within `rendering`; a graphics pipeline is bound.
+        unsafe { self.device.raw().cmd_draw_indirect(self.raw, arguments.handle(), offset, draws, stride) };
+    }
+
+    /// As [`draw_indirect`](Self::draw_indirect), but the GPU wrote the number of draws at
+    /// `count_offset` bytes of `count`; at most `most` are made.
+    pub fn draw_indirect_count(&self, arguments: &Buffer, offset: u64, count: &Buffer, count_offset: u64, most: u32) {
+        let (arguments, count) = (arguments.handle(), count.handle());
+        let stride = size_of::<vk::DrawIndirectCommand>() as u32;
+        // SAFETY: recording within `rendering`; a graphics pipeline is bound.
+        unsafe {
+            self.device.raw().cmd_draw_indirect_count(self.raw, arguments, offset, count, count_offset, most, stride);
+        }
+    }
+
+    /// Draws into attachments of `size` pixels: `record` makes the draws. Viewport and scissor cover
+    /// the attachments; depth runs over `[0, 1]`.
+    pub fn rendering<R>(
+        &self,
+        size: (u32, u32),
+        colour: &[Attachment<'_>],
+        depth: Option<Attachment<'_>>,
+        record: impl FnOnce() -> R,
+    ) -> R {
+        let area =
+            vk::Rect2D { offset: vk::Offset2D::default(), extent: vk::Extent2D { width: size.0, height: size.1 } };
+        let colour: Vec<_> = colour.iter().map(|attachment| attachment.info(Access::COLOUR_WRITE)).collect();
+        let depth = depth.map(|attachment| attachment.info(Access::DEPTH_WRITE));
+        let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&colour);
+        if let Some(depth) = &depth {
+            info = info.depth_attachment(depth);
+        }
+        let viewport =
+            vk::Viewport { width: size.0 as f32, height: size.1 as f32, max_depth: 1.0, ..Default::default() };
+        let device = self.device.raw();
+        // SAFETY: recording outside rendering; the views belong to this device.
+        unsafe {
+            device.cmd_begin_rendering(self.raw, &info);
+            device.cmd_set_viewport(self.raw, 0, &[viewport]);
+            device.cmd_set_scissor(self.raw, 0, &[area]);
+        }
+        let result = record();
+        // SAFETY: begun above.
+        unsafe { device.cmd_end_rendering(self.raw) };
+        result
+    }
+
+    /// Fills a whole buffer with a word: [`Access::TRANSFER_WRITE`].
+    pub fn fill(&self, buffer: &Buffer, word: u32) {
+        // SAFETY: recording outside rendering; the buffer belongs to this device.
+        unsafe { self.device.raw().cmd_fill_buffer(self.raw, buffer.handle(), 0, vk::WHOLE_SIZE, word) };
+    }
+
+    /// Copies bytes between buffers: [`Access::TRANSFER_READ`] to [`Access::TRANSFER_WRITE`].
+    ///
+    /// # Panics
+    /// When the bytes do not fit in both.
+    pub fn copy(&self, from: &Buffer, from_offset: u64, to: &Buffer, to_offset: u64, bytes: u64) {
+        let fits = from_offset + bytes <= from.bytes() && to_offset + bytes <= to.bytes();
+        assert!(fits, "copy of {bytes} bytes from `{}` to `{}`", from.name(), to.name());
+        if bytes == 0 {
+            return;
+        }
+        let region = vk::BufferCopy { src_offset: from_offset, dst_offset: to_offset, size: bytes };
+        // SAFETY: recording outside rendering; the regions lie within the buffers.
+        unsafe { self.device.raw().cmd_copy_buffer(self.raw, from.handle(), to.handle(), &[region]) };
+    }
+
+    /// Copies one aspect of an image, rows packed: [`Access::TRANSFER_READ`] to
+    /// [`Access::TRANSFER_WRITE`].
+    pub fn copy_image(&self, from: &Image, aspect: vk::ImageAspectFlags, to: &Buffer) {
+        let (width, height) = from.size();
+        let layers = vk::ImageSubresourceLayers::default().aspect_mask(aspect).layer_count(1);
+        let region = vk::BufferImageCopy::default().image_subresource(layers).image_extent(vk::Extent3D {
+            width,
+            height,
+            depth: 1,
+        });
+        let layout = Access::TRANSFER_READ.layout;
+        // SAFETY: recording outside rendering; both belong to this device.
+        unsafe {
+            self.device.raw().cmd_copy_image_to_buffer(self.raw, from.handle(), layout, to.handle(), &[region]);
+        }
+    }
+
+    /// Names what `record` records, for captures and validation messages.
+    pub fn labelled<R>(&self, name: &str, record: impl FnOnce() -> R) -> R {
+        let debug = self.device.debug_utils().zip(CString::new(name).ok());
+        if let Some((debug, name)) = &debug {
+            // SAFETY: recording.
+            unsafe {
+                debug.cmd_begin_debug_utils_label(self.raw, &vk::DebugUtilsLabelEXT::default().label_name(name));
+            }
+        }
+        let result = record();
+        if let Some((debug, _)) = &debug {
+            // SAFETY: begun above.
+            unsafe { debug.cmd_end_debug_utils_label(self.raw) };
+        }
+        result
+    }
+
+    pub(crate) fn pipeline_barrier(&self, dependency: &vk::DependencyInfo<'_>) {
+        // SAFETY: recording; the caller names resources of this device.
+        unsafe { self.device.raw().cmd_pipeline_barrier2(self.raw, dependency) };
+    }
+}

@@ -1,0 +1,200 @@
+//! The host's device as the engine sees it: functions, limits, allocator, and a list of what lives.
+
+use super::memory::lock;
+use super::{Pool, Quirks};
+use ash::vk;
+use ash::vk::Handle;
+use gpu_allocator::vulkan::Allocator;
+use std::collections::BTreeMap;
+use std::ffi::CString;
+use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard};
+
+/// What a host hands over. The engine destroys none of it.
+pub struct HostDevice<'a> {
+    /// The instance that `physical` belongs to.
+    pub instance: &'a ash::Instance,
+    /// A device for which [`Requirements::missing`](super::Requirements::missing) is empty.
+    pub physical: vk::PhysicalDevice,
+    /// Made with the features and extensions of [`Requirements`](super::Requirements).
+    pub device: ash::Device,
+    /// Family of the command buffers that the engine will record into.
+    pub queue_family: u32,
+    /// The host's allocator for this device.
+    pub allocator: Arc<Mutex<Allocator>>,
+    /// The instance has `VK_EXT_debug_utils`: objects and passes get names.
+    pub debug_names: bool,
+    /// The device has the feature `pipelineStatisticsQuery`: the triangle count is measured.
+    pub pipeline_statistics: bool,
+}
+
+/// A cheap handle to the host's device; every wrapper holds one.
+#[derive(Clone)]
+pub struct Device(Arc<Inner>);
+
+struct Inner {
+    raw: ash::Device,
+    push_descriptor: ash::khr::push_descriptor::Device,
+    debug_utils: Option<ash::ext::debug_utils::Device>,
+    queue_family: u32,
+    timestamp_bits: u32,
+    pipeline_statistics: bool,
+    limits: vk::PhysicalDeviceLimits,
+    name: String,
+    driver: String,
+    quirks: Quirks,
+    allocator: Arc<Mutex<Allocator>>,
+    pool_bytes: [AtomicI64; Pool::ALL.len()],
+    objects: Mutex<BTreeMap<u64, String>>,
+    next_object: AtomicU64,
+}
+
+impl Device {
+    /// Takes the host's device on loan.
+    ///
+    /// # Safety
+    /// The handles are valid and fit together as [`HostDevice`] says, and stay so until the last
+    /// clone of this value and everything made from it is dropped.
+    pub unsafe fn new(host: HostDevice<'_>) -> Self {
+        let HostDevice { instance, physical, device, queue_family, allocator, debug_names, pipeline_statistics } = host;
+        let mut driver = vk::PhysicalDeviceDriverProperties::default();
+        let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
+        // SAFETY: the caller's promise; driver properties are part of Vulkan 1.2.
+        unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
+        let properties = properties.properties;
+        // SAFETY: the caller's promise.
+        let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
+        let text = |chars: &[std::ffi::c_char]| {
+            let bytes: Vec<u8> = chars.iter().map(|&c| c as u8).take_while(|&c| c != 0).collect();
+            String::from_utf8_lossy(&bytes).into_owned()
+        };
+        Self(Arc::new(Inner {
+            push_descriptor: ash::khr::push_descriptor::Device::new(instance, &device),
+            debug_utils: debug_names.then(|| ash::ext::debug_utils::Device::new(instance, &device)),
+            raw: device,
+            queue_family,
+            timestamp_bits: families[queue_family as usize].timestamp_valid_bits,
+            pipeline_statistics,
+            limits: properties.limits,
+            name: text(&properties.device_name),
+            driver: format!("{} {}", text(&driver.driver_name), text(&driver.driver_info)),
+            quirks: Quirks::of(driver.driver_id),
+            allocator,
+            pool_bytes: Default::default(),
+            objects: Mutex::default(),
+            next_object: AtomicU64::new(0),
+        }))
+    }
+
+    /// Vulkan's functions for this device.
+    pub fn raw(&self) -> &ash::Device {
+        &self.0.raw
+    }
+
+    /// Family of the command buffers that may be recorded.
+    pub fn queue_family(&self) -> u32 {
+        self.0.queue_family
+    }
+
+    /// Vulkan's limits.
+    pub fn limits(&self) -> &vk::PhysicalDeviceLimits {
+        &self.0.limits
+    }
+
+    /// What this driver gets wrong.
+    pub fn quirks(&self) -> Quirks {
+        self.0.quirks
+    }
+
+    /// The device's name.
+    pub fn name(&self) -> &str {
+        &self.0.name
+    }
+
+    /// The driver's name and version.
+    pub fn driver(&self) -> &str {
+        &self.0.driver
+    }
+
+    /// Bytes of memory that live buffers and images occupy, per pool in the order of [`Pool::ALL`].
+    pub fn pool_bytes(&self) -> [(Pool, u64); Pool::ALL.len()] {
+        Pool::ALL.map(|pool| (pool, self.0.pool_bytes[pool as usize].load(Ordering::Relaxed).max(0) as u64))
+    }
+
+    /// Names of the live buffers, images and pipelines, oldest first.
+    pub fn objects(&self) -> Vec<String> {
+        lock(&self.0.objects).values().cloned().collect()
+    }
+
+    /// Nothing made from this device lives any more, and this is its last handle.
+    #[cfg(feature = "headless")]
+    pub(crate) fn is_last(&self) -> bool {
+        Arc::strong_count(&self.0) == 1
+    }
+
+    pub(crate) fn push_descriptor(&self) -> &ash::khr::push_descriptor::Device {
+        &self.0.push_descriptor
+    }
+
+    pub(crate) fn debug_utils(&self) -> Option<&ash::ext::debug_utils::Device> {
+        self.0.debug_utils.as_ref()
+    }
+
+    /// Bits of a timestamp that count; 0 when the queue family has none.
+    pub(crate) fn timestamp_bits(&self) -> u32 {
+        self.0.timestamp_bits
+    }
+
+    pub(crate) fn pipeline_statistics(&self) -> bool {
+        self.0.pipeline_statistics
+    }
+
+    pub(crate) fn allocator(&self) -> MutexGuard<'_, Allocator> {
+        lock(&self.0.allocator)
+    }
+
+    pub(crate) fn count_bytes(&self, pool: Pool, change: i64) {
+        self.0.pool_bytes[pool as usize].fetch_add(change, Ordering::Relaxed);
+    }
+
+    /// Gives `handle` its name in validation messages and captures.
+    pub(crate) fn set_name<H: Handle>(&self, handle: H, name: &str) {
+        let (Some(debug), Ok(name)) = (self.debug_utils(), CString::new(name)) else { return };
+        let info = vk::DebugUtilsObjectNameInfoEXT::default().object_handle(handle).object_name(&name);
+        // A name is a courtesy: failing to set one changes nothing that is drawn.
+        // SAFETY: the handle belongs to this device and is not in use elsewhere yet.
+        let _ = unsafe { debug.set_debug_utils_object_name(&info) };
+    }
+
+    /// Lists a named object until the returned entry is dropped.
+    pub(crate) fn register(&self, name: &str) -> Registration {
+        let key = self.0.next_object.fetch_add(1, Ordering::Relaxed);
+        lock(&self.0.objects).insert(key, name.to_owned());
+        Registration { device: self.clone(), key }
+    }
+}
+
+impl std::fmt::Debug for Device {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        write!(f, "Device({}, {})", self.0.name, self.0.driver)
+    }
+}
+
+/// An entry in the list of live objects.
+#[derive(Debug)]
+pub(crate) struct Registration {
+    device: Device,
+    key: u64,
+}
+
+impl Registration {
+    pub(crate) fn device(&self) -> &Device {
+        &self.device
+    }
+}
+
+impl Drop for Registration {
+    fn drop(&mut self) {
+        lock(&self.device.0.objects).remove(&self.key);
+    }
+}

@@ -1,0 +1,51 @@
+//! Device memory copied to where the CPU reads it, after the fence.
+
+use super::{Access, Buffer, BufferInfo, Commands, Device, GpuError, Home, Image, Pool, barrier};
+use ash::vk;
+use bytemuck::Pod;
+
+/// A mapped buffer for the CPU to read; keep it and record into it again each frame.
+#[derive(Debug)]
+pub struct ReadBack {
+    buffer: Buffer,
+}
+
+impl ReadBack {
+    /// Room for `bytes`.
+    ///
+    /// # Errors
+    /// See [`Buffer::new`].
+    pub fn new(device: &Device, name: &str, bytes: u64) -> Result<Self, GpuError> {
+        let usage = vk::BufferUsageFlags::TRANSFER_DST;
+        let info = BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::ReadBack };
+        Ok(Self { buffer: Buffer::new(device, &info)? })
+    }
+
+    /// Records the copy of the first `bytes` of `from`, which is in [`Access::TRANSFER_READ`].
+    ///
+    /// # Panics
+    /// When they do not fit.
+    pub fn record(&self, cmd: &Commands<'_>, from: &Buffer, bytes: u64) {
+        cmd.copy(from, 0, &self.buffer, 0, bytes);
+        barrier::buffers(cmd, &[(&self.buffer, Access::TRANSFER_WRITE, Access::HOST_READ)]);
+    }
+
+    /// Records the copy of one aspect of an image, rows packed from the top; the image is in
+    /// [`Access::TRANSFER_READ`].
+    pub fn record_image(&self, cmd: &Commands<'_>, from: &Image, aspect: vk::ImageAspectFlags) {
+        cmd.copy_image(from, aspect, &self.buffer);
+        barrier::buffers(cmd, &[(&self.buffer, Access::TRANSFER_WRITE, Access::HOST_READ)]);
+    }
+
+    /// The first `count` values, after the fence.
+    ///
+    /// # Panics
+    /// When there is no room for that many.
+    pub fn values<T: Pod>(&self, count: usize) -> Vec<T> {
+        let Some(mapped) = self.buffer.mapped() else { panic!("`{}` is not mapped", self.buffer.name()) };
+        let mut values = vec![T::zeroed(); count];
+        let bytes: &mut [u8] = bytemuck::cast_slice_mut(&mut values);
+        bytes.copy_from_slice(&mapped[..bytes.len()]);
+        values
+    }
+}

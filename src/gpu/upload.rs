@@ -1,0 +1,74 @@
+//! Host data into device-local buffers, by staging copies in a given command buffer.
+
+use super::{Access, Buffer, BufferInfo, Commands, GpuError, Home, Pool, barrier};
+use ash::vk;
+use bytemuck::Pod;
+
+/// The staging buffers of copies that the GPU has not finished. Drop it after the fence.
+#[derive(Debug, Default)]
+pub struct Uploads {
+    staging: Vec<Buffer>,
+}
+
+impl Uploads {
+    /// No uploads yet.
+    pub fn new() -> Self {
+        Self::default()
+    }
+
+    /// Makes a buffer and records the copy of `data` into it. Follow with
+    /// [`finish`](Self::finish) before it is used.
+    ///
+    /// # Errors
+    /// See [`Buffer::new`].
+    pub fn buffer<T: Pod>(
+        &mut self,
+        cmd: &Commands<'_>,
+        pool: Pool,
+        name: &str,
+        usage: vk::BufferUsageFlags,
+        data: &[T],
+    ) -> Result<Buffer, GpuError> {
+        let (bytes, usage) = (size_of_val(data) as u64, usage | vk::BufferUsageFlags::TRANSFER_DST);
+        let buffer = Buffer::new(cmd.device(), &BufferInfo { name, bytes, usage, pool, home: Home::Device })?;
+        self.write(cmd, &buffer, 0, data)?;
+        Ok(buffer)
+    }
+
+    /// Records the copy of `data` to `offset` bytes of `target`: [`Access::TRANSFER_WRITE`].
+    ///
+    /// # Errors
+    /// See [`Buffer::new`], for the staging buffer.
+    ///
+    /// # Panics
+    /// When `data` does not fit.
+    pub fn write<T: Pod>(
+        &mut self,
+        cmd: &Commands<'_>,
+        target: &Buffer,
+        offset: u64,
+        data: &[T],
+    ) -> Result<(), GpuError> {
+        if data.is_empty() {
+            return Ok(());
+        }
+        let name = format!("staging of {}", target.name());
+        let (bytes, usage) = (size_of_val(data) as u64, vk::BufferUsageFlags::TRANSFER_SRC);
+        let info = BufferInfo { name: &name, bytes, usage, pool: Pool::Transient, home: Home::Upload };
+        let mut staging = Buffer::new(cmd.device(), &info)?;
+        staging.write(0, data);
+        cmd.copy(&staging, 0, target, offset, bytes);
+        self.staging.push(staging);
+        Ok(())
+    }
+
+    /// Makes every copy so far visible to what follows.
+    pub fn finish(&self, cmd: &Commands<'_>, next: Access) {
+        barrier::memory(cmd, Access::TRANSFER_WRITE, next);
+    }
+
+    /// Bytes waiting in staging buffers.
+    pub fn staging_bytes(&self) -> u64 {
+        self.staging.iter().map(Buffer::bytes).sum()
+    }
+}
