@@ -4,6 +4,8 @@
 #![warn(missing_docs)]
 
 pub mod brep;
+pub mod math;
 pub mod model;
 pub mod picture;
 pub mod spline;
+pub mod trim;
