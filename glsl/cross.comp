@@ -14,7 +14,7 @@
 
 layout(constant_id = 1) const bool INSERT = false;
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 128) in;
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 2) readonly buffer Faces { Face faces[]; };
@@ -26,7 +26,6 @@ layout(scalar, binding = 7) readonly buffer SegmentStarts { uint segment_starts[
 layout(scalar, binding = 8) buffer RowCounts { uint row_counts[]; };
 layout(scalar, binding = 9) readonly buffer RowStarts { uint row_starts[]; };
 layout(scalar, binding = 10) writeonly buffer Intercepts { uint intercepts[]; };
-layout(scalar, binding = 11) buffer CountersBuffer { Counters counters; };
 
 #include "curve.glsl"
 

@@ -10,12 +10,12 @@
 // Twin: src/twin/sort.rs.
 #include "scene.glsl"
 
-layout(local_size_x = 64) in;
+layout(local_size_x = 128) in;
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer RowStarts { uint row_starts[]; };
 layout(scalar, binding = 2) writeonly buffer RowCounts { uint row_counts[]; };
 layout(scalar, binding = 3) buffer Intercepts { uint intercepts[]; };
-layout(scalar, binding = 4) readonly buffer LineStarts { uint line_starts[]; };
+layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
 
 float from_ordered(uint bits) {
     return uintBitsToFloat((bits & 0x80000000u) != 0u ? bits & 0x7fffffffu : ~bits);
@@ -36,8 +36,12 @@ void sift(uint first, uint root, uint count) {
 
 void main() {
     uint row = gl_GlobalInvocationID.x;
-    uint rows = min(line_starts[frame.strip_count], frame.row_capacity);
+    uint rows = counters.rows;
     if (row >= rows) return;
+    if (row == 0u) {
+        counters.intercepts = row_starts[rows];
+        if (row_starts[rows] > frame.intercept_capacity) atomicOr(counters.failed, FAILED_INTERCEPTS);
+    }
     uint first = row_starts[row];
     uint end = row_starts[row + 1u];
     if (end > frame.intercept_capacity) {

@@ -3,8 +3,12 @@
 //! Start at [`model`] for what is drawn and `ARCHITECTURE.md` for how.
 #![warn(missing_docs)]
 
+pub mod abi;
 pub mod brep;
 pub mod gpu;
+pub mod math;
 pub mod model;
 pub mod picture;
+mod scene;
 pub mod spline;
+pub mod trim;

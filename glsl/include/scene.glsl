@@ -104,7 +104,6 @@ struct Frame {
     uint sub_patch_capacity;
     uint draw_capacity;
     uint row_capacity;
-    uint segment_capacity;
     uint intercept_capacity;
     vec3 right;         // camera axes in model space
     vec3 up;
@@ -120,6 +119,7 @@ struct Counters {
     uint trimmed_draws;
     uint rows;
     uint segments;
+    uint wanted_rows;  // rows before they were cut to the capacity
     uint intercepts;
     uint clamps;       // factors or densities above their hard limits
     uint failed;       // one bit a buffer that was too small
@@ -128,8 +128,7 @@ struct Counters {
 const uint FAILED_SUB_PATCHES = 1u;
 const uint FAILED_DRAWS = 2u;
 const uint FAILED_ROWS = 4u;
-const uint FAILED_SEGMENTS = 8u;
-const uint FAILED_INTERCEPTS = 16u;
+const uint FAILED_INTERCEPTS = 8u;
 
 // Tessellation of one item, decided by the split pass. Totals over the whole patch.
 struct Factors {
@@ -142,16 +141,6 @@ struct Factors {
 struct SubPatch {
     uint item;
     uint place; // i | j << 8: which of the item's sub-patches
-};
-
-struct Strip {
-    uint first_row;
-    uint row_count;
-};
-
-struct Row {
-    uint first; // index into intercepts
-    uint count; // after the sort: places where inside and outside change
 };
 
 const uint MAX_FACTOR = 64u;   // the hardware's tessellation factor

@@ -1,5 +1,5 @@
 // Look-up in the u-intercept table: nearest scan line, then a binary search.
-// Needs buffers `uint line_starts[]`, `uint row_starts[]`, `uint row_counts[]`, `float flips[]`.
+// Needs `frame` and buffers `uint line_starts[]`, `uint row_starts[]`, `uint row_counts[]`, `float flips[]`.
 #ifndef TABLE_GLSL
 #define TABLE_GLSL
 
@@ -11,6 +11,7 @@ bool table_inside(uint first_strip, float strips, vec2 uv) {
     uint count = line_starts[strip + 1u] - base;
     if (count == 0u) return false;
     uint row = base + min(uint(fract(s) * float(count)), count - 1u);
+    if (row >= frame.row_capacity) return true; // the host grows the table and records again
     uint lo = row_starts[row];
     uint first = lo;
     uint hi = lo + row_counts[row];

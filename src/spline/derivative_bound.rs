@@ -66,6 +66,16 @@ impl Patch {
         most
     }
 
+    /// Upper bounds of `|S_u|` and `|S_v|` alone, from one hull.
+    pub fn speed_bound(&self) -> (f64, f64) {
+        let w_min = self.points.iter().map(|p| p.w).fold(f64::INFINITY, f64::min);
+        let along_u = |patch: &Patch| {
+            let (position, weight) = nets(patch);
+            position.du().times(&weight).minus(&position.times(&weight.du())).largest() / (w_min * w_min)
+        };
+        (along_u(self), along_u(&self.transposed()))
+    }
+
     /// The bounds from the hulls of the whole patch.
     fn hull_bound(&self) -> DerivativeBound {
         let w_min = self.points.iter().map(|p| p.w).fold(f64::INFINITY, f64::min);
@@ -78,11 +88,8 @@ impl Patch {
 
 /// Hull maxima of `A`, `A_uu`, `A_uv`.
 fn numerators(patch: &Patch) -> (f64, f64, f64) {
-    // derivatives do not change when the surface is moved; moved to the origin, less cancels
-    let centre = patch.points[patch.points.len() / 2].point();
-    let (n, k) = (patch.degree_u, patch.degree_v);
-    let position = Net { n, k, values: patch.points.iter().map(|&p: &DVec4| p.truncate() - centre * p.w).collect() };
-    let weight = Net { n, k, values: patch.points.iter().map(|p| p.w).collect() };
+    let n = patch.degree_u;
+    let (position, weight) = nets(patch);
     let a = position.du().times(&weight).minus(&position.times(&weight.du()));
     let uu = match n {
         1 if patch.is_polynomial() => 0.0,
@@ -90,6 +97,15 @@ fn numerators(patch: &Patch) -> (f64, f64, f64) {
     };
     let uv = a.dv().times(&weight).minus(&a.times(&weight.dv()).scaled(2.0)).largest();
     (a.largest(), uu, uv)
+}
+
+/// `P` and `w`. Derivatives do not change when the surface is moved; moved to the origin, less cancels.
+fn nets(patch: &Patch) -> (Net<DVec3>, Net<f64>) {
+    let centre = patch.points[patch.points.len() / 2].point();
+    let (n, k) = (patch.degree_u, patch.degree_v);
+    let position = Net { n, k, values: patch.points.iter().map(|&p: &DVec4| p.truncate() - centre * p.w).collect() };
+    let weight = Net { n, k, values: patch.points.iter().map(|p| p.w).collect() };
+    (position, weight)
 }
 
 /// A tensor-product Bernstein polynomial, `u` fastest.

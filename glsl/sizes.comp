@@ -1,0 +1,32 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `sizes`: rows and segments of the trim table, and the dispatches that follow from them.
+// One thread. Twin: src/twin/sizes.rs.
+#include "scene.glsl"
+
+layout(local_size_x = 1) in;
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer LineStarts { uint line_starts[]; };
+layout(scalar, binding = 2) readonly buffer SegmentStarts { uint segment_starts[]; };
+layout(scalar, binding = 3) writeonly buffer Dispatches { uvec3 dispatches[]; }; // cross, sort
+layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
+
+const uint GROUP = 128u;        // threads of a workgroup in passes cross and sort
+const uint MAX_GROUPS = 65535u; // what every device can dispatch
+
+void main() {
+    uint rows = line_starts[frame.strip_count];
+    uint segments = segment_starts[frame.curve_count];
+    if (rows > frame.row_capacity) counters.failed |= FAILED_ROWS;
+    rows = min(rows, frame.row_capacity);
+    if (segments > MAX_GROUPS * GROUP) {
+        counters.clamps += 1u;
+        segments = MAX_GROUPS * GROUP;
+    }
+    counters.rows = rows;
+    counters.wanted_rows = line_starts[frame.strip_count];
+    counters.segments = segments;
+    dispatches[0] = uvec3((segments + GROUP - 1u) / GROUP, 1u, 1u);
+    dispatches[1] = uvec3((rows + GROUP - 1u) / GROUP, 1u, 1u);
+}

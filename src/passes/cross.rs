@@ -1,0 +1,87 @@
+//! Pass `cross`: every linear segment of a trim curve meets every scan line that it crosses.
+//!
+//! ```text
+//!   count    row_counts[row] += 1                                one thread a segment, as many
+//!   (scan)   row_starts = sums                                   as pass `sizes` found
+//!   insert   intercepts[row_starts[row] + place] = u, direction
+//! ```
+//!
+//! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_points`, `curve_items`, `line_starts`,
+//! `segment_starts`, `row_starts`, `dispatches`. Writes: `row_counts` (zero before each of the two),
+//! `intercepts`. Twin: `src/twin/cross.rs`.
+
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::shaders;
+
+/// `constant_id` of `INSERT`.
+const INSERT: u32 = 1;
+
+/// The pass, in its two roles.
+pub(crate) struct Cross {
+    count: Pipeline,
+    insert: Pipeline,
+}
+
+/// Its buffers, in binding order, and the dispatches.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub curves: &'a Buffer,
+    pub curve_points: &'a Buffer,
+    pub curve_items: &'a Buffer,
+    pub line_starts: &'a Buffer,
+    pub segment_starts: &'a Buffer,
+    pub row_counts: &'a Buffer,
+    pub row_starts: &'a Buffer,
+    pub intercepts: &'a Buffer,
+    /// Written by pass `sizes`; this pass's is the first.
+    pub dispatches: &'a Buffer,
+}
+
+impl Cross {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let pipeline = |name, insert: bool| {
+            Pipeline::compute(
+                device,
+                &ComputeInfo {
+                    name,
+                    spirv: shaders::CROSS_COMP,
+                    bindings: &[Binding::Storage; 11],
+                    push_bytes: 0,
+                    constants: &[(INSERT, u32::from(insert))],
+                },
+            )
+        };
+        Ok(Self { count: pipeline("cross (count)", false)?, insert: pipeline("cross (insert)", true)? })
+    }
+
+    /// Counts the intercepts of each row.
+    pub(crate) fn count(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
+        Self::record(cmd, &self.count, b);
+    }
+
+    /// Writes them.
+    pub(crate) fn insert(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
+        Self::record(cmd, &self.insert, b);
+    }
+
+    fn record(cmd: &Commands<'_>, pipeline: &Pipeline, b: &Bindings<'_>) {
+        let resources = [
+            b.frame,
+            b.face_instances,
+            b.faces,
+            b.curves,
+            b.curve_points,
+            b.curve_items,
+            b.line_starts,
+            b.segment_starts,
+            b.row_counts,
+            b.row_starts,
+            b.intercepts,
+        ]
+        .map(Into::into);
+        cmd.bind(pipeline, &resources, &[]);
+        cmd.dispatch_indirect(b.dispatches, 0);
+    }
+}

@@ -1,0 +1,59 @@
+//! Pass `density`: pixels that each v-strip of a trimmed face can cover.
+//!
+//! ```text
+//!    cell = part of a patch in one strip:   |S_v| x pixels per unit / strips  = height_px
+//!    strip height = largest of its visible cells; 0 when none is visible
+//! ```
+//!
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `cells`, `cell_items`. Writes: `strip_heights`, `face_speeds`.
+//! Twin: `src/twin/density.rs`.
+
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::shaders;
+
+/// Threads of a workgroup, as in the shader.
+const GROUP: u32 = 64;
+
+/// The pass.
+pub(crate) struct Density {
+    pipeline: Pipeline,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub views: &'a Buffer,
+    pub instances: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub cells: &'a Buffer,
+    /// Face instance of each cell.
+    pub cell_items: &'a Buffer,
+    /// Float bits, zero before.
+    pub strip_heights: &'a Buffer,
+    /// Float bits of pixels per unit u, v; zero before.
+    pub face_speeds: &'a Buffer,
+}
+
+impl Density {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let pipeline = Pipeline::compute(
+            device,
+            &ComputeInfo {
+                name: "density",
+                spirv: shaders::DENSITY_COMP,
+                bindings: &[Binding::Storage; 9],
+                push_bytes: 0,
+                constants: &[],
+            },
+        )?;
+        Ok(Self { pipeline })
+    }
+
+    /// One thread for each of `cells`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, cells: u32) {
+        let resources = [b.frame, b.views, b.instances, b.face_instances, b.faces, b.cells, b.cell_items, b.strip_heights, b.face_speeds].map(Into::into);
+        cmd.bind(&self.pipeline, &resources, &[]);
+        cmd.dispatch(cells.div_ceil(GROUP));
+    }
+}

@@ -1,0 +1,17 @@
+//! The passes, one file each: a figure, the bindings in order, what is read and written, `new` and
+//! `record`. A pass never allocates, submits or waits while recording, and never knows another pass;
+//! the barriers between passes stand in [`frame`](crate::frame).
+
+pub(crate) mod bound;
+pub(crate) mod cross;
+pub(crate) mod density;
+pub(crate) mod emit;
+pub(crate) mod lines;
+pub(crate) mod reset;
+pub(crate) mod resolve;
+pub(crate) mod scan;
+pub(crate) mod segments;
+pub(crate) mod sizes;
+pub(crate) mod sort;
+pub(crate) mod split;
+pub(crate) mod visibility;

@@ -1,0 +1,51 @@
+//! Pass `sort`: each row in order of u, reduced to the places where inside and outside change.
+//!
+//! ```text
+//!   intercepts   ↑  ↑  ↓  ↑  ↓  ↓        winding   0 1 2 1 2 1 0
+//!   flips        |              |        inside    0 1 1 1 1 1 0
+//! ```
+//!
+//! Reads: `frame`, `row_starts`, `dispatches`. Writes: `row_counts` (now the number of flips),
+//! `intercepts`, `counters`. Twin: `src/twin/sort.rs`.
+
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct Sort {
+    pipeline: Pipeline,
+}
+
+/// Its buffers, in binding order, and the dispatches.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub row_starts: &'a Buffer,
+    pub row_counts: &'a Buffer,
+    pub intercepts: &'a Buffer,
+    pub counters: &'a Buffer,
+    /// Written by pass `sizes`; this pass's is the second.
+    pub dispatches: &'a Buffer,
+}
+
+impl Sort {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let pipeline = Pipeline::compute(
+            device,
+            &ComputeInfo {
+                name: "sort",
+                spirv: shaders::SORT_COMP,
+                bindings: &[Binding::Storage; 5],
+                push_bytes: 0,
+                constants: &[],
+            },
+        )?;
+        Ok(Self { pipeline })
+    }
+
+    /// One thread a row.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
+        let resources = [b.frame, b.row_starts, b.row_counts, b.intercepts, b.counters].map(Into::into);
+        cmd.bind(&self.pipeline, &resources, &[]);
+        cmd.dispatch_indirect(b.dispatches, size_of::<[u32; 3]>() as u64);
+    }
+}

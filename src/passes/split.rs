@@ -1,0 +1,64 @@
+//! Pass `split`: one number of segments per shared side, and enough sub-patches that none exceeds the
+//! hardware's factor of 64.
+//!
+//! ```text
+//!         A (tau 100, 2 sub-patches)        B (tau 30)
+//!    ┌───────────┬───────────┐
+//!    │    50     │    50     │      the side that A and B share gets 100 segments, seen from
+//!    ├───────────┴───────────┤      both, so B is cut in two as well: 50 + 50
+//!    │    50     │    50     │
+//!    └───────────┴───────────┘
+//! ```
+//!
+//! Reads: `frame`, `face_instances`, `faces`, `patches`, `items`, `taus`. Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
+//! Twin: `src/twin/split.rs`.
+
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::shaders;
+
+/// Threads of a workgroup, as in the shader.
+const GROUP: u32 = 64;
+
+/// The pass.
+pub(crate) struct Split {
+    pipeline: Pipeline,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub patches: &'a Buffer,
+    pub items: &'a Buffer,
+    pub taus: &'a Buffer,
+    /// [`Factors`](crate::abi::Factors) per item.
+    pub factors: &'a Buffer,
+    /// Per item: plain, then trimmed.
+    pub sub_patch_counts: &'a Buffer,
+    /// Likewise.
+    pub vertex_counts: &'a Buffer,
+}
+
+impl Split {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let pipeline = Pipeline::compute(
+            device,
+            &ComputeInfo {
+                name: "split",
+                spirv: shaders::SPLIT_COMP,
+                bindings: &[Binding::Storage; 9],
+                push_bytes: 0,
+                constants: &[],
+            },
+        )?;
+        Ok(Self { pipeline })
+    }
+
+    /// One thread for each of `items`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+        let resources = [b.frame, b.face_instances, b.faces, b.patches, b.items, b.taus, b.factors, b.sub_patch_counts, b.vertex_counts].map(Into::into);
+        cmd.bind(&self.pipeline, &resources, &[]);
+        cmd.dispatch(items.div_ceil(GROUP));
+    }
+}

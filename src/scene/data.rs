@@ -1,0 +1,168 @@
+//! The whole scene as plain arrays, and the transforms that stay in `f64`.
+
+use super::face::{FaceData, pack_colour};
+use crate::abi;
+use crate::model::{Bounds, Camera, Model, Projection};
+use glam::{DAffine3, DMat3, DMat4, DVec3};
+use rayon::prelude::*;
+
+/// The arrays that the GPU gets; see `glsl/include/scene.glsl` for how they refer to each other.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct SceneData {
+    pub patches: Vec<abi::Patch>,
+    pub points: Vec<f32>,
+    pub faces: Vec<abi::Face>,
+    pub face_instances: Vec<abi::FaceInstance>,
+    pub instances: Vec<abi::Instance>,
+    /// Face instance of each item, cell item, strip item and curve item.
+    pub items: Vec<u32>,
+    pub cell_items: Vec<u32>,
+    pub curve_items: Vec<u32>,
+    pub strip_count: u32,
+    pub cells: Vec<abi::Cell>,
+    pub curves: Vec<abi::Curve>,
+    pub curve_points: Vec<f32>,
+    /// Some patch has unequal weights.
+    pub has_rational: bool,
+    /// Some patch is drawn without a trim test.
+    pub has_plain: bool,
+    /// Some patch needs the trim table.
+    pub has_trimmed: bool,
+    /// Part (relative to its centre) to model, per instance.
+    pub placements: Vec<DAffine3>,
+    /// Box of everything, model coordinates.
+    pub bounds: Option<Bounds>,
+}
+
+impl SceneData {
+    pub(crate) fn new(model: &Model) -> Self {
+        let mut data = Self::default();
+        let mut used = vec![false; model.parts.len()];
+        model.instances.iter().for_each(|i| used[i.part] = true);
+        let mut first_faces = Vec::with_capacity(model.parts.len());
+        let mut origins = Vec::with_capacity(model.parts.len());
+        let mut boxes = Vec::with_capacity(model.parts.len());
+        for (part, used) in model.parts.iter().zip(used) {
+            first_faces.push(data.faces.len());
+            let bounds = part.bounds();
+            let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
+            origins.push(origin);
+            boxes.push(bounds);
+            if used {
+                let faces: Vec<FaceData> =
+                    part.faces.par_iter().map(|f| FaceData::new(f, origin, part.closed)).collect();
+                faces.into_iter().for_each(|f| data.push_face(f));
+            }
+        }
+        for instance in &model.instances {
+            let part = &model.parts[instance.part];
+            let first = first_faces[instance.part];
+            data.push_instance(instance, origins[instance.part], first..first + part.faces.len());
+        }
+        let all = model.instances.iter().filter(|i| !boxes[i.part].is_empty());
+        let corners = all.flat_map(|i| boxes[i.part].corners().map(|c| i.transform.transform_point3(c)));
+        let bounds = corners.fold(Bounds::EMPTY, Bounds::with);
+        data.bounds = (!bounds.is_empty()).then_some(bounds);
+        data
+    }
+
+    fn push_face(&mut self, mut f: FaceData) {
+        let (face, point, curve_point) =
+            (self.faces.len() as u32, self.points.len() as u32, self.curve_points.len() as u32);
+        f.face.first_patch = self.patches.len() as u32;
+        f.face.first_cell = self.cells.len() as u32;
+        f.face.first_curve = self.curves.len() as u32;
+        for p in &mut f.patches {
+            p.face = face;
+            p.first += point;
+            match p.side() {
+                abi::Side::Inside => self.has_plain = true,
+                abi::Side::Boundary => self.has_trimmed = true,
+                abi::Side::Outside => {}
+            }
+        }
+        f.curves.iter_mut().for_each(|c| c.first += curve_point);
+        self.has_rational |= f.rational;
+        self.faces.push(f.face);
+        self.patches.append(&mut f.patches);
+        self.points.append(&mut f.points);
+        self.cells.append(&mut f.cells);
+        self.curves.append(&mut f.curves);
+        self.curve_points.append(&mut f.curve_points);
+    }
+
+    fn push_instance(&mut self, i: &crate::model::Instance, origin: DVec3, faces: std::ops::Range<usize>) {
+        let linear = i.transform.matrix3;
+        // normals transform by the cofactors: the inverse transposed times the determinant, which
+        // also exists for singular transforms; the sign of the determinant is told apart
+        let cofactor =
+            DMat3::from_cols(linear.y_axis.cross(linear.z_axis), linear.z_axis.cross(linear.x_axis), linear.x_axis.cross(linear.y_axis));
+        let unit = 1.0 / cofactor.to_cols_array().iter().fold(0.0f64, |m, x| m.max(x.abs())).max(f64::MIN_POSITIVE);
+        let mirrored = linear.determinant() < 0.0;
+        self.instances.push(abi::Instance {
+            normal: (cofactor * unit).to_cols_array_2d().map(|c| c.map(|x| x as f32)),
+            scale: (stretch(linear) as f32).next_up(),
+            colour: i.colour.map_or(0, |c| pack_colour([c[0], c[1], c[2], 1.0])),
+            mirrored: u32::from(mirrored),
+        });
+        self.placements.push(i.transform * DAffine3::from_translation(origin));
+        let instance = self.instances.len() as u32 - 1;
+        for face in faces {
+            let f = &self.faces[face];
+            let next = self.faces.get(face + 1);
+            let end = |of: fn(&abi::Face) -> u32, all: usize| next.map_or(all as u32, of);
+            let placed = self.face_instances.len() as u32;
+            let cells = end(|n| n.first_cell, self.cells.len()) - f.first_cell;
+            let curves = end(|n| n.first_curve, self.curves.len()) - f.first_curve;
+            self.face_instances.push(abi::FaceInstance {
+                face: face as u32,
+                instance,
+                first_item: self.items.len() as u32,
+                first_strip: self.strip_count,
+                first_cell: self.cell_items.len() as u32,
+                first_curve: self.curve_items.len() as u32,
+            });
+            self.strip_count += f.strip_count;
+            let repeat = |list: &mut Vec<u32>, n: u32| list.extend(std::iter::repeat_n(placed, n as usize));
+            repeat(&mut self.items, f.count_u * f.count_v);
+            repeat(&mut self.cell_items, cells);
+            repeat(&mut self.curve_items, curves);
+        }
+    }
+}
+
+/// The largest factor by which a linear map lengthens a vector, rounded up: exact for similarity
+/// transforms, else the bound `sqrt(|M|_1 |M|_inf)`.
+fn stretch(m: DMat3) -> f64 {
+    let gram = m.transpose() * m;
+    let s2 = gram.x_axis.x;
+    let off = gram - DMat3::from_diagonal(DVec3::splat(s2));
+    if off.to_cols_array().iter().all(|x| x.abs() <= 1e-9 * s2) {
+        return s2.sqrt() * (1.0 + 1e-9);
+    }
+    let columns = [m.x_axis, m.y_axis, m.z_axis].map(|c| c.abs().element_sum());
+    let t = m.transpose();
+    let rows = [t.x_axis, t.y_axis, t.z_axis].map(|c| c.abs().element_sum());
+    let most = |x: [f64; 3]| x.into_iter().fold(0.0, f64::max);
+    (most(columns) * most(rows)).sqrt()
+}
+
+/// The rows that take a placed part to homogeneous pixels: composed in `f64`, rounded once.
+pub(crate) fn view(pixels: DMat4, placement: DAffine3) -> abi::View {
+    let rows = (pixels * DMat4::from(placement)).transpose();
+    let row = |r: glam::DVec4| r.to_array().map(|x| x as f32);
+    abi::View { x: row(rows.x_axis), y: row(rows.y_axis), depth: row(rows.z_axis), w: row(rows.w_axis) }
+}
+
+/// Pixels per unit slope (or per model unit), and the largest stretch towards the picture's corners.
+pub(crate) fn focal_and_slant(camera: &Camera) -> (f64, f64) {
+    let (w, h) = (f64::from(camera.size.0), f64::from(camera.size.1));
+    match camera.projection {
+        Projection::Perspective { fov_y } => {
+            let focal = h * 0.5 / (fov_y * 0.5).tan();
+            let corner = (w * 0.5).hypot(h * 0.5) / focal;
+            (focal, (1.0 + corner * corner).sqrt())
+        }
+        Projection::Orthographic { height } => (h / height, 1.0),
+    }
+}

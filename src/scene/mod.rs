@@ -1,0 +1,21 @@
+//! A model turned into what the GPU keeps: Bézier patches, trim curves, instances.
+//!
+//! ```text
+//!   Model (f64, any size, any distance from the origin)
+//!     │  face: knots inserted ──▶ Patch + points (f32, relative to the part's centre)
+//!     │        loops          ──▶ Side of each patch; Curve + curve_points; Cell per patch and strip
+//!     │  part: shared by its instances
+//!     ▼
+//!   SceneData (plain arrays)  ──upload──▶  Scene (persistent pool)
+//! ```
+//!
+//! Single precision suffices because nothing is stored far from where it is seen: control points are
+//! relative to the centre of their part, and the transform from there to the eye is composed in
+//! `f64` every frame.
+
+mod data;
+mod face;
+mod upload;
+
+pub(crate) use data::SceneData;
+pub(crate) use upload::Scene;

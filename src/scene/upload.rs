@@ -1,0 +1,59 @@
+//! The scene's persistent buffers: only those that its model needs.
+
+use super::SceneData;
+use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Uploads};
+use bytemuck::Pod;
+
+/// A scene in GPU memory.
+pub(crate) struct Scene {
+    pub patches: Buffer,
+    pub points: Buffer,
+    pub faces: Buffer,
+    pub face_instances: Buffer,
+    pub instances: Buffer,
+    pub items: Buffer,
+    /// What trimming needs; `None` when no patch is trimmed.
+    pub trims: Option<Trims>,
+}
+
+/// Trim curves and the cells that tell their density.
+pub(crate) struct Trims {
+    pub cells: Buffer,
+    pub cell_items: Buffer,
+    pub curves: Buffer,
+    pub curve_points: Buffer,
+    pub curve_items: Buffer,
+}
+
+impl Scene {
+    /// Records the copies; the returned [`Uploads`] must live until the GPU has made them.
+    pub(crate) fn record(cmd: &Commands<'_>, data: &SceneData) -> Result<(Self, Uploads), GpuError> {
+        let mut uploads = Uploads::new();
+        let scene = Self {
+            patches: persistent(&mut uploads, cmd, "patches", &data.patches)?,
+            points: persistent(&mut uploads, cmd, "points", &data.points)?,
+            faces: persistent(&mut uploads, cmd, "faces", &data.faces)?,
+            face_instances: persistent(&mut uploads, cmd, "face instances", &data.face_instances)?,
+            instances: persistent(&mut uploads, cmd, "instances", &data.instances)?,
+            items: persistent(&mut uploads, cmd, "items", &data.items)?,
+            trims: data
+                .has_trimmed
+                .then(|| {
+                    Ok(Trims {
+                        cells: persistent(&mut uploads, cmd, "trim cells", &data.cells)?,
+                        cell_items: persistent(&mut uploads, cmd, "trim cell items", &data.cell_items)?,
+                        curves: persistent(&mut uploads, cmd, "trim curves", &data.curves)?,
+                        curve_points: persistent(&mut uploads, cmd, "trim curve points", &data.curve_points)?,
+                        curve_items: persistent(&mut uploads, cmd, "trim curve items", &data.curve_items)?,
+                    })
+                })
+                .transpose()?,
+        };
+        uploads.finish(cmd, Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ);
+        Ok((scene, uploads))
+    }
+}
+
+fn persistent<T: Pod>(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &[T]) -> Result<Buffer, GpuError> {
+    uploads.buffer(cmd, Pool::Persistent, name, Buffer::STORAGE, data)
+}
