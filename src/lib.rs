@@ -5,6 +5,8 @@
 
 pub mod brep;
 pub mod gpu;
+#[cfg(feature = "headless")]
+pub mod headless;
 pub mod model;
 pub mod picture;
 pub mod spline;
