@@ -83,8 +83,11 @@ void main() {
             if (!(a.y < v && v <= b.y)) continue;
             uint row = base + line;
             if (row >= frame.row_capacity) continue;
-            uint place = atomicAdd(row_counts[row], 1u);
-            if (INSERT) {
+            if (!INSERT) {
+                atomicAdd(row_counts[row], 1u);
+            } else {
+                // counting down, so that the counts need not be cleared in between
+                uint place = atomicAdd(row_counts[row], 0xffffffffu) - 1u;
                 precise float u = a.x + (v - a.y) / (b.y - a.y) * (b.x - a.x);
                 u = clamp(u, min(a.x, b.x), max(a.x, b.x));
                 uint at = row_starts[row] + place;

@@ -39,11 +39,10 @@ void main() {
     uint rows = counters.rows;
     if (row >= rows) return;
     if (row == 0u) {
-        counters.intercepts = row_starts[rows];
-        if (row_starts[rows] > frame.intercept_capacity) atomicOr(counters.failed, FAILED_INTERCEPTS);
+        if (counters.intercepts > frame.intercept_capacity) atomicOr(counters.failed, FAILED_INTERCEPTS);
     }
     uint first = row_starts[row];
-    uint end = row_starts[row + 1u];
+    uint end = row + 1u < rows ? row_starts[row + 1u] : counters.intercepts;
     if (end > frame.intercept_capacity) {
         row_counts[row] = 0u; // the host grows the table and records again
         return;

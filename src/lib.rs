@@ -5,10 +5,19 @@
 
 pub mod abi;
 pub mod brep;
+mod budget;
+mod buffers;
+mod frame;
 pub mod gpu;
+#[cfg(feature = "headless")]
+pub mod headless;
 pub mod math;
 pub mod model;
+pub mod passes;
 pub mod picture;
+pub mod renderer;
 mod scene;
+mod shaders;
 pub mod spline;
 pub mod trim;
+pub mod twin;

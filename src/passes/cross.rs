@@ -7,7 +7,8 @@
 //! ```
 //!
 //! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_points`, `curve_items`, `line_starts`,
-//! `segment_starts`, `row_starts`, `dispatches`. Writes: `row_counts` (zero before each of the two),
+//! `segment_starts`, `row_starts`, `dispatches`. Writes: `row_counts` (zero before
+//! counting and again after inserting),
 //! `intercepts`. Twin: `src/twin/cross.rs`.
 
 use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};

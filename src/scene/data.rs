@@ -66,6 +66,12 @@ impl SceneData {
         data
     }
 
+    /// Frees the arrays that the GPU has; the placements stay.
+    pub(crate) fn drop_uploaded(&mut self) {
+        let placements = std::mem::take(&mut self.placements);
+        *self = Self { placements, bounds: self.bounds, ..Self::default() };
+    }
+
     fn push_face(&mut self, mut f: FaceData) {
         let (face, point, curve_point) =
             (self.faces.len() as u32, self.points.len() as u32, self.curve_points.len() as u32);

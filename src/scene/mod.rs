@@ -17,5 +17,5 @@ mod data;
 mod face;
 mod upload;
 
-pub(crate) use data::SceneData;
-pub(crate) use upload::Scene;
+pub(crate) use data::{SceneData, focal_and_slant, view};
+pub(crate) use upload::{Scene, Trims};

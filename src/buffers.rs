@@ -1,0 +1,169 @@
+//! The transient buffers and images of a frame, sized by scene, picture and view.
+//!
+//! ```text
+//!   by the scene     taus, factors, counts and starts per item; per strip, face and curve if trimmed
+//!   by the picture   visibility, depth
+//!   by the view      sub-patches, draws, rows, intercepts: a pass that runs out says so in
+//!                    Counters.failed, and the next frame gets what it would have needed
+//! ```
+
+use crate::abi::{Counters, Factors, SubPatch};
+use crate::gpu::{Buffer, Device, GpuError, Image, ImageInfo, Pool};
+use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
+use crate::passes::scan;
+use crate::scene::SceneData;
+use ash::vk;
+
+/// What the scene has, per placed face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Counts {
+    pub items: u32,
+    pub cells: u32,
+    pub strips: u32,
+    pub curves: u32,
+    pub face_instances: u32,
+    pub trimmed: bool,
+}
+
+impl Counts {
+    pub(crate) fn of(data: &SceneData) -> Self {
+        Self {
+            items: data.items.len() as u32,
+            cells: data.cell_items.len() as u32,
+            strips: data.strip_count,
+            curves: data.curve_items.len() as u32,
+            face_instances: data.face_instances.len() as u32,
+            trimmed: data.has_trimmed,
+        }
+    }
+}
+
+/// Room for what only the GPU can count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Capacities {
+    pub sub_patches: u32,
+    pub draws: u32,
+    pub rows: u32,
+    pub intercepts: u32,
+}
+
+/// Bits of [`Counters::failed`], as in `scene.glsl`.
+const FAILED_DRAWS: u32 = 2;
+
+impl Capacities {
+    /// A first guess that fits most scenes in full view.
+    pub(crate) fn first(counts: Counts) -> Self {
+        let trimmed = u32::from(counts.trimmed);
+        Self {
+            sub_patches: counts.items.saturating_add(256),
+            draws: 64,
+            rows: trimmed * (1 << 16).max(2 * counts.strips),
+            intercepts: trimmed * (1 << 18).max(4 * counts.strips),
+        }
+    }
+
+    /// What the frame that reported `c` would have needed, with a quarter to spare; `None` when it
+    /// had enough.
+    pub(crate) fn grown(self, c: &Counters) -> Option<Self> {
+        if c.failed == 0 {
+            return None;
+        }
+        let room = |had: u32, wanted: u32| if wanted > had { wanted.saturating_add(wanted / 4) } else { had };
+        Some(Self {
+            sub_patches: room(self.sub_patches, c.plain.saturating_add(c.trimmed)),
+            draws: if c.failed & FAILED_DRAWS != 0 { self.draws.saturating_mul(4) } else { self.draws },
+            rows: room(self.rows, c.wanted_rows),
+            intercepts: room(self.intercepts, c.intercepts),
+        })
+    }
+}
+
+/// Everything transient.
+pub(crate) struct Buffers {
+    pub counts: Counts,
+    pub capacities: Capacities,
+    pub taus: Buffer,
+    pub factors: Buffer,
+    pub sub_patch_counts: Buffer,
+    pub sub_patch_starts: Buffer,
+    pub vertex_counts: Buffer,
+    pub vertex_starts: Buffer,
+    pub sums: Buffer,
+    pub sub_patches: Buffer,
+    pub draws: Buffer,
+    pub counters: Buffer,
+    pub trim: Option<TrimBuffers>,
+    pub visibility: Image,
+    pub depth: Image,
+}
+
+/// The trim table and what leads to it.
+pub(crate) struct TrimBuffers {
+    pub strip_heights: Buffer,
+    pub face_speeds: Buffer,
+    pub line_counts: Buffer,
+    pub line_starts: Buffer,
+    pub segment_counts: Buffer,
+    pub segment_starts: Buffer,
+    pub dispatches: Buffer,
+    pub row_counts: Buffer,
+    pub row_starts: Buffer,
+    pub intercepts: Buffer,
+}
+
+impl Buffers {
+    pub(crate) fn new(
+        device: &Device,
+        counts: Counts,
+        capacities: Capacities,
+        size: (u32, u32),
+    ) -> Result<Self, GpuError> {
+        let words = |name: &str, n: u32| Buffer::storage(device, Pool::Transient, name, 4 * u64::from(n));
+        let structs =
+            |name: &str, n: u32, bytes: usize| Buffer::storage(device, Pool::Transient, name, u64::from(n) * bytes as u64);
+        let indirect = |name: &str, bytes: u64| Buffer::indirect(device, Pool::Transient, name, bytes);
+        let image = |name: &str, format, usage| {
+            Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })
+        };
+        let n = counts.items;
+        let scanned = (2 * n).max(counts.strips).max(counts.curves).max(capacities.rows);
+        let draw_bytes = 2 * u64::from(capacities.draws) * size_of::<vk::DrawIndirectCommand>() as u64;
+        Ok(Self {
+            counts,
+            capacities,
+            taus: words("taus", n)?,
+            factors: structs("factors", n, size_of::<Factors>())?,
+            sub_patch_counts: words("sub-patch counts", 2 * n)?,
+            sub_patch_starts: words("sub-patch starts", 2 * n + 1)?,
+            vertex_counts: words("vertex counts", 2 * n)?,
+            vertex_starts: words("vertex starts", 2 * n + 1)?,
+            sums: words("scan sums", scan::block_count(scanned))?,
+            sub_patches: structs("sub-patches", capacities.sub_patches, size_of::<SubPatch>())?,
+            draws: indirect("draws", draw_bytes)?,
+            counters: indirect("counters", size_of::<Counters>() as u64)?,
+            trim: counts
+                .trimmed
+                .then(|| {
+                    Ok(TrimBuffers {
+                        strip_heights: words("trim strip heights", counts.strips)?,
+                        face_speeds: words("trim face speeds", 2 * counts.face_instances)?,
+                        line_counts: words("trim line counts", counts.strips)?,
+                        line_starts: words("trim line starts", counts.strips + 1)?,
+                        segment_counts: words("trim segment counts", counts.curves)?,
+                        segment_starts: words("trim segment starts", counts.curves + 1)?,
+                        dispatches: indirect("trim dispatches", 3 * size_of::<[u32; 3]>() as u64)?,
+                        row_counts: words("trim row counts", capacities.rows)?,
+                        row_starts: words("trim row starts", capacities.rows)?,
+                        intercepts: words("trim intercepts", capacities.intercepts)?,
+                    })
+                })
+                .transpose()?,
+            visibility: image(
+                "visibility",
+                VISIBILITY_FORMAT,
+                vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE,
+            )?,
+            depth: image("visibility depth", DEPTH_FORMAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?,
+        })
+    }
+}

@@ -1,0 +1,155 @@
+//! Loader, instance, layers, and the choice of a device.
+
+use super::messages::Messages;
+use super::{HeadlessError, HeadlessOptions};
+use crate::gpu::{Named, Requirements};
+use ash::vk;
+use std::ffi::CStr;
+
+const VALIDATION_LAYER: &CStr = c"VK_LAYER_KHRONOS_validation";
+
+/// An instance of our own; destroyed on drop, after everything made from it.
+pub(super) struct Instance {
+    pub(super) raw: ash::Instance,
+    pub(super) messages: Messages,
+    pub(super) debug_utils: bool,
+    messenger: Option<(ash::ext::debug_utils::Instance, vk::DebugUtilsMessengerEXT)>,
+    // Last: the library stays loaded until the instance is gone.
+    _entry: ash::Entry,
+}
+
+impl Instance {
+    pub(super) fn new(options: &HeadlessOptions) -> Result<Self, HeadlessError> {
+        // SAFETY: the system's Vulkan loader is trusted as any shared library of the system is.
+        let entry = unsafe { ash::Entry::load() }.map_err(|source| HeadlessError::NoLoader { source })?;
+        let extensions = extensions_of(&entry, None);
+        let debug_utils = extensions.iter().any(|name| name == ash::ext::debug_utils::NAME);
+        let mut layers = Vec::new();
+        let mut layer_settings = false;
+        if options.validation {
+            // SAFETY: the entry is loaded.
+            let installed = unsafe { entry.enumerate_instance_layer_properties() }.unwrap_or_default();
+            if !debug_utils || !installed.iter().any(|l| l.layer_name_as_c_str() == Ok(VALIDATION_LAYER)) {
+                return Err(HeadlessError::NoValidation);
+            }
+            layers.push(VALIDATION_LAYER.as_ptr());
+            let of_layer = extensions_of(&entry, Some(VALIDATION_LAYER));
+            layer_settings = of_layer.iter().any(|name| name == ash::ext::layer_settings::NAME);
+        }
+        let mut enabled: Vec<_> = debug_utils.then_some(ash::ext::debug_utils::NAME.as_ptr()).into_iter().collect();
+
+        // Newer layers are told through settings, and look at what shaders access only when asked;
+        // older ones know the validation features alone.
+        let yes = vk::TRUE.to_ne_bytes();
+        let settings = [c"validate_sync", c"syncval_shader_accesses_heuristic"].map(|name| {
+            vk::LayerSettingEXT::default()
+                .layer_name(VALIDATION_LAYER)
+                .setting_name(name)
+                .ty(vk::LayerSettingTypeEXT::BOOL32)
+                .values(&yes)
+        });
+        // One BOOL32 each, where `values` counted bytes.
+        let settings = settings.map(|mut setting| {
+            setting.value_count = 1;
+            setting
+        });
+        let mut settings = vk::LayerSettingsCreateInfoEXT::default().settings(&settings);
+        let mut features = vk::ValidationFeaturesEXT::default()
+            .enabled_validation_features(&[vk::ValidationFeatureEnableEXT::SYNCHRONIZATION_VALIDATION]);
+
+        let messages = Messages::default();
+        let mut early = messages.messenger();
+        let app = vk::ApplicationInfo::default()
+            .application_name(c"selvedge")
+            .engine_name(c"selvedge")
+            .api_version(Requirements::API_VERSION);
+        if layer_settings {
+            enabled.push(ash::ext::layer_settings::NAME.as_ptr());
+        }
+        let mut create = vk::InstanceCreateInfo::default()
+            .application_info(&app)
+            .enabled_layer_names(&layers)
+            .enabled_extension_names(&enabled);
+        if options.validation {
+            create = create.push_next(&mut early);
+            create = if layer_settings { create.push_next(&mut settings) } else { create.push_next(&mut features) };
+        }
+        // SAFETY: everything that the chain points to outlives the call; `messages` outlives the instance.
+        let raw = unsafe { entry.create_instance(&create, None) }.named("vkCreateInstance", "instance")?;
+        let mut this = Self { raw, messages, debug_utils, messenger: None, _entry: entry };
+        if options.validation {
+            let debug = ash::ext::debug_utils::Instance::new(&this._entry, &this.raw);
+            // SAFETY: `messages` lives in the same struct and outlives the messenger.
+            let messenger = unsafe { debug.create_debug_utils_messenger(&this.messages.messenger(), None) }
+                .named("vkCreateDebugUtilsMessengerEXT", "messenger")?;
+            this.messenger = Some((debug, messenger));
+        }
+        Ok(this)
+    }
+
+    /// The device whose name holds `wanted`, or else the most capable kind of device that meets the
+    /// requirements.
+    pub(super) fn choose(&self, wanted: Option<&str>) -> Result<vk::PhysicalDevice, HeadlessError> {
+        // SAFETY: the instance is alive.
+        let all = unsafe { self.raw.enumerate_physical_devices() }.unwrap_or_default();
+        if all.is_empty() {
+            return Err(HeadlessError::NoDevice);
+        }
+        let mut names = Vec::new();
+        let mut lacking = Vec::new();
+        let mut usable = Vec::new();
+        for physical in all {
+            // SAFETY: the device belongs to this instance.
+            let properties = unsafe { self.raw.get_physical_device_properties(physical) };
+            let name = properties.device_name_as_c_str().unwrap_or(c"?").to_string_lossy().into_owned();
+            names.push(name.clone());
+            if wanted.is_some_and(|wanted| !name.to_lowercase().contains(&wanted.to_lowercase())) {
+                continue;
+            }
+            // SAFETY: the device belongs to this instance, which was made for Vulkan 1.3.
+            let missing = unsafe { Requirements::missing(&self.raw, physical) };
+            if missing.is_empty() {
+                usable.push((rank(properties.device_type), physical));
+            } else {
+                lacking.push(format!("{name} lacks {}", missing.join(", ")));
+            }
+        }
+        match (usable.iter().min_by_key(|(rank, _)| *rank), wanted) {
+            (Some((_, physical)), _) => Ok(*physical),
+            (None, Some(wanted)) if lacking.is_empty() => {
+                Err(HeadlessError::NoSuchDevice { wanted: wanted.to_owned(), present: names.join(", ") })
+            }
+            (None, _) => Err(HeadlessError::Lacking { devices: lacking.join("; ") }),
+        }
+    }
+}
+
+impl Drop for Instance {
+    fn drop(&mut self) {
+        // SAFETY: what was made from the instance is gone: its owner declares it last.
+        unsafe {
+            if let Some((debug, messenger)) = &self.messenger {
+                debug.destroy_debug_utils_messenger(*messenger, None);
+            }
+            self.raw.destroy_instance(None);
+        }
+    }
+}
+
+/// Names of the instance extensions that the loader, or a layer, offers.
+fn extensions_of(entry: &ash::Entry, layer: Option<&CStr>) -> Vec<std::ffi::CString> {
+    // SAFETY: the entry is loaded.
+    let all = unsafe { entry.enumerate_instance_extension_properties(layer) }.unwrap_or_default();
+    all.iter().filter_map(|e| e.extension_name_as_c_str().ok()).map(CStr::to_owned).collect()
+}
+
+/// Discrete before integrated before virtual before CPU.
+fn rank(kind: vk::PhysicalDeviceType) -> u32 {
+    match kind {
+        vk::PhysicalDeviceType::DISCRETE_GPU => 0,
+        vk::PhysicalDeviceType::INTEGRATED_GPU => 1,
+        vk::PhysicalDeviceType::VIRTUAL_GPU => 2,
+        vk::PhysicalDeviceType::CPU => 3,
+        _ => 4,
+    }
+}

@@ -1,0 +1,224 @@
+//! A whole picture in host memory: device, targets, frame, read-back.
+
+use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
+use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
+use crate::model::{Camera, Model};
+use crate::picture::{FrameSettings, FrameStats, Outputs, Picture};
+use crate::renderer::{FrameInput, RenderError, Renderer, TargetFormats, Targets};
+use ash::vk;
+use bytemuck::Pod;
+use std::mem::ManuallyDrop;
+
+/// Colour is rendered to 8 bits, encoded by the format.
+const COLOUR_FORMAT: vk::Format = vk::Format::R8G8B8A8_SRGB;
+/// A frame is recorded again when a buffer was too small; each time they grow to what was needed, so
+/// more than a few rounds mean that something else is wrong.
+const MOST_RETRIES: u32 = 8;
+
+/// Renders models into [`Picture`]s, on a device of its own.
+pub struct HeadlessRenderer {
+    // drop order: everything made from the device, then the device
+    renderer: ManuallyDrop<Renderer>,
+    targets: ManuallyDrop<Option<TargetImages>>,
+    device: ManuallyDrop<HeadlessDevice>,
+    aovs: bool,
+    model: Option<Model>,
+}
+
+/// Images of one size, and the buffers that they are copied to.
+struct TargetImages {
+    colour: (Image, ReadBack),
+    aovs: Option<[(Image, ReadBack); 4]>,
+}
+
+impl HeadlessRenderer {
+    /// Makes the device.
+    ///
+    /// # Errors
+    /// [`HeadlessError`]: no loader, no device, no validation layers.
+    pub fn new(options: &HeadlessOptions) -> Result<Self, HeadlessError> {
+        let device = HeadlessDevice::new(options)?;
+        let renderer = Renderer::on(device.device(), formats(false), 1)?;
+        Ok(Self {
+            renderer: ManuallyDrop::new(renderer),
+            targets: ManuallyDrop::new(None),
+            device: ManuallyDrop::new(device),
+            aovs: false,
+            model: None,
+        })
+    }
+
+    /// Replaces the model.
+    ///
+    /// # Errors
+    /// [`HeadlessError::Gpu`].
+    pub fn upload(&mut self, model: &Model) -> Result<(), HeadlessError> {
+        self.model = Some(model.clone());
+        Ok(self.renderer.upload(model)?)
+    }
+
+    /// Renders one picture and waits for it.
+    ///
+    /// # Errors
+    /// [`HeadlessError`].
+    ///
+    /// # Panics
+    /// When no model was uploaded.
+    pub fn render(
+        &mut self,
+        camera: &Camera,
+        settings: &FrameSettings,
+        outputs: Outputs,
+    ) -> Result<Picture, HeadlessError> {
+        camera.check().map_err(RenderError::from)?;
+        self.prepare(camera.size, outputs != Outputs::default())?;
+        let mut retries = 0;
+        let stats = loop {
+            let report = self.frame(camera, settings)?;
+            if report.0 {
+                break report.1;
+            }
+            retries += 1;
+            if retries > MOST_RETRIES {
+                return Err(HeadlessError::NeverComplete);
+            }
+        };
+        Ok(self.read(camera.size, outputs, FrameStats { retries, ..stats }))
+    }
+
+    /// Validation messages so far.
+    pub fn messages(&self) -> Vec<String> {
+        self.device.messages().iter().map(ToString::to_string).collect()
+    }
+
+    /// Names of the buffers, images and pipelines that exist.
+    pub fn objects(&self) -> Vec<String> {
+        self.renderer.objects()
+    }
+
+    /// Frees everything and returns all validation messages, those about leaks included.
+    pub fn shutdown(mut self) -> Vec<String> {
+        // SAFETY: each is taken once, and `self` is forgotten; every frame was waited for.
+        let device = unsafe {
+            ManuallyDrop::drop(&mut self.renderer);
+            ManuallyDrop::drop(&mut self.targets);
+            ManuallyDrop::take(&mut self.device)
+        };
+        self.model = None;
+        std::mem::forget(self);
+        device.shutdown().iter().map(ToString::to_string).collect()
+    }
+
+    fn frame(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<(bool, FrameStats), HeadlessError> {
+        let Some(images) = &*self.targets else { unreachable!("prepared before") };
+        let renderer = &mut *self.renderer;
+        self.device.submit(|cmd| -> Result<(), RenderError> {
+            images.begin(cmd);
+            let targets = Targets {
+                colour: &images.colour.0,
+                depth: None,
+                aovs: images.aovs.as_ref().map(|aovs| std::array::from_fn(|i| &aovs[i].0)),
+            };
+            let input = FrameInput { camera, settings: *settings, slot: 0, targets };
+            // SAFETY: recording; the submission is waited for, so the slot is free again.
+            unsafe { renderer.record(cmd.raw(), &input) }?;
+            images.end(cmd);
+            Ok(())
+        })??;
+        let report = self.renderer.report(0)?.expect("a frame was recorded");
+        Ok((report.complete, report.stats))
+    }
+
+    /// Makes targets of this size, and a renderer that writes the images asked for.
+    fn prepare(&mut self, size: (u32, u32), aovs: bool) -> Result<(), HeadlessError> {
+        if aovs != self.aovs {
+            let mut renderer = Renderer::on(self.device.device(), formats(aovs), 1)?;
+            let Some(model) = &self.model else { panic!("upload a model before rendering") };
+            renderer.upload(model)?;
+            *self.renderer = renderer;
+            self.aovs = aovs;
+            *self.targets = None;
+        }
+        if self.targets.as_ref().is_none_or(|t| t.colour.0.size() != size) {
+            *self.targets = None;
+            *self.targets = Some(TargetImages::new(self.device.device(), size, aovs)?);
+        }
+        Ok(())
+    }
+
+    fn read(&self, size: (u32, u32), outputs: Outputs, stats: FrameStats) -> Picture {
+        let Some(images) = &*self.targets else { unreachable!("prepared before") };
+        let count = size.0 as usize * size.1 as usize;
+        let aov = |i: usize| images.aovs.as_ref().map(|a| &a[i].1);
+        fn values<T: Pod>(read: Option<&ReadBack>, wanted: bool, count: usize) -> Vec<T> {
+            read.filter(|_| wanted).map_or_else(Vec::new, |r| r.values(count))
+        }
+        Picture {
+            size,
+            colour: images.colour.1.values(count),
+            depth: values(aov(0), outputs.depth, count),
+            face: values(aov(1), outputs.face, count),
+            uv: values(aov(2), outputs.uv, count),
+            normal: values::<[f32; 4]>(aov(3), outputs.normal, count).iter().map(|n| [n[0], n[1], n[2]]).collect(),
+            stats,
+        }
+    }
+}
+
+impl Drop for HeadlessRenderer {
+    fn drop(&mut self) {
+        // SAFETY: dropped once, here, in the order of their dependence; every frame was waited for.
+        unsafe {
+            ManuallyDrop::drop(&mut self.renderer);
+            ManuallyDrop::drop(&mut self.targets);
+            ManuallyDrop::drop(&mut self.device);
+        }
+    }
+}
+
+fn formats(aovs: bool) -> TargetFormats {
+    TargetFormats { colour: COLOUR_FORMAT, depth: None, aovs }
+}
+
+impl TargetImages {
+    fn new(device: &Device, size: (u32, u32), aovs: bool) -> Result<Self, GpuError> {
+        let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
+        let target = |name: &str, format, bytes: u64| {
+            let image = Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })?;
+            let pixels = u64::from(size.0) * u64::from(size.1);
+            Ok::<_, GpuError>((image, ReadBack::new(device, &format!("{name} (read back)"), pixels * bytes)?))
+        };
+        let colour = target("colour", COLOUR_FORMAT, 4)?;
+        let [depth, face, uv, normal] = Renderer::AOV_FORMATS;
+        let aovs = aovs
+            .then(|| {
+                Ok::<_, GpuError>([
+                    target("depth", depth, 4)?,
+                    target("face", face, 4)?,
+                    target("uv", uv, 8)?,
+                    target("normal", normal, 16)?,
+                ])
+            })
+            .transpose()?;
+        Ok(Self { colour, aovs })
+    }
+
+    fn all(&self) -> impl Iterator<Item = &(Image, ReadBack)> {
+        std::iter::once(&self.colour).chain(self.aovs.iter().flatten())
+    }
+
+    /// Ready to be drawn into; what they held goes.
+    fn begin(&self, cmd: &Commands<'_>) {
+        let before = Access::TRANSFER_READ.discarded();
+        let barriers: Vec<_> = self.all().map(|(image, _)| (image, before, Access::COLOUR_WRITE)).collect();
+        barrier::images(cmd, &barriers);
+    }
+
+    /// Copied to host memory.
+    fn end(&self, cmd: &Commands<'_>) {
+        let barriers: Vec<_> =
+            self.all().map(|(image, _)| (image, Access::COLOUR_WRITE, Access::TRANSFER_READ)).collect();
+        barrier::images(cmd, &barriers);
+        self.all().for_each(|(image, read)| read.record_image(cmd, image, vk::ImageAspectFlags::COLOR));
+    }
+}

@@ -1,0 +1,401 @@
+//! The public face for hosts: a renderer on their device, recording into their command buffers.
+//!
+//! ```text
+//!   Requirements ─▶ host makes its device ─▶ Renderer::new ─▶ upload(&Model)
+//!                                                  │
+//!       each frame, per frame slot:   record(cmd, &FrameInput)  ─▶  host submits, waits its fence
+//!                                                  │
+//!                                      report(slot) ─▶ complete? times, counts, bytes
+//! ```
+//!
+//! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the
+//! GPU can tell (the trim table, the list of sub-patches) may be too small for a new view: the report
+//! of that frame says `complete: false`, and the next `record` makes them larger.
+
+use crate::abi;
+use crate::abi::Counters;
+use crate::budget::Budget;
+use crate::buffers::{Buffers, Capacities, Counts};
+use crate::frame::{Frame, Passes, target};
+use crate::gpu::{
+    Buffer, BufferInfo, Commands, Device, GpuError, Home, HostDevice, Image, Load, Pool, ReadBack, Timestamps, Uploads,
+};
+use crate::model::{Camera, CameraError, Model, Projection};
+use crate::passes::resolve;
+use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes};
+use crate::scene::{Scene, SceneData, focal_and_slant, view};
+use ash::vk;
+
+/// Formats of the images that the host will pass to [`Renderer::record`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TargetFormats {
+    /// Colour target; an sRGB format encodes by itself, for others the renderer encodes.
+    pub colour: vk::Format,
+    /// Depth target, if the host wants the model's depth among its own: reversed, 1 at the near
+    /// plane, 0 at the far one.
+    pub depth: Option<vk::Format>,
+    /// Four more colour targets follow: [`Renderer::AOV_FORMATS`].
+    pub aovs: bool,
+}
+
+/// The host's images for one frame, all of the camera's size.
+#[derive(Clone, Copy, Debug)]
+pub struct Targets<'a> {
+    /// In layout `COLOR_ATTACHMENT_OPTIMAL` before and after.
+    pub colour: &'a Image,
+    /// In layout `DEPTH_STENCIL_ATTACHMENT_OPTIMAL` before and after.
+    pub depth: Option<&'a Image>,
+    /// Depth, face, (u, v) and normal; layouts as for `colour`.
+    pub aovs: Option<[&'a Image; 4]>,
+}
+
+/// One frame.
+#[derive(Clone, Copy, Debug)]
+pub struct FrameInput<'a> {
+    /// View and size.
+    pub camera: &'a Camera,
+    /// Tolerance and background.
+    pub settings: FrameSettings,
+    /// Frame slot, below the number given to [`Renderer::new`]. The frame recorded into it before
+    /// has finished on the GPU.
+    pub slot: usize,
+    /// Where the picture goes.
+    pub targets: Targets<'a>,
+}
+
+/// Why a frame was not recorded.
+#[derive(Debug, thiserror::Error)]
+pub enum RenderError {
+    /// The camera shows nothing.
+    #[error("camera: {0}")]
+    Camera(#[from] CameraError),
+    /// Vulkan or its memory.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// [`FrameSettings::tolerance_px`] is not at least 1/8.
+    #[error("the tolerance must be at least 1/8 pixel, not {0}")]
+    Tolerance(f64),
+    /// A target of another size than the camera's.
+    #[error("the target `{name}` is {width} x {height}, the camera's picture another size")]
+    TargetSize {
+        /// Its name.
+        name: String,
+        /// Its width.
+        width: u32,
+        /// Its height.
+        height: u32,
+    },
+}
+
+/// What became of a frame.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FrameReport {
+    /// Every buffer sufficed; otherwise record the frame again.
+    pub complete: bool,
+    /// What it cost.
+    pub stats: FrameStats,
+}
+
+/// A renderer on a host's device.
+pub struct Renderer {
+    device: Device,
+    formats: TargetFormats,
+    loaded: Option<Loaded>,
+    slots: Vec<Slot>,
+}
+
+/// A model and what its frames need. Fields drop in order: nothing outlives the device.
+struct Loaded {
+    data: SceneData,
+    counts: Counts,
+    capacities: Capacities,
+    passes: Passes,
+    scene: Option<Scene>,
+    buffers: Option<Buffers>,
+}
+
+/// What one frame in flight owns.
+struct Slot {
+    constants: Buffer,
+    views: Option<Buffer>,
+    counters: ReadBack,
+    times: Timestamps,
+    /// Freed when the slot comes round again.
+    retired: Vec<Retired>,
+    recorded: bool,
+}
+
+#[allow(dead_code)] // held for their drop
+enum Retired {
+    Buffers(Box<Buffers>),
+    Loaded(Box<Loaded>),
+    Uploads(Uploads),
+    Buffer(Buffer),
+}
+
+/// Timed scopes in a frame.
+const SCOPES: u32 = 8;
+/// Tolerances below this ask for more than single precision gives at full zoom.
+const LEAST_TOLERANCE_PX: f64 = 0.125;
+
+impl Renderer {
+    /// Formats of the images of depth, face, (u, v) and normal.
+    pub const AOV_FORMATS: [vk::Format; 4] = resolve::AOV_FORMATS;
+
+    /// Takes the host's device on loan; `frame_slots` frames may be in flight.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    ///
+    /// # Safety
+    /// As [`Device::new`]. The renderer is dropped when the GPU has finished its frames, before the
+    /// device and the allocator.
+    pub unsafe fn new(host: HostDevice<'_>, formats: TargetFormats, frame_slots: usize) -> Result<Self, GpuError> {
+        // SAFETY: the caller's promise.
+        let device = unsafe { Device::new(host) };
+        Self::on(&device, formats, frame_slots)
+    }
+
+    /// As [`new`](Self::new), on a device that is already on loan.
+    pub(crate) fn on(device: &Device, formats: TargetFormats, frame_slots: usize) -> Result<Self, GpuError> {
+        let slots = (0..frame_slots.max(1)).map(|_| Slot::new(device)).collect::<Result<_, _>>()?;
+        Ok(Self { device: device.clone(), formats, loaded: None, slots })
+    }
+
+    /// Replaces the model: makes the pipelines that it needs; the next [`record`](Self::record)
+    /// copies its data. Frames in flight keep the old one until their slots come round.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn upload(&mut self, model: &Model) -> Result<(), GpuError> {
+        let data = SceneData::new(model);
+        let formats = resolve::Formats {
+            colour: self.formats.colour,
+            depth: self.formats.depth,
+            aovs: self.formats.aovs,
+        };
+        let passes = Passes::new(&self.device, &data, formats)?;
+        let counts = Counts::of(&data);
+        let loaded = Loaded { data, counts, capacities: Capacities::first(counts), passes, scene: None, buffers: None };
+        if let Some(old) = self.loaded.replace(loaded) {
+            self.retire(Retired::Loaded(Box::new(old)));
+        }
+        Ok(())
+    }
+
+    /// Records one frame: compute, draws, and the picture into the targets.
+    ///
+    /// # Errors
+    /// [`RenderError`]; nothing that the host must undo has been recorded then.
+    ///
+    /// # Panics
+    /// When no model was uploaded, the slot does not exist, or the targets are not those of
+    /// [`TargetFormats`].
+    ///
+    /// # Safety
+    /// `cmd` is recording outside a render pass, on the host's queue family, and is submitted at most
+    /// once; the frame recorded before into the same slot has finished on the GPU; frames are
+    /// submitted in the order in which they are recorded, to one queue.
+    pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, input: &FrameInput<'_>) -> Result<(), RenderError> {
+        input.camera.check()?;
+        let tolerance = input.settings.tolerance_px;
+        if !(tolerance >= LEAST_TOLERANCE_PX && tolerance.is_finite()) {
+            return Err(RenderError::Tolerance(tolerance));
+        }
+        let targets = input.targets;
+        for image in [Some(targets.colour), targets.depth].into_iter().chain(targets.aovs.iter().flatten().map(|i| Some(*i))) {
+            if let Some(image) = image.filter(|i| i.size() != input.camera.size) {
+                let (width, height) = image.size();
+                return Err(RenderError::TargetSize { name: image.name().to_owned(), width, height });
+            }
+        }
+        assert!(targets.aovs.is_some() == self.formats.aovs, "the targets are those of TargetFormats::aovs");
+        assert!(targets.depth.is_some() == self.formats.depth.is_some(), "the targets are those of TargetFormats::depth");
+        self.make_room(input.slot, input.camera.size)?;
+        // SAFETY: the caller's promise.
+        let cmd = unsafe { Commands::new(&self.device, cmd) };
+        let Some(loaded) = &mut self.loaded else { panic!("upload a model before recording") };
+        let slot = &mut self.slots[input.slot];
+        if loaded.scene.is_none() {
+            let (scene, uploads) = Scene::record(&cmd, &loaded.data)?;
+            slot.retired.push(Retired::Uploads(uploads));
+            loaded.scene = Some(scene);
+            loaded.data.drop_uploaded();
+        }
+        slot.write(&self.device, loaded, input, &self.formats)?;
+        let (Some(scene), Some(buffers), Some(views)) = (&loaded.scene, &loaded.buffers, &slot.views) else {
+            unreachable!("made above")
+        };
+        let keep = input.settings.background.is_none();
+        let mut colour = vec![target(targets.colour, keep)];
+        colour.extend(targets.aovs.iter().flatten().map(|image| target(image, keep)));
+        let depth = targets.depth.map(|image| {
+            let mut depth = target(image, keep);
+            if !keep {
+                depth.load = Load::Depth(0.0);
+            }
+            depth
+        });
+        let frame = Frame {
+            passes: &loaded.passes,
+            scene,
+            buffers,
+            constants: &slot.constants,
+            views,
+            counters: &slot.counters,
+            colour: &colour,
+            depth,
+        };
+        slot.times.reset(&cmd);
+        frame.record(&cmd, &mut slot.times);
+        slot.recorded = true;
+        Ok(())
+    }
+
+    /// What became of the frame recorded last into `slot`, which has finished on the GPU; `None`
+    /// when there was none.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn report(&self, slot: usize) -> Result<Option<FrameReport>, GpuError> {
+        let slot = &self.slots[slot];
+        if !slot.recorded {
+            return Ok(None);
+        }
+        let c = slot.read_counters();
+        let scopes = slot.times.read()?;
+        let stats = FrameStats {
+            passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
+            triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
+            sub_patches: u64::from(c.plain) + u64::from(c.trimmed),
+            trim_rows: u64::from(c.rows),
+            trim_intercepts: u64::from(c.intercepts),
+            clamps: u64::from(c.clamps),
+            retries: 0,
+            pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),
+            device: self.device.name().to_owned(),
+            driver: self.device.driver().to_owned(),
+        };
+        Ok(Some(FrameReport { complete: c.failed == 0, stats }))
+    }
+
+    /// Names of the buffers, images and pipelines that exist for the loaded model.
+    pub fn objects(&self) -> Vec<String> {
+        self.device.objects()
+    }
+
+    /// Frees what the slot kept for the frame before, and makes the buffers large enough for what
+    /// that frame reported and for the picture's size.
+    fn make_room(&mut self, slot: usize, size: (u32, u32)) -> Result<(), GpuError> {
+        let report = self.slots[slot].recorded.then(|| self.slots[slot].read_counters());
+        self.slots[slot].retired.clear();
+        self.slots[slot].recorded = false;
+        let Some(loaded) = &mut self.loaded else { return Ok(()) };
+        if let Some(grown) = report.and_then(|c| loaded.capacities.grown(&c)) {
+            loaded.capacities = grown;
+        }
+        let fits = |b: &Buffers| b.visibility.size() == size && b.capacities == loaded.capacities;
+        if !loaded.buffers.as_ref().is_some_and(fits) {
+            let made = Buffers::new(&self.device, loaded.counts, loaded.capacities, size)?;
+            if let Some(old) = loaded.buffers.replace(made) {
+                self.retire(Retired::Buffers(Box::new(old)));
+            }
+        }
+        Ok(())
+    }
+
+    /// Keeps `what` until every frame in flight has finished: it goes with the slot recorded last.
+    fn retire(&mut self, what: Retired) {
+        // the slots come round in turn, so the one recorded last is the last to be cleared
+        if let Some(slot) = self.slots.iter_mut().rev().find(|s| s.recorded) {
+            slot.retired.push(what);
+        }
+    }
+}
+
+impl Slot {
+    fn new(device: &Device) -> Result<Self, GpuError> {
+        Ok(Self {
+            constants: upload_buffer(device, "frame constants", size_of::<abi::Frame>() as u64)?,
+            views: None,
+            counters: ReadBack::new(device, "counters (read back)", size_of::<Counters>() as u64)?,
+            times: Timestamps::new(device, SCOPES)?,
+            retired: Vec::new(),
+            recorded: false,
+        })
+    }
+
+    fn read_counters(&self) -> Counters {
+        self.counters.values::<Counters>(1)[0]
+    }
+
+    /// Writes this frame's constants and transforms.
+    fn write(
+        &mut self,
+        device: &Device,
+        loaded: &Loaded,
+        input: &FrameInput<'_>,
+        formats: &TargetFormats,
+    ) -> Result<(), GpuError> {
+        let pixels = input.camera.pixel_matrix();
+        let views: Vec<abi::View> = loaded.data.placements.iter().map(|p| view(pixels, *p)).collect();
+        let bytes = size_of_val(views.as_slice()) as u64;
+        if self.views.as_ref().is_none_or(|b| b.bytes() < bytes) {
+            let made = upload_buffer(device, "views", bytes)?;
+            self.retired.extend(self.views.replace(made).map(Retired::Buffer));
+        }
+        if let Some(buffer) = &mut self.views {
+            buffer.write(0, &views);
+        }
+        self.constants.write(0, &[constants(device, loaded, input, formats)]);
+        Ok(())
+    }
+}
+
+fn upload_buffer(device: &Device, name: &str, bytes: u64) -> Result<Buffer, GpuError> {
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+    Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })
+}
+
+fn constants(device: &Device, loaded: &Loaded, input: &FrameInput<'_>, formats: &TargetFormats) -> abi::Frame {
+    let camera = input.camera;
+    let budget = Budget::of(input.settings.tolerance_px);
+    let (focal, slant) = focal_and_slant(camera);
+    let (right, up, forward) = camera.axes();
+    let (counts, room) = (loaded.counts, loaded.capacities);
+    let encodes = matches!(
+        formats.colour,
+        vk::Format::R8G8B8A8_SRGB | vk::Format::B8G8R8A8_SRGB | vk::Format::A8B8G8R8_SRGB_PACK32
+    );
+    abi::Frame {
+        size: [camera.size.0 as f32, camera.size.1 as f32],
+        focal: focal as f32,
+        slant: slant as f32,
+        near: camera.depth_range.0 as f32,
+        far: camera.depth_range.1 as f32,
+        perspective: u32::from(matches!(camera.projection, Projection::Perspective { .. })),
+        deviation_px: budget.deviation as f32,
+        ring_px: budget.ring as f32,
+        row_px: budget.row as f32,
+        chord_px: budget.chord as f32,
+        item_count: counts.items,
+        cell_count: counts.cells,
+        strip_count: counts.strips,
+        curve_count: counts.curves,
+        draw_vertices: device.quirks().max_tessellated_vertices_per_draw.saturating_sub(MOST_VERTICES).max(1),
+        encode_srgb: u32::from(!encodes),
+        sub_patch_capacity: room.sub_patches,
+        draw_capacity: room.draws,
+        row_capacity: room.rows,
+        intercept_capacity: room.intercepts,
+        right: right.as_vec3().to_array(),
+        up: up.as_vec3().to_array(),
+        forward: forward.as_vec3().to_array(),
+        // a negative opacity tells the shader to leave the background alone
+        background: input.settings.background.unwrap_or([0.0, 0.0, 0.0, -1.0]),
+    }
+}
+
+/// Vertices of one sub-patch at the hardware's factor of 64: a draw may exceed its budget by one
+/// sub-patch.
+const MOST_VERTICES: u32 = 65 * 65;
