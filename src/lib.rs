@@ -3,10 +3,14 @@
 //! Start at [`model`] for what is drawn and `ARCHITECTURE.md` for how.
 #![warn(missing_docs)]
 
+pub mod abi;
 pub mod brep;
 pub mod gpu;
 #[cfg(feature = "headless")]
 pub mod headless;
 pub mod model;
+pub mod passes;
 pub mod picture;
+mod shaders;
 pub mod spline;
+pub mod twin;
