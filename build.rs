@@ -21,9 +21,6 @@ mod compile;
 #[path = "build/reflect.rs"]
 mod reflect;
 
-/// Stages by the extension of their sources.
-const STAGES: [&str; 5] = ["comp", "vert", "tesc", "tese", "frag"];
-
 fn main() {
     println!("cargo::rerun-if-changed=build.rs");
     println!("cargo::rerun-if-changed=build");

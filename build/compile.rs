@@ -1,6 +1,6 @@
 //! Every entry point of `glsl/` by shaderc, twice: unoptimised for its names, optimised to ship.
 
-use crate::{STAGES, files, reflect, write};
+use crate::{files, reflect, write};
 use std::fs;
 use std::path::Path;
 
@@ -13,13 +13,13 @@ pub fn all(root: &Path, artefacts: &Path) -> Result<(), String> {
     let mut layouts = reflect::Layouts::new(&root.join("src/abi"))?;
     let mut errors = Vec::new();
     for path in files(&glsl) {
-        let Some(stage) = path.extension().and_then(|e| e.to_str()).filter(|e| STAGES.contains(e)) else { continue };
-        let kind = match stage {
-            "comp" => shaderc::ShaderKind::Compute,
-            "vert" => shaderc::ShaderKind::Vertex,
-            "tesc" => shaderc::ShaderKind::TessControl,
-            "tese" => shaderc::ShaderKind::TessEvaluation,
-            _ => shaderc::ShaderKind::Fragment,
+        let kind = match path.extension().and_then(|extension| extension.to_str()) {
+            Some("comp") => shaderc::ShaderKind::Compute,
+            Some("vert") => shaderc::ShaderKind::Vertex,
+            Some("tesc") => shaderc::ShaderKind::TessControl,
+            Some("tese") => shaderc::ShaderKind::TessEvaluation,
+            Some("frag") => shaderc::ShaderKind::Fragment,
+            _ => continue,
         };
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let source = fs::read_to_string(&path).map_err(|e| format!("{}: {e}", path.display()))?;
