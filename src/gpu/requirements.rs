@@ -70,6 +70,8 @@ impl Requirements {
         v12 scalar_block_layout,
         v13 synchronization2,
         v13 dynamic_rendering,
+        // SPIR-V 1.6 states a workgroup's size by LocalSizeId, which this feature allows.
+        v13 maintenance4,
     }
 
     /// Names of what `physical` lacks; empty when the engine runs on it.

@@ -9,7 +9,7 @@ pub(crate) mod emit;
 pub(crate) mod lines;
 pub(crate) mod reset;
 pub(crate) mod resolve;
-pub(crate) mod scan;
+pub mod scan;
 pub(crate) mod segments;
 pub(crate) mod sizes;
 pub(crate) mod sort;

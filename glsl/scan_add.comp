@@ -1,0 +1,13 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Step 3 of the prefix sum: every element of a block gains the sum of the blocks before it.
+#include "scan.glsl"
+
+void main() {
+    uint count = element_count();
+    uint first = gl_WorkGroupID.x * BLOCK + gl_LocalInvocationIndex * PER_LANE;
+    if (first >= count) return;
+    uint before = sums[gl_WorkGroupID.x];
+    for (uint i = first; i < min(first + PER_LANE, count); ++i) offsets[i] += before;
+}

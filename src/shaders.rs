@@ -1,0 +1,52 @@
+//! The SPIR-V of every entry point of `glsl/`: `scan_add.comp` is [`SCAN_ADD_COMP`].
+//!
+//! Compiled by `build.rs`, or committed in `glsl/spirv/`; see there.
+
+/// Little-endian words, for Vulkan's alignment.
+const fn words<const COUNT: usize>(bytes: &[u8]) -> [u32; COUNT] {
+    let (chunks, []) = bytes.as_chunks::<4>() else { panic!("SPIR-V is made of 4-byte words") };
+    assert!(chunks.len() == COUNT);
+    let mut words = [0; COUNT];
+    let mut i = 0;
+    while i < COUNT {
+        words[i] = u32::from_le_bytes(chunks[i]);
+        i += 1;
+    }
+    words
+}
+
+include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_shader_begins_with_the_magic_number_and_is_whole() {
+        assert_eq!(SCAN_ADD_COMP[0], 0x0723_0203);
+        // Walking the instructions by their lengths ends exactly at the last word.
+        let mut at = 5;
+        while at < SCAN_ADD_COMP.len() {
+            at += (SCAN_ADD_COMP[at] >> 16) as usize;
+        }
+        assert_eq!(at, SCAN_ADD_COMP.len());
+    }
+
+    /// What embedders get is what the sources say. After a change: `tools/shaders`.
+    #[cfg(feature = "compile-shaders")]
+    #[test]
+    fn the_committed_shaders_are_those_of_the_sources() {
+        use std::collections::BTreeMap;
+        use std::path::Path;
+        let read = |folder: &Path| -> BTreeMap<String, Vec<u8>> {
+            let files = std::fs::read_dir(folder).unwrap().map(|entry| entry.unwrap().path());
+            files.map(|p| (p.file_name().unwrap().display().to_string(), std::fs::read(&p).unwrap())).collect()
+        };
+        let fresh = read(&Path::new(env!("OUT_DIR")).join("spirv"));
+        let committed = read(&Path::new(env!("CARGO_MANIFEST_DIR")).join("glsl/spirv"));
+        let names = |files: &BTreeMap<String, Vec<u8>>| files.keys().cloned().collect::<Vec<_>>();
+        assert_eq!(names(&fresh), names(&committed), "run tools/shaders");
+        let stale: Vec<_> = fresh.iter().filter(|(name, bytes)| committed[*name] != **bytes).map(|(n, _)| n).collect();
+        assert!(stale.is_empty(), "run tools/shaders: {stale:?} differ from their sources");
+    }
+}

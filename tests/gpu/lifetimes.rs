@@ -1,0 +1,94 @@
+//! What lives, what is counted, and what was forgotten.
+
+use crate::support::{assert_silent, watched};
+use ash::vk;
+use selvedge::gpu::{Buffer, BufferInfo, GpuError, Home, Image, ImageInfo, Pool};
+use selvedge::headless::{HeadlessDevice, HeadlessError, HeadlessOptions, Severity};
+use selvedge::passes::scan::Scan;
+
+#[test]
+fn live_objects_are_listed_until_they_go() {
+    let device = watched();
+    assert_eq!(device.device().objects(), [""; 0]);
+    let table = Buffer::storage(device.device(), Pool::Persistent, "trim table", 100).unwrap();
+    let scan = Scan::new(device.device()).unwrap();
+    let objects = device.device().objects();
+    assert_eq!(objects[0], "trim table");
+    assert!(objects.iter().any(|name| name == "scan blocks"), "{objects:?}");
+    drop(table);
+    assert!(!device.device().objects().iter().any(|name| name == "trim table"));
+    drop(scan);
+    assert_eq!(device.device().objects(), [""; 0]);
+    assert_silent(device);
+}
+
+#[test]
+fn bytes_are_counted_in_their_pool() {
+    let device = watched();
+    let bytes = |pool| device.device().pool_bytes().into_iter().find(|(p, _)| *p == pool).unwrap().1;
+    let scene = Buffer::storage(device.device(), Pool::Persistent, "control points", 1 << 20).unwrap();
+    let usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT;
+    let info =
+        ImageInfo { name: "depth", size: (640, 480), format: vk::Format::D32_SFLOAT, usage, pool: Pool::Transient };
+    let depth = Image::new(device.device(), &info).unwrap();
+    // A driver may round up for alignment, by far less than a tenth at this size.
+    assert!((1 << 20..(1 << 20) + 100_000).contains(&bytes(Pool::Persistent)));
+    assert!((640 * 480 * 4..640 * 480 * 4 * 11 / 10).contains(&bytes(Pool::Transient)));
+    assert_eq!(bytes(Pool::Ring), 0);
+    drop((scene, depth));
+    assert_eq!(device.device().pool_bytes().map(|(_, bytes)| bytes), [0; 3]);
+    assert_silent(device);
+}
+
+/// A handle that nobody destroys: the layers say so when the device goes.
+#[test]
+fn a_leaked_handle_is_reported() {
+    let device = watched();
+    let info = vk::BufferCreateInfo::default().size(64).usage(vk::BufferUsageFlags::STORAGE_BUFFER);
+    // SAFETY: the device is alive. The leak is what is tested.
+    unsafe { device.device().raw().create_buffer(&info, None) }.unwrap();
+    let messages = device.shutdown();
+    let leak = messages.iter().find(|m| m.id.contains("vkDestroyDevice"));
+    assert_eq!(leak.map(|m| m.severity), Some(Severity::Error), "{messages:?}");
+}
+
+/// A wrapper that outlives its device: named, and the device stays for it.
+#[test]
+fn a_forgotten_buffer_is_named() {
+    let device = watched();
+    let buffer = Buffer::storage(device.device(), Pool::Transient, "forgotten", 64).unwrap();
+    let messages = device.shutdown();
+    assert!(messages.iter().any(|m| m.text.contains("forgotten")), "{messages:?}");
+    drop(buffer);
+}
+
+#[test]
+fn a_buffer_beyond_the_device_is_refused_by_name() {
+    let device = watched();
+    let limit = u64::from(device.device().limits().max_storage_buffer_range);
+    let info = BufferInfo {
+        name: "giant",
+        bytes: limit + 1,
+        usage: Buffer::STORAGE,
+        pool: Pool::Transient,
+        home: Home::Device,
+    };
+    match Buffer::new(device.device(), &info) {
+        Err(GpuError::TooLarge { resource, .. }) => assert_eq!(resource, "giant"),
+        other => panic!("{other:?}"),
+    }
+    assert_silent(device);
+}
+
+#[test]
+fn an_unknown_device_is_answered_with_those_there_are() {
+    let options = HeadlessOptions { device: Some("no such device".to_owned()), validation: false };
+    match HeadlessDevice::new(&options) {
+        Err(HeadlessError::NoSuchDevice { wanted, present }) => {
+            assert_eq!(wanted, "no such device");
+            assert!(!present.is_empty());
+        }
+        Err(error) => panic!("{error}"),
+        Ok(_) => panic!("found a device of that name"),
+    }
+}
