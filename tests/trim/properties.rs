@@ -171,7 +171,7 @@ proptest! {
         for row in 0..table.row_count() {
             let v = table.row_v(row);
             prop_assert_eq!(table.row_of(v), row);
-            prop_assert!(table.row(row).windows(2).all(|w| w[0] < w[1]) && table.row(row).len() % 2 == 0);
+            prop_assert!(table.row(row).is_sorted_by(|a, b| a < b) && table.row(row).len().is_multiple_of(2));
             for i in 0..20 {
                 let u = f64::from(i) * 0.105 - 1.0;
                 if index.distance(at(u, v), 1.0) > eps {
