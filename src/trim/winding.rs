@@ -55,7 +55,7 @@ pub(super) enum Link {
 }
 
 impl LoopIndex {
-    /// Prepares `loops`; `O(n log n)`, about 10 µs per curved curve.
+    /// Prepares `loops`; `O(n log n)`, a few microseconds per bent curve.
     pub fn new(loops: &[TrimLoop]) -> Self {
         let mut index = Self {
             curves: Vec::new(),
