@@ -18,6 +18,7 @@ pub fn bracketed(mut f: impl FnMut(f64) -> f64, mut a: f64, mut b: f64, toleranc
     }
     let mut goal = (b - a).abs() * 0.5; // the length to be reached within three steps
     let mut steps = 0;
+    let mut kept = 0; // +1 after a step that kept `b`, -1 after one that kept `a`
     while (b - a).abs() > tolerance {
         let middle = a + (b - a) * 0.5;
         let aimed = a + (b - a) * (wa / (wa - wb));
@@ -32,17 +33,16 @@ pub fn bracketed(mut f: impl FnMut(f64) -> f64, mut a: f64, mut b: f64, toleranc
         }
         if (fx > 0.0) == (fa > 0.0) {
             (a, fa, wa) = (x, fx, fx);
-            wb *= 0.5;
+            wb = if kept > 0 { wb * 0.5 } else { fb };
+            kept = 1;
         } else {
             (b, fb, wb) = (x, fx, fx);
-            wa *= 0.5;
+            wa = if kept < 0 { wa * 0.5 } else { fa };
+            kept = -1;
         }
         steps += 1;
-        if (b - a).abs() <= goal {
+        if (b - a).abs() <= goal || steps > 3 {
             goal = (b - a).abs() * 0.5;
-            steps = 0;
-            (wa, wb) = (fa, fb);
-        } else if steps > 3 {
             steps = 0;
         }
     }

@@ -8,7 +8,7 @@ use super::Control;
 /// (real files reach 14), not a buffer size.
 pub const MAX_DEGREE: usize = 15;
 
-/// `n` over `k`, exact for every `n` up to 60.
+/// `n` over `k`, exact for every `n` up to 50.
 pub fn binomial(n: usize, k: usize) -> f64 {
     let k = k.min(n - k);
     (0..k).fold(1.0, |b, i| b * (n - i) as f64 / (i + 1) as f64)

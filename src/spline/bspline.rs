@@ -13,6 +13,9 @@ pub enum SplineError {
     /// `knots = points + degree + 1` does not hold.
     #[error("{knots} knots do not fit {points} control points of degree {degree}")]
     KnotCount { knots: usize, points: usize, degree: usize },
+    /// The control net of a surface has not the size that its knots ask for.
+    #[error("{points} control points do not make a net of {count_u} by {count_v}")]
+    NetSize { points: usize, count_u: usize, count_v: usize },
     /// Fewer control points than the degree needs.
     #[error("{points} control points are too few for degree {degree}")]
     TooFewPoints { points: usize, degree: usize },
@@ -120,12 +123,21 @@ impl<P: Control> BSpline<P> {
             .collect()
     }
 
-    /// The same curve run backwards over the same domain.
+    /// The same curve run backwards over the same domain, bit for bit.
     pub fn reversed(&self) -> Self {
         let (a, b) = self.domain();
+        let mirrored = |&k: &f64| {
+            if k <= a {
+                b + (a - k)
+            } else if k >= b {
+                a - (k - b)
+            } else {
+                (a + (b - k)).clamp(a, b) // rounding must not reorder knots
+            }
+        };
         Self {
             degree: self.degree,
-            knots: self.knots.iter().rev().map(|k| a + b - k).collect(),
+            knots: self.knots.iter().rev().map(mirrored).collect(),
             points: self.points.iter().rev().copied().collect(),
         }
     }

@@ -56,8 +56,7 @@ impl Surface {
         check_knots(degrees.0, &knots_u, count_u)?;
         check_knots(degrees.1, &knots_v, count_v)?;
         if points.len() != count_u * count_v {
-            let (knots, degree) = (knots_v.len(), degrees.1);
-            return Err(SplineError::KnotCount { knots, points: points.len() / count_u, degree });
+            return Err(SplineError::NetSize { points: points.len(), count_u, count_v });
         }
         check_points(&points)?;
         Ok(Self { degree_u: degrees.0, degree_v: degrees.1, knots_u, knots_v, points })
@@ -147,11 +146,15 @@ impl PatchGrid {
     pub fn locate(&self, u: f64, v: f64) -> (&SurfacePatch, f64, f64) {
         let row = &self.patches[..self.count_u];
         let i = row.partition_point(|p| p.u.0 <= u).clamp(1, self.count_u) - 1;
-        let j = (0..self.count_v)
-            .collect::<Vec<_>>()
-            .partition_point(|&j| self.patches[j * self.count_u].v.0 <= v)
-            .clamp(1, self.count_v)
-            - 1;
+        let (mut j, mut end) = (0, self.count_v);
+        while end - j > 1 {
+            let middle = (j + end) / 2;
+            if self.patches[middle * self.count_u].v.0 <= v {
+                j = middle;
+            } else {
+                end = middle;
+            }
+        }
         let p = &self.patches[j * self.count_u + i];
         let s = ((u - p.u.0) / (p.u.1 - p.u.0)).clamp(0.0, 1.0);
         let t = ((v - p.v.0) / (p.v.1 - p.v.0)).clamp(0.0, 1.0);

@@ -46,7 +46,9 @@ impl Piece {
         }
         let up = sign > 0;
         let (bottom, top) = if up { (self.start, self.end) } else { (self.end, self.start) };
-        let right = if self.straight {
+        let right = if p.y == top.y {
+            top.x > p.x
+        } else if self.straight {
             orientation(bottom, top, p) > 0.0
         } else {
             let (t_bottom, t_top) = if up { self.t } else { (self.t.1, self.t.0) };
@@ -123,20 +125,18 @@ fn is_segment(inner: &[DVec2], start: DVec2, end: DVec2) -> bool {
 /// offset of the domain costs no accuracy.
 fn turning_points(curve: &Bezier<DVec3>, points: &[DVec2], axis: impl Fn(DVec2) -> f64) -> Vec<f64> {
     let n = curve.degree();
+    // each Euclidean coordinate is one rounded quotient, each coefficient a short sum
+    let rounding = 4.0 * f64::EPSILON * points.iter().map(|&p| axis(p).abs()).fold(0.0, f64::max);
     let mut coefficients = vec![0.0; 2 * n - 1];
-    let mut size: f64 = 0.0; // largest coefficient if all differences were one
-    for (k, coefficient) in coefficients.iter_mut().enumerate() {
-        let mut total = 0.0;
+    let mut noise = vec![0.0; 2 * n - 1];
+    for k in 0..2 * n - 1 {
         for i in k.saturating_sub(n - 1)..=k.min(n - 1) {
             let j = k - i;
             let share = binomial(n - 1, i) * binomial(n - 1, j) / binomial(2 * n - 2, k);
             let weight = share * curve.points[i].z * curve.points[j + 1].z;
-            *coefficient += weight * (axis(points[j + 1]) - axis(points[i]));
-            total += weight;
+            coefficients[k] += weight * (axis(points[j + 1]) - axis(points[i]));
+            noise[k] += weight * rounding;
         }
-        size = size.max(total);
     }
-    // each Euclidean coordinate is one rounded quotient, each coefficient a short sum
-    let largest = points.iter().map(|&p| axis(p).abs()).fold(0.0, f64::max);
-    bernstein::sign_changes(&coefficients, 4.0 * f64::EPSILON * largest * size)
+    bernstein::sign_changes(&coefficients, &noise)
 }

@@ -120,15 +120,18 @@ fn scan_lines((v0, v1): (f64, f64), densities: &[u32]) -> (Vec<usize>, Vec<f64>)
 
 /// Writes the chord's `u` and direction into every row that it crosses.
 ///
-/// The chord is evaluated from its lower to its upper end, whatever its direction: two loops that
-/// share an edge write the same `u` bit for bit, and cancel.
+/// The chord is evaluated from the end nearer to the scan line, whatever its direction: exact at
+/// both ends and on vertical chords, and two loops that share an edge write the same `u` bit for
+/// bit, and cancel.
 fn insert(row_v: &[f64], crossings: &mut [Vec<(f64, i32)>], from: DVec2, to: DVec2) {
     let (lo, hi) = if from.y <= to.y { (from, to) } else { (to, from) };
     let first = row_v.partition_point(|&v| v <= lo.y);
     let end = row_v.partition_point(|&v| v <= hi.y);
     for (&v, row) in row_v[first..end].iter().zip(&mut crossings[first..end]) {
-        let t = (v - lo.y) / (hi.y - lo.y);
-        row.push((lo.x * (1.0 - t) + hi.x * t, climbs(from.y, to.y, v)));
+        let (below, above, height) = (v - lo.y, hi.y - v, hi.y - lo.y);
+        let width = hi.x - lo.x;
+        let u = if below < above { lo.x + width * (below / height) } else { hi.x - width * (above / height) };
+        row.push((u, climbs(from.y, to.y, v)));
     }
 }
 

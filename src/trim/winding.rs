@@ -23,7 +23,7 @@ use glam::{DVec2, DVec3};
 /// Straight curves (and curves of any degree whose control points are exactly collinear) are decided
 /// without rounding. For the others a point farther from the curve than a few ulp of the largest
 /// coordinate is decided right; nearer points get one consistent answer, in which the loops are
-/// still closed.
+/// still closed. Straight curves of no length are left out.
 #[derive(Clone, Debug)]
 pub struct LoopIndex {
     pub(super) curves: Vec<Bezier<DVec3>>,
@@ -55,7 +55,7 @@ pub(super) enum Link {
 }
 
 impl LoopIndex {
-    /// Prepares `loops`; `O(n log n)`, about 10 µs per curved curve.
+    /// Prepares `loops`; `O(n log n)`, a few microseconds per bent curve.
     pub fn new(loops: &[TrimLoop]) -> Self {
         let mut index = Self {
             curves: Vec::new(),
