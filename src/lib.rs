@@ -4,6 +4,7 @@
 #![warn(missing_docs)]
 
 pub mod brep;
+pub mod import;
 pub mod model;
 pub mod picture;
 pub mod spline;
