@@ -12,6 +12,7 @@ pub mod gpu;
 #[cfg(feature = "headless")]
 pub mod headless;
 pub mod math;
+pub mod import;
 pub mod model;
 pub mod passes;
 pub mod picture;

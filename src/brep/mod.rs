@@ -11,6 +11,10 @@
 //!   seams, poles, periods ──────────────────────────▶ TrimLoop        (closed, oriented)
 //! ```
 
+mod build;
+
+pub use build::{BuildError, BuiltFace, build_face};
+
 use crate::spline::{BSpline, Surface};
 use glam::{DVec3, DVec4};
 

@@ -1,0 +1,28 @@
+//! Why a file gives no model at all.
+
+/// Every variant names the file; the message says what each field is.
+#[allow(missing_docs)]
+#[derive(Debug, thiserror::Error)]
+pub enum ImportError {
+    /// The operating system or the gzip decoder refused.
+    #[error("{file}: {source}")]
+    Read { file: String, source: std::io::Error },
+    /// Neither content nor extension is one that is read here.
+    #[error("{file}: not a CAD file of a known format")]
+    Format { file: String },
+    /// Offsets are 32 bits wide.
+    #[error("{file}: larger than 4 GiB")]
+    TooLarge { file: String },
+    /// A gzip bomb, or not CAD text.
+    #[error("{file}: gzip data expand to more than {limit} bytes")]
+    Expansion { file: String, limit: u64 },
+    /// The first token is missing.
+    #[error("{file}:1: not STEP: no `ISO-10303-21;` at the start")]
+    NotStep { file: String },
+    /// A header at most, or nothing that could be read as one.
+    #[error("{file}:{line}: the file ends without a DATA section")]
+    NoData { file: String, line: usize },
+    /// More than half of the records are not records.
+    #[error("{file}:{line}: gave up: {bad} of the first {seen} records cannot be read")]
+    Nonsense { file: String, line: usize, bad: usize, seen: usize },
+}

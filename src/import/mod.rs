@@ -1,0 +1,119 @@
+//! CAD files in, [`Model`]s out.
+//!
+//! ```text
+//!   path ──read, gunzip──▶ bytes ──format by content──▶ step ──▶ Import { model, warnings, report }
+//! ```
+//!
+//! A file that is not what it claims to be is an [`ImportError`]. Everything smaller (a bad record, a
+//! face that cannot be built) is left out, and a [`Warning`] names the file and the line or entity.
+//! Time and memory are bounded by a multiple of the file's size, whatever its content.
+
+mod error;
+mod report;
+mod step;
+
+pub use error::ImportError;
+pub use report::{ImportReport, Place, Warning};
+pub(crate) use report::Warnings;
+
+use crate::model::Model;
+use std::io::Read;
+use std::path::Path;
+
+/// What a file held.
+#[derive(Clone, Debug, Default)]
+pub struct Import {
+    /// Parts and instances, in millimetres.
+    pub model: Model,
+    /// What was left out or healed, in the order in which it was found.
+    pub warnings: Vec<Warning>,
+    /// Counts for people.
+    pub report: ImportReport,
+}
+
+/// A gzip stream may expand by this factor at most. STEP text shrinks 4 to 12 times; deflate itself
+/// cannot exceed 1032.
+const MAX_EXPANSION: u64 = 100;
+
+/// Expansion that is always allowed, whatever the factor.
+const FREE_EXPANSION: u64 = 1 << 20;
+
+/// Reads a file; the format is chosen by its content. Gzip (`.stpz`, `.step.gz`) is undone first.
+///
+/// # Errors
+/// [`ImportError`] when the file cannot be read or is not a known format.
+pub fn open(path: &Path) -> Result<Import, ImportError> {
+    let name = path.display().to_string();
+    let unreadable = |source| ImportError::Read { file: name.clone(), source };
+    let size = std::fs::metadata(path).map_err(unreadable)?.len();
+    if size > u64::from(u32::MAX) {
+        return Err(ImportError::TooLarge { file: name });
+    }
+    let mut bytes = std::fs::read(path).map_err(unreadable)?;
+    if bytes.starts_with(&[0x1f, 0x8b]) {
+        bytes = inflate(&bytes, &name)?;
+    }
+    if step::recognise(&bytes) {
+        return step(&bytes, &name);
+    }
+    match path.file_name().and_then(|f| f.to_str()).map(str::to_ascii_lowercase) {
+        Some(f) if [".stp", ".step", ".p21", ".stpz", ".stp.gz", ".step.gz"].iter().any(|e| f.ends_with(e)) => {
+            Err(ImportError::NotStep { file: name })
+        }
+        _ => Err(ImportError::Format { file: name }),
+    }
+}
+
+/// Reads ISO 10303-21 text (STEP AP203, AP214, AP242); `name` is the file's name in messages.
+///
+/// # Errors
+/// [`ImportError`] when the text is not STEP or holds no usable data.
+pub fn step(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    step::read(bytes, name)
+}
+
+/// Undoes gzip; output is bounded by [`MAX_EXPANSION`].
+fn inflate(bytes: &[u8], name: &str) -> Result<Vec<u8>, ImportError> {
+    let limit = (bytes.len() as u64 * MAX_EXPANSION + FREE_EXPANSION).min(u64::from(u32::MAX));
+    let mut text = Vec::new();
+    flate2::read::MultiGzDecoder::new(bytes)
+        .take(limit + 1)
+        .read_to_end(&mut text)
+        .map_err(|source| ImportError::Read { file: name.to_owned(), source })?;
+    if text.len() as u64 > limit {
+        return Err(ImportError::Expansion { file: name.to_owned(), limit });
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    fn gzip(text: &[u8]) -> Vec<u8> {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+        encoder.write_all(text).unwrap();
+        encoder.finish().unwrap()
+    }
+
+    #[test]
+    fn gzip_round_trip() {
+        let text = b"ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n";
+        assert_eq!(inflate(&gzip(text), "a.stpz").unwrap(), text);
+    }
+
+    #[test]
+    fn gzip_bomb_is_an_error() {
+        let bomb = gzip(&vec![b' '; 1 << 24]);
+        assert!(matches!(inflate(&bomb, "bomb.gz"), Err(ImportError::Expansion { .. })));
+    }
+
+    #[test]
+    fn missing_and_unknown_files_are_named() {
+        let error = open(Path::new("no/such/file.step")).unwrap_err();
+        assert!(error.to_string().contains("no/such/file.step"));
+        let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml");
+        assert!(matches!(open(&manifest), Err(ImportError::Format { .. })));
+    }
+}

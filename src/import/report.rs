@@ -1,0 +1,152 @@
+//! Warnings that name their place, counted by kind and kept in bounded number, and the summary.
+
+use serde::Serialize;
+use std::collections::BTreeMap;
+use std::fmt;
+
+/// Where in a file.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+pub enum Place {
+    /// The file as a whole.
+    File,
+    /// A line, counted from 1.
+    Line(usize),
+    /// A numbered entity and the line on which it starts.
+    Entity {
+        /// STEP: `#id`.
+        id: u32,
+        /// Counted from 1.
+        line: usize,
+    },
+}
+
+/// Something in a file that was left out, healed or guessed.
+#[derive(Clone, Debug, PartialEq, Eq, Serialize)]
+pub struct Warning {
+    /// The file.
+    pub file: String,
+    /// Where.
+    pub place: Place,
+    /// What was wrong and what was done.
+    pub message: String,
+    /// How many occurrences this warning stands for; above 1 for the last one kept of its kind.
+    pub count: usize,
+}
+
+/// Counts for people, not needed to draw.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct ImportReport {
+    /// File format and schema, as the file names it.
+    pub format: String,
+    /// The program that wrote the file, if it says so.
+    pub written_by: String,
+    /// Length units of the representation contexts in use.
+    pub units: Vec<String>,
+    /// Bodies: solids, shells, sets of surfaces.
+    pub bodies: usize,
+    /// Edges in use, each counted once per body.
+    pub edges: usize,
+    /// Faces in the bodies before any was left out.
+    pub faces: usize,
+    /// (u, v) curves in the file. They are not used: both faces of an edge are trimmed from the one
+    /// edge in space, so that neighbours agree.
+    pub pcurves: usize,
+    /// Names of the assembly occurrences, by their path from the root.
+    pub occurrences: Vec<String>,
+    /// Files that hold parts of an assembly; they are not followed.
+    pub external_files: Vec<String>,
+    /// Warnings by kind.
+    pub warnings: BTreeMap<String, usize>,
+    /// Faces left out, by reason.
+    pub dropped: BTreeMap<String, usize>,
+    /// Healed faces, by what was healed.
+    pub healed: BTreeMap<String, usize>,
+    /// Largest distance in millimetres of a derived trim curve from its edge.
+    pub deviation: f64,
+}
+
+impl fmt::Display for Warning {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.place {
+            Place::File => write!(f, "{}: {}", self.file, self.message)?,
+            Place::Line(line) => write!(f, "{}:{line}: {}", self.file, self.message)?,
+            Place::Entity { id, line } => write!(f, "{}:{line}: #{id}: {}", self.file, self.message)?,
+        }
+        if self.count > 1 {
+            write!(f, " (and {} more of this kind)", self.count - 1)?;
+        }
+        Ok(())
+    }
+}
+
+/// Warnings of each kind that are kept one by one; later ones only count.
+const KEPT_PER_KIND: usize = 10;
+
+/// Collects the warnings of one file.
+#[derive(Debug)]
+pub(crate) struct Warnings {
+    file: String,
+    list: Vec<Warning>,
+    /// Kind: occurrences so far, index of the last kept warning.
+    kinds: BTreeMap<&'static str, (usize, usize)>,
+}
+
+impl Warnings {
+    pub fn new(file: &str) -> Self {
+        Self { file: file.to_owned(), list: Vec::new(), kinds: BTreeMap::new() }
+    }
+
+    /// Adds one warning; `place` and `message` are made only if it is kept.
+    pub fn push(&mut self, kind: &'static str, place: impl FnOnce() -> Place, message: impl FnOnce() -> String) {
+        let (count, last) = self.kinds.entry(kind).or_insert((0, 0));
+        *count += 1;
+        if *count > KEPT_PER_KIND {
+            self.list[*last].count += 1;
+            return;
+        }
+        *last = self.list.len();
+        let message = format!("{kind}: {}", message());
+        self.list.push(Warning { file: self.file.clone(), place: place(), message, count: 1 });
+    }
+
+    /// The warnings and the counts by kind.
+    pub fn finish(self) -> (Vec<Warning>, BTreeMap<String, usize>) {
+        let counts = self.kinds.into_iter().map(|(kind, (count, _))| (kind.to_owned(), count)).collect();
+        (self.list, counts)
+    }
+}
+
+impl ImportReport {
+    /// The words of a message before its first number: the key under which it is counted.
+    pub(crate) fn reason(message: &str) -> String {
+        let message = message.trim_start_matches(|c: char| c == '#' || c.is_ascii_digit() || c == ':' || c == ' ');
+        let words = message.split(|c: char| c.is_ascii_digit() || c == ':' || c == '#').next().unwrap_or(message);
+        words.trim_end_matches(|c: char| !c.is_alphanumeric()).to_owned()
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn warnings_are_bounded_and_counted() {
+        let mut warnings = Warnings::new("a.stp");
+        for line in 0..1000 {
+            warnings.push("record skipped", || Place::Line(line), || "bad".into());
+        }
+        warnings.push("face left out", || Place::Entity { id: 7, line: 3 }, || "no loop".into());
+        let (list, counts) = warnings.finish();
+        assert_eq!(list.len(), KEPT_PER_KIND + 1);
+        assert_eq!(list.iter().map(|w| w.count).sum::<usize>(), 1001);
+        assert_eq!(counts["record skipped"], 1000);
+        assert_eq!(list[KEPT_PER_KIND].to_string(), "a.stp:3: #7: face left out: no loop");
+        assert!(list[KEPT_PER_KIND - 1].to_string().ends_with("(and 990 more of this kind)"));
+    }
+
+    #[test]
+    fn reasons_drop_numbers() {
+        assert_eq!(ImportReport::reason("#12: the radius is 0"), "the radius is");
+        assert_eq!(ImportReport::reason("loop closed over a gap of 1e-3"), "loop closed over a gap of");
+    }
+}

@@ -1,0 +1,142 @@
+//! Colours of items.
+//!
+//! ```text
+//!   STYLED_ITEM('',(style),item)  ▶ PRESENTATION_STYLE_ASSIGNMENT ▶ SURFACE_STYLE_USAGE
+//!     ▶ SURFACE_SIDE_STYLE ▶ SURFACE_STYLE_FILL_AREA ▶ FILL_AREA_STYLE ▶ FILL_AREA_STYLE_COLOUR
+//!                          ▶ SURFACE_STYLE_RENDERING_WITH_PROPERTIES ▶ SURFACE_STYLE_TRANSPARENT
+//!     ▶ COLOUR_RGB('',r,g,b)  or  DRAUGHTING_PRE_DEFINED_COLOUR('red')
+//! ```
+//!
+//! A face takes its own colour, else its shell's, its solid's, its representation's. An
+//! OVER_RIDING_STYLED_ITEM beats a STYLED_ITEM on the same item. A colour on a MAPPED_ITEM, or one
+//! given for the context of one occurrence, is that instance's.
+//!
+//! The standard names no colour space; every known writer stores what its screen shows, sRGB. The model
+//! wants linear light: `c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055)^2.4` (IEC 61966-2-1).
+//!
+//! Source: ISO 10303-46, 6.4 to 6.7.
+
+use super::entity::{Entity, Fault};
+use super::geometry::Ledger;
+use super::part21::{File, Value};
+use crate::model::Colour;
+use std::collections::HashMap;
+
+/// Colours by the number of the styled item.
+#[derive(Debug, Default)]
+pub(super) struct Colours {
+    items: HashMap<u32, Colour>,
+    /// Colours of single occurrences: by the first relationship of their path, with the others.
+    contexts: HashMap<u32, Vec<(Vec<u32>, Colour)>>,
+}
+
+/// Style entities that lead to a surface's colour.
+const STYLES: [&str; 9] = [
+    "PRESENTATION_STYLE_ASSIGNMENT",
+    "PRESENTATION_STYLE_BY_CONTEXT",
+    "SURFACE_STYLE_USAGE",
+    "SURFACE_SIDE_STYLE",
+    "SURFACE_STYLE_FILL_AREA",
+    "FILL_AREA_STYLE",
+    "FILL_AREA_STYLE_COLOUR",
+    "SURFACE_STYLE_RENDERING",
+    "SURFACE_STYLE_RENDERING_WITH_PROPERTIES",
+];
+
+/// What has been found below a style so far.
+#[derive(Clone, Copy, Default)]
+struct Found {
+    rgb: Option<[f64; 3]>,
+    transparency: Option<f64>,
+}
+
+impl Colours {
+    /// Reads all styled items.
+    pub fn read(file: &File<'_>, ledger: &Ledger) -> Self {
+        let mut colours = Self::default();
+        let context = "CONTEXT_DEPENDENT_OVER_RIDING_STYLED_ITEM";
+        for kind in ["STYLED_ITEM", "OVER_RIDING_STYLED_ITEM", context] {
+            for id in file.of_kind(kind) {
+                // a style that cannot be read costs its colour, not the shape
+                if let Err(fault) = colours.styled(file, ledger, id, kind == context) {
+                    ledger.note("colour ignored", id, fault.to_string());
+                }
+            }
+        }
+        colours
+    }
+
+    /// The colour of an item, in linear light.
+    pub fn of_item(&self, id: u32) -> Option<Colour> {
+        self.items.get(&id).copied()
+    }
+
+    /// The colour of an occurrence: `path` are the relationships that place it.
+    pub fn of_path(&self, path: &[u32]) -> Option<Colour> {
+        let styles = path.iter().filter_map(|id| self.contexts.get(id)).flatten();
+        let styled = styles.filter(|(others, _)| others.iter().all(|o| path.contains(o))).map(|(_, colour)| *colour).next();
+        styled.or_else(|| path.iter().find_map(|id| self.of_item(*id)))
+    }
+
+    fn styled(&mut self, file: &File<'_>, ledger: &Ledger, id: u32, in_context: bool) -> Result<(), Fault> {
+        let fields = Entity::find(file, id)?;
+        let base = fields.fields("STYLED_ITEM", 1).unwrap_or_else(|_| fields.all().after_name());
+        let mut found = Found::default();
+        for style in base.references(0)? {
+            search(file, ledger, style?, &mut found)?;
+        }
+        let (Some(rgb), Some(item)) = (found.rgb, base.optional(1)) else { return Ok(()) };
+        let [r, g, b] = rgb.map(|c| linear(c) as f32);
+        let colour = [r, g, b, 1.0 - found.transparency.unwrap_or(0.0) as f32];
+        if !in_context {
+            self.items.insert(item, colour);
+            return Ok(());
+        }
+        let mut path: Vec<u32> = base.value(3).and_then(Value::list).into_iter().flatten().filter_map(Value::reference).collect();
+        if let Some(first) = path.pop() {
+            self.contexts.entry(first).or_default().push((path, colour));
+        }
+        Ok(())
+    }
+}
+
+/// Follows a style down to its first colour and transparency.
+fn search(file: &File<'_>, ledger: &Ledger, id: u32, found: &mut Found) -> Result<(), Fault> {
+    ledger.nested(id, || {
+        let entity = Entity::find(file, id)?;
+        let kinds: Vec<&str> = entity.kinds().collect();
+        if kinds.iter().any(|k| STYLES.contains(k)) {
+            return entity.references().try_for_each(|r| search(file, ledger, r, found));
+        }
+        if kinds.contains(&"COLOUR_RGB") {
+            let fields = entity.fields("COLOUR_RGB", 1)?;
+            let rgb = [fields.real(0)?, fields.real(1)?, fields.real(2)?];
+            found.rgb = found.rgb.or(Some(rgb.map(|c| c.clamp(0.0, 1.0))));
+        } else if kinds.iter().any(|k| k.ends_with("PRE_DEFINED_COLOUR")) {
+            found.rgb = found.rgb.or(named(&entity.all().text(0)));
+        } else if let Ok(fields) = entity.fields("SURFACE_STYLE_TRANSPARENT", 0) {
+            found.transparency = found.transparency.or(Some(fields.real(0)?.clamp(0.0, 1.0)));
+        }
+        Ok(())
+    })
+}
+
+/// DRAUGHTING_PRE_DEFINED_COLOUR (ISO 10303-202).
+fn named(name: &str) -> Option<[f64; 3]> {
+    Some(match name {
+        "red" => [1.0, 0.0, 0.0],
+        "green" => [0.0, 1.0, 0.0],
+        "blue" => [0.0, 0.0, 1.0],
+        "yellow" => [1.0, 1.0, 0.0],
+        "magenta" => [1.0, 0.0, 1.0],
+        "cyan" => [0.0, 1.0, 1.0],
+        "black" => [0.0, 0.0, 0.0],
+        "white" => [1.0, 1.0, 1.0],
+        _ => return None,
+    })
+}
+
+/// sRGB to linear light.
+fn linear(c: f64) -> f64 {
+    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}

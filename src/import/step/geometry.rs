@@ -1,0 +1,192 @@
+//! The state of mapping geometry, and the small geometric entities: points, directions, placements.
+//!
+//! Entities form a graph that a hostile file can close or share at will. Three guards keep mapping
+//! finite: a trail of the entities being mapped (cycles), a largest depth, and a budget of work that
+//! is a multiple of the parameters in the file.
+
+use super::entity::{Entity, Fault};
+use super::part21::File;
+use super::units::Units;
+use crate::brep::Frame;
+use glam::{DAffine3, DMat3, DVec3};
+use std::cell::{Cell, RefCell};
+
+/// Deepest chain of entities that define one another: trimmed of composite of trimmed …
+const MAX_DEPTH: usize = 24;
+
+/// Uses of an average parameter. Real files share surfaces among a few dozen faces at most.
+const SHARING: u64 = 64;
+
+/// Work that even the smallest file may do.
+const FREE_WORK: u64 = 1 << 20;
+
+/// Something worth a warning that did not cost the face: kind, entity, message.
+pub(super) type Note = (&'static str, u32, String);
+
+/// Work left and notes so far; shared by all representations of a file.
+#[derive(Debug)]
+pub(super) struct Ledger {
+    work: Cell<u64>,
+    trail: RefCell<Vec<u32>>,
+    /// Notes to be reported.
+    pub notes: RefCell<Vec<Note>>,
+}
+
+/// Maps the geometry of one representation.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Geometry<'a> {
+    /// The file.
+    pub file: &'a File<'a>,
+    /// Units of the representation's context.
+    pub units: &'a Units,
+    /// Shared guards.
+    pub ledger: &'a Ledger,
+}
+
+impl Ledger {
+    pub fn new(file: &File<'_>) -> Self {
+        let work = FREE_WORK + SHARING * file.slot_count() as u64;
+        Self { work: Cell::new(work), trail: RefCell::default(), notes: RefCell::default() }
+    }
+
+    /// Takes `amount` of work for `#id` from the budget.
+    pub fn spend(&self, id: u32, amount: usize) -> Result<(), Fault> {
+        let left = self.work.get().checked_sub(amount as u64).ok_or(Fault::Exhausted(id))?;
+        self.work.set(left);
+        Ok(())
+    }
+
+    /// Records a note.
+    pub fn note(&self, kind: &'static str, id: u32, message: impl Into<String>) {
+        self.notes.borrow_mut().push((kind, id, message.into()));
+    }
+
+    /// Runs `f` with `#id` on the trail.
+    pub fn nested<T>(&self, id: u32, f: impl FnOnce() -> Result<T, Fault>) -> Result<T, Fault> {
+        {
+            let mut trail = self.trail.borrow_mut();
+            if trail.contains(&id) {
+                return Err(Fault::Cycle(id));
+            }
+            if trail.len() >= MAX_DEPTH {
+                return Err(Fault::Depth(id));
+            }
+            trail.push(id);
+        }
+        let result = self.spend(id, 1).and_then(|()| f());
+        self.trail.borrow_mut().pop();
+        result
+    }
+}
+
+impl<'a> Geometry<'a> {
+    /// The entity `#id`.
+    pub fn entity(&self, id: u32) -> Result<Entity<'a>, Fault> {
+        Entity::find(self.file, id)
+    }
+
+    /// CARTESIAN_POINT in millimetres.
+    pub fn point(&self, id: u32) -> Result<DVec3, Fault> {
+        let point = self.triple(id, "CARTESIAN_POINT")? * self.units.length;
+        if point.is_finite() { Ok(point) } else { Err(Fault::Value { id, what: "a coordinate is not finite" }) }
+    }
+
+    /// DIRECTION, normalised.
+    pub fn direction(&self, id: u32) -> Result<DVec3, Fault> {
+        let direction = self.triple(id, "DIRECTION")?;
+        direction.try_normalize().ok_or(Fault::Value { id, what: "the direction has no length" })
+    }
+
+    /// VECTOR: direction times magnitude, in millimetres. A magnitude of 0 counts as 1: the direction is
+    /// what edges and extrusions need.
+    pub fn vector(&self, id: u32) -> Result<DVec3, Fault> {
+        let fields = self.entity(id)?.fields("VECTOR", 1)?;
+        let magnitude = fields.real(1)?.abs();
+        let magnitude = if magnitude > 0.0 { magnitude } else { 1.0 };
+        let vector = self.direction(fields.reference(0)?)? * (magnitude * self.units.length);
+        if vector.is_finite() { Ok(vector) } else { Err(Fault::Value { id, what: "the vector is not finite" }) }
+    }
+
+    /// Up to three coordinates; missing ones are 0.
+    fn triple(&self, id: u32, kind: &'static str) -> Result<DVec3, Fault> {
+        let fields = self.entity(id)?.fields(kind, 1)?;
+        let mut xyz = [0.0; 3];
+        let mut count = 0;
+        for value in fields.list(0)? {
+            let number = value.number().filter(|x| x.is_finite());
+            let number = number.ok_or(Fault::Value { id, what: "a coordinate is not a finite number" })?;
+            *xyz.get_mut(count).ok_or(Fault::Value { id, what: "more than three coordinates" })? = number;
+            count += 1;
+        }
+        if count < 2 { Err(Fault::Value { id, what: "fewer than two coordinates" }) } else { Ok(xyz.into()) }
+    }
+
+    /// AXIS1_PLACEMENT: a point and a unit direction.
+    pub fn axis(&self, id: u32) -> Result<(DVec3, DVec3), Fault> {
+        let entity = self.entity(id)?;
+        let fields = entity.fields("AXIS1_PLACEMENT", 1)?;
+        let (location, axis) = match entity.fields("PLACEMENT", 1) {
+            Ok(placement) => (placement.reference(0)?, fields.optional(0)),
+            Err(_) => (fields.reference(0)?, fields.optional(1)),
+        };
+        Ok((self.point(location)?, axis.map_or(Ok(DVec3::Z), |d| self.direction(d))?))
+    }
+
+    /// AXIS2_PLACEMENT_3D as a frame (ISO 10303-42, `build_axes`).
+    pub fn frame(&self, id: u32) -> Result<Frame, Fault> {
+        let entity = self.entity(id)?;
+        let fields = entity.fields("AXIS2_PLACEMENT_3D", 1)?;
+        let (location, first) = match entity.fields("PLACEMENT", 1) {
+            Ok(placement) => (placement.reference(0)?, 0),
+            Err(_) => (fields.reference(0)?, 1),
+        };
+        let z = fields.optional(first).map_or(Ok(DVec3::Z), |d| self.direction(d))?;
+        let x = fields.optional(first + 1).map(|d| self.direction(d)).transpose()?;
+        Ok(frame(self.point(location)?, z, x))
+    }
+
+    /// A placement or a CARTESIAN_TRANSFORMATION_OPERATOR_3D as a map from its coordinates to the
+    /// surrounding ones.
+    pub fn transform(&self, id: u32) -> Result<DAffine3, Fault> {
+        let entity = self.entity(id)?;
+        let kind = "CARTESIAN_TRANSFORMATION_OPERATOR_3D";
+        if !entity.is(kind) {
+            return Ok(to_affine(self.frame(id)?));
+        }
+        // axis1, axis2, origin, scale in front of axis3; schemas differ in the names before them, so
+        // the origin, the only point, is looked for
+        let (base, z) = match entity.fields("CARTESIAN_TRANSFORMATION_OPERATOR", 0) {
+            Ok(base) => (base, entity.fields(kind, 0)?.optional(0)),
+            Err(_) => (entity.fields(kind, 0)?, None),
+        };
+        let is_point = |d: u32| self.entity(d).is_ok_and(|e| e.is("CARTESIAN_POINT"));
+        let at = (2..6).find(|&i| base.optional(i).is_some_and(is_point)).ok_or(entity.not("an operator with an origin"))?;
+        let z = z.or(base.optional(at + 2));
+        let direction = |d: Option<u32>| d.map(|d| self.direction(d)).transpose();
+        let (x, y, z) = (direction(base.optional(at - 2))?, direction(base.optional(at - 1))?, direction(z)?);
+        let origin = self.point(base.reference(at)?)?;
+        let scale = base.value(at + 1).and_then(super::part21::Value::number).unwrap_or(1.0);
+        if !(scale > 0.0 && scale.is_finite()) {
+            return Err(Fault::Value { id, what: "the scale is not a positive number" });
+        }
+        let z = z.or(x.zip(y).and_then(|(x, y)| x.cross(y).try_normalize())).unwrap_or(DVec3::Z);
+        let frame = frame(origin, z, x);
+        // a mirrored operator has its second axis against z × x
+        let sign = if y.is_some_and(|y| y.dot(frame.y) < 0.0) { -1.0 } else { 1.0 };
+        let axes = DMat3::from_cols(frame.x, frame.y * sign, frame.z) * scale;
+        Ok(DAffine3::from_mat3_translation(axes, origin))
+    }
+}
+
+/// The frame with axis `z` and reference direction `x`; when `x` is missing or along `z`, the standard's
+/// default: the x axis of space, or its y axis when `z` is along x.
+pub(super) fn frame(origin: DVec3, z: DVec3, x: Option<DVec3>) -> Frame {
+    let across = |x: DVec3| Some(x - z * x.dot(z)).filter(|p| p.length() > 1e-9).and_then(DVec3::try_normalize);
+    let x = x.and_then(across).or_else(|| across(DVec3::X)).or_else(|| across(DVec3::Y)).unwrap_or(DVec3::Z);
+    Frame { origin, x, y: z.cross(x), z }
+}
+
+/// Frame coordinates to the surrounding ones.
+pub(super) fn to_affine(frame: Frame) -> DAffine3 {
+    DAffine3::from_mat3_translation(DMat3::from_cols(frame.x, frame.y, frame.z), frame.origin)
+}

@@ -1,0 +1,185 @@
+//! STEP files: ISO 10303-21 text with the shape of AP203, AP214 or AP242.
+//!
+//! ```text
+//!   bytes ─part21─▶ File            syntax: records, parameters, id index
+//!         ─entity─▶ Entity, Fields  typed attributes; every Fault names its entity
+//!         ─units──▶ Units           per representation context
+//!         ─curve, spline, surface─▶ CurveGeometry, SurfaceGeometry          one geometry each
+//!         ─face, body──▶ Body       faces and the edges that they share
+//!         ─product, assembly, walk─▶ one instance per path
+//!         ─colour──▶ Colours        by styled item
+//!         ─brep::build_face─▶ Face  in parallel, results in file order
+//! ```
+//!
+//! Nothing in a file can cause a panic, endless work, or memory beyond a multiple of its size: the
+//! scanner is linear, the mapping has a budget of work, cycles are found by their trail.
+
+mod assembly;
+mod body;
+mod colour;
+mod curve;
+mod entity;
+mod face;
+mod geometry;
+mod locate;
+mod part21;
+mod product;
+mod spline;
+mod surface;
+mod units;
+mod walk;
+
+pub(super) use part21::recognise;
+
+use super::{Import, ImportError, ImportReport, Place, Warnings};
+use crate::brep::build_face;
+use crate::model::{Instance, Model, Part};
+use assembly::Assembly;
+use body::Body;
+use colour::Colours;
+use entity::Entity;
+use geometry::{Geometry, Ledger};
+use part21::File;
+use rayon::prelude::*;
+use std::collections::{BTreeSet, HashMap};
+
+/// Reads STEP text; `name` is the file's name in messages.
+pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    let mut warnings = Warnings::new(name);
+    let file = File::parse(bytes, name, &mut warnings)?;
+    let ledger = Ledger::new(&file);
+    let mut report = header(&file);
+    externals(&file, &ledger, &mut report);
+    let colours = Colours::read(&file, &ledger);
+    let assembly = Assembly::read(&file, &ledger);
+    let mut model = Model { name: model_name(&assembly, name), ..Model::default() };
+    let mut bodies = Vec::new();
+    let mut part_of = HashMap::new();
+    let mut units = BTreeSet::new();
+    for group in assembly.groups.values() {
+        for &(id, representation) in &group.bodies {
+            if part_of.contains_key(&id) {
+                continue;
+            }
+            let unit = assembly.units_of(representation);
+            let geometry = Geometry { file: &file, units: &unit, ledger: &ledger };
+            let body = body::body(&geometry, id, &colours, &[representation]);
+            part_of.insert(id, model.parts.len());
+            model.parts.push(Part { name: part_name(&file, group, id), faces: Vec::new(), closed: body.closed });
+            units.insert(unit.name.clone());
+            bodies.push((body, unit.tolerance));
+        }
+    }
+    for placed in assembly.walk(&colours, &ledger) {
+        let Some(&part) = part_of.get(&placed.body) else { continue };
+        let (transform, colour) = (placed.transform, placed.colour);
+        model.instances.push(Instance { part, transform, colour, name: placed.name });
+    }
+    report.units = units.into_iter().collect();
+    model.unit = report.units.join(", ");
+    report.occurrences = model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect();
+    report.bodies = bodies.len();
+    report.edges = bodies.iter().map(|b| b.0.edges.len()).sum();
+    report.faces = bodies.iter().map(|b| b.0.face_count).sum();
+    let notes = ledger.notes.into_inner();
+    for (kind, id, message) in notes {
+        if kind == FACE_LOST {
+            *report.dropped.entry(ImportReport::reason(&message)).or_default() += 1;
+        }
+        warnings.push(kind, || place(&file, id), || message);
+    }
+    build(&file, bodies, &mut model, &mut report, &mut warnings);
+    let (list, counts) = warnings.finish();
+    report.warnings = counts;
+    Ok(Import { model, warnings: list, report })
+}
+
+/// The kind of warning that costs a face.
+const FACE_LOST: &str = "face left out";
+
+/// Builds all faces, in parallel; results are taken in file order.
+fn build(
+    file: &File<'_>,
+    bodies: Vec<(Body, f64)>,
+    model: &mut Model,
+    report: &mut ImportReport,
+    warnings: &mut Warnings,
+) {
+    let jobs: Vec<_> = bodies
+        .iter()
+        .enumerate()
+        .flat_map(|(part, (body, tolerance))| body.faces.iter().map(move |face| (part, body, *tolerance, face)))
+        .collect();
+    let built: Vec<_> = jobs
+        .par_iter()
+        .map(|&(part, body, tolerance, (face, colour))| {
+            (part, face.id, *colour, build_face(face, &body.edges, tolerance))
+        })
+        .collect();
+    for (part, id, colour, result) in built {
+        match result {
+            Ok(mut face) => {
+                face.face.colour = colour;
+                report.deviation = report.deviation.max(face.deviation);
+                for note in face.notes {
+                    *report.healed.entry(ImportReport::reason(&note)).or_default() += 1;
+                    warnings.push("face healed", || place(file, id), || note);
+                }
+                model.parts[part].faces.push(face.face);
+            }
+            Err(error) => {
+                *report.dropped.entry(ImportReport::reason(&error.to_string())).or_default() += 1;
+                warnings.push(FACE_LOST, || place(file, id), || error.to_string());
+            }
+        }
+    }
+}
+
+fn place(file: &File<'_>, id: u32) -> Place {
+    Entity::find(file, id).map_or(Place::File, Entity::place)
+}
+
+/// What the header says.
+fn header(file: &File<'_>) -> ImportReport {
+    let schema = file.header("FILE_SCHEMA").and_then(|mut v| v.next()?.list()?.next()?.text());
+    let system = file.header("FILE_NAME").and_then(|mut v| v.nth(5)?.text());
+    ImportReport {
+        format: format!("STEP {}", schema.unwrap_or_default()).trim_end().to_owned(),
+        written_by: system.unwrap_or_default(),
+        pcurves: file.of_kind("PCURVE").len(),
+        ..ImportReport::default()
+    }
+}
+
+/// Parts that stand in other files.
+fn externals(file: &File<'_>, ledger: &Ledger, report: &mut ImportReport) {
+    for id in file.of_kind("DOCUMENT_FILE") {
+        let name = Entity::find(file, id).map(|e| e.all().text(0)).unwrap_or_default();
+        ledger.note("external file not followed", id, name.clone());
+        report.external_files.push(name);
+    }
+}
+
+/// The name of the first root product, else of the file.
+fn model_name(assembly: &Assembly, file: &str) -> String {
+    let roots = assembly.roots();
+    let product = roots.first().map(|r| assembly.groups[r].name.clone()).filter(|n| !n.is_empty());
+    product.unwrap_or_else(|| {
+        let stem = std::path::Path::new(file).file_stem();
+        stem.map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
+    })
+}
+
+/// The product's name; with the body's own when the product has several.
+fn part_name(file: &File<'_>, group: &assembly::Group, body: u32) -> String {
+    let own = Entity::find(file, body).map(|e| e.label()).unwrap_or_default();
+    let own = if own == "NONE" { String::new() } else { own };
+    match (group.name.is_empty(), own.is_empty()) {
+        (true, _) => own,
+        (false, false) if group.bodies.len() > 1 => format!("{}/{own}", group.name),
+        _ => group.name.clone(),
+    }
+}
+
+#[cfg(test)]
+mod tests;

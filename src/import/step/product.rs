@@ -1,0 +1,78 @@
+//! Products and their names.
+//!
+//! ```text
+//!   SHAPE_DEFINITION_REPRESENTATION ─▶ PRODUCT_DEFINITION_SHAPE ─▶ PRODUCT_DEFINITION
+//!     │                                   PRODUCT_DEFINITION_FORMATION ◀─┘
+//!     └─▶ SHAPE_REPRESENTATION            └─▶ PRODUCT('id','name',…)
+//! ```
+//!
+//! Source: ISO 10303-41, product definition schema; ISO 10303-44 for occurrences.
+
+use super::entity::{Entity, Fault};
+use super::geometry::Ledger;
+use super::part21::File;
+use std::collections::BTreeMap;
+
+/// Which representations show which product definition.
+#[derive(Debug, Default)]
+pub(super) struct Products {
+    /// Representations by product definition, in file order.
+    pub shapes: BTreeMap<u32, Vec<u32>>,
+    /// Product definition of a representation.
+    pub owner: BTreeMap<u32, u32>,
+}
+
+/// NEXT_ASSEMBLY_USAGE_OCCURRENCE: `child` is used in `parent`.
+#[derive(Clone, Debug)]
+pub(super) struct Occurrence {
+    pub parent: u32,
+    pub child: u32,
+    pub name: String,
+}
+
+impl Products {
+    pub fn read(file: &File<'_>, ledger: &Ledger) -> Self {
+        let mut products = Self::default();
+        for id in file.of_kind("SHAPE_DEFINITION_REPRESENTATION") {
+            if let Err(fault) = products.shape(file, id) {
+                ledger.note("product ignored", id, fault.to_string());
+            }
+        }
+        products
+    }
+
+    fn shape(&mut self, file: &File<'_>, id: u32) -> Result<(), Fault> {
+        let fields = Entity::find(file, id)?.all();
+        let property = Entity::find(file, fields.reference(0)?)?;
+        let representation = fields.reference(1)?;
+        // the property may belong to an aspect or an occurrence instead: then it is no product's shape
+        let definition = property.all().optional(2).map(|d| Entity::find(file, d)).transpose()?;
+        if let Some(definition) = definition.filter(|d| d.kinds().any(|k| k.starts_with("PRODUCT_DEFINITION"))) {
+            self.shapes.entry(definition.id()).or_default().push(representation);
+            self.owner.entry(representation).or_insert(definition.id());
+        }
+        Ok(())
+    }
+
+    /// Name of the product of a product definition; its number when the name is empty.
+    pub fn name(file: &File<'_>, definition: u32) -> Option<String> {
+        let formation = Entity::find(file, definition).ok()?.all().optional(2)?;
+        let product = Entity::find(file, formation).ok()?.all().optional(2)?;
+        let fields = Entity::find(file, product).ok()?.fields("PRODUCT", 0).ok()?;
+        let (number, name) = (fields.text(0), fields.text(1));
+        Some(if name.trim().is_empty() { number } else { name }).filter(|n| !n.trim().is_empty())
+    }
+}
+
+impl Occurrence {
+    /// Reads `#id`.
+    pub fn read(file: &File<'_>, id: u32) -> Result<Self, Fault> {
+        let entity = Entity::find(file, id)?;
+        let fields = entity.fields("NEXT_ASSEMBLY_USAGE_OCCURRENCE", 0)?;
+        let (parent, child) = (fields.reference(3)?, fields.reference(4)?);
+        // writers put what people call the occurrence into any of these
+        let own = [fields.text(1), fields.text(5), fields.text(0)].into_iter().find(|n| !n.trim().is_empty());
+        let name = own.or_else(|| Products::name(file, child)).unwrap_or_default();
+        Ok(Self { parent, child, name })
+    }
+}

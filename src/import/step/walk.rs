@@ -1,0 +1,82 @@
+//! The walk through an assembly: one instance per path from a root to a body.
+//!
+//! The number of paths can be exponential in the size of the file, and a damaged file can contain
+//! itself; both are cut off with a note.
+
+use super::assembly::Assembly;
+use super::colour::Colours;
+use super::geometry::Ledger;
+use crate::model::Colour;
+use glam::DAffine3;
+
+/// One placed body.
+#[derive(Clone, Debug)]
+pub(super) struct Placed {
+    /// The body's number.
+    pub body: u32,
+    /// Body coordinates to model coordinates.
+    pub transform: DAffine3,
+    /// Its own colour, if the occurrence has one.
+    pub colour: Option<Colour>,
+    /// Names of the occurrences from the root, joined by `/`.
+    pub name: String,
+}
+
+/// Largest number of instances; a few kilobytes of text can ask for 2^60.
+const MAX_INSTANCES: usize = 1 << 20;
+
+/// Deepest assembly.
+const MAX_LEVELS: usize = 64;
+
+impl Assembly {
+    /// Every body once per path from a root, in file order.
+    pub fn walk(&self, colours: &Colours, ledger: &Ledger) -> Vec<Placed> {
+        let mut walk = Walk { assembly: self, colours, ledger, trail: Vec::new(), placed: Vec::new() };
+        for root in self.roots() {
+            walk.visit(root, DAffine3::IDENTITY, &mut Vec::new(), "");
+        }
+        walk.placed
+    }
+}
+
+struct Walk<'w> {
+    assembly: &'w Assembly,
+    colours: &'w Colours,
+    ledger: &'w Ledger,
+    trail: Vec<u32>,
+    placed: Vec<Placed>,
+}
+
+impl Walk<'_> {
+    fn visit(&mut self, id: u32, transform: DAffine3, path: &mut Vec<u32>, name: &str) {
+        if self.trail.contains(&id) || self.trail.len() >= MAX_LEVELS {
+            self.ledger.note("occurrence left out", id, "the assembly contains itself");
+            return;
+        }
+        let Some(group) = self.assembly.groups.get(&id) else { return };
+        self.trail.push(id);
+        let colour = self.colours.of_path(path);
+        for &(body, _) in &group.bodies {
+            if self.placed.len() >= MAX_INSTANCES {
+                self.ledger.note("occurrence left out", body, format!("more than {MAX_INSTANCES} instances"));
+                break;
+            }
+            self.placed.push(Placed { body, transform, colour, name: name.to_owned() });
+        }
+        for placement in &group.placements {
+            if self.placed.len() >= MAX_INSTANCES {
+                break;
+            }
+            let path_length = path.len();
+            path.extend(&placement.ids);
+            let name = match (name, placement.name.as_str()) {
+                ("", own) => own.to_owned(),
+                (outer, "") => outer.to_owned(),
+                (outer, own) => format!("{outer}/{own}"),
+            };
+            self.visit(self.assembly.group(placement.child), transform * placement.transform, path, &name);
+            path.truncate(path_length);
+        }
+        self.trail.pop();
+    }
+}
