@@ -4,6 +4,10 @@
 #![warn(missing_docs)]
 
 pub mod brep;
+#[cfg(feature = "headless")]
+pub mod headless;
+pub mod import;
 pub mod model;
 pub mod picture;
+pub mod reference;
 pub mod spline;
