@@ -11,3 +11,8 @@ pub mod model;
 pub mod picture;
 pub mod reference;
 pub mod spline;
+
+/// The examples of the README compile.
+#[cfg(all(doctest, feature = "headless"))]
+#[doc = include_str!("../README.md")]
+struct Readme;
