@@ -11,14 +11,20 @@ mod frame;
 pub mod gpu;
 #[cfg(feature = "headless")]
 pub mod headless;
-pub mod math;
 pub mod import;
+pub mod math;
 pub mod model;
 pub mod passes;
 pub mod picture;
+pub mod reference;
 pub mod renderer;
 mod scene;
 mod shaders;
 pub mod spline;
 pub mod trim;
 pub mod twin;
+
+/// The examples of the README compile.
+#[cfg(all(doctest, feature = "headless"))]
+#[doc = include_str!("../README.md")]
+struct Readme;

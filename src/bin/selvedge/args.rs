@@ -1,0 +1,261 @@
+//! What the command line accepts, checked before anything is opened.
+
+use clap::{Args, Parser, Subcommand, ValueEnum};
+use glam::DVec3;
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// Told at the end of every help text.
+const STATUSES: &str = "Exit status: 0 done; 1 a picture breaks the accuracy promise; 2 wrong usage, or a file that \
+                        cannot be read or written; 3 no usable Vulkan device, or the device failed.";
+
+/// Draws trimmed spline surfaces exactly, at the resolution of the picture.
+#[derive(Debug, Parser)]
+#[command(version, after_help = STATUSES)]
+pub struct Cli {
+    /// Say more on standard error; twice for more still
+    #[arg(short, long, global = true, action = clap::ArgAction::Count)]
+    pub verbose: u8,
+    #[command(subcommand)]
+    pub command: Command,
+}
+
+#[derive(Debug, Subcommand)]
+pub enum Command {
+    /// Draw a model to a PNG file
+    #[command(after_help = STATUSES)]
+    Render(RenderArgs),
+    /// Describe what a file holds; needs no GPU
+    #[command(after_help = STATUSES)]
+    Info(InfoArgs),
+    /// Draw a model and judge the picture against exact rays in double precision
+    #[command(after_help = STATUSES)]
+    Check(CheckArgs),
+    /// Measure time and memory per pass along a fixed camera path, next to the error of the same frames
+    #[command(after_help = STATUSES)]
+    Bench(BenchArgs),
+}
+
+#[derive(Debug, Args)]
+pub struct RenderArgs {
+    /// The model (STEP)
+    pub model: PathBuf,
+    /// PNG file to write
+    #[arg(short, long, value_name = "OUT.png")]
+    pub output: PathBuf,
+    #[command(flatten)]
+    pub camera: CameraArgs,
+    #[command(flatten)]
+    pub frame: FrameArgs,
+    /// Also write an image as a NumPy array, row 0 on top: depth (f32, H x W, +inf is background), face (u32, H x W,
+    /// 0 is background), uv (f32, H x W x 2, NaN is background), normal (f32, H x W x 3, 0 is background)
+    #[arg(long, value_name = "IMAGE=FILE.npy")]
+    pub aov: Vec<Aov>,
+    /// Write the frame's statistics as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub stats: Option<PathBuf>,
+    /// Write the camera as JSON: eye, target, up, fovy in degrees (or ortho: half the height), size
+    #[arg(long, value_name = "FILE.json")]
+    pub camera_out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct InfoArgs {
+    /// The model (STEP)
+    pub model: PathBuf,
+    /// Print JSON
+    #[arg(long)]
+    pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct CheckArgs {
+    /// The model (STEP)
+    pub model: PathBuf,
+    #[command(flatten)]
+    pub camera: CameraArgs,
+    #[command(flatten)]
+    pub frame: FrameArgs,
+    /// Built-in views; not together with a camera
+    #[arg(long, value_enum, default_value_t = Views::Whole, conflicts_with_all = ["eye", "target"])]
+    pub views: Views,
+    /// Pixels to judge in each view; all of them when there are fewer
+    #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = at_least_one)]
+    pub samples: usize,
+    /// Write a picture of the judged pixels: wrong ones red. With several views the view's name is added to the file's
+    #[arg(long, value_name = "OUT.png")]
+    pub difference: Option<PathBuf>,
+    /// Write the judgements as JSON
+    #[arg(long, value_name = "FILE.json")]
+    pub json: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct BenchArgs {
+    /// The models (STEP)
+    #[arg(required = true)]
+    pub models: Vec<PathBuf>,
+    /// Measured frames for each model, after the warm-up
+    #[arg(long, value_name = "N", default_value_t = 24, value_parser = at_least_one)]
+    pub frames: usize,
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1920x1080")]
+    pub size: Size,
+    #[command(flatten)]
+    pub frame: FrameArgs,
+    /// Folder for bench.json and bench.csv
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+/// Where the eye is.
+#[derive(Debug, Args)]
+pub struct CameraArgs {
+    /// Width and height in pixels
+    #[arg(long, value_name = "WxH", default_value = "1920x1080")]
+    pub size: Size,
+    /// Position of the eye, millimetres; without it the whole model is framed
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub eye: Option<DVec3>,
+    /// Point that the eye looks at; the middle of the model without it
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub target: Option<DVec3>,
+    /// Direction that points up in the picture
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, default_value = "0,0,1")]
+    pub up: DVec3,
+    /// Vertical field of view in degrees
+    #[arg(long, value_name = "DEG", default_value_t = 35.0, conflicts_with = "ortho")]
+    pub fov: f64,
+    /// Parallel projection; the height of the picture in millimetres
+    #[arg(long, value_name = "HEIGHT")]
+    pub ortho: Option<f64>,
+}
+
+/// How a frame is drawn.
+#[derive(Debug, Args)]
+pub struct FrameArgs {
+    /// Largest distance in pixels between a drawn boundary and the true one, at least 0.125
+    #[arg(long, value_name = "PX", default_value_t = 0.5, value_parser = tolerance)]
+    pub tolerance: f64,
+    /// Part of the name of the Vulkan device to use
+    #[arg(long, value_name = "NAME")]
+    pub device: Option<String>,
+    /// Load the Vulkan validation layer; a message from it counts as a broken promise
+    #[arg(long)]
+    pub validation: bool,
+}
+
+/// Built-in views of `check`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Views {
+    /// All of the model
+    Whole,
+    /// Six times closer, at the detail nearest to the eye
+    Close,
+    /// From 8 degrees above the ground along the largest extent
+    Grazing,
+    /// The three of them
+    All,
+}
+
+/// Width and height in pixels.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Size(pub u32, pub u32);
+
+impl FromStr for Size {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let side = |s: &str| s.parse::<u32>().ok().filter(|&n| (1..=16384).contains(&n));
+        text.split_once('x')
+            .and_then(|(w, h)| Some(Self(side(w)?, side(h)?)))
+            .ok_or_else(|| "wants WIDTHxHEIGHT, each from 1 to 16384, as in 1920x1080".into())
+    }
+}
+
+/// An image beside the colour, and the file that it goes to.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct Aov {
+    pub image: Image,
+    pub file: PathBuf,
+}
+
+/// The images of [`Aov`].
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Image {
+    Depth,
+    Face,
+    Uv,
+    Normal,
+}
+
+impl FromStr for Aov {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let wanted = || "wants IMAGE=FILE.npy, the image being depth, face, uv or normal".to_string();
+        let (image, file) = text.split_once('=').filter(|(_, file)| !file.is_empty()).ok_or_else(wanted)?;
+        Ok(Self { image: Image::from_str(image, false).map_err(|_| wanted())?, file: file.into() })
+    }
+}
+
+/// `X,Y,Z`.
+fn vector(text: &str) -> Result<DVec3, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse::<f64>()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => Ok(DVec3::new(x, y, z)),
+        _ => Err("wants three finite numbers, as in 1,-2,0.5".into()),
+    }
+}
+
+/// A tolerance that the renderer can keep: see [`selvedge::picture::FrameSettings::tolerance_px`].
+fn tolerance(text: &str) -> Result<f64, String> {
+    text.parse::<f64>()
+        .ok()
+        .filter(|t| t.is_finite() && *t >= 0.125)
+        .ok_or_else(|| "wants a number of pixels, at least 0.125".into())
+}
+
+fn at_least_one(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|&n| n > 0).ok_or_else(|| "wants a whole number above 0".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn clap_accepts_the_definition() {
+        use clap::CommandFactory;
+        Cli::command().debug_assert();
+    }
+
+    #[test]
+    fn sizes() {
+        assert_eq!("640x480".parse(), Ok(Size(640, 480)));
+        for bad in ["640", "640x", "0x480", "640x480x2", "16385x1", "-1x1"] {
+            assert!(bad.parse::<Size>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn vectors() {
+        assert_eq!(vector("-1, 2.5,3e2"), Ok(DVec3::new(-1.0, 2.5, 300.0)));
+        for bad in ["1,2", "1,2,3,4", "1,2,x", "1,2,nan", ""] {
+            assert!(vector(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn images() {
+        assert_eq!("uv=a=b.npy".parse(), Ok(Aov { image: Image::Uv, file: "a=b.npy".into() }));
+        for bad in ["uv", "uv=", "colour=a.npy"] {
+            assert!(bad.parse::<Aov>().is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn a_negative_eye_is_not_an_option() {
+        let cli = Cli::try_parse_from(["selvedge", "render", "m.step", "-o", "a.png", "--eye", "-1,-2,-3"]);
+        let Command::Render(args) = cli.expect("parses").command else { panic!("render") };
+        assert_eq!(args.camera.eye, Some(DVec3::new(-1.0, -2.0, -3.0)));
+    }
+}

@@ -1,0 +1,206 @@
+//! `selvedge bench`: what a frame costs, next to how wrong it is.
+//!
+//! Speed without its error says little: some frames of the path are judged against the exact model,
+//! and both stand in the same table.
+
+use crate::args::{BenchArgs, Size};
+use crate::progress::during;
+use crate::series::{Gathered, Row};
+use crate::session::{self, Session};
+use crate::{Outcome, output, path};
+use anyhow::{Context, Result};
+use comfy_table::{CellAlignment, Table, presets};
+use selvedge::picture::{FrameStats, Outputs};
+use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
+use serde::Serialize;
+use std::path::Path;
+use std::time::Instant;
+
+/// Frames before the first measured one: buffers have grown, the driver's pipelines are compiled.
+const WARM_UP_FRAMES: usize = 3;
+/// Judged frames, spread over the path; each takes much longer than it takes to draw.
+const JUDGED_FRAMES: usize = 4;
+/// Pixels judged in each of them.
+const JUDGED_SAMPLES: usize = 2_000;
+
+/// Everything measured on one model.
+#[derive(Debug, Serialize)]
+struct Report {
+    model: String,
+    faces: usize,
+    face_instances: usize,
+    size: [u32; 2],
+    tolerance_px: f64,
+    device: String,
+    driver: String,
+    rows: Vec<Row>,
+    error: Error,
+}
+
+/// The worst of the judged frames.
+#[derive(Debug, Default, Serialize)]
+struct Error {
+    judged_frames: usize,
+    judged_pixels: usize,
+    wrong_pixels: usize,
+    worst_shift_px: f64,
+    worst_depth: f64,
+    worst_normal_deg: f64,
+}
+
+/// Measures every model; prints a table each and writes them all.
+pub fn run(args: &BenchArgs) -> Result<Outcome> {
+    let mut reports = Vec::new();
+    let mut outcome = Outcome::Good;
+    for model in &args.models {
+        let (report, complained) = measure(args, model)?;
+        output::print(&report.text())?;
+        let clamped = report.rows.iter().any(|r| r.name == CLAMPS && r.largest > 0.0);
+        if complained || clamped || report.error.wrong_pixels > 0 {
+            outcome = Outcome::Broken;
+        }
+        reports.push(report);
+    }
+    if let Some(dir) = &args.out {
+        std::fs::create_dir_all(dir).with_context(|| format!("cannot make {}", dir.display()))?;
+        output::json(&dir.join("bench.json"), &reports)?;
+        csv(&dir.join("bench.csv"), &reports)?;
+    }
+    Ok(outcome)
+}
+
+/// One model along the path; true when the validation layer complained.
+fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
+    let import = session::open(model)?;
+    let bounds = import.model.bounds();
+    let Size(width, height) = args.size;
+    let camera = |index| path::camera(bounds, (width, height), index, args.frames);
+    let mut session = Session::new(&args.frame, &import)?;
+    let mut stats = FrameStats::default();
+    let mut gathered = Gathered::default();
+    during(&format!("{}: {} frames", model.display(), args.frames), || -> Result<()> {
+        for _ in 0..WARM_UP_FRAMES {
+            session.render(&camera(0), Outputs::default())?;
+        }
+        for index in 0..args.frames {
+            let start = Instant::now();
+            let picture = session.render(&camera(index), Outputs::default())?;
+            gathered.push("wall clock, with read-back", "ms", start.elapsed().as_secs_f64() * 1e3);
+            gather(&mut gathered, &picture.stats);
+            stats = picture.stats;
+        }
+        Ok(())
+    })?;
+    let tracer = during("preparing the exact model", || Tracer::new(&import.model));
+    let mut error = Error::default();
+    for index in judged(args.frames) {
+        let camera = camera(index);
+        let picture = session.render(&camera, Outputs::ALL)?;
+        let options = JudgeOptions { samples: JUDGED_SAMPLES, ..JudgeOptions::default() };
+        error.add(&during(&format!("judging frame {index}"), || judge(&tracer, &camera, &picture, &options)));
+    }
+    let report = Report {
+        model: model.display().to_string(),
+        faces: import.model.face_count(),
+        face_instances: import.model.face_instance_count(),
+        size: [width, height],
+        tolerance_px: args.frame.tolerance,
+        device: stats.device,
+        driver: stats.driver,
+        rows: gathered.rows(),
+        error,
+    };
+    Ok((report, session.complaints()))
+}
+
+const CLAMPS: &str = "clamps";
+
+/// Everything in the statistics of a frame.
+fn gather(to: &mut Gathered, stats: &FrameStats) {
+    for pass in &stats.passes {
+        to.push(&format!("pass: {}", pass.name), "ms", pass.gpu_ms);
+    }
+    to.push("all passes", "ms", stats.passes.iter().map(|p| p.gpu_ms).sum());
+    to.push("triangles", "", stats.triangles as f64);
+    to.push("sub-patches", "", stats.sub_patches as f64);
+    to.push("trim rows", "", stats.trim_rows as f64);
+    to.push("trim intercepts", "", stats.trim_intercepts as f64);
+    to.push(CLAMPS, "", stats.clamps as f64);
+    to.push("retries", "", f64::from(stats.retries));
+    for pool in &stats.pools {
+        to.push(&format!("pool: {}", pool.name), "bytes", pool.bytes as f64);
+    }
+}
+
+/// Indices of the frames to judge, spread evenly.
+fn judged(frames: usize) -> impl Iterator<Item = usize> {
+    let count = JUDGED_FRAMES.min(frames);
+    (0..count).map(move |i| i * frames / count)
+}
+
+impl Error {
+    fn add(&mut self, j: &Judgement) {
+        self.judged_frames += 1;
+        self.judged_pixels += j.samples;
+        self.wrong_pixels += j.wrong;
+        self.worst_shift_px = self.worst_shift_px.max(j.worst_shift_px);
+        self.worst_depth = self.worst_depth.max(j.worst_depth);
+        self.worst_normal_deg = self.worst_normal_deg.max(j.worst_normal_deg);
+    }
+}
+
+impl Report {
+    fn text(&self) -> String {
+        let mut table = Table::new();
+        table.load_preset(presets::UTF8_HORIZONTAL_ONLY).set_header(["", "unit", "median", "95 %", "largest"]);
+        for row in &self.rows {
+            let number = |x: f64| if row.unit == "ms" { format!("{x:.2}") } else { format!("{x:.0}") };
+            let (median, p95, largest) = (number(row.median), number(row.p95), number(row.largest));
+            table.add_row([&row.name, row.unit, &median, &p95, &largest]);
+        }
+        table.column_iter_mut().skip(2).for_each(|c| c.set_cell_alignment(CellAlignment::Right));
+        let Self { model, faces, face_instances, size: [w, h], device, driver, error: e, .. } = self;
+        format!(
+            "{model}: {faces} faces, {face_instances} placed; {w} x {h} on {device} ({driver})\n{table}\n\
+             error in {} judged frames: {} of {} pixels wrong, worst shift {:.3} px, depth {:.2e} mm, normal {:.3} deg",
+            e.judged_frames, e.wrong_pixels, e.judged_pixels, e.worst_shift_px, e.worst_depth, e.worst_normal_deg
+        )
+    }
+}
+
+/// One line for each quantity of each model; the errors are quantities too.
+fn csv(path: &Path, reports: &[Report]) -> Result<()> {
+    output::file(path, |to| {
+        let mut lines = csv::Writer::from_writer(to);
+        lines.write_record(["model", "quantity", "unit", "median", "p95", "largest", "frames"])?;
+        for Report { model, rows, error: e, .. } in reports {
+            for r in rows {
+                lines.serialize((model, &r.name, r.unit, r.median, r.p95, r.largest, r.frames))?;
+            }
+            let worst = [
+                ("wrong pixels", "", e.wrong_pixels as f64),
+                ("worst shift", "px", e.worst_shift_px),
+                ("worst depth error", "mm", e.worst_depth),
+                ("worst normal error", "deg", e.worst_normal_deg),
+            ];
+            for (name, unit, value) in worst {
+                lines.serialize((model, name, unit, "", "", value, e.judged_frames))?;
+            }
+        }
+        Ok(lines.flush()?)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn judged_frames_are_distinct_and_within_the_path() {
+        for frames in [1, 2, 3, 5, 24] {
+            let indices: Vec<usize> = judged(frames).collect();
+            assert_eq!(indices.len(), frames.min(JUDGED_FRAMES));
+            assert!(indices.windows(2).all(|w| w[0] < w[1]) && indices.iter().all(|&i| i < frames));
+        }
+    }
+}

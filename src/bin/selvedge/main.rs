@@ -1,0 +1,69 @@
+//! The command line: draw a CAD model, describe it, prove the picture right, measure the cost.
+//!
+//! ```text
+//!   render   model ─▶ picture and images      info    model ─▶ what the file holds
+//!   check    picture against exact rays       bench   time and memory beside the error
+//! ```
+//!
+//! Results go to standard output, everything else to standard error.
+
+mod args;
+mod bench;
+mod camera;
+mod check;
+mod info;
+mod npy;
+mod output;
+mod path;
+mod progress;
+mod render;
+mod series;
+mod session;
+
+use args::{Cli, Command};
+use clap::Parser;
+use selvedge::headless::HeadlessError;
+use std::process::ExitCode;
+
+/// How a command that ran to its end ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Outcome {
+    /// Everything asked for was done, and every promise looked at was kept.
+    Good,
+    /// A picture is not what it promises to be.
+    Broken,
+}
+
+/// Exit statuses; `args::STATUSES` tells them to the user.
+const BROKEN: u8 = 1;
+const USAGE: u8 = 2;
+const DEVICE: u8 = 3;
+
+fn main() -> ExitCode {
+    let cli = Cli::parse();
+    let level = match cli.verbose {
+        0 => tracing::Level::WARN,
+        1 => tracing::Level::INFO,
+        _ => tracing::Level::DEBUG,
+    };
+    tracing_subscriber::fmt()
+        .with_max_level(level)
+        .with_writer(std::io::stderr)
+        .without_time()
+        .with_target(false)
+        .init();
+    let result = match &cli.command {
+        Command::Render(args) => render::run(args),
+        Command::Info(args) => info::run(args),
+        Command::Check(args) => check::run(args),
+        Command::Bench(args) => bench::run(args),
+    };
+    match result {
+        Ok(Outcome::Good) => ExitCode::SUCCESS,
+        Ok(Outcome::Broken) => ExitCode::from(BROKEN),
+        Err(error) => {
+            eprintln!("selvedge: {error:#}");
+            ExitCode::from(if error.is::<HeadlessError>() { DEVICE } else { USAGE })
+        }
+    }
+}

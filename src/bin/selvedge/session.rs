@@ -1,0 +1,54 @@
+//! A model read and a renderer opened, with everything worth knowing told on standard error.
+
+use crate::args::FrameArgs;
+use crate::output;
+use crate::progress::during;
+use anyhow::Result;
+use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
+use selvedge::import::{self, Import};
+use selvedge::model::Camera;
+use selvedge::picture::{FrameSettings, Outputs, Picture};
+use std::path::Path;
+use std::time::Instant;
+
+/// Reads a file and tells its warnings.
+pub fn open(path: &Path) -> Result<Import> {
+    let start = Instant::now();
+    let import = during(&format!("reading {}", path.display()), || import::open(path))?;
+    tracing::info!("read {} in {:.1?}", path.display(), start.elapsed());
+    output::warnings(&import);
+    Ok(import)
+}
+
+/// A renderer that holds one model.
+pub struct Session {
+    renderer: HeadlessRenderer,
+    settings: FrameSettings,
+}
+
+impl Session {
+    /// Opens the device and hands it the model.
+    pub fn new(args: &FrameArgs, import: &Import) -> Result<Self> {
+        let options = HeadlessOptions { device: args.device.clone(), validation: args.validation };
+        let mut renderer = during("opening the device", || HeadlessRenderer::new(&options))?;
+        during("uploading the model", || renderer.upload(&import.model))?;
+        let settings = FrameSettings { tolerance_px: args.tolerance, ..FrameSettings::default() };
+        Ok(Self { renderer, settings })
+    }
+
+    /// One frame.
+    pub fn render(&mut self, camera: &Camera, outputs: Outputs) -> Result<Picture> {
+        let picture = during("drawing", || self.renderer.render(camera, &self.settings, outputs))?;
+        output::clamps(&picture.stats);
+        Ok(picture)
+    }
+
+    /// What the validation layer said, told on standard error.
+    ///
+    /// True when it said anything.
+    pub fn complaints(&self) -> bool {
+        let messages = self.renderer.messages();
+        messages.iter().for_each(|message| tracing::error!("validation: {message}"));
+        !messages.is_empty()
+    }
+}

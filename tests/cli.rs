@@ -1,0 +1,74 @@
+//! The command line where no GPU is needed: arguments, messages, exit statuses.
+
+use std::process::{Command, Output};
+
+fn selvedge(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_selvedge")).args(arguments).output().expect("the binary runs")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Status 2, nothing on standard output, and `message` on standard error.
+#[track_caller]
+fn refused(arguments: &[&str], message: &str) {
+    let output = selvedge(arguments);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert!(told.contains(message), "{arguments:?} should mention {message:?}, says: {told}");
+}
+
+#[test]
+fn help_names_every_command_and_the_exit_statuses() {
+    let help = selvedge(&["--help"]);
+    assert_eq!(help.status.code(), Some(0));
+    let help = text(&help.stdout);
+    for word in ["render", "info", "check", "bench", "Exit status: 0 done; 1 a picture breaks"] {
+        assert!(help.contains(word), "{word} in {help}");
+    }
+    for command in ["render", "info", "check", "bench"] {
+        let help = selvedge(&[command, "--help"]);
+        assert_eq!(help.status.code(), Some(0));
+        assert!(text(&help.stdout).contains("Exit status:"), "{command}");
+    }
+}
+
+#[test]
+fn wrong_arguments_are_usage_errors() {
+    refused(&[], "Usage");
+    refused(&["draw", "m.step"], "unrecognized subcommand");
+    refused(&["render", "m.step"], "--output");
+    let render = |more: &[&'static str], message: &str| {
+        refused(&[&["render", "m.step", "-o", "a.png"], more].concat(), message);
+    };
+    render(&["--size", "1920"], "WIDTHxHEIGHT");
+    render(&["--size", "0x10"], "WIDTHxHEIGHT");
+    render(&["--eye", "1,2"], "three finite numbers");
+    render(&["--eye", "1,2,inf"], "three finite numbers");
+    render(&["--fov", "30", "--ortho", "10"], "cannot be used with");
+    render(&["--tolerance", "0.1"], "at least 0.125");
+    render(&["--aov", "colour=c.npy"], "depth, face, uv or normal");
+    refused(&["check", "m.step", "--samples", "0"], "above 0");
+    refused(&["check", "m.step", "--views", "close", "--eye", "1,2,3"], "cannot be used with");
+    refused(&["bench"], "MODELS");
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    for arguments in [
+        &["info", "no/such/model.step"][..],
+        &["render", "no/such/model.step", "-o", "a.png"],
+        &["check", "no/such/model.step"],
+        &["bench", "no/such/model.step"],
+    ] {
+        refused(arguments, "no/such/model.step");
+    }
+}
+
+#[test]
+fn a_file_that_is_no_model_is_an_import_error() {
+    let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
+    refused(&["info", manifest], "Cargo.toml");
+}

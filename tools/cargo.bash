@@ -1,0 +1,13 @@
+# Sourced by the other scripts: the repository's root and one set of cargo flags, so that no step
+# rebuilds what another has built.
+
+root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
+cd "$root"
+PATH=$PATH:${CARGO_HOME:-$HOME/.cargo}/bin
+
+# How shaderc links on Debian is said in tools/shaderc.toml.
+cargo=(cargo --config tools/shaderc.toml)
+features=(--features cli,headless,compile-shaders)
+
+# say TEXT: a heading between the outputs of the steps.
+say() { printf '\n== %s\n' "$*" >&2; }
