@@ -75,7 +75,11 @@ impl Instance {
             create = if layer_settings { create.push_next(&mut settings) } else { create.push_next(&mut features) };
         }
         // SAFETY: everything that the chain points to outlives the call; `messages` outlives the instance.
-        let raw = unsafe { entry.create_instance(&create, None) }.named("vkCreateInstance", "instance")?;
+        let raw = match unsafe { entry.create_instance(&create, None) } {
+            // The loader found no driver at all.
+            Err(vk::Result::ERROR_INCOMPATIBLE_DRIVER) => return Err(HeadlessError::NoDevice),
+            made => made.named("vkCreateInstance", "instance")?,
+        };
         let mut this = Self { raw, messages, debug_utils, messenger: None, _entry: entry };
         if options.validation {
             let debug = ash::ext::debug_utils::Instance::new(&this._entry, &this.raw);

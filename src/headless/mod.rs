@@ -158,6 +158,8 @@ impl HeadlessDevice {
 
     /// Records commands, submits them, and waits until the GPU has finished.
     ///
+    /// Nothing that `record` uses may be dropped within it: return staging buffers from it.
+    ///
     /// # Errors
     /// [`GpuError::Vulkan`].
     pub fn submit<R>(&self, record: impl FnOnce(&Commands<'_>) -> R) -> Result<R, GpuError> {

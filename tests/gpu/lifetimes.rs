@@ -92,3 +92,16 @@ fn an_unknown_device_is_answered_with_those_there_are() {
         Ok(_) => panic!("found a device of that name"),
     }
 }
+
+/// A machine without a driver, played by a child process whose loader is pointed at none.
+#[test]
+fn a_missing_driver_is_answered_with_what_to_install() {
+    let output = std::process::Command::new(std::env::current_exe().unwrap())
+        .args(["--exact", "lifetimes::bytes_are_counted_in_their_pool"])
+        .envs(["VK_DRIVER_FILES", "VK_ICD_FILENAMES"].map(|name| (name, "/dev/null")))
+        .output()
+        .unwrap();
+    let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
+    assert!(!output.status.success(), "{said}");
+    assert!(said.contains("apt install mesa-vulkan-drivers"), "{said}");
+}

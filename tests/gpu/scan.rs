@@ -65,7 +65,7 @@ fn parity_around_lanes_and_blocks() {
 fn parity_where_the_sums_are_many() {
     let device = watched();
     let scan = Scan::new(device.device()).unwrap();
-    for count in [BLOCK * BLOCK, BLOCK * BLOCK + 1, 3 * BLOCK * BLOCK + 7] {
+    for count in [MAX_COUNT, BLOCK * BLOCK, BLOCK * BLOCK + 1, 3 * BLOCK * BLOCK + 7] {
         assert_parity(&device, &scan, count);
     }
     drop(scan);

@@ -1,0 +1,86 @@
+//! What a pipeline's shaders find at the bindings of set 0, and the layouts that say so.
+
+use super::{Device, GpuError, Named};
+use ash::vk;
+
+/// What a shader finds at a binding of set 0.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Binding {
+    /// `buffer` block.
+    Storage,
+    /// `uniform` block.
+    Uniform,
+    /// `image2D` and its kin.
+    StorageImage,
+    /// `sampler2D` and its kin: image and sampler in one.
+    Sampled,
+}
+
+impl Binding {
+    pub(crate) fn descriptor_type(self) -> vk::DescriptorType {
+        match self {
+            Self::Storage => vk::DescriptorType::STORAGE_BUFFER,
+            Self::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
+            Self::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
+            Self::Sampled => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
+        }
+    }
+}
+
+/// The layouts of a pipeline.
+#[derive(Debug)]
+pub(super) struct Layout {
+    device: Device,
+    set: vk::DescriptorSetLayout,
+    pub(super) pipeline: vk::PipelineLayout,
+    pub(super) stages: vk::ShaderStageFlags,
+}
+
+impl Layout {
+    pub(super) fn new(
+        device: &Device,
+        name: &str,
+        stages: vk::ShaderStageFlags,
+        bindings: &[Binding],
+        push_bytes: u32,
+    ) -> Result<Self, GpuError> {
+        let bindings: Vec<_> = bindings
+            .iter()
+            .enumerate()
+            .map(|(i, binding)| {
+                vk::DescriptorSetLayoutBinding::default()
+                    .binding(i as u32)
+                    .descriptor_type(binding.descriptor_type())
+                    .descriptor_count(1)
+                    .stage_flags(stages)
+            })
+            .collect();
+        let create = vk::DescriptorSetLayoutCreateInfo::default()
+            .flags(vk::DescriptorSetLayoutCreateFlags::PUSH_DESCRIPTOR_KHR)
+            .bindings(&bindings);
+        // SAFETY: the device is alive while `Device` is.
+        let set = unsafe { device.raw().create_descriptor_set_layout(&create, None) }
+            .named("vkCreateDescriptorSetLayout", name)?;
+        // Owned from here on, so that a failure below frees the set layout; destroying null is allowed.
+        let mut layout = Self { device: device.clone(), set, pipeline: vk::PipelineLayout::null(), stages };
+        let sets = [set];
+        let ranges = [vk::PushConstantRange::default().stage_flags(stages).size(push_bytes)];
+        let create = vk::PipelineLayoutCreateInfo::default()
+            .set_layouts(&sets)
+            .push_constant_ranges(if push_bytes > 0 { &ranges } else { &[] });
+        // SAFETY: as above.
+        layout.pipeline =
+            unsafe { device.raw().create_pipeline_layout(&create, None) }.named("vkCreatePipelineLayout", name)?;
+        Ok(layout)
+    }
+}
+
+impl Drop for Layout {
+    fn drop(&mut self) {
+        // SAFETY: owned here; what was recorded with it has finished, as `Pipeline` demands.
+        unsafe {
+            self.device.raw().destroy_pipeline_layout(self.pipeline, None);
+            self.device.raw().destroy_descriptor_set_layout(self.set, None);
+        }
+    }
+}
