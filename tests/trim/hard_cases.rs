@@ -598,3 +598,44 @@ fn the_table_does_not_depend_on_the_order_of_loops() {
     assert_eq!(first, table(&[&b, &c, &a]));
     assert_ne!(first, table(&[&a, &b]));
 }
+
+// rectangles that touch
+
+#[test]
+fn touching_is_meeting() {
+    let square = LoopIndex::new(&[rectangle((0.0, 0.0), (1.0, 1.0))]);
+    for (lo, hi, side) in [
+        ((1.0, 0.25), (2.0, 0.5), RectSide::Boundary),
+        ((1.0, 1.0), (2.0, 2.0), RectSide::Boundary),
+        ((up(1.0), 0.25), (2.0, 0.5), RectSide::Outside),
+        ((0.5, 0.5), (1.0, 0.75), RectSide::Boundary),
+        ((up(0.0), up(0.0)), (down(1.0), down(1.0)), RectSide::Inside),
+        ((-1.0, -1.0), (2.0, 2.0), RectSide::Boundary),
+        ((0.5, 0.5), (0.5, 0.5), RectSide::Inside),
+        ((0.75, 0.5), (0.25, 0.75), RectSide::Boundary), // not a rectangle
+    ] {
+        assert_eq!(square.classify(lo.into(), hi.into()), side, "{lo:?} {hi:?}");
+    }
+}
+
+/// The extrema of a bent curve are found with rounding: rectangles against the true ones must not
+/// slip through.
+#[test]
+fn touching_an_extremum_is_meeting() {
+    for k in 1..100 {
+        let (centre, radius) = (at(f64::from(k % 11), f64::from(k % 7)), f64::from(k));
+        let fifth = 0.2;
+        let ring =
+            [(0., -1., 1.), (4., -1., fifth), (2., 3., fifth), (-2., 3., fifth), (-4., -1., fifth), (0., -1., 1.)];
+        let placed = ring.map(|(x, y, w)| (centre.x + radius * x, centre.y + radius * y, w));
+        let index = LoopIndex::new(&[closed(vec![rational(&placed)])]);
+        for (x, y) in [(1.0, 0.0), (0.0, 1.0), (-1.0, 0.0), (0.0, -1.0)] {
+            let (near, far) = (centre + radius * at(x, y), centre + 2.0 * radius * at(x, y));
+            let across = 0.5 * at(y, x).abs();
+            let (lo, hi) = (near.min(far) - across, near.max(far) + across);
+            assert_eq!(index.classify(lo, hi), RectSide::Boundary, "{k}, side {x} {y}");
+            let gap = 1e-12 * radius * at(x, y);
+            assert_eq!(index.classify(lo + gap, hi + gap), RectSide::Outside, "{k}, beside {x} {y}");
+        }
+    }
+}
