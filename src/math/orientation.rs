@@ -18,7 +18,7 @@ use glam::DVec2;
 ///
 /// The sign is exact for every finite input whose products neither overflow nor underflow
 /// (coordinates that are 0 or between 1e-140 and 1e140 in size); the magnitude is approximate.
-/// Cost: seven operations unless the points are collinear to 15 digits, then about 200.
+/// Cost: seven operations unless the points are collinear to 15 digits, then a few hundred.
 pub fn orientation(a: DVec2, b: DVec2, p: DVec2) -> f64 {
     /// `(3 + 16 ε) ε` with `ε = 2^-53`: Shewchuk's bound A.
     const FILTER: f64 = (3.0 + 8.0 * f64::EPSILON) * (0.5 * f64::EPSILON);

@@ -24,8 +24,7 @@ use glam::{DVec2, DVec3};
 /// `u` measured in units of `1 / scale.x` and `v` in units of `1 / scale.y`.
 ///
 /// `eps` must be positive; the count saturates at `u32::MAX`. 1 for a straight line in its natural
-/// parametrisation. The bound is attained by a parabola and loose by about the square root of the
-/// weight ratio for rational curves.
+/// parametrisation. A parabola attains the bound; `W_min` makes it loose where weights differ much.
 pub fn segment_count(curve: &Bezier<DVec3>, scale: DVec2, eps: f64) -> u32 {
     ((chord_bend(curve) * scale).length() / eps).sqrt().ceil().max(1.0) as u32
 }

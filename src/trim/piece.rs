@@ -140,3 +140,43 @@ fn turning_points(curve: &Bezier<DVec3>, points: &[DVec2], axis: impl Fn(DVec2) 
     }
     bernstein::sign_changes(&coefficients, &noise)
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn pieces(points: &[(f64, f64)]) -> Vec<Piece> {
+        let curve = Bezier { points: points.iter().map(|&(u, v)| DVec3::new(u, v, 1.0)).collect() };
+        let mut pieces = Vec::new();
+        append_pieces(&mut pieces, 0, &curve, points[0].into());
+        pieces
+    }
+
+    #[test]
+    fn a_wave_is_cut_at_its_extrema() {
+        // v = t (1 - t) (1 - 2t), extrema at (1 ± 1/sqrt 3) / 2
+        let cuts: Vec<f64> = pieces(&[(0.0, 0.0), (1.0, 1.0 / 3.0), (2.0, -1.0 / 3.0), (3.0, 0.0)])
+            .windows(2)
+            .map(|w| {
+                assert_eq!((w[0].end, w[0].t.1), (w[1].start, w[1].t.0));
+                w[0].t.1
+            })
+            .collect();
+        let root = 0.5 / 3f64.sqrt();
+        assert!(cuts.len() == 2 && (cuts[0] - 0.5 + root).abs() < 1e-15 && (cuts[1] - 0.5 - root).abs() < 1e-15);
+    }
+
+    #[test]
+    fn ripples_of_an_ulp_are_no_extrema() {
+        let v: f64 = 0.1;
+        assert_eq!(pieces(&[(0.0, v), (1.0, v.next_up()), (2.0, v.next_down()), (3.0, v)]).len(), 1);
+    }
+
+    #[test]
+    fn straight_curves_stay_whole_and_points_vanish() {
+        assert!(pieces(&[(0.0, 0.0), (0.5, 0.25), (1.5, 0.75), (2.0, 1.0)])[0].straight);
+        assert!(!pieces(&[(0.0, 0.0), (0.5, 0.25), (4.0, 2.0), (2.0, 1.0)])[0].straight); // overshoots its end
+        assert_eq!(pieces(&[(0.3, 0.7), (0.3, 0.7), (0.3, 0.7)]).len(), 0);
+        assert_eq!(pieces(&[(0.0, 0.0), (1.0, 1.0), (0.0, 0.0)]).len(), 2); // there and back
+    }
+}

@@ -1,6 +1,9 @@
 //! The trim test against exact answers, brute force and stated bounds.
 
+mod check;
 mod flatten;
-mod hard_cases;
+mod hard_crossings;
+mod hard_curves;
+mod hard_domains;
 mod properties;
 mod shapes;
