@@ -13,9 +13,10 @@
 layout(local_size_x = 128) in;
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer RowStarts { uint row_starts[]; };
-layout(scalar, binding = 2) writeonly buffer RowCounts { uint row_counts[]; };
-layout(scalar, binding = 3) buffer Intercepts { uint intercepts[]; };
-layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
+layout(scalar, binding = 2) readonly buffer RowTotal { uint row_total; };
+layout(scalar, binding = 3) writeonly buffer RowCounts { uint row_counts[]; };
+layout(scalar, binding = 4) buffer Intercepts { uint intercepts[]; };
+layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
 
 float from_ordered(uint bits) {
     return uintBitsToFloat((bits & 0x80000000u) != 0u ? bits & 0x7fffffffu : ~bits);
@@ -39,10 +40,11 @@ void main() {
     uint rows = counters.rows;
     if (row >= rows) return;
     if (row == 0u) {
-        if (counters.intercepts > frame.intercept_capacity) atomicOr(counters.failed, FAILED_INTERCEPTS);
+        counters.intercepts = row_total;
+        if (row_total > frame.intercept_capacity) atomicOr(counters.failed, FAILED_INTERCEPTS);
     }
     uint first = row_starts[row];
-    uint end = row + 1u < rows ? row_starts[row + 1u] : counters.intercepts;
+    uint end = row + 1u < rows ? row_starts[row + 1u] : row_total;
     if (end > frame.intercept_capacity) {
         row_counts[row] = 0u; // the host grows the table and records again
         return;

@@ -9,8 +9,8 @@
 
 use crate::abi::{Counters, Factors, SubPatch};
 use crate::gpu::{Buffer, Device, GpuError, Image, ImageInfo, Pool};
-use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
 use crate::passes::scan;
+use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
 use crate::scene::SceneData;
 use ash::vk;
 
@@ -108,6 +108,7 @@ pub(crate) struct TrimBuffers {
     pub dispatches: Buffer,
     pub row_counts: Buffer,
     pub row_starts: Buffer,
+    pub row_total: Buffer,
     pub intercepts: Buffer,
 }
 
@@ -119,8 +120,9 @@ impl Buffers {
         size: (u32, u32),
     ) -> Result<Self, GpuError> {
         let words = |name: &str, n: u32| Buffer::storage(device, Pool::Transient, name, 4 * u64::from(n));
-        let structs =
-            |name: &str, n: u32, bytes: usize| Buffer::storage(device, Pool::Transient, name, u64::from(n) * bytes as u64);
+        let structs = |name: &str, n: u32, bytes: usize| {
+            Buffer::storage(device, Pool::Transient, name, u64::from(n) * bytes as u64)
+        };
         let indirect = |name: &str, bytes: u64| Buffer::indirect(device, Pool::Transient, name, bytes);
         let image = |name: &str, format, usage| {
             Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })
@@ -154,6 +156,7 @@ impl Buffers {
                         dispatches: indirect("trim dispatches", 3 * size_of::<[u32; 3]>() as u64)?,
                         row_counts: words("trim row counts", capacities.rows)?,
                         row_starts: words("trim row starts", capacities.rows)?,
+                        row_total: words("trim row total", 1)?,
                         intercepts: words("trim intercepts", capacities.intercepts)?,
                     })
                 })

@@ -92,32 +92,28 @@ pub(crate) struct Frame<'a> {
 const WRITE_TO_READ: (Access, Access) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);
 const WRITE_TO_WRITE: (Access, Access) = (Access::COMPUTE_WRITE, Access::COMPUTE_WRITE);
 
+/// A copy's source, among buffer accesses, which have no layout of their own.
+const COPIED: Access = Access { layout: Access::COMPUTE_READ.layout, ..Access::TRANSFER_READ };
+
 impl Frame<'_> {
     /// Records the whole frame.
     pub(crate) fn record(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
         self.begin(cmd);
         times.scope(cmd, "tessellation", || self.tessellation(cmd));
-        if let (Some(passes), Some(trims), Some(buffers)) =
-            (&self.passes.trim, &self.scene.trims, &self.buffers.trim)
-        {
+        if let (Some(passes), Some(trims), Some(buffers)) = (&self.passes.trim, &self.scene.trims, &self.buffers.trim) {
             times.scope(cmd, "trim table", || self.trim_table(cmd, passes, trims, buffers));
         }
         times.drawing(cmd, "visibility", || self.visibility(cmd));
         times.scope(cmd, "resolve", || self.resolve(cmd));
         let b = self.buffers;
-        barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE, Access::TRANSFER_READ)]);
+        barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, COPIED)]);
         self.counters.record(cmd, &b.counters, size_of::<Counters>() as u64);
     }
 
     /// The transient buffers may still be read by the frame before: wait, then clear what counts.
     fn begin(&self, cmd: &Commands<'_>) {
         let b = self.buffers;
-        let before = [
-            Access::COMPUTE_WRITE,
-            Access::VERTEX_READ,
-            Access::FRAGMENT_READ,
-            Access::INDIRECT_READ,
-        ];
+        let before = [Access::COMPUTE_WRITE, Access::VERTEX_READ, Access::FRAGMENT_READ, Access::INDIRECT_READ];
         let before = before.into_iter().fold(Access::COMPUTE_READ, |all, one| all | one);
         let transfer = Access { layout: before.layout, ..Access::TRANSFER_READ };
         let clear = Access { layout: before.layout, ..Access::TRANSFER_WRITE };
@@ -167,7 +163,10 @@ impl Frame<'_> {
 
         self.scan(cmd, &b.sub_patch_counts, &b.sub_patch_starts, 2 * items);
         self.scan(cmd, &b.vertex_counts, &b.vertex_starts, 2 * items);
-        barrier::buffers(cmd, &[(&b.sub_patch_starts, w, r), (&b.vertex_starts, w, r), (&b.factors, w, r)]);
+        barrier::buffers(
+            cmd,
+            &[(&b.sub_patch_starts, w, r), (&b.vertex_starts, w, r), (&b.factors, w, r), (&b.counters, w, w)],
+        );
 
         let emit = emit::Bindings {
             frame: self.constants,
@@ -185,7 +184,7 @@ impl Frame<'_> {
                 (&b.factors, w, Access::VERTEX_READ),
                 (&b.sub_patches, w, Access::VERTEX_READ),
                 (&b.draws, w, Access::INDIRECT_READ),
-                (&b.counters, w, Access::INDIRECT_READ | Access::COMPUTE_WRITE),
+                (&b.counters, w, w),
             ],
         );
     }
@@ -267,7 +266,7 @@ impl Frame<'_> {
             dispatches: &t.dispatches,
         };
         p.cross.count(cmd, &cross);
-        barrier::buffers(cmd, &[(&t.row_counts, w, r), (&b.sums, w, w)]);
+        barrier::buffers(cmd, &[(&t.row_counts, w, r), (&t.row_starts, r, w), (&b.sums, w, w)]);
         let word = |offset: usize| (offset / size_of::<u32>()) as u32;
         self.passes.scan.record(
             cmd,
@@ -282,18 +281,21 @@ impl Frame<'_> {
                 values: &t.row_counts,
                 offsets: &t.row_starts,
                 sums: &b.sums,
-                total: &b.counters,
-                total_index: word(offset_of!(Counters, intercepts)),
+                total: &t.row_total,
+                total_index: 0,
             },
         );
-        let (w2, _) = WRITE_TO_WRITE;
-        barrier::buffers(cmd, &[(&t.row_starts, w, r), (&t.row_counts, r, w), (&b.counters, w, w2)]);
+        barrier::buffers(
+            cmd,
+            &[(&t.row_starts, w, r), (&t.row_total, w, r), (&t.row_counts, r, w), (&b.counters, r, w)],
+        );
         p.cross.insert(cmd, &cross);
         barrier::buffers(cmd, &[(&t.intercepts, w, w), (&t.row_counts, w, w)]);
 
         let sort = sort::Bindings {
             frame: self.constants,
             row_starts: &t.row_starts,
+            row_total: &t.row_total,
             row_counts: &t.row_counts,
             intercepts: &t.intercepts,
             counters: &b.counters,
@@ -321,6 +323,7 @@ impl Frame<'_> {
 
     fn visibility(&self, cmd: &Commands<'_>) {
         let (s, b) = (self.scene, self.buffers);
+        barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE, Access::INDIRECT_READ)]);
         // the image was read by the frame before; its contents go
         barrier::images(
             cmd,

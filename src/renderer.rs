@@ -169,11 +169,8 @@ impl Renderer {
     /// [`GpuError`].
     pub fn upload(&mut self, model: &Model) -> Result<(), GpuError> {
         let data = SceneData::new(model);
-        let formats = resolve::Formats {
-            colour: self.formats.colour,
-            depth: self.formats.depth,
-            aovs: self.formats.aovs,
-        };
+        let formats =
+            resolve::Formats { colour: self.formats.colour, depth: self.formats.depth, aovs: self.formats.aovs };
         let passes = Passes::new(&self.device, &data, formats)?;
         let counts = Counts::of(&data);
         let loaded = Loaded { data, counts, capacities: Capacities::first(counts), passes, scene: None, buffers: None };
@@ -203,14 +200,19 @@ impl Renderer {
             return Err(RenderError::Tolerance(tolerance));
         }
         let targets = input.targets;
-        for image in [Some(targets.colour), targets.depth].into_iter().chain(targets.aovs.iter().flatten().map(|i| Some(*i))) {
+        for image in
+            [Some(targets.colour), targets.depth].into_iter().chain(targets.aovs.iter().flatten().map(|i| Some(*i)))
+        {
             if let Some(image) = image.filter(|i| i.size() != input.camera.size) {
                 let (width, height) = image.size();
                 return Err(RenderError::TargetSize { name: image.name().to_owned(), width, height });
             }
         }
         assert!(targets.aovs.is_some() == self.formats.aovs, "the targets are those of TargetFormats::aovs");
-        assert!(targets.depth.is_some() == self.formats.depth.is_some(), "the targets are those of TargetFormats::depth");
+        assert!(
+            targets.depth.is_some() == self.formats.depth.is_some(),
+            "the targets are those of TargetFormats::depth"
+        );
         self.make_room(input.slot, input.camera.size)?;
         // SAFETY: the caller's promise.
         let cmd = unsafe { Commands::new(&self.device, cmd) };

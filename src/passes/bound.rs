@@ -58,7 +58,9 @@ impl Bound {
 
     /// One thread for each of `items`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
-        let resources = [b.frame, b.views, b.instances, b.face_instances, b.faces, b.patches, b.items, b.taus, b.counters].map(Into::into);
+        let resources =
+            [b.frame, b.views, b.instances, b.face_instances, b.faces, b.patches, b.items, b.taus, b.counters]
+                .map(Into::into);
         cmd.bind(&self.pipeline, &resources, &[]);
         cmd.dispatch(items.div_ceil(GROUP));
     }

@@ -52,7 +52,18 @@ impl Density {
 
     /// One thread for each of `cells`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, cells: u32) {
-        let resources = [b.frame, b.views, b.instances, b.face_instances, b.faces, b.cells, b.cell_items, b.strip_heights, b.face_speeds].map(Into::into);
+        let resources = [
+            b.frame,
+            b.views,
+            b.instances,
+            b.face_instances,
+            b.faces,
+            b.cells,
+            b.cell_items,
+            b.strip_heights,
+            b.face_speeds,
+        ]
+        .map(Into::into);
         cmd.bind(&self.pipeline, &resources, &[]);
         cmd.dispatch(cells.div_ceil(GROUP));
     }

@@ -50,7 +50,8 @@ impl Emit {
 
     /// One thread for each of `items`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
-        let resources = [b.frame, b.factors, b.sub_patch_starts, b.vertex_starts, b.sub_patches, b.draws, b.counters].map(Into::into);
+        let resources = [b.frame, b.factors, b.sub_patch_starts, b.vertex_starts, b.sub_patches, b.draws, b.counters]
+            .map(Into::into);
         cmd.bind(&self.pipeline, &resources, &[]);
         cmd.dispatch(items.div_ceil(GROUP));
     }

@@ -17,12 +17,8 @@ use crate::shaders;
 use ash::vk;
 
 /// Formats of the images of depth, face, (u, v) and normal.
-pub(crate) const AOV_FORMATS: [vk::Format; 4] = [
-    vk::Format::R32_SFLOAT,
-    vk::Format::R32_UINT,
-    vk::Format::R32G32_SFLOAT,
-    vk::Format::R32G32B32A32_SFLOAT,
-];
+pub(crate) const AOV_FORMATS: [vk::Format; 4] =
+    [vk::Format::R32_SFLOAT, vk::Format::R32_UINT, vk::Format::R32G32_SFLOAT, vk::Format::R32G32B32A32_SFLOAT];
 
 /// `constant_id` of `SCENE_HAS_RATIONAL`.
 const SCENE_HAS_RATIONAL: u32 = 0;

@@ -48,7 +48,17 @@ impl Segments {
 
     /// One thread for each of `curves`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, curves: u32) {
-        let resources = [b.frame, b.face_instances, b.faces, b.curves, b.curve_items, b.face_speeds, b.line_starts, b.segment_counts].map(Into::into);
+        let resources = [
+            b.frame,
+            b.face_instances,
+            b.faces,
+            b.curves,
+            b.curve_items,
+            b.face_speeds,
+            b.line_starts,
+            b.segment_counts,
+        ]
+        .map(Into::into);
         cmd.bind(&self.pipeline, &resources, &[]);
         cmd.dispatch(curves.div_ceil(GROUP));
     }

@@ -5,7 +5,7 @@
 //!   flips        |              |        inside    0 1 1 1 1 1 0
 //! ```
 //!
-//! Reads: `frame`, `row_starts`, `dispatches`. Writes: `row_counts` (now the number of flips),
+//! Reads: `frame`, `row_starts`, `row_total`, `dispatches`. Writes: `row_counts` (now the number of flips),
 //! `intercepts`, `counters`. Twin: `src/twin/sort.rs`.
 
 use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
@@ -20,6 +20,8 @@ pub(crate) struct Sort {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub row_starts: &'a Buffer,
+    /// Intercepts of all rows.
+    pub row_total: &'a Buffer,
     pub row_counts: &'a Buffer,
     pub intercepts: &'a Buffer,
     pub counters: &'a Buffer,
@@ -34,7 +36,7 @@ impl Sort {
             &ComputeInfo {
                 name: "sort",
                 spirv: shaders::SORT_COMP,
-                bindings: &[Binding::Storage; 5],
+                bindings: &[Binding::Storage; 6],
                 push_bytes: 0,
                 constants: &[],
             },
@@ -44,7 +46,7 @@ impl Sort {
 
     /// One thread a row.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
-        let resources = [b.frame, b.row_starts, b.row_counts, b.intercepts, b.counters].map(Into::into);
+        let resources = [b.frame, b.row_starts, b.row_total, b.row_counts, b.intercepts, b.counters].map(Into::into);
         cmd.bind(&self.pipeline, &resources, &[]);
         cmd.dispatch_indirect(b.dispatches, size_of::<[u32; 3]>() as u64);
     }

@@ -57,7 +57,18 @@ impl Split {
 
     /// One thread for each of `items`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
-        let resources = [b.frame, b.face_instances, b.faces, b.patches, b.items, b.taus, b.factors, b.sub_patch_counts, b.vertex_counts].map(Into::into);
+        let resources = [
+            b.frame,
+            b.face_instances,
+            b.faces,
+            b.patches,
+            b.items,
+            b.taus,
+            b.factors,
+            b.sub_patch_counts,
+            b.vertex_counts,
+        ]
+        .map(Into::into);
         cmd.bind(&self.pipeline, &resources, &[]);
         cmd.dispatch(items.div_ceil(GROUP));
     }

@@ -101,8 +101,11 @@ impl SceneData {
         let linear = i.transform.matrix3;
         // normals transform by the cofactors: the inverse transposed times the determinant, which
         // also exists for singular transforms; the sign of the determinant is told apart
-        let cofactor =
-            DMat3::from_cols(linear.y_axis.cross(linear.z_axis), linear.z_axis.cross(linear.x_axis), linear.x_axis.cross(linear.y_axis));
+        let cofactor = DMat3::from_cols(
+            linear.y_axis.cross(linear.z_axis),
+            linear.z_axis.cross(linear.x_axis),
+            linear.x_axis.cross(linear.y_axis),
+        );
         let unit = 1.0 / cofactor.to_cols_array().iter().fold(0.0f64, |m, x| m.max(x.abs())).max(f64::MIN_POSITIVE);
         let mirrored = linear.determinant() < 0.0;
         self.instances.push(abi::Instance {

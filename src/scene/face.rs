@@ -147,11 +147,8 @@ impl FaceData {
         };
         for (k, c) in curves.iter().enumerate() {
             let (start, end) = (joint(c), joint(&curves[(k + 1) % curves.len()]));
-            let unit: Vec<DVec3> = c
-                .points
-                .iter()
-                .map(|p| DVec3::from_point(domain.unit(p.point()), p.z / c.points[0].z))
-                .collect();
+            let unit: Vec<DVec3> =
+                c.points.iter().map(|p| DVec3::from_point(domain.unit(p.point()), p.z / c.points[0].z)).collect();
             let v = |p: &DVec3| (p.y / p.z) as f32;
             let lowest = unit.iter().map(v).fold(start[1].min(end[1]), f32::min);
             let highest = unit.iter().map(v).fold(start[1].max(end[1]), f32::max);

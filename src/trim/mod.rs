@@ -35,7 +35,7 @@ mod table;
 mod winding;
 
 pub use classify::RectSide;
-pub use flatten::{polyline, chord_bend, segment_count};
+pub use flatten::{chord_bend, polyline, segment_count};
 pub use table::TrimTable;
 pub use winding::LoopIndex;
 

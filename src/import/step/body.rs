@@ -35,8 +35,14 @@ pub(super) struct Body {
 const SOLIDS: [&str; 3] = ["MANIFOLD_SOLID_BREP", "FACETED_BREP", "BREP_WITH_VOIDS"];
 const MODELS: [&str; 2] = ["SHELL_BASED_SURFACE_MODEL", "FACE_BASED_SURFACE_MODEL"];
 const SETS: [&str; 2] = ["GEOMETRIC_SET", "GEOMETRIC_CURVE_SET"];
-const SHELLS: [&str; 6] =
-    ["CLOSED_SHELL", "OPEN_SHELL", "ORIENTED_CLOSED_SHELL", "ORIENTED_OPEN_SHELL", "CONNECTED_FACE_SET", "VERTEX_SHELL"];
+const SHELLS: [&str; 6] = [
+    "CLOSED_SHELL",
+    "OPEN_SHELL",
+    "ORIENTED_CLOSED_SHELL",
+    "ORIENTED_OPEN_SHELL",
+    "CONNECTED_FACE_SET",
+    "VERTEX_SHELL",
+];
 const FACES: [&str; 5] = ["ADVANCED_FACE", "FACE_SURFACE", "FACE", "ORIENTED_FACE", "CURVE_BOUNDED_SURFACE"];
 
 /// Solids and surface models: bodies even when no representation lists them.

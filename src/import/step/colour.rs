@@ -74,7 +74,8 @@ impl Colours {
     /// The colour of an occurrence: `path` are the relationships that place it.
     pub fn of_path(&self, path: &[u32]) -> Option<Colour> {
         let styles = path.iter().filter_map(|id| self.contexts.get(id)).flatten();
-        let styled = styles.filter(|(others, _)| others.iter().all(|o| path.contains(o))).map(|(_, colour)| *colour).next();
+        let styled =
+            styles.filter(|(others, _)| others.iter().all(|o| path.contains(o))).map(|(_, colour)| *colour).next();
         styled.or_else(|| path.iter().find_map(|id| self.of_item(*id)))
     }
 
@@ -92,7 +93,8 @@ impl Colours {
             self.items.insert(item, colour);
             return Ok(());
         }
-        let mut path: Vec<u32> = base.value(3).and_then(Value::list).into_iter().flatten().filter_map(Value::reference).collect();
+        let mut path: Vec<u32> =
+            base.value(3).and_then(Value::list).into_iter().flatten().filter_map(Value::reference).collect();
         if let Some(first) = path.pop() {
             self.contexts.entry(first).or_default().push((path, colour));
         }

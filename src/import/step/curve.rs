@@ -44,7 +44,9 @@ impl Geometry<'_> {
                 "COMPOSITE_CURVE" | "BOUNDARY_CURVE" | "OUTER_BOUNDARY_CURVE" | "COMPOSITE_CURVE_ON_SURFACE" => {
                     let directed = |s: Segment| match s.forward {
                         true => Ok(s.curve),
-                        false => locate::reversed(s.curve).ok_or(Fault::Value { id: s.id, what: "a segment without ends" }),
+                        false => {
+                            locate::reversed(s.curve).ok_or(Fault::Value { id: s.id, what: "a segment without ends" })
+                        }
                     };
                     let curves = self.segments(entity)?.into_iter().map(directed);
                     Ok(CurveGeometry::Composite(curves.collect::<Result<_, _>>()?))
@@ -59,7 +61,8 @@ impl Geometry<'_> {
     }
 
     fn conic(&self, entity: Entity<'_>) -> Result<CurveGeometry, Fault> {
-        let kind = entity.kinds().find_map(|k| ["CIRCLE", "ELLIPSE", "HYPERBOLA", "PARABOLA"].into_iter().find(|c| *c == k));
+        let kind =
+            entity.kinds().find_map(|k| ["CIRCLE", "ELLIPSE", "HYPERBOLA", "PARABOLA"].into_iter().find(|c| *c == k));
         let kind = kind.ok_or_else(|| entity.not("a conic"))?;
         let fields = entity.fields(kind, 1)?;
         // a complex instance keeps the position in the part CONIC
@@ -113,7 +116,11 @@ impl Geometry<'_> {
         let parameter = parameter.map(|t| if angular { t * self.units.angle } else { t });
         let located = point.and_then(|p| locate::parameter(basis, p));
         let (first, second) = if by_point { (located, parameter) } else { (parameter, located) };
-        first.or(second).ok_or(Fault::Attribute { id: fields.id, index: index + 1, wanted: "a trimming parameter or point" })
+        first.or(second).ok_or(Fault::Attribute {
+            id: fields.id,
+            index: index + 1,
+            wanted: "a trimming parameter or point",
+        })
     }
 
     /// The segments of a composite curve, in its order.
@@ -194,7 +201,8 @@ fn trim(basis: CurveGeometry, first: f64, last: f64, sense: bool) -> Option<Curv
                 return piece(basis, low.min(high), low.max(high), forward);
             }
             // over the seam: two pieces, in the order in which they are run through
-            let parts: Vec<_> = [piece(basis.clone(), low, b, sense), piece(basis, a, high, sense)].into_iter().flatten().collect();
+            let parts: Vec<_> =
+                [piece(basis.clone(), low, b, sense), piece(basis, a, high, sense)].into_iter().flatten().collect();
             match parts.len() {
                 0 => None,
                 1 => parts.into_iter().next(),

@@ -122,7 +122,12 @@ impl<'a> Fields<'a> {
         self.values.into_iter().nth(self.inherited + index)
     }
 
-    fn need<T>(self, index: usize, wanted: &'static str, read: impl FnOnce(Value<'a>) -> Option<T>) -> Result<T, Fault> {
+    fn need<T>(
+        self,
+        index: usize,
+        wanted: &'static str,
+        read: impl FnOnce(Value<'a>) -> Option<T>,
+    ) -> Result<T, Fault> {
         self.value(index).and_then(read).ok_or(Fault::Attribute { id: self.id, index: index + 1, wanted })
     }
 

@@ -160,7 +160,8 @@ impl<'a> Geometry<'a> {
             Err(_) => (entity.fields(kind, 0)?, None),
         };
         let is_point = |d: u32| self.entity(d).is_ok_and(|e| e.is("CARTESIAN_POINT"));
-        let at = (2..6).find(|&i| base.optional(i).is_some_and(is_point)).ok_or(entity.not("an operator with an origin"))?;
+        let at =
+            (2..6).find(|&i| base.optional(i).is_some_and(is_point)).ok_or(entity.not("an operator with an origin"))?;
         let z = z.or(base.optional(at + 2));
         let direction = |d: Option<u32>| d.map(|d| self.direction(d)).transpose();
         let (x, y, z) = (direction(base.optional(at - 2))?, direction(base.optional(at - 1))?, direction(z)?);
