@@ -6,4 +6,6 @@
 pub mod brep;
 pub mod model;
 pub mod picture;
+pub mod reference;
 pub mod spline;
+pub mod trim;
