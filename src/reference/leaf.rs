@@ -29,8 +29,8 @@ const AFFINE: f64 = 1e-14;
 const ROUNDING: f64 = 4e-16;
 /// Roots are accepted this far outside the unit square, so that neighbours lose none between them.
 const BORDER: f64 = 1e-12;
-/// A degenerate root whose cell is longer than this part of the leaf in space is a piece of surface
-/// that contains the ray (see the solver's class 4), not a pole or a tangent point.
+/// A root known no better than this part of the leaf, in space, is a piece of surface that contains the
+/// ray (see the solver's class 4), not a pole or a tangent point.
 const POINT: f64 = 1e-3;
 /// How far to step from a pole towards the middle of the leaf for a normal, as a part of the way.
 const OFF_POLE: f64 = 1e-6;
@@ -55,7 +55,7 @@ pub(super) struct Meeting {
     pub point: DVec3,
     /// `S_u x S_v` in part coordinates, not a unit vector; zero where the surface has no normal.
     pub normal: DVec3,
-    /// Length in space of the cell that stands for the point; 0 for a regular root.
+    /// How well the point is known: a length, part coordinates.
     pub spread: f64,
 }
 
@@ -76,7 +76,11 @@ pub(super) struct Leaf {
 #[derive(Debug)]
 enum Shape {
     /// `middle + (s - 1/2) u + (t - 1/2) v`; `dual_u` and `dual_v` pick `s - 1/2` and `t - 1/2` out.
-    Affine { normal: DVec3, dual_u: DVec3, dual_v: DVec3 },
+    Affine {
+        normal: DVec3,
+        dual_u: DVec3,
+        dual_v: DVec3,
+    },
     Net(Net),
 }
 
@@ -130,11 +134,12 @@ impl Leaf {
                 net.project(ray, near, (ray.origin - self.middle).length(), solver);
                 for root in &solver.roots {
                     let at = root.at.clamp(DVec2::ZERO, DVec2::ONE);
-                    let spread = if root.spread == DVec2::ZERO { 0.0 } else { net.extent(at, root.spread) };
+                    let (p, du, dv) = net.jet(at);
+                    let spread = (du * root.spread.x).length() + (dv * root.spread.y).length();
                     if spread > POINT * net.radius {
                         continue; // edge-on
                     }
-                    let (p, normal) = net.point_and_normal(at);
+                    let normal = net.normal(at, du, dv);
                     let t = (p - near).dot(ray.direction) / ray.direction.length_squared();
                     report(t, at, p, normal, spread);
                 }
@@ -169,22 +174,14 @@ impl Net {
         (p, slope(hu), slope(hv))
     }
 
-    /// Point relative to the middle, and the normal, with the limit at a pole.
-    fn point_and_normal(&self, at: DVec2) -> (DVec3, DVec3) {
-        let (p, du, dv) = self.jet(at);
+    /// `S_u x S_v`, or its limit at a pole.
+    fn normal(&self, at: DVec2, du: DVec3, dv: DVec3) -> DVec3 {
         let normal = du.cross(dv);
         if normal.length() > 1e-9 * self.radius * du.length().max(dv.length()) {
-            return (p, normal);
+            return normal;
         }
         let (_, du, dv) = self.jet(at + (DVec2::splat(0.5) - at) * OFF_POLE);
-        (p, du.cross(dv))
-    }
-
-    /// Longest diagonal in space of the cell `at ± spread`.
-    fn extent(&self, at: DVec2, spread: DVec2) -> f64 {
-        let corner = |x: f64, y: f64| self.jet((at + spread * DVec2::new(x, y)).clamp(DVec2::ZERO, DVec2::ONE)).0;
-        let diagonal = |x: f64, y: f64| (corner(x, y) - corner(-x, -y)).length();
-        diagonal(1.0, 1.0).max(diagonal(1.0, -1.0))
+        du.cross(dv)
     }
 
     /// The closed form, when the net is a parallelogram about the middle.

@@ -21,9 +21,7 @@ mod solver;
 #[cfg(test)]
 mod tests;
 
-pub use judge::{
-    Bin, Class, DepthErrors, Errors, Folds, GRAZING_COSINE, JudgeOptions, Judgement, Mismatch, judge,
-};
+pub use judge::{Bin, Class, DepthErrors, Errors, Folds, GRAZING_COSINE, JudgeOptions, Judgement, Mismatch, judge};
 pub use probe::Probe;
 
 use crate::model::{Bounds, Camera, Model};

@@ -8,7 +8,10 @@ use glam::DVec2;
 use std::ops::{Add, Mul, Sub};
 
 /// What a net is made of.
-pub(super) trait Value: Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self> + Default {}
+pub(super) trait Value:
+    Copy + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self> + Default
+{
+}
 impl<T: Copy + Add<Output = T> + Sub<Output = T> + Mul<f64, Output = T> + Default> Value for T {}
 
 /// Degrees along `u` and `v`.

@@ -12,6 +12,10 @@ use std::sync::atomic::Ordering;
 /// leaves both find a root on their common border, and a seam has it at two parameters.
 const SAME: f64 = 1e-11;
 
+/// Two hits of one face are one, too, when nearer than this many times what is known of their places: a
+/// tangent point is found in a few neighbouring cells of the solver.
+const CLUSTER: f64 = 8.0;
+
 /// Asks a [`Tracer`] many rays of one [`Camera`] without allocating for each.
 #[derive(Debug)]
 pub struct Probe<'a> {
@@ -94,10 +98,11 @@ impl<'a> Probe<'a> {
                 break;
             }
             // found is sorted by depth: only its recent entries can be as near as that
-            let reach = same + 4.0 * (spread + widest);
-            let twin = self.found[..i].iter().rev().take_while(|(f, _)| hit.depth - f.depth <= reach).any(|(f, s)| {
-                key(f) == key(hit) && (f.point - hit.point).length() <= same + 4.0 * (spread + s)
-            });
+            let reach = same + CLUSTER * (spread + widest);
+            let twin =
+                self.found[..i].iter().rev().take_while(|(f, _)| hit.depth - f.depth <= reach).any(|(f, s)| {
+                    key(f) == key(hit) && (f.point - hit.point).length() <= same + CLUSTER * (spread + s)
+                });
             if !twin {
                 self.hits.push(*hit);
             }

@@ -33,9 +33,16 @@ const NEWTON_STEPS: u32 = 80;
 /// Roots are accepted this far outside their cell, in its own unit: neighbours that share a border
 /// must not both miss a root on it. Callers drop the duplicates.
 const BORDER: f64 = 1e-12;
+/// A step this small, in units of the patch, needs no other: it squares.
+const POLISHED: f64 = 1e-9;
 /// Cells smaller than this fraction of the patch whose image is a line count as points: a tangent
 /// ray meets a second-order fold in a cell of 3e-8, a fourth-order one in 2e-4.
 const EDGE_ON: f64 = 1e-3;
+/// An image this many roundings long and one wide is a line. The last cell at a pole, a triangle that
+/// wide, may be longer than it is wide, too: up to the angle of a leaf, about 1/50.
+const LINE: f64 = 1e4;
+/// Cells within which the root of a point is looked for, on either side.
+const NEIGHBOURS: f64 = 16.0;
 /// Cells visited before the search of a patch is given up. A transversal ray visits 1, a tangent one
 /// some hundreds.
 const BUDGET: u32 = 1 << 15;
@@ -45,7 +52,8 @@ const BUDGET: u32 = 1 << 15;
 pub(super) struct Root {
     /// Parameters in the unit square.
     pub at: DVec2,
-    /// Half the sides of the cell that the root stands for; zero for a regular root.
+    /// How well `at` is known: rounding over slope, or half the sides of the cell that a point stands
+    /// for.
     pub spread: DVec2,
 }
 
@@ -89,13 +97,13 @@ impl Solver {
             match classify(&self.nets[first..], degrees, noise, cell.side) {
                 Class::Empty | Class::EdgeOn => self.nets.truncate(first),
                 Class::Point => {
-                    self.roots.push(Root { at: cell.low + cell.side * 0.5, spread: cell.side * 0.5 });
+                    self.roots.push(point(&self.base, degrees, cell, noise));
                     self.nets.truncate(first);
                 }
                 Class::Regular { contraction, border } => {
                     if let Some(x) = newton(&self.nets[first..], degrees, contraction, border) {
-                        let at = polished(&self.base, degrees, cell.low + cell.side * x, cell.side);
-                        self.roots.push(Root { at, spread: DVec2::ZERO });
+                        let at = cell.low + cell.side * x;
+                        self.roots.push(polished(&self.base, degrees, at, cell.side * (border + 1e-6), noise));
                     }
                     self.nets.truncate(first);
                 }
@@ -140,7 +148,7 @@ fn classify(net: &[DVec2], degrees: Degrees, noise: f64, side: DVec2) -> Class {
     if let Some(inverse) = Inverse::new(mu, mv)
         && let Some(contraction) = inverse.contraction(net, degrees)
     {
-        return Class::Regular { contraction, border: BORDER + 4.0 * noise * inverse.norm() };
+        return Class::Regular { contraction, border: BORDER + 4.0 * noise * inverse.rows().max_element() };
     }
     let longest = |it: &mut dyn Iterator<Item = DVec2>| {
         it.map(|d| (d.length_squared(), d)).fold((0.0, DVec2::X), |a, b| if b.0 > a.0 { b } else { a })
@@ -155,7 +163,12 @@ fn classify(net: &[DVec2], degrees: Degrees, noise: f64, side: DVec2) -> Class {
         return Class::Empty;
     }
     if near >= -2.0 * noise && far <= 2.0 * noise {
-        return if side.max_element() > EDGE_ON { Class::EdgeOn } else { Class::Point };
+        if side.max_element() <= EDGE_ON {
+            return Class::Point;
+        }
+        if u.0.max(v.0).sqrt() > LINE * noise {
+            return Class::EdgeOn;
+        }
     }
     Class::Mixed { along_u }
 }
@@ -178,9 +191,9 @@ impl Inverse {
         DVec2::new(self.x.dot(d), self.y.dot(d))
     }
 
-    /// The largest row sum.
-    fn norm(&self) -> f64 {
-        self.x.abs().element_sum().max(self.y.abs().element_sum())
+    /// Row sums of absolute values: what a unit error in both components does to each parameter.
+    fn rows(&self) -> DVec2 {
+        DVec2::new(self.x.abs().element_sum(), self.y.abs().element_sum())
     }
 
     /// `q` of the module's class 2, or `None` when it exceeds [`CONTRACTION`].
@@ -225,16 +238,45 @@ fn newton(net: &[DVec2], degrees: Degrees, contraction: f64, border: f64) -> Opt
     None
 }
 
-/// One more step on the whole net: halving adds a rounding a level.
-fn polished(base: &[DVec2], degrees: Degrees, at: DVec2, side: DVec2) -> DVec2 {
-    let (f, fu, fv) = net::jet(base, degrees, at.x, at.y);
-    match Inverse::new(fu, fv) {
-        Some(inverse) => {
-            let step = inverse.apply(f);
-            if step.abs().cmple(side * 1e-6).all() { at - step } else { at }
+/// Newton's method on the whole net, from a root of a cell: halving adds a rounding a level, and near a
+/// fold the root may lie a little outside the cell. Stays within `leash` of the start.
+fn polished(base: &[DVec2], degrees: Degrees, start: DVec2, leash: DVec2, noise: f64) -> Root {
+    let mut root = Root { at: start, spread: DVec2::ZERO };
+    for _ in 0..3 {
+        let (f, fu, fv) = net::jet(base, degrees, root.at.x, root.at.y);
+        let Some(inverse) = Inverse::new(fu, fv) else { break };
+        root.spread = inverse.rows() * noise;
+        let step = inverse.apply(f);
+        if (root.at - step - start).abs().cmpgt(leash).any() {
+            break;
         }
-        None => at,
+        root.at -= step;
+        if step.abs().max_element() <= POLISHED {
+            break;
+        }
     }
+    root
+}
+
+/// The root that a cell within rounding of 0 stands for: next to a fold, Newton's method still tells
+/// its two roots apart; at a fold or a pole it does not converge, and the middle is as good as any.
+fn point(base: &[DVec2], degrees: Degrees, cell: Cell, noise: f64) -> Root {
+    let middle = cell.low + cell.side * 0.5;
+    let mut at = middle;
+    for _ in 0..6 {
+        let (f, fu, fv) = net::jet(base, degrees, at.x, at.y);
+        let Some(inverse) = Inverse::new(fu, fv) else { break };
+        let step = inverse.apply(f);
+        at -= step;
+        let spread = inverse.rows() * noise;
+        if (at - middle).abs().cmpgt(cell.side * NEIGHBOURS).any() || spread.cmpgt(cell.side).any() {
+            break;
+        }
+        if step.abs().cmple(spread).all() {
+            return Root { at, spread };
+        }
+    }
+    Root { at: middle, spread: cell.side * 0.5 }
 }
 
 #[cfg(test)]
@@ -265,9 +307,8 @@ mod tests {
     fn a_fold_gives_both_roots_at_every_distance() {
         // u = 1/3 ± gap, v on a slope; the roots close in until they meet
         for gap in [0.3, 1e-2, 1e-4, 1e-6] {
-            let r = roots(quadratic(|u, v| {
-                DVec2::new((u - 1.0 / 3.0) * (u - 1.0 / 3.0) - gap * gap, v - 0.4 + 0.1 * u)
-            }));
+            let r =
+                roots(quadratic(|u, v| DVec2::new((u - 1.0 / 3.0) * (u - 1.0 / 3.0) - gap * gap, v - 0.4 + 0.1 * u)));
             assert_eq!(r.len(), 2, "gap {gap}: {r:?}");
             for (root, sign) in r.iter().zip([-1.0, 1.0]) {
                 let u = 1.0 / 3.0 + sign * gap;
@@ -279,9 +320,8 @@ mod tests {
 
     #[test]
     fn a_tangent_gives_a_point_and_a_miss_gives_none() {
-        let fold = |gap: f64| {
-            roots(quadratic(move |u, v| DVec2::new((u - 1.0 / 3.0).powi(2) + gap, v - 0.4 + 0.1 * u)))
-        };
+        let fold =
+            |gap: f64| roots(quadratic(move |u, v| DVec2::new((u - 1.0 / 3.0).powi(2) + gap, v - 0.4 + 0.1 * u)));
         let r = fold(0.0);
         assert!(!r.is_empty() && r.iter().all(|r| (r.at - DVec2::new(1.0 / 3.0, 0.4 - 0.1 / 3.0)).length() < 1e-6));
         assert!(fold(1e-12).is_empty());

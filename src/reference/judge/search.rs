@@ -18,8 +18,7 @@ use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
 /// Radii of the rings in pixels.
-const RINGS: [f64; 14] =
-    [0.03125, 0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.4375, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0];
+const RINGS: [f64; 14] = [0.03125, 0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0.4375, 0.5, 0.75, 1.0, 1.25, 1.5, 2.0];
 /// Directions of a ring.
 const DIRECTIONS: usize = 32;
 /// Bisections between two answers: down to 0.5 px / 2¹² = 1e-4 px.
