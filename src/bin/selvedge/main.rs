@@ -63,8 +63,21 @@ fn main() -> ExitCode {
         Ok(Outcome::Good) => ExitCode::SUCCESS,
         Ok(Outcome::Broken) => ExitCode::from(BROKEN),
         Err(error) => {
-            eprintln!("selvedge: {error:#}");
+            eprintln!("selvedge: {}", explained(&error));
             ExitCode::from(if error.is::<HeadlessError>() { DEVICE } else { USAGE })
         }
     }
+}
+
+/// The error and its causes in one line; a message that quotes its cause needs it only once.
+fn explained(error: &anyhow::Error) -> String {
+    let mut text = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if text.is_empty() {
+            text = cause;
+        } else if !text.contains(&cause) {
+            text = format!("{text}: {cause}");
+        }
+    }
+    text
 }
