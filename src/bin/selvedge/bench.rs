@@ -9,7 +9,7 @@ use crate::series::{Gathered, Row};
 use crate::session::{self, Session};
 use crate::{Outcome, output, path, verdict};
 use anyhow::{Context, Result};
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::CellAlignment;
 use selvedge::picture::{FrameStats, Outputs};
 use selvedge::reference::{Judgement, Tracer};
 use serde::Serialize;
@@ -29,6 +29,7 @@ struct Report {
     model: String,
     faces: usize,
     face_instances: usize,
+    missing_faces: usize,
     size: [u32; 2],
     tolerance_px: f64,
     device: String,
@@ -103,6 +104,7 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         model: model.display().to_string(),
         faces: import.model.face_count(),
         face_instances: import.model.face_instance_count(),
+        missing_faces: import.report.dropped.values().sum(),
         size: [width, height],
         tolerance_px: args.frame.tolerance,
         device: stats.device,
@@ -151,17 +153,16 @@ impl Error {
 
 impl Report {
     fn text(&self) -> String {
-        let mut table = Table::new();
-        table.load_preset(presets::UTF8_HORIZONTAL_ONLY).set_header(["", "unit", "median", "95 %", "largest"]);
+        let mut table = output::table(["", "unit", "median", "95 %", "largest"]);
         for row in &self.rows {
             let number = |x: f64| if row.unit == "ms" { format!("{x:.2}") } else { format!("{x:.0}") };
             let (median, p95, largest) = (number(row.median), number(row.p95), number(row.largest));
             table.add_row([&row.name, row.unit, &median, &p95, &largest]);
         }
         table.column_iter_mut().skip(2).for_each(|c| c.set_cell_alignment(CellAlignment::Right));
-        let Self { model, faces, face_instances, size: [w, h], device, driver, error: e, .. } = self;
+        let Self { model, faces, face_instances, missing_faces, size: [w, h], device, driver, error: e, .. } = self;
         format!(
-            "{model}: {faces} faces, {face_instances} placed; {w} x {h} on {device} ({driver})\n{table}\n\
+            "{model}: {faces} faces, {face_instances} placed, {missing_faces} missing; {w} x {h} on {device} ({driver})\n{table}\n\
              error in {} judged frames: {} of {} pixels wrong, worst shift {:.3} px, depth {:.2e} mm, normal {:.3} deg",
             e.judged_frames, e.wrong_pixels, e.judged_pixels, e.worst_shift_px, e.worst_depth, e.worst_normal_deg
         )

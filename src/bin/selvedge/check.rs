@@ -6,7 +6,6 @@ use crate::progress::during;
 use crate::session::{self, Session};
 use crate::{Outcome, output, verdict};
 use anyhow::Result;
-use comfy_table::{Table, presets};
 use selvedge::picture::{FrameStats, Outputs};
 use selvedge::reference::{Judgement, Tracer};
 use serde::Serialize;
@@ -43,6 +42,9 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
         verdicts.push(Verdict { view: name, camera, tolerance_px, kept, judgement, stats: picture.stats });
     }
     output::print(&table(&verdicts, tolerance_px))?;
+    if let Some(missing) = output::missing_faces(&import.report) {
+        output::print(&format!("judged without what the file holds beside: {missing}"))?;
+    }
     if let Some(path) = &args.json {
         output::json(path, &verdicts)?;
     }
@@ -51,9 +53,8 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
 }
 
 fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
-    let mut table = Table::new();
     let wrong = format!("wrong > {tolerance_px} px");
-    table.load_preset(presets::UTF8_HORIZONTAL_ONLY).set_header([
+    let mut table = output::table([
         "view",
         "judged",
         &wrong,

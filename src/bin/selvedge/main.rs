@@ -24,6 +24,7 @@ mod verdict;
 use args::{Cli, Command};
 use clap::Parser;
 use selvedge::headless::HeadlessError;
+use std::io::IsTerminal;
 use std::process::ExitCode;
 
 /// How a command that ran to its end ended.
@@ -50,6 +51,7 @@ fn main() -> ExitCode {
     tracing_subscriber::fmt()
         .with_max_level(level)
         .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
         .without_time()
         .with_target(false)
         .init();
