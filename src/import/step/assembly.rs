@@ -88,6 +88,7 @@ impl Assembly {
         let products = Products::read(file, ledger);
         let mut reader = Reader { file, ledger, products, assembly: Self::default(), placements: Vec::new() };
         let shapes: BTreeSet<u32> = file.kinds().filter(|k| is_shape(k)).flat_map(|k| file.of_kind(k)).collect();
+        let shapes = &shapes - &reader.products.aspects;
         reader.contexts(&shapes);
         reader.relationships(&shapes);
         reader.bodies(&shapes);
