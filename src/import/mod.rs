@@ -13,8 +13,8 @@ mod report;
 mod step;
 
 pub use error::ImportError;
-pub use report::{ImportReport, Place, Warning};
 pub(crate) use report::Warnings;
+pub use report::{ImportReport, Place, Warning};
 
 use crate::model::Model;
 use std::io::Read;

@@ -13,7 +13,7 @@
 use super::colour::Colours;
 use super::entity::{Entity, Fault};
 use super::face::EdgeTable;
-use super::geometry::Geometry;
+use super::geometry::{FACE_LOST, Geometry};
 use super::spline;
 use crate::brep::{Edge, FaceGeometry};
 use crate::model::Colour;
@@ -35,8 +35,14 @@ pub(super) struct Body {
 const SOLIDS: [&str; 3] = ["MANIFOLD_SOLID_BREP", "FACETED_BREP", "BREP_WITH_VOIDS"];
 const MODELS: [&str; 2] = ["SHELL_BASED_SURFACE_MODEL", "FACE_BASED_SURFACE_MODEL"];
 const SETS: [&str; 2] = ["GEOMETRIC_SET", "GEOMETRIC_CURVE_SET"];
-const SHELLS: [&str; 6] =
-    ["CLOSED_SHELL", "OPEN_SHELL", "ORIENTED_CLOSED_SHELL", "ORIENTED_OPEN_SHELL", "CONNECTED_FACE_SET", "VERTEX_SHELL"];
+const SHELLS: [&str; 6] = [
+    "CLOSED_SHELL",
+    "OPEN_SHELL",
+    "ORIENTED_CLOSED_SHELL",
+    "ORIENTED_OPEN_SHELL",
+    "CONNECTED_FACE_SET",
+    "VERTEX_SHELL",
+];
 const FACES: [&str; 5] = ["ADVANCED_FACE", "FACE_SURFACE", "FACE", "ORIENTED_FACE", "CURVE_BOUNDED_SURFACE"];
 
 /// Solids and surface models: bodies even when no representation lists them.
@@ -176,7 +182,7 @@ impl Builder<'_, '_> {
         }
         self.body.face_count += 1;
         let colour = std::iter::once(&id).chain(colours).find_map(|i| self.colours.of_item(*i));
-        self.guarded("face left out", id, |s| {
+        self.guarded(FACE_LOST, id, |s| {
             let entity = s.geometry.entity(id)?;
             let mut face = if entity.is("CURVE_BOUNDED_SURFACE") {
                 s.geometry.bounded_surface(entity, &mut s.table)?

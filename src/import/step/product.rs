@@ -34,7 +34,7 @@ pub(super) struct Occurrence {
 }
 
 impl Products {
-    pub fn read(file: &File<'_>, ledger: &Ledger) -> Self {
+    pub fn read(file: &File<'_>, ledger: &Ledger<'_>) -> Self {
         let mut products = Self::default();
         for id in file.of_kind("SHAPE_DEFINITION_REPRESENTATION") {
             if let Err(fault) = products.shape(file, id) {

@@ -105,7 +105,10 @@ impl Geometry<'_> {
                     return Ok(SurfaceGeometry::Cylinder { frame, radius });
                 }
                 if radius < 0.0 || half_angle == 0.0 || half_angle.abs() >= FRAC_PI_2 {
-                    return Err(Fault::Value { id, what: "a cone needs a radius of 0 or more and an angle below 90 degrees" });
+                    return Err(Fault::Value {
+                        id,
+                        what: "a cone needs a radius of 0 or more and an angle below 90 degrees",
+                    });
                 }
                 SurfaceGeometry::Cone { frame, radius, half_angle }
             }
@@ -123,7 +126,8 @@ impl Geometry<'_> {
         };
         let distance = fields.real(1)? * self.units.length * if basis.flipped { -1.0 } else { 1.0 };
         let surface = offset(basis.surface, distance);
-        let surface = surface.ok_or_else(|| Fault::Unsupported { id, kind: "OFFSET_SURFACE of this surface".into() })?;
+        let surface =
+            surface.ok_or_else(|| Fault::Unsupported { id, kind: "OFFSET_SURFACE of this surface".into() })?;
         Ok(Carrier { surface, ..basis })
     }
 }

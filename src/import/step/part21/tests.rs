@@ -75,7 +75,8 @@ fn complex_instances() {
 
 #[test]
 fn scopes_are_flattened() {
-    let (records, warnings) = parse(&data("#9=&SCOPE\n#1=A();\n#8=&SCOPE #2=B(); ENDSCOPE C();\nENDSCOPE /#1,#2/ D(#1);"));
+    let (records, warnings) =
+        parse(&data("#9=&SCOPE\n#1=A();\n#8=&SCOPE #2=B(); ENDSCOPE C();\nENDSCOPE /#1,#2/ D(#1);"));
     assert!(warnings.is_empty(), "{warnings:?}");
     let names: Vec<_> = records.iter().map(|r| format!("{} {}", r.0, r.1)).collect();
     assert_eq!(names, ["1 A()", "2 B()", "8 C()", "9 D(#1)"]);

@@ -42,15 +42,21 @@ fn near(a: DVec3, b: DVec3) -> bool {
 
 #[test]
 fn one_part_alone() {
-    let import = import(&format!("{TRIANGLE}{}#40=SHAPE_REPRESENTATION('',(#24),#1);\
-        #41=MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#24,#18),#1);#42=SHAPE_REPRESENTATION_RELATIONSHIP('','',#40,#41);", product(30, "plate", 40)));
+    let import = import(&format!(
+        "{TRIANGLE}{}#40=SHAPE_REPRESENTATION('',(#24),#1);\
+        #41=MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#24,#18),#1);#42=SHAPE_REPRESENTATION_RELATIONSHIP('','',#40,#41);",
+        product(30, "plate", 40)
+    ));
     assert!(import.warnings.is_empty(), "{:?}", import.warnings);
     let model = &import.model;
     assert_eq!((model.parts.len(), model.instances.len(), model.face_count()), (1, 1, 1));
     assert_eq!((model.name.as_str(), model.parts[0].name.as_str(), model.unit.as_str()), ("plate", "plate", "mm"));
     assert_eq!(model.parts[0].faces[0].id, 16);
     assert!(!model.parts[0].closed);
-    assert_eq!((import.report.written_by.as_str(), import.report.format.as_str()), ("the writer", "STEP AUTOMOTIVE_DESIGN"));
+    assert_eq!(
+        (import.report.written_by.as_str(), import.report.format.as_str()),
+        ("the writer", "STEP AUTOMOTIVE_DESIGN")
+    );
 }
 
 /// The part in centimetres, the assembly in millimetres; the file lists child and parent in either
@@ -58,7 +64,8 @@ fn one_part_alone() {
 #[test]
 fn placements_with_units_in_either_order() {
     for swapped in [false, true] {
-        let shapes = "#40=SHAPE_REPRESENTATION('',(#24,#25),#1);#41=MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#24,#18),#2);";
+        let shapes =
+            "#40=SHAPE_REPRESENTATION('',(#24,#25),#1);#41=MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#24,#18),#2);";
         let (reps, items) = if swapped { ((40, 41), (25, 26)) } else { ((41, 40), (26, 25)) };
         let data = [
             TRIANGLE,
@@ -117,7 +124,10 @@ fn representations_of_aspects_are_not_shapes() {
 fn bodies_that_no_representation_lists_are_drawn() {
     let import = import(TRIANGLE);
     assert_eq!(import.model.face_instance_count(), 1);
-    assert_eq!(import.warnings[0].to_string(), "t.step:8: #18: body without representation: drawn with the file's first units");
+    assert_eq!(
+        import.warnings[0].to_string(),
+        "t.step:8: #18: body without representation: drawn with the file's first units"
+    );
 }
 
 #[test]
@@ -132,7 +142,11 @@ fn an_assembly_that_contains_itself_is_cut() {
     ];
     let import = import(&data.concat());
     assert!(!import.model.instances.is_empty());
-    assert!(import.warnings.iter().any(|w| w.to_string().contains("the assembly contains itself")), "{:?}", import.warnings);
+    assert!(
+        import.warnings.iter().any(|w| w.to_string().contains("the assembly contains itself")),
+        "{:?}",
+        import.warnings
+    );
 }
 
 /// Forty levels of two children each: 2^40 paths, cut off at the bound.
@@ -156,5 +170,9 @@ fn exponential_assemblies_are_bounded() {
     }
     let import = import(&data);
     assert_eq!(import.model.instances.len(), 1 << 20);
-    assert!(import.warnings.iter().any(|w| w.message.contains("more than 1048576 instances")), "{:?}", import.warnings);
+    assert!(
+        import.warnings.iter().any(|w| w.message.contains("all but the first 1048576 instances")),
+        "{:?}",
+        import.warnings
+    );
 }

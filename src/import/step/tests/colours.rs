@@ -20,7 +20,8 @@ fn style(base: u32, colour: u32) -> String {
     )
 }
 
-const PALETTE: &str = "#80=COLOUR_RGB('',0.5,0.04,1);#81=DRAUGHTING_PRE_DEFINED_COLOUR('green');#82=COLOUR_RGB('',1.,0.,0.);";
+const PALETTE: &str =
+    "#80=COLOUR_RGB('',0.5,0.04,1);#81=DRAUGHTING_PRE_DEFINED_COLOUR('green');#82=COLOUR_RGB('',1.,0.,0.);";
 
 /// sRGB 0.5 is 0.21404114 and 0.04 is 0.04 / 12.92 in linear light (IEC 61966-2-1).
 const HALF: Colour = [0.214_041_14, 0.003_095_975_2, 1.0, 1.0];
@@ -51,7 +52,9 @@ fn every_level_and_its_rank() {
     let mixed = faces("#90=STYLED_ITEM('',(#30),#18);#91=STYLED_ITEM('',(#40),#26);");
     assert!(same(mixed[0], HALF) && same(mixed[1], GREEN), "{mixed:?}");
     // an overriding style wins on its own item, whatever the order in the file
-    let over = faces("#89=OVER_RIDING_STYLED_ITEM('',(#50),#26,#91);#90=STYLED_ITEM('',(#30),#17);#91=STYLED_ITEM('',(#40),#26);");
+    let over = faces(
+        "#89=OVER_RIDING_STYLED_ITEM('',(#50),#26,#91);#90=STYLED_ITEM('',(#30),#17);#91=STYLED_ITEM('',(#40),#26);",
+    );
     assert!(same(over[0], HALF) && same(over[1], RED), "{over:?}");
 }
 
@@ -79,7 +82,8 @@ fn occurrences_have_their_own_colour() {
 
 #[test]
 fn a_style_that_refers_to_itself_costs_its_colour() {
-    let cyclic = "#60=PRESENTATION_STYLE_ASSIGNMENT((#61));#61=SURFACE_STYLE_USAGE(.BOTH.,#60);#90=STYLED_ITEM('',(#60),#18);";
+    let cyclic =
+        "#60=PRESENTATION_STYLE_ASSIGNMENT((#61));#61=SURFACE_STYLE_USAGE(.BOTH.,#60);#90=STYLED_ITEM('',(#60),#18);";
     let found = import(&format!("{SHAPE}{cyclic}"));
     assert_eq!(found.model.face_count(), 2);
     assert_eq!(found.warnings[0].to_string(), "t.step:8: #90: colour ignored: #60 refers to itself");

@@ -49,8 +49,10 @@ fn sharing_is_bounded() {
         data += &format!("#{id}=EDGE_CURVE('',#9,#9,#8,.T.);");
     }
     let edges: String = (0..5000).map(|i| format!("#{},", 100 + i)).collect();
-    data += &format!("#20=EDGE_LOOP('',({edges}));#21=FACE_BOUND('',#20,.T.);#22=ADVANCED_FACE('',(#21),#23,.T.);\
-        #23=SPHERICAL_SURFACE('',#24,1.);#24=AXIS2_PLACEMENT_3D('',#7,$,$);#25=CLOSED_SHELL('',(#22));#26=MANIFOLD_SOLID_BREP('',#25);");
+    data += &format!(
+        "#20=EDGE_LOOP('',({edges}));#21=FACE_BOUND('',#20,.T.);#22=ADVANCED_FACE('',(#21),#23,.T.);\
+        #23=SPHERICAL_SURFACE('',#24,1.);#24=AXIS2_PLACEMENT_3D('',#7,$,$);#25=CLOSED_SHELL('',(#22));#26=MANIFOLD_SOLID_BREP('',#25);"
+    );
     let import = import(&data);
     assert!(import.warnings.iter().any(|w| w.message.contains("shared so often")), "{:?}", import.warnings);
 }
@@ -105,7 +107,8 @@ fn replace(text: &mut Vec<u8>, n: usize, is: impl Fn(u8) -> bool, with: &str) {
 }
 
 fn damage() -> impl Strategy<Value = Damage> {
-    let tokens = ["NaN", "1E999", "-1", "0", "1000000000", "99999999999999999999", "$", "*", "()", "'x'", ".T.", "1e-320"];
+    let tokens =
+        ["NaN", "1E999", "-1", "0", "1000000000", "99999999999999999999", "$", "*", "()", "'x'", ".T.", "1e-320"];
     prop_oneof![
         (any::<usize>(), any::<u8>()).prop_map(|(a, b)| Damage::Byte(a, b)),
         (any::<usize>(), prop::sample::select(b"';(),#*$./&".to_vec())).prop_map(|(a, b)| Damage::Byte(a, b)),

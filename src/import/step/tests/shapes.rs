@@ -9,7 +9,7 @@ use crate::import::step::locate;
 use crate::import::step::part21::File;
 use crate::import::step::units::Units;
 use glam::DVec3;
-use std::f64::consts::{FRAC_PI_2, TAU};
+use std::f64::consts::TAU;
 
 /// Frames and points that the snippets share: `#7` stands at (1, 2, 3), axis y, reference z.
 const BASE: &str = "#1=CARTESIAN_POINT('',(1.,2.,3));#2=DIRECTION('',(0.,5.,0.));#3=DIRECTION('',(0.,1.,1.));\
@@ -22,8 +22,8 @@ fn with<T>(data: &str, f: impl FnOnce(Geometry<'_>) -> T) -> T {
     let text = wrap(&format!("{BASE}{data}"));
     let mut warnings = Warnings::new("t");
     let file = File::parse(text.as_bytes(), "t", &mut warnings).unwrap();
-    assert!(warnings.finish().0.is_empty());
-    let (units, ledger) = (Units { length: 10.0, angle: 1f64.to_radians(), ..Units::default() }, Ledger::new(&file));
+    let units = Units { length: 10.0, angle: 1f64.to_radians(), ..Units::default() };
+    let ledger = Ledger::new(&file, warnings);
     f(Geometry { file: &file, units: &units, ledger: &ledger })
 }
 
@@ -70,21 +70,26 @@ fn trims_of_a_circle_in_degrees() {
     let trim = |first: &str, last: &str, sense: &str, master: &str| {
         curve(&format!("#100=TRIMMED_CURVE('',#11,({first}),({last}),{sense},{master});"))
     };
-    let check = |c: &CurveGeometry, a: f64, b: f64, way: bool| match c {
-        CurveGeometry::Trimmed { start, end, forward, .. } => {
-            assert!((start - a).abs() < 1e-12 && (end - b).abs() < 1e-12 && *forward == way, "{c:?}");
+    // start, middle and end, by their angles in degrees
+    let check = |c: &CurveGeometry, a: f64, b: f64| match c {
+        CurveGeometry::Trimmed { start, end, forward: true, .. } if start < end => {
+            for (t, degrees) in [(*start, a), ((start + end) * 0.5, (a + b) * 0.5), (*end, b)] {
+                let (y, x) = degrees.to_radians().sin_cos();
+                let found = locate::point(c, t).unwrap();
+                assert!((found - DVec3::new(x, y, 0.0) * 10.0).length() < 1e-12, "{c:?} at {degrees}: {found}");
+            }
         }
         _ => panic!("{c:?}"),
     };
     let p = |degrees: i32| format!("PARAMETER_VALUE({degrees}.)");
-    check(&trim(&p(0), &p(90), ".T.", ".PARAMETER."), 0.0, FRAC_PI_2, true);
-    check(&trim(&p(90), &p(0), ".T.", ".PARAMETER."), FRAC_PI_2, TAU, true);
-    check(&trim(&p(90), &p(0), ".F.", ".PARAMETER."), 0.0, FRAC_PI_2, false);
-    check(&trim(&p(0), &p(90), ".F.", ".PARAMETER."), FRAC_PI_2, TAU, false);
-    check(&trim(&p(10), &p(370), ".T.", ".PARAMETER."), 10f64.to_radians(), 370f64.to_radians(), true);
+    check(&trim(&p(0), &p(90), ".T.", ".PARAMETER."), 0.0, 90.0);
+    check(&trim(&p(90), &p(0), ".T.", ".PARAMETER."), 90.0, 360.0);
+    check(&trim(&p(90), &p(0), ".F.", ".PARAMETER."), 90.0, 0.0);
+    check(&trim(&p(0), &p(90), ".F.", ".PARAMETER."), 360.0, 90.0);
+    check(&trim(&p(10), &p(370), ".T.", ".PARAMETER."), 10.0, 370.0);
     // points win when the master is cartesian, and serve when there is no parameter
-    check(&trim(&format!("#5,{}", p(45)), &format!("#6,{}", p(45)), ".T.", ".CARTESIAN."), 0.0, FRAC_PI_2, true);
-    check(&trim("#5", "#6", ".T.", ".PARAMETER."), 0.0, FRAC_PI_2, true);
+    check(&trim(&format!("#5,{}", p(45)), &format!("#6,{}", p(45)), ".T.", ".CARTESIAN."), 0.0, 90.0);
+    check(&trim("#5", "#6", ".T.", ".PARAMETER."), 0.0, 90.0);
     let (a, b) = locate::ends(&trim(&p(90), &p(0), ".F.", ".PARAMETER.")).unwrap();
     assert!(near(a, DVec3::Y * 10.0) && near(b, DVec3::X * 10.0));
 }
@@ -92,10 +97,50 @@ fn trims_of_a_circle_in_degrees() {
 #[test]
 fn trims_of_open_curves_run_from_first_to_last() {
     for sense in [".T.", ".F."] {
-        let c = curve(&format!("#100=TRIMMED_CURVE('',#12,(PARAMETER_VALUE(3.)),(PARAMETER_VALUE(1.)),{sense},.PARAMETER.);"));
-        assert!(matches!(c, CurveGeometry::Trimmed { start: 1.0, end: 3.0, forward: false, .. }), "{c:?}");
+        let c = curve(&format!(
+            "#100=TRIMMED_CURVE('',#12,(PARAMETER_VALUE(3.)),(PARAMETER_VALUE(1.)),{sense},.PARAMETER.);"
+        ));
+        assert!(matches!(c, CurveGeometry::Trimmed { start: -3.0, end: -1.0, forward: true, .. }), "{c:?}");
+        // (0, 20, 0) mm a unit of parameter, downwards from 3 to 1
+        assert_eq!(locate::ends(&c), Some((DVec3::Y * 60.0, DVec3::Y * 20.0)));
     }
-    assert!(fault("#100=TRIMMED_CURVE('',#12,(#4),(#4),.T.,.CARTESIAN.);").contains("#100: the trimmed curve has no length"));
+    assert!(
+        fault("#100=TRIMMED_CURVE('',#12,(#4),(#4),.T.,.CARTESIAN.);")
+            .contains("#100: the trimmed curve has no length")
+    );
+}
+
+/// A closed spline (a diamond) trimmed over its seam, upwards and downwards, and composites run backwards.
+#[test]
+fn closed_splines_and_composites() {
+    let diamond = "#110=CARTESIAN_POINT('',(-1.,0.,0.));#111=CARTESIAN_POINT('',(0.,-1.,0.));#112=POLYLINE('',(#5,#6,#110,#111,#5));";
+    let trim = |first: f64, last: f64, sense: &str| {
+        curve(&format!(
+            "{diamond}#100=TRIMMED_CURVE('',#112,(PARAMETER_VALUE({first:?})),(PARAMETER_VALUE({last:?})),{sense},.PARAMETER.);"
+        ))
+    };
+    let parts = |c: &CurveGeometry| if let CurveGeometry::Composite(parts) = c { parts.len() } else { 1 };
+    let (x, y) = (DVec3::X * 10.0, DVec3::Y * 10.0);
+    for (first, last, sense, count, ends) in [
+        (0.0, 1.0, ".T.", 1, (x, y)),
+        (1.0, 0.0, ".F.", 1, (y, x)),
+        (3.0, 1.0, ".T.", 2, (-y, y)),
+        (1.0, 3.0, ".F.", 2, (y, -y)),
+        (3.0, 0.0, ".T.", 1, (-y, x)),
+    ] {
+        let c = trim(first, last, sense);
+        let (a, b) = locate::ends(&c).unwrap();
+        assert!(parts(&c) == count && near(a, ends.0) && near(b, ends.1), "{first} {last} {sense}: {c:?}");
+    }
+    let composite = "#101=TRIMMED_CURVE('',#11,(#5),(#6),.T.,.CARTESIAN.);#102=POLYLINE('',(#4,#6));\
+        #103=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#101);#104=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.F.,#102);\
+        #105=COMPOSITE_CURVE('',(#103,#104),.F.);";
+    let whole = curve(&format!("{composite}#100=TRIMMED_CURVE('',#105,(#4),(#5),.F.,.CARTESIAN.);"));
+    let CurveGeometry::Composite(segments) = &whole else { panic!("{whole:?}") };
+    let ends: Vec<_> = segments.iter().map(|s| locate::ends(s).unwrap()).collect();
+    for (found, expected) in ends.iter().zip([(DVec3::ZERO, y), (y, x)]) {
+        assert!(near(found.0, expected.0) && near(found.1, expected.1), "{ends:?}");
+    }
 }
 
 #[test]
@@ -162,7 +207,9 @@ fn surface_net_runs_along_v_in_the_file() {
 fn analytic_surfaces() {
     let surface = |data: &str| with(data, |g| g.surface(100)).unwrap();
     let cone = surface("#100=CONICAL_SURFACE('',#7,2.,30.);").surface;
-    assert!(matches!(cone, SurfaceGeometry::Cone { radius: 20.0, half_angle, .. } if (half_angle - TAU / 12.0).abs() < 1e-15));
+    assert!(
+        matches!(cone, SurfaceGeometry::Cone { radius: 20.0, half_angle, .. } if (half_angle - TAU / 12.0).abs() < 1e-15)
+    );
     let torus = surface("#100=DEGENERATE_TOROIDAL_SURFACE('',#7,1.,2.,.T.);").surface;
     assert!(matches!(torus, SurfaceGeometry::Torus { major: 10.0, minor: 20.0, .. }));
     let swept = surface("#100=SURFACE_OF_LINEAR_EXTRUSION('',#11,#9);").surface;
@@ -176,10 +223,14 @@ fn analytic_surfaces() {
 #[test]
 fn offsets_of_elementary_surfaces() {
     let radius = |basis: &str| {
-        let data = format!("#100=OFFSET_SURFACE('',#101,0.5,.F.);#101={basis};#110=LINE('',#5,#9);#102=DIRECTION('',(0.,-1.,0.));#103=VECTOR('',#102,1.);#111=LINE('',#5,#103);");
+        let data = format!(
+            "#100=OFFSET_SURFACE('',#101,0.5,.F.);#101={basis};#110=LINE('',#5,#9);#102=DIRECTION('',(0.,-1.,0.));#103=VECTOR('',#102,1.);#111=LINE('',#5,#103);"
+        );
         let carrier = with(&data, |g| g.surface(100)).unwrap();
         match carrier.surface {
-            SurfaceGeometry::Cylinder { radius, .. } | SurfaceGeometry::Sphere { radius, .. } => (radius, carrier.flipped),
+            SurfaceGeometry::Cylinder { radius, .. } | SurfaceGeometry::Sphere { radius, .. } => {
+                (radius, carrier.flipped)
+            }
             SurfaceGeometry::Cone { radius, .. } => (radius, carrier.flipped),
             other => panic!("{other:?}"),
         }
@@ -245,10 +296,19 @@ fn faults_name_the_entity() {
         ("#100=TRIMMED_CURVE('',#100,(#4),(#5),.T.,.CARTESIAN.);", "#100 refers to itself"),
         ("#100=COMPOSITE_CURVE('',(#101),.F.);#101=COMPOSITE_CURVE_SEGMENT(.C.,.T.,#100);", "#100 refers to itself"),
         ("#100=OFFSET_SURFACE('',#101,1.,.F.);#101=OFFSET_SURFACE('',#100,1.,.F.);", "#100 refers to itself"),
-        ("#100=B_SPLINE_CURVE_WITH_KNOTS('',2,(#4,#5,#6),.U.,.F.,.F.,(3,1000000000),(0.,1.),.U.);", "#100: the knots do not fit"),
-        ("#100=B_SPLINE_CURVE_WITH_KNOTS('',1000000000,(#4,#5),.U.,.F.,.F.,(2,2),(0.,1.),.U.);", "#100: attribute 1 is not a degree"),
+        (
+            "#100=B_SPLINE_CURVE_WITH_KNOTS('',2,(#4,#5,#6),.U.,.F.,.F.,(3,1000000000),(0.,1.),.U.);",
+            "#100: the knots do not fit",
+        ),
+        (
+            "#100=B_SPLINE_CURVE_WITH_KNOTS('',1000000000,(#4,#5),.U.,.F.,.F.,(2,2),(0.,1.),.U.);",
+            "#100: attribute 1 is not a degree",
+        ),
         ("#100=B_SPLINE_CURVE_WITH_KNOTS('',1,(#4,#5),.U.,.F.,.F.,(2,2),(1.,0.),.U.);", "#100: knot 2"),
-        ("#100=(B_SPLINE_CURVE(1,(#4,#5),.U.,.F.,.F.) BEZIER_CURVE() RATIONAL_B_SPLINE_CURVE((1.,0.)));", "#100: control point 1"),
+        (
+            "#100=(B_SPLINE_CURVE(1,(#4,#5),.U.,.F.,.F.) BEZIER_CURVE() RATIONAL_B_SPLINE_CURVE((1.,0.)));",
+            "#100: control point 1",
+        ),
         ("#100=POLYLINE('',());", "#100: "),
         ("#100=CLOTHOID('',#7,1.);", "CLOTHOID is not supported (#100)"),
         ("#100=LINE('',#101,#9);#101=CARTESIAN_POINT('',(0.,1E999,0.));", "#101: a coordinate is not a finite number"),

@@ -2,9 +2,9 @@
 
 use super::import;
 use crate::import::Import;
+use crate::import::Warnings;
 use crate::import::step::part21::File;
 use crate::import::step::units::Units;
-use crate::import::Warnings;
 
 const RADIAN: &str = "#90=(NAMED_UNIT(*) PLANE_ANGLE_UNIT() SI_UNIT($,.RADIAN.));";
 
@@ -72,7 +72,23 @@ fn each_representation_has_its_own() {
              #{}=POLY_LOOP('',(#{},#{},#{}));#{}=FACE_OUTER_BOUND('',#{},.T.);#{}=FACE('',(#{}));\
              #{}=OPEN_SHELL('',(#{}));#{}=SHELL_BASED_SURFACE_MODEL('',(#{}));\
              #{}=MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#{}),#{unit});",
-            at(1), at(2), at(3), at(4), at(1), at(2), at(3), at(5), at(4), at(6), at(5), at(7), at(6), at(8), at(7), at(9), at(8),
+            at(1),
+            at(2),
+            at(3),
+            at(4),
+            at(1),
+            at(2),
+            at(3),
+            at(5),
+            at(4),
+            at(6),
+            at(5),
+            at(7),
+            at(6),
+            at(8),
+            at(7),
+            at(9),
+            at(8),
         )
     };
     let unit = |id: u32, prefix: &str| {
@@ -83,8 +99,7 @@ fn each_representation_has_its_own() {
             id + 1
         )
     };
-    let import: Import =
-        import(&[solid(100, 10), solid(200, 20), unit(10, ".CENTI."), unit(20, "$")].concat());
+    let import: Import = import(&[solid(100, 10), solid(200, 20), unit(10, ".CENTI."), unit(20, "$")].concat());
     assert!(import.warnings.is_empty(), "{:?}", import.warnings);
     assert_eq!(import.report.units, ["cm", "m"]);
     let bounds: Vec<_> = import.model.parts.iter().map(|p| p.bounds()).collect();
