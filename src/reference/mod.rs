@@ -94,7 +94,7 @@ struct Placed {
 impl Tracer {
     /// Cuts all surfaces into leaves and builds the trees.
     ///
-    /// Cost: microseconds a leaf, a leaf for every 10° or so that a surface turns. Instances whose
+    /// Cost: microseconds a leaf, a leaf for every 20° or so that a surface turns. Instances whose
     /// transform flattens space are left out: they have no inside and no outward side.
     pub fn new(model: &Model) -> Self {
         let parts: Vec<PartTree> = model.parts.par_iter().map(|p| PartTree::new(&p.faces)).collect();

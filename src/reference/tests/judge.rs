@@ -80,7 +80,7 @@ fn a_shift_is_measured() {
         assert!(j.worst_shift_px <= s + 0.01 && j.worst_shift_px > s - 0.06, "{shift}: {}", j.worst_shift_px);
         assert_eq!(j.wrong == 0, right, "{shift}: {} wrong", j.wrong);
         assert_eq!(j.mismatches.is_empty(), right);
-        assert_eq!(j.folds.wrong_depth, 0, "{shift}");
+        assert_eq!((j.folds.wrong_depth, j.folds.unsearched), (0, 0), "{shift}");
         let far = j.classes.iter().filter(|c| matches!(c, Class::Far(_))).count() as u64;
         assert_eq!(far, j.wrong);
         if let Some(m) = j.mismatches.first() {
@@ -101,7 +101,7 @@ fn a_flooded_face_is_gross() {
     picture.face[4040] = 99;
     let j = judge(&tracer, &camera, &picture, &JudgeOptions::default());
     assert_eq!((j.gross, j.wrong, total(&j)), (1001, 1001, 8000));
-    assert_eq!((j.mismatches.len(), j.mismatches[0].drawn, j.mismatches[0].shift_px), (16, 1, None));
+    assert_eq!((j.mismatches.len(), j.mismatches[0].drawn, j.mismatches[0].gross), (16, 1, true));
     // nothing drawn at all: background is searched for, finds no gap, and the budget holds
     picture.face.fill(0);
     let j = judge(&tracer, &camera, &picture, &JudgeOptions { searches: 50, ..Default::default() });
