@@ -10,7 +10,7 @@
 //! proof that there is none (see the `solver` module). What the reference leaves out by rule, because
 //! it covers no area: surface that is seen exactly edge-on.
 //!
-//! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`](crate::picture::Picture).
+//! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`].
 
 mod bvh;
 mod judge;

@@ -163,7 +163,7 @@ impl Bench<'_> {
             return Some(Suspect { index, truth, wanted: Wanted { face: drawn, depth: None }, searched: true });
         }
         tally.agree += 1;
-        let Some(hit) = first else { return None };
+        let hit = first?;
         let (_, direction) = self.camera.ray(centre);
         let cosine = hit.normal.dot(direction).abs();
         let regular = cosine >= GRAZING_COSINE;
