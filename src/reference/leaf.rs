@@ -9,7 +9,7 @@
 //! loses no digits) as `(w (X - c), w)`. A leaf that is a parallelogram with equal weights, as every
 //! plane is, is met in closed form; any other goes through the [`Solver`].
 //!
-//! Halving is only for speed: it makes the solver's first cell *regular* for all but grazing rays.
+//! Halving is only for speed: tight boxes, and first cells that are *regular* for most rays.
 
 use super::net::{self, Degrees};
 use super::solver::Solver;
@@ -18,11 +18,11 @@ use crate::spline::{Control, Patch};
 use crate::trim::LoopIndex;
 use glam::{DVec2, DVec3, DVec4};
 
-/// Curvature at which halving stops: the largest relative deviation of a tangent from the mean one. A
-/// regular cell needs 1/4 as the ray sees it, and a slant of 60° doubles what it sees.
-const FLAT: f64 = 0.12;
+/// Curvature at which halving stops: the largest relative deviation of a tangent from the mean one. From
+/// 0.1 to 0.8 the time of a picture hardly changes, and the number of leaves does by forty.
+const FLAT: f64 = 0.4;
 /// Halvings of a Bézier patch in each direction at most: poles never become flat.
-const LEVELS: u32 = 5;
+const LEVELS: u32 = 3;
 /// A net this near to a parallelogram, relative to its size, is one: below the rounding of a hit.
 const AFFINE: f64 = 1e-14;
 /// Rounding of `n·(X - o)` relative to the distances in it: two subtractions and a dot product.

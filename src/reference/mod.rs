@@ -10,7 +10,7 @@
 //! proof that there is none (see the `solver` module). What the reference leaves out by rule, because
 //! it covers no area: surface that is seen exactly edge-on.
 //!
-//! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`](crate::picture::Picture).
+//! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`].
 
 mod bvh;
 mod judge;
@@ -94,7 +94,7 @@ struct Placed {
 impl Tracer {
     /// Cuts all surfaces into leaves and builds the trees.
     ///
-    /// Cost: microseconds a leaf, a leaf for every 10° or so that a surface turns. Instances whose
+    /// Cost: microseconds a leaf, a leaf for every 20° or so that a surface turns. Instances whose
     /// transform flattens space are left out: they have no inside and no outward side.
     pub fn new(model: &Model) -> Self {
         let parts: Vec<PartTree> = model.parts.par_iter().map(|p| PartTree::new(&p.faces)).collect();

@@ -44,8 +44,9 @@ pub struct JudgeOptions<'a> {
     pub limit_px: f64,
     /// Depth within which faces are indistinguishable, relative to the model's diagonal.
     pub tie: f64,
-    /// Pixels that may be searched for a shift; the rest count as `unsearched` and wrong. A search
-    /// costs up to some thousand rays, and a picture with more errors than this is wrong anyway.
+    /// Pixels that may be searched for a shift, and as many again for a fold; the rest count as
+    /// `unsearched`. A search costs up to some thousand rays, and a picture with more errors than this
+    /// is wrong anyway.
     pub searches: usize,
     /// Wrong pixels listed, the worst first.
     pub listed: usize,
@@ -55,7 +56,7 @@ pub struct JudgeOptions<'a> {
 
 impl Default for JudgeOptions<'_> {
     fn default() -> Self {
-        Self { samples: None, limit_px: 0.5, tie: 1e-6, searches: 20_000, listed: 16, progress: None }
+        Self { samples: None, limit_px: 0.5, tie: 1e-6, searches: 50_000, listed: 16, progress: None }
     }
 }
 
@@ -65,6 +66,7 @@ struct Suspect {
     index: usize,
     truth: u32,
     wanted: Wanted,
+    searched: bool,
 }
 
 /// One comparison: the constants of a judgement.
@@ -108,25 +110,20 @@ pub fn judge(tracer: &Tracer, camera: &Camera, picture: &Picture, options: &Judg
         tally.merge(&t);
         suspects.extend(s);
     }
-    let stride = suspects.len().div_ceil(options.searches.max(1)).max(1);
+    ration(&mut suspects, options.searches);
     let reach = Reach::new(tracer, camera, suspects.iter().map(|s| s.wanted.face));
-    let verdicts: Vec<Class> = suspects
-        .par_iter()
-        .enumerate()
-        .map_init(
-            || tracer.probe(camera),
-            |probe, (k, s)| {
-                let centre = bench.centre(s.index);
-                if !reach.near(s.wanted.face, centre) {
-                    return Class::Gross;
-                }
-                if k % stride != 0 {
-                    return Class::Unsearched;
-                }
-                Search { probe, centre, wanted: s.wanted, limit: options.limit_px, slack: bench.slack }.run()
-            },
-        )
-        .collect();
+    let search = |probe: &mut Probe, s: &Suspect| {
+        let centre = bench.centre(s.index);
+        if !reach.near(s.wanted.face, centre) {
+            return Class::Gross;
+        }
+        if !s.searched {
+            return Class::Unsearched;
+        }
+        Search { probe, centre, wanted: s.wanted, limit: options.limit_px, slack: bench.slack }.run()
+    };
+    let verdicts: Vec<Class> =
+        suspects.par_iter().map_init(|| tracer.probe(camera), |probe, s| search(probe, s)).collect();
     judgement.classes = vec![Class::Unsampled; pixels];
     for &index in &sampled {
         judgement.classes[index] = if picture.face[index] == 0 { Class::Background } else { Class::Agree };
@@ -138,6 +135,16 @@ pub fn judge(tracer: &Tracer, camera: &Camera, picture: &Picture, options: &Judg
     judgement.finish(tally, options.listed);
     judgement.given_up = tracer.given_up();
     judgement
+}
+
+/// Leaves at most `searches` wrong ids, and as many folds, to be searched: every k-th of either kind.
+fn ration(suspects: &mut [Suspect], searches: usize) {
+    for fold in [false, true] {
+        let of_kind = |s: &Suspect| s.wanted.depth.is_some() == fold;
+        let count = suspects.iter().filter(|s| of_kind(s)).count();
+        let stride = count.div_ceil(searches.max(1)).max(1);
+        suspects.iter_mut().filter(|s| of_kind(s)).enumerate().for_each(|(k, s)| s.searched = k % stride == 0);
+    }
 }
 
 impl Bench<'_> {
@@ -153,10 +160,10 @@ impl Bench<'_> {
         let first = probe.first(centre);
         let truth = first.map_or(0, |h| h.face);
         if drawn != truth {
-            return Some(Suspect { index, truth, wanted: Wanted { face: drawn, depth: None } });
+            return Some(Suspect { index, truth, wanted: Wanted { face: drawn, depth: None }, searched: true });
         }
         tally.agree += 1;
-        let Some(hit) = first else { return None };
+        let hit = first?;
         let (_, direction) = self.camera.ray(centre);
         let cosine = hit.normal.dot(direction).abs();
         let regular = cosine >= GRAZING_COSINE;
@@ -167,7 +174,8 @@ impl Bench<'_> {
             let pixel = pixel_size(self.camera, hit.depth);
             let fold = error.is_nan() || error > fold_depth(self.camera, &hit, direction);
             tally.depth(index, error, pixel, regular && !fold);
-            suspect = fold.then_some(Suspect { index, truth, wanted: Wanted { face: drawn, depth: Some(depth) } });
+            let wanted = Wanted { face: drawn, depth: Some(depth) };
+            suspect = fold.then_some(Suspect { index, truth, wanted, searched: true });
         }
         if regular
             && suspect.is_none()

@@ -61,6 +61,8 @@ pub struct Folds {
     pub beyond: u64,
     /// The drawn depth occurs nowhere within 2 px.
     pub wrong_depth: u64,
+    /// Not searched: more than `searches`.
+    pub unsearched: u64,
     /// Largest distance, pixels.
     pub worst_shift_px: f64,
 }
@@ -83,9 +85,10 @@ pub struct Mismatch {
     pub drawn: u32,
     /// Face id at the pixel centre.
     pub truth: u32,
-    /// Distance at which the drawn id is right, pixels; `None` when there is none within 2 px (or it
-    /// was not searched for).
+    /// Distance at which the drawn id is right, pixels; `None` when it is not known.
     pub shift_px: Option<f64>,
+    /// There is no such distance within 2 px; `false` with `shift_px` unknown: not searched for.
+    pub gross: bool,
 }
 
 /// The comparison of a picture with the truth.
@@ -109,7 +112,8 @@ pub struct Judgement {
     pub wrong: u64,
     /// Largest shift found, pixels.
     pub worst_shift_px: f64,
-    /// The first few wrong pixels: gross ones, then by shift, each in raster order.
+    /// The first few wrong pixels: gross ones, then by shift, then those not
+    /// searched; each in raster order.
     pub mismatches: Vec<Mismatch>,
     /// Depth where ids agree and the surface is neither grazing nor folded.
     pub depth_regular: DepthErrors,
@@ -235,13 +239,17 @@ impl Judgement {
                 }
                 (Some(s), Class::Far(s))
             }
-            _ if same => {
-                self.folds.wrong_depth += 1;
-                return Class::WrongDepth;
+            Class::Unsearched if same => {
+                self.folds.unsearched += 1;
+                return class;
             }
             Class::Unsearched => {
                 self.unsearched += 1;
                 (None, class)
+            }
+            _ if same => {
+                self.folds.wrong_depth += 1;
+                return Class::WrongDepth;
             }
             _ => {
                 self.gross += 1;
@@ -249,7 +257,13 @@ impl Judgement {
             }
         };
         self.wrong += 1;
-        self.mismatches.push(Mismatch { pixel: place(index, self.size.0), drawn, truth, shift_px });
+        self.mismatches.push(Mismatch {
+            pixel: place(index, self.size.0),
+            drawn,
+            truth,
+            shift_px,
+            gross: class == Class::Gross,
+        });
         class
     }
 
@@ -260,7 +274,7 @@ impl Judgement {
         let [a, b, c, d] = tally.depth.map(|s| s.errors(width));
         self.depth_regular = DepthErrors { model: a, px: b };
         self.depth_all = DepthErrors { model: c, px: d };
-        let severity = |m: &Mismatch| m.shift_px.unwrap_or(f64::INFINITY);
+        let severity = |m: &Mismatch| if m.gross { f64::INFINITY } else { m.shift_px.unwrap_or(0.0) };
         self.mismatches.sort_by(|a, b| severity(b).total_cmp(&severity(a)));
         self.mismatches.truncate(listed);
     }

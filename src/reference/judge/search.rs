@@ -4,11 +4,13 @@
 //!        · · ·         1. rings of 32 directions, from 1/32 to 2 px, until one answers yes
 //!      ·   ·   ·       2. between neighbours of a ring, and between rings, whose answers differ:
 //!     ·  · + ·  ·         bisection, which runs into any face too thin for the rings
-//!      ·   ·   ·       3. a grid of 1/64 px inside limit_px, for what lies between equal answers
-//!        · · ·         4. the offset found is pulled in along its ray, then turned to either side
+//!      ·   ·   ·       3. before the rings beyond limit_px: a grid of 1/64 px within it, for what lies
+//!        · · ·            between equal answers
+//!                      4. the offset found is pulled in along its ray, then turned to either side
 //! ```
 //!
-//! The result is an upper bound: the truth at that very offset was checked.
+//! The result is an upper bound: the truth at that very offset was checked. What can be missed, and is
+//! then called gross: a gap thinner than 1/64 px with the same face on both sides.
 
 use super::super::{Probe, Tracer};
 use super::{Class, fold_depth};
@@ -23,7 +25,7 @@ const RINGS: [f64; 14] = [0.03125, 0.0625, 0.125, 0.1875, 0.25, 0.3125, 0.375, 0
 const DIRECTIONS: usize = 32;
 /// Bisections between two answers: down to 0.5 px / 2¹² = 1e-4 px.
 const SLIVER_STEPS: u32 = 12;
-/// Spacing of the last resort.
+/// Spacing of the grid.
 const GRID_PX: f64 = 1.0 / 64.0;
 /// A shift is pulled in until it is known to this, pixels.
 const RESOLUTION_PX: f64 = 1.0 / 256.0;
@@ -68,7 +70,14 @@ impl Search<'_, '_> {
         }
         let mut inner = 0.0;
         let mut before = [start; DIRECTIONS];
+        let mut beyond = false;
         for radius in RINGS {
+            if radius > self.limit && !beyond {
+                beyond = true;
+                if let Some(offset) = self.on_grid() {
+                    return shift(self.turned(offset).length());
+                }
+            }
             let offset = |k: usize| DVec2::from_angle(k as f64 * TAU / DIRECTIONS as f64) * radius;
             let answers: [Answer; DIRECTIONS] = std::array::from_fn(|k| self.ask(offset(k)));
             let yes = (0..DIRECTIONS).filter(|&k| answers[k] == Answer::Yes).map(offset);
@@ -94,11 +103,7 @@ impl Search<'_, '_> {
             }
             (inner, before) = (radius, answers);
         }
-        match self.on_grid() {
-            Some(offset) => shift(self.turned(offset).length()),
-            None if fold => Class::WrongDepth,
-            None => Class::Gross,
-        }
+        if fold { Class::WrongDepth } else { Class::Gross }
     }
 
     fn ask(&mut self, offset: DVec2) -> Answer {
@@ -140,7 +145,7 @@ impl Search<'_, '_> {
 
     /// Nearest place of the grid that answers yes.
     fn on_grid(&mut self) -> Option<DVec2> {
-        let n = (self.limit / GRID_PX).floor() as i32;
+        let n = (self.limit.min(RINGS[RINGS.len() - 1]) / GRID_PX).floor() as i32;
         let mut places: Vec<(i32, i32)> =
             (-n..=n).flat_map(|j| (-n..=n).map(move |i| (i, j))).filter(|(i, j)| i * i + j * j <= n * n).collect();
         places.sort_by_key(|(i, j)| i * i + j * j);

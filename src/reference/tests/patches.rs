@@ -115,29 +115,25 @@ fn a_patch_of_high_degree_and_wild_weights() {
 
 #[test]
 fn neighbours_lose_no_ray_between_them() {
-    // a flat and a curved sheet, each over 6 by 6 patches; rays through the knots and leaf borders
-    let n = 8;
-    let knots = |n: usize| {
-        let mut k = vec![0.0; 4];
-        k.extend((1..n - 3).map(|i| i as f64));
-        k.extend([(n - 3) as f64; 4]);
-        k
-    };
-    for bump in [0.0, 0.3] {
+    // a sheet of parallelograms, a flat and a bent cubic one, each over 5 by 5 patches; rays through the
+    // knots and leaf borders
+    for (degree, bump) in [(1, 0.0), (3, 0.0), (3, 0.3)] {
+        let n = 5 + degree;
+        let knots: Vec<f64> = (0..n + degree + 1).map(|k| k.clamp(degree, n) as f64 - degree as f64).collect();
         let points = (0..n * n)
             .map(|k| {
                 let (x, y) = ((k % n) as f64 - 3.5, (k / n) as f64 - 3.5);
-                DVec4::new(x * 0.3, y * 0.3, bump * (x * 1.3).sin() * (y * 0.9).cos(), 1.0)
+                DVec4::new(x * 0.3, y * 0.31, bump * (x * 1.3).sin() * (y * 0.9).cos(), 1.0)
             })
             .collect();
-        let sheet = crate::spline::Surface::new((3, 3), knots(n), knots(n), points).unwrap();
+        let sheet = crate::spline::Surface::new((degree, degree), knots.clone(), knots, points).unwrap();
         let grid = sheet.patches();
         let tracer = Tracer::new(&single(sheet));
         for j in 1..80 {
             for i in 1..80 {
                 let through = grid.point(f64::from(i) / 16.0, f64::from(j) / 16.0);
                 let hits = tracer.hits(&aimed(through, DVec3::new(0.1, 0.2, -1.0)), MIDDLE);
-                assert_eq!(hits.len(), 1, "bump {bump}, {i}, {j}: {hits:#?}");
+                assert_eq!(hits.len(), 1, "degree {degree}, bump {bump}, {i}, {j}: {hits:#?}");
                 assert!((hits[0].point - through).length() < 1e-14);
             }
         }
