@@ -23,7 +23,7 @@ const uint BORDER_V1 = 8u;
 
 struct Patch {
     vec3 box_min;    // part coordinates, relative to the part's origin
-    uint first;      // index of the first float in points
+    uint first;      // index of the first control point in points
     vec3 box_max;
     uint shape;
     vec4 domain;     // u0, v0, u1 - u0, v1 - v0 within the face
