@@ -11,6 +11,30 @@
 //!   seams, poles, periods ──────────────────────────▶ TrimLoop        (closed, oriented)
 //! ```
 
+mod build;
+mod carrier;
+mod curve;
+mod cut;
+mod edge;
+mod error;
+mod fit;
+mod frame;
+mod invert;
+mod law;
+mod loops;
+mod nest;
+mod pieces;
+mod spline;
+mod strand;
+mod support;
+mod trace;
+
+#[cfg(test)]
+mod tests;
+
+pub use build::{BuiltFace, build_face};
+pub use error::BuildError;
+
 use crate::spline::{BSpline, Surface};
 use glam::{DVec3, DVec4};
 
