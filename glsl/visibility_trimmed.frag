@@ -4,15 +4,16 @@
 // Pass `visibility`, trimmed patches: the same after the trim test.
 //
 // Two faces that meet along an edge are trimmed apart from each other, each with its own rounding;
-// a pixel in the gap would show what lies behind. So a face that looks at the viewer also takes the
-// pixels of a ring, ring_px wide, outside its border.
+// a pixel in the gap would show what lies behind. Such pixels must be found, then mended by pass
+// `heal`, which looks closer. They are found where something is seen that no pixel should show:
 //
-//      inside │ ring │ outside        in the ring the surface is continued, but never nearer to the
-//   ──────────┼╌╌╌╌╌╌│                viewer than the border that it continues: a floor seen from a
-//             │                       low angle must not flow over what stands before its edge
+//   * a face of a solid from behind: the gap looks into the solid. Its own border is widened by a
+//     ring, so that the faces behind leave no gap themselves, and it wins over a face of another
+//     solid that touches it.
+//   * of an open shell, the ring, ring_px wide, around each face.
 //
-// Faces of a solid that look away are never seen; they give the ring up on their own side, so that
-// none peeps out behind a silhouette.
+// The ring continues the surface, but never nearer to the viewer than the border that it continues:
+// a floor seen from a low angle must not flow over what stands before its edge.
 #include "scene.glsl"
 
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
@@ -27,16 +28,18 @@ layout(scalar, binding = 12) readonly buffer RowCounts { uint row_counts[]; };
 layout(scalar, binding = 13) readonly buffer Flips { float flips[]; };
 
 #include "table.glsl"
+#include "ring.glsl"
+#include "visible.glsl"
 
 layout(location = 0) in vec2 uv;
 layout(location = 1) flat in uint item;
 layout(location = 0) out uvec2 visible;
 layout(depth_less) out float gl_FragDepth;
 
-const uint RING_POINTS = 8u;
-const float DIAGONAL = 0.70710678;
-const vec2 RING[RING_POINTS] = vec2[](vec2(1, 0), vec2(0, 1), vec2(-1, 0), vec2(0, -1), vec2(DIAGONAL, DIAGONAL),
-                                      vec2(-DIAGONAL, DIAGONAL), vec2(-DIAGONAL, -DIAGONAL), vec2(DIAGONAL, -DIAGONAL));
+// Faces seen from the front stand back this little, in pixels of slope and relative depth, so that
+// the back of a touching solid wins: several times the rounding of interpolated depth.
+const float STAND_BACK_PX = 0.01;
+const float STAND_BACK = 2e-6;
 
 void main() {
     FaceInstance fi = face_instances[item_face_instance[item]];
@@ -51,22 +54,20 @@ void main() {
     bool towards = (dx.x * dy.y - dx.y * dy.x < 0.0) == ((face.flags & FACE_SAME_SENSE) != 0u);
     if (instances[fi.instance].mirrored != 0u) towards = !towards;
     bool solid = (face.flags & FACE_SOLID) != 0u;
-    bool hidden = solid && !towards;
+    bool doubtful = solid && !towards;
     bool inside = table_inside(fi.first_strip, strips, at);
+    if (solid && towards && !inside) discard;
     float border_depth = -1.0; // nearest to the viewer among the ring's points inside the face
-    if (inside == hidden) {
-        uint around = 0u;
-        for (uint k = 0u; k < RING_POINTS; ++k) {
-            vec2 step_ = frame.ring_px * RING[k];
-            if (table_inside(fi.first_strip, strips, at + step_.x * dx + step_.y * dy)) {
-                ++around;
-                border_depth = max(border_depth, gl_FragCoord.z + dot(step_, slope));
-            }
+    for (uint k = 0u; !inside && k < RING_POINTS; ++k) {
+        vec2 step_ = frame.ring_px * RING[k];
+        if (table_inside(fi.first_strip, strips, at + step_.x * dx + step_.y * dy)) {
+            border_depth = max(border_depth, gl_FragCoord.z + dot(step_, slope));
         }
-        if (around < (hidden ? RING_POINTS : 1u)) discard;
-    } else if (hidden) {
-        discard;
     }
-    visible = uvec2(item + 1u, packUnorm2x16((uv + 1.0) / 3.0));
-    gl_FragDepth = inside ? gl_FragCoord.z : min(gl_FragCoord.z, border_depth);
+    if (!inside && border_depth < 0.0) discard;
+    float z = gl_FragCoord.z;
+    float stand_back = doubtful ? 0.0 : STAND_BACK_PX * (abs(slope.x) + abs(slope.y)) + STAND_BACK * z;
+    doubtful = doubtful || !inside;
+    visible = uvec2(item + 1u | (doubtful ? DOUBTFUL : 0u), pack_uv(uv));
+    gl_FragDepth = (inside ? z : min(z, border_depth)) - stand_back;
 }
