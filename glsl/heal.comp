@@ -12,8 +12,9 @@
 //        └───┴───┴───┘     and the whole ring too: farther from its border than any error.
 //
 //   real (a gap looks into the solid): the nearest witness or helper before it
-//   not real (its ring reaches out):   the nearest witness; without one, nothing if a neighbour
-//                                      sees nothing, else the nearest helper
+//   not real (its ring reaches out):   the nearest witness; without one, nothing if a neighbour sees
+//                                      nothing and at most one face helps (a silhouette), else the
+//                                      nearest helper
 //
 // Without any of these the doubtful face stays. Doubtful neighbours are not asked, and healed pixels
 // stay marked, so the order of the threads does not matter.
@@ -50,7 +51,7 @@ const uint WITNESS = 2u;
 const float ON_PIXEL_PX = 0.05;
 // A point of the ring may project a little farther away than its radius: the step was linear.
 const float RING_SLACK = 1.25;
-// Relative depth within which a touching face is as near as the doubtful one.
+// Relative depth within which a face touches the doubtful one, and is as hidden as that.
 const float SAME_DEPTH = 1e-5;
 
 struct Answer {
@@ -68,10 +69,15 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     View view = views[fi.instance];
     Sample s = refine(patch_, view, unpack_uv(seen.y), pixel);
     Answer answer = Answer(NO, s.q.z, uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)))));
-    if (dot(s.miss, s.miss) > ON_PIXEL_PX * ON_PIXEL_PX) return answer;
     float strips = float(face.strip_count);
     vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
     bool inside = face.strip_count == 0u || table_inside(fi.first_strip, strips, at);
+    float miss = length(s.miss);
+    if (miss > ON_PIXEL_PX) {
+        // a silhouette beside the pixel
+        if (inside && miss <= RING_SLACK * frame.ring_px) answer.kind = HELPER;
+        return answer;
+    }
     if (inside) answer.kind = WITNESS;
     if (inside != real || face.strip_count == 0u) return answer;
     vec4 qu = to_pixel(view, vec4(s.jet.du, 0.0));
@@ -107,10 +113,12 @@ void main() {
     uvec2 own = imageLoad(visibility, at).xy;
     Answer self = ask(own, pixel, true);
     bool real = self.kind == WITNESS;
-    float limit = real ? self.depth * (1.0 + SAME_DEPTH) : 3.0e38;
+    float limit = real ? self.depth * (1.0 - SAME_DEPTH) : 3.0e38;
     Answer witness = Answer(NO, 3.0e38, uvec2(0u));
     Answer helper = witness;
     bool beside_nothing = false;
+    uint helping_face = 0u; // index + 1; helpers of two faces meet in an edge here
+    bool two_help = false;
     for (uint k = 0u; k < RING_POINTS; ++k) {
         ivec2 beside = at + ivec2(sign(RING[k]));
         if (any(lessThan(beside, ivec2(0))) || any(greaterThanEqual(beside, ivec2(frame.size)))) continue;
@@ -123,11 +131,16 @@ void main() {
         Answer answer = ask(seen, pixel, false);
         if (answer.depth > limit) continue;
         if (answer.kind == WITNESS && answer.depth < witness.depth) witness = answer;
-        if (answer.kind == HELPER && answer.depth < helper.depth) helper = answer;
+        if (answer.kind == HELPER) {
+            if (answer.depth < helper.depth) helper = answer;
+            FaceInstance fi = face_instances[item_face_instance[seen_item(seen.x)]];
+            two_help = two_help || (helping_face != 0u && helping_face != fi.face + 1u);
+            helping_face = fi.face + 1u;
+        }
     }
     uvec2 healed = own;
     if (witness.kind == WITNESS) healed = witness.word;
-    else if (!real && beside_nothing) healed = uvec2(0u);
+    else if (!real && beside_nothing && !two_help) healed = uvec2(0u);
     else if (helper.kind == HELPER) healed = helper.word;
     imageStore(visibility, at, uvec4(healed.x | DOUBTFUL, healed.y, 0u, 0u));
 }

@@ -12,8 +12,8 @@
 //     solid that touches it.
 //   * of an open shell, the ring, ring_px wide, around each face.
 //
-// The ring continues the surface, but never nearer to the viewer than the border that it continues:
-// a floor seen from a low angle must not flow over what stands before its edge.
+// The ring of an open shell continues the surface, but never nearer to the viewer than the border
+// that it continues: a floor seen from a low angle must not flow over what stands before its edge.
 #include "scene.glsl"
 
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
@@ -36,8 +36,9 @@ layout(location = 1) flat in uint item;
 layout(location = 0) out uvec2 visible;
 layout(depth_less) out float gl_FragDepth;
 
-// Faces seen from the front stand back this little, in pixels of slope and relative depth, so that
-// the back of a touching solid wins: several times the rounding of interpolated depth.
+// Where two solids touch, the back of one must win over the front of the other. Each is drawn up to
+// deviation_px off, so the front stands back by twice that in space, and at least by the rounding of
+// interpolated depth.
 const float STAND_BACK_PX = 0.01;
 const float STAND_BACK = 2e-6;
 
@@ -66,8 +67,15 @@ void main() {
     }
     if (!inside && border_depth < 0.0) discard;
     float z = gl_FragCoord.z;
-    float stand_back = doubtful ? 0.0 : STAND_BACK_PX * (abs(slope.x) + abs(slope.y)) + STAND_BACK * z;
+    float stand_back = 0.0;
+    if (!doubtful) {
+        float px = max(STAND_BACK_PX, patch_.bend == vec3(0.0) ? 0.0 : 2.0 * frame.deviation_px);
+        // depth per unit along the view axis, times the size of a pixel there
+        float range = frame.far - frame.near;
+        float unit = frame.perspective != 0u ? frame.near * frame.far * gl_FragCoord.w / range : 1.0 / range;
+        stand_back = px * (abs(slope.x) + abs(slope.y) + unit / frame.focal) + STAND_BACK * z;
+    }
     doubtful = doubtful || !inside;
     visible = uvec2(item + 1u | (doubtful ? DOUBTFUL : 0u), pack_uv(uv));
-    gl_FragDepth = (inside ? z : min(z, border_depth)) - stand_back;
+    gl_FragDepth = (inside || solid ? z : min(z, border_depth)) - stand_back;
 }

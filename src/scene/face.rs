@@ -94,7 +94,7 @@ impl FaceData {
             box_max: hi,
             shape: abi::Patch::pack_shape((p.patch.degree_u, p.patch.degree_v), rational, side, borders),
             domain: [corner.x as f32, corner.y as f32, size.x as f32, size.y as f32],
-            bend: [bend.uu, bend.uv, bend.vv].map(round_up),
+            bend: flat_is_zero([bend.uu, bend.uv, bend.vv], p.patch.bounds()).map(|x| x as f32),
             face: 0,
         });
         if side == Side::Outside {
@@ -247,6 +247,12 @@ fn outward_box(patch: &Patch, origin: DVec3) -> ([f32; 3], [f32; 3]) {
     let (lo, hi) = (lo - origin, hi - origin);
     let down = |x: f64| (x as f32).next_down();
     (lo.to_array().map(down), hi.to_array().map(round_up))
+}
+
+/// Second derivatives rounded up; a patch whose derivatives vanish but for rounding is flat, exactly.
+fn flat_is_zero(bend: [f64; 3], (lo, hi): (DVec3, DVec3)) -> [f64; 3] {
+    let rounding = 1e-12 * (hi - lo).length();
+    if bend.iter().all(|x| *x <= rounding) { [0.0; 3] } else { bend.map(|x| f64::from(round_up(x))) }
 }
 
 /// The next single-precision number above.
