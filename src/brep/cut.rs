@@ -64,7 +64,7 @@ pub(super) fn cut_open(
     let above = |forward: bool| forward == (axis == 0);
     let is_rim = |l: &Loop| l.winding[axis] != 0;
 
-    let cut = choose_cut(support, &loops, axis, period);
+    let (cut, _) = choose_cut(support, &loops, axis, period);
     if loops.iter().filter(|l| is_rim(l)).count() % 2 == 1 {
         let rims: Vec<&Loop> = loops.iter().filter(|l| is_rim(l)).collect();
         let closing = close_over_pole(support, &rims, vertices, (axis, cut)).ok_or(BuildError::OpenRim { face })?;
@@ -82,7 +82,10 @@ pub(super) fn cut_open(
         if let Some(base) = loops.iter().position(lower) {
             let floor = level(&loops[base]);
             for (i, l) in loops.iter_mut().enumerate() {
-                let turns = ((level(l) - floor) / height + 1e-9).floor();
+                let rounds = (level(l) - floor) / height;
+                // an upper rim at the height of the lower one closes the whole surface
+                let upper = is_rim(l) && !lower(l);
+                let turns = if upper { (rounds - 1e-9).ceil() - 1.0 } else { (rounds + 1e-9).floor() };
                 if i != base && turns != 0.0 {
                     let mut by = DVec2::ZERO;
                     by[other] = -turns * height;
@@ -125,8 +128,8 @@ pub(super) fn cut_open(
 }
 
 /// Where to cut: through a vertex of a rim that no hole covers, else through a gap between holes,
-/// else through the middle of the widest stretch without a vertex.
-fn choose_cut(support: &Support, loops: &[Loop], axis: usize, period: f64) -> f64 {
+/// else through the middle of the widest stretch without a vertex. The flag says that it meets no hole.
+fn choose_cut(support: &Support, loops: &[Loop], axis: usize, period: f64) -> (f64, bool) {
     let holes: Vec<(f64, f64)> = loops
         .iter()
         .filter(|l| l.winding[axis] == 0)
@@ -145,7 +148,7 @@ fn choose_cut(support: &Support, loops: &[Loop], axis: usize, period: f64) -> f6
     let rims = loops.iter().filter(|l| l.winding[axis] != 0);
     let vertices: Vec<f64> = rims.flat_map(|l| l.strands.iter().map(|s| s.start[axis])).collect();
     if let Some(c) = vertices.iter().find(|c| clear(**c)) {
-        return *c;
+        return (*c, true);
     }
     let middle_of_widest = |marks: &mut Vec<f64>, good: &dyn Fn(f64) -> bool| {
         marks.iter_mut().for_each(|m| *m = m.rem_euclid(period));
@@ -155,14 +158,12 @@ fn choose_cut(support: &Support, loops: &[Loop], axis: usize, period: f64) -> f6
         gaps.filter(|g| good(g.1)).max_by(|a, b| a.0.total_cmp(&b.0)).map(|g| g.1)
     };
     let mut borders: Vec<f64> = holes.iter().flat_map(|h| [h.0, h.1]).collect();
-    middle_of_widest(&mut borders, &clear)
-        .or_else(|| {
-            let strands = loops.iter().flat_map(|l| &l.strands);
-            let mut all: Vec<f64> =
-                strands.map(|s| s.start[axis]).chain(holes.iter().flat_map(|h| [h.0, h.1])).collect();
-            middle_of_widest(&mut all, &|_| true)
-        })
-        .unwrap_or(0.0)
+    if let Some(c) = middle_of_widest(&mut borders, &clear) {
+        return (c, true);
+    }
+    let strands = loops.iter().flat_map(|l| &l.strands);
+    let mut all: Vec<f64> = strands.map(|s| s.start[axis]).chain(holes.iter().flat_map(|h| [h.0, h.1])).collect();
+    (middle_of_widest(&mut all, &|_| true).unwrap_or(0.0), false)
 }
 
 /// The rim along a pole that closes an odd number of rims: the pole that a bound names, else the
@@ -348,14 +349,14 @@ fn link(chains: Vec<Chain>, crossings: &[Crossing], (axis, cut, period): (usize,
 }
 
 /// The border of a closed surface as loops: two opposite rims that [`cut_open`] joins. Where neither
-/// direction ends, the rims lie on a line that no loop of `loops` meets, if there is one.
+/// direction ends, the rims lie on a line that no loop meets; `None` when there is none.
 pub(super) fn natural_rims(support: &Support, loops: &[Loop]) -> Option<[Loop; 2]> {
     let axis = (0..2).find(|i| support.periods[*i].is_some())?;
     let other = 1 - axis;
     let (lo, hi) = match (support.periods[other], support.natural[other]) {
         (Some(q), Some((a, b))) if b - a >= q * (1.0 - 1e-9) => {
-            let c = choose_cut(support, loops, other, q);
-            (c, c + q)
+            let (c, clear) = choose_cut(support, loops, other, q);
+            clear.then_some((c, c + q))?
         }
         (_, natural) => natural?,
     };

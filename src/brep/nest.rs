@@ -20,9 +20,10 @@ pub(super) fn arrange(
     let mut loops = cut_open(support, loops, vertices, limits)?;
     gather(support, &mut loops);
     if contractible && support.is_closed() && is_outside(support, &loops) {
-        let rims = natural_rims(support, &loops).ok_or(BuildError::Unbounded { face: limits.face })?;
+        let rims = natural_rims(support, &loops).ok_or(BuildError::Tangled { face: limits.face })?;
         loops.extend(rims);
         loops = cut_open(support, loops, vertices, limits)?;
+        gather(support, &mut loops);
     }
     orient(support, &mut loops);
     Ok(loops)

@@ -238,16 +238,16 @@ impl Strand {
         }
     }
 
-    /// The fraction between `a` and `b` at which coordinate `axis` is `value`, by bisection; the
-    /// coordinate must pass it between the two.
+    /// The fraction between `a` and `b` at which coordinate `axis` is `value`, by bisection; it
+    /// must be below on one side and not below on the other.
     pub fn solve(&self, support: &Support, axis: usize, value: f64, (mut a, mut b): (f64, f64)) -> f64 {
-        let rising = self.at(support, b)[axis] > value;
+        let rising = self.at(support, a)[axis] < value;
         for _ in 0..60 {
             let m = 0.5 * (a + b);
             if m <= a || m >= b {
                 break;
             }
-            if (self.at(support, m)[axis] > value) == rising { b = m } else { a = m }
+            if (self.at(support, m)[axis] < value) == rising { a = m } else { b = m }
         }
         0.5 * (a + b)
     }
