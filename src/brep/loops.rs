@@ -67,9 +67,9 @@ impl Loop {
         let closing = (strands[n - 1].end, strands[0].start);
         let closing_pole = pole_joint(&strands, n - 1);
         let mut winding = [0; 2];
-        for i in 0..2 {
+        for (i, turns) in winding.iter_mut().enumerate() {
             if let (Some(period), None) = (support.periods[i], closing_pole) {
-                winding[i] = ((closing.0[i] - closing.1[i]) / period).round() as i32;
+                *turns = ((closing.0[i] - closing.1[i]) / period).round() as i32;
             }
         }
         let turn = periods(support, winding);

@@ -69,7 +69,7 @@ fn is_outside(support: &Support, loops: &[Loop]) -> bool {
 fn orient(support: &Support, loops: &mut [Loop]) {
     let polygons: Vec<Vec<DVec2>> = loops.iter().map(|l| closed(l.polygon(support))).collect();
     for i in 0..loops.len() {
-        let outer = depth(&polygons, i) % 2 == 0;
+        let outer = depth(&polygons, i).is_multiple_of(2);
         if (area(&polygons[i]) > 0.0) != outer {
             loops[i] = loops[i].clone().reversed();
         }

@@ -135,7 +135,7 @@ impl Trace {
             (off, mean)
         };
         let found = [spread(0), spread(1)];
-        let axis = usize::from(!(found[0].0 <= found[1].0));
+        let axis = usize::from(found[1].0 < found[0].0 || found[0].0.is_nan());
         (found[axis].0 <= eps).then_some((axis, found[axis].1))
     }
 }

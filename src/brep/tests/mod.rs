@@ -82,8 +82,8 @@ fn check(built: &BuiltFace, edges: &[Edge]) {
         }
     }
     // every point of every edge lies on the image of some trim curve, within the stated deviation
-    let image: Vec<DVec3> = image_of_loops(face, &grid, 400);
-    // sagitta of the polygon: 400 points a curve, curves of at most a quarter turn
+    let image: Vec<DVec3> = image_of_loops(face, &grid, 1200);
+    // sagitta of the polygon: 1200 chords of a whole turn of radius 7
     let sagitta = 1e-4;
     for e in edges.iter().filter(|_| !face.loops.is_empty()) {
         let used = super::edge::EdgeCurve::new(e, true, TOLERANCE).unwrap().unwrap();
