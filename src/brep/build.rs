@@ -27,10 +27,10 @@ pub struct BuiltFace {
 
 /// Builds the carrier and the trim loops of one face.
 ///
-/// `tolerance` is the source's length tolerance in mm. Vertices, lines of constant parameter and
-/// poles within it (kept between `1e-9` and `1e-5` of the face's diagonal) are the same. Fitted trim
-/// curves follow the pre-image of their edge to a hundredth of it, kept between `1e-9` and `1e-7` of
-/// the diagonal: at `1e-7` a face 4000 pixels wide is right to half a pixel when enlarged a thousand
+/// `tolerance` is the source's length tolerance in mm. Vertices and poles within it (kept between
+/// `1e-9` and `1e-5` of the face's diagonal) are the same. Trim curves, fitted or replaced by lines of
+/// constant parameter, follow the pre-image of their edge to a hundredth of it, kept between `1e-9`
+/// and `1e-7` of the diagonal: at `1e-7` a face 4000 pixels wide is right to half a pixel when enlarged a thousand
 /// times, and tighter fits would only repeat the noise of most files.
 ///
 /// # Errors
@@ -46,7 +46,11 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         .fold(Bounds::EMPTY, Bounds::with)
         .diagonal();
     let eps = if size > 0.0 { tolerance.clamp(1e-9 * size, 1e-5 * size) } else { tolerance };
-    let support = Support::new(&face.surface, eps).map_err(|reason| BuildError::Surface { face: face.id, reason })?;
+    let named = |reason| BuildError::Surface { face: face.id, reason };
+    let mut support = Support::new(&face.surface, eps).map_err(named)?;
+    if size > 0.0 {
+        support.target = (1e-2 * tolerance).clamp(1e-9 * size, 1e-7 * size);
+    }
     let limits = Limits { face: face.id, size };
 
     let vertices: Vec<usize> = face
@@ -81,8 +85,7 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         return Err(BuildError::NoArea { face: face.id });
     }
     let carrier = support.carrier(range).map_err(|e| carrier_error(face.id, e))?;
-    let target = (1e-2 * tolerance).clamp(1e-9 * size, 1e-7 * size);
-    let fitter = Fitter { support: &support, carrier: &carrier, target };
+    let fitter = Fitter { support: &support, carrier: &carrier };
     let mut deviation: f64 = 0.0;
     let mut trims = Vec::new();
     // joints are equal up to rounding; sides a period apart too

@@ -135,9 +135,7 @@ impl Strand {
             }),
             part: None,
         };
-        if let Some((axis, value)) = trace.constant(support, support.eps) {
-            let speed = trace.regular().iter().map(|(_, p)| support.speed(*p)[axis]).fold(0.0, f64::max);
-            let value = known_line(support, lines, axis, value, speed);
+        if let Some((axis, value)) = constant_line(support, &trace, lines) {
             strand.start[axis] = value;
             strand.end[axis] = value;
             strand.locked[axis] = true;
@@ -281,21 +279,30 @@ impl Strand {
     }
 }
 
-/// The value of a line already known within `eps`, at the period nearest to `value`; borders of a
-/// spline's domain are known from the start.
-fn known_line(support: &Support, lines: &mut Lines, axis: usize, value: f64, speed: f64) -> f64 {
-    let close = |x: f64| (x - value).abs() * speed <= support.eps;
+/// The line of constant coordinate that a trace follows within the target: its axis and value.
+///
+/// Lines met before on the face keep their number, at the period nearest to this trace. The border of
+/// a spline is met within ten times the target: edges along it are often approximations of it, and
+/// fitting their noise would serve nobody.
+fn constant_line(support: &Support, trace: &Trace, lines: &mut Lines) -> Option<(usize, f64)> {
+    let (axis, value, off) = trace.constant(support)?;
+    let speed = trace.regular().iter().map(|(_, p)| support.speed(*p)[axis]).fold(0.0, f64::max);
+    let close = |x: f64, reach: f64| (x - value).abs() * speed <= reach;
     let near = |x: f64| support.periods[axis].map_or(x, |period| nearest(x, value, period));
-    if let Form::Spline(s) = &support.form
-        && let Some(x) = [s.domain[axis].0, s.domain[axis].1].into_iter().map(near).find(|x| close(*x))
+    let border = 10.0 * support.target;
+    if let (Form::Spline(s), true) = (&support.form, off <= border)
+        && let Some(x) = [s.domain[axis].0, s.domain[axis].1].into_iter().map(near).find(|x| close(*x, border))
     {
-        return x;
+        return Some((axis, x));
     }
-    if let Some(x) = lines.iter().filter(|l| l.0 == axis).map(|l| near(l.1)).find(|x| close(*x)) {
-        return x;
+    if off > support.target {
+        return None;
     }
-    lines.push((axis, value));
-    value
+    let known = lines.iter().filter(|l| l.0 == axis).map(|l| near(l.1)).find(|x| close(*x, support.target));
+    if known.is_none() {
+        lines.push((axis, value));
+    }
+    Some((axis, known.unwrap_or(value)))
 }
 
 /// Fractions at which the edge must be cut because it meets a pole there, with 0 and 1.

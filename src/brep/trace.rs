@@ -124,9 +124,9 @@ impl Trace {
         &self.samples[usize::from(self.at_pole[0])..n - usize::from(self.at_pole[1])]
     }
 
-    /// The coordinate that is the same all along, and its value: `(axis, value)`. Moving every
-    /// sample onto that line moves no point by more than `eps` mm.
-    pub fn constant(&self, support: &Support, eps: f64) -> Option<(usize, f64)> {
+    /// The coordinate that changes least along the trace: its axis, its mean, and how far in mm any
+    /// sample would move to have it exactly. `None` when neither is a number.
+    pub fn constant(&self, support: &Support) -> Option<(usize, f64, f64)> {
         let samples: Vec<(DVec2, DVec2)> = self.regular().iter().map(|(_, p)| (*p, support.speed(*p))).collect();
         let spread = |axis: usize| {
             let mass: f64 = samples.iter().map(|(_, speed)| speed[axis].powi(2)).sum();
@@ -136,6 +136,6 @@ impl Trace {
         };
         let found = [spread(0), spread(1)];
         let axis = usize::from(found[1].0 < found[0].0 || found[0].0.is_nan());
-        (found[axis].0 <= eps).then_some((axis, found[axis].1))
+        found[axis].0.is_finite().then_some((axis, found[axis].1, found[axis].0))
     }
 }

@@ -21,11 +21,11 @@ fn sheet() -> Surface {
     Surface::new((3, 3), knots.clone(), knots, points.collect()).unwrap()
 }
 
-/// The curve `S(c(t))` for a line `c` in the domain, interpolated so finely by quintic Bézier pieces
-/// that it lies on the surface to `1e-9`.
+/// The curve `S(c(t))` for a line `c` in the domain, interpolated so finely by cubic Bézier pieces
+/// that it lies within `4e-8` of the surface.
 fn lifted(s: &Surface, a: DVec2, b: DVec2) -> CurveGeometry {
     let grid = s.patches();
-    let n = 48;
+    let n = 96;
     let at = |t: f64| {
         let p = a.lerp(b, t);
         let jet = grid.jet(p.x, p.y);
