@@ -211,7 +211,7 @@ fn joint(support: &Support, a: &Strand, b: &Strand, onward: DVec2) -> DVec2 {
     let (end, start) = (a.end, b.start + onward);
     let guess = 0.5 * (end + start);
     let vertex: DVec3 = 0.5 * (a.vertices[1] + b.vertices[0]);
-    let mut joint = support.invert(vertex, Some(guess));
+    let mut joint = support.invert(vertex, Some(guess), vertex.distance(support.point(guess)));
     // a vertex far off the surface, or near a pole, says less than the curves do
     let speed = support.speed(guess);
     let apart = |p: DVec2, q: DVec2| ((p - q) * speed).length();

@@ -107,7 +107,7 @@ impl Strand {
         let samples: Vec<_> = edge.nodes().into_iter().map(|s| (s, f.local(edge.point(s)).truncate())).collect();
         let height = |s: &f64| f.local(edge.point(*s)).z.abs();
         let gap = edge.nodes().iter().map(height).fold(0.0, f64::max);
-        let trace = Trace { edge: edge.clone(), samples, at_pole: [false; 2], gap };
+        let trace = Trace::of_samples(edge, samples, gap);
         let straight = matches!(edge.curve, Curve::Line { .. });
         Self {
             start: ends[0],
