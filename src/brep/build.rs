@@ -5,7 +5,8 @@ use super::edge::EdgeCurve;
 use super::fit::Fitter;
 use super::loops::{Limits, Loop};
 use super::nest::{arrange, come_home};
-use super::strand::{Lines, Strand};
+use super::preimage::Lines;
+use super::strand::Strand;
 use super::support::Support;
 use super::{Boundary, BuildError, Edge, FaceGeometry};
 use crate::model::{Bounds, Face, TrimLoop};
@@ -24,6 +25,9 @@ pub struct BuiltFace {
     /// edge that it stands for. It includes what the source's edges lie off their surface.
     pub deviation: f64,
 }
+
+/// Turns of a helical strip that a carrier may cover; only nonsense has more.
+const MAX_TURNS: f64 = 1e4;
 
 /// Builds the carrier and the trim loops of one face.
 ///
@@ -84,6 +88,10 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
     let (loops, range) = come_home(&support, loops);
     if !(0..2).all(|i| range[i].1 > range[i].0 && (range[i].1 - range[i].0).is_finite()) {
         return Err(BuildError::NoArea { face: face.id });
+    }
+    let turns = |i: usize| support.periods[i].map_or(0.0, |period| (range[i].1 - range[i].0) / period);
+    if turns(0).max(turns(1)) > MAX_TURNS {
+        return Err(BuildError::Winding { face: face.id, u: turns(0) as i32, v: turns(1) as i32 });
     }
     let carrier = support.carrier(range).map_err(|e| carrier_error(face.id, e))?;
     let fitter = Fitter { support: &support, carrier: &carrier };

@@ -1,7 +1,8 @@
 //! Which loops are outer borders and which are holes: by containment, not by order or direction.
 
-use super::cut::{cut_open, natural_rims};
+use super::cut::cut_open;
 use super::loops::{Limits, Loop, area};
+use super::rims::natural_rims;
 use super::support::Support;
 use super::{BuildError, law};
 use glam::DVec2;

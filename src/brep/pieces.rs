@@ -92,6 +92,10 @@ impl Pieces {
             }
             turn += 1.0;
         }
+        if out.is_empty() {
+            let ends = [a, b].map(|t| DVec4::from_point(self.jet(t).0, 1.0));
+            out.push(Span { start: a, end: b, piece: Bezier { points: ends.to_vec() } });
+        }
         out
     }
 

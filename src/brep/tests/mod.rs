@@ -1,8 +1,9 @@
 //! Faces small enough to know by heart: areas and distances against closed forms.
 
 mod carriers;
-mod closed;
 mod curved;
+mod damage;
+mod details;
 mod flat;
 mod splines;
 
