@@ -1,4 +1,4 @@
-//! Boundary representation as CAD files state it, and its exact turn into [`Face`]s.
+//! Boundary representation as CAD files state it, and its exact turn into [`Face`](crate::model::Face)s.
 //!
 //! A file says: *this analytic or spline surface, bounded by these edges in space*. The engine draws:
 //! *this rational B-spline surface, trimmed by these loops in its (u, v) domain*. This module is the

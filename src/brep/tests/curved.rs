@@ -146,8 +146,7 @@ fn an_oblique_cut_of_a_cylinder_is_fitted() {
 
 #[test]
 fn a_helical_edge_is_fitted_within_its_bound() {
-    // a strip between two helices given as degree-1 splines would be crude: use points of one
-    // turn of a rational quartic-free fit instead, a cubic interpolating the helix finely
+    // a strip between two helices of one turn, each a cubic spline that interpolates it in 64 pieces
     let f = odd_frame();
     let (radius, pitch, n) = (2.0, 0.5, 64);
     let helix = |lift: f64| {
@@ -270,7 +269,7 @@ fn sphere_caps_zones_and_octants() {
             if !forward {
                 bound = bound.into_iter().rev().map(|(e, d)| (e, !d)).collect();
             }
-            // one pole: the loop closes in one way only, so a wrong direction changes nothing
+            // the sphere is closed: run the other way, the loop bounds the rest of it
             let built = build(sphere.clone(), vec![Boundary::Edges(bound)], &edges);
             let area = 4.0 * PI * r * r * if forward { 1.0 / 8.0 } else { 7.0 / 8.0 };
             assert_area(&built, area, 1e-12);

@@ -1,4 +1,4 @@
-//! Cut and nesting details that whole faces do not show.
+//! Details that whole faces do not show, and loops that cannot be.
 
 use super::super::law::{Axis, Law, sin_cos};
 use super::*;
@@ -31,8 +31,7 @@ fn quarter_turns_are_exact() {
 
 #[test]
 fn a_loop_twice_around_is_named() {
-    // one closed edge that winds twice: a degree-1 spline on a cylinder would leave it, so two
-    // half-height turns of a spiral, joined by a line
+    // two rims of a cylinder in one loop, both the same way around
     let f = Frame::WORLD;
     let mut edges = Vec::new();
     let rim = |z: f64| moved(f, [0.0, 0.0, z]);
