@@ -28,7 +28,7 @@ uint tau_at(ivec2 place, uint axis, int steps) {
     int n = int(count[across]);
     if (at < 0 || at >= n) {
         if (!closed[across]) return 0u;
-        at = (at + n) % n;
+        at = (at + 2 * n) % n; // one patch alone has itself two steps away, and % wants no negative
     }
     place[across] = at;
     uint t = taus[first_item + uint(place.y) * count.x + uint(place.x)];
