@@ -66,12 +66,6 @@ impl Chain {
         c.flip_counts = twin::sort::sort(frame, &c.row_starts, c.row_total, &mut c.flips, &mut c.counters);
         c
     }
-
-    /// Where row `row` lies in the intercepts; `None` when it has no room.
-    pub(super) fn row(&self, row: usize) -> Option<std::ops::Range<usize>> {
-        let end = self.row_starts.get(row + 1).copied().unwrap_or(self.row_total) as usize;
-        (end <= self.intercepts.len()).then(|| self.row_starts[row] as usize..end)
-    }
 }
 
 /// Prefix sums with the total behind them.

@@ -55,9 +55,14 @@ fn compare(gpu: &Gpu, given: &Case, chain: &Chain) -> Result<(), Mismatch> {
 
 /// The rows that have room, each in order, and nothing else.
 fn rows_sorted(chain: &Chain, mut intercepts: Vec<u32>) -> Vec<u32> {
-    let rows: Vec<_> = (0..chain.row_starts.len()).map_while(|row| chain.row(row)).collect();
-    rows.iter().for_each(|row| intercepts[row.clone()].sort_unstable());
-    intercepts.truncate(rows.last().map_or(0, |row| row.end));
+    let room = intercepts.len();
+    let ends = chain.row_starts.iter().skip(1).chain([&chain.row_total]).map(|&end| end as usize);
+    let mut used = 0;
+    for (&start, end) in chain.row_starts.iter().zip(ends).take_while(|&(_, end)| end <= room) {
+        intercepts[start as usize..end].sort_unstable();
+        used = end;
+    }
+    intercepts.truncate(used);
     intercepts
 }
 

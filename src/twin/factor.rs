@@ -23,7 +23,8 @@
 //!   |e| ≤ E = (|S_uu| / tau_u² + 2 |S_uv| / (tau_u tau_v) + |S_vv| / tau_v²) / 8
 //! ```
 //!
-//! for every triangle in such a rectangle, of either diagonal and along sides of another factor alike.
+//! for every triangle in such a rectangle, of either diagonal; pass [`split`](super::split) sees to it that
+//! those along sides of another factor are in one too.
 //!
 //! **On the screen.** View coordinates, depth `z`, `focal` pixels per unit slope. The pixels of `T` and of
 //! `S` are apart by `focal |T_xy / T_z - S_xy / S_z|`; with `T = S + e` this is either of

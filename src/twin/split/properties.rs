@@ -63,7 +63,8 @@ fn unpack(packed: u32) -> [u32; 2] {
     [packed & 0xffff, packed >> 16]
 }
 
-/// Both patches at a side give it the same number of segments, at least as many as either asks for.
+/// Both patches at a side give it the same number of segments, at least as many as either asks for; a
+/// side with an unseen patch is the drawn one's own.
 #[test]
 fn shared_sides_agree() {
     let mut random = Random::new(5);
@@ -75,17 +76,21 @@ fn shared_sides_agree() {
             for (axis, edges) in [|f: &Factors| f.edge_u, |f: &Factors| f.edge_v].into_iter().enumerate() {
                 let Some(next) = g.next(n, 1 - axis) else { continue };
                 let (high, low) = (unpack(edges(&g.out.factors[n]))[1], unpack(edges(&g.out.factors[next]))[0]);
+                if g.taus[n] == 0 || g.taus[next] == 0 {
+                    continue;
+                }
                 assert_eq!(high, low, "patches {n}, {next} of {:?}: {:x?}", g.face, g.taus);
                 assert!(high >= g.tau(n, axis).max(g.tau(next, axis)));
                 shared += 1;
             }
         }
     }
-    assert!(shared > 50_000, "{shared} sides");
+    assert!(shared > 20_000, "{shared} sides");
 }
 
-/// Powers of two; every side and the interior divide into them, within the hardware's factor; as many
-/// segments as the patch asks for everywhere; counts that tell what will be drawn.
+/// Splits are powers of two, and so are factors that differ; every side and the interior divide into
+/// the splits, within the hardware's factor; as many segments as the patch asks for everywhere; counts
+/// that tell what will be drawn.
 #[test]
 fn sub_patches_are_within_the_hardware_s_factor() {
     let mut random = Random::new(6);
@@ -102,7 +107,10 @@ fn sub_patches_are_within_the_hardware_s_factor() {
                     most[axis] = most[axis].max(segments / splits);
                     assert!(segments >= g.tau(n, axis));
                 }
-                assert!(inner[axis] >= 1 && inner[axis] < g.tau(n, axis).max(1) + splits, "no finer than asked");
+                assert!(inner[axis] >= 1 && inner[axis] < 2 * g.tau(n, axis).max(splits), "no finer than asked");
+                let even = [edges[0], edges[1]] == [inner[axis]; 2];
+                let powers = [edges[0], edges[1], inner[axis]].iter().all(|x| x.is_power_of_two());
+                assert!(even || powers, "a side of another factor is joined by powers of two");
             }
             let total = |counts: &[u32]| counts[n] + counts[g.taus.len() + n];
             let drawn = if g.taus[n] == 0 { 0 } else { splits[0] * splits[1] };
