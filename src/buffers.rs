@@ -48,6 +48,10 @@ pub(crate) struct Capacities {
     pub doubts: u32,
 }
 
+/// Rows that passes `cross` and `sort` can be dispatched for: 65,535 workgroups of 128, which every
+/// device takes. A view that wants more is never complete.
+const MOST_ROWS: u32 = 65535 * 128;
+
 /// Bits of [`Counters::failed`], as in `scene.glsl`.
 const FAILED_DRAWS: u32 = 2;
 
@@ -58,7 +62,7 @@ impl Capacities {
         Self {
             sub_patches: counts.items.saturating_add(256),
             draws: 64,
-            rows: trimmed * (1 << 16).max(2 * counts.strips),
+            rows: trimmed * (1 << 16).max(2 * counts.strips).min(MOST_ROWS),
             intercepts: trimmed * (1 << 18).max(4 * counts.strips),
             doubts: trimmed * (1 << 14),
         }
@@ -74,7 +78,7 @@ impl Capacities {
         Some(Self {
             sub_patches: room(self.sub_patches, c.plain.saturating_add(c.trimmed)),
             draws: if c.failed & FAILED_DRAWS != 0 { self.draws.saturating_mul(4) } else { self.draws },
-            rows: room(self.rows, c.wanted_rows),
+            rows: room(self.rows, c.wanted_rows).min(MOST_ROWS),
             intercepts: room(self.intercepts, c.intercepts),
             doubts: room(self.doubts, c.doubts),
         })
