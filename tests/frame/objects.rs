@@ -78,7 +78,7 @@ fn a_replaced_model_leaves_nothing_behind() {
     let (mut renderer, before) = objects(&shapes::wave(), Outputs::default());
     renderer.upload(&shapes::cube()).unwrap();
     let camera = perspective(&shapes::wave(), (64, 48));
-    let mut draw = |renderer: &mut HeadlessRenderer| {
+    let draw = |renderer: &mut HeadlessRenderer| {
         renderer.render(&camera, &FrameSettings::default(), Outputs::default()).unwrap();
     };
     draw(&mut renderer);

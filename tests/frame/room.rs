@@ -50,7 +50,10 @@ fn more_sub_patches_than_the_first_list_holds() {
     let mut model = shapes::wave();
     let tall = |i: u32| {
         let place = DVec3::new(0.1 * f64::from(i), 0.0, 0.0);
-        shapes::placed(DAffine3::from_scale_rotation_translation(DVec3::new(1.0, 1.0, 20.0), DQuat::IDENTITY, place), None)
+        shapes::placed(
+            DAffine3::from_scale_rotation_translation(DVec3::new(1.0, 1.0, 20.0), DQuat::IDENTITY, place),
+            None,
+        )
     };
     model.instances = (0..6).map(tall).collect();
     let above = Camera::framing(model.bounds(), DVec3::Z, DVec3::Y, 0.6, (320, 240));

@@ -77,7 +77,8 @@ pub fn torus() -> Model {
 /// The mantle of a cylinder, with the loop up one side of the seam and down the other.
 pub fn cylinder() -> Model {
     let (radius, height) = CYLINDER;
-    let surface = revolved(1, vec![0.0, 0.0, height, height], &[(radius, 0.0, 1.0), (radius, height, 1.0)], DVec3::ZERO);
+    let surface =
+        revolved(1, vec![0.0, 0.0, height, height], &[(radius, 0.0, 1.0), (radius, height, 1.0)], DVec3::ZERO);
     let seam = rectangle(DVec2::ZERO, DVec2::new(4.0 * FRAC_PI_2, height));
     one("cylinder", false, vec![Face { loops: vec![seam], ..face(1, SurfaceKind::Cylinder, surface) }])
 }
