@@ -76,10 +76,6 @@ pub(crate) struct Capacities {
     pub doubts: u32,
 }
 
-/// Rows that passes `cross` and `sort` can be dispatched for: 65,535 workgroups of 128, which every
-/// device takes. A view that wants more is never complete.
-const MOST_ROWS: u32 = 65535 * 128;
-
 /// Bits of [`Counters::failed`], as in `scene.glsl`.
 const FAILED_DRAWS: u32 = 2;
 
