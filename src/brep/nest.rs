@@ -10,17 +10,19 @@ use glam::DVec2;
 /// Unrolled loops of a face, outer ones counter-clockwise and holes clockwise, without winding.
 ///
 /// The given directions are read in one case only: on a closed surface whose loops can all be
-/// contracted, they say whether the face is inside or outside of them.
+/// contracted, they say whether the face is inside or outside of them. A loop that runs along an edge
+/// twice, once each way, has the face on both sides of it and so needs no direction (and real files
+/// get it wrong there): the face is what it goes around.
 pub(super) fn arrange(
     support: &Support,
     loops: Vec<Loop>,
     vertices: &[usize],
     limits: Limits,
 ) -> Result<Vec<Loop>, BuildError> {
-    let contractible = loops.iter().all(|l| l.winding == [0, 0]);
+    let told_by_direction = loops.iter().all(|l| l.winding == [0, 0] && !has_seam(l));
     let mut loops = cut_open(support, loops, vertices, limits)?;
     gather(support, &mut loops);
-    if contractible && support.is_closed() && is_outside(support, &loops) {
+    if told_by_direction && support.is_closed() && is_outside(support, &loops) {
         let rims = natural_rims(support, &loops).ok_or(BuildError::Tangled { face: limits.face })?;
         loops.extend(rims);
         loops = cut_open(support, loops, vertices, limits)?;
@@ -58,6 +60,13 @@ fn gather(support: &Support, loops: &mut [Loop]) {
             loops[i] = loops[i].clone().shifted(by);
         }
     }
+}
+
+/// Some edge is used twice.
+fn has_seam(l: &Loop) -> bool {
+    let mut edges: Vec<u32> = l.strands.iter().filter_map(|s| Some(s.part.as_ref()?.trace.edge.id)).collect();
+    edges.sort_unstable();
+    edges.windows(2).any(|w| w[0] == w[1])
 }
 
 /// Every outermost loop runs clockwise as given: the face is what they leave.
