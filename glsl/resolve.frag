@@ -3,10 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 // Pass `resolve`: the exact surface at the pixel's centre, then light.
 //
-// The visibility image holds (u, v) of the *tessellation* under the pixel. Newton's method moves it
-// to the point of the exact surface that projects to the pixel's centre:
-//     F(u, v) = projection(S(u, v)) - pixel = 0,   step = -J^-1 F,
-// kept only while the distance to the pixel shrinks (a silhouette has no such point).
+// The visibility image holds (u, v) of the *tessellation* under the pixel; refine.glsl moves it to
+// the point of the exact surface that projects to the pixel's centre.
 #include "scene.glsl"
 #include "view.glsl"
 
@@ -18,11 +16,13 @@ layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_in
 layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
 layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
-layout(scalar, binding = 6) readonly buffer Points { float points[]; };
+layout(binding = 6) uniform samplerBuffer points;
 layout(scalar, binding = 7) readonly buffer Instances { Instance instances[]; };
 layout(binding = 8, rg32ui) readonly uniform uimage2D visibility;
 
 #include "patch.glsl"
+#include "refine.glsl"
+#include "visible.glsl"
 #include "shade.glsl"
 
 layout(location = 0) out vec4 out_colour;
@@ -30,48 +30,6 @@ layout(location = 1) out float out_depth;
 layout(location = 2) out uint out_face;
 layout(location = 3) out vec2 out_uv;
 layout(location = 4) out vec4 out_normal;
-
-const uint NEWTON_STEPS = 4u;
-const float MAX_STEP = 0.25;      // of the patch
-const float CLOSE_ENOUGH = 1e-3;  // pixels
-
-struct Sample {
-    vec2 uv;
-    Jet jet;
-    vec4 q;      // homogeneous pixel
-    vec2 miss;   // pixels
-};
-
-Sample sample_at(Patch patch_, View view, vec2 uv, vec2 pixel) {
-    Sample s;
-    s.uv = uv;
-    s.jet = patch_jet(patch_.first, patch_.shape, uv);
-    s.q = to_pixel(view, vec4(s.jet.point, 1.0));
-    s.miss = s.q.xy / s.q.w - pixel;
-    return s;
-}
-
-Sample refine(Patch patch_, View view, vec2 uv, vec2 pixel) {
-    Sample best = sample_at(patch_, view, uv, pixel);
-    for (uint i = 0u; i < NEWTON_STEPS; ++i) {
-        float error = dot(best.miss, best.miss);
-        if (error < CLOSE_ENOUGH * CLOSE_ENOUGH) break;
-        vec4 qu = to_pixel(view, vec4(best.jet.du, 0.0));
-        vec4 qv = to_pixel(view, vec4(best.jet.dv, 0.0));
-        vec2 p = best.q.xy / best.q.w;
-        vec2 pu = (qu.xy - p * qu.w) / best.q.w;
-        vec2 pv = (qv.xy - p * qv.w) / best.q.w;
-        float det = pu.x * pv.y - pu.y * pv.x;
-        if (abs(det) < 1e-12) break;
-        vec2 step_ = vec2(best.miss.x * pv.y - best.miss.y * pv.x, pu.x * best.miss.y - pu.y * best.miss.x) / det;
-        float largest = max(abs(step_.x), abs(step_.y));
-        if (largest > MAX_STEP) step_ *= MAX_STEP / largest;
-        Sample next = sample_at(patch_, view, best.uv - step_, pixel);
-        if (!(dot(next.miss, next.miss) < error)) break;
-        best = next;
-    }
-    return best;
-}
 
 // S_u x S_v, or where it vanishes (pole, collapsed side) its limit from the patch's inside.
 vec3 normal_of(Patch patch_, Jet jet, vec2 uv) {
@@ -86,7 +44,7 @@ vec3 normal_of(Patch patch_, Jet jet, vec2 uv) {
 
 void main() {
     uvec2 seen = imageLoad(visibility, ivec2(gl_FragCoord.xy)).xy;
-    if (seen.x == 0u) {
+    if (sees_nothing(seen.x)) {
         if (frame.background.a < 0.0) discard; // the host keeps its picture
         out_colour = encode(frame.background, frame.encode_srgb);
         if (HAS_AOVS) {
@@ -98,14 +56,14 @@ void main() {
         gl_FragDepth = 0.0;
         return;
     }
-    uint item = seen.x - 1u;
+    uint item = seen_item(seen.x);
     FaceInstance fi = face_instances[item_face_instance[item]];
     Face face = faces[fi.face];
     Patch patch_ = patches[face.first_patch + item - fi.first_item];
     Instance instance = instances[fi.instance];
     View view = views[fi.instance];
     vec2 pixel = gl_FragCoord.xy;
-    Sample s = refine(patch_, view, unpackUnorm2x16(seen.y) * 3.0 - 1.0, pixel);
+    Sample s = refine(patch_, view, unpack_uv(seen.y), pixel);
     vec3 n = normalize(instance.normal * normal_of(patch_, s.jet, s.uv));
     bool flip = ((face.flags & FACE_SAME_SENSE) == 0u) != (instance.mirrored != 0u);
     if (flip) n = -n;

@@ -13,7 +13,7 @@ layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_in
 layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
 layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
-layout(scalar, binding = 6) readonly buffer Points { float points[]; };
+layout(binding = 6) uniform samplerBuffer points;
 layout(scalar, binding = 7) readonly buffer FactorsBuffer { Factors factors[]; };
 layout(scalar, binding = 8) readonly buffer SubPatches { SubPatch sub_patches[]; };
 

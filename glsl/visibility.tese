@@ -16,7 +16,7 @@ layout(quads, equal_spacing, ccw) in;
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
-layout(scalar, binding = 6) readonly buffer Points { float points[]; };
+layout(binding = 6) uniform samplerBuffer points;
 
 #include "patch.glsl"
 

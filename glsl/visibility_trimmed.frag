@@ -4,10 +4,16 @@
 // Pass `visibility`, trimmed patches: the same after the trim test.
 //
 // Two faces that meet along an edge are trimmed apart from each other, each with its own rounding;
-// a pixel in the gap would show what lies behind. So a face that looks at the viewer also takes the
-// pixels of a ring, ring_px wide, outside its border, but pushed back in depth: a ring never covers
-// a face that truly is there. Faces of a solid that look away have no ring and stand back too, so
-// that none peeps out behind a silhouette.
+// a pixel in the gap would show what lies behind. Such pixels must be found, then mended by pass
+// `heal`, which looks closer. They are found where something is seen that no pixel should show:
+//
+//   * a face of a solid from behind: the gap looks into the solid. Its own border is widened by a
+//     ring, so that the faces behind leave no gap themselves, and it wins over a face of another
+//     solid that touches it.
+//   * of an open shell, the ring, ring_px wide, around each face.
+//
+// The ring of an open shell continues the surface, but never nearer to the viewer than the border
+// that it continues: a floor seen from a low angle must not flow over what stands before its edge.
 #include "scene.glsl"
 
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
@@ -22,11 +28,19 @@ layout(scalar, binding = 12) readonly buffer RowCounts { uint row_counts[]; };
 layout(scalar, binding = 13) readonly buffer Flips { float flips[]; };
 
 #include "table.glsl"
+#include "ring.glsl"
+#include "visible.glsl"
 
 layout(location = 0) in vec2 uv;
 layout(location = 1) flat in uint item;
 layout(location = 0) out uvec2 visible;
 layout(depth_less) out float gl_FragDepth;
+
+// Where two solids touch, the back of one must win over the front of the other. Each is drawn up to
+// deviation_px off, so the front stands back by twice that in space, and at least by the rounding of
+// interpolated depth.
+const float STAND_BACK_PX = 0.01;
+const float STAND_BACK = 2e-6;
 
 void main() {
     FaceInstance fi = face_instances[item_face_instance[item]];
@@ -35,28 +49,33 @@ void main() {
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
     vec2 dx = dFdx(uv) * patch_.domain.zw;
     vec2 dy = dFdy(uv) * patch_.domain.zw;
-    float slope = abs(dFdx(gl_FragCoord.z)) + abs(dFdy(gl_FragCoord.z));
+    vec2 slope = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z));
     float strips = float(face.strip_count);
     // (u, v) runs against the screen's (right, down) where the normal S_u x S_v looks at the viewer
     bool towards = (dx.x * dy.y - dx.y * dy.x < 0.0) == ((face.flags & FACE_SAME_SENSE) != 0u);
     if (instances[fi.instance].mirrored != 0u) towards = !towards;
     bool solid = (face.flags & FACE_SOLID) != 0u;
-    float back = solid && !towards ? 1.0 : 0.0;
-    if (!table_inside(fi.first_strip, strips, at)) {
-        if (solid && !towards) discard;
-        float r = frame.ring_px;
-        float d = r * 0.70710678;
-        bool near_border = table_inside(fi.first_strip, strips, at + r * dx) ||
-                           table_inside(fi.first_strip, strips, at - r * dx) ||
-                           table_inside(fi.first_strip, strips, at + r * dy) ||
-                           table_inside(fi.first_strip, strips, at - r * dy) ||
-                           table_inside(fi.first_strip, strips, at + d * (dx + dy)) ||
-                           table_inside(fi.first_strip, strips, at - d * (dx + dy)) ||
-                           table_inside(fi.first_strip, strips, at + d * (dx - dy)) ||
-                           table_inside(fi.first_strip, strips, at - d * (dx - dy));
-        if (!near_border) discard;
-        back = 2.0 * r;
+    bool doubtful = solid && !towards;
+    bool inside = table_inside(fi.first_strip, strips, at);
+    if (solid && towards && !inside) discard;
+    float border_depth = -1.0; // nearest to the viewer among the ring's points inside the face
+    for (uint k = 0u; !inside && k < RING_POINTS; ++k) {
+        vec2 step_ = frame.ring_px * RING[k];
+        if (table_inside(fi.first_strip, strips, at + step_.x * dx + step_.y * dy)) {
+            border_depth = max(border_depth, gl_FragCoord.z + dot(step_, slope));
+        }
     }
-    visible = uvec2(item + 1u, packUnorm2x16((uv + 1.0) / 3.0));
-    gl_FragDepth = gl_FragCoord.z - back * slope;
+    if (!inside && border_depth < 0.0) discard;
+    float z = gl_FragCoord.z;
+    float stand_back = 0.0;
+    if (!doubtful) {
+        float px = max(STAND_BACK_PX, patch_.bend == vec3(0.0) ? 0.0 : 2.0 * frame.deviation_px);
+        // depth per unit along the view axis, times the size of a pixel there
+        float range = frame.far - frame.near;
+        float unit = frame.perspective != 0u ? frame.near * frame.far * gl_FragCoord.w / range : 1.0 / range;
+        stand_back = px * (abs(slope.x) + abs(slope.y) + unit / frame.focal) + STAND_BACK * z;
+    }
+    doubtful = doubtful || !inside;
+    visible = uvec2(item + 1u | (doubtful ? DOUBTFUL : 0u), pack_uv(uv));
+    gl_FragDepth = (inside || solid ? z : min(z, border_depth)) - stand_back;
 }

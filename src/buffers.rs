@@ -3,7 +3,7 @@
 //! ```text
 //!   by the scene     taus, factors, counts and starts per item; per strip, face and curve if trimmed
 //!   by the picture   visibility, depth
-//!   by the view      sub-patches, draws, rows, intercepts: a pass that runs out says so in
+//!   by the view      sub-patches, draws, rows, intercepts, doubts: a pass that runs out says so in
 //!                    Counters.failed, and the next frame gets what it would have needed
 //! ```
 
@@ -45,6 +45,7 @@ pub(crate) struct Capacities {
     pub draws: u32,
     pub rows: u32,
     pub intercepts: u32,
+    pub doubts: u32,
 }
 
 /// Rows that passes `cross` and `sort` can be dispatched for: 65,535 workgroups of 128, which every
@@ -63,6 +64,7 @@ impl Capacities {
             draws: 64,
             rows: trimmed * (1 << 16).max(2 * counts.strips).min(MOST_ROWS),
             intercepts: trimmed * (1 << 18).max(4 * counts.strips),
+            doubts: trimmed * (1 << 14),
         }
     }
 
@@ -78,6 +80,7 @@ impl Capacities {
             draws: if c.failed & FAILED_DRAWS != 0 { self.draws.saturating_mul(4) } else { self.draws },
             rows: room(self.rows, c.wanted_rows).min(MOST_ROWS),
             intercepts: room(self.intercepts, c.intercepts),
+            doubts: room(self.doubts, c.doubts),
         })
     }
 }
@@ -114,6 +117,7 @@ pub(crate) struct TrimBuffers {
     pub row_starts: Buffer,
     pub row_total: Buffer,
     pub intercepts: Buffer,
+    pub doubts: Buffer,
 }
 
 impl Buffers {
@@ -157,11 +161,12 @@ impl Buffers {
                         line_starts: words("trim line starts", counts.strips + 1)?,
                         segment_counts: words("trim segment counts", counts.curves)?,
                         segment_starts: words("trim segment starts", counts.curves + 1)?,
-                        dispatches: indirect("trim dispatches", 3 * size_of::<[u32; 3]>() as u64)?,
+                        dispatches: indirect("trim dispatches", 4 * size_of::<[u32; 3]>() as u64)?,
                         row_counts: words("trim row counts", capacities.rows)?,
                         row_starts: words("trim row starts", capacities.rows)?,
                         row_total: words("trim row total", 1)?,
                         intercepts: words("trim intercepts", capacities.intercepts)?,
+                        doubts: words("trim doubts", capacities.doubts)?,
                     })
                 })
                 .transpose()?,

@@ -15,6 +15,8 @@
 //!                      ▼
 //!                 visibility     tessellate, trim: item and (u, v) per pixel
 //!                      ▼
+//!                    heal        pixels that look through a gap between trimmed faces
+//!                      ▼
 //!                  resolve       exact point and normal per pixel, light ──▶ the host's targets
 //! ```
 
@@ -23,7 +25,7 @@ use crate::buffers::{Buffers, TrimBuffers};
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Timestamps, barrier};
 use crate::passes::visibility::Kinds;
 use crate::passes::{
-    bound, cross, density, emit, lines, reset, resolve, scan, segments, sizes, sort, split, visibility,
+    bound, cross, density, emit, heal, lines, reset, resolve, scan, segments, sizes, sort, split, visibility,
 };
 use crate::scene::{Scene, SceneData, Trims};
 use std::mem::offset_of;
@@ -48,6 +50,7 @@ struct TrimPasses {
     sizes: sizes::Sizes,
     cross: cross::Cross,
     sort: sort::Sort,
+    heal: heal::Heal,
 }
 
 impl Passes {
@@ -61,6 +64,7 @@ impl Passes {
                 sizes: sizes::Sizes::new(device)?,
                 cross: cross::Cross::new(device)?,
                 sort: sort::Sort::new(device)?,
+                heal: heal::Heal::new(device, data.has_rational)?,
             })
         };
         Ok(Self {
@@ -104,6 +108,12 @@ impl Frame<'_> {
             times.scope(cmd, "trim table", || self.trim_table(cmd, passes, trims, buffers));
         }
         times.drawing(cmd, "visibility", || self.visibility(cmd));
+        let mut drawn = Access::COLOUR_WRITE;
+        if let (Some(passes), Some(buffers)) = (&self.passes.trim, &self.buffers.trim) {
+            times.scope(cmd, "heal", || self.heal(cmd, passes, buffers));
+            drawn = Access::COMPUTE_WRITE;
+        }
+        barrier::images(cmd, &[(&self.buffers.visibility, drawn, Access::FRAGMENT_READ)]);
         times.scope(cmd, "resolve", || self.resolve(cmd));
         let b = self.buffers;
         barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, COPIED)]);
@@ -305,10 +315,10 @@ impl Frame<'_> {
         barrier::buffers(
             cmd,
             &[
-                (&t.line_starts, w, Access::FRAGMENT_READ),
-                (&t.row_starts, w, Access::FRAGMENT_READ),
-                (&t.row_counts, w, Access::FRAGMENT_READ),
-                (&t.intercepts, w, Access::FRAGMENT_READ),
+                (&t.line_starts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
+                (&t.row_starts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
+                (&t.row_counts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
+                (&t.intercepts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
             ],
         );
     }
@@ -353,7 +363,42 @@ impl Frame<'_> {
             counters: &b.counters,
         };
         self.passes.visibility.record(cmd, &bindings, (&b.visibility, &b.depth), b.capacities.draws);
-        barrier::images(cmd, &[(&b.visibility, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);
+    }
+
+    /// Pixels that look through a gap between faces get the face that belongs there.
+    fn heal(&self, cmd: &Commands<'_>, p: &TrimPasses, t: &TrimBuffers) {
+        let (s, b) = (self.scene, self.buffers);
+        let (w, r) = WRITE_TO_READ;
+        barrier::images(cmd, &[(&b.visibility, Access::COLOUR_WRITE, Access::COMPUTE_READ)]);
+        barrier::buffers(cmd, &[(&b.counters, Access::INDIRECT_READ, w), (&t.dispatches, Access::INDIRECT_READ, w)]);
+        let doubts = heal::DoubtBindings {
+            frame: self.constants,
+            visibility: &b.visibility,
+            doubts: &t.doubts,
+            dispatches: &t.dispatches,
+            counters: &b.counters,
+        };
+        p.heal.find(cmd, &doubts);
+        barrier::images(cmd, &[(&b.visibility, r, w)]);
+        barrier::buffers(cmd, &[(&t.doubts, w, r), (&b.counters, w, r), (&t.dispatches, w, Access::INDIRECT_READ)]);
+        let heal = heal::Bindings {
+            frame: self.constants,
+            views: self.views,
+            face_instances: &s.face_instances,
+            faces: &s.faces,
+            patches: &s.patches,
+            items: &s.items,
+            points: &s.points,
+            line_starts: &t.line_starts,
+            row_starts: &t.row_starts,
+            row_counts: &t.row_counts,
+            flips: &t.intercepts,
+            visibility: &b.visibility,
+            doubts: &t.doubts,
+            counters: &b.counters,
+            dispatches: &t.dispatches,
+        };
+        p.heal.record(cmd, &heal);
     }
 
     fn resolve(&self, cmd: &Commands<'_>) {

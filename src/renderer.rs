@@ -390,6 +390,7 @@ fn constants(device: &Device, loaded: &Loaded, input: &FrameInput<'_>, formats: 
         draw_capacity: room.draws,
         row_capacity: room.rows,
         intercept_capacity: room.intercepts,
+        doubt_capacity: room.doubts,
         right: right.as_vec3().to_array(),
         up: up.as_vec3().to_array(),
         forward: forward.as_vec3().to_array(),

@@ -5,9 +5,9 @@ root=$(cd "$(dirname "${BASH_SOURCE[0]}")/.." && pwd)
 cd "$root"
 PATH=$PATH:${CARGO_HOME:-$HOME/.cargo}/bin
 
-# How shaderc links on Debian is said in tools/shaderc.toml.
-cargo=(cargo --config tools/shaderc.toml)
-features=(--features cli,headless,compile-shaders)
+# After the subcommand: clippy and nextest are programs of their own, and would not see what stands before it.
+linking=(--config tools/shaderc.toml) # how shaderc links on Debian
+flags=("${linking[@]}" --features cli,headless,compile-shaders)
 
 # say TEXT: a heading between the outputs of the steps.
 say() { printf '\n== %s\n' "$*" >&2; }

@@ -1,6 +1,7 @@
 // Evaluation of a rational Bézier patch. Twin of src/spline/patch.rs.
 //
-// Needs a buffer `float points[]` and, as specialisation constant 0, whether any patch of the scene
+// Needs `samplerBuffer points` (one texel a homogeneous control point; weight 1 where a patch is
+// polynomial) and, as specialisation constant 0, whether any patch of the scene
 // is rational. Exact at the corners and along the sides: at u = 1 the row's last control point is
 // returned bit for bit, so neighbouring patches meet without a crack.
 #ifndef PATCH_GLSL
@@ -14,17 +15,12 @@ struct Jet {
     vec3 dv;
 };
 
-vec4 control(uint first, uint index, bool rational) {
-    uint at = first + index * (rational ? 4u : 3u);
-    return vec4(points[at], points[at + 1u], points[at + 2u], rational ? points[at + 3u] : 1.0);
-}
-
 // Value and slope of row `j`: Horner's scheme on the first n and on the last n control points.
-void patch_row(uint first, uint n, uint j, bool rational, float u, out vec4 value, out vec4 slope) {
-    uint at = j * (n + 1u);
+void patch_row(uint first, uint n, uint j, float u, out vec4 value, out vec4 slope) {
+    int at = int(first + j * (n + 1u));
     float s = 1.0 - u;
-    vec4 p = control(first, at, rational);
-    vec4 q = control(first, at + 1u, rational);
+    vec4 p = texelFetch(points, at);
+    vec4 q = texelFetch(points, at + 1);
     vec4 a = p;
     vec4 b = q;
     if (n > 1u) {
@@ -35,14 +31,14 @@ void patch_row(uint first, uint n, uint j, bool rational, float u, out vec4 valu
         b *= s;
         for (uint i = 1u; i < m; ++i) {
             p = q;
-            q = control(first, at + i + 1u, rational);
+            q = texelFetch(points, at + int(i) + 1);
             f *= u;
             c *= float(m - i + 1u) / float(i);
             a = (a + p * (f * c)) * s;
             b = (b + q * (f * c)) * s;
         }
         p = q;
-        q = control(first, at + n, rational);
+        q = texelFetch(points, at + int(n));
         f *= u;
         a += p * f;
         b += q * f;
@@ -59,8 +55,8 @@ Jet patch_jet(uint first, uint shape, vec2 uv) {
     float v = uv.y;
     float s = 1.0 - v;
     vec4 p, ps, q, qs;
-    patch_row(first, n, 0u, rational, uv.x, p, ps);
-    patch_row(first, n, 1u, rational, uv.x, q, qs);
+    patch_row(first, n, 0u, uv.x, p, ps);
+    patch_row(first, n, 1u, uv.x, q, qs);
     vec4 a = p;
     vec4 b = q;
     vec4 slope;
@@ -80,7 +76,7 @@ Jet patch_jet(uint first, uint shape, vec2 uv) {
             d *= float(k - j + 1u) / float(j);
             slope = (slope + qs * (f * d)) * s;
             p = q;
-            patch_row(first, n, j + 1u, rational, uv.x, q, qs);
+            patch_row(first, n, j + 1u, uv.x, q, qs);
             c *= float(m - j + 1u) / float(j);
             a = (a + p * (f * c)) * s;
             b = (b + q * (f * c)) * s;
@@ -89,7 +85,7 @@ Jet patch_jet(uint first, uint shape, vec2 uv) {
         d *= float(k - m + 1u) / float(m);
         slope = (slope + qs * (f * d)) * s;
         p = q;
-        patch_row(first, n, k, rational, uv.x, q, qs);
+        patch_row(first, n, k, uv.x, q, qs);
         a += p * f;
         b += q * f;
         slope += qs * (f * v);

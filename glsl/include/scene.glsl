@@ -23,7 +23,7 @@ const uint BORDER_V1 = 8u;
 
 struct Patch {
     vec3 box_min;    // part coordinates, relative to the part's origin
-    uint first;      // index of the first float in points
+    uint first;      // index of the first control point in points
     vec3 box_max;
     uint shape;
     vec4 domain;     // u0, v0, u1 - u0, v1 - v0 within the face
@@ -105,6 +105,7 @@ struct Frame {
     uint draw_capacity;
     uint row_capacity;
     uint intercept_capacity;
+    uint doubt_capacity;
     vec3 right;         // camera axes in model space
     vec3 up;
     vec3 forward;
@@ -121,6 +122,7 @@ struct Counters {
     uint segments;
     uint wanted_rows;  // rows before they were cut to the capacity
     uint intercepts;
+    uint doubts;       // pixels for pass heal
     uint clamps;       // factors or densities above their hard limits
     uint failed;       // one bit a buffer that was too small
 };
@@ -129,6 +131,7 @@ const uint FAILED_SUB_PATCHES = 1u;
 const uint FAILED_DRAWS = 2u;
 const uint FAILED_ROWS = 4u;
 const uint FAILED_INTERCEPTS = 8u;
+const uint FAILED_DOUBTS = 16u;
 
 // Tessellation of one item, decided by the split pass. Totals over the whole patch.
 struct Factors {

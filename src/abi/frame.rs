@@ -36,6 +36,7 @@ pub struct Frame {
     pub draw_capacity: u32,
     pub row_capacity: u32,
     pub intercept_capacity: u32,
+    pub doubt_capacity: u32,
     pub right: [f32; 3],
     pub up: [f32; 3],
     pub forward: [f32; 3],
@@ -54,6 +55,7 @@ pub struct Counters {
     pub segments: u32,
     pub wanted_rows: u32,
     pub intercepts: u32,
+    pub doubts: u32,
     pub clamps: u32,
     pub failed: u32,
 }

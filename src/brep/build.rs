@@ -1,68 +1,200 @@
-//! Stand-in for the conversion of faces; replaced when the branches are joined.
+//! From a face as files state it to a face that can be drawn.
 
-use super::{Boundary, Edge, FaceGeometry, SurfaceGeometry};
-use crate::model::{Face, SurfaceKind};
-use crate::spline::{SplineError, Surface};
-use glam::DVec3;
+use super::carrier::CarrierError;
+use super::edge::EdgeCurve;
+use super::fit::Fitter;
+use super::loops::{Limits, Loop};
+use super::nest::{arrange, come_home};
+use super::strand::{Lines, Strand};
+use super::support::Support;
+use super::{Boundary, BuildError, Edge, FaceGeometry};
+use crate::model::{Bounds, Face, TrimLoop};
+use crate::spline::{Bezier, Control};
+use glam::{DVec2, DVec3};
+use std::rc::Rc;
 
-/// A face ready to draw.
+/// A face, and what its making found.
 #[derive(Clone, Debug)]
 pub struct BuiltFace {
-    /// The face.
+    /// The face; its carrier is tight around its loops (a B-spline is kept whole).
     pub face: Face,
-    /// Healed things, worded as warnings.
+    /// What had to be healed or is doubtful, with lengths in mm.
     pub notes: Vec<String>,
-    /// Millimetres, largest 3-D distance of a derived trim curve from its edge.
+    /// Largest measured distance in mm between a trim curve, mapped through the surface, and the
+    /// edge that it stands for. It includes what the source's edges lie off their surface.
     pub deviation: f64,
 }
 
-/// Why a face cannot be built.
-#[derive(Clone, Debug, thiserror::Error)]
-#[allow(missing_docs)]
-pub enum BuildError {
-    #[error("the face has no loop and its surface is not closed")]
-    NoLoop,
-    #[error("a loop has no edge")]
-    EmptyLoop,
-    #[error(transparent)]
-    Spline(#[from] SplineError),
+/// Builds the carrier and the trim loops of one face.
+///
+/// `tolerance` is the source's length tolerance in mm. Vertices, lines of constant parameter and
+/// poles within it (kept between `1e-9` and `1e-5` of the face's diagonal) are the same. Fitted trim
+/// curves follow the pre-image of their edge to a hundredth of it, kept between `1e-9` and `1e-7` of
+/// the diagonal: at `1e-7` a face 4000 pixels wide is right to half a pixel when enlarged a thousand
+/// times, and tighter fits would only repeat the noise of most files.
+///
+/// # Errors
+/// [`BuildError`] names the face or edge and the reason.
+pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result<BuiltFace, BuildError> {
+    let tolerance = if tolerance > 0.0 && tolerance.is_finite() { tolerance } else { 1e-6 };
+    let mut notes = Vec::new();
+    let uses = edge_uses(face, edges, tolerance)?;
+    let size = uses
+        .iter()
+        .flatten()
+        .flat_map(|e| e.nodes().into_iter().map(|s| e.point(s)))
+        .fold(Bounds::EMPTY, Bounds::with)
+        .diagonal();
+    let eps = if size > 0.0 { tolerance.clamp(1e-9 * size, 1e-5 * size) } else { tolerance };
+    let support = Support::new(&face.surface, eps).map_err(|reason| BuildError::Surface { face: face.id, reason })?;
+    let limits = Limits { face: face.id, size };
+
+    let vertices: Vec<usize> = face
+        .bounds
+        .iter()
+        .filter_map(|b| match b {
+            Boundary::Vertex(p) => support.pole_at(*p, 50.0 * eps),
+            Boundary::Edges(_) => None,
+        })
+        .collect();
+    let mut loops = Vec::new();
+    let mut lines = Lines::new();
+    let mut hint = None;
+    for bound in uses {
+        let mut strands = Vec::new();
+        for edge in heal_directions(bound, face.id, eps, &mut notes) {
+            let more = Strand::of_edge(&support, &Rc::new(edge), hint, &mut lines);
+            hint = more.last().map(|s| s.end).or(hint);
+            strands.extend(more);
+        }
+        if !strands.is_empty() {
+            loops.push(Loop::close(&support, strands, limits, &mut notes)?);
+        }
+    }
+    gap_notes(&loops, eps, size, &mut notes);
+    if loops.is_empty() {
+        return whole(face, &support, notes);
+    }
+    let loops = arrange(&support, loops, &vertices, limits)?;
+    let (loops, range) = come_home(&support, loops);
+    if !(0..2).all(|i| range[i].1 > range[i].0 && (range[i].1 - range[i].0).is_finite()) {
+        return Err(BuildError::NoArea { face: face.id });
+    }
+    let carrier = support.carrier(range).map_err(|e| carrier_error(face.id, e))?;
+    let target = (1e-2 * tolerance).clamp(1e-9 * size, 1e-7 * size);
+    let fitter = Fitter { support: &support, carrier: &carrier, target };
+    let mut deviation: f64 = 0.0;
+    let mut trims = Vec::new();
+    // joints are equal up to rounding; sides a period apart too
+    let snap = DVec2::new(range[0].1 - range[0].0, range[1].1 - range[1].0) * 1e-7;
+    for l in &loops {
+        let mut curves: Vec<Bezier<DVec3>> = Vec::new();
+        for strand in &l.strands {
+            let fitted = fitter.curves(strand);
+            deviation = deviation.max(fitted.deviation);
+            curves.extend(fitted.curves);
+        }
+        curves.retain(|c| c.degree() > 1 || c.points[0].point() != c.points[1].point());
+        let trim = TrimLoop::new(curves, snap).map_err(|source| BuildError::Loop { face: face.id, source })?;
+        if trim.signed_area().abs() <= 1e-12 * (range[0].1 - range[0].0) * (range[1].1 - range[1].0) {
+            notes.push(format!("face #{}: a loop without area was left out", face.id));
+            continue;
+        }
+        trims.push(trim);
+    }
+    if trims.is_empty() {
+        return Err(BuildError::NoArea { face: face.id });
+    }
+    let face = Face {
+        id: face.id,
+        kind: support.kind(),
+        surface: carrier.surface,
+        loops: trims,
+        same_sense: face.same_sense,
+        colour: None,
+    };
+    Ok(BuiltFace { face, notes, deviation })
 }
 
-/// The untrimmed control box of the face.
-pub fn build_face(face: &FaceGeometry, edges: &[Edge], _tolerance: f64) -> Result<BuiltFace, BuildError> {
-    use SurfaceGeometry as G;
-    let kind = match &face.surface {
-        G::Plane { .. } => SurfaceKind::Plane,
-        G::Cylinder { .. } => SurfaceKind::Cylinder,
-        G::Cone { .. } => SurfaceKind::Cone,
-        G::Sphere { .. } => SurfaceKind::Sphere,
-        G::Torus { .. } => SurfaceKind::Torus,
-        G::Revolution { .. } => SurfaceKind::Revolution,
-        G::Extrusion { .. } => SurfaceKind::Extrusion,
-        G::BSpline(_) => SurfaceKind::BSpline,
-    };
-    if face.bounds.is_empty() && !matches!(kind, SurfaceKind::Sphere | SurfaceKind::Torus | SurfaceKind::BSpline) {
-        return Err(BuildError::NoLoop);
-    }
-    let mut points = Vec::new();
+/// The edges of each bound in the direction of the bound; those without length are left out.
+fn edge_uses(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result<Vec<Vec<EdgeCurve>>, BuildError> {
+    let mut uses = Vec::new();
     for bound in &face.bounds {
-        match bound {
-            Boundary::Vertex(p) => points.push(*p),
-            Boundary::Edges(uses) if uses.is_empty() => return Err(BuildError::EmptyLoop),
-            Boundary::Edges(uses) => points.extend(uses.iter().flat_map(|u| [edges[u.0].start, edges[u.0].end])),
+        let Boundary::Edges(list) = bound else { continue };
+        let mut out = Vec::new();
+        for &(index, forward) in list {
+            let edge = edges.get(index).ok_or(BuildError::EdgeIndex { face: face.id, index })?;
+            out.extend(EdgeCurve::new(edge, forward, tolerance)?);
+        }
+        uses.push(out);
+    }
+    Ok(uses)
+}
+
+/// Turns around edges that do not begin where the one before ends, but end there.
+fn heal_directions(edges: Vec<EdgeCurve>, face: u32, eps: f64, notes: &mut Vec<String>) -> Vec<EdgeCurve> {
+    let near = |p: DVec3, q: DVec3| p.distance(q) <= 50.0 * eps;
+    let flip = |e: EdgeCurve| {
+        let [a, b] = e.vertices;
+        let (t0, t1) = (e.curve.reversed_parameter(e.t1), e.curve.reversed_parameter(e.t0));
+        EdgeCurve { curve: e.curve.reversed(), t0, t1, vertices: [b, a], ..e }
+    };
+    let mut out: Vec<EdgeCurve> = Vec::with_capacity(edges.len());
+    let count = edges.len();
+    for e in edges {
+        if e.turned {
+            notes.push(format!("face #{face}: edge #{} runs against its stated sense", e.id));
+        }
+        let mut e = e;
+        let alone = out.len() == 1 && count > 1;
+        if let Some(last) = out.last_mut() {
+            let fits = |end: DVec3, e: &EdgeCurve| near(end, e.vertices[0]) || near(end, e.vertices[1]);
+            if alone && !fits(last.vertices[1], &e) && fits(last.vertices[0], &e) {
+                notes.push(format!("face #{face}: edge #{} was turned around in its loop", last.id));
+                *last = flip(last.clone());
+            }
+            if !near(last.vertices[1], e.vertices[0]) && near(last.vertices[1], e.vertices[1]) {
+                notes.push(format!("face #{face}: edge #{} was turned around in its loop", e.id));
+                e = flip(e);
+            }
+        }
+        out.push(e);
+    }
+    out
+}
+
+/// Names edges that lie farther off the surface than a sound file's would.
+fn gap_notes(loops: &[Loop], eps: f64, size: f64, notes: &mut Vec<String>) {
+    let limit = (50.0 * eps).min(1e-2 * size);
+    for part in loops.iter().flat_map(|l| &l.strands).filter_map(|s| s.part.as_ref()) {
+        if part.trace.gap > limit {
+            let (id, gap) = (part.trace.edge.id, part.trace.gap);
+            notes.push(format!("edge #{id} lies {gap:.3e} mm off its surface"));
         }
     }
-    let surface = match &face.surface {
-        G::BSpline(s) => s.clone(),
-        _ => {
-            let lo = points.iter().copied().fold(DVec3::INFINITY, DVec3::min);
-            let hi = points.iter().copied().fold(DVec3::NEG_INFINITY, DVec3::max);
-            let (lo, hi) = if points.is_empty() { (DVec3::ZERO, DVec3::ONE) } else { (lo, hi) };
-            let net = [lo, DVec3::new(hi.x, lo.y, lo.z), DVec3::new(lo.x, hi.y, hi.z), hi];
-            let knots = vec![0.0, 0.0, 1.0, 1.0];
-            Surface::new((1, 1), knots.clone(), knots, net.iter().map(|p| p.extend(1.0)).collect())?
-        }
+}
+
+/// A closed surface without loops.
+fn whole(face: &FaceGeometry, support: &Support, notes: Vec<String>) -> Result<BuiltFace, BuildError> {
+    let spline = matches!(support.form, super::support::Form::Spline(_));
+    let ([Some(u), Some(v)], true) = (support.natural, spline || support.is_closed()) else {
+        return Err(BuildError::Unbounded { face: face.id });
     };
-    let face = Face { id: face.id, kind, surface, loops: vec![], same_sense: face.same_sense, colour: None };
-    Ok(BuiltFace { face, notes: vec![], deviation: 0.0 })
+    let carrier = support.carrier([u, v]).map_err(|e| carrier_error(face.id, e))?;
+    let face = Face {
+        id: face.id,
+        kind: support.kind(),
+        surface: carrier.surface,
+        loops: Vec::new(),
+        same_sense: face.same_sense,
+        colour: None,
+    };
+    Ok(BuiltFace { face, notes, deviation: 0.0 })
+}
+
+fn carrier_error(face: u32, e: CarrierError) -> BuildError {
+    match e {
+        CarrierError::Seam => BuildError::Surface { face, reason: "its weights forbid moving the seam" },
+        CarrierError::Spline(source) => BuildError::Carrier { face, source },
+    }
 }

@@ -12,8 +12,28 @@
 //! ```
 
 mod build;
+mod carrier;
+mod curve;
+mod cut;
+mod edge;
+mod error;
+mod fit;
+mod frame;
+mod invert;
+mod law;
+mod loops;
+mod nest;
+mod pieces;
+mod spline;
+mod strand;
+mod support;
+mod trace;
 
-pub use build::{BuildError, BuiltFace, build_face};
+#[cfg(test)]
+mod tests;
+
+pub use build::{BuiltFace, build_face};
+pub use error::BuildError;
 
 use crate::spline::{BSpline, Surface};
 use glam::{DVec3, DVec4};

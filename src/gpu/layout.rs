@@ -10,6 +10,8 @@ pub enum Binding {
     Storage,
     /// `uniform` block.
     Uniform,
+    /// `samplerBuffer`.
+    Texels,
     /// `image2D` and its kin.
     StorageImage,
     /// `sampler2D` and its kin: image and sampler in one.
@@ -21,6 +23,7 @@ impl Binding {
         match self {
             Self::Storage => vk::DescriptorType::STORAGE_BUFFER,
             Self::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
+            Self::Texels => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
             Self::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
             Self::Sampled => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
         }

@@ -33,6 +33,7 @@ mod quirks;
 mod read_back;
 mod rendering;
 mod requirements;
+mod texels;
 mod timestamps;
 mod upload;
 
@@ -51,6 +52,7 @@ pub use quirks::Quirks;
 pub use read_back::ReadBack;
 pub use rendering::{Attachment, Load};
 pub use requirements::Requirements;
+pub use texels::Texels;
 pub use timestamps::{ScopeTime, Statistics, Timestamps};
 pub use upload::Uploads;
 

@@ -1,6 +1,6 @@
 //! Push descriptors: the resources of a pass, in binding order, written into the command buffer.
 
-use super::{Binding, Buffer, Commands, Image, Pipeline, Sampler};
+use super::{Binding, Buffer, Commands, Image, Pipeline, Sampler, Texels};
 use ash::vk;
 
 /// What stands at one binding.
@@ -18,6 +18,8 @@ pub enum Resource<'a> {
         /// Size in bytes.
         bytes: u64,
     },
+    /// A buffer read through a format.
+    Texels(&'a Texels),
     /// A storage image in layout `GENERAL`.
     Image(&'a Image),
     /// An image in layout `GENERAL`, seen through a sampler.
@@ -30,13 +32,19 @@ impl<'a> From<&'a Buffer> for Resource<'a> {
     }
 }
 
+impl<'a> From<&'a Texels> for Resource<'a> {
+    fn from(texels: &'a Texels) -> Self {
+        Self::Texels(texels)
+    }
+}
+
 impl<'a> From<&'a Image> for Resource<'a> {
     fn from(image: &'a Image) -> Self {
         Self::Image(image)
     }
 }
 
-/// Vulkan's description of a resource; one of the two, by binding.
+/// Vulkan's description of a resource; one of the two, by binding. Texels need neither.
 #[derive(Clone, Copy, Default)]
 struct Descriptor {
     buffer: vk::DescriptorBufferInfo,
@@ -60,6 +68,7 @@ impl Descriptor {
         match *resource {
             Resource::Buffer(b) => buffer(b, 0, vk::WHOLE_SIZE),
             Resource::Range { buffer: b, first, bytes } => buffer(b, first, bytes),
+            Resource::Texels(_) => Self::default(),
             Resource::Image(i) => image(i, vk::Sampler::null()),
             Resource::Sampled(i, sampler) => image(i, sampler.handle()),
         }
@@ -90,6 +99,9 @@ pub(crate) fn resources(cmd: &Commands<'_>, pipeline: &Pipeline, resources: &[Re
                 }
                 (Binding::StorageImage, Resource::Image(_)) | (Binding::Sampled, Resource::Sampled(..)) => {
                     write.image_info(std::slice::from_ref(&descriptor.image))
+                }
+                (Binding::Texels, Resource::Texels(texels)) => {
+                    write.texel_buffer_view(std::slice::from_ref(texels.view()))
                 }
                 _ => panic!("`{}` has {binding:?} at binding {i}, not {resource:?}", pipeline.name()),
             }

@@ -6,6 +6,7 @@ pub(crate) mod bound;
 pub(crate) mod cross;
 pub(crate) mod density;
 pub(crate) mod emit;
+pub(crate) mod heal;
 pub(crate) mod lines;
 pub(crate) mod reset;
 pub(crate) mod resolve;

@@ -11,7 +11,7 @@
 
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
-    Pipeline,
+    Pipeline, Texels,
 };
 use crate::shaders;
 use ash::vk;
@@ -46,7 +46,7 @@ pub(crate) struct Bindings<'a> {
     pub faces: &'a Buffer,
     pub patches: &'a Buffer,
     pub items: &'a Buffer,
-    pub points: &'a Buffer,
+    pub points: &'a Texels,
     pub instances: &'a Buffer,
     pub visibility: &'a Image,
 }
@@ -58,8 +58,9 @@ impl Resolve {
         if formats.aovs {
             colour.extend(AOV_FORMATS.map(replace));
         }
-        let mut bindings = vec![Binding::Storage; 8];
-        bindings.push(Binding::StorageImage);
+        let mut bindings = [Binding::Storage; 9];
+        bindings[6] = Binding::Texels;
+        bindings[8] = Binding::StorageImage;
         let weights = if rational { "rational" } else { "polynomial" };
         let pipeline = Pipeline::graphics(
             device,
@@ -97,8 +98,9 @@ impl Resolve {
     ) {
         let size = b.visibility.size();
         cmd.rendering(size, colour, depth, || {
-            let buffers = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items, b.points, b.instances];
-            let resources: Vec<_> = buffers.into_iter().map(Into::into).chain([b.visibility.into()]).collect();
+            let buffers = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items].map(Into::into);
+            let rest = [b.points.into(), b.instances.into(), b.visibility.into()];
+            let resources: Vec<_> = buffers.into_iter().chain(rest).collect();
             cmd.bind(&self.pipeline, &resources, &[]);
             cmd.draw(3, 0, 1);
         });

@@ -12,7 +12,7 @@
 use crate::abi::Counters;
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image, Load,
-    Pipeline,
+    Pipeline, Texels,
 };
 use crate::shaders;
 use ash::vk;
@@ -50,7 +50,7 @@ pub(crate) struct Bindings<'a> {
     pub faces: &'a Buffer,
     pub patches: &'a Buffer,
     pub items: &'a Buffer,
-    pub points: &'a Buffer,
+    pub points: &'a Texels,
     pub factors: &'a Buffer,
     pub sub_patches: &'a Buffer,
     pub instances: &'a Buffer,
@@ -70,8 +70,7 @@ pub(crate) struct Table<'a> {
 impl Visibility {
     pub(crate) fn new(device: &Device, kinds: Kinds) -> Result<Self, GpuError> {
         let pipeline = |trimmed: bool| {
-            let (fragment, bindings) =
-                if trimmed { (shaders::VISIBILITY_TRIMMED_FRAG, 14) } else { (shaders::VISIBILITY_FRAG, 10) };
+            let fragment = if trimmed { shaders::VISIBILITY_TRIMMED_FRAG } else { shaders::VISIBILITY_FRAG };
             let kind = if trimmed { "trimmed" } else { "plain" };
             let weights = if kinds.rational { "rational" } else { "polynomial" };
             Pipeline::graphics(
@@ -84,7 +83,7 @@ impl Visibility {
                         (vk::ShaderStageFlags::TESSELLATION_EVALUATION, shaders::VISIBILITY_TESE),
                         (vk::ShaderStageFlags::FRAGMENT, fragment),
                     ],
-                    bindings: &vec![Binding::Storage; bindings],
+                    bindings: &bindings(trimmed),
                     push_bytes: 0,
                     constants: &[(SCENE_HAS_RATIONAL, u32::from(kinds.rational)), (TRIMMED, u32::from(trimmed))],
                     topology: vk::PrimitiveTopology::PATCH_LIST,
@@ -113,34 +112,29 @@ impl Visibility {
         let colour = [Attachment { image: visibility, load: Load::ColourU32([0; 4]) }];
         let depth = Attachment { image: depth, load: Load::Depth(0.0) };
         let bytes = u64::from(draw_capacity) * size_of::<vk::DrawIndirectCommand>() as u64;
-        let shared = [
-            b.frame,
-            b.views,
-            b.face_instances,
-            b.faces,
-            b.patches,
-            b.items,
-            b.points,
-            b.factors,
-            b.sub_patches,
-            b.instances,
-        ];
+        let shared = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items];
+        let lists = [b.factors, b.sub_patches, b.instances];
+        let shared = || shared.into_iter().map(Into::into).chain([b.points.into()]).chain(lists.map(Into::into));
         cmd.rendering(visibility.size(), &colour, Some(depth), || {
             if let Some(plain) = &self.plain {
-                cmd.bind(plain, &shared.map(Into::into), &[]);
+                cmd.bind(plain, &shared().collect::<Vec<_>>(), &[]);
                 let count = offset_of!(Counters, plain_draws) as u64;
                 cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
             }
             if let (Some(trimmed), Some(t)) = (&self.trimmed, &b.table) {
-                let resources: Vec<_> = shared
-                    .into_iter()
-                    .chain([t.line_starts, t.row_starts, t.row_counts, t.flips])
-                    .map(Into::into)
-                    .collect();
+                let table = [t.line_starts, t.row_starts, t.row_counts, t.flips].map(Into::into);
+                let resources: Vec<_> = shared().chain(table).collect();
                 cmd.bind(trimmed, &resources, &[]);
                 let count = offset_of!(Counters, trimmed_draws) as u64;
                 cmd.draw_indirect_count(b.draws, bytes, b.counters, count, draw_capacity);
             }
         });
     }
+}
+
+/// Bindings of the plain or of the trimmed pipeline.
+fn bindings(trimmed: bool) -> Vec<Binding> {
+    let mut bindings = vec![Binding::Storage; if trimmed { 14 } else { 10 }];
+    bindings[6] = Binding::Texels;
+    bindings
 }

@@ -10,7 +10,7 @@ use rayon::prelude::*;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SceneData {
     pub patches: Vec<abi::Patch>,
-    pub points: Vec<f32>,
+    pub points: Vec<[f32; 4]>,
     pub faces: Vec<abi::Face>,
     pub face_instances: Vec<abi::FaceInstance>,
     pub instances: Vec<abi::Instance>,

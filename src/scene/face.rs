@@ -17,7 +17,7 @@ const MOST_STRIPS: usize = 128;
 pub(super) struct FaceData {
     pub face: abi::Face,
     pub patches: Vec<abi::Patch>,
-    pub points: Vec<f32>,
+    pub points: Vec<[f32; 4]>,
     pub cells: Vec<abi::Cell>,
     pub curves: Vec<abi::Curve>,
     pub curve_points: Vec<f32>,
@@ -94,21 +94,23 @@ impl FaceData {
             box_max: hi,
             shape: abi::Patch::pack_shape((p.patch.degree_u, p.patch.degree_v), rational, side, borders),
             domain: [corner.x as f32, corner.y as f32, size.x as f32, size.y as f32],
-            bend: [bend.uu, bend.uv, bend.vv].map(round_up),
+            bend: flat_is_zero([bend.uu, bend.uv, bend.vv], p.patch.bounds()).map(|x| x as f32),
             face: 0,
         });
         if side == Side::Outside {
             return; // never drawn: its control points stay at home
         }
         self.rational |= rational;
-        // only the ratios of a patch's weights matter: a polynomial patch stores none
+        // only the ratios of a patch's weights matter: those of a polynomial patch become 1, exactly
         let unit = p.patch.points[0].w;
         for q in &p.patch.points {
             let local = (q.truncate() - origin * q.w) / unit;
-            self.points.extend([local.x as f32, local.y as f32, local.z as f32]);
-            if rational {
-                self.points.push((q.w / unit) as f32);
-            }
+            self.points.push([
+                local.x as f32,
+                local.y as f32,
+                local.z as f32,
+                if rational { (q.w / unit) as f32 } else { 1.0 },
+            ]);
         }
     }
 
@@ -185,9 +187,9 @@ impl FaceData {
     fn seam(&mut self, count_u: usize, count_v: usize, along_u: bool) -> bool {
         /// Relative to the face's size: a few times the rounding of single precision.
         const SAME: f32 = 1e-6;
-        let size = self.points.iter().fold(0.0f32, |m, x| m.max(x.abs()));
+        let size = self.points.iter().flatten().fold(0.0f32, |m, x| m.max(x.abs()));
         let lines = if along_u { count_v } else { count_u };
-        let mut pairs = Vec::new(); // (float of the first side, float of the last side)
+        let mut pairs = Vec::new(); // (control point of the first side, of the last side)
         for line in 0..lines {
             let (a, b) = if along_u {
                 (line * count_u, line * count_u + count_u - 1)
@@ -195,20 +197,15 @@ impl FaceData {
                 (line, (count_v - 1) * count_u + line)
             };
             let (a, b) = (&self.patches[a], &self.patches[b]);
-            if a.shape >> 8 & 1 != b.shape >> 8 & 1 {
-                return false;
-            }
-            let stride = if a.shape >> 8 & 1 == 1 { 4 } else { 3 };
             let (n, k) = ((a.shape & 15) as usize, (a.shape >> 4 & 15) as usize);
             let side = if along_u { k } else { n };
             for s in 0..=side {
                 let (i, j) = if along_u { (s * (n + 1), s * (n + 1) + n) } else { (s, k * (n + 1) + s) };
-                for c in 0..stride {
-                    pairs.push((a.first as usize + i * stride + c, b.first as usize + j * stride + c));
-                }
+                pairs.push((a.first as usize + i, b.first as usize + j));
             }
         }
-        let same = pairs.iter().all(|&(a, b)| (self.points[a] - self.points[b]).abs() <= SAME * size);
+        let near = |a: [f32; 4], b: [f32; 4]| a.iter().zip(b).all(|(x, y)| (x - y).abs() <= SAME * size.max(1.0));
+        let same = pairs.iter().all(|&(a, b)| near(self.points[a], self.points[b]));
         if same {
             pairs.iter().for_each(|&(a, b)| self.points[b] = self.points[a]);
         }
@@ -250,6 +247,12 @@ fn outward_box(patch: &Patch, origin: DVec3) -> ([f32; 3], [f32; 3]) {
     let (lo, hi) = (lo - origin, hi - origin);
     let down = |x: f64| (x as f32).next_down();
     (lo.to_array().map(down), hi.to_array().map(round_up))
+}
+
+/// Second derivatives rounded up; a patch whose derivatives vanish but for rounding is flat, exactly.
+fn flat_is_zero(bend: [f64; 3], (lo, hi): (DVec3, DVec3)) -> [f64; 3] {
+    let rounding = 1e-12 * (hi - lo).length();
+    if bend.iter().all(|x| *x <= rounding) { [0.0; 3] } else { bend.map(|x| f64::from(round_up(x))) }
 }
 
 /// The next single-precision number above.

@@ -1,13 +1,15 @@
 //! The scene's persistent buffers: only those that its model needs.
 
 use super::SceneData;
-use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Uploads};
+use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texels, Uploads};
+use ash::vk;
 use bytemuck::Pod;
 
 /// A scene in GPU memory.
 pub(crate) struct Scene {
     pub patches: Buffer,
-    pub points: Buffer,
+    /// Homogeneous control points.
+    pub points: Texels,
     pub faces: Buffer,
     pub face_instances: Buffer,
     pub instances: Buffer,
@@ -31,7 +33,11 @@ impl Scene {
         let mut uploads = Uploads::new();
         let scene = Self {
             patches: persistent(&mut uploads, cmd, "patches", &data.patches)?,
-            points: persistent(&mut uploads, cmd, "points", &data.points)?,
+            points: {
+                let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
+                let buffer = uploads.buffer(cmd, Pool::Persistent, "points", usage, &data.points)?;
+                Texels::new(cmd.device(), buffer, vk::Format::R32G32B32A32_SFLOAT, size_of::<[f32; 4]>() as u64)?
+            },
             faces: persistent(&mut uploads, cmd, "faces", &data.faces)?,
             face_instances: persistent(&mut uploads, cmd, "face instances", &data.face_instances)?,
             instances: persistent(&mut uploads, cmd, "instances", &data.instances)?,

@@ -79,10 +79,11 @@ pub struct CheckArgs {
     /// Built-in views; not together with a camera
     #[arg(long, value_enum, default_value_t = Views::Whole, conflicts_with_all = ["eye", "target"])]
     pub views: Views,
-    /// Pixels to judge in each view; all of them when there are fewer
+    /// Pixels to judge in each view, spread evenly; those at which the face changes are judged in any case
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = at_least_one)]
     pub samples: usize,
-    /// Write a picture of the judged pixels: wrong ones red. With several views the view's name is added to the file's
+    /// Write a picture of the verdicts: right grey, shifted within the tolerance green, farther orange, wrong red. With
+    /// several views each adds its name to the file's
     #[arg(long, value_name = "OUT.png")]
     pub difference: Option<PathBuf>,
     /// Write the judgements as JSON

@@ -7,11 +7,11 @@ use crate::args::{BenchArgs, Size};
 use crate::progress::during;
 use crate::series::{Gathered, Row};
 use crate::session::{self, Session};
-use crate::{Outcome, output, path};
+use crate::{Outcome, output, path, verdict};
 use anyhow::{Context, Result};
-use comfy_table::{CellAlignment, Table, presets};
+use comfy_table::CellAlignment;
 use selvedge::picture::{FrameStats, Outputs};
-use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
+use selvedge::reference::{Judgement, Tracer};
 use serde::Serialize;
 use std::path::Path;
 use std::time::Instant;
@@ -20,7 +20,7 @@ use std::time::Instant;
 const WARM_UP_FRAMES: usize = 3;
 /// Judged frames, spread over the path; each takes much longer than it takes to draw.
 const JUDGED_FRAMES: usize = 4;
-/// Pixels judged in each of them.
+/// Pixels judged in each of them, beside those at which the face changes.
 const JUDGED_SAMPLES: usize = 2_000;
 
 /// Everything measured on one model.
@@ -29,6 +29,7 @@ struct Report {
     model: String,
     faces: usize,
     face_instances: usize,
+    missing_faces: usize,
     size: [u32; 2],
     tolerance_px: f64,
     device: String,
@@ -41,8 +42,8 @@ struct Report {
 #[derive(Debug, Default, Serialize)]
 struct Error {
     judged_frames: usize,
-    judged_pixels: usize,
-    wrong_pixels: usize,
+    judged_pixels: u64,
+    wrong_pixels: u64,
     worst_shift_px: f64,
     worst_depth: f64,
     worst_normal_deg: f64,
@@ -96,13 +97,14 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
     for index in judged(args.frames) {
         let camera = camera(index);
         let picture = session.render(&camera, Outputs::ALL)?;
-        let options = JudgeOptions { samples: JUDGED_SAMPLES, ..JudgeOptions::default() };
-        error.add(&during(&format!("judging frame {index}"), || judge(&tracer, &camera, &picture, &options)));
+        let what = format!("frame {index}");
+        error.add(&verdict::of(&tracer, &camera, &picture, JUDGED_SAMPLES, args.frame.tolerance, &what));
     }
     let report = Report {
         model: model.display().to_string(),
         faces: import.model.face_count(),
         face_instances: import.model.face_instance_count(),
+        missing_faces: import.report.dropped.values().sum(),
         size: [width, height],
         tolerance_px: args.frame.tolerance,
         device: stats.device,
@@ -141,27 +143,26 @@ fn judged(frames: usize) -> impl Iterator<Item = usize> {
 impl Error {
     fn add(&mut self, j: &Judgement) {
         self.judged_frames += 1;
-        self.judged_pixels += j.samples;
-        self.wrong_pixels += j.wrong;
-        self.worst_shift_px = self.worst_shift_px.max(j.worst_shift_px);
-        self.worst_depth = self.worst_depth.max(j.worst_depth);
-        self.worst_normal_deg = self.worst_normal_deg.max(j.worst_normal_deg);
+        self.judged_pixels += j.sampled;
+        self.wrong_pixels += verdict::wrong(j);
+        self.worst_shift_px = self.worst_shift_px.max(verdict::worst_shift_px(j));
+        self.worst_depth = self.worst_depth.max(j.depth_regular.model.worst);
+        self.worst_normal_deg = self.worst_normal_deg.max(j.normal_deg.worst);
     }
 }
 
 impl Report {
     fn text(&self) -> String {
-        let mut table = Table::new();
-        table.load_preset(presets::UTF8_HORIZONTAL_ONLY).set_header(["", "unit", "median", "95 %", "largest"]);
+        let mut table = output::table(["", "unit", "median", "95 %", "largest"]);
         for row in &self.rows {
             let number = |x: f64| if row.unit == "ms" { format!("{x:.2}") } else { format!("{x:.0}") };
             let (median, p95, largest) = (number(row.median), number(row.p95), number(row.largest));
             table.add_row([&row.name, row.unit, &median, &p95, &largest]);
         }
         table.column_iter_mut().skip(2).for_each(|c| c.set_cell_alignment(CellAlignment::Right));
-        let Self { model, faces, face_instances, size: [w, h], device, driver, error: e, .. } = self;
+        let Self { model, faces, face_instances, missing_faces, size: [w, h], device, driver, error: e, .. } = self;
         format!(
-            "{model}: {faces} faces, {face_instances} placed; {w} x {h} on {device} ({driver})\n{table}\n\
+            "{model}: {faces} faces, {face_instances} placed, {missing_faces} missing; {w} x {h} on {device} ({driver})\n{table}\n\
              error in {} judged frames: {} of {} pixels wrong, worst shift {:.3} px, depth {:.2e} mm, normal {:.3} deg",
             e.judged_frames, e.wrong_pixels, e.judged_pixels, e.worst_shift_px, e.worst_depth, e.worst_normal_deg
         )

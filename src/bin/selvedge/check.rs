@@ -1,18 +1,13 @@
 //! `selvedge check`: the accuracy promise, tested on the pictures that this machine draws.
-//!
-//! The promise: a pixel shows what the exact model shows at a point at most half a pixel away. The
-//! judge asks [`selvedge::reference`], which intersects rays with the exact surfaces and classifies the hits
-//! against the exact trim curves in double precision, and shares no code with the GPU passes.
 
 use crate::args::CheckArgs;
 use crate::camera::{CameraFile, View};
 use crate::progress::during;
 use crate::session::{self, Session};
-use crate::{Outcome, output};
+use crate::{Outcome, output, verdict};
 use anyhow::Result;
-use comfy_table::{Table, presets};
-use selvedge::picture::{FrameStats, Outputs, Picture};
-use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
+use selvedge::picture::{FrameStats, Outputs};
+use selvedge::reference::{Judgement, Tracer};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -21,6 +16,7 @@ use std::path::{Path, PathBuf};
 struct Verdict {
     view: &'static str,
     camera: CameraFile,
+    tolerance_px: f64,
     kept: bool,
     judgement: Judgement,
     stats: FrameStats,
@@ -32,19 +28,23 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     let views = args.camera.views(args.views, &import.model)?;
     let mut session = Session::new(&args.frame, &import)?;
     let tracer = during("preparing the exact model", || Tracer::new(&import.model));
-    let options = JudgeOptions { samples: args.samples, ..JudgeOptions::default() };
+    let tolerance_px = args.frame.tolerance;
     let mut verdicts = Vec::new();
     for View { name, camera } in &views {
         let picture = session.render(camera, Outputs::ALL)?;
-        let judgement = during(&format!("judging {name}"), || judge(&tracer, camera, &picture, &options));
+        let judgement = verdict::of(&tracer, camera, &picture, args.samples, tolerance_px, name);
         if let Some(path) = &args.difference {
             let path = if views.len() > 1 { with_name(path, name) } else { path.clone() };
-            output::png(&path, picture.size, &difference(&picture, &judgement))?;
+            output::png(&path, picture.size, &judgement.paint())?;
         }
-        let kept = judgement.wrong == 0 && picture.stats.clamps == 0;
-        verdicts.push(Verdict { view: name, camera: camera.into(), kept, judgement, stats: picture.stats });
+        let kept = verdict::wrong(&judgement) == 0 && picture.stats.clamps == 0;
+        let camera = camera.into();
+        verdicts.push(Verdict { view: name, camera, tolerance_px, kept, judgement, stats: picture.stats });
     }
-    output::print(&table(&verdicts))?;
+    output::print(&table(&verdicts, tolerance_px))?;
+    if let Some(missing) = output::missing_faces(&import.report) {
+        output::print(&format!("judged without what the file holds beside: {missing}"))?;
+    }
     if let Some(path) = &args.json {
         output::json(path, &verdicts)?;
     }
@@ -52,46 +52,32 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     Ok(if complained || verdicts.iter().any(|v| !v.kept) { Outcome::Broken } else { Outcome::Good })
 }
 
-fn table(verdicts: &[Verdict]) -> String {
-    let mut table = Table::new();
-    table.load_preset(presets::UTF8_HORIZONTAL_ONLY);
-    table.set_header([
+fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
+    let wrong = format!("wrong > {tolerance_px} px");
+    let mut table = output::table([
         "view",
         "judged",
-        "wrong > 0.5 px",
+        &wrong,
         "worst shift, px",
-        "depth error: worst, mean, mm",
-        "normal, deg",
+        "depth error, mm: worst, mean",
+        "normal, deg: worst",
         "clamps",
         "promise",
     ]);
-    for Verdict { view, judgement: j, stats, kept, .. } in verdicts {
+    for Verdict { view, judgement, stats, kept, .. } in verdicts {
+        let depth = judgement.depth_regular.model;
         table.add_row([
             (*view).to_string(),
-            j.samples.to_string(),
-            j.wrong.to_string(),
-            format!("{:.3}", j.worst_shift_px),
-            format!("{:.2e}, {:.2e}", j.worst_depth, j.mean_depth),
-            format!("{:.3}", j.worst_normal_deg),
+            judgement.sampled.to_string(),
+            verdict::wrong(judgement).to_string(),
+            format!("{:.3}", verdict::worst_shift_px(judgement)),
+            format!("{:.2e}, {:.2e}", depth.worst, depth.mean),
+            format!("{:.3}", judgement.normal_deg.worst),
             stats.clamps.to_string(),
             if *kept { "kept" } else { "BROKEN" }.to_string(),
         ]);
     }
     table.to_string()
-}
-
-/// The picture faded to grey, with the wrong pixels in red.
-fn difference(picture: &Picture, judgement: &Judgement) -> Vec<[u8; 4]> {
-    let fade = |[r, g, b, _]: [u8; 4]| {
-        let grey = (u16::from(r) + u16::from(g) + u16::from(b)) / 3;
-        let light = 128 + (grey / 2) as u8;
-        [light, light, light, 255]
-    };
-    let mut pixels: Vec<[u8; 4]> = picture.colour.iter().map(|&c| fade(c)).collect();
-    for &(x, y) in &judgement.failures {
-        pixels[y as usize * picture.size.0 as usize + x as usize] = [220, 0, 0, 255];
-    }
-    pixels
 }
 
 /// `out.png` becomes `out-close.png`.

@@ -3,7 +3,6 @@
 use crate::args::InfoArgs;
 use crate::{Outcome, output, session};
 use anyhow::Result;
-use comfy_table::{Table, presets};
 use selvedge::import::{Import, ImportReport};
 use selvedge::model::{Model, SurfaceKind};
 use serde::Serialize;
@@ -73,8 +72,7 @@ impl<'a> Info<'a> {
     }
 
     fn text(&self) -> Result<String> {
-        let mut counts = Table::new();
-        counts.load_preset(presets::UTF8_HORIZONTAL_ONLY).set_header(["", "distinct", "placed"]);
+        let mut counts = output::table(["", "distinct", "placed"]);
         counts.add_row(["solids".to_string(), self.solids.to_string(), self.solid_instances.to_string()]);
         counts.add_row([
             "open shells".to_string(),
@@ -85,9 +83,7 @@ impl<'a> Info<'a> {
         counts.add_row(["trim loops".to_string(), self.trim_loops.to_string(), String::new()]);
         counts.add_row(["trim curves".to_string(), self.trim_curves.to_string(), String::new()]);
 
-        let mut surfaces = Table::new();
-        surfaces.load_preset(presets::UTF8_HORIZONTAL_ONLY);
-        surfaces.set_header(["surface", "degree", "rational", "faces", "patches"]);
+        let mut surfaces = output::table(["surface", "degree", "rational", "faces", "patches"]);
         for row in &self.surfaces {
             let [u, v] = row.degree;
             surfaces.add_row([

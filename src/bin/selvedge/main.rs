@@ -19,10 +19,12 @@ mod progress;
 mod render;
 mod series;
 mod session;
+mod verdict;
 
 use args::{Cli, Command};
 use clap::Parser;
 use selvedge::headless::HeadlessError;
+use std::io::IsTerminal;
 use std::process::ExitCode;
 
 /// How a command that ran to its end ended.
@@ -49,6 +51,7 @@ fn main() -> ExitCode {
     tracing_subscriber::fmt()
         .with_max_level(level)
         .with_writer(std::io::stderr)
+        .with_ansi(std::io::stderr().is_terminal())
         .without_time()
         .with_target(false)
         .init();
@@ -62,8 +65,21 @@ fn main() -> ExitCode {
         Ok(Outcome::Good) => ExitCode::SUCCESS,
         Ok(Outcome::Broken) => ExitCode::from(BROKEN),
         Err(error) => {
-            eprintln!("selvedge: {error:#}");
+            eprintln!("selvedge: {}", explained(&error));
             ExitCode::from(if error.is::<HeadlessError>() { DEVICE } else { USAGE })
         }
     }
+}
+
+/// The error and its causes in one line; a message that quotes its cause needs it only once.
+fn explained(error: &anyhow::Error) -> String {
+    let mut text = String::new();
+    for cause in error.chain().map(ToString::to_string) {
+        if text.is_empty() {
+            text = cause;
+        } else if !text.contains(&cause) {
+            text = format!("{text}: {cause}");
+        }
+    }
+    text
 }

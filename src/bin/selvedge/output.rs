@@ -1,7 +1,8 @@
 //! Files and text that every command writes.
 
 use anyhow::{Context, Result};
-use selvedge::import::Import;
+use comfy_table::{Table, TableComponent, presets};
+use selvedge::import::{Import, ImportReport};
 use selvedge::picture::FrameStats;
 use serde::Serialize;
 use std::fs::File;
@@ -47,15 +48,31 @@ pub fn png(path: &Path, (width, height): (u32, u32), pixels: &[[u8; 4]]) -> Resu
     })
 }
 
+/// A table with a line under its header and no other.
+pub fn table<'a>(header: impl IntoIterator<Item = &'a str>) -> Table {
+    let mut table = Table::new();
+    table.load_preset(presets::UTF8_HORIZONTAL_ONLY);
+    for line in [TableComponent::HorizontalLines, TableComponent::MiddleIntersections] {
+        table.remove_style(line);
+    }
+    table.set_header(header);
+    table
+}
+
+/// Faces of the file that the model lacks, and why; `None` when it is complete.
+pub fn missing_faces(report: &ImportReport) -> Option<String> {
+    let missing: usize = report.dropped.values().sum();
+    let reasons: Vec<String> = report.dropped.iter().map(|(why, n)| format!("{n} x {why}")).collect();
+    (missing > 0).then(|| format!("{missing} of {} faces are missing: {}", report.faces, reasons.join(", ")))
+}
+
 /// Tells what the importer warns of (it bounds their number and counts the rest), then what is missing.
 pub fn warnings(import: &Import) {
     for warning in &import.warnings {
         tracing::warn!("{warning}");
     }
-    let missing: usize = import.report.dropped.values().sum();
-    if missing > 0 {
-        let reasons: Vec<String> = import.report.dropped.iter().map(|(why, n)| format!("{n} x {why}")).collect();
-        tracing::warn!("{missing} of {} faces are missing: {}", import.report.faces, reasons.join(", "));
+    if let Some(missing) = missing_faces(&import.report) {
+        tracing::warn!("{missing}");
     }
 }
 

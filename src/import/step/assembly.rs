@@ -64,7 +64,7 @@ pub(super) struct Assembly {
 
 struct Reader<'a, 'r> {
     file: &'a File<'a>,
-    ledger: &'r Ledger,
+    ledger: &'r Ledger<'a>,
     products: Products,
     assembly: Assembly,
     placements: Vec<(u32, Placement)>,
@@ -84,10 +84,11 @@ fn representation(entity: Entity<'_>) -> Fields<'_> {
 
 impl Assembly {
     /// Reads the graph.
-    pub fn read(file: &File<'_>, ledger: &Ledger) -> Self {
+    pub fn read(file: &File<'_>, ledger: &Ledger<'_>) -> Self {
         let products = Products::read(file, ledger);
         let mut reader = Reader { file, ledger, products, assembly: Self::default(), placements: Vec::new() };
         let shapes: BTreeSet<u32> = file.kinds().filter(|k| is_shape(k)).flat_map(|k| file.of_kind(k)).collect();
+        let shapes = &shapes - &reader.products.aspects;
         reader.contexts(&shapes);
         reader.relationships(&shapes);
         reader.bodies(&shapes);
@@ -149,11 +150,11 @@ impl<'a> Reader<'a, '_> {
         let mut known: HashMap<u32, Units> = HashMap::new();
         for &id in shapes {
             let Some(context) = self.entity(id).ok().and_then(|e| representation(e).optional(2)) else { continue };
-            if !known.contains_key(&context) {
-                let units = self.guarded("units taken as millimetres", context, |s| Units::of_context(s.file, context));
-                known.insert(context, units.unwrap_or_default());
-            }
-            self.assembly.units.insert(id, known[&context].clone());
+            let read = |s: &mut Self| Units::of_context(s.file, context);
+            let units = known
+                .entry(context)
+                .or_insert_with(|| self.guarded("units taken as millimetres", context, read).unwrap_or_default());
+            self.assembly.units.insert(id, units.clone());
         }
     }
 

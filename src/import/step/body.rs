@@ -13,7 +13,7 @@
 use super::colour::Colours;
 use super::entity::{Entity, Fault};
 use super::face::EdgeTable;
-use super::geometry::Geometry;
+use super::geometry::{FACE_LOST, Geometry};
 use super::spline;
 use crate::brep::{Edge, FaceGeometry};
 use crate::model::Colour;
@@ -182,7 +182,7 @@ impl Builder<'_, '_> {
         }
         self.body.face_count += 1;
         let colour = std::iter::once(&id).chain(colours).find_map(|i| self.colours.of_item(*i));
-        self.guarded("face left out", id, |s| {
+        self.guarded(FACE_LOST, id, |s| {
             let entity = s.geometry.entity(id)?;
             let mut face = if entity.is("CURVE_BOUNDED_SURFACE") {
                 s.geometry.bounded_surface(entity, &mut s.table)?

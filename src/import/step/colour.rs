@@ -52,7 +52,7 @@ struct Found {
 
 impl Colours {
     /// Reads all styled items.
-    pub fn read(file: &File<'_>, ledger: &Ledger) -> Self {
+    pub fn read(file: &File<'_>, ledger: &Ledger<'_>) -> Self {
         let mut colours = Self::default();
         let context = "CONTEXT_DEPENDENT_OVER_RIDING_STYLED_ITEM";
         for kind in ["STYLED_ITEM", "OVER_RIDING_STYLED_ITEM", context] {
@@ -79,7 +79,7 @@ impl Colours {
         styled.or_else(|| path.iter().find_map(|id| self.of_item(*id)))
     }
 
-    fn styled(&mut self, file: &File<'_>, ledger: &Ledger, id: u32, in_context: bool) -> Result<(), Fault> {
+    fn styled(&mut self, file: &File<'_>, ledger: &Ledger<'_>, id: u32, in_context: bool) -> Result<(), Fault> {
         let fields = Entity::find(file, id)?;
         let base = fields.fields("STYLED_ITEM", 1).unwrap_or_else(|_| fields.all().after_name());
         let mut found = Found::default();
@@ -103,7 +103,7 @@ impl Colours {
 }
 
 /// Follows a style down to its first colour and transparency.
-fn search(file: &File<'_>, ledger: &Ledger, id: u32, found: &mut Found) -> Result<(), Fault> {
+fn search(file: &File<'_>, ledger: &Ledger<'_>, id: u32, found: &mut Found) -> Result<(), Fault> {
     ledger.nested(id, || {
         let entity = Entity::find(file, id)?;
         let kinds: Vec<&str> = entity.kinds().collect();

@@ -8,8 +8,8 @@
 //!     open basis      from trim 1 to trim 2: the order of the parameters says which way
 //! ```
 //!
-//! The result always has `start < end`; `forward` is false when the file runs from `end` to `start`.
-//! Parameters of circles and ellipses are in the context's plane angle unit.
+//! The result always runs forward, from `start` up to `end`: a basis that the file runs through downwards
+//! is turned round first. Parameters of circles and ellipses are in the context's plane angle unit.
 //!
 //! SURFACE_CURVE, SEAM_CURVE and INTERSECTION_CURVE give their curve in space; their (u, v) curves are
 //! not used.
@@ -96,10 +96,15 @@ impl Geometry<'_> {
     fn trimmed(&self, fields: Fields<'_>) -> Result<CurveGeometry, Fault> {
         let id = fields.id;
         let basis = self.curve(fields.reference(0)?)?;
+        let sense = fields.flag(3);
+        if matches!(basis, CurveGeometry::Composite(_)) {
+            // its parameters mean nothing elsewhere; the ends of the edge say which part is meant
+            let turned = if sense { Some(basis) } else { locate::reversed(basis) };
+            return turned.ok_or(Fault::Value { id, what: "a composite curve without ends" });
+        }
         let by_point = matches!(fields.value(4), Some(Value::Enumeration("CARTESIAN")));
         let first = self.trim(fields, 1, &basis, by_point)?;
         let last = self.trim(fields, 2, &basis, by_point)?;
-        let sense = fields.flag(3);
         trim(basis, first, last, sense).ok_or(Fault::Value { id, what: "the trimmed curve has no length" })
     }
 
@@ -179,37 +184,27 @@ fn space_curve(entity: Entity<'_>) -> Result<u32, Fault> {
     curve.ok_or_else(|| entity.not("a curve on a surface with a curve in space"))
 }
 
-/// The part of `basis` that runs from parameter `first` to `last`, with `start < end`.
+/// The part of `basis` that runs from parameter `first` to `last`.
 fn trim(basis: CurveGeometry, first: f64, last: f64, sense: bool) -> Option<CurveGeometry> {
-    let piece = |basis: CurveGeometry, start: f64, end: f64, forward: bool| {
-        (start < end).then(|| CurveGeometry::Trimmed { basis: Box::new(basis), start, end, forward })
-    };
-    let (low, high) = if sense { (first, last) } else { (last, first) };
-    match &basis {
-        CurveGeometry::Circle { .. } | CurveGeometry::Ellipse { .. } => {
-            // a turn and a rounding error is no turn
-            let turn = (high - low).rem_euclid(TAU);
-            let span = if turn < 1e-12 || TAU - turn < 1e-12 { TAU } else { turn };
-            piece(basis, low, low + span, sense)
+    if let CurveGeometry::BSpline(spline) = &basis {
+        let (a, b) = spline.domain();
+        let (first, last) = (first.clamp(a, b), last.clamp(a, b));
+        let closed = (spline.point(a) - spline.point(b)).length() <= 1e-9 * (1.0 + spline.point(a).length());
+        if !closed || sense == (first < last) {
+            return locate::piece(basis, first, last);
         }
-        CurveGeometry::BSpline(spline) => {
-            let (a, b) = spline.domain();
-            let closed = (spline.point(a) - spline.point(b)).length() <= 1e-9 * (1.0 + spline.point(a).length());
-            let (low, high) = (low.clamp(a, b), high.clamp(a, b));
-            if low < high || !closed {
-                let forward = if low < high { sense } else { !sense };
-                return piece(basis, low.min(high), low.max(high), forward);
-            }
-            // over the seam: two pieces, in the order in which they are run through
-            let parts: Vec<_> =
-                [piece(basis.clone(), low, b, sense), piece(basis, a, high, sense)].into_iter().flatten().collect();
-            match parts.len() {
-                0 => None,
-                1 => parts.into_iter().next(),
-                _ if sense => Some(CurveGeometry::Composite(parts)),
-                _ => Some(CurveGeometry::Composite(parts.into_iter().rev().collect())),
-            }
-        }
-        _ => piece(basis, first.min(last), first.max(last), first < last),
+        // over the seam: two pieces, in the order in which they are run through
+        let (seam, start) = if sense { (b, a) } else { (a, b) };
+        let parts = [locate::piece(basis.clone(), first, seam), locate::piece(basis, start, last)];
+        let mut parts: Vec<_> = parts.into_iter().flatten().collect();
+        return if parts.len() < 2 { parts.pop() } else { Some(CurveGeometry::Composite(parts)) };
     }
+    if !matches!(basis, CurveGeometry::Circle { .. } | CurveGeometry::Ellipse { .. }) {
+        return locate::piece(basis, first, last);
+    }
+    let sign = if sense { 1.0 } else { -1.0 };
+    // a turn and a rounding error is no turn
+    let turn = (sign * (last - first)).rem_euclid(TAU);
+    let span = if turn < 1e-12 || TAU - turn < 1e-12 { TAU } else { turn };
+    locate::piece(basis, first, first + sign * span)
 }

@@ -70,7 +70,7 @@ impl<'a> Entity<'a> {
 
     /// Its types, joined for a message.
     pub fn name(self) -> String {
-        self.kinds().take(12).collect::<Vec<_>>().join("+")
+        short(self.kinds().take(12).collect::<Vec<_>>().join("+"))
     }
 
     /// A complaint that it is not what was wanted.
@@ -105,7 +105,7 @@ impl<'a> Entity<'a> {
     pub fn label(self) -> String {
         let named = self.fields("REPRESENTATION_ITEM", 0).unwrap_or_else(|_| self.all());
         match named.values.into_iter().next() {
-            Some(Value::Text(raw)) => decode(raw),
+            Some(Value::Text(raw)) => short(decode(raw)),
             _ => String::new(),
         }
     }
@@ -178,8 +178,20 @@ impl<'a> Fields<'a> {
         self.value(index).and_then(Value::flag).unwrap_or(true)
     }
 
-    /// A decoded string; empty when there is none.
+    /// A decoded name, at most [`MAX_NAME`] bytes; empty when there is none.
     pub fn text(self, index: usize) -> String {
-        self.value(index).and_then(Value::text).unwrap_or_default()
+        short(self.value(index).and_then(Value::text).unwrap_or_default())
     }
+}
+
+/// Longest name kept, in bytes: names are copied to every instance and into messages.
+const MAX_NAME: usize = 200;
+
+fn short(mut name: String) -> String {
+    if name.len() > MAX_NAME {
+        let end = (0..=MAX_NAME).rev().find(|&i| name.is_char_boundary(i)).unwrap_or(0);
+        name.truncate(end);
+        name.push('…');
+    }
+    name
 }

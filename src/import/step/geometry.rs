@@ -8,8 +8,10 @@ use super::entity::{Entity, Fault};
 use super::part21::File;
 use super::units::Units;
 use crate::brep::Frame;
+use crate::import::{ImportReport, Place, Warnings};
 use glam::{DAffine3, DMat3, DVec3};
 use std::cell::{Cell, RefCell};
+use std::collections::BTreeMap;
 
 /// Deepest chain of entities that define one another: trimmed of composite of trimmed …
 const MAX_DEPTH: usize = 24;
@@ -20,16 +22,17 @@ const SHARING: u64 = 64;
 /// Work that even the smallest file may do.
 const FREE_WORK: u64 = 1 << 20;
 
-/// Something worth a warning that did not cost the face: kind, entity, message.
-pub(super) type Note = (&'static str, u32, String);
+/// The kind of warning that costs a face.
+pub(super) const FACE_LOST: &str = "face left out";
 
-/// Work left and notes so far; shared by all representations of a file.
+/// Work left and what was found; shared by all representations of a file.
 #[derive(Debug)]
-pub(super) struct Ledger {
+pub(super) struct Ledger<'a> {
+    file: &'a File<'a>,
     work: Cell<u64>,
     trail: RefCell<Vec<u32>>,
-    /// Notes to be reported.
-    pub notes: RefCell<Vec<Note>>,
+    warnings: RefCell<Warnings>,
+    dropped: RefCell<BTreeMap<String, usize>>,
 }
 
 /// Maps the geometry of one representation.
@@ -40,13 +43,20 @@ pub(super) struct Geometry<'a> {
     /// Units of the representation's context.
     pub units: &'a Units,
     /// Shared guards.
-    pub ledger: &'a Ledger,
+    pub ledger: &'a Ledger<'a>,
 }
 
-impl Ledger {
-    pub fn new(file: &File<'_>) -> Self {
-        let work = FREE_WORK + SHARING * file.slot_count() as u64;
-        Self { work: Cell::new(work), trail: RefCell::default(), notes: RefCell::default() }
+impl<'a> Ledger<'a> {
+    /// A fresh budget; `warnings` are those of the syntax.
+    pub fn new(file: &'a File<'a>, warnings: Warnings) -> Self {
+        let work = Cell::new(FREE_WORK + SHARING * file.slot_count() as u64);
+        let (trail, warnings, dropped) = (RefCell::default(), RefCell::new(warnings), RefCell::default());
+        Self { file, work, trail, warnings, dropped }
+    }
+
+    /// The warnings, and the faces left out by reason.
+    pub fn finish(self) -> (Warnings, BTreeMap<String, usize>) {
+        (self.warnings.into_inner(), self.dropped.into_inner())
     }
 
     /// Takes `amount` of work for `#id` from the budget.
@@ -56,9 +66,14 @@ impl Ledger {
         Ok(())
     }
 
-    /// Records a note.
+    /// Warns about `#id`.
     pub fn note(&self, kind: &'static str, id: u32, message: impl Into<String>) {
-        self.notes.borrow_mut().push((kind, id, message.into()));
+        let message = message.into();
+        if kind == FACE_LOST {
+            *self.dropped.borrow_mut().entry(ImportReport::reason(&message)).or_default() += 1;
+        }
+        let place = || Entity::find(self.file, id).map_or(Place::File, Entity::place);
+        self.warnings.borrow_mut().push(kind, place, || message);
     }
 
     /// Runs `f` with `#id` on the trail.

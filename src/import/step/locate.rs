@@ -1,9 +1,8 @@
 //! Points of curves and parameters of points: what trimming by points needs.
 
-use crate::brep::CurveGeometry;
+use crate::brep::{CurveGeometry, Frame};
 use crate::spline::BSpline;
 use glam::{DVec3, DVec4};
-use std::f64::consts::TAU;
 
 /// Point at parameter `t`; `None` for composites, whose parameters no trimming here uses.
 pub(super) fn point(curve: &CurveGeometry, t: f64) -> Option<DVec3> {
@@ -44,21 +43,46 @@ pub(super) fn ends(curve: &CurveGeometry) -> Option<(DVec3, DVec3)> {
     }
 }
 
-/// The same curve run backwards; `None` for an unbounded one.
-pub(super) fn reversed(curve: CurveGeometry) -> Option<CurveGeometry> {
+/// The part of `basis` from parameter `first` to `last`, run in that direction; `None` when it is empty.
+pub(super) fn piece(basis: CurveGeometry, first: f64, last: f64) -> Option<CurveGeometry> {
+    if first < last {
+        return Some(CurveGeometry::Trimmed { basis: Box::new(basis), start: first, end: last, forward: true });
+    }
+    let (turned, sum) = turned(basis)?;
+    (last < first).then(|| piece(turned, sum - first, sum - last)).flatten()
+}
+
+/// The curve with its parameter turned round, `t` becoming `sum - t`.
+fn turned(curve: CurveGeometry) -> Option<(CurveGeometry, f64)> {
+    use CurveGeometry as C;
+    // half a turn about x takes every conic to itself, y to -y, t to -t
+    let flip = |f: Frame| Frame { y: -f.y, z: -f.z, ..f };
     Some(match curve {
-        CurveGeometry::Trimmed { basis, start, end, forward } => {
-            CurveGeometry::Trimmed { basis, start, end, forward: !forward }
+        C::Line { origin, direction } => (C::Line { origin, direction: -direction }, 0.0),
+        C::Circle { frame, radius } => (C::Circle { frame: flip(frame), radius }, 0.0),
+        C::Ellipse { frame, semi_x, semi_y } => (C::Ellipse { frame: flip(frame), semi_x, semi_y }, 0.0),
+        C::Hyperbola { frame, semi_x, semi_y } => (C::Hyperbola { frame: flip(frame), semi_x, semi_y }, 0.0),
+        C::Parabola { frame, focal } => (C::Parabola { frame: flip(frame), focal }, 0.0),
+        C::BSpline(spline) => {
+            let (a, b) = spline.domain();
+            (C::BSpline(spline.reversed()), a + b)
         }
-        CurveGeometry::BSpline(spline) => CurveGeometry::BSpline(spline.reversed()),
-        CurveGeometry::Composite(parts) => {
-            CurveGeometry::Composite(parts.into_iter().rev().map(reversed).collect::<Option<_>>()?)
+        C::Trimmed { basis, start, end, forward } => {
+            let (basis, sum) = turned(*basis)?;
+            (C::Trimmed { basis: Box::new(basis), start: sum - end, end: sum - start, forward }, sum)
         }
-        CurveGeometry::Circle { .. } | CurveGeometry::Ellipse { .. } => {
-            CurveGeometry::Trimmed { basis: Box::new(curve), start: 0.0, end: TAU, forward: false }
-        }
-        _ => return None,
+        C::Composite(_) => return None,
     })
+}
+
+/// The same curve run backwards; `None` for a composite with an unbounded segment.
+pub(super) fn reversed(curve: CurveGeometry) -> Option<CurveGeometry> {
+    match curve {
+        CurveGeometry::Composite(parts) => {
+            parts.into_iter().rev().map(reversed).collect::<Option<_>>().map(CurveGeometry::Composite)
+        }
+        curve => turned(curve).map(|(curve, _)| curve),
+    }
 }
 
 /// Parameter of the point of the curve next to `p`. Exact inversion for points on the curve, except for

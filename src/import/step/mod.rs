@@ -31,14 +31,14 @@ mod walk;
 
 pub(super) use part21::recognise;
 
-use super::{Import, ImportError, ImportReport, Place, Warnings};
+use super::{Import, ImportError, ImportReport, Warnings};
 use crate::brep::build_face;
 use crate::model::{Instance, Model, Part};
 use assembly::Assembly;
 use body::Body;
 use colour::Colours;
 use entity::Entity;
-use geometry::{Geometry, Ledger};
+use geometry::{FACE_LOST, Geometry, Ledger};
 use part21::File;
 use rayon::prelude::*;
 use std::collections::{BTreeSet, HashMap};
@@ -47,7 +47,7 @@ use std::collections::{BTreeSet, HashMap};
 pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     let mut warnings = Warnings::new(name);
     let file = File::parse(bytes, name, &mut warnings)?;
-    let ledger = Ledger::new(&file);
+    let ledger = Ledger::new(&file, warnings);
     let mut report = header(&file);
     externals(&file, &ledger, &mut report);
     let colours = Colours::read(&file, &ledger);
@@ -81,30 +81,16 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     report.bodies = bodies.len();
     report.edges = bodies.iter().map(|b| b.0.edges.len()).sum();
     report.faces = bodies.iter().map(|b| b.0.face_count).sum();
-    let notes = ledger.notes.into_inner();
-    for (kind, id, message) in notes {
-        if kind == FACE_LOST {
-            *report.dropped.entry(ImportReport::reason(&message)).or_default() += 1;
-        }
-        warnings.push(kind, || place(&file, id), || message);
-    }
-    build(&file, bodies, &mut model, &mut report, &mut warnings);
+    build(&ledger, &bodies, &mut model, &mut report);
+    let (warnings, dropped) = ledger.finish();
+    report.dropped = dropped;
     let (list, counts) = warnings.finish();
     report.warnings = counts;
     Ok(Import { model, warnings: list, report })
 }
 
-/// The kind of warning that costs a face.
-const FACE_LOST: &str = "face left out";
-
 /// Builds all faces, in parallel; results are taken in file order.
-fn build(
-    file: &File<'_>,
-    bodies: Vec<(Body, f64)>,
-    model: &mut Model,
-    report: &mut ImportReport,
-    warnings: &mut Warnings,
-) {
+fn build(ledger: &Ledger<'_>, bodies: &[(Body, f64)], model: &mut Model, report: &mut ImportReport) {
     let jobs: Vec<_> = bodies
         .iter()
         .enumerate()
@@ -123,20 +109,13 @@ fn build(
                 report.deviation = report.deviation.max(face.deviation);
                 for note in face.notes {
                     *report.healed.entry(ImportReport::reason(&note)).or_default() += 1;
-                    warnings.push("face healed", || place(file, id), || note);
+                    ledger.note("face healed", id, note);
                 }
                 model.parts[part].faces.push(face.face);
             }
-            Err(error) => {
-                *report.dropped.entry(ImportReport::reason(&error.to_string())).or_default() += 1;
-                warnings.push(FACE_LOST, || place(file, id), || error.to_string());
-            }
+            Err(error) => ledger.note(FACE_LOST, id, error.to_string()),
         }
     }
-}
-
-fn place(file: &File<'_>, id: u32) -> Place {
-    Entity::find(file, id).map_or(Place::File, Entity::place)
 }
 
 /// What the header says.
@@ -152,7 +131,7 @@ fn header(file: &File<'_>) -> ImportReport {
 }
 
 /// Parts that stand in other files.
-fn externals(file: &File<'_>, ledger: &Ledger, report: &mut ImportReport) {
+fn externals(file: &File<'_>, ledger: &Ledger<'_>, report: &mut ImportReport) {
     for id in file.of_kind("DOCUMENT_FILE") {
         let name = Entity::find(file, id).map(|e| e.all().text(0)).unwrap_or_default();
         ledger.note("external file not followed", id, name.clone());

@@ -11,7 +11,7 @@
 use super::entity::{Entity, Fault};
 use super::geometry::Ledger;
 use super::part21::File;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Which representations show which product definition.
 #[derive(Debug, Default)]
@@ -20,6 +20,9 @@ pub(super) struct Products {
     pub shapes: BTreeMap<u32, Vec<u32>>,
     /// Product definition of a representation.
     pub owner: BTreeMap<u32, u32>,
+    /// Representations of an aspect (a hole, a datum, a validation property): they repeat solids and
+    /// faces of the product's shape.
+    pub aspects: BTreeSet<u32>,
 }
 
 /// NEXT_ASSEMBLY_USAGE_OCCURRENCE: `child` is used in `parent`.
@@ -31,7 +34,7 @@ pub(super) struct Occurrence {
 }
 
 impl Products {
-    pub fn read(file: &File<'_>, ledger: &Ledger) -> Self {
+    pub fn read(file: &File<'_>, ledger: &Ledger<'_>) -> Self {
         let mut products = Self::default();
         for id in file.of_kind("SHAPE_DEFINITION_REPRESENTATION") {
             if let Err(fault) = products.shape(file, id) {
@@ -45,11 +48,14 @@ impl Products {
         let fields = Entity::find(file, id)?.all();
         let property = Entity::find(file, fields.reference(0)?)?;
         let representation = fields.reference(1)?;
-        // the property may belong to an aspect or an occurrence instead: then it is no product's shape
+        // else the property belongs to an aspect of the product
         let definition = property.all().optional(2).map(|d| Entity::find(file, d)).transpose()?;
         if let Some(definition) = definition.filter(|d| d.kinds().any(|k| k.starts_with("PRODUCT_DEFINITION"))) {
             self.shapes.entry(definition.id()).or_default().push(representation);
             self.owner.entry(representation).or_insert(definition.id());
+            self.aspects.remove(&representation);
+        } else if !self.owner.contains_key(&representation) {
+            self.aspects.insert(representation);
         }
         Ok(())
     }

@@ -75,12 +75,10 @@ impl Units {
 /// Millimetres and the unit's name.
 fn length(file: &File<'_>, unit: Entity<'_>) -> Result<(f64, String), Fault> {
     let millimetres = factor(file, unit, 0)? * 1000.0;
-    if let Ok(fields) = unit.fields("CONVERSION_BASED_UNIT", 1) {
-        return Ok((millimetres, fields.text(0).to_ascii_lowercase()));
-    }
     let known = [(1000.0, "m"), (100.0, "dm"), (10.0, "cm"), (1.0, "mm"), (1e-3, "µm"), (1e-6, "nm"), (1e6, "km")];
-    let name = known.iter().find(|(f, _)| (f - millimetres).abs() < 1e-9 * f).map_or("SI unit", |(_, n)| n);
-    Ok((millimetres, name.to_owned()))
+    let known = known.iter().find(|(f, _)| (f - millimetres).abs() < 1e-9 * f).map(|(_, name)| (*name).to_owned());
+    let own = || unit.fields("CONVERSION_BASED_UNIT", 1).map_or("SI unit".into(), |f| f.text(0).to_ascii_lowercase());
+    Ok((millimetres, known.unwrap_or_else(own)))
 }
 
 /// SI base units (metre, radian) in one unit; conversions of conversions are followed a few steps.

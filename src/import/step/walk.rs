@@ -25,15 +25,25 @@ pub(super) struct Placed {
 /// Largest number of instances; a few kilobytes of text can ask for 2^60.
 const MAX_INSTANCES: usize = 1 << 20;
 
+/// Largest number of groups visited: levels without a body of their own cost time but no instance.
+const MAX_VISITS: usize = 8 * MAX_INSTANCES;
+
 /// Deepest assembly.
 const MAX_LEVELS: usize = 64;
 
+/// Bytes of a path of names after which deeper levels add no more to it.
+const MAX_NAME: usize = 512;
+
 impl Assembly {
     /// Every body once per path from a root, in file order.
-    pub fn walk(&self, colours: &Colours, ledger: &Ledger) -> Vec<Placed> {
-        let mut walk = Walk { assembly: self, colours, ledger, trail: Vec::new(), placed: Vec::new() };
+    pub fn walk(&self, colours: &Colours, ledger: &Ledger<'_>) -> Vec<Placed> {
+        let mut walk = Walk { assembly: self, colours, ledger, trail: Vec::new(), placed: Vec::new(), visits: 0 };
         for root in self.roots() {
             walk.visit(root, DAffine3::IDENTITY, &mut Vec::new(), "");
+        }
+        if walk.full() {
+            let root = self.roots()[0];
+            ledger.note("occurrence left out", root, format!("all but the first {} instances", walk.placed.len()));
         }
         walk.placed
     }
@@ -42,13 +52,19 @@ impl Assembly {
 struct Walk<'w> {
     assembly: &'w Assembly,
     colours: &'w Colours,
-    ledger: &'w Ledger,
+    ledger: &'w Ledger<'w>,
     trail: Vec<u32>,
     placed: Vec<Placed>,
+    visits: usize,
 }
 
 impl Walk<'_> {
+    fn full(&self) -> bool {
+        self.placed.len() >= MAX_INSTANCES || self.visits >= MAX_VISITS
+    }
+
     fn visit(&mut self, id: u32, transform: DAffine3, path: &mut Vec<u32>, name: &str) {
+        self.visits += 1;
         if self.trail.contains(&id) || self.trail.len() >= MAX_LEVELS {
             self.ledger.note("occurrence left out", id, "the assembly contains itself");
             return;
@@ -57,21 +73,20 @@ impl Walk<'_> {
         self.trail.push(id);
         let colour = self.colours.of_path(path);
         for &(body, _) in &group.bodies {
-            if self.placed.len() >= MAX_INSTANCES {
-                self.ledger.note("occurrence left out", body, format!("more than {MAX_INSTANCES} instances"));
+            if self.full() {
                 break;
             }
             self.placed.push(Placed { body, transform, colour, name: name.to_owned() });
         }
         for placement in &group.placements {
-            if self.placed.len() >= MAX_INSTANCES {
+            if self.full() {
                 break;
             }
             let path_length = path.len();
             path.extend(&placement.ids);
             let name = match (name, placement.name.as_str()) {
                 ("", own) => own.to_owned(),
-                (outer, "") => outer.to_owned(),
+                (outer, own) if own.is_empty() || outer.len() + own.len() > MAX_NAME => outer.to_owned(),
                 (outer, own) => format!("{outer}/{own}"),
             };
             self.visit(self.assembly.group(placement.child), transform * placement.transform, path, &name);

@@ -1,1 +1,150 @@
-//! x
+//! Damaged files: never a panic, and a warning that names what was lost.
+
+use super::{import, wrap};
+use crate::import::step;
+use proptest::prelude::*;
+
+/// A cylinder with a hole of a rational spline edge, coloured and placed twice: a little of everything.
+const GOOD: &str = include_str!("good.step");
+
+#[test]
+fn the_good_file_is_good() {
+    let import = step(GOOD.as_bytes(), "good.step").unwrap();
+    assert!(import.warnings.is_empty(), "{:?}", import.warnings);
+    assert_eq!((import.report.faces, import.model.instances.len()), (3, 2));
+    assert_eq!((import.report.edges, import.report.bodies), (3, 1));
+}
+
+/// Loses exactly the named face; `#lost` and `reason` stand in the warning.
+fn loses(from: &str, to: &str, lost: u32, reason: &str) {
+    assert!(GOOD.contains(from), "{from}");
+    let import = step(GOOD.replacen(from, to, 1).as_bytes(), "good.step").unwrap();
+    let found: Vec<String> = import.warnings.iter().map(ToString::to_string).collect();
+    let named = |w: &String| w.contains(&format!(" #{lost}: face left out: ")) && w.contains(reason);
+    assert!(found.iter().any(named), "{from} -> {to}: {found:#?}");
+    assert_eq!(import.report.dropped.values().sum::<usize>(), import.report.warnings["face left out"]);
+    assert!(import.model.face_count() < 3);
+}
+
+#[test]
+fn each_damage_names_its_face() {
+    loses("CYLINDRICAL_SURFACE('',#24,5.)", "CYLINDRICAL_SURFACE('',#24,-5.)", 61, "#43: attribute 2");
+    loses("CYLINDRICAL_SURFACE('',#24,5.)", "CYLINDRICAL_SURFACE('',#43,5.)", 61, "#43");
+    loses("CYLINDRICAL_SURFACE('',#24,5.)", "BLOB_SURFACE('',#24,5.)", 61, "BLOB_SURFACE is not supported");
+    loses("#10=CARTESIAN_POINT('',(5.,0.,0.))", "#10=CARTESIAN_POINT('',(NaN,0.,0.))", 61, "#10: a coordinate");
+    loses("EDGE_LOOP('',(#51,#52", "EDGE_LOOP('',(#51,#999", 61, "#999 does not exist");
+    loses("EDGE_LOOP('',(#54))", "EDGE_LOOP('',())", 62, "#57: the loop has no edge");
+    loses("PLANE('',#24)", "OFFSET_SURFACE('',#44,1.,.F.)", 62, "#44 refers to itself");
+    loses("(#58),#44", "(),#44", 62, "");
+}
+
+/// Surfaces of one spline shared by every face of a shell: the work is cut off, not the program.
+#[test]
+fn sharing_is_bounded() {
+    let net = "#7,".repeat(2000);
+    let curve = format!("#7=CARTESIAN_POINT('',(0.,0.,0.));#8=POLYLINE('',({net}#7));#9=VERTEX_POINT('',#7);");
+    let mut data = curve;
+    for i in 0..5000 {
+        let id = 100 + i;
+        data += &format!("#{id}=EDGE_CURVE('',#9,#9,#8,.T.);");
+    }
+    let edges: String = (0..5000).map(|i| format!("#{},", 100 + i)).collect();
+    data += &format!(
+        "#20=EDGE_LOOP('',({edges}));#21=FACE_BOUND('',#20,.T.);#22=ADVANCED_FACE('',(#21),#23,.T.);\
+        #23=SPHERICAL_SURFACE('',#24,1.);#24=AXIS2_PLACEMENT_3D('',#7,$,$);#25=CLOSED_SHELL('',(#22));#26=MANIFOLD_SOLID_BREP('',#25);"
+    );
+    let import = import(&data);
+    assert!(import.warnings.iter().any(|w| w.message.contains("shared so often")), "{:?}", import.warnings);
+}
+
+#[test]
+fn a_solid_whose_shell_is_itself() {
+    let import = import("#1=MANIFOLD_SOLID_BREP('',#2);#2=ORIENTED_CLOSED_SHELL('',*,#2,.T.);");
+    assert_eq!(import.model.face_count(), 0);
+    assert!(import.warnings.iter().any(|w| w.message.contains("#2 refers to itself")), "{:?}", import.warnings);
+}
+
+/// A kind of damage at a place.
+#[derive(Clone, Debug)]
+enum Damage {
+    Byte(usize, u8),
+    Truncate(usize),
+    Remove(usize, usize),
+    Repeat(usize, usize),
+    /// The n-th number or reference becomes another one.
+    Token(usize, &'static str),
+    Reference(usize, u32),
+}
+
+fn apply(text: &mut Vec<u8>, damage: &Damage) {
+    let len = text.len().max(1);
+    match *damage {
+        Damage::Byte(at, byte) => {
+            if let Some(b) = text.get_mut(at % len) {
+                *b = byte;
+            }
+        }
+        Damage::Truncate(at) => text.truncate(at % len),
+        Damage::Remove(at, count) => drop(text.drain((at % len).min(text.len())..(at % len + count).min(text.len()))),
+        Damage::Repeat(at, count) => {
+            let piece = text[(at % len).min(text.len())..(at % len + count).min(text.len())].to_vec();
+            text.splice(at % len..at % len, piece).for_each(drop);
+        }
+        Damage::Token(n, with) => replace(text, n, |b| b.is_ascii_digit() || b"+-.E".contains(&b), with),
+        Damage::Reference(n, id) => replace(text, n, |b| b.is_ascii_digit() || b == b'#', &format!("#{id}")),
+    }
+}
+
+/// Replaces the n-th run of bytes that `is` holds for.
+fn replace(text: &mut Vec<u8>, n: usize, is: impl Fn(u8) -> bool, with: &str) {
+    let starts: Vec<usize> = (1..text.len()).filter(|&i| is(text[i]) && !is(text[i - 1])).collect();
+    if starts.is_empty() {
+        return;
+    }
+    let start = starts[n % starts.len()];
+    let end = text[start..].iter().position(|&b| !is(b)).map_or(text.len(), |p| start + p);
+    text.splice(start..end, with.bytes()).for_each(drop);
+}
+
+fn damage() -> impl Strategy<Value = Damage> {
+    let tokens =
+        ["NaN", "1E999", "-1", "0", "1000000000", "99999999999999999999", "$", "*", "()", "'x'", ".T.", "1e-320"];
+    prop_oneof![
+        (any::<usize>(), any::<u8>()).prop_map(|(a, b)| Damage::Byte(a, b)),
+        (any::<usize>(), prop::sample::select(b"';(),#*$./&".to_vec())).prop_map(|(a, b)| Damage::Byte(a, b)),
+        any::<usize>().prop_map(Damage::Truncate),
+        (any::<usize>(), 1usize..80).prop_map(|(a, n)| Damage::Remove(a, n)),
+        (any::<usize>(), 1usize..200).prop_map(|(a, n)| Damage::Repeat(a, n)),
+        (any::<usize>(), prop::sample::select(tokens.to_vec())).prop_map(|(n, t)| Damage::Token(n, t)),
+        (any::<usize>(), 1u32..110).prop_map(|(n, id)| Damage::Reference(n, id)),
+        (any::<usize>(), 1u32..110).prop_map(|(n, id)| Damage::Reference(n, id)),
+    ]
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(2000))]
+
+    /// Whatever the damage: an error or a valid model, soon, with a bounded number of warnings.
+    #[test]
+    fn no_damage_panics(list in prop::collection::vec(damage(), 1..6)) {
+        let mut text = GOOD.as_bytes().to_vec();
+        list.iter().for_each(|d| apply(&mut text, d));
+        if let Ok(import) = step(&text, "t.step") {
+            let parts = import.model.parts.len();
+            prop_assert!(import.model.instances.iter().all(|i| i.part < parts));
+            prop_assert!(import.model.instances.iter().all(|i| i.transform.is_finite()));
+            prop_assert!(import.warnings.len() < 300);
+            let lost = import.report.faces - import.model.face_count();
+            prop_assert_eq!(lost, import.report.dropped.values().sum::<usize>());
+        }
+    }
+
+    /// Arbitrary bytes behind a valid start.
+    #[test]
+    fn no_bytes_panic(bytes in prop::collection::vec(any::<u8>(), 0..400)) {
+        let mut text = wrap("").into_bytes();
+        let at = text.windows(5).position(|w| w == b"DATA;").unwrap_or(0) + 5;
+        text.splice(at..at, bytes).for_each(drop);
+        let _ = step(&text, "t.step");
+    }
+}

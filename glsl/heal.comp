@@ -1,0 +1,146 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `heal`, second step: who is seen at a doubtful pixel? One thread a pixel.
+//
+//        ┌───┬───┬───┐     the faces of the eight neighbours are asked, on their exact surfaces at
+//        │ A │ A │ B │     this pixel's centre:
+//        ├───┼───┼───┤       inside its trims?           then it is a witness
+//        │ A │ ? │ B │       within the ring of them?    then it is a helper
+//        ├───┼───┼───┤
+//        │   │   │ B │     The doubtful face itself is `real` when its own surface is inside its trims,
+//        └───┴───┴───┘     and the whole ring too: farther from its border than any error.
+//
+//   real (a gap looks into the solid): the nearest witness or helper before it
+//   not real (its ring reaches out):   the nearest witness; without one, nothing if a neighbour sees
+//                                      nothing and at most one face helps (a silhouette), else the
+//                                      nearest helper
+//
+// Without any of these the doubtful face stays. Doubtful neighbours are not asked, and healed pixels
+// stay marked, so the order of the threads does not matter.
+#include "scene.glsl"
+#include "view.glsl"
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
+layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
+layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
+layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
+layout(binding = 6) uniform samplerBuffer points;
+layout(scalar, binding = 7) readonly buffer LineStarts { uint line_starts[]; };
+layout(scalar, binding = 8) readonly buffer RowStarts { uint row_starts[]; };
+layout(scalar, binding = 9) readonly buffer RowCounts { uint row_counts[]; };
+layout(scalar, binding = 10) readonly buffer Flips { float flips[]; };
+layout(binding = 11, rg32ui) uniform uimage2D visibility;
+layout(scalar, binding = 12) readonly buffer Doubts { uint doubts[]; };
+layout(scalar, binding = 13) readonly buffer CountersBuffer { Counters counters; };
+
+#include "patch.glsl"
+#include "refine.glsl"
+#include "ring.glsl"
+#include "table.glsl"
+#include "visible.glsl"
+
+const uint NO = 0u;
+const uint HELPER = 1u;
+const uint WITNESS = 2u;
+
+// A surface counts at the pixel when its point projects this close to the centre.
+const float ON_PIXEL_PX = 0.05;
+// A point of the ring may project a little farther away than its radius: the step was linear.
+const float RING_SLACK = 1.25;
+// Relative depth within which a face touches the doubtful one, and is as hidden as that.
+const float SAME_DEPTH = 1e-5;
+
+struct Answer {
+    uint kind;
+    float depth;
+    uvec2 word;
+};
+
+// Who is asked about being `real` must have the whole ring inside.
+Answer ask(uvec2 seen, vec2 pixel, bool real) {
+    uint item = seen_item(seen.x);
+    FaceInstance fi = face_instances[item_face_instance[item]];
+    Face face = faces[fi.face];
+    Patch patch_ = patches[face.first_patch + item - fi.first_item];
+    View view = views[fi.instance];
+    Sample s = refine(patch_, view, unpack_uv(seen.y), pixel);
+    Answer answer = Answer(NO, s.q.z, uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)))));
+    float strips = float(face.strip_count);
+    vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
+    bool inside = face.strip_count == 0u || table_inside(fi.first_strip, strips, at);
+    float miss = length(s.miss);
+    if (miss > ON_PIXEL_PX) {
+        // a silhouette beside the pixel
+        if (inside && miss <= RING_SLACK * frame.ring_px) answer.kind = HELPER;
+        return answer;
+    }
+    if (inside) answer.kind = WITNESS;
+    if (inside != real || face.strip_count == 0u) return answer;
+    vec4 qu = to_pixel(view, vec4(s.jet.du, 0.0));
+    vec4 qv = to_pixel(view, vec4(s.jet.dv, 0.0));
+    vec2 p = s.q.xy / s.q.w;
+    vec2 pu = (qu.xy - p * qu.w) / s.q.w;
+    vec2 pv = (qv.xy - p * qv.w) / s.q.w;
+    float det = pu.x * pv.y - pu.y * pv.x;
+    if (abs(det) < 1e-12) return answer;
+    for (uint k = 0u; k < RING_POINTS; ++k) {
+        vec2 step_ = frame.ring_px * RING[k];
+        vec2 duv = vec2(step_.x * pv.y - step_.y * pv.x, pu.x * step_.y - pu.y * step_.x) / det;
+        bool there = table_inside(fi.first_strip, strips, at + duv * patch_.domain.zw);
+        if (inside && !there) {
+            answer.kind = HELPER;
+            break;
+        }
+        if (inside || !there) continue;
+        vec4 q = to_pixel(view, vec4(patch_jet(patch_.first, patch_.shape, s.uv + duv).point, 1.0));
+        if (distance(q.xy / q.w, pixel) <= RING_SLACK * frame.ring_px) {
+            answer.kind = HELPER;
+            break;
+        }
+    }
+    return answer;
+}
+
+void main() {
+    uint n = gl_GlobalInvocationID.x;
+    if (n >= min(counters.doubts, frame.doubt_capacity)) return;
+    ivec2 at = ivec2(doubts[n] & 0xffffu, doubts[n] >> 16);
+    vec2 pixel = vec2(at) + 0.5;
+    uvec2 own = imageLoad(visibility, at).xy;
+    Answer self = ask(own, pixel, true);
+    bool real = self.kind == WITNESS;
+    float limit = real ? self.depth * (1.0 - SAME_DEPTH) : 3.0e38;
+    Answer witness = Answer(NO, 3.0e38, uvec2(0u));
+    Answer helper = witness;
+    bool beside_nothing = false;
+    uint helping_face = 0u; // index + 1; helpers of two faces meet in an edge here
+    bool two_help = false;
+    for (uint k = 0u; k < RING_POINTS; ++k) {
+        ivec2 beside = at + ivec2(sign(RING[k]));
+        if (any(lessThan(beside, ivec2(0))) || any(greaterThanEqual(beside, ivec2(frame.size)))) continue;
+        uvec2 seen = imageLoad(visibility, beside).xy;
+        if ((seen.x & DOUBTFUL) != 0u) continue;
+        if (sees_nothing(seen.x)) {
+            beside_nothing = true;
+            continue;
+        }
+        Answer answer = ask(seen, pixel, false);
+        if (answer.depth > limit) continue;
+        if (answer.kind == WITNESS && answer.depth < witness.depth) witness = answer;
+        if (answer.kind == HELPER) {
+            if (answer.depth < helper.depth) helper = answer;
+            FaceInstance fi = face_instances[item_face_instance[seen_item(seen.x)]];
+            two_help = two_help || (helping_face != 0u && helping_face != fi.face + 1u);
+            helping_face = fi.face + 1u;
+        }
+    }
+    uvec2 healed = own;
+    if (witness.kind == WITNESS) healed = witness.word;
+    else if (!real && beside_nothing && !two_help) healed = uvec2(0u);
+    else if (helper.kind == HELPER) healed = helper.word;
+    imageStore(visibility, at, uvec4(healed.x | DOUBTFUL, healed.y, 0u, 0u));
+}

@@ -1,0 +1,50 @@
+// The point of the exact surface under a pixel. Needs patch.glsl and view.glsl.
+//
+// Newton's method on F(u, v) = projection(S(u, v)) - pixel:  step = -J^-1 F, kept only while the
+// distance to the pixel shrinks (at a silhouette there may be no such point).
+#ifndef REFINE_GLSL
+#define REFINE_GLSL
+
+const uint NEWTON_STEPS = 4u;
+const float MAX_STEP = 0.25;      // of the patch
+const float CLOSE_ENOUGH = 1e-3;  // pixels
+
+struct Sample {
+    vec2 uv;
+    Jet jet;
+    vec4 q;      // homogeneous pixel
+    vec2 miss;   // pixels
+};
+
+Sample sample_at(Patch patch_, View view, vec2 uv, vec2 pixel) {
+    Sample s;
+    s.uv = uv;
+    s.jet = patch_jet(patch_.first, patch_.shape, uv);
+    s.q = to_pixel(view, vec4(s.jet.point, 1.0));
+    s.miss = s.q.xy / s.q.w - pixel;
+    return s;
+}
+
+Sample refine(Patch patch_, View view, vec2 uv, vec2 pixel) {
+    Sample best = sample_at(patch_, view, uv, pixel);
+    for (uint i = 0u; i < NEWTON_STEPS; ++i) {
+        float error = dot(best.miss, best.miss);
+        if (error < CLOSE_ENOUGH * CLOSE_ENOUGH) break;
+        vec4 qu = to_pixel(view, vec4(best.jet.du, 0.0));
+        vec4 qv = to_pixel(view, vec4(best.jet.dv, 0.0));
+        vec2 p = best.q.xy / best.q.w;
+        vec2 pu = (qu.xy - p * qu.w) / best.q.w;
+        vec2 pv = (qv.xy - p * qv.w) / best.q.w;
+        float det = pu.x * pv.y - pu.y * pv.x;
+        if (abs(det) < 1e-12) break;
+        vec2 step_ = vec2(best.miss.x * pv.y - best.miss.y * pv.x, pu.x * best.miss.y - pu.y * best.miss.x) / det;
+        float largest = max(abs(step_.x), abs(step_.y));
+        if (largest > MAX_STEP) step_ *= MAX_STEP / largest;
+        Sample next = sample_at(patch_, view, best.uv - step_, pixel);
+        if (!(dot(next.miss, next.miss) < error)) break;
+        best = next;
+    }
+    return best;
+}
+
+#endif

@@ -1,0 +1,40 @@
+//! The accuracy promise, tested on one picture.
+//!
+//! The promise: a pixel shows what the exact model shows at a point at most `tolerance` pixels away.
+//! The judge asks [`selvedge::reference`], which intersects rays with the exact surfaces and classifies the
+//! hits against the exact trim curves in double precision, and shares no code with the GPU passes.
+
+use crate::progress::counting;
+use selvedge::model::Camera;
+use selvedge::picture::Picture;
+use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
+
+/// Judges about `samples` pixels of a picture, and every one at which the face changes.
+pub fn of(
+    tracer: &Tracer,
+    camera: &Camera,
+    picture: &Picture,
+    samples: usize,
+    tolerance: f64,
+    what: &str,
+) -> Judgement {
+    counting(&format!("judging {what}, pixels"), |tick| {
+        let options = JudgeOptions {
+            samples: Some(samples),
+            limit_px: tolerance,
+            progress: Some(tick),
+            ..JudgeOptions::default()
+        };
+        judge(tracer, camera, picture, &options)
+    })
+}
+
+/// Pixels that break the promise: the wrong face, or the right face's wrong sheet.
+pub fn wrong(judgement: &Judgement) -> u64 {
+    judgement.wrong + judgement.folds.beyond + judgement.folds.wrong_depth
+}
+
+/// The largest distance at which a pixel is right, of faces and sheets of faces.
+pub fn worst_shift_px(judgement: &Judgement) -> f64 {
+    judgement.worst_shift_px.max(judgement.folds.worst_shift_px)
+}

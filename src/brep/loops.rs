@@ -1,0 +1,232 @@
+//! From the strands of one bound to a loop in the unrolled domain.
+//!
+//! Strands are shifted by whole periods so that each begins where the one before it ends. Where
+//! two meet at a pole, a straight side along the pole joins them:
+//!
+//! ```text
+//!   v ▲   pole: one point in space            a loop that keeps its face on the left runs
+//!     │  ◀───────────────── side              along an upper pole towards smaller u,
+//!     │  │               ▲                    along a lower one towards larger u
+//!     │  ▼    face       │
+//!     └──●───────────────●──▶ u
+//! ```
+
+use super::strand::{Path, Strand};
+use super::support::{Form, Support};
+use super::{BuildError, law};
+use crate::spline::Control;
+use glam::{DVec2, DVec3};
+
+/// A closed chain of strands; its end is its start plus `winding` periods.
+#[derive(Clone, Debug)]
+pub(super) struct Loop {
+    /// In order.
+    pub strands: Vec<Strand>,
+    /// Times around in `u` and in `v`.
+    pub winding: [i32; 2],
+}
+
+/// What the faults of a bound are measured with.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Limits {
+    /// Face number.
+    pub face: u32,
+    /// Diagonal of the face, mm.
+    pub size: f64,
+}
+
+impl Loop {
+    /// Chains `strands`; `notes` receives what had to be healed.
+    ///
+    /// # Errors
+    /// [`BuildError::EmptyLoop`], [`BuildError::OpenLoop`].
+    pub fn close(
+        support: &Support,
+        mut strands: Vec<Strand>,
+        limits: Limits,
+        notes: &mut Vec<String>,
+    ) -> Result<Self, BuildError> {
+        let n = strands.len();
+        if n == 0 {
+            return Err(BuildError::EmptyLoop { face: limits.face });
+        }
+        let next = |k: usize| (k + 1) % n;
+        let pole_joint = |s: &[Strand], k: usize| s[k].poles[1].filter(|p| s[next(k)].poles[0] == Some(*p));
+        // begin after the last pole: the side there is then found by closing, without a choice
+        if let Some(k) = (0..n).rev().find(|k| pole_joint(&strands, *k).is_some()) {
+            strands.rotate_left(k + 1);
+        }
+        for k in 1..n {
+            let (before, here) = (&strands[k - 1], &strands[k]);
+            let shift = match pole_joint(&strands, k - 1) {
+                Some(pole) => side_along_pole(support, before, here, pole) - here.start,
+                None => support.unwrap(here.start, before.end) - here.start,
+            };
+            strands[k] = strands[k].clone().shifted(shift);
+        }
+        let closing = (strands[n - 1].end, strands[0].start);
+        let closing_pole = pole_joint(&strands, n - 1);
+        let mut winding = [0; 2];
+        for i in 0..2 {
+            if let (Some(period), None) = (support.periods[i], closing_pole) {
+                winding[i] = ((closing.0[i] - closing.1[i]) / period).round() as i32;
+            }
+        }
+        let turn = periods(support, winding);
+        let mut out = Vec::with_capacity(n + 2);
+        for k in 0..n {
+            let onward = if k == n - 1 { turn } else { DVec2::ZERO };
+            let (from, to) = (strands[k].end, strands[next(k)].start + onward);
+            if pole_joint(&strands, k).is_some() {
+                out.push(strands[k].clone());
+                if from != to {
+                    out.push(Strand::inserted(from, to));
+                }
+                continue;
+            }
+            let gap = strands[k].vertices[1].distance(strands[next(k)].vertices[0]);
+            if gap > 0.05 * limits.size {
+                let edge = strands[next(k)].part.as_ref().map_or(0, |p| p.trace.edge.id);
+                return Err(BuildError::OpenLoop { face: limits.face, edge, gap });
+            }
+            let joint = joint(support, &strands[k], &strands[next(k)], onward);
+            strands[k].end = joint;
+            strands[next(k)].start = joint - onward;
+            if k == n - 1 {
+                // the first strand is already out
+                let first: &mut Strand = if n == 1 { &mut strands[0] } else { &mut out[0] };
+                first.start = joint - onward;
+            }
+            out.push(strands[k].clone());
+            if gap > 50.0 * support.eps {
+                notes.push(format!("face #{}: a gap of {gap:.3e} mm between edges was closed", limits.face));
+            }
+        }
+        Ok(Self { strands: out, winding })
+    }
+
+    /// Moved.
+    pub fn shifted(mut self, by: DVec2) -> Self {
+        self.strands = self.strands.into_iter().map(|s| s.shifted(by)).collect();
+        self
+    }
+
+    /// Run backwards.
+    pub fn reversed(mut self) -> Self {
+        self.strands = self.strands.into_iter().rev().map(Strand::reversed).collect();
+        self.winding = self.winding.map(|w| -w);
+        self
+    }
+
+    /// A polygon close to the loop, without its closing point; a loop that winds is open.
+    pub fn polygon(&self, support: &Support) -> Vec<DVec2> {
+        let mut points = Vec::new();
+        for s in &self.strands {
+            let polygon = s.polygon(support);
+            points.extend_from_slice(&polygon[..polygon.len() - 1]);
+        }
+        points
+    }
+
+    /// Box of the loop: exact for straight strands; curved ones by samples, refined at each extreme
+    /// to `1e-12` of a period or of the curve's own box.
+    pub fn bounds(&self, support: &Support) -> (DVec2, DVec2) {
+        let mut bounds = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        let mut hold = |p: DVec2| bounds = (bounds.0.min(p), bounds.1.max(p));
+        for s in &self.strands {
+            hold(s.start);
+            hold(s.end);
+            match &s.path {
+                Path::Line => {}
+                Path::Exact(_) => {
+                    for c in s.exact_curves().unwrap_or_default() {
+                        let nodes: Vec<f64> = (0..=16).map(|i| f64::from(i) / 16.0).collect();
+                        extremes(&nodes, |t| c.homogeneous(t).point()).into_iter().for_each(&mut hold);
+                    }
+                }
+                Path::Traced => extremes(&s.nodes(), |t| s.at(support, t)).into_iter().for_each(&mut hold),
+            }
+        }
+        bounds
+    }
+}
+
+/// `winding` as a vector of parameters.
+pub(super) fn periods(support: &Support, winding: [i32; 2]) -> DVec2 {
+    let one = |i: usize| f64::from(winding[i]) * support.periods[i].unwrap_or(0.0);
+    DVec2::new(one(0), one(1))
+}
+
+/// Twice the signed area of a closed polygon.
+pub(super) fn area(polygon: &[DVec2]) -> f64 {
+    let origin = polygon.first().copied().unwrap_or(DVec2::ZERO);
+    polygon.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum()
+}
+
+/// Points where a sampled curve may reach farthest in each direction, by ternary search around the
+/// extreme samples.
+fn extremes(nodes: &[f64], at: impl Fn(f64) -> DVec2) -> Vec<DVec2> {
+    let samples: Vec<DVec2> = nodes.iter().map(|t| at(*t)).collect();
+    let mut out = samples.clone();
+    for axis in 0..2 {
+        for sign in [1.0, -1.0] {
+            let value = |p: DVec2| sign * p[axis];
+            let Some(i) = (0..samples.len()).max_by(|a, b| value(samples[*a]).total_cmp(&value(samples[*b]))) else {
+                continue;
+            };
+            let (mut a, mut b) = (nodes[i.saturating_sub(1)], nodes[(i + 1).min(nodes.len() - 1)]);
+            for _ in 0..50 {
+                let (c, d) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
+                if value(at(c)) >= value(at(d)) { b = d } else { a = c }
+            }
+            out.push(at(0.5 * (a + b)));
+        }
+    }
+    out
+}
+
+/// Where the strand after a pole begins: at its own angle, reached from the end of the strand before
+/// in the direction that keeps the face on the left. A side without length is a whole turn.
+fn side_along_pole(support: &Support, before: &Strand, here: &Strand, pole: usize) -> DVec2 {
+    let axis = support.poles[pole].axis;
+    let free = 1 - axis;
+    let mut start = here.start;
+    start[axis] = before.end[axis];
+    let Some(period) = support.periods[free] else { return start };
+    // counter-clockwise: +u below, +v on the right, -u above, -v on the left
+    let upper = before.end[axis] > before.start[axis];
+    let rising = upper == (axis == 0);
+    let ahead = if rising { start[free] - before.end[free] } else { before.end[free] - start[free] };
+    let mut ahead = ahead.rem_euclid(period);
+    if ahead < 1e-6 * period || ahead > (1.0 - 1e-6) * period {
+        // a slit into the pole and back, or all the way around it: two uses of one meridian go around
+        ahead = period;
+    }
+    start[free] = law::nearest(start[free], before.end[free] + if rising { ahead } else { -ahead }, period);
+    start
+}
+
+/// The shared point of two strands: the pre-image of their vertex, on the lines that they follow.
+fn joint(support: &Support, a: &Strand, b: &Strand, onward: DVec2) -> DVec2 {
+    let (end, start) = (a.end, b.start + onward);
+    let guess = 0.5 * (end + start);
+    let vertex: DVec3 = 0.5 * (a.vertices[1] + b.vertices[0]);
+    let mut joint = support.invert(vertex, Some(guess));
+    // a vertex far off the surface, or near a pole, says less than the curves do
+    let speed = support.speed(guess);
+    let apart = |p: DVec2, q: DVec2| ((p - q) * speed).length();
+    let reach = apart(end, start) + vertex.distance(support.point(guess)) + support.eps;
+    let meaningful = apart(joint, guess) <= 4.0 * reach;
+    let flat = matches!(support.form, Form::Plane);
+    if !(flat || meaningful) {
+        joint = guess;
+    }
+    for i in 0..2 {
+        if a.locked[i] {
+            joint[i] = end[i];
+        } else if b.locked[i] {
+            joint[i] = start[i];
+        }
+    }
+    joint
+}

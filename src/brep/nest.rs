@@ -1,0 +1,139 @@
+//! Which loops are outer borders and which are holes: by containment, not by order or direction.
+
+use super::cut::{cut_open, natural_rims};
+use super::loops::{Limits, Loop, area};
+use super::support::Support;
+use super::{BuildError, law};
+use glam::DVec2;
+
+/// Unrolled loops of a face, outer ones counter-clockwise and holes clockwise, without winding.
+///
+/// The given directions are read in one case only: on a closed surface whose loops can all be
+/// contracted, they say whether the face is inside or outside of them.
+pub(super) fn arrange(
+    support: &Support,
+    loops: Vec<Loop>,
+    vertices: &[usize],
+    limits: Limits,
+) -> Result<Vec<Loop>, BuildError> {
+    let contractible = loops.iter().all(|l| l.winding == [0, 0]);
+    let mut loops = cut_open(support, loops, vertices, limits)?;
+    gather(support, &mut loops);
+    if contractible && support.is_closed() && is_outside(support, &loops) {
+        let rims = natural_rims(support, &loops).ok_or(BuildError::Unbounded { face: limits.face })?;
+        loops.extend(rims);
+        loops = cut_open(support, loops, vertices, limits)?;
+    }
+    orient(support, &mut loops);
+    Ok(loops)
+}
+
+/// Moves every loop by whole periods into the largest one, where it fits.
+fn gather(support: &Support, loops: &mut [Loop]) {
+    if support.periods == [None, None] || loops.len() < 2 {
+        return;
+    }
+    let polygons: Vec<Vec<DVec2>> = loops.iter().map(|l| closed(l.polygon(support))).collect();
+    let size = |i: usize| area(&polygons[i]).abs();
+    let Some(outer) = (0..loops.len()).max_by(|a, b| size(*a).total_cmp(&size(*b))) else { return };
+    let centre = |p: &[DVec2]| p.iter().sum::<DVec2>() / p.len() as f64;
+    let middle = centre(&polygons[outer]);
+    for i in (0..loops.len()).filter(|i| *i != outer) {
+        let mut candidates = vec![DVec2::ZERO];
+        for ku in -1..=1 {
+            for kv in -1..=1 {
+                let here = centre(&polygons[i]);
+                let base = support.unwrap(here, middle) - here;
+                let by = |k: i32, axis: usize| f64::from(k) * support.periods[axis].unwrap_or(0.0);
+                candidates.push(base + DVec2::new(by(ku, 0), by(kv, 1)));
+            }
+        }
+        let inside = |by: &DVec2| {
+            let moved: Vec<DVec2> = polygons[i].iter().map(|p| *p + *by).collect();
+            contains(&polygons[outer], &moved)
+        };
+        if let Some(by) = candidates.into_iter().find(inside) {
+            loops[i] = loops[i].clone().shifted(by);
+        }
+    }
+}
+
+/// Every outermost loop runs clockwise as given: the face is what they leave.
+fn is_outside(support: &Support, loops: &[Loop]) -> bool {
+    let polygons: Vec<Vec<DVec2>> = loops.iter().map(|l| closed(l.polygon(support))).collect();
+    !loops.is_empty() && (0..loops.len()).all(|i| depth(&polygons, i) > 0 || area(&polygons[i]) < 0.0)
+}
+
+/// Turns loops around so that those at even depth run counter-clockwise.
+fn orient(support: &Support, loops: &mut [Loop]) {
+    let polygons: Vec<Vec<DVec2>> = loops.iter().map(|l| closed(l.polygon(support))).collect();
+    for i in 0..loops.len() {
+        let outer = depth(&polygons, i) % 2 == 0;
+        if (area(&polygons[i]) > 0.0) != outer {
+            loops[i] = loops[i].clone().reversed();
+        }
+    }
+}
+
+/// How many other loops hold loop `i`.
+fn depth(polygons: &[Vec<DVec2>], i: usize) -> usize {
+    (0..polygons.len()).filter(|j| *j != i && contains(&polygons[*j], &polygons[i])).count()
+}
+
+fn closed(mut polygon: Vec<DVec2>) -> Vec<DVec2> {
+    polygon.extend(polygon.first().copied());
+    polygon
+}
+
+/// `inner` lies in `outer`, by the vote of its edge midpoints: loops may touch.
+fn contains(outer: &[DVec2], inner: &[DVec2]) -> bool {
+    let (lo, hi) = outer.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+    // at most some thirty votes of the longest loops
+    let stride = inner.len().div_ceil(32).max(1);
+    let mut votes = (0, 0);
+    for w in inner.windows(2).step_by(stride) {
+        let p = 0.5 * (w[0] + w[1]);
+        votes.1 += 1;
+        if (p.cmpge(lo) & p.cmple(hi)).all() && encloses(outer, p) {
+            votes.0 += 1;
+        }
+    }
+    2 * votes.0 > votes.1
+}
+
+/// Parity of the crossings of a ray towards `+u`; edges are bottom-open, top-closed.
+fn encloses(polygon: &[DVec2], p: DVec2) -> bool {
+    let mut inside = false;
+    for w in polygon.windows(2) {
+        if (w[0].y < p.y) != (w[1].y < p.y) {
+            let u = w[0].x + (w[1].x - w[0].x) * ((p.y - w[0].y) / (w[1].y - w[0].y));
+            inside ^= u > p.x;
+        }
+    }
+    inside
+}
+
+/// Moves all loops by whole periods so that their box begins in the natural range.
+pub(super) fn come_home(support: &Support, loops: Vec<Loop>) -> (Vec<Loop>, [(f64, f64); 2]) {
+    let mut bounds = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+    for l in &loops {
+        let (lo, hi) = l.bounds(support);
+        bounds = (bounds.0.min(lo), bounds.1.max(hi));
+    }
+    let mut by = DVec2::ZERO;
+    for i in 0..2 {
+        if let (Some(period), Some((start, end))) = (support.periods[i], support.natural[i]) {
+            // an apple's natural range is shorter than its period: go by the middle
+            let full = end - start >= period * (1.0 - 1e-9);
+            by[i] = if full {
+                -period * ((bounds.0[i] - start) / period + 1e-9).floor()
+            } else {
+                let middle = 0.5 * (bounds.0[i] + bounds.1[i]);
+                law::nearest(middle, 0.5 * (start + end), period) - middle
+            };
+        }
+    }
+    let loops = if by == DVec2::ZERO { loops } else { loops.into_iter().map(|l| l.shifted(by)).collect() };
+    let (lo, hi) = (bounds.0 + by, bounds.1 + by);
+    (loops, [(lo.x, hi.x), (lo.y, hi.y)])
+}

@@ -1,0 +1,141 @@
+//! The pre-image of an edge on its support: points of the curve inverted in order, unwrapped, and
+//! able to answer for any parameter in between.
+
+use super::edge::EdgeCurve;
+use super::support::Support;
+use glam::DVec2;
+use std::rc::Rc;
+
+/// A function from the fraction `s` of an edge to native `(u, v)`, continuous across seams.
+#[derive(Clone, Debug)]
+pub(super) struct Trace {
+    /// The edge.
+    pub edge: Rc<EdgeCurve>,
+    /// Fractions and parameters, increasing in `s`.
+    pub samples: Vec<(f64, DVec2)>,
+    /// The first or last sample is a pole, where one coordinate is a limit.
+    pub at_pole: [bool; 2],
+    /// Largest distance in mm of a sampled point of the curve from the support.
+    pub gap: f64,
+}
+
+impl Trace {
+    /// Traces the edge over `[from, to]`. `poles`: the support's poles that its ends are, if any;
+    /// `hint`: parameters near the start, for surfaces that pass twice through one point.
+    pub fn new(
+        support: &Support,
+        edge: &Rc<EdgeCurve>,
+        (from, to): (f64, f64),
+        poles: [Option<usize>; 2],
+        hint: Option<DVec2>,
+    ) -> Self {
+        let mut nodes: Vec<f64> = edge.nodes().into_iter().filter(|s| *s > from && *s < to).collect();
+        if nodes.len() < 3 {
+            nodes = (1..4).map(|i| from + (to - from) * f64::from(i) / 4.0).collect();
+        }
+        // poles are approached by halving, so that a turning curve can be unwound
+        const HALVINGS: i32 = 8;
+        let ladder = |end: f64, first: f64| (1..=HALVINGS).map(move |k| end + (first - end) * 0.5f64.powi(k));
+        let (first, last) = (nodes[0], nodes[nodes.len() - 1]);
+        match poles[0] {
+            Some(_) => nodes.splice(..0, ladder(from, first).collect::<Vec<_>>().into_iter().rev()).for_each(drop),
+            None => nodes.insert(0, from),
+        }
+        match poles[1] {
+            Some(_) => nodes.extend(ladder(to, last)),
+            None => nodes.push(to),
+        }
+        let mut this = Self { edge: edge.clone(), samples: Vec::new(), at_pole: poles.map(|p| p.is_some()), gap: 0.0 };
+        let mut hint = hint;
+        for s in nodes {
+            let p = support.invert(edge.point(s), hint);
+            this.step(support, s, p, 24);
+            hint = Some(p);
+        }
+        this.gap = this.samples.iter().map(|(s, p)| support.point(*p).distance(edge.point(*s))).fold(0.0, f64::max);
+        this.add_poles(support, poles, (from, to));
+        this
+    }
+
+    /// Appends a sample; halves the step while the parameters turn by more than an eighth of a
+    /// period, which unwrapping could mistake.
+    fn step(&mut self, support: &Support, s: f64, p: DVec2, depth: u32) {
+        let Some(&(before, q)) = self.samples.last() else {
+            self.samples.push((s, p));
+            return;
+        };
+        let far = (0..2).any(|i| support.periods[i].is_some_and(|period| (p[i] - q[i]).abs() > 0.125 * period));
+        let p = if far && depth > 0 {
+            let middle = 0.5 * (before + s);
+            let m = support.invert(self.edge.point(middle), Some(q));
+            self.step(support, middle, m, depth - 1);
+            let near = self.samples.last().map_or(q, |l| l.1);
+            let p = support.unwrap(p, near);
+            return self.step(support, s, p, depth - 1);
+        } else {
+            p
+        };
+        self.samples.push((s, p));
+    }
+
+    /// Ends at poles: the fixed coordinate is the pole's, the other one the limit along the curve,
+    /// by Richardson extrapolation from steps h, 2h, 4h.
+    fn add_poles(&mut self, support: &Support, poles: [Option<usize>; 2], ends: (f64, f64)) {
+        let limit = |near: [DVec2; 3], pole: usize| {
+            let pole = support.poles[pole];
+            let mut p = (near[0] * 8.0 - near[1] * 6.0 + near[2]) / 3.0;
+            let value = pole.value;
+            p[pole.axis] =
+                support.periods[pole.axis].map_or(value, |q| super::law::nearest(value, near[0][pole.axis], q));
+            p
+        };
+        let n = self.samples.len();
+        if n < 3 {
+            return;
+        }
+        let last = [n - 1, n - 2, n - 3].map(|i| self.samples[i].1);
+        let first = [0, 1, 2].map(|i| self.samples[i].1);
+        if let Some(pole) = poles[1] {
+            self.samples.push((ends.1, limit(last, pole)));
+        }
+        if let Some(pole) = poles[0] {
+            self.samples.insert(0, (ends.0, limit(first, pole)));
+        }
+    }
+
+    /// Native parameters at the fraction `s`.
+    pub fn at(&self, support: &Support, s: f64) -> DVec2 {
+        let i = self.samples.partition_point(|x| x.0 < s);
+        match (i.checked_sub(1).map(|j| self.samples[j]), self.samples.get(i)) {
+            (_, Some(&(t, p))) if t == s => p,
+            (Some((t0, p0)), Some(&(t1, p1))) => {
+                let guess = p0.lerp(p1, (s - t0) / (t1 - t0));
+                support.invert(self.edge.point(s), Some(guess))
+            }
+            (Some((_, p)), None) => p,
+            (None, Some(&(_, p))) => p,
+            (None, None) => DVec2::ZERO,
+        }
+    }
+
+    /// Samples where both coordinates have a meaning.
+    pub fn regular(&self) -> &[(f64, DVec2)] {
+        let n = self.samples.len();
+        &self.samples[usize::from(self.at_pole[0])..n - usize::from(self.at_pole[1])]
+    }
+
+    /// The coordinate that is the same all along, and its value: `(axis, value)`. Moving every
+    /// sample onto that line moves no point by more than `eps` mm.
+    pub fn constant(&self, support: &Support, eps: f64) -> Option<(usize, f64)> {
+        let samples: Vec<(DVec2, DVec2)> = self.regular().iter().map(|(_, p)| (*p, support.speed(*p))).collect();
+        let spread = |axis: usize| {
+            let mass: f64 = samples.iter().map(|(_, speed)| speed[axis].powi(2)).sum();
+            let mean = samples.iter().map(|(p, speed)| p[axis] * speed[axis].powi(2)).sum::<f64>() / mass;
+            let off = samples.iter().map(|(p, speed)| (p[axis] - mean).abs() * speed[axis]).fold(0.0, f64::max);
+            (off, mean)
+        };
+        let found = [spread(0), spread(1)];
+        let axis = usize::from(!(found[0].0 <= found[1].0));
+        (found[axis].0 <= eps).then_some((axis, found[axis].1))
+    }
+}

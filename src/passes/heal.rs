@@ -1,0 +1,106 @@
+//! Pass `heal`: pixels that look through a gap between two faces get the face that belongs there.
+//!
+//! ```text
+//!   visibility image ──find──▶ list of doubtful pixels ──record──▶ visibility image
+//!
+//!        ┌───┬───┬───┐     asks the faces of the neighbours, on their exact surfaces at the pixel's
+//!        │ A │ A │ B │     centre, which of them is there; the rules stand in glsl/heal.comp
+//!        ├───┼───┼───┤
+//!        │ A │ ? │ B │     a gap is narrower than the trim table's error, so a neighbour knows
+//!        └───┴───┴───┘
+//! ```
+//!
+//! Reads: everything that the bindings name but what it writes. Writes: `find`: `doubts`, `dispatches`,
+//! `counters`; `record`: the visibility image, at doubtful pixels only.
+
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Texels};
+use crate::shaders;
+
+/// Threads of a workgroup of the first step.
+const GROUP: u32 = 64;
+/// `constant_id` of `SCENE_HAS_RATIONAL`.
+const SCENE_HAS_RATIONAL: u32 = 0;
+
+/// The pass, in its two steps.
+pub(crate) struct Heal {
+    find: Pipeline,
+    heal: Pipeline,
+}
+
+/// Of the first step, in binding order.
+pub(crate) struct DoubtBindings<'a> {
+    pub frame: &'a Buffer,
+    pub visibility: &'a Image,
+    pub doubts: &'a Buffer,
+    pub dispatches: &'a Buffer,
+    pub counters: &'a Buffer,
+}
+
+/// Of the second step, in binding order, and its dispatch.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub views: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub patches: &'a Buffer,
+    pub items: &'a Buffer,
+    pub points: &'a Texels,
+    pub line_starts: &'a Buffer,
+    pub row_starts: &'a Buffer,
+    pub row_counts: &'a Buffer,
+    pub flips: &'a Buffer,
+    pub visibility: &'a Image,
+    pub doubts: &'a Buffer,
+    pub counters: &'a Buffer,
+    /// Its own is the fourth.
+    pub dispatches: &'a Buffer,
+}
+
+impl Heal {
+    pub(crate) fn new(device: &Device, rational: bool) -> Result<Self, GpuError> {
+        let mut find = [Binding::Storage; 5];
+        find[1] = Binding::StorageImage;
+        let mut heal = [Binding::Storage; 14];
+        heal[6] = Binding::Texels;
+        heal[11] = Binding::StorageImage;
+        let weights = if rational { "rational" } else { "polynomial" };
+        let pipeline = |name, spirv, bindings| {
+            let constants = &[(SCENE_HAS_RATIONAL, u32::from(rational))];
+            Pipeline::compute(device, &ComputeInfo { name, spirv, bindings, push_bytes: 0, constants })
+        };
+        Ok(Self {
+            find: pipeline("heal (find)", shaders::DOUBTS_COMP, &find)?,
+            heal: pipeline(&format!("heal ({weights})"), shaders::HEAL_COMP, &heal)?,
+        })
+    }
+
+    /// Lists the doubtful pixels: one thread a pixel.
+    pub(crate) fn find(&self, cmd: &Commands<'_>, b: &DoubtBindings<'_>) {
+        let (width, height) = b.visibility.size();
+        let resources = [b.frame.into(), b.visibility.into(), b.doubts.into(), b.dispatches.into(), b.counters.into()];
+        cmd.bind(&self.find, &resources, &[]);
+        cmd.dispatch((width * height).div_ceil(GROUP));
+    }
+
+    /// One thread a doubtful pixel.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
+        let resources = [
+            b.frame.into(),
+            b.views.into(),
+            b.face_instances.into(),
+            b.faces.into(),
+            b.patches.into(),
+            b.items.into(),
+            b.points.into(),
+            b.line_starts.into(),
+            b.row_starts.into(),
+            b.row_counts.into(),
+            b.flips.into(),
+            b.visibility.into(),
+            b.doubts.into(),
+            b.counters.into(),
+        ];
+        cmd.bind(&self.heal, &resources, &[]);
+        cmd.dispatch_indirect(b.dispatches, 3 * size_of::<[u32; 3]>() as u64);
+    }
+}

@@ -1,0 +1,194 @@
+//! The slow exact renderer: what every error is measured against. `f64`, no GPU, no mesh.
+//!
+//! ```text
+//!   pixel ──Camera::ray──▶ line ──Bvh over instances, then leaves──▶ candidates
+//!         ──Solver──▶ all (u, v) where the line meets the surface ──LoopIndex──▶ those inside the loops
+//! ```
+//!
+//! Nothing is tessellated and nothing is sampled: a hit is a root of the surface's own rational
+//! equations, accurate to about 1e-15 of the distance to the eye, and a root is left out only after a
+//! proof that there is none (see the `solver` module). What the reference leaves out by rule, because
+//! it covers no area: surface that is seen exactly edge-on.
+//!
+//! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`].
+
+mod bvh;
+mod judge;
+mod leaf;
+mod net;
+mod probe;
+mod solver;
+#[cfg(test)]
+mod tests;
+
+pub use judge::{Bin, Class, DepthErrors, Errors, Folds, GRAZING_COSINE, JudgeOptions, Judgement, Mismatch, judge};
+pub use probe::Probe;
+
+use crate::model::{Bounds, Camera, Model};
+use crate::picture::Picture;
+use crate::trim::LoopIndex;
+use bvh::Bvh;
+use glam::{DAffine3, DMat3, DVec2, DVec3};
+use leaf::Leaf;
+use rayon::prelude::*;
+use std::sync::atomic::{AtomicU64, Ordering};
+
+/// A point where a ray meets the model.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// Distance from the eye along the view axis, model units.
+    pub depth: f64,
+    /// [`Face::id`](crate::model::Face::id).
+    pub face: u32,
+    /// Index into [`Model::parts`].
+    pub part: usize,
+    /// Index into [`Part::faces`](crate::model::Part::faces).
+    pub face_index: usize,
+    /// Index into [`Model::instances`].
+    pub instance: usize,
+    /// Parameters in the face's domain.
+    pub uv: DVec2,
+    /// The point, model coordinates.
+    pub point: DVec3,
+    /// Unit outward normal, model coordinates; zero where the surface has none.
+    pub normal: DVec3,
+}
+
+/// A model made ready for rays.
+#[derive(Debug)]
+pub struct Tracer {
+    parts: Vec<PartTree>,
+    placed: Vec<Placed>,
+    top: Bvh,
+    bounds: Bounds,
+    given_up: AtomicU64,
+}
+
+/// The faces of one part, in its own coordinates.
+#[derive(Debug)]
+struct PartTree {
+    faces: Vec<TracedFace>,
+    leaves: Vec<Leaf>,
+    /// Box of each leaf.
+    boxes: Vec<Bounds>,
+    tree: Bvh,
+}
+
+#[derive(Debug)]
+struct TracedFace {
+    id: u32,
+    same_sense: bool,
+    loops: LoopIndex,
+}
+
+#[derive(Debug)]
+struct Placed {
+    instance: usize,
+    part: usize,
+    to_model: DAffine3,
+    to_part: DAffine3,
+    /// Inverse transpose of the linear part: takes normals to model coordinates.
+    normals: DMat3,
+}
+
+impl Tracer {
+    /// Cuts all surfaces into leaves and builds the trees.
+    ///
+    /// Cost: microseconds a leaf, a leaf for every 20° or so that a surface turns. Instances whose
+    /// transform flattens space are left out: they have no inside and no outward side.
+    pub fn new(model: &Model) -> Self {
+        let parts: Vec<PartTree> = model.parts.par_iter().map(|p| PartTree::new(&p.faces)).collect();
+        let place = |(instance, i): (usize, &crate::model::Instance)| {
+            let to_part = i.transform.inverse();
+            (i.part < parts.len() && to_part.is_finite()).then(|| Placed {
+                instance,
+                part: i.part,
+                to_model: i.transform,
+                to_part,
+                normals: to_part.matrix3.transpose(),
+            })
+        };
+        let placed: Vec<Placed> = model.instances.iter().enumerate().filter_map(place).collect();
+        let boxes: Vec<Bounds> = placed
+            .iter()
+            .map(|p| match parts[p.part].tree.bounds() {
+                b if b.is_empty() => b,
+                b => b.corners().map(|c| p.to_model.transform_point3(c)).into_iter().fold(Bounds::EMPTY, Bounds::with),
+            })
+            .collect();
+        let bounds = boxes.iter().fold(Bounds::EMPTY, |a, b| a.union(*b));
+        let top = Bvh::new(&boxes, PAD * bounds.diagonal());
+        Self { parts, placed, top, bounds, given_up: AtomicU64::new(0) }
+    }
+
+    /// A box around everything that can be hit; at least the model's, at most a little larger.
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
+    }
+
+    /// Every hit of the ray through pixel position `pixel` (continuous, `y` down; centres at +0.5),
+    /// within the camera's depth range, nearest first.
+    ///
+    /// Cost: microseconds, and allocations: for many rays keep a [`Probe`].
+    pub fn hits(&self, camera: &Camera, pixel: DVec2) -> Vec<Hit> {
+        self.probe(camera).hits(pixel).to_vec()
+    }
+
+    /// The nearest hit, sooner than [`Tracer::hits`] would find it.
+    pub fn first(&self, camera: &Camera, pixel: DVec2) -> Option<Hit> {
+        self.probe(camera).first(pixel)
+    }
+
+    /// Working memory for many rays of one view; one a thread.
+    pub fn probe<'a>(&'a self, camera: &'a Camera) -> Probe<'a> {
+        Probe::new(self, camera)
+    }
+
+    /// Ray and sub-patch pairs whose search ran out of its budget, so that hits may be missing; 0
+    /// unless a surface was degenerate beyond the rules of the module. Complete once the probes are
+    /// dropped.
+    pub fn given_up(&self) -> u64 {
+        self.given_up.load(Ordering::Relaxed)
+    }
+
+    /// The true picture: all images but the colour. `progress` is told the pixels done since last.
+    pub fn picture(&self, camera: &Camera, progress: &(dyn Fn(u64) + Sync)) -> Picture {
+        let (w, h) = camera.size;
+        let row = |y: u32| {
+            let mut probe = self.probe(camera);
+            let hits: Vec<_> =
+                (0..w).map(|x| probe.first(DVec2::new(f64::from(x) + 0.5, f64::from(y) + 0.5))).collect();
+            progress(u64::from(w));
+            hits
+        };
+        let hits: Vec<Option<Hit>> = (0..h).into_par_iter().flat_map_iter(row).collect();
+        Picture {
+            size: camera.size,
+            depth: hits.iter().map(|h| h.map_or(f32::INFINITY, |h| h.depth as f32)).collect(),
+            face: hits.iter().map(|h| h.map_or(0, |h| h.face)).collect(),
+            uv: hits.iter().map(|h| h.map_or([f32::NAN; 2], |h| h.uv.as_vec2().to_array())).collect(),
+            normal: hits.iter().map(|h| h.map_or([0.0; 3], |h| h.normal.as_vec3().to_array())).collect(),
+            ..Picture::default()
+        }
+    }
+}
+
+/// Padding of boxes relative to the diagonal of what they are in: above the rounding of a slab test,
+/// below the size of anything.
+const PAD: f64 = 1e-12;
+
+impl PartTree {
+    fn new(faces: &[crate::model::Face]) -> Self {
+        let prepare = |(index, f): (usize, &crate::model::Face)| {
+            let loops = LoopIndex::new(&f.loops);
+            let leaves = leaf::leaves(index as u32, f, &loops);
+            (TracedFace { id: f.id, same_sense: f.same_sense, loops }, leaves)
+        };
+        let prepared: Vec<_> = faces.par_iter().enumerate().map(prepare).collect();
+        let (faces, leaves): (Vec<_>, Vec<_>) = prepared.into_iter().unzip();
+        let (leaves, boxes): (Vec<Leaf>, Vec<Bounds>) = leaves.into_iter().flatten().unzip();
+        let size = boxes.iter().fold(Bounds::EMPTY, |a, b| a.union(*b)).diagonal();
+        let tree = Bvh::new(&boxes, PAD * size);
+        Self { faces, leaves, boxes, tree }
+    }
+}
