@@ -13,8 +13,8 @@ const MAX_GROUPS: u32 = 65535;
 /// Most segments that pass `cross` can be given.
 pub const MOST_SEGMENTS: u32 = MAX_GROUPS * GROUP;
 
-/// Workgroups of `cross`, of `sort`, of the scan of the rows, and of `heal`, none yet. Sets `rows`, `wanted_rows` and
-/// `segments` of the counters.
+/// Workgroups of `cross`, of `sort`, of the scan of the rows, and of `heal`, none yet. Sets `rows`,
+/// `wanted_rows` and `segments` of the counters.
 pub fn sizes(frame: &Frame, line_starts: &[u32], segment_starts: &[u32], counters: &mut Counters) -> [[u32; 3]; 4] {
     let wanted = line_starts[frame.strip_count as usize];
     let segments = segment_starts[frame.curve_count as usize];
