@@ -36,7 +36,35 @@ impl Counts {
             trimmed: data.has_trimmed,
         }
     }
+
+    /// Whether one dispatch covers each of them.
+    pub(crate) fn check(self) -> Result<(), TooMany> {
+        let all = [("patches", self.items), ("cells", self.cells), ("v-strips", self.strips), ("curves", self.curves)];
+        match all.into_iter().find(|(_, count)| *count > MOST_THREADS) {
+            Some((what, count)) => Err(TooMany { what, count, most: MOST_THREADS }),
+            None => Ok(()),
+        }
+    }
 }
+
+/// The model, or what a view needs of it, is more than the engine counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{count} {what} are too many: at most {most} can be drawn")]
+pub struct TooMany {
+    /// What there is too much of.
+    pub what: &'static str,
+    /// How many there are.
+    pub count: u32,
+    /// How many there may be.
+    pub most: u32,
+}
+
+/// Workgroups of a dispatch that every device takes.
+const MOST_GROUPS: u32 = 65_535;
+/// Threads of one dispatch of the passes over what the scene has, 64 to a workgroup.
+const MOST_THREADS: u32 = MOST_GROUPS * 64;
+/// Rows that pass `sort` takes, 128 to a workgroup.
+const MOST_ROWS: u32 = MOST_GROUPS * 128;
 
 /// Room for what only the GPU can count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -47,10 +75,6 @@ pub(crate) struct Capacities {
     pub intercepts: u32,
     pub doubts: u32,
 }
-
-/// Rows that passes `cross` and `sort` can be dispatched for: 65,535 workgroups of 128, which every
-/// device takes. A view that wants more is never complete.
-const MOST_ROWS: u32 = 65535 * 128;
 
 /// Bits of [`Counters::failed`], as in `scene.glsl`.
 const FAILED_DRAWS: u32 = 2;
@@ -68,19 +92,27 @@ impl Capacities {
         }
     }
 
-    /// What the frame that reported `c` would have needed, with a quarter to spare; `None` when it
-    /// had enough.
-    pub(crate) fn grown(self, c: &Counters) -> Option<Self> {
-        if c.failed == 0 {
-            return None;
+    /// What the frame that reported `c` would have needed, with a quarter to spare where a storage
+    /// buffer of `range` bytes has it; the same when it had enough.
+    pub(crate) fn grown(self, c: &Counters, range: u32) -> Result<Self, TooMany> {
+        if c.wanted_rows > MOST_ROWS {
+            return Err(TooMany { what: "scan lines", count: c.wanted_rows, most: MOST_ROWS });
         }
-        let room = |had: u32, wanted: u32| if wanted > had { wanted.saturating_add(wanted / 4) } else { had };
-        Some(Self {
-            sub_patches: room(self.sub_patches, c.plain.saturating_add(c.trimmed)),
-            draws: if c.failed & FAILED_DRAWS != 0 { self.draws.saturating_mul(4) } else { self.draws },
-            rows: room(self.rows, c.wanted_rows).min(MOST_ROWS),
-            intercepts: room(self.intercepts, c.intercepts),
-            doubts: room(self.doubts, c.doubts),
+        let room = |had: u32, wanted: u32, most: u32| {
+            let spare = wanted.saturating_add(wanted / 4).min(most);
+            if wanted > had { spare.max(wanted) } else { had }
+        };
+        let more_draws = if c.failed & FAILED_DRAWS != 0 { 4 } else { 1 };
+        Ok(Self {
+            sub_patches: room(
+                self.sub_patches,
+                c.plain.saturating_add(c.trimmed),
+                range / size_of::<SubPatch>() as u32,
+            ),
+            draws: self.draws.saturating_mul(more_draws),
+            rows: room(self.rows, c.wanted_rows, MOST_ROWS),
+            intercepts: room(self.intercepts, c.intercepts, range / size_of::<u32>() as u32),
+            doubts: room(self.doubts, c.doubts, range / size_of::<u32>() as u32),
         })
     }
 }
@@ -177,5 +209,43 @@ impl Buffers {
             )?,
             depth: image("visibility depth", DEPTH_FORMAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?,
         })
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every storage buffer of Vulkan's least capable device.
+    const RANGE: u32 = 1 << 27;
+
+    fn first() -> Capacities {
+        Capacities::first(Counts { items: 1000, strips: 8, trimmed: true, ..Default::default() })
+    }
+
+    #[test]
+    fn what_sufficed_stays() {
+        let c = Counters { plain: 900, trimmed: 100, wanted_rows: 65_536, intercepts: 262_144, ..Default::default() };
+        assert_eq!(first().grown(&c, RANGE).unwrap(), first());
+    }
+
+    #[test]
+    fn what_did_not_gets_what_it_wanted_and_a_quarter() {
+        let c = Counters { plain: 2000, wanted_rows: 100_000, failed: FAILED_DRAWS | 1 | 4, ..Default::default() };
+        let grown = first().grown(&c, RANGE).unwrap();
+        assert_eq!((grown.sub_patches, grown.rows), (2500, 125_000));
+        assert_eq!((grown.draws, grown.intercepts), (4 * first().draws, first().intercepts));
+        // no room for a quarter more in one storage buffer
+        let c = Counters { intercepts: RANGE / 4 - 1, failed: 8, ..Default::default() };
+        assert_eq!(first().grown(&c, RANGE).unwrap().intercepts, RANGE / 4);
+    }
+
+    #[test]
+    fn more_than_can_be_counted_is_an_error() {
+        let c = Counters { wanted_rows: MOST_ROWS + 1, failed: 4, ..Default::default() };
+        assert!(matches!(first().grown(&c, RANGE), Err(TooMany { what: "scan lines", .. })));
+        let counts = Counts { items: MOST_THREADS, ..Default::default() };
+        assert!(counts.check().is_ok());
+        assert!(matches!(Counts { curves: MOST_THREADS + 1, ..counts }.check(), Err(TooMany { .. })));
     }
 }

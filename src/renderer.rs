@@ -10,11 +10,12 @@
 //!
 //! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the
 //! GPU can tell (the trim table, the list of sub-patches) may be too small for a new view: the report
-//! of that frame says `complete: false`, and the next `record` makes them larger.
+//! of that frame says `complete: false`, and the next `record` into its slot makes them larger.
 
 use crate::abi;
 use crate::abi::Counters;
 use crate::budget::Budget;
+pub use crate::buffers::TooMany;
 use crate::buffers::{Buffers, Capacities, Counts};
 use crate::frame::{Frame, Passes, target};
 use crate::gpu::{
@@ -31,14 +32,21 @@ use ash::vk;
 pub struct TargetFormats {
     /// Colour target; an sRGB format encodes by itself, for others the renderer encodes.
     pub colour: vk::Format,
-    /// Depth target, if the host wants the model's depth among its own: reversed, 1 at the near
-    /// plane, 0 at the far one.
+    /// Depth target, if the host wants the model's depth among its own. Reversed: at distance `z` along
+    /// the view axis `near (far - z) / (z (far - near))` in a perspective view and
+    /// `(far - z) / (far - near)` in a parallel one; 1 at the near plane, 0 at the far one. Tested with
+    /// `GREATER_OR_EQUAL`, and written.
     pub depth: Option<vk::Format>,
     /// Four more colour targets follow: [`Renderer::AOV_FORMATS`].
     pub aovs: bool,
 }
 
-/// The host's images for one frame, all of the camera's size.
+/// The host's images for one frame, all of the camera's size: [`Image::borrowed`] makes them of Vulkan
+/// handles.
+///
+/// Barriers around the frame are the host's: what it did before must be ordered before
+/// [`Access::COLOUR_WRITE`](crate::gpu::Access::COLOUR_WRITE) and
+/// [`Access::DEPTH_WRITE`](crate::gpu::Access::DEPTH_WRITE), what it does next after them.
 #[derive(Clone, Copy, Debug)]
 pub struct Targets<'a> {
     /// In layout `COLOR_ATTACHMENT_OPTIMAL` before and after.
@@ -75,6 +83,9 @@ pub enum RenderError {
     /// [`FrameSettings::tolerance_px`] is not at least 1/8.
     #[error("the tolerance must be at least 1/8 pixel, not {0}")]
     Tolerance(f64),
+    /// The model, or what this view needs of it.
+    #[error(transparent)]
+    TooMany(#[from] TooMany),
     /// A target of another size than the camera's.
     #[error("the target `{name}` is {width} x {height}, the camera's picture another size")]
     TargetSize {
@@ -102,6 +113,8 @@ pub struct Renderer {
     formats: TargetFormats,
     loaded: Option<Loaded>,
     slots: Vec<Slot>,
+    /// The slot recorded last.
+    last: Option<usize>,
 }
 
 /// A model and what its frames need. Fields drop in order: nothing outlives the device.
@@ -123,6 +136,8 @@ struct Slot {
     /// Freed when the slot comes round again.
     retired: Vec<Retired>,
     recorded: bool,
+    /// What the frame had room for; `None` when its model has been replaced since.
+    capacities: Option<Capacities>,
 }
 
 #[allow(dead_code)] // held for their drop
@@ -159,23 +174,25 @@ impl Renderer {
     /// As [`new`](Self::new), on a device that is already on loan.
     pub(crate) fn on(device: &Device, formats: TargetFormats, frame_slots: usize) -> Result<Self, GpuError> {
         let slots = (0..frame_slots.max(1)).map(|_| Slot::new(device)).collect::<Result<_, _>>()?;
-        Ok(Self { device: device.clone(), formats, loaded: None, slots })
+        Ok(Self { device: device.clone(), formats, loaded: None, slots, last: None })
     }
 
     /// Replaces the model: makes the pipelines that it needs; the next [`record`](Self::record)
     /// copies its data. Frames in flight keep the old one until their slots come round.
     ///
     /// # Errors
-    /// [`GpuError`].
-    pub fn upload(&mut self, model: &Model) -> Result<(), GpuError> {
+    /// [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before stays.
+    pub fn upload(&mut self, model: &Model) -> Result<(), RenderError> {
         let data = SceneData::new(model);
+        let counts = Counts::of(&data);
+        counts.check()?;
         let formats =
             resolve::Formats { colour: self.formats.colour, depth: self.formats.depth, aovs: self.formats.aovs };
         let passes = Passes::new(&self.device, &data, formats)?;
-        let counts = Counts::of(&data);
         let loaded = Loaded { data, counts, capacities: Capacities::first(counts), passes, scene: None, buffers: None };
         if let Some(old) = self.loaded.replace(loaded) {
             self.retire(Retired::Loaded(Box::new(old)));
+            self.slots.iter_mut().for_each(|slot| slot.capacities = None);
         }
         Ok(())
     }
@@ -183,16 +200,17 @@ impl Renderer {
     /// Records one frame: compute, draws, and the picture into the targets.
     ///
     /// # Errors
-    /// [`RenderError`]; nothing that the host must undo has been recorded then.
+    /// [`RenderError`]; the renderer goes on. After [`RenderError::Gpu`] the command buffer may hold
+    /// copies from buffers that are gone: reset it. After the others it is as it was.
     ///
     /// # Panics
     /// When no model was uploaded, the slot does not exist, or the targets are not those of
     /// [`TargetFormats`].
     ///
     /// # Safety
-    /// `cmd` is recording outside a render pass, on the host's queue family, and is submitted at most
-    /// once; the frame recorded before into the same slot has finished on the GPU; frames are
-    /// submitted in the order in which they are recorded, to one queue.
+    /// `cmd` is recording outside a render pass, on the host's queue family, and is submitted once;
+    /// the frame recorded before into the same slot has finished on the GPU; frames are submitted in
+    /// the order in which they are recorded, to one queue.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, input: &FrameInput<'_>) -> Result<(), RenderError> {
         input.camera.check()?;
         let tolerance = input.settings.tolerance_px;
@@ -218,13 +236,13 @@ impl Renderer {
         let cmd = unsafe { Commands::new(&self.device, cmd) };
         let Some(loaded) = &mut self.loaded else { panic!("upload a model before recording") };
         let slot = &mut self.slots[input.slot];
+        slot.write(&self.device, loaded, input, &self.formats)?;
         if loaded.scene.is_none() {
             let (scene, uploads) = Scene::record(&cmd, &loaded.data)?;
             slot.retired.push(Retired::Uploads(uploads));
             loaded.scene = Some(scene);
             loaded.data.drop_uploaded();
         }
-        slot.write(&self.device, loaded, input, &self.formats)?;
         let (Some(scene), Some(buffers), Some(views)) = (&loaded.scene, &loaded.buffers, &slot.views) else {
             unreachable!("made above")
         };
@@ -251,6 +269,8 @@ impl Renderer {
         slot.times.reset(&cmd);
         frame.record(&cmd, &mut slot.times);
         slot.recorded = true;
+        slot.capacities = Some(buffers.capacities);
+        self.last = Some(input.slot);
         Ok(())
     }
 
@@ -288,17 +308,24 @@ impl Renderer {
 
     /// Frees what the slot kept for the frame before, and makes the buffers large enough for what
     /// that frame reported and for the picture's size.
-    fn make_room(&mut self, slot: usize, size: (u32, u32)) -> Result<(), GpuError> {
-        let report = self.slots[slot].recorded.then(|| self.slots[slot].read_counters());
-        self.slots[slot].retired.clear();
-        self.slots[slot].recorded = false;
+    fn make_room(&mut self, slot: usize, size: (u32, u32)) -> Result<(), RenderError> {
+        let finished = &mut self.slots[slot];
+        let had = finished.capacities.take();
+        let report = had.map(|_| finished.read_counters());
+        finished.retired.clear();
+        finished.recorded = false;
         let Some(loaded) = &mut self.loaded else { return Ok(()) };
-        if let Some(grown) = report.and_then(|c| loaded.capacities.grown(&c)) {
-            loaded.capacities = grown;
-        }
-        let fits = |b: &Buffers| b.visibility.size() == size && b.capacities == loaded.capacities;
+        let range = self.device.limits().max_storage_buffer_range;
+        let capacities = match (had, report) {
+            // else another slot's frame has made them larger since
+            (Some(had), Some(c)) if had == loaded.capacities => had.grown(&c, range)?,
+            _ => loaded.capacities,
+        };
+        let fits = |b: &Buffers| b.visibility.size() == size && b.capacities == capacities;
         if !loaded.buffers.as_ref().is_some_and(fits) {
-            let made = Buffers::new(&self.device, loaded.counts, loaded.capacities, size)?;
+            let made = Buffers::new(&self.device, loaded.counts, capacities, size)?;
+            // only now: a view that needs more than there is must not spoil the next one
+            loaded.capacities = capacities;
             if let Some(old) = loaded.buffers.replace(made) {
                 self.retire(Retired::Buffers(Box::new(old)));
             }
@@ -306,10 +333,10 @@ impl Renderer {
         Ok(())
     }
 
-    /// Keeps `what` until every frame in flight has finished: it goes with the slot recorded last.
+    /// Keeps `what` until every frame in flight has finished. They finish in the order in which they
+    /// were recorded, so it goes with the slot recorded last; at once when that one has finished.
     fn retire(&mut self, what: Retired) {
-        // the slots come round in turn, so the one recorded last is the last to be cleared
-        if let Some(slot) = self.slots.iter_mut().rev().find(|s| s.recorded) {
+        if let Some(slot) = self.last.map(|last| &mut self.slots[last]).filter(|slot| slot.recorded) {
             slot.retired.push(what);
         }
     }
@@ -324,6 +351,7 @@ impl Slot {
             times: Timestamps::new(device, SCOPES)?,
             retired: Vec::new(),
             recorded: false,
+            capacities: None,
         })
     }
 

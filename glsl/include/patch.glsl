@@ -60,7 +60,9 @@ Jet patch_jet(uint first, uint shape, vec2 uv) {
     vec4 a = p;
     vec4 b = q;
     vec4 slope;
-    if (k == 1u) {
+    // k = 0 is read by lanes of a SIMD driver that only keep others company: k - 1 below would wrap, and
+    // llvmpipe ends every loop of the shader after 65,535 steps, the others' too
+    if (k <= 1u) {
         slope = ps * s + qs * v;
     } else {
         // values: degree k - 1 twice, as along u; slopes: degree k once

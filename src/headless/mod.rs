@@ -163,6 +163,19 @@ impl HeadlessDevice {
     /// # Errors
     /// [`GpuError::Vulkan`].
     pub fn submit<R>(&self, record: impl FnOnce(&Commands<'_>) -> R) -> Result<R, GpuError> {
+        let recorded = self.try_submit(|cmd| Ok::<R, std::convert::Infallible>(record(cmd)))?;
+        let Ok(result) = recorded;
+        Ok(result)
+    }
+
+    /// As [`submit`](Self::submit), but what ends in an error is forgotten instead of submitted.
+    ///
+    /// # Errors
+    /// [`GpuError::Vulkan`]; inside, what `record` returned.
+    pub fn try_submit<R, E>(
+        &self,
+        record: impl FnOnce(&Commands<'_>) -> Result<R, E>,
+    ) -> Result<Result<R, E>, GpuError> {
         let queue = self.parts.queue.lock().unwrap_or_else(PoisonError::into_inner);
         queue.submit(&self.parts.device, record)
     }
@@ -243,7 +256,11 @@ impl Queue {
         Ok(this)
     }
 
-    fn submit<R>(&self, device: &Device, record: impl FnOnce(&Commands<'_>) -> R) -> Result<R, GpuError> {
+    fn submit<R, E>(
+        &self,
+        device: &Device,
+        record: impl FnOnce(&Commands<'_>) -> Result<R, E>,
+    ) -> Result<Result<R, E>, GpuError> {
         let raw = &self.device;
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
         // SAFETY: the submission before has finished, so the pool may be reset; the lock keeps others away.
@@ -254,6 +271,9 @@ impl Queue {
         }
         // SAFETY: recording; the wait below comes before anything recorded can be dropped.
         let result = record(&unsafe { Commands::new(device, self.commands) });
+        if result.is_err() {
+            return Ok(result);
+        }
         let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(self.commands)];
         let submit = vk::SubmitInfo2::default().command_buffer_infos(&commands);
         // SAFETY: recorded above; queue and fence are ours alone.

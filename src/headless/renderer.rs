@@ -112,7 +112,7 @@ impl HeadlessRenderer {
     fn frame(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<(bool, FrameStats), HeadlessError> {
         let Some(images) = &*self.targets else { unreachable!("prepared before") };
         let renderer = &mut *self.renderer;
-        self.device.submit(|cmd| -> Result<(), RenderError> {
+        self.device.try_submit(|cmd| -> Result<(), RenderError> {
             images.begin(cmd);
             let targets = Targets {
                 colour: &images.colour.0,

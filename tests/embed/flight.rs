@@ -1,0 +1,156 @@
+//! Two frames in flight while the host changes its mind: other sizes, other models, larger views.
+
+use crate::host::{Host, SLOTS};
+use crate::picture::renderer;
+use crate::shapes;
+use crate::targets::Targets;
+use ash::vk;
+use glam::{DAffine3, DVec3};
+use selvedge::model::{Camera, Colour, Model};
+use selvedge::picture::FrameSettings;
+use selvedge::renderer::{FrameInput, RenderError, Renderer, Targets as Into};
+
+const FORMAT: vk::Format = vk::Format::R8G8B8A8_UNORM;
+
+/// Colours that a pixel is told by.
+const RED: Colour = [0.8, 0.05, 0.05, 1.0];
+const GREEN: Colour = [0.05, 0.8, 0.05, 1.0];
+const BLUE: Colour = [0.05, 0.05, 0.8, 1.0];
+
+fn painted(mut model: Model, colour: Colour) -> Model {
+    model.instances[0].colour = Some(colour);
+    model
+}
+
+fn record(host: &Host, renderer: &mut Renderer, slot: usize, targets: &Targets, camera: &Camera, tolerance_px: f64) {
+    let cmd = host.begin(slot);
+    targets.draw(host, cmd, [0.0, 0.0, 0.0, 1.0], &[]);
+    targets.hand_over(host, cmd);
+    let settings = FrameSettings { tolerance_px, background: None };
+    let into = Into { colour: &targets.colour, depth: Some(&targets.depth), aovs: None };
+    // SAFETY: recording; `begin` waited for the slot's frame before.
+    unsafe { renderer.record(cmd, &FrameInput { camera, settings, slot, targets: into }) }.unwrap();
+    targets.read_back(host, cmd);
+    host.submit(slot);
+}
+
+/// The centre of a frame's picture has `channel` as its strongest.
+fn assert_centre(frame: usize, targets: &Targets, channel: usize) {
+    let (colour, _) = targets.values();
+    let (width, height) = targets.size;
+    let c = colour[(height / 2 * width + width / 2) as usize];
+    let strongest = (0..3).max_by_key(|i| c[*i]).unwrap();
+    assert_eq!(strongest, channel, "frame {frame} has {c:?} in its middle");
+}
+
+/// Twelve frames, alternating between the slots; nothing waits but the next use of a slot.
+#[test]
+fn sizes_and_models_change_in_flight() {
+    let host = Host::new();
+    let models = [
+        painted(shapes::sphere(), RED),
+        // trimmed, with more buffers
+        painted(shapes::cube(), GREEN),
+        painted(shapes::sphere(), BLUE),
+    ];
+    // an odd and an even frame between the changes: either slot may be the one recorded last
+    let model_at = |frame: usize| [0, 0, 0, 1, 1, 1, 1, 2, 2, 2, 2, 2][frame];
+    let size_at = |frame: usize| if (2..6).contains(&frame) { (96, 64) } else { (160, 120) };
+    let mut renderer = renderer(&host, &models[0], FORMAT);
+    let mut slots: [Option<(usize, Targets)>; SLOTS] = [None, None];
+    let seen = |slot: &Option<(usize, Targets)>| {
+        if let Some((frame, targets)) = slot {
+            assert_centre(*frame, targets, model_at(*frame));
+        }
+    };
+    for frame in 0..12 {
+        if frame > 0 && model_at(frame) != model_at(frame - 1) {
+            renderer.upload(&models[model_at(frame)]).unwrap();
+        }
+        let slot = frame % SLOTS;
+        host.wait(slot);
+        seen(&slots[slot]);
+        let size = size_at(frame);
+        let targets = match slots[slot].take() {
+            Some((_, targets)) if targets.size == size => targets,
+            old => {
+                if let Some((_, targets)) = old {
+                    targets.destroy(&host);
+                }
+                Targets::new(&host, size, FORMAT)
+            }
+        };
+        let model = &models[model_at(frame)];
+        let from = DVec3::new((frame as f64).cos(), (frame as f64).sin(), 0.5);
+        let camera = Camera::framing(model.bounds(), from, DVec3::Z, 0.6, size);
+        record(&host, &mut renderer, slot, &targets, &camera, 0.5);
+        slots[slot] = Some((frame, targets));
+    }
+    // a model that no frame will draw
+    renderer.upload(&models[0]).unwrap();
+    for slot in 0..SLOTS {
+        host.wait(slot);
+        seen(&slots[slot]);
+    }
+    drop(renderer);
+    slots.into_iter().flatten().for_each(|(_, targets)| targets.destroy(&host));
+    assert_eq!(host.shutdown(), [""; 0]);
+}
+
+/// A view that needs more rows than the first table holds: the report says so, a frame of the other slot
+/// is in flight meanwhile, and the next frame into the slot is whole.
+#[test]
+fn a_frame_without_room_says_so_and_the_next_is_whole() {
+    let host = Host::new();
+    let mut model = shapes::plate();
+    let place = |i: u32| DVec3::new(f64::from(i % 8), f64::from(i / 8), 0.0) * 7.0;
+    model.instances = (0..64).map(|i| shapes::placed(DAffine3::from_translation(place(i)), Some(RED))).collect();
+    let size = (560, 420);
+    let camera = Camera::framing(model.bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, size);
+    let mut renderer = renderer(&host, &model, FORMAT);
+    let targets = [(); SLOTS].map(|()| Targets::new(&host, size, FORMAT));
+    assert_eq!(renderer.report(0).unwrap(), None, "no frame has been recorded");
+
+    let mut complete = Vec::new();
+    for frame in 0..6 {
+        let slot = frame % SLOTS;
+        host.wait(slot);
+        complete.extend(renderer.report(slot).unwrap().map(|report| report.complete));
+        record(&host, &mut renderer, slot, &targets[slot], &camera, 0.125);
+    }
+    // the first two were recorded before either could report; rows, then intercepts, may run short
+    assert_eq!(complete[..2], [false, false], "{complete:?}");
+    assert!(complete.last().unwrap(), "{complete:?}");
+    (0..SLOTS).for_each(|slot| host.wait(slot));
+    let [a, b] = targets.each_ref().map(Targets::values);
+    assert!(a == b, "two whole frames of one view differ");
+    assert!(a.0.iter().filter(|c| c[0] > 100).count() > 30_000, "few pixels show the plates");
+
+    drop(renderer);
+    targets.into_iter().for_each(|targets| targets.destroy(&host));
+    assert_eq!(host.shutdown(), [""; 0]);
+}
+
+/// What the host gets wrong is told by an error before anything is recorded: the command buffer goes on.
+#[test]
+fn a_target_of_another_size_is_refused() {
+    let host = Host::new();
+    let model = painted(shapes::sphere(), RED);
+    let mut renderer = renderer(&host, &model, FORMAT);
+    let targets = Targets::new(&host, (32, 32), FORMAT);
+    let camera = Camera::framing(model.bounds(), DVec3::X, DVec3::Z, 0.6, (32, 31));
+    let cmd = host.begin(0);
+    let into = Into { colour: &targets.colour, depth: Some(&targets.depth), aovs: None };
+    let input = FrameInput { camera: &camera, settings: FrameSettings::default(), slot: 0, targets: into };
+    // SAFETY: recording; nothing is in flight.
+    match unsafe { renderer.record(cmd, &input) } {
+        Err(RenderError::TargetSize { name, width: 32, height: 32 }) => assert_eq!(name, "host colour"),
+        other => panic!("{other:?}"),
+    }
+    host.submit(0);
+    host.wait(0);
+    assert_eq!(renderer.report(0).unwrap(), None);
+    drop(renderer);
+    targets.destroy(&host);
+    assert_eq!(host.shutdown(), [""; 0]);
+}

@@ -1,0 +1,139 @@
+//! The renderer's picture among the host's: what it covers, what covers it, and what it leaves alone.
+
+use crate::host::Host;
+use crate::shapes;
+use crate::targets::{DEPTH_FORMAT, Targets};
+use ash::vk;
+use glam::{DVec2, DVec3};
+use selvedge::model::{Camera, Model, Projection};
+use selvedge::picture::FrameSettings;
+use selvedge::renderer::{FrameInput, Renderer, TargetFormats, Targets as Into};
+
+const SIZE: (u32, u32) = (120, 90);
+const HOST_BLUE: [f32; 4] = [0.0, 0.0, 1.0, 1.0];
+const BLUE: [u8; 4] = [0, 0, 255, 255];
+/// Of the host's middle box, through the sphere.
+const WALL: f64 = 9.0;
+
+/// The renderer on the host's device; the model is uploaded.
+pub fn renderer(host: &Host, model: &Model, colour: vk::Format) -> Renderer {
+    let formats = TargetFormats { colour, depth: Some(DEPTH_FORMAT), aovs: false };
+    // SAFETY: the host's device meets the requirements and outlives the renderer.
+    let mut renderer = unsafe { Renderer::new(host.lend(), formats, crate::host::SLOTS) }.unwrap();
+    renderer.upload(model).unwrap();
+    renderer
+}
+
+/// The sphere from 10 away.
+fn camera() -> Camera {
+    Camera {
+        eye: DVec3::new(0.0, -10.0, 0.0),
+        target: DVec3::ZERO,
+        up: DVec3::Z,
+        projection: Projection::Perspective { fov_y: 0.8 },
+        depth_range: (1.0, 20.0),
+        size: SIZE,
+    }
+}
+
+fn parallel() -> Camera {
+    Camera { projection: Projection::Orthographic { height: 7.0 }, ..camera() }
+}
+
+/// As `TargetFormats::depth` says.
+fn reversed(camera: &Camera, z: f64) -> f64 {
+    let (near, far) = camera.depth_range;
+    let perspective = matches!(camera.projection, Projection::Perspective { .. });
+    (far - z) / (far - near) * if perspective { near / z } else { 1.0 }
+}
+
+/// Depth of the sphere's front along the ray through a point of the picture.
+fn front(camera: &Camera, pixel: DVec2) -> Option<f64> {
+    let (eye, ray) = camera.ray(pixel);
+    let half = eye.dot(ray);
+    let squared = half * half - eye.length_squared() + shapes::SPHERE_RADIUS * shapes::SPHERE_RADIUS;
+    (squared >= 0.0).then(|| (-half - squared.sqrt()) * ray.y + eye.y + 10.0)
+}
+
+/// The host's picture with the sphere in it; the host's overlay on top.
+fn draw(host: &Host, renderer: &mut Renderer, targets: &Targets, camera: &Camera, background: Option<[f32; 4]>) {
+    let cmd = host.begin(0);
+    let third = SIZE.0 / 3;
+    let wall = reversed(camera, WALL) as f32;
+    targets.draw(host, cmd, HOST_BLUE, &[(third, third, wall), (2 * third, third, 1.0)]);
+    targets.hand_over(host, cmd);
+    let settings = FrameSettings { background, ..FrameSettings::default() };
+    let into = Into { colour: &targets.colour, depth: Some(&targets.depth), aovs: None };
+    // SAFETY: recording; the slot's frame was waited for.
+    unsafe { renderer.record(cmd, &FrameInput { camera, settings, slot: 0, targets: into }) }.unwrap();
+    targets.overlay(host, cmd, 8, [1.0, 0.0, 0.0, 1.0]);
+    targets.read_back(host, cmd);
+    host.submit(0);
+    host.wait(0);
+    assert!(renderer.report(0).unwrap().unwrap().complete);
+}
+
+#[test]
+fn it_stands_among_what_the_host_drew() {
+    let host = Host::new();
+    let mut renderer = renderer(&host, &shapes::sphere(), vk::Format::R8G8B8A8_UNORM);
+    let targets = Targets::new(&host, SIZE, vk::Format::R8G8B8A8_UNORM);
+    for camera in [camera(), parallel()] {
+        draw(&host, &mut renderer, &targets, &camera, None);
+        let (colour, depth) = targets.values();
+        let (mut seen, mut hidden) = (0, 0);
+        for (i, (x, y)) in (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| (x, y))).enumerate() {
+            if x < 8 && y < 8 {
+                assert_eq!(colour[i], [255, 0, 0, 255], "the overlay at {x}, {y}");
+                continue;
+            }
+            let host_depth = [0.0, reversed(&camera, WALL), 1.0][(3 * x / SIZE.0) as usize];
+            let wins = |dx: f64, dy: f64| {
+                let z = front(&camera, DVec2::new(f64::from(x) + 0.5 + dx, f64::from(y) + 0.5 + dy));
+                z.map(|z| reversed(&camera, z)).filter(|d| *d >= host_depth)
+            };
+            let centre = wins(0.0, 0.0);
+            // borders may be half a pixel to the side
+            let around = [(1.0, 0.0), (-1.0, 0.0), (0.0, 1.0), (0.0, -1.0)].map(|(dx, dy)| wins(dx, dy));
+            if around.iter().any(|a| a.is_some() != centre.is_some()) {
+                continue;
+            }
+            if let Some(d) = centre {
+                assert_ne!(colour[i], BLUE, "the sphere at {x}, {y}");
+                // a pixel from the outline a hundredth of a pixel is less than this in depth
+                assert!((f64::from(depth[i]) - d).abs() < 1e-4, "depth {} at {x}, {y}, not {d}", depth[i]);
+                seen += 1;
+            } else {
+                assert_eq!(colour[i], BLUE, "the host's picture at {x}, {y}");
+                assert_eq!(depth[i], host_depth as f32, "the host's depth at {x}, {y}");
+                hidden += 1;
+            }
+        }
+        assert!(seen > 1500 && hidden > 4000, "{seen} pixels of the sphere, {hidden} of the host");
+    }
+    // the renderer first, then the images it drew into: neither owns the other
+    drop(renderer);
+    targets.destroy(&host);
+    assert_eq!(host.shutdown(), [""; 0]);
+}
+
+/// A background covers the host's picture and depth, and is encoded once: by the format or by the
+/// renderer. Linear 0.5, 0.25 and 0.125 are 187.5, 136.9 and 99.2 in sRGB (IEC 61966-2-1); a device may
+/// round the encoding by 0.6 (Vulkan, section on fixed-point conversion).
+#[test]
+fn a_background_is_encoded_once() {
+    for format in [vk::Format::R8G8B8A8_UNORM, vk::Format::R8G8B8A8_SRGB] {
+        let host = Host::new();
+        let mut renderer = renderer(&host, &shapes::sphere(), format);
+        let targets = Targets::new(&host, SIZE, format);
+        draw(&host, &mut renderer, &targets, &camera(), Some([0.5, 0.25, 0.125, 1.0]));
+        let (colour, depth) = targets.values();
+        let corner = (SIZE.0 * SIZE.1 - 1) as usize;
+        let [r, g, b, a] = colour[corner];
+        assert!(r.abs_diff(188) <= 1 && g.abs_diff(137) <= 1 && b.abs_diff(99) <= 1, "{format:?}: {r}, {g}, {b}");
+        assert_eq!((a, depth[corner]), (255, 0.0), "{format:?}");
+        targets.destroy(&host);
+        drop(renderer);
+        assert_eq!(host.shutdown(), [""; 0]);
+    }
+}

@@ -1,0 +1,70 @@
+//! What cannot be drawn is refused by an error, and the renderer goes on.
+
+use crate::shapes;
+use crate::support::{assert_identical, assert_silent, perspective, render, watched};
+use glam::DVec3;
+use selvedge::headless::{HeadlessError, HeadlessRenderer};
+use selvedge::model::{Camera, CameraError, Projection};
+use selvedge::picture::{FrameSettings, Outputs};
+use selvedge::renderer::RenderError;
+
+fn refusal(renderer: &mut HeadlessRenderer, camera: &Camera, tolerance_px: f64) -> RenderError {
+    let settings = FrameSettings { tolerance_px, ..FrameSettings::default() };
+    match renderer.render(camera, &settings, Outputs::ALL) {
+        Err(HeadlessError::Render(error)) => error,
+        Err(error) => panic!("another error: {error}"),
+        Ok(_) => panic!("{camera:?} at {tolerance_px} px was drawn"),
+    }
+}
+
+#[test]
+fn a_camera_that_shows_nothing() {
+    let model = shapes::sphere();
+    let mut renderer = watched(&model);
+    let good = perspective(&model, (64, 48));
+    let before = render(&mut renderer, &good);
+    let lens = |fov_y| Projection::Perspective { fov_y };
+    let parallel = |height| Projection::Orthographic { height };
+    let bad = [
+        (Camera { eye: DVec3::NAN, ..good }, CameraError::NotFinite),
+        (Camera { target: DVec3::INFINITY, ..good }, CameraError::NotFinite),
+        (Camera { target: good.eye, ..good }, CameraError::NoDirection),
+        (Camera { up: good.target - good.eye, ..good }, CameraError::UpAlongAxis),
+        (Camera { up: DVec3::ZERO, ..good }, CameraError::UpAlongAxis),
+        (Camera { projection: lens(0.0), ..good }, CameraError::Projection),
+        (Camera { projection: lens(4.0), ..good }, CameraError::Projection),
+        (Camera { projection: lens(f64::NAN), ..good }, CameraError::Projection),
+        (Camera { projection: parallel(-1.0), ..good }, CameraError::Projection),
+        (Camera { projection: parallel(f64::INFINITY), ..good }, CameraError::Projection),
+        (Camera { depth_range: (0.0, 1.0), ..good }, CameraError::DepthRange),
+        (Camera { depth_range: (2.0, 1.0), ..good }, CameraError::DepthRange),
+        (Camera { depth_range: (1.0, f64::INFINITY), ..good }, CameraError::DepthRange),
+        (Camera { depth_range: (f64::NAN, 1.0), ..good }, CameraError::DepthRange),
+        (Camera { size: (0, 48), ..good }, CameraError::Size),
+        (Camera { size: (64, 20_000), ..good }, CameraError::Size),
+    ];
+    for (camera, expected) in bad {
+        match refusal(&mut renderer, &camera, 0.5) {
+            RenderError::Camera(error) => assert_eq!(error, expected, "{camera:?}"),
+            error => panic!("{camera:?}: {error}"),
+        }
+    }
+    assert_identical(&before, &render(&mut renderer, &good), "after errors");
+    assert_silent(renderer);
+}
+
+#[test]
+fn a_tolerance_that_single_precision_cannot_keep() {
+    let model = shapes::plate();
+    let mut renderer = watched(&model);
+    let camera = perspective(&model, (64, 48));
+    let before = render(&mut renderer, &camera);
+    for tolerance in [0.0, -1.0, 0.124, f64::NAN, f64::INFINITY] {
+        match refusal(&mut renderer, &camera, tolerance) {
+            RenderError::Tolerance(said) => assert_eq!(said.to_bits(), tolerance.to_bits()),
+            error => panic!("{tolerance}: {error}"),
+        }
+    }
+    assert_identical(&before, &render(&mut renderer, &camera), "after errors");
+    assert_silent(renderer);
+}

@@ -1,0 +1,15 @@
+//! The whole frame on a real driver, watched by the validation layers: silent, repeatable, as exact as
+//! promised, and no larger than its scene.
+//!
+//! Needs a Vulkan driver and the validation layers; on Debian: `apt install libvulkan1
+//! mesa-vulkan-drivers vulkan-validationlayers`. Without them these tests fail and say so.
+
+mod accuracy;
+mod distance;
+mod errors;
+mod every_shape;
+mod objects;
+mod room;
+#[path = "../shapes/mod.rs"]
+mod shapes;
+mod support;

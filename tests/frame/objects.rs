@@ -1,0 +1,96 @@
+//! A scene makes only the buffers, images and pipelines that it needs.
+
+use crate::shapes;
+use crate::support::{assert_silent, perspective, watched};
+use selvedge::headless::HeadlessRenderer;
+use selvedge::model::Model;
+use selvedge::picture::{FrameSettings, Outputs};
+
+/// Pipelines of the trim table.
+const TRIM_PASSES: [&str; 6] = ["density", "lines", "segments", "sizes", "cross", "sort"];
+
+/// Names of what exists after one frame.
+fn objects(model: &Model, outputs: Outputs) -> (HeadlessRenderer, Vec<String>) {
+    let mut renderer = watched(model);
+    renderer.render(&perspective(model, (64, 48)), &FrameSettings::default(), outputs).unwrap();
+    let objects = renderer.objects();
+    (renderer, objects)
+}
+
+fn is_of_trimming(name: &str) -> bool {
+    name.starts_with("trim") || name.contains("(trimmed") || TRIM_PASSES.iter().any(|pass| name.starts_with(pass))
+}
+
+#[test]
+fn only_a_trimmed_scene_has_a_trim_table() {
+    for shape in shapes::all() {
+        let (renderer, objects) = objects(&shape.model, Outputs::default());
+        let of_trimming: Vec<_> = objects.iter().filter(|name| is_of_trimming(name)).collect();
+        if shape.trimmed {
+            // the table's buffers, the scene's curves and cells, and a pipeline for each pass
+            for needed in ["trim intercepts", "trim curves", "cross (count)", "visibility (trimmed"] {
+                assert!(objects.iter().any(|name| name.starts_with(needed)), "{needed} in {}: {objects:?}", shape.name);
+            }
+        } else {
+            assert!(of_trimming.is_empty(), "{}: {of_trimming:?}", shape.name);
+        }
+        assert_silent(renderer);
+    }
+}
+
+#[test]
+fn only_a_rational_scene_has_rational_pipelines() {
+    for shape in shapes::all() {
+        let (renderer, objects) = objects(&shape.model, Outputs::default());
+        let rational = objects.iter().any(|name| name.contains("rational"));
+        assert_eq!(rational, shape.rational, "{}: {objects:?}", shape.name);
+        assert_silent(renderer);
+    }
+}
+
+/// A scene whose every patch is cut by a trim curve has no pipeline for whole ones, and the reverse.
+#[test]
+fn a_kind_of_patch_that_no_face_has_gets_no_pipeline() {
+    for (model, has, lacks) in [(shapes::plate(), "trimmed", "plain"), (shapes::wave(), "plain", "trimmed")] {
+        let (renderer, objects) = objects(&model, Outputs::default());
+        let drawing = |kind: &str| objects.iter().any(|name| name.starts_with(&format!("visibility ({kind}")));
+        assert!(drawing(has) && !drawing(lacks), "{objects:?}");
+        assert_silent(renderer);
+    }
+}
+
+#[test]
+fn images_beside_the_colour_exist_when_asked_for() {
+    let model = shapes::sphere();
+    let (renderer, without) = objects(&model, Outputs::default());
+    assert_silent(renderer);
+    let (renderer, with) = objects(&model, Outputs { normal: true, ..Outputs::default() });
+    assert_silent(renderer);
+    for image in ["depth", "face", "uv", "normal"] {
+        assert!(!without.iter().any(|name| name == image), "{without:?}");
+        assert!(with.iter().any(|name| name == image), "{with:?}");
+    }
+}
+
+/// Memory follows the scene: another model's buffers go when their frame has gone.
+#[test]
+fn a_replaced_model_leaves_nothing_behind() {
+    let (mut renderer, before) = objects(&shapes::wave(), Outputs::default());
+    renderer.upload(&shapes::cube()).unwrap();
+    let camera = perspective(&shapes::wave(), (64, 48));
+    let draw = |renderer: &mut HeadlessRenderer| {
+        renderer.render(&camera, &FrameSettings::default(), Outputs::default()).unwrap();
+    };
+    draw(&mut renderer);
+    assert!(renderer.objects().iter().any(|name| is_of_trimming(name)));
+    renderer.upload(&shapes::wave()).unwrap();
+    draw(&mut renderer);
+    draw(&mut renderer); // the second frame into the slot frees what the first one replaced
+    let sorted = |mut names: Vec<String>| {
+        names.retain(|name| !name.starts_with("staging"));
+        names.sort();
+        names
+    };
+    assert_eq!(sorted(renderer.objects()), sorted(before));
+    assert_silent(renderer);
+}

@@ -1,0 +1,51 @@
+//! A watched renderer and the cameras of these tests.
+
+use glam::DVec3;
+use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
+use selvedge::model::{Camera, Model, Projection};
+use selvedge::picture::{FrameSettings, Outputs, Picture};
+
+/// A renderer under validation and synchronisation validation, with a model.
+pub fn watched(model: &Model) -> HeadlessRenderer {
+    let options = HeadlessOptions { device: None, validation: true };
+    let mut renderer =
+        HeadlessRenderer::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"));
+    renderer.upload(model).unwrap();
+    renderer
+}
+
+/// One picture with every image, at the default tolerance.
+pub fn render(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
+    renderer.render(camera, &FrameSettings::default(), Outputs::ALL).unwrap()
+}
+
+/// Ends the renderer; anything that the layers said fails the test.
+pub fn assert_silent(renderer: HeadlessRenderer) {
+    let messages = renderer.shutdown();
+    assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
+}
+
+/// All of the model, from the front, the right and above.
+pub fn perspective(model: &Model, size: (u32, u32)) -> Camera {
+    Camera::framing(model.bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), size)
+}
+
+/// The same in a parallel view.
+pub fn orthographic(model: &Model, size: (u32, u32)) -> Camera {
+    let height = model.bounds().diagonal().max(1e-9);
+    Camera { projection: Projection::Orthographic { height }, ..perspective(model, size) }
+}
+
+/// Everything of two pictures agrees bit for bit, but what they cost.
+pub fn assert_identical(a: &Picture, b: &Picture, what: &str) {
+    fn bits<const N: usize>(values: &[[f32; N]]) -> Vec<[u32; N]> {
+        values.iter().map(|v| v.map(f32::to_bits)).collect()
+    }
+    assert_eq!(a.size, b.size, "size {what}");
+    assert!(a.colour == b.colour, "colour {what}");
+    assert!(a.face == b.face, "face {what}");
+    let depth = |p: &Picture| p.depth.iter().map(|d| d.to_bits()).collect::<Vec<_>>();
+    assert!(depth(a) == depth(b), "depth {what}");
+    assert!(bits(&a.uv) == bits(&b.uv), "(u, v) {what}");
+    assert!(bits(&a.normal) == bits(&b.normal), "normal {what}");
+}
