@@ -11,10 +11,13 @@
 //        │   │   │ B │     The doubtful face itself is `real` when its own surface is inside its trims,
 //        └───┴───┴───┘     and the whole ring too: farther from its border than any error.
 //
-//   real (a gap looks into the solid): the nearest witness or helper before it
-//   not real (its ring reaches out):   the nearest witness; without one, nothing if a neighbour sees
-//                                      nothing and at most one face helps (a silhouette), else the
-//                                      nearest helper
+//   real (a gap looks into the solid):   the nearest witness or helper before it, else whichever
+//                                        neighbour's surface comes closest to the pixel's centre
+//   not real (its ring reaches out):
+//     helpers of two faces before every witness    the nearest: an edge runs here
+//     a witness                                    the nearest: behind a silhouette
+//     a neighbour that sees nothing                nothing
+//     a helper                                     the nearest
 //
 // Without any of these the doubtful face stays. Doubtful neighbours are not asked, and healed pixels
 // stay marked, so the order of the threads does not matter.
@@ -52,11 +55,12 @@ const float ON_PIXEL_PX = 0.05;
 // A point of the ring may project a little farther away than its radius: the step was linear.
 const float RING_SLACK = 1.25;
 // Relative depth within which a face touches the doubtful one, and is as hidden as that.
-const float SAME_DEPTH = 1e-5;
+const float SAME_DEPTH = 1e-6;
 
 struct Answer {
     uint kind;
     float depth;
+    float miss; // pixels
     uvec2 word;
 };
 
@@ -68,14 +72,13 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     Patch patch_ = patches[face.first_patch + item - fi.first_item];
     View view = views[fi.instance];
     Sample s = refine(patch_, view, unpack_uv(seen.y), pixel);
-    Answer answer = Answer(NO, s.q.z, uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)))));
+    Answer answer = Answer(NO, s.q.z, length(s.miss), uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)))));
     float strips = float(face.strip_count);
     vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
     bool inside = face.strip_count == 0u || table_inside(fi.first_strip, strips, at);
-    float miss = length(s.miss);
-    if (miss > ON_PIXEL_PX) {
+    if (answer.miss > ON_PIXEL_PX) {
         // a silhouette beside the pixel
-        if (inside && miss <= RING_SLACK * frame.ring_px) answer.kind = HELPER;
+        if (inside && answer.miss <= RING_SLACK * frame.ring_px) answer.kind = HELPER;
         return answer;
     }
     if (inside) answer.kind = WITNESS;
@@ -114,8 +117,9 @@ void main() {
     Answer self = ask(own, pixel, true);
     bool real = self.kind == WITNESS;
     float limit = real ? self.depth * (1.0 - SAME_DEPTH) : 3.0e38;
-    Answer witness = Answer(NO, 3.0e38, uvec2(0u));
+    Answer witness = Answer(NO, 3.0e38, 3.0e38, uvec2(0u));
     Answer helper = witness;
+    Answer closest = witness;
     bool beside_nothing = false;
     uint helping_face = 0u; // index + 1; helpers of two faces meet in an edge here
     bool two_help = false;
@@ -129,6 +133,7 @@ void main() {
             continue;
         }
         Answer answer = ask(seen, pixel, false);
+        if (answer.miss < closest.miss) closest = answer;
         if (answer.depth > limit) continue;
         if (answer.kind == WITNESS && answer.depth < witness.depth) witness = answer;
         if (answer.kind == HELPER) {
@@ -139,8 +144,21 @@ void main() {
         }
     }
     uvec2 healed = own;
-    if (witness.kind == WITNESS) healed = witness.word;
-    else if (!real && beside_nothing && !two_help) healed = uvec2(0u);
-    else if (helper.kind == HELPER) healed = helper.word;
+    bool has_witness = witness.kind == WITNESS;
+    bool has_helper = helper.kind == HELPER;
+    bool edge = two_help && helper.depth < witness.depth;
+    if (real) {
+        if (has_witness && !(has_helper && helper.depth < witness.depth)) healed = witness.word;
+        else if (has_helper) healed = helper.word;
+        else if (closest.word.x != 0u) healed = closest.word;
+    } else if (edge) {
+        healed = helper.word;
+    } else if (has_witness) {
+        healed = witness.word;
+    } else if (beside_nothing) {
+        healed = uvec2(0u);
+    } else if (has_helper) {
+        healed = helper.word;
+    }
     imageStore(visibility, at, uvec4(healed.x | DOUBTFUL, healed.y, 0u, 0u));
 }

@@ -37,7 +37,8 @@ void main() {
         return;
     }
     vec2 speed = vec2(uintBitsToFloat(face_speeds[2u * placed]), uintBitsToFloat(face_speeds[2u * placed + 1u]));
-    float for_chords = ceil(sqrt(dot(curve.bend, speed) / frame.chord_px));
+    precise float deviation = curve.bend.x * speed.x + curve.bend.y * speed.y; // pixels, of one chord
+    float for_chords = ceil(sqrt(deviation / frame.chord_px));
     float for_lines = float((lines + LINES_PER_SEGMENT - 1u) / LINES_PER_SEGMENT);
     segment_counts[item] = uint(clamp(max(for_chords, for_lines), 1.0, MAX_SEGMENTS));
 }

@@ -3,6 +3,9 @@
 #extension GL_GOOGLE_include_directive : require
 // Pass `split`: one number of segments per shared side, and as many sub-patches as keep every
 // number within the hardware's limit. One thread an item. Twin: src/twin/split.rs.
+//
+// Where a drawn neighbour may ask for another number, all numbers are powers of two: the tessellator
+// joins a side to the interior within one cell's width then, else across several cells.
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
@@ -28,7 +31,7 @@ uint tau_at(ivec2 place, uint axis, int steps) {
     int n = int(count[across]);
     if (at < 0 || at >= n) {
         if (!closed[across]) return 0u;
-        at = (at + n) % n;
+        at = (at + 2 * n) % n; // one patch alone has itself two steps away, and % wants no negative
     }
     place[across] = at;
     uint t = taus[first_item + uint(place.y) * count.x + uint(place.x)];
@@ -65,9 +68,12 @@ void main() {
         uint own = splits_for(t[1], t[2], t[3]);
         uint after = splits_for(t[2], t[3], t[4]);
         splits[axis] = own;
-        inner[axis] = round_up(max(t[2], 1u), own);
-        low[axis] = round_up(max(t[1], t[2]), max(before, own));
-        high[axis] = round_up(max(t[2], t[3]), max(after, own));
+        uint asked = max(t[2], 1u);
+        bool low_met = t[1] != 0u;
+        bool high_met = t[3] != 0u;
+        inner[axis] = round_up(low_met || high_met ? power_of_two(asked) : asked, own);
+        low[axis] = low_met ? max(power_of_two(max(t[1], asked)), max(before, own)) : inner[axis];
+        high[axis] = high_met ? max(power_of_two(max(t[3], asked)), max(after, own)) : inner[axis];
     }
     bool drawn = taus[item] != 0u;
     factors[item] = Factors(inner.x | inner.y << 16, low.x | high.x << 16, low.y | high.y << 16,

@@ -27,6 +27,7 @@ layout(scalar, binding = 11) readonly buffer RowStarts { uint row_starts[]; };
 layout(scalar, binding = 12) readonly buffer RowCounts { uint row_counts[]; };
 layout(scalar, binding = 13) readonly buffer Flips { float flips[]; };
 
+#include "facing.glsl"
 #include "table.glsl"
 #include "ring.glsl"
 #include "visible.glsl"
@@ -39,7 +40,6 @@ layout(depth_less) out float gl_FragDepth;
 // Where two solids touch, the back of one must win over the front of the other. Each is drawn up to
 // deviation_px off, so the front stands back by twice that in space, and at least by the rounding of
 // interpolated depth.
-const float STAND_BACK_PX = 0.01;
 const float STAND_BACK = 2e-6;
 
 void main() {
@@ -51,13 +51,11 @@ void main() {
     vec2 dy = dFdy(uv) * patch_.domain.zw;
     vec2 slope = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z));
     float strips = float(face.strip_count);
-    // (u, v) runs against the screen's (right, down) where the normal S_u x S_v looks at the viewer
-    bool towards = (dx.x * dy.y - dx.y * dy.x < 0.0) == ((face.flags & FACE_SAME_SENSE) != 0u);
-    if (instances[fi.instance].mirrored != 0u) towards = !towards;
+    bool away = looks_away(dx, dy, face, instances[fi.instance]);
     bool solid = (face.flags & FACE_SOLID) != 0u;
-    bool doubtful = solid && !towards;
+    bool doubtful = solid && away;
     bool inside = table_inside(fi.first_strip, strips, at);
-    if (solid && towards && !inside) discard;
+    if (solid && !away && !inside) discard;
     float border_depth = -1.0; // nearest to the viewer among the ring's points inside the face
     for (uint k = 0u; !inside && k < RING_POINTS; ++k) {
         vec2 step_ = frame.ring_px * RING[k];
@@ -69,7 +67,7 @@ void main() {
     float z = gl_FragCoord.z;
     float stand_back = 0.0;
     if (!doubtful) {
-        float px = max(STAND_BACK_PX, patch_.bend == vec3(0.0) ? 0.0 : 2.0 * frame.deviation_px);
+        float px = 2.0 * frame.deviation_px;
         // depth per unit along the view axis, times the size of a pixel there
         float range = frame.far - frame.near;
         float unit = frame.perspective != 0u ? frame.near * frame.far * gl_FragCoord.w / range : 1.0 / range;

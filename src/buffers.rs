@@ -86,7 +86,7 @@ impl Capacities {
         Self {
             sub_patches: counts.items.saturating_add(256),
             draws: 64,
-            rows: trimmed * (1 << 16).max(2 * counts.strips),
+            rows: trimmed * (1 << 16).max(2 * counts.strips).min(MOST_ROWS),
             intercepts: trimmed * (1 << 18).max(4 * counts.strips),
             doubts: trimmed * (1 << 14),
         }

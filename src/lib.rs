@@ -17,6 +17,8 @@ pub mod headless;
 pub mod import;
 pub mod math;
 pub mod model;
+#[cfg(test)]
+mod parity;
 pub mod passes;
 pub mod picture;
 pub mod reference;

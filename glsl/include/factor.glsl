@@ -2,24 +2,34 @@
 #ifndef FACTOR_GLSL
 #define FACTOR_GLSL
 
-// Smallest product tau_u tau_v with bend.x / tau_u^2 + 2 bend.y / (tau_u tau_v) + bend.z / tau_v^2 <= budget.
+const float SPARE = 0.125; // quads, over the fewest, that may be spent on less slender ones
+const float UP = 1.00001;  // a few ulp up, so that rounding never breaks the bound
+
+// A pair of small product tau_u tau_v with
+// bend.x / tau_u^2 + 2 bend.y / (tau_u tau_v) + bend.z / tau_v^2 <= budget.
 vec2 factors(vec3 bend, float budget) {
     float a = bend.x / budget;
     float b = bend.y / budget;
     float c = bend.z / budget;
-    if (a + 2.0 * b + c <= 1.0) return vec2(1.0);
-    float r = sqrt(max(a, 1e-20) / max(c, 1e-20));
-    float tv = sqrt(a / (r * r) + 2.0 * b / r + c);
-    float tu = r * tv;
+    precise float undivided = (a + 2.0 * b + c) * UP;
+    if (undivided <= 1.0) return vec2(1.0);
+    float al = max(a, 1e-20);
+    float cl = max(c, 1e-20);
+    // the ratio tau_u / tau_v nearest to 1 with a / r + c r <= q
+    precise float q = 2.0 * ((1.0 + SPARE) * sqrt(al * cl) + SPARE * b);
+    precise float most = q + sqrt(max(q * q - 4.0 * al * cl, 0.0));
+    float r = clamp(1.0, 2.0 * al / most, most / (2.0 * cl));
+    precise float tv = sqrt(a / (r * r) + 2.0 * b / r + c);
+    precise float tu = r * tv;
     if (tv < 1.0) {
-        tv = 1.0;
         tu = (b + sqrt(b * b + a * (1.0 - c))) / (1.0 - c);
-    } else if (tu < 1.0) {
-        tu = 1.0;
-        tv = (b + sqrt(b * b + c * (1.0 - a))) / (1.0 - a);
+        return vec2(ceil(tu * UP), 1.0);
     }
-    // a few ulp up, so that rounding never breaks the bound
-    return ceil(vec2(tu, tv) * 1.00001);
+    if (tu < 1.0) {
+        tv = (b + sqrt(b * b + c * (1.0 - a))) / (1.0 - a);
+        return vec2(1.0, ceil(tv * UP));
+    }
+    return ceil(vec2(tu, tv) * UP);
 }
 
 #endif

@@ -11,8 +11,15 @@ struct View {
     vec4 w;
 };
 
+// A dot product whose rounding is fixed: every pipeline that draws a shared vertex gets the same
+// bits, and so does the twin.
+float row_times(vec4 row, vec4 p) {
+    precise float sum = row.x * p.x + row.y * p.y + row.z * p.z + row.w * p.w;
+    return sum;
+}
+
 vec4 to_pixel(View view, vec4 p) {
-    return vec4(dot(view.x, p), dot(view.y, p), dot(view.depth, p), dot(view.w, p));
+    return vec4(row_times(view.x, p), row_times(view.y, p), row_times(view.depth, p), row_times(view.w, p));
 }
 
 // The smallest W of the box in front of the near plane, or a negative number when no part of the
@@ -24,11 +31,13 @@ float visible_w(View view, Frame frame, vec3 lo, vec3 hi, float margin) {
         vec3 c = vec3((i & 1u) == 0u ? lo.x : hi.x, (i & 2u) == 0u ? lo.y : hi.y, (i & 4u) == 0u ? lo.z : hi.z);
         vec4 q = to_pixel(view, vec4(c, 1.0));
         w_min = min(w_min, q.w);
+        precise vec2 low = q.xy + margin * q.w;                  // negative left of and above the picture
+        precise vec2 high = q.xy - (frame.size + margin) * q.w;  // positive right of and below it
         uint here = 0u;
-        here |= q.x + margin * q.w < 0.0 ? 1u : 0u;
-        here |= q.x - (frame.size.x + margin) * q.w > 0.0 ? 2u : 0u;
-        here |= q.y + margin * q.w < 0.0 ? 4u : 0u;
-        here |= q.y - (frame.size.y + margin) * q.w > 0.0 ? 8u : 0u;
+        here |= low.x < 0.0 ? 1u : 0u;
+        here |= high.x > 0.0 ? 2u : 0u;
+        here |= low.y < 0.0 ? 4u : 0u;
+        here |= high.y > 0.0 ? 8u : 0u;
         here |= q.z < frame.near ? 16u : 0u;
         here |= q.z > frame.far ? 32u : 0u;
         outside &= here;

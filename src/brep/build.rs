@@ -5,7 +5,8 @@ use super::edge::EdgeCurve;
 use super::fit::Fitter;
 use super::loops::{Limits, Loop};
 use super::nest::{arrange, come_home};
-use super::strand::{Lines, Strand};
+use super::preimage::Lines;
+use super::strand::Strand;
 use super::support::Support;
 use super::{Boundary, BuildError, Edge, FaceGeometry};
 use crate::model::{Bounds, Face, TrimLoop};
@@ -25,20 +26,23 @@ pub struct BuiltFace {
     pub deviation: f64,
 }
 
+/// Turns of a helical strip that a carrier may cover; only nonsense has more.
+const MAX_TURNS: f64 = 1e4;
+
 /// Builds the carrier and the trim loops of one face.
 ///
-/// `tolerance` is the source's length tolerance in mm. Vertices, lines of constant parameter and
-/// poles within it (kept between `1e-9` and `1e-5` of the face's diagonal) are the same. Fitted trim
-/// curves follow the pre-image of their edge to a hundredth of it, kept between `1e-9` and `1e-7` of
-/// the diagonal: at `1e-7` a face 4000 pixels wide is right to half a pixel when enlarged a thousand
-/// times, and tighter fits would only repeat the noise of most files.
+/// `tolerance` is the source's length tolerance in mm. Vertices and poles within it (kept between
+/// `1e-9` and `1e-5` of the face's diagonal) are the same. Trim curves, fitted or replaced by lines of
+/// constant parameter, follow the pre-image of their edge to a hundredth of it, kept between `1e-9`
+/// and `1e-7` of the diagonal: at `1e-7` a face 4000 pixels wide is right to half a pixel when enlarged
+/// a thousand times, and tighter fits would only repeat the noise of most files.
 ///
 /// # Errors
 /// [`BuildError`] names the face or edge and the reason.
 pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result<BuiltFace, BuildError> {
     let tolerance = if tolerance > 0.0 && tolerance.is_finite() { tolerance } else { 1e-6 };
     let mut notes = Vec::new();
-    let uses = edge_uses(face, edges, tolerance)?;
+    let mut uses = edge_uses(face, edges)?;
     let size = uses
         .iter()
         .flatten()
@@ -46,7 +50,12 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         .fold(Bounds::EMPTY, Bounds::with)
         .diagonal();
     let eps = if size > 0.0 { tolerance.clamp(1e-9 * size, 1e-5 * size) } else { tolerance };
-    let support = Support::new(&face.surface, eps).map_err(|reason| BuildError::Surface { face: face.id, reason })?;
+    let named = |reason| BuildError::Surface { face: face.id, reason };
+    let mut support = Support::new(&face.surface, eps).map_err(named)?;
+    if size > 0.0 {
+        support.target = (1e-2 * tolerance).clamp(1e-9 * size, 1e-7 * size);
+    }
+    uses.iter_mut().for_each(|bound| bound.retain(|e| e.length() > support.target));
     let limits = Limits { face: face.id, size };
 
     let vertices: Vec<usize> = face
@@ -80,9 +89,12 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
     if !(0..2).all(|i| range[i].1 > range[i].0 && (range[i].1 - range[i].0).is_finite()) {
         return Err(BuildError::NoArea { face: face.id });
     }
+    let turns = |i: usize| support.periods[i].map_or(0.0, |period| (range[i].1 - range[i].0) / period);
+    if turns(0).max(turns(1)) > MAX_TURNS {
+        return Err(BuildError::Winding { face: face.id, u: turns(0) as i32, v: turns(1) as i32 });
+    }
     let carrier = support.carrier(range).map_err(|e| carrier_error(face.id, e))?;
-    let target = (1e-2 * tolerance).clamp(1e-9 * size, 1e-7 * size);
-    let fitter = Fitter { support: &support, carrier: &carrier, target };
+    let fitter = Fitter { support: &support, carrier: &carrier };
     let mut deviation: f64 = 0.0;
     let mut trims = Vec::new();
     // joints are equal up to rounding; sides a period apart too
@@ -117,14 +129,22 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
 }
 
 /// The edges of each bound in the direction of the bound; those without length are left out.
-fn edge_uses(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result<Vec<Vec<EdgeCurve>>, BuildError> {
+fn edge_uses(face: &FaceGeometry, edges: &[Edge]) -> Result<Vec<Vec<EdgeCurve>>, BuildError> {
+    let lists = face.bounds.iter().filter_map(|b| match b {
+        Boundary::Edges(list) => Some(list),
+        Boundary::Vertex(_) => None,
+    });
+    let ends = lists.flatten().filter_map(|(index, _)| edges.get(*index)).flat_map(|e| [e.start, e.end]);
+    // rounding of the vertices' coordinates, before anything is known about the face
+    let reach = ends.clone().map(DVec3::length).fold(0.0, f64::max);
+    let rounding = 1e-12 * ends.fold(Bounds::EMPTY, Bounds::with).diagonal().max(1e-3 * reach);
     let mut uses = Vec::new();
     for bound in &face.bounds {
         let Boundary::Edges(list) = bound else { continue };
         let mut out = Vec::new();
         for &(index, forward) in list {
             let edge = edges.get(index).ok_or(BuildError::EdgeIndex { face: face.id, index })?;
-            out.extend(EdgeCurve::new(edge, forward, tolerance)?);
+            out.extend(EdgeCurve::new(edge, forward, rounding)?);
         }
         uses.push(out);
     }

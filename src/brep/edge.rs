@@ -22,7 +22,8 @@ pub(super) struct EdgeCurve {
 }
 
 impl EdgeCurve {
-    /// The edge as a loop uses it, or `None` when it has no length (`eps`, mm).
+    /// The edge as a loop uses it, or `None` when it is no longer than `eps`, mm: the rounding of
+    /// its coordinates.
     ///
     /// # Errors
     /// [`BuildError::Curve`] when its numbers are impossible.
@@ -76,7 +77,7 @@ impl EdgeCurve {
     }
 
     /// Length of the polygon through the nodes, mm.
-    fn length(&self) -> f64 {
+    pub fn length(&self) -> f64 {
         let points: Vec<DVec3> = self.nodes().iter().map(|s| self.point(*s)).collect();
         points.windows(2).map(|w| w[0].distance(w[1])).sum()
     }

@@ -37,8 +37,6 @@ pub(super) struct Fitter<'a> {
     pub support: &'a Support,
     /// Its spline.
     pub carrier: &'a Carrier,
-    /// Error in mm that a fit must not exceed.
-    pub target: f64,
 }
 
 impl Fitter<'_> {
@@ -179,13 +177,13 @@ impl Fitter<'_> {
             if best.as_ref().is_none_or(|b| error < b.0) {
                 best = Some((error, deviation, curve));
             }
-            if error <= self.target {
+            if error <= self.support.target {
                 break;
             }
         }
         let Some((error, deviation, curve)) = best else { return };
         let middle = 0.5 * (a.0 + b.0);
-        if error <= self.target || depth == 0 || middle <= a.0 || middle >= b.0 {
+        if error <= self.support.target || depth == 0 || middle <= a.0 || middle >= b.0 {
             out.deviation = out.deviation.max(deviation);
             out.curves.push(curve);
             return;

@@ -13,14 +13,15 @@ impl Support {
     /// Native parameters of the point of the surface nearest to `p`.
     ///
     /// `hint`: parameters of a point near by; it chooses the period, the angle at a pole, and the
-    /// sheet where a surface passes twice through one point. Accuracy: rounding for closed forms,
-    /// Newton to stagnation elsewhere.
-    pub fn invert(&self, p: DVec3, hint: Option<DVec2>) -> DVec2 {
-        let found = self.principal(p, hint);
+    /// sheet where a surface passes twice through one point. `accept`: distance of `p` from the surface
+    /// in mm that is no reason to look farther than from the hint. Accuracy: rounding for closed
+    /// forms, Newton to stagnation elsewhere.
+    pub fn invert(&self, p: DVec3, hint: Option<DVec2>, accept: f64) -> DVec2 {
+        let found = self.principal(p, hint, accept);
         hint.map_or(found, |h| self.unwrap(found, h))
     }
 
-    fn principal(&self, p: DVec3, hint: Option<DVec2>) -> DVec2 {
+    fn principal(&self, p: DVec3, hint: Option<DVec2>, accept: f64) -> DVec2 {
         let l = self.frame.local(p);
         let rho = l.x.hypot(l.y);
         // on the axis every angle is right: keep the one of the neighbour
@@ -63,7 +64,7 @@ impl Support {
                     let dr = if r > 0.0 { (q.x * d.x + q.y * d.y) / r } else { d.x.hypot(d.y) };
                     (DVec3::new(r - rho, q.z - l.z, 0.0), DVec3::new(dr, d.z, 0.0))
                 };
-                let t = foot(profile, &self.turned_seeds(profile, l), hint.map(|h| h.y), 1e-2 * self.eps, meridian);
+                let t = foot(profile, &self.turned_seeds(profile, l), hint.map(|h| h.y), accept, meridian);
                 let q = self.frame.local(profile.point(t));
                 let on_axis = q.x.hypot(q.y) <= 1e-12 * (q.z.abs() + self.eps);
                 let u = if on_axis { hint.map_or(0.0, |h| h.x) } else { angle - q.y.atan2(q.x) };
@@ -76,10 +77,10 @@ impl Support {
                     let (q, d) = profile.jet(t);
                     (across(q - p), across(d))
                 };
-                let t = foot(profile, &seeds(profile), hint.map(|h| h.x), 1e-2 * self.eps, shadow);
+                let t = foot(profile, &seeds(profile), hint.map(|h| h.x), accept, shadow);
                 DVec2::new(t, (p - profile.point(t)).dot(unit) / direction.length())
             }
-            Form::Spline(s) => s.invert(p, hint, 1e-2 * self.eps),
+            Form::Spline(s) => s.invert(p, hint, accept),
         }
     }
 

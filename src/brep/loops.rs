@@ -67,9 +67,9 @@ impl Loop {
         let closing = (strands[n - 1].end, strands[0].start);
         let closing_pole = pole_joint(&strands, n - 1);
         let mut winding = [0; 2];
-        for i in 0..2 {
+        for (i, turns) in winding.iter_mut().enumerate() {
             if let (Some(period), None) = (support.periods[i], closing_pole) {
-                winding[i] = ((closing.0[i] - closing.1[i]) / period).round() as i32;
+                *turns = ((closing.0[i] - closing.1[i]) / period).round() as i32;
             }
         }
         let turn = periods(support, winding);
@@ -90,14 +90,26 @@ impl Loop {
                 return Err(BuildError::OpenLoop { face: limits.face, edge, gap });
             }
             let joint = joint(support, &strands[k], &strands[next(k)], onward);
-            strands[k].end = joint;
-            strands[next(k)].start = joint - onward;
-            if k == n - 1 {
-                // the first strand is already out
-                let first: &mut Strand = if n == 1 { &mut strands[0] } else { &mut out[0] };
-                first.start = joint - onward;
+            let (pull_end, pull_start) = (
+                may_pull(support, &strands[k], from, joint),
+                may_pull(support, &strands[next(k)], to - onward, joint - onward),
+            );
+            if pull_start {
+                strands[next(k)].start = joint - onward;
+                if k == n - 1 && n > 1 {
+                    out[0].start = joint - onward; // the first strand is already out
+                }
+            }
+            if pull_end {
+                strands[k].end = joint;
             }
             out.push(strands[k].clone());
+            if !pull_end {
+                out.push(Strand::inserted(from, joint));
+            }
+            if !pull_start {
+                out.push(Strand::inserted(joint, to));
+            }
             if gap > 50.0 * support.eps {
                 notes.push(format!("face #{}: a gap of {gap:.3e} mm between edges was closed", limits.face));
             }
@@ -206,12 +218,25 @@ fn side_along_pole(support: &Support, before: &Strand, here: &Strand, pole: usiz
     start
 }
 
+/// Whether an end of a strand may move to the joint, and the strand with it: along its own line, or
+/// by no more than ten times the target. Farther, the strand stays true to its edge, which another
+/// face shares, and a straight piece leads to the vertex.
+fn may_pull(support: &Support, strand: &Strand, from: DVec2, to: DVec2) -> bool {
+    let speed = support.speed(from);
+    let mut step = (to - from) * speed;
+    if let Path::Line = strand.path {
+        let along = ((strand.end - strand.start) * speed).normalize_or_zero();
+        step -= along * step.dot(along);
+    }
+    step.length() <= 10.0 * support.target
+}
+
 /// The shared point of two strands: the pre-image of their vertex, on the lines that they follow.
 fn joint(support: &Support, a: &Strand, b: &Strand, onward: DVec2) -> DVec2 {
     let (end, start) = (a.end, b.start + onward);
     let guess = 0.5 * (end + start);
     let vertex: DVec3 = 0.5 * (a.vertices[1] + b.vertices[0]);
-    let mut joint = support.invert(vertex, Some(guess));
+    let mut joint = support.invert(vertex, Some(guess), vertex.distance(support.point(guess)));
     // a vertex far off the surface, or near a pole, says less than the curves do
     let speed = support.speed(guess);
     let apart = |p: DVec2, q: DVec2| ((p - q) * speed).length();

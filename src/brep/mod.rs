@@ -1,4 +1,4 @@
-//! Boundary representation as CAD files state it, and its exact turn into [`Face`]s.
+//! Boundary representation as CAD files state it, and its exact turn into [`Face`](crate::model::Face)s.
 //!
 //! A file says: *this analytic or spline surface, bounded by these edges in space*. The engine draws:
 //! *this rational B-spline surface, trimmed by these loops in its (u, v) domain*. This module is the
@@ -10,6 +10,15 @@
 //!                                                                      a bound measured in 3-D)
 //!   seams, poles, periods ──────────────────────────▶ TrimLoop        (closed, oriented)
 //! ```
+//!
+//! The way of one face through the files of this folder:
+//!
+//! | step | files |
+//! |---|---|
+//! | curves and surfaces made ready | `curve`, `pieces`, `edge`; `support`, `invert`, `spline` |
+//! | edge → pre-image in the standard's own `(u, v)` | `trace`, `preimage`, `strand` |
+//! | strands → loops without seams, oriented | `loops`; `rims`, `cut`; `nest` |
+//! | the standard's `(u, v)` → a spline's | `law`, `carrier`, `fit` |
 
 mod build;
 mod carrier;
@@ -24,6 +33,8 @@ mod law;
 mod loops;
 mod nest;
 mod pieces;
+mod preimage;
+mod rims;
 mod spline;
 mod strand;
 mod support;

@@ -1,7 +1,8 @@
 //! Which loops are outer borders and which are holes: by containment, not by order or direction.
 
-use super::cut::{cut_open, natural_rims};
+use super::cut::cut_open;
 use super::loops::{Limits, Loop, area};
+use super::rims::natural_rims;
 use super::support::Support;
 use super::{BuildError, law};
 use glam::DVec2;
@@ -20,9 +21,10 @@ pub(super) fn arrange(
     let mut loops = cut_open(support, loops, vertices, limits)?;
     gather(support, &mut loops);
     if contractible && support.is_closed() && is_outside(support, &loops) {
-        let rims = natural_rims(support, &loops).ok_or(BuildError::Unbounded { face: limits.face })?;
+        let rims = natural_rims(support, &loops).ok_or(BuildError::Tangled { face: limits.face })?;
         loops.extend(rims);
         loops = cut_open(support, loops, vertices, limits)?;
+        gather(support, &mut loops);
     }
     orient(support, &mut loops);
     Ok(loops)
@@ -68,7 +70,7 @@ fn is_outside(support: &Support, loops: &[Loop]) -> bool {
 fn orient(support: &Support, loops: &mut [Loop]) {
     let polygons: Vec<Vec<DVec2>> = loops.iter().map(|l| closed(l.polygon(support))).collect();
     for i in 0..loops.len() {
-        let outer = depth(&polygons, i) % 2 == 0;
+        let outer = depth(&polygons, i).is_multiple_of(2);
         if (area(&polygons[i]) > 0.0) != outer {
             loops[i] = loops[i].clone().reversed();
         }

@@ -1,5 +1,6 @@
 //! A curve made of rational Bézier pieces, with the parameter range that each covers.
 
+use crate::model::Bounds;
 use crate::spline::{BSpline, Bezier, Control, Span};
 use glam::{DVec3, DVec4};
 
@@ -15,7 +16,8 @@ pub(super) struct Pieces {
 }
 
 impl Pieces {
-    /// The pieces of a B-spline. `closed` is set when its ends are within `eps`.
+    /// The pieces of a B-spline. `closed` is set when its ends are within `eps`, mm, or
+    /// `1e-7` of its size.
     pub fn of_spline(c: &BSpline<DVec4>, eps: f64) -> Self {
         Self::new(c.beziers(), creases(c.degree(), c.knots()), eps)
     }
@@ -29,6 +31,9 @@ impl Pieces {
 
     fn new(spans: Vec<Span<Bezier<DVec4>>>, creases: Vec<f64>, eps: f64) -> Self {
         let ends = (spans[0].piece.point(0.0), spans[spans.len() - 1].piece.point(1.0));
+        let points = spans.iter().flat_map(|s| s.piece.points.iter().map(|p| p.point()));
+        // writers close their splines less exactly than they place their vertices
+        let eps = eps.max(1e-7 * points.fold(Bounds::EMPTY, Bounds::with).diagonal());
         Self { closed: ends.0.distance(ends.1) <= eps, spans, creases }
     }
 
@@ -86,6 +91,10 @@ impl Pieces {
                 }
             }
             turn += 1.0;
+        }
+        if out.is_empty() {
+            let ends = [a, b].map(|t| DVec4::from_point(self.jet(t).0, 1.0));
+            out.push(Span { start: a, end: b, piece: Bezier { points: ends.to_vec() } });
         }
         out
     }

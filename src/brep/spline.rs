@@ -17,6 +17,8 @@ pub(super) struct SplineForm {
     pub domain: [(f64, f64); 2],
     /// First and last side coincide, in `u` and in `v`.
     pub closed: [bool; 2],
+    /// Diagonal of the control points' box, mm.
+    size: f64,
     /// Knots of low continuity, in `u` and in `v`; the seam of a closed direction is one.
     pub creases: [Vec<f64>; 2],
 }
@@ -29,7 +31,9 @@ impl SplineForm {
         let boxes = grid.patches.iter().map(|p| p.patch.bounds()).collect();
         let (ku, kv) = surface.knots();
         let (du, dv) = surface.degrees();
+        let (lo, hi) = surface.bounds();
         let mut this = Self {
+            size: lo.distance(hi),
             surface: surface.clone(),
             grid,
             boxes,
@@ -154,6 +158,7 @@ impl SplineForm {
     /// the border that pushes outward stays there. Returns the distance and unwrapped parameters.
     fn polish(&self, p: DVec3, start: DVec2) -> (f64, DVec2) {
         const STEPS: usize = 40;
+        let fine = 1e-12 * self.size;
         let clamp = |q: DVec2| {
             let one = |i: usize| if self.closed[i] { q[i] } else { q[i].clamp(self.domain[i].0, self.domain[i].1) };
             DVec2::new(one(0), one(1))
@@ -182,6 +187,12 @@ impl SplineForm {
             if det <= 0.0 || !step.is_finite() {
                 break;
             }
+            // the last step of a quadratic iteration: its error is the square of a rounding error
+            if (step * DVec2::new(jet.du.length(), jet.dv.length())).length() <= fine {
+                let last = clamp(at + step);
+                let last_distance = self.jet(last).point.distance(p);
+                return if last_distance <= distance { (last_distance, last) } else { (distance, at) };
+            }
             let mut factor = 1.0;
             let mut moved = false;
             while factor > 1e-3 {
@@ -194,7 +205,7 @@ impl SplineForm {
                 }
                 factor *= 0.5;
             }
-            if !moved || (step / range).abs().max_element() < 1e-15 {
+            if !moved {
                 break;
             }
         }

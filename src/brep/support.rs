@@ -63,10 +63,12 @@ pub(super) struct Support {
     pub natural: [Option<(f64, f64)>; 2],
     /// Distance in mm below which two points are the same.
     pub eps: f64,
+    /// Distance in mm by which a trim curve may leave the pre-image of its edge.
+    pub target: f64,
 }
 
 impl Support {
-    /// `eps`: distance in mm below which two points are the same.
+    /// `eps`: distance in mm below which two points are the same; trim curves aim at a hundredth.
     ///
     /// # Errors
     /// What is wrong with the surface's numbers.
@@ -149,7 +151,7 @@ impl Support {
     }
 
     fn with(form: Form, frame: Frame, natural: [Option<(f64, f64)>; 2], eps: f64) -> Self {
-        Self { form, frame, poles: Vec::new(), periods: [None; 2], natural, eps }
+        Self { form, frame, poles: Vec::new(), periods: [None; 2], natural, eps, target: 1e-2 * eps }
     }
 
     fn find_periods(&self) -> [Option<f64>; 2] {

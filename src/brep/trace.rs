@@ -17,6 +17,9 @@ pub(super) struct Trace {
     pub at_pole: [bool; 2],
     /// Largest distance in mm of a sampled point of the curve from the support.
     pub gap: f64,
+    /// Distance in mm from the support up to which the neighbour's parameters are a safe start: no
+    /// farther than where a search of the whole surface found nothing nearer.
+    accept: f64,
 }
 
 impl Trace {
@@ -45,16 +48,32 @@ impl Trace {
             Some(_) => nodes.extend(ladder(to, last)),
             None => nodes.push(to),
         }
-        let mut this = Self { edge: edge.clone(), samples: Vec::new(), at_pole: poles.map(|p| p.is_some()), gap: 0.0 };
+        let mut this = Self::of_samples(edge, Vec::new(), 0.0);
+        this.at_pole = poles.map(|p| p.is_some());
+        this.accept = 1e-2 * support.eps;
         let mut hint = hint;
         for s in nodes {
-            let p = support.invert(edge.point(s), hint);
+            let p = this.look(support, s, hint);
             this.step(support, s, p, 24);
             hint = Some(p);
         }
         this.gap = this.samples.iter().map(|(s, p)| support.point(*p).distance(edge.point(*s))).fold(0.0, f64::max);
         this.add_poles(support, poles, (from, to));
         this
+    }
+
+    /// Samples taken elsewhere.
+    pub fn of_samples(edge: &Rc<EdgeCurve>, samples: Vec<(f64, DVec2)>, gap: f64) -> Self {
+        Self { edge: edge.clone(), samples, at_pole: [false; 2], gap, accept: gap }
+    }
+
+    /// Inverts the point at `s`; learns how far from the support the edge may be.
+    fn look(&mut self, support: &Support, s: f64, hint: Option<DVec2>) -> DVec2 {
+        let point = self.edge.point(s);
+        let p = support.invert(point, hint, self.accept);
+        // a residual above `accept` means that the search was made, and is the truth
+        self.accept = self.accept.max(1.5 * support.point(p).distance(point));
+        p
     }
 
     /// Appends a sample; halves the step while the parameters turn by more than an eighth of a
@@ -67,7 +86,7 @@ impl Trace {
         let far = (0..2).any(|i| support.periods[i].is_some_and(|period| (p[i] - q[i]).abs() > 0.125 * period));
         let p = if far && depth > 0 {
             let middle = 0.5 * (before + s);
-            let m = support.invert(self.edge.point(middle), Some(q));
+            let m = self.look(support, middle, Some(q));
             self.step(support, middle, m, depth - 1);
             let near = self.samples.last().map_or(q, |l| l.1);
             let p = support.unwrap(p, near);
@@ -110,7 +129,7 @@ impl Trace {
             (_, Some(&(t, p))) if t == s => p,
             (Some((t0, p0)), Some(&(t1, p1))) => {
                 let guess = p0.lerp(p1, (s - t0) / (t1 - t0));
-                support.invert(self.edge.point(s), Some(guess))
+                support.invert(self.edge.point(s), Some(guess), self.accept)
             }
             (Some((_, p)), None) => p,
             (None, Some(&(_, p))) => p,
@@ -124,9 +143,9 @@ impl Trace {
         &self.samples[usize::from(self.at_pole[0])..n - usize::from(self.at_pole[1])]
     }
 
-    /// The coordinate that is the same all along, and its value: `(axis, value)`. Moving every
-    /// sample onto that line moves no point by more than `eps` mm.
-    pub fn constant(&self, support: &Support, eps: f64) -> Option<(usize, f64)> {
+    /// The coordinate that changes least along the trace: its axis, its mean, and how far in mm any
+    /// sample would move to have it exactly. `None` when neither is a number.
+    pub fn constant(&self, support: &Support) -> Option<(usize, f64, f64)> {
         let samples: Vec<(DVec2, DVec2)> = self.regular().iter().map(|(_, p)| (*p, support.speed(*p))).collect();
         let spread = |axis: usize| {
             let mass: f64 = samples.iter().map(|(_, speed)| speed[axis].powi(2)).sum();
@@ -135,7 +154,7 @@ impl Trace {
             (off, mean)
         };
         let found = [spread(0), spread(1)];
-        let axis = usize::from(!(found[0].0 <= found[1].0));
-        (found[axis].0 <= eps).then_some((axis, found[axis].1))
+        let axis = usize::from(found[1].0 < found[0].0 || found[0].0.is_nan());
+        found[axis].0.is_finite().then_some((axis, found[axis].1, found[axis].0))
     }
 }

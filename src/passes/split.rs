@@ -4,9 +4,9 @@
 //! ```text
 //!         A (tau 100, 2 sub-patches)        B (tau 30)
 //!    ┌───────────┬───────────┐
-//!    │    50     │    50     │      the side that A and B share gets 100 segments, seen from
-//!    ├───────────┴───────────┤      both, so B is cut in two as well: 50 + 50
-//!    │    50     │    50     │
+//!    │    64     │    64     │      the side that A and B share gets 128 segments, seen from
+//!    ├───────────┴───────────┤      both, so B is cut in two as well: 64 + 64
+//!    │    64     │    64     │
 //!    └───────────┴───────────┘
 //! ```
 //!

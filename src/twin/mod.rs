@@ -1,4 +1,95 @@
 //! The CPU twin of each compute pass: the same results in plain Rust, for the parity tests to compare
-//! with.
+//! with and for whoever wants to read what a shader computes without reading GLSL.
+//!
+//! ```text
+//!   glsl/bound.comp          twin::bound        passes::bound        parity::bound
+//!   glsl/include/view.glsl   twin::view                              one name, four places
+//! ```
+//!
+//! A twin repeats the shader's single-precision operations in the shader's order, and the shader marks
+//! them `precise`. Where division and square root are rounded correctly, as on the CPU and on
+//! llvmpipe, the results are the same bit for bit; Vulkan allows a GPU 2.5 units in the last place for
+//! a quotient and 3 for a root, so there a `ceil` may come out one higher or lower.
 
+pub mod bound;
+pub mod cross;
+pub mod curve;
+pub mod density;
+pub mod emit;
+pub mod factor;
+pub mod lines;
+pub mod reset;
 pub mod scan;
+pub mod segments;
+pub mod sizes;
+pub mod sort;
+pub mod split;
+pub mod table;
+pub mod view;
+
+use crate::abi::{Cell, Curve, Face, FaceInstance, Instance, Patch, View};
+
+/// The hardware's tessellation factor.
+pub const MAX_FACTOR: u32 = 64;
+/// Most sub-patches along one side of a patch.
+pub const MAX_SPLIT: u32 = 64;
+/// Most segments along one side of a patch.
+pub const MOST_SEGMENTS: u32 = MAX_FACTOR * MAX_SPLIT;
+/// Bits of [`Counters::failed`](crate::abi::Counters::failed): the buffer that was too small.
+pub const FAILED_SUB_PATCHES: u32 = 1;
+/// See [`FAILED_SUB_PATCHES`].
+pub const FAILED_DRAWS: u32 = 2;
+/// See [`FAILED_SUB_PATCHES`].
+pub const FAILED_ROWS: u32 = 4;
+/// See [`FAILED_SUB_PATCHES`].
+pub const FAILED_INTERCEPTS: u32 = 8;
+
+/// What the passes read of a scene: the arrays of `glsl/include/scene.glsl`, by reference.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Scene<'a> {
+    /// Part to pixel, per instance.
+    pub views: &'a [View],
+    /// Placed parts.
+    pub instances: &'a [Instance],
+    /// Faces of placed parts.
+    pub face_instances: &'a [FaceInstance],
+    /// Faces.
+    pub faces: &'a [Face],
+    /// Patches of all faces.
+    pub patches: &'a [Patch],
+    /// Face instance of each item.
+    pub items: &'a [u32],
+    /// Parts of patches in v-strips.
+    pub cells: &'a [Cell],
+    /// Face instance of each cell item.
+    pub cell_items: &'a [u32],
+    /// Trim curves.
+    pub curves: &'a [Curve],
+    /// Their control points, three numbers each.
+    pub curve_points: &'a [f32],
+    /// Face instance of each curve item.
+    pub curve_items: &'a [u32],
+}
+
+impl Scene<'_> {
+    /// The placed face of an item, its face, and the item's patch.
+    fn item(&self, item: usize) -> (FaceInstance, Face, Patch) {
+        let placed = self.face_instances[self.items[item] as usize];
+        let face = self.faces[placed.face as usize];
+        (placed, face, self.patches[face.first_patch as usize + item - placed.first_item as usize])
+    }
+
+    /// The placed face of a curve item, its face, and the curve.
+    fn curve(&self, item: usize) -> (FaceInstance, Face, Curve) {
+        let placed = self.face_instances[self.curve_items[item] as usize];
+        let face = self.faces[placed.face as usize];
+        (placed, face, self.curves[face.first_curve as usize + item - placed.first_curve as usize])
+    }
+}
+
+/// The strips of a face with `strip_count` that `v` from `lo` to `hi` reaches, first and last.
+fn strips_of(lo: f32, hi: f32, strip_count: u32) -> (u32, u32) {
+    let strips = strip_count as f32;
+    let strip = |v: f32| (v * strips).floor().clamp(0.0, strips - 1.0) as u32;
+    (strip(lo), strip(hi))
+}

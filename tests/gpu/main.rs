@@ -8,3 +8,4 @@ mod lifetimes;
 mod scan;
 mod support;
 mod synchronisation;
+mod transition;

@@ -146,8 +146,7 @@ fn an_oblique_cut_of_a_cylinder_is_fitted() {
 
 #[test]
 fn a_helical_edge_is_fitted_within_its_bound() {
-    // a strip between two helices given as degree-1 splines would be crude: use points of one
-    // turn of a rational quartic-free fit instead, a cubic interpolating the helix finely
+    // a strip between two helices of one turn, each a cubic spline that interpolates it in 64 pieces
     let f = odd_frame();
     let (radius, pitch, n) = (2.0, 0.5, 64);
     let helix = |lift: f64| {
@@ -270,7 +269,7 @@ fn sphere_caps_zones_and_octants() {
             if !forward {
                 bound = bound.into_iter().rev().map(|(e, d)| (e, !d)).collect();
             }
-            // one pole: the loop closes in one way only, so a wrong direction changes nothing
+            // the sphere is closed: run the other way, the loop bounds the rest of it
             let built = build(sphere.clone(), vec![Boundary::Edges(bound)], &edges);
             let area = 4.0 * PI * r * r * if forward { 1.0 / 8.0 } else { 7.0 / 8.0 };
             assert_area(&built, area, 1e-12);
@@ -399,4 +398,52 @@ fn an_apple_is_closed_over_its_poles() {
         let ((_, _), (v0, v1)) = built.face.surface.domain();
         assert!(if direction { v0.abs() < 1e-12 } else { v1.abs() < 1e-12 }, "{v0} {v1}");
     }
+}
+
+#[test]
+fn a_lemon_is_the_inner_part_of_the_same_torus() {
+    let f = odd_frame();
+    let (major, minor): (f64, f64) = (1.0, 2.0);
+    let torus = SurfaceGeometry::Torus { frame: f, major, minor };
+    let end = (-major / minor).acos();
+    let mut edges = Vec::new();
+    full_circle(&mut edges, f, minor - major);
+    let half = TAU * minor * (minor * end.sin() - major * (PI - end));
+    for direction in [true, false] {
+        assert_area(&build(torus.clone(), vec![Boundary::Edges(vec![(0, direction)])], &edges), half, 1e-12);
+    }
+}
+
+#[test]
+fn a_helical_strip_may_run_around_many_times() {
+    // between two helices of pitch 1, a quarter apart, over three turns: lines in the domain, so the
+    // area is the height times the developed length around
+    let f = Frame::WORLD;
+    let (radius, turns, n) = (2.0, 3.0, 240);
+    let helix = |lift: f64| {
+        let span = turns * TAU / f64::from(n);
+        let h = |u: f64| DVec3::new(radius * u.cos(), radius * u.sin(), lift + u / TAU);
+        let d = |u: f64| DVec3::new(-radius * u.sin(), radius * u.cos(), 1.0 / TAU);
+        let mut points = vec![DVec4::from_point(h(0.0), 1.0)];
+        let mut knots = vec![0.0; 4];
+        for i in 0..n {
+            let (a, b) = (span * f64::from(i), span * f64::from(i + 1));
+            points.extend([h(a) + d(a) * (span / 3.0), h(b) - d(b) * (span / 3.0), h(b)].map(|p| p.extend(1.0)));
+            knots.extend([b; 3]);
+        }
+        knots.push(turns * TAU);
+        (CurveGeometry::BSpline(BSpline::new(3, knots, points).unwrap()), h(0.0), h(turns * TAU))
+    };
+    let mut edges = Vec::new();
+    let (low, a, b) = helix(0.0);
+    let (high, d, c) = helix(0.25);
+    let low = edge(&mut edges, low, a, b);
+    let right = segment(&mut edges, b, c);
+    let high = edge(&mut edges, high, d, c);
+    let left = segment(&mut edges, a, d);
+    let bound = Boundary::Edges(vec![(low, true), (right, true), (high, false), (left, false)]);
+    let built = build(SurfaceGeometry::Cylinder { frame: f, radius }, vec![bound], &edges);
+    assert_area(&built, 0.25 * turns * TAU * radius, 1e-6);
+    let ((u0, u1), _) = built.face.surface.domain();
+    assert!((u1 - u0 - turns * TAU).abs() < 1e-6);
 }

@@ -160,3 +160,20 @@ fn islands_in_holes_are_outer_again() {
     let built = build(SurfaceGeometry::Plane { frame: f }, bounds, &edges);
     assert_area(&built, PI * (9.0 - 4.0 + 1.0), 1e-12);
 }
+
+#[test]
+fn curves_stay_true_where_vertices_miss_them() {
+    // two half circles whose common vertices lie 0.1 mm too far out
+    let f = odd_frame();
+    let mut edges = Vec::new();
+    let (a, b) = (f.origin + f.x * 2.1, f.origin - f.x * 2.1);
+    let upper = edge(&mut edges, circle(f, 2.0), a, b);
+    let lower = edge(&mut edges, circle(f, 2.0), b, a);
+    let bounds = vec![Boundary::Edges(vec![(upper, true), (lower, true)])];
+    let built = build_face(&face(SurfaceGeometry::Plane { frame: f }, bounds), &edges, TOLERANCE).unwrap();
+    // the straight pieces to the vertices and back enclose nothing
+    assert_area(&built, PI * 4.0, 1e-12);
+    assert!(built.deviation < 1e-13);
+    let off = farthest(&built, |p| from_circle(p, f, 2.0));
+    assert!((off - 0.1).abs() < 1e-9, "{off}");
+}

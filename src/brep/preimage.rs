@@ -1,0 +1,162 @@
+//! The strands that an edge leaves on its support.
+//!
+//! ```text
+//!   plane              affine image of the curve, exact
+//!   curved surface     cut at poles; traced; a line of constant parameter where it is one
+//! ```
+
+use super::curve::Curve;
+use super::edge::EdgeCurve;
+use super::law::nearest;
+use super::strand::{Part, Path, Strand};
+use super::support::{Form, Support};
+use super::trace::Trace;
+use crate::spline::Bezier;
+use glam::{DVec2, DVec3, DVec4};
+use std::rc::Rc;
+
+/// Constant coordinates met so far on a face: `(axis, value)`. Edges on one line get one number.
+pub(super) type Lines = Vec<(usize, f64)>;
+
+impl Strand {
+    /// The strands of one edge use: several where it passes through poles, none where it stays at one.
+    pub fn of_edge(support: &Support, edge: &Rc<EdgeCurve>, hint: Option<DVec2>, lines: &mut Lines) -> Vec<Self> {
+        if let Form::Plane = support.form {
+            return vec![Self::in_plane(support, edge)];
+        }
+        let stops = pole_stops(support, edge);
+        let mut out = Vec::new();
+        let mut hint = hint;
+        for w in stops.windows(2) {
+            let ((from, pole0), (to, pole1)) = (w[0], w[1]);
+            if pole0.is_some() && pole0 == pole1 && stays(support, edge, (from, to), pole0) {
+                continue;
+            }
+            let trace = Trace::new(support, edge, (from, to), [pole0, pole1], hint);
+            let strand = Self::of_trace(support, Rc::new(trace), lines);
+            hint = Some(strand.end);
+            out.push(Self { poles: [pole0, pole1], ..strand });
+        }
+        out
+    }
+
+    fn in_plane(support: &Support, edge: &Rc<EdgeCurve>) -> Self {
+        let f = &support.frame;
+        // the affine image of a rational curve, control point by control point
+        let image = |b: Bezier<DVec4>| Bezier {
+            points: b
+                .points
+                .iter()
+                .map(|p| {
+                    let arm = p.truncate() - f.origin * p.w;
+                    DVec3::new(arm.dot(f.x), arm.dot(f.y), p.w)
+                })
+                .collect(),
+        };
+        let curves: Vec<_> = edge.curve.beziers(edge.t0, edge.t1).into_iter().map(|s| image(s.piece)).collect();
+        let ends = [curves[0].point(0.0), curves[curves.len() - 1].point(1.0)];
+        let samples: Vec<_> = edge.nodes().into_iter().map(|s| (s, f.local(edge.point(s)).truncate())).collect();
+        let height = |s: &f64| f.local(edge.point(*s)).z.abs();
+        let gap = edge.nodes().iter().map(height).fold(0.0, f64::max);
+        let trace = Trace::of_samples(edge, samples, gap);
+        let straight = matches!(edge.curve, Curve::Line { .. });
+        Self {
+            start: ends[0],
+            end: ends[1],
+            path: if straight { Path::Line } else { Path::Exact(curves) },
+            part: Some(Part { trace: Rc::new(trace), from: 0.0, to: 1.0 }),
+            locked: [false; 2],
+            poles: [None; 2],
+            vertices: edge.vertices,
+        }
+    }
+
+    fn of_trace(support: &Support, trace: Rc<Trace>, lines: &mut Lines) -> Self {
+        let (first, last) = (trace.samples[0], trace.samples[trace.samples.len() - 1]);
+        let mut strand = Self {
+            start: first.1,
+            end: last.1,
+            path: Path::Traced,
+            locked: [false; 2],
+            poles: [None; 2],
+            vertices: [first.0, last.0].map(|s| match s {
+                0.0 => trace.edge.vertices[0],
+                1.0 => trace.edge.vertices[1],
+                _ => trace.edge.point(s),
+            }),
+            part: None,
+        };
+        if let Some((axis, value)) = constant_line(support, &trace, lines) {
+            strand.start[axis] = value;
+            strand.end[axis] = value;
+            strand.locked[axis] = true;
+            strand.path = Path::Line;
+        }
+        strand.part = Some(Part { from: first.0, to: last.0, trace });
+        strand
+    }
+}
+
+/// The line of constant coordinate that a trace follows within the target: its axis and value.
+///
+/// Lines met before on the face keep their number, at the period nearest to this trace. The border of
+/// a spline is met within ten times the target: edges along it are often approximations of it, and
+/// fitting their noise would serve nobody.
+fn constant_line(support: &Support, trace: &Trace, lines: &mut Lines) -> Option<(usize, f64)> {
+    let (axis, value, off) = trace.constant(support)?;
+    let speed = trace.regular().iter().map(|(_, p)| support.speed(*p)[axis]).fold(0.0, f64::max);
+    let close = |x: f64, reach: f64| (x - value).abs() * speed <= reach;
+    let near = |x: f64| support.periods[axis].map_or(x, |period| nearest(x, value, period));
+    let border = 10.0 * support.target;
+    if let (Form::Spline(s), true) = (&support.form, off <= border)
+        && let Some(x) = [s.domain[axis].0, s.domain[axis].1].into_iter().map(near).find(|x| close(*x, border))
+    {
+        return Some((axis, x));
+    }
+    if off > support.target {
+        return None;
+    }
+    let known = lines.iter().filter(|l| l.0 == axis).map(|l| near(l.1)).find(|x| close(*x, support.target));
+    if known.is_none() {
+        lines.push((axis, value));
+    }
+    Some((axis, known.unwrap_or(value)))
+}
+
+/// Fractions at which the edge must be cut because it meets a pole there, with 0 and 1.
+fn pole_stops(support: &Support, edge: &EdgeCurve) -> Vec<(f64, Option<usize>)> {
+    // vertices miss poles by more than curves do
+    let reach = 4.0 * support.eps;
+    let end =
+        |i: usize, s: f64| support.pole_at(edge.vertices[i], reach).or_else(|| support.pole_at(edge.point(s), reach));
+    let mut stops = vec![(0.0, end(0, 0.0))];
+    let nodes = edge.nodes();
+    for (index, pole) in support.poles.iter().enumerate() {
+        let distance = |s: f64| edge.point(s).distance(pole.point);
+        let d: Vec<f64> = nodes.iter().map(|s| distance(*s)).collect();
+        for i in 1..nodes.len() - 1 {
+            if d[i] > d[i - 1] || d[i] > d[i + 1] {
+                continue;
+            }
+            let (mut a, mut b) = (nodes[i - 1], nodes[i + 1]);
+            for _ in 0..80 {
+                let (c, e) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
+                if distance(c) <= distance(e) { b = e } else { a = c }
+            }
+            let s = 0.5 * (a + b);
+            if distance(s) <= reach && s > 1e-6 && s < 1.0 - 1e-6 {
+                stops.push((s, Some(index)));
+            }
+        }
+    }
+    stops.push((1.0, end(1, 1.0)));
+    stops.sort_by(|a, b| a.0.total_cmp(&b.0));
+    stops.dedup_by(|b, a| b.0 - a.0 < 1e-6);
+    stops
+}
+
+/// The edge does not leave the pole between the two fractions.
+fn stays(support: &Support, edge: &EdgeCurve, (from, to): (f64, f64), pole: Option<usize>) -> bool {
+    let Some(pole) = pole.map(|i| support.poles[i].point) else { return false };
+    (1..8).all(|i| edge.point(from + (to - from) * f64::from(i) / 8.0).distance(pole) <= 8.0 * support.eps)
+}

@@ -1,0 +1,115 @@
+//! Rims that the source does not state, and where to cut a closed surface.
+
+use super::loops::{Loop, periods};
+use super::strand::Strand;
+use super::support::Support;
+use glam::DVec2;
+
+/// Where to cut: through a vertex of a rim that no hole covers, else through a gap between holes,
+/// else through the middle of the widest stretch without a vertex. The flag says that it meets no hole.
+pub(super) fn choose_cut(support: &Support, loops: &[Loop], axis: usize, period: f64) -> (f64, bool) {
+    let holes: Vec<(f64, f64)> = loops
+        .iter()
+        .filter(|l| l.winding[axis] == 0)
+        .map(|l| {
+            let (lo, hi) = l.bounds(support);
+            (lo[axis], hi[axis])
+        })
+        .collect();
+    let margin = 1e-6 * period;
+    let clear = |c: f64| {
+        holes.iter().all(|(lo, hi)| {
+            let ahead = (c - lo).rem_euclid(period);
+            ahead > hi - lo + margin && ahead < period - margin
+        })
+    };
+    let rims = loops.iter().filter(|l| l.winding[axis] != 0);
+    let vertices: Vec<f64> = rims.flat_map(|l| l.strands.iter().map(|s| s.start[axis])).collect();
+    if let Some(c) = vertices.iter().find(|c| clear(**c)) {
+        return (*c, true);
+    }
+    let middle_of_widest = |marks: &mut Vec<f64>, good: &dyn Fn(f64) -> bool| {
+        marks.iter_mut().for_each(|m| *m = m.rem_euclid(period));
+        marks.sort_by(f64::total_cmp);
+        marks.push(marks.first().copied().unwrap_or(0.0) + period);
+        let gaps = marks.windows(2).map(|w| (w[1] - w[0], 0.5 * (w[0] + w[1])));
+        gaps.filter(|g| good(g.1)).max_by(|a, b| a.0.total_cmp(&b.0)).map(|g| g.1)
+    };
+    let mut borders: Vec<f64> = holes.iter().flat_map(|h| [h.0, h.1]).collect();
+    if let Some(c) = middle_of_widest(&mut borders, &clear) {
+        return (c, true);
+    }
+    let strands = loops.iter().flat_map(|l| &l.strands);
+    let mut all: Vec<f64> = strands.map(|s| s.start[axis]).chain(holes.iter().flat_map(|h| [h.0, h.1])).collect();
+    (middle_of_widest(&mut all, &|_| true).unwrap_or(0.0), false)
+}
+
+/// The rim along a pole that closes an odd number of rims: the pole that a bound names, else the
+/// only one, else the one on the side of the outermost rim where its face lies.
+pub(super) fn close_over_pole(
+    support: &Support,
+    rims: &[&Loop],
+    vertices: &[usize],
+    (axis, cut): (usize, f64),
+) -> Option<Loop> {
+    let other = 1 - axis;
+    let period = support.periods[axis]?;
+    let level = |l: &Loop| {
+        let all = l.strands.iter().map(|s| s.start[other]);
+        all.clone().sum::<f64>() / all.count() as f64
+    };
+    let rim = rims.iter().min_by(|a, b| level(a).total_cmp(&level(b)))?;
+    let here = level(rim);
+    let up = (rim.winding[axis] > 0) == (axis == 0);
+    let repeat = |x: f64, up: bool| match support.periods[other] {
+        // the next copy in the direction of the face
+        Some(q) if up => x + q * ((here - x) / q).ceil(),
+        Some(q) => x + q * ((here - x) / q).floor(),
+        None => x,
+    };
+    let poles = || support.poles.iter().enumerate().filter(|(_, p)| p.axis == other);
+    let named = poles().find(|(i, _)| vertices.contains(i)).map(|(_, p)| p.value);
+    let value = match named {
+        Some(x) => repeat(x, up),
+        None if poles().count() == 1 && support.periods[other].is_none() => poles().next().map(|(_, p)| p.value)?,
+        None => {
+            let ahead = poles().map(|(_, p)| repeat(p.value, up)).filter(|x| (*x > here) == up);
+            ahead.min_by(|a, b| (a - here).abs().total_cmp(&(b - here).abs()))?
+        }
+    };
+    // it runs against the rim
+    let mut from = DVec2::ZERO;
+    from[axis] = cut;
+    from[other] = value;
+    let mut to = from;
+    to[axis] += period;
+    let mut winding = [0; 2];
+    winding[axis] = 1;
+    let closing = Loop { strands: vec![Strand::inserted(from, to)], winding };
+    Some(if rim.winding[axis] > 0 { closing.reversed() } else { closing })
+}
+
+/// The border of a closed surface as loops: two opposite rims that [`cut_open`](super::cut::cut_open) joins. Where neither
+/// direction ends, the rims lie on a line that no loop meets; `None` when there is none.
+pub(super) fn natural_rims(support: &Support, loops: &[Loop]) -> Option<[Loop; 2]> {
+    let axis = (0..2).find(|i| support.periods[*i].is_some())?;
+    let other = 1 - axis;
+    let (lo, hi) = match (support.periods[other], support.natural[other]) {
+        (Some(q), Some((a, b))) if b - a >= q * (1.0 - 1e-9) => {
+            let (c, clear) = choose_cut(support, loops, other, q);
+            clear.then_some((c, c + q))?
+        }
+        (_, natural) => natural?,
+    };
+    let mut turn = [0; 2];
+    turn[axis] = 1;
+    let across = periods(support, turn);
+    let rim = |height: f64| {
+        let mut from = DVec2::ZERO;
+        from[axis] = support.natural[axis].map_or(0.0, |n| n.0);
+        from[other] = height;
+        Loop { strands: vec![Strand::inserted(from, from + across)], winding: turn }
+    };
+    let (low, high) = (rim(lo), rim(hi));
+    Some(if axis == 0 { [low, high.reversed()] } else { [low.reversed(), high] })
+}

@@ -1,0 +1,68 @@
+//! A scene seen by a camera: what the passes get from the host.
+
+use crate::abi;
+use crate::budget::Budget;
+use crate::model::{Camera, Model, Projection};
+use crate::scene::{SceneData, focal_and_slant, view};
+use crate::twin;
+
+/// One scene, one view.
+#[derive(Clone, Debug)]
+pub(crate) struct Case {
+    pub data: SceneData,
+    pub views: Vec<abi::View>,
+    pub frame: abi::Frame,
+}
+
+impl Case {
+    /// Room for everything; draws are cut small enough that there are several.
+    pub(crate) fn new(model: &Model, camera: &Camera, tolerance_px: f64) -> Self {
+        camera.check().expect("the camera of a case shows something");
+        let data = SceneData::new(model);
+        let pixels = camera.pixel_matrix();
+        let views = data.placements.iter().map(|&placement| view(pixels, placement)).collect();
+        let (focal, slant) = focal_and_slant(camera);
+        let budget = Budget::of(tolerance_px);
+        let frame = abi::Frame {
+            size: [camera.size.0 as f32, camera.size.1 as f32],
+            focal: focal as f32,
+            slant: slant as f32,
+            near: camera.depth_range.0 as f32,
+            far: camera.depth_range.1 as f32,
+            perspective: u32::from(matches!(camera.projection, Projection::Perspective { .. })),
+            deviation_px: budget.deviation as f32,
+            ring_px: budget.ring as f32,
+            row_px: budget.row as f32,
+            chord_px: budget.chord as f32,
+            item_count: data.items.len() as u32,
+            cell_count: data.cell_items.len() as u32,
+            strip_count: data.strip_count,
+            curve_count: data.curve_items.len() as u32,
+            draw_vertices: 5000,
+            sub_patch_capacity: 1 << 16,
+            draw_capacity: 256,
+            row_capacity: 1 << 18,
+            intercept_capacity: 1 << 20,
+            ..Default::default()
+        };
+        Self { data, views, frame }
+    }
+
+    /// The scene for the twins.
+    pub(crate) fn scene(&self) -> twin::Scene<'_> {
+        let d = &self.data;
+        twin::Scene {
+            views: &self.views,
+            instances: &d.instances,
+            face_instances: &d.face_instances,
+            faces: &d.faces,
+            patches: &d.patches,
+            items: &d.items,
+            cells: &d.cells,
+            cell_items: &d.cell_items,
+            curves: &d.curves,
+            curve_points: &d.curve_points,
+            curve_items: &d.curve_items,
+        }
+    }
+}

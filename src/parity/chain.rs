@@ -1,0 +1,76 @@
+//! All twins in the order of [`frame`](crate::frame): the inputs and the outputs of every pass.
+
+use super::Case;
+use crate::abi::{Counters, SubPatch};
+use crate::twin;
+use crate::twin::density::Density;
+use crate::twin::emit::Draw;
+use crate::twin::split::Split;
+
+/// What a buffer holds where no pass has written.
+pub(super) const UNTOUCHED: u32 = 0xA5A5_A5A5;
+/// [`UNTOUCHED`] as an entry of the draw list.
+pub(super) const UNTOUCHED_SUB_PATCH: SubPatch = SubPatch { item: UNTOUCHED, place: UNTOUCHED };
+
+/// Every buffer of a frame.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Chain {
+    pub taus: Vec<u32>,
+    pub split: Split,
+    pub sub_patch_starts: Vec<u32>,
+    pub vertex_starts: Vec<u32>,
+    pub sub_patches: Vec<SubPatch>,
+    pub draws: Vec<Draw>,
+    pub density: Density,
+    pub line_counts: Vec<u32>,
+    pub line_starts: Vec<u32>,
+    pub segment_counts: Vec<u32>,
+    pub segment_starts: Vec<u32>,
+    pub dispatches: [[u32; 3]; 3],
+    pub row_counts: Vec<u32>,
+    pub row_starts: Vec<u32>,
+    pub row_total: u32,
+    /// As `cross` leaves them; the order within a row is not part of the contract.
+    pub intercepts: Vec<u32>,
+    /// As `sort` leaves them: the first `flip_counts[row]` words of a row are float bits.
+    pub flips: Vec<u32>,
+    pub flip_counts: Vec<u32>,
+    pub counters: Counters,
+}
+
+impl Chain {
+    pub(super) fn new(case: &Case) -> Self {
+        let (frame, scene) = (&case.frame, &case.scene());
+        let mut c = Self::default();
+        (c.draws, c.counters) = twin::reset::reset(frame);
+        c.taus = twin::bound::bound(frame, scene, &mut c.counters);
+        c.split = twin::split::split(frame, scene, &c.taus);
+        c.sub_patch_starts = starts(&c.split.sub_patch_counts);
+        c.vertex_starts = starts(&c.split.vertex_counts);
+        c.sub_patches = vec![UNTOUCHED_SUB_PATCH; frame.sub_patch_capacity as usize];
+        let list = (c.sub_patches.as_mut_slice(), c.draws.as_mut_slice());
+        twin::emit::emit(frame, &c.split.factors, &c.sub_patch_starts, &c.vertex_starts, list, &mut c.counters);
+
+        c.density = twin::density::density(frame, scene);
+        c.line_counts = twin::lines::lines(frame, &c.density.strip_heights, &mut c.counters);
+        c.line_starts = starts(&c.line_counts);
+        c.segment_counts = twin::segments::segments(frame, scene, &c.density.face_speeds, &c.line_starts);
+        c.segment_starts = starts(&c.segment_counts);
+        c.dispatches = twin::sizes::sizes(frame, &c.line_starts, &c.segment_starts, &mut c.counters);
+        c.row_counts = twin::cross::count(frame, scene, &c.line_starts, &c.segment_starts);
+        (c.row_starts, c.row_total) = twin::scan::scan(&c.row_counts[..c.counters.rows as usize]);
+        c.intercepts = vec![UNTOUCHED; frame.intercept_capacity as usize];
+        let (mut counts, given) = (c.row_counts.clone(), (c.line_starts.as_slice(), c.segment_starts.as_slice()));
+        twin::cross::insert(frame, scene, given, &c.row_starts, &mut counts, &mut c.intercepts);
+        c.flips = c.intercepts.clone();
+        c.flip_counts = twin::sort::sort(frame, &c.row_starts, c.row_total, &mut c.flips, &mut c.counters);
+        c
+    }
+}
+
+/// Prefix sums with the total behind them.
+fn starts(counts: &[u32]) -> Vec<u32> {
+    let (mut starts, total) = twin::scan::scan(counts);
+    starts.push(total);
+    starts
+}

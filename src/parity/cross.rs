@@ -1,0 +1,94 @@
+//! Parity of the pass `cross`, both roles, and so of `curve.glsl`: exact, the rows as sets. Where the
+//! GPU rounds otherwise, `u` within 24 units in the last place, and the direction bit exact.
+
+use super::Case;
+use super::chain::{Chain, UNTOUCHED};
+use super::harness::{Gpu, Mismatch, SceneBuffers, floats, same};
+use super::shapes::cases;
+use crate::gpu::Buffer;
+use crate::passes::cross::{Bindings, Cross};
+use crate::twin::sort::from_ordered;
+
+/// One role of the pass on the GPU: `row_counts` and `intercepts` after it.
+fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> (Vec<u32>, Vec<u32>) {
+    let s = SceneBuffers::new(gpu, case);
+    let before = if insert { chain.row_counts.clone() } else { vec![0; chain.row_counts.len()] };
+    let upload = |name: &str, words: &[u32]| -> Buffer { gpu.upload(name, words) };
+    let (line_starts, segment_starts) =
+        (upload("line starts", &chain.line_starts), upload("segment starts", &chain.segment_starts));
+    let (row_counts, row_starts) = (upload("row counts", &before), upload("row starts", &chain.row_starts));
+    let intercepts = upload("intercepts", &vec![UNTOUCHED; chain.intercepts.len()]);
+    let dispatches = upload("dispatches", chain.dispatches.as_flattened());
+    let bindings = Bindings {
+        frame: &s.frame,
+        face_instances: &s.face_instances,
+        faces: &s.faces,
+        curves: &s.curves,
+        curve_points: &s.curve_points,
+        curve_items: &s.curve_items,
+        line_starts: &line_starts,
+        segment_starts: &segment_starts,
+        row_counts: &row_counts,
+        row_starts: &row_starts,
+        intercepts: &intercepts,
+        dispatches: &dispatches,
+    };
+    let pass = Cross::new(gpu.device()).unwrap();
+    gpu.run(|cmd| if insert { pass.insert(cmd, &bindings) } else { pass.count(cmd, &bindings) });
+    (gpu.read(&row_counts, before.len()), gpu.read(&intercepts, chain.intercepts.len()))
+}
+
+/// The GPU gets `given`; the twins' results for the true case are in `chain`.
+fn compare(gpu: &Gpu, given: &Case, chain: &Chain) -> Result<(), Mismatch> {
+    let (counts, untouched) = on_gpu(gpu, given, chain, false);
+    same("row counts", &counts, &chain.row_counts)?;
+    same("intercepts before inserting", &untouched, &vec![UNTOUCHED; untouched.len()])?;
+
+    let (left, inserted) = on_gpu(gpu, given, chain, true);
+    same("row counts after inserting", &left, &vec![0; left.len()])?;
+    let (on_gpu, twin) = (rows_sorted(chain, inserted), rows_sorted(chain, chain.intercepts.clone()));
+    let directions = |words: &[u32]| words.iter().map(|w| w & 1).collect::<Vec<_>>();
+    let u = |words: &[u32]| words.iter().map(|w| from_ordered(w & !1)).collect::<Vec<_>>();
+    same("directions", &directions(&on_gpu), &directions(&twin))?;
+    floats("intercepts", &u(&on_gpu), &u(&twin), gpu.slack())
+}
+
+/// The rows that have room, each in order, and nothing else.
+fn rows_sorted(chain: &Chain, mut intercepts: Vec<u32>) -> Vec<u32> {
+    let room = intercepts.len();
+    let ends = chain.row_starts.iter().skip(1).chain([&chain.row_total]).map(|&end| end as usize);
+    let mut used = 0;
+    for (&start, end) in chain.row_starts.iter().zip(ends).take_while(|&(_, end)| end <= room) {
+        intercepts[start as usize..end].sort_unstable();
+        used = end;
+    }
+    intercepts.truncate(used);
+    intercepts
+}
+
+#[test]
+fn parity() {
+    let gpu = Gpu::new();
+    for case in cases() {
+        let chain = Chain::new(&case);
+        let intercepts = rows_sorted(&chain, chain.intercepts.clone()).len();
+        assert!(intercepts > 100, "only {intercepts} to compare");
+        compare(&gpu, &case, &chain).unwrap();
+    }
+    gpu.finish();
+}
+
+#[test]
+fn a_difference_is_seen() {
+    let gpu = Gpu::new();
+    let case = &cases()[0];
+    let chain = Chain::new(case);
+    let cubic = *case.data.curves.iter().find(|c| c.degree == 3).unwrap();
+    let mut moved = case.clone();
+    moved.data.curve_points[cubic.first as usize + 3] += 1e-6; // u of the second control point
+    assert_eq!(compare(&gpu, &moved, &chain).unwrap_err().buffer, "intercepts");
+    let mut moved = case.clone();
+    moved.data.curve_points[cubic.first as usize + 4] += 0.1; // and v: other lines are crossed
+    assert_eq!(compare(&gpu, &moved, &chain).unwrap_err().buffer, "row counts");
+    gpu.finish();
+}

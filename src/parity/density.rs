@@ -1,0 +1,51 @@
+//! Parity of the pass `density`: exact; where the GPU rounds otherwise, within 24 units in the last place.
+
+use super::Case;
+use super::harness::{Gpu, Mismatch, SceneBuffers, floats};
+use super::shapes::cases;
+use crate::passes::density::{Bindings, Density};
+use crate::twin;
+
+fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
+    let (strips, faces) = (given.data.strip_count as usize, given.data.face_instances.len());
+    let s = SceneBuffers::new(gpu, given);
+    let strip_heights = gpu.upload("strip heights", &vec![0.0f32; strips]);
+    let face_speeds = gpu.upload("face speeds", &vec![0.0f32; 2 * faces]);
+    let pass = Density::new(gpu.device()).unwrap();
+    let bindings = Bindings {
+        frame: &s.frame,
+        views: &s.views,
+        instances: &s.instances,
+        face_instances: &s.face_instances,
+        faces: &s.faces,
+        cells: &s.cells,
+        cell_items: &s.cell_items,
+        strip_heights: &strip_heights,
+        face_speeds: &face_speeds,
+    };
+    gpu.run(|cmd| pass.record(cmd, &bindings, given.data.cell_items.len() as u32));
+    let twin = twin::density::density(&expected.frame, &expected.scene());
+    floats("strip heights", &gpu.read(&strip_heights, strips), &twin.strip_heights, gpu.slack())?;
+    floats("face speeds", &gpu.read(&face_speeds, 2 * faces), twin.face_speeds.as_flattened(), gpu.slack())
+}
+
+#[test]
+fn parity() {
+    let gpu = Gpu::new();
+    for case in cases() {
+        compare(&gpu, &case, &case).unwrap();
+    }
+    gpu.finish();
+}
+
+#[test]
+fn a_difference_is_seen() {
+    let gpu = Gpu::new();
+    let case = &cases()[0];
+    let mut fast = case.clone();
+    let last = fast.data.cells.len() - 1; // of the plate: the last strip of either instance
+    fast.data.cells[last].speed_v *= 1.001;
+    let mismatch = compare(&gpu, &fast, case).unwrap_err();
+    assert_eq!((mismatch.buffer, mismatch.index), ("strip heights", case.data.strip_count as usize / 2 - 1));
+    gpu.finish();
+}

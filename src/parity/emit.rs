@@ -1,0 +1,70 @@
+//! Parity of the pass `emit`: exact. Its atomics are sums, maxima and minima.
+
+use super::chain::{Chain, UNTOUCHED_SUB_PATCH};
+use super::harness::{Gpu, Mismatch, same};
+use super::shapes::cases;
+use crate::abi::{Counters, Frame};
+use crate::passes::emit::{Bindings, Emit};
+use crate::twin;
+
+fn compare(gpu: &Gpu, frame: &Frame, given: &Chain, expected: &Chain) -> Result<(), Mismatch> {
+    let list = vec![UNTOUCHED_SUB_PATCH; frame.sub_patch_capacity as usize];
+    let (empty, zero) = twin::reset::reset(frame);
+    let frame_buffer = gpu.upload("frame", &[*frame]);
+    let factors = gpu.upload("factors", &given.split.factors);
+    let sub_patch_starts = gpu.upload("sub-patch starts", &given.sub_patch_starts);
+    let vertex_starts = gpu.upload("vertex starts", &given.vertex_starts);
+    let sub_patches = gpu.upload("sub-patches", &list);
+    let draws = gpu.upload("draws", &empty);
+    let counters = gpu.upload("counters", &[zero]);
+    let pass = Emit::new(gpu.device()).unwrap();
+    let bindings = Bindings {
+        frame: &frame_buffer,
+        factors: &factors,
+        sub_patch_starts: &sub_patch_starts,
+        vertex_starts: &vertex_starts,
+        sub_patches: &sub_patches,
+        draws: &draws,
+        counters: &counters,
+    };
+    gpu.run(|cmd| pass.record(cmd, &bindings, frame.item_count));
+    let (mut twin_list, mut twin_draws, mut twin_counters) = (list, empty, Counters::default());
+    twin::emit::emit(
+        frame,
+        &expected.split.factors,
+        &expected.sub_patch_starts,
+        &expected.vertex_starts,
+        (&mut twin_list, &mut twin_draws),
+        &mut twin_counters,
+    );
+    same("sub-patches", &gpu.read(&sub_patches, twin_list.len()), &twin_list)?;
+    same("draws", &gpu.read(&draws, twin_draws.len()), &twin_draws)?;
+    same("counters", &gpu.read(&counters, 1), &[twin_counters])
+}
+
+#[test]
+fn parity() {
+    let gpu = Gpu::new();
+    for case in cases() {
+        let chain = Chain::new(&case);
+        compare(&gpu, &case.frame, &chain, &chain).unwrap();
+    }
+    gpu.finish();
+}
+
+#[test]
+fn a_difference_is_seen() {
+    let gpu = Gpu::new();
+    let frame = &cases()[1].frame;
+    let chain = Chain::new(&cases()[1]);
+    // an item in several sub-patches, plain or trimmed
+    let slot = chain.split.sub_patch_counts.iter().position(|&count| count > 1).unwrap();
+    let mut other = chain.clone();
+    other.split.factors[slot % frame.item_count as usize].splits += 1;
+    assert_eq!(compare(&gpu, frame, &other, &chain).unwrap_err().buffer, "sub-patches");
+    let mut other = chain.clone();
+    // all that follows comes a draw later
+    other.vertex_starts[slot + 1..].iter_mut().for_each(|start| *start += frame.draw_vertices);
+    assert_eq!(compare(&gpu, frame, &other, &chain).unwrap_err().buffer, "draws");
+    gpu.finish();
+}

@@ -1,0 +1,170 @@
+//! A watched device, the way to and from it, and comparisons that name the place.
+
+use super::Case;
+use crate::gpu::{Access, Buffer, Commands, Device, Pool, ReadBack, Uploads, barrier};
+use crate::headless::{HeadlessDevice, HeadlessOptions};
+use bytemuck::Pod;
+use std::fmt::Debug;
+
+/// A device under validation and synchronisation validation.
+pub(super) struct Gpu(HeadlessDevice);
+
+/// How far a result may be from the twin's.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Slack {
+    /// Of a whole number that a `ceil` made.
+    pub count: u32,
+    /// Of a float, relative.
+    pub relative: f32,
+}
+
+/// The first difference.
+#[derive(Debug, PartialEq)]
+pub(super) struct Mismatch {
+    pub buffer: &'static str,
+    pub index: usize,
+    pub values: String,
+}
+
+impl Gpu {
+    pub(super) fn new() -> Self {
+        let options = HeadlessOptions { device: None, validation: true };
+        Self(HeadlessDevice::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}")))
+    }
+
+    pub(super) fn device(&self) -> &Device {
+        self.0.device()
+    }
+
+    /// None where quotients and roots are rounded correctly. Elsewhere Vulkan grants 2.5 and 3 units in
+    /// the last place an operation; no pass chains more than eight of them.
+    pub(super) fn slack(&self) -> Slack {
+        if self.device().driver().contains("llvmpipe") {
+            Slack { count: 0, relative: 0.0 }
+        } else {
+            Slack { count: 1, relative: 24.0 * f32::EPSILON }
+        }
+    }
+
+    /// A buffer of `data` for shaders and indirect commands.
+    pub(super) fn upload<T: Pod>(&self, name: &str, data: &[T]) -> Buffer {
+        let record = |cmd: &Commands<'_>| {
+            let mut uploads = Uploads::new();
+            let buffer = uploads.buffer(cmd, Pool::Transient, name, Buffer::INDIRECT, data).unwrap();
+            uploads.finish(cmd, Access::COMPUTE_WRITE | Access::INDIRECT_READ);
+            (buffer, uploads)
+        };
+        self.0.submit(record).unwrap().0
+    }
+
+    /// Records, submits, waits.
+    pub(super) fn run(&self, record: impl FnOnce(&Commands<'_>)) {
+        self.0.submit(record).unwrap();
+    }
+
+    /// The first `count` values of a buffer that a pass wrote.
+    pub(super) fn read<T: Pod>(&self, buffer: &Buffer, count: usize) -> Vec<T> {
+        let bytes = (count * size_of::<T>()) as u64;
+        let back = ReadBack::new(self.device(), "read back", bytes).unwrap();
+        self.run(|cmd| {
+            barrier::buffers(cmd, &[(buffer, Access::COMPUTE_WRITE, Access::TRANSFER_READ)]);
+            back.record(cmd, buffer, bytes);
+        });
+        back.values(count)
+    }
+
+    /// Anything that the validation layers said fails the test.
+    pub(super) fn finish(self) {
+        let messages: Vec<_> = self.0.shutdown().iter().map(ToString::to_string).collect();
+        assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
+    }
+}
+
+/// The arrays of a case in GPU memory.
+pub(super) struct SceneBuffers {
+    pub frame: Buffer,
+    pub views: Buffer,
+    pub instances: Buffer,
+    pub face_instances: Buffer,
+    pub faces: Buffer,
+    pub patches: Buffer,
+    pub items: Buffer,
+    pub cells: Buffer,
+    pub cell_items: Buffer,
+    pub curves: Buffer,
+    pub curve_points: Buffer,
+    pub curve_items: Buffer,
+}
+
+impl SceneBuffers {
+    pub(super) fn new(gpu: &Gpu, case: &Case) -> Self {
+        let d = &case.data;
+        Self {
+            frame: gpu.upload("frame", &[case.frame]),
+            views: gpu.upload("views", &case.views),
+            instances: gpu.upload("instances", &d.instances),
+            face_instances: gpu.upload("face instances", &d.face_instances),
+            faces: gpu.upload("faces", &d.faces),
+            patches: gpu.upload("patches", &d.patches),
+            items: gpu.upload("items", &d.items),
+            cells: gpu.upload("cells", &d.cells),
+            cell_items: gpu.upload("cell items", &d.cell_items),
+            curves: gpu.upload("curves", &d.curves),
+            curve_points: gpu.upload("curve points", &d.curve_points),
+            curve_items: gpu.upload("curve items", &d.curve_items),
+        }
+    }
+}
+
+/// Equal, or the first place where `near` does not hold.
+fn all_near<T: Debug>(
+    buffer: &'static str,
+    gpu: &[T],
+    twin: &[T],
+    near: impl Fn(&T, &T) -> bool,
+) -> Result<(), Mismatch> {
+    assert_eq!(gpu.len(), twin.len(), "lengths of `{buffer}`");
+    match gpu.iter().zip(twin).position(|(g, t)| !near(g, t)) {
+        None => Ok(()),
+        Some(index) => {
+            let values = format!("GPU {:?}, twin {:?}", gpu[index], twin[index]);
+            Err(Mismatch { buffer, index, values })
+        }
+    }
+}
+
+/// Exactly equal.
+pub(super) fn same<T: Debug + PartialEq>(buffer: &'static str, gpu: &[T], twin: &[T]) -> Result<(), Mismatch> {
+    all_near(buffer, gpu, twin, |g, t| g == t)
+}
+
+/// Whole numbers within the slack.
+pub(super) fn counts(buffer: &'static str, gpu: &[u32], twin: &[u32], slack: Slack) -> Result<(), Mismatch> {
+    all_near(buffer, gpu, twin, |&g, &t| g.abs_diff(t) <= slack.count)
+}
+
+/// Two whole numbers a word, each within the slack; a 0 word only where the twin has one.
+pub(super) fn halves(buffer: &'static str, gpu: &[u32], twin: &[u32], slack: Slack) -> Result<(), Mismatch> {
+    let half = |g: u32, t: u32| g.abs_diff(t) <= slack.count;
+    all_near(buffer, gpu, twin, |&g, &t| (g == 0) == (t == 0) && half(g & 0xffff, t & 0xffff) && half(g >> 16, t >> 16))
+}
+
+/// Floats within the slack; with none, bit for bit.
+pub(super) fn floats(buffer: &'static str, gpu: &[f32], twin: &[f32], slack: Slack) -> Result<(), Mismatch> {
+    all_near(buffer, gpu, twin, |g, t| g.to_bits() == t.to_bits() || (g - t).abs() < slack.relative * t.abs())
+}
+
+#[test]
+fn comparisons_see_one_bit() {
+    let none = Slack { count: 0, relative: 0.0 };
+    let mismatch = |result: Result<(), Mismatch>| result.unwrap_err().index;
+    assert_eq!(same("a", &[1, 2, 3], &[1, 2, 3]), Ok(()));
+    assert_eq!(mismatch(same("a", &[1, 2, 3], &[1, 2, 4])), 2);
+    assert_eq!(mismatch(counts("a", &[7, 8], &[7, 9], none)), 1);
+    assert_eq!(mismatch(counts("a", &[7, 8], &[7, 10], Slack { count: 1, ..none })), 1);
+    assert_eq!(mismatch(halves("a", &[5 | 7 << 16], &[5 | 8 << 16], none)), 0);
+    assert_eq!(mismatch(halves("a", &[0], &[1], Slack { count: 1, ..none })), 0);
+    assert_eq!(mismatch(floats("a", &[1.0], &[1.0f32.next_up()], none)), 0);
+    assert_eq!(mismatch(floats("a", &[0.0], &[-0.0], none)), 0);
+    assert_eq!(floats("a", &[1.0], &[1.0f32.next_up()], Slack { relative: 1e-6, ..none }), Ok(()));
+}

@@ -1,0 +1,47 @@
+//! Parity: every compute pass on the GPU against its twin, buffer by buffer.
+//!
+//! ```text
+//!   shapes ──▶ Case (SceneData, views, Frame) ──▶ Chain (all twins, in the frame's order)
+//!                 │                                  │ inputs of a pass      │ its outputs
+//!                 ▼                                  ▼                       ▼
+//!              upload ────────────────────────▶ the pass on the GPU ──▶ compare: exact, or within Slack
+//! ```
+//!
+//! Each pass gets its inputs from the twins before it, so a difference names the pass that made it;
+//! [`frame`] then holds whole frames against the chain. Every file also feeds the GPU one changed
+//! number and asks that the comparison names the place.
+
+mod case;
+mod chain;
+mod random;
+mod shapes;
+
+pub(crate) use case::Case;
+pub(crate) use random::Random;
+pub(crate) use shapes::{placed, untrimmed};
+
+#[cfg(feature = "headless")]
+mod bound;
+#[cfg(feature = "headless")]
+mod cross;
+#[cfg(feature = "headless")]
+mod density;
+#[cfg(feature = "headless")]
+mod emit;
+#[cfg(feature = "headless")]
+mod frame;
+#[cfg(feature = "headless")]
+mod harness;
+#[cfg(feature = "headless")]
+mod lines;
+#[cfg(feature = "headless")]
+mod reset;
+#[cfg(feature = "headless")]
+mod segments;
+#[cfg(feature = "headless")]
+mod sizes;
+#[cfg(feature = "headless")]
+mod sort;
+#[cfg(feature = "headless")]
+mod split;
+mod table;

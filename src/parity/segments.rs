@@ -1,0 +1,55 @@
+//! Parity of the pass `segments`: exact; where the GPU rounds otherwise, a count may differ by one.
+
+use super::Case;
+use super::chain::{Chain, UNTOUCHED};
+use super::harness::{Gpu, Mismatch, SceneBuffers, counts};
+use super::shapes::cases;
+use crate::passes::segments::{Bindings, Segments};
+use crate::twin;
+
+fn compare(gpu: &Gpu, given: &Case, expected: &Case, chain: &Chain) -> Result<(), Mismatch> {
+    let n = given.data.curve_items.len();
+    let s = SceneBuffers::new(gpu, given);
+    let face_speeds = gpu.upload("face speeds", &chain.density.face_speeds);
+    let line_starts = gpu.upload("line starts", &chain.line_starts);
+    let segment_counts = gpu.upload("segment counts", &vec![UNTOUCHED; n]);
+    let pass = Segments::new(gpu.device()).unwrap();
+    let bindings = Bindings {
+        frame: &s.frame,
+        face_instances: &s.face_instances,
+        faces: &s.faces,
+        curves: &s.curves,
+        curve_items: &s.curve_items,
+        face_speeds: &face_speeds,
+        line_starts: &line_starts,
+        segment_counts: &segment_counts,
+    };
+    gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
+    let scene = expected.scene();
+    let twin = twin::segments::segments(&expected.frame, &scene, &chain.density.face_speeds, &chain.line_starts);
+    counts("segment counts", &gpu.read(&segment_counts, n), &twin, gpu.slack())
+}
+
+#[test]
+fn parity() {
+    let gpu = Gpu::new();
+    for case in cases() {
+        compare(&gpu, &case, &case, &Chain::new(&case)).unwrap();
+        let mut fine = case.clone(); // more segments than a curve can have
+        fine.frame.chord_px *= 1e-12;
+        compare(&gpu, &fine, &fine, &Chain::new(&case)).unwrap();
+    }
+    gpu.finish();
+}
+
+#[test]
+fn a_difference_is_seen() {
+    let gpu = Gpu::new();
+    let case = &cases()[0];
+    let mut bent = case.clone();
+    let item = case.data.curves.iter().position(|c| c.degree == 3).unwrap();
+    bent.data.curves[item].bend[0] *= 4.0;
+    let mismatch = compare(&gpu, &bent, case, &Chain::new(case)).unwrap_err();
+    assert_eq!(mismatch.index, item);
+    gpu.finish();
+}

@@ -1,0 +1,58 @@
+//! Parity of the pass `sizes`: exact.
+
+use super::chain::{Chain, UNTOUCHED};
+use super::harness::{Gpu, Mismatch, same};
+use super::shapes::cases;
+use crate::abi::{Counters, Frame};
+use crate::passes::sizes::{Bindings, Sizes};
+use crate::twin;
+
+fn compare(gpu: &Gpu, frame: &Frame, given: [&[u32]; 2], expected: [&[u32]; 2]) -> Result<(), Mismatch> {
+    // as the passes before may leave them
+    let before = Counters { clamps: 3, failed: 1, plain: 9, ..Default::default() };
+    let frame_buffer = gpu.upload("frame", &[*frame]);
+    let line_starts = gpu.upload("line starts", given[0]);
+    let segment_starts = gpu.upload("segment starts", given[1]);
+    let dispatches = gpu.upload("dispatches", &[UNTOUCHED; 9]);
+    let counters = gpu.upload("counters", &[before]);
+    let pass = Sizes::new(gpu.device()).unwrap();
+    let bindings = Bindings {
+        frame: &frame_buffer,
+        line_starts: &line_starts,
+        segment_starts: &segment_starts,
+        dispatches: &dispatches,
+        counters: &counters,
+    };
+    gpu.run(|cmd| pass.record(cmd, &bindings));
+    let mut after = before;
+    let twin = twin::sizes::sizes(frame, expected[0], expected[1], &mut after);
+    same("dispatches", &gpu.read(&dispatches, 3), &twin)?;
+    same("counters", &gpu.read(&counters, 1), &[after])
+}
+
+#[test]
+fn parity() {
+    let gpu = Gpu::new();
+    for case in cases() {
+        let chain = Chain::new(&case);
+        let starts = [chain.line_starts.as_slice(), chain.segment_starts.as_slice()];
+        compare(&gpu, &case.frame, starts, starts).unwrap();
+        let mut many = chain.segment_starts.clone(); // more than one dispatch can hold
+        *many.last_mut().unwrap() = 9_000_000;
+        compare(&gpu, &case.frame, [starts[0], &many], [starts[0], &many]).unwrap();
+    }
+    gpu.finish();
+}
+
+#[test]
+fn a_difference_is_seen() {
+    let gpu = Gpu::new();
+    let case = &cases()[0];
+    let chain = Chain::new(case);
+    let starts = [chain.line_starts.as_slice(), chain.segment_starts.as_slice()];
+    let mut other = chain.segment_starts.clone();
+    *other.last_mut().unwrap() += 1;
+    let mismatch = compare(&gpu, &case.frame, [starts[0], &other], starts).unwrap_err();
+    assert_eq!(mismatch.buffer, "counters");
+    gpu.finish();
+}

@@ -1,0 +1,113 @@
+//! Parity of the pass `sort`: exact, whatever the order in which the rows were filled.
+
+use super::Random;
+use super::chain::Chain;
+use super::harness::{Gpu, Mismatch, same};
+use super::shapes::cases;
+use crate::abi::{Counters, Frame};
+use crate::passes::sort::{Bindings, Sort};
+use crate::twin;
+use crate::twin::cross::ordered_bits;
+
+/// Rows as `cross` leaves them.
+#[derive(Clone)]
+struct Rows {
+    starts: Vec<u32>,
+    total: u32,
+    counters: Counters,
+    intercepts: Vec<u32>,
+}
+
+impl Rows {
+    fn of(chain: &Chain) -> Self {
+        // as before this pass
+        let counters = Counters { intercepts: 0, failed: 0, ..chain.counters };
+        let intercepts = chain.intercepts.clone();
+        Self { starts: chain.row_starts.clone(), total: chain.row_total, counters, intercepts }
+    }
+
+    /// Each row in another order.
+    fn shuffled(mut self, random: &mut Random) -> Self {
+        let room = self.intercepts.len();
+        let ends = self.starts.iter().skip(1).copied().chain([self.total]).map(|end| end as usize);
+        for (start, end) in self.starts.iter().map(|&start| start as usize).zip(ends).filter(|&(_, end)| end <= room) {
+            let row = &mut self.intercepts[start..end];
+            (1..row.len()).for_each(|i| row.swap(i, random.integer(0, i as u32) as usize));
+        }
+        self
+    }
+}
+
+fn compare(gpu: &Gpu, frame: &Frame, given: &Rows, expected: &Rows) -> Result<(), Mismatch> {
+    let frame_buffer = gpu.upload("frame", &[*frame]);
+    let row_starts = gpu.upload("row starts", &given.starts);
+    let row_total = gpu.upload("row total", &[given.total]);
+    let row_counts = gpu.upload("row counts", &vec![0u32; given.starts.len()]);
+    let intercepts = gpu.upload("intercepts", &given.intercepts);
+    let counters = gpu.upload("counters", &[given.counters]);
+    let rows = given.starts.len() as u32;
+    let dispatches = gpu.upload("dispatches", &[0, 0, 0, rows.div_ceil(128), 1, 1]);
+    let bindings = Bindings {
+        frame: &frame_buffer,
+        row_starts: &row_starts,
+        row_total: &row_total,
+        row_counts: &row_counts,
+        intercepts: &intercepts,
+        counters: &counters,
+        dispatches: &dispatches,
+    };
+    let pass = Sort::new(gpu.device()).unwrap();
+    gpu.run(|cmd| pass.record(cmd, &bindings));
+    let (mut flips, mut after) = (expected.intercepts.clone(), expected.counters);
+    let counts = twin::sort::sort(frame, &expected.starts, expected.total, &mut flips, &mut after);
+    same("row counts", &gpu.read(&row_counts, counts.len()), &counts)?;
+    same("flips", &gpu.read(&intercepts, flips.len()), &flips)?;
+    same("counters", &gpu.read(&counters, 1), &[after])
+}
+
+#[test]
+fn parity() {
+    let gpu = Gpu::new();
+    let mut random = Random::new(2);
+    for case in cases() {
+        let rows = Rows::of(&Chain::new(&case));
+        compare(&gpu, &case.frame, &rows.clone().shuffled(&mut random), &rows).unwrap();
+    }
+    gpu.finish();
+}
+
+/// Rows far longer than a drawing has, with equal entries, negative `u` and windings of any sign.
+#[test]
+fn parity_of_long_rows() {
+    let gpu = Gpu::new();
+    let mut random = Random::new(3);
+    let mut rows = Rows { starts: Vec::new(), total: 0, counters: Counters::default(), intercepts: Vec::new() };
+    for length in [0, 1, 2, 3, 7, 64, 0, 1000, 4097] {
+        rows.starts.push(rows.intercepts.len() as u32);
+        rows.intercepts.extend((0..length).map(|_| {
+            let u = (random.range(-0.5, 1.5) * 100.0).round() as f32 / 100.0;
+            ordered_bits(u) & !1 | random.integer(0, 1)
+        }));
+    }
+    rows.total = rows.intercepts.len() as u32;
+    rows.counters.rows = rows.starts.len() as u32;
+    let frame = Frame { intercept_capacity: rows.total, ..Default::default() };
+    compare(&gpu, &frame, &rows, &rows.clone().shuffled(&mut random)).unwrap();
+    let tight = Frame { intercept_capacity: rows.total - 1, ..frame }; // the last row has no room
+    compare(&gpu, &tight, &rows, &rows).unwrap();
+    gpu.finish();
+}
+
+#[test]
+fn a_difference_is_seen() {
+    let gpu = Gpu::new();
+    let case = &cases()[0];
+    let rows = Rows::of(&Chain::new(case));
+    let mut other = rows.clone();
+    other.intercepts[6] ^= 2; // one unit in the last place that is kept of u
+    assert_eq!(compare(&gpu, &case.frame, &other, &rows).unwrap_err().buffer, "flips");
+    let mut other = rows.clone();
+    other.intercepts[6] ^= 1; // the direction
+    assert!(compare(&gpu, &case.frame, &other, &rows).is_err());
+    gpu.finish();
+}

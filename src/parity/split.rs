@@ -1,0 +1,66 @@
+//! Parity of the pass `split`: exact, it is all integers.
+
+use super::chain::{Chain, UNTOUCHED};
+use super::harness::{Gpu, Mismatch, SceneBuffers, same};
+use super::shapes::cases;
+use super::{Case, Random};
+use crate::abi::Factors;
+use crate::passes::split::{Bindings, Split};
+use crate::twin;
+
+fn compare(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<(), Mismatch> {
+    let n = given.len();
+    let s = SceneBuffers::new(gpu, case);
+    let taus = gpu.upload("taus", given);
+    let factors = gpu.upload("factors", &vec![UNTOUCHED; n * size_of::<Factors>() / 4]);
+    let sub_patch_counts = gpu.upload("sub-patch counts", &vec![UNTOUCHED; 2 * n]);
+    let vertex_counts = gpu.upload("vertex counts", &vec![UNTOUCHED; 2 * n]);
+    let pass = Split::new(gpu.device()).unwrap();
+    let bindings = Bindings {
+        frame: &s.frame,
+        face_instances: &s.face_instances,
+        faces: &s.faces,
+        patches: &s.patches,
+        items: &s.items,
+        taus: &taus,
+        factors: &factors,
+        sub_patch_counts: &sub_patch_counts,
+        vertex_counts: &vertex_counts,
+    };
+    gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
+    let twin = twin::split::split(&case.frame, &case.scene(), expected);
+    same("factors", &gpu.read(&factors, n), &twin.factors)?;
+    same("sub-patch counts", &gpu.read(&sub_patch_counts, 2 * n), &twin.sub_patch_counts)?;
+    same("vertex counts", &gpu.read(&vertex_counts, 2 * n), &twin.vertex_counts)
+}
+
+#[test]
+fn parity() {
+    let gpu = Gpu::new();
+    for case in cases() {
+        let taus = Chain::new(&case).taus;
+        compare(&gpu, &case, &taus, &taus).unwrap();
+    }
+    // the same grids with factors of every size, and patches that nobody sees
+    let (case, mut random) = (&cases()[0], Random::new(1));
+    for _ in 0..20 {
+        let mut tau = || (1 << random.integer(0, 12)).max(random.integer(1, 4096)).min(random.integer(1, 4096));
+        let mut taus: Vec<u32> = case.data.items.iter().map(|_| tau() | tau() << 16).collect();
+        taus.iter_mut().step_by(5).for_each(|t| *t = 0);
+        compare(&gpu, case, &taus, &taus).unwrap();
+    }
+    gpu.finish();
+}
+
+#[test]
+fn a_difference_is_seen() {
+    let gpu = Gpu::new();
+    let case = &cases()[0];
+    let taus = Chain::new(case).taus;
+    let mut other = taus.clone();
+    other[5] = other[5] & 0xffff | 60 << 16;
+    let mismatch = compare(&gpu, case, &other, &taus).unwrap_err();
+    // patches 4 and 6 of the ball share the sides u = 0 and u = 1 of patch 5
+    assert_eq!((mismatch.buffer, mismatch.index), ("factors", 4));
+    gpu.finish();
+}

@@ -1,0 +1,134 @@
+//! The table's look-up: its twin against the exact loops, and parity of `table.glsl` with its twin,
+//! exactly.
+
+use super::chain::Chain;
+use super::shapes::{model_and_cameras, sheet_loops};
+use super::{Case, Random};
+use crate::trim::LoopIndex;
+use crate::twin::table::Table;
+use glam::DVec2;
+
+/// The face instance of the sheet and its strips, in the first instance of the model.
+const SHEET: usize = 2;
+
+/// The table that a chain ends with; `flips` are its intercepts after sorting, as floats.
+fn table<'a>(case: &Case, chain: &'a Chain, flips: &'a [f32]) -> Table<'a> {
+    Table {
+        line_starts: &chain.line_starts,
+        row_starts: &chain.row_starts,
+        row_counts: &chain.flip_counts,
+        flips,
+        row_capacity: case.frame.row_capacity,
+    }
+}
+
+/// Points of the normalised domain, some outside, some on its border.
+fn points(count: usize) -> Vec<[f32; 2]> {
+    let mut random = Random::new(4);
+    let border = [[0.0, 0.0], [1.0, 1.0], [0.5, 0.0], [0.5, 1.0], [f32::NAN, 0.5], [0.5, f32::NAN]];
+    let inner = (border.len()..count).map(|_| [random.range(-0.1, 1.1) as f32, random.range(-0.1, 1.1) as f32]);
+    border.into_iter().chain(inner).collect()
+}
+
+/// A point is decided as by the exact loops unless it is nearer to one than half a row and a chord.
+#[test]
+fn the_table_decides_as_the_exact_loops_do() {
+    let (model, cameras) = model_and_cameras();
+    let mut decided = [0, 0];
+    for camera in &cameras {
+        let case = Case::new(&model, camera, 0.5);
+        let chain = Chain::new(&case);
+        let flips: Vec<f32> = chain.flips.iter().map(|&bits| f32::from_bits(bits)).collect();
+        let table = table(&case, &chain, &flips);
+        let placed = case.data.face_instances[SHEET];
+        let (exact, domain) = (LoopIndex::new(&sheet_loops()), DVec2::new(3.0, 2.0));
+        let strips = case.data.faces[SHEET].strip_count;
+        let speed = chain.density.face_speeds[SHEET].map(f64::from);
+        for [u, v] in points(20_000).into_iter().filter(|p| p[1] > 0.0 && p[1] < 1.0) {
+            let strip = (placed.first_strip + (v * strips as f32) as u32) as usize;
+            if chain.line_counts[strip] == 0 {
+                continue; // nobody sees it
+            }
+            // the nearest row, and a chord that is off by chord_px where a unit covers the most pixels
+            let row = 0.5 / f64::from(strips * chain.line_counts[strip]);
+            let chord = f64::from(case.frame.chord_px) / speed[0].min(speed[1]);
+            let uv = DVec2::new(u.into(), v.into());
+            let off = exact.distance_scaled(uv * domain, 1.0 / domain, 1.0);
+            const ROUNDING: f64 = 1e-6; // of single precision, and the direction in the last bit of u
+            if off > row + chord + ROUNDING {
+                let inside = table.inside(placed.first_strip, strips as f32, [u, v]);
+                assert_eq!(inside, exact.contains(uv * domain), "{uv}, {off:e} from the nearest loop");
+                decided[usize::from(inside)] += 1;
+            }
+        }
+    }
+    assert!(decided.iter().all(|&n| n > 3000), "outside, inside: {decided:?}");
+}
+
+/// Of `tests/gpu/glsl/table.comp`, which wraps the include.
+#[cfg(feature = "headless")]
+mod parity {
+    use super::super::harness::{Gpu, Mismatch, same};
+    use super::super::shapes::cases;
+    use super::*;
+    use crate::gpu::{Binding, ComputeInfo, Pipeline};
+
+    /// Words of the module; `include_bytes` aligns to bytes only.
+    fn spirv() -> Vec<u32> {
+        let bytes = include_bytes!("../../tests/gpu/spirv/table.comp.spv");
+        bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
+    }
+
+    fn compare(gpu: &Gpu, case: &Case, given: &Chain, expected: &Chain) -> Result<(), Mismatch> {
+        let placed = case.data.face_instances[SHEET];
+        let (strips, points) = (case.data.faces[SHEET].strip_count as f32, points(4096));
+        let frame = gpu.upload("frame", &[case.frame]);
+        let line_starts = gpu.upload("line starts", &given.line_starts);
+        let row_starts = gpu.upload("row starts", &given.row_starts);
+        let row_counts = gpu.upload("row counts", &given.flip_counts);
+        let flips = gpu.upload("flips", &given.flips);
+        let uvs = gpu.upload("points", &points);
+        let inside = gpu.upload("inside", &vec![7u32; points.len()]);
+        let info = ComputeInfo {
+            name: "table",
+            spirv: &spirv(),
+            bindings: &[Binding::Storage; 7],
+            push_bytes: 8,
+            constants: &[],
+        };
+        let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
+        let push = [placed.first_strip, strips.to_bits()];
+        gpu.run(|cmd| {
+            let resources = [&frame, &line_starts, &row_starts, &row_counts, &flips, &uvs, &inside].map(Into::into);
+            cmd.bind(&pipeline, &resources, bytemuck::bytes_of(&push));
+            cmd.dispatch(points.len() as u32 / 64);
+        });
+        let flips: Vec<f32> = expected.flips.iter().map(|&bits| f32::from_bits(bits)).collect();
+        let table = table(case, expected, &flips);
+        let twin: Vec<u32> = points.iter().map(|&uv| u32::from(table.inside(placed.first_strip, strips, uv))).collect();
+        same("inside", &gpu.read(&inside, points.len()), &twin)
+    }
+
+    #[test]
+    fn parity() {
+        let gpu = Gpu::new();
+        for case in cases() {
+            let chain = Chain::new(&case);
+            compare(&gpu, &case, &chain, &chain).unwrap();
+        }
+        gpu.finish();
+    }
+
+    #[test]
+    fn a_difference_is_seen() {
+        let gpu = Gpu::new();
+        let case = &cases()[0];
+        let chain = Chain::new(case);
+        let mut other = chain.clone();
+        let strip = case.data.face_instances[SHEET].first_strip as usize + 2;
+        let row = chain.line_starts[strip] as usize;
+        other.flip_counts[row..].fill(0);
+        assert!(compare(&gpu, case, &other, &chain).is_err());
+        gpu.finish();
+    }
+}

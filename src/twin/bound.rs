@@ -1,0 +1,27 @@
+//! Twin of the pass [`bound`](crate::passes): which patches can be seen, and how finely each must be
+//! divided.
+
+use super::factor::factors;
+use super::view::{pixels_per_unit, visible_w};
+use super::{MOST_SEGMENTS, Scene};
+use crate::abi::{Counters, Frame, Side};
+
+/// `tau_u | tau_v << 16` of each item; 0 for one that cannot be seen. Counts factors above
+/// [`MOST_SEGMENTS`] in `counters.clamps`.
+pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u32> {
+    (0..frame.item_count as usize)
+        .map(|item| {
+            let (placed, _, patch) = scene.item(item);
+            let view = &scene.views[placed.instance as usize];
+            if patch.side() == Side::Outside {
+                return 0;
+            }
+            let Some(w) = visible_w(view, frame, patch.box_min, patch.box_max, frame.ring_px + 1.0) else { return 0 };
+            let pixels = pixels_per_unit(frame, &scene.instances[placed.instance as usize], w);
+            let tau = factors(patch.bend, 8.0 * frame.deviation_px / pixels);
+            let most = MOST_SEGMENTS as f32;
+            counters.clamps += u32::from(tau[0].max(tau[1]) > most);
+            tau[0].min(most) as u32 | (tau[1].min(most) as u32) << 16
+        })
+        .collect()
+}

@@ -1,0 +1,93 @@
+//! Twin of the pass [`sort`](crate::passes): each row in order of `u`, reduced to the places where
+//! inside and outside change.
+//!
+//! ```text
+//!   intercepts   ↑  ↑  ↓  ↑  ↓  ↓        winding   0 1 2 1 2 1 0
+//!   flips        |              |        inside    0 1 1 1 1 1 0
+//! ```
+//!
+//! The shader sorts by heap, in place; a sorted list of integers is the same by whatever method. At
+//! equal `u`, where loops touch or coincide, several flips may stand side by side; a look-up passes
+//! all of them or none.
+
+use super::FAILED_INTERCEPTS;
+use crate::abi::{Counters, Frame};
+
+/// Sorts the intercepts of each row, overwrites the first ones with the flips' `u` (float bits), and
+/// returns how many flips each row has.
+///
+/// `row_total` is the number of intercepts of all rows. A row that does not fit `intercept_capacity`
+/// has no flip: the host grows the table and records again.
+pub fn sort(
+    frame: &Frame,
+    row_starts: &[u32],
+    row_total: u32,
+    intercepts: &mut [u32],
+    counters: &mut Counters,
+) -> Vec<u32> {
+    let rows = counters.rows as usize;
+    if rows > 0 {
+        counters.intercepts = row_total;
+        if row_total > frame.intercept_capacity {
+            counters.failed |= FAILED_INTERCEPTS;
+        }
+    }
+    (0..rows)
+        .map(|row| {
+            let end = if row + 1 < rows { row_starts[row + 1] } else { row_total };
+            if end > frame.intercept_capacity {
+                return 0;
+            }
+            let row = &mut intercepts[row_starts[row] as usize..end as usize];
+            row.sort_unstable();
+            let (mut flips, mut winding) = (0, 0);
+            for i in 0..row.len() {
+                let bits = row[i];
+                let next = winding + if bits & 1 != 0 { 1 } else { -1 };
+                if (winding == 0) != (next == 0) {
+                    row[flips] = from_ordered(bits & !1).to_bits();
+                    flips += 1;
+                }
+                winding = next;
+            }
+            flips as u32
+        })
+        .collect()
+}
+
+/// The number of [`ordered_bits`](super::cross::ordered_bits).
+pub fn from_ordered(bits: u32) -> f32 {
+    f32::from_bits(if bits & 0x8000_0000 != 0 { bits & 0x7fff_ffff } else { !bits })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::super::cross::ordered_bits;
+    use super::*;
+
+    #[test]
+    fn bits_order_as_numbers_do_and_come_back() {
+        let ascending = [f32::NEG_INFINITY, -3.5, -1e-30, -0.0, 0.0, 1e-30, 0.3, 1.0, f32::INFINITY];
+        for pair in ascending.windows(2) {
+            assert!(ordered_bits(pair[0]) < ordered_bits(pair[1]), "{pair:?}");
+        }
+        ascending.iter().for_each(|&u| assert_eq!(from_ordered(ordered_bits(u)).to_bits(), u.to_bits()));
+    }
+
+    /// The row of the figure: nested and overlapping loops flip where the winding number leaves and
+    /// reaches zero, and nowhere else.
+    #[test]
+    fn only_zero_windings_flip() {
+        let row: Vec<u32> = [(0.1, 1), (0.2, 1), (0.3, 0), (0.4, 1), (0.5, 0), (0.6, 0)]
+            .map(|(u, up)| ordered_bits(u) & !1 | up)
+            .to_vec();
+        let mut shuffled = [row[3], row[5], row[0], row[4], row[2], row[1]];
+        let frame = Frame { intercept_capacity: 6, ..Default::default() };
+        let mut counters = Counters { rows: 1, ..Default::default() };
+        assert_eq!(sort(&frame, &[0], 6, &mut shuffled, &mut counters), [2]);
+        let flips = [shuffled[0], shuffled[1]].map(f32::from_bits);
+        // the direction's bit costs the last bit of u
+        assert!((flips[0] - 0.1).abs() < 1e-7 && (flips[1] - 0.6).abs() < 2e-7, "{flips:?}");
+        assert_eq!(counters.intercepts, 6);
+    }
+}

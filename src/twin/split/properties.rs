@@ -1,0 +1,121 @@
+//! What [`split`](super) promises, over random faces.
+
+use super::*;
+use crate::abi::{FaceInstance, Patch};
+use crate::parity::Random;
+
+/// A face of random factors, some patches unseen, and what `split` makes of it.
+struct Grid {
+    face: Face,
+    taus: Vec<u32>,
+    out: Split,
+}
+
+impl Grid {
+    fn new(random: &mut Random) -> Self {
+        let closed = random.integer(0, 3);
+        let face = Face {
+            count_u: random.integer(1, 7),
+            count_v: random.integer(1, 7),
+            flags: closed, // the bits of FACE_CLOSED_U and FACE_CLOSED_V
+            ..Default::default()
+        };
+        let patches = (face.count_u * face.count_v) as usize;
+        let largest = random.pick(&[1, 3, 64, 65, 300, 4096]);
+        let unseen = random.pick(&[0, 3, 9]);
+        let taus: Vec<u32> = (0..patches)
+            .map(|_| {
+                let tau = [random.integer(1, largest), random.integer(1, largest)];
+                if random.integer(0, 9) < unseen { 0 } else { tau[0] | tau[1] << 16 }
+            })
+            .collect();
+        let sides = [Side::Outside, Side::Inside, Side::Boundary];
+        let shapes: Vec<Patch> = (0..patches)
+            .map(|_| Patch { shape: Patch::pack_shape((1, 1), false, random.pick(&sides), 0), ..Default::default() })
+            .collect();
+        let frame = Frame { item_count: patches as u32, ..Default::default() };
+        let scene = Scene {
+            face_instances: &[FaceInstance::default()],
+            faces: &[face],
+            patches: &shapes,
+            items: &vec![0; patches],
+            ..Default::default()
+        };
+        let out = split(&frame, &scene, &taus);
+        Self { face, taus, out }
+    }
+
+    /// Index of the patch one step along `axis`, around a closed face; `None` at a border.
+    fn next(&self, n: usize, axis: usize) -> Option<usize> {
+        let (count, stride) = ([self.face.count_u, self.face.count_v], [1, self.face.count_u as usize]);
+        let (count, stride) = (count[axis] as usize, stride[axis]);
+        let at = n / stride % count;
+        let closed = self.face.flags >> axis & 1 != 0;
+        (at + 1 < count || closed).then(|| n - at * stride + (at + 1) % count * stride)
+    }
+
+    fn tau(&self, n: usize, axis: usize) -> u32 {
+        self.taus[n] >> (16 * axis) & 0xffff
+    }
+}
+
+fn unpack(packed: u32) -> [u32; 2] {
+    [packed & 0xffff, packed >> 16]
+}
+
+/// Both patches at a side give it the same number of segments, at least as many as either asks for; a
+/// side with an unseen patch is the drawn one's own.
+#[test]
+fn shared_sides_agree() {
+    let mut random = Random::new(5);
+    let mut shared = 0;
+    for _ in 0..3000 {
+        let g = Grid::new(&mut random);
+        for n in 0..g.taus.len() {
+            // the side v = 1 of one patch is the side v = 0 of the next along v: segments along u
+            for (axis, edges) in [|f: &Factors| f.edge_u, |f: &Factors| f.edge_v].into_iter().enumerate() {
+                let Some(next) = g.next(n, 1 - axis) else { continue };
+                let (high, low) = (unpack(edges(&g.out.factors[n]))[1], unpack(edges(&g.out.factors[next]))[0]);
+                if g.taus[n] == 0 || g.taus[next] == 0 {
+                    continue;
+                }
+                assert_eq!(high, low, "patches {n}, {next} of {:?}: {:x?}", g.face, g.taus);
+                assert!(high >= g.tau(n, axis).max(g.tau(next, axis)));
+                shared += 1;
+            }
+        }
+    }
+    assert!(shared > 20_000, "{shared} sides");
+}
+
+/// Splits are powers of two, and so are factors that differ; every side and the interior divide into
+/// the splits, within the hardware's factor; as many segments as the patch asks for everywhere; counts
+/// that tell what will be drawn.
+#[test]
+fn sub_patches_are_within_the_hardware_s_factor() {
+    let mut random = Random::new(6);
+    for _ in 0..3000 {
+        let g = Grid::new(&mut random);
+        for (n, f) in g.out.factors.iter().enumerate() {
+            let (splits, inner) = (unpack(f.splits), unpack(f.inner));
+            let mut most = [0; 2];
+            for (axis, edges) in [f.edge_u, f.edge_v].map(unpack).into_iter().enumerate() {
+                let splits = splits[axis];
+                assert!(splits.is_power_of_two() && splits <= MAX_SPLIT);
+                for segments in [edges[0], edges[1], inner[axis]] {
+                    assert!(segments % splits == 0 && segments / splits <= MAX_FACTOR, "{f:x?} of {:x?}", g.taus);
+                    most[axis] = most[axis].max(segments / splits);
+                    assert!(segments >= g.tau(n, axis));
+                }
+                assert!(inner[axis] >= 1 && inner[axis] < 2 * g.tau(n, axis).max(splits), "no finer than asked");
+                let even = [edges[0], edges[1]] == [inner[axis]; 2];
+                let powers = [edges[0], edges[1], inner[axis]].iter().all(|x| x.is_power_of_two());
+                assert!(even || powers, "a side of another factor is joined by powers of two");
+            }
+            let total = |counts: &[u32]| counts[n] + counts[g.taus.len() + n];
+            let drawn = if g.taus[n] == 0 { 0 } else { splits[0] * splits[1] };
+            assert_eq!(total(&g.out.sub_patch_counts), drawn);
+            assert_eq!(total(&g.out.vertex_counts), drawn * (most[0] + 1) * (most[1] + 1));
+        }
+    }
+}
