@@ -75,7 +75,7 @@ impl Source {
     fn new(path: String, text: &str) -> Self {
         let module = path.trim_start_matches("src/").split(['/', '.']).next().unwrap().to_owned();
         // unit tests may use anything, and stand last
-        let code = text.split("#[cfg(test)]").next().unwrap();
+        let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
         let code = code.lines().map(|line| line.split("//").next().unwrap()).collect::<Vec<_>>().join("\n");
         Self { path, module, code }
     }
@@ -123,15 +123,21 @@ impl Source {
     }
 }
 
+/// Files and folders of the modules that a file declares for tests only.
+fn for_tests(path: &str, text: &str) -> Vec<String> {
+    let folder = path.trim_end_matches(".rs").trim_end_matches("mod").trim_end_matches("lib").trim_end_matches('/');
+    let declared = text.split("#[cfg(test)]").skip(1).filter_map(|rest| rest.trim_start().strip_prefix("mod "));
+    let names =
+        declared.filter_map(|rest| rest.split_once(';')).map(|(name, _)| name).filter(|name| !name.contains(' '));
+    names.flat_map(|name| [format!("{folder}/{name}.rs"), format!("{folder}/{name}/")]).collect()
+}
+
 fn library() -> Vec<Source> {
-    let paths = files("src").into_iter().map(|path| (relative(&path), path));
-    let ours = paths.filter(|(name, _)| {
-        !name.starts_with("src/bin/")
-            && name != "src/lib.rs"
-            && !name.contains("/tests/")
-            && !name.ends_with("/tests.rs")
-    });
-    ours.map(|(name, path)| Source::new(name, &fs::read_to_string(path).unwrap())).collect()
+    let texts = files("src").into_iter().map(|path| (relative(&path), fs::read_to_string(path).unwrap()));
+    let texts: Vec<_> = texts.filter(|(path, _)| !path.starts_with("src/bin/")).collect();
+    let tests: Vec<_> = texts.iter().flat_map(|(path, text)| for_tests(path, text)).collect();
+    let shipped = texts.iter().filter(|(path, _)| !tests.iter().any(|test| path.starts_with(test)));
+    shipped.filter(|(path, _)| path != "src/lib.rs").map(|(path, text)| Source::new(path.clone(), text)).collect()
 }
 
 #[test]
@@ -155,6 +161,10 @@ fn a_forbidden_use_is_seen() {
     assert_eq!(complaints("src/spline/new.rs", "use ash::vk;\n"), 1);
     assert_eq!(complaints("src/import/new.rs", "println!(\"read\");\n#[cfg(test)]\nmod tests { println!() }\n"), 1);
     assert_eq!(complaints("src/novel.rs", ""), 1);
+    let declares = "#[cfg(test)]\nmod parity;\nmod trim;\n#[cfg(test)]\nmod tests {}";
+    assert_eq!(for_tests("src/lib.rs", declares), ["src/parity.rs", "src/parity/"]);
+    assert_eq!(for_tests("src/twin/mod.rs", declares), ["src/twin/parity.rs", "src/twin/parity/"]);
+    assert_eq!(for_tests("src/twin/factor.rs", declares)[0], "src/twin/factor/parity.rs");
 }
 
 /// Every module, every entry point of `glsl/` and every timed scope has its place in the document.
