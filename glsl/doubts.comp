@@ -15,10 +15,8 @@ layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
 const uint GROUP = 64u; // threads of a workgroup of the second step
 
 void main() {
-    uint n = gl_GlobalInvocationID.x;
-    uint width = uint(frame.size.x);
-    if (n >= width * uint(frame.size.y)) return;
-    uvec2 pixel = uvec2(n % width, n / width);
+    uvec2 pixel = gl_GlobalInvocationID.xy;
+    if (pixel.x >= uint(frame.size.x)) return;
     if ((imageLoad(visibility, ivec2(pixel)).x & DOUBTFUL) == 0u) return;
     uint at = atomicAdd(counters.doubts, 1u);
     if (at >= frame.doubt_capacity) {

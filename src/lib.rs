@@ -3,6 +3,9 @@
 //! Start at [`model`] for what is drawn and `ARCHITECTURE.md` for how.
 #![warn(missing_docs)]
 
+/// Vulkan's bindings and the allocator, in the versions that [`gpu::HostDevice`] takes.
+pub use {ash, gpu_allocator};
+
 pub mod abi;
 pub mod brep;
 mod budget;

@@ -74,12 +74,13 @@ impl Heal {
         })
     }
 
-    /// Lists the doubtful pixels: one thread a pixel.
+    /// Lists the doubtful pixels: one thread a pixel, whole workgroups for each row of the picture, so
+    /// that no picture needs more of them than every device has.
     pub(crate) fn find(&self, cmd: &Commands<'_>, b: &DoubtBindings<'_>) {
         let (width, height) = b.visibility.size();
         let resources = [b.frame.into(), b.visibility.into(), b.doubts.into(), b.dispatches.into(), b.counters.into()];
         cmd.bind(&self.find, &resources, &[]);
-        cmd.dispatch((width * height).div_ceil(GROUP));
+        cmd.dispatch_grid([width.div_ceil(GROUP), height, 1]);
     }
 
     /// One thread a doubtful pixel.

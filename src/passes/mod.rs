@@ -1,6 +1,6 @@
 //! The passes, one file each: a figure, the bindings in order, what is read and written, `new` and
 //! `record`. A pass never allocates, submits or waits while recording, and never knows another pass;
-//! the barriers between passes stand in [`frame`](crate::frame).
+//! the barriers between passes stand in `frame.rs`.
 
 pub(crate) mod bound;
 pub(crate) mod cross;

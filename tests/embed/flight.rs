@@ -88,9 +88,9 @@ fn sizes_and_models_change_in_flight() {
     }
     // a model that no frame will draw
     renderer.upload(&models[0]).unwrap();
-    for slot in 0..SLOTS {
+    for (slot, last) in slots.iter().enumerate() {
         host.wait(slot);
-        seen(&slots[slot]);
+        seen(last);
     }
     drop(renderer);
     slots.into_iter().flatten().for_each(|(_, targets)| targets.destroy(&host));

@@ -3,6 +3,7 @@
 
 use crate::shapes;
 use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched};
+use selvedge::picture::{FrameSettings, Outputs};
 
 fn check(name: &str) {
     let shape = shapes::all().into_iter().find(|s| s.name == name).expect("a shape of that name");
@@ -52,6 +53,16 @@ fn a_full_picture_is_silent() {
     let mut renderer = watched(&model);
     let picture = render(&mut renderer, &perspective(&model, (1920, 1080)));
     assert_eq!(picture.stats.clamps, 0);
+    assert_silent(renderer);
+}
+
+/// More pixels than one dimension of a dispatch covers on every device: 65,535 workgroups of 64.
+#[test]
+fn a_larger_picture_than_one_row_of_workgroups_is_silent() {
+    let model = shapes::plate();
+    let mut renderer = watched(&model);
+    let camera = perspective(&model, (2600, 1700));
+    renderer.render(&camera, &FrameSettings::default(), Outputs::default()).unwrap();
     assert_silent(renderer);
 }
 

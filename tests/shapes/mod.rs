@@ -120,7 +120,7 @@ pub fn wave_height(i: usize, j: usize) -> f64 {
 
 /// Height of control point (i, j) of [`ripple`].
 pub fn ripple_height(i: usize, j: usize) -> f64 {
-    let checker = if (i / 2 + j / 2) % 2 == 0 { 1.5 } else { -1.5 };
+    let checker = if (i / 2 + j / 2).is_multiple_of(2) { 1.5 } else { -1.5 };
     checker + 0.25 * (i as f64 - j as f64)
 }
 

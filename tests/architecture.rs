@@ -1,0 +1,195 @@
+//! The lines of `ARCHITECTURE.md` that the compiler does not hold: who may use whom.
+
+use std::fs;
+use std::path::{Path, PathBuf};
+
+/// What each module of the library may use beside itself. A new module needs a line here and in
+/// `ARCHITECTURE.md`.
+const MAY_USE: &[(&str, &[&str])] = &[
+    // pure: numbers and geometry, no GPU
+    ("math", &[]),
+    ("spline", &["math"]),
+    ("model", &["spline"]),
+    ("trim", &["math", "spline", "model"]),
+    ("brep", &["math", "spline", "trim", "model"]),
+    ("import", &["brep", "spline", "model"]),
+    ("picture", &["model"]),
+    ("reference", &["math", "spline", "trim", "model", "picture"]),
+    ("budget", &[]),
+    ("abi", &[]),
+    ("twin", &["abi", "math", "spline", "trim", "model"]),
+    // GPU: no geometry
+    ("gpu", &[]),
+    ("shaders", &[]),
+    ("passes", &["abi", "gpu", "shaders"]),
+    // where both meet
+    ("scene", &["abi", "gpu", "math", "spline", "trim", "model"]),
+    ("buffers", &["abi", "gpu", "passes", "scene"]),
+    ("frame", &["abi", "buffers", "gpu", "passes", "scene"]),
+    ("renderer", &["abi", "budget", "buffers", "frame", "gpu", "model", "passes", "picture", "scene"]),
+    ("headless", &["gpu", "model", "picture", "renderer"]),
+];
+
+/// Modules that may name Vulkan's types.
+const VULKAN: &[&str] = &["gpu", "scene", "passes", "buffers", "renderer", "headless"];
+/// Modules that may hold `unsafe`: the layer itself, and those that speak for a host or to one.
+const UNSAFE: &[&str] = &["gpu", "renderer", "headless"];
+/// Files beside `gpu` and `headless` that may record barriers: the frame, and the one pass that has steps
+/// of its own.
+const BARRIERS: &[&str] = &["src/frame.rs", "src/passes/scan.rs"];
+/// What a library leaves to its host.
+const HOSTS: &[&str] =
+    &["println!", "print!(", "eprintln!", "eprint!(", "dbg!(", "std::env::", "process::exit", "process::abort"];
+/// Longest source file.
+const MOST_LINES: usize = 500;
+
+/// One source file of the library, without comments and tests.
+struct Source {
+    path: String,
+    module: String,
+    code: String,
+}
+
+fn root() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn files(folder: &str) -> Vec<PathBuf> {
+    let mut all = Vec::new();
+    let mut folders = vec![root().join(folder)];
+    while let Some(folder) = folders.pop() {
+        for entry in fs::read_dir(folder).unwrap() {
+            let path = entry.unwrap().path();
+            if path.is_dir() { folders.push(path) } else { all.push(path) }
+        }
+    }
+    all.sort();
+    all
+}
+
+fn relative(path: &Path) -> String {
+    path.strip_prefix(root()).unwrap().to_string_lossy().replace('\\', "/")
+}
+
+impl Source {
+    fn new(path: String, text: &str) -> Self {
+        let module = path.trim_start_matches("src/").split(['/', '.']).next().unwrap().to_owned();
+        // unit tests may use anything, and stand last
+        let code = text.split("#[cfg(test)]\nmod tests {").next().unwrap();
+        let code = code.lines().map(|line| line.split("//").next().unwrap()).collect::<Vec<_>>().join("\n");
+        Self { path, module, code }
+    }
+
+    /// Modules named after `crate::`.
+    fn uses(&self) -> Vec<&str> {
+        let name = |rest: &'_ str| rest.split(|c: char| !c.is_ascii_alphanumeric() && c != '_').next().unwrap().len();
+        self.code.split("crate::").skip(1).map(|rest| &rest[..name(rest)]).collect()
+    }
+
+    /// Everything that is wrong with it.
+    fn complaints(&self) -> Vec<String> {
+        let mut all = Vec::new();
+        let mut complain = |what: String| all.push(format!("{}: {what}", self.path));
+        let module = self.module.as_str();
+        match MAY_USE.iter().find(|(name, _)| *name == module) {
+            None => complain(format!("tests/architecture.rs does not say what `{module}` may use")),
+            Some((_, may)) => {
+                for used in self.uses().into_iter().filter(|used| *used != module && !may.contains(used)) {
+                    complain(format!("`{module}` may not use `{used}`"));
+                }
+            }
+        }
+        if module == "passes" && !self.path.ends_with("mod.rs") {
+            for beside in ["crate::passes", "super::"] {
+                if self.code.contains(beside) {
+                    complain("a pass may not use another".to_owned());
+                }
+            }
+        }
+        if !VULKAN.contains(&module) && ["ash::", "vk::"].iter().any(|name| self.code.contains(name)) {
+            complain("Vulkan's types".to_owned());
+        }
+        if !UNSAFE.contains(&module) && self.code.contains("unsafe ") {
+            complain("`unsafe`".to_owned());
+        }
+        let barriers = ["gpu", "headless"].contains(&module) || BARRIERS.contains(&self.path.as_str());
+        if !barriers && self.code.contains("barrier::") {
+            complain("barriers between passes stand in src/frame.rs".to_owned());
+        }
+        for forbidden in HOSTS.iter().filter(|f| self.code.contains(**f)) {
+            complain(format!("`{forbidden}` is the host's"));
+        }
+        all
+    }
+}
+
+/// Files and folders of the modules that a file declares for tests only.
+fn for_tests(path: &str, text: &str) -> Vec<String> {
+    let folder = path.trim_end_matches(".rs").trim_end_matches("mod").trim_end_matches("lib").trim_end_matches('/');
+    let declared = text.split("#[cfg(test)]").skip(1).filter_map(|rest| rest.trim_start().strip_prefix("mod "));
+    let names =
+        declared.filter_map(|rest| rest.split_once(';')).map(|(name, _)| name).filter(|name| !name.contains(' '));
+    names.flat_map(|name| [format!("{folder}/{name}.rs"), format!("{folder}/{name}/")]).collect()
+}
+
+fn library() -> Vec<Source> {
+    let texts = files("src").into_iter().map(|path| (relative(&path), fs::read_to_string(path).unwrap()));
+    let texts: Vec<_> = texts.filter(|(path, _)| !path.starts_with("src/bin/")).collect();
+    let tests: Vec<_> = texts.iter().flat_map(|(path, text)| for_tests(path, text)).collect();
+    let shipped = texts.iter().filter(|(path, _)| !tests.iter().any(|test| path.starts_with(test)));
+    shipped.filter(|(path, _)| path != "src/lib.rs").map(|(path, text)| Source::new(path.clone(), text)).collect()
+}
+
+#[test]
+fn nobody_uses_what_it_may_not() {
+    let library = library();
+    assert!(library.len() > 80, "only {} files were found", library.len());
+    let complaints: Vec<_> = library.iter().flat_map(Source::complaints).collect();
+    assert!(complaints.is_empty(), "{}", complaints.join("\n"));
+}
+
+/// The check above would see it.
+#[test]
+fn a_forbidden_use_is_seen() {
+    let complaints = |path: &str, text: &str| Source::new(path.to_owned(), text).complaints().len();
+    assert_eq!(complaints("src/trim/new.rs", "use crate::spline::Bezier;\n// crate::gpu in words\n"), 0);
+    assert_eq!(complaints("src/trim/new.rs", "use crate::gpu::Buffer;\n"), 1);
+    assert_eq!(complaints("src/gpu/new.rs", "fn f(m: &crate::model::Model) {}\n"), 1);
+    assert_eq!(complaints("src/passes/new.rs", "use super::scan;\n"), 1);
+    assert_eq!(complaints("src/passes/new.rs", "fn f() { barrier::memory(cmd, a, b) }\n"), 1);
+    assert_eq!(complaints("src/passes/new.rs", "fn f() { unsafe { g() } }\n"), 1);
+    assert_eq!(complaints("src/spline/new.rs", "use ash::vk;\n"), 1);
+    assert_eq!(complaints("src/import/new.rs", "println!(\"read\");\n#[cfg(test)]\nmod tests { println!() }\n"), 1);
+    assert_eq!(complaints("src/novel.rs", ""), 1);
+    let declares = "#[cfg(test)]\nmod parity;\nmod trim;\n#[cfg(test)]\nmod tests {}";
+    assert_eq!(for_tests("src/lib.rs", declares), ["src/parity.rs", "src/parity/"]);
+    assert_eq!(for_tests("src/twin/mod.rs", declares), ["src/twin/parity.rs", "src/twin/parity/"]);
+    assert_eq!(for_tests("src/twin/factor.rs", declares)[0], "src/twin/factor/parity.rs");
+}
+
+/// Every module, every entry point of `glsl/` and every timed scope has its place in the document.
+#[test]
+fn the_document_names_everything() {
+    let document = fs::read_to_string(root().join("ARCHITECTURE.md")).unwrap();
+    let mut names: Vec<String> =
+        fs::read_dir(root().join("src")).unwrap().map(|e| relative(&e.unwrap().path())).collect();
+    names.extend(files("glsl").iter().map(|p| relative(p)).filter(|name| name.matches('/').count() == 1));
+    let frame = fs::read_to_string(root().join("src/frame.rs")).unwrap();
+    let scopes =
+        ["times.scope(cmd, \"", "times.drawing(cmd, \""].into_iter().flat_map(|call| frame.split(call).skip(1));
+    names.extend(scopes.map(|rest| rest.split('"').next().unwrap().to_owned()));
+    assert!(names.len() > 40, "only {names:?}");
+    let base = |name: &str| name.trim_start_matches("src/").trim_start_matches("glsl/").to_owned();
+    let missing: Vec<_> = names.iter().filter(|name| !document.contains(&base(name))).collect();
+    assert!(missing.is_empty(), "ARCHITECTURE.md does not mention {missing:?}");
+}
+
+#[test]
+fn no_file_is_too_long_to_read() {
+    let sources = ["src", "glsl", "tests", "build"].into_iter().flat_map(files);
+    let text =
+        sources.filter(|p| !p.to_string_lossy().ends_with(".spv")).map(|p| (relative(&p), fs::read_to_string(p)));
+    let long: Vec<_> = text.filter(|(_, text)| text.as_ref().unwrap().lines().count() > MOST_LINES).collect();
+    let names: Vec<_> = long.iter().map(|(name, _)| name).collect();
+    assert!(names.is_empty(), "longer than {MOST_LINES} lines: {names:?}");
+}
