@@ -207,8 +207,8 @@ mod tests {
         let b = quarter_cylinder(3.0, 100.0).derivative_bound();
         assert!(b.uv < 1e-11 * 100.0, "S_uv is 0 on every cylinder, the bound says {}", b.uv);
         assert!(b.vv < 1e-11 * 100.0);
-        // the hull divides by the smallest squared weight of each piece: at most (1 / 0.93)^2 too large
-        assert!(b.v >= 100.0 && b.v < 120.0, "height per unit v: {}", b.v);
+        // the hull divides by the smallest squared weight of each piece: at most (1 / 0.89)^2 too large
+        assert!(b.v >= 100.0 && b.v < 130.0, "height per unit v: {}", b.v);
     }
 
     #[test]
