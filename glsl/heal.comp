@@ -12,7 +12,7 @@
 //        └───┴───┴───┘     and the whole ring too: farther from its border than any error.
 //
 //   real (a gap looks into the solid):   the nearest witness or helper before it, else whichever
-//                                        neighbour's surface comes closest to the pixel's centre
+//                                        neighbour's surface passes beside the pixel's centre
 //   not real (its ring reaches out):
 //     helpers of two faces before every witness    the nearest: an edge runs here
 //     a witness                                    the nearest: behind a silhouette
@@ -150,7 +150,7 @@ void main() {
     if (real) {
         if (has_witness && !(has_helper && helper.depth < witness.depth)) healed = witness.word;
         else if (has_helper) healed = helper.word;
-        else if (closest.word.x != 0u) healed = closest.word;
+        else if (closest.miss <= RING_SLACK * frame.ring_px) healed = closest.word;
     } else if (edge) {
         healed = helper.word;
     } else if (has_witness) {

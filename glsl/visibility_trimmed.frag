@@ -37,6 +37,8 @@ layout(location = 1) flat in uint item;
 layout(location = 0) out uvec2 visible;
 layout(depth_less) out float gl_FragDepth;
 
+// The faces of a solid that look at the viewer grow by this share of the ring: most gaps close at once.
+const float GROWTH = 0.25;
 // Where two solids touch, the back of one must win over the front of the other. Each is drawn up to
 // deviation_px off, so the front stands back by twice that in space, and at least by the rounding of
 // interpolated depth.
@@ -55,10 +57,10 @@ void main() {
     bool solid = (face.flags & FACE_SOLID) != 0u;
     bool doubtful = solid && away;
     bool inside = table_inside(fi.first_strip, strips, at);
-    if (solid && !away && !inside) discard;
+    float reach = solid && !away ? GROWTH * frame.ring_px : frame.ring_px;
     float border_depth = -1.0; // nearest to the viewer among the ring's points inside the face
     for (uint k = 0u; !inside && k < RING_POINTS; ++k) {
-        vec2 step_ = frame.ring_px * RING[k];
+        vec2 step_ = reach * RING[k];
         if (table_inside(fi.first_strip, strips, at + step_.x * dx + step_.y * dy)) {
             border_depth = max(border_depth, gl_FragCoord.z + dot(step_, slope));
         }
@@ -73,7 +75,7 @@ void main() {
         float unit = frame.perspective != 0u ? frame.near * frame.far * gl_FragCoord.w / range : 1.0 / range;
         stand_back = px * (abs(slope.x) + abs(slope.y) + unit / frame.focal) + STAND_BACK * z;
     }
-    doubtful = doubtful || !inside;
+    doubtful = doubtful || (!inside && !solid);
     visible = uvec2(item + 1u | (doubtful ? DOUBTFUL : 0u), pack_uv(uv));
     gl_FragDepth = (inside || solid ? z : min(z, border_depth)) - stand_back;
 }

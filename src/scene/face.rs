@@ -1,5 +1,6 @@
 //! One face: patches, cells and trim curves, with indices relative to the face.
 
+use super::flatten::flattened;
 use crate::abi;
 use crate::abi::Side;
 use crate::model::{Face, TrimLoop};
@@ -38,7 +39,7 @@ impl Domain {
 
 impl FaceData {
     pub(super) fn new(face: &Face, origin: DVec3, solid: bool) -> Self {
-        let grid = face.surface.patches();
+        let grid = flattened(face.surface.patches());
         let ((u0, u1), (v0, v1)) = face.surface.domain();
         let domain = Domain { origin: DVec2::new(u0, v0), size: DVec2::new(u1 - u0, v1 - v0) };
         let sides = sides(&grid, &face.loops);
@@ -58,7 +59,7 @@ impl FaceData {
             cells: Vec::new(),
             curves: Vec::new(),
             curve_points: Vec::new(),
-            rational: false,
+            rational: !face.surface.is_polynomial(),
         };
         let flag = |on: bool, bit: u32| if on { bit } else { 0 };
         data.face.flags = flag(face.same_sense, abi::FACE_SAME_SENSE) | flag(solid, abi::FACE_SOLID);
@@ -83,7 +84,6 @@ impl FaceData {
             | border(i + 1 == grid.count_u, abi::BORDER_U1)
             | border(j == 0, abi::BORDER_V0)
             | border(j + 1 == grid.count_v, abi::BORDER_V1);
-        let rational = !p.patch.is_polynomial();
         let bend = p.patch.derivative_bound();
         let (lo, hi) = outward_box(&p.patch, origin);
         let corner = domain.unit(DVec2::new(p.u.0, p.v.0));
@@ -92,7 +92,7 @@ impl FaceData {
             box_min: lo,
             first: self.points.len() as u32,
             box_max: hi,
-            shape: abi::Patch::pack_shape((p.patch.degree_u, p.patch.degree_v), rational, side, borders),
+            shape: abi::Patch::pack_shape((p.patch.degree_u, p.patch.degree_v), self.rational, side, borders),
             domain: [corner.x as f32, corner.y as f32, size.x as f32, size.y as f32],
             bend: flat_is_zero([bend.uu, bend.uv, bend.vv], p.patch.bounds()).map(|x| x as f32),
             face: 0,
@@ -100,16 +100,16 @@ impl FaceData {
         if side == Side::Outside {
             return; // never drawn: its control points stay at home
         }
-        self.rational |= rational;
-        // only the ratios of a patch's weights matter: those of a polynomial patch become 1, exactly
-        let unit = p.patch.points[0].w;
+        // only the ratios of weights matter: one unit for the whole face keeps shared control points
+        // the same bit for bit; those of a polynomial face become 1, exactly
+        let unit = if self.rational { grid.patches[0].patch.points[0].w } else { p.patch.points[0].w };
         for q in &p.patch.points {
             let local = (q.truncate() - origin * q.w) / unit;
             self.points.push([
                 local.x as f32,
                 local.y as f32,
                 local.z as f32,
-                if rational { (q.w / unit) as f32 } else { 1.0 },
+                if self.rational { (q.w / unit) as f32 } else { 1.0 },
             ]);
         }
     }

@@ -15,6 +15,7 @@
 
 mod data;
 mod face;
+mod flatten;
 mod upload;
 
 pub(crate) use data::{SceneData, focal_and_slant, view};
