@@ -11,6 +11,7 @@
 //        │   │   │ B │     The doubtful face itself is `real` when its own surface is inside its trims,
 //        └───┴───┴───┘     and the whole ring too: farther from its border than any error.
 //
+//   its own front, across a fold, is a witness too
 //   real (a gap looks into the solid):   the nearest witness or helper before it, else whichever
 //                                        neighbour's surface passes beside the pixel's centre
 //   not real (its ring reaches out):
@@ -39,7 +40,9 @@ layout(scalar, binding = 10) readonly buffer Flips { float flips[]; };
 layout(binding = 11, rg32ui) uniform uimage2D visibility;
 layout(scalar, binding = 12) readonly buffer Doubts { uint doubts[]; };
 layout(scalar, binding = 13) readonly buffer CountersBuffer { Counters counters; };
+layout(scalar, binding = 14) readonly buffer Instances { Instance instances[]; };
 
+#include "facing.glsl"
 #include "patch.glsl"
 #include "refine.glsl"
 #include "ring.glsl"
@@ -57,10 +60,14 @@ const float RING_SLACK = 1.25;
 // Relative depth within which a face touches the doubtful one, and is as hidden as that.
 const float SAME_DEPTH = 1e-6;
 
+// How far across a fold, in widths of the patch.
+const float ACROSS = 0.2;
+
 struct Answer {
     uint kind;
     float depth;
     float miss; // pixels
+    bool away;  // looks away from the viewer
     uvec2 word;
 };
 
@@ -72,7 +79,7 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     Patch patch_ = patches[face.first_patch + item - fi.first_item];
     View view = views[fi.instance];
     Sample s = refine(patch_, view, unpack_uv(seen.y), pixel);
-    Answer answer = Answer(NO, s.q.z, length(s.miss), uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)))));
+    Answer answer = Answer(NO, s.q.z, length(s.miss), true, uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)))));
     float strips = float(face.strip_count);
     vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
     bool inside = face.strip_count == 0u || table_inside(fi.first_strip, strips, at);
@@ -81,14 +88,15 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
         if (inside && answer.miss <= RING_SLACK * frame.ring_px) answer.kind = HELPER;
         return answer;
     }
-    if (inside) answer.kind = WITNESS;
-    if (inside != real || face.strip_count == 0u) return answer;
     vec4 qu = to_pixel(view, vec4(s.jet.du, 0.0));
     vec4 qv = to_pixel(view, vec4(s.jet.dv, 0.0));
     vec2 p = s.q.xy / s.q.w;
     vec2 pu = (qu.xy - p * qu.w) / s.q.w;
     vec2 pv = (qv.xy - p * qv.w) / s.q.w;
     float det = pu.x * pv.y - pu.y * pv.x;
+    answer.away = looks_away(det, face, instances[fi.instance]);
+    if (inside) answer.kind = WITNESS;
+    if (inside != real || face.strip_count == 0u) return answer;
     if (abs(det) < 1e-12) return answer;
     for (uint k = 0u; k < RING_POINTS; ++k) {
         vec2 step_ = frame.ring_px * RING[k];
@@ -117,9 +125,17 @@ void main() {
     Answer self = ask(own, pixel, true);
     bool real = self.kind == WITNESS;
     float limit = real ? self.depth * (1.0 - SAME_DEPTH) : 3.0e38;
-    Answer witness = Answer(NO, 3.0e38, 3.0e38, uvec2(0u));
+    Answer witness = Answer(NO, 3.0e38, 3.0e38, false, uvec2(0u));
     Answer helper = witness;
     Answer closest = witness;
+    // a curved face can show its front at the same pixel, narrower than the tessellation's error:
+    // look for it across the fold
+    for (uint k = 0u; k < RING_POINTS; ++k) {
+        uvec2 seen = uvec2(own.x, pack_uv(unpack_uv(own.y) + ACROSS * RING[k]));
+        Answer answer = ask(seen, pixel, false);
+        bool front = answer.kind == WITNESS && !answer.away && answer.depth < limit;
+        if (front && answer.depth < witness.depth) witness = answer;
+    }
     bool beside_nothing = false;
     uint helping_face = 0u; // index + 1; helpers of two faces meet in an edge here
     bool two_help = false;

@@ -396,6 +396,7 @@ impl Frame<'_> {
             visibility: &b.visibility,
             doubts: &t.doubts,
             counters: &b.counters,
+            instances: &s.instances,
             dispatches: &t.dispatches,
         };
         p.heal.record(cmd, &heal);

@@ -52,6 +52,7 @@ pub(crate) struct Bindings<'a> {
     pub visibility: &'a Image,
     pub doubts: &'a Buffer,
     pub counters: &'a Buffer,
+    pub instances: &'a Buffer,
     /// Its own is the fourth.
     pub dispatches: &'a Buffer,
 }
@@ -60,7 +61,7 @@ impl Heal {
     pub(crate) fn new(device: &Device, rational: bool) -> Result<Self, GpuError> {
         let mut find = [Binding::Storage; 5];
         find[1] = Binding::StorageImage;
-        let mut heal = [Binding::Storage; 14];
+        let mut heal = [Binding::Storage; 15];
         heal[6] = Binding::Texels;
         heal[11] = Binding::StorageImage;
         let weights = if rational { "rational" } else { "polynomial" };
@@ -100,6 +101,7 @@ impl Heal {
             b.visibility.into(),
             b.doubts.into(),
             b.counters.into(),
+            b.instances.into(),
         ];
         cmd.bind(&self.heal, &resources, &[]);
         cmd.dispatch_indirect(b.dispatches, 3 * size_of::<[u32; 3]>() as u64);
