@@ -10,6 +10,7 @@ mod errors;
 mod every_shape;
 mod objects;
 mod room;
+mod samples;
 #[path = "../shapes/mod.rs"]
 mod shapes;
 mod support;

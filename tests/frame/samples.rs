@@ -1,0 +1,72 @@
+//! The committed samples against the exact reference, every pixel of two small views each: what a
+//! golden image would hold, measured in pixels of shift instead of bits.
+
+use crate::support::{assert_silent, render, watched};
+use glam::DVec3;
+use selvedge::model::{Camera, Model};
+use selvedge::picture::Picture;
+use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
+use std::path::Path;
+
+/// Small, so that features of a pixel and below are met often.
+const SIZE: (u32, u32) = (480, 300);
+/// From above and beside, and along the ground.
+const VIEWS: [DVec3; 2] = [DVec3::new(1.0, -1.6, 1.1), DVec3::new(-1.2, -1.0, 0.35)];
+
+/// A missing sample fails: its absence is not a pass.
+fn sample(name: &str) -> Model {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples").join(name);
+    selvedge::import::open(&path).unwrap().model
+}
+
+fn camera(model: &Model, from: DVec3) -> Camera {
+    Camera::framing(model.bounds(), from, DVec3::Z, 35f64.to_radians(), SIZE)
+}
+
+fn judged(tracer: &Tracer, camera: &Camera, picture: &Picture) -> Judgement {
+    judge(tracer, camera, picture, &JudgeOptions::default())
+}
+
+/// Draws both views and asserts the promise: no pixel off by more than half a pixel, no clamp.
+fn keeps_the_promise(name: &str) {
+    let model = sample(name);
+    let tracer = Tracer::new(&model);
+    let mut renderer = watched(&model);
+    for from in VIEWS {
+        let camera = camera(&model, from);
+        let picture = render(&mut renderer, &camera);
+        let j = judged(&tracer, &camera, &picture);
+        assert_eq!(j.sampled, u64::from(SIZE.0 * SIZE.1));
+        assert!(j.agree + j.ties > j.sampled * 99 / 100, "{name} from {from}: only {} pixels agree", j.agree);
+        assert_eq!((j.wrong, picture.stats.clamps, j.given_up), (0, 0, 0), "{name} from {from}: {:?}", j.mismatches);
+    }
+    assert_silent(renderer);
+}
+
+#[test]
+fn bracket() {
+    keeps_the_promise("bracket.step");
+}
+
+#[test]
+fn panel() {
+    keeps_the_promise("panel.step");
+}
+
+#[test]
+fn zoo() {
+    keeps_the_promise("zoo.step");
+}
+
+#[test]
+fn a_picture_one_pixel_off_is_seen() {
+    let model = sample("bracket.step");
+    let tracer = Tracer::new(&model);
+    let mut renderer = watched(&model);
+    let camera = camera(&model, VIEWS[0]);
+    let mut picture = render(&mut renderer, &camera);
+    picture.face.rotate_right(1);
+    let j = judged(&tracer, &camera, &picture);
+    assert!(j.wrong > 100, "outlines moved by a pixel, and only {} pixels called wrong", j.wrong);
+    assert_silent(renderer);
+}
