@@ -311,3 +311,17 @@ fn a_profile_that_ends_square_to_the_axis_inverts_to_itself() {
         }
     }
 }
+
+/// Four radii of curvature off a ridge, where whole Gauss-Newton steps run away from the foot.
+#[test]
+fn a_point_far_off_a_ridge_finds_its_foot() {
+    // y = -2 x² with x = 2 u - 1: radius 1/4 at its top, u = 1/2, which is the foot of (0, 1)
+    let ridge = spline(2, &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0], &[[-1.0, -2.0, 0.0], [0.0, 2.0, 0.0], [1.0, -2.0, 0.0]]);
+    let profile = Box::new(CurveGeometry::BSpline(ridge));
+    let support = Support::new(&SurfaceGeometry::Extrusion { profile, direction: DVec3::Z }, 1e-7).unwrap();
+    for hint in [None, Some(DVec2::new(0.3, 5.0)), Some(DVec2::new(0.9, 5.0))] {
+        let foot = support.invert(DVec3::new(0.0, 1.0, 5.0), hint, 1e-9);
+        // the distance is even about the foot: rounding of 1e-16 is a parameter of 1e-8
+        assert!((foot - DVec2::new(0.5, 5.0)).abs().max_element() < 1e-7, "{foot} from {hint:?}");
+    }
+}
