@@ -60,8 +60,19 @@ impl Support {
                     let (q, d) = profile.jet(t);
                     let (q, d) = (self.frame.local(q), self.frame.local_direction(d));
                     let r = q.x.hypot(q.y);
-                    // on the axis the radius grows with the speed across it
-                    let dr = if r > 0.0 { (q.x * d.x + q.y * d.y) / r } else { d.x.hypot(d.y) };
+                    // on the axis the radius grows with the speed across it, either way along the profile;
+                    // at a last point only backwards, and rounding there must not turn the slope around
+                    let end = profile.domain().and_then(|(a, b)| match t {
+                        _ if r > self.eps => None,
+                        _ if t <= a => Some(1.0),
+                        _ if t >= b => Some(-1.0),
+                        _ => None,
+                    });
+                    let dr = match end {
+                        Some(sign) => sign * d.x.hypot(d.y),
+                        None if r > 0.0 => (q.x * d.x + q.y * d.y) / r,
+                        None => d.x.hypot(d.y),
+                    };
                     (DVec3::new(r - rho, q.z - l.z, 0.0), DVec3::new(dr, d.z, 0.0))
                 };
                 let t = foot(profile, &self.turned_seeds(profile, l), hint.map(|h| h.y), accept, meridian);
@@ -113,8 +124,9 @@ fn seeds(curve: &Curve) -> Vec<f64> {
     }
 }
 
-/// The parameter that makes `g(t) = (residual, its derivative)` smallest: Gauss-Newton from the hint
-/// if that ends within `accept` mm, else from the best seeds, the one nearest to the hint among equals.
+/// The parameter that makes `g(t) = (residual, its derivative)` smallest: Gauss-Newton, steps that
+/// overshoot halved, from the hint if that ends within `accept` mm, else from the best seeds, the one
+/// nearest to the hint among equals.
 fn foot(curve: &Curve, seeds: &[f64], hint: Option<f64>, accept: f64, g: impl Fn(f64) -> (DVec3, DVec3)) -> f64 {
     let wrap = |t: f64| match curve {
         Curve::Pieces(p) => p.wrap(t),
@@ -122,13 +134,24 @@ fn foot(curve: &Curve, seeds: &[f64], hint: Option<f64>, accept: f64, g: impl Fn
     };
     let polish = |start: f64| {
         let mut t = wrap(start);
-        let mut best = (g(t).0.length(), t);
+        let mut distance = g(t).0.length();
+        let mut best = (distance, t);
         for _ in 0..30 {
             let (r, d) = g(t);
-            let next = wrap(t - r.dot(d) / d.length_squared().max(f64::MIN_POSITIVE));
+            let mut by = -r.dot(d) / d.length_squared().max(f64::MIN_POSITIVE);
+            let mut next = wrap(t + by);
+            // where the curve bends away, or ends, a whole step may lead farther off than it began;
+            // a thousandth of it does not, but for rounding
+            for _ in 0..10 {
+                if g(next).0.length() <= distance {
+                    break;
+                }
+                by *= 0.5;
+                next = wrap(t + by);
+            }
             let step = (next - t).abs();
             t = next;
-            let distance = g(t).0.length();
+            distance = g(t).0.length();
             if distance < best.0 {
                 best = (distance, t);
             }

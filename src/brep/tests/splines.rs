@@ -1,5 +1,6 @@
 //! Faces on B-spline, extruded and turned surfaces.
 
+use super::super::support::Support;
 use super::*;
 use crate::spline::{BSpline, Surface};
 use glam::DVec4;
@@ -283,4 +284,44 @@ fn turned_lines_and_circles() {
     let ring = Frame { origin: at(5.0, 0.0), ..meridian_frame(f, 0.0) };
     let torus = build(turned(Box::new(circle(ring, 2.0))), Vec::new(), &[]);
     assert_area(&torus, 4.0 * PI * PI * 10.0, 1e-10);
+}
+
+/// Round at the axis, where a step to the foot may overshoot the end of the profile: the axis has no
+/// far side there, and the radius grows backwards.
+#[test]
+fn a_profile_that_ends_square_to_the_axis_inverts_to_itself() {
+    let knots = [0.0, 0.0, 0.0, 0.0, 9.0, 21.0, 31.0, 39.0, 39.0, 39.0, 39.0];
+    // the knob of a handle about y
+    let points = [[3.0, 6.0], [6.6, 6.7], [6.7, 15.9], [9.7, 25.1], [6.4, 35.5], [4.4, 40.0], [0.0, 40.0]];
+    let profile = spline(3, &knots, &points.map(|[x, y]| [x, y, 0.0]));
+    for profile in [profile.clone(), profile.reversed()] {
+        let (curve, axis) = (Box::new(CurveGeometry::BSpline(profile.clone())), DVec3::Y);
+        let support =
+            Support::new(&SurfaceGeometry::Revolution { profile: curve, origin: DVec3::ZERO, axis }, 1e-7).unwrap();
+        assert_eq!(support.poles.len(), 1);
+        for k in 0..=390 {
+            let v = f64::from(k) / 10.0;
+            let p = support.point(DVec2::new(0.4, v));
+            // from nowhere, from either side, from the pole
+            for hint in [None, Some(v - 2.0), Some(v + 2.0), Some(support.poles[0].value)] {
+                let found = support.invert(p, hint.map(|v| DVec2::new(0.4, v)), 1e-9);
+                let gap = support.point(found).distance(p);
+                assert!(gap <= 1e-9, "{gap:e} at {v} from {hint:?}");
+            }
+        }
+    }
+}
+
+/// Four radii of curvature off a ridge, where whole Gauss-Newton steps run away from the foot.
+#[test]
+fn a_point_far_off_a_ridge_finds_its_foot() {
+    // y = -2 x² with x = 2 u - 1: radius 1/4 at its top, u = 1/2, which is the foot of (0, 1)
+    let ridge = spline(2, &[0.0, 0.0, 0.0, 1.0, 1.0, 1.0], &[[-1.0, -2.0, 0.0], [0.0, 2.0, 0.0], [1.0, -2.0, 0.0]]);
+    let profile = Box::new(CurveGeometry::BSpline(ridge));
+    let support = Support::new(&SurfaceGeometry::Extrusion { profile, direction: DVec3::Z }, 1e-7).unwrap();
+    for hint in [None, Some(DVec2::new(0.3, 5.0)), Some(DVec2::new(0.9, 5.0))] {
+        let foot = support.invert(DVec3::new(0.0, 1.0, 5.0), hint, 1e-9);
+        // the distance is even about the foot: rounding of 1e-16 is a parameter of 1e-8
+        assert!((foot - DVec2::new(0.5, 5.0)).abs().max_element() < 1e-7, "{foot} from {hint:?}");
+    }
 }
