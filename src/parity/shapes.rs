@@ -161,7 +161,7 @@ pub(super) fn cases() -> Vec<Case> {
     let mut tight = cases[1].clone();
     tight.frame.sub_patch_capacity = 20;
     tight.frame.draw_capacity = 2;
-    tight.frame.row_capacity = 40_000;
+    tight.frame.row_capacity = 2_000;
     tight.frame.intercept_capacity = 900;
     cases.push(tight);
     cases

@@ -13,6 +13,7 @@ use crate::abi::Counters;
 use crate::model::{Camera, Projection};
 use crate::parity::{Case, Random, placed, untrimmed};
 use crate::spline::{Bezier, Control, Surface};
+use crate::twin::MOST_SEGMENTS;
 use crate::twin::bound::bound;
 use glam::{DAffine3, DMat3, DMat4, DQuat, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
@@ -71,10 +72,13 @@ impl Trial {
         let mut case = Case::new(&model, &camera, r.pick(&[0.125, 0.5, 0.5, 2.0]));
         let mut counters = Counters::default();
         let tau = bound(&case.frame, &case.scene(), &mut counters)[0];
+        // the scene cuts curved surfaces into flatter patches: the first one stands for all
+        let [_, _, width, height] = case.data.patches[0].domain;
+        let surface = first_piece(&surface, (1.0 / width).round() as usize, (1.0 / height).round() as usize);
         case.data.drop_uploaded();
         let tau = [tau & 0xffff, tau >> 16].map(|t| t as usize);
         let to_pixels = camera.pixel_matrix() * DMat4::from(transform);
-        Self { surface, rational, case, to_pixels, tau, clamped: counters.clamps > 0 }
+        Self { surface, rational, case, to_pixels, tau, clamped: tau.contains(&(MOST_SEGMENTS as usize)) }
     }
 
     /// Homogeneous pixels `(X, Y, D, W)` of `S`, unit weight, at the lattice of `cells` cells from `first`.
@@ -158,6 +162,15 @@ fn random_surface(r: &mut Random, rational: bool) -> Surface {
     let points = (0..=k).flat_map(|j| (0..=n).map(move |i| (i, j))).map(|(i, j)| point(i, j)).collect();
     let knots = |degree: usize| [vec![0.0; degree + 1], vec![1.0; degree + 1]].concat();
     Surface::new((n, k), knots(n), knots(k), points).unwrap()
+}
+
+/// The patch at the origin of the domain when each side is cut into so many.
+fn first_piece(surface: &Surface, along_u: usize, along_v: usize) -> Surface {
+    let patch = &surface.patches().patches[0].patch;
+    let piece = patch.rectangle((0.0, 1.0 / along_u as f64), (0.0, 1.0 / along_v as f64));
+    let knots = |degree: usize| [vec![0.0; degree + 1], vec![1.0; degree + 1]].concat();
+    let (n, k) = surface.degrees();
+    Surface::new((n, k), knots(n), knots(k), piece.points).unwrap()
 }
 
 fn random_rotation(r: &mut Random) -> DQuat {
