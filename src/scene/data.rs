@@ -2,7 +2,7 @@
 
 use super::face::{FaceData, pack_colour};
 use crate::abi;
-use crate::model::{Bounds, Camera, Model, Projection};
+use crate::model::{Camera, Model, Projection};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use rayon::prelude::*;
 
@@ -30,8 +30,6 @@ pub(crate) struct SceneData {
     pub has_trimmed: bool,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
-    /// Box of everything, model coordinates.
-    pub bounds: Option<Bounds>,
 }
 
 impl SceneData {
@@ -41,13 +39,11 @@ impl SceneData {
         model.instances.iter().for_each(|i| used[i.part] = true);
         let mut first_faces = Vec::with_capacity(model.parts.len());
         let mut origins = Vec::with_capacity(model.parts.len());
-        let mut boxes = Vec::with_capacity(model.parts.len());
         for (part, used) in model.parts.iter().zip(used) {
             first_faces.push(data.faces.len());
             let bounds = part.bounds();
             let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
             origins.push(origin);
-            boxes.push(bounds);
             if used {
                 let faces: Vec<FaceData> =
                     part.faces.par_iter().map(|f| FaceData::new(f, origin, part.closed)).collect();
@@ -59,17 +55,13 @@ impl SceneData {
             let first = first_faces[instance.part];
             data.push_instance(instance, origins[instance.part], first..first + part.faces.len());
         }
-        let all = model.instances.iter().filter(|i| !boxes[i.part].is_empty());
-        let corners = all.flat_map(|i| boxes[i.part].corners().map(|c| i.transform.transform_point3(c)));
-        let bounds = corners.fold(Bounds::EMPTY, Bounds::with);
-        data.bounds = (!bounds.is_empty()).then_some(bounds);
         data
     }
 
     /// Frees the arrays that the GPU has; the placements stay.
     pub(crate) fn drop_uploaded(&mut self) {
         let placements = std::mem::take(&mut self.placements);
-        *self = Self { placements, bounds: self.bounds, ..Self::default() };
+        *self = Self { placements, ..Self::default() };
     }
 
     fn push_face(&mut self, mut f: FaceData) {

@@ -31,7 +31,6 @@ pub(super) fn flattened(grid: PatchGrid) -> PatchGrid {
         return grid;
     }
     let (count_u, count_v) = (grid.count_u * ku, grid.count_v * kv);
-    // halving a side by the same rule in both neighbours keeps their shared control points the same
     let range = |i: usize, n: usize| (i as f64 / n as f64, (i + 1) as f64 / n as f64);
     let at = |(a, b): (f64, f64), t: f64| if t >= 1.0 { b } else { a + (b - a) * t };
     let mut patches = Vec::with_capacity(count_u * count_v);
@@ -50,9 +49,8 @@ pub(super) fn flattened(grid: PatchGrid) -> PatchGrid {
     PatchGrid { count_u, count_v, patches }
 }
 
-/// Neighbours get the same control points along the side that they share, bit for bit: those of the
-/// patch before. A rational point is the same whatever the scale of its side, so the sides stand in
-/// their own weights.
+/// Two pieces compute the side that they share from different ends, and round apart. Each takes the
+/// control points of the one before it, so that neighbours agree bit for bit.
 fn weld(patches: &mut [SurfacePatch], count_u: usize, count_v: usize) {
     for j in 0..count_v {
         for i in 0..count_u {
@@ -68,5 +66,56 @@ fn weld(patches: &mut [SurfacePatch], count_u: usize, count_v: usize) {
                 patches[here].patch.points[..n].copy_from_slice(&before.points[k * n..]);
             }
         }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::spline::Surface;
+    use glam::DVec4;
+
+    /// Two quarter arcs with a wavy generator: both directions are cut.
+    fn bent() -> Surface {
+        let w = std::f64::consts::FRAC_1_SQRT_2;
+        let arcs = [(1.0, 0.0, 1.0), (1.0, 1.0, w), (0.0, 1.0, 1.0), (-1.0, 1.0, w), (-1.0, 0.0, 1.0)];
+        let waves = [(0.0, 1.0), (0.4, 2.0), (0.9, 0.3)];
+        let net = waves.iter().flat_map(|&(z, r)| arcs.map(|(x, y, w)| DVec4::new(x * r * w, y * r * w, z * w, w)));
+        let knots_u = vec![0.0, 0.0, 0.0, 0.7, 0.7, 1.9, 1.9, 1.9];
+        Surface::new((2, 2), knots_u, vec![-1.0, -1.0, -1.0, 2.0, 2.0, 2.0], net.collect()).unwrap()
+    }
+
+    #[test]
+    fn pieces_tile_the_domain_and_share_their_sides_bit_for_bit() {
+        let surface = bent();
+        let grid = flattened(surface.patches());
+        let ((u0, u1), (v0, v1)) = surface.domain();
+        assert!(grid.count_u > 2 && grid.count_v > 1, "{} x {}", grid.count_u, grid.count_v);
+        for (n, p) in grid.patches.iter().enumerate() {
+            let (i, j) = (n % grid.count_u, n / grid.count_u);
+            let right = (i + 1 < grid.count_u).then(|| &grid.patches[n + 1]);
+            let above = (j + 1 < grid.count_v).then(|| &grid.patches[n + grid.count_u]);
+            assert_eq!(p.u.1, right.map_or(u1, |r| r.u.0));
+            assert_eq!(p.v.1, above.map_or(v1, |a| a.v.0));
+            assert!((i > 0 || p.u.0 == u0) && (j > 0 || p.v.0 == v0));
+            let (n, k) = (p.patch.degree_u, p.patch.degree_v);
+            if let Some(r) = right {
+                (0..=k).for_each(|row| assert_eq!(p.patch.row(row)[n], r.patch.row(row)[0]));
+            }
+            if let Some(a) = above {
+                assert_eq!(p.patch.row(k), a.patch.row(0));
+            }
+            // still the same surface: 1e-14 is some tens of roundings of coordinates below 2
+            let middle = surface.jet((p.u.0 + p.u.1) / 2.0, (p.v.0 + p.v.1) / 2.0).point;
+            assert!(p.patch.point(0.5, 0.5).distance(middle) < 1e-14);
+        }
+    }
+
+    #[test]
+    fn a_flat_patch_stays_whole() {
+        let corner = |x: f64, y: f64| DVec4::new(x, y, 0.0, 1.0);
+        let net = vec![corner(0.0, 0.0), corner(2.0, 0.0), corner(0.0, 3.0), corner(2.0, 3.0)];
+        let plane = Surface::new((1, 1), vec![0.0, 0.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0], net).unwrap();
+        assert_eq!(flattened(plane.patches()), plane.patches());
     }
 }
