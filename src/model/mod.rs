@@ -2,9 +2,10 @@
 //!
 //! ```text
 //!   Model ── parts: [Part]            one rigid body of faces in its own coordinates
-//!         │            └─ faces: [Face]
-//!         │                    ├─ surface: Surface      rational B-spline over (u, v)
-//!         │                    └─ loops:   [TrimLoop]   closed chains of rational Bézier curves in (u, v)
+//!         │            ├─ faces: [Face]
+//!         │            │       ├─ surface: Surface      rational B-spline over (u, v)
+//!         │            │       └─ loops:   [TrimLoop]   closed chains of rational Bézier curves in (u, v)
+//!         │            └─ meshes: [Mesh]                what the source gave as facets
 //!         └─ instances: [Instance]    part index, transform to model space, colour
 //! ```
 //!
@@ -16,9 +17,11 @@
 
 mod camera;
 mod face;
+mod mesh;
 
 pub use camera::{Camera, CameraError, Projection};
 pub use face::{Face, FaceError, SurfaceKind, TrimLoop};
+pub use mesh::{Mesh, MeshError};
 
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -46,7 +49,9 @@ pub struct Part {
     pub name: String,
     /// Its faces.
     pub faces: Vec<Face>,
-    /// The faces bound a volume and their normals point out of it.
+    /// Its facets, where the source has nothing better.
+    pub meshes: Vec<Mesh>,
+    /// The faces (or the meshes) bound a volume and their normals point out of it.
     pub closed: bool,
 }
 
@@ -115,9 +120,10 @@ impl Bounds {
 }
 
 impl Part {
-    /// Box of the trimmed faces (see [`Face::bounds`]) in part coordinates.
+    /// Box of the trimmed faces (see [`Face::bounds`]) and meshes in part coordinates.
     pub fn bounds(&self) -> Bounds {
-        self.faces.iter().map(Face::bounds).fold(Bounds::EMPTY, Bounds::union)
+        let faces = self.faces.iter().map(Face::bounds);
+        faces.chain(self.meshes.iter().map(Mesh::bounds)).fold(Bounds::EMPTY, Bounds::union)
     }
 }
 

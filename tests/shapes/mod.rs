@@ -185,7 +185,7 @@ pub fn circle_at(x: f64) -> (f64, f64) {
 pub fn one(name: &str, closed: bool, faces: Vec<Face>) -> Model {
     Model {
         name: name.to_owned(),
-        parts: vec![Part { name: name.to_owned(), faces, closed }],
+        parts: vec![Part { name: name.to_owned(), faces, closed, ..Part::default() }],
         instances: vec![placed(DAffine3::IDENTITY, None)],
         unit: "mm".to_owned(),
     }

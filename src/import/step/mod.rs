@@ -65,7 +65,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
             let geometry = Geometry { file: &file, units: &unit, ledger: &ledger };
             let body = body::body(&geometry, id, &colours, &[representation]);
             part_of.insert(id, model.parts.len());
-            model.parts.push(Part { name: part_name(&file, group, id), faces: Vec::new(), closed: body.closed });
+            model.parts.push(Part { name: part_name(&file, group, id), closed: body.closed, ..Part::default() });
             units.insert(unit.name.clone());
             bodies.push((body, unit.tolerance));
         }

@@ -87,7 +87,7 @@ pub fn face(id: u32, surface: Surface, loops: Vec<TrimLoop>) -> Face {
 pub fn model(faces: Vec<Face>, transforms: &[DAffine3]) -> Model {
     let place = |t: &DAffine3| Instance { part: 0, transform: *t, colour: None, name: String::new() };
     Model {
-        parts: vec![Part { name: String::new(), faces, closed: false }],
+        parts: vec![Part { faces, ..Part::default() }],
         instances: transforms.iter().map(place).collect(),
         ..Model::default()
     }
