@@ -13,6 +13,8 @@
 //!    │                                  sort       flips of each row
 //!    └─────────────────┬──────────────────┘
 //!                      ▼
+//!                    mesh        triangles of meshes: which one per pixel
+//!                      ▼
 //!                 visibility     tessellate, trim: item and (u, v) per pixel
 //!                      ▼
 //!                    heal        pixels that look through a gap between trimmed faces
@@ -23,11 +25,11 @@
 use crate::abi::Counters;
 use crate::buffers::{Buffers, TrimBuffers};
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Timestamps, barrier};
-use crate::passes::visibility::Kinds;
+use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::passes::{
-    bound, cross, density, emit, heal, lines, reset, resolve, scan, segments, sizes, sort, split, visibility,
+    bound, cross, density, emit, heal, lines, mesh, reset, resolve, scan, segments, sizes, sort, split, visibility,
 };
-use crate::scene::{Scene, SceneData, Trims};
+use crate::scene::{MeshBuffers, Scene, SceneData, Trims};
 use std::mem::offset_of;
 
 /// The passes that a scene needs.
@@ -39,6 +41,7 @@ pub(crate) struct Passes {
     emit: emit::Emit,
     trim: Option<TrimPasses>,
     visibility: visibility::Visibility,
+    mesh: Option<mesh::Mesh>,
     resolve: resolve::Resolve,
 }
 
@@ -64,7 +67,7 @@ impl Passes {
                 sizes: sizes::Sizes::new(device)?,
                 cross: cross::Cross::new(device)?,
                 sort: sort::Sort::new(device)?,
-                heal: heal::Heal::new(device, data.has_rational)?,
+                heal: heal::Heal::new(device, data.has_rational, data.has_meshes())?,
             })
         };
         Ok(Self {
@@ -75,7 +78,12 @@ impl Passes {
             emit: emit::Emit::new(device)?,
             trim: data.has_trimmed.then_some(()).map(trim).transpose()?,
             visibility: visibility::Visibility::new(device, kinds)?,
-            resolve: resolve::Resolve::new(device, formats, data.has_rational)?,
+            mesh: data.has_meshes().then(|| mesh::Mesh::new(device, VISIBILITY_FORMAT, DEPTH_FORMAT)).transpose()?,
+            resolve: resolve::Resolve::new(
+                device,
+                formats,
+                resolve::Kinds { rational: data.has_rational, meshes: data.has_meshes() },
+            )?,
         })
     }
 }
@@ -106,6 +114,10 @@ impl Frame<'_> {
         times.scope(cmd, "tessellation", || self.tessellation(cmd));
         if let (Some(passes), Some(trims), Some(buffers)) = (&self.passes.trim, &self.scene.trims, &self.buffers.trim) {
             times.scope(cmd, "trim table", || self.trim_table(cmd, passes, trims, buffers));
+        }
+        self.begin_images(cmd);
+        if let (Some(pass), Some(meshes)) = (&self.passes.mesh, &self.scene.meshes) {
+            times.drawing(cmd, "mesh", || self.mesh(cmd, pass, meshes));
         }
         times.drawing(cmd, "visibility", || self.visibility(cmd));
         let mut drawn = Access::COLOUR_WRITE;
@@ -331,17 +343,39 @@ impl Frame<'_> {
         self.passes.scan.record(cmd, scan::Count::Host(count), &bindings);
     }
 
+    /// The images were read by the frame before; their contents go.
+    fn begin_images(&self, cmd: &Commands<'_>) {
+        let b = self.buffers;
+        let read = (Access::COMPUTE_READ | Access::FRAGMENT_READ).discarded();
+        let others = b.others.iter().map(|image| (image, read, Access::COLOUR_WRITE));
+        let fixed = [
+            (&b.visibility, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE),
+            (&b.depth, Access::DEPTH_WRITE.discarded(), Access::DEPTH_WRITE),
+        ];
+        barrier::images(cmd, &fixed.into_iter().chain(others).collect::<Vec<_>>());
+    }
+
+    /// Meshes first: what hides them may be in doubt.
+    fn mesh(&self, cmd: &Commands<'_>, pass: &mesh::Mesh, m: &MeshBuffers) {
+        let b = self.buffers;
+        let bindings = mesh::Bindings {
+            frame: self.constants,
+            views: self.views,
+            mesh_instances: &m.instances,
+            triangles: &m.triangles,
+            positions: &m.positions,
+        };
+        let seen = b.others.as_ref().unwrap_or(&b.visibility);
+        pass.record(cmd, &bindings, (seen, &b.depth), m.draws.iter());
+        barrier::images(
+            cmd,
+            &[(seen, Access::COLOUR_WRITE, Access::COLOUR_WRITE), (&b.depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],
+        );
+    }
+
     fn visibility(&self, cmd: &Commands<'_>) {
         let (s, b) = (self.scene, self.buffers);
         barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE, Access::INDIRECT_READ)]);
-        // the image was read by the frame before; its contents go
-        barrier::images(
-            cmd,
-            &[
-                (&b.visibility, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE),
-                (&b.depth, Access::DEPTH_WRITE.discarded(), Access::DEPTH_WRITE),
-            ],
-        );
         let bindings = visibility::Bindings {
             frame: self.constants,
             views: self.views,
@@ -362,7 +396,11 @@ impl Frame<'_> {
             draws: &b.draws,
             counters: &b.counters,
         };
-        self.passes.visibility.record(cmd, &bindings, (&b.visibility, &b.depth), b.capacities.draws);
+        let drawn = s.meshes.is_some();
+        let colour = if drawn && b.others.is_none() { Load::Keep } else { Load::ColourU32([0; 4]) };
+        let visibility = Attachment { image: &b.visibility, load: colour };
+        let depth = Attachment { image: &b.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
+        self.passes.visibility.record(cmd, &bindings, (visibility, depth), b.capacities.draws);
     }
 
     /// Pixels that look through a gap between faces get the face that belongs there.
@@ -370,6 +408,9 @@ impl Frame<'_> {
         let (s, b) = (self.scene, self.buffers);
         let (w, r) = WRITE_TO_READ;
         barrier::images(cmd, &[(&b.visibility, Access::COLOUR_WRITE, Access::COMPUTE_READ)]);
+        if let Some(others) = &b.others {
+            barrier::images(cmd, &[(others, Access::COLOUR_WRITE, Access::COMPUTE_READ | Access::FRAGMENT_READ)]);
+        }
         barrier::buffers(cmd, &[(&b.counters, Access::INDIRECT_READ, w), (&t.dispatches, Access::INDIRECT_READ, w)]);
         let doubts = heal::DoubtBindings {
             frame: self.constants,
@@ -397,6 +438,7 @@ impl Frame<'_> {
             doubts: &t.doubts,
             counters: &b.counters,
             instances: &s.instances,
+            others: b.others.as_ref().unwrap_or(&b.visibility),
             dispatches: &t.dispatches,
         };
         p.heal.record(cmd, &heal);
@@ -415,7 +457,19 @@ impl Frame<'_> {
             instances: &s.instances,
             visibility: &b.visibility,
         };
-        self.passes.resolve.record(cmd, &bindings, self.colour, self.depth);
+        let meshes = s.meshes.as_ref().map(|m| resolve::MeshBindings {
+            frame: self.constants,
+            views: self.views,
+            instances: &s.instances,
+            mesh_instances: &m.instances,
+            meshes: &m.meshes,
+            triangles: &m.triangles,
+            positions: &m.positions,
+            normals: &m.normals,
+            visibility: &b.visibility,
+            others: b.others.as_ref().unwrap_or(&b.visibility),
+        });
+        self.passes.resolve.record(cmd, &bindings, meshes.as_ref(), self.colour, self.depth);
     }
 }
 

@@ -8,6 +8,7 @@ pub(crate) mod density;
 pub(crate) mod emit;
 pub(crate) mod heal;
 pub(crate) mod lines;
+pub(crate) mod mesh;
 pub(crate) mod reset;
 pub(crate) mod resolve;
 pub mod scan;

@@ -4,6 +4,7 @@ use super::SceneData;
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texels, Uploads};
 use ash::vk;
 use bytemuck::Pod;
+use std::ops::Range;
 
 /// A scene in GPU memory.
 pub(crate) struct Scene {
@@ -16,6 +17,19 @@ pub(crate) struct Scene {
     pub items: Buffer,
     /// What trimming needs; `None` when no patch is trimmed.
     pub trims: Option<Trims>,
+    /// What meshes need; `None` when there is none.
+    pub meshes: Option<MeshBuffers>,
+}
+
+/// Triangles, where they are placed, and the draws that cover them.
+pub(crate) struct MeshBuffers {
+    pub meshes: Buffer,
+    pub instances: Buffer,
+    pub positions: Buffer,
+    pub triangles: Buffer,
+    pub normals: Buffer,
+    /// Corners of triangles, and mesh instances.
+    pub draws: Vec<(Range<u32>, Range<u32>)>,
 }
 
 /// Trim curves and the cells that tell their density.
@@ -51,6 +65,20 @@ impl Scene {
                         curves: persistent(&mut uploads, cmd, "trim curves", &data.curves)?,
                         curve_points: persistent(&mut uploads, cmd, "trim curve points", &data.curve_points)?,
                         curve_items: persistent(&mut uploads, cmd, "trim curve items", &data.curve_items)?,
+                    })
+                })
+                .transpose()?,
+            meshes: data
+                .has_meshes()
+                .then(|| {
+                    let m = &data.meshes;
+                    Ok(MeshBuffers {
+                        meshes: persistent(&mut uploads, cmd, "meshes", &m.meshes)?,
+                        instances: persistent(&mut uploads, cmd, "mesh instances", &m.instances)?,
+                        positions: persistent(&mut uploads, cmd, "mesh positions", &m.positions)?,
+                        triangles: persistent(&mut uploads, cmd, "mesh triangles", &m.triangles)?,
+                        normals: persistent(&mut uploads, cmd, "mesh normals", &m.normals)?,
+                        draws: m.draws.clone(),
                     })
                 })
                 .transpose()?,

@@ -7,13 +7,19 @@
 //!   wave       polynomial, bicubic                              ripple   polynomial, degrees 6 and 5
 //!   pair       one part placed twice
 //!   far_away   features of 1e-3 at a distance of 1e6            mirrored a part turned inside out
-//!   empty      nothing at all
+//!   tetra      one closed mesh                                facets   two placed meshes, one mirrored
+//!   beside     a mesh beside a trimmed face                   floor    solids and shells before a mesh
+//!   ball       a mesh with normals                            empty    nothing at all
 //! ```
 //!
 //! Circles are quadratic arcs of a quarter turn with weights 1, 1/√2, 1 (Piegl and Tiller, *The NURBS
 //! Book*, 1997, section 7.3), so every shape is exact; [`circle_at`] says where the parameter is.
 
 #![allow(dead_code)] // each test binary takes what it needs
+
+mod meshes;
+
+pub use meshes::*;
 
 use glam::{DAffine3, DMat3, DVec2, DVec3, DVec4};
 use selvedge::model::{Colour, Face, Instance, Model, Part, SurfaceKind, TrimLoop};
@@ -57,6 +63,11 @@ pub fn all() -> Vec<Shape> {
         shape("pair", pair(), true, false),
         shape("far_away", far_away(DVec3::splat(1e6)), true, true),
         shape("mirrored", mirrored(), true, true),
+        shape("tetra", tetra(), false, false),
+        shape("facets", facets(), false, false),
+        shape("beside", beside(), true, true),
+        shape("floor", floor(), true, false),
+        shape("ball", ball(), false, false),
         shape("empty", empty(), false, false),
     ]
 }
