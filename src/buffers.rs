@@ -265,5 +265,11 @@ mod tests {
         let counts = Counts { items: MOST_THREADS, ..Default::default() };
         assert!(counts.check().is_ok());
         assert!(matches!(Counts { curves: MOST_THREADS + 1, ..counts }.check(), Err(TooMany { .. })));
+        let counts = Counts { triangles: MOST_TRIANGLES, mesh_instances: MOST_MESH_INSTANCES, ..counts };
+        assert!(counts.check().is_ok());
+        let more = Counts { triangles: MOST_TRIANGLES + 1, ..counts };
+        assert!(matches!(more.check(), Err(TooMany { what: "triangles", .. })));
+        let more = Counts { mesh_instances: MOST_MESH_INSTANCES + 1, ..counts };
+        assert!(matches!(more.check(), Err(TooMany { what: "placed meshes", .. })));
     }
 }

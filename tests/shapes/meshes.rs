@@ -1,6 +1,6 @@
 //! Meshes with names. Where a closed form is meant, the vertices lie on it.
 
-use super::{cube, cylinder, one, placed, plate};
+use super::{cube, cylinder, one, placed, plate, sphere};
 use glam::{DAffine3, DMat3, DVec3};
 use selvedge::model::{Mesh, Model, Part};
 use std::f64::consts::TAU;
@@ -22,6 +22,11 @@ pub fn facets() -> Model {
 /// The trimmed cylinder, and a mesh cube that cuts into it.
 pub fn beside() -> Model {
     with_meshes(cylinder(), vec![block(DVec3::new(0.4, -1.6, 1.5), DVec3::new(2.0, 1.7, 1.1), 7)])
+}
+
+/// The whole sphere, and a mesh cube that cuts into it: no trims.
+pub fn globe() -> Model {
+    with_meshes(sphere(), vec![block(DVec3::new(0.4, -4.0, 0.5), DVec3::new(2.0, 1.7, 2.1), 7)])
 }
 
 /// The spline cube and, beside it, the plate with its hole, over a coarse and before a fine mesh.
@@ -79,7 +84,7 @@ pub fn ball_mesh(levels: u32) -> Mesh {
     let mut corners: Vec<[DVec3; 3]> = (0..8)
         .map(|octant: usize| {
             let [x, y, z] = [0, 1, 2].map(|i| if octant >> i & 1 == 0 { axes[i] } else { -axes[i] });
-            if octant.count_ones() % 2 == 0 { [x, y, z] } else { [x, z, y] }
+            if octant.count_ones().is_multiple_of(2) { [x, y, z] } else { [x, z, y] }
         })
         .collect();
     for _ in 0..levels {

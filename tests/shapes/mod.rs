@@ -7,9 +7,10 @@
 //!   wave       polynomial, bicubic                              ripple   polynomial, degrees 6 and 5
 //!   pair       one part placed twice
 //!   far_away   features of 1e-3 at a distance of 1e6            mirrored a part turned inside out
-//!   tetra      one closed mesh                                facets   two placed meshes, one mirrored
-//!   beside     a mesh beside a trimmed face                   floor    solids and shells before a mesh
-//!   ball       a mesh with normals                            empty    nothing at all
+//!   tetra      one closed mesh                                facets   it placed twice, once mirrored
+//!   beside     a mesh that cuts into a trimmed face           globe    and into one without trims
+//!   floor      solids and shells before meshes                ball     a mesh with normals
+//!   empty      nothing at all
 //! ```
 //!
 //! Circles are quadratic arcs of a quarter turn with weights 1, 1/√2, 1 (Piegl and Tiller, *The NURBS
@@ -66,6 +67,7 @@ pub fn all() -> Vec<Shape> {
         shape("tetra", tetra(), false, false),
         shape("facets", facets(), false, false),
         shape("beside", beside(), true, true),
+        shape("globe", globe(), false, true),
         shape("floor", floor(), true, false),
         shape("ball", ball(), false, false),
         shape("empty", empty(), false, false),
