@@ -11,13 +11,13 @@
 //        │   │   │ B │     The doubtful face itself is `real` when its own surface is inside its trims,
 //        └───┴───┴───┘     and the whole ring too: farther from its border than any error.
 //
-//   its own front, across a fold, is a witness too
+//   its own front, across a fold, is a witness too, and so is a mesh behind the pixel, seen by `nothing`
 //   real (a gap looks into the solid):   the nearest witness or helper before it, else whichever
 //                                        neighbour's surface passes beside the pixel's centre
 //   not real (its ring reaches out):
 //     helpers of two faces before every witness    the nearest: an edge runs here
 //     a witness                                    the nearest: behind a silhouette
-//     a neighbour that sees nothing                nothing, or the mesh that is behind
+//     a neighbour that sees nothing                nothing
 //     a helper                                     the nearest
 //
 // Without any of these the doubtful face stays. Doubtful neighbours are not asked, and healed pixels
@@ -42,7 +42,11 @@ layout(scalar, binding = 12) readonly buffer Doubts { uint doubts[]; };
 layout(scalar, binding = 13) readonly buffer CountersBuffer { Counters counters; };
 layout(scalar, binding = 14) readonly buffer Instances { Instance instances[]; };
 layout(binding = 15, rg32ui) readonly uniform uimage2D others;
+layout(scalar, binding = 16) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
+layout(scalar, binding = 17) readonly buffer Triangles { uint triangles[]; };
+layout(scalar, binding = 18) readonly buffer Positions { vec3 positions[]; };
 
+#include "facet.glsl"
 #include "facing.glsl"
 #include "patch.glsl"
 #include "refine.glsl"
@@ -138,9 +142,7 @@ void main() {
         if (front && answer.depth < witness.depth) witness = answer;
     }
     bool beside_nothing = false;
-    // a mesh beside the pixel is nothing to the patches only if a mesh is behind the pixel, too: else it may
-    // stand before them
-    bool behind = SCENE_HAS_OTHERS && imageLoad(others, at).x != 0u;
+    bool beside_other = false;
     uint helping_face = 0u; // index + 1; helpers of two faces meet in an edge here
     bool two_help = false;
     for (uint k = 0u; k < RING_POINTS; ++k) {
@@ -149,7 +151,9 @@ void main() {
         uvec2 seen = imageLoad(visibility, beside).xy;
         if ((seen.x & DOUBTFUL) != 0u) continue;
         if (sees_nothing(seen.x)) {
-            beside_nothing = beside_nothing || !SCENE_HAS_OTHERS || behind || imageLoad(others, beside).x == 0u;
+            // a mesh beside the pixel tells nothing of what is here: it may stand before all
+            if (SCENE_HAS_OTHERS && imageLoad(others, beside).x != 0u) beside_other = true;
+            else beside_nothing = true;
             continue;
         }
         Answer answer = ask(seen, pixel, false);
@@ -162,6 +166,13 @@ void main() {
             two_help = two_help || (helping_face != 0u && helping_face != fi.face + 1u);
             helping_face = fi.face + 1u;
         }
+    }
+    // where an end of the patches is near, the mesh behind them is known at the very pixel
+    uvec2 other = SCENE_HAS_OTHERS ? imageLoad(others, at).xy : uvec2(0u);
+    if (!real && sees_mesh(other.x) && (beside_nothing || beside_other || witness.kind == WITNESS)) {
+        View view = views[mesh_instances[seen_mesh_instance(other.x)].instance];
+        float depth = facet_at(other.y, view, pixel).depth;
+        if (depth < witness.depth) witness = Answer(WITNESS, depth, 0.0, false, uvec2(0u));
     }
     uvec2 healed = own;
     bool has_witness = witness.kind == WITNESS;

@@ -438,7 +438,12 @@ impl Frame<'_> {
             doubts: &t.doubts,
             counters: &b.counters,
             instances: &s.instances,
-            others: b.others.as_ref().unwrap_or(&b.visibility),
+            others: s.meshes.as_ref().zip(b.others.as_ref()).map(|(m, seen)| heal::Others {
+                seen,
+                mesh_instances: &m.instances,
+                triangles: &m.triangles,
+                positions: &m.positions,
+            }),
             dispatches: &t.dispatches,
         };
         p.heal.record(cmd, &heal);

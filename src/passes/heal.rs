@@ -56,10 +56,18 @@ pub(crate) struct Bindings<'a> {
     pub doubts: &'a Buffer,
     pub counters: &'a Buffer,
     pub instances: &'a Buffer,
-    /// Of what is no patch; any image where the scene has nothing else.
-    pub others: &'a Image,
+    /// What is no patch; `None` where the scene has nothing else.
+    pub others: Option<Others<'a>>,
     /// Its own is the fourth.
     pub dispatches: &'a Buffer,
+}
+
+/// What is no patch, in binding order.
+pub(crate) struct Others<'a> {
+    pub seen: &'a Image,
+    pub mesh_instances: &'a Buffer,
+    pub triangles: &'a Buffer,
+    pub positions: &'a Buffer,
 }
 
 impl Heal {
@@ -67,7 +75,7 @@ impl Heal {
     pub(crate) fn new(device: &Device, rational: bool, others: bool) -> Result<Self, GpuError> {
         let mut find = [Binding::Storage; 5];
         find[1] = Binding::StorageImage;
-        let mut heal = [Binding::Storage; 16];
+        let mut heal = [Binding::Storage; 19];
         heal[6] = Binding::Texels;
         heal[11] = Binding::StorageImage;
         heal[15] = Binding::StorageImage;
@@ -93,6 +101,9 @@ impl Heal {
 
     /// One thread a doubtful pixel.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
+        // the shader has these bindings in every scene, and reads them only where there are others
+        let none = Others { seen: b.visibility, mesh_instances: b.frame, triangles: b.frame, positions: b.frame };
+        let others = b.others.as_ref().unwrap_or(&none);
         let resources = [
             b.frame.into(),
             b.views.into(),
@@ -109,7 +120,10 @@ impl Heal {
             b.doubts.into(),
             b.counters.into(),
             b.instances.into(),
-            b.others.into(),
+            others.seen.into(),
+            others.mesh_instances.into(),
+            others.triangles.into(),
+            others.positions.into(),
         ];
         cmd.bind(&self.heal, &resources, &[]);
         cmd.dispatch_indirect(b.dispatches, 3 * size_of::<[u32; 3]>() as u64);

@@ -1,0 +1,41 @@
+// Where the ray through a pixel meets the plane of a triangle. Needs view.glsl and buffers
+// `uint triangles[]`, `vec3 positions[]`.
+//
+//   a + s (b - a) + t (c - a),   s, t >= 0,   s + t <= 1
+//
+// The rasteriser rounds corners to a fraction of a pixel, so the ray may pass a little beside the
+// triangle: the nearest point of the triangle counts then.
+#ifndef FACET_GLSL
+#define FACET_GLSL
+
+struct Facet {
+    vec3 ab; // sides, part coordinates
+    vec3 ac;
+    vec2 st;
+    float depth;
+};
+
+float cross2(vec2 a, vec2 b) { return a.x * b.y - a.y * b.x; }
+
+Facet facet_at(uint triangle, View view, vec2 pixel) {
+    Facet f;
+    vec3 a = positions[triangles[3u * triangle]];
+    f.ab = positions[triangles[3u * triangle + 1u]] - a;
+    f.ac = positions[triangles[3u * triangle + 2u]] - a;
+    // pixels times W, relative to the pixel: zero at the point that is sought
+    vec4 q = to_pixel(view, vec4(a, 1.0));
+    vec4 qb = to_pixel(view, vec4(f.ab, 0.0));
+    vec4 qc = to_pixel(view, vec4(f.ac, 0.0));
+    vec2 from = q.xy - pixel * q.w;
+    vec2 along_b = qb.xy - pixel * qb.w;
+    vec2 along_c = qc.xy - pixel * qc.w;
+    float area = cross2(along_b, along_c);
+    vec2 st = vec2(cross2(along_c, from), cross2(from, along_b)) / area;
+    if (area == 0.0 || any(isnan(st)) || any(isinf(st))) st = vec2(1.0 / 3.0); // edge-on
+    st = max(st, 0.0);
+    f.st = st / max(st.x + st.y, 1.0);
+    f.depth = q.z + f.st.x * qb.z + f.st.y * qc.z;
+    return f;
+}
+
+#endif
