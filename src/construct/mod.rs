@@ -10,6 +10,13 @@
 //!    profile         axis                                             curves both ways
 //! ```
 //!
+//! | from | module |
+//! |---|---|
+//! | conics, chains of Bézier segments, points in a row | [`curve`] |
+//! | closed control polygons | [`polyloop`] |
+//! | equations `S(u, v)`, as closures or as text | [`fit`] |
+//! | grids of points, pictures of heights | [`grid`] |
+//!
 //! | answer | meaning |
 //! |---|---|
 //! | `Surface` | exact: the rounding of `f64`, below `1e-12` of the size |
@@ -17,7 +24,11 @@
 //!
 //! Surfaces are made in their natural frame (a lathe turns about `z`) and placed by an affine map, which is exact.
 
+pub mod curve;
 mod error;
+pub mod fit;
+pub mod grid;
+pub mod polyloop;
 
 pub use error::ConstructError;
 
