@@ -33,6 +33,11 @@ fn finite(parts: &[(&'static str, DVec3)]) -> Result<(), ConstructError> {
     }
 }
 
+/// No plane between the vectors, or one of them zero.
+fn on_one_line(x: DVec3, y: DVec3) -> bool {
+    x.cross(y).length() <= 1e-12 * x.length() * y.length()
+}
+
 /// An increasing range of parameters.
 fn range(what: &'static str, a: f64, b: f64) -> Result<(), ConstructError> {
     let good = a.is_finite() && b.is_finite() && b > a;
@@ -62,7 +67,7 @@ pub fn line(a: DVec3, b: DVec3) -> Result<BSpline<DVec4>, ConstructError> {
 pub fn ellipse(centre: DVec3, x: DVec3, y: DVec3, from: f64, to: f64) -> Result<BSpline<DVec4>, ConstructError> {
     finite(&[("the centre", centre), ("the first radius", x), ("the second radius", y)])?;
     range("the angle of the arc", from, to)?;
-    if !(x.cross(y).length() > 1e-12 * x.length() * y.length()) {
+    if on_one_line(x, y) {
         return Err(ConstructError::ZeroLength { what: "a radius, or both are on one line: the ellipse" });
     }
     if to - from > MOST_TURNS * TAU * (1.0 + 1e-12) {
@@ -114,7 +119,7 @@ pub fn circle(
 pub fn parabola(apex: DVec3, x: DVec3, y: DVec3, from: f64, to: f64) -> Result<BSpline<DVec4>, ConstructError> {
     finite(&[("the apex", apex), ("the parabola's axis", x), ("the parabola's tangent", y)])?;
     range("the range of the parabola", from, to)?;
-    if !(x.cross(y).length() > 1e-12 * x.length() * y.length()) {
+    if on_one_line(x, y) {
         return Err(ConstructError::ZeroLength { what: "the parabola's axis or tangent, or both are on one line: it" });
     }
     // the polar form: t² becomes the product of two parameters, t their mean
@@ -134,7 +139,7 @@ pub fn hyperbola(centre: DVec3, x: DVec3, y: DVec3, from: f64, to: f64) -> Resul
     const FARTHEST: f64 = 300.0;
     finite(&[("the centre", centre), ("the hyperbola's axis", x), ("the hyperbola's tangent", y)])?;
     range("the range of the hyperbola", from, to)?;
-    if !(x.cross(y).length() > 1e-12 * x.length() * y.length()) {
+    if on_one_line(x, y) {
         return Err(ConstructError::ZeroLength {
             what: "the hyperbola's axis or tangent, or both are on one line: it",
         });
@@ -199,13 +204,16 @@ impl Parameters {
     /// # Errors
     /// Neighbours that coincide, by index; given parameters that do not increase or do not fit.
     pub fn of(&self, points: &[DVec3]) -> Result<Vec<f64>, ConstructError> {
+        if points.iter().any(|p| !p.is_finite()) {
+            return Err(ConstructError::NotFinite { what: "a point" });
+        }
         let size = points.iter().map(|p| p.abs().max_element()).fold(0.0, f64::max);
         let mut at = 0.0;
         let mut sums = |power: f64| {
             let mut all = vec![0.0];
             for (i, w) in points.windows(2).enumerate() {
                 let distance = w[0].distance(w[1]);
-                if !(distance > SAME * size) {
+                if distance <= SAME * size {
                     return Err(ConstructError::CoincidentPoints { first: i, second: i + 1 });
                 }
                 at += distance.powf(power);

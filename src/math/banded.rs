@@ -74,7 +74,7 @@ impl Banded {
             let last = (c + lower).min(n - 1);
             let size = |i: usize| self.rows[self.index(i, c)].abs();
             let pivot = (c..=last).fold(c, |best, i| if size(i) > size(best) { i } else { best });
-            if !(size(pivot) > NOTHING * largest) {
+            if size(pivot) <= NOTHING * largest || !size(pivot).is_finite() {
                 return Err(Singular(c));
             }
             let end = (c + self.upper + lower).min(n - 1);
@@ -119,8 +119,8 @@ impl Factored {
             let at = m.index(c, c);
             let end = (c + m.upper + lower).min(n - 1);
             let mut x = b[c];
-            for j in c + 1..=end {
-                x = x - b[j] * m.rows[at + j - c];
+            for (known, entry) in b[c + 1..=end].iter().zip(&m.rows[at + 1..]) {
+                x = x - *known * *entry;
             }
             b[c] = x * (1.0 / m.rows[at]);
         }

@@ -70,11 +70,12 @@ const FAINT: f64 = 1e-8;
 const NOISE: f64 = 1e-13;
 
 impl Jet2 {
-    /// Principal, Gaussian and mean curvature. `None` where `S_u` and `S_v` do not span a plane.
+    /// Principal, Gaussian and mean curvature. `None` where `S_u` and `S_v` do not span a plane; see
+    /// [`Surface::curvature`] for poles.
     pub fn curvature(&self) -> Option<Curvature> {
         let cross = self.du.cross(self.dv);
         let scale = self.du.length() * self.dv.length();
-        if !(cross.length() > 1e-12 * scale) {
+        if cross.length() <= 1e-12 * scale || !scale.is_finite() {
             return None;
         }
         let normal = cross.normalize();
@@ -127,6 +128,20 @@ impl Surface {
             b.derivatives(dv).iter().enumerate().fold(DVec4::ZERO, |s, (j, y)| s + row(j) * *y)
         };
         Jet2::from_homogeneous([at(0, 0), at(1, 0), at(0, 1), at(2, 0), at(1, 1), at(0, 2)])
+    }
+
+    /// Principal, Gaussian and mean curvature at `(u, v)`. `None` where the tangents span no plane, or one of them is
+    /// below `1e-8` of the control net's own speed there: at poles, and so near them that rounding rules.
+    pub fn curvature(&self, u: f64, v: f64) -> Option<Curvature> {
+        let jet = self.jet2(u, v);
+        let ((ku, kv), (nu, nv), (pu, pv)) = (self.knots(), self.counts(), self.degrees());
+        let (a, b) = (Basis::new(pu, ku, nu, u), Basis::new(pv, kv, nv, v));
+        let net = (b.first..=b.first + pv).flat_map(|j| &self.points()[j * nu + a.first..][..=pu]);
+        let extent = net.map(|p| p.point().distance(jet.point)).fold(0.0, f64::max);
+        let speed = |knots: &[f64], at: usize| extent / (knots[at + 1] - knots[at]);
+        let moves =
+            jet.du.length() > STILL * speed(ku, a.first + pu) && jet.dv.length() > STILL * speed(kv, b.first + pv);
+        if moves { jet.curvature() } else { None }
     }
 
     /// Point at `(u, v)`, clamped to the domain, without cutting the surface.

@@ -36,12 +36,12 @@ fn a_sphere_has_its_normal_and_curvature_everywhere() {
             assert!((n.length() - 1.0).abs() < 1e-14);
         }
         for v in [-1.4, -0.7, 0.2, 1.3] {
-            let c = s.jet2(u, v).curvature().unwrap();
+            let c = s.curvature(u, v).unwrap();
             assert!((c.most + 0.4).abs() < 1e-10 && (c.least + 0.4).abs() < 1e-10, "{c:?}");
             assert!((c.gaussian() - 0.16).abs() < 1e-10 && (c.mean() + 0.4).abs() < 1e-10);
         }
     }
-    assert!(s.jet2(0.3, FRAC_PI_2).curvature().is_none());
+    assert!(s.curvature(0.3, FRAC_PI_2).is_none() && s.curvature(0.3, -FRAC_PI_2).is_none());
 }
 
 /// A cone's tip has a limit on every generator, and it is the generator's own normal.

@@ -130,7 +130,7 @@ impl PointGrid {
             return Err(ConstructError::ZeroLength { what });
         }
         // at least a parameter that differs after rounding
-        if let Some(first) = sums.iter().position(|s| !(*s > 1e-12 * used as f64)) {
+        if let Some(first) = sums.iter().position(|s| *s <= 1e-12 * used as f64) {
             return Err(ConstructError::CoincidentPoints { first, second: first + 1 });
         }
         let scale = total / (used * used) as f64;
