@@ -19,17 +19,24 @@
 //! Sources: L. Piegl, W. Tiller, *The NURBS Book*, 2nd ed. 1997, chapters 2 to 5; G. Farin, *Curves
 //! and Surfaces for CAGD*, 5th ed. 2002, chapters 4, 5 and 13.
 
+pub mod arc;
+mod basis;
 mod bernstein;
 mod bezier;
 mod bspline;
+pub mod cubic;
 mod derivative_bound;
+mod differential;
+mod net;
 mod patch;
 mod surface;
 
+pub use basis::Basis;
 pub use bernstein::{MAX_DEGREE, binomial};
 pub use bezier::{Bezier, Span};
 pub use bspline::{BSpline, SplineError};
 pub use derivative_bound::DerivativeBound;
+pub use differential::{Curvature, Jet2};
 pub use patch::{Jet, Patch};
 pub use surface::{PatchGrid, Surface, SurfacePatch};
 

@@ -1,7 +1,9 @@
 //! The spline core against closed forms, against itself by other routes, and at its edges.
 
 mod curves;
+mod differential;
 mod errors;
+mod patches;
 mod surfaces;
 
 use glam::{DVec3, DVec4};
