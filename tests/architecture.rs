@@ -11,6 +11,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("spline", &["math"]),
     ("model", &["spline"]),
     ("trim", &["math", "spline", "model"]),
+    ("construct", &["math", "spline", "model", "trim"]),
     ("brep", &["math", "spline", "trim", "model"]),
     ("import", &["brep", "spline", "model"]),
     ("picture", &["model"]),

@@ -1,0 +1,34 @@
+//! Surfaces made from curves, equations and data, as rational B-splines: exact where a spline can be, else within a
+//! bound that is measured and returned.
+//!
+//! ```text
+//!   extrude        lathe          sweep            ruled, loft        Coons, Gordon
+//!
+//!    ┌────┐        ╭──│──╮        ╭───╮            ─────── c2         ──────────
+//!    │ │  │ d      │  │  │        │   ╰──path      ───────── c1       │  │  │  │
+//!    │ ▼  │        ╰──│──╯      profile            ──── c0            ──────────
+//!    profile         axis                                             curves both ways
+//! ```
+//!
+//! | answer | meaning |
+//! |---|---|
+//! | `Surface` | exact: the rounding of `f64`, below `1e-12` of the size |
+//! | [`Built`] | within [`Built::deviation`] of the surface described, measured |
+//!
+//! Surfaces are made in their natural frame (a lathe turns about `z`) and placed by an affine map, which is exact.
+
+mod error;
+
+pub use error::ConstructError;
+
+use crate::spline::Surface;
+
+/// A surface that may be an approximation.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Built {
+    /// The spline.
+    pub surface: Surface,
+    /// Largest distance between the spline and the surface described, at equal parameters, in model units. 0 when
+    /// the spline is the surface described.
+    pub deviation: f64,
+}
