@@ -12,9 +12,9 @@
 //! Source: L. Piegl, W. Tiller, *The NURBS Book*, 1997, sections 8.4 and 8.5.
 
 use super::curve::Curve;
-use super::law::{Axis, TURN, sin_cos};
-use super::pieces::assemble;
+use super::law::Axis;
 use super::support::{Form, Support};
+use crate::spline::arc::{assemble, revolve};
 use crate::spline::{Control, SplineError, Surface};
 use glam::{DVec3, DVec4};
 
@@ -87,34 +87,6 @@ impl Support {
     /// `profile` over `v` turned about the frame's axis over the pieces of `turns`.
     fn revolve(&self, profile: &Curve, turns: &Axis, (v0, v1): (f64, f64)) -> Result<Surface, SplineError> {
         let (degree, knots_v, profile) = assemble(&profile.beziers(v0, v1));
-        let arm = |p: &DVec4| p.truncate() - self.frame.origin * p.w;
-        let reach = profile.iter().map(|p| arm(p).length()).fold(0.0, f64::max);
-        let angles = &turns.knots;
-        let full = (angles[angles.len() - 1] - angles[0] - TURN).abs() <= 1e-12;
-        let mut points = Vec::with_capacity(profile.len() * (2 * angles.len() - 1));
-        for p in &profile {
-            let axial = self.frame.z * arm(p).dot(self.frame.z);
-            let mut radial = arm(p) - axial;
-            if radial.length() <= 1e-15 * reach {
-                radial = DVec3::ZERO; // a pole: one point, not a circle of rounding errors
-            }
-            let across = self.frame.z.cross(radial);
-            let centre = self.frame.origin * p.w + axial;
-            // weight w stands for the point (centre + spoke / w): on the circle for w = 1, where
-            // the end tangents meet for w = cos h
-            let at = |angle: f64, w: f64| {
-                let (s, c) = sin_cos(angle);
-                (centre * w + radial * c + across * s).extend(p.w * w)
-            };
-            let first = at(angles[0], 1.0);
-            points.push(first);
-            for (i, k) in angles.windows(2).enumerate() {
-                points.push(at(0.5 * (k[0] + k[1]), (0.5 * (k[1] - k[0])).cos()));
-                points.push(if full && i + 2 == angles.len() { first } else { at(k[1], 1.0) });
-            }
-        }
-        let last = angles[angles.len() - 1];
-        let knots_u = [angles[0]].into_iter().chain(angles.iter().flat_map(|k| [*k, *k])).chain([last]).collect();
-        Surface::new((2, degree), knots_u, knots_v, points)
+        revolve((degree, knots_v, &profile), (self.frame.origin, self.frame.z), &turns.knots)
     }
 }

@@ -6,9 +6,10 @@
 //!   Pieces      rational Bézier pieces       (x and y here carry the lengths)
 //! ```
 
-use super::law::{Axis, Law, TURN, sin_cos};
+use super::law::{Axis, Law, TURN};
 use super::pieces::Pieces;
 use super::{CurveGeometry, Frame};
+use crate::spline::arc::{self, sin_cos};
 use crate::spline::{Bezier, Control, Span};
 use glam::{DVec3, DVec4};
 
@@ -188,16 +189,9 @@ impl Curve {
     /// The part over `[a, b]` as rational Bézier pieces, exact; inside each the local parameter
     /// follows [`Curve::law`].
     pub fn beziers(&self, a: f64, b: f64) -> Vec<Span<Bezier<DVec4>>> {
-        let arc = |centre: DVec3, x: DVec3, y: DVec3, middle: fn(f64, f64) -> (f64, DVec3)| {
-            let pieces = Axis::new(self.law(), a, b).knots;
-            let piece = |k: &[f64]| {
-                // weights (1, cos h, 1): the middle point is where the end tangents meet
-                let (weight, at) = middle(0.5 * (k[0] + k[1]), 0.5 * (k[1] - k[0]));
-                let top = (centre * weight + x * at.x + y * at.y).extend(weight);
-                let end = |t: f64| DVec4::from_point(self.point(t), 1.0);
-                Span { start: k[0], end: k[1], piece: Bezier { points: vec![end(k[0]), top, end(k[1])] } }
-            };
-            pieces.windows(2).map(piece).collect()
+        let each = |piece: &dyn Fn(f64, f64) -> Bezier<DVec4>| {
+            let knots = Axis::new(self.law(), a, b).knots;
+            knots.windows(2).map(|k| Span { start: k[0], end: k[1], piece: piece(k[0], k[1]) }).collect()
         };
         let single = |points: Vec<DVec4>| vec![Span { start: a, end: b, piece: Bezier { points } }];
         let h = |p: DVec3| DVec4::from_point(p, 1.0);
@@ -207,12 +201,13 @@ impl Curve {
                 let ((pa, da), pb) = (self.jet(a), self.point(b));
                 single(vec![h(pa), h(pa + da * (0.5 * (b - a))), h(pb)])
             }
-            Self::Ellipse { centre, x, y } => {
-                arc(*centre, *x, *y, |m, h| (h.cos(), DVec3::new(sin_cos(m).1, sin_cos(m).0, 0.0)))
-            }
-            Self::Hyperbola { centre, x, y } => {
-                arc(*centre, *x, *y, |m, h| (h.cosh(), DVec3::new(m.cosh(), m.sinh(), 0.0)))
-            }
+            Self::Ellipse { centre, x, y } => each(&|a, b| arc::arc(*centre, *x, *y, a, b)),
+            Self::Hyperbola { centre, x, y } => each(&|a, b| {
+                // weights (1, cosh h, 1): the middle point is where the end tangents meet
+                let (middle, weight) = (0.5 * (a + b), (0.5 * (b - a)).cosh());
+                let top = (centre * weight + x * middle.cosh() + y * middle.sinh()).extend(weight);
+                Bezier { points: vec![h(self.point(a)), top, h(self.point(b))] }
+            }),
             Self::Pieces(p) => p.between(a, b),
         }
     }

@@ -13,6 +13,7 @@
 //!
 //! Source: L. Piegl, W. Tiller, *The NURBS Book*, 1997, section 7.3.
 
+use crate::spline::arc;
 use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// The kind of a parameter.
@@ -44,10 +45,7 @@ impl Axis {
             Law::Angle => FRAC_PI_2,
             Law::Hyperbolic => 2.0,
         };
-        let count = ((hi - lo) / widest - 1e-9).ceil().max(1.0) as usize;
-        let mut knots: Vec<f64> = (0..count).map(|i| lo + (hi - lo) * (i as f64 / count as f64)).collect();
-        knots.push(hi);
-        Self { law, knots }
+        Self { law, knots: arc::pieces(lo, hi, widest) }
     }
 
     /// The piece that `x` lies in; the end pieces reach beyond the range.
@@ -83,21 +81,6 @@ impl Axis {
             Law::Angle => m + 2.0 * (half * (0.5 * h).tan()).atan(),
             _ => m + 2.0 * (half * (0.5 * h).tanh()).clamp(-1.0 + f64::EPSILON, 1.0 - f64::EPSILON).atanh(),
         }
-    }
-}
-
-/// `(sin x, cos x)`, exact at multiples of a quarter turn, so that poles and seams meet bit for bit.
-pub(super) fn sin_cos(x: f64) -> (f64, f64) {
-    let quarters = x / FRAC_PI_2;
-    let nearest = quarters.round();
-    if (quarters - nearest).abs() > 1e-15 * quarters.abs().max(1.0) {
-        return x.sin_cos();
-    }
-    match nearest.rem_euclid(4.0) as u8 {
-        0 => (0.0, 1.0),
-        1 => (1.0, 0.0),
-        2 => (0.0, -1.0),
-        _ => (-1.0, 0.0),
     }
 }
 

@@ -120,26 +120,3 @@ pub(super) fn creases(degree: usize, knots: &[f64]) -> Vec<f64> {
         .map(|run| run[0])
         .collect()
 }
-
-/// Pieces as one spline: a common degree, weights scaled so that neighbours share their joint bit
-/// for bit. Returns the degree, the knot vector and the control points.
-pub(super) fn assemble(spans: &[Span<Bezier<DVec4>>]) -> (usize, Vec<f64>, Vec<DVec4>) {
-    let degree = spans.iter().map(|s| s.piece.degree()).max().unwrap_or(1);
-    let mut knots = vec![spans[0].start; degree + 1];
-    let mut points: Vec<DVec4> = Vec::new();
-    for s in spans {
-        let mut piece = s.piece.clone();
-        while piece.degree() < degree {
-            piece = piece.elevated();
-        }
-        if let Some(last) = points.last().copied() {
-            let scale = last.w / piece.points[0].w;
-            points.extend(piece.points[1..].iter().map(|p| *p * scale));
-        } else {
-            points = piece.points;
-        }
-        knots.extend([s.end].repeat(degree));
-    }
-    knots.push(spans[spans.len() - 1].end);
-    (degree, knots, points)
-}

@@ -1,7 +1,8 @@
 //! A B-spline surface as a support: inversion, closedness, collapsed sides, repetition.
 
-use super::pieces::{assemble, creases};
+use super::pieces::creases;
 use super::support::Pole;
+use crate::spline::arc::assemble;
 use crate::spline::{BSpline, Control, Jet, PatchGrid, Span, SplineError, Surface};
 use glam::{DVec2, DVec3, DVec4};
 

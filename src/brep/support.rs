@@ -15,11 +15,12 @@
 //! ```
 
 use super::curve::{Curve, repeated};
-use super::law::{Law, TURN, sin_cos};
+use super::law::{Law, TURN};
 use super::spline::SplineForm;
 use super::{Frame, SurfaceGeometry};
 use crate::model::SurfaceKind;
 use crate::spline::Jet;
+use crate::spline::arc::sin_cos;
 use glam::{DVec2, DVec3};
 use std::f64::consts::FRAC_PI_2;
 

@@ -19,6 +19,7 @@
 //! Sources: L. Piegl, W. Tiller, *The NURBS Book*, 2nd ed. 1997, chapters 2 to 5; G. Farin, *Curves
 //! and Surfaces for CAGD*, 5th ed. 2002, chapters 4, 5 and 13.
 
+pub mod arc;
 mod bernstein;
 mod bezier;
 mod bspline;

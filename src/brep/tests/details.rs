@@ -1,7 +1,8 @@
 //! Details that whole faces do not show, and loops that cannot be.
 
-use super::super::law::{Axis, Law, sin_cos};
+use super::super::law::{Axis, Law};
 use super::*;
+use crate::spline::arc::sin_cos;
 
 #[test]
 fn angles_become_half_tangents_inside_a_piece() {
