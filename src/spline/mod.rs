@@ -25,6 +25,7 @@ mod bezier;
 mod bspline;
 mod derivative_bound;
 mod patch;
+mod refine;
 mod surface;
 
 pub use bernstein::{MAX_DEGREE, binomial};

@@ -2,6 +2,7 @@
 
 mod curves;
 mod errors;
+mod refine;
 mod surfaces;
 
 use glam::{DVec3, DVec4};
