@@ -1,5 +1,6 @@
 //! What cannot be built, by name.
 
+use crate::math::banded::Singular;
 use crate::model::FaceError;
 use crate::spline::SplineError;
 
@@ -67,6 +68,18 @@ pub enum ConstructError {
     /// A tolerance that the largest allowed number of pieces does not reach.
     #[error("a deviation of {asked:e} was asked for and {reached:e} reached with {pieces} pieces")]
     Bound { asked: f64, reached: f64, pieces: usize },
+    /// A surface without a finite value.
+    #[error("the surface has no finite value at (u, v) = ({u}, {v})")]
+    NotFiniteAt { u: f64, v: f64 },
+    /// An expression that cannot be read.
+    #[error("{expression}, column {column}: {message}")]
+    Expression { expression: &'static str, column: usize, message: String },
+    /// A cell of a table, or a picture, that holds no data.
+    #[error("{source_name}: {message}")]
+    Data { source_name: String, message: String },
+    /// Parameters so uneven that rounding leaves no solution.
+    #[error(transparent)]
+    System(#[from] Singular),
     /// The numbers do not make a spline.
     #[error(transparent)]
     Spline(#[from] SplineError),

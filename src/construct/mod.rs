@@ -17,9 +17,29 @@
 //!
 //! Surfaces are made in their natural frame (a lathe turns about `z`) and placed by an affine map, which is exact.
 
+mod compat;
+mod coons;
 mod error;
+mod extrude;
+mod frame;
+mod gordon;
+mod lathe;
+mod loft;
+mod motion;
+mod ruled;
+mod sweep;
+mod tube;
 
+pub use compat::compatible;
+pub use coons::{Boundary, coons};
 pub use error::ConstructError;
+pub use extrude::extrude;
+pub use gordon::{Network, gordon};
+pub use lathe::lathe;
+pub use loft::loft;
+pub use ruled::ruled;
+pub use sweep::Sweep;
+pub use tube::tube;
 
 use crate::spline::Surface;
 

@@ -20,14 +20,17 @@
 //! and Surfaces for CAGD*, 5th ed. 2002, chapters 4, 5 and 13.
 
 pub mod arc;
+mod basis;
 mod bernstein;
 mod bezier;
 mod bspline;
+pub mod cubic;
 mod derivative_bound;
 mod patch;
 mod refine;
 mod surface;
 
+pub use basis::Basis;
 pub use bernstein::{MAX_DEGREE, binomial};
 pub use bezier::{Bezier, Span};
 pub use bspline::{BSpline, SplineError};
