@@ -20,9 +20,8 @@
 //! Surfaces for CAGD*, 2002, section 6.10; the factor that uses them from D. Filip, R. Magedson,
 //! R. Markot, *Surface algorithms using bounds on derivatives*, CAGD 3, 1986.
 
-use super::{Control, Patch, binomial};
-use glam::{DVec3, DVec4};
-use std::ops::{Add, Mul, Sub};
+use super::Patch;
+use super::net::nets;
 
 /// Pieces along each parameter on which the hulls are taken: at 4, the bound of a quarter circle's
 /// `|S_uu|` is within 6 % of the truth, at 1 within 60 %.
@@ -99,98 +98,10 @@ fn numerators(patch: &Patch) -> (f64, f64, f64) {
     (a.largest(), uu, uv)
 }
 
-/// `P` and `w`. Derivatives do not change when the surface is moved; moved to the origin, less cancels.
-fn nets(patch: &Patch) -> (Net<DVec3>, Net<f64>) {
-    let centre = patch.points[patch.points.len() / 2].point();
-    let (n, k) = (patch.degree_u, patch.degree_v);
-    let position = Net { n, k, values: patch.points.iter().map(|&p: &DVec4| p.truncate() - centre * p.w).collect() };
-    let weight = Net { n, k, values: patch.points.iter().map(|p| p.w).collect() };
-    (position, weight)
-}
-
-/// A tensor-product Bernstein polynomial, `u` fastest.
-#[derive(Clone)]
-struct Net<T> {
-    n: usize,
-    k: usize,
-    values: Vec<T>,
-}
-
-trait Value: Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self> {}
-impl Value for f64 {}
-impl Value for DVec3 {}
-
-impl<T: Value> Net<T> {
-    fn at(&self, i: usize, j: usize) -> T {
-        self.values[j * (self.n + 1) + i]
-    }
-
-    fn build(n: usize, k: usize, value: impl Fn(usize, usize) -> T) -> Self {
-        let values = (0..=k).flat_map(|j| (0..=n).map(move |i| (i, j))).map(|(i, j)| value(i, j)).collect();
-        Self { n, k, values }
-    }
-
-    /// A constant has degree 0 and derivative 0 of degree 0.
-    fn du(&self) -> Self {
-        if self.n == 0 {
-            return Self::build(0, self.k, |_, _| T::default());
-        }
-        Self::build(self.n - 1, self.k, |i, j| (self.at(i + 1, j) - self.at(i, j)) * self.n as f64)
-    }
-
-    fn dv(&self) -> Self {
-        if self.k == 0 {
-            return Self::build(self.n, 0, |_, _| T::default());
-        }
-        Self::build(self.n, self.k - 1, |i, j| (self.at(i, j + 1) - self.at(i, j)) * self.k as f64)
-    }
-
-    fn scaled(&self, s: f64) -> Self {
-        Self::build(self.n, self.k, |i, j| self.at(i, j) * s)
-    }
-
-    fn minus(&self, other: &Self) -> Self {
-        debug_assert_eq!((self.n, self.k), (other.n, other.k), "numerators of equal degree");
-        Self::build(self.n, self.k, |i, j| self.at(i, j) - other.at(i, j))
-    }
-
-    /// Product with a scalar net: coefficient `m` of degree `n1 + n2` is
-    /// `sum C(n1, a) C(n2, m - a) / C(n1 + n2, m) f_a g_{m-a}`, in each direction.
-    fn times(&self, other: &Net<f64>) -> Self {
-        let (n, k) = (self.n + other.n, self.k + other.k);
-        let share = |n1: usize, n2: usize| -> Vec<Vec<f64>> {
-            (0..=n1)
-                .map(|a| {
-                    (0..=n2).map(|b| binomial(n1, a) * binomial(n2, b) / binomial(n1 + n2, a + b)).collect::<Vec<_>>()
-                })
-                .collect()
-        };
-        let (in_u, in_v) = (share(self.n, other.n), share(self.k, other.k));
-        let mut product = Self { n, k, values: vec![T::default(); (n + 1) * (k + 1)] };
-        for (j1, shares_v) in in_v.iter().enumerate() {
-            for (j2, &sv) in shares_v.iter().enumerate() {
-                for (i1, shares_u) in in_u.iter().enumerate() {
-                    let f = self.at(i1, j1) * sv;
-                    for (i2, &su) in shares_u.iter().enumerate() {
-                        let at = (j1 + j2) * (n + 1) + i1 + i2;
-                        product.values[at] = product.values[at] + f * (su * other.at(i2, j2));
-                    }
-                }
-            }
-        }
-        product
-    }
-}
-
-impl Net<DVec3> {
-    fn largest(&self) -> f64 {
-        self.values.iter().map(|v| v.length()).fold(0.0, f64::max)
-    }
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
+    use glam::DVec4;
     use std::f64::consts::SQRT_2;
 
     fn quarter_cylinder(radius: f64, height: f64) -> Patch {

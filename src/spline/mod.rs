@@ -26,6 +26,8 @@ mod bezier;
 mod bspline;
 pub mod cubic;
 mod derivative_bound;
+mod differential;
+mod net;
 mod patch;
 mod refine;
 mod surface;
@@ -35,6 +37,7 @@ pub use bernstein::{MAX_DEGREE, binomial};
 pub use bezier::{Bezier, Span};
 pub use bspline::{BSpline, SplineError};
 pub use derivative_bound::DerivativeBound;
+pub use differential::{Curvature, Jet2};
 pub use patch::{Jet, Patch};
 pub use surface::{PatchGrid, Surface, SurfacePatch};
 

@@ -4,6 +4,7 @@
 
 mod errors;
 mod exact;
+mod offsets;
 mod skins;
 mod sweeps;
 
