@@ -28,6 +28,7 @@ mod loft;
 mod motion;
 mod offset;
 mod ruled;
+mod solid;
 mod sweep;
 mod tube;
 
@@ -40,6 +41,7 @@ pub use lathe::lathe;
 pub use loft::loft;
 pub use offset::offset;
 pub use ruled::ruled;
+pub use solid::{Chain, extruded_solid, lathed_solid};
 pub use sweep::Sweep;
 pub use tube::tube;
 

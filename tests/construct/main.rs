@@ -6,6 +6,7 @@ mod errors;
 mod exact;
 mod offsets;
 mod skins;
+mod solids;
 mod sweeps;
 
 use glam::{DVec2, DVec3, DVec4};
