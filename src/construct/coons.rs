@@ -45,7 +45,7 @@ pub fn coons(boundary: Boundary, tolerance: f64) -> Result<Surface, ConstructErr
     let (b, t, l, r) = (ends(bottom), ends(top), ends(left), ends(right));
     for (corner, (p, q)) in [(b.0, l.0), (b.1, r.0), (t.0, l.1), (t.1, r.1)].into_iter().enumerate() {
         let gap = p.distance(q);
-        if !(gap <= tolerance) {
+        if gap > tolerance || tolerance.is_nan() {
             return Err(ConstructError::CornerMismatch { corner, gap });
         }
     }

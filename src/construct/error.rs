@@ -74,10 +74,13 @@ pub enum ConstructError {
     /// A surface without a finite value.
     #[error("the surface has no finite value at (u, v) = ({u}, {v})")]
     NotFiniteAt { u: f64, v: f64 },
+    /// A point of a grid that is a NaN or an infinity.
+    #[error("the point in row {row}, column {column} of the grid (from 0) is not finite")]
+    PointNotFinite { row: usize, column: usize },
     /// An expression that cannot be read.
     #[error("{expression}, column {column}: {message}")]
     Expression { expression: &'static str, column: usize, message: String },
-    /// A cell of a table, or a picture, that holds no data.
+    /// A table or a picture that holds no grid; `source_name` says where.
     #[error("{source_name}: {message}")]
     Data { source_name: String, message: String },
     /// Parameters so uneven that rounding leaves no solution.

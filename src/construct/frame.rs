@@ -60,7 +60,7 @@ impl Path {
             // no stop at the ends of pieces or at points inside
             for k in 0..=16 {
                 let x = f64::from(k) / 16.0;
-                if !(this.local(i, x).first.length() > STILL * size) {
+                if this.local(i, x).first.length() <= STILL * size {
                     return Err(ConstructError::Cusp { what, parameter: s.start + (s.end - s.start) * x });
                 }
             }

@@ -51,7 +51,7 @@ pub fn gordon(network: Network, tolerance: f64) -> Result<Surface, ConstructErro
     for (k, c) in c.iter().enumerate() {
         for (l, d) in d.iter().enumerate() {
             let gap = c.point(network.u[l]).distance(d.point(network.v[k]));
-            if !(gap <= tolerance) {
+            if gap > tolerance || tolerance.is_nan() {
                 return Err(ConstructError::NetworkMismatch { u_curve: k, v_curve: l, gap });
             }
         }
@@ -96,7 +96,7 @@ fn parameters(curves: &'static str, count: usize, what: &'static str, at: &[f64]
     if at.len() != count {
         return Err(ConstructError::Count { what, got: at.len(), needed: count });
     }
-    if let Some(index) = (1..count).find(|&i| !(at[i] > at[i - 1])) {
+    if let Some(index) = (1..count).find(|&i| at[i] <= at[i - 1] || at[i].is_nan()) {
         return Err(ConstructError::Order { what, index });
     }
     for (value, must) in [(at[0], 0.0), (at[count - 1], 1.0)] {

@@ -148,7 +148,7 @@ impl<'a> Motion<'a> {
                     end.0,
                 ];
                 let error = MARGIN * self.error(i, (a, b), &cubic, hull);
-                if !(error <= tolerance) {
+                if error > tolerance || error.is_nan() {
                     let middle = 0.5 * (a + b);
                     count += 1;
                     if count > MOST_PIECES || middle <= a || middle >= b {

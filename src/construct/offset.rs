@@ -64,7 +64,8 @@ pub fn offset(surface: &Surface, distance: f64, tolerance: f64) -> Result<Built,
                 split_v[*j] |= along_v >= along_u || 2.0 * MARGIN * along_v > tolerance;
             }
         }
-        (u.halve(&split_u), v.halve(&split_v));
+        u.halve(&split_u);
+        v.halve(&split_v);
         let pieces = u.sites.len() * v.sites.len();
         if pieces > MOST_CELLS || tolerance < rounding {
             return Err(ConstructError::Bound { asked: tolerance, reached: deviation, pieces });
@@ -184,7 +185,12 @@ impl Source<'_> {
 
     /// Neither principal centre of curvature is reached at `(u, v)`.
     fn fold(&self, u: f64, v: f64) -> Result<(), ConstructError> {
-        let Some(c) = self.surface.jet2(u, v).curvature() else { return Ok(()) };
+        let jet = self.surface.jet2(u, v);
+        let ((u0, u1), (v0, v1)) = self.surface.domain();
+        let (along_u, along_v) = (jet.du.length() * (u1 - u0), jet.dv.length() * (v1 - v0));
+        // near a pole rounding rules the curvature
+        let sound = along_u.min(along_v) > 1e-6 * along_u.max(along_v);
+        let Some(c) = jet.curvature().filter(|_| sound) else { return Ok(()) };
         for k in [c.most, c.least] {
             if self.distance * k >= 1.0 {
                 return Err(ConstructError::FoldsAt { u, v, reach: self.distance.abs(), radius: 1.0 / k.abs() });

@@ -74,7 +74,7 @@ impl Banded {
             let last = (c + lower).min(n - 1);
             let size = |i: usize| self.rows[self.index(i, c)].abs();
             let pivot = (c..=last).fold(c, |best, i| if size(i) > size(best) { i } else { best });
-            if !(size(pivot) > NOTHING * largest) {
+            if size(pivot) <= NOTHING * largest || size(pivot).is_nan() {
                 return Err(Singular(c));
             }
             let end = (c + self.upper + lower).min(n - 1);
@@ -119,8 +119,8 @@ impl Factored {
             let at = m.index(c, c);
             let end = (c + m.upper + lower).min(n - 1);
             let mut x = b[c];
-            for j in c + 1..=end {
-                x = x - b[j] * m.rows[at + j - c];
+            for (known, entry) in b[c + 1..=end].iter().zip(&m.rows[at + 1..]) {
+                x = x - *known * *entry;
             }
             b[c] = x * (1.0 / m.rows[at]);
         }
@@ -180,12 +180,12 @@ mod tests {
             let mut a = Banded::new(n, lower, upper);
             let mut b = vec![0.0; n];
             let mut next = entries.iter();
-            for i in 0..n {
+            for (i, sum) in b.iter_mut().enumerate() {
                 for j in i.saturating_sub(lower)..(i + upper + 1).min(n) {
                     // heavier beside the diagonal than on it, so that rows are exchanged
                     let e = next.next().unwrap() + if j + 1 == i { 3.0 } else if j == i { 2.0 } else { 0.0 };
                     a.add(i, j, e);
-                    b[i] += e * x[j];
+                    *sum += e * x[j];
                 }
             }
             if let Ok(f) = a.factor() {

@@ -61,16 +61,20 @@ impl Curvature {
 /// `|S_u × S_v|` below this share of `|S_u| |S_v|` does not give a direction by itself.
 const FLAT: f64 = 1e-6;
 /// A derivative below this share of its largest value over the patch is mostly rounding.
-const STILL: f64 = 1e-7;
-/// Rounding of the net of normals, as a share of the product of its factors.
-const NOISE: f64 = 1e-12;
+const STILL: f64 = 1e-8;
+/// A Taylor term of the normals below this share of the product of its factors gives way to the next one. Rounding
+/// turns a term of the share `x` by `1e-16 / x`, leaving it out turns the normal by about `x`: the square root of the
+/// rounding balances both.
+const FAINT: f64 = 1e-8;
+/// Below this share all is rounding; a patch that nowhere rises above [`FAINT`] is asked again down to here.
+const NOISE: f64 = 1e-13;
 
 impl Jet2 {
     /// Principal, Gaussian and mean curvature. `None` where `S_u` and `S_v` do not span a plane.
     pub fn curvature(&self) -> Option<Curvature> {
         let cross = self.du.cross(self.dv);
         let scale = self.du.length() * self.dv.length();
-        if !(cross.length() > 1e-12 * scale) {
+        if cross.length() <= 1e-12 * scale || cross.is_nan() {
             return None;
         }
         let normal = cross.normalize();
@@ -158,7 +162,8 @@ impl Patch {
     /// from inside the patch: across the side on a collapsed side, along the diagonal at a corner. `None` only when
     /// the patch has no area at all near the point.
     ///
-    /// Accuracy: rounding where the derivatives are sound; at a limit `1e-12` over the share of the leading term.
+    /// Accuracy: rounding where the derivatives are sound, `1e-12` at a limit, `1e-7` in between (closer to a pole than
+    /// `1e-6` of the patch).
     pub fn normal(&self, u: f64, v: f64) -> Option<DVec3> {
         let jet = self.jet(u, v);
         let cross = jet.du.cross(jet.dv);
@@ -176,25 +181,21 @@ impl Patch {
         let ((ru, flip_u), (rv, flip_v)) = (range(u), range(v));
         let piece = self.rectangle(ru, rv);
         let (a, b) = numerators(&piece);
-        let noise = NOISE * a.largest() * b.largest();
+        let scale = a.largest() * b.largest();
         let net = a.cross(&b);
         let at = |i: usize, j: usize| {
             let (i, j) = (if flip_u { net.n - i } else { i }, if flip_v { net.k - j } else { j });
             net.at(i, j)
         };
         // along the diagonal s = t the terms of one order add up, each with its binomials
-        for order in 0..=net.n + net.k {
-            let mut sum = DVec3::ZERO;
-            let mut share = 0.0;
-            for i in order.saturating_sub(net.k)..=order.min(net.n) {
+        let term = |order: usize| {
+            (order.saturating_sub(net.k)..=order.min(net.n)).fold((DVec3::ZERO, 0.0), |(sum, share), i| {
                 let weight = binomial(net.n, i) * binomial(net.k, order - i);
-                sum += at(i, order - i) * weight;
-                share += weight;
-            }
-            if sum.length() > noise * share {
-                return sum.try_normalize();
-            }
-        }
-        None
+                (sum + at(i, order - i) * weight, share + weight)
+            })
+        };
+        let terms: Vec<(DVec3, f64)> = (0..=net.n + net.k).map(term).collect();
+        let above = |least: f64| terms.iter().find(|(sum, share)| sum.length() > least * scale * share);
+        above(FAINT).or_else(|| above(NOISE)).and_then(|(sum, _)| sum.try_normalize())
     }
 }
