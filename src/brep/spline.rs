@@ -229,8 +229,7 @@ impl SplineForm {
             surface = repeat_u(&surface, range[0])?;
         }
         if leaves(1) {
-            let turned = transposed(&surface).map_err(Some)?;
-            surface = transposed(&repeat_u(&turned, range[1])?).map_err(Some)?;
+            surface = repeat_u(&surface.transposed(), range[1])?.transposed();
         }
         Ok(surface)
     }
@@ -269,14 +268,6 @@ fn repeat_u(surface: &Surface, (lo, hi): (f64, f64)) -> Result<Surface, Option<S
         points.extend(p);
     }
     Surface::new(surface.degrees(), knots, surface.knots().1.to_vec(), points).map_err(Some)
-}
-
-/// `u` and `v` exchanged.
-fn transposed(s: &Surface) -> Result<Surface, SplineError> {
-    let (nu, nv) = s.counts();
-    let (du, dv) = s.degrees();
-    let points = (0..nu).flat_map(|i| (0..nv).map(move |j| s.points()[j * nu + i])).collect();
-    Surface::new((dv, du), s.knots().1.to_vec(), s.knots().0.to_vec(), points)
 }
 
 /// Weights of the two sides along `u` stand in one ratio (within `1e-9`), so that copies can be

@@ -65,6 +65,9 @@ pub enum ConstructError {
     /// A surface that would fold over itself.
     #[error("the surface folds at {parameter}: it reaches {reach:e} towards a centre of curvature {radius:e} away")]
     Folds { parameter: f64, reach: f64, radius: f64 },
+    /// The same, at a point of a surface.
+    #[error("the surface folds at ({u}, {v}): it reaches {reach:e} towards a centre of curvature {radius:e} away")]
+    FoldsAt { u: f64, v: f64, reach: f64, radius: f64 },
     /// A tolerance that the largest allowed number of pieces does not reach.
     #[error("a deviation of {asked:e} was asked for and {reached:e} reached with {pieces} pieces")]
     Bound { asked: f64, reached: f64, pieces: usize },

@@ -24,13 +24,37 @@
 //!
 //! Surfaces are made in their natural frame (a lathe turns about `z`) and placed by an affine map, which is exact.
 
+mod compat;
+mod coons;
 pub mod curve;
 mod error;
+mod extrude;
 pub mod fit;
+mod frame;
+mod gordon;
 pub mod grid;
+mod lathe;
+mod loft;
+mod motion;
+mod offset;
 pub mod polyloop;
+mod ruled;
+mod solid;
+mod sweep;
+mod tube;
 
+pub use compat::compatible;
+pub use coons::{Boundary, coons};
 pub use error::ConstructError;
+pub use extrude::extrude;
+pub use gordon::{Network, gordon};
+pub use lathe::lathe;
+pub use loft::loft;
+pub use offset::offset;
+pub use ruled::ruled;
+pub use solid::{Chain, extruded_solid, lathed_solid};
+pub use sweep::Sweep;
+pub use tube::tube;
 
 use crate::spline::Surface;
 

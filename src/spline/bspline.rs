@@ -39,9 +39,9 @@ pub enum SplineError {
 /// non-decreasing and finite, interior multiplicity at most the degree, weights positive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct BSpline<P> {
-    degree: usize,
-    knots: Vec<f64>,
-    points: Vec<P>,
+    pub(super) degree: usize,
+    pub(super) knots: Vec<f64>,
+    pub(super) points: Vec<P>,
 }
 
 impl<P: Control> BSpline<P> {

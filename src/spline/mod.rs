@@ -29,6 +29,7 @@ mod derivative_bound;
 mod differential;
 mod net;
 mod patch;
+mod refine;
 mod surface;
 
 pub use basis::Basis;

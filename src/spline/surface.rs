@@ -62,6 +62,15 @@ impl Surface {
         Ok(Self { degree_u: degrees.0, degree_v: degrees.1, knots_u, knots_v, points })
     }
 
+    /// From parts that are known to keep the invariants.
+    pub(super) fn with_net(
+        (degree_u, degree_v): (usize, usize),
+        (knots_u, knots_v): (&[f64], &[f64]),
+        points: Vec<DVec4>,
+    ) -> Self {
+        Self { degree_u, degree_v, knots_u: knots_u.to_vec(), knots_v: knots_v.to_vec(), points }
+    }
+
     /// Degrees along `u` and `v`.
     pub fn degrees(&self) -> (usize, usize) {
         (self.degree_u, self.degree_v)

@@ -4,6 +4,7 @@ mod curves;
 mod differential;
 mod errors;
 mod patches;
+mod refine;
 mod surfaces;
 
 use glam::{DVec3, DVec4};
