@@ -143,7 +143,7 @@ void main() {
         ivec2 beside = at + ivec2(sign(RING[k]));
         if (any(lessThan(beside, ivec2(0))) || any(greaterThanEqual(beside, ivec2(frame.size)))) continue;
         uvec2 seen = imageLoad(visibility, beside).xy;
-        if ((seen.x & DOUBTFUL) != 0u) continue;
+        if ((seen.x & DOUBTFUL) != 0u || sees_solid(seen.x)) continue;
         if (sees_nothing(seen.x)) {
             beside_nothing = true;
             continue;

@@ -44,6 +44,7 @@ vec3 normal_of(Patch patch_, Jet jet, vec2 uv) {
 
 void main() {
     uvec2 seen = imageLoad(visibility, ivec2(gl_FragCoord.xy)).xy;
+    if (sees_solid(seen.x)) discard; // resolve_solids.frag
     if (sees_nothing(seen.x)) {
         if (frame.background.a < 0.0) discard; // the host keeps its picture
         out_colour = encode(frame.background, frame.encode_srgb);

@@ -2,12 +2,12 @@
 //!
 //! ```text
 //!   by the scene     taus, factors, counts and starts per item; per strip, face and curve if trimmed
-//!   by the picture   visibility, depth
-//!   by the view      sub-patches, draws, rows, intercepts, doubts: a pass that runs out says so in
+//!   by the picture   visibility, depth; per tile and block of tiles if there are Boolean solids
+//!   by the view      sub-patches, draws, rows, intercepts, doubts, leaves in tiles: a pass that runs out says so in
 //!                    Counters.failed, and the next frame gets what it would have needed
 //! ```
 
-use crate::abi::{Counters, Factors, SubPatch};
+use crate::abi::{BLOCK, Counters, Factors, Rect, SubPatch, TILE, TileLeaf};
 use crate::gpu::{Buffer, Device, GpuError, Image, ImageInfo, Pool};
 use crate::passes::scan;
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
@@ -22,6 +22,8 @@ pub(crate) struct Counts {
     pub strips: u32,
     pub curves: u32,
     pub face_instances: u32,
+    /// Leaves of Boolean solids.
+    pub leaves: u32,
     pub trimmed: bool,
 }
 
@@ -33,13 +35,20 @@ impl Counts {
             strips: data.strip_count,
             curves: data.curve_items.len() as u32,
             face_instances: data.face_instances.len() as u32,
+            leaves: data.solids.leaves.len() as u32,
             trimmed: data.has_trimmed,
         }
     }
 
     /// Whether one dispatch covers each of them.
     pub(crate) fn check(self) -> Result<(), TooMany> {
-        let all = [("patches", self.items), ("cells", self.cells), ("v-strips", self.strips), ("curves", self.curves)];
+        let all = [
+            ("patches", self.items),
+            ("cells", self.cells),
+            ("v-strips", self.strips),
+            ("curves", self.curves),
+            ("primitives", self.leaves),
+        ];
         match all.into_iter().find(|(_, count)| *count > MOST_THREADS) {
             Some((what, count)) => Err(TooMany { what, count, most: MOST_THREADS }),
             None => Ok(()),
@@ -74,6 +83,8 @@ pub(crate) struct Capacities {
     pub rows: u32,
     pub intercepts: u32,
     pub doubts: u32,
+    pub block_leaves: u32,
+    pub tile_leaves: u32,
 }
 
 /// Bits of [`Counters::failed`], as in `scene.glsl`.
@@ -89,6 +100,8 @@ impl Capacities {
             rows: trimmed * (1 << 16).max(2 * counts.strips).min(MOST_ROWS),
             intercepts: trimmed * (1 << 18).max(4 * counts.strips),
             doubts: trimmed * (1 << 14),
+            block_leaves: counts.leaves.saturating_mul(4),
+            tile_leaves: if counts.leaves > 0 { counts.leaves.saturating_mul(16).max(1 << 14) } else { 0 },
         }
     }
 
@@ -113,6 +126,8 @@ impl Capacities {
             rows: room(self.rows, c.wanted_rows, MOST_ROWS),
             intercepts: room(self.intercepts, c.intercepts, range / size_of::<u32>() as u32),
             doubts: room(self.doubts, c.doubts, range / size_of::<u32>() as u32),
+            block_leaves: room(self.block_leaves, c.block_leaves, range / size_of::<u32>() as u32),
+            tile_leaves: room(self.tile_leaves, c.tile_leaves, range / size_of::<TileLeaf>() as u32),
         })
     }
 }
@@ -132,6 +147,7 @@ pub(crate) struct Buffers {
     pub draws: Buffer,
     pub counters: Buffer,
     pub trim: Option<TrimBuffers>,
+    pub solids: Option<SolidBuffers>,
     pub visibility: Image,
     pub depth: Image,
 }
@@ -152,6 +168,20 @@ pub(crate) struct TrimBuffers {
     pub doubts: Buffer,
 }
 
+/// Which leaves of Boolean solids each part of the picture sees.
+pub(crate) struct SolidBuffers {
+    pub blocks: u32,
+    pub tiles: u32,
+    pub rects: Buffer,
+    pub block_counts: Buffer,
+    pub block_starts: Buffer,
+    pub block_leaves: Buffer,
+    pub tile_counts: Buffer,
+    pub tile_starts: Buffer,
+    pub tile_leaves: Buffer,
+    pub tile_entries: Buffer,
+}
+
 impl Buffers {
     pub(crate) fn new(
         device: &Device,
@@ -168,7 +198,9 @@ impl Buffers {
             Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })
         };
         let n = counts.items;
-        let scanned = (2 * n).max(counts.strips).max(counts.curves).max(capacities.rows);
+        let across = |side: u32| (size.0.div_ceil(side) * size.1.div_ceil(side)) * u32::from(counts.leaves > 0);
+        let (tiles, blocks) = (across(TILE), across(TILE * BLOCK));
+        let scanned = (2 * n).max(counts.strips).max(counts.curves).max(capacities.rows).max(tiles);
         let draw_bytes = 2 * u64::from(capacities.draws) * size_of::<vk::DrawIndirectCommand>() as u64;
         Ok(Self {
             counts,
@@ -199,6 +231,22 @@ impl Buffers {
                         row_total: words("trim row total", 1)?,
                         intercepts: words("trim intercepts", capacities.intercepts)?,
                         doubts: words("trim doubts", capacities.doubts)?,
+                    })
+                })
+                .transpose()?,
+            solids: (counts.leaves > 0)
+                .then(|| {
+                    Ok(SolidBuffers {
+                        blocks,
+                        tiles,
+                        rects: structs("solid rects", counts.leaves, size_of::<Rect>())?,
+                        block_counts: words("solid block counts", blocks)?,
+                        block_starts: words("solid block starts", blocks + 1)?,
+                        block_leaves: words("solid block leaves", capacities.block_leaves)?,
+                        tile_counts: words("solid tile counts", tiles)?,
+                        tile_starts: words("solid tile starts", tiles + 1)?,
+                        tile_leaves: structs("solid tile leaves", capacities.tile_leaves, size_of::<TileLeaf>())?,
+                        tile_entries: words("solid tile entries", tiles)?,
                     })
                 })
                 .transpose()?,

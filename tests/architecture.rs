@@ -23,7 +23,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("shaders", &[]),
     ("passes", &["abi", "gpu", "shaders"]),
     // where both meet
-    ("scene", &["abi", "gpu", "math", "spline", "trim", "model"]),
+    ("scene", &["abi", "csg", "gpu", "math", "spline", "trim", "model"]),
     ("buffers", &["abi", "gpu", "passes", "scene"]),
     ("frame", &["abi", "buffers", "gpu", "passes", "scene"]),
     ("renderer", &["abi", "budget", "buffers", "frame", "gpu", "model", "passes", "picture", "scene"]),

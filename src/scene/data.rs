@@ -1,7 +1,9 @@
 //! The whole scene as plain arrays, and the transforms that stay in `f64`.
 
 use super::face::{FaceData, pack_colour};
+use super::solids::{SolidData, SolidError};
 use crate::abi;
+use crate::csg::Solid;
 use crate::model::{Camera, Model, Projection};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use rayon::prelude::*;
@@ -30,11 +32,13 @@ pub(crate) struct SceneData {
     pub has_trimmed: bool,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
+    /// Boolean solids.
+    pub solids: SolidData,
 }
 
 impl SceneData {
-    pub(crate) fn new(model: &Model) -> Self {
-        let mut data = Self::default();
+    pub(crate) fn new(model: &Model, solids: &[Solid]) -> Result<Self, SolidError> {
+        let mut data = Self { solids: SolidData::new(solids)?, ..Self::default() };
         let mut used = vec![false; model.parts.len()];
         model.instances.iter().for_each(|i| used[i.part] = true);
         let mut first_faces = Vec::with_capacity(model.parts.len());
@@ -55,13 +59,14 @@ impl SceneData {
             let first = first_faces[instance.part];
             data.push_instance(instance, origins[instance.part], first..first + part.faces.len());
         }
-        data
+        Ok(data)
     }
 
-    /// Frees the arrays that the GPU has; the placements stay.
+    /// Frees the arrays that the GPU has; the placements and centres stay.
     pub(crate) fn drop_uploaded(&mut self) {
         let placements = std::mem::take(&mut self.placements);
-        *self = Self { placements, ..Self::default() };
+        let solids = std::mem::take(&mut self.solids).centres_only();
+        *self = Self { placements, solids, ..Self::default() };
     }
 
     fn push_face(&mut self, mut f: FaceData) {

@@ -16,7 +16,10 @@
 mod data;
 mod face;
 mod flatten;
+mod solids;
 mod upload;
 
 pub(crate) use data::{SceneData, focal_and_slant, view};
-pub(crate) use upload::{Scene, Trims};
+pub use solids::SolidError;
+pub(crate) use solids::SolidData;
+pub(crate) use upload::{Scene, Solids, Trims};

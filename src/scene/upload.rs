@@ -16,6 +16,15 @@ pub(crate) struct Scene {
     pub items: Buffer,
     /// What trimming needs; `None` when no patch is trimmed.
     pub trims: Option<Trims>,
+    /// Boolean solids; `None` when there are none.
+    pub solids: Option<Solids>,
+}
+
+/// The switches of the Blist, and their surfaces.
+pub(crate) struct Solids {
+    pub leaves: Buffer,
+    pub leaf_surfaces: Buffer,
+    pub surfaces: Buffer,
 }
 
 /// Trim curves and the cells that tell their density.
@@ -51,6 +60,15 @@ impl Scene {
                         curves: persistent(&mut uploads, cmd, "trim curves", &data.curves)?,
                         curve_points: persistent(&mut uploads, cmd, "trim curve points", &data.curve_points)?,
                         curve_items: persistent(&mut uploads, cmd, "trim curve items", &data.curve_items)?,
+                    })
+                })
+                .transpose()?,
+            solids: (!data.solids.leaves.is_empty())
+                .then(|| {
+                    Ok(Solids {
+                        leaves: persistent(&mut uploads, cmd, "solid leaves", &data.solids.leaves)?,
+                        leaf_surfaces: persistent(&mut uploads, cmd, "solid sides", &data.solids.leaf_surfaces)?,
+                        surfaces: persistent(&mut uploads, cmd, "solid surfaces", &data.solids.surfaces)?,
                     })
                 })
                 .transpose()?,
