@@ -10,6 +10,7 @@ pub mod abi;
 pub mod brep;
 mod budget;
 mod buffers;
+pub mod csg;
 mod frame;
 pub mod gpu;
 #[cfg(feature = "headless")]
