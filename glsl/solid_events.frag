@@ -9,8 +9,10 @@
 //            ▲          ▲    ▲         ▲        depths are equal to the bit and make one event
 //         in A?    the Blist is walked once behind each event
 //
-// The ray is followed until outside becomes inside. No event is stored: the next one is the smallest
-// depth behind the last, over the leaves of the tile.
+// The ray is followed until outside becomes inside. Nothing is stored but the spans of the tile's
+// first leaves: exits of a Blist lead forward, so one scan over the leaves answers both whether the
+// solid is behind depth t and where the next event is. Everything is one loop, so that the surfaces'
+// equations are compiled once.
 #include "scene.glsl"
 #include "solids.glsl"
 #include "tiles.glsl"
@@ -30,101 +32,109 @@ layout(location = 0) out uvec2 visible;
 
 const uint NOBODY = 0xffffffffu;
 
-// Spans kept; those of further leaves are computed whenever they are asked for.
+// Spans kept; those of further leaves are computed in every scan.
 const uint KEPT = 12u;
 
-Span kept[KEPT];
-Ray ray;
-uint first;
-uint end;
+// What a scan is for.
+const uint SEARCH = 0u; // the next event
+const uint OWNER = 1u;  // is the solid still there with leaf `asked` taken for what it is not?
+const uint SIDE = 2u;   // which side of leaf `asked` ends at t?
 
-// One side of a leaf.
-Span side_span(LeafSurface side) {
-    uint at = side.surface >> 1;
-    Span s = surface_span(surfaces[at], ray.o - surface_centres[at], ray.d);
-    if ((side.surface & 1u) != 0u) return complement(s);
-    return s;
-}
+bool ends_at(Span s, float t) { return s.lo == t || s.hi == t || s.g0 == t || s.g1 == t; }
 
-Span leaf_span(uint n) {
-    Leaf leaf = leaves[n];
-    Span s = EVERYTHING;
-    for (uint i = leaf.first; i < leaf.first + leaf.count && s.lo < s.hi; ++i) {
-        s = both(s, side_span(leaf_surfaces[i]));
-    }
-    return s;
-}
-
-Span span_of(uint i) {
-    if (i - first < KEPT) return kept[i - first];
-    return leaf_span(tile_leaves[i].leaf);
-}
-
-// Inside of the solid just behind depth t, with one leaf taken for what it is not.
-bool inside_solid(uint entry, float t, uint flipped) {
-    uint at = entry;
-    while (at < end) {
-        bool in_ = inside_span(span_of(at), t) != (at == flipped);
-        at = in_ ? tile_leaves[at].in_exit : tile_leaves[at].out_exit;
-    }
-    return at == EXIT_TRUE;
-}
-
-// Who owns the surface at depth t: of the leaves that begin or end there the first without which
-// the solid would not begin; positive ones before subtracted ones.
-uint owner_at(uint entry, float t) {
-    uint best = NOBODY;
-    uint best_rank = 4u;
-    for (uint i = first; i < end; ++i) {
-        Span s = span_of(i);
-        if (s.lo != t && s.hi != t && s.g0 != t && s.g1 != t) continue;
-        uint leaf = tile_leaves[i].leaf;
-        uint rank = (leaves[leaf].flags & LEAF_NEGATIVE) != 0u ? 1u : 0u;
-        if (inside_solid(entry, t, i)) rank += 2u;
-        if (rank < best_rank) {
-            best = leaf;
-            best_rank = rank;
-        }
-    }
-    return best;
-}
-
-// The side of the leaf that the ray crosses at depth t.
-uint side_at(uint n, float t) {
-    Leaf leaf = leaves[n];
-    for (uint i = leaf.first; i < leaf.first + leaf.count; ++i) {
-        Span s = side_span(leaf_surfaces[i]);
-        if (s.lo == t || s.hi == t || s.g0 == t || s.g1 == t) return i;
-    }
-    return leaf.first;
-}
+// The leaves whose spans begin or end at depth t: the first positive one, the first subtracted one.
+struct Candidates {
+    uint positive;
+    uint negative;
+};
 
 void main() {
     uvec2 tiles = tile_count(frame);
     uvec2 tile = uvec2(gl_FragCoord.xy) / TILE;
     uint n = tile.y * tiles.x + tile.x;
-    first = min(tile_starts[n], frame.tile_leaf_capacity);
-    end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
+    uint first = min(tile_starts[n], frame.tile_leaf_capacity);
+    uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
     uint entry = tile_entries[n];
     if (entry == EXIT_FALSE) discard;
-    ray = eye_ray(frame, gl_FragCoord.xy);
-    for (uint i = 0u; i < KEPT; ++i) {
-        if (first + i < end) kept[i] = leaf_span(tile_leaves[first + i].leaf);
-    }
+    Ray ray = eye_ray(frame, gl_FragCoord.xy);
+    Span kept[KEPT];
+    uint purpose = SEARCH;
+    uint asked = NOBODY;
+    uint after = 0u;        // candidates from here on
+    uint fallback = NOBODY;
+    bool negatives = false; // the candidates asked are the subtracted ones
+    uint side = 0u;
     float t = frame.near;
-    bool before = inside_solid(entry, t, NOBODY);
-    bool found = false;
-    // each leaf has at most four events
-    for (uint step_ = 0u; step_ <= 4u * (end - first) && !found; ++step_) {
+    bool before = true; // the near plane cuts: what is inside there is not entered
+    // four events a leaf, at most as many questions about owners, and one about the side
+    uint most = 8u * (end - first) + 4u;
+    bool done = false;
+    for (uint scan = 0u; scan < most && !done; ++scan) {
+        uint at = entry;
         float next = NEVER;
-        for (uint i = first; i < end; ++i) next = min(next, next_of_span(span_of(i), t));
-        if (next >= frame.far) break;
-        t = next;
-        bool behind = inside_solid(entry, t, NOBODY);
-        found = behind && !before;
-        before = behind;
+        Candidates found = Candidates(NOBODY, NOBODY);
+        uint candidates = 0u;
+        for (uint i = first; i < end; ++i) {
+            TileLeaf here = tile_leaves[i];
+            Leaf leaf = leaves[here.leaf];
+            bool is_kept = i - first < KEPT;
+            Span s = EVERYTHING;
+            if (is_kept && scan > 0u && purpose != SIDE) {
+                s = kept[i - first];
+            } else if (purpose != SIDE || i == asked) {
+                for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
+                    uint surface = leaf_surfaces[k].surface;
+                    Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
+                    if (purpose == SIDE && ends_at(one, t)) side = k + 1u;
+                    if ((surface & 1u) != 0u) one = complement(one);
+                    s = both(s, one);
+                }
+                if (is_kept) kept[i - first] = s;
+            }
+            if (i == at) {
+                bool inside = inside_span(s, t) != (purpose == OWNER && i == asked);
+                at = inside ? here.in_exit : here.out_exit;
+            }
+            next = min(next, next_of_span(s, t));
+            if (i >= after && ends_at(s, t)) {
+                ++candidates;
+                if ((leaf.flags & LEAF_NEGATIVE) != 0u) found.negative = min(found.negative, i);
+                else found.positive = min(found.positive, i);
+            }
+        }
+        bool inside = at == EXIT_TRUE;
+        if (purpose == SIDE) {
+            done = true;
+        } else if (purpose == OWNER) {
+            // the owner is the first leaf without which the solid would not begin
+            uint other = negatives ? found.negative : found.positive;
+            if (!inside) {
+                purpose = SIDE;
+            } else if (other != NOBODY) {
+                asked = other;
+                after = other + 1u;
+            } else if (!negatives) {
+                negatives = true;
+                asked = NOBODY; // from the beginning, for subtracted leaves
+                after = first;
+            } else {
+                asked = fallback;
+                purpose = SIDE;
+            }
+        } else if (inside && !before) {
+            asked = min(found.positive, found.negative);
+            if (found.positive != NOBODY) asked = found.positive;
+            fallback = asked;
+            after = asked + 1u;
+            negatives = found.positive == NOBODY;
+            purpose = candidates > 1u ? OWNER : SIDE;
+        } else {
+            if (next >= frame.far) break;
+            before = inside;
+            t = next;
+        }
     }
-    if (!found) discard;
-    visible = uvec2(SOLID | (side_at(owner_at(entry, t), t) + 1u), floatBitsToUint(t));
+    if (!done) discard;
+    visible = uvec2(SOLID | max(side, 1u), floatBitsToUint(t));
     gl_FragDepth = reversed_depth(frame, t);
 }

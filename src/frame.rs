@@ -89,7 +89,12 @@ impl Passes {
                 blocks: solid_blocks::SolidBlocks::new(device)?,
                 tiles: solid_tiles::SolidTiles::new(device)?,
                 fold: solid_fold::SolidFold::new(device)?,
-                events: solid_events::SolidEvents::new(device, VISIBILITY_FORMAT, DEPTH_FORMAT)?,
+                events: solid_events::SolidEvents::new(
+                    device,
+                    data.solids.has_tori(),
+                    VISIBILITY_FORMAT,
+                    DEPTH_FORMAT,
+                )?,
                 resolve: resolve_solids::ResolveSolids::new(device, &colour, formats.depth)?,
             })
         };
@@ -497,9 +502,9 @@ impl<'a> Frame<'a> {
             leaves: &t.block_leaves,
         };
         p.blocks.count(cmd, &blocks, t.blocks);
-        barrier::buffers(cmd, &[(&t.block_counts, w, r)]);
+        barrier::buffers(cmd, &[(&t.block_counts, w, r), (&t.block_starts, r, w)]);
         self.scan(cmd, &t.block_counts, &t.block_starts, t.blocks);
-        barrier::buffers(cmd, &[(&t.block_starts, w, r)]);
+        barrier::buffers(cmd, &[(&t.block_starts, w, r), (&t.block_counts, r, w)]);
         p.blocks.list(cmd, &blocks, t.blocks);
         barrier::buffers(cmd, &[(&t.block_leaves, w, r)]);
 
@@ -515,9 +520,9 @@ impl<'a> Frame<'a> {
         };
         barrier::buffers(cmd, &[(&self.buffers.counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, w)]);
         p.tiles.count(cmd, &tiles, t.tiles);
-        barrier::buffers(cmd, &[(&t.tile_counts, w, r), (&self.buffers.counters, w, w)]);
+        barrier::buffers(cmd, &[(&t.tile_counts, w, r), (&t.tile_starts, r, w), (&self.buffers.counters, w, w)]);
         self.scan(cmd, &t.tile_counts, &t.tile_starts, t.tiles);
-        barrier::buffers(cmd, &[(&t.tile_starts, w, r)]);
+        barrier::buffers(cmd, &[(&t.tile_starts, w, r), (&t.tile_counts, r, w)]);
         p.tiles.list(cmd, &tiles, t.tiles);
         barrier::buffers(cmd, &[(&t.tile_leaves, w, w), (&self.buffers.counters, w, w)]);
 

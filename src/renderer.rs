@@ -24,6 +24,7 @@ use crate::gpu::{
 use crate::model::{Camera, CameraError, Model, Projection};
 use crate::passes::resolve;
 use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes};
+pub use crate::scene::SolidError;
 use crate::scene::{Scene, SceneData, SolidData, focal_and_slant, view};
 use ash::vk;
 
@@ -86,6 +87,9 @@ pub enum RenderError {
     /// The model, or what this view needs of it.
     #[error(transparent)]
     TooMany(#[from] TooMany),
+    /// A Boolean solid that cannot be drawn.
+    #[error(transparent)]
+    Solid(#[from] SolidError),
     /// A target of another size than the camera's.
     #[error("the target `{name}` is {width} x {height}, the camera's picture another size")]
     TargetSize {
@@ -185,7 +189,7 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before stays.
     pub fn upload(&mut self, model: &Model) -> Result<(), RenderError> {
-        let data = SceneData::new(model);
+        let data = SceneData::new(model)?;
         let counts = Counts::of(&data);
         counts.check()?;
         let formats =

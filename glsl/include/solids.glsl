@@ -18,6 +18,9 @@ const uint SURFACE_PLANE = 0u;   // a quadric without squares
 const uint SURFACE_QUADRIC = 1u;
 const uint SURFACE_TORUS = 2u;
 
+// Whether some surface is a torus: compiled in only then.
+layout(constant_id = 5) const bool SOLIDS_HAVE_TORI = true;
+
 struct Surface {
     mat3 to_local;   // model directions to the surface's own coordinates (columns)
     uint kind;
@@ -211,7 +214,7 @@ Span torus_span(vec3 o, vec3 d, float r) {
 Span surface_span(Surface s, vec3 o, vec3 d) {
     precise vec3 ol = s.to_local * o;
     precise vec3 dl = s.to_local * d;
-    if (s.kind == SURFACE_TORUS) return torus_span(ol, dl, s.constant);
+    if (SOLIDS_HAVE_TORI && s.kind == SURFACE_TORUS) return torus_span(ol, dl, s.constant);
     // begin where the ray is nearest to the middle: nothing cancels
     vec3 size = abs(s.squares);
     float dd = dot(size * dl, dl);
@@ -227,7 +230,7 @@ Span surface_span(Surface s, vec3 o, vec3 d) {
 vec3 surface_gradient(Surface s, vec3 p) {
     vec3 q = s.to_local * p;
     vec3 g;
-    if (s.kind == SURFACE_TORUS) {
+    if (SOLIDS_HAVE_TORI && s.kind == SURFACE_TORUS) {
         float rho = max(length(q.xy), 1e-20);
         g = vec3(q.xy * (1.0 - 1.0 / rho), q.z);
     } else {

@@ -23,6 +23,7 @@ pub use camera::{Camera, CameraError, Projection};
 pub use face::{Face, FaceError, SurfaceKind, TrimLoop};
 pub use mesh::{Mesh, MeshError};
 
+use crate::csg::Solid;
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -38,6 +39,9 @@ pub struct Model {
     pub parts: Vec<Part>,
     /// Placed bodies; a part without an instance is not drawn.
     pub instances: Vec<Instance>,
+    /// Boolean solids, in model coordinates; what is drawn is their union.
+    #[serde(skip)]
+    pub solids: Vec<Solid>,
     /// Length unit of the source, for the record; coordinates are already millimetres.
     pub unit: String,
 }
@@ -135,6 +139,13 @@ impl Model {
             .iter()
             .filter(|i| !parts[i.part].is_empty())
             .flat_map(|i| parts[i.part].corners().map(|c| i.transform.transform_point3(c)))
+            .chain(
+                self.solids
+                    .iter()
+                    .map(Solid::bounds)
+                    .filter(|b| b.min.is_finite() && b.max.is_finite())
+                    .flat_map(Bounds::corners),
+            )
             .fold(Bounds::EMPTY, Bounds::with)
     }
 

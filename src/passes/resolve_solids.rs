@@ -30,8 +30,7 @@ pub(crate) struct Bindings<'a> {
 impl ResolveSolids {
     /// For these targets; `colour` holds the host's and those of the extra images, if any.
     pub(crate) fn new(device: &Device, colour: &[vk::Format], depth: Option<vk::Format>) -> Result<Self, GpuError> {
-        let colour: Vec<_> =
-            colour.iter().map(|&format| ColourTarget { format, blend: Blend::Replace }).collect();
+        let colour: Vec<_> = colour.iter().map(|&format| ColourTarget { format, blend: Blend::Replace }).collect();
         let mut bindings = [Binding::Storage; 6];
         bindings[5] = Binding::StorageImage;
         let pipeline = Pipeline::graphics(
@@ -50,11 +49,7 @@ impl ResolveSolids {
                 cull: vk::CullModeFlags::NONE,
                 front: vk::FrontFace::COUNTER_CLOCKWISE,
                 colour: &colour,
-                depth: depth.map(|format| DepthTest {
-                    format,
-                    compare: vk::CompareOp::GREATER_OR_EQUAL,
-                    write: true,
-                }),
+                depth: depth.map(|format| DepthTest { format, compare: vk::CompareOp::GREATER_OR_EQUAL, write: true }),
             },
         )?;
         Ok(Self { pipeline })
@@ -68,9 +63,9 @@ impl ResolveSolids {
         colour: &[Attachment<'_>],
         depth: Option<Attachment<'_>>,
     ) {
-        let keep = |a: Attachment<'_>| Attachment { image: a.image, load: Load::Keep };
-        let colour: Vec<_> = colour.iter().map(|a| Attachment { image: a.image, load: Load::Keep }).collect();
-        cmd.rendering(b.visibility.size(), &colour, depth.map(keep), || {
+        let colour: Vec<_> = colour.iter().map(|a| Attachment { load: Load::Keep, ..*a }).collect();
+        let depth = depth.map(|a| Attachment { load: Load::Keep, ..a });
+        cmd.rendering(b.visibility.size(), &colour, depth, || {
             let buffers = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres].map(Into::into);
             let resources: Vec<_> = buffers.into_iter().chain([b.visibility.into()]).collect();
             cmd.bind(&self.pipeline, &resources, &[]);

@@ -14,6 +14,9 @@ use crate::gpu::{
 use crate::shaders;
 use ash::vk;
 
+/// `constant_id` of `SOLIDS_HAVE_TORI`.
+const SOLIDS_HAVE_TORI: u32 = 5;
+
 /// The pass.
 pub(crate) struct SolidEvents {
     pipeline: Pipeline,
@@ -33,19 +36,24 @@ pub(crate) struct Bindings<'a> {
 }
 
 impl SolidEvents {
-    /// For images of these formats.
-    pub(crate) fn new(device: &Device, visibility: vk::Format, depth: vk::Format) -> Result<Self, GpuError> {
+    /// For images of these formats; `tori`: whether some surface is a torus.
+    pub(crate) fn new(
+        device: &Device,
+        tori: bool,
+        visibility: vk::Format,
+        depth: vk::Format,
+    ) -> Result<Self, GpuError> {
         let pipeline = Pipeline::graphics(
             device,
             &GraphicsInfo {
-                name: "solid events",
+                name: if tori { "solid events (tori)" } else { "solid events" },
                 stages: &[
                     (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
                     (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_EVENTS_FRAG),
                 ],
                 bindings: &[Binding::Storage; 8],
                 push_bytes: 0,
-                constants: &[],
+                constants: &[(SOLIDS_HAVE_TORI, u32::from(tori))],
                 topology: vk::PrimitiveTopology::TRIANGLE_LIST,
                 patch_points: 0,
                 cull: vk::CullModeFlags::NONE,

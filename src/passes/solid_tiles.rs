@@ -58,7 +58,8 @@ impl SolidTiles {
 }
 
 fn record(cmd: &Commands<'_>, pipeline: &Pipeline, b: &Bindings<'_>, tiles: u32) {
-    let resources = [b.frame, b.rects, b.block_starts, b.block_leaves, b.counts, b.starts, b.leaves, b.counters].map(Into::into);
+    let resources =
+        [b.frame, b.rects, b.block_starts, b.block_leaves, b.counts, b.starts, b.leaves, b.counters].map(Into::into);
     cmd.bind(pipeline, &resources, &[]);
     cmd.dispatch(tiles.div_ceil(GROUP));
 }

@@ -3,7 +3,6 @@
 use super::face::{FaceData, pack_colour};
 use super::solids::{SolidData, SolidError};
 use crate::abi;
-use crate::csg::Solid;
 use crate::model::{Camera, Model, Projection};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use rayon::prelude::*;
@@ -37,8 +36,8 @@ pub(crate) struct SceneData {
 }
 
 impl SceneData {
-    pub(crate) fn new(model: &Model, solids: &[Solid]) -> Result<Self, SolidError> {
-        let mut data = Self { solids: SolidData::new(solids)?, ..Self::default() };
+    pub(crate) fn new(model: &Model) -> Result<Self, SolidError> {
+        let mut data = Self { solids: SolidData::new(&model.solids)?, ..Self::default() };
         let mut used = vec![false; model.parts.len()];
         model.instances.iter().for_each(|i| used[i.part] = true);
         let mut first_faces = Vec::with_capacity(model.parts.len());

@@ -20,6 +20,6 @@ mod solids;
 mod upload;
 
 pub(crate) use data::{SceneData, focal_and_slant, view};
-pub use solids::SolidError;
 pub(crate) use solids::SolidData;
+pub use solids::SolidError;
 pub(crate) use upload::{Scene, Solids, Trims};

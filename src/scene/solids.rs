@@ -114,6 +114,11 @@ impl SolidData {
         Ok(data)
     }
 
+    /// Some surface is a torus.
+    pub(crate) fn has_tori(&self) -> bool {
+        self.surfaces.iter().any(|s| s.kind == abi::SURFACE_TORUS)
+    }
+
     /// What frames need once the GPU has the rest.
     pub(crate) fn centres_only(self) -> Self {
         let Self { leaf_centres, surface_centres, .. } = self;
@@ -185,7 +190,9 @@ fn number_exits(leaves: &mut [abi::Leaf]) {
 impl Placed {
     /// Equal for equal surfaces.
     fn key(&self) -> Vec<u64> {
-        let bits = bytemuck::bytes_of(&self.surface).chunks(4).map(|w| u64::from(u32::from_le_bytes([w[0], w[1], w[2], w[3]])));
+        let bits = bytemuck::bytes_of(&self.surface)
+            .chunks(4)
+            .map(|w| u64::from(u32::from_le_bytes([w[0], w[1], w[2], w[3]])));
         bits.chain(self.centre.to_array().map(f64::to_bits)).collect()
     }
 
@@ -261,7 +268,9 @@ fn sides_of(p: &Primitive, near: DVec3) -> Result<Vec<Side>, &'static str> {
         Shape::Torus { major, minor } => {
             // without a circle to run around, the tube is a ball
             let surface = match major > 0.0 {
-                true => abi::Surface { kind: abi::SURFACE_TORUS, constant: (minor / major) as f32, ..Default::default() },
+                true => {
+                    abi::Surface { kind: abi::SURFACE_TORUS, constant: (minor / major) as f32, ..Default::default() }
+                }
                 false => quadric([1.0; 3], 0.0, -1.0),
             };
             vec![round(DVec3::ZERO, if major > 0.0 { major } else { minor }, surface)]
