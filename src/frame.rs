@@ -23,15 +23,19 @@
 //! ```
 
 use crate::abi::Counters;
-use crate::buffers::{Buffers, SolidBuffers, TrimBuffers};
+use crate::buffers::{Buffers, TrimBuffers};
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Timestamps, barrier};
-use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
+use crate::passes::visibility::Kinds;
 use crate::passes::{
-    bound, cross, density, emit, heal, lines, reset, resolve, resolve_solids, scan, segments, sizes, solid_blocks,
-    solid_events, solid_fold, solid_rects, solid_tiles, sort, split, visibility,
+    bound, cross, density, emit, heal, lines, reset, resolve, scan, segments, sizes, sort, split, visibility,
 };
-use crate::scene::{Scene, SceneData, Solids, Trims};
+use crate::scene::{Scene, SceneData, Trims};
+use solids::SolidPasses;
 use std::mem::offset_of;
+
+mod solids;
+
+pub(crate) use solids::Centres;
 
 /// The passes that a scene needs.
 pub(crate) struct Passes {
@@ -57,16 +61,6 @@ struct TrimPasses {
     heal: heal::Heal,
 }
 
-/// The passes of Boolean solids.
-struct SolidPasses {
-    rects: solid_rects::SolidRects,
-    blocks: solid_blocks::SolidBlocks,
-    tiles: solid_tiles::SolidTiles,
-    fold: solid_fold::SolidFold,
-    events: solid_events::SolidEvents,
-    resolve: resolve_solids::ResolveSolids,
-}
-
 impl Passes {
     pub(crate) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Self, GpuError> {
         let kinds = Kinds { rational: data.has_rational, plain: data.has_plain, trimmed: data.has_trimmed };
@@ -81,23 +75,6 @@ impl Passes {
                 heal: heal::Heal::new(device, data.has_rational)?,
             })
         };
-        let solids = |_| {
-            let aovs = resolve::AOV_FORMATS.into_iter().filter(|_| formats.aovs);
-            let colour: Vec<_> = std::iter::once(formats.colour).chain(aovs).collect();
-            Ok(SolidPasses {
-                rects: solid_rects::SolidRects::new(device)?,
-                blocks: solid_blocks::SolidBlocks::new(device)?,
-                tiles: solid_tiles::SolidTiles::new(device)?,
-                fold: solid_fold::SolidFold::new(device)?,
-                events: solid_events::SolidEvents::new(
-                    device,
-                    data.solids.has_tori(),
-                    VISIBILITY_FORMAT,
-                    DEPTH_FORMAT,
-                )?,
-                resolve: resolve_solids::ResolveSolids::new(device, &colour, formats.depth)?,
-            })
-        };
         Ok(Self {
             reset: reset::Reset::new(device)?,
             bound: bound::Bound::new(device)?,
@@ -105,18 +82,11 @@ impl Passes {
             scan: scan::Scan::new(device)?,
             emit: emit::Emit::new(device)?,
             trim: data.has_trimmed.then_some(()).map(trim).transpose()?,
-            solids: (!data.solids.leaves.is_empty()).then_some(()).map(solids).transpose()?,
+            solids: SolidPasses::new(device, &data.solids, formats)?,
             visibility: visibility::Visibility::new(device, kinds)?,
             resolve: resolve::Resolve::new(device, formats, data.has_rational)?,
         })
     }
-}
-
-/// Where the parts of Boolean solids are, model axes, seen from this frame's eye.
-#[derive(Clone, Copy)]
-pub(crate) struct Centres<'a> {
-    pub leaves: &'a Buffer,
-    pub surfaces: &'a Buffer,
 }
 
 /// Everything that one frame touches.
@@ -462,122 +432,6 @@ impl Frame<'_> {
             visibility: &b.visibility,
         };
         self.passes.resolve.record(cmd, &bindings, self.colour, self.depth);
-    }
-}
-
-/// What the passes of Boolean solids work on.
-struct SolidParts<'a> {
-    passes: &'a SolidPasses,
-    scene: &'a Solids,
-    buffers: &'a SolidBuffers,
-    centres: Centres<'a>,
-}
-
-impl<'a> Frame<'a> {
-    /// `None` when the scene has no Boolean solid.
-    fn solids(&self) -> Option<SolidParts<'a>> {
-        let passes = self.passes.solids.as_ref()?;
-        let (scene, buffers) = (self.scene.solids.as_ref()?, self.buffers.solids.as_ref()?);
-        Some(SolidParts { passes, scene, buffers, centres: self.centres? })
-    }
-
-    /// Which leaves each tile sees, then the pixels.
-    fn solid_events(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>) {
-        let (p, s, t) = (parts.passes, parts.scene, parts.buffers);
-        let (w, r) = WRITE_TO_READ;
-        let rects = solid_rects::Bindings {
-            frame: self.constants,
-            leaves: &s.leaves,
-            centres: parts.centres.leaves,
-            rects: &t.rects,
-        };
-        p.rects.record(cmd, &rects, self.buffers.counts.leaves);
-        barrier::buffers(cmd, &[(&t.rects, w, r)]);
-
-        let blocks = solid_blocks::Bindings {
-            frame: self.constants,
-            rects: &t.rects,
-            counts: &t.block_counts,
-            starts: &t.block_starts,
-            leaves: &t.block_leaves,
-        };
-        p.blocks.count(cmd, &blocks, t.blocks);
-        barrier::buffers(cmd, &[(&t.block_counts, w, r), (&t.block_starts, r, w)]);
-        self.scan(cmd, &t.block_counts, &t.block_starts, t.blocks);
-        barrier::buffers(cmd, &[(&t.block_starts, w, r), (&t.block_counts, r, w)]);
-        p.blocks.list(cmd, &blocks, t.blocks);
-        barrier::buffers(cmd, &[(&t.block_leaves, w, r)]);
-
-        let tiles = solid_tiles::Bindings {
-            frame: self.constants,
-            rects: &t.rects,
-            block_starts: &t.block_starts,
-            block_leaves: &t.block_leaves,
-            counts: &t.tile_counts,
-            starts: &t.tile_starts,
-            leaves: &t.tile_leaves,
-            counters: &self.buffers.counters,
-        };
-        barrier::buffers(cmd, &[(&self.buffers.counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, w)]);
-        p.tiles.count(cmd, &tiles, t.tiles);
-        barrier::buffers(cmd, &[(&t.tile_counts, w, r), (&t.tile_starts, r, w), (&self.buffers.counters, w, w)]);
-        self.scan(cmd, &t.tile_counts, &t.tile_starts, t.tiles);
-        barrier::buffers(cmd, &[(&t.tile_starts, w, r), (&t.tile_counts, r, w)]);
-        p.tiles.list(cmd, &tiles, t.tiles);
-        barrier::buffers(cmd, &[(&t.tile_leaves, w, w), (&self.buffers.counters, w, w)]);
-
-        let fold = solid_fold::Bindings {
-            frame: self.constants,
-            leaves: &s.leaves,
-            tile_starts: &t.tile_starts,
-            tile_leaves: &t.tile_leaves,
-            tile_entries: &t.tile_entries,
-        };
-        p.fold.record(cmd, &fold, t.tiles);
-        barrier::buffers(
-            cmd,
-            &[
-                (&t.tile_starts, w, Access::FRAGMENT_READ),
-                (&t.tile_leaves, w, Access::FRAGMENT_READ),
-                (&t.tile_entries, w, Access::FRAGMENT_READ),
-            ],
-        );
-
-        let images = (&self.buffers.visibility, &self.buffers.depth);
-        barrier::images(
-            cmd,
-            &[
-                (images.0, Access::COLOUR_WRITE, Access::COLOUR_WRITE),
-                (images.1, Access::DEPTH_WRITE, Access::DEPTH_WRITE),
-            ],
-        );
-        let events = solid_events::Bindings {
-            frame: self.constants,
-            leaves: &s.leaves,
-            leaf_surfaces: &s.leaf_surfaces,
-            surfaces: &s.surfaces,
-            surface_centres: parts.centres.surfaces,
-            tile_starts: &t.tile_starts,
-            tile_leaves: &t.tile_leaves,
-            tile_entries: &t.tile_entries,
-        };
-        p.events.record(cmd, &events, images);
-    }
-
-    /// The pixels that `resolve` left to the solids.
-    fn resolve_solids(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>) {
-        let colour = self.colour.iter().map(|a| (a.image, Access::COLOUR_WRITE, Access::COLOUR_WRITE));
-        let depth = self.depth.iter().map(|a| (a.image, Access::DEPTH_WRITE, Access::DEPTH_WRITE));
-        barrier::images(cmd, &colour.chain(depth).collect::<Vec<_>>());
-        let bindings = resolve_solids::Bindings {
-            frame: self.constants,
-            leaves: &parts.scene.leaves,
-            leaf_surfaces: &parts.scene.leaf_surfaces,
-            surfaces: &parts.scene.surfaces,
-            surface_centres: parts.centres.surfaces,
-            visibility: &self.buffers.visibility,
-        };
-        parts.passes.resolve.record(cmd, &bindings, self.colour, self.depth);
     }
 }
 
