@@ -17,7 +17,7 @@
 //   not real (its ring reaches out):
 //     helpers of two faces before every witness    the nearest: an edge runs here
 //     a witness                                    the nearest: behind a silhouette
-//     a neighbour that sees nothing                nothing
+//     a neighbour that sees nothing                nothing, or the mesh that is behind
 //     a helper                                     the nearest
 //
 // Without any of these the doubtful face stays. Doubtful neighbours are not asked, and healed pixels
@@ -41,6 +41,7 @@ layout(binding = 11, rg32ui) uniform uimage2D visibility;
 layout(scalar, binding = 12) readonly buffer Doubts { uint doubts[]; };
 layout(scalar, binding = 13) readonly buffer CountersBuffer { Counters counters; };
 layout(scalar, binding = 14) readonly buffer Instances { Instance instances[]; };
+layout(binding = 15, rg32ui) readonly uniform uimage2D others;
 
 #include "facing.glsl"
 #include "patch.glsl"
@@ -137,15 +138,18 @@ void main() {
         if (front && answer.depth < witness.depth) witness = answer;
     }
     bool beside_nothing = false;
+    // a mesh beside the pixel is nothing to the patches only if a mesh is behind the pixel, too: else it may
+    // stand before them
+    bool behind = SCENE_HAS_OTHERS && imageLoad(others, at).x != 0u;
     uint helping_face = 0u; // index + 1; helpers of two faces meet in an edge here
     bool two_help = false;
     for (uint k = 0u; k < RING_POINTS; ++k) {
         ivec2 beside = at + ivec2(sign(RING[k]));
         if (any(lessThan(beside, ivec2(0))) || any(greaterThanEqual(beside, ivec2(frame.size)))) continue;
         uvec2 seen = imageLoad(visibility, beside).xy;
-        if ((seen.x & DOUBTFUL) != 0u || sees_solid(seen.x)) continue;
+        if ((seen.x & DOUBTFUL) != 0u) continue;
         if (sees_nothing(seen.x)) {
-            beside_nothing = true;
+            beside_nothing = beside_nothing || !SCENE_HAS_OTHERS || behind || imageLoad(others, beside).x == 0u;
             continue;
         }
         Answer answer = ask(seen, pixel, false);

@@ -17,6 +17,7 @@
 #include "solids.glsl"
 #include "tiles.glsl"
 #include "eye_ray.glsl"
+#include "view.glsl"
 #include "visible.glsl"
 
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
@@ -85,7 +86,7 @@ void main() {
                 for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
                     uint surface = leaf_surfaces[k].surface;
                     Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
-                    if (purpose == SIDE && ends_at(one, t)) side = k + 1u;
+                    if (purpose == SIDE && ends_at(one, t)) side = k;
                     if ((surface & 1u) != 0u) one = complement(one);
                     s = both(s, one);
                 }
@@ -135,6 +136,6 @@ void main() {
         }
     }
     if (!done) discard;
-    visible = uvec2(SOLID | max(side, 1u), floatBitsToUint(t));
-    gl_FragDepth = reversed_depth(frame, t);
+    visible = uvec2(SEEN_SOLID | side, floatBitsToUint(t));
+    gl_FragDepth = reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0);
 }

@@ -6,7 +6,7 @@
 #include "scene.glsl"
 #include "tiles.glsl"
 
-layout(constant_id = 4) const bool LISTS = false;
+layout(constant_id = 6) const bool LISTS = false;
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };

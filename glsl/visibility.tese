@@ -77,11 +77,7 @@ void main() {
             jet.point = patch_jet(patch_.first, patch_.shape, uv).point;
         }
     }
-    vec4 q = to_pixel(view, vec4(jet.point, 1.0));
-    // reversed depth, 1 at the near plane: floats are densest where perspective needs them
-    float range = 1.0 / (frame.far - frame.near);
-    float z = (frame.far - q.z) * range * (frame.perspective != 0u ? frame.near : 1.0);
-    gl_Position = vec4(q.xy * 2.0 / frame.size - q.w, z, q.w);
+    gl_Position = to_clip(frame, to_pixel(view, vec4(jet.point, 1.0)));
     out_uv = uv;
     out_item = in_item;
 }

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //!   by the scene     taus, factors, counts and starts per item; per strip, face and curve if trimmed
-//!   by the picture   visibility, depth; per tile and block of tiles if there are Boolean solids
+//!   by the picture   visibility, that of what is no patch where faces are trimmed, depth; per tile and block
+//!                    of tiles if there are Boolean solids
 //!   by the view      sub-patches, draws, rows, intercepts, doubts, leaves in tiles: a pass that runs out says so in
 //!                    Counters.failed, and the next frame gets what it would have needed
 //! ```
@@ -24,11 +25,14 @@ pub(crate) struct Counts {
     pub face_instances: u32,
     /// Leaves of Boolean solids.
     pub leaves: u32,
+    pub triangles: u32,
+    pub mesh_instances: u32,
     pub trimmed: bool,
 }
 
 impl Counts {
     pub(crate) fn of(data: &SceneData) -> Self {
+        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
         Self {
             items: data.items.len() as u32,
             cells: data.cell_items.len() as u32,
@@ -36,21 +40,25 @@ impl Counts {
             curves: data.curve_items.len() as u32,
             face_instances: data.face_instances.len() as u32,
             leaves: data.solids.leaves.len() as u32,
+            triangles: count(data.meshes.triangles.len().max(data.meshes.positions.len() / 3)),
+            mesh_instances: count(data.meshes.instances.len()),
             trimmed: data.has_trimmed,
         }
     }
 
-    /// Whether one dispatch covers each of them.
+    /// Whether one dispatch covers each of them, and numbers tell them apart.
     pub(crate) fn check(self) -> Result<(), TooMany> {
         let all = [
-            ("patches", self.items),
-            ("cells", self.cells),
-            ("v-strips", self.strips),
-            ("curves", self.curves),
-            ("primitives", self.leaves),
+            ("patches", self.items, MOST_THREADS),
+            ("cells", self.cells, MOST_THREADS),
+            ("v-strips", self.strips, MOST_THREADS),
+            ("curves", self.curves, MOST_THREADS),
+            ("triangles", self.triangles, MOST_TRIANGLES),
+            ("primitives", self.leaves, MOST_THREADS),
+            ("placed meshes", self.mesh_instances, MOST_MESH_INSTANCES),
         ];
-        match all.into_iter().find(|(_, count)| *count > MOST_THREADS) {
-            Some((what, count)) => Err(TooMany { what, count, most: MOST_THREADS }),
+        match all.into_iter().find(|(_, count, most)| count > most) {
+            Some((what, count, most)) => Err(TooMany { what, count, most }),
             None => Ok(()),
         }
     }
@@ -72,6 +80,10 @@ pub struct TooMany {
 const MOST_GROUPS: u32 = 65_535;
 /// Threads of one dispatch of the passes over what the scene has, 64 to a workgroup.
 const MOST_THREADS: u32 = MOST_GROUPS * 64;
+/// Triangles whose corners, and vertices whose coordinates, have numbers of 32 bits.
+const MOST_TRIANGLES: u32 = u32::MAX / 3;
+/// What the bits of the visibility image tell apart.
+const MOST_MESH_INSTANCES: u32 = 1 << 29;
 /// Rows that pass `sort` takes, 128 to a workgroup.
 const MOST_ROWS: u32 = MOST_GROUPS * 128;
 
@@ -149,6 +161,8 @@ pub(crate) struct Buffers {
     pub trim: Option<TrimBuffers>,
     pub solids: Option<SolidBuffers>,
     pub visibility: Image,
+    /// What is no patch, where pass `heal` needs it apart.
+    pub others: Option<Image>,
     pub depth: Image,
 }
 
@@ -197,6 +211,7 @@ impl Buffers {
         let image = |name: &str, format, usage| {
             Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })
         };
+        let drawn_and_read = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE;
         let n = counts.items;
         let across = |side: u32| (size.0.div_ceil(side) * size.1.div_ceil(side)) * u32::from(counts.leaves > 0);
         let (tiles, blocks) = (across(TILE), across(TILE * BLOCK));
@@ -250,11 +265,10 @@ impl Buffers {
                     })
                 })
                 .transpose()?,
-            visibility: image(
-                "visibility",
-                VISIBILITY_FORMAT,
-                vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE,
-            )?,
+            visibility: image("visibility", VISIBILITY_FORMAT, drawn_and_read)?,
+            others: (counts.trimmed && (counts.mesh_instances > 0 || counts.leaves > 0))
+                .then(|| image("visibility of others", VISIBILITY_FORMAT, drawn_and_read))
+                .transpose()?,
             depth: image("visibility depth", DEPTH_FORMAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?,
         })
     }
@@ -295,5 +309,11 @@ mod tests {
         let counts = Counts { items: MOST_THREADS, ..Default::default() };
         assert!(counts.check().is_ok());
         assert!(matches!(Counts { curves: MOST_THREADS + 1, ..counts }.check(), Err(TooMany { .. })));
+        let counts = Counts { triangles: MOST_TRIANGLES, mesh_instances: MOST_MESH_INSTANCES, ..counts };
+        assert!(counts.check().is_ok());
+        let more = Counts { triangles: MOST_TRIANGLES + 1, ..counts };
+        assert!(matches!(more.check(), Err(TooMany { what: "triangles", .. })));
+        let more = Counts { mesh_instances: MOST_MESH_INSTANCES + 1, ..counts };
+        assert!(matches!(more.check(), Err(TooMany { what: "placed meshes", .. })));
     }
 }

@@ -13,9 +13,11 @@
 //!    │                                  sort       flips of each row
 //!    └─────────────────┬──────────────────┘
 //!                      ▼
-//!                 visibility     tessellate, trim: item and (u, v) per pixel
+//!                    mesh        triangles of meshes: which one per pixel
 //!                      ▼
-//!                solid_events    Boolean solids: rects, blocks, tiles and fold came before
+//!                solid_events    where rays enter Boolean solids; solid_rects to solid_fold came before
+//!                      ▼
+//!                 visibility     tessellate, trim: item and (u, v) per pixel
 //!                      ▼
 //!                    heal        pixels that look through a gap between trimmed faces
 //!                      ▼
@@ -25,11 +27,11 @@
 use crate::abi::Counters;
 use crate::buffers::{Buffers, TrimBuffers};
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Timestamps, barrier};
-use crate::passes::visibility::Kinds;
+use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::passes::{
-    bound, cross, density, emit, heal, lines, reset, resolve, scan, segments, sizes, sort, split, visibility,
+    bound, cross, density, emit, heal, lines, mesh, reset, resolve, scan, segments, sizes, sort, split, visibility,
 };
-use crate::scene::{Scene, SceneData, Trims};
+use crate::scene::{MeshBuffers, Scene, SceneData, Trims};
 use solids::SolidPasses;
 use std::mem::offset_of;
 
@@ -47,6 +49,7 @@ pub(crate) struct Passes {
     trim: Option<TrimPasses>,
     solids: Option<SolidPasses>,
     visibility: visibility::Visibility,
+    mesh: Option<mesh::Mesh>,
     resolve: resolve::Resolve,
 }
 
@@ -72,7 +75,7 @@ impl Passes {
                 sizes: sizes::Sizes::new(device)?,
                 cross: cross::Cross::new(device)?,
                 sort: sort::Sort::new(device)?,
-                heal: heal::Heal::new(device, data.has_rational)?,
+                heal: heal::Heal::new(device, data.has_rational, data.has_meshes() || data.solids.kinds().is_some())?,
             })
         };
         Ok(Self {
@@ -82,9 +85,14 @@ impl Passes {
             scan: scan::Scan::new(device)?,
             emit: emit::Emit::new(device)?,
             trim: data.has_trimmed.then_some(()).map(trim).transpose()?,
-            solids: SolidPasses::new(device, &data.solids, formats)?,
+            solids: SolidPasses::new(device, &data.solids)?,
             visibility: visibility::Visibility::new(device, kinds)?,
-            resolve: resolve::Resolve::new(device, formats, data.has_rational)?,
+            mesh: data.has_meshes().then(|| mesh::Mesh::new(device, VISIBILITY_FORMAT, DEPTH_FORMAT)).transpose()?,
+            resolve: resolve::Resolve::new(
+                device,
+                formats,
+                resolve::Kinds { rational: data.has_rational, meshes: data.has_meshes(), solids: data.solids.kinds() },
+            )?,
         })
     }
 }
@@ -117,20 +125,21 @@ impl Frame<'_> {
         if let (Some(passes), Some(trims), Some(buffers)) = (&self.passes.trim, &self.scene.trims, &self.buffers.trim) {
             times.scope(cmd, "trim table", || self.trim_table(cmd, passes, trims, buffers));
         }
+        self.begin_images(cmd);
+        if let (Some(pass), Some(meshes)) = (&self.passes.mesh, &self.scene.meshes) {
+            times.drawing(cmd, "mesh", || self.mesh(cmd, pass, meshes));
+        }
+        if let Some(parts) = self.solids() {
+            times.scope(cmd, "solids", || self.solid_events(cmd, &parts));
+        }
         times.drawing(cmd, "visibility", || self.visibility(cmd));
         let mut drawn = Access::COLOUR_WRITE;
-        if let Some(solids) = self.solids() {
-            times.scope(cmd, "solids", || self.solid_events(cmd, &solids));
-        }
         if let (Some(passes), Some(buffers)) = (&self.passes.trim, &self.buffers.trim) {
             times.scope(cmd, "heal", || self.heal(cmd, passes, buffers));
             drawn = Access::COMPUTE_WRITE;
         }
         barrier::images(cmd, &[(&self.buffers.visibility, drawn, Access::FRAGMENT_READ)]);
         times.scope(cmd, "resolve", || self.resolve(cmd));
-        if let Some(solids) = self.solids() {
-            times.scope(cmd, "resolve (solids)", || self.resolve_solids(cmd, &solids));
-        }
         let b = self.buffers;
         barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, COPIED)]);
         self.counters.record(cmd, &b.counters, size_of::<Counters>() as u64);
@@ -347,17 +356,39 @@ impl Frame<'_> {
         self.passes.scan.record(cmd, scan::Count::Host(count), &bindings);
     }
 
+    /// The images were read by the frame before; their contents go.
+    fn begin_images(&self, cmd: &Commands<'_>) {
+        let b = self.buffers;
+        let read = (Access::COMPUTE_READ | Access::FRAGMENT_READ).discarded();
+        let others = b.others.iter().map(|image| (image, read, Access::COLOUR_WRITE));
+        let fixed = [
+            (&b.visibility, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE),
+            (&b.depth, Access::DEPTH_WRITE.discarded(), Access::DEPTH_WRITE),
+        ];
+        barrier::images(cmd, &fixed.into_iter().chain(others).collect::<Vec<_>>());
+    }
+
+    /// Meshes first: what hides them may be in doubt.
+    fn mesh(&self, cmd: &Commands<'_>, pass: &mesh::Mesh, m: &MeshBuffers) {
+        let b = self.buffers;
+        let bindings = mesh::Bindings {
+            frame: self.constants,
+            views: self.views,
+            mesh_instances: &m.instances,
+            triangles: &m.triangles,
+            positions: &m.positions,
+        };
+        let seen = b.others.as_ref().unwrap_or(&b.visibility);
+        pass.record(cmd, &bindings, (seen, &b.depth), m.draws.iter());
+        barrier::images(
+            cmd,
+            &[(seen, Access::COLOUR_WRITE, Access::COLOUR_WRITE), (&b.depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],
+        );
+    }
+
     fn visibility(&self, cmd: &Commands<'_>) {
         let (s, b) = (self.scene, self.buffers);
         barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE, Access::INDIRECT_READ)]);
-        // the image was read by the frame before; its contents go
-        barrier::images(
-            cmd,
-            &[
-                (&b.visibility, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE),
-                (&b.depth, Access::DEPTH_WRITE.discarded(), Access::DEPTH_WRITE),
-            ],
-        );
         let bindings = visibility::Bindings {
             frame: self.constants,
             views: self.views,
@@ -378,7 +409,11 @@ impl Frame<'_> {
             draws: &b.draws,
             counters: &b.counters,
         };
-        self.passes.visibility.record(cmd, &bindings, (&b.visibility, &b.depth), b.capacities.draws);
+        let drawn = s.meshes.is_some() || s.solids.is_some();
+        let colour = if drawn && b.others.is_none() { Load::Keep } else { Load::ColourU32([0; 4]) };
+        let visibility = Attachment { image: &b.visibility, load: colour };
+        let depth = Attachment { image: &b.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
+        self.passes.visibility.record(cmd, &bindings, (visibility, depth), b.capacities.draws);
     }
 
     /// Pixels that look through a gap between faces get the face that belongs there.
@@ -386,6 +421,9 @@ impl Frame<'_> {
         let (s, b) = (self.scene, self.buffers);
         let (w, r) = WRITE_TO_READ;
         barrier::images(cmd, &[(&b.visibility, Access::COLOUR_WRITE, Access::COMPUTE_READ)]);
+        if let Some(others) = &b.others {
+            barrier::images(cmd, &[(others, Access::COLOUR_WRITE, Access::COMPUTE_READ | Access::FRAGMENT_READ)]);
+        }
         barrier::buffers(cmd, &[(&b.counters, Access::INDIRECT_READ, w), (&t.dispatches, Access::INDIRECT_READ, w)]);
         let doubts = heal::DoubtBindings {
             frame: self.constants,
@@ -413,6 +451,7 @@ impl Frame<'_> {
             doubts: &t.doubts,
             counters: &b.counters,
             instances: &s.instances,
+            others: b.others.as_ref().unwrap_or(&b.visibility),
             dispatches: &t.dispatches,
         };
         p.heal.record(cmd, &heal);
@@ -431,7 +470,20 @@ impl Frame<'_> {
             instances: &s.instances,
             visibility: &b.visibility,
         };
-        self.passes.resolve.record(cmd, &bindings, self.colour, self.depth);
+        let meshes = s.meshes.as_ref().map(|m| resolve::MeshBindings {
+            frame: self.constants,
+            views: self.views,
+            instances: &s.instances,
+            mesh_instances: &m.instances,
+            meshes: &m.meshes,
+            triangles: &m.triangles,
+            positions: &m.positions,
+            normals: &m.normals,
+            visibility: &b.visibility,
+            others: b.others.as_ref().unwrap_or(&b.visibility),
+        });
+        let solids = self.solids().map(|parts| parts.resolve(self));
+        self.passes.resolve.record(cmd, &bindings, meshes.as_ref(), solids.as_ref(), self.colour, self.depth);
     }
 }
 

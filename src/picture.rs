@@ -44,9 +44,10 @@ pub struct Picture {
     pub colour: Vec<[u8; 4]>,
     /// Distance along the view axis, `+inf` for background.
     pub depth: Vec<f32>,
-    /// [`Face::id`](crate::model::Face::id), 0 for background.
+    /// [`Face::id`](crate::model::Face::id) or [`Mesh::id`](crate::model::Mesh::id), 0 for background.
     pub face: Vec<u32>,
-    /// Surface parameters in the face's own domain; NaN for background.
+    /// Surface parameters in the face's own domain; of a mesh, the barycentric weights of the triangle's second
+    /// and third corner; NaN for background.
     pub uv: Vec<[f32; 2]>,
     /// Unit outward normal in model space; 0 for background.
     pub normal: Vec<[f32; 3]>,
@@ -59,7 +60,7 @@ pub struct Picture {
 pub struct FrameStats {
     /// Name and GPU time in milliseconds of each pass, in order.
     pub passes: Vec<PassTime>,
-    /// Triangles that the tessellator made.
+    /// Triangles that the tessellator made, and those of meshes.
     pub triangles: u64,
     /// Sub-patches drawn.
     pub sub_patches: u64,

@@ -14,10 +14,4 @@ Ray eye_ray(Frame frame, vec2 pixel) {
     return Ray(across, frame.forward);
 }
 
-// Reversed depth of the picture's depth images at depth t.
-float reversed_depth(Frame frame, float t) {
-    float range = 1.0 / (frame.far - frame.near);
-    return (frame.far - t) * range * (frame.perspective != 0u ? frame.near / t : 1.0);
-}
-
 #endif

@@ -8,6 +8,9 @@
 //                    ├── first_curve  + local curve  = curve item
 //                    └── first_strip  + local strip  = strip item
 //
+//   Instance ◀── MeshInstance ──▶ Mesh ──▶ triangles (three indices each) ──▶ positions
+//                                   └────▶ normals, one a corner of its triangles, or none
+//
 // (u, v) of a face is normalised: its whole surface covers [0, 1] x [0, 1].
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
@@ -63,6 +66,22 @@ struct Instance {
     float scale;   // largest stretch of the transform
     uint colour;   // as Face.colour; opacity 0: the faces keep theirs
     uint mirrored; // 1 when the transform turns the space inside out
+};
+
+const uint MESH_SOLID = 1u;   // the part is closed
+const uint MESH_NORMALS = 2u; // its corners have normals
+
+struct Mesh {
+    uint first_triangle;
+    uint first_normal; // of the first corner of the first triangle
+    uint flags;
+    uint id;
+    uint colour;       // as Face.colour
+};
+
+struct MeshInstance {
+    uint mesh;
+    uint instance;
 };
 
 // The part of a patch that lies in one v-strip.

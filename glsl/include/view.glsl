@@ -22,6 +22,18 @@ vec4 to_pixel(View view, vec4 p) {
     return vec4(row_times(view.x, p), row_times(view.y, p), row_times(view.depth, p), row_times(view.w, p));
 }
 
+// Reversed depth in a perspective view times `w`, in a parallel one as it is: 1 at the near plane, 0 at
+// the far one. Floats are densest near 0, where perspective needs them.
+float reversed_depth(Frame frame, float depth) {
+    float range = 1.0 / (frame.far - frame.near);
+    return (frame.far - depth) * range * (frame.perspective != 0u ? frame.near : 1.0);
+}
+
+// What the rasteriser wants of a homogeneous pixel.
+vec4 to_clip(Frame frame, vec4 q) {
+    return vec4(q.xy * 2.0 / frame.size - q.w, reversed_depth(frame, q.z), q.w);
+}
+
 // The smallest W of the box in front of the near plane, or a negative number when no part of the
 // box can be seen. `margin` widens the picture, in pixels.
 float visible_w(View view, Frame frame, vec3 lo, vec3 hi, float margin) {

@@ -1,18 +1,34 @@
-// What the visibility image holds of a pixel.
+// What is seen at a pixel.
+//
+//   first word    31  30-29   28 - 0             second word
+//   nothing        0      0   0                  0
+//   a patch        d      0   item + 1           (u, v) of the patch, two 16-bit numbers
+//   a mesh         0      1   mesh instance      triangle of the scene
+//   a solid        0      2   side of a leaf     depth along the view axis, a float
+//
+// d: doubtful, for pass `heal`. Of kind 3 nothing is drawn. In scenes with trims, what is no
+// patch is in an image of its own, `others`, and seen where `visibility` has nothing.
 #ifndef VISIBLE_GLSL
 #define VISIBLE_GLSL
 
-// First word: item + 1, or 0 where nothing is seen; and a flag for pass `heal`. Or SOLID and the
-// number of the side (LeafSurface) + 1; the second word is the depth then.
 const uint DOUBTFUL = 0x80000000u;
-const uint SOLID = 0x40000000u;
+const uint SEEN_KIND = 0x60000000u;
+const uint SEEN_MESH = 0x20000000u;
+const uint SEEN_SOLID = 0x40000000u; // Boolean
+
+// The scene has things that are no patches.
+layout(constant_id = 4) const bool SCENE_HAS_OTHERS = false;
+
+bool sees_nothing(uint word) { return (word & ~DOUBTFUL) == 0u; }
+bool sees_other(uint word) { return SCENE_HAS_OTHERS && (word & SEEN_KIND) != 0u; } // than a patch
+bool sees_mesh(uint word) { return (word & SEEN_KIND) == SEEN_MESH; }
+bool sees_solid(uint word) { return (word & SEEN_KIND) == SEEN_SOLID; }
 
 uint seen_item(uint word) { return (word & ~DOUBTFUL) - 1u; }
-bool sees_solid(uint word) { return (word & SOLID) != 0u; }
-uint seen_side(uint word) { return (word & ~SOLID) - 1u; }
-bool sees_nothing(uint word) { return (word & ~DOUBTFUL) == 0u; }
+uint seen_mesh_instance(uint word) { return word & ~(DOUBTFUL | SEEN_KIND); }
+uint seen_side(uint word) { return word & ~(DOUBTFUL | SEEN_KIND); }
 
-// (u, v) of a patch as two 16-bit numbers; a border may be continued by less than its width.
+// A border of a patch may be continued by less than its width.
 uint pack_uv(vec2 uv) { return packUnorm2x16((uv + 1.0) / 3.0); }
 vec2 unpack_uv(uint word) { return unpackUnorm2x16(word) * 3.0 - 1.0; }
 

@@ -103,6 +103,30 @@ pub struct Instance {
     pub mirrored: u32,
 }
 
+/// The mesh belongs to a closed part.
+pub const MESH_SOLID: u32 = 1;
+/// The mesh has a normal at each corner of each triangle.
+pub const MESH_NORMALS: u32 = 2;
+
+/// One triangle mesh.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct Mesh {
+    pub first_triangle: u32,
+    pub first_normal: u32,
+    pub flags: u32,
+    pub id: u32,
+    pub colour: u32,
+}
+
+/// One mesh of one placed part.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct MeshInstance {
+    pub mesh: u32,
+    pub instance: u32,
+}
+
 /// The part of a patch that lies in one v-strip.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]

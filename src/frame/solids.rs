@@ -1,15 +1,15 @@
-//! The frame's part for Boolean solids: what each tile sees, where each pixel's ray enters, light.
+//! The frame's part for Boolean solids: what each tile sees, where each pixel's ray enters.
 //!
 //! ```text
 //!   leaves ──solid_rects──▶ rects ──solid_blocks, solid_tiles (each: count, scan, list)──▶ leaves of each tile
-//!          ──solid_fold──▶ their Blist ──solid_events──▶ visibility, depth ──resolve_solids──▶ the host's targets
+//!          ──solid_fold──▶ their Blist ──solid_events──▶ visibility of what is no patch, depth
 //! ```
 
 use super::{Frame, WRITE_TO_READ};
 use crate::buffers::SolidBuffers;
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
+use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, barrier};
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
-use crate::passes::{resolve, resolve_solids, solid_blocks, solid_events, solid_fold, solid_rects, solid_tiles};
+use crate::passes::{resolve, solid_blocks, solid_events, solid_fold, solid_rects, solid_tiles};
 use crate::scene::{SolidData, Solids};
 
 /// The passes of Boolean solids.
@@ -19,28 +19,18 @@ pub(super) struct SolidPasses {
     tiles: solid_tiles::SolidTiles,
     fold: solid_fold::SolidFold,
     events: solid_events::SolidEvents,
-    resolve: resolve_solids::ResolveSolids,
 }
 
 impl SolidPasses {
     /// `None` when the scene has no Boolean solid.
-    pub(super) fn new(
-        device: &Device,
-        solids: &SolidData,
-        formats: resolve::Formats,
-    ) -> Result<Option<Self>, GpuError> {
-        if solids.leaves.is_empty() {
-            return Ok(None);
-        }
-        let aovs = resolve::AOV_FORMATS.into_iter().filter(|_| formats.aovs);
-        let colour: Vec<_> = std::iter::once(formats.colour).chain(aovs).collect();
+    pub(super) fn new(device: &Device, solids: &SolidData) -> Result<Option<Self>, GpuError> {
+        let Some(tori) = solids.kinds() else { return Ok(None) };
         Ok(Some(Self {
             rects: solid_rects::SolidRects::new(device)?,
             blocks: solid_blocks::SolidBlocks::new(device)?,
             tiles: solid_tiles::SolidTiles::new(device)?,
             fold: solid_fold::SolidFold::new(device)?,
-            events: solid_events::SolidEvents::new(device, solids.has_tori(), VISIBILITY_FORMAT, DEPTH_FORMAT)?,
-            resolve: resolve_solids::ResolveSolids::new(device, &colour, formats.depth)?,
+            events: solid_events::SolidEvents::new(device, tori, VISIBILITY_FORMAT, DEPTH_FORMAT)?,
         }))
     }
 }
@@ -130,14 +120,6 @@ impl<'a> Frame<'a> {
             ],
         );
 
-        let images = (&self.buffers.visibility, &self.buffers.depth);
-        barrier::images(
-            cmd,
-            &[
-                (images.0, Access::COLOUR_WRITE, Access::COLOUR_WRITE),
-                (images.1, Access::DEPTH_WRITE, Access::DEPTH_WRITE),
-            ],
-        );
         let events = solid_events::Bindings {
             frame: self.constants,
             leaves: &s.leaves,
@@ -148,22 +130,32 @@ impl<'a> Frame<'a> {
             tile_leaves: &t.tile_leaves,
             tile_entries: &t.tile_entries,
         };
-        p.events.record(cmd, &events, images);
+        let b = self.buffers;
+        let seen = b.others.as_ref().unwrap_or(&b.visibility);
+        // meshes came before
+        let drawn = self.scene.meshes.is_some();
+        let colour = Attachment { image: seen, load: if drawn { Load::Keep } else { Load::ColourU32([0; 4]) } };
+        let depth = Attachment { image: &b.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
+        p.events.record(cmd, &events, (colour, depth));
+        barrier::images(
+            cmd,
+            &[(seen, Access::COLOUR_WRITE, Access::COLOUR_WRITE), (&b.depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],
+        );
     }
+}
 
-    /// The pixels that `resolve` left to the solids.
-    pub(super) fn resolve_solids(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>) {
-        let colour = self.colour.iter().map(|a| (a.image, Access::COLOUR_WRITE, Access::COLOUR_WRITE));
-        let depth = self.depth.iter().map(|a| (a.image, Access::DEPTH_WRITE, Access::DEPTH_WRITE));
-        barrier::images(cmd, &colour.chain(depth).collect::<Vec<_>>());
-        let bindings = resolve_solids::Bindings {
-            frame: self.constants,
-            leaves: &parts.scene.leaves,
-            leaf_surfaces: &parts.scene.leaf_surfaces,
-            surfaces: &parts.scene.surfaces,
-            surface_centres: parts.centres.surfaces,
-            visibility: &self.buffers.visibility,
-        };
-        parts.passes.resolve.record(cmd, &bindings, self.colour, self.depth);
+impl<'a> SolidParts<'a> {
+    /// What pass `resolve` needs of them.
+    pub(super) fn resolve(&self, frame: &Frame<'a>) -> resolve::SolidBindings<'a> {
+        let b = frame.buffers;
+        resolve::SolidBindings {
+            frame: frame.constants,
+            leaves: &self.scene.leaves,
+            leaf_surfaces: &self.scene.leaf_surfaces,
+            surfaces: &self.scene.surfaces,
+            surface_centres: self.centres.surfaces,
+            visibility: &b.visibility,
+            others: b.others.as_ref().unwrap_or(&b.visibility),
+        }
     }
 }

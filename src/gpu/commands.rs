@@ -3,6 +3,7 @@
 use super::{Access, Attachment, Buffer, Device, Image, Pipeline, Resource, push};
 use ash::vk;
 use std::ffi::CString;
+use std::ops::Range;
 
 /// A command buffer being recorded, and the device that it belongs to.
 ///
@@ -87,6 +88,13 @@ impl<'a> Commands<'a> {
     pub fn draw(&self, vertices: u32, first_vertex: u32, instances: u32) {
         // SAFETY: recording within `rendering`; a graphics pipeline is bound.
         unsafe { self.device.raw().cmd_draw(self.raw, vertices, instances, first_vertex, 0) };
+    }
+
+    /// Draws a range of vertices once for each of a range of instances.
+    pub fn draw_instances(&self, vertices: Range<u32>, instances: Range<u32>) {
+        let (count, copies) = (vertices.len() as u32, instances.len() as u32);
+        // SAFETY: recording within `rendering`; a graphics pipeline is bound.
+        unsafe { self.device.raw().cmd_draw(self.raw, count, copies, vertices.start, instances.start) };
     }
 
     /// Makes `draws` draws of `VkDrawIndirectCommand`, packed, at `offset` bytes of `arguments`.

@@ -21,6 +21,9 @@ const GROUP: u32 = 64;
 /// `constant_id` of `SCENE_HAS_RATIONAL`.
 const SCENE_HAS_RATIONAL: u32 = 0;
 
+/// `constant_id` of `SCENE_HAS_OTHERS`.
+const SCENE_HAS_OTHERS: u32 = 4;
+
 /// The pass, in its two steps.
 pub(crate) struct Heal {
     find: Pipeline,
@@ -53,20 +56,24 @@ pub(crate) struct Bindings<'a> {
     pub doubts: &'a Buffer,
     pub counters: &'a Buffer,
     pub instances: &'a Buffer,
+    /// Of what is no patch; any image where the scene has nothing else.
+    pub others: &'a Image,
     /// Its own is the fourth.
     pub dispatches: &'a Buffer,
 }
 
 impl Heal {
-    pub(crate) fn new(device: &Device, rational: bool) -> Result<Self, GpuError> {
+    /// `others`: the scene has things that are no patches.
+    pub(crate) fn new(device: &Device, rational: bool, others: bool) -> Result<Self, GpuError> {
         let mut find = [Binding::Storage; 5];
         find[1] = Binding::StorageImage;
-        let mut heal = [Binding::Storage; 15];
+        let mut heal = [Binding::Storage; 16];
         heal[6] = Binding::Texels;
         heal[11] = Binding::StorageImage;
+        heal[15] = Binding::StorageImage;
         let weights = if rational { "rational" } else { "polynomial" };
         let pipeline = |name, spirv, bindings| {
-            let constants = &[(SCENE_HAS_RATIONAL, u32::from(rational))];
+            let constants = &[(SCENE_HAS_RATIONAL, u32::from(rational)), (SCENE_HAS_OTHERS, u32::from(others))];
             Pipeline::compute(device, &ComputeInfo { name, spirv, bindings, push_bytes: 0, constants })
         };
         Ok(Self {
@@ -102,6 +109,7 @@ impl Heal {
             b.doubts.into(),
             b.counters.into(),
             b.instances.into(),
+            b.others.into(),
         ];
         cmd.bind(&self.heal, &resources, &[]);
         cmd.dispatch_indirect(b.dispatches, 3 * size_of::<[u32; 3]>() as u64);

@@ -2,7 +2,9 @@
 //!
 //! ```text
 //!   item, (u, v) of the triangle ──Newton──▶ (u, v) whose exact point projects to the pixel's centre
-//!                                   │
+//!   triangle of a mesh ──plane──▶   │
+//!   side of a Boolean solid ─────▶  │        a pipeline for each kind of thing: each leaves the others'
+//!   nothing ──background────────▶   │        pixels alone
 //!                                   ├──▶ colour, depth into the host's targets
 //!                                   └──▶ depth, face, (u, v), normal images, when asked for
 //! ```
@@ -25,9 +27,27 @@ const SCENE_HAS_RATIONAL: u32 = 0;
 /// `constant_id` of `HAS_AOVS`.
 const HAS_AOVS: u32 = 3;
 
-/// The pass.
+/// `constant_id` of `SCENE_HAS_OTHERS`.
+const SCENE_HAS_OTHERS: u32 = 4;
+
+/// `constant_id` of `SOLIDS_HAVE_TORI`.
+const SOLIDS_HAVE_TORI: u32 = 5;
+
+/// The pass: a pipeline for each kind of thing that the scene has.
 pub(crate) struct Resolve {
-    pipeline: Pipeline,
+    /// And the background, in every scene.
+    patches: Pipeline,
+    meshes: Option<Pipeline>,
+    solids: Option<Pipeline>,
+}
+
+/// What the scene asks of the pass.
+#[derive(Clone, Copy)]
+pub(crate) struct Kinds {
+    pub rational: bool,
+    pub meshes: bool,
+    /// Boolean ones, and whether a torus is among their surfaces.
+    pub solids: Option<bool>,
 }
 
 /// Formats that the host draws into.
@@ -38,7 +58,7 @@ pub(crate) struct Formats {
     pub aovs: bool,
 }
 
-/// Its buffers and image, in binding order.
+/// Buffers and image for patches, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub views: &'a Buffer,
@@ -51,8 +71,36 @@ pub(crate) struct Bindings<'a> {
     pub visibility: &'a Image,
 }
 
+/// Buffers and image for meshes, in binding order.
+pub(crate) struct MeshBindings<'a> {
+    pub frame: &'a Buffer,
+    pub views: &'a Buffer,
+    pub instances: &'a Buffer,
+    pub mesh_instances: &'a Buffer,
+    pub meshes: &'a Buffer,
+    pub triangles: &'a Buffer,
+    pub positions: &'a Buffer,
+    pub normals: &'a Buffer,
+    pub visibility: &'a Image,
+    /// The visibility image again where the scene has no trims.
+    pub others: &'a Image,
+}
+
+/// Buffers and image for Boolean solids, in binding order.
+pub(crate) struct SolidBindings<'a> {
+    pub frame: &'a Buffer,
+    pub leaves: &'a Buffer,
+    pub leaf_surfaces: &'a Buffer,
+    pub surfaces: &'a Buffer,
+    /// Model axes, seen from the eye.
+    pub surface_centres: &'a Buffer,
+    pub visibility: &'a Image,
+    /// The visibility image again where the scene has no trims.
+    pub others: &'a Image,
+}
+
 impl Resolve {
-    pub(crate) fn new(device: &Device, formats: Formats, rational: bool) -> Result<Self, GpuError> {
+    pub(crate) fn new(device: &Device, formats: Formats, kinds: Kinds) -> Result<Self, GpuError> {
         let replace = |format| ColourTarget { format, blend: Blend::Replace };
         let mut colour = vec![replace(formats.colour)];
         if formats.aovs {
@@ -61,38 +109,59 @@ impl Resolve {
         let mut bindings = [Binding::Storage; 9];
         bindings[6] = Binding::Texels;
         bindings[8] = Binding::StorageImage;
-        let weights = if rational { "rational" } else { "polynomial" };
-        let pipeline = Pipeline::graphics(
-            device,
-            &GraphicsInfo {
-                name: &format!("resolve ({weights})"),
-                stages: &[
-                    (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
-                    (vk::ShaderStageFlags::FRAGMENT, shaders::RESOLVE_FRAG),
-                ],
-                bindings: &bindings,
-                push_bytes: 0,
-                constants: &[(SCENE_HAS_RATIONAL, u32::from(rational)), (HAS_AOVS, u32::from(formats.aovs))],
-                topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-                patch_points: 0,
-                cull: vk::CullModeFlags::NONE,
-                front: vk::FrontFace::COUNTER_CLOCKWISE,
-                colour: &colour,
-                depth: formats.depth.map(|format| DepthTest {
-                    format,
-                    compare: vk::CompareOp::GREATER_OR_EQUAL,
-                    write: true,
-                }),
-            },
-        )?;
-        Ok(Self { pipeline })
+        let pipeline = |name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
+            Pipeline::graphics(
+                device,
+                &GraphicsInfo {
+                    name: &format!("resolve ({name})"),
+                    stages: &[
+                        (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
+                        (vk::ShaderStageFlags::FRAGMENT, fragment),
+                    ],
+                    bindings,
+                    push_bytes: 0,
+                    constants,
+                    topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+                    patch_points: 0,
+                    cull: vk::CullModeFlags::NONE,
+                    front: vk::FrontFace::COUNTER_CLOCKWISE,
+                    colour: &colour,
+                    depth: formats.depth.map(|format| DepthTest {
+                        format,
+                        compare: vk::CompareOp::GREATER_OR_EQUAL,
+                        write: true,
+                    }),
+                },
+            )
+        };
+        let aovs = (HAS_AOVS, u32::from(formats.aovs));
+        let mut of_mesh = [Binding::Storage; 10];
+        of_mesh[8..].fill(Binding::StorageImage);
+        let mesh = |()| pipeline("mesh", shaders::RESOLVE_MESH_FRAG, &of_mesh, &[aovs]);
+        let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
+        let mut of_solid = [Binding::Storage; 7];
+        of_solid[5..].fill(Binding::StorageImage);
+        let solid = |tori: bool| {
+            let constants = [aovs, (SOLIDS_HAVE_TORI, u32::from(tori))];
+            pipeline("solid", shaders::RESOLVE_SOLID_FRAG, &of_solid, &constants)
+        };
+        let solids = kinds.solids.map(solid).transpose()?;
+        let weights = if kinds.rational { "rational" } else { "polynomial" };
+        let constants = [
+            (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
+            aovs,
+            (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some())),
+        ];
+        Ok(Self { patches: pipeline(weights, shaders::RESOLVE_FRAG, &bindings, &constants)?, meshes, solids })
     }
 
-    /// One triangle over the targets.
+    /// One triangle over the targets for each kind of thing.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
+        meshes: Option<&MeshBindings<'_>>,
+        solids: Option<&SolidBindings<'_>>,
         colour: &[Attachment<'_>],
         depth: Option<Attachment<'_>>,
     ) {
@@ -101,8 +170,22 @@ impl Resolve {
             let buffers = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items].map(Into::into);
             let rest = [b.points.into(), b.instances.into(), b.visibility.into()];
             let resources: Vec<_> = buffers.into_iter().chain(rest).collect();
-            cmd.bind(&self.pipeline, &resources, &[]);
+            cmd.bind(&self.patches, &resources, &[]);
             cmd.draw(3, 0, 1);
+            if let (Some(pipeline), Some(m)) = (&self.meshes, meshes) {
+                let placed = [m.frame, m.views, m.instances, m.mesh_instances, m.meshes].map(Into::into);
+                let shape = [m.triangles, m.positions, m.normals].map(Into::into);
+                let resources: Vec<_> =
+                    placed.into_iter().chain(shape).chain([m.visibility.into(), m.others.into()]).collect();
+                cmd.bind(pipeline, &resources, &[]);
+                cmd.draw(3, 0, 1);
+            }
+            if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
+                let buffers = [s.frame, s.leaves, s.leaf_surfaces, s.surfaces, s.surface_centres].map(Into::into);
+                let resources: Vec<_> = buffers.into_iter().chain([s.visibility.into(), s.others.into()]).collect();
+                cmd.bind(pipeline, &resources, &[]);
+                cmd.draw(3, 0, 1);
+            }
         });
     }
 }

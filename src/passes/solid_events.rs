@@ -8,8 +8,7 @@
 //! pass `visibility` drew. Needs no storage per pixel.
 
 use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image, Load,
-    Pipeline,
+    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
 };
 use crate::shaders;
 use ash::vk;
@@ -66,13 +65,16 @@ impl SolidEvents {
     }
 
     /// One triangle over the picture; what is there already stays where it is nearer.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, (visibility, depth): (&Image, &Image)) {
-        let colour = [Attachment { image: visibility, load: Load::Keep }];
-        let depth = Attachment { image: depth, load: Load::Keep };
+    pub(crate) fn record(
+        &self,
+        cmd: &Commands<'_>,
+        b: &Bindings<'_>,
+        (visibility, depth): (Attachment<'_>, Attachment<'_>),
+    ) {
         let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres];
         let tiles = [b.tile_starts, b.tile_leaves, b.tile_entries];
         let resources: Vec<_> = solid.into_iter().chain(tiles).map(Into::into).collect();
-        cmd.rendering(visibility.size(), &colour, Some(depth), || {
+        cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
             cmd.bind(&self.pipeline, &resources, &[]);
             cmd.draw(3, 0, 1);
         });

@@ -10,7 +10,7 @@ use crate::shaders;
 const GROUP: u32 = 64;
 
 /// `constant_id` of `LISTS`.
-const LISTS: u32 = 4;
+const LISTS: u32 = 6;
 
 /// The pass.
 pub(crate) struct SolidTiles {

@@ -7,12 +7,12 @@
 //! ```
 //!
 //! Reads: everything that `Bindings` names but the images. Writes: the visibility image and depth
-//! (reversed: 1 at the near plane), which begin cleared.
+//! (reversed: 1 at the near plane), which begin cleared or with what is no patch.
 
 use crate::abi::Counters;
 use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image, Load,
-    Pipeline, Texels,
+    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
+    Texels,
 };
 use crate::shaders;
 use ash::vk;
@@ -106,16 +106,14 @@ impl Visibility {
         &self,
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
-        (visibility, depth): (&Image, &Image),
+        (visibility, depth): (Attachment<'_>, Attachment<'_>),
         draw_capacity: u32,
     ) {
-        let colour = [Attachment { image: visibility, load: Load::ColourU32([0; 4]) }];
-        let depth = Attachment { image: depth, load: Load::Depth(0.0) };
         let bytes = u64::from(draw_capacity) * size_of::<vk::DrawIndirectCommand>() as u64;
         let shared = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items];
         let lists = [b.factors, b.sub_patches, b.instances];
         let shared = || shared.into_iter().map(Into::into).chain([b.points.into()]).chain(lists.map(Into::into));
-        cmd.rendering(visibility.size(), &colour, Some(depth), || {
+        cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
             if let Some(plain) = &self.plain {
                 cmd.bind(plain, &shared().collect::<Vec<_>>(), &[]);
                 let count = offset_of!(Counters, plain_draws) as u64;

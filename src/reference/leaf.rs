@@ -98,6 +98,17 @@ impl Ray {
         Self { origin, direction, planes: direction.normalize().any_orthonormal_pair() }
     }
 
+    /// Place of `p` in a plane across the ray, which passes it at the origin.
+    pub fn across(&self, p: DVec3) -> DVec2 {
+        let from = p - self.origin;
+        DVec2::new(self.planes.0.dot(from), self.planes.1.dot(from))
+    }
+
+    /// Of the point of the ray nearest to `p`.
+    pub fn parameter(&self, p: DVec3) -> f64 {
+        (p - self.origin).dot(self.direction) / self.direction.length_squared()
+    }
+
     /// Parameter and position relative to `middle` of the point nearest to it.
     fn nearest(&self, middle: DVec3) -> (f64, DVec3) {
         let o = self.origin - middle;

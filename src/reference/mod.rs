@@ -1,8 +1,10 @@
-//! The slow exact renderer: what every error is measured against. `f64`, no GPU, no mesh.
+//! The slow exact renderer: what every error is measured against. `f64`, no GPU; triangles only where the
+//! model itself has them.
 //!
 //! ```text
 //!   pixel ──Camera::ray──▶ line ──Bvh over instances, then leaves──▶ candidates
 //!         ──Solver──▶ all (u, v) where the line meets the surface ──LoopIndex──▶ those inside the loops
+//!         ──Facets──▶ triangles of meshes, by exact signs
 //! ```
 //!
 //! Nothing is tessellated and nothing is sampled: a hit is a root of the surface's own rational
@@ -13,6 +15,7 @@
 //! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`].
 
 mod bvh;
+mod facet;
 mod judge;
 mod leaf;
 mod net;
@@ -28,6 +31,7 @@ use crate::model::{Bounds, Camera, Model};
 use crate::picture::Picture;
 use crate::trim::LoopIndex;
 use bvh::Bvh;
+use facet::Facets;
 use glam::{DAffine3, DMat3, DVec2, DVec3};
 use leaf::Leaf;
 use rayon::prelude::*;
@@ -38,20 +42,24 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub struct Hit {
     /// Distance from the eye along the view axis, model units.
     pub depth: f64,
-    /// [`Face::id`](crate::model::Face::id).
+    /// [`Face::id`](crate::model::Face::id) or [`Mesh::id`](crate::model::Mesh::id).
     pub face: u32,
     /// Index into [`Model::parts`].
     pub part: usize,
-    /// Index into [`Part::faces`](crate::model::Part::faces).
+    /// Index into [`Part::faces`](crate::model::Part::faces); beyond them, into
+    /// [`Part::meshes`](crate::model::Part::meshes).
     pub face_index: usize,
     /// Index into [`Model::instances`].
     pub instance: usize,
-    /// Parameters in the face's domain.
+    /// Parameters in the face's domain; of a triangle, the weights of its second and third corner.
     pub uv: DVec2,
     /// The point, model coordinates.
     pub point: DVec3,
-    /// Unit outward normal, model coordinates; zero where the surface has none.
+    /// Unit outward normal, model coordinates; zero where the surface has none. Of a mesh with normals, the
+    /// one between them.
     pub normal: DVec3,
+    /// It is a triangle: normals may jump at its sides.
+    pub facet: bool,
 }
 
 /// A model made ready for rays.
@@ -64,13 +72,15 @@ pub struct Tracer {
     given_up: AtomicU64,
 }
 
-/// The faces of one part, in its own coordinates.
+/// The faces and meshes of one part, in its own coordinates.
 #[derive(Debug)]
 struct PartTree {
     faces: Vec<TracedFace>,
     leaves: Vec<Leaf>,
     /// Box of each leaf.
     boxes: Vec<Bounds>,
+    facets: Facets,
+    /// Over leaves, then facets.
     tree: Bvh,
 }
 
@@ -97,7 +107,7 @@ impl Tracer {
     /// Cost: microseconds a leaf, a leaf for every 20° or so that a surface turns. Instances whose
     /// transform flattens space are left out: they have no inside and no outward side.
     pub fn new(model: &Model) -> Self {
-        let parts: Vec<PartTree> = model.parts.par_iter().map(|p| PartTree::new(&p.faces)).collect();
+        let parts: Vec<PartTree> = model.parts.par_iter().map(PartTree::new).collect();
         let place = |(instance, i): (usize, &crate::model::Instance)| {
             let to_part = i.transform.inverse();
             (i.part < parts.len() && to_part.is_finite()).then(|| Placed {
@@ -178,17 +188,19 @@ impl Tracer {
 const PAD: f64 = 1e-12;
 
 impl PartTree {
-    fn new(faces: &[crate::model::Face]) -> Self {
+    fn new(part: &crate::model::Part) -> Self {
         let prepare = |(index, f): (usize, &crate::model::Face)| {
             let loops = LoopIndex::new(&f.loops);
             let leaves = leaf::leaves(index as u32, f, &loops);
             (TracedFace { id: f.id, same_sense: f.same_sense, loops }, leaves)
         };
-        let prepared: Vec<_> = faces.par_iter().enumerate().map(prepare).collect();
+        let prepared: Vec<_> = part.faces.par_iter().enumerate().map(prepare).collect();
         let (faces, leaves): (Vec<_>, Vec<_>) = prepared.into_iter().unzip();
         let (leaves, boxes): (Vec<Leaf>, Vec<Bounds>) = leaves.into_iter().flatten().unzip();
-        let size = boxes.iter().fold(Bounds::EMPTY, |a, b| a.union(*b)).diagonal();
-        let tree = Bvh::new(&boxes, PAD * size);
-        Self { faces, leaves, boxes, tree }
+        let (facets, mut all) = Facets::new(&part.meshes);
+        all.splice(0..0, boxes.iter().copied());
+        let size = all.iter().fold(Bounds::EMPTY, |a, b| a.union(*b)).diagonal();
+        let tree = Bvh::new(&all, PAD * size);
+        Self { faces, leaves, boxes, facets, tree }
     }
 }

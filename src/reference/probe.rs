@@ -64,18 +64,30 @@ impl<'a> Probe<'a> {
             let local = (placed.to_part.transform_point3(origin), placed.to_part.transform_vector3(direction));
             let ray = Ray::new(local.0, local.1);
             part.tree.visit(&Slabs::new(local.0, local.1), (start, end), |index| {
-                let leaf = &part.leaves[index as usize];
-                leaf.meet(&ray, solver, |m| {
-                    let face = &part.faces[leaf.face as usize];
-                    if m.t >= start && m.t <= end && (leaf.inside || face.loops.contains(m.uv)) {
-                        let mut hit = placed.hit(&m, camera.eye, *forward);
-                        hit.face = face.id;
-                        hit.face_index = leaf.face as usize;
-                        hit.normal = if face.same_sense { hit.normal } else { -hit.normal };
-                        found.push((hit, m.spread));
-                        end = end.min(m.t + slack);
-                    }
-                });
+                let index = index as usize;
+                if let Some(leaf) = part.leaves.get(index) {
+                    leaf.meet(&ray, solver, |m| {
+                        let face = &part.faces[leaf.face as usize];
+                        if m.t >= start && m.t <= end && (leaf.inside || face.loops.contains(m.uv)) {
+                            let mut hit = placed.hit(&m, camera.eye, *forward);
+                            hit.face = face.id;
+                            hit.face_index = leaf.face as usize;
+                            hit.normal = if face.same_sense { hit.normal } else { -hit.normal };
+                            found.push((hit, m.spread));
+                            end = end.min(m.t + slack);
+                        }
+                    });
+                } else if let Some((mesh, m)) = part.facets.meet(&ray, index - part.leaves.len())
+                    && m.t >= start
+                    && m.t <= end
+                {
+                    let mut hit = placed.hit(&m, camera.eye, *forward);
+                    hit.face = part.facets.meshes()[mesh].id;
+                    hit.face_index = part.faces.len() + mesh;
+                    hit.facet = true;
+                    found.push((hit, m.spread));
+                    end = end.min(m.t + slack);
+                }
                 end
             });
             end
@@ -129,6 +141,7 @@ impl Placed {
             uv: m.uv,
             point,
             normal: (self.normals * m.normal).normalize_or_zero(),
+            facet: false,
         }
     }
 }

@@ -1,6 +1,7 @@
 //! The whole scene as plain arrays, and the transforms that stay in `f64`.
 
 use super::face::{FaceData, pack_colour};
+use super::mesh::Meshes;
 use super::solids::{SolidData, SolidError};
 use crate::abi;
 use crate::model::{Camera, Model, Projection};
@@ -23,6 +24,7 @@ pub(crate) struct SceneData {
     pub cells: Vec<abi::Cell>,
     pub curves: Vec<abi::Curve>,
     pub curve_points: Vec<f32>,
+    pub meshes: Meshes,
     /// Some patch has unequal weights.
     pub has_rational: bool,
     /// Some patch is drawn without a trim test.
@@ -58,7 +60,13 @@ impl SceneData {
             let first = first_faces[instance.part];
             data.push_instance(instance, origins[instance.part], first..first + part.faces.len());
         }
+        data.meshes = Meshes::new(model, &origins);
         Ok(data)
+    }
+
+    /// Some mesh is placed.
+    pub(crate) fn has_meshes(&self) -> bool {
+        !self.meshes.draws.is_empty()
     }
 
     /// Frees the arrays that the GPU has; the placements and centres stay.

@@ -214,7 +214,7 @@ impl FaceData {
 }
 
 /// Neutral grey, linear 0.55, opaque.
-const DEFAULT_COLOUR: u32 = 0xff8c_8c8c;
+pub(super) const DEFAULT_COLOUR: u32 = 0xff8c_8c8c;
 
 /// Linear colour to unorm bytes, red lowest.
 pub(super) fn pack_colour(c: crate::model::Colour) -> u32 {

@@ -4,6 +4,7 @@
 //!   Model (f64, any size, any distance from the origin)
 //!     │  face: knots inserted ──▶ Patch + points (f32, relative to the part's centre)
 //!     │        loops          ──▶ Side of each patch; Curve + curve_points; Cell per patch and strip
+//!     │  mesh: positions (f32, relative to the part's centre), indices, packed normals
 //!     │  part: shared by its instances
 //!     ▼
 //!   SceneData (plain arrays)  ──upload──▶  Scene (persistent pool)
@@ -16,10 +17,11 @@
 mod data;
 mod face;
 mod flatten;
+mod mesh;
 mod solids;
 mod upload;
 
 pub(crate) use data::{SceneData, focal_and_slant, view};
 pub(crate) use solids::SolidData;
 pub use solids::SolidError;
-pub(crate) use upload::{Scene, Solids, Trims};
+pub(crate) use upload::{MeshBuffers, Scene, Solids, Trims};

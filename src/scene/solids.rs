@@ -114,9 +114,9 @@ impl SolidData {
         Ok(data)
     }
 
-    /// Some surface is a torus.
-    pub(crate) fn has_tori(&self) -> bool {
-        self.surfaces.iter().any(|s| s.kind == abi::SURFACE_TORUS)
+    /// `None` without leaves, else whether some surface is a torus.
+    pub(crate) fn kinds(&self) -> Option<bool> {
+        (!self.leaves.is_empty()).then(|| self.surfaces.iter().any(|s| s.kind == abi::SURFACE_TORUS))
     }
 
     /// What frames need once the GPU has the rest.

@@ -4,6 +4,7 @@ use super::SceneData;
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texels, Uploads};
 use ash::vk;
 use bytemuck::Pod;
+use std::ops::Range;
 
 /// A scene in GPU memory.
 pub(crate) struct Scene {
@@ -18,6 +19,8 @@ pub(crate) struct Scene {
     pub trims: Option<Trims>,
     /// Boolean solids; `None` when there are none.
     pub solids: Option<Solids>,
+    /// What meshes need; `None` when there is none.
+    pub meshes: Option<MeshBuffers>,
 }
 
 /// The switches of the Blist, and their surfaces.
@@ -25,6 +28,17 @@ pub(crate) struct Solids {
     pub leaves: Buffer,
     pub leaf_surfaces: Buffer,
     pub surfaces: Buffer,
+}
+
+/// Triangles, where they are placed, and the draws that cover them.
+pub(crate) struct MeshBuffers {
+    pub meshes: Buffer,
+    pub instances: Buffer,
+    pub positions: Buffer,
+    pub triangles: Buffer,
+    pub normals: Buffer,
+    /// Corners of triangles, and mesh instances.
+    pub draws: Vec<(Range<u32>, Range<u32>)>,
 }
 
 /// Trim curves and the cells that tell their density.
@@ -69,6 +83,20 @@ impl Scene {
                         leaves: persistent(&mut uploads, cmd, "solid leaves", &data.solids.leaves)?,
                         leaf_surfaces: persistent(&mut uploads, cmd, "solid sides", &data.solids.leaf_surfaces)?,
                         surfaces: persistent(&mut uploads, cmd, "solid surfaces", &data.solids.surfaces)?,
+                    })
+                })
+                .transpose()?,
+            meshes: data
+                .has_meshes()
+                .then(|| {
+                    let m = &data.meshes;
+                    Ok(MeshBuffers {
+                        meshes: persistent(&mut uploads, cmd, "meshes", &m.meshes)?,
+                        instances: persistent(&mut uploads, cmd, "mesh instances", &m.instances)?,
+                        positions: persistent(&mut uploads, cmd, "mesh positions", &m.positions)?,
+                        triangles: persistent(&mut uploads, cmd, "mesh triangles", &m.triangles)?,
+                        normals: persistent(&mut uploads, cmd, "mesh normals", &m.normals)?,
+                        draws: m.draws.clone(),
                     })
                 })
                 .transpose()?,

@@ -8,6 +8,7 @@ mod accuracy;
 mod distance;
 mod errors;
 mod every_shape;
+mod meshes;
 mod objects;
 mod room;
 mod samples;

@@ -38,6 +38,23 @@ fn only_a_trimmed_scene_has_a_trim_table() {
     }
 }
 
+/// Pipelines, buffers and the image of meshes exist for meshes only; the image apart only where faces are
+/// trimmed as well.
+#[test]
+fn only_a_scene_with_meshes_has_what_they_need() {
+    let needed = ["mesh", "meshes", "mesh instances", "mesh positions", "mesh triangles", "resolve (mesh)"];
+    for shape in shapes::all() {
+        let has = shape.model.parts.iter().any(|p| !p.meshes.is_empty());
+        let (renderer, objects) = objects(&shape.model, Outputs::default());
+        for name in needed {
+            assert_eq!(objects.iter().any(|o| o == name), has, "{name} in {}: {objects:?}", shape.name);
+        }
+        assert_eq!(objects.iter().any(|o| o == "visibility of others"), has && shape.trimmed, "{}", shape.name);
+        assert_eq!(objects.iter().any(|o| o.contains("mesh")), has, "{}: {objects:?}", shape.name);
+        assert_silent(renderer);
+    }
+}
+
 #[test]
 fn only_a_rational_scene_has_rational_pipelines() {
     for shape in shapes::all() {

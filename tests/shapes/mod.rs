@@ -7,6 +7,9 @@
 //!   wave       polynomial, bicubic                              ripple   polynomial, degrees 6 and 5
 //!   pair       one part placed twice
 //!   far_away   features of 1e-3 at a distance of 1e6            mirrored a part turned inside out
+//!   tetra      one closed mesh                                facets   it placed twice, once mirrored
+//!   beside     a mesh that cuts into a trimmed face           globe    and into one without trims
+//!   floor      solids and shells before meshes                ball     a mesh with normals
 //!   empty      nothing at all
 //! ```
 //!
@@ -14,6 +17,10 @@
 //! Book*, 1997, section 7.3), so every shape is exact; [`circle_at`] says where the parameter is.
 
 #![allow(dead_code)] // each test binary takes what it needs
+
+mod meshes;
+
+pub use meshes::*;
 
 use glam::{DAffine3, DMat3, DVec2, DVec3, DVec4};
 use selvedge::model::{Colour, Face, Instance, Model, Part, SurfaceKind, TrimLoop};
@@ -57,6 +64,12 @@ pub fn all() -> Vec<Shape> {
         shape("pair", pair(), true, false),
         shape("far_away", far_away(DVec3::splat(1e6)), true, true),
         shape("mirrored", mirrored(), true, true),
+        shape("tetra", tetra(), false, false),
+        shape("facets", facets(), false, false),
+        shape("beside", beside(), true, true),
+        shape("globe", globe(), false, true),
+        shape("floor", floor(), true, false),
+        shape("ball", ball(), false, false),
         shape("empty", empty(), false, false),
     ]
 }

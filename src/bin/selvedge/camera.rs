@@ -84,11 +84,14 @@ fn fitted(mut camera: Camera, bounds: Bounds) -> Result<Camera> {
     Ok(camera)
 }
 
-/// [`CLOSER`] to the start of the trim curve nearest to the eye: certainly in sight, and at an edge.
+/// [`CLOSER`] to the start of the trim curve or the vertex nearest to the eye: certainly in sight, and at
+/// an edge.
 fn closer(model: &Model, mut camera: Camera) -> Camera {
     let depth = |p: &DVec3| (*p - camera.eye).dot(camera.axes().2);
     let placed = model.instances.iter().flat_map(|instance| {
-        let points = model.parts[instance.part].faces.iter().flat_map(boundary_points);
+        let part = &model.parts[instance.part];
+        let vertices = part.meshes.iter().flat_map(|m| m.positions().iter().copied());
+        let points = part.faces.iter().flat_map(boundary_points).chain(vertices);
         points.map(|p| instance.transform.transform_point3(p))
     });
     let Some(detail) = placed.min_by(|a, b| depth(a).total_cmp(&depth(b))) else { return camera };

@@ -4,7 +4,7 @@ use crate::args::InfoArgs;
 use crate::{Outcome, output, session};
 use anyhow::Result;
 use selvedge::import::{Import, ImportReport};
-use selvedge::model::{Model, SurfaceKind};
+use selvedge::model::{Model, Part, SurfaceKind};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -21,6 +21,10 @@ struct Info<'a> {
     face_instances: usize,
     trim_loops: usize,
     trim_curves: usize,
+    meshes: usize,
+    mesh_instances: usize,
+    triangles: usize,
+    triangle_instances: usize,
     surfaces: Vec<SurfaceRow>,
     /// Millimetres; absent for an empty model.
     bounds: Option<[[f64; 3]; 2]>,
@@ -53,6 +57,8 @@ impl<'a> Info<'a> {
         let parts = |closed: bool| model.parts.iter().filter(|p| p.closed == closed).count();
         let placed = |closed: bool| model.instances.iter().filter(|i| model.parts[i.part].closed == closed).count();
         let bounds = model.bounds();
+        let triangles = |p: &Part| p.meshes.iter().map(|m| m.triangles().len()).sum::<usize>();
+        let placed_parts = || model.instances.iter().map(|i| &model.parts[i.part]);
         Self {
             name: &model.name,
             unit: &model.unit,
@@ -64,6 +70,10 @@ impl<'a> Info<'a> {
             face_instances: model.face_instance_count(),
             trim_loops: faces().map(|f| f.loops.len()).sum(),
             trim_curves: faces().flat_map(|f| &f.loops).map(|l| l.curves().len()).sum(),
+            meshes: model.parts.iter().map(|p| p.meshes.len()).sum(),
+            mesh_instances: placed_parts().map(|p| p.meshes.len()).sum(),
+            triangles: model.parts.iter().map(triangles).sum(),
+            triangle_instances: placed_parts().map(triangles).sum(),
             surfaces: surfaces(model),
             bounds: (!bounds.is_empty()).then(|| [bounds.min.into(), bounds.max.into()]),
             warnings: import.warnings.iter().map(ToString::to_string).collect(),
@@ -82,6 +92,8 @@ impl<'a> Info<'a> {
         counts.add_row(["faces".to_string(), self.faces.to_string(), self.face_instances.to_string()]);
         counts.add_row(["trim loops".to_string(), self.trim_loops.to_string(), String::new()]);
         counts.add_row(["trim curves".to_string(), self.trim_curves.to_string(), String::new()]);
+        counts.add_row(["meshes".to_string(), self.meshes.to_string(), self.mesh_instances.to_string()]);
+        counts.add_row(["triangles".to_string(), self.triangles.to_string(), self.triangle_instances.to_string()]);
 
         let mut surfaces = output::table(["surface", "degree", "rational", "faces", "patches"]);
         for row in &self.surfaces {

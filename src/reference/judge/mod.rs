@@ -28,9 +28,15 @@ use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use report::Tally;
 use search::{Reach, Search, Wanted};
+use std::f64::consts::FRAC_PI_4;
 
 /// Below this cosine between normal and ray a pixel is grazing: 84.3°, a slope of 10.
 pub const GRAZING_COSINE: f64 = 0.1;
+/// Normals of one mesh jump between triangles. A drawn normal off by more than this, radians, is compared
+/// with what is seen beside the pixel's centre, too.
+const SMOOTH: f64 = 1e-3;
+/// How far beside, pixels: a rasteriser rounds corners to 1/256.
+const FACET_PX: f64 = 1.0 / 128.0;
 /// Pixels judged between two calls of the progress callback, and the unit of parallel work.
 const CHUNK: usize = 1024;
 
@@ -156,11 +162,11 @@ impl Bench<'_> {
     /// Tallies an agreeing pixel; returns any other.
     fn look(&self, probe: &mut Probe, index: usize, tally: &mut Tally) -> Option<Suspect> {
         let centre = self.centre(index);
-        let drawn = self.picture.face[index];
+        let drawn_id = self.picture.face[index];
         let first = probe.first(centre);
         let truth = first.map_or(0, |h| h.face);
-        if drawn != truth {
-            return Some(Suspect { index, truth, wanted: Wanted { face: drawn, depth: None }, searched: true });
+        if drawn_id != truth {
+            return Some(Suspect { index, truth, wanted: Wanted { face: drawn_id, depth: None }, searched: true });
         }
         tally.agree += 1;
         let hit = first?;
@@ -174,7 +180,7 @@ impl Bench<'_> {
             let pixel = pixel_size(self.camera, hit.depth);
             let fold = error.is_nan() || error > fold_depth(self.camera, &hit, direction);
             tally.depth(index, error, pixel, regular && !fold);
-            let wanted = Wanted { face: drawn, depth: Some(depth) };
+            let wanted = Wanted { face: drawn_id, depth: Some(depth) };
             suspect = fold.then_some(Suspect { index, truth, wanted, searched: true });
         }
         if regular
@@ -182,12 +188,25 @@ impl Bench<'_> {
             && let Some(&n) = self.picture.normal.get(index)
         {
             let drawn = DVec3::new(f64::from(n[0]), f64::from(n[1]), f64::from(n[2]));
-            // atan2 keeps its digits near 0, where acos of a dot product has none
-            let angle = drawn.cross(hit.normal).length().atan2(drawn.dot(hit.normal));
+            let mut angle = angle_between(drawn, hit.normal);
+            if hit.facet && angle > SMOOTH {
+                let beside = beside(centre).filter_map(|p| probe.first(p)).filter(|h| h.face == drawn_id);
+                angle = beside.map(|h| angle_between(drawn, h.normal)).fold(angle, f64::min);
+            }
             tally.normal.add(index, angle.to_degrees());
         }
         suspect
     }
+}
+
+/// In radians. `atan2` keeps its digits near 0, where `acos` of a dot product has none.
+fn angle_between(a: DVec3, b: DVec3) -> f64 {
+    a.cross(b).length().atan2(a.dot(b))
+}
+
+/// Places around a pixel's centre at which a neighbouring triangle may be what was drawn.
+fn beside(centre: DVec2) -> impl Iterator<Item = DVec2> {
+    (0..8).map(move |k| centre + DVec2::from_angle(f64::from(k) * FRAC_PI_4) * FACET_PX)
 }
 
 /// Side of a pixel in model units at `depth`.

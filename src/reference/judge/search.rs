@@ -191,7 +191,7 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// Projects the leaf boxes of `faces`.
+    /// Projects the boxes of the leaves and meshes of `faces`.
     pub fn new(tracer: &Tracer, camera: &Camera, faces: impl Iterator<Item = u32>) -> Self {
         let wanted: HashSet<u32> = faces.collect();
         let mut boxes: HashMap<u32, Vec<(DVec2, DVec2)>> = HashMap::new();
@@ -201,9 +201,12 @@ impl Reach {
         let margin = DVec2::splat(RINGS[RINGS.len() - 1]);
         for placed in &tracer.placed {
             let part = &tracer.parts[placed.part];
-            for (leaf, bounds) in part.leaves.iter().zip(&part.boxes) {
-                let id = part.faces[leaf.face as usize].id;
-                if !wanted.contains(&id) {
+            let leaves = part.leaves.iter().zip(&part.boxes);
+            let leaves = leaves.map(|(leaf, bounds)| (part.faces[leaf.face as usize].id, *bounds));
+            // the whole of a mesh: who is searched in vain costs less than a box a triangle
+            let meshes = part.facets.meshes().iter().map(|m| (m.id, m.bounds()));
+            for (id, bounds) in leaves.chain(meshes) {
+                if bounds.is_empty() || !wanted.contains(&id) {
                     continue;
                 }
                 let corners = bounds.corners().map(|c| camera.project(placed.to_model.transform_point3(c)));

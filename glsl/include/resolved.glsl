@@ -1,0 +1,43 @@
+// What the resolve pass writes of a pixel, whatever is seen there. Needs `frame`, scene.glsl, view.glsl.
+#ifndef RESOLVED_GLSL
+#define RESOLVED_GLSL
+
+#include "shade.glsl"
+
+layout(constant_id = 3) const bool HAS_AOVS = false;
+
+layout(location = 0) out vec4 out_colour;
+layout(location = 1) out float out_depth;
+layout(location = 2) out uint out_face;
+layout(location = 3) out vec2 out_uv;
+layout(location = 4) out vec4 out_normal;
+
+// The background, unless the host keeps its picture.
+void write_nothing() {
+    if (frame.background.a < 0.0) discard;
+    out_colour = encode(frame.background, frame.encode_srgb);
+    if (HAS_AOVS) {
+        out_depth = uintBitsToFloat(0x7f800000u);
+        out_face = 0u;
+        out_uv = vec2(uintBitsToFloat(0x7fc00000u));
+        out_normal = vec4(0.0);
+    }
+    gl_FragDepth = 0.0;
+}
+
+// A point of a surface with its unit outward normal `n`, in model space. `own` is the surface's colour,
+// which the instance's overrides.
+void write_surface(uint own, Instance instance, vec3 n, bool solid, float depth, uint id, vec2 uv) {
+    vec4 placed = unpackUnorm4x8(instance.colour);
+    vec4 colour = placed.a > 0.0 ? placed : unpackUnorm4x8(own);
+    out_colour = encode(vec4(shade(colour.rgb, n, frame, !solid), 1.0), frame.encode_srgb);
+    if (HAS_AOVS) {
+        out_depth = depth;
+        out_face = id;
+        out_uv = uv;
+        out_normal = vec4(n, 1.0);
+    }
+    gl_FragDepth = reversed_depth(frame, depth) / (frame.perspective != 0u ? depth : 1.0);
+}
+
+#endif

@@ -1,0 +1,8 @@
+#version 460
+// Pass `mesh`: which triangle is seen.
+layout(location = 0) flat in uvec2 seen;
+layout(location = 0) out uvec2 visible;
+
+void main() {
+    visible = seen;
+}

@@ -1,0 +1,81 @@
+//! Meshes as arrays: single precision relative to the part's centre, as control points are.
+//!
+//! ```text
+//!   part with 2 meshes, placed 3 times         mesh instances: A0 A1 A2 B0 B1 B2
+//!                                              draws: (corners of A, 0..3) (corners of B, 3..6)
+//! ```
+
+use super::face::{DEFAULT_COLOUR, pack_colour};
+use crate::abi;
+use crate::model::{Mesh, Model};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::ops::Range;
+
+/// Every mesh of the parts that are placed, and their instances.
+#[derive(Clone, Debug, Default)]
+pub(crate) struct Meshes {
+    pub meshes: Vec<abi::Mesh>,
+    /// Grouped by mesh.
+    pub instances: Vec<abi::MeshInstance>,
+    pub positions: Vec<[f32; 3]>,
+    /// Indices into `positions`.
+    pub triangles: Vec<[u32; 3]>,
+    /// Octahedral, one a corner of the triangles of those meshes that have any.
+    pub normals: Vec<u32>,
+    /// Corners of the triangles of one mesh, and its range of `instances`.
+    pub draws: Vec<(Range<u32>, Range<u32>)>,
+}
+
+impl Meshes {
+    /// `origins` has the centre of each part.
+    pub(super) fn new(model: &Model, origins: &[DVec3]) -> Self {
+        let mut placed = vec![Vec::new(); model.parts.len()];
+        (0..).zip(&model.instances).for_each(|(index, i)| placed[i.part].push(index));
+        let mut all = Self::default();
+        for ((part, &origin), placed) in model.parts.iter().zip(origins).zip(&placed) {
+            for mesh in part.meshes.iter().filter(|m| !m.triangles().is_empty() && !placed.is_empty()) {
+                all.push(mesh, origin, part.closed, placed);
+            }
+        }
+        all
+    }
+
+    fn push(&mut self, mesh: &Mesh, origin: DVec3, solid: bool, placed: &[u32]) {
+        let flag = |on: bool, bit: u32| if on { bit } else { 0 };
+        let smooth = !mesh.normals().is_empty();
+        let number = self.meshes.len() as u32;
+        let first = self.positions.len();
+        let (corners, instances) = (3 * self.triangles.len(), self.instances.len());
+        self.meshes.push(abi::Mesh {
+            first_triangle: self.triangles.len() as u32,
+            first_normal: self.normals.len() as u32,
+            flags: flag(solid, abi::MESH_SOLID) | flag(smooth, abi::MESH_NORMALS),
+            id: mesh.id,
+            colour: mesh.colour.map_or(DEFAULT_COLOUR, pack_colour),
+        });
+        self.instances.extend(placed.iter().map(|&instance| abi::MeshInstance { mesh: number, instance }));
+        self.positions.par_extend(mesh.positions().par_iter().map(|p| (*p - origin).as_vec3().to_array()));
+        self.triangles.par_extend(mesh.triangles().par_iter().map(|t| t.map(|v| (first + v as usize) as u32)));
+        self.normals.par_extend((0..mesh.normals().len()).into_par_iter().flat_map_iter(|t| corner_normals(mesh, t)));
+        let range = |from: usize, to: usize| from as u32..to as u32;
+        self.draws.push((range(corners, 3 * self.triangles.len()), range(instances, self.instances.len())));
+    }
+}
+
+/// Of one triangle; a corner without a direction gets the triangle's.
+fn corner_normals(mesh: &Mesh, triangle: usize) -> [u32; 3] {
+    let [a, b, c] = mesh.corners(triangle);
+    let flat = (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Z);
+    mesh.normals()[triangle].map(|n| octahedral(n.try_normalize().unwrap_or(flat)))
+}
+
+/// A unit vector on the octahedron `|x| + |y| + |z| = 1` unfolded to a square, as two signed 16-bit
+/// numbers; off by at most 0.0037°. Source: Z. H. Cigolle et al., *A Survey of Efficient Representations
+/// for Independent Unit Vectors*, Journal of Computer Graphics Techniques 3 (2), 2014.
+fn octahedral(n: DVec3) -> u32 {
+    let p = n / n.abs().element_sum();
+    let fold = |a: f64, b: f64| if p.z < 0.0 { (1.0 - b.abs()) * 1f64.copysign(a) } else { a };
+    let half = |x: f64| u32::from((x * 32767.0).round() as i16 as u16);
+    half(fold(p.x, p.y)) | half(fold(p.y, p.x)) << 16
+}
