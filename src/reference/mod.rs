@@ -13,6 +13,7 @@
 //! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`].
 
 mod bvh;
+pub mod csg;
 mod judge;
 mod leaf;
 mod net;
