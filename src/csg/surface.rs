@@ -192,7 +192,7 @@ impl Finder {
         let (mut along, mut against) = (0, 0);
         for (p, other) in b.samples.iter().map(|p| (p, a)).chain(a.samples.iter().map(|p| (p, b))) {
             let Some((distance, gradient)) = other.surface.distance(*p) else { continue };
-            if !(distance <= self.distance) {
+            if distance > self.distance || distance.is_nan() {
                 return None;
             }
             let own = if std::ptr::eq(other, a) { b } else { a };

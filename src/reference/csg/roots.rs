@@ -56,7 +56,7 @@ impl Roots {
             return Self::plane(-c, 2.0 * b);
         }
         let root = b * b - a * c;
-        if !(root > 0.0) {
+        if root <= 0.0 || root.is_nan() {
             return Self { inside_before: if root < 0.0 { c < 0.0 } else { a < 0.0 }, at: Vec::new() };
         }
         let far = -(b + root.sqrt().copysign(b));
