@@ -24,7 +24,7 @@ use crate::gpu::{
 use crate::model::{Camera, CameraError, Model, Projection};
 use crate::passes::resolve;
 use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes};
-pub use crate::scene::SolidError;
+pub use crate::scene::UndrawnSolid;
 use crate::scene::{Scene, SceneData, SolidData, focal_and_slant, view};
 use ash::vk;
 
@@ -89,7 +89,7 @@ pub enum RenderError {
     TooMany(#[from] TooMany),
     /// A Boolean solid that cannot be drawn.
     #[error(transparent)]
-    Solid(#[from] SolidError),
+    Solid(#[from] UndrawnSolid),
     /// A target of another size than the camera's.
     #[error("the target `{name}` is {width} x {height}, the camera's picture another size")]
     TargetSize {

@@ -9,9 +9,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // pure: numbers and geometry, no GPU
     ("math", &[]),
     ("spline", &["math"]),
-    ("model", &["spline"]),
+    ("model", &["csg", "math", "spline"]),
     ("trim", &["math", "spline", "model"]),
-    ("csg", &["math", "spline", "model"]),
+    ("csg", &[]),
     ("brep", &["math", "spline", "trim", "model"]),
     ("import", &["brep", "spline", "model"]),
     ("picture", &["model"]),

@@ -1,21 +1,28 @@
-//! Boolean solids: expressions over primitives, and the lists that decide membership.
+//! Boolean expressions over primitives, which are numbers here, and the lists that decide membership.
 //!
 //! ```text
-//!   Solid ── primitives: [Primitive]     shape, transform, colour, id
-//!         └─ tree: Tree                  + * - ^ ! over primitive indices, postfix, any depth
-//!
-//!   Tree ──positive──▶ + * and complemented leaves ──Blist──▶ 8-byte switches, walked without a stack
+//!   Tree: + * - ^ ! over primitive indices, postfix, any depth
+//!     │
+//!     ├─positive──▶ + * and complemented leaves ──Blist──▶ 8-byte switches, walked without a stack
+//!     ├─zone──▶ where a primitive matters
+//!     └─with_fewest_labels──▶ orders for a stencil buffer
 //! ```
 
 mod blist;
+mod bsp;
+mod cover;
+mod label;
+mod parse;
 mod positive;
-mod shape;
-mod solid;
 #[cfg(test)]
 mod tests;
 mod tree;
+mod zone;
 
 pub use blist::{Blist, Entry};
-pub use shape::{Primitive, Quadric, Shape, ShapeError};
-pub use solid::{Solid, SolidError};
+pub use bsp::{Bsp, BspNode, Visit, most_cells};
+pub use cover::covering_set;
+pub use label::{Convention, Labels, Switch};
+pub use parse::{Expression, ParseError, parse};
 pub use tree::{Builder, Node, Op, Tree, TreeError};
+pub use zone::Path;

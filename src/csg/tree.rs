@@ -123,8 +123,8 @@ impl Builder {
         all.fold(first, |a, b| self.pair(op, a, b))
     }
 
-    /// Copies `tree` in, with its leaves and operations as `change` makes them, and returns its root.
-    pub(super) fn copy(&mut self, tree: &Tree, mut leaf: impl FnMut(&mut Self, u32) -> u32) -> u32 {
+    /// Copies `tree` in, each leaf as `leaf` makes it, and returns the new place of each of its nodes.
+    pub(super) fn copy(&mut self, tree: &Tree, mut leaf: impl FnMut(&mut Self, u32) -> u32) -> Vec<u32> {
         let mut map: Vec<u32> = Vec::with_capacity(tree.nodes.len());
         for node in &tree.nodes {
             let new = match *node {
@@ -135,7 +135,7 @@ impl Builder {
             };
             map.push(new);
         }
-        map[tree.nodes.len() - 1]
+        map
     }
 
     /// The tree below `root`; shared nodes are written out once for each use.
@@ -276,10 +276,10 @@ impl Tree {
     /// a solid where `known(primitive)` says that a primitive is absent (`Some(false)`) or everywhere.
     pub fn fold(&self, mut known: impl FnMut(u32) -> Option<bool>) -> Self {
         let mut b = Builder::new();
-        let root = b.copy(self, |b, p| match known(p) {
+        let map = b.copy(self, |b, p| match known(p) {
             Some(value) => b.push(Node::Constant(value)),
             None => b.leaf(p),
         });
-        b.finish(root).expect("no larger than before")
+        b.finish(map[self.nodes.len() - 1]).expect("no larger than before")
     }
 }

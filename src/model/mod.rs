@@ -6,6 +6,7 @@
 //!         │            │       ├─ surface: Surface      rational B-spline over (u, v)
 //!         │            │       └─ loops:   [TrimLoop]   closed chains of rational Bézier curves in (u, v)
 //!         │            └─ meshes: [Mesh]                what the source gave as facets
+//!         ├─ solids: [Solid]          Boolean: primitives and an expression over them
 //!         └─ instances: [Instance]    part index, transform to model space, colour
 //! ```
 //!
@@ -18,12 +19,16 @@
 mod camera;
 mod face;
 mod mesh;
+mod solid;
 
 pub use camera::{Camera, CameraError, Projection};
 pub use face::{Face, FaceError, SurfaceKind, TrimLoop};
 pub use mesh::{Mesh, MeshError};
+pub use solid::{
+    CarriedFace, Carrier, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
+    SurfaceTable,
+};
 
-use crate::csg::Solid;
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
 

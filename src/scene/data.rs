@@ -2,7 +2,7 @@
 
 use super::face::{FaceData, pack_colour};
 use super::mesh::Meshes;
-use super::solids::{SolidData, SolidError};
+use super::solids::{SolidData, UndrawnSolid};
 use crate::abi;
 use crate::model::{Camera, Model, Projection};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
@@ -38,7 +38,7 @@ pub(crate) struct SceneData {
 }
 
 impl SceneData {
-    pub(crate) fn new(model: &Model) -> Result<Self, SolidError> {
+    pub(crate) fn new(model: &Model) -> Result<Self, UndrawnSolid> {
         let mut data = Self { solids: SolidData::new(&model.solids)?, ..Self::default() };
         let mut used = vec![false; model.parts.len()];
         model.instances.iter().for_each(|i| used[i.part] = true);

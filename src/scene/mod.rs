@@ -23,5 +23,5 @@ mod upload;
 
 pub(crate) use data::{SceneData, focal_and_slant, view};
 pub(crate) use solids::SolidData;
-pub use solids::SolidError;
+pub use solids::UndrawnSolid;
 pub(crate) use upload::{MeshBuffers, Scene, Solids, Trims};

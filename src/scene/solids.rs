@@ -11,7 +11,8 @@
 
 use super::face::pack_colour;
 use crate::abi;
-use crate::csg::{Blist, Builder, Node, Op, Primitive, Shape, Solid, Tree, TreeError};
+use crate::csg::{Blist, Builder, Node, Op, Tree, TreeError};
+use crate::model::{Primitive, Shape, Solid};
 use glam::{DAffine3, DMat3, DVec3};
 
 /// The arrays that the GPU gets, and the centres that change with the eye.
@@ -29,7 +30,7 @@ pub(crate) struct SolidData {
 /// Why a solid is not drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // the messages say what each field is
-pub enum SolidError {
+pub enum UndrawnSolid {
     /// An operand that has no equations.
     #[error("solid {solid}, primitive {primitive}: a {kind} as operand is not drawn")]
     Operand { solid: usize, primitive: u32, kind: &'static str },
@@ -50,14 +51,14 @@ type Side = (Placed, bool);
 
 impl SolidData {
     /// The union of all `solids`.
-    pub(crate) fn new(solids: &[Solid]) -> Result<Self, SolidError> {
+    pub(crate) fn new(solids: &[Solid]) -> Result<Self, UndrawnSolid> {
         let mut data = Self::default();
         let (tree, primitives) = union(solids)?;
         let list = Blist::new(&tree)?;
         let middle = middle_of(solids);
         let mut sides: Vec<Vec<Side>> = Vec::with_capacity(primitives.len());
         for (i, (solid, p)) in primitives.iter().enumerate() {
-            sides.push(sides_of(p, middle).map_err(|kind| SolidError::Operand {
+            sides.push(sides_of(p, middle).map_err(|kind| UndrawnSolid::Operand {
                 solid: *solid,
                 primitive: i as u32,
                 kind,

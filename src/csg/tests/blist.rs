@@ -64,7 +64,7 @@ fn positive_forms_are_positive_and_the_same() {
 #[test]
 fn a_million_levels() {
     for left in [true, false] {
-        let mixed = |i: u32| if i % 3 == 0 { Op::Difference } else { ALL[i as usize % 2] };
+        let mixed = |i: u32| if i.is_multiple_of(3) { Op::Difference } else { ALL[i as usize % 2] };
         let deep = chain(1_000_000, left, mixed);
         assert_eq!(deep.heights()[deep.root() as usize], 999_999);
         let list = Blist::new(&deep).unwrap();

@@ -1,8 +1,17 @@
 //! A solid: primitives and the expression over them.
 
-use super::shape::{Primitive, ShapeError};
-use super::tree::{Node, Tree};
-use crate::model::Bounds;
+mod carrier;
+mod shape;
+mod surface;
+#[cfg(test)]
+mod tests;
+
+pub use carrier::Carrier;
+pub use shape::{Primitive, Quadric, Shape, ShapeError};
+pub use surface::{CarriedFace, Surface, SurfaceTable};
+
+use super::Bounds;
+use crate::csg::{Entry, Node, Tree};
 use glam::DVec3;
 
 /// Primitives and a Boolean expression over them. Valid by construction: see [`Solid::new`].
@@ -28,8 +37,8 @@ pub enum SolidError {
 }
 
 impl Solid {
-    /// Primitives that a solid may have: what fits an entry of a [`Blist`](super::Blist).
-    pub const MOST_PRIMITIVES: u32 = super::blist::Entry::PRIMITIVE;
+    /// Primitives that a solid may have: what fits an entry of a [`Blist`](crate::csg::Blist).
+    pub const MOST_PRIMITIVES: u32 = Entry::PRIMITIVE;
 
     /// Checks the primitives' dimensions and the leaves' indices.
     ///
@@ -71,7 +80,7 @@ impl Solid {
         // boxes around a node and around its complement
         let mut boxes: Vec<(Bounds, Bounds)> = Vec::with_capacity(self.tree.nodes().len());
         for node in self.tree.nodes() {
-            use super::tree::Op::{Difference, Intersection, SymmetricDifference, Union};
+            use crate::csg::Op::{Difference, Intersection, SymmetricDifference, Union};
             let of = |i: u32| boxes[i as usize];
             boxes.push(match *node {
                 Node::Constant(value) => {

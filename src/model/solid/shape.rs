@@ -190,10 +190,10 @@ impl Primitive {
     pub fn to_own(&self) -> Option<DAffine3> {
         let m = self.transform.matrix3;
         let lengths = m.x_axis.length() * m.y_axis.length() * m.z_axis.length();
-        // columns in one plane to rounding: the determinant carries an error of a few ulp of the lengths
-        let flat = !(m.determinant().abs() > 8.0 * f64::EPSILON * lengths);
+        // columns not in one plane, to rounding: the determinant carries an error of a few ulp of the lengths
+        let solid = m.determinant().abs() > 8.0 * f64::EPSILON * lengths;
         let inverse = self.transform.inverse();
-        (!flat && self.transform.is_finite() && inverse.is_finite()).then_some(inverse)
+        (solid && self.transform.is_finite() && inverse.is_finite()).then_some(inverse)
     }
 
     /// A box around the primitive in the solid's coordinates: of the placed corners of its own box;
