@@ -2,12 +2,13 @@
 //!
 //! ```text
 //!   by the scene     taus, factors, counts and starts per item; per strip, face and curve if trimmed
-//!   by the picture   visibility, that of meshes where faces are trimmed, depth
-//!   by the view      sub-patches, draws, rows, intercepts, doubts: a pass that runs out says so in
+//!   by the picture   visibility, that of what is no patch where faces are trimmed, depth; per tile and block
+//!                    of tiles if there are Boolean solids
+//!   by the view      sub-patches, draws, rows, intercepts, doubts, leaves in tiles: a pass that runs out says so in
 //!                    Counters.failed, and the next frame gets what it would have needed
 //! ```
 
-use crate::abi::{Counters, Factors, SubPatch};
+use crate::abi::{BLOCK, Counters, Factors, Rect, SubPatch, TILE, TileLeaf};
 use crate::gpu::{Buffer, Device, GpuError, Image, ImageInfo, Pool};
 use crate::passes::scan;
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
@@ -22,6 +23,8 @@ pub(crate) struct Counts {
     pub strips: u32,
     pub curves: u32,
     pub face_instances: u32,
+    /// Leaves of Boolean solids.
+    pub leaves: u32,
     pub triangles: u32,
     pub mesh_instances: u32,
     pub trimmed: bool,
@@ -36,6 +39,7 @@ impl Counts {
             strips: data.strip_count,
             curves: data.curve_items.len() as u32,
             face_instances: data.face_instances.len() as u32,
+            leaves: data.solids.leaves.len() as u32,
             triangles: count(data.meshes.triangles.len().max(data.meshes.positions.len() / 3)),
             mesh_instances: count(data.meshes.instances.len()),
             trimmed: data.has_trimmed,
@@ -50,6 +54,7 @@ impl Counts {
             ("v-strips", self.strips, MOST_THREADS),
             ("curves", self.curves, MOST_THREADS),
             ("triangles", self.triangles, MOST_TRIANGLES),
+            ("primitives", self.leaves, MOST_THREADS),
             ("placed meshes", self.mesh_instances, MOST_MESH_INSTANCES),
         ];
         match all.into_iter().find(|(_, count, most)| count > most) {
@@ -90,6 +95,8 @@ pub(crate) struct Capacities {
     pub rows: u32,
     pub intercepts: u32,
     pub doubts: u32,
+    pub block_leaves: u32,
+    pub tile_leaves: u32,
 }
 
 /// Bits of [`Counters::failed`], as in `scene.glsl`.
@@ -105,6 +112,8 @@ impl Capacities {
             rows: trimmed * (1 << 16).max(2 * counts.strips).min(MOST_ROWS),
             intercepts: trimmed * (1 << 18).max(4 * counts.strips),
             doubts: trimmed * (1 << 14),
+            block_leaves: counts.leaves.saturating_mul(4),
+            tile_leaves: if counts.leaves > 0 { counts.leaves.saturating_mul(16).max(1 << 14) } else { 0 },
         }
     }
 
@@ -129,6 +138,8 @@ impl Capacities {
             rows: room(self.rows, c.wanted_rows, MOST_ROWS),
             intercepts: room(self.intercepts, c.intercepts, range / size_of::<u32>() as u32),
             doubts: room(self.doubts, c.doubts, range / size_of::<u32>() as u32),
+            block_leaves: room(self.block_leaves, c.block_leaves, range / size_of::<u32>() as u32),
+            tile_leaves: room(self.tile_leaves, c.tile_leaves, range / size_of::<TileLeaf>() as u32),
         })
     }
 }
@@ -148,6 +159,7 @@ pub(crate) struct Buffers {
     pub draws: Buffer,
     pub counters: Buffer,
     pub trim: Option<TrimBuffers>,
+    pub solids: Option<SolidBuffers>,
     pub visibility: Image,
     /// What is no patch, where pass `heal` needs it apart.
     pub others: Option<Image>,
@@ -170,6 +182,20 @@ pub(crate) struct TrimBuffers {
     pub doubts: Buffer,
 }
 
+/// Which leaves of Boolean solids each part of the picture sees.
+pub(crate) struct SolidBuffers {
+    pub blocks: u32,
+    pub tiles: u32,
+    pub rects: Buffer,
+    pub block_counts: Buffer,
+    pub block_starts: Buffer,
+    pub block_leaves: Buffer,
+    pub tile_counts: Buffer,
+    pub tile_starts: Buffer,
+    pub tile_leaves: Buffer,
+    pub tile_entries: Buffer,
+}
+
 impl Buffers {
     pub(crate) fn new(
         device: &Device,
@@ -187,7 +213,9 @@ impl Buffers {
         };
         let drawn_and_read = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE;
         let n = counts.items;
-        let scanned = (2 * n).max(counts.strips).max(counts.curves).max(capacities.rows);
+        let across = |side: u32| (size.0.div_ceil(side) * size.1.div_ceil(side)) * u32::from(counts.leaves > 0);
+        let (tiles, blocks) = (across(TILE), across(TILE * BLOCK));
+        let scanned = (2 * n).max(counts.strips).max(counts.curves).max(capacities.rows).max(tiles);
         let draw_bytes = 2 * u64::from(capacities.draws) * size_of::<vk::DrawIndirectCommand>() as u64;
         Ok(Self {
             counts,
@@ -221,8 +249,24 @@ impl Buffers {
                     })
                 })
                 .transpose()?,
+            solids: (counts.leaves > 0)
+                .then(|| {
+                    Ok(SolidBuffers {
+                        blocks,
+                        tiles,
+                        rects: structs("solid rects", counts.leaves, size_of::<Rect>())?,
+                        block_counts: words("solid block counts", blocks)?,
+                        block_starts: words("solid block starts", blocks + 1)?,
+                        block_leaves: words("solid block leaves", capacities.block_leaves)?,
+                        tile_counts: words("solid tile counts", tiles)?,
+                        tile_starts: words("solid tile starts", tiles + 1)?,
+                        tile_leaves: structs("solid tile leaves", capacities.tile_leaves, size_of::<TileLeaf>())?,
+                        tile_entries: words("solid tile entries", tiles)?,
+                    })
+                })
+                .transpose()?,
             visibility: image("visibility", VISIBILITY_FORMAT, drawn_and_read)?,
-            others: (counts.trimmed && counts.mesh_instances > 0)
+            others: (counts.trimmed && (counts.mesh_instances > 0 || counts.leaves > 0))
                 .then(|| image("visibility of others", VISIBILITY_FORMAT, drawn_and_read))
                 .transpose()?,
             depth: image("visibility depth", DEPTH_FORMAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?,

@@ -15,6 +15,8 @@
 //!                      ▼
 //!                    mesh        triangles of meshes: which one per pixel
 //!                      ▼
+//!                solid_events    where rays enter Boolean solids; solid_rects to solid_fold came before
+//!                      ▼
 //!                 visibility     tessellate, trim: item and (u, v) per pixel
 //!                      ▼
 //!                    heal        pixels that look through a gap between trimmed faces
@@ -30,7 +32,12 @@ use crate::passes::{
     bound, cross, density, emit, heal, lines, mesh, reset, resolve, scan, segments, sizes, sort, split, visibility,
 };
 use crate::scene::{MeshBuffers, Scene, SceneData, Trims};
+use solids::SolidPasses;
 use std::mem::offset_of;
+
+mod solids;
+
+pub(crate) use solids::Centres;
 
 /// The passes that a scene needs.
 pub(crate) struct Passes {
@@ -40,6 +47,7 @@ pub(crate) struct Passes {
     scan: scan::Scan,
     emit: emit::Emit,
     trim: Option<TrimPasses>,
+    solids: Option<SolidPasses>,
     visibility: visibility::Visibility,
     mesh: Option<mesh::Mesh>,
     resolve: resolve::Resolve,
@@ -67,7 +75,7 @@ impl Passes {
                 sizes: sizes::Sizes::new(device)?,
                 cross: cross::Cross::new(device)?,
                 sort: sort::Sort::new(device)?,
-                heal: heal::Heal::new(device, data.has_rational, data.has_meshes())?,
+                heal: heal::Heal::new(device, data.has_rational, data.has_meshes() || data.solids.kinds().is_some())?,
             })
         };
         Ok(Self {
@@ -77,12 +85,13 @@ impl Passes {
             scan: scan::Scan::new(device)?,
             emit: emit::Emit::new(device)?,
             trim: data.has_trimmed.then_some(()).map(trim).transpose()?,
+            solids: SolidPasses::new(device, &data.solids)?,
             visibility: visibility::Visibility::new(device, kinds)?,
             mesh: data.has_meshes().then(|| mesh::Mesh::new(device, VISIBILITY_FORMAT, DEPTH_FORMAT)).transpose()?,
             resolve: resolve::Resolve::new(
                 device,
                 formats,
-                resolve::Kinds { rational: data.has_rational, meshes: data.has_meshes() },
+                resolve::Kinds { rational: data.has_rational, meshes: data.has_meshes(), solids: data.solids.kinds() },
             )?,
         })
     }
@@ -96,6 +105,7 @@ pub(crate) struct Frame<'a> {
     /// This slot's constants and transforms, written by the host.
     pub constants: &'a Buffer,
     pub views: &'a Buffer,
+    pub centres: Option<Centres<'a>>,
     pub counters: &'a ReadBack,
     pub colour: &'a [Attachment<'a>],
     pub depth: Option<Attachment<'a>>,
@@ -118,6 +128,9 @@ impl Frame<'_> {
         self.begin_images(cmd);
         if let (Some(pass), Some(meshes)) = (&self.passes.mesh, &self.scene.meshes) {
             times.drawing(cmd, "mesh", || self.mesh(cmd, pass, meshes));
+        }
+        if let Some(parts) = self.solids() {
+            times.scope(cmd, "solids", || self.solid_events(cmd, &parts));
         }
         times.drawing(cmd, "visibility", || self.visibility(cmd));
         let mut drawn = Access::COLOUR_WRITE;
@@ -396,7 +409,7 @@ impl Frame<'_> {
             draws: &b.draws,
             counters: &b.counters,
         };
-        let drawn = s.meshes.is_some();
+        let drawn = s.meshes.is_some() || s.solids.is_some();
         let colour = if drawn && b.others.is_none() { Load::Keep } else { Load::ColourU32([0; 4]) };
         let visibility = Attachment { image: &b.visibility, load: colour };
         let depth = Attachment { image: &b.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
@@ -474,7 +487,8 @@ impl Frame<'_> {
             visibility: &b.visibility,
             others: b.others.as_ref().unwrap_or(&b.visibility),
         });
-        self.passes.resolve.record(cmd, &bindings, meshes.as_ref(), self.colour, self.depth);
+        let solids = self.solids().map(|parts| parts.resolve(self));
+        self.passes.resolve.record(cmd, &bindings, meshes.as_ref(), solids.as_ref(), self.colour, self.depth);
     }
 }
 

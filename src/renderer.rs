@@ -17,14 +17,15 @@ use crate::abi::Counters;
 use crate::budget::Budget;
 pub use crate::buffers::TooMany;
 use crate::buffers::{Buffers, Capacities, Counts};
-use crate::frame::{Frame, Passes, target};
+use crate::frame::{Centres, Frame, Passes, target};
 use crate::gpu::{
     Buffer, BufferInfo, Commands, Device, GpuError, Home, HostDevice, Image, Load, Pool, ReadBack, Timestamps, Uploads,
 };
 use crate::model::{Camera, CameraError, Model, Projection};
 use crate::passes::resolve;
 use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes};
-use crate::scene::{Scene, SceneData, focal_and_slant, view};
+pub use crate::scene::UndrawnSolid;
+use crate::scene::{Scene, SceneData, SolidData, focal_and_slant, view};
 use ash::vk;
 
 /// Formats of the images that the host will pass to [`Renderer::record`].
@@ -86,6 +87,9 @@ pub enum RenderError {
     /// The model, or what this view needs of it.
     #[error(transparent)]
     TooMany(#[from] TooMany),
+    /// A Boolean solid that cannot be drawn.
+    #[error(transparent)]
+    Solid(#[from] UndrawnSolid),
     /// A target of another size than the camera's.
     #[error("the target `{name}` is {width} x {height}, the camera's picture another size")]
     TargetSize {
@@ -131,6 +135,8 @@ struct Loaded {
 struct Slot {
     constants: Buffer,
     views: Option<Buffer>,
+    /// Of leaves and of surfaces of Boolean solids.
+    centres: Option<[Buffer; 2]>,
     counters: ReadBack,
     times: Timestamps,
     /// Freed when the slot comes round again.
@@ -149,7 +155,7 @@ enum Retired {
 }
 
 /// Timed scopes in a frame.
-const SCOPES: u32 = 8;
+const SCOPES: u32 = 10;
 /// Tolerances below this ask for more than single precision gives at full zoom.
 const LEAST_TOLERANCE_PX: f64 = 0.125;
 
@@ -183,7 +189,7 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before stays.
     pub fn upload(&mut self, model: &Model) -> Result<(), RenderError> {
-        let data = SceneData::new(model);
+        let data = SceneData::new(model)?;
         let counts = Counts::of(&data);
         counts.check()?;
         let formats =
@@ -262,6 +268,7 @@ impl Renderer {
             buffers,
             constants: &slot.constants,
             views,
+            centres: slot.centres.as_ref().map(|[leaves, surfaces]| Centres { leaves, surfaces }),
             counters: &slot.counters,
             colour: &colour,
             depth,
@@ -347,6 +354,7 @@ impl Slot {
         Ok(Self {
             constants: upload_buffer(device, "frame constants", size_of::<abi::Frame>() as u64)?,
             views: None,
+            centres: None,
             counters: ReadBack::new(device, "counters (read back)", size_of::<Counters>() as u64)?,
             times: Timestamps::new(device, SCOPES)?,
             retired: Vec::new(),
@@ -377,7 +385,32 @@ impl Slot {
         if let Some(buffer) = &mut self.views {
             buffer.write(0, &views);
         }
+        self.write_centres(device, &loaded.data.solids, input.camera)?;
         self.constants.write(0, &[constants(device, loaded, input, formats)]);
+        Ok(())
+    }
+}
+
+impl Slot {
+    /// Writes where the parts of Boolean solids are, seen from the eye.
+    fn write_centres(&mut self, device: &Device, solids: &SolidData, camera: &Camera) -> Result<(), GpuError> {
+        if solids.leaf_centres.is_empty() {
+            self.retired.extend(self.centres.take().into_iter().flatten().map(Retired::Buffer));
+            return Ok(());
+        }
+        let all = [&solids.leaf_centres, &solids.surface_centres];
+        let bytes = all.map(|list| (list.len() * size_of::<[f32; 3]>()) as u64);
+        if self.centres.as_ref().is_none_or(|b| b[0].bytes() < bytes[0] || b[1].bytes() < bytes[1]) {
+            let made = [
+                upload_buffer(device, "solid leaf centres", bytes[0])?,
+                upload_buffer(device, "solid surface centres", bytes[1])?,
+            ];
+            self.retired.extend(self.centres.replace(made).into_iter().flatten().map(Retired::Buffer));
+        }
+        for (buffer, list) in self.centres.iter_mut().flatten().zip(all) {
+            let seen: Vec<[f32; 3]> = list.iter().map(|c| (*c - camera.eye).as_vec3().to_array()).collect();
+            buffer.write(0, &seen);
+        }
         Ok(())
     }
 }
@@ -419,6 +452,9 @@ fn constants(device: &Device, loaded: &Loaded, input: &FrameInput<'_>, formats: 
         row_capacity: room.rows,
         intercept_capacity: room.intercepts,
         doubt_capacity: room.doubts,
+        leaf_count: counts.leaves,
+        block_leaf_capacity: room.block_leaves,
+        tile_leaf_capacity: room.tile_leaves,
         right: right.as_vec3().to_array(),
         up: up.as_vec3().to_array(),
         forward: forward.as_vec3().to_array(),

@@ -9,13 +9,14 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // pure: numbers and geometry, no GPU
     ("math", &[]),
     ("spline", &["math"]),
-    ("model", &["spline"]),
+    ("model", &["csg", "math", "spline"]),
     ("trim", &["math", "spline", "model"]),
     ("construct", &["math", "spline", "model", "trim"]),
+    ("csg", &[]),
     ("brep", &["math", "spline", "trim", "model"]),
     ("import", &["brep", "spline", "model"]),
     ("picture", &["model"]),
-    ("reference", &["math", "spline", "trim", "model", "picture"]),
+    ("reference", &["csg", "math", "spline", "trim", "model", "picture"]),
     ("budget", &[]),
     ("abi", &[]),
     ("twin", &["abi", "math", "spline", "trim", "model"]),
@@ -24,7 +25,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("shaders", &[]),
     ("passes", &["abi", "gpu", "shaders"]),
     // where both meet
-    ("scene", &["abi", "gpu", "math", "spline", "trim", "model"]),
+    ("scene", &["abi", "csg", "gpu", "math", "spline", "trim", "model"]),
     ("buffers", &["abi", "gpu", "passes", "scene"]),
     ("frame", &["abi", "buffers", "gpu", "passes", "scene"]),
     ("renderer", &["abi", "budget", "buffers", "frame", "gpu", "model", "passes", "picture", "scene"]),
@@ -37,7 +38,7 @@ const VULKAN: &[&str] = &["gpu", "scene", "passes", "buffers", "renderer", "head
 const UNSAFE: &[&str] = &["gpu", "renderer", "headless"];
 /// Files beside `gpu` and `headless` that may record barriers: the frame, and the one pass that has steps
 /// of its own.
-const BARRIERS: &[&str] = &["src/frame.rs", "src/passes/scan.rs"];
+const BARRIERS: &[&str] = &["src/frame.rs", "src/frame/solids.rs", "src/passes/scan.rs"];
 /// What a library leaves to its host.
 const HOSTS: &[&str] =
     &["println!", "print!(", "eprintln!", "eprint!(", "dbg!(", "std::env::", "process::exit", "process::abort"];

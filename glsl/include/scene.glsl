@@ -125,6 +125,9 @@ struct Frame {
     uint row_capacity;
     uint intercept_capacity;
     uint doubt_capacity;
+    uint leaf_count;    // of Boolean solids
+    uint block_leaf_capacity;
+    uint tile_leaf_capacity;
     vec3 right;         // camera axes in model space
     vec3 up;
     vec3 forward;
@@ -142,6 +145,8 @@ struct Counters {
     uint wanted_rows;  // rows before they were cut to the capacity
     uint intercepts;
     uint doubts;       // pixels for pass heal
+    uint block_leaves; // leaves of Boolean solids in all blocks of tiles, and in all tiles
+    uint tile_leaves;
     uint clamps;       // factors or densities above their hard limits
     uint failed;       // one bit a buffer that was too small
 };
@@ -151,6 +156,8 @@ const uint FAILED_DRAWS = 2u;
 const uint FAILED_ROWS = 4u;
 const uint FAILED_INTERCEPTS = 8u;
 const uint FAILED_DOUBTS = 16u;
+const uint FAILED_BLOCK_LEAVES = 32u;
+const uint FAILED_TILE_LEAVES = 64u;
 
 // Tessellation of one item, decided by the split pass. Totals over the whole patch.
 struct Factors {

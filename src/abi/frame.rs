@@ -37,6 +37,9 @@ pub struct Frame {
     pub row_capacity: u32,
     pub intercept_capacity: u32,
     pub doubt_capacity: u32,
+    pub leaf_count: u32,
+    pub block_leaf_capacity: u32,
+    pub tile_leaf_capacity: u32,
     pub right: [f32; 3],
     pub up: [f32; 3],
     pub forward: [f32; 3],
@@ -56,6 +59,8 @@ pub struct Counters {
     pub wanted_rows: u32,
     pub intercepts: u32,
     pub doubts: u32,
+    pub block_leaves: u32,
+    pub tile_leaves: u32,
     pub clamps: u32,
     pub failed: u32,
 }

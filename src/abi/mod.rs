@@ -1,5 +1,5 @@
-//! The structures that Rust and GLSL share, in scalar layout. Twins of `glsl/include/scene.glsl`
-//! and `view.glsl`; the build asserts every offset and stride against the compiled shaders.
+//! The structures that Rust and GLSL share, in scalar layout. Twins of `glsl/include/scene.glsl`,
+//! `view.glsl`, `solids.glsl` and `tiles.glsl`; the build asserts every offset and stride against the compiled shaders.
 
 // Fields carry their meaning and units in the GLSL, which the build holds them against.
 #![allow(missing_docs)]
@@ -7,9 +7,11 @@
 mod frame;
 mod scan;
 mod scene;
+mod solids;
 
 pub use frame::*;
 pub use scan::ScanParams;
 pub use scene::*;
+pub use solids::*;
 
 include!(concat!(env!("OUT_DIR"), "/spirv/layout.rs"));

@@ -6,6 +6,7 @@
 //!         │            │       ├─ surface: Surface      rational B-spline over (u, v)
 //!         │            │       └─ loops:   [TrimLoop]   closed chains of rational Bézier curves in (u, v)
 //!         │            └─ meshes: [Mesh]                what the source gave as facets
+//!         ├─ solids: [Solid]          Boolean: primitives and an expression over them
 //!         └─ instances: [Instance]    part index, transform to model space, colour
 //! ```
 //!
@@ -18,10 +19,15 @@
 mod camera;
 mod face;
 mod mesh;
+mod solid;
 
 pub use camera::{Camera, CameraError, Projection};
 pub use face::{Face, FaceError, SurfaceKind, TrimLoop};
 pub use mesh::{Mesh, MeshError};
+pub use solid::{
+    CarriedFace, Carrier, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
+    SurfaceTable,
+};
 
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -38,6 +44,9 @@ pub struct Model {
     pub parts: Vec<Part>,
     /// Placed bodies; a part without an instance is not drawn.
     pub instances: Vec<Instance>,
+    /// Boolean solids, in model coordinates; what is drawn is their union.
+    #[serde(skip)]
+    pub solids: Vec<Solid>,
     /// Length unit of the source, for the record; coordinates are already millimetres.
     pub unit: String,
 }
@@ -135,6 +144,13 @@ impl Model {
             .iter()
             .filter(|i| !parts[i.part].is_empty())
             .flat_map(|i| parts[i.part].corners().map(|c| i.transform.transform_point3(c)))
+            .chain(
+                self.solids
+                    .iter()
+                    .map(Solid::bounds)
+                    .filter(|b| b.min.is_finite() && b.max.is_finite())
+                    .flat_map(Bounds::corners),
+            )
             .fold(Bounds::EMPTY, Bounds::with)
     }
 

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //!   item, (u, v) of the triangle ──Newton──▶ (u, v) whose exact point projects to the pixel's centre
-//!   triangle of a mesh ──plane──▶   │        a pipeline for each kind of thing: each leaves the others'
+//!   triangle of a mesh ──plane──▶   │
+//!   side of a Boolean solid ─────▶  │        a pipeline for each kind of thing: each leaves the others'
 //!   nothing ──background────────▶   │        pixels alone
 //!                                   ├──▶ colour, depth into the host's targets
 //!                                   └──▶ depth, face, (u, v), normal images, when asked for
@@ -29,11 +30,15 @@ const HAS_AOVS: u32 = 3;
 /// `constant_id` of `SCENE_HAS_OTHERS`.
 const SCENE_HAS_OTHERS: u32 = 4;
 
+/// `constant_id` of `SOLIDS_HAVE_TORI`.
+const SOLIDS_HAVE_TORI: u32 = 5;
+
 /// The pass: a pipeline for each kind of thing that the scene has.
 pub(crate) struct Resolve {
     /// And the background, in every scene.
     patches: Pipeline,
     meshes: Option<Pipeline>,
+    solids: Option<Pipeline>,
 }
 
 /// What the scene asks of the pass.
@@ -41,6 +46,8 @@ pub(crate) struct Resolve {
 pub(crate) struct Kinds {
     pub rational: bool,
     pub meshes: bool,
+    /// Boolean ones, and whether a torus is among their surfaces.
+    pub solids: Option<bool>,
 }
 
 /// Formats that the host draws into.
@@ -74,6 +81,19 @@ pub(crate) struct MeshBindings<'a> {
     pub triangles: &'a Buffer,
     pub positions: &'a Buffer,
     pub normals: &'a Buffer,
+    pub visibility: &'a Image,
+    /// The visibility image again where the scene has no trims.
+    pub others: &'a Image,
+}
+
+/// Buffers and image for Boolean solids, in binding order.
+pub(crate) struct SolidBindings<'a> {
+    pub frame: &'a Buffer,
+    pub leaves: &'a Buffer,
+    pub leaf_surfaces: &'a Buffer,
+    pub surfaces: &'a Buffer,
+    /// Model axes, seen from the eye.
+    pub surface_centres: &'a Buffer,
     pub visibility: &'a Image,
     /// The visibility image again where the scene has no trims.
     pub others: &'a Image,
@@ -119,10 +139,20 @@ impl Resolve {
         of_mesh[8..].fill(Binding::StorageImage);
         let mesh = |()| pipeline("mesh", shaders::RESOLVE_MESH_FRAG, &of_mesh, &[aovs]);
         let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
+        let mut of_solid = [Binding::Storage; 7];
+        of_solid[5..].fill(Binding::StorageImage);
+        let solid = |tori: bool| {
+            let constants = [aovs, (SOLIDS_HAVE_TORI, u32::from(tori))];
+            pipeline("solid", shaders::RESOLVE_SOLID_FRAG, &of_solid, &constants)
+        };
+        let solids = kinds.solids.map(solid).transpose()?;
         let weights = if kinds.rational { "rational" } else { "polynomial" };
-        let constants =
-            [(SCENE_HAS_RATIONAL, u32::from(kinds.rational)), aovs, (SCENE_HAS_OTHERS, u32::from(kinds.meshes))];
-        Ok(Self { patches: pipeline(weights, shaders::RESOLVE_FRAG, &bindings, &constants)?, meshes })
+        let constants = [
+            (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
+            aovs,
+            (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some())),
+        ];
+        Ok(Self { patches: pipeline(weights, shaders::RESOLVE_FRAG, &bindings, &constants)?, meshes, solids })
     }
 
     /// One triangle over the targets for each kind of thing.
@@ -131,6 +161,7 @@ impl Resolve {
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
         meshes: Option<&MeshBindings<'_>>,
+        solids: Option<&SolidBindings<'_>>,
         colour: &[Attachment<'_>],
         depth: Option<Attachment<'_>>,
     ) {
@@ -146,6 +177,12 @@ impl Resolve {
                 let shape = [m.triangles, m.positions, m.normals].map(Into::into);
                 let resources: Vec<_> =
                     placed.into_iter().chain(shape).chain([m.visibility.into(), m.others.into()]).collect();
+                cmd.bind(pipeline, &resources, &[]);
+                cmd.draw(3, 0, 1);
+            }
+            if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
+                let buffers = [s.frame, s.leaves, s.leaf_surfaces, s.surfaces, s.surface_centres].map(Into::into);
+                let resources: Vec<_> = buffers.into_iter().chain([s.visibility.into(), s.others.into()]).collect();
                 cmd.bind(pipeline, &resources, &[]);
                 cmd.draw(3, 0, 1);
             }

@@ -15,6 +15,7 @@
 //! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`].
 
 mod bvh;
+pub mod csg;
 mod facet;
 mod judge;
 mod leaf;

@@ -2,6 +2,7 @@
 
 use super::face::{FaceData, pack_colour};
 use super::mesh::Meshes;
+use super::solids::{SolidData, UndrawnSolid};
 use crate::abi;
 use crate::model::{Camera, Model, Projection};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
@@ -32,11 +33,13 @@ pub(crate) struct SceneData {
     pub has_trimmed: bool,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
+    /// Boolean solids.
+    pub solids: SolidData,
 }
 
 impl SceneData {
-    pub(crate) fn new(model: &Model) -> Self {
-        let mut data = Self::default();
+    pub(crate) fn new(model: &Model) -> Result<Self, UndrawnSolid> {
+        let mut data = Self { solids: SolidData::new(&model.solids)?, ..Self::default() };
         let mut used = vec![false; model.parts.len()];
         model.instances.iter().for_each(|i| used[i.part] = true);
         let mut first_faces = Vec::with_capacity(model.parts.len());
@@ -58,7 +61,7 @@ impl SceneData {
             data.push_instance(instance, origins[instance.part], first..first + part.faces.len());
         }
         data.meshes = Meshes::new(model, &origins);
-        data
+        Ok(data)
     }
 
     /// Some mesh is placed.
@@ -66,10 +69,11 @@ impl SceneData {
         !self.meshes.draws.is_empty()
     }
 
-    /// Frees the arrays that the GPU has; the placements stay.
+    /// Frees the arrays that the GPU has; the placements and centres stay.
     pub(crate) fn drop_uploaded(&mut self) {
         let placements = std::mem::take(&mut self.placements);
-        *self = Self { placements, ..Self::default() };
+        let solids = std::mem::take(&mut self.solids).centres_only();
+        *self = Self { placements, solids, ..Self::default() };
     }
 
     fn push_face(&mut self, mut f: FaceData) {

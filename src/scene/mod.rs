@@ -18,7 +18,10 @@ mod data;
 mod face;
 mod flatten;
 mod mesh;
+mod solids;
 mod upload;
 
 pub(crate) use data::{SceneData, focal_and_slant, view};
-pub(crate) use upload::{MeshBuffers, Scene, Trims};
+pub(crate) use solids::SolidData;
+pub use solids::UndrawnSolid;
+pub(crate) use upload::{MeshBuffers, Scene, Solids, Trims};

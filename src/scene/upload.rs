@@ -17,8 +17,17 @@ pub(crate) struct Scene {
     pub items: Buffer,
     /// What trimming needs; `None` when no patch is trimmed.
     pub trims: Option<Trims>,
+    /// Boolean solids; `None` when there are none.
+    pub solids: Option<Solids>,
     /// What meshes need; `None` when there is none.
     pub meshes: Option<MeshBuffers>,
+}
+
+/// The switches of the Blist, and their surfaces.
+pub(crate) struct Solids {
+    pub leaves: Buffer,
+    pub leaf_surfaces: Buffer,
+    pub surfaces: Buffer,
 }
 
 /// Triangles, where they are placed, and the draws that cover them.
@@ -65,6 +74,15 @@ impl Scene {
                         curves: persistent(&mut uploads, cmd, "trim curves", &data.curves)?,
                         curve_points: persistent(&mut uploads, cmd, "trim curve points", &data.curve_points)?,
                         curve_items: persistent(&mut uploads, cmd, "trim curve items", &data.curve_items)?,
+                    })
+                })
+                .transpose()?,
+            solids: (!data.solids.leaves.is_empty())
+                .then(|| {
+                    Ok(Solids {
+                        leaves: persistent(&mut uploads, cmd, "solid leaves", &data.solids.leaves)?,
+                        leaf_surfaces: persistent(&mut uploads, cmd, "solid sides", &data.solids.leaf_surfaces)?,
+                        surfaces: persistent(&mut uploads, cmd, "solid surfaces", &data.solids.surfaces)?,
                     })
                 })
                 .transpose()?,

@@ -201,6 +201,7 @@ pub fn one(name: &str, closed: bool, faces: Vec<Face>) -> Model {
         parts: vec![Part { name: name.to_owned(), faces, closed, ..Part::default() }],
         instances: vec![placed(DAffine3::IDENTITY, None)],
         unit: "mm".to_owned(),
+        ..Model::default()
     }
 }
 

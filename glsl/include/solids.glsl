@@ -1,0 +1,242 @@
+// Boolean solids: leaves, their surfaces, and the part of a pixel's ray that is inside a leaf.
+// Twin of src/abi/solids.rs; formulas: src/twin/solids.rs.
+//
+//   leaf ──▶ LeafSurface[count] ──▶ Surface     a leaf is the intersection of its surfaces' insides;
+//                                               leaves whose faces coincide share the Surface, so they
+//                                               get the same depth, bit for bit
+//
+//   Surface, in its own coordinates (p = to_local (x - centre), about the size of 1):
+//     quadric   s.x p.x^2 + s.y p.y^2 + s.z p.z^2 + 2 linear p.z + constant < 0   inside
+//     torus     |p|^2 + 1 - r^2 - 2 sqrt(p.x^2 + p.y^2) < 0                       inside, r = constant
+//
+//        ───▶ ray     ├────────┤gap├───────┤      Span: inside from lo to hi but for the gap; the gap
+//                     lo      g0   g1     hi      is empty when g0 >= g1
+#ifndef SOLIDS_GLSL
+#define SOLIDS_GLSL
+
+const uint SURFACE_PLANE = 0u;   // a quadric without squares
+const uint SURFACE_QUADRIC = 1u;
+const uint SURFACE_TORUS = 2u;
+
+// Whether some surface is a torus: compiled in only then.
+layout(constant_id = 5) const bool SOLIDS_HAVE_TORI = true;
+
+struct Surface {
+    mat3 to_local;   // model directions to the surface's own coordinates (columns)
+    uint kind;
+    vec3 squares;
+    float linear;
+    float constant;
+};
+
+// A side of a leaf.
+struct LeafSurface {
+    uint surface;   // index << 1 | 1 when the leaf is where the surface's function is positive
+    uint leaf;
+};
+
+// One switch of the Blist: a primitive, placed.
+struct Leaf {
+    vec3 half_size;  // of the box around it, model axes; the centre moves with the eye
+    uint first;      // of its LeafSurfaces
+    uint count;
+    uint colour;     // as Face.colour
+    uint id;
+    uint in_exit;    // where to go when the point is in: a leaf, or EXIT_*
+    uint out_exit;
+    uint pre;        // the tree whose parent is the out-exit, in preorder: a leaf's descendants are
+    uint end;        // [pre, end)
+    uint flags;
+};
+
+const uint EXIT_FALSE = 0xfffffffeu; // outside of the solid
+const uint EXIT_TRUE = 0xffffffffu;
+const uint LEAF_UNBOUNDED = 1u;      // no box: in every tile
+const uint LEAF_NEGATIVE = 2u;       // under an odd number of complements: its outside counts
+const uint LEAF_FALLS = 4u;          // its chain of out-exits ends at EXIT_FALSE, else at EXIT_TRUE
+
+const float NEVER = 3.0e38;
+
+struct Span {
+    float lo;
+    float hi;
+    float g0;
+    float g1;
+};
+
+const Span NOTHING = Span(NEVER, -NEVER, NEVER, NEVER);
+const Span EVERYTHING = Span(-NEVER, NEVER, NEVER, NEVER);
+
+// Inside just behind depth t.
+bool inside_span(Span s, float t) {
+    return s.lo <= t && t < s.hi && !(s.g0 <= t && t < s.g1);
+}
+
+// The first depth behind t where the span begins or ends.
+float next_of_span(Span s, float t) {
+    float next = NEVER;
+    if (!(s.lo < s.hi)) return next;
+    if (s.g0 < s.g1) {
+        if (s.g1 > t) next = s.g1;
+        if (s.g0 > t) next = s.g0;
+    }
+    if (s.hi > t) next = min(next, s.hi);
+    if (s.lo > t) next = min(next, s.lo);
+    return next;
+}
+
+// What both hold. Of the two gaps at most one lies between the ends: leaves are made so.
+Span both(Span a, Span b) {
+    Span s = Span(max(a.lo, b.lo), min(a.hi, b.hi), a.g0, a.g1);
+    if (b.g0 < b.g1) {
+        bool cuts_a = b.g1 > s.lo && b.g0 < s.hi;
+        if (cuts_a) {
+            s.g0 = b.g0;
+            s.g1 = b.g1;
+        }
+    }
+    if (s.g0 < s.g1) {
+        if (s.g0 <= s.lo && s.g1 > s.lo) s.lo = s.g1;
+        if (s.g1 >= s.hi && s.g0 < s.hi) s.hi = s.g0;
+        if (s.g0 <= s.lo || s.g1 >= s.hi) {
+            s.g0 = NEVER;
+            s.g1 = NEVER;
+        }
+    }
+    return s;
+}
+
+Span complement(Span s) {
+    // only for spans with one open side, or for those that become a gap
+    if (!(s.lo < s.hi)) return EVERYTHING;
+    if (s.lo <= -NEVER && s.hi >= NEVER) return s.g0 < s.g1 ? Span(s.g0, s.g1, NEVER, NEVER) : NOTHING;
+    if (s.lo <= -NEVER) return Span(s.hi, NEVER, NEVER, NEVER);
+    if (s.hi >= NEVER) return Span(-NEVER, s.lo, NEVER, NEVER);
+    return Span(-NEVER, NEVER, s.lo, s.hi);
+}
+
+// a t^2 + 2 b t + c < 0; t counts from `shift`.
+Span below_zero(float a, float b, float c, float shift) {
+    if (a == 0.0) {
+        if (b == 0.0) return c < 0.0 ? EVERYTHING : NOTHING;
+        precise float t = shift - c / (2.0 * b);
+        return b > 0.0 ? Span(-NEVER, t, NEVER, NEVER) : Span(t, NEVER, NEVER, NEVER);
+    }
+    precise float d = b * b - a * c;
+    if (!(d > 0.0)) return a > 0.0 ? NOTHING : EVERYTHING;
+    precise float q = b < 0.0 ? sqrt(d) - b : -(b + sqrt(d));
+    precise float t0 = shift + q / a;
+    precise float t1 = shift + (q == 0.0 ? 0.0 : c / q);
+    float lo = min(t0, t1);
+    float hi = max(t0, t1);
+    return a > 0.0 ? Span(lo, hi, NEVER, NEVER) : Span(-NEVER, NEVER, lo, hi);
+}
+
+// The quartic of a torus along a ray, from the point nearest to its centre: depressed,
+// t^4 + p t^2 + q t + s, evaluated as a difference of squares.
+struct Torus {
+    vec3 o;
+    vec3 d;   // unit
+    float e;  // |o|^2 + 1 - r^2
+    float p;
+    float q;
+};
+
+float torus_value(Torus f, float t) {
+    float w = t * t + f.e;
+    float rho = length(f.o.xy + t * f.d.xy);
+    return (w - 2.0 * rho) * (w + 2.0 * rho);
+}
+
+float torus_slope(Torus f, float t) { return (4.0 * t * t + 2.0 * f.p) * t + f.q; }
+
+const uint BISECTIONS = 30u; // from the torus's size to below single precision
+
+// The root of the value (or of its slope) between lo and hi, where it changes its sign.
+float torus_root(Torus f, float lo, float hi, bool slope) {
+    bool rising = (slope ? torus_slope(f, lo) : torus_value(f, lo)) < 0.0;
+    for (uint i = 0u; i < BISECTIONS; ++i) {
+        float mid = 0.5 * (lo + hi);
+        bool below = (slope ? torus_slope(f, mid) : torus_value(f, mid)) < 0.0;
+        if (below == rising) lo = mid;
+        else hi = mid;
+    }
+    return 0.5 * (lo + hi);
+}
+
+// o and d in the torus's own coordinates.
+Span torus_span(vec3 o, vec3 d, float r) {
+    float speed = length(d);
+    Torus f;
+    f.d = d / speed;
+    float shift = -dot(o, f.d);
+    f.o = o + shift * f.d;
+    float k = dot(f.o, f.o);
+    float reach = (1.0 + r) * (1.0 + r) - k;
+    if (!(reach > 0.0)) return NOTHING;
+    reach = 1.0001 * sqrt(reach);
+    f.e = k + (1.0 - r) * (1.0 + r);
+    f.p = 2.0 * f.e - 4.0 * dot(f.d.xy, f.d.xy);
+    f.q = -8.0 * dot(f.o.xy, f.d.xy);
+    // the value is monotone between the roots of its slope, the slope between those of its own
+    float w = f.p < 0.0 ? min(sqrt(f.p / -6.0), reach) : 0.0;
+    float stops[6];
+    stops[0] = -reach;
+    uint stop_count = 1u;
+    float from = -reach;
+    for (uint i = 0u; i < 3u; ++i) {
+        float to = i == 0u ? -w : i == 1u ? w : reach;
+        if (from < to && (torus_slope(f, from) < 0.0) != (torus_slope(f, to) < 0.0)) {
+            stops[stop_count] = torus_root(f, from, to, true);
+            ++stop_count;
+        }
+        from = to;
+    }
+    stops[stop_count] = reach;
+    float roots[4];
+    uint count = 0u;
+    for (uint i = 0u; i < 4u; ++i) {
+        if (i >= stop_count) break;
+        if ((torus_value(f, stops[i]) < 0.0) == (torus_value(f, stops[i + 1u]) < 0.0)) continue;
+        float t = torus_root(f, stops[i], stops[i + 1u], false);
+        // a spindle torus: the value is positive again within the lemon, where the solid is not hollow
+        if (t * t + f.e < 0.0) continue;
+        precise float root = (t + shift) / speed;
+        roots[count] = root;
+        ++count;
+    }
+    if (count == 4u) return Span(roots[0], roots[3], roots[1], roots[2]);
+    if (count >= 2u) return Span(roots[0], roots[count - 1u], NEVER, NEVER);
+    return NOTHING;
+}
+
+// The part of the ray o + t d inside of the surface; o is the ray's origin seen from the surface's centre.
+Span surface_span(Surface s, vec3 o, vec3 d) {
+    precise vec3 ol = s.to_local * o;
+    precise vec3 dl = s.to_local * d;
+    if (SOLIDS_HAVE_TORI && s.kind == SURFACE_TORUS) return torus_span(ol, dl, s.constant);
+    // begin where the ray is nearest to the middle: nothing cancels
+    vec3 size = abs(s.squares);
+    float dd = dot(size * dl, dl);
+    precise float shift = dd > 0.0 ? -dot(size * dl, ol) / dd : 0.0;
+    ol += shift * dl;
+    precise float a = dot(s.squares * dl, dl);
+    precise float b = dot(s.squares * dl, ol) + s.linear * dl.z;
+    precise float c = dot(s.squares * ol, ol) + 2.0 * s.linear * ol.z + s.constant;
+    return below_zero(a, b, c, shift);
+}
+
+// Outward where the surface's function grows; model directions, not of unit length.
+vec3 surface_gradient(Surface s, vec3 p) {
+    vec3 q = s.to_local * p;
+    vec3 g;
+    if (SOLIDS_HAVE_TORI && s.kind == SURFACE_TORUS) {
+        float rho = max(length(q.xy), 1e-20);
+        g = vec3(q.xy * (1.0 - 1.0 / rho), q.z);
+    } else {
+        g = s.squares * q + vec3(0.0, 0.0, s.linear);
+    }
+    return g * s.to_local; // the transposed map takes gradients back
+}
+
+#endif

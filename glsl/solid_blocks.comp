@@ -1,0 +1,32 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `solid_blocks`: which leaves each block of tiles may see, in Blist order: counted first, then
+// listed where the prefix sum says. One thread a block.
+#include "scene.glsl"
+#include "tiles.glsl"
+
+layout(constant_id = 6) const bool LISTS = false;
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Rects { Rect rects[]; };
+layout(scalar, binding = 2) buffer BlockCounts { uint block_counts[]; };
+layout(scalar, binding = 3) readonly buffer BlockStarts { uint block_starts[]; };
+layout(scalar, binding = 4) writeonly buffer BlockLeaves { uint block_leaves[]; };
+
+void main() {
+    uint n = gl_GlobalInvocationID.x;
+    uvec2 blocks = block_count(frame);
+    if (n >= blocks.x * blocks.y) return;
+    uvec2 first = BLOCK * uvec2(n % blocks.x, n / blocks.x);
+    uvec2 last = first + BLOCK - 1u;
+    uint start = LISTS ? block_starts[n] : 0u;
+    uint count = 0u;
+    for (uint leaf = 0u; leaf < frame.leaf_count; ++leaf) {
+        if (!meets(rects[leaf], first, last)) continue;
+        if (LISTS && start + count < frame.block_leaf_capacity) block_leaves[start + count] = leaf;
+        ++count;
+    }
+    if (!LISTS) block_counts[n] = count;
+}

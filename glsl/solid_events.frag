@@ -1,0 +1,141 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `solid_events`: the first depth at which the pixel's ray enters the Boolean solid.
+//
+//      ray ──┬──────────┬────┬─────────┬──▶     events: where the ray crosses a side of some leaf
+//   A     ───┤██████████│████├─────────┼──
+//   B     ───┼──────────┤████│█████████├──      sides that coincide share their surface, so their
+//            ▲          ▲    ▲         ▲        depths are equal to the bit and make one event
+//         in A?    the Blist is walked once behind each event
+//
+// The ray is followed until outside becomes inside. Nothing is stored but the spans of the tile's
+// first leaves: exits of a Blist lead forward, so one scan over the leaves answers both whether the
+// solid is behind depth t and where the next event is. Everything is one loop, so that the surfaces'
+// equations are compiled once.
+#include "scene.glsl"
+#include "solids.glsl"
+#include "tiles.glsl"
+#include "eye_ray.glsl"
+#include "view.glsl"
+#include "visible.glsl"
+
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
+layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
+layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
+layout(scalar, binding = 5) readonly buffer TileStarts { uint tile_starts[]; };
+layout(scalar, binding = 6) readonly buffer TileLeaves { TileLeaf tile_leaves[]; };
+layout(scalar, binding = 7) readonly buffer TileEntries { uint tile_entries[]; };
+
+layout(location = 0) out uvec2 visible;
+
+const uint NOBODY = 0xffffffffu;
+
+// Spans kept; those of further leaves are computed in every scan.
+const uint KEPT = 12u;
+
+// What a scan is for.
+const uint SEARCH = 0u; // the next event
+const uint OWNER = 1u;  // is the solid still there with leaf `asked` taken for what it is not?
+const uint SIDE = 2u;   // which side of leaf `asked` ends at t?
+
+bool ends_at(Span s, float t) { return s.lo == t || s.hi == t || s.g0 == t || s.g1 == t; }
+
+// The leaves whose spans begin or end at depth t: the first positive one, the first subtracted one.
+struct Candidates {
+    uint positive;
+    uint negative;
+};
+
+void main() {
+    uvec2 tiles = tile_count(frame);
+    uvec2 tile = uvec2(gl_FragCoord.xy) / TILE;
+    uint n = tile.y * tiles.x + tile.x;
+    uint first = min(tile_starts[n], frame.tile_leaf_capacity);
+    uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
+    uint entry = tile_entries[n];
+    if (entry == EXIT_FALSE) discard;
+    Ray ray = eye_ray(frame, gl_FragCoord.xy);
+    Span kept[KEPT];
+    uint purpose = SEARCH;
+    uint asked = NOBODY;
+    uint after = 0u;        // candidates from here on
+    uint fallback = NOBODY;
+    bool negatives = false; // the candidates asked are the subtracted ones
+    uint side = 0u;
+    float t = frame.near;
+    bool before = true; // the near plane cuts: what is inside there is not entered
+    // four events a leaf, at most as many questions about owners, and one about the side
+    uint most = 8u * (end - first) + 4u;
+    bool done = false;
+    for (uint scan = 0u; scan < most && !done; ++scan) {
+        uint at = entry;
+        float next = NEVER;
+        Candidates found = Candidates(NOBODY, NOBODY);
+        uint candidates = 0u;
+        for (uint i = first; i < end; ++i) {
+            TileLeaf here = tile_leaves[i];
+            Leaf leaf = leaves[here.leaf];
+            bool is_kept = i - first < KEPT;
+            Span s = EVERYTHING;
+            if (is_kept && scan > 0u && purpose != SIDE) {
+                s = kept[i - first];
+            } else if (purpose != SIDE || i == asked) {
+                for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
+                    uint surface = leaf_surfaces[k].surface;
+                    Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
+                    if (purpose == SIDE && ends_at(one, t)) side = k;
+                    if ((surface & 1u) != 0u) one = complement(one);
+                    s = both(s, one);
+                }
+                if (is_kept) kept[i - first] = s;
+            }
+            if (i == at) {
+                bool inside = inside_span(s, t) != (purpose == OWNER && i == asked);
+                at = inside ? here.in_exit : here.out_exit;
+            }
+            next = min(next, next_of_span(s, t));
+            if (i >= after && ends_at(s, t)) {
+                ++candidates;
+                if ((leaf.flags & LEAF_NEGATIVE) != 0u) found.negative = min(found.negative, i);
+                else found.positive = min(found.positive, i);
+            }
+        }
+        bool inside = at == EXIT_TRUE;
+        if (purpose == SIDE) {
+            done = true;
+        } else if (purpose == OWNER) {
+            // the owner is the first leaf without which the solid would not begin
+            uint other = negatives ? found.negative : found.positive;
+            if (!inside) {
+                purpose = SIDE;
+            } else if (other != NOBODY) {
+                asked = other;
+                after = other + 1u;
+            } else if (!negatives) {
+                negatives = true;
+                asked = NOBODY; // from the beginning, for subtracted leaves
+                after = first;
+            } else {
+                asked = fallback;
+                purpose = SIDE;
+            }
+        } else if (inside && !before) {
+            asked = min(found.positive, found.negative);
+            if (found.positive != NOBODY) asked = found.positive;
+            fallback = asked;
+            after = asked + 1u;
+            negatives = found.positive == NOBODY;
+            purpose = candidates > 1u ? OWNER : SIDE;
+        } else {
+            if (next >= frame.far) break;
+            before = inside;
+            t = next;
+        }
+    }
+    if (!done) discard;
+    visible = uvec2(SEEN_SOLID | side, floatBitsToUint(t));
+    gl_FragDepth = reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0);
+}

@@ -1,0 +1,79 @@
+//! Boolean solids: leaves, their surfaces, and the tiles that see them.
+
+use bytemuck::{Pod, Zeroable};
+
+/// [`Surface::kind`]: a quadric without squares.
+pub const SURFACE_PLANE: u32 = 0;
+/// [`Surface::kind`]: any other quadric.
+pub const SURFACE_QUADRIC: u32 = 1;
+/// [`Surface::kind`]: a torus of major radius 1.
+pub const SURFACE_TORUS: u32 = 2;
+
+/// The walk ends outside of the solid.
+pub const EXIT_FALSE: u32 = 0xffff_fffe;
+/// The walk ends inside of the solid.
+pub const EXIT_TRUE: u32 = 0xffff_ffff;
+
+/// The leaf has no box: every tile sees it.
+pub const LEAF_UNBOUNDED: u32 = 1;
+/// Under an odd number of complements.
+pub const LEAF_NEGATIVE: u32 = 2;
+/// Its chain of out-exits ends at [`EXIT_FALSE`].
+pub const LEAF_FALLS: u32 = 4;
+
+/// Pixels along a tile's side.
+pub const TILE: u32 = 16;
+/// Tiles along a block's side.
+pub const BLOCK: u32 = 8;
+
+/// A surface that one or more sides of leaves share.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct Surface {
+    pub to_local: [[f32; 3]; 3],
+    pub kind: u32,
+    pub squares: [f32; 3],
+    pub linear: f32,
+    pub constant: f32,
+}
+
+/// A side of a leaf.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct LeafSurface {
+    pub surface: u32,
+    pub leaf: u32,
+}
+
+/// One switch of the Blist.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct Leaf {
+    pub half_size: [f32; 3],
+    pub first: u32,
+    pub count: u32,
+    pub colour: u32,
+    pub id: u32,
+    pub in_exit: u32,
+    pub out_exit: u32,
+    pub pre: u32,
+    pub end: u32,
+    pub flags: u32,
+}
+
+/// Tiles from first to last.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct Rect {
+    pub first: [u32; 2],
+    pub last: [u32; 2],
+}
+
+/// A leaf in a tile.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct TileLeaf {
+    pub leaf: u32,
+    pub in_exit: u32,
+    pub out_exit: u32,
+}

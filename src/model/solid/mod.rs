@@ -1,0 +1,106 @@
+//! A solid: primitives and the expression over them.
+
+mod carrier;
+mod shape;
+mod surface;
+#[cfg(test)]
+mod tests;
+
+pub use carrier::Carrier;
+pub use shape::{Primitive, Quadric, Shape, ShapeError};
+pub use surface::{CarriedFace, Surface, SurfaceTable};
+
+use super::Bounds;
+use crate::csg::{Entry, Node, Tree};
+use glam::DVec3;
+
+/// Primitives and a Boolean expression over them. Valid by construction: see [`Solid::new`].
+#[derive(Clone, Debug, PartialEq)]
+pub struct Solid {
+    primitives: Vec<Primitive>,
+    tree: Tree,
+}
+
+/// Why primitives and a tree are not a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // the messages say what each field is
+pub enum SolidError {
+    /// A leaf names a primitive that is not there.
+    #[error("a leaf names primitive {primitive} of {count}")]
+    Leaf { primitive: u32, count: usize },
+    /// A primitive that is not one.
+    #[error("primitive {primitive}: {error}")]
+    Shape { primitive: usize, error: ShapeError },
+    /// More primitives than a list of switches can name.
+    #[error("more than {} primitives", Solid::MOST_PRIMITIVES)]
+    TooMany,
+}
+
+impl Solid {
+    /// Primitives that a solid may have: what fits an entry of a [`Blist`](crate::csg::Blist).
+    pub const MOST_PRIMITIVES: u32 = Entry::PRIMITIVE;
+
+    /// Checks the primitives' dimensions and the leaves' indices.
+    ///
+    /// # Errors
+    /// [`SolidError`] names the first primitive or leaf that is wrong.
+    pub fn new(primitives: Vec<Primitive>, tree: Tree) -> Result<Self, SolidError> {
+        let count = primitives.len();
+        if count > Self::MOST_PRIMITIVES as usize {
+            return Err(SolidError::TooMany);
+        }
+        for (primitive, p) in primitives.iter().enumerate() {
+            p.shape.check().map_err(|error| SolidError::Shape { primitive, error })?;
+        }
+        let missing = tree.leaves().find(|p| *p as usize >= count);
+        match missing {
+            Some(primitive) => Err(SolidError::Leaf { primitive, count }),
+            None => Ok(Self { primitives, tree }),
+        }
+    }
+
+    /// The primitives that leaves name by index.
+    pub fn primitives(&self) -> &[Primitive] {
+        &self.primitives
+    }
+
+    /// The expression.
+    pub fn tree(&self) -> &Tree {
+        &self.tree
+    }
+
+    /// A box around the solid: boxes of the primitives under the same operations. Infinite where the
+    /// solid may be unbounded.
+    pub fn bounds(&self) -> Bounds {
+        let all = Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
+        let meet = |a: Bounds, b: Bounds| {
+            let both = Bounds { min: a.min.max(b.min), max: a.max.min(b.max) };
+            if both.is_empty() { Bounds::EMPTY } else { both }
+        };
+        // boxes around a node and around its complement
+        let mut boxes: Vec<(Bounds, Bounds)> = Vec::with_capacity(self.tree.nodes().len());
+        for node in self.tree.nodes() {
+            use crate::csg::Op::{Difference, Intersection, SymmetricDifference, Union};
+            let of = |i: u32| boxes[i as usize];
+            boxes.push(match *node {
+                Node::Constant(value) => {
+                    if value {
+                        (all, Bounds::EMPTY)
+                    } else {
+                        (Bounds::EMPTY, all)
+                    }
+                }
+                Node::Leaf(p) => (self.primitives[p as usize].bounds(), all),
+                Node::Complement(a) => (of(a).1, of(a).0),
+                Node::Pair(Union, a, b) => (of(a).0.union(of(b).0), meet(of(a).1, of(b).1)),
+                Node::Pair(Intersection, a, b) => (meet(of(a).0, of(b).0), of(a).1.union(of(b).1)),
+                Node::Pair(Difference, a, b) => (meet(of(a).0, of(b).1), of(a).1.union(of(b).0)),
+                Node::Pair(SymmetricDifference, a, b) => {
+                    let (l, r) = (of(a), of(b));
+                    (meet(l.0, r.1).union(meet(l.1, r.0)), meet(l.0, r.0).union(meet(l.1, r.1)))
+                }
+            });
+        }
+        boxes[boxes.len() - 1].0
+    }
+}

@@ -1,0 +1,90 @@
+//! Coincident surfaces: what is one, what is not, and which way round.
+
+use crate::csg::{Builder, Op};
+use crate::model::{Primitive, Quadric, Shape, Solid, SurfaceTable};
+use glam::{DAffine3, DQuat, DVec3};
+
+fn table(shapes: Vec<(Shape, DAffine3)>, tolerance: f64) -> SurfaceTable {
+    let mut b = Builder::new();
+    let leaves: Vec<u32> = (0..shapes.len() as u32).map(|p| b.leaf(p)).collect();
+    let root = b.fold(Op::Union, leaves);
+    let place = |(shape, transform)| Primitive { shape, transform, colour: [1.0; 4], id: 1 };
+    let solid = Solid::new(shapes.into_iter().map(place).collect(), b.finish(root).unwrap()).unwrap();
+    SurfaceTable::new(&solid, tolerance)
+}
+
+fn block(min: [f64; 3], max: [f64; 3]) -> (Shape, DAffine3) {
+    (Shape::Block { min: min.into(), max: max.into() }, DAffine3::IDENTITY)
+}
+
+#[test]
+fn touching_blocks_share_a_flipped_plane() {
+    let t = table(vec![block([0.0; 3], [1.0; 3]), block([1.0, 0.0, 0.0], [2.0, 3.0, 1.0])], SurfaceTable::EXACT);
+    // 12 faces: x = 1 met from both sides, y = 0, z = 0 and z = 1 from the same side
+    assert_eq!(t.surfaces().len(), 8);
+    let (a, b) = (t.faces(0), t.faces(1));
+    assert_eq!((b[0].surface, b[0].flipped), (a[1].surface, true));
+    assert_eq!([b[2], b[4], b[5]], [a[2], a[4], a[5]]);
+}
+
+/// One surface said by different shapes: turned, scaled, and as ten coefficients of either sign.
+#[test]
+fn the_same_surface_in_other_words() {
+    let move_ = DAffine3::from_rotation_translation(DQuat::from_rotation_x(0.8), DVec3::new(3.0, -2.0, 7.0));
+    let scale = |s: f64| move_ * DAffine3::from_rotation_z(1.0) * DAffine3::from_scale(DVec3::splat(s));
+    let ball = Quadric { squares: DVec3::ONE, constant: -4.0, ..Quadric::default() };
+    let hollow = Quadric { squares: DVec3::NEG_ONE, constant: 4.0, ..Quadric::default() };
+    let cases = [
+        (Shape::Sphere { radius: 2.0 }, Shape::Sphere { radius: 1.0 }, 2.0, false),
+        (Shape::Sphere { radius: 2.0 }, Shape::Quadric(ball), 1.0, false),
+        (Shape::Sphere { radius: 2.0 }, Shape::Quadric(hollow), 1.0, true),
+        (Shape::Torus { major: 3.0, minor: 1.0 }, Shape::Torus { major: 1.5, minor: 0.5 }, 2.0, false),
+        (Shape::Cylinder { radius: 2.0, height: 1.0 }, Shape::Cylinder { radius: 1.0, height: 4.0 }, 2.0, false),
+        (
+            Shape::Cone { bottom: 2.0, top: 0.0, height: 2.0 },
+            Shape::Cone { bottom: 1.0, top: 0.5, height: 0.5 },
+            2.0,
+            false,
+        ),
+    ];
+    for (a, b, size, flipped) in cases {
+        let t = table(vec![(a.clone(), move_), (b.clone(), scale(size))], SurfaceTable::EXACT);
+        assert_eq!((t.faces(1)[0].surface, t.faces(1)[0].flipped), (0, flipped), "{a:?} {b:?}");
+    }
+}
+
+#[test]
+fn near_surfaces_stay_apart() {
+    let far = |s: Shape, x: f64| (s, DAffine3::from_translation(DVec3::new(x, 0.0, 0.0)));
+    let ball = || Shape::Sphere { radius: 1.0 };
+    for (a, b, x) in [
+        (ball(), ball(), 1e-4),
+        (ball(), Shape::Sphere { radius: 1.0001 }, 0.0),
+        (ball(), Shape::Cylinder { radius: 1.0, height: 1.0 }, 0.0),
+        (Shape::Torus { major: 3.0, minor: 1.0 }, Shape::Torus { major: 3.0, minor: 1.0001 }, 0.0),
+        (Shape::Torus { major: 3.0, minor: 1.0 }, Shape::Sphere { radius: 4.0 }, 0.0),
+    ] {
+        for tolerance in [SurfaceTable::EXACT, SurfaceTable::ROUNDED] {
+            let t = table(vec![far(a.clone(), 0.0), far(b.clone(), x)], tolerance);
+            assert_ne!(t.faces(0)[0].surface, t.faces(1)[0].surface, "{a:?} {b:?}");
+        }
+    }
+}
+
+/// A grid of 10^4 posts on one plate: caps are two planes, walls their own, in time for a test.
+#[test]
+fn ten_thousand_posts() {
+    let post = |i: u32| {
+        let at = DVec3::new(f64::from(i % 100), f64::from(i / 100), 0.0);
+        (Shape::Cylinder { radius: 0.3, height: 1.0 }, DAffine3::from_translation(at))
+    };
+    let t = table((0..10_000).map(post).collect(), SurfaceTable::ROUNDED);
+    assert_eq!(t.surfaces().len(), 10_002);
+}
+
+#[test]
+fn empty_primitives_have_no_faces() {
+    let flat = (Shape::Sphere { radius: 1.0 }, DAffine3::from_scale(DVec3::new(1.0, 1.0, 0.0)));
+    let t = table(vec![flat, block([0.0; 3], [1.0, 1.0, 0.0]), block([0.0; 3], [1.0; 3])], SurfaceTable::EXACT);
+    assert_eq!([0, 1, 2].map(|p| t.faces(p).len()), [0, 0, 6]);
+}

@@ -1,0 +1,48 @@
+//! Pass `solid_fold`: the Blist of each tile, without the leaves that the tile does not see.
+//!
+//! Reads: `frame`, `leaves`, `tile_starts`. Writes: exits of `tile_leaves`, `tile_entries`.
+//! Twin: `src/twin/solid_fold.rs`.
+
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::shaders;
+
+/// Threads of a workgroup, as in the shader.
+const GROUP: u32 = 64;
+
+/// The pass.
+pub(crate) struct SolidFold {
+    pipeline: Pipeline,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub leaves: &'a Buffer,
+    pub tile_starts: &'a Buffer,
+    pub tile_leaves: &'a Buffer,
+    /// Where each tile's walk begins.
+    pub tile_entries: &'a Buffer,
+}
+
+impl SolidFold {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let pipeline = Pipeline::compute(
+            device,
+            &ComputeInfo {
+                name: "solid fold",
+                spirv: shaders::SOLID_FOLD_COMP,
+                bindings: &[Binding::Storage; 5],
+                push_bytes: 0,
+                constants: &[],
+            },
+        )?;
+        Ok(Self { pipeline })
+    }
+
+    /// One thread for each of `tiles`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, tiles: u32) {
+        let resources = [b.frame, b.leaves, b.tile_starts, b.tile_leaves, b.tile_entries].map(Into::into);
+        cmd.bind(&self.pipeline, &resources, &[]);
+        cmd.dispatch(tiles.div_ceil(GROUP));
+    }
+}

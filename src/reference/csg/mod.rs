@@ -1,0 +1,262 @@
+//! Boolean solids along a line, exactly: what every drawn solid is measured against.
+//!
+//! ```text
+//!   A      ────┤▒▒▒▒▒▒▒▒▒▒▒▒├──────          each primitive: where the line crosses it
+//!   B      ──────────┤▒▒▒▒▒▒├──────          all crossings in order, equal parameters as one group
+//!   A - B  ────┤▒▒▒▒▒├─────────────          the tree before and after each group: a face where they differ
+//! ```
+//!
+//! Faces on one carrier share its crossings bit for bit (see [`SurfaceTable`]), so coincident faces fall
+//! into one group whatever the direction. Crossings of meshes and spline parts that lie nearer than
+//! [`FALLBACK`] to the group before join it.
+//!
+//! A line that lies in a face is outside on the side where that face's value is 0. The owner of a face of
+//! the solid is the first active primitive in its group: one that changes the solid alone, before or after
+//! the rest; primitives that some leaf adds come before those that are only taken away, then those earlier
+//! in the tree.
+
+mod roots;
+mod shell;
+#[cfg(test)]
+mod tests;
+
+use crate::csg::{Tree, TreeError};
+use crate::model::{Primitive, Solid, SurfaceTable};
+use glam::DVec3;
+use roots::Roots;
+use shell::Shell;
+use std::collections::HashMap;
+
+/// Crossings this near, relative to the solid's size over the direction's length, are one where no surface
+/// table makes them equal: some roundings of a hit of the exact reference.
+pub const FALLBACK: f64 = 1e-13;
+
+/// A face of a solid, met by a line.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Boundary {
+    /// Parameter along the line, in lengths of its direction.
+    pub t: f64,
+    /// From outside to inside.
+    pub entering: bool,
+    /// Index of the primitive that owns the face.
+    pub primitive: u32,
+    /// Its [`Primitive::id`].
+    pub id: u32,
+    /// The point.
+    pub point: DVec3,
+    /// Unit normal, out of the solid; zero where the surface has none.
+    pub normal: DVec3,
+}
+
+/// A line's way through a solid.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Trace {
+    /// The line comes from inside an unbounded solid.
+    pub inside_before: bool,
+    /// All faces, in order of `t` from minus to plus infinity, entering and leaving in turn.
+    pub boundaries: Vec<Boundary>,
+    /// Meshes and parts that the line entered and never left, or the reverse: they are not closed.
+    pub leaks: u32,
+}
+
+impl Trace {
+    /// Whether the point at `t` is inside; on a face, as just behind it.
+    pub fn inside(&self, t: f64) -> bool {
+        let passed = self.boundaries.partition_point(|b| b.t <= t);
+        self.inside_before != (passed % 2 == 1)
+    }
+
+    /// The first face entered at `start` or behind it.
+    pub fn first(&self, start: f64) -> Option<Boundary> {
+        self.boundaries.iter().find(|b| b.entering && b.t >= start).copied()
+    }
+
+    /// Parameter length inside the solid between `start` and `end`.
+    pub fn thickness(&self, start: f64, end: f64) -> f64 {
+        let stops = self.boundaries.iter().map(|b| b.t.clamp(start, end));
+        let mut inside = self.inside_before;
+        let (mut sum, mut before) = (0.0, start);
+        for stop in stops.chain([end]) {
+            if inside {
+                sum += stop - before;
+            }
+            (inside, before) = (!inside, stop);
+        }
+        sum
+    }
+}
+
+/// Which of a primitive's faces was crossed.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Owner {
+    Carrier(u32),
+    Triangle(u32),
+    Normal(DVec3),
+}
+
+/// A primitive's state changes.
+#[derive(Clone, Copy, Debug, PartialEq)]
+struct Crossing {
+    t: f64,
+    primitive: u32,
+    owner: Owner,
+}
+
+/// A solid made ready for lines.
+#[derive(Debug)]
+pub struct SolidTracer {
+    primitives: Vec<Primitive>,
+    tree: Tree,
+    table: SurfaceTable,
+    shells: Vec<Option<Shell>>,
+    /// Of each primitive: taken away everywhere, and its first leaf. The owner of a group is the least.
+    ranks: Vec<(bool, usize)>,
+    /// Diagonal of the bounded primitives' boxes.
+    size: f64,
+}
+
+impl SolidTracer {
+    /// Prepares a solid; `tolerance` is that of [`SurfaceTable::new`].
+    ///
+    /// # Errors
+    /// [`TreeError`] when the positive form is too large.
+    pub fn new(solid: &Solid, tolerance: f64) -> Result<Self, TreeError> {
+        let primitives = solid.primitives().to_vec();
+        let mut ranks = vec![(true, usize::MAX); primitives.len()];
+        let list = crate::csg::Blist::new(solid.tree())?;
+        for (place, entry) in list.entries().iter().enumerate() {
+            let rank = &mut ranks[entry.primitive() as usize];
+            *rank = (rank.0 && entry.negative(), rank.1.min(place));
+        }
+        let boxes = primitives.iter().map(Primitive::bounds).filter(|b| b.diagonal().is_finite());
+        let size = boxes.fold(crate::model::Bounds::EMPTY, crate::model::Bounds::union).diagonal();
+        Ok(Self {
+            table: SurfaceTable::new(solid, tolerance),
+            shells: primitives.iter().map(Shell::new).collect(),
+            tree: solid.tree().clone(),
+            primitives,
+            ranks,
+            size,
+        })
+    }
+
+    /// All faces along the line `origin + t direction`. Linear in the primitives; a direction of length 0 or
+    /// one that is not finite meets nothing.
+    pub fn trace(&self, origin: DVec3, direction: DVec3) -> Trace {
+        let speed = direction.length();
+        if !(speed > 0.0 && speed.is_finite() && origin.is_finite()) {
+            return Trace::default();
+        }
+        let (mut crossings, mut state, leaks) = self.crossings(origin, direction);
+        crossings.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.primitive.cmp(&b.primitive)));
+        // what the line does not cross keeps its state: a smaller tree
+        let mut crossed = vec![false; state.len()];
+        crossings.iter().for_each(|c| crossed[c.primitive as usize] = true);
+        let tree = self.tree.fold(|p| (!crossed[p as usize]).then(|| state[p as usize]));
+        let mut inside = tree.contains(|p| state[p as usize]);
+        let mut trace = Trace { inside_before: inside, boundaries: Vec::new(), leaks };
+        let same = FALLBACK * self.size / speed;
+        let mut rest = &crossings[..];
+        while let Some(first) = rest.first() {
+            let count = rest.iter().take_while(|c| self.one_place(first, c, same)).count();
+            let (group, behind) = rest.split_at(count);
+            rest = behind;
+            let before = state.clone();
+            group.iter().for_each(|c| state[c.primitive as usize] ^= true);
+            let after = tree.contains(|p| state[p as usize]);
+            if after != inside {
+                let owner = self.owner(&tree, group, &before, &state, inside);
+                trace.boundaries.push(self.boundary(&owner, origin, direction, after));
+                inside = after;
+            }
+        }
+        trace
+    }
+
+    fn one_place(&self, first: &Crossing, c: &Crossing, same: f64) -> bool {
+        let exact = |c: &Crossing| self.shells[c.primitive as usize].is_none();
+        c.t == first.t || !(exact(first) && exact(c)) && c.t - first.t <= same
+    }
+
+    /// Crossings of all primitives, their state before the first, and leaks.
+    fn crossings(&self, o: DVec3, d: DVec3) -> (Vec<Crossing>, Vec<bool>, u32) {
+        let mut found: HashMap<u32, Roots> = HashMap::new();
+        let mut crossings = Vec::new();
+        let mut state = vec![false; self.primitives.len()];
+        let mut leaks = 0;
+        let roots = |surface: u32| {
+            let s = &self.table.surfaces()[surface as usize];
+            Roots::new(&s.carrier, s.to_own.transform_point3(o), s.to_own.transform_vector3(d))
+        };
+        for (p, shell) in (0..).zip(&self.shells) {
+            if let Some(shell) = shell {
+                let mut plane = |s: u32| found.entry(s).or_insert_with(|| roots(s)).at.first().copied();
+                leaks += u32::from(!shell.cross(p, &self.table, &mut plane, (o, d), &mut crossings));
+                continue;
+            }
+            let faces = self.table.faces(p);
+            if faces.is_empty() {
+                continue;
+            }
+            // the intersection of the insides of all faces
+            let mut events: Vec<(f64, u32)> = Vec::new();
+            let mut within: Vec<bool> = Vec::new();
+            for (k, face) in (0..).zip(faces) {
+                let roots = found.entry(face.surface).or_insert_with(|| roots(face.surface));
+                within.push(roots.inside_before != face.flipped);
+                events.extend(roots.at.iter().map(|t| (*t, k)));
+            }
+            events.sort_by(|a, b| a.0.total_cmp(&b.0));
+            let mut inside = within.iter().all(|w| *w);
+            state[p as usize] = inside;
+            for group in events.chunk_by(|a, b| a.0 == b.0) {
+                group.iter().for_each(|(_, k)| within[*k as usize] ^= true);
+                let now = within.iter().all(|w| *w);
+                if now != inside {
+                    // a face that has just turned the way the primitive has
+                    let owner = group.iter().find(|(_, k)| within[*k as usize] == now).unwrap_or(&group[0]);
+                    crossings.push(Crossing { t: group[0].0, primitive: p, owner: Owner::Carrier(owner.1) });
+                    inside = now;
+                }
+            }
+        }
+        (crossings, state, leaks)
+    }
+
+    /// The crossing of `group` that owns the face; see the module.
+    fn owner(&self, tree: &Tree, group: &[Crossing], before: &[bool], after: &[bool], inside: bool) -> Crossing {
+        let rank = |c: &Crossing| self.ranks[c.primitive as usize];
+        let active = |c: &Crossing| {
+            let alone = |state: &[bool]| tree.contains(|p| state[p as usize] != (p == c.primitive));
+            alone(before) != inside || alone(after) == inside
+        };
+        let toggled = |c: &&Crossing| before[c.primitive as usize] != after[c.primitive as usize];
+        let least = |all: &mut dyn Iterator<Item = &Crossing>| all.min_by_key(|c| rank(c)).copied();
+        least(&mut group.iter().filter(toggled).filter(|c| active(c)))
+            .or_else(|| least(&mut group.iter().filter(toggled)))
+            .unwrap_or(group[0])
+    }
+
+    fn boundary(&self, c: &Crossing, o: DVec3, d: DVec3, entering: bool) -> Boundary {
+        let point = o + d * c.t;
+        let face = |k: u32| self.table.faces(c.primitive).get(k as usize);
+        let gradient = match c.owner {
+            Owner::Carrier(k) | Owner::Triangle(k) => face(k).map_or(DVec3::ZERO, |face| {
+                let s = &self.table.surfaces()[face.surface as usize];
+                let own = s.to_own.transform_point3(o) + s.to_own.transform_vector3(d) * c.t;
+                s.to_own.matrix3.transpose() * s.carrier.gradient(own)
+            }),
+            Owner::Normal(normal) => normal,
+        };
+        let normal = gradient.normalize_or_zero();
+        let outward = (normal.dot(d) < 0.0) == entering;
+        Boundary {
+            t: c.t,
+            entering,
+            primitive: c.primitive,
+            id: self.primitives[c.primitive as usize].id,
+            point,
+            normal: if outward { normal } else { -normal },
+        }
+    }
+}

@@ -1,0 +1,6 @@
+//! Solids along lines, against closed forms.
+
+mod hard;
+mod identities;
+mod shapes;
+mod volumes;
