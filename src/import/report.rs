@@ -50,6 +50,8 @@ pub struct ImportReport {
     pub edges: usize,
     /// Faces in the bodies before any was left out.
     pub faces: usize,
+    /// Triangle meshes, one a tessellated face that stands for no exact one.
+    pub meshes: usize,
     /// (u, v) curves in the file. They are not used: both faces of an edge are trimmed from the one
     /// edge in space, so that neighbours agree.
     pub pcurves: usize,

@@ -3,8 +3,10 @@
 mod assemblies;
 mod colours;
 mod damage;
+mod looks;
 mod models;
 mod shapes;
+mod tessellated;
 mod units;
 
 use crate::import::{Import, step};

@@ -1,7 +1,7 @@
 //! Damaged files: never a panic, and a warning that names what was lost.
 
 use super::{import, wrap};
-use crate::import::step;
+use crate::import::{Import, step};
 use crate::model::SurfaceKind;
 use proptest::prelude::*;
 
@@ -46,6 +46,50 @@ fn each_damage_names_its_face() {
     loses("EDGE_LOOP('',(#54))", "EDGE_LOOP('',())", 62, "#57: the loop has no edge");
     loses("PLANE('',#24)", "OFFSET_SURFACE('',#44,1.,.F.)", 62, "#44 refers to itself");
     loses("(#58),#44", "(),#44", 62, "");
+}
+
+/// The good file without what matches, and its warnings.
+fn without(records: &[u32], cut_before: Option<u32>) -> (Import, Vec<String>) {
+    let named = |line: &str, id: u32| line.starts_with(&format!("#{id}="));
+    let lines = GOOD.lines().take_while(|line| cut_before.is_none_or(|id| !named(line, id)));
+    let kept: Vec<&str> = lines.filter(|line| !records.iter().any(|id| named(line, *id))).collect();
+    let import = step(kept.join("\n").as_bytes(), "good.step").unwrap();
+    let told = import.warnings.iter().map(ToString::to_string).collect();
+    (import, told)
+}
+
+#[test]
+fn what_a_cut_file_still_holds_is_drawn() {
+    let truncated = |line: usize| format!("good.step:{line}: truncated: the file ends without END-ISO-10303-21");
+    // one face of the shell is gone: the others stay
+    let (import, told) = without(&[63], None);
+    assert_eq!(told, ["good.step: face left out: #63 does not exist"]);
+    assert_eq!((import.model.face_count(), import.model.instances.len()), (2, 2));
+    // an entry of the shell that is none
+    let import = step(GOOD.replace("(#61,#62,#63)", "(#61,$,#63)").as_bytes(), "good.step").unwrap();
+    let told: Vec<_> = import.warnings.iter().map(ToString::to_string).collect();
+    let expected = [
+        "good.step:58: #62: face without shell: 1 of them are drawn as one open shell",
+        "good.step:60: #64: face left out: #64: attribute 1 is not a list of references",
+    ];
+    assert_eq!(told, expected);
+    assert_eq!(import.model.parts.iter().map(|p| p.faces.len()).collect::<Vec<_>>(), [2, 1]);
+    // the solid and what places it are gone
+    let (import, told) = without(&[], Some(65));
+    let expected = "good.step:60: #64: shell without body: drawn with the file's first units";
+    assert_eq!(told, [truncated(60), expected.into()]);
+    assert_eq!((import.model.face_count(), import.model.instances.len()), (3, 1));
+    // the shell, too
+    let (import, told) = without(&[], Some(64));
+    let expected = "good.step:57: #61: face without shell: 3 of them are drawn as one open shell";
+    assert_eq!(told, [truncated(59), expected.into()]);
+    assert_eq!((import.model.parts.len(), import.model.face_count(), import.report.edges), (1, 3, 3));
+    assert!(!import.model.parts[0].closed);
+    // only the shell
+    let (import, told) = without(&[64], None);
+    let expected = ["good.step:60: #65: body left out: #64 does not exist", expected];
+    assert_eq!(told, [expected[1], expected[0]]);
+    assert_eq!(import.model.face_count(), 3);
 }
 
 /// Surfaces of one spline shared by every face of a shell: the work is cut off, not the program.
