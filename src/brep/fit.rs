@@ -24,7 +24,7 @@ const MAX_DEPTH: u32 = 16;
 
 /// Between two points of interpolation the error runs like the product of the distances from them all. Its
 /// peak is at most this many times what is found at 0.3 and 0.7 of the way.
-const PEAK: f64 = 1.25;
+pub(super) const PEAK: f64 = 1.25;
 
 /// Trim curves of one strand.
 #[derive(Clone, Debug)]
@@ -199,7 +199,7 @@ impl Fitter<'_> {
 }
 
 /// Chebyshev-Lobatto point `i` of `degree` on `[0, 1]`; both ends are among them.
-fn chebyshev(i: usize, degree: usize) -> f64 {
+pub(super) fn chebyshev(i: usize, degree: usize) -> f64 {
     0.5 - 0.5 * (std::f64::consts::PI * i as f64 / degree as f64).cos()
 }
 
@@ -218,7 +218,7 @@ fn interpolate(values: &[DVec2]) -> Bezier<DVec3> {
 }
 
 static CUBIC: LazyLock<Vec<f64>> = LazyLock::new(|| collocation_inverse(3));
-static QUINTIC: LazyLock<Vec<f64>> = LazyLock::new(|| collocation_inverse(5));
+pub(super) static QUINTIC: LazyLock<Vec<f64>> = LazyLock::new(|| collocation_inverse(5));
 
 /// Inverse of the Bernstein polynomials' values at the Chebyshev points, row by row.
 fn collocation_inverse(degree: usize) -> Vec<f64> {

@@ -5,7 +5,7 @@ use crate::spline::BSpline;
 use glam::DVec4;
 
 /// A rectangle `a × b` around the frame's origin, counter-clockwise.
-fn rectangle(list: &mut Vec<Edge>, f: Frame, a: f64, b: f64) -> Vec<(usize, bool)> {
+pub(super) fn rectangle(list: &mut Vec<Edge>, f: Frame, a: f64, b: f64) -> Vec<(usize, bool)> {
     let c = |x: f64, y: f64| f.world(DVec3::new(x * a / 2.0, y * b / 2.0, 0.0));
     let corners = [c(-1.0, -1.0), c(1.0, -1.0), c(1.0, 1.0), c(-1.0, 1.0)];
     (0..4).map(|i| (segment(list, corners[i], corners[(i + 1) % 4]), true)).collect()

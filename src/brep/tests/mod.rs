@@ -3,6 +3,7 @@
 mod carriers;
 mod curved;
 mod damage;
+mod derived;
 mod details;
 mod flat;
 mod splines;

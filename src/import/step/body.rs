@@ -18,7 +18,7 @@ use super::geometry::{FACE_LOST, Geometry};
 use super::presentation::Presentation;
 use super::spline;
 use super::tessellated::{self, Coordinates};
-use crate::brep::{Edge, FaceGeometry};
+use crate::brep::{Edge, FaceGeometry, SurfaceGeometry};
 use crate::model::{Colour, Mesh};
 use glam::DAffine3;
 use std::collections::HashSet;
@@ -65,6 +65,13 @@ const UNSUPPORTED: [&str; 9] = [
     "CUBIC_BEZIER_TRIANGULATED_FACE",
 ];
 
+/// Surfaces that are faces without loops where a set or a representation lists them.
+fn is_bare(entity: Entity<'_>) -> bool {
+    const BOUNDED: [&str; 4] =
+        ["RECTANGULAR_TRIMMED_SURFACE", "SPHERICAL_SURFACE", "TOROIDAL_SURFACE", "DEGENERATE_TOROIDAL_SURFACE"];
+    entity.kinds().any(|k| spline::is_surface(k) || BOUNDED.contains(&k))
+}
+
 /// What an item of a representation is to the importer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
@@ -81,7 +88,7 @@ pub(super) enum Role {
 /// Whether an item is a body. A geometric set is one if it holds a surface.
 pub(super) fn role(geometry: &Geometry<'_>, item: Entity<'_>) -> Role {
     let any = |names: &[&str]| item.kinds().any(|k| names.contains(&k));
-    if any(&SOLIDS) || any(&MODELS) || any(&SHELLS) || any(&FACES) || item.kinds().any(spline::is_surface) {
+    if any(&SOLIDS) || any(&MODELS) || any(&SHELLS) || any(&FACES) || is_bare(item) {
         return Role::Body;
     }
     if tessellated::is_tessellated(item) {
@@ -90,7 +97,7 @@ pub(super) fn role(geometry: &Geometry<'_>, item: Entity<'_>) -> Role {
     if any(&SETS) {
         let surface = |id: u32| {
             let entity = geometry.entity(id);
-            entity.is_ok_and(|e| e.is("CURVE_BOUNDED_SURFACE") || e.kinds().any(spline::is_surface))
+            entity.is_ok_and(|e| e.is("CURVE_BOUNDED_SURFACE") || is_bare(e))
         };
         return if item.references().any(surface) { Role::Body } else { Role::Ignored };
     }
@@ -181,7 +188,7 @@ impl<'g, 'a> Builder<'g, 'a> {
             for element in fields.references(0)? {
                 let element = element?;
                 let found = self.geometry.entity(element)?;
-                if found.is("CURVE_BOUNDED_SURFACE") || found.kinds().any(spline::is_surface) {
+                if found.is("CURVE_BOUNDED_SURFACE") || is_bare(found) {
                     self.face(element, true, colours)?;
                 } else {
                     self.geometry.ledger.ignore(&found.name(), 1);
@@ -250,9 +257,11 @@ impl<'g, 'a> Builder<'g, 'a> {
         }
         let colour = std::iter::once(&id).chain(colours).find_map(|i| self.looks.colours.of_item(*i));
         match self.mapped(id) {
-            Ok(mut face) => {
-                face.same_sense = face.same_sense == sense;
-                self.body.faces.push((face, colour));
+            Ok(faces) => {
+                for mut face in faces {
+                    face.same_sense = face.same_sense == sense;
+                    self.body.faces.push((face, colour));
+                }
             }
             Err(fault) => self.lose(id, &fault),
         }
@@ -298,16 +307,22 @@ impl<'g, 'a> Builder<'g, 'a> {
         self.body.lost.push((id, fault.to_string()));
     }
 
-    fn mapped(&mut self, id: u32) -> Result<FaceGeometry, Fault> {
+    /// One face, or the parts of a surface that breaks.
+    fn mapped(&mut self, id: u32) -> Result<Vec<FaceGeometry>, Fault> {
         let entity = self.geometry.entity(id)?;
         if entity.is("CURVE_BOUNDED_SURFACE") {
-            return self.geometry.bounded_surface(entity, &mut self.table);
+            return Ok(vec![self.geometry.bounded_surface(entity, &mut self.table)?]);
         }
+        let whole = |surface, same_sense| FaceGeometry { id, surface, bounds: Vec::new(), same_sense };
         if entity.kinds().any(spline::is_surface) {
-            let surface = self.geometry.surface(id)?.surface;
-            return Ok(FaceGeometry { id, surface, bounds: Vec::new(), same_sense: true });
+            let parts = self.geometry.bspline_surface(entity)?.into_iter();
+            return Ok(parts.map(|s| whole(SurfaceGeometry::BSpline(s), true)).collect());
         }
-        self.geometry.face(id, &mut self.table)
+        if is_bare(entity) {
+            let carrier = self.geometry.surface(id)?;
+            return Ok(vec![whole(carrier.surface, !carrier.flipped)]);
+        }
+        Ok(vec![self.geometry.face(id, &mut self.table)?])
     }
 
     fn guarded(&mut self, kind: &'static str, id: u32, f: impl FnOnce(&mut Self) -> Result<(), Fault>) {

@@ -159,9 +159,13 @@ impl<'a> Geometry<'a> {
         Ok((self.point(location)?, axis.map_or(Ok(DVec3::Z), |d| self.direction(d))?))
     }
 
-    /// AXIS2_PLACEMENT_3D as a frame (ISO 10303-42, `build_axes`).
+    /// AXIS2_PLACEMENT_3D, or _2D in the plane z = 0, as a frame (ISO 10303-42, `build_axes`).
     pub fn frame(&self, id: u32) -> Result<Frame, Fault> {
         let entity = self.entity(id)?;
+        if let Ok(fields) = entity.fields("AXIS2_PLACEMENT_2D", 1) {
+            let x = fields.optional(1).map(|d| self.direction(d)).transpose()?;
+            return Ok(frame(self.point(fields.reference(0)?)?, DVec3::Z, x));
+        }
         let fields = entity.fields("AXIS2_PLACEMENT_3D", 1)?;
         let (location, first) = match entity.fields("PLACEMENT", 1) {
             Ok(placement) => (placement.reference(0)?, 0),

@@ -26,9 +26,11 @@ mod orphans;
 mod part21;
 mod presentation;
 mod product;
+mod replica;
 mod spline;
 mod surface;
 mod tessellated;
+mod torn;
 mod units;
 mod walk;
 

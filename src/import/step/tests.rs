@@ -3,6 +3,7 @@
 mod assemblies;
 mod colours;
 mod damage;
+mod derived;
 mod looks;
 mod models;
 mod shapes;
