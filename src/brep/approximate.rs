@@ -20,10 +20,10 @@ const NODES: usize = DEGREE + 1;
 /// How much interpolation at the six nodes may enlarge an error (its Lebesgue constant is 1.99).
 const LEBESGUE: f64 = 2.0;
 
-/// Halvings of a piece of a curve before its error stands.
+/// Halvings of a piece of a curve, or of the grid of a surface, before the error stands.
 const MAX_DEPTH: u32 = 10;
 
-/// Cells of a surface's grid at most; then its error stands.
+/// Cells of a surface's grid at most; a quarter of them, and its error stands.
 const MAX_CELLS: usize = 1 << 12;
 
 /// A spline along `f`, cut at `breaks` (increasing, both ends among them), and its largest error in mm.
@@ -65,15 +65,19 @@ fn piece(
 }
 
 /// A spline surface along `f` over the grid of `us` and `vs`, and its largest error in mm. `None` when `f`
-/// is not finite.
+/// is not finite, or the grid has too many cells to begin with.
 pub(super) fn surface(
     f: &dyn Fn(f64, f64) -> DVec3,
     mut us: Vec<f64>,
     mut vs: Vec<f64>,
     target: f64,
 ) -> Option<(Surface, f64)> {
+    let mut passes = 0;
     loop {
         let (nu, nv) = (us.len() - 1, vs.len() - 1);
+        if nu * nv > MAX_CELLS {
+            return None;
+        }
         let (mut err_u, mut err_v) = (vec![0.0f64; nu], vec![0.0f64; nv]);
         let (count_u, count_v) = (DEGREE * nu + 1, DEGREE * nv + 1);
         let mut net = vec![DVec4::ZERO; count_u * count_v];
@@ -102,13 +106,14 @@ pub(super) fn surface(
         if !error.is_finite() {
             return None;
         }
-        if error <= target || nu * nv > MAX_CELLS / 4 {
+        if error <= target || nu * nv > MAX_CELLS / 4 || passes == MAX_DEPTH {
             let knots = |ends: &[f64]| {
                 let inner = ends.iter().flat_map(|k| [*k; DEGREE]);
                 std::iter::once(ends[0]).chain(inner).chain([ends[ends.len() - 1]]).collect::<Vec<f64>>()
             };
             return Some((Surface::new((DEGREE, DEGREE), knots(&us), knots(&vs), net).ok()?, error));
         }
+        passes += 1;
         us = halved(&us, &err_u, target / (2.0 * PEAK));
         vs = halved(&vs, &err_v, target / (2.0 * PEAK * LEBESGUE));
     }

@@ -5,9 +5,9 @@
 //!         ─entity─▶ Entity, Fields  typed attributes; every Fault names its entity
 //!         ─units──▶ Units           per representation context
 //!         ─curve, spline, surface─▶ CurveGeometry, SurfaceGeometry          one geometry each
-//!         ─face, body──▶ Body       faces and the edges that they share
-//!         ─product, assembly, walk─▶ one instance per path
-//!         ─colour, presentation──▶ Looks           by styled item; layers, what is hidden
+//!         ─face, body, tessellated──▶ Body          faces and the edges that they share; triangles
+//!         ─product, assembly, orphans, walk─▶ one instance per path
+//!         ─colour, presentation──▶ Looks            by styled item; layers, what is hidden
 //!         ─brep::build_face─▶ Face  in parallel, results in file order
 //! ```
 //!

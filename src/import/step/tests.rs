@@ -1,6 +1,7 @@
 //! Whole files: hand-made snippets with exact numbers, damaged files, and the models of a folder.
 
 mod assemblies;
+mod classes;
 mod colours;
 mod damage;
 mod derived;

@@ -6,7 +6,7 @@ use crate::model::SurfaceKind;
 use proptest::prelude::*;
 
 /// A cylinder with a hole of a rational spline edge, coloured and placed twice: a little of everything.
-const GOOD: &str = include_str!("good.step");
+pub(super) const GOOD: &str = include_str!("good.step");
 
 #[test]
 fn the_good_file_is_good() {
