@@ -5,7 +5,9 @@ use super::edge::EdgeCurve;
 use super::fit::Fitter;
 use super::loops::{Limits, Loop};
 use super::nest::{arrange, come_home};
+use super::order;
 use super::preimage::Lines;
+use super::rims::natural_border;
 use super::strand::Strand;
 use super::support::Support;
 use super::{Boundary, BuildError, Edge, FaceGeometry};
@@ -21,9 +23,12 @@ pub struct BuiltFace {
     pub face: Face,
     /// What had to be healed or is doubtful, with lengths in mm.
     pub notes: Vec<String>,
-    /// Largest measured distance in mm between a trim curve, mapped through the surface, and the
-    /// edge that it stands for. It includes what the source's edges lie off their surface.
+    /// Largest distance in mm, on the surface, of a trim curve from the points nearest to its edge: what
+    /// fitting, straightening and joining cost.
     pub deviation: f64,
+    /// Largest distance in mm of an edge from the surface, which is the source's. No point of a trim curve
+    /// is farther from its edge than `deviation + gap`.
+    pub gap: f64,
 }
 
 /// Turns of a helical strip that a carrier may cover; only nonsense has more.
@@ -63,7 +68,7 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         .iter()
         .filter_map(|b| match b {
             Boundary::Vertex(p) => support.pole_at(*p, 50.0 * eps),
-            Boundary::Edges(_) => None,
+            Boundary::Edges(_) | Boundary::Natural => None,
         })
         .collect();
     let mut loops = Vec::new();
@@ -71,7 +76,7 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
     let mut hint = None;
     for bound in uses {
         let mut strands = Vec::new();
-        for edge in heal_directions(bound, face.id, eps, &mut notes) {
+        for edge in order::heal(bound, face.id, eps, &mut notes) {
             let more = Strand::of_edge(&support, &Rc::new(edge), hint, &mut lines);
             hint = more.last().map(|s| s.end).or(hint);
             strands.extend(more);
@@ -80,7 +85,12 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
             loops.push(Loop::close(&support, strands, limits, &mut notes)?);
         }
     }
-    gap_notes(&loops, eps, size, &mut notes);
+    let natural = face.bounds.contains(&Boundary::Natural);
+    if natural || (loops.is_empty() && support.window.is_some()) {
+        let border = natural_border(&support, &loops).ok_or(BuildError::Unbounded { face: face.id })?;
+        loops.extend(border);
+    }
+    let gap = gaps(&loops, eps, size, &mut notes);
     if loops.is_empty() {
         return whole(face, &support, notes);
     }
@@ -125,14 +135,14 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         same_sense: face.same_sense,
         colour: None,
     };
-    Ok(BuiltFace { face, notes, deviation })
+    Ok(BuiltFace { face, notes, deviation, gap })
 }
 
 /// The edges of each bound in the direction of the bound; those without length are left out.
 fn edge_uses(face: &FaceGeometry, edges: &[Edge]) -> Result<Vec<Vec<EdgeCurve>>, BuildError> {
     let lists = face.bounds.iter().filter_map(|b| match b {
         Boundary::Edges(list) => Some(list),
-        Boundary::Vertex(_) => None,
+        Boundary::Vertex(_) | Boundary::Natural => None,
     });
     let ends = lists.flatten().filter_map(|(index, _)| edges.get(*index)).flat_map(|e| [e.start, e.end]);
     // rounding of the vertices' coordinates, before anything is known about the face
@@ -151,47 +161,19 @@ fn edge_uses(face: &FaceGeometry, edges: &[Edge]) -> Result<Vec<Vec<EdgeCurve>>,
     Ok(uses)
 }
 
-/// Turns around edges that do not begin where the one before ends, but end there.
-fn heal_directions(edges: Vec<EdgeCurve>, face: u32, eps: f64, notes: &mut Vec<String>) -> Vec<EdgeCurve> {
-    let near = |p: DVec3, q: DVec3| p.distance(q) <= 50.0 * eps;
-    let flip = |e: EdgeCurve| {
-        let [a, b] = e.vertices;
-        let (t0, t1) = (e.curve.reversed_parameter(e.t1), e.curve.reversed_parameter(e.t0));
-        EdgeCurve { curve: e.curve.reversed(), t0, t1, vertices: [b, a], ..e }
-    };
-    let mut out: Vec<EdgeCurve> = Vec::with_capacity(edges.len());
-    let count = edges.len();
-    for e in edges {
-        if e.turned {
-            notes.push(format!("face #{face}: edge #{} runs against its stated sense", e.id));
-        }
-        let mut e = e;
-        let alone = out.len() == 1 && count > 1;
-        if let Some(last) = out.last_mut() {
-            let fits = |end: DVec3, e: &EdgeCurve| near(end, e.vertices[0]) || near(end, e.vertices[1]);
-            if alone && !fits(last.vertices[1], &e) && fits(last.vertices[0], &e) {
-                notes.push(format!("face #{face}: edge #{} was turned around in its loop", last.id));
-                *last = flip(last.clone());
-            }
-            if !near(last.vertices[1], e.vertices[0]) && near(last.vertices[1], e.vertices[1]) {
-                notes.push(format!("face #{face}: edge #{} was turned around in its loop", e.id));
-                e = flip(e);
-            }
-        }
-        out.push(e);
-    }
-    out
-}
-
-/// Names edges that lie farther off the surface than a sound file's would.
-fn gap_notes(loops: &[Loop], eps: f64, size: f64, notes: &mut Vec<String>) {
+/// The largest distance of an edge from the surface; names edges that lie farther off than a sound
+/// file's would.
+fn gaps(loops: &[Loop], eps: f64, size: f64, notes: &mut Vec<String>) -> f64 {
     let limit = (50.0 * eps).min(1e-2 * size);
+    let mut largest: f64 = 0.0;
     for part in loops.iter().flat_map(|l| &l.strands).filter_map(|s| s.part.as_ref()) {
+        largest = largest.max(part.trace.gap);
         if part.trace.gap > limit {
             let (id, gap) = (part.trace.edge.id, part.trace.gap);
             notes.push(format!("edge #{id} lies {gap:.3e} mm off its surface"));
         }
     }
+    largest
 }
 
 /// A closed surface without loops.
@@ -209,7 +191,7 @@ fn whole(face: &FaceGeometry, support: &Support, notes: Vec<String>) -> Result<B
         same_sense: face.same_sense,
         colour: None,
     };
-    Ok(BuiltFace { face, notes, deviation: 0.0 })
+    Ok(BuiltFace { face, notes, deviation: 0.0, gap: 0.0 })
 }
 
 fn carrier_error(face: u32, e: CarrierError) -> BuildError {

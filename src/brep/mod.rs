@@ -16,14 +16,17 @@
 //! | step | files |
 //! |---|---|
 //! | curves and surfaces made ready | `curve`, `pieces`, `edge`; `support`, `invert`, `spline` |
-//! | edge → pre-image in the standard's own `(u, v)` | `trace`, `preimage`, `strand` |
+//! | those defined by others | `derived`, `approximate` |
+//! | edge → pre-image in the standard's own `(u, v)` | `order`; `trace`, `preimage`, `strand` |
 //! | strands → loops without seams, oriented | `loops`; `rims`, `cut`; `nest` |
 //! | the standard's `(u, v)` → a spline's | `law`, `carrier`, `fit` |
 
+mod approximate;
 mod build;
 mod carrier;
 mod curve;
 mod cut;
+mod derived;
 mod edge;
 mod error;
 mod fit;
@@ -32,6 +35,7 @@ mod invert;
 mod law;
 mod loops;
 mod nest;
+mod order;
 mod pieces;
 mod preimage;
 mod rims;
@@ -44,6 +48,7 @@ mod trace;
 mod tests;
 
 pub use build::{BuiltFace, build_face};
+pub use derived::{curve_on_surface, offset_curve, offset_surface};
 pub use error::BuildError;
 
 use crate::spline::{BSpline, Surface};
@@ -105,6 +110,13 @@ pub enum SurfaceGeometry {
         direction: DVec3,
     },
     BSpline(Surface),
+    /// Only this rectangle of the basis' parameters: what a face shows that has no loop, or whose loops
+    /// are holes in the [natural border](Boundary::Natural).
+    Window {
+        basis: Box<SurfaceGeometry>,
+        u: (f64, f64),
+        v: (f64, f64),
+    },
 }
 
 /// A curve in space as files state it.
@@ -173,6 +185,8 @@ pub enum Boundary {
     Edges(Vec<(usize, bool)>),
     /// A single point: the pole of a sphere, the tip of a cone.
     Vertex(DVec3),
+    /// The border of the surface's own domain, in addition to the other bounds.
+    Natural,
 }
 
 /// A face as files state it.

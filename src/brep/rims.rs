@@ -89,6 +89,37 @@ pub(super) fn close_over_pole(
     Some(if rim.winding[axis] > 0 { closing.reversed() } else { closing })
 }
 
+/// The border of the window, or else of the surface's own domain: a rectangle, or two rims where a
+/// direction closes; `None` when there is neither.
+pub(super) fn natural_border(support: &Support, loops: &[Loop]) -> Option<Vec<Loop>> {
+    let natural = || support.natural[0].zip(support.natural[1]).map(|(u, v)| [u, v]);
+    let [u, v] = support.window.or_else(natural)?;
+    let full = |i: usize, (a, b): (f64, f64)| support.periods[i].is_some_and(|p| b - a >= p * (1.0 - 1e-9));
+    if support.window.is_none() && (full(0, u) || full(1, v)) {
+        return natural_rims(support, loops).map(Vec::from);
+    }
+    if let Some(axis) = [full(0, u), full(1, v)].iter().position(|f| *f) {
+        let other = [u, v][1 - axis];
+        let start = [u, v][axis].0;
+        let rim = |height: f64| rim(support, axis, start, height);
+        let (low, high) = (rim(other.0), rim(other.1));
+        return Some(if axis == 0 { vec![low, high.reversed()] } else { vec![low.reversed(), high] });
+    }
+    let corners = [(u.0, v.0), (u.1, v.0), (u.1, v.1), (u.0, v.1)].map(|(u, v)| DVec2::new(u, v));
+    let strands = (0..4).map(|i| Strand::inserted(corners[i], corners[(i + 1) % 4])).collect();
+    Some(vec![Loop { strands, winding: [0; 2] }])
+}
+
+/// The line that runs once around in `axis` from `start`, at `height` of the other parameter.
+fn rim(support: &Support, axis: usize, start: f64, height: f64) -> Loop {
+    let mut turn = [0; 2];
+    turn[axis] = 1;
+    let mut from = DVec2::ZERO;
+    from[axis] = start;
+    from[1 - axis] = height;
+    Loop { strands: vec![Strand::inserted(from, from + periods(support, turn))], winding: turn }
+}
+
 /// The border of a closed surface as loops: two opposite rims that [`cut_open`](super::cut::cut_open) joins. Where neither
 /// direction ends, the rims lie on a line that no loop meets; `None` when there is none.
 pub(super) fn natural_rims(support: &Support, loops: &[Loop]) -> Option<[Loop; 2]> {
@@ -101,15 +132,7 @@ pub(super) fn natural_rims(support: &Support, loops: &[Loop]) -> Option<[Loop; 2
         }
         (_, natural) => natural?,
     };
-    let mut turn = [0; 2];
-    turn[axis] = 1;
-    let across = periods(support, turn);
-    let rim = |height: f64| {
-        let mut from = DVec2::ZERO;
-        from[axis] = support.natural[axis].map_or(0.0, |n| n.0);
-        from[other] = height;
-        Loop { strands: vec![Strand::inserted(from, from + across)], winding: turn }
-    };
+    let rim = |height: f64| rim(support, axis, support.natural[axis].map_or(0.0, |n| n.0), height);
     let (low, high) = (rim(lo), rim(hi));
     Some(if axis == 0 { [low, high.reversed()] } else { [low.reversed(), high] })
 }

@@ -62,6 +62,8 @@ pub(super) struct Support {
     pub periods: [Option<f64>; 2],
     /// The range that covers the whole surface once, where it is finite.
     pub natural: [Option<(f64, f64)>; 2],
+    /// The rectangle that a face without loops shows, if the source cut one out.
+    pub window: Option<[(f64, f64); 2]>,
     /// Distance in mm below which two points are the same.
     pub eps: f64,
     /// Distance in mm by which a trim curve may leave the pre-image of its edge.
@@ -129,6 +131,13 @@ impl Support {
                 let form = Form::Extrusion { profile, direction: *direction };
                 Self::with(form, Frame::WORLD, [u, None], eps)
             }
+            SurfaceGeometry::Window { basis, u, v } => {
+                let sound = |(a, b): &(f64, f64)| a.is_finite() && b.is_finite() && a < b;
+                if !(sound(u) && sound(v)) {
+                    return Err("its parameter range is empty");
+                }
+                return Ok(Self { window: Some([*u, *v]), ..Self::new(basis, eps)? });
+            }
             SurfaceGeometry::BSpline(surface) => {
                 // writers close their splines less exactly than they place their vertices
                 let (lo, hi) = surface.bounds();
@@ -152,7 +161,7 @@ impl Support {
     }
 
     fn with(form: Form, frame: Frame, natural: [Option<(f64, f64)>; 2], eps: f64) -> Self {
-        Self { form, frame, poles: Vec::new(), periods: [None; 2], natural, eps, target: 1e-2 * eps }
+        Self { form, frame, poles: Vec::new(), periods: [None; 2], natural, window: None, eps, target: 1e-2 * eps }
     }
 
     fn find_periods(&self) -> [Option<f64>; 2] {

@@ -14,7 +14,7 @@ mod step;
 
 pub use error::ImportError;
 pub(crate) use report::Warnings;
-pub use report::{ImportReport, Place, Warning};
+pub use report::{FaceRecord, ImportReport, Place, Warning};
 
 use crate::model::Model;
 use std::io::Read;

@@ -20,7 +20,9 @@
 use super::body::{self, Role};
 use super::entity::{Entity, Fault, Fields};
 use super::geometry::{Geometry, Ledger};
+use super::orphans::Orphans;
 use super::part21::{File, Value};
+use super::presentation::Presentation;
 use super::product::{Occurrence, Products};
 use super::units::Units;
 use glam::DAffine3;
@@ -59,12 +61,15 @@ pub(super) struct Assembly {
     up: HashMap<u32, u32>,
     /// Units by representation.
     pub units: HashMap<u32, Units>,
+    /// Faces that no shell holds: the body named by the first of them.
+    pub loose: Vec<u32>,
     children: BTreeSet<u32>,
 }
 
 struct Reader<'a, 'r> {
     file: &'a File<'a>,
     ledger: &'r Ledger<'a>,
+    presentation: &'r Presentation,
     products: Products,
     assembly: Assembly,
     placements: Vec<(u32, Placement)>,
@@ -84,9 +89,10 @@ fn representation(entity: Entity<'_>) -> Fields<'_> {
 
 impl Assembly {
     /// Reads the graph.
-    pub fn read(file: &File<'_>, ledger: &Ledger<'_>) -> Self {
+    pub fn read(file: &File<'_>, ledger: &Ledger<'_>, presentation: &Presentation) -> Self {
         let products = Products::read(file, ledger);
-        let mut reader = Reader { file, ledger, products, assembly: Self::default(), placements: Vec::new() };
+        let (assembly, placements) = Default::default();
+        let mut reader = Reader { file, ledger, presentation, products, assembly, placements };
         let shapes: BTreeSet<u32> = file.kinds().filter(|k| is_shape(k)).flat_map(|k| file.of_kind(k)).collect();
         let shapes = &shapes - &reader.products.aspects;
         reader.contexts(&shapes);
@@ -210,7 +216,12 @@ impl<'a> Reader<'a, '_> {
                         s.guarded("mapped item ignored", item, |s| s.mapped(entity, id));
                         continue;
                     }
-                    match body::role(&geometry, entity) {
+                    let role = body::role(&geometry, entity);
+                    match role {
+                        Role::Body | Role::Unsupported if s.presentation.hides(item) || s.presentation.hides(id) => {
+                            listed.insert(item);
+                            s.ledger.ignore("hidden bodies", 1);
+                        }
                         Role::Body => {
                             listed.insert(item);
                             s.assembly.groups.entry(id).or_default().bodies.push((item, id));
@@ -218,6 +229,7 @@ impl<'a> Reader<'a, '_> {
                         Role::Unsupported => {
                             s.ledger.note("item left out", item, format!("{} is not supported", entity.name()));
                         }
+                        Role::Ignored => s.ledger.ignore(&entity.name(), 1),
                         Role::Other => {}
                     }
                 }
@@ -225,13 +237,23 @@ impl<'a> Reader<'a, '_> {
             });
         }
         let context = shapes.iter().find(|id| self.assembly.units.contains_key(id)).copied().unwrap_or(0);
-        let orphans: Vec<u32> = body::MAIN_KINDS.iter().flat_map(|k| self.file.of_kind(k)).collect();
-        for orphan in orphans {
-            if listed.insert(orphan) {
-                self.ledger.note("body without representation", orphan, "drawn with the file's first units");
-                self.assembly.groups.entry(context).or_default().bodies.push((orphan, context));
-            }
+        let orphans = Orphans::find(self.file, &listed);
+        for &orphan in &orphans.bodies {
+            self.ledger.note("body without representation", orphan, "drawn with the file's first units");
         }
+        for &orphan in &orphans.shells {
+            self.ledger.note("shell without body", orphan, "drawn with the file's first units");
+        }
+        let bodies = orphans.bodies.iter().chain(&orphans.shells).chain(orphans.faces.first());
+        let bodies: Vec<_> = bodies.map(|id| (*id, context)).collect();
+        if !bodies.is_empty() {
+            self.assembly.groups.entry(context).or_default().bodies.extend(bodies);
+        }
+        if let Some(&first) = orphans.faces.first() {
+            let count = orphans.faces.len();
+            self.ledger.note("face without shell", first, format!("{count} of them are drawn as one open shell"));
+        }
+        self.assembly.loose = orphans.faces;
     }
 
     /// MAPPED_ITEM('',#map,target) with #map = REPRESENTATION_MAP(origin,representation).
@@ -318,7 +340,7 @@ impl<'a> Reader<'a, '_> {
 
     /// Gathers bodies and placements by group and drops groups without any body below them.
     fn finish(self) -> Assembly {
-        let Self { file, products, mut assembly, placements, .. } = self;
+        let Self { file, ledger, presentation, products, mut assembly, placements } = self;
         let mut groups: BTreeMap<u32, Group> = BTreeMap::new();
         let mut seen = BTreeSet::new();
         for (id, listed) in std::mem::take(&mut assembly.groups) {
@@ -328,6 +350,10 @@ impl<'a> Reader<'a, '_> {
             groups.entry(id).or_default().bodies.extend(new);
         }
         for (parent, placement) in placements {
+            if placement.ids.iter().any(|id| presentation.hides(*id)) {
+                ledger.ignore("hidden occurrences", 1);
+                continue;
+            }
             groups.entry(assembly.group(parent)).or_default().placements.push(placement);
         }
         for (representation, definition) in &products.owner {

@@ -6,6 +6,7 @@
 //!                                                                  that normals leave the material
 //!   SHELL_BASED_SURFACE_MODEL('',(shells))                         closed if every shell is
 //!   FACE_BASED_SURFACE_MODEL, GEOMETRIC_SET, a shell or a face     open
+//!   TESSELLATED_SOLID, TESSELLATED_SHELL, sets of triangles        meshes
 //! ```
 //!
 //! A face that cannot be mapped is left out with a note; the body stays.
@@ -14,9 +15,12 @@ use super::colour::Colours;
 use super::entity::{Entity, Fault};
 use super::face::EdgeTable;
 use super::geometry::{FACE_LOST, Geometry};
+use super::presentation::Presentation;
 use super::spline;
-use crate::brep::{Edge, FaceGeometry};
-use crate::model::Colour;
+use super::tessellated::{self, Coordinates};
+use crate::brep::{Edge, FaceGeometry, SurfaceGeometry};
+use crate::model::{Colour, Mesh};
+use glam::DAffine3;
 use std::collections::HashSet;
 
 /// A body in the terms of `brep`.
@@ -28,28 +32,28 @@ pub(super) struct Body {
     pub edges: Vec<Edge>,
     /// Faces and their colours.
     pub faces: Vec<(FaceGeometry, Option<Colour>)>,
-    /// Faces in the file, those that failed included.
-    pub face_count: usize,
+    /// Triangles that the file states itself.
+    pub meshes: Vec<Mesh>,
+    /// Faces that could not be mapped, and why.
+    pub lost: Vec<(u32, String)>,
 }
 
-const SOLIDS: [&str; 3] = ["MANIFOLD_SOLID_BREP", "FACETED_BREP", "BREP_WITH_VOIDS"];
-const MODELS: [&str; 2] = ["SHELL_BASED_SURFACE_MODEL", "FACE_BASED_SURFACE_MODEL"];
-const SETS: [&str; 2] = ["GEOMETRIC_SET", "GEOMETRIC_CURVE_SET"];
-const SHELLS: [&str; 6] = [
+pub(super) const SOLIDS: [&str; 3] = ["MANIFOLD_SOLID_BREP", "FACETED_BREP", "BREP_WITH_VOIDS"];
+pub(super) const MODELS: [&str; 2] = ["SHELL_BASED_SURFACE_MODEL", "FACE_BASED_SURFACE_MODEL"];
+pub(super) const SETS: [&str; 2] = ["GEOMETRIC_SET", "GEOMETRIC_CURVE_SET"];
+pub(super) const SHELLS: [&str; 7] = [
     "CLOSED_SHELL",
     "OPEN_SHELL",
     "ORIENTED_CLOSED_SHELL",
     "ORIENTED_OPEN_SHELL",
     "CONNECTED_FACE_SET",
+    "CONNECTED_FACE_SUB_SET",
     "VERTEX_SHELL",
 ];
-const FACES: [&str; 5] = ["ADVANCED_FACE", "FACE_SURFACE", "FACE", "ORIENTED_FACE", "CURVE_BOUNDED_SURFACE"];
-
-/// Solids and surface models: bodies even when no representation lists them.
-pub(super) const MAIN_KINDS: [&str; 5] = [SOLIDS[0], SOLIDS[1], SOLIDS[2], MODELS[0], MODELS[1]];
+pub(super) const FACES: [&str; 5] = ["ADVANCED_FACE", "FACE_SURFACE", "FACE", "ORIENTED_FACE", "CURVE_BOUNDED_SURFACE"];
 
 /// Geometry that is drawn by other programs but not by this one.
-const UNSUPPORTED: [&str; 12] = [
+const UNSUPPORTED: [&str; 9] = [
     "CSG_SOLID",
     "BOOLEAN_RESULT",
     "EXTRUDED_AREA_SOLID",
@@ -58,40 +62,56 @@ const UNSUPPORTED: [&str; 12] = [
     "REVOLVED_FACE_SOLID",
     "SWEPT_DISK_SOLID",
     "SOLID_REPLICA",
-    "TESSELLATED_SOLID",
-    "TESSELLATED_SHELL",
-    "TRIANGULATED_FACE",
-    "COMPLEX_TRIANGULATED_FACE",
+    "CUBIC_BEZIER_TRIANGULATED_FACE",
 ];
+
+/// Surfaces that are faces without loops where a set or a representation lists them.
+fn is_bare(entity: Entity<'_>) -> bool {
+    const BOUNDED: [&str; 4] =
+        ["RECTANGULAR_TRIMMED_SURFACE", "SPHERICAL_SURFACE", "TOROIDAL_SURFACE", "DEGENERATE_TOROIDAL_SURFACE"];
+    entity.kinds().any(|k| spline::is_surface(k) || BOUNDED.contains(&k))
+}
 
 /// What an item of a representation is to the importer.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) enum Role {
+    /// Drawn.
     Body,
+    /// Shape that is beyond this program.
     Unsupported,
+    /// Curves and points: never drawn.
+    Ignored,
+    /// Placements and the like.
     Other,
 }
 
 /// Whether an item is a body. A geometric set is one if it holds a surface.
 pub(super) fn role(geometry: &Geometry<'_>, item: Entity<'_>) -> Role {
     let any = |names: &[&str]| item.kinds().any(|k| names.contains(&k));
-    if any(&SOLIDS) || any(&MODELS) || any(&SHELLS) || any(&FACES) || item.kinds().any(spline::is_surface) {
+    if any(&SOLIDS) || any(&MODELS) || any(&SHELLS) || any(&FACES) || is_bare(item) {
+        return Role::Body;
+    }
+    if tessellated::is_tessellated(item) {
         return Role::Body;
     }
     if any(&SETS) {
         let surface = |id: u32| {
             let entity = geometry.entity(id);
-            entity.is_ok_and(|e| e.is("CURVE_BOUNDED_SURFACE") || e.kinds().any(spline::is_surface))
+            entity.is_ok_and(|e| e.is("CURVE_BOUNDED_SURFACE") || is_bare(e))
         };
-        return if item.references().any(surface) { Role::Body } else { Role::Other };
+        return if item.references().any(surface) { Role::Body } else { Role::Ignored };
     }
-    if any(&UNSUPPORTED) { Role::Unsupported } else { Role::Other }
+    let wire = |k: &str| k.ends_with("WIREFRAME_MODEL") || k.ends_with("CURVE") || k == "CARTESIAN_POINT";
+    match any(&UNSUPPORTED) {
+        true => Role::Unsupported,
+        false if item.kinds().any(wire) => Role::Ignored,
+        false => Role::Other,
+    }
 }
 
 /// Maps the body `#id`; `outer` are items whose colour it inherits, innermost first.
-pub(super) fn body(geometry: &Geometry<'_>, id: u32, colours: &Colours, outer: &[u32]) -> Body {
-    let mut builder =
-        Builder { geometry, colours, body: Body::default(), table: EdgeTable::default(), seen: HashSet::new() };
+pub(super) fn body(geometry: &Geometry<'_>, id: u32, looks: Looks<'_>, outer: &[u32]) -> Body {
+    let mut builder = Builder::new(geometry, looks);
     let trail: Vec<u32> = std::iter::once(id).chain(outer.iter().copied()).collect();
     if let Err(fault) = builder.item(id, &trail) {
         geometry.ledger.note("body left out", id, fault.to_string());
@@ -99,16 +119,56 @@ pub(super) fn body(geometry: &Geometry<'_>, id: u32, colours: &Colours, outer: &
     Body { edges: builder.table.edges, ..builder.body }
 }
 
+/// Faces that no shell holds, as one open body.
+pub(super) fn loose(geometry: &Geometry<'_>, faces: &[u32], looks: Looks<'_>) -> Body {
+    let mut builder = Builder::new(geometry, looks);
+    for &face in faces {
+        if let Err(fault) = builder.face(face, true, &[]) {
+            geometry.ledger.note("body left out", face, fault.to_string());
+            break;
+        }
+    }
+    Body { edges: builder.table.edges, ..builder.body }
+}
+
 struct Builder<'g, 'a> {
     geometry: &'g Geometry<'a>,
-    colours: &'g Colours,
+    looks: Looks<'g>,
     body: Body,
     table: EdgeTable,
     /// Faces already taken: a face listed twice would coincide with itself.
     seen: HashSet<u32>,
+    coordinates: Coordinates,
 }
 
-impl Builder<'_, '_> {
+/// How items look: their colours, and which are hidden.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Looks<'g> {
+    pub colours: &'g Colours,
+    pub presentation: &'g Presentation,
+}
+
+impl<'g, 'a> Builder<'g, 'a> {
+    fn new(geometry: &'g Geometry<'a>, looks: Looks<'g>) -> Self {
+        Self {
+            geometry,
+            looks,
+            body: Body::default(),
+            table: EdgeTable::default(),
+            seen: HashSet::new(),
+            coordinates: Coordinates::new(),
+        }
+    }
+
+    /// Counts `#id` if it is hidden.
+    fn hidden(&self, id: u32, kind: &str) -> bool {
+        let hidden = self.looks.presentation.hides(id);
+        if hidden {
+            self.geometry.ledger.ignore(kind, 1);
+        }
+        hidden
+    }
+
     fn item(&mut self, id: u32, colours: &[u32]) -> Result<(), Fault> {
         let entity = self.geometry.entity(id)?;
         if SOLIDS.iter().any(|k| entity.is(k)) {
@@ -128,11 +188,17 @@ impl Builder<'_, '_> {
             for element in fields.references(0)? {
                 let element = element?;
                 let found = self.geometry.entity(element)?;
-                if found.is("CURVE_BOUNDED_SURFACE") || found.kinds().any(spline::is_surface) {
+                if found.is("CURVE_BOUNDED_SURFACE") || is_bare(found) {
                     self.face(element, true, colours)?;
+                } else {
+                    self.geometry.ledger.ignore(&found.name(), 1);
                 }
             }
             return Ok(());
+        }
+        if tessellated::is_tessellated(entity) {
+            self.body.closed = entity.is("TESSELLATED_SOLID");
+            return self.tessellated(id, DAffine3::IDENTITY, colours);
         }
         if SHELLS.iter().any(|k| entity.is(k)) {
             self.body.closed = entity.kinds().any(|k| k.contains("CLOSED"));
@@ -158,16 +224,22 @@ impl Builder<'_, '_> {
     fn shell(&mut self, id: u32, sense: bool, colours: &[u32]) -> Result<(), Fault> {
         let geometry = self.geometry;
         geometry.ledger.nested(id, || {
+            if self.hidden(id, "hidden shells") {
+                return Ok(());
+            }
             let entity = geometry.entity(id)?;
             let colours: Vec<u32> = std::iter::once(id).chain(colours.iter().copied()).collect();
             let oriented = ["ORIENTED_CLOSED_SHELL", "ORIENTED_OPEN_SHELL"];
             if let Some(fields) = oriented.iter().find_map(|k| entity.fields(k, 2).ok()) {
                 return self.shell(fields.reference(0)?, sense == fields.flag(1), &colours);
             }
-            let kinds = ["CONNECTED_FACE_SET", "CLOSED_SHELL", "OPEN_SHELL"];
+            let kinds = ["CONNECTED_FACE_SET", "CLOSED_SHELL", "OPEN_SHELL", "CONNECTED_FACE_SUB_SET"];
             let fields = kinds.iter().find_map(|k| entity.fields(k, 1).ok().filter(|f| f.list(0).is_ok()));
             for face in fields.ok_or_else(|| entity.not("a shell"))?.references(0)? {
-                self.face(face?, sense, &colours)?;
+                match face {
+                    Ok(face) => self.face(face, sense, &colours)?,
+                    Err(fault) => self.lose(id, &fault),
+                }
             }
             Ok(())
         })
@@ -180,23 +252,77 @@ impl Builder<'_, '_> {
             self.geometry.ledger.note("face listed twice", id, "the second one is left out");
             return Ok(());
         }
-        self.body.face_count += 1;
-        let colour = std::iter::once(&id).chain(colours).find_map(|i| self.colours.of_item(*i));
-        self.guarded(FACE_LOST, id, |s| {
-            let entity = s.geometry.entity(id)?;
-            let mut face = if entity.is("CURVE_BOUNDED_SURFACE") {
-                s.geometry.bounded_surface(entity, &mut s.table)?
-            } else if entity.kinds().any(spline::is_surface) {
-                let surface = s.geometry.surface(id)?.surface;
-                FaceGeometry { id, surface, bounds: Vec::new(), same_sense: true }
-            } else {
-                s.geometry.face(id, &mut s.table)?
-            };
-            face.same_sense = face.same_sense == sense;
-            s.body.faces.push((face, colour));
-            Ok(())
-        });
+        if self.hidden(id, "hidden faces") {
+            return Ok(());
+        }
+        let colour = std::iter::once(&id).chain(colours).find_map(|i| self.looks.colours.of_item(*i));
+        match self.mapped(id) {
+            Ok(faces) => {
+                for mut face in faces {
+                    face.same_sense = face.same_sense == sense;
+                    self.body.faces.push((face, colour));
+                }
+            }
+            Err(fault) => self.lose(id, &fault),
+        }
         Ok(())
+    }
+
+    /// Meshes of a tessellated item and of those that it holds.
+    fn tessellated(&mut self, id: u32, place: DAffine3, colours: &[u32]) -> Result<(), Fault> {
+        let geometry = self.geometry;
+        geometry.ledger.nested(id, || {
+            let entity = geometry.entity(id)?;
+            if self.hidden(id, "hidden tessellated items") {
+                return Ok(());
+            }
+            if geometry.doubles_exact(entity) {
+                geometry.ledger.ignore("tessellated items that double exact ones", 1);
+                return Ok(());
+            }
+            let place = place * geometry.repositioned(entity)?;
+            let colours: Vec<u32> = std::iter::once(id).chain(colours.iter().copied()).collect();
+            let Some(fields) = tessellated::members(entity) else {
+                let colour = colours.iter().find_map(|i| self.looks.colours.of_item(*i));
+                let mut mesh = geometry.mesh(entity, place, &mut self.coordinates)?;
+                mesh.colour = colour;
+                self.body.meshes.push(mesh);
+                return Ok(());
+            };
+            for item in fields.references(0)? {
+                let item = item?;
+                let found = geometry.entity(item);
+                if found.as_ref().is_ok_and(|e| !tessellated::is_tessellated(*e)) {
+                    geometry.ledger.ignore(&found?.name(), 1);
+                } else {
+                    self.guarded("tessellated item left out", item, |s| s.tessellated(item, place, &colours));
+                }
+            }
+            Ok(())
+        })
+    }
+
+    fn lose(&mut self, id: u32, fault: &Fault) {
+        self.geometry.ledger.note(FACE_LOST, id, fault.to_string());
+        self.body.lost.push((id, fault.to_string()));
+    }
+
+    /// One face, or the parts of a surface that breaks.
+    fn mapped(&mut self, id: u32) -> Result<Vec<FaceGeometry>, Fault> {
+        let entity = self.geometry.entity(id)?;
+        if entity.is("CURVE_BOUNDED_SURFACE") {
+            return Ok(vec![self.geometry.bounded_surface(entity, &mut self.table)?]);
+        }
+        let whole = |surface, same_sense| FaceGeometry { id, surface, bounds: Vec::new(), same_sense };
+        if entity.kinds().any(spline::is_surface) {
+            let parts = self.geometry.bspline_surface(entity)?.into_iter();
+            return Ok(parts.map(|s| whole(SurfaceGeometry::BSpline(s), true)).collect());
+        }
+        if is_bare(entity) {
+            let carrier = self.geometry.surface(id)?;
+            return Ok(vec![whole(carrier.surface, !carrier.flipped)]);
+        }
+        Ok(vec![self.geometry.face(id, &mut self.table)?])
     }
 
     fn guarded(&mut self, kind: &'static str, id: u32, f: impl FnOnce(&mut Self) -> Result<(), Fault>) {

@@ -89,6 +89,9 @@ impl Colours {
         let (Some(rgb), Some(item)) = (found.rgb, base.optional(1)) else { return Ok(()) };
         let [r, g, b] = rgb.map(|c| linear(c) as f32);
         let colour = [r, g, b, 1.0 - found.transparency.unwrap_or(0.0) as f32];
+        if colour[3] < 1.0 {
+            ledger.note("transparent colour", id, "kept in the model, drawn opaque");
+        }
         if !in_context {
             self.items.insert(item, colour);
             return Ok(());

@@ -12,7 +12,8 @@
 //! is turned round first. Parameters of circles and ellipses are in the context's plane angle unit.
 //!
 //! SURFACE_CURVE, SEAM_CURVE and INTERSECTION_CURVE give their curve in space; their (u, v) curves are
-//! not used.
+//! not used where there is one. A PCURVE that stands alone becomes one: exact in a plane, fitted on other
+//! surfaces; so does OFFSET_CURVE_3D. A CURVE_REPLICA is an exact copy.
 //!
 //! Source: ISO 10303-42, 4.4.
 
@@ -20,10 +21,12 @@ use super::entity::{Entity, Fault, Fields};
 use super::geometry::Geometry;
 use super::locate;
 use super::part21::Value;
+use super::replica::Similarity;
 use super::spline;
-use crate::brep::CurveGeometry;
+use super::units::Units;
+use crate::brep::{self, CurveGeometry, SurfaceGeometry};
 use crate::spline::BSpline;
-use glam::DVec4;
+use glam::{DAffine3, DMat3, DVec2, DVec4};
 use std::f64::consts::TAU;
 
 impl Geometry<'_> {
@@ -54,10 +57,97 @@ impl Geometry<'_> {
                 "SURFACE_CURVE" | "SEAM_CURVE" | "INTERSECTION_CURVE" | "BOUNDED_SURFACE_CURVE" => {
                     self.curve(space_curve(entity)?)
                 }
-                kind if spline::is_curve(kind) => Ok(CurveGeometry::BSpline(self.bspline_curve(entity)?)),
+                "PCURVE" | "BOUNDED_PCURVE" | "CURVE_REPLICA" | "OFFSET_CURVE_3D" => self.derived_curve(entity),
+                kind if spline::is_curve(kind) => self.bspline_curve(entity),
                 _ => Err(Fault::Unsupported { id, kind: entity.name() }),
             }
         })
+    }
+
+    /// A curve that is defined by another one.
+    fn derived_curve(&self, entity: Entity<'_>) -> Result<CurveGeometry, Fault> {
+        let id = entity.id();
+        if let Ok(fields) = entity.fields("CURVE_REPLICA", 1) {
+            let parent = self.curve(fields.reference(0)?)?;
+            let copy = Similarity::new(self.transform(fields.reference(1)?)?).curve(parent);
+            return copy.ok_or(Fault::Value { id, what: "the copy has a coordinate that is not finite" });
+        }
+        let (curve, error) = if let Ok(fields) = entity.fields("OFFSET_CURVE_3D", 1) {
+            let basis = self.curve(fields.reference(0)?)?;
+            let (distance, reference) = (fields.real(1)? * self.units.length, self.direction(fields.reference(3)?)?);
+            let offset = brep::offset_curve(&basis, distance, reference, self.units.tolerance);
+            offset.map_err(|what| Fault::Value { id, what })?
+        } else {
+            self.curve_on_surface(entity)?
+        };
+        if error > self.units.tolerance {
+            self.ledger.note("curve approximated", id, format!("to {error:.1e} mm"));
+        }
+        Ok(curve)
+    }
+
+    /// PCURVE('',surface,#r) with #r = DEFINITIONAL_REPRESENTATION('',(curve in (u, v)),context).
+    fn curve_on_surface(&self, entity: Entity<'_>) -> Result<(CurveGeometry, f64), Fault> {
+        let id = entity.id();
+        let fields = entity.fields("PCURVE", 1)?;
+        let surface = self.surface(fields.reference(0)?)?.surface;
+        let representation = self.entity(fields.reference(1)?)?;
+        let items = representation.fields("REPRESENTATION", 0).unwrap_or_else(|_| representation.all());
+        let curve = items.list(1)?.find_map(Value::reference).ok_or_else(|| representation.not("a curve in (u, v)"))?;
+        // coordinates there are parameters, not lengths
+        let flat = Units { length: 1.0, ..self.units.clone() };
+        let curve = Geometry { units: &flat, ..*self }.curve(curve)?;
+        if let SurfaceGeometry::Plane { frame } = surface {
+            let axes = DMat3::from_cols(frame.x, frame.y, frame.z) * self.units.length;
+            let copy = Similarity::new(DAffine3::from_mat3_translation(axes, frame.origin)).curve(curve);
+            let copy = copy.ok_or(Fault::Value { id, what: "the curve has a coordinate that is not finite" })?;
+            return Ok((copy, 0.0));
+        }
+        let [su, sv] = self.parameter_units(&surface);
+        let ends = |curve: &CurveGeometry| match curve {
+            CurveGeometry::Trimmed { start, end, .. } => Some((*start, *end)),
+            CurveGeometry::BSpline(spline) => Some(spline.domain()),
+            CurveGeometry::Circle { .. } | CurveGeometry::Ellipse { .. } => Some((0.0, TAU)),
+            _ => None,
+        };
+        let parts = if let CurveGeometry::Composite(parts) = curve { parts } else { vec![curve] };
+        let (mut curves, mut worst) = (Vec::new(), 0f64);
+        for part in parts {
+            let range = ends(&part).ok_or(Fault::Value { id, what: "its curve in (u, v) has no ends" })?;
+            let knots = match &part {
+                CurveGeometry::BSpline(spline) => spline.knots().to_vec(),
+                _ => (1..4).map(|i| range.0 + (range.1 - range.0) * f64::from(i) * 0.25).collect(),
+            };
+            let uv = |t: f64| locate::point(&part, t).map_or(DVec2::NAN, |p| DVec2::new(p.x * su, p.y * sv));
+            let fit = brep::curve_on_surface(&surface, &uv, &knots, range, self.units.tolerance);
+            let (curve, error) = fit.map_err(|what| Fault::Value { id, what })?;
+            worst = worst.max(error);
+            curves.push(curve);
+        }
+        let alone = curves.len() == 1;
+        let curve = if alone { curves.pop() } else { Some(CurveGeometry::Composite(curves)) };
+        Ok((curve.ok_or_else(|| entity.not("a curve on a surface"))?, worst))
+    }
+
+    /// Radians or millimetres in one unit of each parameter of a surface, as the file counts them.
+    pub fn parameter_units(&self, surface: &SurfaceGeometry) -> [f64; 2] {
+        fn profile(curve: &CurveGeometry, angle: f64) -> f64 {
+            match curve {
+                CurveGeometry::Trimmed { basis, .. } => profile(basis, angle),
+                CurveGeometry::Circle { .. } | CurveGeometry::Ellipse { .. } => angle,
+                _ => 1.0,
+            }
+        }
+        let (length, angle) = (self.units.length, self.units.angle);
+        match surface {
+            SurfaceGeometry::Plane { .. } => [length; 2],
+            SurfaceGeometry::Cylinder { .. } | SurfaceGeometry::Cone { .. } => [angle, length],
+            SurfaceGeometry::Sphere { .. } | SurfaceGeometry::Torus { .. } => [angle; 2],
+            SurfaceGeometry::Revolution { profile: p, .. } => [angle, profile(p, angle)],
+            SurfaceGeometry::Extrusion { profile: p, .. } => [profile(p, angle), 1.0],
+            SurfaceGeometry::BSpline(_) => [1.0; 2],
+            SurfaceGeometry::Window { basis, .. } => self.parameter_units(basis),
+        }
     }
 
     fn conic(&self, entity: Entity<'_>) -> Result<CurveGeometry, Fault> {
@@ -159,7 +249,7 @@ pub(super) struct Segment {
     pub curve: CurveGeometry,
 }
 
-const KINDS: [&str; 15] = [
+const KINDS: [&str; 19] = [
     "LINE",
     "CIRCLE",
     "ELLIPSE",
@@ -175,12 +265,19 @@ const KINDS: [&str; 15] = [
     "SEAM_CURVE",
     "INTERSECTION_CURVE",
     "BOUNDED_SURFACE_CURVE",
+    "PCURVE",
+    "BOUNDED_PCURVE",
+    "CURVE_REPLICA",
+    "OFFSET_CURVE_3D",
 ];
 
 /// Number of the curve in space of a SURFACE_CURVE or one of its subtypes.
 fn space_curve(entity: Entity<'_>) -> Result<u32, Fault> {
     let names = ["SURFACE_CURVE", "SEAM_CURVE", "INTERSECTION_CURVE", "BOUNDED_SURFACE_CURVE"];
-    let curve = names.iter().find_map(|n| entity.fields(n, 1).ok()?.optional(0));
+    let fields = || names.iter().filter_map(|n| entity.fields(n, 1).ok());
+    // without a curve in space, the first one in (u, v)
+    let curve = fields().find_map(|f| f.optional(0));
+    let curve = curve.or_else(|| fields().find_map(|f| f.list(1).ok()?.find_map(Value::reference)));
     curve.ok_or_else(|| entity.not("a curve on a surface with a curve in space"))
 }
 

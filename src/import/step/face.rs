@@ -16,9 +16,10 @@
 //!
 //! Source: ISO 10303-42, 5.4 (face, face_surface, loop).
 
-use super::entity::{Entity, Fault};
+use super::entity::{Entity, Fault, Fields};
 use super::geometry::{Geometry, frame};
 use super::locate;
+use super::part21::Value;
 use crate::brep::{Boundary, CurveGeometry, Edge, FaceGeometry, SurfaceGeometry};
 use glam::DVec3;
 use std::collections::HashMap;
@@ -49,11 +50,14 @@ impl Geometry<'_> {
                     (fields, Some((fields, 1)))
                 }
             };
-            let carrier = surface.map(|(f, at)| Ok((self.surface(f.reference(at)?)?, f.flag(at + 1)))).transpose()?;
             let mut loops = Vec::new();
             for bound in bounds.references(0)? {
                 loops.push(self.bound(bound?, table)?);
             }
+            let vertices: Vec<DVec3> = loops.iter().flat_map(|l| table.vertices(l)).collect();
+            let carrier =
+                |(f, at): (Fields<'_>, usize)| Ok((self.surface_near(f.reference(at)?, &vertices)?, f.flag(at + 1)));
+            let carrier = surface.map(carrier).transpose()?;
             let (surface, same_sense) = match carrier {
                 Some((carrier, same_sense)) => (carrier.surface, same_sense != carrier.flipped),
                 None => (self.polygon_plane(id, &loops, table)?, true),
@@ -90,6 +94,10 @@ impl Geometry<'_> {
                 reverse(&mut boundary);
             }
             bounds.push(boundary);
+        }
+        // .T.: its own border is the outer one, the curves are holes
+        if fields.value(2).and_then(Value::flag) == Some(true) {
+            bounds.push(Boundary::Natural);
         }
         Ok(FaceGeometry { id, surface: carrier.surface, bounds, same_sense: !carrier.flipped })
     }
@@ -200,6 +208,12 @@ impl Geometry<'_> {
 }
 
 impl EdgeTable {
+    /// The ends of a bound's edges.
+    fn vertices(&self, bound: &Boundary) -> Vec<DVec3> {
+        let Boundary::Edges(uses) = bound else { return Vec::new() };
+        uses.iter().flat_map(|(e, _)| [self.edges[*e].start, self.edges[*e].end]).collect()
+    }
+
     fn add(&mut self, edge: Edge) -> usize {
         let index = self.edges.len();
         self.by_id.insert(edge.id, index);

@@ -33,6 +33,7 @@ pub(super) struct Ledger<'a> {
     trail: RefCell<Vec<u32>>,
     warnings: RefCell<Warnings>,
     dropped: RefCell<BTreeMap<String, usize>>,
+    ignored: RefCell<BTreeMap<String, usize>>,
 }
 
 /// Maps the geometry of one representation.
@@ -50,13 +51,24 @@ impl<'a> Ledger<'a> {
     /// A fresh budget; `warnings` are those of the syntax.
     pub fn new(file: &'a File<'a>, warnings: Warnings) -> Self {
         let work = Cell::new(FREE_WORK + SHARING * file.slot_count() as u64);
-        let (trail, warnings, dropped) = (RefCell::default(), RefCell::new(warnings), RefCell::default());
-        Self { file, work, trail, warnings, dropped }
+        let (dropped, ignored) = (RefCell::default(), RefCell::default());
+        Self { file, work, trail: RefCell::default(), warnings: RefCell::new(warnings), dropped, ignored }
     }
 
-    /// The warnings, and the faces left out by reason.
-    pub fn finish(self) -> (Warnings, BTreeMap<String, usize>) {
-        (self.warnings.into_inner(), self.dropped.into_inner())
+    /// The warnings; into the report, the faces left out by reason and what was not drawn by kind.
+    pub fn finish(self, report: &mut ImportReport) -> Warnings {
+        report.dropped = self.dropped.into_inner();
+        report.ignored = self.ignored.into_inner();
+        self.warnings.into_inner()
+    }
+
+    /// Counts what is not drawn though nothing is wrong with it.
+    pub fn ignore(&self, kind: &str, count: usize) {
+        if let Some(sum) = self.ignored.borrow_mut().get_mut(kind) {
+            *sum += count;
+            return;
+        }
+        self.ignored.borrow_mut().insert(kind.to_owned(), count);
     }
 
     /// Takes `amount` of work for `#id` from the budget.
@@ -147,9 +159,13 @@ impl<'a> Geometry<'a> {
         Ok((self.point(location)?, axis.map_or(Ok(DVec3::Z), |d| self.direction(d))?))
     }
 
-    /// AXIS2_PLACEMENT_3D as a frame (ISO 10303-42, `build_axes`).
+    /// AXIS2_PLACEMENT_3D, or _2D in the plane z = 0, as a frame (ISO 10303-42, `build_axes`).
     pub fn frame(&self, id: u32) -> Result<Frame, Fault> {
         let entity = self.entity(id)?;
+        if let Ok(fields) = entity.fields("AXIS2_PLACEMENT_2D", 1) {
+            let x = fields.optional(1).map(|d| self.direction(d)).transpose()?;
+            return Ok(frame(self.point(fields.reference(0)?)?, DVec3::Z, x));
+        }
         let fields = entity.fields("AXIS2_PLACEMENT_3D", 1)?;
         let (location, first) = match entity.fields("PLACEMENT", 1) {
             Ok(placement) => (placement.reference(0)?, 0),

@@ -5,9 +5,9 @@
 //!         ─entity─▶ Entity, Fields  typed attributes; every Fault names its entity
 //!         ─units──▶ Units           per representation context
 //!         ─curve, spline, surface─▶ CurveGeometry, SurfaceGeometry          one geometry each
-//!         ─face, body──▶ Body       faces and the edges that they share
-//!         ─product, assembly, walk─▶ one instance per path
-//!         ─colour──▶ Colours        by styled item
+//!         ─face, body, tessellated──▶ Body          faces and the edges that they share; triangles
+//!         ─product, assembly, orphans, walk─▶ one instance per path
+//!         ─colour, presentation──▶ Looks            by styled item; layers, what is hidden
 //!         ─brep::build_face─▶ Face  in parallel, results in file order
 //! ```
 //!
@@ -22,24 +22,30 @@ mod entity;
 mod face;
 mod geometry;
 mod locate;
+mod orphans;
 mod part21;
+mod presentation;
 mod product;
+mod replica;
 mod spline;
 mod surface;
+mod tessellated;
+mod torn;
 mod units;
 mod walk;
 
 pub(super) use part21::recognise;
 
-use super::{Import, ImportError, ImportReport, Warnings};
+use super::{FaceRecord, Import, ImportError, ImportReport, Warnings};
 use crate::brep::build_face;
 use crate::model::{Instance, Model, Part};
 use assembly::Assembly;
-use body::Body;
+use body::{Body, Looks};
 use colour::Colours;
 use entity::Entity;
 use geometry::{FACE_LOST, Geometry, Ledger};
 use part21::File;
+use presentation::Presentation;
 use rayon::prelude::*;
 use std::collections::{BTreeSet, HashMap};
 
@@ -51,8 +57,10 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     let mut report = header(&file);
     externals(&file, &ledger, &mut report);
     let colours = Colours::read(&file, &ledger);
-    let assembly = Assembly::read(&file, &ledger);
+    let presentation = Presentation::read(&file, &ledger);
+    let assembly = Assembly::read(&file, &ledger, &presentation);
     let mut model = Model { name: model_name(&assembly, name), ..Model::default() };
+    let looks = Looks { colours: &colours, presentation: &presentation };
     let mut bodies = Vec::new();
     let mut part_of = HashMap::new();
     let mut units = BTreeSet::new();
@@ -63,9 +71,22 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
             }
             let unit = assembly.units_of(representation);
             let geometry = Geometry { file: &file, units: &unit, ledger: &ledger };
-            let body = body::body(&geometry, id, &colours, &[representation]);
+            let mut body = if assembly.loose.first() == Some(&id) {
+                body::loose(&geometry, &assembly.loose, looks)
+            } else {
+                body::body(&geometry, id, looks, &[representation])
+            };
             part_of.insert(id, model.parts.len());
-            model.parts.push(Part { name: part_name(&file, group, id), closed: body.closed, ..Part::default() });
+            let (name, closed, meshes) = (part_name(&file, group, id), body.closed, std::mem::take(&mut body.meshes));
+            model.parts.push(Part { name, closed, meshes, ..Part::default() });
+            let lost = |(id, reason): &(u32, String)| FaceRecord {
+                id: *id,
+                part: model.parts.len() - 1,
+                tolerance: unit.tolerance,
+                notes: vec![reason.clone()],
+                ..FaceRecord::default()
+            };
+            report.face_records.extend(body.lost.iter().map(lost));
             units.insert(unit.name.clone());
             bodies.push((body, unit.tolerance));
         }
@@ -79,12 +100,12 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     model.unit = report.units.join(", ");
     report.occurrences = model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect();
     report.bodies = bodies.len();
+    report.meshes = model.parts.iter().map(|p| p.meshes.len()).sum();
     report.edges = bodies.iter().map(|b| b.0.edges.len()).sum();
-    report.faces = bodies.iter().map(|b| b.0.face_count).sum();
+    report.faces = bodies.iter().map(|b| b.0.faces.len() + b.0.lost.len()).sum();
     build(&ledger, &bodies, &mut model, &mut report);
-    let (warnings, dropped) = ledger.finish();
-    report.dropped = dropped;
-    let (list, counts) = warnings.finish();
+    report.layers = presentation.layers;
+    let (list, counts) = ledger.finish(&mut report).finish();
     report.warnings = counts;
     Ok(Import { model, warnings: list, report })
 }
@@ -99,21 +120,25 @@ fn build(ledger: &Ledger<'_>, bodies: &[(Body, f64)], model: &mut Model, report:
     let built: Vec<_> = jobs
         .par_iter()
         .map(|&(part, body, tolerance, (face, colour))| {
-            (part, face.id, *colour, build_face(face, &body.edges, tolerance))
+            let record = FaceRecord { id: face.id, part, tolerance, ..FaceRecord::default() };
+            (record, *colour, build_face(face, &body.edges, tolerance))
         })
         .collect();
-    for (part, id, colour, result) in built {
+    for (record, colour, result) in built {
+        let id = record.id;
         match result {
-            Ok(mut face) => {
-                face.face.colour = colour;
-                report.deviation = report.deviation.max(face.deviation);
-                for note in face.notes {
-                    *report.healed.entry(ImportReport::reason(&note)).or_default() += 1;
-                    ledger.note("face healed", id, note);
+            Ok(mut built) => {
+                built.face.colour = colour;
+                for note in &built.notes {
+                    *report.healed.entry(ImportReport::reason(note)).or_default() += 1;
+                    ledger.note("face healed", id, note.as_str());
                 }
-                model.parts[part].faces.push(face.face);
+                model.parts[record.part].faces.push(report.record(record, built));
             }
-            Err(error) => ledger.note(FACE_LOST, id, error.to_string()),
+            Err(error) => {
+                ledger.note(FACE_LOST, id, error.to_string());
+                report.face_records.push(FaceRecord { notes: vec![error.to_string()], ..record });
+            }
         }
     }
 }

@@ -11,6 +11,8 @@
 
 use super::entity::{Entity, Fault, Fields};
 use super::geometry::Geometry;
+use super::torn::{Part, mend};
+use crate::brep::CurveGeometry;
 use crate::spline::{BSpline, Control, MAX_DEGREE, Surface};
 use glam::DVec4;
 
@@ -44,8 +46,8 @@ pub(super) fn is_surface(kind: &str) -> bool {
 }
 
 impl Geometry<'_> {
-    /// Any B-spline curve.
-    pub fn bspline_curve(&self, entity: Entity<'_>) -> Result<BSpline<DVec4>, Fault> {
+    /// Any B-spline curve; where it breaks, its parts as a composite.
+    pub fn bspline_curve(&self, entity: Entity<'_>) -> Result<CurveGeometry, Fault> {
         let id = entity.id();
         let base = base(entity, is_curve, "B_SPLINE_CURVE")?;
         let degree = degree(base, 0)?;
@@ -61,11 +63,19 @@ impl Geometry<'_> {
             Ok(fields) => expand(fields, 0, 1, degree, points.len())?,
             Err(_) => spaced(spacing(entity), degree, points.len()),
         };
-        BSpline::new(degree, knots, points).map_err(|source| Fault::Spline { id, source })
+        let parts = self.mended(id, degree, Part { knots, rows: points.into_iter().map(|p| vec![p]).collect() });
+        let curve = |part: Part| {
+            let points = part.rows.into_iter().flatten().collect();
+            let spline = BSpline::new(degree, part.knots, points).map_err(|source| Fault::Spline { id, source })?;
+            Ok(CurveGeometry::BSpline(spline))
+        };
+        let mut curves = parts.into_iter().map(curve).collect::<Result<Vec<_>, _>>()?;
+        let last = curves.pop().ok_or_else(|| entity.not("a curve"))?;
+        Ok(if curves.is_empty() { last } else { CurveGeometry::Composite([curves, vec![last]].concat()) })
     }
 
-    /// Any B-spline surface.
-    pub fn bspline_surface(&self, entity: Entity<'_>) -> Result<Surface, Fault> {
+    /// Any B-spline surface; where it breaks, its parts.
+    pub fn bspline_surface(&self, entity: Entity<'_>) -> Result<Vec<Surface>, Fault> {
         let id = entity.id();
         let base = base(entity, is_surface, "B_SPLINE_SURFACE")?;
         let degrees = (degree(base, 0)?, degree(base, 1)?);
@@ -103,9 +113,34 @@ impl Geometry<'_> {
                 (spaced(s, degrees.0, count_u), spaced(s, degrees.1, count_v))
             }
         };
-        let points = (0..count_v).flat_map(|j| columns.iter().map(move |c| c[j])).collect();
-        Surface::new(degrees, knots_u, knots_v, points).map_err(|source| Fault::Spline { id, source })
+        let mut surfaces = Vec::new();
+        for strip in self.mended(id, degrees.0, Part { knots: knots_u, rows: columns }) {
+            let part = Part { knots: knots_v.clone(), rows: turned(&strip.rows) };
+            for part in self.mended(id, degrees.1, part) {
+                let points = part.rows.into_iter().flatten().collect();
+                let surface = Surface::new(degrees, strip.knots.clone(), part.knots, points);
+                surfaces.push(surface.map_err(|source| Fault::Spline { id, source })?);
+            }
+        }
+        Ok(surfaces)
     }
+
+    /// The parts of a spline between breaks, with a note where there were any.
+    fn mended(&self, id: u32, degree: usize, part: Part) -> Vec<Part> {
+        let knots = part.knots.len();
+        let (parts, closed) = mend(degree, part, self.units.tolerance);
+        if parts.len() > 1 {
+            self.ledger.note("torn spline", id, format!("cut into {} parts where it breaks", parts.len()));
+        } else if parts[0].knots.len() < knots {
+            self.ledger.note("torn spline", id, format!("joined over a gap of {closed:.1e} mm"));
+        }
+        parts
+    }
+}
+
+/// Rows as columns.
+fn turned(rows: &[Vec<DVec4>]) -> Vec<Vec<DVec4>> {
+    (0..rows.first().map_or(0, Vec::len)).map(|k| rows.iter().map(|r| r[k]).collect()).collect()
 }
 
 /// Where degree and control points stand: behind the name of a simple instance, or in `complex`.

@@ -7,18 +7,22 @@
 //!
 //! An offset of an elementary surface is one again, exactly, because `S_u × S_v` points out of them. A
 //! straight profile turned about a line parallel to it is a cylinder, and counts as one here. Offsets
-//! of other surfaces are not rational and not supported.
+//! of other surfaces are not rational: they are fitted, and a fit that misses the tolerance is told with
+//! its error.
 //!
-//! RECTANGULAR_TRIMMED_SURFACE stands for its basis: the loops of the face bound it.
+//! RECTANGULAR_TRIMMED_SURFACE is a window of its basis, which a face without loops shows. The inner part
+//! of a DEGENERATE_TOROIDAL_SURFACE (`select_outer` false, the lemon) is a surface of revolution.
 //!
 //! Source: ISO 10303-42, 4.5.
 
 use super::entity::{Entity, Fault};
 use super::geometry::Geometry;
+use super::replica::Similarity;
 use super::spline;
-use crate::brep::{CurveGeometry, Frame, SurfaceGeometry};
+use crate::brep::{self, CurveGeometry, Frame, SurfaceGeometry};
+use crate::spline::Surface;
 use glam::DVec3;
-use std::f64::consts::FRAC_PI_2;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A surface, and how its normal relates to that of the entity in the file.
 #[derive(Clone, Debug)]
@@ -35,7 +39,7 @@ impl From<SurfaceGeometry> for Carrier {
     }
 }
 
-const KINDS: [&str; 10] = [
+const KINDS: [&str; 11] = [
     "PLANE",
     "CYLINDRICAL_SURFACE",
     "CONICAL_SURFACE",
@@ -46,15 +50,30 @@ const KINDS: [&str; 10] = [
     "SURFACE_OF_REVOLUTION",
     "RECTANGULAR_TRIMMED_SURFACE",
     "OFFSET_SURFACE",
+    "SURFACE_REPLICA",
 ];
 
 impl Geometry<'_> {
     /// The surface `#id`.
     pub fn surface(&self, id: u32) -> Result<Carrier, Fault> {
+        self.surface_near(id, &[])
+    }
+
+    /// The surface `#id`; of a spline that breaks, the part that lies nearest to the points.
+    pub fn surface_near(&self, id: u32, points: &[DVec3]) -> Result<Carrier, Fault> {
         self.ledger.nested(id, || {
             let entity = self.entity(id)?;
             if entity.kinds().any(spline::is_surface) {
-                return Ok(SurfaceGeometry::BSpline(self.bspline_surface(entity)?).into());
+                let mut parts = self.bspline_surface(entity)?;
+                if parts.len() > 1 && points.is_empty() {
+                    return Err(Fault::Value { id, what: "the surface breaks, and nothing says which part is meant" });
+                }
+                let away = |s: &Surface| {
+                    let (lo, hi) = s.bounds();
+                    points.iter().map(|p| p.distance_squared(p.clamp(lo, hi))).sum::<f64>()
+                };
+                let near = (0..parts.len()).min_by(|a, b| away(&parts[*a]).total_cmp(&away(&parts[*b])));
+                return Ok(SurfaceGeometry::BSpline(parts.swap_remove(near.unwrap_or(0))).into());
             }
             let kind = KINDS.iter().copied().rfind(|k| entity.is(k));
             match kind.unwrap_or_default() {
@@ -63,9 +82,27 @@ impl Geometry<'_> {
                 "RECTANGULAR_TRIMMED_SURFACE" => {
                     let fields = entity.fields("RECTANGULAR_TRIMMED_SURFACE", 1)?;
                     let basis = self.surface(fields.reference(0)?)?;
-                    self.ledger.note("trimmed surface", id, "stands for its basis, bounded by the face's loops");
+                    let units = self.parameter_units(&basis.surface);
+                    let turn = |axis: usize| (units[axis] == self.units.angle).then_some(TAU);
+                    let range = |axis: usize| {
+                        let (first, last) = (fields.real(1 + 2 * axis)?, fields.real(2 + 2 * axis)?);
+                        let (a, b) = if fields.flag(5 + axis) { (first, last) } else { (last, first) };
+                        let (a, b) = (a * units[axis], b * units[axis]);
+                        // over the seam
+                        Ok((a, if b <= a { b + turn(axis).unwrap_or(0.0) } else { b }))
+                    };
+                    let (u, v) = (range(0)?, range(1)?);
                     let turned = fields.flag(5) != fields.flag(6);
-                    Ok(Carrier { flipped: basis.flipped != turned, ..basis })
+                    let surface = SurfaceGeometry::Window { basis: Box::new(basis.surface), u, v };
+                    Ok(Carrier { surface, flipped: basis.flipped != turned })
+                }
+                "SURFACE_REPLICA" => {
+                    let fields = entity.fields("SURFACE_REPLICA", 1)?;
+                    let parent = self.surface(fields.reference(0)?)?;
+                    let copy = Similarity::new(self.transform(fields.reference(1)?)?).surface(parent.surface);
+                    let what = "the copy has a coordinate that is not finite";
+                    let (surface, turned) = copy.ok_or(Fault::Value { id, what })?;
+                    Ok(Carrier { surface, flipped: parent.flipped != turned })
                 }
                 "SURFACE_OF_LINEAR_EXTRUSION" => {
                     let fields = entity.fields("SURFACE_OF_LINEAR_EXTRUSION", 1)?;
@@ -112,7 +149,20 @@ impl Geometry<'_> {
                 }
                 SurfaceGeometry::Cone { frame, radius, half_angle }
             }
-            _ => SurfaceGeometry::Torus { frame, major: length(0)?, minor: length(1)? },
+            _ => {
+                // a complex instance keeps the radii in the part TOROIDAL_SURFACE
+                let complex = entity.kinds().count() > 1;
+                let radii = if complex { entity.fields("TOROIDAL_SURFACE", 1)? } else { fields };
+                let length = |index: usize| Ok(radii.length(first + index)? * self.units.length);
+                let (major, minor) = (length(0)?, length(1)?);
+                let degenerate = kind == "DEGENERATE_TOROIDAL_SURFACE" && major < minor;
+                let outer = fields.flag(if complex { 0 } else { first + 2 });
+                if degenerate && !outer {
+                    lemon(frame, major, minor)
+                } else {
+                    SurfaceGeometry::Torus { frame, major, minor }
+                }
+            }
         })
     }
 
@@ -125,11 +175,24 @@ impl Geometry<'_> {
             None => basis,
         };
         let distance = fields.real(1)? * self.units.length * if basis.flipped { -1.0 } else { 1.0 };
-        let surface = offset(basis.surface, distance);
-        let surface =
-            surface.ok_or_else(|| Fault::Unsupported { id, kind: "OFFSET_SURFACE of this surface".into() })?;
+        if let Some(surface) = offset(basis.surface.clone(), distance) {
+            return Ok(Carrier { surface, ..basis });
+        }
+        let fitted = brep::offset_surface(&basis.surface, distance, self.units.tolerance);
+        let (surface, error) = fitted.map_err(|what| Fault::Value { id, what })?;
+        if error > self.units.tolerance {
+            self.ledger.note("surface approximated", id, format!("to {error:.1e} mm"));
+        }
         Ok(Carrier { surface, ..basis })
     }
+}
+
+/// The inner part of a torus that meets its axis, in the parameters of the torus: the part of its circle
+/// beyond the axis, turned.
+fn lemon(frame: Frame, major: f64, minor: f64) -> SurfaceGeometry {
+    let circle = Frame { origin: frame.origin + frame.x * major, x: frame.x, y: frame.z, z: -frame.y };
+    let profile = Box::new(CurveGeometry::Circle { frame: circle, radius: minor });
+    SurfaceGeometry::Revolution { profile, origin: frame.origin, axis: frame.z }
 }
 
 /// The surface at `d` along its normal, if it is elementary and stays one.
@@ -144,6 +207,7 @@ fn offset(surface: SurfaceGeometry, d: f64) -> Option<SurfaceGeometry> {
         S::Cone { frame, radius, half_angle } => {
             S::Cone { frame, radius: positive(radius + d / half_angle.cos())?, half_angle }
         }
+        S::Window { basis, u, v } => S::Window { basis: Box::new(offset(*basis, d)?), u, v },
         _ => return None,
     })
 }

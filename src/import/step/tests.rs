@@ -1,10 +1,14 @@
 //! Whole files: hand-made snippets with exact numbers, damaged files, and the models of a folder.
 
 mod assemblies;
+mod classes;
 mod colours;
 mod damage;
+mod derived;
+mod looks;
 mod models;
 mod shapes;
+mod tessellated;
 mod units;
 
 use crate::import::{Import, step};

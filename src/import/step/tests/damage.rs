@@ -1,11 +1,12 @@
 //! Damaged files: never a panic, and a warning that names what was lost.
 
 use super::{import, wrap};
-use crate::import::step;
+use crate::import::{Import, step};
+use crate::model::SurfaceKind;
 use proptest::prelude::*;
 
 /// A cylinder with a hole of a rational spline edge, coloured and placed twice: a little of everything.
-const GOOD: &str = include_str!("good.step");
+pub(super) const GOOD: &str = include_str!("good.step");
 
 #[test]
 fn the_good_file_is_good() {
@@ -13,6 +14,13 @@ fn the_good_file_is_good() {
     assert!(import.warnings.is_empty(), "{:?}", import.warnings);
     assert_eq!((import.report.faces, import.model.instances.len()), (3, 2));
     assert_eq!((import.report.edges, import.report.bodies), (3, 1));
+    let records = &import.report.face_records;
+    let kinds: Vec<_> = records.iter().map(|r| (r.id, r.kind.unwrap(), r.degree, r.loops)).collect();
+    let (disc, wall) = (SurfaceKind::Plane, SurfaceKind::Cylinder);
+    assert_eq!(kinds, [(61, wall, [2, 1], 1), (62, disc, [1, 1], 1), (63, disc, [1, 1], 1)]);
+    // coordinates of a few hundred millimetres: nothing but rounding
+    assert!(records.iter().all(|r| r.deviation < 1e-12 && r.gap < 1e-12 && r.notes.is_empty()), "{records:#?}");
+    assert_eq!(import.report.sloppy, 0);
 }
 
 /// Loses exactly the named face; `#lost` and `reason` stand in the warning.
@@ -24,6 +32,8 @@ fn loses(from: &str, to: &str, lost: u32, reason: &str) {
     assert!(found.iter().any(named), "{from} -> {to}: {found:#?}");
     assert_eq!(import.report.dropped.values().sum::<usize>(), import.report.warnings["face left out"]);
     assert!(import.model.face_count() < 3);
+    let record = import.report.face_records.iter().find(|r| r.id == lost).unwrap();
+    assert!(record.kind.is_none() && record.notes[0].contains(reason), "{record:?}");
 }
 
 #[test]
@@ -36,6 +46,50 @@ fn each_damage_names_its_face() {
     loses("EDGE_LOOP('',(#54))", "EDGE_LOOP('',())", 62, "#57: the loop has no edge");
     loses("PLANE('',#24)", "OFFSET_SURFACE('',#44,1.,.F.)", 62, "#44 refers to itself");
     loses("(#58),#44", "(),#44", 62, "");
+}
+
+/// The good file without what matches, and its warnings.
+fn without(records: &[u32], cut_before: Option<u32>) -> (Import, Vec<String>) {
+    let named = |line: &str, id: u32| line.starts_with(&format!("#{id}="));
+    let lines = GOOD.lines().take_while(|line| cut_before.is_none_or(|id| !named(line, id)));
+    let kept: Vec<&str> = lines.filter(|line| !records.iter().any(|id| named(line, *id))).collect();
+    let import = step(kept.join("\n").as_bytes(), "good.step").unwrap();
+    let told = import.warnings.iter().map(ToString::to_string).collect();
+    (import, told)
+}
+
+#[test]
+fn what_a_cut_file_still_holds_is_drawn() {
+    let truncated = |line: usize| format!("good.step:{line}: truncated: the file ends without END-ISO-10303-21");
+    // one face of the shell is gone: the others stay
+    let (import, told) = without(&[63], None);
+    assert_eq!(told, ["good.step: face left out: #63 does not exist"]);
+    assert_eq!((import.model.face_count(), import.model.instances.len()), (2, 2));
+    // an entry of the shell that is none
+    let import = step(GOOD.replace("(#61,#62,#63)", "(#61,$,#63)").as_bytes(), "good.step").unwrap();
+    let told: Vec<_> = import.warnings.iter().map(ToString::to_string).collect();
+    let expected = [
+        "good.step:58: #62: face without shell: 1 of them are drawn as one open shell",
+        "good.step:60: #64: face left out: #64: attribute 1 is not a list of references",
+    ];
+    assert_eq!(told, expected);
+    assert_eq!(import.model.parts.iter().map(|p| p.faces.len()).collect::<Vec<_>>(), [2, 1]);
+    // the solid and what places it are gone
+    let (import, told) = without(&[], Some(65));
+    let expected = "good.step:60: #64: shell without body: drawn with the file's first units";
+    assert_eq!(told, [truncated(60), expected.into()]);
+    assert_eq!((import.model.face_count(), import.model.instances.len()), (3, 1));
+    // the shell, too
+    let (import, told) = without(&[], Some(64));
+    let expected = "good.step:57: #61: face without shell: 3 of them are drawn as one open shell";
+    assert_eq!(told, [truncated(59), expected.into()]);
+    assert_eq!((import.model.parts.len(), import.model.face_count(), import.report.edges), (1, 3, 3));
+    assert!(!import.model.parts[0].closed);
+    // only the shell
+    let (import, told) = without(&[64], None);
+    let expected = ["good.step:60: #65: body left out: #64 does not exist", expected];
+    assert_eq!(told, [expected[1], expected[0]]);
+    assert_eq!(import.model.face_count(), 3);
 }
 
 /// Surfaces of one spline shared by every face of a shell: the work is cut off, not the program.

@@ -18,7 +18,7 @@ const BASE: &str = "#1=CARTESIAN_POINT('',(1.,2.,3));#2=DIRECTION('',(0.,5.,0.))
     #10=CARTESIAN_POINT('',(1.,1.,0.));#11=CIRCLE('',#8,1.);#12=LINE('',#4,#9);#13=AXIS1_PLACEMENT('',#4,#2);";
 
 /// Runs `f` on a file of [`BASE`] and `data`, in units of 10 mm and degrees.
-fn with<T>(data: &str, f: impl FnOnce(Geometry<'_>) -> T) -> T {
+pub(super) fn with<T>(data: &str, f: impl FnOnce(Geometry<'_>) -> T) -> T {
     let text = wrap(&format!("{BASE}{data}"));
     let mut warnings = Warnings::new("t");
     let file = File::parse(text.as_bytes(), "t", &mut warnings).unwrap();
@@ -27,7 +27,7 @@ fn with<T>(data: &str, f: impl FnOnce(Geometry<'_>) -> T) -> T {
     f(Geometry { file: &file, units: &units, ledger: &ledger })
 }
 
-fn curve(data: &str) -> CurveGeometry {
+pub(super) fn curve(data: &str) -> CurveGeometry {
     with(data, |g| g.curve(100)).unwrap()
 }
 
@@ -35,7 +35,7 @@ fn fault(data: &str) -> String {
     with(data, |g| g.curve(100)).unwrap_err().to_string()
 }
 
-fn near(a: DVec3, b: DVec3) -> bool {
+pub(super) fn near(a: DVec3, b: DVec3) -> bool {
     (a - b).length() < 1e-12
 }
 
@@ -217,7 +217,7 @@ fn analytic_surfaces() {
     let turned = surface("#100=SURFACE_OF_REVOLUTION('',#11,#13);").surface;
     assert!(matches!(turned, SurfaceGeometry::Revolution { axis, .. } if near(axis, DVec3::Y)));
     let cut = surface("#100=RECTANGULAR_TRIMMED_SURFACE('',#101,0.,1.,0.,1.,.T.,.F.);#101=PLANE('',#7);");
-    assert!(cut.flipped && matches!(cut.surface, SurfaceGeometry::Plane { .. }));
+    assert!(cut.flipped && matches!(cut.surface, SurfaceGeometry::Window { u: (0.0, 10.0), .. }));
 }
 
 #[test]

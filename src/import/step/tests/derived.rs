@@ -1,0 +1,237 @@
+//! Curves and surfaces defined by others, and surfaces without loops: against numbers worked out by hand.
+
+use super::shapes::{curve, near, with};
+use super::{import, wrap};
+use crate::brep::{CurveGeometry, SurfaceGeometry};
+use crate::import::step;
+use crate::import::step::locate;
+use glam::DVec3;
+use std::f64::consts::{FRAC_PI_2, TAU};
+
+/// Mirrors y, then twice as large, then to (1, 2, 3); lengths are tenths, see [`with`].
+const COPY: &str = "#110=CARTESIAN_TRANSFORMATION_OPERATOR_3D('',$,'',#111,#112,#1,2.,#113);#111=DIRECTION('',(1.,0.,0.));\
+    #112=DIRECTION('',(0.,-1.,0.));#113=DIRECTION('',(0.,0.,1.));";
+
+fn points(c: &CurveGeometry) -> [DVec3; 3] {
+    let (a, b) = match c {
+        CurveGeometry::Trimmed { start, end, .. } => (*start, *end),
+        CurveGeometry::BSpline(s) => s.domain(),
+        _ => (0.0, TAU),
+    };
+    [a, 0.5 * (a + b), b].map(|t| locate::point(c, t).unwrap())
+}
+
+#[test]
+fn curve_replicas_keep_parameters() {
+    for basis in [
+        "#100=CURVE_REPLICA('',#101,#110);#101=CIRCLE('',#8,1.5);",
+        "#100=CURVE_REPLICA('',#101,#110);#101=ELLIPSE('',#8,1.5,1.);",
+        "#100=CURVE_REPLICA('',#101,#110);#101=POLYLINE('',(#4,#5,#10));",
+        "#100=CURVE_REPLICA('',#101,#110);#101=TRIMMED_CURVE('',#102,(PARAMETER_VALUE(0.5)),(PARAMETER_VALUE(2.)),.T.,.PARAMETER.);#102=LINE('',#5,#9);",
+        "#100=CURVE_REPLICA('',#101,#110);#101=TRIMMED_CURVE('',#102,(PARAMETER_VALUE(0.5)),(PARAMETER_VALUE(2.)),.T.,.PARAMETER.);#102=PARABOLA('',#8,1.);",
+        "#100=CURVE_REPLICA('',#101,#110);#101=TRIMMED_CURVE('',#102,(PARAMETER_VALUE(0.5)),(PARAMETER_VALUE(2.)),.T.,.PARAMETER.);#102=HYPERBOLA('',#8,1.,2.);",
+    ] {
+        let data = format!("{COPY}{basis}");
+        let parent = points(&with(&data, |g| g.curve(101)).unwrap());
+        let copy = points(&curve(&data));
+        for (p, q) in parent.into_iter().zip(copy) {
+            let expected = DVec3::new(10.0 + 2.0 * p.x, 20.0 - 2.0 * p.y, 30.0 + 2.0 * p.z);
+            assert!((q - expected).length() < 1e-10, "{basis}: {q} {expected}");
+        }
+    }
+}
+
+#[test]
+fn surface_replicas_know_that_a_mirror_turns_them() {
+    let copy = |surface: &str| {
+        let data = format!("{COPY}#100=SURFACE_REPLICA('',#101,#110);#101={surface};#102=AXIS1_PLACEMENT('',#4,#113);");
+        with(&data, |g| g.surface(100)).unwrap()
+    };
+    let tube = copy("CYLINDRICAL_SURFACE('',#8,1.5)");
+    let SurfaceGeometry::Cylinder { frame, radius } = tube.surface else { panic!() };
+    assert!(tube.flipped && (radius - 30.0).abs() < 1e-12 && near(frame.z, DVec3::Z) && near(frame.y, DVec3::Y));
+    let plane = copy("PLANE('',#8)");
+    let SurfaceGeometry::Plane { frame } = plane.surface else { panic!() };
+    assert!(!plane.flipped && near(frame.z, -DVec3::Z) && near(frame.y, -DVec3::Y));
+    let ball = copy("SPHERICAL_SURFACE('',#8,1.)");
+    assert!(
+        ball.flipped && matches!(ball.surface, SurfaceGeometry::Sphere { radius, .. } if (radius - 20.0).abs() < 1e-12)
+    );
+    let swept = copy("SURFACE_OF_LINEAR_EXTRUSION('',#11,#9)");
+    assert!(
+        !swept.flipped
+            && matches!(swept.surface, SurfaceGeometry::Extrusion { direction, .. } if near(direction, DVec3::Y * -40.0))
+    );
+    let turned = copy("SURFACE_OF_REVOLUTION('',#12,#102)");
+    assert!(
+        turned.flipped && matches!(turned.surface, SurfaceGeometry::Revolution { axis, .. } if near(axis, DVec3::Z))
+    );
+    let cut = copy("RECTANGULAR_TRIMMED_SURFACE('',#103,10.,20.,1.,2.,.T.,.T.);#103=CYLINDRICAL_SURFACE('',#8,1.5)");
+    let SurfaceGeometry::Window { u, v, .. } = cut.surface else { panic!() };
+    assert!((u.0 + 20f64.to_radians()).abs() < 1e-14 && v == (20.0, 40.0), "{u:?} {v:?}");
+}
+
+#[test]
+fn curves_given_on_a_surface_alone() {
+    let on = |surface: &str, flat: &str| {
+        format!(
+            "#101=PCURVE('',#102,#103);#102={surface};#103=DEFINITIONAL_REPRESENTATION('',(#104),$);{flat}#100=SURFACE_CURVE('',$,(#101),.PCURVE_S1.);"
+        )
+    };
+    let line = "#104=TRIMMED_CURVE('',#105,(PARAMETER_VALUE(0.)),(PARAMETER_VALUE(2.)),.T.,.PARAMETER.);#105=LINE('',#106,#107);\
+        #106=CARTESIAN_POINT('',(30.,1.));#107=VECTOR('',#108,30.);#108=DIRECTION('',(1.,0.));";
+    // from 30 to 90 degrees at height 10 mm around y
+    let arc = curve(&on("CYLINDRICAL_SURFACE('',#7,2.)", line));
+    let centre = DVec3::new(10.0, 30.0, 30.0);
+    for (found, angle) in points(&arc).into_iter().zip([30f64, 60.0, 90.0]) {
+        let expected = centre + (DVec3::Z * angle.to_radians().cos() + DVec3::X * angle.to_radians().sin()) * 20.0;
+        assert!((found - expected).length() < 1e-6, "{found} {expected}");
+    }
+    let circle = "#104=CIRCLE('',#105,0.5);#105=AXIS2_PLACEMENT_2D('',#106,$);#106=CARTESIAN_POINT('',(1.,2.));";
+    let flat = curve(&on("PLANE('',#8)", circle));
+    assert!(
+        matches!(flat, CurveGeometry::Circle { frame, radius } if near(frame.origin, DVec3::new(10.0, 20.0, 0.0)) && radius == 5.0)
+    );
+    let endless = on(
+        "CYLINDRICAL_SURFACE('',#7,2.)",
+        "#104=LINE('',#106,#107);#106=CARTESIAN_POINT('',(30.,1.));#107=VECTOR('',#108,30.);#108=DIRECTION('',(1.,0.));",
+    );
+    assert_eq!(with(&endless, |g| g.curve(100)).unwrap_err().to_string(), "#101: its curve in (u, v) has no ends");
+}
+
+#[test]
+fn offsets() {
+    let inner = curve("#100=OFFSET_CURVE_3D('',#11,0.5,.F.,#101);#101=DIRECTION('',(0.,0.,1.));");
+    assert!(points(&inner).iter().all(|p| (p.length() - 5.0).abs() < 1e-6));
+    let spline = "#100=OFFSET_SURFACE('',#101,0.5,.F.);#101=BEZIER_SURFACE('',1,1,((#4,#6),(#5,#10)),.U.,.F.,.F.,.F.);";
+    let SurfaceGeometry::BSpline(s) = with(spline, |g| g.surface(100)).unwrap().surface else { panic!() };
+    assert!((s.patches().point(0.3, 0.8) - DVec3::new(3.0, 8.0, 5.0)).length() < 1e-9);
+}
+
+#[test]
+fn windows_in_the_files_units() {
+    let cut = |basis: &str, ranges: &str| {
+        let data = format!("#100=RECTANGULAR_TRIMMED_SURFACE('',#101,{ranges});#101={basis};");
+        match with(&data, |g| g.surface(100)).unwrap().surface {
+            SurfaceGeometry::Window { u, v, .. } => (u, v),
+            other => panic!("{other:?}"),
+        }
+    };
+    assert_eq!(cut("PLANE('',#8)", "1.,2.,3.,4.,.T.,.T."), ((10.0, 20.0), (30.0, 40.0)));
+    assert_eq!(cut("PLANE('',#8)", "2.,1.,3.,4.,.F.,.T."), ((10.0, 20.0), (30.0, 40.0)));
+    let (u, v) = cut("CYLINDRICAL_SURFACE('',#8,1.)", "270.,90.,0.,1.,.T.,.T.");
+    assert!((u.0 - 3.0 * FRAC_PI_2).abs() < 1e-14 && (u.1 - 5.0 * FRAC_PI_2).abs() < 1e-14 && v == (0.0, 10.0));
+    assert_eq!(cut("SURFACE_OF_LINEAR_EXTRUSION('',#12,#9)", "1.,2.,3.,4.,.T.,.T."), ((1.0, 2.0), (3.0, 4.0)));
+}
+
+/// The inner part of a degenerate torus, in both spellings.
+#[test]
+fn lemons_and_apples() {
+    for (entity, lemon) in [
+        ("DEGENERATE_TOROIDAL_SURFACE('',#8,1.,2.,.F.)", true),
+        ("DEGENERATE_TOROIDAL_SURFACE('',#8,1.,2.,.T.)", false),
+        ("(DEGENERATE_TOROIDAL_SURFACE(.F.) ELEMENTARY_SURFACE(#8) TOROIDAL_SURFACE(1.,2.) SURFACE())", true),
+        ("(DEGENERATE_TOROIDAL_SURFACE(.T.) ELEMENTARY_SURFACE(#8) TOROIDAL_SURFACE(1.,2.) SURFACE())", false),
+    ] {
+        let surface = with(&format!("#100={entity};"), |g| g.surface(100)).unwrap().surface;
+        let turned = matches!(surface, SurfaceGeometry::Revolution { .. });
+        assert_eq!(turned, lemon, "{entity}");
+    }
+    // drawn whole: the lemon reaches sqrt(3) up and 1 out, the apple 2 up and 3 out
+    for (outer, width, height) in [(".F.", 1.0, 3f64.sqrt()), (".T.", 3.0, 2.0)] {
+        let found = import(&format!(
+            "#4=CARTESIAN_POINT('',(0,0,0));#8=AXIS2_PLACEMENT_3D('',#4,$,$);#100=DEGENERATE_TOROIDAL_SURFACE('',#8,1.,2.,{outer});\
+            #101=GEOMETRIC_SET('',(#100));#102=SHAPE_REPRESENTATION('',(#101),#103);#103=(GEOMETRIC_REPRESENTATION_CONTEXT(3) REPRESENTATION_CONTEXT('',''));"
+        ));
+        assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+        let face = &found.model.parts[0].faces[0];
+        let grid = face.surface.patches();
+        let ((u0, u1), (v0, v1)) = face.surface.domain();
+        let samples = (0..=64).flat_map(|i| (0..=64).map(move |j| (f64::from(i) / 64.0, f64::from(j) / 64.0)));
+        let points: Vec<DVec3> = samples.map(|(x, y)| grid.point(u0 + (u1 - u0) * x, v0 + (v1 - v0) * y)).collect();
+        let out = points.iter().map(|p| p.x.hypot(p.y)).fold(0.0, f64::max);
+        let up = points.iter().map(|p| p.z).fold(0.0, f64::max);
+        // 64 steps around half a circle: the top is met to 2 (1 - cos(pi / 64))
+        assert!((out - width).abs() < 3e-3 && (up - height).abs() < 3e-3, "{outer}: {out} {up}");
+    }
+}
+
+const SQUARE: &str = "#1=(GEOMETRIC_REPRESENTATION_CONTEXT(3) REPRESENTATION_CONTEXT('',''));#11=CARTESIAN_POINT('',(0.,0.,0.));\
+    #12=CARTESIAN_POINT('',(4.,0.,0.));#13=CARTESIAN_POINT('',(0.,4.,0.));#14=CARTESIAN_POINT('',(4.,4.,0.));\
+    #15=CARTESIAN_POINT('',(2.,2.,0.));#16=AXIS2_PLACEMENT_3D('',#15,$,$);#17=CIRCLE('',#16,1.);\
+    #20=BEZIER_SURFACE('',1,1,((#11,#13),(#12,#14)),.U.,.F.,.F.,.F.);#30=GEOMETRIC_SET('',(#21));#31=SHAPE_REPRESENTATION('',(#30),#1);";
+
+#[test]
+fn an_implicit_outer_border_makes_curves_holes() {
+    let boundary = "#22=BOUNDARY_CURVE('',(#23),.F.);#23=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#17);";
+    for (implicit, loops) in [(".T.", 2), (".F.", 1)] {
+        let found = import(&format!("{SQUARE}{boundary}#21=CURVE_BOUNDED_SURFACE('',#20,(#22),{implicit});"));
+        assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+        let face = &found.model.parts[0].faces[0];
+        assert_eq!(face.loops.len(), loops);
+        // in the unit square: the hole has a sixteenth of pi
+        let area: f64 = face.loops.iter().map(|l| 0.5 * l.signed_area()).sum();
+        let hole = std::f64::consts::PI / 16.0;
+        let expected = if implicit == ".T." { 1.0 - hole } else { hole };
+        // signed_area steps along chords
+        assert!((area - expected).abs() < 1e-3, "{implicit}: {area}");
+    }
+}
+
+#[test]
+fn splines_that_break() {
+    let part = "#40=CARTESIAN_POINT('',(6.,0.,0.));#41=CARTESIAN_POINT('',(9.,0.,0.));#42=CARTESIAN_POINT('',(6.,4.,0.));#43=CARTESIAN_POINT('',(9.,4.,0.));";
+    let torn = |middle: &str| {
+        import(&format!(
+            "{SQUARE}{part}#21=B_SPLINE_SURFACE_WITH_KNOTS('',1,1,((#11,#13),(#12,#14),{middle},(#41,#43)),.U.,.F.,.F.,.F.,(2,2,2),(2,2),(0.,1.,2.),(0.,1.),.U.);"
+        ))
+    };
+    let (two, one) = (torn("(#40,#42)"), torn("(#12,#14)"));
+    let told = |found: &crate::import::Import| found.warnings.iter().map(ToString::to_string).collect::<Vec<_>>();
+    assert_eq!(told(&two), ["t.step:8: #21: torn spline: cut into 2 parts where it breaks"]);
+    assert_eq!(told(&one), ["t.step:8: #21: torn spline: joined over a gap of 0.0e0 mm"]);
+    assert_eq!((two.model.face_count(), one.model.face_count()), (2, 1));
+    let curve = |middle: &str| {
+        let data =
+            format!("#100=B_SPLINE_CURVE_WITH_KNOTS('',1,(#4,#5,{middle},#6),.U.,.F.,.F.,(2,2,2),(0.,1.,2.),.U.);");
+        with(&data, |g| g.curve(100)).unwrap()
+    };
+    assert!(matches!(curve("#10"), CurveGeometry::Composite(parts) if parts.len() == 2));
+    assert!(matches!(curve("#5"), CurveGeometry::BSpline(s) if s.points().len() == 3));
+}
+
+/// A square whose edges are listed in any order.
+#[test]
+fn edges_of_a_loop_in_any_order() {
+    // start and end vertex, the start's coordinates, the direction
+    let side = |i: u32, (a, b): (u32, u32), (x, y): (i32, i32), (dx, dy): (i32, i32)| {
+        let [line, point, vector, direction, oriented] = [1, 2, 3, 4, 5].map(|k| i + k);
+        format!(
+            "#{i}=EDGE_CURVE('',#{a},#{b},#{line},.T.);#{line}=LINE('',#{point},#{vector});\
+             #{point}=CARTESIAN_POINT('',({x}.,{y}.,0.));#{vector}=VECTOR('',#{direction},1.);\
+             #{direction}=DIRECTION('',({dx}.,{dy}.,0.));#{oriented}=ORIENTED_EDGE('',*,*,#{i},.T.);"
+        )
+    };
+    let lines = [
+        side(100, (51, 52), (0, 0), (1, 0)),
+        side(110, (52, 54), (4, 0), (0, 1)),
+        side(120, (54, 53), (4, 4), (-1, 0)),
+        side(130, (53, 51), (0, 4), (0, -1)),
+    ];
+    let vertices =
+        "#51=VERTEX_POINT('',#11);#52=VERTEX_POINT('',#12);#53=VERTEX_POINT('',#13);#54=VERTEX_POINT('',#14);";
+    for order in ["#105,#115,#125,#135", "#105,#125,#115,#135", "#125,#105,#135,#115"] {
+        let data = format!(
+            "{SQUARE}{vertices}{}#60=EDGE_LOOP('',({order}));#61=FACE_OUTER_BOUND('',#60,.T.);#21=ADVANCED_FACE('',(#61),#62,.T.);#62=PLANE('',#16);\
+            #63=OPEN_SHELL('',(#21));#64=SHELL_BASED_SURFACE_MODEL('',(#63));#65=SHAPE_REPRESENTATION('',(#64),#1);",
+            lines.concat()
+        );
+        let found = step(wrap(&data).as_bytes(), "t.step").unwrap();
+        let face = &found.model.parts.iter().find(|p| !p.faces.is_empty()).unwrap().faces[0];
+        let area: f64 = face.loops.iter().map(|l| 0.5 * l.signed_area()).sum();
+        assert!((area - 16.0).abs() < 1e-9, "{order}: {area}");
+        let sorted = order != "#105,#115,#125,#135";
+        assert_eq!(found.report.healed.contains_key("face"), sorted, "{:?}", found.report.healed);
+        assert_eq!(found.warnings.iter().any(|w| w.message.contains("put in order")), sorted);
+    }
+}
