@@ -25,4 +25,7 @@ pub enum ImportError {
     /// More than half of the records are not records.
     #[error("{file}:{line}: gave up: {bad} of the first {seen} records cannot be read")]
     Nonsense { file: String, line: usize, bad: usize, seen: usize },
+    /// The engine's own form, of another version or damaged.
+    #[error("{file}: {source}")]
+    Native { file: String, source: crate::model::native::NativeError },
 }

@@ -1,7 +1,8 @@
 //! CAD files in, [`Model`]s out.
 //!
 //! ```text
-//!   path ──read, gunzip──▶ bytes ──format by content──▶ step ──▶ Import { model, warnings, report }
+//!   path ──read, gunzip──▶ bytes ──format by content──▶ step ────┬─▶ Import { model, warnings, report }
+//!                                                    └▶ native ──┘
 //! ```
 //!
 //! A file that is not what it claims to be is an [`ImportError`]. Everything smaller (a bad record, a
@@ -9,6 +10,7 @@
 //! Time and memory are bounded by a multiple of the file's size, whatever its content.
 
 mod error;
+mod native;
 mod report;
 mod step;
 
@@ -53,6 +55,9 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
     if bytes.starts_with(&[0x1f, 0x8b]) {
         bytes = inflate(&bytes, &name)?;
     }
+    if native::recognise(&bytes) {
+        return native(&bytes, &name);
+    }
     if step::recognise(&bytes) {
         return step(&bytes, &name);
     }
@@ -60,6 +65,7 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
         Some(f) if [".stp", ".step", ".p21", ".stpz", ".stp.gz", ".step.gz"].iter().any(|e| f.ends_with(e)) => {
             Err(ImportError::NotStep { file: name })
         }
+        Some(f) if f.ends_with(".selvedge") || f.ends_with(".selvedge.gz") => native(&bytes, &name),
         _ => Err(ImportError::Format { file: name }),
     }
 }
@@ -70,6 +76,14 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
 /// [`ImportError`] when the text is not STEP or holds no usable data.
 pub fn step(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     step::read(bytes, name)
+}
+
+/// Reads the engine's own form: see [`crate::model::native`].
+///
+/// # Errors
+/// [`ImportError::Native`] when the bytes hold no valid model.
+pub fn native(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    native::read(bytes, name)
 }
 
 /// Undoes gzip; output is bounded by [`MAX_EXPANSION`].

@@ -18,10 +18,13 @@
 mod camera;
 mod face;
 mod mesh;
+pub mod native;
+mod stored;
 
 pub use camera::{Camera, CameraError, Projection};
 pub use face::{Face, FaceError, SurfaceKind, TrimLoop};
 pub use mesh::{Mesh, MeshError};
+pub use stored::ModelError;
 
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -31,6 +34,7 @@ pub type Colour = [f32; 4];
 
 /// Everything that one file or scene holds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "stored::ModelData")]
 pub struct Model {
     /// The file's or product's name.
     pub name: String,

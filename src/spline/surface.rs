@@ -10,12 +10,31 @@ use serde::{Deserialize, Serialize};
 /// `points[j * count_u + i]` is `P_ij`, `i` along `u`. The invariants of
 /// [`BSpline`](super::BSpline) hold in both directions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "SurfaceData")]
 pub struct Surface {
     degree_u: usize,
     degree_v: usize,
     knots_u: Vec<f64>,
     knots_v: Vec<f64>,
     points: Vec<DVec4>,
+}
+
+/// What is stored of a [`Surface`], before it is checked.
+#[derive(Deserialize)]
+struct SurfaceData {
+    degree_u: usize,
+    degree_v: usize,
+    knots_u: Vec<f64>,
+    knots_v: Vec<f64>,
+    points: Vec<DVec4>,
+}
+
+impl TryFrom<SurfaceData> for Surface {
+    type Error = SplineError;
+
+    fn try_from(data: SurfaceData) -> Result<Self, SplineError> {
+        Self::new((data.degree_u, data.degree_v), data.knots_u, data.knots_v, data.points)
+    }
 }
 
 /// A Bézier patch with the rectangle of the surface's domain that it covers.
@@ -51,8 +70,8 @@ impl Surface {
         knots_v: Vec<f64>,
         points: Vec<DVec4>,
     ) -> Result<Self, SplineError> {
-        let count_u = knots_u.len().saturating_sub(degrees.0 + 1);
-        let count_v = knots_v.len().saturating_sub(degrees.1 + 1);
+        let count_u = knots_u.len().saturating_sub(degrees.0).saturating_sub(1);
+        let count_v = knots_v.len().saturating_sub(degrees.1).saturating_sub(1);
         check_knots(degrees.0, &knots_u, count_u)?;
         check_knots(degrees.1, &knots_v, count_v)?;
         if points.len() != count_u * count_v {
