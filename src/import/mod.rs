@@ -2,6 +2,7 @@
 //!
 //! ```text
 //!   path ──read, gunzip──▶ bytes ──format by content──▶ step ────┬─▶ Import { model, warnings, report }
+//!                                                    ├▶ obj, bv ─┤
 //!                                                    └▶ native ──┘
 //! ```
 //!
@@ -9,8 +10,13 @@
 //! face that cannot be built) is left out, and a [`Warning`] names the file and the line or entity.
 //! Time and memory are bounded by a multiple of the file's size, whatever its content.
 
+mod bv;
+mod colour;
 mod error;
+mod facets;
 mod native;
+mod obj;
+mod parts;
 mod report;
 mod step;
 
@@ -61,11 +67,16 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
     if step::recognise(&bytes) {
         return step(&bytes, &name);
     }
+    let folder = path.parent();
     match path.file_name().and_then(|f| f.to_str()).map(str::to_ascii_lowercase) {
         Some(f) if [".stp", ".step", ".p21", ".stpz", ".stp.gz", ".step.gz"].iter().any(|e| f.ends_with(e)) => {
             Err(ImportError::NotStep { file: name })
         }
         Some(f) if f.ends_with(".selvedge") || f.ends_with(".selvedge.gz") => native(&bytes, &name),
+        Some(f) if f.ends_with(".obj") || f.ends_with(".obj.gz") => obj(&bytes, &name, folder),
+        Some(f) if f.ends_with(".bv") || f.ends_with(".bv.gz") => bv(&bytes, &name),
+        _ if bv::recognise(&bytes) => bv(&bytes, &name),
+        _ if obj::recognise(&bytes) => obj(&bytes, &name, folder),
         _ => Err(ImportError::Format { file: name }),
     }
 }
@@ -84,6 +95,22 @@ pub fn step(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 /// [`ImportError::Native`] when the bytes hold no valid model.
 pub fn native(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     native::read(bytes, name)
+}
+
+/// Reads Wavefront OBJ text; materials are looked for in `folder`, if there is one.
+///
+/// # Errors
+/// [`ImportError::Nothing`] when the text holds no vertex.
+pub fn obj(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
+    obj::read(bytes, name, folder)
+}
+
+/// Reads a BezierView `.bv` file.
+///
+/// # Errors
+/// [`ImportError::Nothing`] when the text does not begin with a patch.
+pub fn bv(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    bv::read(bytes, name)
 }
 
 /// Undoes gzip; output is bounded by [`MAX_EXPANSION`].

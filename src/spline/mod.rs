@@ -8,6 +8,7 @@
 //! ```text
 //!   BSpline<P>            one curve, any degree          ──beziers()──▶  [Span<Bezier<P>>]
 //!   Surface               tensor product, u fastest      ──patches()──▶  PatchGrid of Patch
+//!   triangle_surface      the Surface that a triangular patch is a part of
 //!
 //!        v                      points[j * count_u + i] = P_ij
 //!        ▲   P_02  P_12  P_22   i runs along u, j along v
@@ -25,6 +26,7 @@ mod bspline;
 mod derivative_bound;
 mod patch;
 mod surface;
+mod triangle;
 
 pub use bernstein::{MAX_DEGREE, binomial};
 pub use bezier::{Bezier, Span};
@@ -32,6 +34,7 @@ pub use bspline::{BSpline, SplineError};
 pub use derivative_bound::DerivativeBound;
 pub use patch::{Jet, Patch};
 pub use surface::{PatchGrid, Surface, SurfacePatch};
+pub use triangle::{triangle_points, triangle_surface};
 
 use glam::{DVec2, DVec3, DVec4};
 use std::ops::{Add, Mul, Sub};
