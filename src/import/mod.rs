@@ -3,6 +3,7 @@
 //! ```text
 //!   path ──read, gunzip──▶ bytes ──format by content──▶ step ────┬─▶ Import { model, warnings, report }
 //!                                                    ├▶ obj, bv ─┤
+//!                                                    ├▶ rhino ───┤
 //!                                                    └▶ native ──┘
 //! ```
 //!
@@ -11,6 +12,7 @@
 //! Time and memory are bounded by a multiple of the file's size, whatever its content.
 
 mod bv;
+mod chain;
 mod colour;
 mod error;
 mod facets;
@@ -18,6 +20,8 @@ mod native;
 mod obj;
 mod parts;
 mod report;
+#[cfg(feature = "rhino")]
+mod rhino;
 mod step;
 
 pub use error::ImportError;
@@ -43,6 +47,9 @@ pub struct Import {
 /// cannot exceed 1032.
 const MAX_EXPANSION: u64 = 100;
 
+/// How Rhino's files begin.
+const RHINO: &[u8] = b"3D Geometry File Format ";
+
 /// Expansion that is always allowed, whatever the factor.
 const FREE_EXPANSION: u64 = 1 << 20;
 
@@ -66,6 +73,9 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
     }
     if step::recognise(&bytes) {
         return step(&bytes, &name);
+    }
+    if bytes.starts_with(RHINO) {
+        return rhino(&bytes, &name);
     }
     let folder = path.parent();
     match path.file_name().and_then(|f| f.to_str()).map(str::to_ascii_lowercase) {
@@ -111,6 +121,21 @@ pub fn obj(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, Im
 /// [`ImportError::Nothing`] when the text does not begin with a patch.
 pub fn bv(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     bv::read(bytes, name)
+}
+
+/// Reads a Rhino `.3dm` file.
+///
+/// # Errors
+/// [`ImportError::Rhino`] when it cannot be decoded, or when the library was built without the feature
+/// `rhino`.
+pub fn rhino(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    #[cfg(feature = "rhino")]
+    return rhino::read(bytes, name);
+    #[cfg(not(feature = "rhino"))]
+    return Err(ImportError::Rhino {
+        file: name.to_owned(),
+        why: format!("{} bytes of a Rhino file, for which the feature `rhino` is not built in", bytes.len()),
+    });
 }
 
 /// Undoes gzip; output is bounded by [`MAX_EXPANSION`].

@@ -15,6 +15,7 @@
 //! surfaces".
 
 use super::axis::{Axis, Basis};
+use crate::import::chain::{ROUNDING, chain};
 use crate::model::{Face, SurfaceKind, TrimLoop};
 use crate::spline::{BSpline, Bezier, Control, Surface};
 use glam::{DVec2, DVec3, DVec4};
@@ -58,9 +59,6 @@ pub(super) type Curves = Vec<Option<BSpline<DVec3>>>;
 
 /// Largest gap that a line closes, relative to the size of the loop; printed numbers have few digits.
 const MAX_GAP: f64 = 1e-3;
-
-/// Gap that counts as rounding, relative to the size of the loop.
-const ROUNDING: f64 = 1e-9;
 
 impl Element {
     fn axis(&self, direction: usize) -> Result<Axis, String> {
@@ -163,26 +161,7 @@ impl Trim {
                 beziers.extend(pieces.rev().map(Bezier::reversed));
             }
         }
-        let points = || beziers.iter().flat_map(|b| &b.points).map(|p| p.point());
-        let (lo, hi) = points().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
-        let size = (hi - lo).max_element();
-        let mut chain: Vec<Bezier<DVec3>> = Vec::with_capacity(beziers.len());
-        for (i, bezier) in beziers.iter().enumerate() {
-            chain.push(bezier.clone());
-            let end = bezier.points[bezier.degree()].point();
-            let start = beziers[(i + 1) % beziers.len()].points[0].point();
-            let gap = (end - start).abs().max_element();
-            if gap > ROUNDING * size && gap <= MAX_GAP * size {
-                notes.push(format!("loop closed over a gap of {gap:e} in (u, v)"));
-                chain.push(Bezier::line(end, start));
-            }
-        }
-        let trim = TrimLoop::new(chain, DVec2::splat(ROUNDING * size)).map_err(|e| e.to_string())?;
-        let area = trim.signed_area();
-        if !area.is_finite() || area.abs() <= ROUNDING * size * size {
-            return Err("a trim loop without area".into());
-        }
-        Ok(if (area > 0.0) == self.hole { trim.reversed() } else { trim })
+        chain(&beziers, self.hole, notes, |a, b, size| (a - b).abs().max_element() <= MAX_GAP * size)
     }
 }
 

@@ -210,7 +210,7 @@ impl<'f> Reader<'f> {
     }
 
     fn pieces(&self, words: &[&str]) -> Result<Vec<Piece>, String> {
-        if words.is_empty() || words.len() % 3 != 0 {
+        if words.is_empty() || !words.len().is_multiple_of(3) {
             return Err(format!("a loop of {} words, which are no triples", words.len()));
         }
         let piece = |w: &[&str]| {
