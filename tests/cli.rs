@@ -25,10 +25,10 @@ fn help_names_every_command_and_the_exit_statuses() {
     let help = selvedge(&["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let help = text(&help.stdout);
-    for word in ["render", "info", "check", "bench", "Exit status: 0 done; 1 a picture breaks"] {
+    for word in ["render", "info", "check", "bench", "convert", "Exit status: 0 done; 1 a picture breaks"] {
         assert!(help.contains(word), "{word} in {help}");
     }
-    for command in ["render", "info", "check", "bench"] {
+    for command in ["render", "info", "check", "bench", "convert"] {
         let help = selvedge(&[command, "--help"]);
         assert_eq!(help.status.code(), Some(0));
         assert!(text(&help.stdout).contains("Exit status:"), "{command}");
@@ -53,6 +53,8 @@ fn wrong_arguments_are_usage_errors() {
     refused(&["check", "m.step", "--samples", "0"], "above 0");
     refused(&["check", "m.step", "--views", "close", "--eye", "1,2,3"], "cannot be used with");
     refused(&["bench"], "MODELS");
+    refused(&["convert", "m.step"], "OUT.selvedge");
+    refused(&["convert", "m.step", "m.xyz"], "m.xyz: writes .selvedge files only");
 }
 
 #[test]
@@ -62,6 +64,7 @@ fn a_missing_file_is_named() {
         &["render", "no/such/model.step", "-o", "a.png"],
         &["check", "no/such/model.step"],
         &["bench", "no/such/model.step"],
+        &["convert", "no/such/model.step", "m.selvedge"],
     ] {
         refused(arguments, "no/such/model.step");
     }
@@ -71,4 +74,28 @@ fn a_missing_file_is_named() {
 fn a_file_that_is_no_model_is_an_import_error() {
     let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
     refused(&["info", manifest], "Cargo.toml");
+}
+
+/// What a converted file holds is what the source holds; converting it again gives the same bytes.
+#[test]
+fn a_converted_model_is_the_same_model() {
+    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/src/import/step/tests/good.step");
+    let folder = std::env::temp_dir().join(format!("selvedge-convert-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let (once, twice) = (path("once.selvedge"), path("twice.selvedge"));
+    assert_eq!(selvedge(&["convert", source, &once]).status.code(), Some(0));
+    assert_eq!(selvedge(&["convert", &once, &twice]).status.code(), Some(0));
+    let described = |file: &str| -> serde_json::Value {
+        let mut told: serde_json::Value = serde_json::from_slice(&selvedge(&["info", "--json", file]).stdout).unwrap();
+        // the report is of the file, not of the model
+        told.as_object_mut().unwrap().remove("report");
+        told
+    };
+    assert_eq!(described(&once), described(source));
+    let bytes = [&once, &twice].map(|file| std::fs::read(file).unwrap());
+    std::fs::write(&twice, &bytes[1][..bytes[1].len() - 1]).unwrap();
+    refused(&["info", &twice], "the header says");
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert_eq!(bytes[0], bytes[1]);
 }

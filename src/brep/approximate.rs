@@ -10,7 +10,7 @@
 //! that in v. The parametrisation stays: equal parameters are equal points, within the error.
 
 use super::fit::{PEAK, QUINTIC, chebyshev};
-use super::pieces::assemble;
+use crate::spline::arc::assemble;
 use crate::spline::{BSpline, Bezier, Control, Span, Surface};
 use glam::{DVec3, DVec4};
 

@@ -25,4 +25,13 @@ pub enum ImportError {
     /// More than half of the records are not records.
     #[error("{file}:{line}: gave up: {bad} of the first {seen} records cannot be read")]
     Nonsense { file: String, line: usize, bad: usize, seen: usize },
+    /// Text or bytes without anything that the format knows.
+    #[error("{file}: holds nothing that is {format}")]
+    Nothing { file: String, format: &'static str },
+    /// Rhino's form, damaged or not built in.
+    #[error("{file}: {why}")]
+    Rhino { file: String, why: String },
+    /// The engine's own form, of another version or damaged.
+    #[error("{file}: {source}")]
+    Native { file: String, source: crate::model::native::NativeError },
 }

@@ -1,15 +1,27 @@
 //! CAD files in, [`Model`]s out.
 //!
 //! ```text
-//!   path ──read, gunzip──▶ bytes ──format by content──▶ step ──▶ Import { model, warnings, report }
+//!   path ──read, gunzip──▶ bytes ──format by content──▶ step ────┬─▶ Import { model, warnings, report }
+//!                                                    ├▶ obj, bv ─┤
+//!                                                    ├▶ rhino ───┤
+//!                                                    └▶ native ──┘
 //! ```
 //!
 //! A file that is not what it claims to be is an [`ImportError`]. Everything smaller (a bad record, a
 //! face that cannot be built) is left out, and a [`Warning`] names the file and the line or entity.
 //! Time and memory are bounded by a multiple of the file's size, whatever its content.
 
+mod bv;
+mod chain;
+mod colour;
 mod error;
+mod facets;
+mod native;
+mod obj;
+mod parts;
 mod report;
+#[cfg(feature = "rhino")]
+mod rhino;
 mod step;
 
 pub use error::ImportError;
@@ -35,6 +47,9 @@ pub struct Import {
 /// cannot exceed 1032.
 const MAX_EXPANSION: u64 = 100;
 
+/// How Rhino's files begin.
+const RHINO: &[u8] = b"3D Geometry File Format ";
+
 /// Expansion that is always allowed, whatever the factor.
 const FREE_EXPANSION: u64 = 1 << 20;
 
@@ -53,13 +68,25 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
     if bytes.starts_with(&[0x1f, 0x8b]) {
         bytes = inflate(&bytes, &name)?;
     }
+    if native::recognise(&bytes) {
+        return native(&bytes, &name);
+    }
     if step::recognise(&bytes) {
         return step(&bytes, &name);
     }
+    if bytes.starts_with(RHINO) {
+        return rhino(&bytes, &name);
+    }
+    let folder = path.parent();
     match path.file_name().and_then(|f| f.to_str()).map(str::to_ascii_lowercase) {
         Some(f) if [".stp", ".step", ".p21", ".stpz", ".stp.gz", ".step.gz"].iter().any(|e| f.ends_with(e)) => {
             Err(ImportError::NotStep { file: name })
         }
+        Some(f) if f.ends_with(".selvedge") || f.ends_with(".selvedge.gz") => native(&bytes, &name),
+        Some(f) if f.ends_with(".obj") || f.ends_with(".obj.gz") => obj(&bytes, &name, folder),
+        Some(f) if f.ends_with(".bv") || f.ends_with(".bv.gz") => bv(&bytes, &name),
+        _ if bv::recognise(&bytes) => bv(&bytes, &name),
+        _ if obj::recognise(&bytes) => obj(&bytes, &name, folder),
         _ => Err(ImportError::Format { file: name }),
     }
 }
@@ -70,6 +97,45 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
 /// [`ImportError`] when the text is not STEP or holds no usable data.
 pub fn step(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     step::read(bytes, name)
+}
+
+/// Reads the engine's own form: see [`crate::model::native`].
+///
+/// # Errors
+/// [`ImportError::Native`] when the bytes hold no valid model.
+pub fn native(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    native::read(bytes, name)
+}
+
+/// Reads Wavefront OBJ text; materials are looked for in `folder`, if there is one.
+///
+/// # Errors
+/// [`ImportError::Nothing`] when the text holds no vertex.
+pub fn obj(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
+    obj::read(bytes, name, folder)
+}
+
+/// Reads a BezierView `.bv` file.
+///
+/// # Errors
+/// [`ImportError::Nothing`] when the text does not begin with a patch.
+pub fn bv(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    bv::read(bytes, name)
+}
+
+/// Reads a Rhino `.3dm` file.
+///
+/// # Errors
+/// [`ImportError::Rhino`] when it cannot be decoded, or when the library was built without the feature
+/// `rhino`.
+pub fn rhino(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    #[cfg(feature = "rhino")]
+    return rhino::read(bytes, name);
+    #[cfg(not(feature = "rhino"))]
+    return Err(ImportError::Rhino {
+        file: name.to_owned(),
+        why: format!("{} bytes of a Rhino file, for which the feature `rhino` is not built in", bytes.len()),
+    });
 }
 
 /// Undoes gzip; output is bounded by [`MAX_EXPANSION`].

@@ -1,7 +1,7 @@
 //! A face: one surface and the loops that trim it.
 
 use super::{Bounds, Colour};
-use crate::spline::{Bezier, Control, Surface};
+use crate::spline::{Bezier, Control, MAX_DEGREE, Surface};
 use glam::{DVec2, DVec3};
 use serde::{Deserialize, Serialize};
 
@@ -25,12 +25,14 @@ pub enum SurfaceKind {
 /// Control points are homogeneous, `(w u, w v, w)`. The end of each curve is the start of the next,
 /// bit for bit, the last one's the first one's: [`TrimLoop::new`] sees to it.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "LoopData")]
 pub struct TrimLoop {
     curves: Vec<Vec<DVec3>>,
 }
 
 /// One face.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "super::stored::FaceData")]
 pub struct Face {
     /// Number in the source, written to the face-id image; for STEP `#123` is 123. Never 0.
     pub id: u32,
@@ -59,6 +61,54 @@ pub enum FaceError {
     /// Not finite, or a weight that is not positive.
     #[error("trim curve {curve} has a control point that is not finite or a weight that is not positive")]
     ControlPoint { curve: usize },
+    /// Degree 0, or above [`MAX_DEGREE`].
+    #[error("trim curve {curve} has degree {degree}, which is not between 1 and {MAX_DEGREE}")]
+    Degree { curve: usize, degree: usize },
+}
+
+/// What is stored of a [`TrimLoop`], before it is checked.
+#[derive(Deserialize)]
+struct LoopData {
+    curves: Vec<Vec<DVec3>>,
+}
+
+/// Largest gap between the curves of a stored loop, relative to its coordinates: a loop that was run
+/// backwards meets itself within the rounding of a division by the weight.
+const STORED_GAP: f64 = 4.0 * f64::EPSILON;
+
+impl TryFrom<LoopData> for TrimLoop {
+    type Error = FaceError;
+
+    /// Keeps every bit, where [`TrimLoop::new`] would snap.
+    fn try_from(data: LoopData) -> Result<Self, FaceError> {
+        check_curves(&data.curves)?;
+        for (curve, points) in data.curves.iter().enumerate() {
+            let end = points[points.len() - 1].point();
+            let start = data.curves[(curve + 1) % data.curves.len()][0].point();
+            let gap = (end - start).abs();
+            if (gap.cmpgt(STORED_GAP * end.abs().max(start.abs()))).any() {
+                return Err(FaceError::OpenLoop { curve, gap: gap.max_element() });
+            }
+        }
+        Ok(Self { curves: data.curves })
+    }
+}
+
+/// At least one curve, degrees within the limit, numbers that are numbers.
+fn check_curves(curves: &[Vec<DVec3>]) -> Result<(), FaceError> {
+    if curves.is_empty() {
+        return Err(FaceError::EmptyLoop);
+    }
+    for (curve, points) in curves.iter().enumerate() {
+        let degree = points.len().saturating_sub(1);
+        if degree == 0 || degree > MAX_DEGREE {
+            return Err(FaceError::Degree { curve, degree });
+        }
+        if points.iter().any(|p| !p.finite() || p.z <= 0.0) {
+            return Err(FaceError::ControlPoint { curve });
+        }
+    }
+    Ok(())
 }
 
 impl TrimLoop {
@@ -68,15 +118,8 @@ impl TrimLoop {
     /// # Errors
     /// [`FaceError`] when the chain is empty, open by more than `snap`, or not made of numbers.
     pub fn new(curves: Vec<Bezier<DVec3>>, snap: DVec2) -> Result<Self, FaceError> {
-        if curves.is_empty() {
-            return Err(FaceError::EmptyLoop);
-        }
-        if let Some(curve) =
-            curves.iter().position(|c| c.points.len() < 2 || c.points.iter().any(|p| !p.finite() || p.z <= 0.0))
-        {
-            return Err(FaceError::ControlPoint { curve });
-        }
         let mut curves: Vec<Vec<DVec3>> = curves.into_iter().map(|c| c.points).collect();
+        check_curves(&curves)?;
         let count = curves.len();
         for curve in 0..count {
             let end = *curves[curve].last().expect("checked above");

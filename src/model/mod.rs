@@ -19,7 +19,9 @@
 mod camera;
 mod face;
 mod mesh;
+pub mod native;
 mod solid;
+mod stored;
 
 pub use camera::{Camera, CameraError, Projection};
 pub use face::{Face, FaceError, SurfaceKind, TrimLoop};
@@ -28,6 +30,7 @@ pub use solid::{
     CarriedFace, Carrier, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
     SurfaceTable,
 };
+pub use stored::ModelError;
 
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};
@@ -37,6 +40,7 @@ pub type Colour = [f32; 4];
 
 /// Everything that one file or scene holds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "stored::ModelData")]
 pub struct Model {
     /// The file's or product's name.
     pub name: String,

@@ -38,10 +38,27 @@ pub enum SplineError {
 /// Invariants, established by [`BSpline::new`]: `knots.len() == points.len() + degree + 1`, knots
 /// non-decreasing and finite, interior multiplicity at most the degree, weights positive.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "BSplineData<P>", bound(deserialize = "P: Control + Deserialize<'de>"))]
 pub struct BSpline<P> {
     pub(super) degree: usize,
     pub(super) knots: Vec<f64>,
     pub(super) points: Vec<P>,
+}
+
+/// What is stored of a [`BSpline`], before it is checked.
+#[derive(Deserialize)]
+struct BSplineData<P> {
+    degree: usize,
+    knots: Vec<f64>,
+    points: Vec<P>,
+}
+
+impl<P: Control> TryFrom<BSplineData<P>> for BSpline<P> {
+    type Error = SplineError;
+
+    fn try_from(data: BSplineData<P>) -> Result<Self, SplineError> {
+        Self::new(data.degree, data.knots, data.points)
+    }
 }
 
 impl<P: Control> BSpline<P> {

@@ -8,6 +8,7 @@
 //! ```text
 //!   BSpline<P>            one curve, any degree          ──beziers()──▶  [Span<Bezier<P>>]
 //!   Surface               tensor product, u fastest      ──patches()──▶  PatchGrid of Patch
+//!   triangle_surface      the Surface that a triangular patch is a part of
 //!
 //!        v                      points[j * count_u + i] = P_ij
 //!        ▲   P_02  P_12  P_22   i runs along u, j along v
@@ -31,6 +32,7 @@ mod net;
 mod patch;
 mod refine;
 mod surface;
+mod triangle;
 
 pub use basis::Basis;
 pub use bernstein::{MAX_DEGREE, binomial};
@@ -40,6 +42,7 @@ pub use derivative_bound::DerivativeBound;
 pub use differential::{Curvature, Jet2};
 pub use patch::{Jet, Patch};
 pub use surface::{PatchGrid, Surface, SurfacePatch};
+pub use triangle::{triangle_points, triangle_surface};
 
 use glam::{DVec2, DVec3, DVec4};
 use std::ops::{Add, Mul, Sub};

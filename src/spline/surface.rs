@@ -10,12 +10,31 @@ use serde::{Deserialize, Serialize};
 /// `points[j * count_u + i]` is `P_ij`, `i` along `u`. The invariants of
 /// [`BSpline`](super::BSpline) hold in both directions.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "SurfaceData")]
 pub struct Surface {
     degree_u: usize,
     degree_v: usize,
     knots_u: Vec<f64>,
     knots_v: Vec<f64>,
     points: Vec<DVec4>,
+}
+
+/// What is stored of a [`Surface`], before it is checked.
+#[derive(Deserialize)]
+struct SurfaceData {
+    degree_u: usize,
+    degree_v: usize,
+    knots_u: Vec<f64>,
+    knots_v: Vec<f64>,
+    points: Vec<DVec4>,
+}
+
+impl TryFrom<SurfaceData> for Surface {
+    type Error = SplineError;
+
+    fn try_from(data: SurfaceData) -> Result<Self, SplineError> {
+        Self::new((data.degree_u, data.degree_v), data.knots_u, data.knots_v, data.points)
+    }
 }
 
 /// A Bézier patch with the rectangle of the surface's domain that it covers.
@@ -51,8 +70,8 @@ impl Surface {
         knots_v: Vec<f64>,
         points: Vec<DVec4>,
     ) -> Result<Self, SplineError> {
-        let count_u = knots_u.len().saturating_sub(degrees.0 + 1);
-        let count_v = knots_v.len().saturating_sub(degrees.1 + 1);
+        let count_u = knots_u.len().saturating_sub(degrees.0).saturating_sub(1);
+        let count_v = knots_v.len().saturating_sub(degrees.1).saturating_sub(1);
         check_knots(degrees.0, &knots_u, count_u)?;
         check_knots(degrees.1, &knots_v, count_v)?;
         if points.len() != count_u * count_v {
@@ -133,6 +152,43 @@ impl Surface {
             }
         }
         PatchGrid { count_u, count_v, patches }
+    }
+
+    /// The part over a rectangle inside the domain, as Bézier patches with their own parameters.
+    ///
+    /// Exact up to the rounding of one subdivision at each side.
+    ///
+    /// # Errors
+    /// [`SplineError`] when the rectangle is empty or outside the domain.
+    pub fn within(&self, u: (f64, f64), v: (f64, f64)) -> Result<Self, SplineError> {
+        let grid = self.patches();
+        let touches = |a: (f64, f64), b: (f64, f64)| a.1 > b.0 && a.0 < b.1;
+        let columns = grid.patches[..grid.count_u].iter().filter(|p| touches(p.u, u)).count();
+        let kept: Vec<_> = grid.patches.iter().filter(|p| touches(p.u, u) && touches(p.v, v)).collect();
+        if kept.is_empty() {
+            return Err(SplineError::EmptyDomain);
+        }
+        let local = |range: (f64, f64), to: (f64, f64)| {
+            let at = |t: f64| ((t - range.0) / (range.1 - range.0)).clamp(0.0, 1.0);
+            (at(to.0), at(to.1))
+        };
+        let pieces: Vec<Patch> = kept.iter().map(|p| p.patch.rectangle(local(p.u, u), local(p.v, v))).collect();
+        let knots = |degree: usize, inner: Vec<f64>, (a, b): (f64, f64)| -> Vec<f64> {
+            let inner = inner.into_iter().flat_map(|t| [t].repeat(degree));
+            [a].repeat(degree + 1).into_iter().chain(inner).chain([b].repeat(degree + 1)).collect()
+        };
+        let inner_u = kept[1..columns].iter().map(|p| p.u.0).collect();
+        let inner_v = kept.iter().step_by(columns).skip(1).map(|p| p.v.0).collect();
+        let (n, k) = (self.degree_u, self.degree_v);
+        let (count_u, count_v) = (columns * n + 1, kept.len() / columns * k + 1);
+        let net = (0..count_v).flat_map(|j| (0..count_u).map(move |i| (i, j))).map(|(i, j)| {
+            // a point that two pieces share is the later one's, but for the last
+            let piece = |at: usize, degree: usize, count: usize| (at / degree).min((count - 1) / degree - 1);
+            let (a, b) = (piece(i, n, count_u), piece(j, k, count_v));
+            pieces[b * columns + a].points[(j - b * k) * (n + 1) + (i - a * n)]
+        });
+        let net = net.collect();
+        Self::new((n, k), knots(n, inner_u, u), knots(k, inner_v, v), net)
     }
 
     /// Point and first derivatives at `(u, v)`, clamped to the domain.

@@ -34,6 +34,9 @@ pub enum Command {
     /// Measure time and memory per pass along a fixed camera path, next to the error of the same frames
     #[command(after_help = STATUSES)]
     Bench(BenchArgs),
+    /// Write a model in another form, so that it is read once and opens fast; needs no GPU
+    #[command(after_help = STATUSES)]
+    Convert(ConvertArgs),
 }
 
 #[derive(Debug, Args)]
@@ -107,6 +110,15 @@ pub struct BenchArgs {
     /// Folder for bench.json and bench.csv
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct ConvertArgs {
+    /// The model
+    pub model: PathBuf,
+    /// File to write; its extension chooses the form: .selvedge is the engine's own, bit for bit
+    #[arg(value_name = "OUT.selvedge")]
+    pub output: PathBuf,
 }
 
 /// Where the eye is.

@@ -3,6 +3,7 @@
 //! ```text
 //!   render   model ─▶ picture and images      info    model ─▶ what the file holds
 //!   check    picture against exact rays       bench   time and memory beside the error
+//!   convert  model ─▶ the engine's own form
 //! ```
 //!
 //! Results go to standard output, everything else to standard error.
@@ -11,6 +12,7 @@ mod args;
 mod bench;
 mod camera;
 mod check;
+mod convert;
 mod info;
 mod npy;
 mod output;
@@ -60,6 +62,7 @@ fn main() -> ExitCode {
         Command::Info(args) => info::run(args),
         Command::Check(args) => check::run(args),
         Command::Bench(args) => bench::run(args),
+        Command::Convert(args) => convert::run(args),
     };
     match result {
         Ok(Outcome::Good) => ExitCode::SUCCESS,

@@ -19,6 +19,7 @@
 use super::entity::{Entity, Fault};
 use super::geometry::Ledger;
 use super::part21::{File, Value};
+use crate::import::colour::linear;
 use crate::model::Colour;
 use std::collections::HashMap;
 
@@ -87,8 +88,7 @@ impl Colours {
             search(file, ledger, style?, &mut found)?;
         }
         let (Some(rgb), Some(item)) = (found.rgb, base.optional(1)) else { return Ok(()) };
-        let [r, g, b] = rgb.map(|c| linear(c) as f32);
-        let colour = [r, g, b, 1.0 - found.transparency.unwrap_or(0.0) as f32];
+        let colour = linear(rgb, 1.0 - found.transparency.unwrap_or(0.0));
         if colour[3] < 1.0 {
             ledger.note("transparent colour", id, "kept in the model, drawn opaque");
         }
@@ -139,9 +139,4 @@ fn named(name: &str) -> Option<[f64; 3]> {
         "white" => [1.0, 1.0, 1.0],
         _ => return None,
     })
-}
-
-/// sRGB to linear light.
-fn linear(c: f64) -> f64 {
-    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }

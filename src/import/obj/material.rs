@@ -1,0 +1,111 @@
+//! Materials: `Kd` and `d` of the `.mtl` files that lie beside the file.
+//!
+//! ```text
+//!   mtllib a.mtl ─▶ folder/a.mtl ─▶ lines that say something about a colour ─tobj─▶ name: Colour
+//! ```
+//!
+//! The format names no colour space; programs store what their screen shows, sRGB.
+
+use super::lines::lines;
+use crate::import::{Place, Warnings, colour};
+use crate::model::Colour;
+use std::collections::HashMap;
+use std::fmt::Write;
+use std::io::Read;
+use std::path::{Component, Path};
+
+/// Bytes of one material file that are read.
+const MAX_BYTES: u64 = 1 << 26;
+
+/// Files of materials that one model may name.
+const MAX_FILES: usize = 256;
+
+/// Colours by the names of materials.
+#[derive(Default)]
+pub(super) struct Materials {
+    /// The colour, where the material has one.
+    colours: HashMap<String, Option<Colour>>,
+    files: usize,
+}
+
+impl Materials {
+    /// The colour of a material; `None` when no file has it.
+    pub fn get(&self, name: &str) -> Option<Option<Colour>> {
+        self.colours.get(name).copied()
+    }
+
+    /// Reads one file of `folder`.
+    pub fn open(&mut self, folder: Option<&Path>, name: &str, line: usize, warnings: &mut Warnings) {
+        self.files += 1;
+        let result = match folder {
+            _ if self.files > MAX_FILES => Err("too many files of materials".into()),
+            None => Err("the model was not read from a folder".into()),
+            Some(folder) => load(folder, name),
+        };
+        match result {
+            Ok(text) => self.read(&text, name, warnings),
+            Err(why) => {
+                warnings.push("materials not read", || Place::Line(line), || format!("{name}: {why}"));
+            }
+        }
+    }
+
+    /// Reads the text of a material file.
+    pub fn read(&mut self, text: &[u8], file: &str, warnings: &mut Warnings) {
+        // tobj ends at the first number that is missing, so it is shown whole statements only
+        let mut clean = String::new();
+        for (line, text) in lines(text) {
+            let mut words = text.split_whitespace();
+            let keyword = words.next().unwrap_or_default();
+            let numbers =
+                || words.clone().map(|w| w.parse::<f64>().ok().filter(|x| x.is_finite())).collect::<Option<Vec<_>>>();
+            let written = match (keyword, numbers()) {
+                ("newmtl", _) if words.clone().next().is_some() => writeln!(clean, "{}", text.trim()).is_ok(),
+                ("Kd", Some(n)) if n.len() >= 3 => writeln!(clean, "Kd {} {} {}", n[0], n[1], n[2]).is_ok(),
+                ("Kd", Some(n)) if n.len() == 1 => writeln!(clean, "Kd {0} {0} {0}", n[0]).is_ok(),
+                ("d", Some(n)) if n.len() == 1 => writeln!(clean, "d {}", n[0]).is_ok(),
+                ("Tr", Some(n)) if n.len() == 1 => writeln!(clean, "d {}", 1.0 - n[0]).is_ok(),
+                ("newmtl" | "Kd" | "d" | "Tr", _) => false,
+                _ => true,
+            };
+            if !written {
+                warnings.push(
+                    "material statement not read",
+                    || Place::File,
+                    || format!("{file}:{line}: {}", brief(&text)),
+                );
+            }
+        }
+        let Ok((materials, _)) = tobj::load_mtl_buf(&mut clean.as_bytes()) else {
+            warnings.push("materials not read", || Place::File, || format!("{file}: no material file"));
+            return;
+        };
+        for material in materials {
+            let opacity = material.dissolve.unwrap_or(1.0);
+            let rgb = material.diffuse.or(material.dissolve.map(|_| [0.8; 3]));
+            self.colours.insert(material.name, rgb.map(|rgb| colour::linear(rgb, opacity)));
+        }
+    }
+}
+
+/// The beginning of a statement, for messages.
+pub(super) fn brief(text: &str) -> String {
+    let mut words = text.split_whitespace().collect::<Vec<_>>().join(" ");
+    if words.chars().count() > 40 {
+        words = words.chars().take(40).chain("…".chars()).collect();
+    }
+    words
+}
+
+/// The bytes of `folder/name`, which must not leave the folder.
+fn load(folder: &Path, name: &str) -> Result<Vec<u8>, String> {
+    let inside = |c| matches!(c, Component::Normal(_) | Component::CurDir);
+    let name = name.replace('\\', "/");
+    if name.is_empty() || !Path::new(&name).components().all(inside) {
+        return Err("not beside the model".into());
+    }
+    let mut text = Vec::new();
+    let file = std::fs::File::open(folder.join(name)).map_err(|e| e.to_string())?;
+    file.take(MAX_BYTES + 1).read_to_end(&mut text).map_err(|e| e.to_string())?;
+    if text.len() as u64 > MAX_BYTES { Err(format!("larger than {MAX_BYTES} bytes")) } else { Ok(text) }
+}

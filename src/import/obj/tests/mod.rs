@@ -1,0 +1,17 @@
+//! Whole files: hand-made text with exact numbers, and damaged text.
+
+mod damage;
+mod freeform;
+mod polygons;
+
+use crate::import::{Import, obj};
+
+/// Reads text that lies in no folder.
+fn import(text: &str) -> Import {
+    obj(text.as_bytes(), "t.obj", None).expect("an OBJ file")
+}
+
+/// The warnings as they are told.
+fn told(import: &Import) -> Vec<String> {
+    import.warnings.iter().map(ToString::to_string).collect()
+}

@@ -1,0 +1,204 @@
+//! One face: its surface, its loops, and how far they are from the edges.
+//!
+//! ```text
+//!   face ─▶ surface     spline, or a plane, as large as its loops
+//!        └▶ loops ─▶ coedges ─▶ p-curve in (u, v) ─▶ Bézier pieces ─chain─▶ TrimLoop
+//!                           └─▶ edge ─▶ curve in space: distance of the p-curve's image from it
+//! ```
+
+use crate::import::chain::chain;
+use crate::model::{Face, SurfaceKind, TrimLoop};
+use crate::spline::{BSpline, Bezier, Control, PatchGrid, Surface};
+use cadmpeg_ir::document::CadIr;
+use cadmpeg_ir::geometry::nurbs::NurbsSurface;
+use cadmpeg_ir::geometry::pcurve::{Pcurve, PcurveGeometry};
+use cadmpeg_ir::geometry::{Curve, CurveGeometry, SolvedCurveGeometry, SolvedSurfaceGeometry, Surface as Carrier};
+use cadmpeg_ir::topology::{Coedge, Edge, Face as Stated, Loop, LoopBoundaryRole, Sense};
+use glam::{DVec2, DVec3, DVec4};
+use std::collections::HashMap;
+
+/// The records of a file by name.
+pub(super) struct Tables<'i> {
+    faces: HashMap<&'i str, &'i Stated>,
+    surfaces: HashMap<&'i str, &'i Carrier>,
+    loops: HashMap<&'i str, &'i Loop>,
+    coedges: HashMap<&'i str, &'i Coedge>,
+    pcurves: HashMap<&'i str, &'i Pcurve>,
+    edges: HashMap<&'i str, &'i Edge>,
+    curves: HashMap<&'i str, &'i Curve>,
+}
+
+/// A face and what is to be said of it.
+pub(super) struct Built {
+    pub face: Face,
+    pub notes: Vec<String>,
+    /// Millimetres: largest distance of a trim's image from its edge, where it was compared.
+    pub deviation: f64,
+}
+
+/// Distance in millimetres up to which ends in space are one point: Rhino's own default tolerance is 0.001 to
+/// 0.01 of a unit.
+const MEET: f64 = 0.01;
+
+/// Points of a trim that are compared with its edge.
+const COMPARED: usize = 5;
+
+impl<'i> Tables<'i> {
+    pub fn new(ir: &'i CadIr) -> Self {
+        let m = &ir.model;
+        Self {
+            faces: m.faces.iter().map(|x| (x.id.as_str(), x)).collect(),
+            surfaces: m.surfaces.iter().map(|x| (x.id.as_str(), x)).collect(),
+            loops: m.loops.iter().map(|x| (x.id.as_str(), x)).collect(),
+            coedges: m.coedges.iter().map(|x| (x.id.as_str(), x)).collect(),
+            pcurves: m.pcurves.iter().map(|x| (x.id.as_str(), x)).collect(),
+            edges: m.edges.iter().map(|x| (x.id.as_str(), x)).collect(),
+            curves: m.curves.iter().map(|x| (x.id.as_str(), x)).collect(),
+        }
+    }
+
+    /// The face of that name, numbered `id`.
+    pub fn face(&self, name: &str, id: u32) -> Result<Built, String> {
+        let face = self.faces.get(name).ok_or("no such face")?;
+        let carrier = self.surfaces.get(face.surface.as_str()).ok_or("no surface")?;
+        let geometry = carrier.geometry.solved().ok_or("a surface that is only described")?;
+        let mut notes = Vec::new();
+        let mut rings = Vec::new();
+        for ring in face.loops.iter() {
+            let stated = self.loops.get(ring.as_str()).ok_or("no such loop")?;
+            rings.push((self.ring(stated)?, face.loops.role(ring)));
+        }
+        let all = rings.iter().flat_map(|(ring, _)| ring).flat_map(|(curve, _)| curve.points().iter());
+        let (surface, kind, flipped) = spline_of(geometry, all.map(|p| p.point()))?;
+        let grid = surface.patches();
+        let mut loops = Vec::new();
+        let mut deviation = 0.0f64;
+        for (at, (ring, role)) in rings.iter().enumerate() {
+            // the first loop is the outer one where no role says so
+            let hole = match role {
+                LoopBoundaryRole::Inner => true,
+                LoopBoundaryRole::Outer => false,
+                LoopBoundaryRole::Unspecified => at > 0,
+            };
+            loops.push(close(ring, hole, &grid, &mut notes)?);
+            for (curve, edge) in ring {
+                match edge.and_then(|e| self.edge_curve(e)) {
+                    Some(edge) => deviation = deviation.max(distance(curve, &grid, &edge)),
+                    None if edge.is_some() => notes.push("a trim whose edge has no spline to compare with".into()),
+                    None => {}
+                }
+            }
+        }
+        let same_sense = matches!(face.sense, Sense::Forward) != flipped;
+        let colour = face.color.map(super::linear);
+        Ok(Built { face: Face { id, kind, surface, loops, same_sense, colour }, notes, deviation })
+    }
+
+    /// The curves of a loop in `(u, v)`, each run as the loop runs, with its edge.
+    fn ring(&self, stated: &Loop) -> Result<Vec<(BSpline<DVec3>, Option<&'i Edge>)>, String> {
+        let mut ring = Vec::new();
+        for coedge in stated.coedges() {
+            let coedge = self.coedges.get(coedge.as_str()).ok_or("no such trim")?;
+            let edge = self.edges.get(coedge.edge.as_str()).copied();
+            for used in &coedge.pcurves {
+                let pcurve = self.pcurves.get(used.pcurve.as_str()).ok_or("no such curve in (u, v)")?;
+                ring.push((spline(&pcurve.geometry)?, edge));
+            }
+        }
+        if ring.is_empty() { Err("a loop without curves in (u, v)".into()) } else { Ok(ring) }
+    }
+
+    fn edge_curve(&self, edge: &Edge) -> Option<BSpline<DVec4>> {
+        let curve = self.curves.get(edge.curve()?.as_str())?;
+        let CurveGeometry::Solved(SolvedCurveGeometry::Nurbs(nurbs)) = &curve.geometry else { return None };
+        let weights = nurbs.weights();
+        let weight = |i: usize| weights.as_ref().map_or(1.0, |w| w[i].get());
+        let points = nurbs.control_points().into_iter().enumerate();
+        let points = points.map(|(i, p)| {
+            let p = p.get();
+            DVec4::from_point(DVec3::new(p.x, p.y, p.z), weight(i))
+        });
+        BSpline::new(nurbs.degree() as usize, nurbs.knots().as_slice().to_vec(), points.collect()).ok()
+    }
+}
+
+/// The spline of a curve in `(u, v)`.
+fn spline(geometry: &PcurveGeometry) -> Result<BSpline<DVec3>, String> {
+    let PcurveGeometry::Nurbs { nurbs } = geometry else { return Err("a curve in (u, v) that is no spline".into()) };
+    let rows = nurbs.pole_rows();
+    let weights = rows.weights();
+    let weight = |i: usize| weights.as_ref().map_or(1.0, |w| w[i]);
+    let points = rows.raw_points().into_iter().enumerate();
+    let points = points.map(|(i, p)| DVec3::from_point(DVec2::new(p.u, p.v), weight(i))).collect();
+    BSpline::new(nurbs.degree() as usize, nurbs.knots().as_slice().to_vec(), points).map_err(|e| e.to_string())
+}
+
+/// The surface, and whether its stated normal is against `S_u x S_v`.
+fn spline_of(
+    geometry: &SolvedSurfaceGeometry,
+    trims: impl Iterator<Item = DVec2>,
+) -> Result<(Surface, SurfaceKind, bool), String> {
+    match geometry {
+        SolvedSurfaceGeometry::Nurbs(nurbs) => Ok((tensor(nurbs)?, SurfaceKind::BSpline, nurbs.normal_reversed())),
+        SolvedSurfaceGeometry::Plane(plane) => {
+            let (lo, hi) = trims.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), p| (lo.min(p), hi.max(p)));
+            let vector = |v: cadmpeg_ir::math::Vector3| DVec3::new(v.x, v.y, v.z);
+            let o = plane.origin().get();
+            let z = vector((*plane.frame().axis()).into());
+            let x = vector((*plane.frame().reference()).into());
+            let y = z.cross(x);
+            let at = |u: f64, v: f64| (DVec3::new(o.x, o.y, o.z) + x * u + y * v).extend(1.0);
+            let points = vec![at(lo.x, lo.y), at(hi.x, lo.y), at(lo.x, hi.y), at(hi.x, hi.y)];
+            let surface = Surface::new((1, 1), vec![lo.x, lo.x, hi.x, hi.x], vec![lo.y, lo.y, hi.y, hi.y], points);
+            Ok((surface.map_err(|e| e.to_string())?, SurfaceKind::Plane, false))
+        }
+        _ => Err("a surface of another kind than spline and plane".into()),
+    }
+}
+
+fn tensor(nurbs: &NurbsSurface) -> Result<Surface, String> {
+    let (count_u, count_v) = (nurbs.u_count(), nurbs.v_count());
+    let point = |i: usize, j: usize| {
+        let p = nurbs.pole(i, j)?.get();
+        Some(DVec4::from_point(DVec3::new(p.x, p.y, p.z), nurbs.weight(i, j).map_or(1.0, |w| w.get())))
+    };
+    let net = (0..count_v).flat_map(|j| (0..count_u).map(move |i| (i, j)));
+    let net = net.map(|(i, j)| point(i, j)).collect::<Option<Vec<_>>>().ok_or("a control net with holes")?;
+    let knots = |k: &cadmpeg_ir::geometry::nurbs::KnotVector| k.as_slice().to_vec();
+    let degrees = (nurbs.u_degree() as usize, nurbs.v_degree() as usize);
+    Surface::new(degrees, knots(nurbs.u_knots()), knots(nurbs.v_knots()), net).map_err(|e| e.to_string())
+}
+
+/// The loop; gaps are closed where the ends are one point in space.
+fn close(
+    ring: &[(BSpline<DVec3>, Option<&Edge>)],
+    hole: bool,
+    grid: &PatchGrid,
+    notes: &mut Vec<String>,
+) -> Result<TrimLoop, String> {
+    let pieces: Vec<Bezier<DVec3>> =
+        ring.iter().flat_map(|(curve, _)| curve.beziers()).map(|span| span.piece).collect();
+    chain(&pieces, hole, notes, |a, b, _| (grid.point(a.x, a.y) - grid.point(b.x, b.y)).length() <= MEET)
+}
+
+/// Largest distance of the image of a trim from the curve of its edge, at a few of its points.
+fn distance(trim: &BSpline<DVec3>, grid: &PatchGrid, edge: &BSpline<DVec4>) -> f64 {
+    let (a, b) = trim.domain();
+    let at = |i: usize| trim.point(a + (b - a) * i as f64 / (COMPARED - 1) as f64);
+    (0..COMPARED).map(at).map(|p| nearest(edge, grid.point(p.x, p.y))).fold(0.0, f64::max)
+}
+
+/// Distance of a point from a curve: the best of a few samples a control point, then golden sections.
+fn nearest(curve: &BSpline<DVec4>, p: DVec3) -> f64 {
+    let (a, b) = curve.domain();
+    let steps = 4 * curve.points().len() + 16;
+    let far = |t: f64| (curve.point(t) - p).length();
+    let at = |i: usize| a + (b - a) * i as f64 / steps as f64;
+    let best = (0..=steps).min_by(|&i, &j| far(at(i)).total_cmp(&far(at(j)))).unwrap_or(0);
+    let (mut lo, mut hi) = (at(best.saturating_sub(1)), at((best + 1).min(steps)));
+    for _ in 0..60 {
+        let (x, y) = (lo + (hi - lo) * 0.382, lo + (hi - lo) * 0.618);
+        if far(x) < far(y) { hi = y } else { lo = x }
+    }
+    far(0.5 * (lo + hi)).min(far(at(best)))
+}

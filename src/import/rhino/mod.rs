@@ -1,0 +1,208 @@
+//! Rhino `.3dm` files, decoded by `cadmpeg-codec-rhino`.
+//!
+//! ```text
+//!   bytes ─cadmpeg─▶ bodies, shells, faces, loops, p-curves ─face─▶ Face      trims are the file's p-curves
+//!                    tessellations without a body ────────────────▶ Mesh
+//!                    products and their occurrences ──────────────▶ Instance  blocks
+//! ```
+//!
+//! Lengths come in millimetres. A face's trims are the curves in `(u, v)` that the file holds; the distance
+//! of their images from the edges in space, which the file holds too, is reported as the deviation. What the
+//! decoder says it lost is among the warnings; objects of hidden layers are read, but not placed.
+
+mod face;
+
+use super::{Import, ImportError, ImportReport, Place, Warnings, colour, facets};
+use crate::model::{Colour, Instance, Mesh, Model, Part};
+use cadmpeg_codec_rhino::RhinoCodec;
+use cadmpeg_ir::document::CadIr;
+use cadmpeg_ir::products::{OccurrenceParent, PrototypeReference};
+use cadmpeg_ir::topology::{BodyKind, Color};
+use cadmpeg_ir::transform::Transform;
+use cadmpeg_ir::{Codec, DecodeOptions};
+use face::Tables;
+use glam::{DAffine3, DMat3, DVec3};
+use std::collections::{BTreeMap, HashMap, HashSet};
+use std::io::Cursor;
+
+/// Deepest nesting of blocks.
+const MAX_LEVELS: usize = 64;
+
+/// Reads a file; `name` is its name in messages.
+pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    let failed = |why: String| ImportError::Rhino { file: name.to_owned(), why };
+    let decoded = RhinoCodec.decode(&mut Cursor::new(bytes), &DecodeOptions::default());
+    let decoded = decoded.map_err(|error| failed(error.to_string()))?;
+    let ir = decoded.ir();
+    let mut warnings = Warnings::new(name);
+    for loss in &decoded.report().losses {
+        warnings.push("not decoded", || Place::File, || loss.message.clone());
+    }
+    let mut report = ImportReport { format: "Rhino 3dm".into(), ..ImportReport::default() };
+    let attribute = |key: &str| {
+        let found = ir.source.iter().flat_map(|s| &s.attributes).find(|(k, _)| k.as_str() == key);
+        found.map(|(_, value)| value.clone()).unwrap_or_default()
+    };
+    report.written_by = attribute("application_name");
+    report.units = vec![attribute("millimeters_per_unit")].into_iter().filter(|u| !u.is_empty()).collect();
+    report.units.iter_mut().for_each(|u| *u = format!("{u} mm"));
+    let mut model = Model { unit: report.units.join(", "), ..Model::default() };
+    model.name = std::path::Path::new(name).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
+    let part_of = parts(ir, &mut model, &mut report, &mut warnings);
+    place(ir, &part_of, &mut model, &mut warnings);
+    meshes(ir, &mut model, &mut warnings);
+    for (what, count) in [("subdivision surface not read", ir.model.subds.len())] {
+        if count > 0 {
+            warnings.push(what, || Place::File, || format!("{count} of them"));
+        }
+    }
+    report.bodies = model.parts.len();
+    let (warnings, counts) = warnings.finish();
+    report.warnings = counts;
+    Ok(Import { model, warnings, report })
+}
+
+/// One part a body; places of parts by the names of bodies.
+fn parts(ir: &CadIr, model: &mut Model, report: &mut ImportReport, warnings: &mut Warnings) -> HashMap<String, usize> {
+    let tables = Tables::new(ir);
+    let shells: BTreeMap<_, _> = ir.model.shells.iter().map(|s| (s.id.as_str(), s)).collect();
+    let regions: BTreeMap<_, _> = ir.model.regions.iter().map(|r| (r.id.as_str(), r)).collect();
+    report.pcurves = ir.model.pcurves.len();
+    report.edges = ir.model.edges.len();
+    let mut part_of = HashMap::new();
+    for body in &ir.model.bodies {
+        let closed = matches!(body.kind, BodyKind::Solid);
+        let mut part = Part { name: body.name.clone().unwrap_or_default(), closed, ..Part::default() };
+        let own = body.color.map(linear);
+        let in_regions = body.regions.iter().filter_map(|r| regions.get(r.as_str()));
+        let in_shells = in_regions.flat_map(|r| &r.shells).filter_map(|s| shells.get(s.as_str()));
+        for id in in_shells.flat_map(|s| s.faces()) {
+            report.faces += 1;
+            let number = report.faces as u32;
+            match tables.face(id.as_str(), number) {
+                Ok(mut built) => {
+                    built.face.colour = built.face.colour.or(own);
+                    report.deviation = report.deviation.max(built.deviation);
+                    for note in built.notes {
+                        *report.healed.entry(ImportReport::reason(&note)).or_default() += 1;
+                        warnings.push("face healed", || Place::File, || format!("{}: {note}", id.as_str()));
+                    }
+                    part.faces.push(built.face);
+                }
+                Err(why) => {
+                    *report.dropped.entry(ImportReport::reason(&why)).or_default() += 1;
+                    warnings.push("face left out", || Place::File, || format!("{}: {why}", id.as_str()));
+                    part.closed = false;
+                }
+            }
+        }
+        if part.faces.is_empty() {
+            continue;
+        }
+        part_of.insert(body.id.as_str().to_owned(), model.parts.len());
+        model.parts.push(part);
+    }
+    part_of
+}
+
+/// Bodies where they stand, and those of blocks once for every use of the block.
+fn place(ir: &CadIr, part_of: &HashMap<String, usize>, model: &mut Model, warnings: &mut Warnings) {
+    let definitions: HashMap<_, _> = ir.model.product_definitions.iter().map(|d| (d.id.as_str(), d)).collect();
+    let occurrences: HashMap<_, _> = ir.model.occurrences.iter().map(|o| (o.id.as_str(), o)).collect();
+    let mut placed: HashSet<&str> = HashSet::new();
+    for occurrence in &ir.model.occurrences {
+        let PrototypeReference::Local { definition } = &occurrence.prototype else {
+            warnings.push("external block not followed", || Place::File, || occurrence.id.as_str().to_owned());
+            continue;
+        };
+        let (mut transform, mut at, mut levels) = (affine(occurrence.transform), &occurrence.parent, 0);
+        while let OccurrenceParent::Occurrence { occurrence } = at {
+            let Some(parent) = occurrences.get(occurrence.as_str()).filter(|_| levels < MAX_LEVELS) else { break };
+            transform = affine(parent.transform) * transform;
+            at = &parent.parent;
+            levels += 1;
+        }
+        let bodies = definitions.get(definition.as_str()).map(|d| d.bodies.as_slice()).unwrap_or_default();
+        for body in bodies {
+            placed.insert(body.as_str());
+            let Some(&part) = part_of.get(body.as_str()) else { continue };
+            let name = occurrence.name.clone().unwrap_or_default();
+            model.instances.push(Instance { part, transform, colour: None, name });
+        }
+    }
+    let in_blocks: HashSet<&str> =
+        ir.model.product_definitions.iter().flat_map(|d| &d.bodies).map(|b| b.as_str()).collect();
+    for body in &ir.model.bodies {
+        let Some(&part) = part_of.get(body.id.as_str()) else { continue };
+        if placed.contains(body.id.as_str()) || in_blocks.contains(body.id.as_str()) {
+            continue;
+        }
+        if body.visible == Some(false) {
+            warnings.push("hidden object not placed", || Place::File, || body.id.as_str().to_owned());
+            continue;
+        }
+        let transform = body.transform.map_or(DAffine3::IDENTITY, affine);
+        let name = model.parts[part].name.clone();
+        model.instances.push(Instance { part, transform, colour: None, name });
+    }
+}
+
+/// Mesh objects; the meshes with which Rhino draws its bodies are not needed.
+fn meshes(ir: &CadIr, model: &mut Model, warnings: &mut Warnings) {
+    let mut id = model.face_count() as u32;
+    for mesh in ir.model.tessellations.iter().filter(|t| t.body.is_none() && t.faces.is_empty()) {
+        let source = mesh.source_object.as_ref();
+        if source.is_some_and(|s| s.visible == Some(false)) {
+            warnings.push("hidden object not placed", || Place::File, || mesh.id.as_str().to_owned());
+            continue;
+        }
+        id += 1;
+        let positions = mesh.vertices().into_iter().map(|p| p.get()).map(|p| DVec3::new(p.x, p.y, p.z)).collect();
+        let triangles = mesh.triangles();
+        let at = |n: &cadmpeg_ir::features::FiniteVector3| {
+            let n = n.get();
+            DVec3::new(n.x, n.y, n.z)
+        };
+        let corners: Vec<DVec3> = mesh.per_corner_normals().iter().map(at).collect();
+        let vertices: Vec<DVec3> = mesh.vertex_normals().iter().map(at).collect();
+        let normals: Vec<[DVec3; 3]> = if corners.len() == 3 * triangles.len() {
+            corners.chunks_exact(3).map(|c| [c[0], c[1], c[2]]).collect()
+        } else {
+            let of = |t: &[u32; 3]| {
+                let n = t.map(|v| vertices.get(v as usize).copied());
+                Some([n[0]?, n[1]?, n[2]?])
+            };
+            triangles.iter().map(of).collect::<Option<_>>().unwrap_or_default()
+        };
+        match Mesh::new(id, positions, triangles, normals) {
+            Ok(mut built) => {
+                built.colour = source.and_then(|s| s.color).map(linear);
+                let name = source.and_then(|s| s.name.clone()).unwrap_or_default();
+                let closed = facets::closed([&built]);
+                let instance = Instance {
+                    part: model.parts.len(),
+                    transform: DAffine3::IDENTITY,
+                    colour: None,
+                    name: name.clone(),
+                };
+                model.parts.push(Part { name, meshes: vec![built], closed, ..Part::default() });
+                model.instances.push(instance);
+            }
+            Err(error) => warnings.push("mesh left out", || Place::File, || error.to_string()),
+        }
+    }
+}
+
+/// Rhino stores what its screen shows.
+fn linear(c: Color) -> Colour {
+    colour::linear([c.r(), c.g(), c.b()].map(f64::from), f64::from(c.a()))
+}
+
+fn affine(transform: Transform) -> DAffine3 {
+    let [x, y, z] = transform.affine_rows();
+    let column = |i: usize| DVec3::new(x[i], y[i], z[i]);
+    DAffine3::from_mat3_translation(DMat3::from_cols(column(0), column(1), column(2)), column(3))
+}
+
+#[cfg(test)]
+mod tests;

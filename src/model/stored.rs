@@ -1,0 +1,90 @@
+//! What is stored of a model, and the checks between a file and a [`Model`].
+//!
+//! ```text
+//!   bytes ──serde──▶ ModelData ──parts named by instances, numbers of faces, colours──▶ Model
+//!                       └─ FaceData ─▶ Face      each type checks its own on the way up:
+//!                       └─ Mesh, Surface, TrimLoop      see their `try_from`
+//! ```
+//!
+//! The code that builds a model in memory keeps these invariants by construction; a file keeps nothing.
+
+use super::{Colour, Face, Instance, Model, Part, SurfaceKind, TrimLoop};
+use crate::spline::Surface;
+use serde::Deserialize;
+
+/// Why stored parts and instances are not a model.
+#[allow(missing_docs)] // the messages say what each field is
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+pub enum ModelError {
+    /// An instance of nothing.
+    #[error("instance {instance} is of part {part}, and there are {parts}")]
+    Part { instance: usize, part: usize, parts: usize },
+    /// A placement that is not made of numbers.
+    #[error("the transform of instance {instance} is not finite")]
+    Transform { instance: usize },
+    /// A face or mesh with the number of the background.
+    #[error("a face or mesh has number 0")]
+    Number,
+    /// A colour outside `[0, 1]`.
+    #[error("a colour is not between 0 and 1")]
+    Colour,
+}
+
+/// A [`Model`] as stored.
+#[derive(Deserialize)]
+pub(super) struct ModelData {
+    name: String,
+    parts: Vec<Part>,
+    instances: Vec<Instance>,
+    unit: String,
+}
+
+/// A [`Face`] as stored.
+#[derive(Deserialize)]
+pub(super) struct FaceData {
+    id: u32,
+    kind: SurfaceKind,
+    surface: Surface,
+    loops: Vec<TrimLoop>,
+    same_sense: bool,
+    colour: Option<Colour>,
+}
+
+impl TryFrom<FaceData> for Face {
+    type Error = ModelError;
+
+    fn try_from(data: FaceData) -> Result<Self, ModelError> {
+        check_colour(data.colour)?;
+        let FaceData { id, kind, surface, loops, same_sense, colour } = data;
+        if id == 0 { Err(ModelError::Number) } else { Ok(Self { id, kind, surface, loops, same_sense, colour }) }
+    }
+}
+
+impl TryFrom<ModelData> for Model {
+    type Error = ModelError;
+
+    fn try_from(data: ModelData) -> Result<Self, ModelError> {
+        let ModelData { name, parts, instances, unit } = data;
+        for mesh in parts.iter().flat_map(|part| &part.meshes) {
+            check_colour(mesh.colour)?;
+            if mesh.id == 0 {
+                return Err(ModelError::Number);
+            }
+        }
+        for (instance, placed) in instances.iter().enumerate() {
+            check_colour(placed.colour)?;
+            if placed.part >= parts.len() {
+                return Err(ModelError::Part { instance, part: placed.part, parts: parts.len() });
+            }
+            if !placed.transform.is_finite() {
+                return Err(ModelError::Transform { instance });
+            }
+        }
+        Ok(Self { name, parts, instances, solids: Vec::new(), unit })
+    }
+}
+
+fn check_colour(colour: Option<Colour>) -> Result<(), ModelError> {
+    let sane = colour.iter().flatten().all(|c| (0.0..=1.0).contains(c));
+    if sane { Ok(()) } else { Err(ModelError::Colour) }
+}
