@@ -31,6 +31,7 @@ mod frame;
 mod invert;
 mod law;
 mod loops;
+mod map;
 mod nest;
 mod pieces;
 mod preimage;
@@ -45,6 +46,7 @@ mod tests;
 
 pub use build::{BuiltFace, build_face};
 pub use error::BuildError;
+pub use map::SurfaceMap;
 
 use crate::spline::{BSpline, Surface};
 use glam::{DVec3, DVec4};

@@ -1,7 +1,7 @@
 //! CAD files in, [`Model`]s out.
 //!
 //! ```text
-//!   path ──read, gunzip──▶ bytes ──format by content──▶ step ──▶ Import { model, warnings, report }
+//!   path ──read, gunzip──▶ bytes ──format by content──▶ step, iges ──▶ Import { model, warnings, report }
 //! ```
 //!
 //! A file that is not what it claims to be is an [`ImportError`]. Everything smaller (a bad record, a
@@ -9,6 +9,8 @@
 //! Time and memory are bounded by a multiple of the file's size, whatever its content.
 
 mod error;
+mod iges;
+mod locate;
 mod report;
 mod step;
 
@@ -56,9 +58,15 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
     if step::recognise(&bytes) {
         return step(&bytes, &name);
     }
+    if iges::recognise(&bytes) {
+        return iges(&bytes, &name);
+    }
     match path.file_name().and_then(|f| f.to_str()).map(str::to_ascii_lowercase) {
         Some(f) if [".stp", ".step", ".p21", ".stpz", ".stp.gz", ".step.gz"].iter().any(|e| f.ends_with(e)) => {
             Err(ImportError::NotStep { file: name })
+        }
+        Some(f) if [".igs", ".iges", ".igs.gz", ".iges.gz"].iter().any(|e| f.ends_with(e)) => {
+            Err(ImportError::NotIges { file: name })
         }
         _ => Err(ImportError::Format { file: name }),
     }
@@ -70,6 +78,14 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
 /// [`ImportError`] when the text is not STEP or holds no usable data.
 pub fn step(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     step::read(bytes, name)
+}
+
+/// Reads IGES 5.3 and older in fixed format; `name` is the file's name in messages.
+///
+/// # Errors
+/// [`ImportError`] when the text is not IGES, is in compressed or binary form, or holds no entity.
+pub fn iges(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    iges::read(bytes, name)
 }
 
 /// Undoes gzip; output is bounded by [`MAX_EXPANSION`].

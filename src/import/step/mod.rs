@@ -21,7 +21,6 @@ mod curve;
 mod entity;
 mod face;
 mod geometry;
-mod locate;
 mod part21;
 mod product;
 mod spline;
@@ -30,8 +29,9 @@ mod units;
 mod walk;
 
 pub(super) use part21::recognise;
+pub(super) use surface::{as_cylinder, offset};
 
-use super::{Import, ImportError, ImportReport, Warnings};
+use super::{Import, ImportError, ImportReport, Warnings, locate};
 use crate::brep::build_face;
 use crate::model::{Instance, Model, Part};
 use assembly::Assembly;

@@ -1,0 +1,259 @@
+//! Trimmed and bounded surfaces: 144 with 142, 143 with 141.
+//!
+//! ```text
+//!   C(t) in space ───────────────┐                    both given: they should be the same curve
+//!   B(t) in (u, v) ──S──▶ S(B(t))┴──▶ edges ──▶ brep
+//! ```
+//!
+//! A curve in space is shared by the two faces that meet along it, a curve in `(u, v)` is not: where both
+//! are there, C is used. B is used instead where there is no C; where the file prefers B and the
+//! surface lies farther than the file's resolution from C; where C is farther off than a thousandth of
+//! the face, or makes no face, whatever the file prefers. S(B(t)) is fitted to `1e-11` of its box, so from
+//! there on both ways are one.
+
+use super::curve::Segment;
+use super::entity::{Entity, Fault};
+use super::fit::fit;
+use super::geometry::Geometry;
+use super::surface::Carrier;
+use crate::brep::{Boundary, BuildError, BuiltFace, CurveGeometry, Edge, FaceGeometry, SurfaceMap, build_face};
+use crate::model::Bounds;
+use glam::{DAffine2, DAffine3, DVec2, DVec3};
+
+/// A surface and what bounds it.
+#[derive(Clone, Debug)]
+pub(super) struct Sheet {
+    /// The entity.
+    pub id: u32,
+    pub carrier: Carrier,
+    pub loops: Vec<Trim>,
+    /// The border of the surface itself bounds it, too.
+    pub natural: bool,
+}
+
+/// One loop, in space or in the file's parameters or both.
+#[derive(Clone, Debug, Default)]
+pub(super) struct Trim {
+    pub model: Vec<Segment>,
+    pub parameter: Vec<Segment>,
+    /// The file says that the curves in the parameters are the better ones.
+    pub prefers_parameter: bool,
+}
+
+/// Distance from the surface beyond which a curve in space gives way to one in the parameters, of the
+/// size of the face.
+const FAR: f64 = 1e-3;
+
+impl<'a> Geometry<'a> {
+    /// 143, 144, or a surface as a face.
+    pub fn sheet(&self, id: u32, outer: &DAffine3) -> Result<Sheet, Fault> {
+        if !matches!(Entity::find(self.file, id)?.kind(), 143 | 144) {
+            return Ok(Sheet { id, carrier: self.surface(id, outer)?, loops: Vec::new(), natural: true });
+        }
+        self.nested(id, |entity| {
+            let map = self.placed(entity, outer)?;
+            if entity.kind() == 143 {
+                let carrier = self.surface(entity.pointer(2)?, &map)?;
+                let bounds = 4..4 + entity.count(3, 1)?;
+                let loops = bounds.map(|i| self.boundary(entity.pointer(i)?, &map)).collect::<Result<Vec<_>, _>>()?;
+                return Ok(Sheet { id, carrier, natural: loops.is_empty(), loops });
+            }
+            let carrier = self.surface(entity.pointer(1)?, &map)?;
+            let outer_loop = entity.integer(2)? != 0;
+            let mut loops = Vec::new();
+            if outer_loop {
+                loops.push(self.curve_on_surface(entity.pointer(4)?, &map)?);
+            }
+            for index in 5..5 + entity.count(3, 1)? {
+                loops.push(self.curve_on_surface(entity.pointer(index)?, &map)?);
+            }
+            Ok(Sheet { id, carrier, loops, natural: !outer_loop })
+        })
+    }
+
+    /// 142.
+    fn curve_on_surface(&self, id: u32, outer: &DAffine3) -> Result<Trim, Fault> {
+        self.nested(id, |entity| {
+            let entity = entity.of_kind(142, "142, a curve on a surface")?;
+            let map = self.placed(entity, outer)?;
+            let parameter = entity.optional(3)?.map(|b| self.segments(b, &DAffine3::IDENTITY));
+            let model = entity.optional(4)?.map(|c| self.segments(c, &map));
+            let prefers_parameter = entity.integer(5)? == 1;
+            self.either(id, model, parameter, prefers_parameter)
+        })
+    }
+
+    /// 141: curves in space, each with those in the parameters that stand for it.
+    fn boundary(&self, id: u32, outer: &DAffine3) -> Result<Trim, Fault> {
+        self.nested(id, |entity| {
+            let entity = entity.of_kind(141, "141, a boundary")?;
+            let map = self.placed(entity, outer)?;
+            let prefers_parameter = entity.integer(2)? == 2;
+            let mut trim = Trim { prefers_parameter, ..Trim::default() };
+            let mut in_parameters = true;
+            let mut at = 5;
+            for _ in 0..entity.count(4, 3)? {
+                let model = self.segments(entity.pointer(at)?, &map)?;
+                if entity.integer(at + 1)? == 2 {
+                    trim.model.extend(model.into_iter().rev().map(Segment::reversed));
+                } else {
+                    trim.model.extend(model);
+                }
+                let count = entity.count(at + 2, 1)?;
+                in_parameters &= count > 0;
+                for index in at + 3..at + 3 + count {
+                    trim.parameter.extend(self.segments(entity.pointer(index)?, &DAffine3::IDENTITY)?);
+                }
+                at += 3 + count;
+            }
+            if !in_parameters {
+                trim.parameter.clear();
+            }
+            Ok(trim)
+        })
+    }
+
+    /// Of two descriptions of a loop one may be damaged.
+    fn either(
+        &self,
+        id: u32,
+        model: Option<Result<Vec<Segment>, Fault>>,
+        parameter: Option<Result<Vec<Segment>, Fault>>,
+        prefers_parameter: bool,
+    ) -> Result<Trim, Fault> {
+        let trim = |model, parameter| Ok(Trim { model, parameter, prefers_parameter });
+        match (model, parameter) {
+            (None, None) => Err(Fault::Value { id, what: "neither of its two curves is there" }),
+            (Some(model), None) => trim(model?, Vec::new()),
+            (None, Some(parameter)) => trim(Vec::new(), parameter?),
+            (Some(Ok(model)), Some(Ok(parameter))) => trim(model, parameter),
+            (Some(Err(fault)), Some(Ok(parameter))) => {
+                self.note("one of two trim curves ignored", id, fault.to_string());
+                trim(Vec::new(), parameter)
+            }
+            (Some(model), Some(Err(fault))) => {
+                let model = model?;
+                self.note("one of two trim curves ignored", id, fault.to_string());
+                trim(model, Vec::new())
+            }
+        }
+    }
+}
+
+impl Sheet {
+    /// The face, drawn along the better curves; `tolerance` in mm.
+    ///
+    /// # Errors
+    /// [`BuildError`] of the last attempt.
+    pub fn build(&self, tolerance: f64) -> Result<BuiltFace, BuildError> {
+        let map = SurfaceMap::new(&self.carrier.surface, 1e-3 * tolerance.max(1e-9));
+        let map = map.map_err(|reason| BuildError::Surface { face: self.id, reason })?;
+        let both = self.loops.iter().any(|l| !l.model.is_empty() && !l.parameter.is_empty());
+        let usable = both && self.carrier.to_native.is_some();
+        let first = self.attempt(&map, tolerance, false);
+        if !usable {
+            return first;
+        }
+        let points = self.loops.iter().flat_map(|l| &l.model).flat_map(|s| s.samples(4).collect::<Vec<_>>());
+        let size = points.fold(Bounds::EMPTY, Bounds::with).diagonal();
+        let prefers = self.loops.iter().any(|l| l.prefers_parameter);
+        let limit = if prefers { tolerance.max(1e-7 * size) } else { FAR * size };
+        let deviation = first.as_ref().map_or(f64::INFINITY, |f| f.deviation);
+        if deviation <= limit {
+            return first;
+        }
+        match (first, self.attempt(&map, tolerance, true)) {
+            (Ok(first), Ok(mut second)) if second.deviation < first.deviation => {
+                let by = first.deviation;
+                let id = self.id;
+                second.notes.push(format!("face #{id}: curves in space lie {by:.3e} mm off, those in (u, v) are used"));
+                Ok(second)
+            }
+            (Err(error), Ok(mut second)) => {
+                let id = self.id;
+                second.notes.push(format!("face #{id}: curves in (u, v) are used, for with those in space: {error}"));
+                Ok(second)
+            }
+            (first, _) => first,
+        }
+    }
+
+    /// The face along the curves in space, or in the parameters where those are there.
+    fn attempt(&self, map: &SurfaceMap, tolerance: f64, in_parameters: bool) -> Result<BuiltFace, BuildError> {
+        let mut edges = Vec::new();
+        let mut bounds = Vec::new();
+        for trim in &self.loops {
+            let from = edges.len();
+            if trim.model.is_empty() || (in_parameters && !trim.parameter.is_empty()) {
+                let to_native = self.carrier.to_native.ok_or(BuildError::Surface {
+                    face: self.id,
+                    reason: "its parameters in the file are not those of a curve on it",
+                })?;
+                for segment in &trim.parameter {
+                    edges.extend(lift(map, &to_native, segment).map(|s| s.edge()));
+                }
+            } else {
+                edges.extend(trim.model.iter().map(Segment::edge));
+            }
+            let mut uses: Vec<(usize, bool)> = (from..edges.len()).map(|i| (i, true)).collect();
+            if self.carrier.flipped {
+                uses.reverse();
+                uses.iter_mut().for_each(|u| u.1 = false);
+            }
+            bounds.push(Boundary::Edges(uses));
+        }
+        if self.natural {
+            bounds.extend(self.border(map, &mut edges)?);
+        }
+        let face = FaceGeometry {
+            id: self.id,
+            surface: self.carrier.surface.clone(),
+            bounds,
+            same_sense: !self.carrier.flipped,
+        };
+        build_face(&face, &edges, tolerance)
+    }
+
+    /// The border of the surface; `None` where it is a whole spline or closed anyway.
+    fn border(&self, map: &SurfaceMap, edges: &mut Vec<Edge>) -> Result<Option<Boundary>, BuildError> {
+        let unbounded = BuildError::Unbounded { face: self.id };
+        let [(u0, u1), (v0, v1)] = self.carrier.natural.ok_or(unbounded)?;
+        let covers = |(a, b): (f64, f64), whole: Option<(f64, f64)>| {
+            whole.is_some_and(|(lo, hi)| (b - a) >= (hi - lo) * (1.0 - 1e-9))
+        };
+        let [u, v] = map.natural();
+        let spline = matches!(self.carrier.surface, crate::brep::SurfaceGeometry::BSpline(_));
+        if covers((u0, u1), u) && covers((v0, v1), v) && (map.is_closed() || (spline && self.loops.is_empty())) {
+            return Ok(None);
+        }
+        let corners = [DVec2::new(u0, v0), DVec2::new(u1, v0), DVec2::new(u1, v1), DVec2::new(u0, v1)];
+        let from = edges.len();
+        for i in 0..4 {
+            let (a, b) = (corners[i], corners[(i + 1) % 4]);
+            let curve = CurveGeometry::Line { origin: a.extend(0.0), direction: (b - a).extend(0.0) };
+            let side = Segment { id: self.id, curve, start: 0.0, end: 1.0 };
+            edges.extend(lift(map, &DAffine2::IDENTITY, &side).map(|s| s.edge()));
+        }
+        Ok(Some(Boundary::Edges((from..edges.len()).map(|i| (i, true)).collect())))
+    }
+}
+
+/// A curve in the parameters as one in space; `None` where it is a point.
+fn lift(map: &SurfaceMap, to_native: &DAffine2, segment: &Segment) -> Option<Segment> {
+    let at = |t: f64| map.jet(to_native.transform_point2(segment.point(t).truncate())).point;
+    let (a, b) = (segment.start, segment.end);
+    let inside: Vec<f64> = match &segment.curve {
+        CurveGeometry::BSpline(c) => c.knots().to_vec(),
+        CurveGeometry::Line { .. } => Vec::new(),
+        _ => (1..8).map(|i| a + (b - a) * f64::from(i) / 8.0).collect(),
+    };
+    let mut breaks: Vec<f64> = inside.into_iter().filter(|t| *t > a && *t < b).chain([a, b]).collect();
+    breaks.sort_by(f64::total_cmp);
+    breaks.dedup_by(|y, x| *y - *x <= 1e-12 * (b - a));
+    let spline = fit(at, &breaks)?;
+    let first = spline.points()[0].truncate();
+    let apart = |p: &DVec3| p.distance(first);
+    let size = spline.points().iter().map(|p| apart(&p.truncate())).fold(0.0, f64::max);
+    let rounding = 1e-12 * first.length();
+    (size > rounding).then(|| Segment { curve: CurveGeometry::BSpline(spline), ..segment.clone() })
+}
