@@ -29,6 +29,11 @@ impl SurfaceMap {
         self.0.natural
     }
 
+    /// Parameters strictly inside `(a, b)` across which the surface may crease; axis 0 is `u`.
+    pub fn creases(&self, axis: usize, a: f64, b: f64) -> Vec<f64> {
+        self.0.creases(axis, a, b)
+    }
+
     /// The surface has no border: each parameter is periodic, or ends at poles.
     pub fn is_closed(&self) -> bool {
         self.0.is_closed()

@@ -51,7 +51,7 @@ impl Segment {
     }
 
     /// `count + 1` points from end to end.
-    pub fn samples(&self, count: usize) -> impl Iterator<Item = DVec3> {
+    pub fn samples(&self, count: usize) -> impl Iterator<Item = DVec3> + use<'_> {
         let at = move |i: usize| self.start + (self.end - self.start) * i as f64 / count as f64;
         (0..=count).map(move |i| self.point(at(i)))
     }
@@ -168,7 +168,7 @@ impl<'a> Geometry<'a> {
         Ok(Segment { id, curve: CurveGeometry::BSpline(spline), start: 0.0, end: last })
     }
 
-    /// 130: exact for lines and arcs, else fitted to `1e-11` of its box.
+    /// 130: exact for lines and arcs, else fitted to `1e-10` of its box.
     fn offset_curve(&self, entity: Entity<'a>, map: &DAffine3) -> Result<Vec<Segment>, Fault> {
         let id = entity.id();
         if entity.integer(2)? != 1 {

@@ -31,6 +31,8 @@ pub(super) struct Entry {
     pub matrix: u32,
     /// Not shown.
     pub blank: bool,
+    /// Another entity cannot do without it.
+    pub dependent: bool,
     /// What it is for: 0 geometry, 1 annotation, 2 definition, 5 in a parameter plane.
     pub purpose: u8,
     /// A standard colour, or the negative of a colour definition.
@@ -103,6 +105,7 @@ fn entry(id: u32, (first, second): (&[u8], &[u8]), line: u32) -> Result<Entry, S
         level: integer(first, 4, "level")?,
         matrix: positive(first, 6, "matrix pointer")?,
         blank: status[1] == 1,
+        dependent: matches!(status[3], 1 | 3),
         purpose: 10 * status[4] + status[5],
         colour: integer(second, 2, "colour")?,
         label: if label.is_empty() || number.is_empty() || number == "0" { label } else { format!("{label}:{number}") },

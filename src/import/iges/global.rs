@@ -141,7 +141,7 @@ mod tests {
         assert_eq!((g.delimiters, g.unit, g.version), (Delimiters::default(), 25.4, "5.3"));
         assert_eq!((g.product.as_str(), g.system.as_str()), ("part", "sys pre"));
         assert!((g.resolution - 25.4e-4).abs() < 1e-18, "{}", g.resolution);
-        let (g, w) = read("1H|| 1H#|4Hpart|||||||||0.125|6|1HM#");
+        let (g, w) = read("1H|| 1H#|4Hpart||||||||||0.125|6|1HM#");
         assert!(w.is_empty(), "{w:?}");
         assert_eq!((g.delimiters, g.unit), (Delimiters { parameter: b'|', record: b'#' }, 8e3));
     }

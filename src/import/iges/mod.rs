@@ -134,3 +134,6 @@ fn model_name(product: &str, file: &str) -> String {
     let stem = std::path::Path::new(file).file_stem();
     stem.map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
 }
+
+#[cfg(test)]
+mod tests;

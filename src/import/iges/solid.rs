@@ -40,15 +40,21 @@ struct Context<'m> {
 }
 
 impl<'a> Geometry<'a> {
-    /// 186, or a 514 by itself.
+    /// 186, or a 514 or 510 by itself.
     pub fn shells(&self, id: u32, outer: &DAffine3) -> Result<Shells, Fault> {
         let mut shells = Shells::default();
         self.nested(id, |entity| {
             // a reflection turns normals inside out
             let sense = outer.matrix3.determinant() > 0.0;
-            if entity.kind() == 514 {
-                let context = Context { map: outer, sense, colour: None };
-                return self.shell(entity, context, &mut shells);
+            let context = Context { map: outer, sense, colour: None };
+            match entity.kind() {
+                510 => {
+                    shells.face_count = 1;
+                    let face = self.face(entity, context, &mut shells);
+                    return self.keep(id, face, &mut shells);
+                }
+                514 => return self.shell(entity, context, &mut shells),
+                _ => {}
             }
             let entity = entity.of_kind(186, "186, a solid")?;
             let map = self.placed(entity, outer)?;
@@ -74,11 +80,22 @@ impl<'a> Geometry<'a> {
             let sense = context.sense == (entity.integer(3 + 2 * i)? != 0);
             shells.face_count += 1;
             let mapped = self.nested(face, |face| self.face(face, Context { map: &map, sense, colour }, shells));
-            match mapped {
-                Ok(mapped) => shells.faces.push(mapped),
-                Err(fault @ Fault::Exhausted(_)) => return Err(fault),
-                Err(fault) => self.note(FACE_LOST, face, fault.to_string()),
-            }
+            self.keep(face, mapped, shells)?;
+        }
+        Ok(())
+    }
+
+    /// Keeps a face, or tells why not; fails only when the budget of work is spent.
+    fn keep(
+        &self,
+        id: u32,
+        face: Result<(FaceGeometry, Option<Colour>), Fault>,
+        shells: &mut Shells,
+    ) -> Result<(), Fault> {
+        match face {
+            Ok(face) => shells.faces.push(face),
+            Err(fault @ Fault::Exhausted(_)) => return Err(fault),
+            Err(fault) => self.note(FACE_LOST, id, fault.to_string()),
         }
         Ok(())
     }

@@ -43,6 +43,36 @@ impl Carrier {
         let flipped = to_native.matrix2.determinant() < 0.0;
         Self { surface, to_native: Some(to_native), flipped, natural }
     }
+
+    /// The same for a face that ends where the surface does: a profile that goes on beyond its range
+    /// becomes one that ends there, in parameters of its own.
+    pub fn bounded(self, id: u32) -> Result<Self, Fault> {
+        let Some([u, v]) = self.natural else { return Ok(self) };
+        let end = |profile: Box<CurveGeometry>, (start, end): (f64, f64)| match *profile {
+            CurveGeometry::Circle { .. } | CurveGeometry::Ellipse { .. } => {
+                let part = CurveGeometry::Trimmed { basis: profile, start, end, forward: true };
+                (Box::new(CurveGeometry::Composite(vec![part])), true)
+            }
+            _ => (profile, false),
+        };
+        let (surface, axis, ended) = match self.surface {
+            SurfaceGeometry::Revolution { profile, origin, axis } => {
+                let (profile, ended) = end(profile, v);
+                (SurfaceGeometry::Revolution { profile, origin, axis }, 1, ended)
+            }
+            SurfaceGeometry::Extrusion { profile, direction } => {
+                let (profile, ended) = end(profile, u);
+                (SurfaceGeometry::Extrusion { profile, direction }, 0, ended)
+            }
+            surface => return Ok(Self { surface, ..self }),
+        };
+        if !ended {
+            return Ok(Self { surface, ..self });
+        }
+        let range = natural(&surface, id)?[axis].ok_or(Fault::Value { id, what: "the profile has no ends" })?;
+        let natural = Some(if axis == 0 { [range, v] } else { [u, range] });
+        Ok(Self { surface, to_native: None, natural, ..self })
+    }
 }
 
 impl<'a> Geometry<'a> {

@@ -3,7 +3,7 @@
 //! ```text
 //!   scope: the file, or a 308                     instances of its parts
 //!     186, 430 ────▶ one part a solid             408: scale, then move, then the matrix
-//!     514      ────▶ one part a shell                  ─▶ the scope of its 308, once more
+//!     514, 510 ────▶ one part a shell                  ─▶ the scope of its 308, once more
 //!     143, 144, surfaces ─▶ one open part a group (402) and level
 //! ```
 //!
@@ -100,10 +100,22 @@ impl<'g, 'a> Tree<'g, 'a> {
             let one = |index: usize| entity.optional(index).ok().flatten();
             match entry.kind {
                 140 => used.extend(one(5)),
-                141 => used.extend(one(3)),
-                142 | 143 => used.extend(one(2)),
-                144 | 430 | 510 => used.extend(one(1)),
-                184 => used.extend(listed(1, 2, 1)),
+                141 => {
+                    used.extend(one(3));
+                    let mut at = 5;
+                    for _ in 0..entity.count(4, 3).unwrap_or(0) {
+                        let inside = entity.count(at + 2, 1).unwrap_or(0);
+                        used.extend([at].into_iter().chain(at + 3..at + 3 + inside).filter_map(one));
+                        at += 3 + inside;
+                    }
+                }
+                118 | 120 => used.extend(one(1).into_iter().chain(one(2))),
+                142 => used.extend((2..=4).filter_map(one)),
+                143 => used.extend(one(2).into_iter().chain(listed(3, 4, 1))),
+                144 => used.extend(one(1).into_iter().chain(one(4)).chain(listed(3, 5, 1))),
+                122 | 130 | 190 | 192 | 194 | 196 | 198 | 430 | 510 => used.extend(one(1)),
+                102 | 184 => used.extend(listed(1, 2, 1)),
+                504 => used.extend(listed(1, 2, 5)),
                 186 => used.extend(one(1).into_iter().chain(listed(3, 4, 2))),
                 308 => used.extend(listed(3, 4, 1)),
                 514 => used.extend(listed(1, 2, 2)),
@@ -182,7 +194,9 @@ impl<'g, 'a> Tree<'g, 'a> {
 
     /// Whether an entity is to be seen; tells of those that are not.
     fn is_drawn(&self, entity: Entity<'a>) -> bool {
+        let lost = entity.entry.dependent && self.trail.is_empty();
         let kind = match (entity.entry.blank, entity.entry.purpose) {
+            _ if lost => "entity without its owner not drawn",
             (true, _) => "blanked entity not drawn",
             (_, 1) => "annotation not drawn",
             (_, 5 | 6) => "construction not drawn",
@@ -206,8 +220,9 @@ impl<'g, 'a> Tree<'g, 'a> {
                 continue;
             }
             match entity.kind() {
-                186 | 430 | 514 if self.is_drawn(entity) => self.solid(entity),
-                108 if entity.entry.form == 0 => self.not_drawn(entity, "an unbounded plane"),
+                186 | 430 | 510 | 514 if self.is_drawn(entity) => self.solid(entity),
+                108 if entity.entry.form == 0 => self.not_drawn(entity, "an unbounded surface"),
+                190 | 192 | 194 if !entity.entry.dependent => self.not_drawn(entity, "an unbounded surface"),
                 kind if (matches!(kind, 143 | 144) || SURFACES.contains(&kind)) && self.is_drawn(entity) => {
                     let key = (self.groups.get(&id).copied().unwrap_or(0), entity.entry.level);
                     let body = *sheets.entry(key).or_insert_with(|| {
@@ -226,6 +241,9 @@ impl<'g, 'a> Tree<'g, 'a> {
     }
 
     fn not_drawn(&self, entity: Entity<'a>, what: &'static str) {
+        if entity.entry.dependent {
+            return;
+        }
         self.geometry.note("no surface, not drawn", entity.id(), format!("type {}, {what}", entity.kind()));
     }
 
@@ -259,9 +277,18 @@ impl<'g, 'a> Tree<'g, 'a> {
         };
         match shells {
             Ok(shells) => {
-                let last = if entity.kind() == 186 { 3 + 2 * entity.count(3, 2).unwrap_or(0) } else { 1 };
-                let last = if entity.kind() == 514 { 1 + 2 * entity.count(1, 2).unwrap_or(0) } else { last };
-                let closed = entity.kind() != 514 || entity.entry.form == 1;
+                let items = |index: usize, each: usize| each * entity.count(index, each).unwrap_or(0);
+                let last = match entity.kind() {
+                    186 => 3 + items(3, 2),
+                    510 => 3 + items(2, 1),
+                    514 => 1 + items(1, 2),
+                    _ => 1,
+                };
+                let closed = match entity.kind() {
+                    510 => false,
+                    514 => entity.entry.form == 1,
+                    _ => true,
+                };
                 let (name, face_count) = (entity.name(last), shells.face_count);
                 self.bodies.push(Body { name, closed, shells, face_count, ..Body::default() });
             }

@@ -129,9 +129,9 @@ mod tests {
         let (values, end) = read("116, 1.,-2.5D+02 ,,5Ha;b,c, 0H,x1; rest");
         assert_eq!(
             values,
-            [Number(116.0), Number(1.0), Number(-250.0), Empty, Text(22, 27), Text(31, 31), Bad(32, 34)]
+            [Number(116.0), Number(1.0), Number(-250.0), Empty, Text(21, 26), Text(30, 30), Bad(31, 33)]
         );
-        assert_eq!(end, Some(35));
+        assert_eq!(end, Some(34));
     }
 
     #[test]
