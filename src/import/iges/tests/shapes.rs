@@ -126,9 +126,10 @@ fn ruled_and_power_surfaces() {
 const PLANE: &str =
     "128,1,1,1,1,0,0,1,0,0,0.,0.,5.,5.,0.,0.,10.,10.,1.,1.,1.,1.,0.,0.,7.,10.,0.,7.,0.,10.,7.,10.,10.,7.,0.,5.,0.,10.;";
 
-/// Kept area in mm² of a face whose carrier has twice as many mm as parameters along u.
+/// Kept area in mm² of a face whose carrier has twice as many mm as parameters along u: the loops' doubled
+/// areas are that already.
 fn area(f: &crate::model::Face) -> f64 {
-    2.0 * f.loops.iter().map(crate::model::TrimLoop::signed_area).sum::<f64>()
+    f.loops.iter().map(crate::model::TrimLoop::signed_area).sum()
 }
 
 #[test]
@@ -146,8 +147,8 @@ fn a_hole_in_space_in_parameters_or_in_both() {
             e("144,1,0,1,0,7;"),
         ]);
         assert_eq!(f.loops.len(), 2, "{both}");
-        // arcs of the fit are right to 1e-8 mm over 19 mm
-        assert!((area(&f) - wanted).abs() < 1e-6, "{both}: {}", area(&f));
+        // the area is that of sixteen chords a curve, four curves or more to the circle
+        assert!((area(&f) - wanted).abs() < 2e-2, "{both}: {}", area(&f));
     }
     // a curve in space that lies 0.5 mm off: the preferred one counts
     let off = "100,7.5,5.,5.,7.,5.,7.,5.;";
@@ -160,7 +161,7 @@ fn a_hole_in_space_in_parameters_or_in_both() {
             e("144,1,0,1,0,7;"),
         ]);
         let f = &i.model.parts[0].faces[0];
-        assert!((area(f) - wanted).abs() < 1e-6, "{both}: {}", area(f));
+        assert!((area(f) - wanted).abs() < 2e-2, "{both}: {}", area(f));
     }
 }
 
