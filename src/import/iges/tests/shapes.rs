@@ -141,7 +141,7 @@ fn a_hole_in_space_in_parameters_or_in_both() {
     for both in ["142,0,1,0,3,2;", "142,0,1,5,0,1;", "142,0,1,5,3,1;", "142,0,1,5,3,2;", "142,0,1,5,3,0;"] {
         let f = face(&[
             e(PLANE),
-            e(circle),
+            Entity { status: "00010000", ..e(circle) },
             Entity { form: 1, status: "00010000", ..e(ellipse) },
             e(both),
             e("144,1,0,1,0,7;"),
