@@ -167,8 +167,19 @@ fn foot(curve: &Curve, seeds: &[f64], hint: Option<f64>, accept: f64, g: impl Fn
     {
         return t;
     }
-    let found: Vec<(f64, f64)> =
-        best_seeds(seeds, |t| g(t).0.length_squared()).into_iter().map(polish).chain(near).collect();
+    let mut starts = best_seeds(seeds, |t| g(t).0.length_squared());
+    if let Curve::Pieces(p) = curve
+        && !p.creases.is_empty()
+    {
+        // at a corner the derivative is that of one side only: the other side is seen from its own seed
+        let beside = |t: &f64| {
+            let i = seeds.iter().position(|s| s == t)?;
+            Some([i.checked_sub(1), Some(i + 1)].into_iter().flatten())
+        };
+        let more: Vec<usize> = starts.iter().filter_map(beside).flatten().collect();
+        starts.extend(more.into_iter().filter_map(|i| seeds.get(i)).copied());
+    }
+    let found: Vec<(f64, f64)> = starts.into_iter().map(polish).chain(near).collect();
     let least = found.iter().fold(f64::INFINITY, |m, f| m.min(f.0));
     let away = |t: f64| match (hint, curve.period()) {
         (Some(h), Some(period)) => (nearest(t, h, period) - h).abs(),

@@ -34,6 +34,7 @@ mod frame;
 mod invert;
 mod law;
 mod loops;
+mod map;
 mod nest;
 mod order;
 mod pieces;
@@ -50,6 +51,7 @@ mod tests;
 pub use build::{BuiltFace, build_face};
 pub use derived::{curve_on_surface, offset_curve, offset_surface};
 pub use error::BuildError;
+pub use map::SurfaceMap;
 
 use crate::spline::{BSpline, Surface};
 use glam::{DVec3, DVec4};

@@ -22,6 +22,15 @@ pub enum ImportError {
     /// A header at most, or nothing that could be read as one.
     #[error("{file}:{line}: the file ends without a DATA section")]
     NoData { file: String, line: usize },
+    /// No card with `S` or `G` in column 73.
+    #[error("{file}:1: not IGES: column 73 holds no section letter")]
+    NotIges { file: String },
+    /// The standard's other two forms.
+    #[error("{file}:1: IGES in {form} form is not supported: write it as fixed-format ASCII")]
+    IgesForm { file: String, form: &'static str },
+    /// Nothing that could be an entity.
+    #[error("{file}:{line}: the file ends without a directory section")]
+    NoDirectory { file: String, line: usize },
     /// More than half of the records are not records.
     #[error("{file}:{line}: gave up: {bad} of the first {seen} records cannot be read")]
     Nonsense { file: String, line: usize, bad: usize, seen: usize },

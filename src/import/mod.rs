@@ -1,7 +1,7 @@
 //! CAD files in, [`Model`]s out.
 //!
 //! ```text
-//!   path ──read, gunzip──▶ bytes ──format by content──▶ step ────┬─▶ Import { model, warnings, report }
+//!   path ──read, gunzip──▶ bytes ──format by content──▶ step, iges ┬─▶ Import { model, warnings, report }
 //!                                                    ├▶ obj, bv ─┤
 //!                                                    ├▶ rhino ───┤
 //!                                                    └▶ native ──┘
@@ -16,6 +16,8 @@ mod chain;
 mod colour;
 mod error;
 mod facets;
+mod iges;
+mod locate;
 mod native;
 mod obj;
 mod parts;
@@ -74,6 +76,9 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
     if step::recognise(&bytes) {
         return step(&bytes, &name);
     }
+    if iges::recognise(&bytes) {
+        return iges(&bytes, &name);
+    }
     if bytes.starts_with(RHINO) {
         return rhino(&bytes, &name);
     }
@@ -81,6 +86,9 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
     match path.file_name().and_then(|f| f.to_str()).map(str::to_ascii_lowercase) {
         Some(f) if [".stp", ".step", ".p21", ".stpz", ".stp.gz", ".step.gz"].iter().any(|e| f.ends_with(e)) => {
             Err(ImportError::NotStep { file: name })
+        }
+        Some(f) if [".igs", ".iges", ".igs.gz", ".iges.gz"].iter().any(|e| f.ends_with(e)) => {
+            Err(ImportError::NotIges { file: name })
         }
         Some(f) if f.ends_with(".selvedge") || f.ends_with(".selvedge.gz") => native(&bytes, &name),
         Some(f) if f.ends_with(".obj") || f.ends_with(".obj.gz") => obj(&bytes, &name, folder),
@@ -136,6 +144,14 @@ pub fn rhino(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
         file: name.to_owned(),
         why: format!("{} bytes of a Rhino file, for which the feature `rhino` is not built in", bytes.len()),
     });
+}
+
+/// Reads IGES 5.3 and older in fixed format; `name` is the file's name in messages.
+///
+/// # Errors
+/// [`ImportError`] when the text is not IGES, is in compressed or binary form, or holds no entity.
+pub fn iges(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    iges::read(bytes, name)
 }
 
 /// Undoes gzip; output is bounded by [`MAX_EXPANSION`].

@@ -15,7 +15,7 @@ pub enum Place {
     Line(usize),
     /// A numbered entity and the line on which it starts.
     Entity {
-        /// STEP: `#id`.
+        /// STEP: `#id`; IGES: number of its directory entry.
         id: u32,
         /// Counted from 1.
         line: usize,
@@ -52,8 +52,8 @@ pub struct ImportReport {
     pub faces: usize,
     /// Triangle meshes, one a tessellated face that stands for no exact one.
     pub meshes: usize,
-    /// (u, v) curves in the file. They are not used: both faces of an edge are trimmed from the one
-    /// edge in space, so that neighbours agree.
+    /// (u, v) curves in the file. Where there is an edge in space they are not used: both its faces are
+    /// trimmed from the one edge, so that neighbours agree.
     pub pcurves: usize,
     /// Names of the assembly occurrences, by their path from the root.
     pub occurrences: Vec<String>,

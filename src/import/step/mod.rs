@@ -21,7 +21,6 @@ mod curve;
 mod entity;
 mod face;
 mod geometry;
-mod locate;
 mod orphans;
 mod part21;
 mod presentation;
@@ -35,8 +34,9 @@ mod units;
 mod walk;
 
 pub(super) use part21::recognise;
+pub(super) use surface::{as_cylinder, offset};
 
-use super::{FaceRecord, Import, ImportError, ImportReport, Warnings};
+use super::{FaceRecord, Import, ImportError, ImportReport, Warnings, locate};
 use crate::brep::build_face;
 use crate::model::{Instance, Model, Part};
 use assembly::Assembly;

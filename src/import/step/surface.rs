@@ -196,7 +196,7 @@ fn lemon(frame: Frame, major: f64, minor: f64) -> SurfaceGeometry {
 }
 
 /// The surface at `d` along its normal, if it is elementary and stays one.
-fn offset(surface: SurfaceGeometry, d: f64) -> Option<SurfaceGeometry> {
+pub(in crate::import) fn offset(surface: SurfaceGeometry, d: f64) -> Option<SurfaceGeometry> {
     use SurfaceGeometry as S;
     let positive = |r: f64| Some(r).filter(|r| *r > 0.0);
     Some(match surface {
@@ -214,7 +214,7 @@ fn offset(surface: SurfaceGeometry, d: f64) -> Option<SurfaceGeometry> {
 
 /// A straight profile turned about an axis parallel to it; true when the cylinder's normal is the
 /// opposite of the surface's.
-fn as_cylinder(surface: &SurfaceGeometry) -> Option<(SurfaceGeometry, bool)> {
+pub(in crate::import) fn as_cylinder(surface: &SurfaceGeometry) -> Option<(SurfaceGeometry, bool)> {
     let SurfaceGeometry::Revolution { profile, origin, axis } = surface else { return None };
     let (start, direction) = straight(profile)?;
     let direction = direction.try_normalize()?;

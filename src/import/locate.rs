@@ -53,7 +53,7 @@ pub(super) fn piece(basis: CurveGeometry, first: f64, last: f64) -> Option<Curve
 }
 
 /// The curve with its parameter turned round, `t` becoming `sum - t`.
-fn turned(curve: CurveGeometry) -> Option<(CurveGeometry, f64)> {
+pub(super) fn turned(curve: CurveGeometry) -> Option<(CurveGeometry, f64)> {
     use CurveGeometry as C;
     // half a turn about x takes every conic to itself, y to -y, t to -t
     let flip = |f: Frame| Frame { y: -f.y, z: -f.z, ..f };

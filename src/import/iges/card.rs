@@ -1,0 +1,167 @@
+//! Cards: 80 columns, the section's letter in column 73, a number in columns 74 to 80.
+//!
+//! ```text
+//!   1                                                              64  66    72 73 74   80
+//!   ┌─────────────────────────────────────────────────────────────────┬───────┬──┬────────┐
+//!   │ 144,5,1,0,17;                                                   │     19│P │      49│
+//!   └─────────────────────────────────────────────────────────────────┴───────┴──┴────────┘
+//!     text; of parameter cards columns 1 to 64 only           entity     S G D P T
+//! ```
+//!
+//! Lines may end in LF, CR LF or CR, may be longer than 80 columns, and need not end at all: then every
+//! 80 bytes are a card. Characters outside ASCII count as one column each where that finds the letter.
+
+/// What the letter in column 73 says.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Section {
+    Start,
+    Global,
+    Directory,
+    Parameter,
+    Terminate,
+}
+
+/// One card.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Card<'a> {
+    /// Columns 1 to 72, or 1 to 64 of a parameter card, without the line's end.
+    pub text: &'a [u8],
+    /// Its section.
+    pub section: Section,
+    /// Columns 74 to 80, when they are a number.
+    pub sequence: Option<u32>,
+}
+
+/// The two forms of the standard that are not cards.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum Form {
+    Fixed,
+    Compressed,
+    Binary,
+}
+
+/// Columns of a card's text.
+pub(super) const TEXT: usize = 72;
+
+/// Columns of a parameter card that hold parameters.
+pub(super) const DATA: usize = 64;
+
+/// Whether the bytes begin like IGES, and in which form.
+pub(super) fn recognise(bytes: &[u8]) -> Option<Form> {
+    let first = lines(&bytes[..bytes.len().min(4096)]).find(|l| !l.iter().all(u8::is_ascii_whitespace))?;
+    let (text, letter, rest) = columns(first)?;
+    let numbered = |b: &[u8]| number(b).is_some();
+    match letter {
+        b'S' | b'G' if numbered(rest) => Some(Form::Fixed),
+        b'C' if numbered(rest) && text.iter().all(|b| b.is_ascii()) => Some(Form::Compressed),
+        b'B' if numbered(rest) && text.iter().all(|b| b.is_ascii()) => Some(Form::Binary),
+        _ => None,
+    }
+}
+
+/// The lines, without their ends; pieces of 80 bytes in a file that has none.
+pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
+    let ended = bytes[..bytes.len().min(400)].iter().any(|b| matches!(b, b'\n' | b'\r'));
+    let mut rest = bytes;
+    std::iter::from_fn(move || {
+        if rest.is_empty() {
+            return None;
+        }
+        if !ended {
+            let (line, after) = rest.split_at(rest.len().min(80));
+            rest = after;
+            return Some(line);
+        }
+        let end = rest.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(rest.len());
+        let line = &rest[..end];
+        let skip = match rest[end..] {
+            [b'\r', b'\n', ..] => 2,
+            [] => 0,
+            _ => 1,
+        };
+        rest = &rest[end + skip..];
+        Some(line)
+    })
+}
+
+impl<'a> Card<'a> {
+    /// A line as a card; `None` when no section's letter is in its column.
+    pub fn of_line(line: &'a [u8]) -> Option<Self> {
+        let (text, letter, rest) = columns(line)?;
+        let section = section(letter)?;
+        let text = if section == Section::Parameter { &text[..column(text, DATA)] } else { text };
+        Some(Self { text, section, sequence: number(rest) })
+    }
+}
+
+fn section(letter: u8) -> Option<Section> {
+    Some(match letter {
+        b'S' => Section::Start,
+        b'G' => Section::Global,
+        b'D' => Section::Directory,
+        b'P' => Section::Parameter,
+        b'T' => Section::Terminate,
+        _ => return None,
+    })
+}
+
+/// Text, letter, and what follows it.
+fn columns(line: &[u8]) -> Option<(&[u8], u8, &[u8])> {
+    let sound = |at: usize| {
+        let letter = *line.get(at)?;
+        let rest = &line[at + 1..(at + 8).min(line.len())];
+        let fits = rest.iter().all(|b| b.is_ascii_digit() || *b == b' ');
+        (fits && (section(letter).is_some() || matches!(letter, b'C' | b'B'))).then_some((&line[..at], letter, rest))
+    };
+    sound(TEXT).or_else(|| sound(column(line, TEXT)))
+}
+
+/// Byte offset of a column, UTF-8 continuation bytes not counted.
+fn column(line: &[u8], column: usize) -> usize {
+    let mut starts = (0..line.len()).filter(|&i| line[i] & 0xc0 != 0x80);
+    starts.nth(column).unwrap_or(line.len())
+}
+
+/// A right or left justified number of at most ten digits.
+pub(super) fn number(field: &[u8]) -> Option<u32> {
+    let text = std::str::from_utf8(field).ok()?.trim();
+    if text.len() > 10 || !text.bytes().all(|b| b.is_ascii_digit()) { None } else { text.parse().ok() }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn card(text: &str, tail: &str) -> String {
+        format!("{text:<72}{tail}")
+    }
+
+    #[test]
+    fn line_ends_of_every_kind() {
+        let all = |text: &str| lines(text.as_bytes()).map(<[u8]>::len).collect::<Vec<_>>();
+        assert_eq!(all("ab\r\nc\n\rde"), [2, 1, 0, 2]);
+        let cards = format!("{}{}", card("a", "S      1"), card("b", "G      1"));
+        assert_eq!(all(&cards), [80, 80]);
+    }
+
+    #[test]
+    fn characters_outside_ascii_are_one_column() {
+        let line = card("Stück, größer", "S      7");
+        let found = Card::of_line(line.as_bytes()).unwrap();
+        assert_eq!((found.section, found.sequence), (Section::Start, Some(7)));
+        // Latin-1: one byte a character, so the bytes are the columns
+        let mut latin = card("St?ck", "S      7").into_bytes();
+        latin[2] = 0xfc;
+        assert_eq!(Card::of_line(&latin).unwrap().text.len(), 72);
+    }
+
+    #[test]
+    fn forms_are_told_apart() {
+        assert_eq!(recognise(card("", "S0000001").as_bytes()), Some(Form::Fixed));
+        assert_eq!(recognise(card("", "C      1").as_bytes()), Some(Form::Compressed));
+        assert_eq!(recognise(card("", "B      1").as_bytes()), Some(Form::Binary));
+        assert_eq!(recognise(b"ISO-10303-21;\nHEADER;\n"), None);
+        assert_eq!(recognise(b""), None);
+        assert_eq!(recognise(card("words that go on and on past the column", "Sailing!").as_bytes()), None);
+    }
+}

@@ -1,0 +1,45 @@
+//! Colours: eight standard numbers, or the red, green and blue percent of a 314.
+//!
+//! The standard names no colour space; what writers store is what their screen shows, sRGB. The model
+//! wants linear light: `c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055)^2.4` (IEC 61966-2-1).
+
+use super::entity::Entity;
+use super::geometry::Geometry;
+use crate::model::Colour;
+
+/// Black, red, green, blue, yellow, magenta, cyan, white: numbers 1 to 8.
+const STANDARD: [[f64; 3]; 8] = [
+    [0.0, 0.0, 0.0],
+    [1.0, 0.0, 0.0],
+    [0.0, 1.0, 0.0],
+    [0.0, 0.0, 1.0],
+    [1.0, 1.0, 0.0],
+    [1.0, 0.0, 1.0],
+    [0.0, 1.0, 1.0],
+    [1.0, 1.0, 1.0],
+];
+
+impl<'a> Geometry<'a> {
+    /// The entity's own colour in linear light; what cannot be read is told and counts as none.
+    pub fn colour(&self, entity: Entity<'a>) -> Option<Colour> {
+        let number = entity.entry.colour;
+        let rgb = match number {
+            0 => return None,
+            1..=8 => STANDARD[number as usize - 1],
+            definition => {
+                let read = || {
+                    let definition = Entity::find(self.file, definition.unsigned_abs())?;
+                    let definition = definition.of_kind(314, "314, a colour")?;
+                    Ok::<_, super::entity::Fault>(definition.triple(1)?.to_array().map(|c| (c / 100.0).clamp(0.0, 1.0)))
+                };
+                read().map_err(|fault| self.note("colour ignored", entity.id(), fault.to_string())).ok()?
+            }
+        };
+        let [r, g, b] = rgb.map(|c| linear(c) as f32);
+        Some([r, g, b, 1.0])
+    }
+}
+
+fn linear(c: f64) -> f64 {
+    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
+}

@@ -1,0 +1,183 @@
+//! A file as entries and one arena of parameter values.
+//!
+//! ```text
+//!   lines ──▶ cards by section ──▶ global section ─▶ delimiters, units
+//!                              ──▶ directory      ─▶ entries, ordered by number
+//!                              ──▶ parameters     ─▶ one text, one arena; entry.values is a range of it
+//! ```
+//!
+//! Entries that claim one another's parameter cards could make the arena larger than any multiple of
+//! the file: reading stops at four times the text.
+
+use super::card::{Card, DATA, Section, TEXT, lines};
+use super::directory::{self, Entry};
+use super::global::Global;
+use super::value::{Value, record};
+use crate::import::{ImportError, Place, Warnings};
+
+/// The file.
+#[derive(Debug)]
+pub(super) struct File {
+    /// Global section.
+    pub global: Global,
+    /// In increasing order of their numbers.
+    pub entries: Vec<Entry>,
+    text: Vec<u8>,
+    values: Vec<Value>,
+}
+
+/// How often the parameter section may be read on average.
+const SHARING: usize = 4;
+
+impl File {
+    /// Reads cards.
+    ///
+    /// # Errors
+    /// [`ImportError::NoDirectory`] when there is no entity at all, [`ImportError::Nonsense`] when most
+    /// lines are not cards.
+    pub fn parse(bytes: &[u8], name: &str, warnings: &mut Warnings) -> Result<Self, ImportError> {
+        let (mut global, mut entries, mut parameters) = (Vec::new(), Vec::new(), Vec::new());
+        let (mut terminate, mut bad, mut seen, mut global_line, mut last_line) = (None, 0, 0, 1, 1);
+        for (line, number) in lines(bytes).zip(1u32..) {
+            if line.iter().all(u8::is_ascii_whitespace) {
+                continue;
+            }
+            (seen, last_line) = (seen + 1, number);
+            let Some(card) = Card::of_line(line) else {
+                bad += 1;
+                let place = || Place::Line(number as usize);
+                warnings.push("card skipped", place, || "no section letter in column 73".into());
+                if bad >= 1000 && 2 * bad > seen {
+                    let line = number as usize;
+                    return Err(ImportError::Nonsense { file: name.to_owned(), line, bad, seen });
+                }
+                continue;
+            };
+            match card.section {
+                Section::Start => {}
+                Section::Global => {
+                    if global.is_empty() {
+                        global_line = number;
+                    }
+                    global.extend_from_slice(card.text);
+                    global.resize(global.len() + TEXT.saturating_sub(card.text.len()), b' ');
+                }
+                Section::Directory => entries.push((card, number)),
+                Section::Parameter => parameters.push((card, number)),
+                Section::Terminate => terminate = Some((card.text, number)),
+            }
+        }
+        if entries.is_empty() {
+            return Err(ImportError::NoDirectory { file: name.to_owned(), line: last_line as usize });
+        }
+        check_counts(terminate, (entries.len(), parameters.len()), last_line, warnings);
+        let global = Global::read(&global, global_line as usize, warnings);
+        let entries = directory::read(&entries, warnings);
+        let mut file = Self { global, entries, text: Vec::new(), values: Vec::new() };
+        file.read_parameters(&parameters, warnings);
+        Ok(file)
+    }
+
+    fn read_parameters(&mut self, cards: &[(Card<'_>, u32)], warnings: &mut Warnings) {
+        // number and start of each card; the end of the text behind the last
+        let mut starts: Vec<(u32, usize)> = Vec::with_capacity(cards.len() + 1);
+        self.text.reserve(cards.len() * DATA);
+        for (card, _) in cards {
+            let number = card.sequence.unwrap_or(starts.last().map_or(1, |s| s.0 + 1));
+            starts.push((number, self.text.len()));
+            self.text.extend_from_slice(card.text);
+            self.text.resize(self.text.len() + DATA.saturating_sub(card.text.len()), b' ');
+        }
+        if !starts.is_sorted_by(|a, b| a.0 < b.0) {
+            let line = cards.first().map_or(0, |c| c.1 as usize);
+            warnings.push("parameter cards renumbered", || Place::Line(line), || "their numbers do not rise".into());
+            starts.iter_mut().zip(1..).for_each(|(s, n)| s.0 = n);
+        }
+        let mut left = SHARING * self.text.len();
+        for index in 0..self.entries.len() {
+            let entry = &self.entries[index];
+            let (id, line) = (entry.id, entry.line as usize);
+            let place = |line: usize| move || Place::Entity { id, line };
+            let Ok(card) = starts.binary_search_by_key(&entry.first, |s| s.0) else {
+                let first = entry.first;
+                warnings.push("entity without parameters", place(line), || format!("card P{first} does not exist"));
+                continue;
+            };
+            let start = starts[card].1;
+            let end = match entry.cards as usize {
+                0 => self.text.len(),
+                n => starts.get(card.saturating_add(n)).map_or(self.text.len(), |s| s.1),
+            };
+            let line = cards[card].1 as usize;
+            if left == 0 {
+                warnings.push("entity without parameters", place(line), || "cards are shared too often".into());
+                continue;
+            }
+            let end = end.min(start.saturating_add(left));
+            let from = self.values.len();
+            let stop = record(&self.text, (start, end), self.global.delimiters, &mut self.values);
+            if stop.is_none() {
+                warnings.push("record without end", place(line), || "no record delimiter on its cards".into());
+            }
+            left -= stop.unwrap_or(end) - start;
+            let own = &self.values[from..];
+            match own.first() {
+                Some(Value::Number(kind)) if *kind == f64::from(entry.kind) => {
+                    self.entries[index].values = (from as u32, self.values.len() as u32);
+                    self.entries[index].line = line as u32;
+                }
+                other => {
+                    let (other, kind) = (other.copied(), entry.kind);
+                    let found = match other {
+                        Some(Value::Number(x)) => format!("type {x}"),
+                        _ => "no type".into(),
+                    };
+                    let message = move || format!("its parameters are of {found}, not of type {kind}");
+                    warnings.push("entity without parameters", place(line), message);
+                    self.values.truncate(from);
+                }
+            }
+        }
+    }
+
+    /// The entry `#id`.
+    pub fn entry(&self, id: u32) -> Option<&Entry> {
+        self.entries.binary_search_by_key(&id, |e| e.id).ok().map(|i| &self.entries[i])
+    }
+
+    /// The parameters of an entry, its type first.
+    pub fn values(&self, entry: &Entry) -> &[Value] {
+        &self.values[entry.values.0 as usize..entry.values.1 as usize]
+    }
+
+    /// The bytes of a string.
+    pub fn text(&self, value: Value) -> Option<&[u8]> {
+        match value {
+            Value::Text(a, b) | Value::Bad(a, b) => self.text.get(a as usize..b as usize),
+            _ => None,
+        }
+    }
+
+    /// All parameter values.
+    pub fn value_count(&self) -> usize {
+        self.values.len()
+    }
+}
+
+/// Compares the terminate section, `S      1G      4D    530P   4821`, with what was found.
+fn check_counts(card: Option<(&[u8], u32)>, found: (usize, usize), last: u32, warnings: &mut Warnings) {
+    let Some((text, line)) = card else {
+        warnings.push("file cut short", || Place::Line(last as usize), || "there is no terminate section".into());
+        return;
+    };
+    let count = |field: usize, letter: u8| {
+        let field = text.get(8 * field..8 * field + 8)?;
+        (field[0] == letter).then(|| super::card::number(&field[1..])).flatten()
+    };
+    for (name, stated, found) in [("directory", count(2, b'D'), found.0), ("parameter", count(3, b'P'), found.1)] {
+        if let Some(stated) = stated.filter(|n| *n as usize != found) {
+            let message = || format!("{found} of {stated} {name} cards were found");
+            warnings.push("cards missing", || Place::Line(line as usize), message);
+        }
+    }
+}

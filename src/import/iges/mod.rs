@@ -1,0 +1,139 @@
+//! IGES files: version 5.3 and older, fixed-format ASCII.
+//!
+//! ```text
+//!   bytes ─card, value─▶ cards, parameters                      syntax
+//!         ─global, directory, file─▶ File                       units; entries with their values
+//!         ─entity─▶ Entity          typed parameters; every Fault names its entity
+//!         ─geometry─▶ matrices, points, guards
+//!         ─curve, conic, spline, fit─▶ Segment                  curves in millimetres
+//!         ─surface, ruled─▶ Carrier                             surfaces, and how their (u, v) map
+//!         ─trim─▶ Sheet   ─solid─▶ Shells                       faces, by themselves or with shared edges
+//!         ─tree, colour─▶ bodies and their places
+//!         ─brep::build_face─▶ Face  in parallel, results in file order
+//! ```
+//!
+//! Numbers behind `#` are those of the first directory card of an entity, as the file itself points to it.
+//! Nothing in a file can cause a panic, endless work, or memory beyond a multiple of its size.
+//!
+//! Source: US Product Data Association, *Initial Graphics Exchange Specification IGES 5.3*, 1996.
+
+mod card;
+mod colour;
+mod conic;
+mod curve;
+mod directory;
+mod entity;
+mod file;
+mod fit;
+mod geometry;
+mod global;
+mod ruled;
+mod solid;
+mod spline;
+mod surface;
+mod tree;
+mod trim;
+mod value;
+
+use super::{Import, ImportError, ImportReport, Warnings};
+use crate::brep::build_face;
+use crate::model::{Instance, Model, Part};
+use file::File;
+use geometry::{FACE_LOST, Geometry};
+use rayon::prelude::*;
+use tree::{Body, Tree};
+
+/// Whether the bytes begin like IGES, in any of its forms.
+pub(super) fn recognise(bytes: &[u8]) -> bool {
+    card::recognise(bytes).is_some()
+}
+
+/// Reads IGES text; `name` is the file's name in messages.
+pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    let form = |form| ImportError::IgesForm { file: name.to_owned(), form };
+    match card::recognise(bytes) {
+        None => return Err(ImportError::NotIges { file: name.to_owned() }),
+        Some(card::Form::Compressed) => return Err(form("compressed ASCII")),
+        Some(card::Form::Binary) => return Err(form("binary")),
+        Some(card::Form::Fixed) => {}
+    }
+    let mut warnings = Warnings::new(name);
+    let file = File::parse(bytes, name, &mut warnings)?;
+    let geometry = Geometry::new(&file, warnings);
+    let tree = Tree::read(&geometry);
+    let (bodies, placements) = (tree.bodies, tree.placements);
+    let global = &file.global;
+    let mut model = Model { name: model_name(&global.product, name), ..Model::default() };
+    model.unit.clone_from(&global.unit_name);
+    for body in &bodies {
+        model.parts.push(Part { name: body.name.clone(), closed: body.closed, ..Part::default() });
+    }
+    for placed in placements {
+        let (part, transform, name) = (placed.body, placed.transform, placed.name);
+        model.instances.push(Instance { part, transform, colour: None, name });
+    }
+    let mut report = ImportReport {
+        format: format!("IGES {}", global.version).trim_end().to_owned(),
+        written_by: global.system.clone(),
+        units: vec![global.unit_name.clone()],
+        bodies: bodies.len(),
+        edges: bodies.iter().map(edges).sum(),
+        faces: bodies.iter().map(|b| b.face_count).sum(),
+        pcurves: bodies.iter().map(pcurves).sum(),
+        occurrences: model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect(),
+        ..ImportReport::default()
+    };
+    build(&geometry, &bodies, &mut model, &mut report);
+    let (warnings, dropped) = geometry.finish();
+    report.dropped = dropped;
+    let (list, counts) = warnings.finish();
+    report.warnings = counts;
+    Ok(Import { model, warnings: list, report })
+}
+
+/// Builds all faces, in parallel; results are taken in file order.
+fn build(geometry: &Geometry<'_>, bodies: &[Body], model: &mut Model, report: &mut ImportReport) {
+    let tolerance = geometry.file.global.resolution;
+    for (part, body) in bodies.iter().enumerate() {
+        let shared = &body.shells;
+        let solid = shared.faces.par_iter().map(|(f, colour)| (f.id, *colour, build_face(f, &shared.edges, tolerance)));
+        let free = body.sheets.par_iter().map(|(sheet, colour)| (sheet.id, *colour, sheet.build(tolerance)));
+        let built: Vec<_> = solid.chain(free).collect();
+        for (id, colour, result) in built {
+            match result {
+                Ok(mut face) => {
+                    face.face.colour = colour;
+                    report.deviation = report.deviation.max(face.deviation);
+                    for note in face.notes {
+                        *report.healed.entry(ImportReport::reason(&note)).or_default() += 1;
+                        geometry.note("face healed", id, note);
+                    }
+                    model.parts[part].faces.push(face.face);
+                }
+                Err(error) => geometry.note(FACE_LOST, id, error.to_string()),
+            }
+        }
+    }
+}
+
+fn edges(body: &Body) -> usize {
+    let loops = body.sheets.iter().flat_map(|(sheet, _)| &sheet.loops);
+    body.shells.edges.len() + loops.map(|l| l.model.len().max(l.parameter.len())).sum::<usize>()
+}
+
+fn pcurves(body: &Body) -> usize {
+    let loops = body.sheets.iter().flat_map(|(sheet, _)| &sheet.loops);
+    body.shells.pcurves + loops.map(|l| l.parameter.len()).sum::<usize>()
+}
+
+/// The product's name, else the file's.
+fn model_name(product: &str, file: &str) -> String {
+    if !product.is_empty() {
+        return product.to_owned();
+    }
+    let stem = std::path::Path::new(file).file_stem();
+    stem.map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,254 @@
+//! Damaged files: never a panic, and a message that names what was lost and where.
+
+use super::structure::CYLINDER;
+use super::{Entity, GLOBAL, e, file, import};
+use crate::import::iges;
+use proptest::prelude::*;
+
+/// Every warning of the cylinder's file after a change of its text.
+fn after(from: &str, to: &str) -> Vec<String> {
+    assert!(CYLINDER.contains(from), "{from}");
+    // columns stay where they are
+    let padded = format!("{to:<width$}", width = from.len());
+    let import = iges(CYLINDER.replacen(from, &padded, 1).as_bytes(), "c.igs").unwrap();
+    assert_eq!(import.report.dropped.values().sum::<usize>(), import.report.faces - import.model.face_count());
+    import.warnings.iter().map(ToString::to_string).collect()
+}
+
+#[test]
+fn each_damage_names_what_it_costs() {
+    let one = |from: &str, to: &str, wanted: &str| assert_eq!(after(from, to), [wanted], "{from} -> {to}");
+    let side = |what: &str| format!("c.igs:68: #5: face left out: {what}");
+    one("192,9,11,2.,13; ", "192,9,11,-2.,13;", &side("#7: parameter 3 is not a length above 0"));
+    one("192,9,11,2.,13; ", "192,9,11,NaN,13;", &side("#7: parameter 3 is not a length above 0"));
+    one("192,9,11,2.,13; ", "192,9,11,1E999;", &side("#7: parameter 3 is not a length above 0"));
+    one("192,9,11,2.,13;", "192,2,11,2.,13;", &side("#2 does not exist"));
+    one("192,9,11,2.,13;", "192,7,11,2.,13;", &side("#7 refers to itself"));
+    one("192,9,11,2.,13;", "192,5,11,2.,13;", &side("#5 refers to itself"));
+    one("192,9,11,2.,13;", "192,3,11,2.,13;", &side("#3 refers to itself"));
+    one("192,9,11,2.,13;", "192,,11,2.,13;", &side("#7: parameter 1 is not a pointer"));
+    one("192,9,11,2.,13;", "192,1.5,11,2.;", &side("#7: parameter 1 is not an integer"));
+    one("192,9,11,2.,13; ", "192,11,11,2.,13;", &side("#11 is of type 123, not 116, a point"));
+    one("510,7,1,1,15;", "510,7,9,1,15;", &side("#5: parameter 2 is not a count that its record can hold"));
+    // what has lost its owner is told as well, behind it
+    let first = |from: &str, to: &str, wanted: &str| assert_eq!(after(from, to)[0], wanted, "{from} -> {to}");
+    first("510,7,1,1,15;", "510,9,1,1,15;", &side("type 116 form 0 is not supported (#9)"));
+    let body = |what: &str| format!("c.igs:66: #1: body left out: {what}");
+    first("514,3,5,", "514,9,5,", &body("#3: parameter 1 is not a count that its record can hold"));
+    first("514,3,5,", "514,x,5,", &body("#3: parameter 1 is not an integer"));
+    first("186,3,1,0;", "186,5,1,0;", &body("#5 is of type 510, not 514, a shell"));
+    one("186,3,1,0;", "186,1,1,0;", "c.igs:67: #3: entity without its owner not drawn: type 514");
+}
+
+#[test]
+fn damage_that_costs_several_faces() {
+    let all = after("504,3,19,23,1,23,1,", "504,3,19,23,9,23,1,");
+    assert_eq!(all.len(), 2, "{all:?}");
+    assert!(all.iter().all(|w| w.ends_with("face left out: #23: the list has no vertex of that number")), "{all:?}");
+    let all = after("502,2,2.,", "502,9,2.,");
+    assert!(all.iter().all(|w| w.contains("#23: parameter 1 is not a count that its record can hold")), "{all:?}");
+    assert_eq!(all.len(), 3);
+}
+
+#[test]
+fn cards_that_are_missing_or_wrong() {
+    let lines: Vec<&str> = CYLINDER.lines().collect();
+    let without = |lost: usize| -> Vec<String> {
+        let kept = lines.iter().enumerate().filter(|(i, _)| i + 1 != lost).map(|(_, l)| format!("{l}\n"));
+        let import = iges(kept.collect::<String>().as_bytes(), "c.igs").unwrap();
+        import.warnings.iter().map(ToString::to_string).collect()
+    };
+    assert_eq!(without(lines.len()), ["c.igs:96: file cut short: there is no terminate section"]);
+    let second = without(11);
+    assert_eq!(second[0], "c.igs:96: cards missing: 59 of 60 directory cards were found");
+    assert_eq!(second[1], "c.igs:10: directory entry left out: #5 has one card instead of two");
+    assert!(second.contains(&"c.igs: face left out: #5 does not exist".to_owned()), "{second:?}");
+}
+
+#[test]
+fn damage_of_the_syntax() {
+    let found = |text: &str| -> Vec<String> {
+        let import = iges(text.as_bytes(), "t.igs").unwrap();
+        import.warnings.iter().map(ToString::to_string).collect()
+    };
+    let good = file(GLOBAL, &[e("116,0.,0.,0.;"), e("116,1.,0.,0.;")]);
+    let says = |from: &str, to: &str, wanted: &str| {
+        assert!(good.contains(from), "{from}");
+        let all = found(&good.replacen(from, to, 1));
+        assert!(all.iter().any(|w| w == wanted), "{from} -> {to}: {all:#?}");
+    };
+    says(
+        "116,0.,0.,0.;",
+        "117,0.,0.,0.;",
+        "t.igs:8: #1: entity without parameters: its parameters are of type 117, not of type 116",
+    );
+    says("116,0.,0.,0.;", "116,0.,0.,0. ", "t.igs:8: #1: record without end: no record delimiter on its cards");
+    says("     116       2", "     116      92", "t.igs:6: #3: entity without parameters: card P92 does not exist");
+    says(
+        "     116       2",
+        "     11x       2",
+        "t.igs:6: directory entry left out: #3: its type \"11x\" is not an integer",
+    );
+    says("     116       2", "   99999       2", "t.igs:6: directory entry left out: #3: type 99999 does not exist");
+    says("D      3", "D      1", "t.igs:6: directory entry left out: #1 has one card instead of two");
+    says("P      1", "Q      1", "t.igs:8: card skipped: no section letter in column 73");
+    says("D      2", "\u{fc}      2", "t.igs:5: card skipped: no section letter in column 73");
+}
+
+/// 2^40 squares from a few lines, and a subfigure that holds itself.
+#[test]
+fn subfigures_without_end() {
+    let mut all = vec![e("110,0.,0.,0.,1.,0.,0.;")];
+    for level in 0..40 {
+        // 308 at 3 + 6 level holds two placements of the one before
+        let (a, b, inner) = (5 + 6 * level, 7 + 6 * level, 3 + 6 * level - 6);
+        let held =
+            if level == 0 { "308,0,1Ha,0;".to_owned() } else { format!("308,{level},1Ha,2,{},{};", a - 6 + 6, b) };
+        all.extend([
+            e(&held),
+            e(&format!("408,{},0.,0.,0.;", inner.max(3))),
+            e(&format!("408,{},0.,0.,0.;", inner.max(3))),
+        ]);
+    }
+    let import = import(&all);
+    assert!(import.model.instances.len() <= 1 << 20);
+    let own = super::import(&[e("308,0,1Ha,1,3;"), e("408,1,0.,0.,0.;"), e("408,1,0.,0.,0.;")]);
+    assert!(own.warnings.iter().any(|w| w.message == "subfigure left out: #1 refers to itself"), "{:?}", own.warnings);
+}
+
+/// Thousands of faces on one surface of many numbers: the work is cut off, not the program.
+#[test]
+fn sharing_is_bounded() {
+    let mut text = "128,99,99,1,1,0,0,1,0,0".to_owned();
+    for _ in 0..2 {
+        (0..102).for_each(|k: i32| text += &format!(",{}.", (k - 1).clamp(0, 99)));
+    }
+    text += &",1.".repeat(10_000);
+    (0..10_000).for_each(|i| text += &format!(",{}.,{}.,0.", i % 100, i / 100));
+    text += ";";
+    let mut all = vec![e(&text)];
+    (0..200).for_each(|_| all.push(e("144,1,0,0;")));
+    let import = import(&all);
+    assert!(import.warnings.iter().any(|w| w.message.contains("shared so often")), "{:?}", import.warnings.last());
+}
+
+/// A kind of damage at a place.
+#[derive(Clone, Debug)]
+enum Damage {
+    Byte(usize, u8),
+    Truncate(usize),
+    Remove(usize, usize),
+    Repeat(usize, usize),
+    /// The n-th number becomes another one.
+    Token(usize, &'static str),
+}
+
+fn apply(text: &mut Vec<u8>, damage: &Damage) {
+    let len = text.len().max(1);
+    let range = |at: usize, count: usize, text: &[u8]| (at % len).min(text.len())..(at % len + count).min(text.len());
+    match *damage {
+        Damage::Byte(at, byte) => {
+            if let Some(b) = text.get_mut(at % len) {
+                *b = byte;
+            }
+        }
+        Damage::Truncate(at) => text.truncate(at % len),
+        Damage::Remove(at, count) => drop(text.drain(range(at, count, text))),
+        Damage::Repeat(at, count) => {
+            let piece = text[range(at, count, text)].to_vec();
+            let at = (at % len).min(text.len());
+            text.splice(at..at, piece).for_each(drop);
+        }
+        Damage::Token(n, with) => {
+            let is = |b: u8| b.is_ascii_digit() || b"+-.E".contains(&b);
+            let starts: Vec<usize> = (1..text.len()).filter(|&i| is(text[i]) && !is(text[i - 1])).collect();
+            let Some(&start) = starts.get(n % starts.len().max(1)) else { return };
+            let end = text[start..].iter().position(|&b| !is(b)).map_or(text.len(), |p| start + p);
+            text.splice(start..end, with.bytes()).for_each(drop);
+        }
+    }
+}
+
+fn damage() -> impl Strategy<Value = Damage> {
+    let tokens = [
+        "NaN",
+        "1E999",
+        "-1",
+        "0",
+        "1",
+        "7",
+        "23",
+        "1000000000",
+        "99999999999999999999",
+        "",
+        "3Hx,y",
+        "9H",
+        "1e-320",
+        "360.",
+    ];
+    prop_oneof![
+        (any::<usize>(), any::<u8>()).prop_map(|(a, b)| Damage::Byte(a, b)),
+        (any::<usize>(), prop::sample::select(b",;HSGDPT \n\r".to_vec())).prop_map(|(a, b)| Damage::Byte(a, b)),
+        any::<usize>().prop_map(Damage::Truncate),
+        (any::<usize>(), 1usize..90).prop_map(|(a, n)| Damage::Remove(a, n)),
+        (any::<usize>(), 1usize..200).prop_map(|(a, n)| Damage::Repeat(a, n)),
+        (any::<usize>(), prop::sample::select(tokens.to_vec())).prop_map(|(n, t)| Damage::Token(n, t)),
+        (any::<usize>(), prop::sample::select(tokens.to_vec())).prop_map(|(n, t)| Damage::Token(n, t)),
+    ]
+}
+
+/// Every kind of entity once, whether or not anything uses it.
+fn zoo() -> Vec<u8> {
+    let texts = [
+        "110,0.,0.,0.,1.,0.,0.;",
+        "100,0.,0.,0.,2.,0.,-2.,0.;",
+        "120,1,3,0.,6.28318530717958;",
+        "122,3,2.,0.,5.;",
+        "118,1,3,0,0;",
+        "104,1.,0.,4.,0.,0.,-4.,0.,2.,0.,0.,1.;",
+        "106,1,3,1.,0.,0.,4.,0.,4.,3.;",
+        "102,2,1,3;",
+        "122,15,0.,0.,3.;",
+        "130,3,1,0,3,0,0.5,0.,0.5,0.,0.,0.,1.,0.,3.;",
+        "122,19,1.5,0.,5.;",
+        "116,1.,0.,0.;",
+        "196,23,2.;",
+        "140,0.,0.,1.,0.5,25;",
+        "128,1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.,0.,0.,0.,1.,0.,0.,0.,1.,0.,1.,1.,0.;",
+        "100,0.,0.5,0.5,0.7,0.5,0.7,0.5;",
+        "142,0,29,31,31,1;",
+        "144,29,0,1,0,33;",
+        "308,0,1Ha,1,35;",
+        "408,37,1.,2.,3.,2.;",
+        "314,10.,20.,30.;",
+    ];
+    let all: Vec<Entity> = texts.iter().map(|t| Entity { colour: -41, ..e(t) }).collect();
+    file(GLOBAL, &all).into_bytes()
+}
+
+proptest! {
+    #![proptest_config(ProptestConfig::with_cases(500))]
+
+    /// Whatever the damage: an error or a valid model, soon, with a bounded number of warnings.
+    #[test]
+    fn no_damage_panics(solid in any::<bool>(), list in prop::collection::vec(damage(), 1..6)) {
+        let mut text = if solid { CYLINDER.as_bytes().to_vec() } else { zoo() };
+        list.iter().for_each(|d| apply(&mut text, d));
+        if let Ok(import) = iges(&text, "t.igs") {
+            let parts = import.model.parts.len();
+            prop_assert!(import.model.instances.iter().all(|i| i.part < parts && i.transform.is_finite()));
+            prop_assert!(import.warnings.len() < 300);
+            let lost = import.report.faces - import.model.face_count();
+            prop_assert_eq!(lost, import.report.dropped.values().sum::<usize>());
+        }
+    }
+
+    /// Arbitrary bytes in the parameters of an entity.
+    #[test]
+    fn no_bytes_panic(bytes in prop::collection::vec(any::<u8>(), 0..64)) {
+        let mut text = file(GLOBAL, &[e(&format!("128{:60};", ","))]).into_bytes();
+        let at = text.windows(4).position(|w| w == b"128,").unwrap_or(0) + 4;
+        text.splice(at..at + bytes.len(), bytes).for_each(drop);
+        let _ = iges(&text, "t.igs");
+    }
+}

@@ -1,0 +1,165 @@
+//! Units, matrices, subfigures, groups, colours, names, status; cards of every shape; a whole solid.
+
+use super::{Entity, GLOBAL, e, face, file, import, reaches};
+use crate::import::{ImportError, iges};
+use crate::model::Face;
+use glam::DVec3;
+
+/// A unit square in the plane z = 0, parameters 0 to 1.
+const SQUARE: &str = "128,1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.,0.,0.,0.,1.,0.,0.,0.,1.,0.,1.,1.,0.;";
+
+/// A cylinder of radius 2 and height 5, one closed solid of three faces, as Open CASCADE writes it.
+pub(super) const CYLINDER: &str = include_str!("cylinder.igs");
+
+#[test]
+fn a_solid() {
+    let i = iges(CYLINDER.as_bytes(), "cylinder.igs").unwrap();
+    assert!(i.warnings.is_empty(), "{:?}", i.warnings);
+    let part = &i.model.parts[0];
+    assert!(part.closed);
+    // three edges shared by six uses; four curves in parameters that stay unused
+    assert_eq!((i.report.faces, i.report.edges, i.report.pcurves, part.faces.len()), (3, 3, 4, 3));
+    assert_eq!((i.report.format.as_str(), i.model.unit.as_str()), ("IGES 5.3", "mm"));
+    normals_leave(&part.faces, DVec3::new(0.0, 0.0, 2.5));
+}
+
+/// A solid in a mirror: normals still leave it.
+#[test]
+fn a_mirrored_solid() {
+    // the matrix of an edge becomes that of the solid, and the height that it gave stands in the circle
+    let (up, mirror) = ("124,1.,0.,0.,0.,0.,1.,0.,0.,0.,0.,1.,5.;", "124,-1.,0.,0.,7.,0.,1.,0.,0.,0.,0.,1.,0.;");
+    let mut text = CYLINDER.replacen(&format!("{up:<64}"), &format!("{mirror:<64}"), 1);
+    text = text.replacen("100,0.,0.,0.,2.,0.,2.,0.;", "100,5.,0.,0.,2.,0.,2.,0.;", 1);
+    let matrix = |line: &str| match line.get(72..) {
+        Some("D0000001") => format!("{}{:>8}{}\n", &line[..48], 21, &line[56..]),
+        Some("D0000019") => format!("{}{:>8}{}\n", &line[..48], 0, &line[56..]),
+        _ => format!("{line}\n"),
+    };
+    let i = iges(text.lines().map(matrix).collect::<String>().as_bytes(), "mirrored.igs").unwrap();
+    assert!(i.warnings.is_empty(), "{:?}", i.warnings);
+    normals_leave(&i.model.parts[0].faces, DVec3::new(7.0, 0.0, 2.5));
+}
+
+/// Normals point away from the middle.
+fn normals_leave(faces: &[Face], middle: DVec3) {
+    assert_eq!(faces.len(), 3);
+    for f in faces {
+        let (u, v) = f.surface.domain();
+        let jet = f.surface.jet(0.5 * (u.0 + u.1), 0.5 * (v.0 + v.1));
+        let normal = jet.du.cross(jet.dv) * if f.same_sense { 1.0 } else { -1.0 };
+        assert!(normal.dot(jet.point - middle) > 0.0, "#{}", f.id);
+    }
+}
+
+#[test]
+fn units_and_scale() {
+    for (global, side) in [
+        (GLOBAL.replace("1.,2,2HMM", "1.,1,4HINCH"), 25.4),
+        (GLOBAL.replace("1.,2,2HMM", "1.,3,2HCM"), 10.0),
+        (GLOBAL.replace("1.,2,2HMM", "0.125,6,1HM"), 8000.0),
+    ] {
+        let i = iges(file(&global, &[e(SQUARE)]).as_bytes(), "t.igs").unwrap();
+        assert!(i.warnings.is_empty(), "{:?}", i.warnings);
+        let (lo, hi) = i.model.parts[0].faces[0].surface.bounds();
+        assert_eq!((lo, hi), (DVec3::ZERO, DVec3::new(side, side, 0.0)), "{global}");
+    }
+}
+
+#[test]
+fn a_matrix_of_a_matrix() {
+    // a quarter turn about z, then 10 along x
+    let turn = Entity { matrix: 5, ..e("124,0.,-1.,0.,0.,1.,0.,0.,0.,0.,0.,1.,0.;") };
+    let f = face(&[Entity { matrix: 3, ..e(SQUARE) }, turn, e("124,1.,0.,0.,10.,0.,1.,0.,0.,0.,0.,1.,0.;")]);
+    reaches(&f, DVec3::new(9.0, 0.0, 0.0));
+    reaches(&f, DVec3::new(10.0, 1.0, 0.0));
+    // a matrix that stretches makes no circle
+    let arc = Entity { matrix: 3, ..e("100,0.,0.,0.,1.,0.,0.,1.;") };
+    let i = import(&[arc, e("124,2.,0.,0.,0.,0.,1.,0.,0.,0.,0.,1.,0.;"), e("122,1,2.,0.,1.;")]);
+    assert_eq!(i.warnings[0].message, "face left out: #1: the matrix distorts a round shape");
+}
+
+#[test]
+fn subfigures() {
+    let members = [
+        Entity { status: "00010000", ..e(SQUARE) },
+        Entity { status: "00000200", ..e("308,0,4Htile,1,1;") },
+        e("408,3,1.,2.,3.,2.;"),
+        Entity { status: "00000200", ..e("308,1,4Hpair,2,9,11;") },
+        e("408,3,0.,0.,0.,1.;"),
+        e("408,3,5.,0.,0.;"),
+        Entity { matrix: 15, ..e("408,7,0.,0.,1.,1.;") },
+        e("124,0.,-1.,0.,0.,1.,0.,0.,0.,0.,0.,1.,0.;"),
+    ];
+    // #9 and #11 belong to #7
+    let i = import(&members);
+    assert!(i.warnings.is_empty(), "{:?}", i.warnings);
+    assert_eq!(i.model.parts.len(), 1);
+    let all: Vec<_> =
+        i.model.instances.iter().map(|i| (i.name.as_str(), i.transform.transform_point3(DVec3::X))).collect();
+    let wanted = [
+        ("tile", DVec3::new(3.0, 2.0, 3.0)),
+        ("pair/tile", DVec3::new(0.0, 1.0, 1.0)),
+        ("pair/tile", DVec3::new(0.0, 6.0, 1.0)),
+    ];
+    assert_eq!(all, wanted);
+}
+
+#[test]
+fn groups_levels_colours_and_names() {
+    let square = |colour: i32, level: i32| Entity { colour, level, ..e(SQUARE) };
+    let name = Entity { form: 15, ..e("406,1,4HRoof;") };
+    let group = Entity { form: 7, ..e("402,2,1,3,0,1,11;") };
+    let i =
+        import(&[square(0, 0), square(2, 0), square(-13, 4), square(5, 4), group, name, e("314,100.,50.,0.,2HXX;")]);
+    assert!(i.warnings.is_empty(), "{:?}", i.warnings);
+    let parts: Vec<_> = i.model.parts.iter().map(|p| (p.name.as_str(), p.faces.len(), p.closed)).collect();
+    assert_eq!(parts, [("Roof", 2, false), ("level 4", 2, false)]);
+    let colours: Vec<_> = i.model.parts.iter().flat_map(|p| &p.faces).map(|f| f.colour).collect();
+    // 50 % sRGB is 0.2140 of the light
+    let half = ((0.5f64 + 0.055) / 1.055).powf(2.4) as f32;
+    let wanted = [None, Some([1.0, 0.0, 0.0, 1.0]), Some([1.0, half, 0.0, 1.0]), Some([1.0, 1.0, 0.0, 1.0])];
+    assert_eq!(colours, wanted);
+}
+
+#[test]
+fn what_is_not_drawn_is_counted() {
+    let status = |status: &'static str, text: &str| Entity { status, ..e(text) };
+    let i = import(&[
+        status("01000000", SQUARE),
+        status("00000100", SQUARE),
+        status("00000600", SQUARE),
+        status("00000500", "110,0.,0.,0.,1.,0.,0.;"),
+        e("108,0.,0.,1.,5.;"),
+        e("150,1.,2.,3.;"),
+        e(SQUARE),
+    ]);
+    let found: Vec<_> = i.warnings.iter().map(ToString::to_string).collect();
+    let wanted = [
+        "t.igs:18: #1: blanked entity not drawn: type 128",
+        "t.igs:20: #3: annotation not drawn: type 128",
+        "t.igs:22: #5: construction not drawn: type 128",
+        "t.igs:24: #7: no surface, not drawn: type 110, a curve or a point",
+        "t.igs:25: #9: no surface, not drawn: type 108, an unbounded surface",
+        "t.igs:26: #11: entity left out: type 150 form 0 is not supported (#11)",
+    ];
+    assert_eq!(found, wanted);
+    assert_eq!(i.model.face_count(), 1);
+}
+
+#[test]
+fn cards_of_every_shape() {
+    let good = file(GLOBAL, &[e(SQUARE)]);
+    let faces = |bytes: &[u8]| iges(bytes, "t.igs").map(|i| (i.model.face_count(), i.warnings.len())).unwrap();
+    assert_eq!(faces(good.as_bytes()), (1, 0));
+    assert_eq!(faces(good.replace('\n', "\r\n").as_bytes()), (1, 0));
+    assert_eq!(faces(good.replace('\n', "").as_bytes()), (1, 0));
+    assert_eq!(faces(good.replace('\n', "   \n\n").as_bytes()), (1, 0));
+    let global = GLOBAL.replacen(",,", "1H||1H!|", 1).replace(',', "|").replace(';', "!");
+    let delimited = file(&global, &[e(&SQUARE.replace(',', "|").replace(';', "!"))]);
+    assert_eq!(faces(delimited.as_bytes()), (1, 0));
+    let form = |tail: &str| iges(format!("{:<72}{tail}\n", "").as_bytes(), "t.igs").unwrap_err();
+    assert!(matches!(form("C      1"), ImportError::IgesForm { form: "compressed ASCII", .. }));
+    assert!(matches!(form("B      1"), ImportError::IgesForm { form: "binary", .. }));
+    assert!(matches!(form("X      1"), ImportError::NotIges { .. }));
+    assert!(matches!(form("S      1"), ImportError::NoDirectory { line: 1, .. }));
+}
