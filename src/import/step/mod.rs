@@ -31,7 +31,7 @@ mod walk;
 
 pub(super) use part21::recognise;
 
-use super::{Import, ImportError, ImportReport, Warnings};
+use super::{FaceCount, Import, ImportError, ImportReport, Options, Warnings};
 use crate::brep::build_face;
 use crate::model::{Instance, Model, Part};
 use assembly::Assembly;
@@ -44,7 +44,7 @@ use rayon::prelude::*;
 use std::collections::{BTreeSet, HashMap};
 
 /// Reads STEP text; `name` is the file's name in messages.
-pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Import, ImportError> {
     let mut warnings = Warnings::new(name);
     let file = File::parse(bytes, name, &mut warnings)?;
     let ledger = Ledger::new(&file, warnings);
@@ -81,7 +81,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     report.bodies = bodies.len();
     report.edges = bodies.iter().map(|b| b.0.edges.len()).sum();
     report.faces = bodies.iter().map(|b| b.0.face_count).sum();
-    build(&ledger, &bodies, &mut model, &mut report);
+    build(&ledger, &bodies, &mut model, &mut report, options);
     let (warnings, dropped) = ledger.finish();
     report.dropped = dropped;
     let (list, counts) = warnings.finish();
@@ -90,16 +90,25 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 }
 
 /// Builds all faces, in parallel; results are taken in file order.
-fn build(ledger: &Ledger<'_>, bodies: &[(Body, f64)], model: &mut Model, report: &mut ImportReport) {
+fn build(
+    ledger: &Ledger<'_>,
+    bodies: &[(Body, f64)],
+    model: &mut Model,
+    report: &mut ImportReport,
+    options: &Options<'_>,
+) {
     let jobs: Vec<_> = bodies
         .iter()
         .enumerate()
         .flat_map(|(part, (body, tolerance))| body.faces.iter().map(move |face| (part, body, *tolerance, face)))
         .collect();
+    let count = FaceCount::new(options, jobs.len());
     let built: Vec<_> = jobs
         .par_iter()
         .map(|&(part, body, tolerance, (face, colour))| {
-            (part, face.id, *colour, build_face(face, &body.edges, tolerance))
+            let result = build_face(face, &body.edges, tolerance);
+            count.one();
+            (part, face.id, *colour, result)
         })
         .collect();
     for (part, id, colour, result) in built {
