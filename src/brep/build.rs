@@ -21,9 +21,12 @@ pub struct BuiltFace {
     pub face: Face,
     /// What had to be healed or is doubtful, with lengths in mm.
     pub notes: Vec<String>,
-    /// Largest measured distance in mm between a trim curve, mapped through the surface, and the
-    /// edge that it stands for. It includes what the source's edges lie off their surface.
+    /// Largest distance in mm, on the surface, of a trim curve from the points nearest to its edge: what
+    /// fitting, straightening and joining cost.
     pub deviation: f64,
+    /// Largest distance in mm of an edge from the surface, which is the source's. No point of a trim curve
+    /// is farther from its edge than `deviation + gap`.
+    pub gap: f64,
 }
 
 /// Turns of a helical strip that a carrier may cover; only nonsense has more.
@@ -80,7 +83,7 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
             loops.push(Loop::close(&support, strands, limits, &mut notes)?);
         }
     }
-    gap_notes(&loops, eps, size, &mut notes);
+    let gap = gaps(&loops, eps, size, &mut notes);
     if loops.is_empty() {
         return whole(face, &support, notes);
     }
@@ -125,7 +128,7 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         same_sense: face.same_sense,
         colour: None,
     };
-    Ok(BuiltFace { face, notes, deviation })
+    Ok(BuiltFace { face, notes, deviation, gap })
 }
 
 /// The edges of each bound in the direction of the bound; those without length are left out.
@@ -183,15 +186,19 @@ fn heal_directions(edges: Vec<EdgeCurve>, face: u32, eps: f64, notes: &mut Vec<S
     out
 }
 
-/// Names edges that lie farther off the surface than a sound file's would.
-fn gap_notes(loops: &[Loop], eps: f64, size: f64, notes: &mut Vec<String>) {
+/// The largest distance of an edge from the surface; names edges that lie farther off than a sound
+/// file's would.
+fn gaps(loops: &[Loop], eps: f64, size: f64, notes: &mut Vec<String>) -> f64 {
     let limit = (50.0 * eps).min(1e-2 * size);
+    let mut largest: f64 = 0.0;
     for part in loops.iter().flat_map(|l| &l.strands).filter_map(|s| s.part.as_ref()) {
+        largest = largest.max(part.trace.gap);
         if part.trace.gap > limit {
             let (id, gap) = (part.trace.edge.id, part.trace.gap);
             notes.push(format!("edge #{id} lies {gap:.3e} mm off its surface"));
         }
     }
+    largest
 }
 
 /// A closed surface without loops.
@@ -209,7 +216,7 @@ fn whole(face: &FaceGeometry, support: &Support, notes: Vec<String>) -> Result<B
         same_sense: face.same_sense,
         colour: None,
     };
-    Ok(BuiltFace { face, notes, deviation: 0.0 })
+    Ok(BuiltFace { face, notes, deviation: 0.0, gap: 0.0 })
 }
 
 fn carrier_error(face: u32, e: CarrierError) -> BuildError {

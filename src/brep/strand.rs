@@ -100,9 +100,9 @@ impl Strand {
         raw(s) + (self.start - raw(0.0)) * (1.0 - s) + (self.end - raw(1.0)) * s
     }
 
-    /// The point of the edge at `s`.
-    pub fn edge_point(&self, s: f64) -> Option<DVec3> {
-        self.part.as_ref().map(|p| p.trace.edge.point(p.from + (p.to - p.from) * s))
+    /// The point of the surface nearest to the edge at `s`, wherever the strand's ends were pulled.
+    pub fn traced_point(&self, support: &Support, s: f64) -> Option<DVec3> {
+        self.part.as_ref().map(|p| support.point(p.trace.at(support, p.from + (p.to - p.from) * s)))
     }
 
     /// Fractions at which the trace was sampled, from 0 to 1.

@@ -17,7 +17,7 @@ pub use error::ImportError;
 pub(crate) use progress::FaceCount;
 pub use progress::{Options, Stage};
 pub(crate) use report::Warnings;
-pub use report::{ImportReport, Place, Warning};
+pub use report::{FaceRecord, ImportReport, Place, Warning};
 
 use crate::model::Model;
 use std::io::Read;

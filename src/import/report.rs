@@ -1,5 +1,7 @@
 //! Warnings that name their place, counted by kind and kept in bounded number, and the summary.
 
+use crate::brep::BuiltFace;
+use crate::model::{Face, SurfaceKind};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
@@ -61,8 +63,47 @@ pub struct ImportReport {
     pub dropped: BTreeMap<String, usize>,
     /// Healed faces, by what was healed.
     pub healed: BTreeMap<String, usize>,
-    /// Largest distance in millimetres of a derived trim curve from its edge.
+    /// Largest [`FaceRecord::deviation`]: the engine's own part of the error.
     pub deviation: f64,
+    /// Largest [`FaceRecord::gap`]: the file's part.
+    pub gap: f64,
+    /// Faces whose edges lie farther off their surface than the file's tolerance.
+    pub sloppy: usize,
+    /// What the file holds beside bodies and is not drawn, by kind: hidden items, curves, annotations.
+    pub ignored: BTreeMap<String, usize>,
+    /// Layers by name, with the number of items that the file puts on each.
+    pub layers: BTreeMap<String, usize>,
+    /// One record a face: those that could not be read, then the others in the order of the file. Left out of the serialised report: a large file has
+    /// tens of thousands.
+    #[serde(skip)]
+    pub face_records: Vec<FaceRecord>,
+}
+
+/// What became of one face of the file. Lengths in millimetres.
+#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+pub struct FaceRecord {
+    /// Number in the source, as in [`Face::id`](crate::model::Face::id).
+    pub id: u32,
+    /// Index of its part in the model.
+    pub part: usize,
+    /// What its surface is; `None` when the face was left out, and `notes` says why.
+    pub kind: Option<SurfaceKind>,
+    /// Degrees of the drawn surface in u and v.
+    pub degree: [usize; 2],
+    /// The drawn surface has weights that differ.
+    pub rational: bool,
+    /// Trim loops.
+    pub loops: usize,
+    /// Trim curves in all loops.
+    pub curves: usize,
+    /// Largest distance on the surface of a trim curve from the points nearest to its edge.
+    pub deviation: f64,
+    /// Largest distance of an edge from the surface: how well the file agrees with itself.
+    pub gap: f64,
+    /// The tolerance that the file states for this face.
+    pub tolerance: f64,
+    /// What was healed or is doubtful; for a face that was left out, why.
+    pub notes: Vec<String>,
 }
 
 impl fmt::Display for Warning {
@@ -117,6 +158,27 @@ impl Warnings {
 }
 
 impl ImportReport {
+    /// Keeps what is known about a face that was built, and returns the face.
+    pub(crate) fn record(&mut self, record: FaceRecord, built: BuiltFace) -> Face {
+        let BuiltFace { face, notes, deviation, gap } = built;
+        self.deviation = self.deviation.max(deviation);
+        self.gap = self.gap.max(gap);
+        self.sloppy += usize::from(gap > record.tolerance);
+        let (u, v) = face.surface.degrees();
+        self.face_records.push(FaceRecord {
+            kind: Some(face.kind),
+            degree: [u, v],
+            rational: !face.surface.is_polynomial(),
+            loops: face.loops.len(),
+            curves: face.loops.iter().map(|l| l.curves().len()).sum(),
+            deviation,
+            gap,
+            notes,
+            ..record
+        });
+        face
+    }
+
     /// The words of a message before its first number: the key under which it is counted.
     pub(crate) fn reason(message: &str) -> String {
         let message = message.trim_start_matches(|c: char| c == '#' || c.is_ascii_digit() || c == ':' || c == ' ');

@@ -148,7 +148,7 @@ fn an_edge_off_its_plane_is_measured() {
     let mut edges = Vec::new();
     let rim = full_circle(&mut edges, moved(f, [0.0, 0.0, 0.02]), 2.0);
     let built = build(SurfaceGeometry::Plane { frame: f }, vec![Boundary::Edges(vec![(rim, true)])], &edges);
-    assert!((built.deviation - 0.02).abs() < 1e-9);
+    assert!((built.gap - 0.02).abs() < 1e-9 && built.deviation < 1e-13, "{} {}", built.gap, built.deviation);
     assert!(built.notes.iter().any(|n| n.contains("#101") && n.contains("2.000e-2 mm")), "{:?}", built.notes);
 }
 

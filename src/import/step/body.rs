@@ -30,6 +30,8 @@ pub(super) struct Body {
     pub faces: Vec<(FaceGeometry, Option<Colour>)>,
     /// Faces in the file, those that failed included.
     pub face_count: usize,
+    /// Faces that could not be mapped, and why.
+    pub lost: Vec<(u32, String)>,
 }
 
 const SOLIDS: [&str; 3] = ["MANIFOLD_SOLID_BREP", "FACETED_BREP", "BREP_WITH_VOIDS"];
@@ -182,21 +184,29 @@ impl Builder<'_, '_> {
         }
         self.body.face_count += 1;
         let colour = std::iter::once(&id).chain(colours).find_map(|i| self.colours.of_item(*i));
-        self.guarded(FACE_LOST, id, |s| {
-            let entity = s.geometry.entity(id)?;
-            let mut face = if entity.is("CURVE_BOUNDED_SURFACE") {
-                s.geometry.bounded_surface(entity, &mut s.table)?
-            } else if entity.kinds().any(spline::is_surface) {
-                let surface = s.geometry.surface(id)?.surface;
-                FaceGeometry { id, surface, bounds: Vec::new(), same_sense: true }
-            } else {
-                s.geometry.face(id, &mut s.table)?
-            };
-            face.same_sense = face.same_sense == sense;
-            s.body.faces.push((face, colour));
-            Ok(())
-        });
+        match self.mapped(id) {
+            Ok(mut face) => {
+                face.same_sense = face.same_sense == sense;
+                self.body.faces.push((face, colour));
+            }
+            Err(fault) => {
+                self.geometry.ledger.note(FACE_LOST, id, fault.to_string());
+                self.body.lost.push((id, fault.to_string()));
+            }
+        }
         Ok(())
+    }
+
+    fn mapped(&mut self, id: u32) -> Result<FaceGeometry, Fault> {
+        let entity = self.geometry.entity(id)?;
+        if entity.is("CURVE_BOUNDED_SURFACE") {
+            return self.geometry.bounded_surface(entity, &mut self.table);
+        }
+        if entity.kinds().any(spline::is_surface) {
+            let surface = self.geometry.surface(id)?.surface;
+            return Ok(FaceGeometry { id, surface, bounds: Vec::new(), same_sense: true });
+        }
+        self.geometry.face(id, &mut self.table)
     }
 
     fn guarded(&mut self, kind: &'static str, id: u32, f: impl FnOnce(&mut Self) -> Result<(), Fault>) {

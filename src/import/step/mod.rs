@@ -31,7 +31,7 @@ mod walk;
 
 pub(super) use part21::recognise;
 
-use super::{FaceCount, Import, ImportError, ImportReport, Options, Warnings};
+use super::{FaceCount, FaceRecord, Import, ImportError, ImportReport, Options, Warnings};
 use crate::brep::build_face;
 use crate::model::{Instance, Model, Part};
 use assembly::Assembly;
@@ -66,6 +66,14 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
             let body = body::body(&geometry, id, &colours, &[representation]);
             part_of.insert(id, model.parts.len());
             model.parts.push(Part { name: part_name(&file, group, id), closed: body.closed, ..Part::default() });
+            let lost = |(id, reason): &(u32, String)| FaceRecord {
+                id: *id,
+                part: model.parts.len() - 1,
+                tolerance: unit.tolerance,
+                notes: vec![reason.clone()],
+                ..FaceRecord::default()
+            };
+            report.face_records.extend(body.lost.iter().map(lost));
             units.insert(unit.name.clone());
             bodies.push((body, unit.tolerance));
         }
@@ -106,23 +114,27 @@ fn build(
     let built: Vec<_> = jobs
         .par_iter()
         .map(|&(part, body, tolerance, (face, colour))| {
+            let record = FaceRecord { id: face.id, part, tolerance, ..FaceRecord::default() };
             let result = build_face(face, &body.edges, tolerance);
             count.one();
-            (part, face.id, *colour, result)
+            (record, *colour, result)
         })
         .collect();
-    for (part, id, colour, result) in built {
+    for (record, colour, result) in built {
+        let id = record.id;
         match result {
-            Ok(mut face) => {
-                face.face.colour = colour;
-                report.deviation = report.deviation.max(face.deviation);
-                for note in face.notes {
-                    *report.healed.entry(ImportReport::reason(&note)).or_default() += 1;
-                    ledger.note("face healed", id, note);
+            Ok(mut built) => {
+                built.face.colour = colour;
+                for note in &built.notes {
+                    *report.healed.entry(ImportReport::reason(note)).or_default() += 1;
+                    ledger.note("face healed", id, note.as_str());
                 }
-                model.parts[part].faces.push(face.face);
+                model.parts[record.part].faces.push(report.record(record, built));
             }
-            Err(error) => ledger.note(FACE_LOST, id, error.to_string()),
+            Err(error) => {
+                ledger.note(FACE_LOST, id, error.to_string());
+                report.face_records.push(FaceRecord { notes: vec![error.to_string()], ..record });
+            }
         }
     }
 }

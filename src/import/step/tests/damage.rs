@@ -2,6 +2,7 @@
 
 use super::{import, wrap};
 use crate::import::step;
+use crate::model::SurfaceKind;
 use proptest::prelude::*;
 
 /// A cylinder with a hole of a rational spline edge, coloured and placed twice: a little of everything.
@@ -13,6 +14,13 @@ fn the_good_file_is_good() {
     assert!(import.warnings.is_empty(), "{:?}", import.warnings);
     assert_eq!((import.report.faces, import.model.instances.len()), (3, 2));
     assert_eq!((import.report.edges, import.report.bodies), (3, 1));
+    let records = &import.report.face_records;
+    let kinds: Vec<_> = records.iter().map(|r| (r.id, r.kind.unwrap(), r.degree, r.loops)).collect();
+    let (disc, wall) = (SurfaceKind::Plane, SurfaceKind::Cylinder);
+    assert_eq!(kinds, [(61, wall, [2, 1], 1), (62, disc, [1, 1], 1), (63, disc, [1, 1], 1)]);
+    // coordinates of a few hundred millimetres: nothing but rounding
+    assert!(records.iter().all(|r| r.deviation < 1e-12 && r.gap < 1e-12 && r.notes.is_empty()), "{records:#?}");
+    assert_eq!(import.report.sloppy, 0);
 }
 
 /// Loses exactly the named face; `#lost` and `reason` stand in the warning.
@@ -24,6 +32,8 @@ fn loses(from: &str, to: &str, lost: u32, reason: &str) {
     assert!(found.iter().any(named), "{from} -> {to}: {found:#?}");
     assert_eq!(import.report.dropped.values().sum::<usize>(), import.report.warnings["face left out"]);
     assert!(import.model.face_count() < 3);
+    let record = import.report.face_records.iter().find(|r| r.id == lost).unwrap();
+    assert!(record.kind.is_none() && record.notes[0].contains(reason), "{record:?}");
 }
 
 #[test]
