@@ -1,12 +1,23 @@
 //! `selvedge info`: what a file holds, as the engine read it.
+//!
+//! ```text
+//!   Import ──▶ Info ──┬─▶ JSON            everything
+//!                     ├─▶ text            counts, surfaces, assembly, what was healed and lost
+//!                     └─▶ deep (--deep)   every face; the worst of them apart
+//! ```
+
+mod deep;
+mod text;
+mod tree;
 
 use crate::args::InfoArgs;
 use crate::{Outcome, output, session};
 use anyhow::Result;
-use selvedge::import::{Import, ImportReport};
-use selvedge::model::{Model, SurfaceKind};
+use selvedge::import::{FaceRecord, Import, ImportReport};
+use selvedge::model::{Mesh, Model, Part, SurfaceKind};
 use serde::Serialize;
 use std::collections::BTreeMap;
+use tree::Node;
 
 /// Counts of a model; *distinct* where nothing else is said, *instances* counts placed copies.
 #[derive(Debug, Serialize)]
@@ -21,11 +32,16 @@ struct Info<'a> {
     face_instances: usize,
     trim_loops: usize,
     trim_curves: usize,
+    meshes: MeshCounts,
     surfaces: Vec<SurfaceRow>,
+    parts: Vec<PartRow<'a>>,
+    assembly: Node<'a>,
     /// Millimetres; absent for an empty model.
     bounds: Option<[[f64; 3]; 2]>,
     warnings: Vec<String>,
     report: &'a ImportReport,
+    /// Every face of the file: `deviation` and `gap` in millimetres, why it was healed or left out.
+    face_records: &'a [FaceRecord],
 }
 
 /// Surfaces of one kind.
@@ -38,11 +54,37 @@ struct SurfaceRow {
     patches: usize,
 }
 
+/// What came as facets.
+#[derive(Debug, Serialize)]
+struct MeshCounts {
+    distinct: usize,
+    instances: usize,
+    triangles: usize,
+    vertices: usize,
+}
+
+/// One body.
+#[derive(Debug, Serialize)]
+struct PartRow<'a> {
+    name: &'a str,
+    closed: bool,
+    faces: usize,
+    meshes: usize,
+    instances: usize,
+}
+
 /// Reads the model and prints what it holds.
 pub fn run(args: &InfoArgs) -> Result<Outcome> {
     let import = session::open(&args.model)?;
     let info = Info::new(&import);
-    output::print(&if args.json { serde_json::to_string_pretty(&info)? } else { info.text()? })?;
+    if args.json {
+        output::print(&serde_json::to_string_pretty(&info)?)?;
+        return Ok(Outcome::Good);
+    }
+    output::print(&info.text())?;
+    if args.deep {
+        output::print(&deep::text(info.face_records))?;
+    }
     Ok(Outcome::Good)
 }
 
@@ -50,59 +92,53 @@ impl<'a> Info<'a> {
     fn new(import: &'a Import) -> Self {
         let model = &import.model;
         let faces = || model.parts.iter().flat_map(|p| &p.faces);
-        let parts = |closed: bool| model.parts.iter().filter(|p| p.closed == closed).count();
-        let placed = |closed: bool| model.instances.iter().filter(|i| model.parts[i.part].closed == closed).count();
+        let parts = parts(model);
+        let count = |closed: bool| parts.iter().filter(|p| p.closed == closed).count();
+        let placed = |closed: bool| parts.iter().filter(|p| p.closed == closed).map(|p| p.instances).sum();
         let bounds = model.bounds();
         Self {
             name: &model.name,
             unit: &model.unit,
-            solids: parts(true),
+            solids: count(true),
             solid_instances: placed(true),
-            open_shells: parts(false),
+            open_shells: count(false),
             open_shell_instances: placed(false),
             faces: model.face_count(),
             face_instances: model.face_instance_count(),
             trim_loops: faces().map(|f| f.loops.len()).sum(),
             trim_curves: faces().flat_map(|f| &f.loops).map(|l| l.curves().len()).sum(),
+            meshes: meshes(model, &parts),
             surfaces: surfaces(model),
+            assembly: Node::new(model),
             bounds: (!bounds.is_empty()).then(|| [bounds.min.into(), bounds.max.into()]),
             warnings: import.warnings.iter().map(ToString::to_string).collect(),
             report: &import.report,
+            face_records: &import.report.face_records,
+            parts,
         }
     }
+}
 
-    fn text(&self) -> Result<String> {
-        let mut counts = output::table(["", "distinct", "placed"]);
-        counts.add_row(["solids".to_string(), self.solids.to_string(), self.solid_instances.to_string()]);
-        counts.add_row([
-            "open shells".to_string(),
-            self.open_shells.to_string(),
-            self.open_shell_instances.to_string(),
-        ]);
-        counts.add_row(["faces".to_string(), self.faces.to_string(), self.face_instances.to_string()]);
-        counts.add_row(["trim loops".to_string(), self.trim_loops.to_string(), String::new()]);
-        counts.add_row(["trim curves".to_string(), self.trim_curves.to_string(), String::new()]);
+fn parts<'a>(model: &'a Model) -> Vec<PartRow<'a>> {
+    let mut instances = vec![0; model.parts.len()];
+    model.instances.iter().for_each(|i| instances[i.part] += 1);
+    let row = |(p, instances): (&'a Part, usize)| PartRow {
+        name: &p.name,
+        closed: p.closed,
+        faces: p.faces.len(),
+        meshes: p.meshes.len(),
+        instances,
+    };
+    model.parts.iter().zip(instances).map(row).collect()
+}
 
-        let mut surfaces = output::table(["surface", "degree", "rational", "faces", "patches"]);
-        for row in &self.surfaces {
-            let [u, v] = row.degree;
-            surfaces.add_row([
-                format!("{:?}", row.kind),
-                format!("{u} x {v}"),
-                if row.rational { "yes" } else { "no" }.into(),
-                row.faces.to_string(),
-                row.patches.to_string(),
-            ]);
-        }
-
-        let bounds = self.bounds.map_or("empty".to_string(), |[lo, hi]| {
-            let size: [f64; 3] = std::array::from_fn(|i| hi[i] - lo[i]);
-            format!("{:.3} x {:.3} x {:.3} mm from {:.3}, {:.3}, {:.3}", size[0], size[1], size[2], lo[0], lo[1], lo[2])
-        });
-        let mut lines = vec![format!("{}; source unit {}; box {bounds}", self.name, self.unit)];
-        lines.push(format!("{counts}\n{surfaces}"));
-        lines.push(format!("import report: {}", serde_json::to_string_pretty(self.report)?));
-        Ok(lines.join("\n"))
+fn meshes(model: &Model, parts: &[PartRow<'_>]) -> MeshCounts {
+    let all = || model.parts.iter().flat_map(|p| &p.meshes);
+    MeshCounts {
+        distinct: all().count(),
+        instances: parts.iter().map(|p| p.meshes * p.instances).sum(),
+        triangles: all().map(Mesh::triangles).map(<[_]>::len).sum(),
+        vertices: all().map(Mesh::positions).map(<[_]>::len).sum(),
     }
 }
 
