@@ -148,19 +148,35 @@ impl Loop {
         for s in &self.strands {
             hold(s.start);
             hold(s.end);
+        }
+        for s in &self.strands {
             match &s.path {
                 Path::Line => {}
                 Path::Exact(_) => {
                     for c in s.exact_curves().unwrap_or_default() {
+                        // most curves lie deep inside what the others span
+                        let hull = c.points.iter().map(|p| p.point());
+                        let margin = 1e-9 * (bounds.1 - bounds.0);
+                        if hull.into_iter().all(|p| inside(p, (bounds.0 + margin, bounds.1 - margin))) {
+                            continue;
+                        }
                         let nodes: Vec<f64> = (0..=16).map(|i| f64::from(i) / 16.0).collect();
-                        extremes(&nodes, |t| c.homogeneous(t).point()).into_iter().for_each(&mut hold);
+                        let hold = |p: DVec2| bounds = (bounds.0.min(p), bounds.1.max(p));
+                        extremes(&nodes, |t| c.homogeneous(t).point()).into_iter().for_each(hold);
                     }
                 }
-                Path::Traced => extremes(&s.nodes(), |t| s.at(support, t)).into_iter().for_each(&mut hold),
+                Path::Traced => {
+                    let hold = |p: DVec2| bounds = (bounds.0.min(p), bounds.1.max(p));
+                    extremes(&s.nodes(), |t| s.at(support, t)).into_iter().for_each(hold);
+                }
             }
         }
         bounds
     }
+}
+
+fn inside(p: DVec2, (lo, hi): (DVec2, DVec2)) -> bool {
+    (p.cmpge(lo) & p.cmple(hi)).all()
 }
 
 /// `winding` as a vector of parameters.

@@ -1,6 +1,7 @@
 //! One rational tensor-product Bézier patch.
 
-use super::{Control, bernstein};
+use super::bernstein::Row;
+use super::{Control, MAX_DEGREE, bernstein};
 use glam::{DVec3, DVec4};
 
 /// A rational Bézier patch over `[0, 1]²`.
@@ -36,17 +37,31 @@ impl Patch {
 
     /// Homogeneous value and both first derivatives `(P, P_u, P_v)`.
     pub fn homogeneous_jet(&self, u: f64, v: f64) -> (DVec4, DVec4, DVec4) {
-        let rows: Vec<(DVec4, DVec4)> = (0..=self.degree_v).map(|j| bernstein::horner_jet(self.row(j), u)).collect();
-        let values: Vec<DVec4> = rows.iter().map(|r| r.0).collect();
-        let slopes: Vec<DVec4> = rows.iter().map(|r| r.1).collect();
-        let (p, dv) = bernstein::horner_jet(&values, v);
-        (p, bernstein::horner(&slopes, v), dv)
+        let (n, k) = (self.degree_u, self.degree_v);
+        let (mut values, mut slopes) = ([DVec4::ZERO; MAX_DEGREE + 1], [DVec4::ZERO; MAX_DEGREE + 1]);
+        // horner_jet of each row, its weights made once
+        let row = Row::new(n.saturating_sub(1), u);
+        for (j, points) in self.points.chunks_exact(n + 1).enumerate() {
+            if n == 0 {
+                values[j] = points[0];
+                continue;
+            }
+            let (a, b) = (row.value(&points[..n]), row.value(&points[1..]));
+            values[j] = a * (1.0 - u) + b * u;
+            slopes[j] = (b - a) * n as f64;
+        }
+        let (p, dv) = bernstein::horner_jet(&values[..=k], v);
+        (p, bernstein::horner(&slopes[..=k], v), dv)
     }
 
     /// Homogeneous value.
     pub fn homogeneous(&self, u: f64, v: f64) -> DVec4 {
-        let rows: Vec<DVec4> = (0..=self.degree_v).map(|j| bernstein::horner(self.row(j), u)).collect();
-        bernstein::horner(&rows, v)
+        let mut values = [DVec4::ZERO; MAX_DEGREE + 1];
+        let row = Row::new(self.degree_u, u);
+        for (j, points) in self.points.chunks_exact(self.degree_u + 1).enumerate() {
+            values[j] = row.value(points);
+        }
+        bernstein::horner(&values[..=self.degree_v], v)
     }
 
     /// Point at `(u, v)`; parameters outside `[0, 1]` extrapolate.
