@@ -88,6 +88,16 @@ impl Row {
         }
         sum + points[self.degree] * weights[self.degree]
     }
+
+    /// `horner_jet(points, t)` for points of one degree more than the row's, which may both be 0.
+    pub fn jet<P: Control>(&self, points: &[P], t: f64) -> (P, P) {
+        let n = points.len() - 1;
+        if n == 0 {
+            return (points[0], P::ZERO);
+        }
+        let (a, b) = (self.value(&points[..n]), self.value(&points[1..]));
+        (a * (1.0 - t) + b * t, (b - a) * n as f64)
+    }
 }
 
 /// Value and first derivative, from the last step of de Casteljau's algorithm:
@@ -98,8 +108,10 @@ pub(super) fn horner_jet<P: Control>(points: &[P], t: f64) -> (P, P) {
     if n == 0 {
         return (points[0], P::ZERO);
     }
-    let a = horner(&points[..n], t);
-    let b = horner(&points[1..], t);
+    if n <= MAX_DEGREE {
+        return Row::new(n - 1, t).jet(points, t);
+    }
+    let (a, b) = (horner(&points[..n], t), horner(&points[1..], t));
     (a * (1.0 - t) + b * t, (b - a) * n as f64)
 }
 
@@ -144,6 +156,11 @@ mod tests {
             for t in [0.0, 1.0, 0.5, 1.0 / 3.0, 0.9371, -0.2, 1.7] {
                 let row = &points[..=degree];
                 assert_eq!(horner(row, t), divided(row, t), "degree {degree}, t {t}");
+                let (a, b) = (divided(&points[..degree], t), divided(&points[1..=degree], t));
+                let jet = (a * (1.0 - t) + b * t, (b - a) * degree as f64);
+                if degree > 1 {
+                    assert_eq!(horner_jet(row, t), jet, "degree {degree}, t {t}");
+                }
                 if degree <= MAX_DEGREE {
                     assert_eq!(Row::new(degree, t).value(row), divided(row, t), "degree {degree}, t {t}");
                 }

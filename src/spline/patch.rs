@@ -37,29 +37,32 @@ impl Patch {
 
     /// Homogeneous value and both first derivatives `(P, P_u, P_v)`.
     pub fn homogeneous_jet(&self, u: f64, v: f64) -> (DVec4, DVec4, DVec4) {
-        let (n, k) = (self.degree_u, self.degree_v);
-        let (mut values, mut slopes) = ([DVec4::ZERO; MAX_DEGREE + 1], [DVec4::ZERO; MAX_DEGREE + 1]);
-        // horner_jet of each row, its weights made once
-        let row = Row::new(n.saturating_sub(1), u);
-        for (j, points) in self.points.chunks_exact(n + 1).enumerate() {
-            if n == 0 {
-                values[j] = points[0];
-                continue;
-            }
-            let (a, b) = (row.value(&points[..n]), row.value(&points[1..]));
-            values[j] = a * (1.0 - u) + b * u;
-            slopes[j] = (b - a) * n as f64;
+        match self.degree_v {
+            0..4 => self.jet_in::<4>(u, v),
+            4..8 => self.jet_in::<8>(u, v),
+            _ => self.jet_in::<{ MAX_DEGREE + 1 }>(u, v),
         }
-        let (p, dv) = bernstein::horner_jet(&values[..=k], v);
-        (p, bernstein::horner(&slopes[..=k], v), dv)
+    }
+
+    /// With room for `ROWS` rows. As [`bernstein::horner_jet`] of each row and of their values, bit for
+    /// bit, but the weights are made once.
+    fn jet_in<const ROWS: usize>(&self, u: f64, v: f64) -> (DVec4, DVec4, DVec4) {
+        let (n, k) = (self.degree_u, self.degree_v);
+        let (mut values, mut slopes) = ([DVec4::ZERO; ROWS], [DVec4::ZERO; ROWS]);
+        let row = Row::new(n.saturating_sub(1), u);
+        for ((points, value), slope) in self.points.chunks_exact(n + 1).zip(&mut values).zip(&mut slopes) {
+            (*value, *slope) = row.jet(points, u);
+        }
+        let (p, dv) = Row::new(k.saturating_sub(1), v).jet(&values[..=k], v);
+        (p, Row::new(k, v).value(&slopes[..=k]), dv)
     }
 
     /// Homogeneous value.
     pub fn homogeneous(&self, u: f64, v: f64) -> DVec4 {
         let mut values = [DVec4::ZERO; MAX_DEGREE + 1];
         let row = Row::new(self.degree_u, u);
-        for (j, points) in self.points.chunks_exact(self.degree_u + 1).enumerate() {
-            values[j] = row.value(points);
+        for (points, value) in self.points.chunks_exact(self.degree_u + 1).zip(&mut values) {
+            *value = row.value(points);
         }
         bernstein::horner(&values[..=self.degree_v], v)
     }
