@@ -13,6 +13,7 @@
 //! then halves.
 
 use super::carrier::Carrier;
+use super::law::Axis;
 use super::strand::{Path, Strand};
 use super::support::Support;
 use crate::spline::{Bezier, Control};
@@ -178,9 +179,13 @@ impl Fitter<'_> {
                 let (x0, x1) = (chebyshev(i / 2, degree), chebyshev(i / 2 + 1, degree));
                 let x = x0 + (x1 - x0) * if i % 2 == 0 { 0.3 } else { 0.7 };
                 let fitted = self.point(curve.point(x));
-                let (exact, traced) = strand.at_and_traced_point(self.support, a.0 + (b.0 - a.0) * x);
-                error = error.max(fitted.distance(self.point(self.to_carrier(exact))));
-                if let Some(traced) = traced {
+                let (path, raw) = strand.at_and_raw(self.support, a.0 + (b.0 - a.0) * x);
+                let wanted = self.point(self.to_carrier(path));
+                error = error.max(fitted.distance(wanted));
+                if let Some(raw) = raw {
+                    // most strands are where their trace is: one point for both, but for turning there and back
+                    let same = raw == path && self.carrier.axes.iter().all(Axis::is_linear);
+                    let traced = if same { wanted } else { self.support.point(raw) };
                     deviation = deviation.max(PEAK * fitted.distance(traced));
                 }
             }

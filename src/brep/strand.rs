@@ -111,11 +111,11 @@ impl Strand {
         raw + (self.start - part.at(support, 0.0)) * (1.0 - s) + (self.end - part.at(support, 1.0)) * s
     }
 
-    /// [`Strand::at`] and [`Strand::traced_point`] for the price of one, strictly between the ends.
-    pub fn at_and_traced_point(&self, support: &Support, s: f64) -> (DVec2, Option<DVec3>) {
+    /// [`Strand::at`] and the pre-image that it was pulled from, strictly between the ends.
+    pub fn at_and_raw(&self, support: &Support, s: f64) -> (DVec2, Option<DVec2>) {
         let Some(part) = &self.part else { return (self.at(support, s), None) };
         let raw = part.at(support, s);
-        (self.pulled(support, part, s, raw), Some(support.point(raw)))
+        (self.pulled(support, part, s, raw), Some(raw))
     }
 
     /// The point of the surface nearest to the edge at `s`, wherever the strand's ends were pulled.

@@ -68,9 +68,10 @@ impl Row {
     pub fn new(degree: usize, t: f64) -> Self {
         let mut weights = [1.0; MAX_DEGREE + 1];
         let mut factor = 1.0;
-        for (i, weight) in weights.iter_mut().enumerate().take(degree).skip(1) {
+        let choose = &CHOOSE[degree];
+        for i in 1..degree {
             factor *= t;
-            *weight = factor * CHOOSE[degree][i];
+            weights[i] = factor * choose[i];
         }
         weights[degree] = factor * t;
         Self { s: 1.0 - t, degree, weights }

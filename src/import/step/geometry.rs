@@ -31,8 +31,26 @@ pub(super) struct Ledger<'a> {
     file: &'a File<'a>,
     work: Cell<u64>,
     trail: RefCell<Vec<u32>>,
-    warnings: RefCell<Warnings>,
-    dropped: RefCell<BTreeMap<String, usize>>,
+    notes: RefCell<Notes>,
+}
+
+/// What was found.
+#[derive(Debug)]
+pub(super) struct Notes {
+    /// By kind and place.
+    pub warnings: Warnings,
+    /// Faces left out, by reason.
+    pub dropped: BTreeMap<String, usize>,
+}
+
+impl Notes {
+    /// Warns about something; `place` is asked only if the warning is kept.
+    pub fn push(&mut self, kind: &'static str, place: impl FnOnce() -> Place, message: String) {
+        if kind == FACE_LOST {
+            *self.dropped.entry(ImportReport::reason(&message)).or_default() += 1;
+        }
+        self.warnings.push(kind, place, || message);
+    }
 }
 
 /// Maps the geometry of one representation.
@@ -50,13 +68,13 @@ impl<'a> Ledger<'a> {
     /// A fresh budget; `warnings` are those of the syntax.
     pub fn new(file: &'a File<'a>, warnings: Warnings) -> Self {
         let work = Cell::new(FREE_WORK + SHARING * file.slot_count() as u64);
-        let (trail, warnings, dropped) = (RefCell::default(), RefCell::new(warnings), RefCell::default());
-        Self { file, work, trail, warnings, dropped }
+        let notes = RefCell::new(Notes { warnings, dropped: BTreeMap::new() });
+        Self { file, work, trail: RefCell::default(), notes }
     }
 
-    /// The warnings, and the faces left out by reason.
-    pub fn finish(self) -> (Warnings, BTreeMap<String, usize>) {
-        (self.warnings.into_inner(), self.dropped.into_inner())
+    /// What was found.
+    pub fn finish(self) -> Notes {
+        self.notes.into_inner()
     }
 
     /// Takes `amount` of work for `#id` from the budget.
@@ -68,12 +86,8 @@ impl<'a> Ledger<'a> {
 
     /// Warns about `#id`.
     pub fn note(&self, kind: &'static str, id: u32, message: impl Into<String>) {
-        let message = message.into();
-        if kind == FACE_LOST {
-            *self.dropped.borrow_mut().entry(ImportReport::reason(&message)).or_default() += 1;
-        }
         let place = || Entity::find(self.file, id).map_or(Place::File, Entity::place);
-        self.warnings.borrow_mut().push(kind, place, || message);
+        self.notes.borrow_mut().push(kind, place, message.into());
     }
 
     /// Runs `f` with `#id` on the trail.
