@@ -163,6 +163,8 @@ impl Fitter<'_> {
 
     fn fit(&self, strand: &Strand, a: (f64, DVec2), b: (f64, DVec2), depth: u32, most: usize, out: &mut Fitted) {
         let at = |x: f64| self.to_carrier(strand.at(self.support, a.0 + (b.0 - a.0) * x));
+        let middle = 0.5 * (a.0 + b.0);
+        let last = depth == 0 || out.curves.len() >= most || middle <= a.0 || middle >= b.0;
         let mut best: Option<(f64, f64, Bezier<DVec3>)> = None;
         for degree in [3, 5] {
             let values: Vec<DVec2> = (0..=degree)
@@ -188,6 +190,9 @@ impl Fitter<'_> {
                     let traced = if same { wanted } else { self.support.point(raw) };
                     deviation = deviation.max(PEAK * fitted.distance(traced));
                 }
+                if error > self.support.target && !last {
+                    break; // how bad it is matters only where it must be taken
+                }
             }
             if best.as_ref().is_none_or(|b| error < b.0) {
                 best = Some((error, deviation, curve));
@@ -197,9 +202,7 @@ impl Fitter<'_> {
             }
         }
         let Some((error, deviation, curve)) = best else { return };
-        let middle = 0.5 * (a.0 + b.0);
-        let full = out.curves.len() >= most;
-        if error <= self.support.target || full || depth == 0 || middle <= a.0 || middle >= b.0 {
+        if error <= self.support.target || last {
             out.deviation = out.deviation.max(deviation);
             out.curves.push(curve);
             return;
