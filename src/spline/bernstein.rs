@@ -141,10 +141,10 @@ mod tests {
     fn divided(points: &[DVec4], t: f64) -> DVec4 {
         let n = points.len() - 1;
         let (mut factor, mut choose, mut sum) = (1.0, 1.0, points[0] * (1.0 - t));
-        for i in 1..n {
+        for (i, &point) in points.iter().enumerate().take(n).skip(1) {
             factor *= t;
             choose *= (n - i + 1) as f64 / i as f64;
-            sum = (sum + points[i] * (factor * choose)) * (1.0 - t);
+            sum = (sum + point * (factor * choose)) * (1.0 - t);
         }
         sum + points[n] * (factor * t)
     }
