@@ -99,3 +99,36 @@ fn a_converted_model_is_the_same_model() {
     std::fs::remove_dir_all(&folder).unwrap();
     assert_eq!(bytes[0], bytes[1]);
 }
+
+/// What Open CASCADE counts in the sample, as samples/README.md says.
+#[test]
+fn info_tells_bodies_faces_and_the_assembly() {
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/samples/assembly.step");
+    let plain = selvedge(&["info", model]);
+    assert_eq!(plain.status.code(), Some(0));
+    let plain = text(&plain.stdout);
+    let row = |name: &str, numbers: &[&str]| {
+        let line =
+            plain.lines().find(|l| l.trim_start().starts_with(name)).unwrap_or_else(|| panic!("{name}: {plain}"));
+        let found: Vec<_> = line.split_whitespace().filter(|w| w.parse::<usize>().is_ok()).collect();
+        assert_eq!(found, numbers, "{line}");
+    };
+    row("solids", &["9", "23"]);
+    row("faces", &["112", "195"]);
+    row("p-curves, given", &["0"]);
+    for line in ["│  └─ ball_1 x 9", "├─ 14, 17, 20, 23 (4 alike)", "   └─ handle"] {
+        assert!(plain.contains(line), "{line} in {plain}");
+    }
+    let deep = text(&selvedge(&["info", "--deep", model]).stdout);
+    let list = deep.split("every face:").nth(1).unwrap().split("trim curves farthest").next().unwrap();
+    assert_eq!(list.lines().filter(|l| l.trim_start().starts_with('#')).count(), 112);
+    let json: serde_json::Value = serde_json::from_slice(&selvedge(&["info", "--json", model]).stdout).unwrap();
+    let records = json["face_records"].as_array().unwrap();
+    assert_eq!(records.len(), 112);
+    assert!(records.iter().all(|r| r["deviation"].is_number() && r["loops"].is_number() && r["notes"].is_array()));
+    assert_eq!(json["assembly"]["children"].as_array().unwrap().len(), 3);
+    assert_eq!(
+        (&json["report"]["dropped"], &json["report"]["layers"]),
+        (&serde_json::json!({}), &serde_json::json!({}))
+    );
+}

@@ -13,6 +13,7 @@
 //! then halves.
 
 use super::carrier::Carrier;
+use super::law::Axis;
 use super::strand::{Path, Strand};
 use super::support::Support;
 use crate::spline::{Bezier, Control};
@@ -21,6 +22,10 @@ use std::sync::LazyLock;
 
 /// Halvings before a piece is kept as it is and its error reported: `2^-16` of an edge.
 const MAX_DEPTH: u32 = 16;
+
+/// Curves of one strand, beside eight for each cut, after which no piece is halved any more. Real faces have
+/// some hundreds in all their loops; damaged ones, whose pre-image is noise, would ask for `2^16`.
+const MAX_CURVES: usize = 2048;
 
 /// Between two points of interpolation the error runs like the product of the distances from them all. Its
 /// peak is at most this many times what is found at 0.3 and 0.7 of the way.
@@ -107,9 +112,10 @@ impl Fitter<'_> {
 
     fn traced(&self, strand: &Strand) -> Fitted {
         let cuts = self.cuts(strand);
+        let most = MAX_CURVES + 8 * cuts.len();
         let mut out = Fitted { curves: Vec::new(), deviation: 0.0 };
         for w in cuts.windows(2) {
-            self.fit(strand, w[0], w[1], MAX_DEPTH, &mut out);
+            self.fit(strand, w[0], w[1], MAX_DEPTH, most, &mut out);
         }
         out
     }
@@ -155,8 +161,10 @@ impl Fitter<'_> {
         kept.iter().map(|(s, p)| (*s, self.to_carrier(*p))).collect()
     }
 
-    fn fit(&self, strand: &Strand, a: (f64, DVec2), b: (f64, DVec2), depth: u32, out: &mut Fitted) {
+    fn fit(&self, strand: &Strand, a: (f64, DVec2), b: (f64, DVec2), depth: u32, most: usize, out: &mut Fitted) {
         let at = |x: f64| self.to_carrier(strand.at(self.support, a.0 + (b.0 - a.0) * x));
+        let middle = 0.5 * (a.0 + b.0);
+        let last = depth == 0 || out.curves.len() >= most || middle <= a.0 || middle >= b.0;
         let mut best: Option<(f64, f64, Bezier<DVec3>)> = None;
         for degree in [3, 5] {
             let values: Vec<DVec2> = (0..=degree)
@@ -173,9 +181,17 @@ impl Fitter<'_> {
                 let (x0, x1) = (chebyshev(i / 2, degree), chebyshev(i / 2 + 1, degree));
                 let x = x0 + (x1 - x0) * if i % 2 == 0 { 0.3 } else { 0.7 };
                 let fitted = self.point(curve.point(x));
-                error = error.max(fitted.distance(self.point(at(x))));
-                if let Some(traced) = strand.traced_point(self.support, a.0 + (b.0 - a.0) * x) {
+                let (path, raw) = strand.at_and_raw(self.support, a.0 + (b.0 - a.0) * x);
+                let wanted = self.point(self.to_carrier(path));
+                error = error.max(fitted.distance(wanted));
+                if let Some(raw) = raw {
+                    // most strands are where their trace is: one point for both, but for turning there and back
+                    let same = raw == path && self.carrier.axes.iter().all(Axis::is_linear);
+                    let traced = if same { wanted } else { self.support.point(raw) };
                     deviation = deviation.max(PEAK * fitted.distance(traced));
+                }
+                if error > self.support.target && !last {
+                    break; // how bad it is matters only where it must be taken
                 }
             }
             if best.as_ref().is_none_or(|b| error < b.0) {
@@ -186,15 +202,14 @@ impl Fitter<'_> {
             }
         }
         let Some((error, deviation, curve)) = best else { return };
-        let middle = 0.5 * (a.0 + b.0);
-        if error <= self.support.target || depth == 0 || middle <= a.0 || middle >= b.0 {
+        if error <= self.support.target || last {
             out.deviation = out.deviation.max(deviation);
             out.curves.push(curve);
             return;
         }
         let m = (middle, self.to_carrier(strand.at(self.support, middle)));
-        self.fit(strand, a, m, depth - 1, out);
-        self.fit(strand, m, b, depth - 1, out);
+        self.fit(strand, a, m, depth - 1, most, out);
+        self.fit(strand, m, b, depth - 1, most, out);
     }
 }
 

@@ -48,6 +48,11 @@ impl Axis {
         Self { law, knots: arc::pieces(lo, hi, widest) }
     }
 
+    /// Both parameters are the same number.
+    pub fn is_linear(&self) -> bool {
+        self.law == Law::Linear
+    }
+
     /// The piece that `x` lies in; the end pieces reach beyond the range.
     fn piece(&self, x: f64) -> (f64, f64) {
         let i = self.knots.partition_point(|k| *k <= x).clamp(1, self.knots.len() - 1);

@@ -143,20 +143,32 @@ impl Loop {
     /// Box of the loop: exact for straight strands; curved ones by samples, refined at each extreme
     /// to `1e-12` of a period or of the curve's own box.
     pub fn bounds(&self, support: &Support) -> (DVec2, DVec2) {
-        let mut bounds = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        self.bounds_with(support, (DVec2::INFINITY, DVec2::NEG_INFINITY))
+    }
+
+    /// The box grown to hold the loop.
+    pub fn bounds_with(&self, support: &Support, mut bounds: (DVec2, DVec2)) -> (DVec2, DVec2) {
         let mut hold = |p: DVec2| bounds = (bounds.0.min(p), bounds.1.max(p));
         for s in &self.strands {
             hold(s.start);
             hold(s.end);
+        }
+        for s in &self.strands {
             match &s.path {
                 Path::Line => {}
                 Path::Exact(_) => {
+                    let nodes: Vec<f64> = (0..=16).map(|i| f64::from(i) / 16.0).collect();
                     for c in s.exact_curves().unwrap_or_default() {
-                        let nodes: Vec<f64> = (0..=16).map(|i| f64::from(i) / 16.0).collect();
-                        extremes(&nodes, |t| c.homogeneous(t).point()).into_iter().for_each(&mut hold);
+                        // most curves lie deep inside what the others span
+                        let margin = 1e-9 * (bounds.1 - bounds.0);
+                        let (lo, hi) = (bounds.0 + margin, bounds.1 - margin);
+                        let deep = |p: &DVec3| (p.point().cmpge(lo) & p.point().cmple(hi)).all();
+                        if !c.points.iter().all(deep) {
+                            extremes(&nodes, |t| c.homogeneous(t).point(), &mut bounds);
+                        }
                     }
                 }
-                Path::Traced => extremes(&s.nodes(), |t| s.at(support, t)).into_iter().for_each(&mut hold),
+                Path::Traced => extremes(&s.nodes(), |t| s.at(support, t), &mut bounds),
             }
         }
         bounds
@@ -175,26 +187,34 @@ pub(super) fn area(polygon: &[DVec2]) -> f64 {
     polygon.windows(2).map(|w| (w[0] - origin).perp_dot(w[1] - origin)).sum()
 }
 
-/// Points where a sampled curve may reach farthest in each direction, by ternary search around the
-/// extreme samples.
-fn extremes(nodes: &[f64], at: impl Fn(f64) -> DVec2) -> Vec<DVec2> {
+/// Grows `bounds` to hold a sampled curve, by ternary search around its extreme samples.
+///
+/// No search where the curve stays inside: beyond an extreme sample it goes no farther than its
+/// neighbours are away, else it is not sampled at all.
+fn extremes(nodes: &[f64], at: impl Fn(f64) -> DVec2, bounds: &mut (DVec2, DVec2)) {
     let samples: Vec<DVec2> = nodes.iter().map(|t| at(*t)).collect();
-    let mut out = samples.clone();
+    let hold = |b: (DVec2, DVec2), p: &DVec2| (b.0.min(*p), b.1.max(*p));
+    *bounds = samples.iter().fold(*bounds, hold);
     for axis in 0..2 {
         for sign in [1.0, -1.0] {
             let value = |p: DVec2| sign * p[axis];
             let Some(i) = (0..samples.len()).max_by(|a, b| value(samples[*a]).total_cmp(&value(samples[*b]))) else {
                 continue;
             };
-            let (mut a, mut b) = (nodes[i.saturating_sub(1)], nodes[(i + 1).min(nodes.len() - 1)]);
+            let (before, after) = (i.saturating_sub(1), (i + 1).min(nodes.len() - 1));
+            let limit = if sign > 0.0 { bounds.1[axis] } else { -bounds.0[axis] };
+            let least = value(samples[before]).min(value(samples[after]));
+            if value(samples[i]) + (value(samples[i]) - least) < limit - 1e-9 * limit.abs() {
+                continue;
+            }
+            let (mut a, mut b) = (nodes[before], nodes[after]);
             for _ in 0..50 {
                 let (c, d) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
                 if value(at(c)) >= value(at(d)) { b = d } else { a = c }
             }
-            out.push(at(0.5 * (a + b)));
+            *bounds = hold(*bounds, &at(0.5 * (a + b)));
         }
     }
-    out
 }
 
 /// Where the strand after a pole begins: at its own angle, reached from the end of the strand before

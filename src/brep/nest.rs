@@ -128,8 +128,7 @@ fn encloses(polygon: &[DVec2], p: DVec2) -> bool {
 pub(super) fn come_home(support: &Support, loops: Vec<Loop>) -> (Vec<Loop>, [(f64, f64); 2]) {
     let mut bounds = (DVec2::INFINITY, DVec2::NEG_INFINITY);
     for l in &loops {
-        let (lo, hi) = l.bounds(support);
-        bounds = (bounds.0.min(lo), bounds.1.max(hi));
+        bounds = l.bounds_with(support, bounds);
     }
     let mut by = DVec2::ZERO;
     for i in 0..2 {

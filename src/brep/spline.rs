@@ -3,8 +3,9 @@
 use super::pieces::creases;
 use super::support::Pole;
 use crate::spline::arc::assemble;
-use crate::spline::{BSpline, Control, Jet, PatchGrid, Span, SplineError, Surface};
+use crate::spline::{BSpline, Control, Jet, PatchGrid, Span, SplineError, Surface, SurfacePatch};
 use glam::{DVec2, DVec3, DVec4};
+use std::cell::OnceCell;
 
 /// A surface with what its inversion needs.
 #[derive(Clone, Debug)]
@@ -14,6 +15,8 @@ pub(super) struct SplineForm {
     grid: PatchGrid,
     /// Box of each patch's control points.
     boxes: Vec<(DVec3, DVec3)>,
+    /// Points of each patch from which a search begins, once it was searched.
+    seeds: Vec<OnceCell<Vec<DVec3>>>,
     /// Parameter ranges.
     pub domain: [(f64, f64); 2],
     /// First and last side coincide, in `u` and in `v`.
@@ -33,11 +36,13 @@ impl SplineForm {
         let (ku, kv) = surface.knots();
         let (du, dv) = surface.degrees();
         let (lo, hi) = surface.bounds();
+        let seeds = vec![OnceCell::new(); grid.patches.len()];
         let mut this = Self {
             size: lo.distance(hi),
             surface: surface.clone(),
             grid,
             boxes,
+            seeds,
             domain: [u, v],
             closed: [false; 2],
             creases: [creases(du, ku), creases(dv, kv)],
@@ -135,16 +140,15 @@ impl SplineForm {
                 break;
             }
             let patch = &self.grid.patches[i];
-            let (n, k) = (patch.patch.degree_u + 2, patch.patch.degree_v + 2);
+            let (n, k) = seed_counts(patch);
+            let points = self.seeds[i].get_or_init(|| seeds(patch));
             let mut seed = (f64::INFINITY, DVec2::ZERO);
-            for j in 0..=k {
-                for i in 0..=n {
-                    let (s, t) = (i as f64 / n as f64, j as f64 / k as f64);
-                    let d = patch.patch.point(s, t).distance(p);
-                    if d < seed.0 {
-                        let at = |(a, b): (f64, f64), x: f64| a + (b - a) * x;
-                        seed = (d, DVec2::new(at(patch.u, s), at(patch.v, t)));
-                    }
+            for (index, point) in points.iter().enumerate() {
+                let d = point.distance(p);
+                if d < seed.0 {
+                    let (s, t) = ((index % (n + 1)) as f64 / n as f64, (index / (n + 1)) as f64 / k as f64);
+                    let at = |(a, b): (f64, f64), x: f64| a + (b - a) * x;
+                    seed = (d, DVec2::new(at(patch.u, s), at(patch.v, t)));
                 }
             }
             let found = self.polish(p, seed.1);
@@ -233,6 +237,18 @@ impl SplineForm {
         }
         Ok(surface)
     }
+}
+
+/// Steps of a patch's grid of seeds along `u` and `v`.
+fn seed_counts(patch: &SurfacePatch) -> (usize, usize) {
+    (patch.patch.degree_u + 2, patch.patch.degree_v + 2)
+}
+
+/// The grid of seeds, `u` fastest.
+fn seeds(patch: &SurfacePatch) -> Vec<DVec3> {
+    let (n, k) = seed_counts(patch);
+    let point = |i: usize, j: usize| patch.patch.point(i as f64 / n as f64, j as f64 / k as f64);
+    (0..=k).flat_map(|j| (0..=n).map(move |i| (i, j))).map(|(i, j)| point(i, j)).collect()
 }
 
 /// The Bézier strips of the endless repetition of `surface` along `u` that meet `(lo, hi)`.

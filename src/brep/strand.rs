@@ -28,6 +28,13 @@ pub(super) struct Part {
     pub to: f64,
 }
 
+impl Part {
+    /// Native parameters at the fraction `s` of the part.
+    fn at(&self, support: &Support, s: f64) -> DVec2 {
+        self.trace.at(support, self.from + (self.to - self.from) * s)
+    }
+}
+
 /// A directed piece of a loop. Its ends are where the loop puts them; the path between follows,
 /// shifted by whatever that takes at each end and linearly in between.
 #[derive(Clone, Debug)]
@@ -96,13 +103,24 @@ impl Strand {
         if s == 1.0 {
             return self.end;
         }
-        let raw = |s: f64| part.trace.at(support, part.from + (part.to - part.from) * s);
-        raw(s) + (self.start - raw(0.0)) * (1.0 - s) + (self.end - raw(1.0)) * s
+        self.pulled(support, part, s, part.at(support, s))
+    }
+
+    /// The pre-image at `s`, carried along with the ends.
+    fn pulled(&self, support: &Support, part: &Part, s: f64, raw: DVec2) -> DVec2 {
+        raw + (self.start - part.at(support, 0.0)) * (1.0 - s) + (self.end - part.at(support, 1.0)) * s
+    }
+
+    /// [`Strand::at`] and the pre-image that it was pulled from, strictly between the ends.
+    pub fn at_and_raw(&self, support: &Support, s: f64) -> (DVec2, Option<DVec2>) {
+        let Some(part) = &self.part else { return (self.at(support, s), None) };
+        let raw = part.at(support, s);
+        (self.pulled(support, part, s, raw), Some(raw))
     }
 
     /// The point of the surface nearest to the edge at `s`, wherever the strand's ends were pulled.
     pub fn traced_point(&self, support: &Support, s: f64) -> Option<DVec3> {
-        self.part.as_ref().map(|p| support.point(p.trace.at(support, p.from + (p.to - p.from) * s)))
+        self.part.as_ref().map(|part| support.point(part.at(support, s)))
     }
 
     /// Fractions at which the trace was sampled, from 0 to 1.

@@ -21,12 +21,15 @@ mod locate;
 mod native;
 mod obj;
 mod parts;
+mod progress;
 mod report;
 #[cfg(feature = "rhino")]
 mod rhino;
 mod step;
 
 pub use error::ImportError;
+pub(crate) use progress::FaceCount;
+pub use progress::{Options, Stage};
 pub(crate) use report::Warnings;
 pub use report::{FaceRecord, ImportReport, Place, Warning};
 
@@ -60,21 +63,31 @@ const FREE_EXPANSION: u64 = 1 << 20;
 /// # Errors
 /// [`ImportError`] when the file cannot be read or is not a known format.
 pub fn open(path: &Path) -> Result<Import, ImportError> {
+    open_with(path, &Options::default())
+}
+
+/// As [`open`], and tells how far it has come; the result is the same.
+///
+/// # Errors
+/// As [`open`].
+pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportError> {
     let name = path.display().to_string();
     let unreadable = |source| ImportError::Read { file: name.clone(), source };
     let size = std::fs::metadata(path).map_err(unreadable)?.len();
     if size > u64::from(u32::MAX) {
         return Err(ImportError::TooLarge { file: name });
     }
+    options.tell(Stage::Read { bytes: size });
     let mut bytes = std::fs::read(path).map_err(unreadable)?;
     if bytes.starts_with(&[0x1f, 0x8b]) {
         bytes = inflate(&bytes, &name)?;
     }
+    options.tell(Stage::Parse { bytes: bytes.len() as u64 });
     if native::recognise(&bytes) {
         return native(&bytes, &name);
     }
     if step::recognise(&bytes) {
-        return step(&bytes, &name);
+        return step::read(&bytes, &name, options);
     }
     if iges::recognise(&bytes) {
         return iges(&bytes, &name);
@@ -104,7 +117,7 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
 /// # Errors
 /// [`ImportError`] when the text is not STEP or holds no usable data.
 pub fn step(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
-    step::read(bytes, name)
+    step::read(bytes, name, &Options::default())
 }
 
 /// Reads the engine's own form: see [`crate::model::native`].

@@ -181,11 +181,19 @@ impl ImportReport {
         face
     }
 
-    /// The words of a message before its first number: the key under which it is counted.
+    /// A message without its numbers, the key under which it is counted: `face #3: edge #7 was turned`
+    /// is `edge was turned`.
     pub(crate) fn reason(message: &str) -> String {
-        let message = message.trim_start_matches(|c: char| c == '#' || c.is_ascii_digit() || c == ':' || c == ' ');
-        let words = message.split(|c: char| c.is_ascii_digit() || c == ':' || c == '#').next().unwrap_or(message);
-        words.trim_end_matches(|c: char| !c.is_alphanumeric()).to_owned()
+        let mut words: Vec<&str> = Vec::new();
+        for word in message.split_whitespace() {
+            match word.contains(|c: char| c.is_ascii_digit()) {
+                // what the message is about
+                true if word.ends_with(':') => words.clear(),
+                true => {}
+                false => words.push(word),
+            }
+        }
+        words.join(" ").trim_end_matches(|c: char| !c.is_alphanumeric()).to_owned()
     }
 }
 
@@ -212,5 +220,6 @@ mod tests {
     fn reasons_drop_numbers() {
         assert_eq!(ImportReport::reason("#12: the radius is 0"), "the radius is");
         assert_eq!(ImportReport::reason("loop closed over a gap of 1e-3"), "loop closed over a gap of");
+        assert_eq!(ImportReport::reason("face #3: edge #7 lies 2.1e-4 mm off"), "edge lies mm off");
     }
 }

@@ -27,15 +27,78 @@ pub(super) fn horner<P: Control>(points: &[P], t: f64) -> P {
     if n == 0 {
         return points[0];
     }
+    let table = CHOOSE.get(n);
     let mut factor = 1.0;
     let mut choose = 1.0;
     let mut sum = points[0] * s;
     for (i, &p) in points.iter().enumerate().take(n).skip(1) {
         factor *= t;
-        choose *= (n - i + 1) as f64 / i as f64;
+        choose = table.map_or_else(|| choose * ((n - i + 1) as f64 / i as f64), |row| row[i]);
         sum = (sum + p * (factor * choose)) * s;
     }
     sum + points[n] * (factor * t)
+}
+
+/// `n` over `k` as the running product of [`horner`] gives it, so that both agree bit for bit: a
+/// table, because a division a step would cost as much as the rest of it.
+const CHOOSE: [[f64; MAX_DEGREE + 1]; MAX_DEGREE + 1] = {
+    let mut table = [[1.0; MAX_DEGREE + 1]; MAX_DEGREE + 1];
+    let mut n = 0;
+    while n <= MAX_DEGREE {
+        let mut i = 1;
+        while i < n {
+            table[n][i] = table[n][i - 1] * ((n - i + 1) as f64 / i as f64);
+            i += 1;
+        }
+        n += 1;
+    }
+    table
+};
+
+/// What [`horner`] multiplies the points with, for many rows at one `t`; the values are its own, bit
+/// for bit.
+pub(super) struct Row {
+    s: f64,
+    degree: usize,
+    weights: [f64; MAX_DEGREE + 1],
+}
+
+impl Row {
+    /// For rows of `degree + 1` points; `degree` is at most [`MAX_DEGREE`].
+    pub fn new(degree: usize, t: f64) -> Self {
+        let mut weights = [1.0; MAX_DEGREE + 1];
+        let mut factor = 1.0;
+        let choose = &CHOOSE[degree];
+        for i in 1..degree {
+            factor *= t;
+            weights[i] = factor * choose[i];
+        }
+        weights[degree] = factor * t;
+        Self { s: 1.0 - t, degree, weights }
+    }
+
+    /// `horner(points, t)`.
+    pub fn value<P: Control>(&self, points: &[P]) -> P {
+        if self.degree == 0 {
+            return points[0];
+        }
+        let (points, weights) = (&points[..=self.degree], &self.weights[..=self.degree]);
+        let mut sum = points[0] * self.s;
+        for i in 1..self.degree {
+            sum = (sum + points[i] * weights[i]) * self.s;
+        }
+        sum + points[self.degree] * weights[self.degree]
+    }
+
+    /// `horner_jet(points, t)` for points of one degree more than the row's, which may both be 0.
+    pub fn jet<P: Control>(&self, points: &[P], t: f64) -> (P, P) {
+        let n = points.len() - 1;
+        if n == 0 {
+            return (points[0], P::ZERO);
+        }
+        let (a, b) = (self.value(&points[..n]), self.value(&points[1..]));
+        (a * (1.0 - t) + b * t, (b - a) * n as f64)
+    }
 }
 
 /// Value and first derivative, from the last step of de Casteljau's algorithm:
@@ -46,8 +109,10 @@ pub(super) fn horner_jet<P: Control>(points: &[P], t: f64) -> (P, P) {
     if n == 0 {
         return (points[0], P::ZERO);
     }
-    let a = horner(&points[..n], t);
-    let b = horner(&points[1..], t);
+    if n <= MAX_DEGREE {
+        return Row::new(n - 1, t).jet(points, t);
+    }
+    let (a, b) = (horner(&points[..n], t), horner(&points[1..], t));
     (a * (1.0 - t) + b * t, (b - a) * n as f64)
 }
 
@@ -65,4 +130,42 @@ pub(super) fn split<P: Control>(points: &mut [P], t: f64) -> Vec<P> {
         }
     }
     right
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec4;
+
+    /// What the formula says, with a division a step.
+    fn divided(points: &[DVec4], t: f64) -> DVec4 {
+        let n = points.len() - 1;
+        let (mut factor, mut choose, mut sum) = (1.0, 1.0, points[0] * (1.0 - t));
+        for (i, &point) in points.iter().enumerate().take(n).skip(1) {
+            factor *= t;
+            choose *= (n - i + 1) as f64 / i as f64;
+            sum = (sum + point * (factor * choose)) * (1.0 - t);
+        }
+        sum + points[n] * (factor * t)
+    }
+
+    #[test]
+    fn tables_change_no_bit() {
+        let point = |i: usize| DVec4::new((i as f64).sin(), 1.0 / (i + 3) as f64, i as f64 * 0.7, 1.0 + 0.1 * i as f64);
+        let points: Vec<DVec4> = (0..40).map(point).collect();
+        for degree in 1..=39 {
+            for t in [0.0, 1.0, 0.5, 1.0 / 3.0, 0.9371, -0.2, 1.7] {
+                let row = &points[..=degree];
+                assert_eq!(horner(row, t), divided(row, t), "degree {degree}, t {t}");
+                let (a, b) = (divided(&points[..degree], t), divided(&points[1..=degree], t));
+                let jet = (a * (1.0 - t) + b * t, (b - a) * degree as f64);
+                if degree > 1 {
+                    assert_eq!(horner_jet(row, t), jet, "degree {degree}, t {t}");
+                }
+                if degree <= MAX_DEGREE {
+                    assert_eq!(Row::new(degree, t).value(row), divided(row, t), "degree {degree}, t {t}");
+                }
+            }
+        }
+    }
 }

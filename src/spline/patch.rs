@@ -1,6 +1,7 @@
 //! One rational tensor-product Bézier patch.
 
-use super::{Control, bernstein};
+use super::bernstein::Row;
+use super::{Control, MAX_DEGREE, bernstein};
 use glam::{DVec3, DVec4};
 
 /// A rational Bézier patch over `[0, 1]²`.
@@ -36,17 +37,34 @@ impl Patch {
 
     /// Homogeneous value and both first derivatives `(P, P_u, P_v)`.
     pub fn homogeneous_jet(&self, u: f64, v: f64) -> (DVec4, DVec4, DVec4) {
-        let rows: Vec<(DVec4, DVec4)> = (0..=self.degree_v).map(|j| bernstein::horner_jet(self.row(j), u)).collect();
-        let values: Vec<DVec4> = rows.iter().map(|r| r.0).collect();
-        let slopes: Vec<DVec4> = rows.iter().map(|r| r.1).collect();
-        let (p, dv) = bernstein::horner_jet(&values, v);
-        (p, bernstein::horner(&slopes, v), dv)
+        match self.degree_v {
+            0..4 => self.jet_in::<4>(u, v),
+            4..8 => self.jet_in::<8>(u, v),
+            _ => self.jet_in::<{ MAX_DEGREE + 1 }>(u, v),
+        }
+    }
+
+    /// With room for `ROWS` rows. As [`bernstein::horner_jet`] of each row and of their values, bit for
+    /// bit, but the weights are made once.
+    fn jet_in<const ROWS: usize>(&self, u: f64, v: f64) -> (DVec4, DVec4, DVec4) {
+        let (n, k) = (self.degree_u, self.degree_v);
+        let (mut values, mut slopes) = ([DVec4::ZERO; ROWS], [DVec4::ZERO; ROWS]);
+        let row = Row::new(n.saturating_sub(1), u);
+        for ((points, value), slope) in self.points.chunks_exact(n + 1).zip(&mut values).zip(&mut slopes) {
+            (*value, *slope) = row.jet(points, u);
+        }
+        let (p, dv) = Row::new(k.saturating_sub(1), v).jet(&values[..=k], v);
+        (p, Row::new(k, v).value(&slopes[..=k]), dv)
     }
 
     /// Homogeneous value.
     pub fn homogeneous(&self, u: f64, v: f64) -> DVec4 {
-        let rows: Vec<DVec4> = (0..=self.degree_v).map(|j| bernstein::horner(self.row(j), u)).collect();
-        bernstein::horner(&rows, v)
+        let mut values = [DVec4::ZERO; MAX_DEGREE + 1];
+        let row = Row::new(self.degree_u, u);
+        for (points, value) in self.points.chunks_exact(self.degree_u + 1).zip(&mut values) {
+            *value = row.value(points);
+        }
+        bernstein::horner(&values[..=self.degree_v], v)
     }
 
     /// Point at `(u, v)`; parameters outside `[0, 1]` extrapolate.

@@ -66,7 +66,10 @@ pub struct RenderArgs {
 pub struct InfoArgs {
     /// The model (STEP)
     pub model: PathBuf,
-    /// Print JSON
+    /// List every face: deviation, gap, loops, notes; and the worst of them
+    #[arg(long)]
+    pub deep: bool,
+    /// Print JSON; it holds all that `--deep` tells
     #[arg(long)]
     pub json: bool,
 }

@@ -2,7 +2,7 @@
 
 use crate::args::FrameArgs;
 use crate::output;
-use crate::progress::during;
+use crate::progress::{during, importing};
 use anyhow::Result;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::import::{self, Import};
@@ -14,7 +14,9 @@ use std::time::Instant;
 /// Reads a file and tells its warnings.
 pub fn open(path: &Path) -> Result<Import> {
     let start = Instant::now();
-    let import = during(&format!("reading {}", path.display()), || import::open(path))?;
+    let import = importing(&path.display().to_string(), |tell| {
+        import::open_with(path, &import::Options { progress: Some(tell) })
+    })?;
     tracing::info!("read {} in {:.1?}", path.display(), start.elapsed());
     output::warnings(&import);
     Ok(import)

@@ -31,9 +31,28 @@ pub(super) struct Ledger<'a> {
     file: &'a File<'a>,
     work: Cell<u64>,
     trail: RefCell<Vec<u32>>,
-    warnings: RefCell<Warnings>,
-    dropped: RefCell<BTreeMap<String, usize>>,
-    ignored: RefCell<BTreeMap<String, usize>>,
+    notes: RefCell<Notes>,
+}
+
+/// What was found.
+#[derive(Debug)]
+pub(super) struct Notes {
+    /// By kind and place.
+    pub warnings: Warnings,
+    /// Faces left out, by reason.
+    pub dropped: BTreeMap<String, usize>,
+    /// What is not drawn though nothing is wrong with it, by kind.
+    pub ignored: BTreeMap<String, usize>,
+}
+
+impl Notes {
+    /// Warns about something; `place` is asked only if the warning is kept.
+    pub fn push(&mut self, kind: &'static str, place: impl FnOnce() -> Place, message: String) {
+        if kind == FACE_LOST {
+            *self.dropped.entry(ImportReport::reason(&message)).or_default() += 1;
+        }
+        self.warnings.push(kind, place, || message);
+    }
 }
 
 /// Maps the geometry of one representation.
@@ -51,24 +70,23 @@ impl<'a> Ledger<'a> {
     /// A fresh budget; `warnings` are those of the syntax.
     pub fn new(file: &'a File<'a>, warnings: Warnings) -> Self {
         let work = Cell::new(FREE_WORK + SHARING * file.slot_count() as u64);
-        let (dropped, ignored) = (RefCell::default(), RefCell::default());
-        Self { file, work, trail: RefCell::default(), warnings: RefCell::new(warnings), dropped, ignored }
+        let notes = RefCell::new(Notes { warnings, dropped: BTreeMap::new(), ignored: BTreeMap::new() });
+        Self { file, work, trail: RefCell::default(), notes }
     }
 
-    /// The warnings; into the report, the faces left out by reason and what was not drawn by kind.
-    pub fn finish(self, report: &mut ImportReport) -> Warnings {
-        report.dropped = self.dropped.into_inner();
-        report.ignored = self.ignored.into_inner();
-        self.warnings.into_inner()
+    /// What was found.
+    pub fn finish(self) -> Notes {
+        self.notes.into_inner()
     }
 
     /// Counts what is not drawn though nothing is wrong with it.
     pub fn ignore(&self, kind: &str, count: usize) {
-        if let Some(sum) = self.ignored.borrow_mut().get_mut(kind) {
+        let ignored = &mut self.notes.borrow_mut().ignored;
+        if let Some(sum) = ignored.get_mut(kind) {
             *sum += count;
             return;
         }
-        self.ignored.borrow_mut().insert(kind.to_owned(), count);
+        ignored.insert(kind.to_owned(), count);
     }
 
     /// Takes `amount` of work for `#id` from the budget.
@@ -80,12 +98,8 @@ impl<'a> Ledger<'a> {
 
     /// Warns about `#id`.
     pub fn note(&self, kind: &'static str, id: u32, message: impl Into<String>) {
-        let message = message.into();
-        if kind == FACE_LOST {
-            *self.dropped.borrow_mut().entry(ImportReport::reason(&message)).or_default() += 1;
-        }
         let place = || Entity::find(self.file, id).map_or(Place::File, Entity::place);
-        self.warnings.borrow_mut().push(kind, place, || message);
+        self.notes.borrow_mut().push(kind, place, message.into());
     }
 
     /// Runs `f` with `#id` on the trail.

@@ -36,21 +36,21 @@ mod walk;
 pub(super) use part21::recognise;
 pub(super) use surface::{as_cylinder, offset};
 
-use super::{FaceRecord, Import, ImportError, ImportReport, Warnings, locate};
+use super::{FaceCount, FaceRecord, Import, ImportError, ImportReport, Options, Warnings, locate};
 use crate::brep::build_face;
 use crate::model::{Instance, Model, Part};
 use assembly::Assembly;
 use body::{Body, Looks};
 use colour::Colours;
 use entity::Entity;
-use geometry::{FACE_LOST, Geometry, Ledger};
-use part21::File;
+use geometry::{FACE_LOST, Geometry, Ledger, Notes};
+use part21::{File, Places};
 use presentation::Presentation;
 use rayon::prelude::*;
 use std::collections::{BTreeSet, HashMap};
 
 /// Reads STEP text; `name` is the file's name in messages.
-pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Import, ImportError> {
     let mut warnings = Warnings::new(name);
     let file = File::parse(bytes, name, &mut warnings)?;
     let ledger = Ledger::new(&file, warnings);
@@ -103,27 +103,44 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     report.meshes = model.parts.iter().map(|p| p.meshes.len()).sum();
     report.edges = bodies.iter().map(|b| b.0.edges.len()).sum();
     report.faces = bodies.iter().map(|b| b.0.faces.len() + b.0.lost.len()).sum();
-    build(&ledger, &bodies, &mut model, &mut report);
     report.layers = presentation.layers;
-    let (list, counts) = ledger.finish(&mut report).finish();
+    let mut notes = ledger.finish();
+    drop((assembly, colours));
+    let places = file.into_places();
+    build(bodies, (&places, &mut notes), &mut model, &mut report, options);
+    report.dropped = notes.dropped;
+    report.ignored = notes.ignored;
+    let (list, counts) = notes.warnings.finish();
     report.warnings = counts;
     Ok(Import { model, warnings: list, report })
 }
 
-/// Builds all faces, in parallel; results are taken in file order.
-fn build(ledger: &Ledger<'_>, bodies: &[(Body, f64)], model: &mut Model, report: &mut ImportReport) {
-    let jobs: Vec<_> = bodies
-        .iter()
-        .enumerate()
-        .flat_map(|(part, (body, tolerance))| body.faces.iter().map(move |face| (part, body, *tolerance, face)))
-        .collect();
+/// Builds all faces, in parallel; results are taken in file order. What a face was made from is freed
+/// with it.
+fn build(
+    bodies: Vec<(Body, f64)>,
+    (places, notes): (&Places<'_>, &mut Notes),
+    model: &mut Model,
+    report: &mut ImportReport,
+    options: &Options<'_>,
+) {
+    let mut edges = Vec::with_capacity(bodies.len());
+    let mut jobs = Vec::with_capacity(bodies.iter().map(|(body, _)| body.faces.len()).sum());
+    for (part, (body, tolerance)) in bodies.into_iter().enumerate() {
+        edges.push(body.edges);
+        jobs.extend(body.faces.into_iter().map(|(face, colour)| (part, tolerance, face, colour)));
+    }
+    let count = FaceCount::new(options, jobs.len());
     let built: Vec<_> = jobs
-        .par_iter()
-        .map(|&(part, body, tolerance, (face, colour))| {
+        .into_par_iter()
+        .map(|(part, tolerance, face, colour)| {
             let record = FaceRecord { id: face.id, part, tolerance, ..FaceRecord::default() };
-            (record, *colour, build_face(face, &body.edges, tolerance))
+            let result = build_face(&face, &edges[part], tolerance);
+            count.one();
+            (record, colour, result)
         })
         .collect();
+    drop(edges);
     for (record, colour, result) in built {
         let id = record.id;
         match result {
@@ -131,12 +148,12 @@ fn build(ledger: &Ledger<'_>, bodies: &[(Body, f64)], model: &mut Model, report:
                 built.face.colour = colour;
                 for note in &built.notes {
                     *report.healed.entry(ImportReport::reason(note)).or_default() += 1;
-                    ledger.note("face healed", id, note.as_str());
+                    notes.push("face healed", || places.of(id), note.clone());
                 }
                 model.parts[record.part].faces.push(report.record(record, built));
             }
             Err(error) => {
-                ledger.note(FACE_LOST, id, error.to_string());
+                notes.push(FACE_LOST, || places.of(id), error.to_string());
                 report.face_records.push(FaceRecord { notes: vec![error.to_string()], ..record });
             }
         }

@@ -23,7 +23,7 @@ mod value;
 pub(super) use text::decode;
 pub(super) use value::{Value, Values};
 
-use crate::import::{ImportError, Warnings};
+use crate::import::{ImportError, Place, Warnings};
 use std::collections::HashMap;
 
 /// A range of the text.
@@ -120,7 +120,7 @@ impl<'a> File<'a> {
                 same
             });
             for (id, offset) in repeated {
-                let place = || crate::import::Place::Entity { id, line: line_of(bytes, offset as usize) };
+                let place = || Place::Entity { id, line: line_of(bytes, offset as usize) };
                 warnings.push("number used twice", place, || "the first record counts".into());
             }
         }
@@ -167,6 +167,11 @@ impl<'a> File<'a> {
         line_of(self.bytes, record.offset as usize)
     }
 
+    /// Keeps what places need and frees the rest, most of the memory.
+    pub fn into_places(self) -> Places<'a> {
+        Places { bytes: self.bytes, records: self.records }
+    }
+
     /// Parameters in the whole file: a measure of how much it can honestly hold.
     pub fn slot_count(&self) -> usize {
         self.slots.len()
@@ -174,6 +179,22 @@ impl<'a> File<'a> {
 
     fn part(&self, part: &Part) -> (&'a str, Values<'_>) {
         (name_at(self.bytes, part.name), Values::new(self, part.start, part.end))
+    }
+}
+
+/// Where the records of a file stand.
+#[derive(Debug)]
+pub(super) struct Places<'a> {
+    bytes: &'a [u8],
+    records: Vec<Record>,
+}
+
+impl Places<'_> {
+    /// Number and line of `#id`. Cost: one pass over the text before it.
+    pub fn of(&self, id: u32) -> Place {
+        let found = self.records.binary_search_by_key(&id, |r| r.id);
+        let line = |i: usize| line_of(self.bytes, self.records[i].offset as usize);
+        found.map_or(Place::File, |i| Place::Entity { id, line: line(i) })
     }
 }
 

@@ -1,0 +1,91 @@
+//! The tables that people read.
+
+use super::Info;
+use crate::output;
+use std::collections::BTreeMap;
+
+impl Info<'_> {
+    /// Everything but the single faces.
+    pub fn text(&self) -> String {
+        let mut blocks = vec![self.head(), self.counts(), self.surfaces()];
+        if self.assembly.bodies.len() + self.assembly.children.len() > 0 {
+            blocks.push(format!("assembly:\n{}", self.assembly.text()));
+        }
+        blocks.push(self.found());
+        blocks.join("\n")
+    }
+
+    fn head(&self) -> String {
+        let bounds = self.bounds.map_or("empty".to_string(), |[lo, hi]| {
+            let size: [f64; 3] = std::array::from_fn(|i| hi[i] - lo[i]);
+            format!("{:.3} x {:.3} x {:.3} mm from {:.3}, {:.3}, {:.3}", size[0], size[1], size[2], lo[0], lo[1], lo[2])
+        });
+        let report = self.report;
+        let mut lines = vec![format!("{}; source unit {}; box {bounds}", self.name, self.unit)];
+        let writer = if report.written_by.is_empty() { String::new() } else { format!(", by {}", report.written_by) };
+        lines.push(format!("{}{writer}", report.format));
+        lines.join("\n")
+    }
+
+    fn counts(&self) -> String {
+        let mut table = output::table(["", "distinct", "placed"]);
+        let mut row = |what: &str, distinct: usize, placed: Option<usize>| {
+            table.add_row([what.to_string(), distinct.to_string(), placed.map_or(String::new(), |n| n.to_string())]);
+        };
+        row("solids", self.solids, Some(self.solid_instances));
+        row("open shells", self.open_shells, Some(self.open_shell_instances));
+        row("faces", self.faces, Some(self.face_instances));
+        row("edges", self.report.edges, None);
+        row("trim loops", self.trim_loops, None);
+        row("trim curves, derived", self.trim_curves, None);
+        row("p-curves, given", self.report.pcurves, None);
+        if self.meshes.distinct > 0 {
+            row("meshes", self.meshes.distinct, Some(self.meshes.instances));
+            row("triangles", self.meshes.triangles, None);
+        }
+        table.to_string()
+    }
+
+    fn surfaces(&self) -> String {
+        let mut table = output::table(["surface", "degree", "rational", "faces", "patches"]);
+        for row in &self.surfaces {
+            let [u, v] = row.degree;
+            table.add_row([
+                format!("{:?}", row.kind),
+                format!("{u} x {v}"),
+                if row.rational { "yes" } else { "no" }.into(),
+                row.faces.to_string(),
+                row.patches.to_string(),
+            ]);
+        }
+        table.to_string()
+    }
+
+    /// How well it was read, and what was not.
+    fn found(&self) -> String {
+        let report = self.report;
+        let mut lines = vec![
+            format!("trim curves: largest deviation {:.3e} mm from their edges", report.deviation),
+            format!(
+                "edges: largest gap {:.3e} mm off their surfaces; {} faces beyond the file's tolerance",
+                report.gap, report.sloppy
+            ),
+        ];
+        let mut list = |what: &str, counts: &BTreeMap<String, usize>| {
+            if !counts.is_empty() {
+                let total: usize = counts.values().sum();
+                lines.push(format!("{what}: {total}"));
+                lines.extend(counts.iter().map(|(name, n)| format!("  {n} x {name}")));
+            }
+        };
+        list("faces left out", &report.dropped);
+        list("healed", &report.healed);
+        list("not drawn", &report.ignored);
+        list("layers, items on them", &report.layers);
+        list("warnings", &report.warnings);
+        if !report.external_files.is_empty() {
+            lines.push(format!("other files named, not read: {}", report.external_files.join(", ")));
+        }
+        lines.join("\n")
+    }
+}
