@@ -1,11 +1,13 @@
-//! Numbers with no geometry: exact signs and the roots of polynomials.
+//! Numbers with no geometry: exact signs, the roots of polynomials, eigenvectors.
 //!
 //! ```text
 //!   orientation ── on which side of a line is a point?     exact sign
+//!   eigen       ── along which axes is a quadric?         rotations of Jacobi
 //!   bernstein   ── where does a polynomial change sign?    isolation by sign variations
 //!   root        ── one root in a bracket                   false position, never slower than bisection
 //! ```
 
 pub mod bernstein;
+pub mod eigen;
 pub mod orientation;
 pub mod root;
