@@ -9,7 +9,8 @@
 //            ▲          ▲    ▲         ▲        depths are equal to the bit and make one event
 //         in A?    the Blist is walked once behind each event
 //
-// The ray is followed until outside becomes inside. Nothing is stored but the spans of the tile's
+// The ray is followed from the near plane until outside becomes inside: a near plane within the solid cuts
+// it open, and the first side entered from there is seen. Nothing is stored but the spans of the tile's
 // first leaves: exits of a Blist lead forward, so one scan over the leaves answers both whether the
 // solid is behind depth t and where the next event is. Everything is one loop, so that the surfaces'
 // equations are compiled once.
@@ -38,10 +39,11 @@ const uint KEPT = 12u;
 
 // What a scan is for.
 const uint SEARCH = 0u; // the next event
-const uint OWNER = 1u;  // is the solid still there with leaf `asked` taken for what it is not?
+const uint OWNER = 1u;  // does leaf `asked`, taken for what it is not, change the solid before or behind t?
 const uint SIDE = 2u;   // which side of leaf `asked` ends at t?
 
-bool ends_at(Span s, float t) { return s.lo == t || s.hi == t || s.g0 == t || s.g1 == t; }
+// Of an empty span nothing ends.
+bool ends_at(Span s, float t) { return s.lo < s.hi && (s.lo == t || s.hi == t || s.g0 == t || s.g1 == t); }
 
 // The leaves whose spans begin or end at depth t: the first positive one, the first subtracted one.
 struct Candidates {
@@ -72,6 +74,7 @@ void main() {
     bool done = false;
     for (uint scan = 0u; scan < most && !done; ++scan) {
         uint at = entry;
+        uint at_before = entry; // the walk in front of t
         float next = NEVER;
         Candidates found = Candidates(NOBODY, NOBODY);
         uint candidates = 0u;
@@ -96,6 +99,9 @@ void main() {
                 bool inside = inside_span(s, t) != (purpose == OWNER && i == asked);
                 at = inside ? here.in_exit : here.out_exit;
             }
+            if (purpose == OWNER && i == at_before) {
+                at_before = inside_before(s, t) != (i == asked) ? here.in_exit : here.out_exit;
+            }
             next = min(next, next_of_span(s, t));
             if (i >= after && ends_at(s, t)) {
                 ++candidates;
@@ -107,9 +113,9 @@ void main() {
         if (purpose == SIDE) {
             done = true;
         } else if (purpose == OWNER) {
-            // the owner is the first leaf without which the solid would not begin
+            // the owner is the first leaf that alone changes the solid, in front of the event or behind it
             uint other = negatives ? found.negative : found.positive;
-            if (!inside) {
+            if (!inside || at_before == EXIT_TRUE) {
                 purpose = SIDE;
             } else if (other != NOBODY) {
                 asked = other;

@@ -72,6 +72,11 @@ bool inside_span(Span s, float t) {
     return s.lo <= t && t < s.hi && !(s.g0 <= t && t < s.g1);
 }
 
+// Inside just in front of depth t.
+bool inside_before(Span s, float t) {
+    return s.lo < t && t <= s.hi && !(s.g0 < t && t <= s.g1);
+}
+
 // The first depth behind t where the span begins or ends.
 float next_of_span(Span s, float t) {
     float next = NEVER;

@@ -1,13 +1,15 @@
-//! Numbers with no geometry: exact signs and the roots of polynomials.
+//! Numbers with no geometry: exact signs, the roots of polynomials, eigenvectors.
 //!
 //! ```text
 //!   orientation ── on which side of a line is a point?     exact sign
 //!   banded      ── A x = b, A narrow                      LU with row exchanges, linear time
+//!   eigen       ── along which axes is a quadric?         rotations of Jacobi
 //!   bernstein   ── where does a polynomial change sign?    isolation by sign variations
 //!   root        ── one root in a bracket                   false position, never slower than bisection
 //! ```
 
 pub mod banded;
 pub mod bernstein;
+pub mod eigen;
 pub mod orientation;
 pub mod root;

@@ -41,6 +41,8 @@ mod segments;
 #[cfg(feature = "headless")]
 mod sizes;
 #[cfg(feature = "headless")]
+mod solids;
+#[cfg(feature = "headless")]
 mod sort;
 #[cfg(feature = "headless")]
 mod split;

@@ -5,12 +5,15 @@
 //!   pixel ──Camera::ray──▶ line ──Bvh over instances, then leaves──▶ candidates
 //!         ──Solver──▶ all (u, v) where the line meets the surface ──LoopIndex──▶ those inside the loops
 //!         ──Facets──▶ triangles of meshes, by exact signs
+//!         ──SolidTracer──▶ where the union of the Boolean solids is entered
 //! ```
 //!
 //! Nothing is tessellated and nothing is sampled: a hit is a root of the surface's own rational
 //! equations, accurate to about 1e-15 of the distance to the eye, and a root is left out only after a
 //! proof that there is none (see the `solver` module). What the reference leaves out by rule, because
-//! it covers no area: surface that is seen exactly edge-on.
+//! it covers no area: surface that is seen exactly edge-on. A solid shows where the ray comes from outside
+//! to inside, at the near plane or behind it: a near plane within a solid cuts it open, and the first face
+//! entered from there is seen.
 //!
 //! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`].
 
@@ -28,7 +31,7 @@ mod tests;
 pub use judge::{Bin, Class, DepthErrors, Errors, Folds, GRAZING_COSINE, JudgeOptions, Judgement, Mismatch, judge};
 pub use probe::Probe;
 
-use crate::model::{Bounds, Camera, Model};
+use crate::model::{Bounds, Camera, Model, Solid, SurfaceTable};
 use crate::picture::Picture;
 use crate::trim::LoopIndex;
 use bvh::Bvh;
@@ -43,23 +46,26 @@ use std::sync::atomic::{AtomicU64, Ordering};
 pub struct Hit {
     /// Distance from the eye along the view axis, model units.
     pub depth: f64,
-    /// [`Face::id`](crate::model::Face::id) or [`Mesh::id`](crate::model::Mesh::id).
+    /// [`Face::id`](crate::model::Face::id), [`Mesh::id`](crate::model::Mesh::id) or
+    /// [`Primitive::id`](crate::model::Primitive::id).
     pub face: u32,
-    /// Index into [`Model::parts`].
+    /// Index into [`Model::parts`]; beyond them for Boolean solids.
     pub part: usize,
     /// Index into [`Part::faces`](crate::model::Part::faces); beyond them, into
-    /// [`Part::meshes`](crate::model::Part::meshes).
+    /// [`Part::meshes`](crate::model::Part::meshes). Of Boolean solids the primitive of their
+    /// [`union`](crate::model::Solid::union).
     pub face_index: usize,
-    /// Index into [`Model::instances`].
+    /// Index into [`Model::instances`]; beyond them for Boolean solids.
     pub instance: usize,
-    /// Parameters in the face's domain; of a triangle, the weights of its second and third corner.
+    /// Parameters in the face's domain; of a triangle, the weights of its second and third corner; no
+    /// numbers of a solid.
     pub uv: DVec2,
     /// The point, model coordinates.
     pub point: DVec3,
     /// Unit outward normal, model coordinates; zero where the surface has none. Of a mesh with normals, the
     /// one between them.
     pub normal: DVec3,
-    /// It is a triangle: normals may jump at its sides.
+    /// It is a triangle or on a solid: normals may jump where the id does not change.
     pub facet: bool,
 }
 
@@ -69,6 +75,8 @@ pub struct Tracer {
     parts: Vec<PartTree>,
     placed: Vec<Placed>,
     top: Bvh,
+    /// The union of the model's Boolean solids.
+    solids: Option<csg::SolidTracer>,
     bounds: Bounds,
     given_up: AtomicU64,
 }
@@ -106,7 +114,8 @@ impl Tracer {
     /// Cuts all surfaces into leaves and builds the trees.
     ///
     /// Cost: microseconds a leaf, a leaf for every 20° or so that a surface turns. Instances whose
-    /// transform flattens space are left out: they have no inside and no outward side.
+    /// transform flattens space are left out: they have no inside and no outward side. Boolean solids whose
+    /// union is larger than a [`Tree`](crate::csg::Tree) may be are left out and count as given up.
     pub fn new(model: &Model) -> Self {
         let parts: Vec<PartTree> = model.parts.par_iter().map(PartTree::new).collect();
         let place = |(instance, i): (usize, &crate::model::Instance)| {
@@ -129,10 +138,16 @@ impl Tracer {
             .collect();
         let bounds = boxes.iter().fold(Bounds::EMPTY, |a, b| a.union(*b));
         let top = Bvh::new(&boxes, PAD * bounds.diagonal());
-        Self { parts, placed, top, bounds, given_up: AtomicU64::new(0) }
+        let union = |solids: &[Solid]| csg::SolidTracer::new(&Solid::union(solids).ok()?, SurfaceTable::DRAWN).ok();
+        let some = !model.solids.is_empty();
+        let solids = some.then(|| union(&model.solids)).flatten();
+        let given_up = AtomicU64::new(u64::from(some && solids.is_none()));
+        let bounds = solids.iter().fold(bounds, |all, s| all.union(s.bounds()));
+        Self { parts, placed, top, solids, bounds, given_up }
     }
 
-    /// A box around everything that can be hit; at least the model's, at most a little larger.
+    /// A box around everything that can be hit, but for unbounded solids, of which only the bounded
+    /// primitives count; at least the model's.
     pub fn bounds(&self) -> Bounds {
         self.bounds
     }

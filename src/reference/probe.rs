@@ -92,6 +92,22 @@ impl<'a> Probe<'a> {
             });
             end
         });
+        let solids = tracer.solids.iter().flat_map(|s| s.trace(origin, direction).boundaries);
+        let seen = solids.filter(|b| b.entering && b.t >= start && b.t <= end);
+        found.extend(seen.map(|b| {
+            let hit = Hit {
+                depth: (b.point - camera.eye).dot(*forward),
+                face: b.id,
+                part: tracer.parts.len(),
+                face_index: b.primitive as usize,
+                instance: usize::MAX,
+                uv: DVec2::NAN,
+                point: b.point,
+                normal: b.normal,
+                facet: true,
+            };
+            (hit, 0.0)
+        }));
         self.sort_and_merge(slack * cosine);
         &self.hits
     }

@@ -9,11 +9,14 @@
 //! A surface is stored in coordinates of its own, of about the size of 1, so single precision suffices;
 //! where it is stays in `f64` and is given relative to the eye every frame.
 
+mod surface;
+
 use super::face::pack_colour;
 use crate::abi;
-use crate::csg::{Blist, Builder, Node, Op, Tree, TreeError};
-use crate::model::{Primitive, Shape, Solid};
-use glam::{DAffine3, DMat3, DVec3};
+use crate::csg::Blist;
+use crate::model::{Solid, SolidError, SurfaceTable};
+use glam::DVec3;
+use surface::sides_of;
 
 /// The arrays that the GPU gets, and the centres that change with the eye.
 #[derive(Clone, Debug, Default)]
@@ -34,36 +37,30 @@ pub enum UndrawnSolid {
     /// An operand that has no equations.
     #[error("solid {solid}, primitive {primitive}: a {kind} as operand is not drawn")]
     Operand { solid: usize, primitive: u32, kind: &'static str },
-    /// The expression is too large.
+    /// There are too many primitives, or their expression is too large.
     #[error(transparent)]
-    Tree(#[from] TreeError),
+    Union(#[from] SolidError),
 }
-
-/// A surface where it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-struct Placed {
-    surface: abi::Surface,
-    centre: DVec3,
-}
-
-/// A side of a primitive: the surface, and whether the primitive is where its function is positive.
-type Side = (Placed, bool);
 
 impl SolidData {
     /// The union of all `solids`.
     pub(crate) fn new(solids: &[Solid]) -> Result<Self, UndrawnSolid> {
         let mut data = Self::default();
-        let (tree, primitives) = union(solids)?;
-        let list = Blist::new(&tree)?;
+        let whole = Solid::union(solids)?;
+        let table = SurfaceTable::new(&whole, SurfaceTable::DRAWN);
+        let list = Blist::new(whole.tree()).map_err(SolidError::from)?;
         let middle = middle_of(solids);
-        let mut sides: Vec<Vec<Side>> = Vec::with_capacity(primitives.len());
-        for (i, (solid, p)) in primitives.iter().enumerate() {
-            sides.push(sides_of(p, middle).map_err(|kind| UndrawnSolid::Operand {
-                solid: *solid,
-                primitive: i as u32,
-                kind,
-            })?);
+        for (p, primitive) in (0..).zip(whole.primitives()) {
+            let sides = sides_of(primitive, middle).map_err(|kind| operand(solids, p, kind))?;
+            // a surface is numbered when its first face is met: that face says where it is
+            for (face, placed) in table.faces(p).iter().zip(sides) {
+                if face.surface as usize == data.surfaces.len() {
+                    data.surfaces.push(placed.surface);
+                    data.surface_centres.push(placed.centre);
+                }
+            }
         }
+        let nothing = data.surfaces.len() as u32;
         let exits = list.entries().iter().enumerate().map(|(i, entry)| {
             let (t, f) = entry.exits(i as u32);
             let (in_exit, out_exit) = if entry.negative() { (f, t) } else { (t, f) };
@@ -74,9 +71,8 @@ impl SolidData {
             };
             (entry, exit(in_exit), exit(out_exit))
         });
-        let mut shared = std::collections::HashMap::new();
         for (entry, in_exit, out_exit) in exits {
-            let (_, primitive) = &primitives[entry.primitive() as usize];
+            let primitive = &whole.primitives()[entry.primitive() as usize];
             let bounds = primitive.bounds();
             let bounded = bounds.min.is_finite() && bounds.max.is_finite();
             let (centre, half) = match bounded {
@@ -89,14 +85,16 @@ impl SolidData {
             flags |= if entry.negative() { abi::LEAF_NEGATIVE } else { 0 };
             let leaf = data.leaves.len() as u32;
             let first = data.leaf_surfaces.len() as u32;
-            for (placed, negated) in &sides[entry.primitive() as usize] {
-                let next = data.surfaces.len() as u32;
-                let surface = *shared.entry(placed.key()).or_insert(next);
-                if surface == next {
-                    data.surfaces.push(placed.surface);
-                    data.surface_centres.push(placed.centre);
+            let faces = table.faces(entry.primitive());
+            let sides = faces.iter().map(|f| f.surface << 1 | u32::from(f.flipped));
+            data.leaf_surfaces.extend(sides.map(|surface| abi::LeafSurface { surface, leaf }));
+            if faces.is_empty() {
+                // a primitive without volume is the inside of no point
+                if data.surfaces.len() == nothing as usize {
+                    data.surfaces.push(surface::nowhere());
+                    data.surface_centres.push(middle);
                 }
-                data.leaf_surfaces.push(abi::LeafSurface { surface: surface << 1 | u32::from(*negated), leaf });
+                data.leaf_surfaces.push(abi::LeafSurface { surface: nothing << 1, leaf });
             }
             data.leaf_centres.push(centre);
             data.leaves.push(abi::Leaf {
@@ -127,27 +125,13 @@ impl SolidData {
     }
 }
 
-/// One tree over the primitives of all solids, each with the index of its solid.
-fn union(solids: &[Solid]) -> Result<(Tree, Vec<(usize, &Primitive)>), TreeError> {
-    let mut builder = Builder::new();
-    let mut primitives = Vec::new();
-    let mut roots = Vec::with_capacity(solids.len());
-    for (i, solid) in solids.iter().enumerate() {
-        let first = primitives.len() as u32;
-        primitives.extend(solid.primitives().iter().map(|p| (i, p)));
-        let mut map = Vec::with_capacity(solid.tree().nodes().len());
-        for node in solid.tree().nodes() {
-            map.push(match *node {
-                Node::Constant(_) => builder.push(*node),
-                Node::Leaf(p) => builder.leaf(first + p),
-                Node::Complement(a) => builder.complement(map[a as usize]),
-                Node::Pair(op, a, b) => builder.pair(op, map[a as usize], map[b as usize]),
-            });
-        }
-        roots.extend(map.last());
+/// Names operand `p` of the union by its solid and its place there.
+fn operand(solids: &[Solid], p: u32, kind: &'static str) -> UndrawnSolid {
+    let (mut solid, mut primitive) = (0, p);
+    while let Some(rest) = primitive.checked_sub(solids[solid].primitives().len() as u32) {
+        (solid, primitive) = (solid + 1, rest);
     }
-    let root = builder.fold(Op::Union, roots);
-    Ok((builder.finish(root)?, primitives))
+    UndrawnSolid::Operand { solid, primitive, kind }
 }
 
 /// A point near everything that is bounded.
@@ -186,98 +170,4 @@ fn number_exits(leaves: &mut [abi::Leaf]) {
         (leaf.pre, leaf.end) = (pre, pre + size[i]);
         leaf.flags |= falls;
     }
-}
-
-impl Placed {
-    /// Equal for equal surfaces.
-    fn key(&self) -> Vec<u64> {
-        let bits = bytemuck::bytes_of(&self.surface)
-            .chunks(4)
-            .map(|w| u64::from(u32::from_le_bytes([w[0], w[1], w[2], w[3]])));
-        bits.chain(self.centre.to_array().map(f64::to_bits)).collect()
-    }
-
-    /// The plane `own · x = offset` of a primitive, given in its own coordinates; `own` points out.
-    fn plane(to_own: DAffine3, own: DVec3, offset: f64, near: DVec3) -> Self {
-        let gradient = to_own.matrix3.transpose() * own;
-        let normal = gradient.normalize();
-        let distance = (own.dot(to_own.transform_point3(near)) - offset) / gradient.length();
-        let to_local = DMat3::from_cols(DVec3::Z * normal.x, DVec3::Z * normal.y, DVec3::Z * normal.z);
-        let surface = abi::Surface {
-            to_local: columns(to_local),
-            kind: abi::SURFACE_PLANE,
-            squares: [0.0; 3],
-            linear: 0.5,
-            constant: 0.0,
-        };
-        Self { surface, centre: near - distance * normal }
-    }
-
-    /// A surface about `centre` in the primitive's own coordinates, which are shrunk by `size`.
-    fn round(p: &Primitive, to_own: DAffine3, centre: DVec3, size: f64, surface: abi::Surface) -> Self {
-        let to_local = to_own.matrix3 * (1.0 / size);
-        Self {
-            surface: abi::Surface { to_local: columns(to_local), ..surface },
-            centre: p.transform.transform_point3(centre),
-        }
-    }
-}
-
-fn columns(m: DMat3) -> [[f32; 3]; 3] {
-    m.to_cols_array_2d().map(|c| c.map(|x| x as f32))
-}
-
-fn quadric(squares: [f64; 3], linear: f64, constant: f64) -> abi::Surface {
-    abi::Surface {
-        kind: abi::SURFACE_QUADRIC,
-        squares: squares.map(|x| x as f32),
-        linear: linear as f32,
-        constant: constant as f32,
-        ..Default::default()
-    }
-}
-
-/// The sides of a primitive; planes get a point close to `near`. A primitive without volume is the
-/// inside of no point: a ball of radius 0. The error is the kind of operand that has no equations.
-fn sides_of(p: &Primitive, near: DVec3) -> Result<Vec<Side>, &'static str> {
-    let empty = || vec![(Placed { surface: quadric([0.0; 3], 0.0, 1.0), centre: near }, false)];
-    let Some(to_own) = p.to_own() else { return Ok(empty()) };
-    if p.shape.bounds().is_empty() {
-        return Ok(empty());
-    }
-    let plane = |own: DVec3, offset: f64| (Placed::plane(to_own, own, offset, near), false);
-    let slab = |height: f64| [plane(DVec3::NEG_Z, 0.0), plane(DVec3::Z, height)];
-    let round = |centre: DVec3, size: f64, surface| (Placed::round(p, to_own, centre, size, surface), false);
-    Ok(match p.shape {
-        Shape::HalfSpace { normal, offset } => vec![plane(normal, offset)],
-        Shape::Block { min, max } => {
-            let axes = [DVec3::X, DVec3::Y, DVec3::Z];
-            axes.into_iter().flat_map(|a| [plane(-a, -a.dot(min)), plane(a, a.dot(max))]).collect()
-        }
-        Shape::Sphere { radius } => vec![round(DVec3::ZERO, radius, quadric([1.0; 3], 0.0, -1.0))],
-        Shape::Cylinder { radius, height } => {
-            let side = round(DVec3::Z * (height * 0.5), radius, quadric([1.0, 1.0, 0.0], 0.0, -1.0));
-            [side].into_iter().chain(slab(height)).collect()
-        }
-        Shape::Cone { bottom, top, height } => {
-            // x² + y² < (middle + slope z)², all over the larger radius
-            let size = bottom.max(top);
-            let (middle, slope) = ((bottom + top) * 0.5 / size, (top - bottom) / height);
-            let surface = quadric([1.0, 1.0, -slope * slope], -middle * slope, -middle * middle);
-            [round(DVec3::Z * (height * 0.5), size, surface)].into_iter().chain(slab(height)).collect()
-        }
-        Shape::Torus { major, minor } => {
-            // without a circle to run around, the tube is a ball
-            let surface = match major > 0.0 {
-                true => {
-                    abi::Surface { kind: abi::SURFACE_TORUS, constant: (minor / major) as f32, ..Default::default() }
-                }
-                false => quadric([1.0; 3], 0.0, -1.0),
-            };
-            vec![round(DVec3::ZERO, if major > 0.0 { major } else { minor }, surface)]
-        }
-        Shape::Quadric(_) => return Err("general quadric"),
-        Shape::Mesh(_) => return Err("mesh"),
-        Shape::Part(_) => return Err("spline solid"),
-    })
 }

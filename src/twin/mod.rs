@@ -22,6 +22,8 @@ pub mod reset;
 pub mod scan;
 pub mod segments;
 pub mod sizes;
+pub mod solid_fold;
+pub mod solid_rects;
 pub mod sort;
 pub mod split;
 pub mod table;

@@ -14,4 +14,5 @@ mod room;
 mod samples;
 #[path = "../shapes/mod.rs"]
 mod shapes;
+mod solids;
 mod support;

@@ -55,6 +55,25 @@ fn only_a_scene_with_meshes_has_what_they_need() {
     }
 }
 
+/// Pipelines and buffers of Boolean solids exist for those only, and nothing of patches, trims or meshes for a
+/// scene of solids alone.
+#[test]
+fn only_a_scene_with_solids_has_what_they_need() {
+    let needed = ["solid rects", "solid fold", "solid leaves", "solid sides", "solid surfaces", "resolve (solid)"];
+    for shape in shapes::all() {
+        let (renderer, objects) = objects(&shape.model, Outputs::default());
+        assert!(!objects.iter().any(|o| o.contains("solid")), "{}: {objects:?}", shape.name);
+        assert_silent(renderer);
+    }
+    let (renderer, objects) = objects(&shapes::solids::holes(2), Outputs::default());
+    for name in needed {
+        assert!(objects.iter().any(|o| o.starts_with(name)), "{name}: {objects:?}");
+    }
+    assert!(!objects.iter().any(|name| is_of_trimming(name) || name.contains("mesh")), "{objects:?}");
+    assert!(!objects.iter().any(|name| name == "visibility of others"), "{objects:?}");
+    assert_silent(renderer);
+}
+
 #[test]
 fn only_a_rational_scene_has_rational_pipelines() {
     for shape in shapes::all() {

@@ -11,7 +11,7 @@ pub use shape::{Primitive, Quadric, Shape, ShapeError};
 pub use surface::{CarriedFace, Surface, SurfaceTable};
 
 use super::Bounds;
-use crate::csg::{Entry, Node, Tree};
+use crate::csg::{Builder, Entry, Node, Op, Tree, TreeError};
 use glam::DVec3;
 
 /// Primitives and a Boolean expression over them. Valid by construction: see [`Solid::new`].
@@ -34,6 +34,9 @@ pub enum SolidError {
     /// More primitives than a list of switches can name.
     #[error("more than {} primitives", Solid::MOST_PRIMITIVES)]
     TooMany,
+    /// The expression is too large.
+    #[error(transparent)]
+    Tree(#[from] TreeError),
 }
 
 impl Solid {
@@ -57,6 +60,36 @@ impl Solid {
             Some(primitive) => Err(SolidError::Leaf { primitive, count }),
             None => Ok(Self { primitives, tree }),
         }
+    }
+
+    /// The union of `solids`, which is what a model shows of them: primitives one solid after another, and
+    /// one tree over them.
+    ///
+    /// # Errors
+    /// [`SolidError::TooMany`] primitives, or [`SolidError::Tree`].
+    pub fn union(solids: &[Self]) -> Result<Self, SolidError> {
+        let mut builder = Builder::new();
+        let mut primitives = Vec::new();
+        let mut roots = Vec::with_capacity(solids.len());
+        for solid in solids {
+            let first = primitives.len() as u32;
+            if primitives.len() + solid.primitives.len() > Self::MOST_PRIMITIVES as usize {
+                return Err(SolidError::TooMany);
+            }
+            primitives.extend_from_slice(&solid.primitives);
+            let mut map = Vec::with_capacity(solid.tree.nodes().len());
+            for node in solid.tree.nodes() {
+                map.push(match *node {
+                    Node::Constant(_) => builder.push(*node),
+                    Node::Leaf(p) => builder.leaf(first + p),
+                    Node::Complement(a) => builder.complement(map[a as usize]),
+                    Node::Pair(op, a, b) => builder.pair(op, map[a as usize], map[b as usize]),
+                });
+            }
+            roots.extend(map.last());
+        }
+        let root = builder.fold(Op::Union, roots);
+        Ok(Self { primitives, tree: builder.finish(root)? })
     }
 
     /// The primitives that leaves name by index.

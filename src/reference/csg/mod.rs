@@ -21,7 +21,7 @@ mod shell;
 mod tests;
 
 use crate::csg::{Tree, TreeError};
-use crate::model::{Primitive, Solid, SurfaceTable};
+use crate::model::{Bounds, Primitive, Solid, SurfaceTable};
 use glam::DVec3;
 use roots::Roots;
 use shell::Shell;
@@ -111,9 +111,17 @@ pub struct SolidTracer {
     shells: Vec<Option<Shell>>,
     /// Of each primitive: taken away everywhere, and its first leaf. The owner of a group is the least.
     ranks: Vec<(bool, usize)>,
-    /// Diagonal of the bounded primitives' boxes.
+    /// Of the bounded primitives.
+    bounds: Bounds,
+    /// Its diagonal.
     size: f64,
+    /// A ball around each primitive: a line that misses it crosses nothing.
+    balls: Vec<(DVec3, f64)>,
 }
+
+/// Balls are larger than their primitives by this, relative to centre and radius: above the rounding of a
+/// line's distance.
+const BALL: f64 = 1e-9;
 
 impl SolidTracer {
     /// Prepares a solid; `tolerance` is that of [`SurfaceTable::new`].
@@ -129,15 +137,32 @@ impl SolidTracer {
             *rank = (rank.0 && entry.negative(), rank.1.min(place));
         }
         let boxes = primitives.iter().map(Primitive::bounds).filter(|b| b.diagonal().is_finite());
-        let size = boxes.fold(crate::model::Bounds::EMPTY, crate::model::Bounds::union).diagonal();
+        let bounds = boxes.filter(|b| !b.is_empty()).fold(Bounds::EMPTY, Bounds::union);
+        let ball = |p: &Primitive| {
+            let b = p.bounds();
+            let radius = 0.5 * b.diagonal() * (1.0 + BALL) + BALL * b.centre().length();
+            if radius.is_finite() { (b.centre(), radius) } else { (DVec3::ZERO, f64::INFINITY) }
+        };
         Ok(Self {
+            balls: primitives.iter().map(ball).collect(),
             table: SurfaceTable::new(solid, tolerance),
             shells: primitives.iter().map(Shell::new).collect(),
             tree: solid.tree().clone(),
             primitives,
             ranks,
-            size,
+            size: bounds.diagonal(),
+            bounds,
         })
+    }
+
+    /// The primitives, by index.
+    pub fn primitives(&self) -> &[Primitive] {
+        &self.primitives
+    }
+
+    /// A box around the bounded primitives.
+    pub fn bounds(&self) -> Bounds {
+        self.bounds
     }
 
     /// All faces along the line `origin + t direction`. Linear in the primitives; a direction of length 0 or
@@ -195,7 +220,10 @@ impl SolidTracer {
                 continue;
             }
             let faces = self.table.faces(p);
-            if faces.is_empty() {
+            let (centre, radius) = self.balls[p as usize];
+            let foot = (centre - o).dot(d) / d.length_squared();
+            let past = (o + d * foot).distance(centre) > radius + BALL * (centre - o).length();
+            if faces.is_empty() || past {
                 continue;
             }
             // the intersection of the insides of all faces

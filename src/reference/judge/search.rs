@@ -15,7 +15,7 @@
 use super::super::{Probe, Tracer};
 use super::{Class, fold_depth};
 use crate::model::Camera;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 use std::collections::{HashMap, HashSet};
 use std::f64::consts::TAU;
 
@@ -191,14 +191,13 @@ pub(super) struct Reach {
 }
 
 impl Reach {
-    /// Projects the boxes of the leaves and meshes of `faces`.
+    /// Projects the boxes of the leaves, meshes and primitives of `faces`.
     pub fn new(tracer: &Tracer, camera: &Camera, faces: impl Iterator<Item = u32>) -> Self {
         let wanted: HashSet<u32> = faces.collect();
-        let mut boxes: HashMap<u32, Vec<(DVec2, DVec2)>> = HashMap::new();
+        let mut reach = Self { boxes: HashMap::new() };
         if wanted.is_empty() {
-            return Self { boxes };
+            return reach;
         }
-        let margin = DVec2::splat(RINGS[RINGS.len() - 1]);
         for placed in &tracer.placed {
             let part = &tracer.parts[placed.part];
             let leaves = part.leaves.iter().zip(&part.boxes);
@@ -209,18 +208,33 @@ impl Reach {
                 if bounds.is_empty() || !wanted.contains(&id) {
                     continue;
                 }
-                let corners = bounds.corners().map(|c| camera.project(placed.to_model.transform_point3(c)));
-                let everywhere = (DVec2::NEG_INFINITY, DVec2::INFINITY);
-                let rectangle = if corners.iter().any(Option::is_none) {
-                    everywhere // it crosses the plane of the eye
-                } else {
-                    let seen = corners.iter().flatten();
-                    seen.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), (p, _)| (lo.min(*p), hi.max(*p)))
-                };
-                boxes.entry(id).or_default().push((rectangle.0 - margin, rectangle.1 + margin));
+                reach.add(id, camera, &bounds.corners().map(|c| placed.to_model.transform_point3(c)));
             }
         }
-        Self { boxes }
+        let primitives = tracer.solids.iter().flat_map(|s| s.primitives());
+        for p in primitives.filter(|p| wanted.contains(&p.id)) {
+            let bounds = p.bounds();
+            if bounds.diagonal().is_finite() && !bounds.is_empty() {
+                reach.add(p.id, camera, &bounds.corners());
+            } else {
+                let everywhere = (DVec2::NEG_INFINITY, DVec2::INFINITY);
+                reach.boxes.entry(p.id).or_default().push(everywhere);
+            }
+        }
+        reach
+    }
+
+    fn add(&mut self, id: u32, camera: &Camera, corners: &[DVec3]) {
+        let margin = DVec2::splat(RINGS[RINGS.len() - 1]);
+        let corners: Vec<_> = corners.iter().map(|c| camera.project(*c)).collect();
+        let everywhere = (DVec2::NEG_INFINITY, DVec2::INFINITY);
+        let rectangle = if corners.iter().any(Option::is_none) {
+            everywhere // it crosses the plane of the eye
+        } else {
+            let seen = corners.iter().flatten();
+            seen.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), (p, _)| (lo.min(*p), hi.max(*p)))
+        };
+        self.boxes.entry(id).or_default().push((rectangle.0 - margin, rectangle.1 + margin));
     }
 
     /// `face` may be seen within 2 px of `pixel`. Background can be anywhere.

@@ -1,0 +1,245 @@
+//! Parity of the passes `solid_rects` and `solid_fold`, both exact, and the fold against the trees that
+//! say what a solid is.
+
+use super::Random;
+use super::harness::{Gpu, Mismatch, same};
+use crate::abi::{EXIT_TRUE, Frame, Leaf, TileLeaf};
+use crate::csg::{Blist, Builder, Op, Tree};
+use crate::model::{Camera, Model, Primitive, Projection, Shape, Solid};
+use crate::passes::{solid_fold, solid_rects};
+use crate::scene::{SceneData, focal_and_slant};
+use crate::twin;
+use glam::{DAffine3, DVec3};
+
+/// A tree of `count` leaves over as many primitives, of all operations.
+fn random_tree(random: &mut Random, count: u32) -> Tree {
+    let mut b = Builder::new();
+    let mut open: Vec<u32> = (0..count).map(|p| b.leaf(p)).collect();
+    let all = [Op::Union, Op::Intersection, Op::Difference, Op::Union, Op::Intersection, Op::SymmetricDifference];
+    while open.len() > 1 {
+        let i = random.integer(0, open.len() as u32 - 2) as usize;
+        // a symmetric difference doubles what is below it
+        let ops = if open.len() + 4 > count as usize { &all[..] } else { &all[..5] };
+        let op = random.pick(ops);
+        let right = open.remove(i + 1);
+        open[i] = b.pair(op, open[i], right);
+        if random.integer(0, 5) == 0 {
+            open[i] = b.complement(open[i]);
+        }
+    }
+    b.finish(open[0]).unwrap()
+}
+
+/// Balls, some of them unbounded halves of space.
+fn random_solid(random: &mut Random, count: u32) -> Solid {
+    let mut place = || DVec3::from_array(std::array::from_fn(|_| random.range(-10.0, 10.0)));
+    let places: Vec<DVec3> = (0..count).map(|_| place()).collect();
+    let primitive = |(i, at): (usize, &DVec3)| Primitive {
+        shape: match i % 9 {
+            8 => Shape::HalfSpace { normal: DVec3::Z, offset: 1.0 },
+            _ => Shape::Sphere { radius: 0.5 + 0.2 * (i % 5) as f64 },
+        },
+        transform: DAffine3::from_translation(*at),
+        colour: [1.0; 4],
+        id: i as u32 + 1,
+    };
+    let tree = random_tree(random, count);
+    Solid::new(places.iter().enumerate().map(primitive).collect(), tree).unwrap()
+}
+
+fn leaves_of(solid: &Solid) -> SceneData {
+    SceneData::new(&Model { solids: vec![solid.clone()], ..Model::default() }).unwrap()
+}
+
+/// Random tiles: each sees each leaf with a chance of its own.
+fn random_tiles(random: &mut Random, leaves: u32, tiles: u32) -> (Vec<u32>, Vec<TileLeaf>) {
+    let (mut starts, mut all) = (vec![0], Vec::new());
+    for _ in 0..tiles {
+        let chance = random.range(0.0, 1.0);
+        let seen = (0..leaves).filter(|_| random.range(0.0, 1.0) < chance).collect::<Vec<_>>();
+        all.extend(seen.into_iter().map(|leaf| TileLeaf { leaf, ..TileLeaf::default() }));
+        starts.push(all.len() as u32);
+    }
+    (starts, all)
+}
+
+/// Where a walk through one tile ends, for the primitives that a point is in.
+fn walk(tile_leaves: &[TileLeaf], entry: u32, inside: impl Fn(u32) -> bool) -> bool {
+    let mut at = entry;
+    while let Some(here) = tile_leaves.get(at as usize) {
+        at = if inside(here.leaf) { here.in_exit } else { here.out_exit };
+    }
+    at == EXIT_TRUE
+}
+
+/// A tile's list decides as the tree does in which the absent primitives are constants of nothing.
+#[test]
+fn a_folded_list_is_the_folded_tree() {
+    let mut random = Random::new(11);
+    let mut inside_count = 0;
+    for _ in 0..300 {
+        let count = random.integer(1, 24);
+        let solid = random_solid(&mut random, count);
+        let leaves = leaves_of(&solid).solids.leaves;
+        let primitive = |leaf: u32| leaves[leaf as usize].id - 1;
+        // a tile sees a primitive or not, and so all of its leaves
+        let absent: Vec<bool> = (0..count).map(|_| random.integer(0, 2) == 0).collect();
+        let present = (0..leaves.len() as u32).filter(|leaf| !absent[primitive(*leaf) as usize]);
+        let mut tile_leaves: Vec<TileLeaf> = present.map(|leaf| TileLeaf { leaf, ..TileLeaf::default() }).collect();
+        let starts = [0, tile_leaves.len() as u32];
+        let entry = twin::solid_fold::solid_fold(&leaves, &starts, &mut tile_leaves)[0];
+        let folded = solid.tree().fold(|p| absent[p as usize].then_some(false));
+        let list = Blist::new(&folded).unwrap();
+        for _ in 0..40 {
+            let within: Vec<bool> = absent.iter().map(|a| !a && random.integer(0, 1) == 0).collect();
+            let expected = solid.tree().contains(|p| within[p as usize]);
+            assert_eq!(list.contains(|p| within[p as usize]), expected);
+            assert_eq!(walk(&tile_leaves, entry, |leaf| within[primitive(leaf) as usize]), expected, "{solid:?}");
+            inside_count += u32::from(expected);
+        }
+    }
+    assert!((2000..10_000).contains(&inside_count), "{inside_count} of 12000");
+}
+
+fn fold_on_gpu(
+    gpu: &Gpu,
+    given: &[Leaf],
+    expected: &[Leaf],
+    starts: &[u32],
+    tile_leaves: &[TileLeaf],
+) -> Result<(), Mismatch> {
+    let tiles = starts.len() as u32 - 1;
+    // as many tiles as the picture has across, one down
+    let frame = Frame {
+        size: [(tiles * 16) as f32, 9.0],
+        leaf_count: given.len() as u32,
+        tile_leaf_capacity: tile_leaves.len() as u32,
+        ..Frame::default()
+    };
+    let frames = gpu.upload("frame", &[frame]);
+    let leaves = gpu.upload("leaves", given);
+    let tile_starts = gpu.upload("tile starts", starts);
+    let wired = gpu.upload("tile leaves", tile_leaves);
+    let entries = gpu.upload("tile entries", &vec![7u32; tiles as usize]);
+    let pass = solid_fold::SolidFold::new(gpu.device()).unwrap();
+    let bindings = solid_fold::Bindings {
+        frame: &frames,
+        leaves: &leaves,
+        tile_starts: &tile_starts,
+        tile_leaves: &wired,
+        tile_entries: &entries,
+    };
+    gpu.run(|cmd| pass.record(cmd, &bindings, tiles));
+    let mut twin = tile_leaves.to_vec();
+    let twin_entries = twin::solid_fold::solid_fold(expected, starts, &mut twin);
+    same("tile leaves", &gpu.read(&wired, twin.len()), &twin)?;
+    same("tile entries", &gpu.read(&entries, tiles as usize), &twin_entries)
+}
+
+#[test]
+fn fold_parity() {
+    let gpu = Gpu::new();
+    let mut random = Random::new(5);
+    for count in [1, 2, 9, 40, 200] {
+        let leaves = leaves_of(&random_solid(&mut random, count)).solids.leaves;
+        let (starts, tile_leaves) = random_tiles(&mut random, leaves.len() as u32, 150);
+        fold_on_gpu(&gpu, &leaves, &leaves, &starts, &tile_leaves).unwrap();
+        // one exit off is seen
+        if count == 40 {
+            let mut other = leaves.clone();
+            other[0].in_exit = EXIT_TRUE - (EXIT_TRUE - other[0].in_exit).min(1);
+            other[0].out_exit = other[0].in_exit;
+            let mismatch = fold_on_gpu(&gpu, &other, &leaves, &starts, &tile_leaves).unwrap_err();
+            assert_eq!(mismatch.buffer, "tile leaves");
+        }
+    }
+    gpu.finish();
+}
+
+fn rects_on_gpu(gpu: &Gpu, frame: &Frame, leaves: &[Leaf], centres: &[[f32; 3]], off: f32) -> Result<(), Mismatch> {
+    let moved: Vec<[f32; 3]> = centres.iter().map(|c| [c[0] + off, c[1], c[2]]).collect();
+    let frames = gpu.upload("frame", &[*frame]);
+    let gpu_leaves = gpu.upload("leaves", leaves);
+    let gpu_centres = gpu.upload("centres", &moved);
+    let rects = gpu.upload("rects", &vec![twin::solid_rects::NOWHERE; leaves.len()]);
+    let pass = solid_rects::SolidRects::new(gpu.device()).unwrap();
+    let bindings = solid_rects::Bindings { frame: &frames, leaves: &gpu_leaves, centres: &gpu_centres, rects: &rects };
+    gpu.run(|cmd| pass.record(cmd, &bindings, leaves.len() as u32));
+    let twin = twin::solid_rects::solid_rects(frame, leaves, centres);
+    same("rects", &gpu.read(&rects, leaves.len()), &twin)
+}
+
+/// A frame and what it shows: eyes without and within, both projections.
+fn frames(solid: &Solid) -> Vec<(Frame, Vec<[f32; 3]>)> {
+    let data = leaves_of(solid);
+    let mut all = Vec::new();
+    for (eye, projection) in [
+        (DVec3::new(30.0, -20.0, 15.0), Projection::Perspective { fov_y: 0.6 }),
+        (DVec3::new(1.0, -2.0, 0.5), Projection::Perspective { fov_y: 1.4 }),
+        (DVec3::new(30.0, -20.0, 15.0), Projection::Orthographic { height: 12.0 }),
+    ] {
+        let size = (333, 211);
+        let camera = Camera { eye, target: DVec3::ZERO, up: DVec3::Z, projection, depth_range: (0.5, 60.0), size };
+        let (focal, slant) = focal_and_slant(&camera);
+        let (right, up, forward) = camera.axes();
+        let frame = Frame {
+            size: [333.0, 211.0],
+            focal: focal as f32,
+            slant: slant as f32,
+            near: 0.5,
+            far: 60.0,
+            perspective: u32::from(matches!(projection, Projection::Perspective { .. })),
+            leaf_count: data.solids.leaves.len() as u32,
+            right: right.as_vec3().to_array(),
+            up: up.as_vec3().to_array(),
+            forward: forward.as_vec3().to_array(),
+            ..Frame::default()
+        };
+        all.push((frame, data.solids.leaf_centres.iter().map(|c| (*c - eye).as_vec3().to_array()).collect()));
+    }
+    all
+}
+
+#[test]
+fn rects_parity() {
+    let gpu = Gpu::new();
+    let solid = random_solid(&mut Random::new(3), 300);
+    let leaves = leaves_of(&solid).solids.leaves;
+    for (frame, centres) in frames(&solid) {
+        rects_on_gpu(&gpu, &frame, &leaves, &centres, 0.0).unwrap();
+        assert_eq!(rects_on_gpu(&gpu, &frame, &leaves, &centres, 3.0).unwrap_err().buffer, "rects");
+    }
+    gpu.finish();
+}
+
+/// Every point of a ball that the camera sees is in one of the ball's tiles.
+#[test]
+fn rects_hold_what_they_are_around() {
+    let solid = random_solid(&mut Random::new(3), 100);
+    let leaves = leaves_of(&solid).solids.leaves;
+    let mut random = Random::new(8);
+    let mut tested = 0;
+    for (frame, centres) in frames(&solid) {
+        let rects = twin::solid_rects::solid_rects(&frame, &leaves, &centres);
+        for ((leaf, centre), rect) in leaves.iter().zip(&centres).zip(rects) {
+            for _ in 0..20 {
+                let p: [f64; 3] = std::array::from_fn(|k| {
+                    f64::from(centre[k]) + random.range(-1.0, 1.0) * f64::from(leaf.half_size[k].min(1e3))
+                });
+                let along = |axis: [f32; 3]| (0..3).map(|k| f64::from(axis[k]) * p[k]).sum::<f64>();
+                let (x, y, z) = (along(frame.right), along(frame.up), along(frame.forward));
+                let w = if frame.perspective != 0 { z } else { 1.0 };
+                let focal = f64::from(frame.focal) / w;
+                let at = [166.5 + focal * x, 105.5 - focal * y];
+                let in_depth = z > f64::from(frame.near) && z < f64::from(frame.far);
+                if !in_depth || at[0] < 0.0 || at[1] < 0.0 || at[0] >= 333.0 || at[1] >= 211.0 {
+                    continue;
+                }
+                let tile = at.map(|a| a as u32 / 16);
+                assert!((0..2).all(|k| rect.first[k] <= tile[k] && tile[k] <= rect.last[k]), "{at:?} {rect:?}");
+                tested += 1;
+            }
+        }
+    }
+    assert!(tested > 1000, "{tested}");
+}

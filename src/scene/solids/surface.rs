@@ -1,0 +1,168 @@
+//! The sides of primitives as the GPU evaluates them: each in coordinates of its own.
+//!
+//! ```text
+//!   x ──to_own──▶ primitive ──axes, centre, 1 / size──▶ local      squares · p² + 2 linear z + constant
+//!                    quadric: eigenvectors ┘                       torus of major radius 1
+//! ```
+
+use crate::abi;
+use crate::math::eigen;
+use crate::model::{Carrier, Primitive, Quadric, Shape};
+use glam::{DAffine3, DMat3, DVec3};
+
+/// A surface where it is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) struct Placed {
+    pub surface: abi::Surface,
+    /// Origin of its own coordinates, in model coordinates.
+    pub centre: DVec3,
+}
+
+impl Placed {
+    /// The plane `own · x = offset` of a primitive, given in its own coordinates; `own` points out.
+    fn plane(to_own: DAffine3, own: DVec3, offset: f64, near: DVec3) -> Self {
+        let gradient = to_own.matrix3.transpose() * own;
+        let normal = gradient.normalize();
+        let distance = (own.dot(to_own.transform_point3(near)) - offset) / gradient.length();
+        let to_local = DMat3::from_cols(DVec3::Z * normal.x, DVec3::Z * normal.y, DVec3::Z * normal.z);
+        let surface = abi::Surface {
+            to_local: columns(to_local),
+            kind: abi::SURFACE_PLANE,
+            squares: [0.0; 3],
+            linear: 0.5,
+            constant: 0.0,
+        };
+        Self { surface, centre: near - distance * normal }
+    }
+
+    /// A surface about `centre` in the primitive's own coordinates, which are shrunk by `size`.
+    fn round(p: &Primitive, to_own: DAffine3, centre: DVec3, size: f64, surface: abi::Surface) -> Self {
+        let to_local = to_own.matrix3 * (1.0 / size);
+        Self {
+            surface: abi::Surface { to_local: columns(to_local), ..surface },
+            centre: p.transform.transform_point3(centre),
+        }
+    }
+
+    /// A quadric with at least one term of second order, or with no terms but the constant.
+    fn quadric(p: &Primitive, to_own: DAffine3, q: &Quadric, near: DVec3) -> Self {
+        let Local { axes, centre, size, surface } = Local::new(q, to_own.transform_point3(near));
+        let to_local = axes.transpose() * to_own.matrix3 * (1.0 / size);
+        Self {
+            surface: abi::Surface { to_local: columns(to_local), ..surface },
+            centre: p.transform.transform_point3(centre),
+        }
+    }
+}
+
+fn columns(m: DMat3) -> [[f32; 3]; 3] {
+    m.to_cols_array_2d().map(|c| c.map(|x| x as f32))
+}
+
+fn quadric(squares: [f64; 3], linear: f64, constant: f64) -> abi::Surface {
+    abi::Surface {
+        kind: abi::SURFACE_QUADRIC,
+        squares: squares.map(|x| x as f32),
+        linear: linear as f32,
+        constant: constant as f32,
+        ..Default::default()
+    }
+}
+
+/// The inside of no point.
+pub(super) fn nowhere() -> abi::Surface {
+    quadric([0.0; 3], 0.0, 1.0)
+}
+
+/// Below this, relative to the largest, a coefficient of second order is the rounding of 0: the middle that
+/// it would give is nowhere near.
+const NULL: f64 = 1e-9;
+/// Below this, the axis z keeps its linear term: its middle may be far, but a piece of it is here.
+const FLAT: f64 = 1e-3;
+
+/// A quadric in its own axes.
+struct Local {
+    /// Columns: the axes.
+    axes: DMat3,
+    centre: DVec3,
+    size: f64,
+    surface: abi::Surface,
+}
+
+impl Local {
+    /// `near` is a point about which the quadric is wanted.
+    fn new(q: &Quadric, near: DVec3) -> Self {
+        let m = q.products * 0.5;
+        let (values, vectors) =
+            eigen::symmetric([[q.squares.x, m.x, m.z], [m.x, q.squares.y, m.y], [m.z, m.y, q.squares.z]]);
+        let mut order = [0, 1, 2];
+        order.sort_by(|a, b| values[*b].abs().total_cmp(&values[*a].abs()));
+        let mut axes = order.map(|k| DVec3::from_array(vectors[k]));
+        let largest = values[order[0]].abs();
+        let mut squares = order.map(|k| if values[k].abs() > NULL * largest { values[k] } else { 0.0 });
+        if squares[1] == 0.0 {
+            // a parabolic cylinder: what is linear goes along z
+            let (b, c) = (q.linear.dot(axes[1]), q.linear.dot(axes[2]));
+            let along = (axes[1] * b + axes[2] * c).normalize_or(axes[2]);
+            (axes[1], axes[2]) = (along.cross(axes[0]), along);
+        }
+        let mut centre = DVec3::ZERO;
+        for (k, axis) in axes.iter().enumerate() {
+            let whole = squares[k] != 0.0 && (k < 2 || squares[k].abs() > FLAT * largest);
+            let at = if whole { -0.5 * q.linear.dot(*axis) / squares[k] } else { near.dot(*axis) };
+            centre += *axis * at;
+        }
+        let (value, slope) = (q.value(centre), q.gradient(centre).dot(axes[2]));
+        let whole = squares[2] != 0.0 && squares[2].abs() > FLAT * largest;
+        let scale = if largest > 0.0 { largest } else { 1.0 };
+        let size = (value.abs() / scale).sqrt();
+        let size = if size > 0.0 && size.is_finite() { size } else { 1.0 };
+        squares = squares.map(|s| s / scale);
+        let linear = if whole { 0.0 } else { 0.5 * slope / (scale * size) };
+        let surface = quadric(squares, linear, value / (scale * size * size));
+        Self { axes: DMat3::from_cols(axes[0], axes[1], axes[2]), centre, size, surface }
+    }
+}
+
+/// The sides of a primitive, in the order of [`Shape::carriers`]; planes get a point close to `near`. None
+/// of a primitive without volume. The error is the kind of operand that has no equations.
+pub(super) fn sides_of(p: &Primitive, near: DVec3) -> Result<Vec<Placed>, &'static str> {
+    match p.shape {
+        Shape::Mesh(_) => return Err("mesh"),
+        Shape::Part(_) => return Err("spline solid"),
+        _ => {}
+    }
+    let Some(to_own) = p.to_own().filter(|_| !p.shape.bounds().is_empty()) else { return Ok(Vec::new()) };
+    let plane = |own: DVec3, offset: f64| Placed::plane(to_own, own, offset, near);
+    let round = |centre: DVec3, size: f64, surface| Placed::round(p, to_own, centre, size, surface);
+    let between = |side: Placed, height: f64| vec![side, plane(DVec3::NEG_Z, 0.0), plane(DVec3::Z, height)];
+    Ok(match &p.shape {
+        Shape::Sphere { radius } => vec![round(DVec3::ZERO, *radius, quadric([1.0; 3], 0.0, -1.0))],
+        Shape::Cylinder { radius, height } => {
+            between(round(DVec3::Z * (height * 0.5), *radius, quadric([1.0, 1.0, 0.0], 0.0, -1.0)), *height)
+        }
+        Shape::Cone { bottom, top, height } => {
+            // x² + y² < (middle + slope z)², all over the larger radius
+            let size = bottom.max(*top);
+            let (middle, slope) = ((bottom + top) * 0.5 / size, (top - bottom) / height);
+            let surface = quadric([1.0, 1.0, -slope * slope], -middle * slope, -middle * middle);
+            between(round(DVec3::Z * (height * 0.5), size, surface), *height)
+        }
+        Shape::Torus { major, minor } if *major > 0.0 => {
+            let surface =
+                abi::Surface { kind: abi::SURFACE_TORUS, constant: (minor / major) as f32, ..Default::default() };
+            vec![round(DVec3::ZERO, *major, surface)]
+        }
+        // without a circle to run around, the tube is a ball
+        Shape::Torus { minor, .. } => vec![round(DVec3::ZERO, *minor, quadric([1.0; 3], 0.0, -1.0))],
+        Shape::HalfSpace { .. } | Shape::Block { .. } | Shape::Quadric(_) => {
+            let side = |carrier: &Carrier| match carrier {
+                Carrier::Plane { normal, offset } => plane(*normal, *offset),
+                Carrier::Quadric(q) => Placed::quadric(p, to_own, q, near),
+                Carrier::Torus { .. } => unreachable!("no side of these shapes"),
+            };
+            p.shape.carriers().iter().map(side).collect()
+        }
+        Shape::Mesh(_) | Shape::Part(_) => Vec::new(),
+    })
+}

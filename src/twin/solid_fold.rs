@@ -1,0 +1,35 @@
+//! Twin of `glsl/solid_fold.comp`: the Blist of each tile, without the leaves that the tile does not see.
+//!
+//! ```text
+//!   exit e ──▶ [absent] ──out──▶ [absent] ──out──▶ [present]     the first ancestor of e, or e itself,
+//!                                                                that the tile sees
+//! ```
+
+use crate::abi::{EXIT_FALSE, EXIT_TRUE, LEAF_FALLS, Leaf, TileLeaf};
+
+/// Wires `tile_leaves`, of which tile `n` has those from `tile_starts[n]` to `tile_starts[n + 1]`, to each
+/// other; returns where the walk of each tile begins.
+pub fn solid_fold(leaves: &[Leaf], tile_starts: &[u32], tile_leaves: &mut [TileLeaf]) -> Vec<u32> {
+    let tile = |ends: &[u32]| {
+        let (start, end) = (ends[0], ends[1]);
+        for i in start..end {
+            let leaf = leaves[tile_leaves[i as usize].leaf as usize];
+            let in_exit = fold(leaves, tile_leaves, leaf.in_exit, i + 1, end);
+            let out_exit = fold(leaves, tile_leaves, leaf.out_exit, i + 1, end);
+            tile_leaves[i as usize] = TileLeaf { in_exit, out_exit, ..tile_leaves[i as usize] };
+        }
+        fold(leaves, tile_leaves, 0, start, end)
+    };
+    tile_starts.windows(2).map(tile).collect()
+}
+
+fn fold(leaves: &[Leaf], tile_leaves: &[TileLeaf], to: u32, from: u32, end: u32) -> u32 {
+    let Some(target) = leaves.get(to as usize) else { return to };
+    let holds = |i: &u32| {
+        let place = tile_leaves[*i as usize].leaf;
+        let leaf = &leaves[place as usize];
+        place >= to && leaf.pre <= target.pre && target.pre < leaf.end
+    };
+    let end_of_chain = if target.flags & LEAF_FALLS != 0 { EXIT_FALSE } else { EXIT_TRUE };
+    (from..end).find(holds).unwrap_or(end_of_chain)
+}

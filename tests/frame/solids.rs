@@ -1,0 +1,199 @@
+//! Boolean solids against the exact reference, every pixel.
+
+use crate::shapes::{self, solids};
+use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched};
+use glam::{DAffine3, DVec3};
+use selvedge::csg::Op;
+use selvedge::headless::{HeadlessError, HeadlessRenderer};
+use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Shape, Solid};
+use selvedge::picture::{FrameSettings, Outputs};
+use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
+use selvedge::renderer::{RenderError, UndrawnSolid};
+use std::sync::Arc;
+
+const SIZE: (u32, u32) = (240, 160);
+/// Single precision of a root on a tube a twentieth of its ring, grazed at a cosine of 0.1: a place off by
+/// 1e-7 of the ring over 0.05 over 0.1, and some roundings of the quartic. Other sides are far better.
+const NORMAL_DEG: f64 = 0.2;
+
+/// What is wrong with a picture, or nothing.
+fn faults(renderer: &mut HeadlessRenderer, tracer: &Tracer, camera: &Camera, blank: bool) -> Option<String> {
+    let picture = render(renderer, camera);
+    let j = judge(tracer, camera, &picture, &JudgeOptions::default());
+    let empty = j.normal_deg.count == 0;
+    if (j.wrong, j.given_up) != (0, 0) {
+        return Some(format!("{} wrong, {} given up, {:?}", j.wrong, j.given_up, j.mismatches.first()));
+    }
+    if empty != blank {
+        return Some(format!("blank: {empty}"));
+    }
+    if !few_ties(&j) {
+        return Some(format!("{} ties, {} agree of {}", j.ties, j.agree, j.sampled));
+    }
+    (j.normal_deg.worst > NORMAL_DEG).then(|| format!("normals {:?}", j.normal_deg))
+}
+
+/// Faces nearer to each other than a tie are an excuse of few pixels.
+fn few_ties(j: &Judgement) -> bool {
+    j.ties * 100 <= j.sampled
+}
+
+fn all_right(cases: Vec<solids::Named>, blank: bool) {
+    let mut renderer = watched(&Model::default());
+    let mut wrong = Vec::new();
+    for (name, model) in &cases {
+        renderer.upload(model).unwrap();
+        let tracer = Tracer::new(model);
+        for (view, camera) in [("perspective", perspective(model, SIZE)), ("parallel", orthographic(model, SIZE))] {
+            let fault = faults(&mut renderer, &tracer, &camera, blank);
+            wrong.extend(fault.map(|f| format!("{name}, {view}: {f}")));
+        }
+    }
+    assert_silent(renderer);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+#[test]
+fn coincident_faces() {
+    all_right(solids::coincident(), false);
+}
+
+#[test]
+fn tangents_apexes_and_thin_shells() {
+    all_right(solids::delicate(), false);
+}
+
+#[test]
+fn quadrics_of_every_kind() {
+    all_right(solids::quadrics(), false);
+}
+
+#[test]
+fn odd_transforms() {
+    all_right(solids::odd(), false);
+}
+
+#[test]
+fn empty_results_are_blank() {
+    all_right(solids::nothing(), true);
+}
+
+/// More leaves than a tile keeps spans of, than 64, than 255, and than 1024 in one tile.
+#[test]
+fn many_primitives() {
+    let row = |n: u32| {
+        let ball = |i: u32| solids::ball(0.5, f64::from(i) * 0.01);
+        let mut all: Vec<Primitive> = (0..n).map(ball).collect();
+        all.insert(0, solids::block([-1.0; 3], [1.0 + f64::from(n) * 0.01, 0.0, 1.0]));
+        solids::folded(Op::Difference, all)
+    };
+    let cases = vec![("70 in a tile", row(70)), ("300 in a tile", row(300)), ("100 holes", solids::holes(10))];
+    all_right(cases, false);
+}
+
+/// The eye within a solid, within a hole, on a face, and the near plane through the middle.
+#[test]
+fn the_near_plane_cuts() {
+    let cut = solids::solid("A-B+C", vec![solids::ball(3.0, 0.0), solids::ball(2.0, 0.0), solids::ring(1.2, 0.2)]);
+    let look = |eye: DVec3, near: f64| Camera {
+        eye,
+        target: eye + DVec3::new(1.0, 0.3, -0.2),
+        up: DVec3::Z,
+        projection: Projection::Perspective { fov_y: 1.2 },
+        depth_range: (near, 20.0),
+        size: SIZE,
+    };
+    let cases = [
+        ("in the hole", look(DVec3::new(-1.5, 0.0, 0.3), 0.01)),
+        ("in the shell", look(DVec3::new(-2.5, 0.0, 0.3), 0.01)),
+        ("on the inner face", look(DVec3::new(-2.0, 0.0, 0.0), 1e-3)),
+        ("within the ring", look(DVec3::new(-1.2, 0.0, 0.0), 0.01)),
+        ("near plane through the middle", look(DVec3::new(-8.0, 0.0, 0.0), 7.6)),
+        ("near plane within the shell", look(DVec3::new(-8.0, -2.5, 0.0), 5.5)),
+    ];
+    let (tracer, mut renderer) = (Tracer::new(&cut), watched(&cut));
+    for (name, camera) in cases {
+        let fault = faults(&mut renderer, &tracer, &camera, false);
+        assert_eq!(fault, None, "{name}");
+    }
+    assert_silent(renderer);
+}
+
+/// Pictures repeat bit for bit, and do not depend on the order of operands where colours do not.
+#[test]
+fn pictures_repeat_and_operands_commute() {
+    let one = |text: &str| {
+        let all = vec![solids::ball(1.5, 0.0), solids::block([-1.0; 3], [1.0, 1.0, 1.3]), solids::post(0.6, -2.0, 4.0)];
+        let mut model = solids::solid(text, all);
+        let solid = &model.solids[0];
+        let same = solid.primitives().iter().map(|p| Primitive { id: 1, ..p.clone() }).collect();
+        model.solids = vec![Solid::new(same, solid.tree().clone()).unwrap()];
+        model
+    };
+    let first = one("(A+B)-C");
+    let camera = perspective(&first, SIZE);
+    let mut renderer = watched(&first);
+    let picture = render(&mut renderer, &camera);
+    assert_identical(&picture, &render(&mut renderer, &camera), "again");
+    for text in ["(B+A)-C", "!C(A+B)", "!(C+!(B+A))", "(A-C)+(B-C)"] {
+        let other = one(text);
+        renderer.upload(&other).unwrap();
+        let drawn = render(&mut renderer, &camera);
+        assert!(drawn.face == picture.face, "faces of {text}");
+        // a surface is drawn by the formula of the primitive that names it first
+        let differ = drawn.depth.iter().zip(&picture.depth).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+        assert_eq!(differ, 0, "depths of {text}");
+    }
+    assert_silent(renderer);
+}
+
+/// Solids before and behind whole patches, trimmed faces and meshes.
+#[test]
+fn solids_among_patches_and_meshes() {
+    let through = |model: Model| {
+        let bounds: Bounds = model.bounds();
+        let (c, r) = (bounds.centre(), bounds.diagonal());
+        let m = DAffine3::from_translation(c) * solids::turned(0.5, 0.4, 0.0) * DAffine3::from_scale(DVec3::splat(r));
+        let mut all = solids::solid(
+            "A-B",
+            vec![
+                solids::moved(m, solids::block([-0.6, -0.08, -0.08], [0.6, 0.08, 0.08])),
+                solids::moved(m, solids::ball(0.07, 0.2)),
+            ],
+        );
+        // ids of their own
+        let solid = &all.solids[0];
+        let ids = solid.primitives().iter().map(|p| Primitive { id: p.id + 1000, ..p.clone() }).collect();
+        all.solids = vec![Solid::new(ids, solid.tree().clone()).unwrap()];
+        Model { solids: all.solids, ..model }
+    };
+    let cases = vec![
+        ("a whole sphere", through(shapes::sphere())),
+        ("a trimmed cylinder", through(shapes::cylinder())),
+        ("a trimmed plate", through(shapes::plate())),
+        ("a mesh", through(shapes::tetra())),
+        ("a mesh in a trimmed face", through(shapes::beside())),
+        ("solids and shells before meshes", through(shapes::floor())),
+    ];
+    all_right(cases, false);
+}
+
+/// Operands without equations are told of, by solid and primitive.
+#[test]
+fn an_operand_that_is_not_drawn_is_an_error() {
+    let mesh = Shape::Mesh(Arc::new(shapes::torus_mesh(8)));
+    let part = Shape::Part(Arc::new(shapes::sphere().parts.remove(0)));
+    for (shape, kind) in [(mesh, "mesh"), (part, "spline solid")] {
+        let mut model = solids::solid("A", vec![solids::ball(1.0, 0.0)]);
+        let operand = solids::primitive(shape, DAffine3::IDENTITY);
+        model.solids.extend(solids::solid("A-B", vec![solids::ball(1.0, 0.0), operand]).solids);
+        let mut renderer = watched(&Model::default());
+        let error = renderer.upload(&model).unwrap_err();
+        let expected = UndrawnSolid::Operand { solid: 1, primitive: 1, kind };
+        let HeadlessError::Render(RenderError::Solid(found)) = &error else { panic!("{error}") };
+        assert_eq!((found, error.to_string().contains(kind)), (&expected, true));
+        // what was there before is drawn on
+        renderer.render(&perspective(&Model::default(), SIZE), &FrameSettings::default(), Outputs::default()).unwrap();
+        assert_silent(renderer);
+    }
+}
