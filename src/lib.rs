@@ -11,6 +11,7 @@ pub mod brep;
 mod budget;
 mod buffers;
 pub mod construct;
+pub mod export;
 mod frame;
 pub mod gpu;
 #[cfg(feature = "headless")]

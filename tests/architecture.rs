@@ -14,6 +14,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("construct", &["math", "spline", "model", "trim"]),
     ("brep", &["math", "spline", "trim", "model"]),
     ("import", &["brep", "spline", "model"]),
+    ("export", &["spline", "trim", "model"]),
     ("picture", &["model"]),
     ("reference", &["math", "spline", "trim", "model", "picture"]),
     ("budget", &[]),

@@ -3,6 +3,7 @@
 //! ```text
 //!   render   model ─▶ picture and images      info    model ─▶ what the file holds
 //!   check    picture against exact rays       bench   time and memory beside the error
+//!   export   model ─▶ STEP file
 //! ```
 //!
 //! Results go to standard output, everything else to standard error.
@@ -11,6 +12,7 @@ mod args;
 mod bench;
 mod camera;
 mod check;
+mod export;
 mod info;
 mod npy;
 mod output;
@@ -58,6 +60,7 @@ fn main() -> ExitCode {
     let result = match &cli.command {
         Command::Render(args) => render::run(args),
         Command::Info(args) => info::run(args),
+        Command::Export(args) => export::run(args),
         Command::Check(args) => check::run(args),
         Command::Bench(args) => bench::run(args),
     };
