@@ -12,6 +12,7 @@ mod budget;
 mod buffers;
 pub mod construct;
 pub mod csg;
+pub mod export;
 mod frame;
 pub mod gpu;
 #[cfg(feature = "headless")]

@@ -15,6 +15,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("csg", &[]),
     ("brep", &["math", "spline", "trim", "model"]),
     ("import", &["brep", "spline", "model"]),
+    ("export", &["spline", "trim", "model"]),
     ("picture", &["model"]),
     ("reference", &["csg", "math", "spline", "trim", "model", "picture"]),
     ("budget", &[]),

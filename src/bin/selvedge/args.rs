@@ -28,6 +28,9 @@ pub enum Command {
     /// Describe what a file holds; needs no GPU
     #[command(after_help = STATUSES)]
     Info(InfoArgs),
+    /// Write a model as a STEP file; needs no GPU
+    #[command(after_help = STATUSES)]
+    Export(ExportArgs),
     /// Draw a model and judge the picture against exact rays in double precision
     #[command(after_help = STATUSES)]
     Check(CheckArgs),
@@ -72,6 +75,15 @@ pub struct InfoArgs {
     /// Print JSON; it holds all that `--deep` tells
     #[arg(long)]
     pub json: bool,
+}
+
+#[derive(Debug, Args)]
+pub struct ExportArgs {
+    /// The model (STEP)
+    pub model: PathBuf,
+    /// STEP file to write
+    #[arg(value_name = "OUT.step")]
+    pub output: PathBuf,
 }
 
 #[derive(Debug, Args)]

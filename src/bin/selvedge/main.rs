@@ -4,6 +4,7 @@
 //!   render   model ─▶ picture and images      info    model ─▶ what the file holds
 //!   check    picture against exact rays       bench   time and memory beside the error
 //!   convert  model ─▶ the engine's own form
+//!   export   model ─▶ STEP file
 //! ```
 //!
 //! Results go to standard output, everything else to standard error.
@@ -13,6 +14,7 @@ mod bench;
 mod camera;
 mod check;
 mod convert;
+mod export;
 mod info;
 mod npy;
 mod output;
@@ -60,6 +62,7 @@ fn main() -> ExitCode {
     let result = match &cli.command {
         Command::Render(args) => render::run(args),
         Command::Info(args) => info::run(args),
+        Command::Export(args) => export::run(args),
         Command::Check(args) => check::run(args),
         Command::Bench(args) => bench::run(args),
         Command::Convert(args) => convert::run(args),

@@ -1,0 +1,21 @@
+//! `selvedge export`: a model as a STEP file.
+
+use crate::args::ExportArgs;
+use crate::{Outcome, session};
+use anyhow::{Context, Result};
+use selvedge::export;
+use std::fs::File;
+use std::io::{BufWriter, Write};
+
+/// Reads the model and writes the file.
+pub fn run(args: &ExportArgs) -> Result<Outcome> {
+    let model = session::open(&args.model)?.model;
+    let name = || args.output.display().to_string();
+    let mut out = BufWriter::new(File::create(&args.output).with_context(name)?);
+    let warnings = export::step(&model, &mut out).with_context(name)?;
+    out.flush().with_context(name)?;
+    for w in warnings {
+        tracing::warn!("part {} {:?}: {}", w.part, model.parts.get(w.part).map_or("", |p| &p.name), w.message);
+    }
+    Ok(Outcome::Good)
+}

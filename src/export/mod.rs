@@ -1,0 +1,42 @@
+//! [`Model`](crate::model::Model)s out, as CAD files.
+//!
+//! ```text
+//!   model ──boundary──▶ stretches of loops, in (u, v) and in space
+//!         ──join──────▶ edges that two faces share ──step──▶ ISO 10303-21 text
+//! ```
+//!
+//! Faces keep their exact rational surfaces. What a file of the format cannot say is left out, and a
+//! [`ExportWarning`] names the part.
+
+mod boundary;
+mod join;
+mod step;
+
+pub use step::step;
+
+/// Something of a model that is not in the file as it was in the model.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub struct ExportWarning {
+    /// Index into [`Model::parts`](crate::model::Model::parts).
+    pub part: usize,
+    /// What was wrong and what was done.
+    pub message: String,
+}
+
+/// Why no file was written, or not all of it.
+#[derive(Debug, thiserror::Error)]
+#[allow(missing_docs)] // the messages say what each field is
+pub enum ExportError {
+    /// The operating system refused.
+    #[error("cannot write: {0}")]
+    Write(#[from] std::io::Error),
+    /// An instance names a part that is not there.
+    #[error("instance {instance} names part {part} of {parts}")]
+    Part { instance: usize, part: usize, parts: usize },
+    /// The model holds a number that is not one.
+    #[error("instance {instance} has a transform that is not finite or has no inverse")]
+    Transform { instance: usize },
+    /// A loop that cannot be a curve.
+    #[error("part {part}, face #{face}: {source}")]
+    Face { part: usize, face: u32, source: crate::spline::SplineError },
+}
