@@ -11,8 +11,10 @@
 //!
 //! [`Builder`] takes nodes in any order and may share them; [`Builder::finish`] makes the [`Tree`].
 
+use serde::{Deserialize, Serialize};
+
 /// A Boolean operation on two solids.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Op {
     /// `L+R`: in either.
     Union,
@@ -37,7 +39,7 @@ impl Op {
 }
 
 /// One node; children are indices of nodes that stand before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
 pub enum Node {
     /// No point (`false`) or every point (`true`).
     Constant(bool),
@@ -192,9 +194,29 @@ impl Builder {
 
 /// A Boolean expression in postfix order; see the module's figure. Every node has one parent but the
 /// last, which has none.
-#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[serde(try_from = "TreeData")]
 pub struct Tree {
     nodes: Vec<Node>,
+}
+
+/// A tree before its nodes are checked.
+#[derive(Deserialize)]
+struct TreeData {
+    nodes: Vec<Node>,
+}
+
+impl TryFrom<TreeData> for Tree {
+    type Error = TreeError;
+
+    /// Children that stand before their parents are what a [`Builder`] has; it brings them into order.
+    fn try_from(data: TreeData) -> Result<Self, TreeError> {
+        match data.nodes.len() as u64 {
+            0 => Ok(Self::constant(false)),
+            n if n > u64::from(Self::MOST_NODES) => Err(TreeError::TooLarge),
+            n => Builder { nodes: data.nodes }.finish(n as u32 - 1),
+        }
+    }
 }
 
 impl Tree {

@@ -32,11 +32,9 @@ pub fn symmetric(mut a: [[f64; 3]; 3]) -> ([f64; 3], [[f64; 3]; 3]) {
             a[p][q] = 0.0;
             a[p.min(r)][p.max(r)] = c * rp - s * rq;
             a[q.min(r)][q.max(r)] = s * rp + c * rq;
-            for i in 0..3 {
-                let (x, y) = (vectors[p][i], vectors[q][i]);
-                vectors[p][i] = c * x - s * y;
-                vectors[q][i] = s * x + c * y;
-            }
+            let (x, y): ([f64; 3], [f64; 3]) = (vectors[p], vectors[q]);
+            vectors[p] = std::array::from_fn(|i| c * x[i] - s * y[i]);
+            vectors[q] = std::array::from_fn(|i| s * x[i] + c * y[i]);
         }
     }
     ([a[0][0], a[1][1], a[2][2]], vectors)

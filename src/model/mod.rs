@@ -49,7 +49,6 @@ pub struct Model {
     /// Placed bodies; a part without an instance is not drawn.
     pub instances: Vec<Instance>,
     /// Boolean solids, in model coordinates; what is drawn is their union.
-    #[serde(skip)]
     pub solids: Vec<Solid>,
     /// Length unit of the source, for the record; coordinates are already millimetres.
     pub unit: String,

@@ -8,7 +8,7 @@
 //!
 //! The code that builds a model in memory keeps these invariants by construction; a file keeps nothing.
 
-use super::{Colour, Face, Instance, Model, Part, SurfaceKind, TrimLoop};
+use super::{Colour, Face, Instance, Model, Part, Solid, SurfaceKind, TrimLoop};
 use crate::spline::Surface;
 use serde::Deserialize;
 
@@ -36,6 +36,7 @@ pub(super) struct ModelData {
     name: String,
     parts: Vec<Part>,
     instances: Vec<Instance>,
+    solids: Vec<Solid>,
     unit: String,
 }
 
@@ -64,13 +65,14 @@ impl TryFrom<ModelData> for Model {
     type Error = ModelError;
 
     fn try_from(data: ModelData) -> Result<Self, ModelError> {
-        let ModelData { name, parts, instances, unit } = data;
+        let ModelData { name, parts, instances, solids, unit } = data;
         for mesh in parts.iter().flat_map(|part| &part.meshes) {
             check_colour(mesh.colour)?;
             if mesh.id == 0 {
                 return Err(ModelError::Number);
             }
         }
+        solids.iter().flat_map(|s| s.primitives()).try_for_each(|p| check_colour(Some(p.colour)))?;
         for (instance, placed) in instances.iter().enumerate() {
             check_colour(placed.colour)?;
             if placed.part >= parts.len() {
@@ -80,7 +82,7 @@ impl TryFrom<ModelData> for Model {
                 return Err(ModelError::Transform { instance });
             }
         }
-        Ok(Self { name, parts, instances, solids: Vec::new(), unit })
+        Ok(Self { name, parts, instances, solids, unit })
     }
 }
 

@@ -78,7 +78,7 @@ fn empty_results_are_blank() {
     all_right(solids::nothing(), true);
 }
 
-/// More leaves than a tile keeps spans of, than 64, than 255, and than 1024 in one tile.
+/// More leaves in one tile than spans are kept of, than 64, and than 255.
 #[test]
 fn many_primitives() {
     let row = |n: u32| {

@@ -13,12 +13,29 @@ pub use surface::{CarriedFace, Surface, SurfaceTable};
 use super::Bounds;
 use crate::csg::{Builder, Entry, Node, Op, Tree, TreeError};
 use glam::DVec3;
+use serde::{Deserialize, Serialize};
 
 /// Primitives and a Boolean expression over them. Valid by construction: see [`Solid::new`].
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "SolidData")]
 pub struct Solid {
     primitives: Vec<Primitive>,
     tree: Tree,
+}
+
+/// A solid before its indices are checked.
+#[derive(Deserialize)]
+struct SolidData {
+    primitives: Vec<Primitive>,
+    tree: Tree,
+}
+
+impl TryFrom<SolidData> for Solid {
+    type Error = SolidError;
+
+    fn try_from(data: SolidData) -> Result<Self, SolidError> {
+        Self::new(data.primitives, data.tree)
+    }
 }
 
 /// Why primitives and a tree are not a solid.

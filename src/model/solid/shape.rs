@@ -10,10 +10,11 @@
 
 use crate::model::{Bounds, Colour, Mesh, Part};
 use glam::{DAffine3, DVec3};
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The set of points of a primitive, in its own coordinates. All sets are closed.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub enum Shape {
     /// Points with `normal · x <= offset`; the normal, of any length but 0, points out.
     HalfSpace {
@@ -67,7 +68,7 @@ pub enum Shape {
 }
 
 /// `a·(x², y², z²) + b·(xy, yz, zx) + c·(x, y, z) + d`.
-#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
 pub struct Quadric {
     /// Coefficients of the squares.
     pub squares: DVec3,
@@ -103,7 +104,7 @@ impl Quadric {
 }
 
 /// A placed shape.
-#[derive(Clone, Debug, PartialEq)]
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 pub struct Primitive {
     /// In its own coordinates.
     pub shape: Shape,

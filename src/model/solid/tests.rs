@@ -1,7 +1,7 @@
 //! Coincident surfaces: what is one, what is not, and which way round.
 
 use crate::csg::{Builder, Op};
-use crate::model::{Primitive, Quadric, Shape, Solid, SurfaceTable};
+use crate::model::{Model, Primitive, Quadric, Shape, Solid, SurfaceTable};
 use glam::{DAffine3, DQuat, DVec3};
 
 fn table(shapes: Vec<(Shape, DAffine3)>, tolerance: f64) -> SurfaceTable {
@@ -87,4 +87,29 @@ fn empty_primitives_have_no_faces() {
     let flat = (Shape::Sphere { radius: 1.0 }, DAffine3::from_scale(DVec3::new(1.0, 1.0, 0.0)));
     let t = table(vec![flat, block([0.0; 3], [1.0, 1.0, 0.0]), block([0.0; 3], [1.0; 3])], SurfaceTable::EXACT);
     assert_eq!([0, 1, 2].map(|p| t.faces(p).len()), [0, 0, 6]);
+}
+
+/// What is written is read again; indices that lead nowhere, radii below 0 and trees in a ring are refused.
+#[test]
+fn solids_are_written_and_read() {
+    let mut b = Builder::new();
+    let (x, y) = (b.leaf(0), b.leaf(1));
+    let root = b.pair(Op::Difference, x, y);
+    let place = |shape, id| Primitive { shape, transform: DAffine3::from_rotation_z(0.1), colour: [0.1; 4], id };
+    let quadric = Quadric { squares: DVec3::ONE, constant: -0.7, ..Quadric::default() };
+    let primitives = vec![place(Shape::Sphere { radius: 1.5 }, 3), place(Shape::Quadric(quadric), 4)];
+    let solid = Solid::new(primitives, b.finish(root).unwrap()).unwrap();
+    let model = Model { solids: vec![solid], ..Model::default() };
+    let text = serde_json::to_string(&model).unwrap();
+    assert_eq!(serde_json::from_str::<Model>(&text).unwrap(), model);
+    let changes = [
+        ("\"Leaf\":1", "\"Leaf\":2", "primitive 2 of 2"),
+        ("\"radius\":1.5", "\"radius\":-1.5", "negative"),
+        ("[\"Difference\",0,1]", "[\"Difference\",0,2]", "node 2"),
+    ];
+    for (old, new, message) in changes {
+        assert!(text.contains(old), "{text}");
+        let error = serde_json::from_str::<Model>(&text.replace(old, new)).unwrap_err();
+        assert!(error.to_string().contains(message), "{error}");
+    }
 }
