@@ -1,18 +1,29 @@
 //! Faces and meshes of formats that know names but no assembly, as a model.
+//!
+//! ```text
+//!   (name, face) … ─┬─▶ a part a name ─▶ an instance each
+//!   (name, mesh) … ─┘        └▶ a record a face
+//! ```
 
-use super::facets;
+use super::{FaceRecord, ImportReport, facets};
+use crate::brep::BuiltFace;
 use crate::model::{Face, Instance, Mesh, Model, Part};
 use glam::DAffine3;
 use std::collections::HashMap;
 use std::path::Path;
 
+/// A face whose curves in `(u, v)` are those of the file, with what was healed; or its number and why it is lost.
+pub(super) type Stated = Result<(Face, Vec<String>), (u32, String)>;
+
 /// One part for the faces of each name and one for its meshes, in the order given, each placed once.
 ///
-/// Parts of meshes are closed where [`facets::closed`] says so, parts of faces never.
+/// Parts of meshes are closed where [`facets::closed`] says so, parts of faces never. The report gets the
+/// record of every face: nothing is fitted, so its deviation is zero.
 pub(super) fn assemble(
     file: &str,
-    faces: impl IntoIterator<Item = (String, Face)>,
+    faces: Vec<(String, Stated)>,
     meshes: impl IntoIterator<Item = (String, Mesh)>,
+    report: &mut ImportReport,
 ) -> Model {
     let mut parts: Vec<Part> = Vec::new();
     let mut places: HashMap<(String, bool), usize> = HashMap::new();
@@ -22,14 +33,28 @@ pub(super) fn assemble(
             parts.len() - 1
         })
     };
-    for (name, face) in faces {
-        let at = part(&mut parts, name, true);
-        parts[at].faces.push(face);
+    let mut lost = Vec::new();
+    for (name, stated) in faces {
+        match stated {
+            Ok((face, notes)) => {
+                let at = part(&mut parts, name, true);
+                let record = FaceRecord { id: face.id, part: at, ..FaceRecord::default() };
+                let face = report.record(record, BuiltFace { face, notes, deviation: 0.0, gap: 0.0 });
+                parts[at].faces.push(face);
+            }
+            Err((id, why)) => lost.push((name, id, why)),
+        }
     }
     for (name, mesh) in meshes {
         let at = part(&mut parts, name, false);
         parts[at].meshes.push(mesh);
     }
+    let lost = lost.into_iter().map(|(name, id, why)| {
+        let part = places.get(&(name, true)).copied().unwrap_or(parts.len());
+        FaceRecord { id, part, notes: vec![why], ..FaceRecord::default() }
+    });
+    report.face_records.splice(0..0, lost);
+    report.meshes = parts.iter().map(|p| p.meshes.len()).sum();
     let mut instances = Vec::new();
     for (part, body) in parts.iter_mut().enumerate() {
         body.closed = facets::closed(&body.meshes);

@@ -52,8 +52,9 @@ pub struct ImportReport {
     pub faces: usize,
     /// Triangle meshes, one a tessellated face that stands for no exact one.
     pub meshes: usize,
-    /// (u, v) curves in the file. Where there is an edge in space they are not used: both its faces are
-    /// trimmed from the one edge, so that neighbours agree.
+    /// (u, v) curves in the file, of the faces that are read. STEP: none is used, for both faces of an edge are
+    /// trimmed from the one edge in space, so that neighbours agree. IGES: used where there is no curve in
+    /// space, or none that fits. OBJ and 3dm: they are the trims.
     pub pcurves: usize,
     /// Names of the assembly occurrences, by their path from the root.
     pub occurrences: Vec<String>,
@@ -75,8 +76,8 @@ pub struct ImportReport {
     pub ignored: BTreeMap<String, usize>,
     /// Layers by name, with the number of items that the file puts on each.
     pub layers: BTreeMap<String, usize>,
-    /// One record a face: those that could not be read, then the others in the order of the file. Left out of the serialised report: a large file has
-    /// tens of thousands.
+    /// One record a face: those that could not be read, then the others in the order of the file. Left out of
+    /// the serialised report: a large file has tens of thousands.
     #[serde(skip)]
     pub face_records: Vec<FaceRecord>,
 }
@@ -86,7 +87,7 @@ pub struct ImportReport {
 pub struct FaceRecord {
     /// Number in the source, as in [`Face::id`](crate::model::Face::id).
     pub id: u32,
-    /// Index of its part in the model.
+    /// Index of its part in the model; the number of parts for a face left out whose part has no other.
     pub part: usize,
     /// What its surface is; `None` when the face was left out, and `notes` says why.
     pub kind: Option<SurfaceKind>,

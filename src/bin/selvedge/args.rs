@@ -44,7 +44,7 @@ pub enum Command {
 
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// The model (STEP)
+    /// The model: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
     pub model: PathBuf,
     /// PNG file to write
     #[arg(short, long, value_name = "OUT.png")]
@@ -67,7 +67,7 @@ pub struct RenderArgs {
 
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// The model (STEP)
+    /// The model: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
     pub model: PathBuf,
     /// List every face: deviation, gap, loops, notes; and the worst of them
     #[arg(long)]
@@ -88,7 +88,7 @@ pub struct ExportArgs {
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// The model (STEP)
+    /// The model: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
     pub model: PathBuf,
     #[command(flatten)]
     pub camera: CameraArgs,
@@ -111,7 +111,7 @@ pub struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub struct BenchArgs {
-    /// The models (STEP)
+    /// The models: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
     #[arg(required = true)]
     pub models: Vec<PathBuf>,
     /// Measured frames for each model, after the warm-up
@@ -129,7 +129,7 @@ pub struct BenchArgs {
 
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
-    /// The model
+    /// The model: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
     pub model: PathBuf,
     /// File to write; its extension chooses the form: .selvedge is the engine's own, bit for bit
     #[arg(value_name = "OUT.selvedge")]

@@ -19,6 +19,7 @@
 
 mod words;
 
+use super::parts::Stated;
 use super::{Import, ImportError, ImportReport, Place, Warnings, facets, parts};
 use crate::model::{Colour, Face, Mesh, SurfaceKind, TrimLoop};
 use crate::spline::{Bezier, Surface, triangle_points, triangle_surface};
@@ -61,13 +62,14 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
             return Err(ImportError::Nothing { file: name.to_owned(), format: "BezierView" });
         }
         let Lost { line, why } = lost;
-        if reader.report.faces > reader.faces.len() + reader.report.dropped.values().sum::<usize>() {
+        if reader.report.faces > reader.faces.len() {
+            reader.faces.push((reader.group.clone(), Err((reader.patches, why.clone()))));
             *reader.report.dropped.entry("the rest of the file left out".into()).or_default() += 1;
         }
         reader.warnings.push("the rest of the file left out", || Place::Line(line), || why);
     }
     let Reader { warnings, mut report, faces, meshes, .. } = reader;
-    let model = parts::assemble(name, faces, meshes);
+    let model = parts::assemble(name, faces, meshes, &mut report);
     report.bodies = model.parts.len();
     report.occurrences = model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect();
     let (warnings, counts) = warnings.finish();
@@ -83,7 +85,8 @@ struct Reader<'t> {
     colour: Option<Colour>,
     /// Patches and polyhedra begun, the number of the last one.
     patches: u32,
-    faces: Vec<(String, Face)>,
+    /// By the name of their group.
+    faces: Vec<(String, Stated)>,
     meshes: Vec<(String, Mesh)>,
 }
 
@@ -146,11 +149,12 @@ impl Reader<'_> {
                 let loops = if triangle { vec![whole()] } else { Vec::new() };
                 let (id, kind, colour) = (self.patches, SurfaceKind::BSpline, self.colour);
                 let face = Face { id, kind, surface, loops, same_sense: true, colour };
-                self.faces.push((self.group.clone(), face));
+                self.faces.push((self.group.clone(), Ok((face, Vec::new()))));
             }
             Err(error) => {
                 let why = error.to_string();
                 *self.report.dropped.entry(ImportReport::reason(&why)).or_default() += 1;
+                self.faces.push((self.group.clone(), Err((self.patches, why.clone()))));
                 self.warnings.push("face left out", || Place::Line(line), || why);
             }
         }

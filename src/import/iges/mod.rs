@@ -35,7 +35,7 @@ mod tree;
 mod trim;
 mod value;
 
-use super::{Import, ImportError, ImportReport, Warnings};
+use super::{FaceRecord, Import, ImportError, ImportReport, Warnings};
 use crate::brep::build_face;
 use crate::model::{Instance, Model, Part};
 use file::File;
@@ -94,6 +94,11 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 /// Builds all faces, in parallel; results are taken in file order.
 fn build(geometry: &Geometry<'_>, bodies: &[Body], model: &mut Model, report: &mut ImportReport) {
     let tolerance = geometry.file.global.resolution;
+    let record = |id, part| FaceRecord { id, part, tolerance, ..FaceRecord::default() };
+    for (part, body) in bodies.iter().enumerate() {
+        let lost = |(id, why): &(u32, String)| FaceRecord { notes: vec![why.clone()], ..record(*id, part) };
+        report.face_records.extend(body.shells.lost.iter().map(lost));
+    }
     for (part, body) in bodies.iter().enumerate() {
         let shared = &body.shells;
         let solid = shared.faces.par_iter().map(|(f, colour)| (f.id, *colour, build_face(f, &shared.edges, tolerance)));
@@ -101,16 +106,18 @@ fn build(geometry: &Geometry<'_>, bodies: &[Body], model: &mut Model, report: &m
         let built: Vec<_> = solid.chain(free).collect();
         for (id, colour, result) in built {
             match result {
-                Ok(mut face) => {
-                    face.face.colour = colour;
-                    report.deviation = report.deviation.max(face.deviation);
-                    for note in face.notes {
-                        *report.healed.entry(ImportReport::reason(&note)).or_default() += 1;
-                        geometry.note("face healed", id, note);
+                Ok(mut built) => {
+                    built.face.colour = colour;
+                    for note in &built.notes {
+                        *report.healed.entry(ImportReport::reason(note)).or_default() += 1;
+                        geometry.note("face healed", id, note.as_str());
                     }
-                    model.parts[part].faces.push(face.face);
+                    model.parts[part].faces.push(report.record(record(id, part), built));
                 }
-                Err(error) => geometry.note(FACE_LOST, id, error.to_string()),
+                Err(error) => {
+                    geometry.note(FACE_LOST, id, error.to_string());
+                    report.face_records.push(FaceRecord { notes: vec![error.to_string()], ..record(id, part) });
+                }
             }
         }
     }

@@ -28,6 +28,8 @@ pub(super) struct Shells {
     pub face_count: usize,
     /// Curves in parameters that loops list.
     pub pcurves: usize,
+    /// Faces that could not be read, and why.
+    pub lost: Vec<(u32, String)>,
     by_item: HashMap<(u32, usize), usize>,
 }
 
@@ -95,7 +97,10 @@ impl<'a> Geometry<'a> {
         match face {
             Ok(face) => shells.faces.push(face),
             Err(fault @ Fault::Exhausted(_)) => return Err(fault),
-            Err(fault) => self.note(FACE_LOST, id, fault.to_string()),
+            Err(fault) => {
+                self.note(FACE_LOST, id, fault.to_string());
+                shells.lost.push((id, fault.to_string()));
+            }
         }
         Ok(())
     }

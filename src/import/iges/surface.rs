@@ -18,7 +18,7 @@ use super::curve::Segment;
 use super::entity::{Entity, Fault};
 use super::geometry::{Geometry, Placed, finite, similarity};
 use super::ruled;
-use crate::brep::{CurveGeometry, SurfaceGeometry, SurfaceMap};
+use crate::brep::{self, CurveGeometry, SurfaceGeometry, SurfaceMap};
 use crate::import::step::{as_cylinder, offset};
 use glam::{DAffine2, DAffine3, DMat2, DVec2, DVec3};
 
@@ -237,7 +237,15 @@ impl<'a> Geometry<'a> {
             None if basis.flipped => -1.0,
             None => 1.0,
         };
-        let surface = offset(basis.surface, distance * sign).ok_or_else(|| entity.unsupported())?;
+        if let Some(surface) = offset(basis.surface.clone(), distance * sign) {
+            return Ok(Carrier { surface, ..basis });
+        }
+        let tolerance = self.file.global.resolution;
+        let fitted = brep::offset_surface(&basis.surface, distance * sign, tolerance);
+        let (surface, error) = fitted.map_err(|what| Fault::Value { id, what })?;
+        if error > tolerance {
+            self.note("surface approximated", id, format!("to {error:.1e} mm"));
+        }
         Ok(Carrier { surface, ..basis })
     }
 }

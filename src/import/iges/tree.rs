@@ -61,6 +61,8 @@ pub(super) struct Tree<'g, 'a> {
     scopes: HashMap<u32, Vec<usize>>,
     /// The group of an entity.
     groups: HashMap<u32, u32>,
+    /// The file has solids, shells.
+    owners: [bool; 2],
     trail: Vec<u32>,
     visits: usize,
 }
@@ -74,6 +76,7 @@ impl<'g, 'a> Tree<'g, 'a> {
             placements: Vec::new(),
             scopes: HashMap::new(),
             groups: HashMap::new(),
+            owners: [186, 514].map(|kind| geometry.file.entries.iter().any(|e| e.kind == kind)),
             trail: Vec::new(),
             visits: 0,
         };
@@ -194,7 +197,13 @@ impl<'g, 'a> Tree<'g, 'a> {
 
     /// Whether an entity is to be seen; tells of those that are not.
     fn is_drawn(&self, entity: Entity<'a>) -> bool {
-        let lost = entity.entry.dependent && self.trail.is_empty();
+        // shells of sheet models are written as dependent, with no solid that could own them
+        let orphan = match entity.kind() {
+            510 => !self.owners[1],
+            514 => !self.owners[0],
+            _ => false,
+        };
+        let lost = entity.entry.dependent && self.trail.is_empty() && !orphan;
         let kind = match (entity.entry.blank, entity.entry.purpose) {
             _ if lost => "entity without its owner not drawn",
             (true, _) => "blanked entity not drawn",
@@ -262,7 +271,10 @@ impl<'g, 'a> Tree<'g, 'a> {
                 let colour = self.geometry.colour(entity);
                 self.bodies[body].sheets.push((sheet, colour));
             }
-            Err(fault) => self.geometry.note(FACE_LOST, entity.id(), fault.to_string()),
+            Err(fault) => {
+                self.geometry.note(FACE_LOST, entity.id(), fault.to_string());
+                self.bodies[body].shells.lost.push((entity.id(), fault.to_string()));
+            }
         }
     }
 

@@ -5,7 +5,8 @@ use super::freeform::{Curves, Element, Piece, State, Trim};
 use super::index;
 use super::material::{Materials, brief};
 use super::polygons::{Look, Polygons};
-use crate::import::{Import, ImportError, ImportReport, Place, Warnings, parts};
+use crate::import::parts::{self, Stated};
+use crate::import::{Import, ImportError, ImportReport, Place, Warnings};
 use crate::model::Face;
 use glam::{DVec3, DVec4};
 use std::collections::BTreeMap;
@@ -37,7 +38,7 @@ pub(super) struct Reader<'f> {
     /// What may still be made from shared geometry, in control points.
     work: usize,
     /// Surfaces by the name of their object.
-    faces: Vec<(String, Face)>,
+    faces: Vec<(String, Stated)>,
     /// Statements that are not used: line of the first, and how many.
     unused: BTreeMap<String, (usize, usize)>,
 }
@@ -232,6 +233,8 @@ impl<'f> Reader<'f> {
 
     fn lose(&mut self, line: usize, why: String) {
         *self.report.dropped.entry(ImportReport::reason(&why)).or_default() += 1;
+        let id = self.faces.len() as u32 + 1;
+        self.faces.push((self.look.object.clone(), Err((id, why.clone()))));
         self.warn(FACE_LOST, line, why);
     }
 
@@ -246,12 +249,12 @@ impl<'f> Reader<'f> {
                 let id = self.faces.len() as u32 + 1;
                 match element.face(id, &self.curves, &mut self.work) {
                     Ok((face, notes)) => {
-                        for note in notes {
-                            *self.report.healed.entry(ImportReport::reason(&note)).or_default() += 1;
-                            self.warn("face healed", line, note);
+                        for note in &notes {
+                            *self.report.healed.entry(ImportReport::reason(note)).or_default() += 1;
+                            self.warn("face healed", line, note.clone());
                         }
                         let colour = self.look.colour;
-                        self.faces.push((self.look.object.clone(), Face { colour, ..face }));
+                        self.faces.push((self.look.object.clone(), Ok((Face { colour, ..face }, notes))));
                     }
                     Err(why) => self.lose(line, why),
                 }
@@ -283,7 +286,7 @@ impl<'f> Reader<'f> {
             self.warn("statement not used", line, format!("`{keyword}`, {count} times"));
         }
         let meshes = meshes.into_iter().map(|(look, mesh)| (look.object, mesh));
-        let model = parts::assemble(self.name, self.faces, meshes);
+        let model = parts::assemble(self.name, self.faces, meshes, &mut self.report);
         self.report.bodies = model.parts.len();
         self.report.occurrences = model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect();
         let (warnings, counts) = self.warnings.finish();

@@ -32,13 +32,13 @@ pub(super) struct Tables<'i> {
 pub(super) struct Built {
     pub face: Face,
     pub notes: Vec<String>,
-    /// Millimetres: largest distance of a trim's image from its edge, where it was compared.
-    pub deviation: f64,
+    /// Millimetres: largest distance of a trim's image from its edge, at the points that were compared.
+    pub gap: f64,
 }
 
 /// Distance in millimetres up to which ends in space are one point: Rhino's own default tolerance is 0.001 to
 /// 0.01 of a unit.
-const MEET: f64 = 0.01;
+pub(super) const MEET: f64 = 0.01;
 
 /// Points of a trim that are compared with its edge.
 const COMPARED: usize = 5;
@@ -72,7 +72,7 @@ impl<'i> Tables<'i> {
         let (surface, kind, flipped) = spline_of(geometry, all.map(|p| p.point()))?;
         let grid = surface.patches();
         let mut loops = Vec::new();
-        let mut deviation = 0.0f64;
+        let mut gap = 0.0f64;
         for (at, (ring, role)) in rings.iter().enumerate() {
             // the first loop is the outer one where no role says so
             let hole = match role {
@@ -83,7 +83,7 @@ impl<'i> Tables<'i> {
             loops.push(close(ring, hole, &grid, &mut notes)?);
             for (curve, edge) in ring {
                 match edge.and_then(|e| self.edge_curve(e)) {
-                    Some(edge) => deviation = deviation.max(distance(curve, &grid, &edge)),
+                    Some(edge) => gap = gap.max(distance(curve, &grid, &edge)),
                     None if edge.is_some() => notes.push("a trim whose edge has no spline to compare with".into()),
                     None => {}
                 }
@@ -91,7 +91,7 @@ impl<'i> Tables<'i> {
         }
         let same_sense = matches!(face.sense, Sense::Forward) != flipped;
         let colour = face.color.map(super::linear);
-        Ok(Built { face: Face { id, kind, surface, loops, same_sense, colour }, notes, deviation })
+        Ok(Built { face: Face { id, kind, surface, loops, same_sense, colour }, notes, gap })
     }
 
     /// The curves of a loop in `(u, v)`, each run as the loop runs, with its edge.

@@ -7,12 +7,13 @@
 //! ```
 //!
 //! Lengths come in millimetres. A face's trims are the curves in `(u, v)` that the file holds; the distance
-//! of their images from the edges in space, which the file holds too, is reported as the deviation. What the
+//! of their images from the edges in space, which the file holds too, is reported as the gap. What the
 //! decoder says it lost is among the warnings; objects of hidden layers are read, but not placed.
 
 mod face;
 
-use super::{Import, ImportError, ImportReport, Place, Warnings, colour, facets};
+use super::{FaceRecord, Import, ImportError, ImportReport, Place, Warnings, colour, facets};
+use crate::brep::BuiltFace;
 use crate::model::{Colour, Instance, Mesh, Model, Part};
 use cadmpeg_codec_rhino::RhinoCodec;
 use cadmpeg_ir::document::CadIr;
@@ -20,13 +21,16 @@ use cadmpeg_ir::products::{OccurrenceParent, PrototypeReference};
 use cadmpeg_ir::topology::{BodyKind, Color};
 use cadmpeg_ir::transform::Transform;
 use cadmpeg_ir::{Codec, DecodeOptions};
-use face::Tables;
+use face::{Built, Tables};
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::Cursor;
 
 /// Deepest nesting of blocks.
 const MAX_LEVELS: usize = 64;
+
+/// The part of a face that was left out with all others of its body, until the parts are counted.
+const NOWHERE: usize = usize::MAX;
 
 /// Reads a file; `name` is its name in messages.
 pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
@@ -44,11 +48,11 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
         found.map(|(_, value)| value.clone()).unwrap_or_default()
     };
     report.written_by = attribute("application_name");
-    report.units = vec![attribute("millimeters_per_unit")].into_iter().filter(|u| !u.is_empty()).collect();
-    report.units.iter_mut().for_each(|u| *u = format!("{u} mm"));
+    report.units = vec![unit(&attribute("millimeters_per_unit"))];
+    let tolerance = attribute("absolute_tolerance_millimeters").parse().unwrap_or(face::MEET);
     let mut model = Model { unit: report.units.join(", "), ..Model::default() };
     model.name = std::path::Path::new(name).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
-    let part_of = parts(ir, &mut model, &mut report, &mut warnings);
+    let part_of = parts(ir, tolerance, &mut model, &mut report, &mut warnings);
     place(ir, &part_of, &mut model, &mut warnings);
     meshes(ir, &mut model, &mut warnings);
     for (what, count) in [("subdivision surface not read", ir.model.subds.len())] {
@@ -57,51 +61,65 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
         }
     }
     report.bodies = model.parts.len();
+    report.meshes = model.parts.iter().map(|p| p.meshes.len()).sum();
+    report.face_records.iter_mut().for_each(|r| r.part = r.part.min(model.parts.len()));
     let (warnings, counts) = warnings.finish();
     report.warnings = counts;
     Ok(Import { model, warnings, report })
 }
 
 /// One part a body; places of parts by the names of bodies.
-fn parts(ir: &CadIr, model: &mut Model, report: &mut ImportReport, warnings: &mut Warnings) -> HashMap<String, usize> {
+fn parts(
+    ir: &CadIr,
+    tolerance: f64,
+    model: &mut Model,
+    report: &mut ImportReport,
+    warnings: &mut Warnings,
+) -> HashMap<String, usize> {
     let tables = Tables::new(ir);
     let shells: BTreeMap<_, _> = ir.model.shells.iter().map(|s| (s.id.as_str(), s)).collect();
     let regions: BTreeMap<_, _> = ir.model.regions.iter().map(|r| (r.id.as_str(), r)).collect();
     report.pcurves = ir.model.pcurves.len();
     report.edges = ir.model.edges.len();
+    let mut lost = Vec::new();
     let mut part_of = HashMap::new();
     for body in &ir.model.bodies {
         let closed = matches!(body.kind, BodyKind::Solid);
         let mut part = Part { name: body.name.clone().unwrap_or_default(), closed, ..Part::default() };
         let own = body.color.map(linear);
+        let before = lost.len();
         let in_regions = body.regions.iter().filter_map(|r| regions.get(r.as_str()));
         let in_shells = in_regions.flat_map(|r| &r.shells).filter_map(|s| shells.get(s.as_str()));
         for id in in_shells.flat_map(|s| s.faces()) {
             report.faces += 1;
             let number = report.faces as u32;
+            let record = FaceRecord { id: number, part: model.parts.len(), tolerance, ..FaceRecord::default() };
             match tables.face(id.as_str(), number) {
-                Ok(mut built) => {
-                    built.face.colour = built.face.colour.or(own);
-                    report.deviation = report.deviation.max(built.deviation);
-                    for note in built.notes {
-                        *report.healed.entry(ImportReport::reason(&note)).or_default() += 1;
+                Ok(Built { mut face, notes, gap }) => {
+                    face.colour = face.colour.or(own);
+                    for note in &notes {
+                        *report.healed.entry(ImportReport::reason(note)).or_default() += 1;
                         warnings.push("face healed", || Place::File, || format!("{}: {note}", id.as_str()));
                     }
-                    part.faces.push(built.face);
+                    let built = BuiltFace { face, notes, deviation: 0.0, gap };
+                    part.faces.push(report.record(record, built));
                 }
                 Err(why) => {
                     *report.dropped.entry(ImportReport::reason(&why)).or_default() += 1;
                     warnings.push("face left out", || Place::File, || format!("{}: {why}", id.as_str()));
+                    lost.push(FaceRecord { notes: vec![why], ..record });
                     part.closed = false;
                 }
             }
         }
         if part.faces.is_empty() {
+            lost[before..].iter_mut().for_each(|r| r.part = NOWHERE);
             continue;
         }
         part_of.insert(body.id.as_str().to_owned(), model.parts.len());
         model.parts.push(part);
     }
+    report.face_records.splice(0..0, lost);
     part_of
 }
 
@@ -150,8 +168,15 @@ fn place(ir: &CadIr, part_of: &HashMap<String, usize>, model: &mut Model, warnin
 /// Mesh objects; the meshes with which Rhino draws its bodies are not needed.
 fn meshes(ir: &CadIr, model: &mut Model, warnings: &mut Warnings) {
     let mut id = model.face_count() as u32;
+    // names of bodies end in the number of their object
+    let drawn: HashSet<&str> = ir.model.bodies.iter().filter_map(|b| object(b.id.as_str())).collect();
     for mesh in ir.model.tessellations.iter().filter(|t| t.body.is_none() && t.faces.is_empty()) {
         let source = mesh.source_object.as_ref();
+        if source.is_some_and(|s| drawn.contains(s.object_id.as_str()))
+            || object(mesh.id.as_str()).is_some_and(|o| drawn.contains(o))
+        {
+            continue;
+        }
         if source.is_some_and(|s| s.visible == Some(false)) {
             warnings.push("hidden object not placed", || Place::File, || mesh.id.as_str().to_owned());
             continue;
@@ -196,6 +221,26 @@ fn meshes(ir: &CadIr, model: &mut Model, warnings: &mut Warnings) {
 /// Rhino stores what its screen shows.
 fn linear(c: Color) -> Colour {
     colour::linear([c.r(), c.g(), c.b()].map(f64::from), f64::from(c.a()))
+}
+
+/// The number of the object in the name of something that belongs to it.
+fn object(name: &str) -> Option<&str> {
+    const GUID: usize = 36;
+    name.split_once('#').and_then(|(_, rest)| rest.get(..GUID))
+}
+
+/// The name of a unit of so many millimetres.
+fn unit(millimetres: &str) -> String {
+    let name = match millimetres {
+        "0.001" => "micrometre",
+        "" | "1" => "millimetre",
+        "10" => "centimetre",
+        "1000" => "metre",
+        "25.4" => "inch",
+        "304.8" => "foot",
+        other => return format!("{other} mm"),
+    };
+    name.into()
 }
 
 fn affine(transform: Transform) -> DAffine3 {

@@ -194,7 +194,22 @@ fn offset_surfaces() {
     let sphere = ["116,1.,0.,0.;", "196,1,2.;", "140,0.,0.,1.,0.5,3;"];
     let f = face(&sphere.map(e));
     lies_on(&f, |p| p.distance(DVec3::X) - 2.5);
-    let i = import(&[e(PLANE), e("140,0.,0.,1.,0.5,1;")]);
-    assert_eq!(i.report.dropped.values().sum::<usize>(), 1);
-    assert!(i.warnings[0].to_string().ends_with("#3: face left out: type 140 form 0 is not supported (#3)"));
+    lies_on(&face(&[e(PLANE), e("140,0.,0.,1.,0.5,1;")]), |p| p.z - 7.5);
+    lies_on(&face(&[e(PLANE), e("140,0.,0.,-1.,0.5,1;")]), |p| p.z - 6.5);
+    // a quarter of a circle about the y-axis, half a millimetre outside: part of a torus
+    let ring = ["110,0.,0.,0.,0.,1.,0.;", "100,0.,5.,0.,6.,0.,5.,1.;", "120,1,3,0.,2.;", "140,1.,0.,0.,0.5,5;"];
+    let worst = |points: Vec<DVec3>| {
+        points.iter().map(|p| (p.x.hypot(p.z) - 5.0).hypot(p.y) - 1.5).fold(0.0, |a: f64, d| a.max(d.abs()))
+    };
+    // the file's resolution
+    let error = worst(points(&face(&ring.map(e))));
+    assert!(error < 1e-6, "{error:e}");
+    // two parts of a spline that meet at an angle have no offset
+    let roof = "128,2,1,1,1,0,0,1,0,0,0.,0.,1.,2.,2.,0.,0.,1.,1.,1.,1.,1.,1.,1.,1.,0.,0.,0.,1.,0.,1.,2.,0.,0.,0.,1.,0.,1.,1.,1.,2.,1.,0.,0.,2.,0.,1.;";
+    let i = import(&[e(roof), e("140,0.,0.,1.,0.5,1;")]);
+    assert_eq!(i.report.dropped.values().sum::<usize>(), 1, "{:?}", i.warnings);
+    assert!(i.warnings[0].to_string().ends_with("#3: face left out: #3: its offset is not smooth"), "{:?}", i.warnings);
+    let [record] = &i.report.face_records[..] else { panic!("one record") };
+    assert_eq!((record.id, record.kind, record.part), (3, None, 0));
+    assert_eq!(record.notes, ["#3: its offset is not smooth"]);
 }
