@@ -13,7 +13,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("trim", &["math", "spline", "model"]),
     ("csg", &[]),
     ("brep", &["math", "spline", "trim", "model"]),
-    ("import", &["brep", "spline", "model"]),
+    ("import", &["brep", "csg", "spline", "model"]),
     ("picture", &["model"]),
     ("reference", &["csg", "math", "spline", "trim", "model", "picture"]),
     ("budget", &[]),

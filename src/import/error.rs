@@ -25,4 +25,7 @@ pub enum ImportError {
     /// More than half of the records are not records.
     #[error("{file}:{line}: gave up: {bad} of the first {seen} records cannot be read")]
     Nonsense { file: String, line: usize, bad: usize, seen: usize },
+    /// Text that is not a Boolean solid's, or a node that has no exact counterpart.
+    #[error("{file}:{line}: {message}")]
+    Solid { file: String, line: usize, message: String },
 }

@@ -1,20 +1,25 @@
 //! CAD files in, [`Model`]s out.
 //!
 //! ```text
-//!   path ──read, gunzip──▶ bytes ──format by content──▶ step ──▶ Import { model, warnings, report }
+//!   path ──read, gunzip──▶ bytes ──format by content──▶ step ────▶ Import { model, warnings, report }
+//!                                                       scad, brlcad: Boolean solids
 //! ```
 //!
 //! A file that is not what it claims to be is an [`ImportError`]. Everything smaller (a bad record, a
 //! face that cannot be built) is left out, and a [`Warning`] names the file and the line or entity.
 //! Time and memory are bounded by a multiple of the file's size, whatever its content.
 
+mod brlcad;
 mod error;
 mod report;
+mod scad;
+mod solid;
 mod step;
 
 pub use error::ImportError;
 pub(crate) use report::Warnings;
 pub use report::{ImportReport, Place, Warning};
+pub use scad::Facets;
 
 use crate::model::Model;
 use std::io::Read;
@@ -56,11 +61,17 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
     if step::recognise(&bytes) {
         return step(&bytes, &name);
     }
-    match path.file_name().and_then(|f| f.to_str()).map(str::to_ascii_lowercase) {
-        Some(f) if [".stp", ".step", ".p21", ".stpz", ".stp.gz", ".step.gz"].iter().any(|e| f.ends_with(e)) => {
-            Err(ImportError::NotStep { file: name })
-        }
-        _ => Err(ImportError::Format { file: name }),
+    let file = path.file_name().and_then(|f| f.to_str()).map(str::to_ascii_lowercase).unwrap_or_default();
+    let ends = |all: &[&str]| all.iter().any(|e| file.ends_with(e));
+    let text = std::str::from_utf8(&bytes).unwrap_or_default();
+    if ends(&[".stp", ".step", ".p21", ".stpz", ".stp.gz", ".step.gz"]) {
+        Err(ImportError::NotStep { file: name })
+    } else if ends(&[".csg", ".csg.gz"]) || scad::recognise(text) {
+        scad(&bytes, &name, Facets::Round)
+    } else if ends(&[".asc", ".asc.gz"]) || brlcad::recognise(text) {
+        brlcad(&bytes, &name)
+    } else {
+        Err(ImportError::Format { file: name })
     }
 }
 
@@ -70,6 +81,34 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
 /// [`ImportError`] when the text is not STEP or holds no usable data.
 pub fn step(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     step::read(bytes, name)
+}
+
+/// Reads OpenSCAD's flattened solids (`openscad -o x.csg`); `name` is the file's name in messages.
+///
+/// # Errors
+/// [`ImportError::Solid`] names the line and node that is not read: hulls, Minkowski sums, text, ...
+pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportError> {
+    scad::read(text(bytes, name)?, name, facets)
+}
+
+/// Reads BRL-CAD's text of solids (`g2asc`, version 5); `name` is the file's name in messages.
+///
+/// # Errors
+/// [`ImportError::Solid`] names the line and object that is not read.
+pub fn brlcad(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    brlcad::read(text(bytes, name)?, name)
+}
+
+fn text<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, ImportError> {
+    std::str::from_utf8(bytes).map_err(|e| {
+        let line = 1 + bytes[..e.valid_up_to()].iter().filter(|b| **b == b'\n').count();
+        ImportError::Solid { file: name.to_owned(), line, message: "not UTF-8 text".to_owned() }
+    })
+}
+
+/// The file's name without folder and extension.
+fn stem(file: &str) -> String {
+    Path::new(file).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 /// Undoes gzip; output is bounded by [`MAX_EXPANSION`].

@@ -3,8 +3,9 @@
 use crate::args::InfoArgs;
 use crate::{Outcome, output, session};
 use anyhow::Result;
+use selvedge::csg::{Blist, Convention};
 use selvedge::import::{Import, ImportReport};
-use selvedge::model::{Model, Part, SurfaceKind};
+use selvedge::model::{Model, Part, Shape, Solid, SurfaceKind};
 use serde::Serialize;
 use std::collections::BTreeMap;
 
@@ -26,6 +27,7 @@ struct Info<'a> {
     triangles: usize,
     triangle_instances: usize,
     surfaces: Vec<SurfaceRow>,
+    boolean_solids: Vec<SolidRow>,
     /// Millimetres; absent for an empty model.
     bounds: Option<[[f64; 3]; 2]>,
     warnings: Vec<String>,
@@ -40,6 +42,18 @@ struct SurfaceRow {
     rational: bool,
     faces: usize,
     patches: usize,
+}
+
+/// One Boolean solid.
+#[derive(Debug, Serialize)]
+struct SolidRow {
+    /// By kind of shape.
+    primitives: BTreeMap<&'static str, usize>,
+    leaves: usize,
+    /// Operations between the root and the deepest leaf.
+    depth: u32,
+    /// Labels that live at once when the leaves stand in the best order.
+    labels: Option<u32>,
 }
 
 /// Reads the model and prints what it holds.
@@ -75,6 +89,7 @@ impl<'a> Info<'a> {
             triangles: model.parts.iter().map(triangles).sum(),
             triangle_instances: placed_parts().map(triangles).sum(),
             surfaces: surfaces(model),
+            boolean_solids: model.solids.iter().map(SolidRow::new).collect(),
             bounds: (!bounds.is_empty()).then(|| [bounds.min.into(), bounds.max.into()]),
             warnings: import.warnings.iter().map(ToString::to_string).collect(),
             report: &import.report,
@@ -107,14 +122,57 @@ impl<'a> Info<'a> {
             ]);
         }
 
+        let mut solids = output::table(["Boolean solid", "primitives", "leaves", "depth", "labels"]);
+        for (i, row) in self.boolean_solids.iter().enumerate() {
+            let primitives: Vec<String> = row.primitives.iter().map(|(kind, n)| format!("{n} {kind}")).collect();
+            solids.add_row([
+                i.to_string(),
+                primitives.join(", "),
+                row.leaves.to_string(),
+                row.depth.to_string(),
+                row.labels.map_or("unknown".to_string(), |n| n.to_string()),
+            ]);
+        }
+
         let bounds = self.bounds.map_or("empty".to_string(), |[lo, hi]| {
             let size: [f64; 3] = std::array::from_fn(|i| hi[i] - lo[i]);
             format!("{:.3} x {:.3} x {:.3} mm from {:.3}, {:.3}, {:.3}", size[0], size[1], size[2], lo[0], lo[1], lo[2])
         });
         let mut lines = vec![format!("{}; source unit {}; box {bounds}", self.name, self.unit)];
         lines.push(format!("{counts}\n{surfaces}"));
+        if !self.boolean_solids.is_empty() {
+            lines.push(solids.to_string());
+        }
         lines.push(format!("import report: {}", serde_json::to_string_pretty(self.report)?));
         Ok(lines.join("\n"))
+    }
+}
+
+impl SolidRow {
+    fn new(solid: &Solid) -> Self {
+        let mut primitives = BTreeMap::new();
+        for p in solid.primitives() {
+            let kind = match p.shape {
+                Shape::HalfSpace { .. } => "half-space",
+                Shape::Block { .. } => "block",
+                Shape::Sphere { .. } => "sphere",
+                Shape::Cylinder { .. } => "cylinder",
+                Shape::Cone { .. } => "cone",
+                Shape::Torus { .. } => "torus",
+                Shape::Quadric(_) => "quadric",
+                Shape::Mesh(_) => "mesh",
+                Shape::Part(_) => "part",
+            };
+            *primitives.entry(kind).or_default() += 1;
+        }
+        let best = solid.tree().positive().map(|t| t.with_fewest_labels(Convention::WhenUsed));
+        let labels = best.and_then(|t| Blist::new(&t)).map(|list| list.labels(Convention::WhenUsed).count);
+        Self {
+            primitives,
+            leaves: solid.tree().leaves().count(),
+            depth: solid.tree().heights().last().copied().unwrap_or_default(),
+            labels: labels.ok(),
+        }
     }
 }
 
