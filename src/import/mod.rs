@@ -1,16 +1,18 @@
 //! CAD files in, [`Model`]s out.
 //!
 //! ```text
-//!   path ──read, gunzip──▶ bytes ──format by content──▶ step, iges ┬─▶ Import { model, warnings, report }
-//!                                                    ├▶ obj, bv ─┤
-//!                                                    ├▶ rhino ───┤
-//!                                                    └▶ native ──┘
+//!   path ──read, gunzip──▶ bytes ──format by content──▶ step, iges ───┬─▶ Import { model, warnings, report }
+//!                                                    ├▶ obj, bv ─────┤
+//!                                                    ├▶ rhino ───────┤
+//!                                                    ├▶ scad, brlcad ┤  Boolean solids
+//!                                                    └▶ native ──────┘
 //! ```
 //!
 //! A file that is not what it claims to be is an [`ImportError`]. Everything smaller (a bad record, a
 //! face that cannot be built) is left out, and a [`Warning`] names the file and the line or entity.
 //! Time and memory are bounded by a multiple of the file's size, whatever its content.
 
+mod brlcad;
 mod bv;
 mod chain;
 mod colour;
@@ -25,6 +27,8 @@ mod progress;
 mod report;
 #[cfg(feature = "rhino")]
 mod rhino;
+mod scad;
+mod solid;
 mod step;
 
 pub use error::ImportError;
@@ -32,6 +36,7 @@ pub(crate) use progress::FaceCount;
 pub use progress::{Options, Stage};
 pub(crate) use report::Warnings;
 pub use report::{FaceRecord, ImportReport, Place, Warning};
+pub use scad::Facets;
 
 use crate::model::Model;
 use std::io::Read;
@@ -95,20 +100,33 @@ pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportErr
     if bytes.starts_with(RHINO) {
         return rhino(&bytes, &name);
     }
-    let folder = path.parent();
-    match path.file_name().and_then(|f| f.to_str()).map(str::to_ascii_lowercase) {
-        Some(f) if [".stp", ".step", ".p21", ".stpz", ".stp.gz", ".step.gz"].iter().any(|e| f.ends_with(e)) => {
-            Err(ImportError::NotStep { file: name })
-        }
-        Some(f) if [".igs", ".iges", ".igs.gz", ".iges.gz"].iter().any(|e| f.ends_with(e)) => {
-            Err(ImportError::NotIges { file: name })
-        }
-        Some(f) if f.ends_with(".selvedge") || f.ends_with(".selvedge.gz") => native(&bytes, &name),
-        Some(f) if f.ends_with(".obj") || f.ends_with(".obj.gz") => obj(&bytes, &name, folder),
-        Some(f) if f.ends_with(".bv") || f.ends_with(".bv.gz") => bv(&bytes, &name),
-        _ if bv::recognise(&bytes) => bv(&bytes, &name),
-        _ if obj::recognise(&bytes) => obj(&bytes, &name, folder),
-        _ => Err(ImportError::Format { file: name }),
+    let file = path.file_name().and_then(|f| f.to_str()).map(str::to_ascii_lowercase).unwrap_or_default();
+    let named = |all: &[&str]| all.iter().any(|e| file.ends_with(e));
+    let text = std::str::from_utf8(&bytes).unwrap_or_default();
+    if named(&[".stp", ".step", ".p21", ".stpz", ".stp.gz", ".step.gz"]) {
+        Err(ImportError::NotStep { file: name })
+    } else if named(&[".igs", ".iges", ".igs.gz", ".iges.gz"]) {
+        Err(ImportError::NotIges { file: name })
+    } else if named(&[".selvedge", ".selvedge.gz"]) {
+        native(&bytes, &name)
+    } else if named(&[".csg", ".csg.gz"]) {
+        scad(&bytes, &name, Facets::Round)
+    } else if named(&[".asc", ".asc.gz"]) {
+        brlcad(&bytes, &name)
+    } else if named(&[".bv", ".bv.gz"]) {
+        bv(&bytes, &name)
+    } else if named(&[".obj", ".obj.gz"]) {
+        obj(&bytes, &name, path.parent())
+    } else if scad::recognise(text) {
+        scad(&bytes, &name, Facets::Round)
+    } else if brlcad::recognise(text) {
+        brlcad(&bytes, &name)
+    } else if bv::recognise(&bytes) {
+        bv(&bytes, &name)
+    } else if obj::recognise(&bytes) {
+        obj(&bytes, &name, path.parent())
+    } else {
+        Err(ImportError::Format { file: name })
     }
 }
 
@@ -165,6 +183,34 @@ pub fn rhino(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 /// [`ImportError`] when the text is not IGES, is in compressed or binary form, or holds no entity.
 pub fn iges(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     iges::read(bytes, name)
+}
+
+/// Reads OpenSCAD's flattened solids (`openscad -o x.csg`); `name` is the file's name in messages.
+///
+/// # Errors
+/// [`ImportError::Solid`] names the line and node that is not read: hulls, Minkowski sums, text, ...
+pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportError> {
+    scad::read(text(bytes, name)?, name, facets)
+}
+
+/// Reads BRL-CAD's text of solids (`g2asc`, version 5); `name` is the file's name in messages.
+///
+/// # Errors
+/// [`ImportError::Solid`] names the line and object that is not read.
+pub fn brlcad(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    brlcad::read(text(bytes, name)?, name)
+}
+
+fn text<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, ImportError> {
+    std::str::from_utf8(bytes).map_err(|e| {
+        let line = 1 + bytes[..e.valid_up_to()].iter().filter(|b| **b == b'\n').count();
+        ImportError::Solid { file: name.to_owned(), line, message: "not UTF-8 text".to_owned() }
+    })
+}
+
+/// The file's name without folder and extension.
+fn stem(file: &str) -> String {
+    Path::new(file).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
 /// Undoes gzip; output is bounded by [`MAX_EXPANSION`].

@@ -60,6 +60,8 @@ pub struct ImportReport {
     pub occurrences: Vec<String>,
     /// Files that hold parts of an assembly; they are not followed.
     pub external_files: Vec<String>,
+    /// Nodes of a Boolean solid by name, as the file has them, and of modifiers (`%`, `#`, `!`, `*`).
+    pub nodes: BTreeMap<String, usize>,
     /// Warnings by kind.
     pub warnings: BTreeMap<String, usize>,
     /// Faces left out, by reason.

@@ -7,6 +7,7 @@
 //! ```
 
 mod deep;
+mod solids;
 mod text;
 mod tree;
 
@@ -16,6 +17,7 @@ use anyhow::Result;
 use selvedge::import::{FaceRecord, Import, ImportReport};
 use selvedge::model::{Mesh, Model, Part, SurfaceKind};
 use serde::Serialize;
+use solids::SolidRow;
 use std::collections::BTreeMap;
 use tree::Node;
 
@@ -34,6 +36,7 @@ struct Info<'a> {
     trim_curves: usize,
     meshes: MeshCounts,
     surfaces: Vec<SurfaceRow>,
+    boolean_solids: Vec<SolidRow>,
     parts: Vec<PartRow<'a>>,
     assembly: Node<'a>,
     /// Millimetres; absent for an empty model.
@@ -109,6 +112,7 @@ impl<'a> Info<'a> {
             trim_curves: faces().flat_map(|f| &f.loops).map(|l| l.curves().len()).sum(),
             meshes: meshes(model, &parts),
             surfaces: surfaces(model),
+            boolean_solids: model.solids.iter().map(SolidRow::new).collect(),
             assembly: Node::new(model),
             bounds: (!bounds.is_empty()).then(|| [bounds.min.into(), bounds.max.into()]),
             warnings: import.warnings.iter().map(ToString::to_string).collect(),

@@ -1,6 +1,6 @@
 //! The tables that people read.
 
-use super::Info;
+use super::{Info, solids};
 use crate::output;
 use std::collections::BTreeMap;
 
@@ -8,6 +8,9 @@ impl Info<'_> {
     /// Everything but the single faces.
     pub fn text(&self) -> String {
         let mut blocks = vec![self.head(), self.counts(), self.surfaces()];
+        if !self.boolean_solids.is_empty() {
+            blocks.push(solids::text(&self.boolean_solids));
+        }
         if self.assembly.bodies.len() + self.assembly.children.len() > 0 {
             blocks.push(format!("assembly:\n{}", self.assembly.text()));
         }

@@ -231,7 +231,12 @@ fn edges_of_a_loop_in_any_order() {
         let area: f64 = face.loops.iter().map(|l| 0.5 * l.signed_area()).sum();
         assert!((area - 16.0).abs() < 1e-9, "{order}: {area}");
         let sorted = order != "#105,#115,#125,#135";
-        assert_eq!(found.report.healed.contains_key("the edges of a loop were put in order"), sorted, "{:?}", found.report.healed);
+        assert_eq!(
+            found.report.healed.contains_key("the edges of a loop were put in order"),
+            sorted,
+            "{:?}",
+            found.report.healed
+        );
         assert_eq!(found.warnings.iter().any(|w| w.message.contains("put in order")), sorted);
     }
 }

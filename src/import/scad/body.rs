@@ -1,0 +1,193 @@
+//! Leaves: solids, 2-D shapes and how they are lifted; everything that is refused.
+//!
+//! ```text
+//!   cube sphere cylinder polyhedron ──▶ Assembly
+//!   square circle polygon ──Lift of the extrusion around──▶ Assembly
+//!   hull minkowski text ...  ──▶ refused by name
+//! ```
+
+use super::args::Args;
+use super::flat::{self, Lift, Plate};
+use super::{Context, Facets, Fault, Reader, convex};
+use crate::csg::Op;
+use crate::import::solid::{Placed, Plane};
+use crate::model::{Primitive, Shape};
+use glam::{DAffine3, DVec2, DVec3};
+
+/// Leaves in space.
+pub(super) const SOLIDS: [&str; 4] = ["cube", "sphere", "cylinder", "polyhedron"];
+/// Leaves in the plane.
+const FLAT: [&str; 3] = ["square", "circle", "polygon"];
+/// What OpenSCAD knows and has no exact counterpart here.
+const REFUSED: [&str; 11] = [
+    "hull",
+    "minkowski",
+    "resize",
+    "import",
+    "surface",
+    "roof",
+    "text",
+    "offset",
+    "projection",
+    "fill",
+    "dxf_linear_extrude",
+];
+/// `$fn` below this is a shape and not a resolution.
+const LOW: f64 = 13.0;
+/// More segments than this are as good as round.
+const MOST_SEGMENTS: f64 = 360.0;
+
+/// Planes: their meet, or their union when the angle is above 180 degrees.
+pub(super) type Wedge = (Op, Vec<Plane>);
+
+impl Reader<'_> {
+    /// A node without children that matter; `None` for what is no solid.
+    pub(super) fn leaf(&mut self, inside: &Context, args: &Args<'_>) -> Result<Option<u32>, Fault> {
+        let placed = Placed { transform: inside.transform, colour: inside.colour, id: self.count };
+        if REFUSED.contains(&args.node) {
+            return Err(args.fault("such a node has no exact solid and is not read"));
+        }
+        match (inside.lift, SOLIDS.contains(&args.node), FLAT.contains(&args.node)) {
+            (_, false, false) => return Err(args.fault("such a node is not known")),
+            (Some(_), true, _) => {
+                self.warn("solid left out", args, || format!("`{}` inside an extrusion", args.node));
+                return Ok(None);
+            }
+            (None, _, true) => {
+                self.warn("2-D shape left out", args, || format!("`{}` outside of an extrusion", args.node));
+                return Ok(None);
+            }
+            _ => {}
+        }
+        let probe =
+            Primitive { shape: Shape::Sphere { radius: 1.0 }, transform: placed.transform, colour: [1.0; 4], id: 1 };
+        if probe.to_own().is_none() {
+            self.warn("empty solid", args, || {
+                format!("the matrices around `{}` flatten it, or are not finite", args.node)
+            });
+            return Ok(Some(self.assembly.nothing()));
+        }
+        if let Some(lift) = inside.lift {
+            return self.flat(args, lift, inside, placed).map(Some);
+        }
+        self.body(args, placed).map(Some)
+    }
+
+    /// Dimensions that make a solid; a warning otherwise.
+    fn usable(&mut self, args: &Args<'_>, sizes: &[f64]) -> bool {
+        let wrong = sizes.iter().find(|x| !x.is_finite() || **x < 0.0);
+        if let Some(x) = wrong {
+            self.warn("empty solid", args, || format!("`{}` has the dimension {x}", args.node));
+        }
+        wrong.is_none()
+    }
+
+    /// Segments, where the shape is not round.
+    fn segments(&self, args: &Args<'_>, radius: f64) -> Option<u32> {
+        let n = args.segments(radius);
+        let low = args.fragments() > 0.0 && args.fragments() < LOW;
+        let faceted = low || (self.facets == Facets::AsWritten && n <= MOST_SEGMENTS);
+        faceted.then_some(n as u32)
+    }
+
+    fn body(&mut self, args: &Args<'_>, mut placed: Placed) -> Result<u32, Fault> {
+        let (centre, shift) = (args.flag("center"), |v: DVec3| DAffine3::from_translation(v));
+        match args.node {
+            "cube" => {
+                let size = args.vector::<3>("size", 1.0)?;
+                if !self.usable(args, &size) {
+                    return Ok(self.assembly.nothing());
+                }
+                let size = DVec3::from_array(size);
+                let min = if centre { -0.5 * size } else { DVec3::ZERO };
+                Ok(self.assembly.add(Shape::Block { min, max: min + size }, &placed))
+            }
+            "sphere" => {
+                let radius = args.number("r", 1.0)?;
+                if !self.usable(args, &[radius]) {
+                    return Ok(self.assembly.nothing());
+                }
+                Ok(match self.segments(args, radius) {
+                    Some(n) => convex::ball(&mut self.assembly, &placed, radius, n),
+                    None => self.assembly.add(Shape::Sphere { radius }, &placed),
+                })
+            }
+            "cylinder" => {
+                let r = args.number("r", 1.0)?;
+                let (radii, height) = ([args.number("r1", r)?, args.number("r2", r)?], args.number("h", 1.0)?);
+                if !self.usable(args, &[radii[0], radii[1], height]) {
+                    return Ok(self.assembly.nothing());
+                }
+                if centre {
+                    placed.transform *= shift(DVec3::NEG_Z * 0.5 * height);
+                }
+                let segments = self.segments(args, radii[0].max(radii[1]));
+                Ok(flat::round(&mut self.assembly, &placed, radii, height, segments))
+            }
+            _ => convex::polyhedron(&mut self.assembly, &placed, args),
+        }
+    }
+
+    fn flat(&mut self, args: &Args<'_>, lift: Lift, inside: &Context, placed: Placed) -> Result<u32, Fault> {
+        let radius = args.number("r", 1.0)?;
+        let size = args.vector::<2>("size", 1.0)?;
+        if !self.usable(args, &[radius, size[0], size[1]]) || !inside.plane.is_finite() {
+            return Ok(self.assembly.nothing());
+        }
+        let segments = self.segments(args, radius);
+        let plate = &mut Plate { to: &mut self.assembly, lift, plane: inside.plane, placed };
+        match args.node {
+            "circle" => plate.circle(args, radius, segments),
+            "square" => {
+                let size = DVec2::from_array(size);
+                let min = if args.flag("center") { -0.5 * size } else { DVec2::ZERO };
+                let max = min + size;
+                plate.outlines(args, &[vec![min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)]])
+            }
+            _ => {
+                let points: Vec<DVec2> = args.points("points")?.into_iter().map(DVec2::from_array).collect();
+                let paths = args.indices("paths", points.len())?;
+                let along = |path: &Vec<u32>| path.iter().map(|i| points[*i as usize]).collect();
+                let outlines = if paths.is_empty() { vec![points.clone()] } else { paths.iter().map(along).collect() };
+                plate.outlines(args, &outlines)
+            }
+        }
+    }
+
+    /// What an extrusion does to shapes, and its wedge if it does not go all around.
+    pub(super) fn lift(&mut self, args: &Args<'_>) -> Result<(Lift, Option<Wedge>), Fault> {
+        if args.node == "rotate_extrude" {
+            let angle = args.number("angle", 360.0)?;
+            let segments = self.segments(args, f64::INFINITY);
+            if segments.is_some() && angle.abs() < 360.0 {
+                return Err(args.fault("an angle below 360 with a low $fn is not read"));
+            }
+            if !angle.is_finite() || angle.abs() >= 360.0 {
+                return Ok((Lift::Round { segments }, None));
+            }
+            let (s, c) = angle.abs().to_radians().sin_cos();
+            let mirror = if angle < 0.0 { -1.0 } else { 1.0 };
+            let planes = vec![(DVec3::NEG_Y * mirror, 0.0), (DVec3::new(-s, c * mirror, 0.0), 0.0)];
+            let op = if angle.abs() <= 180.0 { Op::Intersection } else { Op::Union };
+            return Ok((Lift::Round { segments }, Some((op, planes))));
+        }
+        let height = args.number("height", 100.0)?;
+        let [scale, other] = args.vector::<2>("scale", 1.0)?;
+        if args.number("twist", 0.0)? != 0.0 {
+            return Err(args.fault("a twist has no exact solid and is not read"));
+        }
+        if scale != other || !(0.0..f64::INFINITY).contains(&scale) {
+            return Err(args.fault("a scale that differs in x and y, or is negative, is not read"));
+        }
+        let height = if self.usable(args, &[height]) { height } else { 0.0 };
+        let base = if args.flag("center") { -0.5 * height } else { 0.0 };
+        Ok((Lift::Linear { base, height, scale }, None))
+    }
+
+    /// The wedge as a solid.
+    pub(super) fn wedge(&mut self, (op, planes): &Wedge, placed: &Placed) -> u32 {
+        let leaf = |&(normal, offset): &Plane| self.assembly.add(Shape::HalfSpace { normal, offset }, placed);
+        let leaves: Vec<u32> = planes.iter().map(leaf).collect();
+        self.assembly.nodes.fold(*op, leaves)
+    }
+}
