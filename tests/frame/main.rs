@@ -15,3 +15,4 @@ mod samples;
 #[path = "../shapes/mod.rs"]
 mod shapes;
 mod support;
+mod touching;
