@@ -23,7 +23,9 @@
 //     a mesh behind the pixel                      nothing, so that it is seen
 //
 // Without any of these the doubtful face stays. Doubtful neighbours are not asked, and healed pixels
-// stay marked, so the order of the threads does not matter.
+// stay marked, so the order of the threads does not matter. Where a front and a back nearly touch, doubtful
+// pixels fill a band: then the first pixel beyond it is asked, in each of the eight directions, and heard
+// only as a witness that looks at the viewer.
 #include "scene.glsl"
 #include "view.glsl"
 
@@ -66,6 +68,9 @@ const float ON_PIXEL_PX = 0.05;
 const float RING_SLACK = 1.25;
 // Relative depth within which a face touches the doubtful one, and is as hidden as that.
 const float SAME_DEPTH = 1e-6;
+
+// How far away a neighbour is looked for.
+const uint BAND_PX = 4u;
 
 // How far across a fold, in widths of the patch.
 const float ACROSS = 0.2;
@@ -153,11 +158,20 @@ void main() {
     uint helping_face = 0u; // index + 1; helpers of two faces meet in an edge here
     bool two_help = false;
     for (uint k = 0u; k < RING_POINTS; ++k) {
-        ivec2 beside = at + ivec2(sign(RING[k]));
-        if (any(lessThan(beside, ivec2(0))) || any(greaterThanEqual(beside, ivec2(frame.size)))) continue;
-        uvec2 seen = imageLoad(visibility, beside).xy;
+        // where fronts and backs touch, doubtful pixels fill a band: look across it
+        ivec2 step_ = ivec2(sign(RING[k]));
+        ivec2 beside = at;
+        uvec2 seen = uvec2(DOUBTFUL, 0u);
+        uint steps = 0u;
+        while (steps < BAND_PX && (seen.x & DOUBTFUL) != 0u) {
+            ++steps;
+            beside += step_;
+            if (any(lessThan(beside, ivec2(0))) || any(greaterThanEqual(beside, ivec2(frame.size)))) break;
+            seen = imageLoad(visibility, beside).xy;
+        }
         if ((seen.x & DOUBTFUL) != 0u) continue;
         if (sees_nothing(seen.x)) {
+            if (steps > 1u) continue;
             uvec2 other = SCENE_HAS_OTHERS ? imageLoad(others, beside).xy : uvec2(0u);
             // one that stands before the doubtful face may hide its neighbour: it tells nothing
             if (other.x == 0u) beside_nothing = true;
@@ -165,6 +179,8 @@ void main() {
             continue;
         }
         Answer answer = ask(seen, pixel, false);
+        // who is farther away must be there, and look here: its border tells nothing
+        if (steps > 1u && (answer.kind != WITNESS || answer.away)) continue;
         if (answer.miss < closest.miss) closest = answer;
         if (answer.depth > limit) continue;
         if (answer.kind == WITNESS && answer.depth < witness.depth) witness = answer;

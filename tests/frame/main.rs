@@ -16,3 +16,4 @@ mod samples;
 mod shapes;
 mod solids;
 mod support;
+mod touching;

@@ -10,7 +10,7 @@
 //!   tetra      one closed mesh                                facets   it placed twice, once mirrored
 //!   beside     a mesh that cuts into a trimmed face           globe    and into one without trims
 //!   floor      solids and shells before meshes                ball     a mesh with normals
-//!   empty      nothing at all
+//!   touching   a front just before another solid's back   empty    nothing at all
 //! ```
 //!
 //! Circles are quadratic arcs of a quarter turn with weights 1, 1/√2, 1 (Piegl and Tiller, *The NURBS
@@ -40,6 +40,11 @@ pub const PLATE_HALF: f64 = 3.0;
 pub const PLATE_HOLE: (DVec2, f64) = (DVec2::new(0.5, 0.25), 1.25);
 /// Half the edge of [`cube`], around the origin.
 pub const CUBE_HALF: f64 = 1.0;
+
+/// Depth of the strip below the face in [`touching`].
+pub const TOUCHING_GAP: f64 = 0.003;
+/// Half its width.
+pub const TOUCHING_STRIP: f64 = 0.375;
 
 /// A model and what a scene of it must not contain.
 pub struct Shape {
@@ -71,6 +76,7 @@ pub fn all() -> Vec<Shape> {
         shape("globe", globe(), false, true),
         shape("floor", floor(), true, false),
         shape("ball", ball(), false, false),
+        shape("touching", touching(), true, false),
         shape("empty", empty(), false, false),
     ]
 }
@@ -168,6 +174,21 @@ pub fn mirrored() -> Model {
     let mut model = cylinder();
     model.parts[0].faces.push(Face { id: 2, ..plate_face(1.0, DVec3::ZERO) });
     model.instances[0].transform = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+    model
+}
+
+/// A square face of a solid, 1, that looks up, and [`TOUCHING_GAP`] below it a strip along y, 2, of another
+/// solid, that looks down: as where solids cut into each other, or a file has a face the wrong way round.
+pub fn touching() -> Model {
+    let flat = |id, half_x: f64, z: f64| Face {
+        loops: vec![rectangle(DVec2::new(-half_x, -PLATE_HALF), DVec2::new(half_x, PLATE_HALF))],
+        same_sense: id == 1,
+        ..face(id, SurfaceKind::Plane, plane(DVec3::Z * z, DVec3::X, DVec3::Y, 1.5 * PLATE_HALF))
+    };
+    let mut model = one("touching", true, vec![flat(1, PLATE_HALF, 0.0)]);
+    let strip = one("strip", true, vec![flat(2, TOUCHING_STRIP, -TOUCHING_GAP)]);
+    model.parts.extend(strip.parts);
+    model.instances.push(Instance { part: 1, ..placed(DAffine3::IDENTITY, None) });
     model
 }
 
