@@ -180,12 +180,12 @@ mod tests {
             let mut a = Banded::new(n, lower, upper);
             let mut b = vec![0.0; n];
             let mut next = entries.iter();
-            for i in 0..n {
-                for j in i.saturating_sub(lower)..(i + upper + 1).min(n) {
+            for (i, sum) in b.iter_mut().enumerate() {
+                for (j, x) in x.iter().enumerate().take(i + upper + 1).skip(i.saturating_sub(lower)) {
                     // heavier beside the diagonal than on it, so that rows are exchanged
                     let e = next.next().unwrap() + if j + 1 == i { 3.0 } else if j == i { 2.0 } else { 0.0 };
                     a.add(i, j, e);
-                    b[i] += e * x[j];
+                    *sum += e * x;
                 }
             }
             if let Ok(f) = a.factor() {

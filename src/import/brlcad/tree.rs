@@ -99,5 +99,5 @@ fn matrix(words: &[&str]) -> Option<DAffine3> {
         return None;
     }
     let column = |i: usize| DVec3::new(all[i], all[4 + i], all[8 + i]) / w;
-    Some(DAffine3 { matrix3: DMat3::from_cols(column(0), column(1), column(2)), translation: column(3).into() })
+    Some(DAffine3 { matrix3: DMat3::from_cols(column(0), column(1), column(2)), translation: column(3) })
 }

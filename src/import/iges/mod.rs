@@ -78,13 +78,13 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
         units: vec![global.unit_name.clone()],
         bodies: bodies.len(),
         edges: bodies.iter().map(edges).sum(),
-        faces: bodies.iter().map(|b| b.face_count).sum(),
         pcurves: bodies.iter().map(pcurves).sum(),
         occurrences: model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect(),
         ..ImportReport::default()
     };
     build(&geometry, &bodies, &mut model, &mut report);
     let (warnings, dropped) = geometry.finish();
+    report.faces = model.face_count() + dropped.values().sum::<usize>();
     report.dropped = dropped;
     let (list, counts) = warnings.finish();
     report.warnings = counts;

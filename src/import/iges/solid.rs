@@ -24,8 +24,6 @@ use std::collections::HashMap;
 pub(super) struct Shells {
     pub edges: Vec<Edge>,
     pub faces: Vec<(FaceGeometry, Option<Colour>)>,
-    /// Faces in the file, those that failed included.
-    pub face_count: usize,
     /// Curves in parameters that loops list.
     pub pcurves: usize,
     /// Faces that could not be read, and why.
@@ -51,7 +49,6 @@ impl<'a> Geometry<'a> {
             let context = Context { map: outer, sense, colour: None };
             match entity.kind() {
                 510 => {
-                    shells.face_count = 1;
                     let face = self.face(entity, context, &mut shells);
                     return self.keep(id, face, &mut shells);
                 }
@@ -80,7 +77,6 @@ impl<'a> Geometry<'a> {
         for i in 0..entity.count(1, 2)? {
             let face = entity.pointer(2 + 2 * i)?;
             let sense = context.sense == (entity.integer(3 + 2 * i)? != 0);
-            shells.face_count += 1;
             let mapped = self.nested(face, |face| self.face(face, Context { map: &map, sense, colour }, shells));
             self.keep(face, mapped, shells)?;
         }

@@ -29,8 +29,6 @@ pub(super) struct Body {
     pub shells: Shells,
     /// Faces with edges of their own.
     pub sheets: Vec<(Sheet, Option<Colour>)>,
-    /// Faces in the file, those that failed included.
-    pub face_count: usize,
 }
 
 /// One placed body.
@@ -264,7 +262,6 @@ impl<'g, 'a> Tree<'g, 'a> {
     }
 
     fn sheet(&mut self, entity: Entity<'a>, body: usize) {
-        self.bodies[body].face_count += 1;
         let unit = DAffine3::from_scale(DVec3::splat(self.geometry.file.global.unit));
         match self.geometry.sheet(entity.id(), &unit) {
             Ok(sheet) => {
@@ -301,8 +298,8 @@ impl<'g, 'a> Tree<'g, 'a> {
                     514 => entity.entry.form == 1,
                     _ => true,
                 };
-                let (name, face_count) = (entity.name(last), shells.face_count);
-                self.bodies.push(Body { name, closed, shells, face_count, ..Body::default() });
+                let name = entity.name(last);
+                self.bodies.push(Body { name, closed, shells, ..Body::default() });
             }
             Err(fault) => self.geometry.note("body left out", entity.id(), fault.to_string()),
         }

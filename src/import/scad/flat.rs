@@ -49,7 +49,7 @@ impl Plate<'_> {
             Lift::Linear { base, height, scale } => {
                 let lean = if height > 0.0 { centre * (scale - 1.0) / height } else { DVec2::ZERO };
                 let matrix = DMat3::from_cols(m.x_axis.extend(0.0), m.y_axis.extend(0.0), lean.extend(1.0));
-                placed.transform *= DAffine3 { matrix3: matrix, translation: centre.extend(base).into() };
+                placed.transform *= DAffine3 { matrix3: matrix, translation: centre.extend(base) };
                 let straight = Shape::Cylinder { radius, height };
                 let shape =
                     if scale == 1.0 { straight } else { Shape::Cone { bottom: radius, top: radius * scale, height } };

@@ -221,7 +221,7 @@ impl<'a> Reader<'a> {
                 } else {
                     let xy = |v: DVec3| DVec2::new(v.x, v.y);
                     let matrix2 = DMat2::from_cols(xy(m.matrix3.x_axis), xy(m.matrix3.y_axis));
-                    inside.plane = inside.plane * DAffine2 { matrix2, translation: xy(m.translation.into()) };
+                    inside.plane *= DAffine2 { matrix2, translation: xy(m.translation) };
                 }
             }
             "color" => inside.colour = inside.colour.or(colour(args)), // the outermost wins
@@ -272,7 +272,7 @@ fn matrix(args: &Args<'_>) -> Result<DAffine3, Fault> {
         return Err(args.fault("the last row of a matrix is not 0, 0, 0, 1"));
     }
     let column = |i: usize| DVec3::new(rows[0][i], rows[1][i], rows[2][i]);
-    Ok(DAffine3 { matrix3: DMat3::from_cols(column(0), column(1), column(2)), translation: column(3).into() })
+    Ok(DAffine3 { matrix3: DMat3::from_cols(column(0), column(1), column(2)), translation: column(3) })
 }
 
 /// Linear light; none for OpenSCAD's "no colour", which is negative.
