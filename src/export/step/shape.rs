@@ -20,10 +20,8 @@ use crate::trim::LoopIndex;
 use glam::{DVec2, DVec3};
 use std::io::Write;
 
-/// Points that are the same, in shares of the part's diagonal: the first, and those tried in turn where the edges of
-/// a part that bounds a volume do not meet.
+/// Points that are the same, in shares of the part's diagonal.
 const JOIN: f64 = 1e-5;
-const LOOSE: [f64; 2] = [1e-4, 1e-3];
 /// Aim of fitted curves, in shares of the part's diagonal.
 const FIT: f64 = 1e-8;
 /// Samples along each side of a patch, for the sign of a volume.
@@ -49,16 +47,13 @@ pub(super) fn shape<W: Write>(
     let size = part.faces.iter().map(|f| f.bounds()).fold(Bounds::EMPTY, Bounds::union).diagonal();
     let face_error =
         |(face, source): (usize, SplineError)| ExportError::Face { part: index, face: part.faces[face].id, source };
-    let mut out = join(&sheets, JOIN * size, FIT * size).map_err(face_error)?;
-    for loose in LOOSE {
-        if !part.closed || out.closed() {
-            break;
-        }
-        let wider = join(&sheets, loose * size, FIT * size).map_err(face_error)?;
-        // a reach that swallows a loop is too wide
-        let same = out.loops.iter().zip(&wider.loops).all(|(a, b)| a.len() == b.len());
-        if same && wider.closed() {
-            out = wider;
+    let out = join(&sheets, JOIN * size, FIT * size).map_err(face_error)?;
+    for (sheet, kept) in sheets.iter().zip(&out.loops) {
+        let lost = sheet.face.loops.len().saturating_sub(kept.len());
+        if lost > 0 {
+            let message =
+                format!("face {}: {lost} loops within {:e} mm of a point were left out", sheet.face.id, JOIN * size);
+            warnings.push(ExportWarning { part: index, message });
         }
     }
     let frames: Vec<Option<[DVec3; 3]>> = sheets.iter().map(|s| s.plane.map(frame)).collect();
