@@ -76,7 +76,7 @@ fn seal(bytes: &mut [u8]) {
 /// The model that the bytes of a file hold.
 ///
 /// # Errors
-/// [`NativeError`] for whatever [`write`] could not have written.
+/// [`NativeError`] for whatever [`write()`] could not have written.
 pub fn read(bytes: &[u8]) -> Result<Model, NativeError> {
     let rest = bytes.strip_prefix(MAGIC).ok_or(NativeError::Magic)?;
     let cut = NativeError::Length { expected: HEADER as u64, found: bytes.len() as u64 };
