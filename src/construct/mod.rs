@@ -16,6 +16,7 @@
 //! | closed control polygons | [`polyloop`] |
 //! | equations `S(u, v)`, as closures or as text | [`fit`] |
 //! | grids of points, pictures of heights | [`grid`] |
+//! | dimensions: blocks, balls, gears, a pot | [`shapes`] |
 //!
 //! | answer | meaning |
 //! |---|---|
@@ -24,6 +25,7 @@
 //!
 //! Surfaces are made in their natural frame (a lathe turns about `z`) and placed by an affine map, which is exact.
 
+mod capped;
 mod compat;
 mod coons;
 pub mod curve;
@@ -39,10 +41,12 @@ mod motion;
 mod offset;
 pub mod polyloop;
 mod ruled;
+pub mod shapes;
 mod solid;
 mod sweep;
 mod tube;
 
+pub use capped::capped_solid;
 pub use compat::compatible;
 pub use coons::{Boundary, coons};
 pub use error::ConstructError;
