@@ -17,6 +17,7 @@
 //! | equations `S(u, v)`, as closures or as text | [`fit`] |
 //! | grids of points, pictures of heights | [`grid`] |
 //! | outlines cast on a surface | [`project()`] |
+//! | dimensions: blocks, balls, gears, a pot | [`shapes`] |
 //!
 //! | answer | meaning |
 //! |---|---|
@@ -25,6 +26,7 @@
 //!
 //! Surfaces are made in their natural frame (a lathe turns about `z`) and placed by an affine map, which is exact.
 
+mod capped;
 mod compat;
 mod coons;
 pub mod curve;
@@ -41,10 +43,12 @@ mod offset;
 pub mod polyloop;
 mod project;
 mod ruled;
+pub mod shapes;
 mod solid;
 mod sweep;
 mod tube;
 
+pub use capped::capped_solid;
 pub use compat::compatible;
 pub use coons::{Boundary, coons};
 pub use error::ConstructError;

@@ -211,7 +211,8 @@ impl Cast {
         for k in 1..SAMPLES {
             let x = f64::from(k) / f64::from(SAMPLES);
             let y = 1.0 - x;
-            let cubic = uv * (y * y * (1.0 + 2.0 * x)) + next * (x * x * (1.0 + 2.0 * y))
+            let cubic = uv * (y * y * (1.0 + 2.0 * x))
+                + next * (x * x * (1.0 + 2.0 * y))
                 + (slope * (x * y * y) - after * (x * x * y)) * h;
             let cubic = self.clamp(cubic);
             let exact = self.solve(cubic, piece.point(t + h * x))?;

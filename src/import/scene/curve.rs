@@ -69,8 +69,18 @@ pub(super) fn curve<'a>(scene: &mut Scene<'a>, shape: Value<'a>, table: &mut Tab
 }
 
 const CURVES: &[&str] = &[
-    "line", "arc", "circle", "ellipse", "parabola", "hyperbola", "polyline", "bezier", "bspline", "through",
-    "polyloop", "joined",
+    "line",
+    "arc",
+    "circle",
+    "ellipse",
+    "parabola",
+    "hyperbola",
+    "polyline",
+    "bezier",
+    "bspline",
+    "through",
+    "polyloop",
+    "joined",
 ];
 
 /// A shape that a section does not have.
@@ -99,9 +109,9 @@ fn round(name: &str, table: &mut Table<'_>) -> Outcome<Curve> {
         let radius = table.need("radius")?.positive()?;
         let axis = table.read("axis", Value::direction)?.unwrap_or(DVec3::Z);
         // the start of angles: x, or what comes near it in the plane across the axis
-        let start = table.read("start", Value::direction)?.unwrap_or_else(|| {
-            if axis.cross(DVec3::X).length() > 1e-6 * axis.length() { DVec3::X } else { DVec3::Y }
-        });
+        let start = table
+            .read("start", Value::direction)?
+            .unwrap_or_else(|| if axis.cross(DVec3::X).length() > 1e-6 * axis.length() { DVec3::X } else { DVec3::Y });
         let z = axis.normalize();
         let x = (start - z * start.dot(z)).normalize_or_zero();
         if name == "circle" {
@@ -195,9 +205,8 @@ fn polyloop(table: &mut Table<'_>) -> Outcome<Curve> {
     if points.iter().any(|p| p.z != 0.0) || points.len() > MOST_POINTS {
         return Err(value.fault(format!("at most {MOST_POINTS} points in the plane are wanted")));
     }
-    let style = table.read("style", |v| {
-        v.word(&[("near", Style::Near), ("through", Style::Through), ("smooth", Style::Smooth)])
-    })?;
+    let style = table
+        .read("style", |v| v.word(&[("near", Style::Near), ("through", Style::Through), ("smooth", Style::Smooth)]))?;
     let tension = table.read("tension", Value::number)?;
     let style = style.unwrap_or(Style::Near);
     if let (Some(_), false, Some(v)) = (tension, matches!(style, Style::Through), table.get("tension")) {

@@ -127,8 +127,7 @@ fn equations<'a>(scene: &Scene<'a>, shape: Value<'a>, table: &mut Table<'a>, tol
     for (text, value) in expression.iter_mut().zip(texts) {
         *text = value.1.text()?;
     }
-    let equation =
-        Equation::parse(expression, &constants).map_err(|e| in_expression(scene, texts, shape, e))?;
+    let equation = Equation::parse(expression, &constants).map_err(|e| in_expression(scene, texts, shape, e))?;
     let mut range = |key: &'static str| -> Outcome<(f64, f64)> {
         let value = table.need(key)?;
         let ends = value.list()?;

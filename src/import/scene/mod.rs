@@ -20,6 +20,7 @@ mod files;
 mod instances;
 mod place;
 mod scene;
+mod shapes;
 mod solid;
 mod surface;
 #[cfg(test)]

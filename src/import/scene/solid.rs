@@ -2,14 +2,14 @@
 //!
 //! ```text
 //!   half-space block sphere cylinder cone torus quadric     a primitive, exact
-//!   extrude lathe                                           a closed part: trimmed faces
+//!   extrude lathe tube gear gear-blank teapot capped        a closed part: trimmed faces
 //!   boolean   of = "A-(B+C)"   with = { A = "plate" }       operands by letter; a solid called `A` needs no entry
 //! ```
 
 use super::curve::unknown;
 use super::scene::{File, Scene, Thing};
 use super::text::{Fault, Outcome, Table, Value};
-use super::{place, trim};
+use super::{place, shapes, trim};
 use crate::construct::{extruded_solid, lathed_solid};
 use crate::csg::{self, Expression, Node, Op, ParseError};
 use crate::import::solid::{Assembly, Placed};
@@ -39,7 +39,7 @@ pub(super) struct Body {
 pub(super) fn solid<'a>(scene: &mut Scene<'a>, name: &str, table: &mut Table<'a>) -> Outcome<Body> {
     let shape = table.need("shape")?;
     scene.count(shape)?;
-    let unit = scene.unit;
+    let mut deviation = 0.0;
     let form = match shape.text()? {
         "extrude" => {
             let loops = table.need("loops")?;
@@ -54,12 +54,28 @@ pub(super) fn solid<'a>(scene: &mut Scene<'a>, name: &str, table: &mut Table<'a>
             Form::Part(Arc::new(lathed_solid(&profile, angle.to_radians()).map_err(|e| shape.fault(e))?))
         }
         "boolean" => boolean(scene, table)?,
-        _ => Form::Primitive(primitive(shape, table, unit)?),
+        _ => match shapes::ready(scene, shape, table)? {
+            Some((part, off)) => {
+                deviation = off * scene.unit;
+                Form::Part(Arc::new(part))
+            }
+            None if table.flag("faces")? => {
+                // placed in the file's unit
+                let part = shapes::faces(&primitive(shape, table, 1.0)?);
+                let part = part.ok_or_else(|| shape.fault("it has no faces that end"))?;
+                Form::Part(Arc::new(part.map_err(|e| shape.fault(e))?))
+            }
+            None => Form::Primitive(primitive(shape, table, scene.unit)?),
+        },
     };
     let by = place::placement(table)?;
     let colour = table.read("colour", Value::colour)?;
     match form {
-        Form::Part(part) => closed(scene, name, (&part, shape), by, colour),
+        Form::Part(part) => {
+            let mut body = closed(scene, name, (&part, shape), by, colour)?;
+            body.faces.iter_mut().for_each(|f| f.0 = deviation);
+            Ok(body)
+        }
         form => {
             let transform = scene.millimetres(by);
             Ok(Body { form, transform, colour, id: scene.number(), faces: Vec::new() })
@@ -94,15 +110,14 @@ fn primitive(named: Value<'_>, table: &mut Table<'_>, unit: f64) -> Outcome<Shap
                 constant: table.number_or("constant", 0.0)? * unit * unit,
             })
         }
-        _ => return Err(unknown(named, SOLIDS)),
+        _ => return Err(unknown(named, &[SOLIDS, shapes::READY].concat())),
     };
     shape.check().map_err(|e: ShapeError| named.fault(e))?;
     Ok(shape)
 }
 
-const SOLIDS: &[&str] = &[
-    "block", "sphere", "cylinder", "cone", "torus", "half-space", "quadric", "extrude", "lathe", "boolean",
-];
+const SOLIDS: &[&str] =
+    &["block", "sphere", "cylinder", "cone", "torus", "half-space", "quadric", "extrude", "lathe", "boolean"];
 
 /// By `size` from the origin or about it, or by two corners.
 fn block(table: &mut Table<'_>, unit: f64) -> Outcome<Shape> {
@@ -281,13 +296,7 @@ fn graft(to: &mut Assembly, nodes: &[Node], leaves: &[u32]) -> u32 {
 }
 
 /// All bodies and solids of a file, together.
-fn add_file(
-    scene: &mut Scene<'_>,
-    to: &mut Assembly,
-    file: &File,
-    how: Adding,
-    value: Value<'_>,
-) -> Outcome<u32> {
+fn add_file(scene: &mut Scene<'_>, to: &mut Assembly, file: &File, how: Adding, value: Value<'_>) -> Outcome<u32> {
     let model = &file.import.model;
     let all = how.transform * file.transform;
     let over = how.over.or(file.colour);

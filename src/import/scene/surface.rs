@@ -169,8 +169,21 @@ fn shaped<'a>(scene: &mut Scene<'a>, shape: Value<'a>, table: &mut Table<'a>) ->
 }
 
 const SURFACES: &[&str] = &[
-    "plane", "bilinear", "bezier", "bspline", "equations", "grid", "extrude", "lathe", "sweep", "tube", "ruled",
-    "loft", "coons", "gordon", "offset",
+    "plane",
+    "bilinear",
+    "bezier",
+    "bspline",
+    "equations",
+    "grid",
+    "extrude",
+    "lathe",
+    "sweep",
+    "tube",
+    "ruled",
+    "loft",
+    "coons",
+    "gordon",
+    "offset",
 ];
 
 /// The curves are few and simple enough to be brought to common knots.

@@ -11,10 +11,10 @@
 //! Kept is what lies inside an odd number of loops.
 
 use super::curve::{self, Curve, planar};
+use super::place;
 use super::scene::Scene;
 use super::surface::Made;
 use super::text::{Fault, Outcome, Table, Value};
-use super::place;
 use crate::construct::{Chain, project, trim_loops};
 use crate::spline::{BSpline, Bezier, Surface};
 use glam::{DVec2, DVec3};
