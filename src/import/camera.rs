@@ -138,12 +138,12 @@ mod tests {
                 let camera = named(lens).camera(BOX, size);
                 camera.check().unwrap();
                 let (w, h) = (f64::from(size.0), f64::from(size.1));
-                let nearest = BOX.corners().iter().map(|c| {
-                    let (p, depth) = camera.project(*c).expect("in front");
+                let nearest = BOX.corners().map(|c| {
+                    let (p, depth) = camera.project(c).expect("in front");
                     assert!(depth >= camera.depth_range.0 && depth <= camera.depth_range.1);
                     p.x.min(w - p.x).min(p.y.min(h - p.y))
                 });
-                let nearest = nearest.fold(f64::INFINITY, f64::min);
+                let nearest = nearest.into_iter().fold(f64::INFINITY, f64::min);
                 assert!(nearest.abs() < 1e-6, "{lens:?} {size:?}: {nearest} pixels from the border");
             }
         }

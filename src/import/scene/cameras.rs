@@ -39,7 +39,14 @@ pub(super) fn camera<'a>(
             Stance::At { eye: eye * unit, target: target.map(|t| t * unit) }
         }
         None => {
-            let bounds = table.read("fit", |v| if v.is_text() { bounds_of(v).map(Some) } else { Ok(None) })?.flatten();
+            let bounds = table.read("fit", |v| {
+                if v.is_flag() {
+                    return Ok(None);
+                }
+                let boxes = v.names()?.into_iter().map(&bounds_of).collect::<Outcome<Vec<_>>>()?;
+                Ok(Some(boxes.into_iter().fold(Bounds::EMPTY, Bounds::union)))
+            })?;
+            let bounds = bounds.flatten();
             let from = table.read("from", Value::direction)?.unwrap_or(FROM);
             let margin = table.read("margin", Value::positive)?.unwrap_or(MARGIN);
             if let Some(value) = table.get("target") {

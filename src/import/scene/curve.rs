@@ -102,8 +102,8 @@ fn round(name: &str, table: &mut Table<'_>) -> Outcome<Curve> {
     };
     let built = if name == "ellipse" {
         let (x, y) = (table.need("x")?.direction()?, table.need("y")?.direction()?);
-        let range = if table.get("from").is_some() { degrees(table)? } else { (0.0, std::f64::consts::TAU) };
-        table.get("to");
+        let part = table.get("from").is_some() || table.get("to").is_some();
+        let range = if part { degrees(table)? } else { (0.0, std::f64::consts::TAU) };
         ellipse(centre, x, y, range.0, range.1)
     } else {
         let radius = table.need("radius")?.positive()?;

@@ -11,11 +11,13 @@ use super::solid::{self, Body};
 use super::surface::{self, Made};
 use super::text::{Fault, Outcome, Table, Value, shortened};
 use crate::import::Import;
-use crate::model::Colour;
+use crate::model::{Colour, Part};
 use glam::DAffine3;
+use std::cell::OnceCell;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::path::Path;
 use std::rc::Rc;
+use std::sync::Arc;
 
 /// How deep items may be made of items.
 const DEEPEST: usize = 32;
@@ -79,6 +81,8 @@ pub(super) struct File {
     /// Of the whole, in millimetres.
     pub transform: DAffine3,
     pub colour: Option<Colour>,
+    /// Its parts, once they are operands.
+    pub shared: OnceCell<Vec<Arc<Part>>>,
 }
 
 /// Everything known while a scene is read.
@@ -232,7 +236,8 @@ impl<'a> Scene<'a> {
         let first = self.numbers(largest, path)?;
         solid::renumber(&mut import.model, first).map_err(|e| path.fault(e))?;
         let by = super::place::placement(table)?;
-        Ok(File { import, transform: self.millimetres(by), colour: table.read("colour", Value::colour)? })
+        let colour = table.read("colour", Value::colour)?;
+        Ok(File { import, transform: self.millimetres(by), colour, shared: OnceCell::new() })
     }
 
     pub fn curve(&mut self, name: Value<'a>) -> Outcome<Rc<Curve>> {

@@ -121,14 +121,13 @@ const SOLIDS: &[&str] =
 
 /// By `size` from the origin or about it, or by two corners.
 fn block(table: &mut Table<'_>, unit: f64) -> Outcome<Shape> {
-    let centred = table.flag("centred")?;
     let (min, max) = match (table.get("size"), table.get("from")) {
         (Some(size), None) => {
             let s = size.point()?;
             if s.min_element() <= 0.0 {
                 return Err(size.fault("3 numbers above 0 are wanted"));
             }
-            if centred { (s * -0.5, s * 0.5) } else { (DVec3::ZERO, s) }
+            if table.flag("centred")? { (s * -0.5, s * 0.5) } else { (DVec3::ZERO, s) }
         }
         (None, Some(from)) => (from.point()?, table.need("to")?.point()?),
         _ => return Err(Fault::new(table.at, "either `size`, or `from` and `to` are wanted")),
@@ -301,9 +300,10 @@ fn add_file(scene: &mut Scene<'_>, to: &mut Assembly, file: &File, how: Adding, 
     let all = how.transform * file.transform;
     let over = how.over.or(file.colour);
     let mut nodes = Vec::new();
+    let parts = file.shared.get_or_init(|| model.parts.iter().cloned().map(Arc::new).collect());
     for instance in &model.instances {
         scene.spend(1, value)?;
-        let part = Arc::new(model.parts[instance.part].clone());
+        let part = parts[instance.part].clone();
         let id = part.faces.first().map(|f| f.id).or(part.meshes.first().map(|m| m.id)).unwrap_or(1);
         let colour = over.or(instance.colour).or(how.inherited);
         nodes.push(to.add(Shape::Part(part), &Placed { transform: all * instance.transform, colour, id }));

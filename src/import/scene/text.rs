@@ -108,6 +108,10 @@ impl<'a> Value<'a> {
         self.value.get_ref().is_str()
     }
 
+    pub fn is_flag(self) -> bool {
+        self.value.get_ref().is_bool()
+    }
+
     pub fn is_table(self) -> bool {
         self.value.get_ref().is_table()
     }
