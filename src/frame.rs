@@ -130,7 +130,7 @@ impl Frame<'_> {
             times.drawing(cmd, "mesh", || self.mesh(cmd, pass, meshes));
         }
         if let Some(parts) = self.solids() {
-            times.scope(cmd, "solids", || self.solid_events(cmd, &parts));
+            times.scope(cmd, "solids", || self.solid_faces(cmd, &parts));
         }
         times.drawing(cmd, "visibility", || self.visibility(cmd));
         let mut drawn = Access::COLOUR_WRITE;

@@ -24,8 +24,8 @@ use crate::gpu::{
 use crate::model::{Camera, CameraError, Model, Projection};
 use crate::passes::resolve;
 use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes};
-pub use crate::scene::UndrawnSolid;
 use crate::scene::{Scene, SceneData, SolidData, focal_and_slant, view};
+pub use crate::scene::{SolidWay, UndrawnSolid, Ways};
 use ash::vk;
 
 /// Formats of the images that the host will pass to [`Renderer::record`].
@@ -115,6 +115,7 @@ pub struct FrameReport {
 pub struct Renderer {
     device: Device,
     formats: TargetFormats,
+    ways: Ways,
     loaded: Option<Loaded>,
     slots: Vec<Slot>,
     /// The slot recorded last.
@@ -180,7 +181,12 @@ impl Renderer {
     /// As [`new`](Self::new), on a device that is already on loan.
     pub(crate) fn on(device: &Device, formats: TargetFormats, frame_slots: usize) -> Result<Self, GpuError> {
         let slots = (0..frame_slots.max(1)).map(|_| Slot::new(device)).collect::<Result<_, _>>()?;
-        Ok(Self { device: device.clone(), formats, loaded: None, slots, last: None })
+        Ok(Self { device: device.clone(), formats, ways: Ways::default(), loaded: None, slots, last: None })
+    }
+
+    /// How models that are uploaded from now on are drawn.
+    pub fn set_ways(&mut self, ways: Ways) {
+        self.ways = ways;
     }
 
     /// Replaces the model: makes the pipelines that it needs; the next [`record`](Self::record)
@@ -189,7 +195,7 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before stays.
     pub fn upload(&mut self, model: &Model) -> Result<(), RenderError> {
-        let data = SceneData::new(model)?;
+        let data = SceneData::new(model, self.ways)?;
         let counts = Counts::of(&data);
         counts.check()?;
         let formats =

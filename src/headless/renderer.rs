@@ -4,7 +4,7 @@ use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
 use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
 use crate::model::{Camera, Model};
 use crate::picture::{FrameSettings, FrameStats, Outputs, Picture};
-use crate::renderer::{FrameInput, RenderError, Renderer, TargetFormats, Targets};
+use crate::renderer::{FrameInput, RenderError, Renderer, TargetFormats, Targets, Ways};
 use ash::vk;
 use bytemuck::Pod;
 use std::mem::ManuallyDrop;
@@ -22,6 +22,7 @@ pub struct HeadlessRenderer {
     targets: ManuallyDrop<Option<TargetImages>>,
     device: ManuallyDrop<HeadlessDevice>,
     aovs: bool,
+    ways: Ways,
     model: Option<Model>,
 }
 
@@ -44,8 +45,15 @@ impl HeadlessRenderer {
             targets: ManuallyDrop::new(None),
             device: ManuallyDrop::new(device),
             aovs: false,
+            ways: Ways::default(),
             model: None,
         })
+    }
+
+    /// How models that are uploaded from now on are drawn.
+    pub fn set_ways(&mut self, ways: Ways) {
+        self.ways = ways;
+        self.renderer.set_ways(ways);
     }
 
     /// Replaces the model.
@@ -134,6 +142,7 @@ impl HeadlessRenderer {
         if aovs != self.aovs {
             let mut renderer = Renderer::on(self.device.device(), formats(aovs), 1)?;
             let Some(model) = &self.model else { panic!("upload a model before rendering") };
+            renderer.set_ways(self.ways);
             renderer.upload(model)?;
             *self.renderer = renderer;
             self.aovs = aovs;

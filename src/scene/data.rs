@@ -3,6 +3,7 @@
 use super::face::{FaceData, pack_colour};
 use super::mesh::Meshes;
 use super::solids::{SolidData, UndrawnSolid};
+use super::ways::Ways;
 use crate::abi;
 use crate::model::{Camera, Model, Projection};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
@@ -38,8 +39,8 @@ pub(crate) struct SceneData {
 }
 
 impl SceneData {
-    pub(crate) fn new(model: &Model) -> Result<Self, UndrawnSolid> {
-        let mut data = Self { solids: SolidData::new(&model.solids)?, ..Self::default() };
+    pub(crate) fn new(model: &Model, ways: Ways) -> Result<Self, UndrawnSolid> {
+        let mut data = Self { solids: SolidData::new(&model.solids, ways.solids)?, ..Self::default() };
         let mut used = vec![false; model.parts.len()];
         model.instances.iter().for_each(|i| used[i.part] = true);
         let mut first_faces = Vec::with_capacity(model.parts.len());

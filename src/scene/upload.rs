@@ -28,6 +28,8 @@ pub(crate) struct Solids {
     pub leaves: Buffer,
     pub leaf_surfaces: Buffer,
     pub surfaces: Buffer,
+    /// The leaves as they are drawn, and how many; only where each is drawn by itself.
+    pub order: Option<(Buffer, u32)>,
 }
 
 /// Triangles, where they are placed, and the draws that cover them.
@@ -83,6 +85,10 @@ impl Scene {
                         leaves: persistent(&mut uploads, cmd, "solid leaves", &data.solids.leaves)?,
                         leaf_surfaces: persistent(&mut uploads, cmd, "solid sides", &data.solids.leaf_surfaces)?,
                         surfaces: persistent(&mut uploads, cmd, "solid surfaces", &data.solids.surfaces)?,
+                        order: (!data.solids.order.is_empty())
+                            .then(|| persistent(&mut uploads, cmd, "solid order", &data.solids.order))
+                            .transpose()?
+                            .map(|order| (order, data.solids.order.len() as u32)),
                     })
                 })
                 .transpose()?,
