@@ -23,9 +23,9 @@ use crate::gpu::{
 };
 use crate::model::{Camera, CameraError, Model, Projection};
 use crate::passes::resolve;
-use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes};
+use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, SceneSettings};
+pub use crate::scene::UndrawnSolid;
 use crate::scene::{Scene, SceneData, SolidData, focal_and_slant, view};
-pub use crate::scene::{SolidWay, UndrawnSolid, Ways};
 use ash::vk;
 
 /// Formats of the images that the host will pass to [`Renderer::record`].
@@ -115,7 +115,6 @@ pub struct FrameReport {
 pub struct Renderer {
     device: Device,
     formats: TargetFormats,
-    ways: Ways,
     loaded: Option<Loaded>,
     slots: Vec<Slot>,
     /// The slot recorded last.
@@ -181,12 +180,7 @@ impl Renderer {
     /// As [`new`](Self::new), on a device that is already on loan.
     pub(crate) fn on(device: &Device, formats: TargetFormats, frame_slots: usize) -> Result<Self, GpuError> {
         let slots = (0..frame_slots.max(1)).map(|_| Slot::new(device)).collect::<Result<_, _>>()?;
-        Ok(Self { device: device.clone(), formats, ways: Ways::default(), loaded: None, slots, last: None })
-    }
-
-    /// How models that are uploaded from now on are drawn.
-    pub fn set_ways(&mut self, ways: Ways) {
-        self.ways = ways;
+        Ok(Self { device: device.clone(), formats, loaded: None, slots, last: None })
     }
 
     /// Replaces the model: makes the pipelines that it needs; the next [`record`](Self::record)
@@ -195,7 +189,15 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before stays.
     pub fn upload(&mut self, model: &Model) -> Result<(), RenderError> {
-        let data = SceneData::new(model, self.ways)?;
+        self.upload_with(model, SceneSettings::default())
+    }
+
+    /// As [`upload`](Self::upload), with settings that hold as long as the model.
+    ///
+    /// # Errors
+    /// As [`upload`](Self::upload).
+    pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), RenderError> {
+        let data = SceneData::new(model, settings)?;
         let counts = Counts::of(&data);
         counts.check()?;
         let formats =

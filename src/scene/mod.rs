@@ -20,10 +20,8 @@ mod flatten;
 mod mesh;
 mod solids;
 mod upload;
-mod ways;
 
 pub(crate) use data::{SceneData, focal_and_slant, view};
 pub(crate) use solids::SolidData;
 pub use solids::UndrawnSolid;
-pub(crate) use upload::{MeshBuffers, Scene, Solids, Trims};
-pub use ways::{SolidWay, Ways};
+pub(crate) use upload::{MeshBuffers, Scene, Solids, TableScene, Trims};

@@ -13,10 +13,10 @@ mod order;
 mod surface;
 
 use super::face::pack_colour;
-use super::ways::SolidWay;
 use crate::abi;
 use crate::csg::Blist;
 use crate::model::{Solid, SolidError, SurfaceTable};
+use crate::picture::SolidWay;
 use glam::DVec3;
 use surface::sides_of;
 

@@ -6,9 +6,9 @@ use glam::{DAffine3, DVec3};
 use selvedge::csg::Op;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Shape, Solid};
-use selvedge::picture::{FrameSettings, Outputs};
+use selvedge::picture::{FrameSettings, Outputs, SceneSettings, SolidWay};
 use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
-use selvedge::renderer::{RenderError, SolidWay, UndrawnSolid, Ways};
+use selvedge::renderer::{RenderError, UndrawnSolid};
 use std::sync::Arc;
 
 const SIZE: (u32, u32) = (240, 160);
@@ -44,7 +44,6 @@ fn all_right(cases: Vec<solids::Named>, blank: bool) {
     for (name, model) in &cases {
         let tracer = Tracer::new(model);
         let views = [("perspective", perspective(model, SIZE)), ("parallel", orthographic(model, SIZE))];
-        renderer.set_ways(Ways { solids: SolidWay::Events });
         renderer.upload(model).unwrap();
         let mut pictures = Vec::new();
         for (view, camera) in &views {
@@ -52,8 +51,7 @@ fn all_right(cases: Vec<solids::Named>, blank: bool) {
             wrong.extend(fault.map(|f| format!("{name}, {view}: {f}")));
             pictures.push(render(&mut renderer, camera));
         }
-        renderer.set_ways(Ways { solids: SolidWay::Cst });
-        renderer.upload(model).unwrap();
+        renderer.upload_with(model, SceneSettings { solids: SolidWay::Cst, ..Default::default() }).unwrap();
         for ((view, camera), events) in views.iter().zip(&pictures) {
             let trimmed = render(&mut renderer, camera);
             let same = trimmed.face == events.face && trimmed.colour == events.colour && trimmed.depth == events.depth;
