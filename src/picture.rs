@@ -26,16 +26,19 @@ impl Default for FrameSettings {
 pub enum TrimWay {
     /// The u-intercept table: made anew for each view, one binary search a pixel.
     Table,
+    /// The loops themselves, in bands and cells made once: a few monotone arcs a pixel.
+    Exact,
 }
 
 impl TrimWay {
     /// Every way.
-    pub const ALL: &'static [Self] = &[Self::Table];
+    pub const ALL: &'static [Self] = &[Self::Table, Self::Exact];
 
     /// As in command lines and tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Table => "table",
+            Self::Exact => "exact",
         }
     }
 }

@@ -1,5 +1,6 @@
 //! The whole scene as plain arrays, and the transforms that stay in `f64`.
 
+use super::exact::ExactData;
 use super::face::{FaceData, pack_colour};
 use super::mesh::Meshes;
 use super::solids::{SolidData, UndrawnSolid};
@@ -25,6 +26,7 @@ pub(crate) struct SceneData {
     pub cells: Vec<abi::Cell>,
     pub curves: Vec<abi::Curve>,
     pub curve_points: Vec<f32>,
+    pub exact: ExactData,
     pub meshes: Meshes,
     /// Some patch has unequal weights.
     pub has_rational: bool,
@@ -103,6 +105,9 @@ impl SceneData {
         f.curves.iter_mut().for_each(|c| c.first += curve_point);
         self.has_rational |= f.rational;
         self.faces.push(f.face);
+        if self.way == Some(TrimWay::Exact) {
+            self.exact.push(&f.exact);
+        }
         self.patches.append(&mut f.patches);
         self.points.append(&mut f.points);
         self.cells.append(&mut f.cells);

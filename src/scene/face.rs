@@ -6,7 +6,7 @@ use crate::abi::Side;
 use crate::model::{Face, TrimLoop};
 use crate::picture::TrimWay;
 use crate::spline::{Bezier, Control, Patch, PatchGrid, SurfacePatch};
-use crate::trim::{LoopIndex, RectSide, chord_bend};
+use crate::trim::{ExactTrim, LoopIndex, RectSide, chord_bend};
 use glam::{DVec2, DVec3};
 
 /// v-strips of a face with few rows of patches. More strips follow a changing density more closely
@@ -23,6 +23,8 @@ pub(super) struct FaceData {
     pub cells: Vec<abi::Cell>,
     pub curves: Vec<abi::Curve>,
     pub curve_points: Vec<f32>,
+    /// Empty where another way trims.
+    pub exact: ExactTrim,
     pub rational: bool,
 }
 
@@ -61,6 +63,10 @@ impl FaceData {
             cells: Vec::new(),
             curves: Vec::new(),
             curve_points: Vec::new(),
+            exact: match way {
+                TrimWay::Exact if trimmed => ExactTrim::new(&face.loops, domain.origin, domain.size),
+                _ => ExactTrim::default(),
+            },
             rational: !face.surface.is_polynomial(),
         };
         let flag = |on: bool, bit: u32| if on { bit } else { 0 };
