@@ -61,6 +61,9 @@ pub struct UnknownTrimWay(String);
 pub struct SceneSettings {
     /// How to trim; `None` takes what suits the model.
     pub trim: Option<TrimWay>,
+    /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover. The model is
+    /// trimmed by [`TrimWay::Table`] then, which is made anew for each frame in any case.
+    pub editable: bool,
 }
 
 /// Images wanted beside the colour.
@@ -117,6 +120,8 @@ pub struct FrameStats {
     pub clamps: u64,
     /// Times the frame was recorded again because a buffer was too small.
     pub retries: u32,
+    /// Bytes copied for edits of trim loops since the frame before.
+    pub edit_bytes: u64,
     /// Bytes per memory pool.
     pub pools: Vec<PoolBytes>,
     /// Device name.

@@ -15,6 +15,7 @@
 //! `f64` every frame.
 
 mod data;
+mod edit;
 mod exact;
 mod face;
 mod flatten;
@@ -23,6 +24,8 @@ mod solids;
 mod upload;
 
 pub(crate) use data::{SceneData, focal_and_slant, view};
+pub use edit::EditError;
+pub(crate) use edit::{EditTarget, Write};
 #[cfg(test)]
 pub(crate) use exact::ExactData;
 pub(crate) use solids::SolidData;

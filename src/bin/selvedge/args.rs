@@ -123,6 +123,10 @@ pub struct BenchArgs {
     pub size: Size,
     #[command(flatten)]
     pub frame: FrameArgs,
+    /// Drag a loop of the face with the most loops, once a frame, instead of moving the camera: latency, bytes sent,
+    /// and whether pictures equal those of a fresh upload
+    #[arg(long)]
+    pub edit: bool,
     /// Folder for bench.json and bench.csv
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
