@@ -33,6 +33,7 @@ use crate::scene::{MeshBuffers, Scene, SceneData};
 use solids::SolidPasses;
 use trim::{TrimParts, TrimPasses};
 
+mod edit;
 mod solids;
 mod table;
 mod trim;

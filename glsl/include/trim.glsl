@@ -19,4 +19,13 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 }
 #endif
 
+#ifdef TRIM_BY_EXACT
+#define EXACT_BINDING TRIM_BINDING
+#include "exact.glsl"
+
+bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
+    return exact_winding(fi.face, uv) != 0;
+}
+#endif
+
 #endif

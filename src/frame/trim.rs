@@ -3,6 +3,7 @@
 //! ```text
 //!   way      scene buffers   buffers of the frame   passes before the draw     what the test reads
 //!   table    TableScene      TableBuffers           table.rs: density … sort   TableParts::test
+//!   exact    ExactScene      none                   none                       its buffers
 //! ```
 //!
 //! A scene uses one way; the others' passes, pipelines and buffers do not exist. Whatever the way, its
@@ -14,8 +15,8 @@ use crate::buffers::TrimBuffers;
 use crate::gpu::{Buffer, Device, GpuError};
 use crate::passes::heal;
 use crate::picture::TrimWay;
-use crate::scene::{SceneData, Trims};
-use crate::shaders::{TRIM_TABLE, TrimTest};
+use crate::scene::{ExactScene, SceneData, Trims};
+use crate::shaders::{TRIM_EXACT, TRIM_TABLE, TrimTest};
 
 /// The passes of the way that the scene uses, and `heal`.
 pub(super) struct TrimPasses {
@@ -25,6 +26,7 @@ pub(super) struct TrimPasses {
 
 enum Way {
     Table(Box<TablePasses>),
+    Exact,
 }
 
 impl TrimPasses {
@@ -33,6 +35,7 @@ impl TrimPasses {
         let Some(way) = data.trim_way() else { return Ok(None) };
         let way = match way {
             TrimWay::Table => Way::Table(Box::new(TablePasses::new(device)?)),
+            TrimWay::Exact => Way::Exact,
         };
         let others = data.has_meshes() || data.solids.kinds().is_some();
         let heal = heal::Heal::new(device, way.test(), data.has_rational, others)?;
@@ -48,6 +51,7 @@ impl Way {
     fn test(&self) -> &'static TrimTest {
         match self {
             Self::Table(_) => &TRIM_TABLE,
+            Self::Exact => &TRIM_EXACT,
         }
     }
 }
@@ -61,6 +65,7 @@ pub(super) struct TrimParts<'a> {
 
 enum Parts<'a> {
     Table(TableParts<'a>),
+    Exact(&'a ExactScene),
 }
 
 impl<'a> Frame<'a> {
@@ -72,6 +77,8 @@ impl<'a> Frame<'a> {
             (Way::Table(passes), Trims::Table(scene)) => {
                 Parts::Table(TableParts { passes, scene, buffers: buffers.table.as_ref()? })
             }
+            (Way::Exact, Trims::Exact(scene)) => Parts::Exact(scene),
+            _ => unreachable!("passes and buffers are made for one way"),
         };
         Some(TrimParts { passes, buffers, way })
     }
@@ -82,6 +89,7 @@ impl<'a> TrimParts<'a> {
     pub(super) fn table(&self) -> Option<TableParts<'a>> {
         match self.way {
             Parts::Table(parts) => Some(parts),
+            Parts::Exact(_) => None,
         }
     }
 
@@ -89,6 +97,7 @@ impl<'a> TrimParts<'a> {
     pub(super) fn test(&self) -> Vec<&'a Buffer> {
         match self.way {
             Parts::Table(parts) => parts.test(),
+            Parts::Exact(s) => vec![&s.faces, &s.bands, &s.cells, &s.entries, &s.arcs, &s.points],
         }
     }
 }

@@ -47,6 +47,17 @@ pub(crate) struct MeshBuffers {
 /// What the scene's way to trim needs.
 pub(crate) enum Trims {
     Table(TableScene),
+    Exact(ExactScene),
+}
+
+/// Arcs in bands and cells; see `glsl/include/exact.glsl`.
+pub(crate) struct ExactScene {
+    pub faces: Buffer,
+    pub bands: Buffer,
+    pub cells: Buffer,
+    pub entries: Buffer,
+    pub arcs: Buffer,
+    pub points: Buffer,
 }
 
 /// Trim curves and the cells that tell their density.
@@ -81,6 +92,14 @@ impl Scene {
                     curves: persistent(&mut uploads, cmd, "trim curves", &data.curves)?,
                     curve_points: persistent(&mut uploads, cmd, "trim curve points", &data.curve_points)?,
                     curve_items: persistent(&mut uploads, cmd, "trim curve items", &data.curve_items)?,
+                })),
+                Some(TrimWay::Exact) => Some(Trims::Exact(ExactScene {
+                    faces: persistent(&mut uploads, cmd, "trim faces", &data.exact.faces)?,
+                    bands: persistent(&mut uploads, cmd, "trim bands", &data.exact.bands)?,
+                    cells: persistent(&mut uploads, cmd, "trim band cells", &data.exact.cells)?,
+                    entries: persistent(&mut uploads, cmd, "trim entries", &data.exact.entries)?,
+                    arcs: persistent(&mut uploads, cmd, "trim arcs", &data.exact.arcs)?,
+                    points: persistent(&mut uploads, cmd, "trim arc points", &data.exact.points)?,
                 })),
             },
             solids: (!data.solids.leaves.is_empty())
