@@ -14,7 +14,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("construct", &["math", "spline", "model", "trim"]),
     ("csg", &[]),
     ("brep", &["math", "spline", "trim", "model"]),
-    ("import", &["brep", "csg", "spline", "model"]),
+    ("import", &["brep", "construct", "csg", "spline", "model"]),
     ("export", &["spline", "trim", "model"]),
     ("picture", &["model"]),
     ("reference", &["csg", "math", "spline", "trim", "model", "picture"]),

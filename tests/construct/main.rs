@@ -5,6 +5,8 @@
 mod errors;
 mod exact;
 mod offsets;
+mod projected;
+mod shapes;
 mod skins;
 mod solids;
 mod sweeps;

@@ -45,7 +45,7 @@ pub enum Command {
 
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
     pub model: PathBuf,
     /// PNG file to write
     #[arg(short, long, value_name = "OUT.png")]
@@ -68,7 +68,7 @@ pub struct RenderArgs {
 
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
     pub model: PathBuf,
     /// List every face: deviation, gap, loops, notes; and the worst of them
     #[arg(long)]
@@ -80,7 +80,7 @@ pub struct InfoArgs {
 
 #[derive(Debug, Args)]
 pub struct ExportArgs {
-    /// The model (STEP)
+    /// The model, as for `render`
     pub model: PathBuf,
     /// STEP file to write
     #[arg(value_name = "OUT.step")]
@@ -89,14 +89,14 @@ pub struct ExportArgs {
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
     pub model: PathBuf,
     #[command(flatten)]
     pub camera: CameraArgs,
     #[command(flatten)]
     pub frame: FrameArgs,
     /// Built-in views; not together with a camera
-    #[arg(long, value_enum, default_value_t = Views::Whole, conflicts_with_all = ["eye", "target"])]
+    #[arg(long, value_enum, default_value_t = Views::Whole, conflicts_with_all = ["eye", "target", "camera"])]
     pub views: Views,
     /// Pixels to judge in each view, spread evenly; those at which the face changes are judged in any case
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = at_least_one)]
@@ -112,7 +112,7 @@ pub struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub struct BenchArgs {
-    /// The models: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    /// The models: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, scenes .toml, or .3dm with the feature rhino
     #[arg(required = true)]
     pub models: Vec<PathBuf>,
     /// Measured frames for each model, after the warm-up
@@ -134,7 +134,7 @@ pub struct BenchArgs {
 
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
     pub model: PathBuf,
     /// File to write; its extension chooses the form: .selvedge is the engine's own, bit for bit
     #[arg(value_name = "OUT.selvedge")]
@@ -144,21 +144,24 @@ pub struct ConvertArgs {
 /// Where the eye is.
 #[derive(Debug, Args)]
 pub struct CameraArgs {
-    /// Width and height in pixels
-    #[arg(long, value_name = "WxH", default_value = "1920x1080")]
-    pub size: Size,
+    /// Width and height in pixels; 1920x1080 where a scene does not say
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// A camera of the scene file, by its name; without it the one that the scene's picture names, if any
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target", "up", "fov", "ortho"])]
+    pub camera: Option<String>,
     /// Position of the eye, millimetres; without it the whole model is framed
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub eye: Option<DVec3>,
     /// Point that the eye looks at; the middle of the model without it
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub target: Option<DVec3>,
-    /// Direction that points up in the picture
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, default_value = "0,0,1")]
-    pub up: DVec3,
-    /// Vertical field of view in degrees
-    #[arg(long, value_name = "DEG", default_value_t = 35.0, conflicts_with = "ortho")]
-    pub fov: f64,
+    /// Direction that points up in the picture; 0,0,1 without it
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub up: Option<DVec3>,
+    /// Vertical field of view in degrees; 35 without it
+    #[arg(long, value_name = "DEG", conflicts_with = "ortho")]
+    pub fov: Option<f64>,
     /// Parallel projection; the height of the picture in millimetres
     #[arg(long, value_name = "HEIGHT")]
     pub ortho: Option<f64>,
