@@ -17,6 +17,7 @@
 //! | equations `S(u, v)`, as closures or as text | [`fit`] |
 //! | grids of points, pictures of heights | [`grid`] |
 //! | dimensions: blocks, balls, gears, a pot | [`shapes`] |
+//! | control meshes | [`subdivide`] |
 //!
 //! | answer | meaning |
 //! |---|---|
@@ -43,6 +44,7 @@ pub mod polyloop;
 mod ruled;
 pub mod shapes;
 mod solid;
+pub mod subdivide;
 mod sweep;
 mod tube;
 

@@ -8,6 +8,7 @@ mod offsets;
 mod shapes;
 mod skins;
 mod solids;
+mod subdivision;
 mod sweeps;
 
 use glam::{DVec2, DVec3, DVec4};
