@@ -47,6 +47,8 @@ pub enum Command {
 pub struct RenderArgs {
     /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
     pub model: PathBuf,
+    #[command(flatten)]
+    pub subdivide: SubdivideArgs,
     /// PNG file to write
     #[arg(short, long, value_name = "OUT.png")]
     pub output: PathBuf,
@@ -70,6 +72,8 @@ pub struct RenderArgs {
 pub struct InfoArgs {
     /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
     pub model: PathBuf,
+    #[command(flatten)]
+    pub subdivide: SubdivideArgs,
     /// List every face: deviation, gap, loops, notes; and the worst of them
     #[arg(long)]
     pub deep: bool,
@@ -82,6 +86,8 @@ pub struct InfoArgs {
 pub struct ExportArgs {
     /// The model, as for `render`
     pub model: PathBuf,
+    #[command(flatten)]
+    pub subdivide: SubdivideArgs,
     /// STEP file to write
     #[arg(value_name = "OUT.step")]
     pub output: PathBuf,
@@ -91,6 +97,8 @@ pub struct ExportArgs {
 pub struct CheckArgs {
     /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
     pub model: PathBuf,
+    #[command(flatten)]
+    pub subdivide: SubdivideArgs,
     #[command(flatten)]
     pub camera: CameraArgs,
     #[command(flatten)]
@@ -136,6 +144,8 @@ pub struct BenchArgs {
 pub struct ConvertArgs {
     /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
     pub model: PathBuf,
+    #[command(flatten)]
+    pub subdivide: SubdivideArgs,
     /// File to write; its extension chooses the form: .selvedge is the engine's own, bit for bit
     #[arg(value_name = "OUT.selvedge")]
     pub output: PathBuf,
@@ -185,6 +195,26 @@ pub struct FrameArgs {
     /// Load the Vulkan validation layer; a message from it counts as a broken promise
     #[arg(long)]
     pub validation: bool,
+}
+
+/// What becomes of polygons.
+#[derive(Debug, Default, Args)]
+pub struct SubdivideArgs {
+    /// Read an OBJ file's polygons as the control mesh of a smooth surface
+    #[arg(long, value_enum, value_name = "SCHEME")]
+    pub subdivide: Option<Smooth>,
+    /// Largest distance of the faces from that surface, in the file's units; a hundred-thousandth of the size without it
+    #[arg(long, value_name = "LENGTH", requires = "subdivide", value_parser = length)]
+    pub within: Option<f64>,
+}
+
+/// Schemes of subdivision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Smooth {
+    /// Any polygons, bicubic patches
+    CatmullClark,
+    /// Triangles, quartic patches
+    Loop,
 }
 
 /// Built-in views of `check`.
@@ -254,6 +284,10 @@ fn tolerance(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|t| t.is_finite() && *t >= 0.125)
         .ok_or_else(|| "wants a number of pixels, at least 0.125".into())
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    text.parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| "wants a length above 0".into())
 }
 
 fn at_least_one(text: &str) -> Result<usize, String> {

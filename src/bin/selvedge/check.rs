@@ -24,7 +24,7 @@ struct Verdict {
 
 /// Draws and judges each view.
 pub fn run(args: &CheckArgs) -> Result<Outcome> {
-    let import = session::open(&args.model)?;
+    let import = session::open(&args.model, &args.subdivide)?;
     let views = args.camera.views(args.views, &import)?;
     let mut session = Session::new(&args.frame, &import)?;
     let tracer = during("preparing the exact model", || Tracer::new(&import.model));

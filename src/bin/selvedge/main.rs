@@ -24,6 +24,7 @@ mod progress;
 mod render;
 mod series;
 mod session;
+mod subdivide;
 mod verdict;
 
 use args::{Cli, Command};
