@@ -31,6 +31,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("frame", &["abi", "buffers", "gpu", "passes", "scene"]),
     ("renderer", &["abi", "budget", "buffers", "frame", "gpu", "model", "passes", "picture", "scene"]),
     ("headless", &["gpu", "model", "picture", "renderer"]),
+    // for benchmarks and tests
+    ("rivals", &["math", "model", "spline", "trim"]),
 ];
 
 /// Modules that may name Vulkan's types.

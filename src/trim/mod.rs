@@ -36,6 +36,7 @@ mod winding;
 
 pub use classify::RectSide;
 pub use flatten::{chord_bend, polyline, segment_count};
+pub use piece::{MonotonePiece, monotone_pieces};
 pub use table::TrimTable;
 pub use winding::LoopIndex;
 
