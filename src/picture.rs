@@ -19,6 +19,47 @@ impl Default for FrameSettings {
     }
 }
 
+/// How pixels on trimmed patches are told from those that the loops cut away. All ways draw the same
+/// picture within [`FrameSettings::tolerance_px`]; see `ARCHITECTURE.md` for what each costs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TrimWay {
+    /// The u-intercept table: made anew for each view, one binary search a pixel.
+    Table,
+}
+
+impl TrimWay {
+    /// Every way.
+    pub const ALL: &'static [Self] = &[Self::Table];
+
+    /// As in command lines and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Table => "table",
+        }
+    }
+}
+
+impl std::str::FromStr for TrimWay {
+    type Err = UnknownTrimWay;
+
+    fn from_str(name: &str) -> Result<Self, UnknownTrimWay> {
+        Self::ALL.iter().copied().find(|way| way.name() == name).ok_or_else(|| UnknownTrimWay(name.to_owned()))
+    }
+}
+
+/// No way to trim is called so.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no way to trim is called `{0}`; there are: {names}", names = TrimWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
+pub struct UnknownTrimWay(String);
+
+/// What the caller decides about a loaded model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneSettings {
+    /// How to trim; `None` takes what suits the model.
+    pub trim: Option<TrimWay>,
+}
+
 /// Images wanted beside the colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[allow(missing_docs)]

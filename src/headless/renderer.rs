@@ -3,7 +3,7 @@
 use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
 use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
 use crate::model::{Camera, Model};
-use crate::picture::{FrameSettings, FrameStats, Outputs, Picture};
+use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
 use crate::renderer::{FrameInput, RenderError, Renderer, TargetFormats, Targets};
 use ash::vk;
 use bytemuck::Pod;
@@ -22,7 +22,7 @@ pub struct HeadlessRenderer {
     targets: ManuallyDrop<Option<TargetImages>>,
     device: ManuallyDrop<HeadlessDevice>,
     aovs: bool,
-    model: Option<Model>,
+    model: Option<(Model, SceneSettings)>,
 }
 
 /// Images of one size, and the buffers that they are copied to.
@@ -53,8 +53,16 @@ impl HeadlessRenderer {
     /// # Errors
     /// [`HeadlessError::Gpu`].
     pub fn upload(&mut self, model: &Model) -> Result<(), HeadlessError> {
-        self.model = Some(model.clone());
-        Ok(self.renderer.upload(model)?)
+        self.upload_with(model, SceneSettings::default())
+    }
+
+    /// As [`upload`](Self::upload), with settings that hold as long as the model.
+    ///
+    /// # Errors
+    /// [`HeadlessError::Gpu`].
+    pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), HeadlessError> {
+        self.model = Some((model.clone(), settings));
+        Ok(self.renderer.upload_with(model, settings)?)
     }
 
     /// Renders one picture and waits for it.
@@ -133,8 +141,8 @@ impl HeadlessRenderer {
     fn prepare(&mut self, size: (u32, u32), aovs: bool) -> Result<(), HeadlessError> {
         if aovs != self.aovs {
             let mut renderer = Renderer::on(self.device.device(), formats(aovs), 1)?;
-            let Some(model) = &self.model else { panic!("upload a model before rendering") };
-            renderer.upload(model)?;
+            let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
+            renderer.upload_with(model, *settings)?;
             *self.renderer = renderer;
             self.aovs = aovs;
             *self.targets = None;

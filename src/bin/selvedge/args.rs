@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
+use selvedge::picture::TrimWay;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -165,6 +166,9 @@ pub struct FrameArgs {
     /// Largest distance in pixels between a drawn boundary and the true one, at least 0.125
     #[arg(long, value_name = "PX", default_value_t = 0.5, value_parser = tolerance)]
     pub tolerance: f64,
+    /// How to trim: table (made for each view). Without it what suits the model
+    #[arg(long, value_name = "WAY")]
+    pub trim: Option<TrimWay>,
     /// Part of the name of the Vulkan device to use
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
