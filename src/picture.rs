@@ -26,6 +26,28 @@ impl Default for FrameSettings {
 pub enum TrimWay {
     /// The u-intercept table: made anew for each view, one binary search a pixel.
     Table,
+    /// One to compare with; never chosen, never met by an embedder.
+    #[cfg(feature = "rivals")]
+    Rival(Rival),
+}
+
+/// Other ways to trim, each with the number that its accuracy hangs on: see [`crate::rivals`].
+#[cfg(feature = "rivals")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Rival {
+    /// No test: what a frame costs before it is trimmed.
+    Untrimmed,
+    /// Monotone pieces, bisected in every pixel.
+    Bisect {
+        /// Most steps.
+        steps: u32,
+    },
+    /// A texture of one bit a texel for each face.
+    Texture {
+        /// Eighths of a texel to a pixel.
+        eighths: u32,
+    },
 }
 
 impl TrimWay {
@@ -36,6 +58,12 @@ impl TrimWay {
     pub fn name(self) -> &'static str {
         match self {
             Self::Table => "table",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Untrimmed) => "untrimmed",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Bisect { .. }) => "bisect",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Texture { .. }) => "texture",
         }
     }
 }

@@ -17,7 +17,7 @@ layout(scalar, binding = 6) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 7) writeonly buffer Places { TexturePlace places[]; };
 
 void main() {
-    uint placed = gl_GlobalInvocationID.x;
+    uint placed = gl_GlobalInvocationID.x + gl_GlobalInvocationID.z * gl_NumWorkGroups.x;
     if (placed >= placed_count) return;
     vec2 speed = texture_speed(face_speeds[2u * placed], face_speeds[2u * placed + 1u]);
     TextureSize size = texture_size(speed, texels_per_px);

@@ -47,7 +47,7 @@ void flip(TextureSize size, uint start, vec2 a, vec2 b) {
 }
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
+    uint item = gl_GlobalInvocationID.x + gl_GlobalInvocationID.z * gl_NumWorkGroups.x;
     if (item >= frame.curve_count) return;
     uint placed = curve_face_instance[item];
     FaceInstance fi = face_instances[placed];

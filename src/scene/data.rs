@@ -5,6 +5,8 @@ use super::mesh::Meshes;
 use super::solids::{SolidData, UndrawnSolid};
 use crate::abi;
 use crate::model::{Camera, Model, Projection};
+#[cfg(feature = "rivals")]
+use crate::picture::Rival;
 use crate::picture::{SceneSettings, TrimWay};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use rayon::prelude::*;
@@ -32,6 +34,9 @@ pub(crate) struct SceneData {
     pub has_plain: bool,
     /// Some patch needs a trim test.
     pub has_trimmed: bool,
+    /// Of the scene's faces, where they are bisected.
+    #[cfg(feature = "rivals")]
+    pub bisect: crate::rivals::bisect::Bisect,
     /// How faces would be trimmed.
     way: Option<TrimWay>,
     /// Part (relative to its centre) to model, per instance.
@@ -57,6 +62,10 @@ impl SceneData {
                 let faces: Vec<FaceData> =
                     part.faces.par_iter().map(|f| FaceData::new(f, origin, part.closed, way)).collect();
                 faces.into_iter().for_each(|f| data.push_face(f));
+                #[cfg(feature = "rivals")]
+                if let TrimWay::Rival(Rival::Bisect { steps }) = way {
+                    part.faces.iter().for_each(|f| data.bisect.push(f, steps));
+                }
             }
         }
         for instance in &model.instances {

@@ -24,4 +24,6 @@ mod upload;
 pub(crate) use data::{SceneData, focal_and_slant, view};
 pub(crate) use solids::SolidData;
 pub use solids::UndrawnSolid;
+#[cfg(feature = "rivals")]
+pub(crate) use upload::RivalScene;
 pub(crate) use upload::{MeshBuffers, Scene, Solids, TableScene, Trims};

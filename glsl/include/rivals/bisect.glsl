@@ -75,13 +75,13 @@ bool bisect_left(BisectPiece piece, vec2 p, uint steps) {
 
 bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
     BisectFace own = bisect_faces[fi.face];
-    // the number of bands that begin at or below the point
+    // the number of bands that begin below the point
     uint lo = 0u;
     uint hi = own.band_count == 0u ? 0u : own.band_count + 1u;
     uint ends = hi;
     while (lo < hi) {
         uint mid = (lo + hi) / 2u;
-        if (bisect_bands[own.first_band + mid].v <= uv.y) lo = mid + 1u;
+        if (bisect_bands[own.first_band + mid].v < uv.y) lo = mid + 1u;
         else hi = mid;
     }
     if (lo == 0u || lo == ends) return false;
