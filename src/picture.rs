@@ -135,6 +135,8 @@ pub struct FrameStats {
     pub sub_patches: u64,
     /// Scan lines of the trim table.
     pub trim_rows: u64,
+    /// Chords of trim curves that the trim table was made from.
+    pub trim_segments: u64,
     /// u-intercepts stored in the trim table.
     pub trim_intercepts: u64,
     /// Patches whose tessellation factor would have exceeded the largest split: the promise is not

@@ -306,6 +306,7 @@ impl Renderer {
             triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
             sub_patches: u64::from(c.plain) + u64::from(c.trimmed),
             trim_rows: u64::from(c.rows),
+            trim_segments: u64::from(c.segments),
             trim_intercepts: u64::from(c.intercepts),
             clamps: u64::from(c.clamps),
             retries: 0,
