@@ -205,7 +205,7 @@ impl TextureBuffers {
 /// The way draws textures.
 fn is_texture(way: TrimWay) -> bool {
     match way {
-        TrimWay::Table => false,
+        TrimWay::Table | TrimWay::Exact => false,
         #[cfg(feature = "rivals")]
         TrimWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
     }

@@ -33,6 +33,7 @@ use crate::scene::{MeshBuffers, Scene, SceneData};
 use solids::SolidPasses;
 use trim::{TrimParts, TrimPasses};
 
+mod edit;
 #[cfg(feature = "rivals")]
 mod rival;
 mod solids;

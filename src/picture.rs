@@ -26,6 +26,8 @@ impl Default for FrameSettings {
 pub enum TrimWay {
     /// The u-intercept table: made anew for each view, one binary search a pixel.
     Table,
+    /// The loops themselves, in bands and cells made once: a few monotone arcs a pixel.
+    Exact,
     /// One to compare with; never chosen, never met by an embedder.
     #[cfg(feature = "rivals")]
     Rival(Rival),
@@ -52,12 +54,13 @@ pub enum Rival {
 
 impl TrimWay {
     /// Every way.
-    pub const ALL: &'static [Self] = &[Self::Table];
+    pub const ALL: &'static [Self] = &[Self::Table, Self::Exact];
 
     /// As in command lines and tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Table => "table",
+            Self::Exact => "exact",
             #[cfg(feature = "rivals")]
             Self::Rival(Rival::Untrimmed) => "untrimmed",
             #[cfg(feature = "rivals")]
@@ -86,6 +89,9 @@ pub struct UnknownTrimWay(String);
 pub struct SceneSettings {
     /// How to trim; `None` takes what suits the model.
     pub trim: Option<TrimWay>,
+    /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover. The model is
+    /// trimmed by [`TrimWay::Table`] then, which is made anew for each frame in any case.
+    pub editable: bool,
 }
 
 /// Images wanted beside the colour.
@@ -144,6 +150,8 @@ pub struct FrameStats {
     pub clamps: u64,
     /// Times the frame was recorded again because a buffer was too small.
     pub retries: u32,
+    /// Bytes copied for edits of trim loops since the frame before.
+    pub edit_bytes: u64,
     /// Bytes per memory pool.
     pub pools: Vec<PoolBytes>,
     /// Device name.

@@ -33,6 +33,9 @@ pub struct TrimTest {
 /// The u-intercept table.
 pub static TRIM_TABLE: TrimTest =
     TrimTest { way: "table", visibility: VISIBILITY_TABLE_FRAG, heal: HEAL_TABLE_COMP, buffers: 4 };
+/// Arcs in bands and cells.
+pub static TRIM_EXACT: TrimTest =
+    TrimTest { way: "exact", visibility: VISIBILITY_EXACT_FRAG, heal: HEAL_EXACT_COMP, buffers: 6 };
 
 /// No test at all.
 #[cfg(feature = "rivals")]

@@ -41,8 +41,14 @@ const VULKAN: &[&str] = &["gpu", "scene", "passes", "buffers", "renderer", "head
 const UNSAFE: &[&str] = &["gpu", "renderer", "headless"];
 /// Files beside `gpu` and `headless` that may record barriers: the frame, and the one pass that has steps
 /// of its own.
-const BARRIERS: &[&str] =
-    &["src/frame.rs", "src/frame/solids.rs", "src/frame/rival.rs", "src/frame/table.rs", "src/passes/scan.rs"];
+const BARRIERS: &[&str] = &[
+    "src/frame.rs",
+    "src/frame/edit.rs",
+    "src/frame/rival.rs",
+    "src/frame/solids.rs",
+    "src/frame/table.rs",
+    "src/passes/scan.rs",
+];
 /// What a library leaves to its host.
 const HOSTS: &[&str] =
     &["println!", "print!(", "eprintln!", "eprint!(", "dbg!(", "std::env::", "process::exit", "process::abort"];

@@ -19,6 +19,15 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 }
 #endif
 
+#ifdef TRIM_BY_EXACT
+#define EXACT_BINDING TRIM_BINDING
+#include "exact.glsl"
+
+bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
+    return exact_winding(fi.face, uv) != 0;
+}
+#endif
+
 // Ways to compare with: src/rivals.
 #ifdef TRIM_BY_BISECT
 #include "rivals/bisect.glsl"

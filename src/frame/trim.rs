@@ -3,6 +3,7 @@
 //! ```text
 //!   way      scene buffers   buffers of the frame   passes before the draw     what the test reads
 //!   table    TableScene      TableBuffers           table.rs: density … sort   TableParts::test
+//!   exact    ExactScene      none                   none                       its buffers
 //! ```
 //!
 //! A scene uses one way; the others' passes, pipelines and buffers do not exist. Whatever the way, its
@@ -16,8 +17,8 @@ use crate::buffers::TrimBuffers;
 use crate::gpu::{Buffer, Device, GpuError};
 use crate::passes::heal;
 use crate::picture::TrimWay;
-use crate::scene::{SceneData, Trims};
-use crate::shaders::{TRIM_TABLE, TrimTest};
+use crate::scene::{ExactScene, SceneData, Trims};
+use crate::shaders::{TRIM_EXACT, TRIM_TABLE, TrimTest};
 
 /// The passes of the way that the scene uses, and `heal`.
 pub(super) struct TrimPasses {
@@ -27,6 +28,7 @@ pub(super) struct TrimPasses {
 
 enum Way {
     Table(Box<TablePasses>),
+    Exact,
     #[cfg(feature = "rivals")]
     Rival(RivalPasses),
 }
@@ -37,6 +39,7 @@ impl TrimPasses {
         let Some(way) = data.trim_way() else { return Ok(None) };
         let way = match way {
             TrimWay::Table => Way::Table(Box::new(TablePasses::new(device)?)),
+            TrimWay::Exact => Way::Exact,
             #[cfg(feature = "rivals")]
             TrimWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival)?),
         };
@@ -54,6 +57,7 @@ impl Way {
     fn test(&self) -> &'static TrimTest {
         match self {
             Self::Table(_) => &TRIM_TABLE,
+            Self::Exact => &TRIM_EXACT,
             #[cfg(feature = "rivals")]
             Self::Rival(passes) => passes.test(),
         }
@@ -69,6 +73,7 @@ pub(super) struct TrimParts<'a> {
 
 enum Parts<'a> {
     Table(TableParts<'a>),
+    Exact(&'a ExactScene),
     #[cfg(feature = "rivals")]
     Rival(RivalParts<'a>),
 }
@@ -86,8 +91,8 @@ impl<'a> Frame<'a> {
             (Way::Rival(passes), Trims::Rival(scene)) => {
                 Parts::Rival(RivalParts { passes, scene, buffers: buffers.texture.as_ref() })
             }
-            #[cfg(feature = "rivals")]
-            _ => unreachable!("scene and passes are of one way"),
+            (Way::Exact, Trims::Exact(scene)) => Parts::Exact(scene),
+            _ => unreachable!("passes and buffers are made for one way"),
         };
         Some(TrimParts { passes, buffers, way })
     }
@@ -98,6 +103,7 @@ impl<'a> TrimParts<'a> {
     pub(super) fn table(&self) -> Option<TableParts<'a>> {
         match self.way {
             Parts::Table(parts) => Some(parts),
+            Parts::Exact(_) => None,
             #[cfg(feature = "rivals")]
             Parts::Rival(_) => None,
         }
@@ -108,7 +114,7 @@ impl<'a> TrimParts<'a> {
     pub(super) fn rival(&self) -> Option<RivalParts<'a>> {
         match self.way {
             Parts::Rival(parts) => Some(parts),
-            Parts::Table(_) => None,
+            _ => None,
         }
     }
 
@@ -116,6 +122,7 @@ impl<'a> TrimParts<'a> {
     pub(super) fn test(&self) -> Vec<&'a Buffer> {
         match self.way {
             Parts::Table(parts) => parts.test(),
+            Parts::Exact(s) => vec![&s.faces, &s.bands, &s.cells, &s.entries, &s.arcs, &s.points],
             #[cfg(feature = "rivals")]
             Parts::Rival(parts) => parts.test(),
         }

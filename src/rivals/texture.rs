@@ -27,7 +27,7 @@ use crate::twin;
 /// The model cannot be drawn at all.
 pub fn wanted_bytes(model: &Model, camera: &Camera, eighths: u32) -> Result<f64, UndrawnSolid> {
     let way = TrimWay::Rival(Rival::Texture { eighths });
-    let data = SceneData::new(model, SceneSettings { trim: Some(way) })?;
+    let data = SceneData::new(model, SceneSettings { trim: Some(way), ..SceneSettings::default() })?;
     let (focal, slant) = focal_and_slant(camera);
     let frame = Frame {
         size: [camera.size.0 as f32, camera.size.1 as f32],

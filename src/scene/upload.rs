@@ -47,6 +47,7 @@ pub(crate) struct MeshBuffers {
 /// What the scene's way to trim needs.
 pub(crate) enum Trims {
     Table(TableScene),
+    Exact(ExactScene),
     #[cfg(feature = "rivals")]
     Rival(RivalScene),
 }
@@ -59,6 +60,16 @@ pub(crate) enum RivalScene {
     Bisect([Buffer; 6]),
     /// Curves and cells; texels to a pixel and the number of placed faces.
     Texture(TableScene, Buffer),
+}
+
+/// Arcs in bands and cells; see `glsl/include/exact.glsl`.
+pub(crate) struct ExactScene {
+    pub faces: Buffer,
+    pub bands: Buffer,
+    pub cells: Buffer,
+    pub entries: Buffer,
+    pub arcs: Buffer,
+    pub points: Buffer,
 }
 
 /// Trim curves and the cells that tell their density.
@@ -90,6 +101,14 @@ impl Scene {
                 Some(TrimWay::Table) => Some(Trims::Table(table_scene(&mut uploads, cmd, data)?)),
                 #[cfg(feature = "rivals")]
                 Some(TrimWay::Rival(rival)) => Some(Trims::Rival(rival_scene(&mut uploads, cmd, data, rival)?)),
+                Some(TrimWay::Exact) => Some(Trims::Exact(ExactScene {
+                    faces: persistent(&mut uploads, cmd, "trim faces", &data.exact.faces)?,
+                    bands: persistent(&mut uploads, cmd, "trim bands", &data.exact.bands)?,
+                    cells: persistent(&mut uploads, cmd, "trim band cells", &data.exact.cells)?,
+                    entries: persistent(&mut uploads, cmd, "trim entries", &data.exact.entries)?,
+                    arcs: persistent(&mut uploads, cmd, "trim arcs", &data.exact.arcs)?,
+                    points: persistent(&mut uploads, cmd, "trim arc points", &data.exact.points)?,
+                })),
             },
             solids: (!data.solids.leaves.is_empty())
                 .then(|| {

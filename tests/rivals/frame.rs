@@ -25,7 +25,7 @@ fn watched(model: &Model, trim: Option<TrimWay>) -> HeadlessRenderer {
     let options = HeadlessOptions { device: None, validation: true };
     let mut renderer =
         HeadlessRenderer::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"));
-    renderer.upload_with(model, SceneSettings { trim }).unwrap();
+    renderer.upload_with(model, SceneSettings { trim, ..SceneSettings::default() }).unwrap();
     renderer
 }
 

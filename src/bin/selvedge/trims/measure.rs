@@ -108,7 +108,7 @@ impl<'a> Bench<'a> {
     fn renderer(&self, model: &Model, trim: Option<TrimWay>) -> Result<HeadlessRenderer> {
         let options = HeadlessOptions { device: self.args.device.clone(), validation: false };
         let mut renderer = HeadlessRenderer::new(&options)?;
-        renderer.upload_with(model, SceneSettings { trim })?;
+        renderer.upload_with(model, SceneSettings { trim, ..SceneSettings::default() })?;
         Ok(renderer)
     }
 
