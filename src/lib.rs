@@ -30,6 +30,8 @@ pub mod passes;
 pub mod picture;
 pub mod reference;
 pub mod renderer;
+#[cfg(feature = "rivals")]
+pub mod rivals;
 mod scene;
 mod shaders;
 pub mod spline;

@@ -28,6 +28,28 @@ pub enum TrimWay {
     Table,
     /// The loops themselves, in bands and cells made once: a few monotone arcs a pixel.
     Exact,
+    /// One to compare with; never chosen, never met by an embedder.
+    #[cfg(feature = "rivals")]
+    Rival(Rival),
+}
+
+/// Other ways to trim, each with the number that its accuracy hangs on: see [`crate::rivals`].
+#[cfg(feature = "rivals")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Rival {
+    /// No test: what a frame costs before it is trimmed.
+    Untrimmed,
+    /// Monotone pieces, bisected in every pixel.
+    Bisect {
+        /// Most steps.
+        steps: u32,
+    },
+    /// A texture of one bit a texel for each face.
+    Texture {
+        /// Eighths of a texel to a pixel.
+        eighths: u32,
+    },
 }
 
 impl TrimWay {
@@ -39,6 +61,12 @@ impl TrimWay {
         match self {
             Self::Table => "table",
             Self::Exact => "exact",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Untrimmed) => "untrimmed",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Bisect { .. }) => "bisect",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Texture { .. }) => "texture",
         }
     }
 }
@@ -152,6 +180,8 @@ pub struct FrameStats {
     pub sub_patches: u64,
     /// Scan lines of the trim table.
     pub trim_rows: u64,
+    /// Chords of trim curves that the trim table was made from.
+    pub trim_segments: u64,
     /// u-intercepts stored in the trim table.
     pub trim_intercepts: u64,
     /// Patches whose tessellation factor would have exceeded the largest split: the promise is not

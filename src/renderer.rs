@@ -327,6 +327,7 @@ impl Renderer {
             triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
             sub_patches: u64::from(c.plain) + u64::from(c.trimmed),
             trim_rows: u64::from(c.rows),
+            trim_segments: u64::from(c.segments),
             trim_intercepts: u64::from(c.intercepts),
             clamps: u64::from(c.clamps),
             retries: 0,
@@ -341,6 +342,11 @@ impl Renderer {
     /// Names of the buffers, images and pipelines that exist for the loaded model.
     pub fn objects(&self) -> Vec<String> {
         self.device.objects()
+    }
+
+    /// The same with the bytes that each takes.
+    pub fn object_bytes(&self) -> Vec<(String, u64)> {
+        self.device.object_bytes()
     }
 
     /// Frees what the slot kept for the frame before, and makes the buffers large enough for what

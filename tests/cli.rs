@@ -25,10 +25,10 @@ fn help_names_every_command_and_the_exit_statuses() {
     let help = selvedge(&["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let help = text(&help.stdout);
-    for word in ["render", "info", "check", "bench", "convert", "Exit status: 0 done; 1 a picture breaks"] {
+    for word in ["render", "info", "check", "bench", "trims", "convert", "Exit status: 0 done; 1 a picture breaks"] {
         assert!(help.contains(word), "{word} in {help}");
     }
-    for command in ["render", "info", "check", "bench", "convert"] {
+    for command in ["render", "info", "check", "bench", "trims", "convert"] {
         let help = selvedge(&[command, "--help"]);
         assert_eq!(help.status.code(), Some(0));
         assert!(text(&help.stdout).contains("Exit status:"), "{command}");

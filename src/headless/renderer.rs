@@ -120,6 +120,11 @@ impl HeadlessRenderer {
         self.renderer.objects()
     }
 
+    /// The same with the bytes that each takes.
+    pub fn object_bytes(&self) -> Vec<(String, u64)> {
+        self.renderer.object_bytes()
+    }
+
     /// Frees everything and returns all validation messages, those about leaks included.
     pub fn shutdown(mut self) -> Vec<String> {
         // SAFETY: each is taken once, and `self` is forgotten; every frame was waited for.

@@ -7,6 +7,8 @@ use super::mesh::Meshes;
 use super::solids::{SolidData, UndrawnSolid};
 use crate::abi;
 use crate::model::{Camera, Model, Projection};
+#[cfg(feature = "rivals")]
+use crate::picture::Rival;
 use crate::picture::{SceneSettings, TrimWay};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use rayon::prelude::*;
@@ -37,6 +39,9 @@ pub(crate) struct SceneData {
     pub has_trimmed: bool,
     /// What edits of loops need, where they may come.
     pub edit: Option<EditScene>,
+    /// Of the scene's faces, where they are bisected.
+    #[cfg(feature = "rivals")]
+    pub bisect: crate::rivals::bisect::Bisect,
     /// How faces would be trimmed.
     way: Option<TrimWay>,
     /// Part (relative to its centre) to model, per instance.
@@ -67,6 +72,10 @@ impl SceneData {
                     .map(|f| FaceData::new(f, origin, part.closed, way, settings.editable))
                     .collect();
                 faces.into_iter().for_each(|f| data.push_face(f));
+                #[cfg(feature = "rivals")]
+                if let TrimWay::Rival(Rival::Bisect { steps }) = way {
+                    part.faces.iter().for_each(|f| data.bisect.push(f, steps));
+                }
             }
         }
         for instance in &model.instances {

@@ -30,4 +30,6 @@ pub(crate) use edit::{EditTarget, Write};
 pub(crate) use exact::ExactData;
 pub(crate) use solids::SolidData;
 pub use solids::UndrawnSolid;
+#[cfg(feature = "rivals")]
+pub(crate) use upload::RivalScene;
 pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Solids, TableScene, Trims};

@@ -1,5 +1,6 @@
 //! What the command line accepts, checked before anything is opened.
 
+use crate::trims::Way;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use selvedge::picture::{SolidWay, TrimWay};
@@ -38,6 +39,9 @@ pub enum Command {
     /// Measure time and memory per pass along a fixed camera path, next to the error of the same frames
     #[command(after_help = STATUSES)]
     Bench(BenchArgs),
+    /// Put the ways to trim side by side: time, memory and error over zoom, picture size and each way's accuracy
+    #[command(after_help = STATUSES)]
+    Trims(TrimsArgs),
     /// Write a model in another form, so that it is read once and opens fast; needs no GPU
     #[command(after_help = STATUSES)]
     Convert(ConvertArgs),
@@ -136,6 +140,45 @@ pub struct BenchArgs {
     #[arg(long)]
     pub edit: bool,
     /// Folder for bench.json and bench.csv
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct TrimsArgs {
+    /// Models beside the generated face: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    pub models: Vec<PathBuf>,
+    /// Holes along each side of the generated face; 0 leaves it out
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    pub holes: usize,
+    /// Ways to put side by side
+    #[arg(long, value_delimiter = ',', value_name = "WAYS", default_values_t = Way::all())]
+    pub ways: Vec<Way>,
+    /// Magnifications of the view of the whole model
+    #[arg(long, value_delimiter = ',', value_name = "TIMES", default_value = "1,10,100,1000", value_parser = zoom)]
+    pub zooms: Vec<f64>,
+    /// Pictures of the sweep over sizes
+    #[arg(long, value_delimiter = ',', value_name = "WxH", default_value = "400x400,800x800,1600x1600")]
+    pub sizes: Vec<Size>,
+    /// Picture of the other sweeps
+    #[arg(long, value_name = "WxH", default_value = "800x800")]
+    pub size: Size,
+    /// Magnification of the sweeps over sizes and accuracies
+    #[arg(long, value_name = "TIMES", default_value = "1", value_parser = zoom)]
+    pub zoom: f64,
+    /// Leave out the sweep over each way's own accuracy
+    #[arg(long)]
+    pub no_knobs: bool,
+    /// Frames of each measurement; the quickest counts, because others measure what else the machine does
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one)]
+    pub frames: usize,
+    /// Pixels to judge in each view beside those at which the face changes
+    #[arg(long, value_name = "N", default_value_t = 2_000, value_parser = at_least_one)]
+    pub samples: usize,
+    /// Part of the name of the Vulkan device to use
+    #[arg(long, value_name = "NAME")]
+    pub device: Option<String>,
+    /// Folder for trims.json, trims.csv and the plots
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
@@ -288,6 +331,12 @@ fn tolerance(text: &str) -> Result<f64, String> {
 
 fn length(text: &str) -> Result<f64, String> {
     text.parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| "wants a length above 0".into())
+}
+
+/// A magnification.
+fn zoom(text: &str) -> Result<f64, String> {
+    let good = text.parse::<f64>().ok().filter(|z| (1.0..=1e6).contains(z));
+    good.ok_or_else(|| "wants a magnification from 1 to 1000000".into())
 }
 
 fn at_least_one(text: &str) -> Result<usize, String> {

@@ -125,13 +125,7 @@ fn fitted(mut camera: Camera, bounds: Bounds) -> Result<Camera> {
 /// an edge.
 fn closer(model: &Model, mut camera: Camera) -> Camera {
     let depth = |p: &DVec3| (*p - camera.eye).dot(camera.axes().2);
-    let placed = model.instances.iter().flat_map(|instance| {
-        let part = &model.parts[instance.part];
-        let vertices = part.meshes.iter().flat_map(|m| m.positions().iter().copied());
-        let points = part.faces.iter().flat_map(boundary_points).chain(vertices);
-        points.map(|p| instance.transform.transform_point3(p))
-    });
-    let Some(detail) = placed.min_by(|a, b| depth(a).total_cmp(&depth(b))) else { return camera };
+    let Some(detail) = details(model).min_by(|a, b| depth(a).total_cmp(&depth(b))) else { return camera };
     let back = camera.eye - camera.target;
     camera.target = detail;
     match &mut camera.projection {
@@ -139,6 +133,16 @@ fn closer(model: &Model, mut camera: Camera) -> Camera {
         Projection::Orthographic { height } => (camera.eye, *height) = (detail + back, *height / CLOSER),
     }
     camera
+}
+
+/// Starts of trim curves and vertices of the placed parts.
+fn details(model: &Model) -> impl Iterator<Item = DVec3> + '_ {
+    model.instances.iter().flat_map(|instance| {
+        let part = &model.parts[instance.part];
+        let vertices = part.meshes.iter().flat_map(|m| m.positions().iter().copied());
+        let points = part.faces.iter().flat_map(boundary_points).chain(vertices);
+        points.map(|p| instance.transform.transform_point3(p))
+    })
 }
 
 /// Where the trim curves of a face start, in part coordinates; the corners of its domain if it has none.
@@ -150,6 +154,25 @@ fn boundary_points(face: &Face) -> Vec<DVec3> {
     }
     let starts = face.loops.iter().flat_map(|l| l.curves().map(|c| c.point(0.0)).collect::<Vec<_>>());
     starts.map(|uv| grid.point(uv.x, uv.y)).collect()
+}
+
+/// `zoom` times magnified: the eye stays, the angle narrows. From 1 on the picture's middle moves from the
+/// model's to the start of a trim curve: of an open shell to the one nearest to the model's middle, of a
+/// solid to the one nearest to the eye, which is certainly in sight.
+pub fn zoomed(model: &Model, size: (u32, u32), zoom: f64) -> Camera {
+    let bounds = model.bounds();
+    let mut camera = Camera::framing(bounds, FROM, DVec3::Z, 35f64.to_radians(), size);
+    let solid = model.parts.iter().any(|part| part.closed);
+    let from = if solid { camera.eye } else { bounds.centre() };
+    let nearest = |p: &DVec3| p.distance_squared(from);
+    if let Some(detail) = details(model).min_by(|a, b| nearest(a).total_cmp(&nearest(b))) {
+        camera.target = camera.target.lerp(detail, 1.0 - 1.0 / zoom);
+    }
+    if let Projection::Perspective { fov_y } = &mut camera.projection {
+        *fov_y = 2.0 * ((*fov_y * 0.5).tan() / zoom).atan();
+    }
+    camera.fit_depth(bounds);
+    camera
 }
 
 /// A camera as other programs read it.
@@ -202,6 +225,23 @@ mod tests {
     fn framing(words: &[&str]) -> Result<Camera> {
         let args = args(words);
         args.camera(BOX, args.pixels(&Import::default()))
+    }
+
+    #[test]
+    fn a_zoom_magnifies_by_its_number() {
+        let model = selvedge::rivals::many_holes(3);
+        let whole = zoomed(&model, (400, 400), 1.0);
+        for zoom in [10.0, 1000.0] {
+            let camera = zoomed(&model, (400, 400), zoom);
+            assert_eq!((camera.check(), camera.eye), (Ok(()), whole.eye));
+            let step = camera.axes().0 * 1e-4;
+            let pixels = |c: &Camera| {
+                let at = |p| c.project(p).expect("in front").0;
+                at(camera.target + step).distance(at(camera.target))
+            };
+            let times = pixels(&camera) / pixels(&whole);
+            assert!((times / zoom - 1.0).abs() < 0.05, "{times} instead of {zoom}"); // another direction, too
+        }
     }
 
     fn corners_inside(camera: &Camera) -> bool {
