@@ -82,7 +82,8 @@ mod table {
         let grid = (0..SIZE * SIZE).map(|k| DVec2::new(f64::from(k % SIZE) + 0.5, f64::from(k / SIZE) + 0.5));
         let grid = grid.map(|p| centre + (p - 0.5 * f64::from(SIZE)) * pixel);
         let rows = case.rows.iter().map(|&(u, v, _)| DVec2::new(u, v));
-        let seen = |p: &DVec2| (*p - centre).abs().max_element() < 0.5 / zoom && p.min(DVec2::ONE - *p).min_element() > 0.0;
+        let seen =
+            |p: &DVec2| (*p - centre).abs().max_element() < 0.5 / zoom && p.min(DVec2::ONE - *p).min_element() > 0.0;
         let far = |p: &DVec2| index.distance(*p, 1.0) > TOLERANCE_PX * pixel;
         let points: Vec<DVec2> = grid.chain(rows).filter(seen).filter(far).collect();
         for p in &points {
