@@ -58,8 +58,8 @@ pub struct PatchGrid {
     pub count_v: usize,
     /// `patches[j * count_u + i]`.
     pub patches: Vec<SurfacePatch>,
-    /// Where the patches begin along `u` and along `v`: side by side in memory, for [`PatchGrid::locate`].
-    starts: [Vec<f64>; 2],
+    /// Where the patches begin along `u`, then along `v`: side by side in memory, for [`PatchGrid::locate`].
+    starts: Vec<f64>,
 }
 
 impl Surface {
@@ -224,17 +224,16 @@ impl Surface {
 impl PatchGrid {
     /// Patches row by row, `count_u` in a row.
     pub(crate) fn new(count_u: usize, patches: Vec<SurfacePatch>) -> Self {
-        let starts = [
-            patches[..count_u].iter().map(|p| p.u.0).collect(),
-            patches.iter().step_by(count_u).map(|p| p.v.0).collect(),
-        ];
+        let starts_v = patches.iter().step_by(count_u).map(|p| p.v.0);
+        let starts = patches[..count_u].iter().map(|p| p.u.0).chain(starts_v).collect();
         Self { count_u, count_v: patches.len() / count_u, patches, starts }
     }
 
     /// The patch that holds `(u, v)`, clamped to the domain, and the local parameters.
     pub fn locate(&self, u: f64, v: f64) -> (&SurfacePatch, f64, f64) {
         let last = |starts: &[f64], x: f64| starts.partition_point(|start| *start <= x).max(1) - 1;
-        let (i, j) = (last(&self.starts[0], u), last(&self.starts[1], v));
+        let (along_u, along_v) = self.starts.split_at(self.count_u);
+        let (i, j) = (last(along_u, u), last(along_v, v));
         let p = &self.patches[j * self.count_u + i];
         let s = ((u - p.u.0) / (p.u.1 - p.u.0)).clamp(0.0, 1.0);
         let t = ((v - p.v.0) / (p.v.1 - p.v.0)).clamp(0.0, 1.0);
