@@ -8,6 +8,7 @@ mod accuracy;
 mod distance;
 mod errors;
 mod every_shape;
+mod hard_trims;
 mod meshes;
 mod objects;
 mod room;
@@ -17,3 +18,5 @@ mod shapes;
 mod solids;
 mod support;
 mod touching;
+#[path = "../shapes/trims.rs"]
+mod trims;

@@ -24,8 +24,8 @@ struct Verdict {
 
 /// Draws and judges each view.
 pub fn run(args: &CheckArgs) -> Result<Outcome> {
-    let import = session::open(&args.model)?;
-    let views = args.camera.views(args.views, &import.model)?;
+    let import = session::open(&args.model, &args.subdivide)?;
+    let views = args.camera.views(args.views, &import)?;
     let mut session = Session::new(&args.frame, &import)?;
     let tracer = during("preparing the exact model", || Tracer::new(&import.model));
     let tolerance_px = args.frame.tolerance;

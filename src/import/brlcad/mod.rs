@@ -87,7 +87,7 @@ pub(super) fn read(text: &str, name: &str) -> Result<Import, ImportError> {
     report.bodies = model.solids.len();
     let (warnings, counts) = Warnings::new(name).finish();
     report.warnings = counts;
-    Ok(Import { model, warnings, report })
+    Ok(Import { model, warnings, report, ..Import::default() })
 }
 
 /// An object that only what it is part of leads to, if there is one: nothing that is drawn would show it.
