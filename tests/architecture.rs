@@ -21,6 +21,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("budget", &[]),
     ("abi", &[]),
     ("twin", &["abi", "math", "spline", "trim", "model"]),
+    // for tests and measurements
+    ("trial", &["abi", "budget", "model", "scene", "spline", "twin"]),
+    ("rivals", &["model", "spline", "trial", "twin"]),
     // GPU: no geometry
     ("gpu", &[]),
     ("shaders", &[]),

@@ -14,6 +14,7 @@
 //! relative to the centre of their part, and the transform from there to the eye is composed in
 //! `f64` every frame.
 
+mod closeup;
 mod data;
 mod face;
 mod flatten;
@@ -21,7 +22,10 @@ mod mesh;
 mod solids;
 mod upload;
 
+pub use closeup::CloseUp;
 pub(crate) use data::{SceneData, focal_and_slant, view};
+#[cfg(any(test, feature = "rivals"))]
+pub(crate) use flatten::flattened;
 pub(crate) use solids::SolidData;
 pub use solids::UndrawnSolid;
 pub(crate) use upload::{MeshBuffers, Scene, Solids, Trims};

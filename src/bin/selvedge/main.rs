@@ -3,7 +3,7 @@
 //! ```text
 //!   render   model ─▶ picture and images      info    model ─▶ what the file holds
 //!   check    picture against exact rays       bench   time and memory beside the error
-//!   convert  model ─▶ the engine's own form
+//!   convert  model ─▶ the engine's own form   sweep   time against error, over many settings
 //!   export   model ─▶ STEP file
 //! ```
 //!
@@ -23,6 +23,7 @@ mod progress;
 mod render;
 mod series;
 mod session;
+mod sweep;
 mod verdict;
 
 use args::{Cli, Command};
@@ -65,6 +66,7 @@ fn main() -> ExitCode {
         Command::Export(args) => export::run(args),
         Command::Check(args) => check::run(args),
         Command::Bench(args) => bench::run(args),
+        Command::Sweep(args) => sweep::run(args),
         Command::Convert(args) => convert::run(args),
     };
     match result {

@@ -34,7 +34,8 @@ impl Session {
         let options = HeadlessOptions { device: args.device.clone(), validation: args.validation };
         let mut renderer = during("opening the device", || HeadlessRenderer::new(&options))?;
         during("uploading the model", || renderer.upload(&import.model))?;
-        let settings = FrameSettings { tolerance_px: args.tolerance, ..FrameSettings::default() };
+        let settings =
+            FrameSettings { tolerance_px: args.tolerance, levels: args.factors.0, ..FrameSettings::default() };
         Ok(Self { renderer, settings })
     }
 
