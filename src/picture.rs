@@ -31,6 +31,86 @@ impl Default for FrameSettings {
     }
 }
 
+/// How pixels on trimmed patches are told from those that the loops cut away. All ways draw the same
+/// picture within [`FrameSettings::tolerance_px`]; see `ARCHITECTURE.md` for what each costs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TrimWay {
+    /// The u-intercept table: made anew for each view, one binary search a pixel.
+    Table,
+}
+
+impl TrimWay {
+    /// Every way.
+    pub const ALL: &'static [Self] = &[Self::Table];
+
+    /// As in command lines and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Table => "table",
+        }
+    }
+}
+
+impl std::str::FromStr for TrimWay {
+    type Err = UnknownTrimWay;
+
+    fn from_str(name: &str) -> Result<Self, UnknownTrimWay> {
+        Self::ALL.iter().copied().find(|way| way.name() == name).ok_or_else(|| UnknownTrimWay(name.to_owned()))
+    }
+}
+
+/// No way to trim is called so.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no way to trim is called `{0}`; there are: {names}", names = TrimWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
+pub struct UnknownTrimWay(String);
+
+/// How Boolean solids are drawn. Both ways draw the same picture, bit for bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SolidWay {
+    /// One ray a pixel, followed from event to event until it enters the solid.
+    #[default]
+    Events,
+    /// The faces of each primitive, trimmed by the Blist of the others: constructive solid trimming.
+    Cst,
+}
+
+impl SolidWay {
+    /// Every way.
+    pub const ALL: &'static [Self] = &[Self::Events, Self::Cst];
+
+    /// As in command lines and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Events => "events",
+            Self::Cst => "cst",
+        }
+    }
+}
+
+impl std::str::FromStr for SolidWay {
+    type Err = UnknownSolidWay;
+
+    fn from_str(name: &str) -> Result<Self, UnknownSolidWay> {
+        Self::ALL.iter().copied().find(|way| way.name() == name).ok_or_else(|| UnknownSolidWay(name.to_owned()))
+    }
+}
+
+/// No way to draw Boolean solids is called so.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no way to draw solids is called `{0}`; there are: {names}", names = SolidWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
+pub struct UnknownSolidWay(String);
+
+/// What the caller decides about a loaded model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneSettings {
+    /// How to trim; `None` takes what suits the model.
+    pub trim: Option<TrimWay>,
+    /// How to draw Boolean solids.
+    pub solids: SolidWay,
+}
+
 /// Images wanted beside the colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[allow(missing_docs)]

@@ -23,7 +23,7 @@ use crate::gpu::{
 };
 use crate::model::{Camera, CameraError, Model, Projection};
 use crate::passes::resolve;
-use crate::picture::{FrameSettings, FrameStats, Levels, PassTime, PoolBytes};
+use crate::picture::{FrameSettings, FrameStats, Levels, PassTime, PoolBytes, SceneSettings};
 pub use crate::scene::{CloseUp, UndrawnSolid};
 use crate::scene::{Scene, SceneData, SolidData, focal_and_slant, view};
 use ash::vk;
@@ -189,7 +189,15 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before stays.
     pub fn upload(&mut self, model: &Model) -> Result<(), RenderError> {
-        let data = SceneData::new(model)?;
+        self.upload_with(model, SceneSettings::default())
+    }
+
+    /// As [`upload`](Self::upload), with settings that hold as long as the model.
+    ///
+    /// # Errors
+    /// As [`upload`](Self::upload).
+    pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), RenderError> {
+        let data = SceneData::new(model, settings)?;
         let counts = Counts::of(&data);
         counts.check()?;
         let formats =

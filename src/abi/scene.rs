@@ -32,6 +32,9 @@ pub const FACE_SAME_SENSE: u32 = 4;
 /// The face belongs to a closed part.
 pub const FACE_SOLID: u32 = 8;
 
+/// Some patch of the face meets a trim curve.
+pub const FACE_TRIMMED: u32 = 16;
+
 /// One Bézier patch.
 ///
 /// ```text

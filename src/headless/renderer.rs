@@ -3,7 +3,7 @@
 use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
 use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
 use crate::model::{Camera, Model};
-use crate::picture::{FrameSettings, FrameStats, Outputs, Picture};
+use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
 use crate::renderer::{CloseUp, FrameInput, RenderError, Renderer, TargetFormats, Targets};
 use ash::vk;
 use bytemuck::Pod;
@@ -22,7 +22,7 @@ pub struct HeadlessRenderer {
     targets: ManuallyDrop<Option<TargetImages>>,
     device: ManuallyDrop<HeadlessDevice>,
     aovs: bool,
-    model: Option<Model>,
+    model: Option<(Model, SceneSettings)>,
     close_up: CloseUp,
     /// The renderer holds what one view saw close up, not the model.
     close: bool,
@@ -58,10 +58,18 @@ impl HeadlessRenderer {
     /// # Errors
     /// [`HeadlessError::Gpu`].
     pub fn upload(&mut self, model: &Model) -> Result<(), HeadlessError> {
-        self.model = Some(model.clone());
+        self.upload_with(model, SceneSettings::default())
+    }
+
+    /// As [`upload`](Self::upload), with settings that hold as long as the model.
+    ///
+    /// # Errors
+    /// [`HeadlessError::Gpu`].
+    pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), HeadlessError> {
+        self.model = Some((model.clone(), settings));
         self.close_up = CloseUp::new(model);
         self.close = false;
-        Ok(self.renderer.upload(model)?)
+        Ok(self.renderer.upload_with(model, settings)?)
     }
 
     /// Renders one picture and waits for it.
@@ -141,8 +149,8 @@ impl HeadlessRenderer {
     fn prepare(&mut self, size: (u32, u32), aovs: bool) -> Result<(), HeadlessError> {
         if aovs != self.aovs {
             let mut renderer = Renderer::on(self.device.device(), formats(aovs), 1)?;
-            let Some(model) = &self.model else { panic!("upload a model before rendering") };
-            renderer.upload(model)?;
+            let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
+            renderer.upload_with(model, *settings)?;
             *self.renderer = renderer;
             self.aovs = aovs;
             self.close = false;
@@ -157,10 +165,10 @@ impl HeadlessRenderer {
 
     /// Has the renderer hold what resolves this view: the model, or what is seen of it close up.
     fn approach(&mut self, camera: &Camera) -> Result<(), HeadlessError> {
-        let Some(model) = &self.model else { panic!("upload a model before rendering") };
+        let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
         let near = self.close_up.of(model, camera);
         if near.is_some() || self.close {
-            self.renderer.upload(near.as_ref().unwrap_or(model))?;
+            self.renderer.upload_with(near.as_ref().unwrap_or(model), *settings)?;
         }
         self.close = near.is_some();
         Ok(())

@@ -5,6 +5,7 @@ use super::mesh::Meshes;
 use super::solids::{SolidData, UndrawnSolid};
 use crate::abi;
 use crate::model::{Camera, Model, Projection};
+use crate::picture::{SceneSettings, TrimWay};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use rayon::prelude::*;
 
@@ -29,8 +30,10 @@ pub(crate) struct SceneData {
     pub has_rational: bool,
     /// Some patch is drawn without a trim test.
     pub has_plain: bool,
-    /// Some patch needs the trim table.
+    /// Some patch needs a trim test.
     pub has_trimmed: bool,
+    /// How faces would be trimmed.
+    way: Option<TrimWay>,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
     /// Boolean solids.
@@ -38,8 +41,10 @@ pub(crate) struct SceneData {
 }
 
 impl SceneData {
-    pub(crate) fn new(model: &Model) -> Result<Self, UndrawnSolid> {
-        let mut data = Self { solids: SolidData::new(&model.solids)?, ..Self::default() };
+    pub(crate) fn new(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
+        let way = settings.trim.unwrap_or(TrimWay::Table);
+        let mut data =
+            Self { solids: SolidData::new(&model.solids, settings.solids)?, way: Some(way), ..Self::default() };
         let mut used = vec![false; model.parts.len()];
         model.instances.iter().for_each(|i| used[i.part] = true);
         let mut first_faces = Vec::with_capacity(model.parts.len());
@@ -51,7 +56,7 @@ impl SceneData {
             origins.push(origin);
             if used {
                 let faces: Vec<FaceData> =
-                    part.faces.par_iter().map(|f| FaceData::new(f, origin, part.closed)).collect();
+                    part.faces.par_iter().map(|f| FaceData::new(f, origin, part.closed, way)).collect();
                 faces.into_iter().for_each(|f| data.push_face(f));
             }
         }
@@ -62,6 +67,11 @@ impl SceneData {
         }
         data.meshes = Meshes::new(model, &origins);
         Ok(data)
+    }
+
+    /// How faces are trimmed; `None` when no patch is.
+    pub(crate) fn trim_way(&self) -> Option<TrimWay> {
+        self.way.filter(|_| self.has_trimmed)
     }
 
     /// Some mesh is placed.

@@ -4,6 +4,7 @@ use super::flatten::flattened;
 use crate::abi;
 use crate::abi::Side;
 use crate::model::{Face, TrimLoop};
+use crate::picture::TrimWay;
 use crate::spline::{Bezier, Control, Patch, PatchGrid, SurfacePatch};
 use crate::trim::{LoopIndex, RectSide, chord_bend};
 use glam::{DVec2, DVec3};
@@ -38,12 +39,13 @@ impl Domain {
 }
 
 impl FaceData {
-    pub(super) fn new(face: &Face, origin: DVec3, solid: bool) -> Self {
+    pub(super) fn new(face: &Face, origin: DVec3, solid: bool, way: TrimWay) -> Self {
         let grid = flattened(face.surface.patches());
         let ((u0, u1), (v0, v1)) = face.surface.domain();
         let domain = Domain { origin: DVec2::new(u0, v0), size: DVec2::new(u1 - u0, v1 - v0) };
         let sides = sides(&grid, &face.loops);
         let trimmed = sides.contains(&Side::Boundary);
+        let table = trimmed && way == TrimWay::Table;
         let mut data = Self {
             face: abi::Face {
                 domain: [u0 as f32, v0 as f32, (u1 - u0) as f32, (v1 - v0) as f32],
@@ -51,7 +53,7 @@ impl FaceData {
                 count_v: grid.count_v as u32,
                 id: face.id,
                 colour: face.colour.map_or(DEFAULT_COLOUR, pack_colour),
-                strip_count: if trimmed { strip_count(grid.count_v) } else { 0 },
+                strip_count: if table { strip_count(grid.count_v) } else { 0 },
                 ..Default::default()
             },
             patches: Vec::new(),
@@ -62,16 +64,19 @@ impl FaceData {
             rational: !face.surface.is_polynomial(),
         };
         let flag = |on: bool, bit: u32| if on { bit } else { 0 };
-        data.face.flags = flag(face.same_sense, abi::FACE_SAME_SENSE) | flag(solid, abi::FACE_SOLID);
+        data.face.flags = flag(face.same_sense, abi::FACE_SAME_SENSE)
+            | flag(solid, abi::FACE_SOLID)
+            | flag(trimmed, abi::FACE_TRIMMED);
         for (n, (patch, side)) in grid.patches.iter().zip(&sides).enumerate() {
             data.push_patch(&grid, n, patch, *side, origin, &domain);
         }
-        if trimmed {
+        if table {
             for (patch, _) in grid.patches.iter().zip(&sides).filter(|(_, side)| **side == Side::Boundary) {
                 data.push_cells(patch, origin, &domain);
             }
             face.loops.iter().for_each(|l| data.push_loop(l, &domain));
-        } else {
+        }
+        if !trimmed {
             data.close_seams(grid.count_u, grid.count_v);
         }
         data

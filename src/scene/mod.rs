@@ -28,4 +28,4 @@ pub(crate) use data::{SceneData, focal_and_slant, view};
 pub(crate) use flatten::flattened;
 pub(crate) use solids::SolidData;
 pub use solids::UndrawnSolid;
-pub(crate) use upload::{MeshBuffers, Scene, Solids, Trims};
+pub(crate) use upload::{MeshBuffers, Scene, Solids, TableScene, Trims};

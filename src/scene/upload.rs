@@ -2,6 +2,7 @@
 
 use super::SceneData;
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texels, Uploads};
+use crate::picture::TrimWay;
 use ash::vk;
 use bytemuck::Pod;
 use std::ops::Range;
@@ -28,6 +29,8 @@ pub(crate) struct Solids {
     pub leaves: Buffer,
     pub leaf_surfaces: Buffer,
     pub surfaces: Buffer,
+    /// The leaves as they are drawn, and how many; only where each is drawn by itself.
+    pub order: Option<(Buffer, u32)>,
 }
 
 /// Triangles, where they are placed, and the draws that cover them.
@@ -41,8 +44,13 @@ pub(crate) struct MeshBuffers {
     pub draws: Vec<(Range<u32>, Range<u32>)>,
 }
 
+/// What the scene's way to trim needs.
+pub(crate) enum Trims {
+    Table(TableScene),
+}
+
 /// Trim curves and the cells that tell their density.
-pub(crate) struct Trims {
+pub(crate) struct TableScene {
     pub cells: Buffer,
     pub cell_items: Buffer,
     pub curves: Buffer,
@@ -65,24 +73,26 @@ impl Scene {
             face_instances: persistent(&mut uploads, cmd, "face instances", &data.face_instances)?,
             instances: persistent(&mut uploads, cmd, "instances", &data.instances)?,
             items: persistent(&mut uploads, cmd, "items", &data.items)?,
-            trims: data
-                .has_trimmed
-                .then(|| {
-                    Ok(Trims {
-                        cells: persistent(&mut uploads, cmd, "trim cells", &data.cells)?,
-                        cell_items: persistent(&mut uploads, cmd, "trim cell items", &data.cell_items)?,
-                        curves: persistent(&mut uploads, cmd, "trim curves", &data.curves)?,
-                        curve_points: persistent(&mut uploads, cmd, "trim curve points", &data.curve_points)?,
-                        curve_items: persistent(&mut uploads, cmd, "trim curve items", &data.curve_items)?,
-                    })
-                })
-                .transpose()?,
+            trims: match data.trim_way() {
+                None => None,
+                Some(TrimWay::Table) => Some(Trims::Table(TableScene {
+                    cells: persistent(&mut uploads, cmd, "trim cells", &data.cells)?,
+                    cell_items: persistent(&mut uploads, cmd, "trim cell items", &data.cell_items)?,
+                    curves: persistent(&mut uploads, cmd, "trim curves", &data.curves)?,
+                    curve_points: persistent(&mut uploads, cmd, "trim curve points", &data.curve_points)?,
+                    curve_items: persistent(&mut uploads, cmd, "trim curve items", &data.curve_items)?,
+                })),
+            },
             solids: (!data.solids.leaves.is_empty())
                 .then(|| {
                     Ok(Solids {
                         leaves: persistent(&mut uploads, cmd, "solid leaves", &data.solids.leaves)?,
                         leaf_surfaces: persistent(&mut uploads, cmd, "solid sides", &data.solids.leaf_surfaces)?,
                         surfaces: persistent(&mut uploads, cmd, "solid surfaces", &data.solids.surfaces)?,
+                        order: (!data.solids.order.is_empty())
+                            .then(|| persistent(&mut uploads, cmd, "solid order", &data.solids.order))
+                            .transpose()?
+                            .map(|order| (order, data.solids.order.len() as u32)),
                     })
                 })
                 .transpose()?,

@@ -2,7 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
-use selvedge::picture::Levels;
+use selvedge::picture::{Levels, SolidWay, TrimWay};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -216,6 +216,12 @@ pub struct FrameArgs {
     /// not
     #[arg(long, value_name = "bound|N", default_value = "bound")]
     pub factors: Factors,
+    /// How to trim: table (made for each view). Without it what suits the model
+    #[arg(long, value_name = "WAY")]
+    pub trim: Option<TrimWay>,
+    /// How to draw Boolean solids: events (a ray a pixel) or cst (each primitive, trimmed by the others)
+    #[arg(long, value_name = "WAY", default_value = "events")]
+    pub solids: SolidWay,
     /// Part of the name of the Vulkan device to use
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,

@@ -7,7 +7,7 @@ use anyhow::Result;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::import::{self, Import};
 use selvedge::model::Camera;
-use selvedge::picture::{FrameSettings, Outputs, Picture};
+use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
 use std::path::Path;
 use std::time::Instant;
 
@@ -32,8 +32,9 @@ impl Session {
     /// Opens the device and hands it the model.
     pub fn new(args: &FrameArgs, import: &Import) -> Result<Self> {
         let options = HeadlessOptions { device: args.device.clone(), validation: args.validation };
+        let scene = SceneSettings { trim: args.trim, solids: args.solids };
         let mut renderer = during("opening the device", || HeadlessRenderer::new(&options))?;
-        during("uploading the model", || renderer.upload(&import.model))?;
+        during("uploading the model", || renderer.upload_with(&import.model, scene))?;
         let settings =
             FrameSettings { tolerance_px: args.tolerance, levels: args.factors.0, ..FrameSettings::default() };
         Ok(Self { renderer, settings })
