@@ -33,6 +33,16 @@ pub(crate) struct Kind {
     pub tolerances: &'static [f64],
 }
 
+/// What is linear between the vertices of a triangle.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Emit {
+    /// The point in space, as the engine has it.
+    Point,
+    /// The homogeneous point, its weight not divided out: another triangulation of rational patches, whose vertices are
+    /// the same.
+    Homogeneous,
+}
+
 /// A patch seen by a camera, and what pass `bound` makes of it.
 pub(crate) struct Trial {
     pub patch: Patch,
@@ -105,33 +115,44 @@ impl Trial {
         self.tau.contains(&(MOST_SEGMENTS as usize))
     }
 
-    /// Homogeneous pixels `(X, Y, D, W)` of `S`, unit weight, at the lattice of `cells` cells from `first`.
-    fn lattice(&self, tau: [usize; 2], first: [usize; 2], cells: [usize; 2], fineness: usize) -> Vec<Vec<DVec4>> {
+    /// Homogeneous pixels of `S`, with how far behind the near plane as third coordinate, at the lattice of `cells` cells from `first`.
+    fn lattice(
+        &self,
+        tau: [usize; 2],
+        first: [usize; 2],
+        cells: [usize; 2],
+        fineness: usize,
+        emit: Emit,
+    ) -> Vec<Vec<DVec4>> {
         let patch = &self.patch;
         let at = |axis: usize, i: usize| (first[axis] * fineness + i) as f64 / (tau[axis] * fineness) as f64;
         let rows: Vec<_> = (0..=patch.degree_v).map(|j| Bezier { points: patch.row(j).to_vec() }).collect();
         let column = |i: usize| {
             let across = Bezier { points: rows.iter().map(|row| row.homogeneous(at(0, i))).collect() };
-            let point = |j: usize| self.to_pixels * across.homogeneous(at(1, j)).point().extend(1.0);
+            let point = |j: usize| {
+                let p = across.homogeneous(at(1, j));
+                let p = if emit == Emit::Point { p.point().extend(1.0) } else { p };
+                let q = self.to_pixels * p;
+                DVec4::new(q.x, q.y, q.z - f64::from(self.frame.near) * p.w, q.w)
+            };
             (0..=cells[1] * fineness).map(point).collect()
         };
         (0..=cells[0] * fineness).map(column).collect()
     }
 
-    /// In the picture, between the near and the far plane.
+    /// In the picture, behind the near plane; nothing is behind the far one.
     fn seen(&self, q: DVec4) -> bool {
         let frame = &self.frame;
         let inside = |x: f64, size: f32| (0.0..=f64::from(size) * q.w).contains(&x);
-        let depth = f64::from(frame.near)..=f64::from(frame.far);
-        q.w > 0.0 && inside(q.x, frame.size[0]) && inside(q.y, frame.size[1]) && depth.contains(&q.z)
+        q.w > 0.0 && q.z >= 0.0 && inside(q.x, frame.size[0]) && inside(q.y, frame.size[1])
     }
 
     /// Compares the triangulation of `tau` segments with the surface, at `fineness` intervals along a side of a cell.
-    pub(crate) fn measure(&self, tau: [usize; 2], fineness: usize) -> Deviation {
+    pub(crate) fn measure(&self, tau: [usize; 2], fineness: usize, emit: Emit) -> Deviation {
         let r = &mut Random::new(tau[0] as u64);
         let cells = tau.map(|t| t.min(WINDOW));
         let first = [0, 1].map(|a| r.integer(0, (tau[a] - cells[a]) as u32) as usize);
-        let s = self.lattice(tau, first, cells, fineness);
+        let s = self.lattice(tau, first, cells, fineness, emit);
         let mut most = Deviation { whole: cells == tau, ..Default::default() };
         for (i, j) in (0..cells[0]).flat_map(|i| (0..cells[1]).map(move |j| (i * fineness, j * fineness))) {
             let corners = [s[i][j], s[i + fineness][j], s[i][j + fineness], s[i + fineness][j + fineness]];
@@ -148,6 +169,19 @@ impl Trial {
             }
         }
         most
+    }
+
+    /// The smallest factors in the ratio of `tau`, which keep the budget, that do so too.
+    pub(crate) fn smallest(&self, tau: [usize; 2], fineness: usize, emit: Emit) -> [usize; 2] {
+        let most = tau[0].max(tau[1]);
+        let scaled = |part: usize| tau.map(|t| (t * part).div_ceil(most));
+        let (mut low, mut high) = (0, most); // `high` suffices
+        while high - low > 1 {
+            let middle = (low + high) / 2;
+            let kept = self.measure(scaled(middle), fineness, emit).px <= self.allowed();
+            if kept { high = middle } else { low = middle }
+        }
+        scaled(high)
     }
 
     /// The deviation allowed; across the near plane, with the factor that the derivation of pass `bound` states.

@@ -128,13 +128,13 @@ fn the_eye_inside_the_hull() {
 
 #[test]
 fn weights_of_a_thousand_to_one() {
-    for weights in [[1.0, 1e3, 1.0, 1e-3], [1e-3, 1.0, 1e3, 1.0]] {
+    for weights in [[1.0, 1e3, 1.0], [1.0, 1e-3, 1.0]] {
         let point = |i: usize, j: usize| {
-            let p = DVec3::new(i as f64, j as f64, ((i * 7 + j * 5) % 4) as f64 * 0.5);
-            DVec4::from_point(p, weights[(i + j) % 4])
+            let p = DVec3::new(i as f64 * 1.5, j as f64 * 1.5, ((i * 7 + j * 5) % 4) as f64 * 0.5);
+            DVec4::from_point(p, weights[i] * if j == 1 { 0.5 } else { 1.0 })
         };
         let picture =
-            draw(&face(bezier(3, 3, point)), &view(DVec3::new(1.0, -3.0, 4.0), DVec3::new(1.5, 1.5, 0.5), 0.1));
+            draw(&face(bezier(2, 2, point)), &view(DVec3::new(1.0, -3.0, 4.0), DVec3::new(1.5, 1.5, 0.5), 0.1));
         assert!(covered(&picture) > 1000);
     }
 }
@@ -188,24 +188,24 @@ fn no_background_within_closed_surfaces() {
     }
 }
 
-/// A hundred by hundred patches within a few pixels, and placed a hundred times: most are left out, and no pixel
+/// Thirty by thirty patches within a few pixels, and placed a hundred times: most are left out, and no pixel
 /// is wrong.
 #[test]
 fn many_patches_below_a_pixel() {
-    let n = 100;
+    let n = 30;
     let knots: Vec<f64> = [0.0, 0.0].into_iter().chain((1..n).flat_map(|i| [f64::from(i); 2])).collect();
     let knots = [vec![0.0], knots, vec![f64::from(n); 3]].concat();
     let count = knots.len() - 3;
     let point = |i: usize, j: usize| DVec4::new(i as f64, j as f64, ((i * 5 + j * 3) % 7) as f64 * 0.01, 1.0);
     let net = (0..count).flat_map(|j| (0..count).map(move |i| (i, j))).map(|(i, j)| point(i, j)).collect();
     let mut model = face(Surface::new((2, 2), knots.clone(), knots, net).unwrap());
-    let at = |k: i32| DVec3::new(f64::from(k % 10) * 260.0, f64::from(k / 10) * 260.0, 0.0);
+    let at = |k: i32| DVec3::new(f64::from(k % 10) * 80.0, f64::from(k / 10) * 80.0, 0.0);
     let placed = |k| Instance { transform: DAffine3::from_translation(at(k)), ..model.instances[0].clone() };
     model.instances = (0..100).map(placed).collect();
-    let mut camera = view(DVec3::new(1300.0, -2500.0, 2500.0), DVec3::new(1300.0, 1300.0, 0.0), 10.0);
+    let mut camera = view(DVec3::new(400.0, -500.0, 800.0), DVec3::new(400.0, 400.0, 0.0), 10.0);
     camera.depth_range.1 = 1e5;
     let picture = draw(&model, &camera);
-    assert_eq!(picture.stats.patches, 1_000_000);
-    assert!(picture.stats.sub_patches < 200_000, "{} are drawn", picture.stats.sub_patches);
-    assert!(covered(&picture) > 3000);
+    assert_eq!(picture.stats.patches, 90_000);
+    assert!(picture.stats.sub_patches < 40_000, "{} are drawn", picture.stats.sub_patches);
+    assert!(covered(&picture) > 1000);
 }

@@ -16,6 +16,7 @@
 //!   M_uu = sup |L_uu| <= n (n-1) max |Δ²_u L|     M_uv <= n k max |Δ_u Δ_v L|     M_vv <= k (k-1) max |Δ²_v L|
 //! ```
 //!
+//! where the homogeneous position is what is linear between vertices, its weight not divided out;
 //! and `M` is convex in `x`, so the ends of the patch's range within the picture suffice. Through the near plane, with
 //! `K` the larger `M(L)` of the ends, `(K / ε + M(W)) / (8 near)` takes the place of `M / (8 ε W_min)`.
 //!
@@ -29,7 +30,7 @@ pub use measure::{Ways, of_model, of_random};
 
 use super::slefe::{Enclosure, MOST_DEGREE, Slefe};
 use crate::spline::{Control, Patch};
-use crate::trial::Trial;
+use crate::trial::{Emit, Trial};
 use crate::twin::factor::factors;
 use glam::{DVec2, DVec4};
 
@@ -61,6 +62,14 @@ pub enum Way {
 const MOST: f64 = 4096.0;
 
 impl Way {
+    /// What must be linear between vertices for the way's bound to hold; the others take what the engine does.
+    pub(crate) fn emits(self) -> Emit {
+        match self {
+            Self::Homogeneous { .. } | Self::Corrected { .. } => Emit::Homogeneous,
+            Self::Bound | Self::Ipass { .. } | Self::Fixed(_) => Emit::Point,
+        }
+    }
+
     /// Segments along `u` and `v`; `None` where the way has no answer, or one above 4096.
     pub(crate) fn factors(self, trial: &Trial) -> Option<[usize; 2]> {
         let asked = match self {

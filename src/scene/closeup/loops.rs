@@ -27,8 +27,8 @@ pub(super) fn clipped(trim_loop: &TrimLoop, lo: DVec2, hi: DVec2) -> Option<Trim
     if clip.curves.is_empty() {
         return None;
     }
-    // both ends of a joint were moved alike, but for rounding
-    TrimLoop::new(clip.curves, (hi - lo) * 1e-6).ok()
+    // both ends of a joint were moved alike, but for rounding; the whole loop is right too, only less exact
+    Some(TrimLoop::new(clip.curves, (hi - lo) * 1e-6).unwrap_or_else(|_| trim_loop.clone()))
 }
 
 struct Clip {

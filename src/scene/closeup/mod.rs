@@ -26,9 +26,10 @@ use crate::spline::{Patch, PatchGrid};
 use crate::trim::{LoopIndex, RectSide};
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
-/// A part that spans more pixels than this is cut: rounding of its points, some 4 units of 2⁻²⁴ of the span, then
-/// reaches 1/32 pixel, about what the tessellation may be off by.
-const MOST_PX: f64 = 131_072.0;
+/// A part of half a diagonal of more pixels than this is cut. Rounding of its points, some 4 units of 2⁻²⁴, is then
+/// 1/128 pixel, a fifth of what the tessellation may be off by; and a face's 8 v-strips need half of the scan lines that
+/// they can have.
+const MOST_PX: f64 = 32_768.0;
 /// Windows are this large at most: (u, v) within one is stored with 2⁻¹⁶, from where Newton's method starts.
 const WINDOW_PX: f64 = 8_192.0;
 /// Of a window's width, on each side.
@@ -227,7 +228,8 @@ fn halve(patch: &Patch, window: Window, sight: &Sight, depth: u32, windows: &mut
     halve(&b, high, sight, depth - 1, windows);
 }
 
-/// The face over a window and its margin; `None` where it is trimmed away, or so small that numbers end.
+/// The face over a window and its margin, `None` where it is trimmed away; all of it where the window is so small that
+/// knots no longer differ.
 fn window_face(face: &Face, grid: &PatchGrid, index: &LoopIndex, window: Window) -> Option<Face> {
     let ((u0, u1), (v0, v1)) = face.surface.domain();
     let wider = |(a, b): (f64, f64), lo: f64, hi: f64| {
@@ -242,8 +244,10 @@ fn window_face(face: &Face, grid: &PatchGrid, index: &LoopIndex, window: Window)
         RectSide::Inside => Vec::new(),
         RectSide::Boundary => face.loops.iter().filter_map(|l| loops::clipped(l, lo, hi)).collect(),
     };
-    let surface = grid.within(face.surface.degrees(), u, v).ok()?;
-    Some(Face { surface, loops, ..face.clone() })
+    Some(match grid.within(face.surface.degrees(), u, v) {
+        Ok(surface) => Face { surface, loops, ..face.clone() },
+        Err(_) => face.clone(),
+    })
 }
 
 #[cfg(test)]

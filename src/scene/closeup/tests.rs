@@ -105,7 +105,8 @@ fn windows_cover_what_is_seen() {
                 let off = DVec2::new(r.range(-1.0, 1.0), r.range(-1.0, 1.0)) * distance;
                 let p = (uv + off * 0.1).clamp(DVec2::ZERO, DVec2::ONE);
                 let point = face.surface.jet(p.x, p.y).point;
-                let (pixel, _) = camera.project(model.instances[0].transform.transform_point3(point)).unwrap();
+                let placed = model.instances[0].transform.transform_point3(point);
+                let Some((pixel, _)) = camera.project(placed) else { continue };
                 if pixel.clamp(DVec2::ZERO, DVec2::new(800.0, 600.0)) != pixel {
                     continue;
                 }
