@@ -12,6 +12,8 @@ use crate::abi::{BLOCK, Counters, Factors, Rect, SubPatch, TILE, TileLeaf};
 use crate::gpu::{Buffer, Device, GpuError, Image, ImageInfo, Pool};
 use crate::passes::scan;
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
+#[cfg(feature = "rivals")]
+use crate::picture::Rival;
 use crate::picture::TrimWay;
 use crate::scene::SceneData;
 use ash::vk;
@@ -109,11 +111,12 @@ impl Capacities {
     pub(crate) fn first(counts: Counts) -> Self {
         let trimmed = u32::from(counts.trim.is_some());
         let table = u32::from(counts.trim == Some(TrimWay::Table));
+        let counted = table.max(u32::from(counts.trim.is_some_and(is_texture)));
         Self {
             sub_patches: counts.items.saturating_add(256),
             draws: 64,
             rows: table * (1 << 16).max(2 * counts.strips).min(MOST_ROWS),
-            intercepts: table * (1 << 18).max(4 * counts.strips),
+            intercepts: counted * (1 << 18).max(4 * counts.strips),
             doubts: trimmed * (1 << 14),
             block_leaves: counts.leaves.saturating_mul(4),
             tile_leaves: if counts.leaves > 0 { counts.leaves.saturating_mul(16).max(1 << 14) } else { 0 },
@@ -175,6 +178,37 @@ pub(crate) struct TrimBuffers {
     pub heal_dispatch: Buffer,
     /// `None` where another way trims.
     pub table: Option<TableBuffers>,
+    #[cfg(feature = "rivals")]
+    pub texture: Option<TextureBuffers>,
+}
+
+/// Trim textures and what leads to them.
+#[cfg(feature = "rivals")]
+pub(crate) struct TextureBuffers {
+    pub strip_heights: Buffer,
+    pub face_speeds: Buffer,
+    pub words: Buffer,
+    pub starts: Buffer,
+    pub places: Buffer,
+    /// As large as the capacity of intercepts.
+    pub texels: Buffer,
+}
+
+#[cfg(feature = "rivals")]
+impl TextureBuffers {
+    /// Zero when the frame begins.
+    pub(crate) fn cleared(&self) -> [&Buffer; 3] {
+        [&self.strip_heights, &self.face_speeds, &self.texels]
+    }
+}
+
+/// The way draws textures.
+fn is_texture(way: TrimWay) -> bool {
+    match way {
+        TrimWay::Table | TrimWay::Exact => false,
+        #[cfg(feature = "rivals")]
+        TrimWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
+    }
 }
 
 /// The trim table and what leads to it.
@@ -232,7 +266,8 @@ impl Buffers {
         let n = counts.items;
         let across = |side: u32| (size.0.div_ceil(side) * size.1.div_ceil(side)) * u32::from(counts.leaves > 0);
         let (tiles, blocks) = (across(TILE), across(TILE * BLOCK));
-        let scanned = (2 * n).max(counts.strips).max(counts.curves).max(capacities.rows).max(tiles);
+        let scanned =
+            (2 * n).max(counts.strips).max(counts.curves).max(capacities.rows).max(tiles).max(counts.face_instances);
         let draw_bytes = 2 * u64::from(capacities.draws) * size_of::<vk::DrawIndirectCommand>() as u64;
         let table = || {
             Ok::<_, GpuError>(TableBuffers {
@@ -247,6 +282,17 @@ impl Buffers {
                 row_starts: words("trim row starts", capacities.rows)?,
                 row_total: words("trim row total", 1)?,
                 intercepts: words("trim intercepts", capacities.intercepts)?,
+            })
+        };
+        #[cfg(feature = "rivals")]
+        let texture = || {
+            Ok::<_, GpuError>(TextureBuffers {
+                strip_heights: words("trim strip heights", counts.strips)?,
+                face_speeds: words("trim face speeds", 2 * counts.face_instances)?,
+                words: words("trim texture sizes", counts.face_instances)?,
+                starts: words("trim texture starts", counts.face_instances + 1)?,
+                places: structs("trim texture places", counts.strips, size_of::<[u32; 4]>())?,
+                texels: words("trim texels", capacities.intercepts)?,
             })
         };
         Ok(Self {
@@ -269,6 +315,8 @@ impl Buffers {
                         doubts: words("trim doubts", capacities.doubts)?,
                         heal_dispatch: indirect("heal dispatch", size_of::<[u32; 3]>() as u64)?,
                         table: (way == TrimWay::Table).then(table).transpose()?,
+                        #[cfg(feature = "rivals")]
+                        texture: is_texture(way).then(texture).transpose()?,
                     })
                 })
                 .transpose()?,

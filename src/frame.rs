@@ -33,6 +33,9 @@ use crate::scene::{MeshBuffers, Scene, SceneData};
 use solids::SolidPasses;
 use trim::{TrimParts, TrimPasses};
 
+mod edit;
+#[cfg(feature = "rivals")]
+mod rival;
 mod solids;
 mod table;
 mod trim;
@@ -107,6 +110,10 @@ impl Frame<'_> {
         if let Some(table) = trim.as_ref().and_then(TrimParts::table) {
             times.scope(cmd, "trim table", || table.record(self, cmd));
         }
+        #[cfg(feature = "rivals")]
+        if let Some(texture) = trim.as_ref().and_then(TrimParts::rival).and_then(|parts| parts.texture()) {
+            times.scope(cmd, "trim texture", || texture.record(self, cmd));
+        }
         self.begin_images(cmd);
         if let (Some(pass), Some(meshes)) = (&self.passes.mesh, &self.scene.meshes) {
             times.drawing(cmd, "mesh", || self.mesh(cmd, pass, meshes));
@@ -139,6 +146,10 @@ impl Frame<'_> {
         if let Some(t) = &b.trim {
             cmd.fill(&t.heal_dispatch, 0);
             for counted in t.table.iter().flat_map(TableBuffers::cleared) {
+                cmd.fill(counted, 0);
+            }
+            #[cfg(feature = "rivals")]
+            for counted in t.texture.iter().flat_map(crate::buffers::TextureBuffers::cleared) {
                 cmd.fill(counted, 0);
             }
         }

@@ -38,16 +38,47 @@ impl Default for FrameSettings {
 pub enum TrimWay {
     /// The u-intercept table: made anew for each view, one binary search a pixel.
     Table,
+    /// The loops themselves, in bands and cells made once: a few monotone arcs a pixel.
+    Exact,
+    /// One to compare with; never chosen, never met by an embedder.
+    #[cfg(feature = "rivals")]
+    Rival(Rival),
+}
+
+/// Other ways to trim, each with the number that its accuracy hangs on: see [`crate::rivals`].
+#[cfg(feature = "rivals")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Rival {
+    /// No test: what a frame costs before it is trimmed.
+    Untrimmed,
+    /// Monotone pieces, bisected in every pixel.
+    Bisect {
+        /// Most steps.
+        steps: u32,
+    },
+    /// A texture of one bit a texel for each face.
+    Texture {
+        /// Eighths of a texel to a pixel.
+        eighths: u32,
+    },
 }
 
 impl TrimWay {
     /// Every way.
-    pub const ALL: &'static [Self] = &[Self::Table];
+    pub const ALL: &'static [Self] = &[Self::Table, Self::Exact];
 
     /// As in command lines and tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Table => "table",
+            Self::Exact => "exact",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Untrimmed) => "untrimmed",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Bisect { .. }) => "bisect",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Texture { .. }) => "texture",
         }
     }
 }
@@ -109,6 +140,9 @@ pub struct SceneSettings {
     pub trim: Option<TrimWay>,
     /// How to draw Boolean solids.
     pub solids: SolidWay,
+    /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover. The model is
+    /// trimmed by [`TrimWay::Table`] then, which is made anew for each frame in any case.
+    pub editable: bool,
 }
 
 /// Images wanted beside the colour.
@@ -160,6 +194,8 @@ pub struct FrameStats {
     pub sub_patches: u64,
     /// Scan lines of the trim table.
     pub trim_rows: u64,
+    /// Chords of trim curves that the trim table was made from.
+    pub trim_segments: u64,
     /// u-intercepts stored in the trim table.
     pub trim_intercepts: u64,
     /// Patches whose tessellation factor would have exceeded the largest split: the promise is not
@@ -167,6 +203,8 @@ pub struct FrameStats {
     pub clamps: u64,
     /// Times the frame was recorded again because a buffer was too small.
     pub retries: u32,
+    /// Bytes copied for edits of trim loops since the frame before.
+    pub edit_bytes: u64,
     /// Bytes per memory pool.
     pub pools: Vec<PoolBytes>,
     /// Device name.

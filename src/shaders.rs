@@ -33,6 +33,28 @@ pub struct TrimTest {
 /// The u-intercept table.
 pub static TRIM_TABLE: TrimTest =
     TrimTest { way: "table", visibility: VISIBILITY_TABLE_FRAG, heal: HEAL_TABLE_COMP, buffers: 4 };
+/// Arcs in bands and cells.
+pub static TRIM_EXACT: TrimTest =
+    TrimTest { way: "exact", visibility: VISIBILITY_EXACT_FRAG, heal: HEAL_EXACT_COMP, buffers: 6 };
+
+/// No test at all.
+#[cfg(feature = "rivals")]
+pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
+    way: "untrimmed",
+    visibility: RIVAL_VISIBILITY_UNTRIMMED_FRAG,
+    heal: RIVAL_HEAL_UNTRIMMED_COMP,
+    buffers: 0,
+};
+
+/// Bisection of monotone pieces.
+#[cfg(feature = "rivals")]
+pub static TRIM_BISECT: TrimTest =
+    TrimTest { way: "bisect", visibility: RIVAL_VISIBILITY_BISECT_FRAG, heal: RIVAL_HEAL_BISECT_COMP, buffers: 6 };
+
+/// Trim textures.
+#[cfg(feature = "rivals")]
+pub static TRIM_TEXTURE: TrimTest =
+    TrimTest { way: "texture", visibility: RIVAL_VISIBILITY_TEXTURE_FRAG, heal: RIVAL_HEAL_TEXTURE_COMP, buffers: 2 };
 
 #[cfg(test)]
 mod tests {

@@ -90,7 +90,7 @@ struct Cell {
     vec3 box_min;
     float speed_u; // largest |S_u|, |S_v| there, part units per unit of normalised u, v
     vec3 box_max;
-    float speed_v;
+    float speed_v; // negative where no loop meets the patch, in scenes whose loops may be edited
     uint strip;
 };
 

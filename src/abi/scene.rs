@@ -58,6 +58,11 @@ impl Patch {
         degrees.0 as u32 | (degrees.1 as u32) << 4 | u32::from(rational) << 8 | (side as u32) << 9 | borders << 11
     }
 
+    /// The same word with another side.
+    pub fn with_side(shape: u32, side: Side) -> u32 {
+        (shape & !(3 << 9)) | (side as u32) << 9
+    }
+
     /// The side stored in [`Patch::shape`].
     pub fn side(&self) -> Side {
         match self.shape >> 9 & 3 {

@@ -3,19 +3,22 @@
 //! ```text
 //!   way      scene buffers   buffers of the frame   passes before the draw     what the test reads
 //!   table    TableScene      TableBuffers           table.rs: density … sort   TableParts::test
+//!   exact    ExactScene      none                   none                       its buffers
 //! ```
 //!
 //! A scene uses one way; the others' passes, pipelines and buffers do not exist. Whatever the way, its
 //! test is compiled into the passes `visibility` and `heal` ([`TrimTest`](crate::shaders::TrimTest)).
 
 use super::Frame;
+#[cfg(feature = "rivals")]
+use super::rival::{RivalParts, RivalPasses};
 use super::table::{TableParts, TablePasses};
 use crate::buffers::TrimBuffers;
 use crate::gpu::{Buffer, Device, GpuError};
 use crate::passes::heal;
 use crate::picture::TrimWay;
-use crate::scene::{SceneData, Trims};
-use crate::shaders::{TRIM_TABLE, TrimTest};
+use crate::scene::{ExactScene, SceneData, Trims};
+use crate::shaders::{TRIM_EXACT, TRIM_TABLE, TrimTest};
 
 /// The passes of the way that the scene uses, and `heal`.
 pub(super) struct TrimPasses {
@@ -25,6 +28,9 @@ pub(super) struct TrimPasses {
 
 enum Way {
     Table(Box<TablePasses>),
+    Exact,
+    #[cfg(feature = "rivals")]
+    Rival(RivalPasses),
 }
 
 impl TrimPasses {
@@ -33,6 +39,9 @@ impl TrimPasses {
         let Some(way) = data.trim_way() else { return Ok(None) };
         let way = match way {
             TrimWay::Table => Way::Table(Box::new(TablePasses::new(device)?)),
+            TrimWay::Exact => Way::Exact,
+            #[cfg(feature = "rivals")]
+            TrimWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival)?),
         };
         let others = data.has_meshes() || data.solids.kinds().is_some();
         let heal = heal::Heal::new(device, way.test(), data.has_rational, others)?;
@@ -48,6 +57,9 @@ impl Way {
     fn test(&self) -> &'static TrimTest {
         match self {
             Self::Table(_) => &TRIM_TABLE,
+            Self::Exact => &TRIM_EXACT,
+            #[cfg(feature = "rivals")]
+            Self::Rival(passes) => passes.test(),
         }
     }
 }
@@ -61,6 +73,9 @@ pub(super) struct TrimParts<'a> {
 
 enum Parts<'a> {
     Table(TableParts<'a>),
+    Exact(&'a ExactScene),
+    #[cfg(feature = "rivals")]
+    Rival(RivalParts<'a>),
 }
 
 impl<'a> Frame<'a> {
@@ -72,6 +87,12 @@ impl<'a> Frame<'a> {
             (Way::Table(passes), Trims::Table(scene)) => {
                 Parts::Table(TableParts { passes, scene, buffers: buffers.table.as_ref()? })
             }
+            #[cfg(feature = "rivals")]
+            (Way::Rival(passes), Trims::Rival(scene)) => {
+                Parts::Rival(RivalParts { passes, scene, buffers: buffers.texture.as_ref() })
+            }
+            (Way::Exact, Trims::Exact(scene)) => Parts::Exact(scene),
+            _ => unreachable!("passes and buffers are made for one way"),
         };
         Some(TrimParts { passes, buffers, way })
     }
@@ -82,6 +103,18 @@ impl<'a> TrimParts<'a> {
     pub(super) fn table(&self) -> Option<TableParts<'a>> {
         match self.way {
             Parts::Table(parts) => Some(parts),
+            Parts::Exact(_) => None,
+            #[cfg(feature = "rivals")]
+            Parts::Rival(_) => None,
+        }
+    }
+
+    /// A way to compare with, where the scene is trimmed so.
+    #[cfg(feature = "rivals")]
+    pub(super) fn rival(&self) -> Option<RivalParts<'a>> {
+        match self.way {
+            Parts::Rival(parts) => Some(parts),
+            _ => None,
         }
     }
 
@@ -89,6 +122,9 @@ impl<'a> TrimParts<'a> {
     pub(super) fn test(&self) -> Vec<&'a Buffer> {
         match self.way {
             Parts::Table(parts) => parts.test(),
+            Parts::Exact(s) => vec![&s.faces, &s.bands, &s.cells, &s.entries, &s.arcs, &s.points],
+            #[cfg(feature = "rivals")]
+            Parts::Rival(parts) => parts.test(),
         }
     }
 }

@@ -2,9 +2,9 @@
 
 use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
 use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
-use crate::model::{Camera, Model};
+use crate::model::{Camera, LoopAt, Model, TrimLoop};
 use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
-use crate::renderer::{CloseUp, FrameInput, RenderError, Renderer, TargetFormats, Targets};
+use crate::renderer::{CloseUp, EditError, FrameInput, RenderError, Renderer, TargetFormats, Targets};
 use ash::vk;
 use bytemuck::Pod;
 use std::mem::ManuallyDrop;
@@ -72,6 +72,21 @@ impl HeadlessRenderer {
         Ok(self.renderer.upload_with(model, settings)?)
     }
 
+    /// Replaces a trim loop of the model, which was uploaded as editable; see [`Renderer::edit_loop`].
+    ///
+    /// # Errors
+    /// [`EditError`]; the scene is as it was.
+    ///
+    /// # Panics
+    /// When no model was uploaded.
+    pub fn edit_loop(&mut self, at: LoopAt, new: &TrimLoop) -> Result<(), EditError> {
+        self.renderer.edit_loop(at, new)?;
+        if let Some((model, _)) = &mut self.model {
+            model.parts[at.part].faces[at.face].loops[at.trim_loop] = new.clone();
+        }
+        Ok(())
+    }
+
     /// Renders one picture and waits for it.
     ///
     /// # Errors
@@ -88,9 +103,10 @@ impl HeadlessRenderer {
         camera.check().map_err(RenderError::from)?;
         self.prepare(camera.size, outputs != Outputs::default())?;
         self.approach(camera)?;
-        let mut retries = 0;
+        let (mut retries, mut edit_bytes) = (0, 0);
         let stats = loop {
             let report = self.frame(camera, settings)?;
+            edit_bytes += report.1.edit_bytes;
             if report.0 {
                 break report.1;
             }
@@ -99,7 +115,7 @@ impl HeadlessRenderer {
                 return Err(HeadlessError::NeverComplete);
             }
         };
-        Ok(self.read(camera.size, outputs, FrameStats { retries, ..stats }))
+        Ok(self.read(camera.size, outputs, FrameStats { retries, edit_bytes, ..stats }))
     }
 
     /// Validation messages so far.
@@ -110,6 +126,11 @@ impl HeadlessRenderer {
     /// Names of the buffers, images and pipelines that exist.
     pub fn objects(&self) -> Vec<String> {
         self.renderer.objects()
+    }
+
+    /// The same with the bytes that each takes.
+    pub fn object_bytes(&self) -> Vec<(String, u64)> {
+        self.renderer.object_bytes()
     }
 
     /// Frees everything and returns all validation messages, those about leaks included.
@@ -166,7 +187,8 @@ impl HeadlessRenderer {
     /// Has the renderer hold what resolves this view: the model, or what is seen of it close up.
     fn approach(&mut self, camera: &Camera) -> Result<(), HeadlessError> {
         let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
-        let near = self.close_up.of(model, camera);
+        // loops that are being edited stay where they are
+        let near = if settings.editable { None } else { self.close_up.of(model, camera) };
         if near.is_some() || self.close {
             self.renderer.upload_with(near.as_ref().unwrap_or(model), *settings)?;
         }

@@ -12,6 +12,8 @@
 //! number and asks that the comparison names the place.
 
 mod chain;
+mod exact;
+mod hard;
 mod shapes;
 
 pub(crate) use crate::trial::{Case, Random};

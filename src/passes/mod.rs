@@ -11,6 +11,8 @@ pub(crate) mod lines;
 pub(crate) mod mesh;
 pub(crate) mod reset;
 pub(crate) mod resolve;
+#[cfg(feature = "rivals")]
+pub(crate) mod rival_texture;
 pub mod scan;
 pub(crate) mod segments;
 pub(crate) mod sizes;

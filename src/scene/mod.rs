@@ -16,6 +16,8 @@
 
 mod closeup;
 mod data;
+mod edit;
+mod exact;
 mod face;
 mod flatten;
 mod mesh;
@@ -24,8 +26,14 @@ mod upload;
 
 pub use closeup::CloseUp;
 pub(crate) use data::{SceneData, focal_and_slant, view};
+pub use edit::EditError;
+pub(crate) use edit::{EditTarget, Write};
+#[cfg(test)]
+pub(crate) use exact::ExactData;
 #[cfg(any(test, feature = "rivals"))]
 pub(crate) use flatten::flattened;
 pub(crate) use solids::SolidData;
 pub use solids::UndrawnSolid;
-pub(crate) use upload::{MeshBuffers, Scene, Solids, TableScene, Trims};
+#[cfg(feature = "rivals")]
+pub(crate) use upload::RivalScene;
+pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Solids, TableScene, Trims};

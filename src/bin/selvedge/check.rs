@@ -25,14 +25,14 @@ struct Verdict {
 
 /// Draws and judges each view.
 pub fn run(args: &CheckArgs) -> Result<Outcome> {
-    let mut import = session::open(&args.model)?;
+    let mut import = session::open(&args.model, &args.subdivide)?;
     if let Some(by) = args.moved {
         let by = DAffine3::from_translation(by);
         import.model.instances.iter_mut().for_each(|i| i.transform = by * i.transform);
     }
     let views = match args.zoom.as_slice() {
-        [] => args.camera.views(args.views, &import.model)?,
-        times => args.camera.zooms(times, &import.model)?,
+        [] => args.camera.views(args.views, &import)?,
+        times => args.camera.zooms(times, &import)?,
     };
     let mut session = Session::new(&args.frame, &import)?;
     let tracer = during("preparing the exact model", || Tracer::new(&import.model));

@@ -3,7 +3,8 @@
 //! ```text
 //!   render   model ─▶ picture and images      info    model ─▶ what the file holds
 //!   check    picture against exact rays       bench   time and memory beside the error
-//!   convert  model ─▶ the engine's own form   sweep   time against error, over many settings
+//!   trims    ways to trim, side by side       sweep   time against error, over many settings
+//!   convert  model ─▶ the engine's own form
 //!   export   model ─▶ STEP file
 //! ```
 //!
@@ -14,6 +15,7 @@ mod bench;
 mod camera;
 mod check;
 mod convert;
+mod edit;
 mod export;
 mod info;
 mod npy;
@@ -23,7 +25,9 @@ mod progress;
 mod render;
 mod series;
 mod session;
+mod subdivide;
 mod sweep;
+mod trims;
 mod verdict;
 
 use args::{Cli, Command};
@@ -67,6 +71,7 @@ fn main() -> ExitCode {
         Command::Check(args) => check::run(args),
         Command::Bench(args) => bench::run(args),
         Command::Sweep(args) => sweep::run(args),
+        Command::Trims(args) => trims::run(args),
         Command::Convert(args) => convert::run(args),
     };
     match result {

@@ -8,7 +8,7 @@
 //! alike; their ratios mean something where times do not. In the end, how time grows with each quantity that was swept:
 //! the exponent `p` of `time ~ quantity^p`, fitted by least squares of the logarithms.
 
-use crate::args::{Factors, Size, SweepArgs};
+use crate::args::{Factors, Size, SubdivideArgs, SweepArgs};
 use crate::camera::closer;
 use crate::progress::during;
 use crate::{Outcome, output, session, verdict};
@@ -58,7 +58,7 @@ pub fn run(args: &SweepArgs) -> Result<Outcome> {
     let mut rows = Vec::new();
     let mut device = String::new();
     for file in &args.models {
-        let import = session::open(file)?;
+        let import = session::open(file, &SubdivideArgs::default())?;
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         for &copies in &args.copies {
             let model = copied(&import.model, copies, args.distinct);

@@ -83,7 +83,7 @@ pub(super) fn read(text: &str, name: &str) -> Result<Import, ImportError> {
     report.bodies = model.solids.len();
     let (warnings, counts) = Warnings::new(name).finish();
     report.warnings = counts;
-    Ok(Import { model, warnings, report })
+    Ok(Import { model, warnings, report, ..Import::default() })
 }
 
 /// All objects by name.
