@@ -18,7 +18,7 @@ const MOST_BULGE: f64 = 0.02;
 const MOST_PIECES: usize = 4;
 
 /// The grid with all its patches cut alike into flatter ones.
-pub(super) fn flattened(grid: PatchGrid) -> PatchGrid {
+pub(crate) fn flattened(grid: PatchGrid) -> PatchGrid {
     let pieces = |bend: f64, speed: f64| {
         let bulge = bend / 8.0 / speed.max(f64::MIN_POSITIVE);
         ((bulge / MOST_BULGE).sqrt().ceil() as usize).clamp(1, MOST_PIECES)

@@ -176,34 +176,7 @@ impl Surface {
     /// # Errors
     /// [`SplineError`] when the rectangle is empty or outside the domain.
     pub fn within(&self, u: (f64, f64), v: (f64, f64)) -> Result<Self, SplineError> {
-        let grid = self.patches();
-        let touches = |a: (f64, f64), b: (f64, f64)| a.1 > b.0 && a.0 < b.1;
-        let columns = grid.patches[..grid.count_u].iter().filter(|p| touches(p.u, u)).count();
-        let kept: Vec<_> = grid.patches.iter().filter(|p| touches(p.u, u) && touches(p.v, v)).collect();
-        if kept.is_empty() {
-            return Err(SplineError::EmptyDomain);
-        }
-        let local = |range: (f64, f64), to: (f64, f64)| {
-            let at = |t: f64| ((t - range.0) / (range.1 - range.0)).clamp(0.0, 1.0);
-            (at(to.0), at(to.1))
-        };
-        let pieces: Vec<Patch> = kept.iter().map(|p| p.patch.rectangle(local(p.u, u), local(p.v, v))).collect();
-        let knots = |degree: usize, inner: Vec<f64>, (a, b): (f64, f64)| -> Vec<f64> {
-            let inner = inner.into_iter().flat_map(|t| [t].repeat(degree));
-            [a].repeat(degree + 1).into_iter().chain(inner).chain([b].repeat(degree + 1)).collect()
-        };
-        let inner_u = kept[1..columns].iter().map(|p| p.u.0).collect();
-        let inner_v = kept.iter().step_by(columns).skip(1).map(|p| p.v.0).collect();
-        let (n, k) = (self.degree_u, self.degree_v);
-        let (count_u, count_v) = (columns * n + 1, kept.len() / columns * k + 1);
-        let net = (0..count_v).flat_map(|j| (0..count_u).map(move |i| (i, j))).map(|(i, j)| {
-            // a point that two pieces share is the later one's, but for the last
-            let piece = |at: usize, degree: usize, count: usize| (at / degree).min((count - 1) / degree - 1);
-            let (a, b) = (piece(i, n, count_u), piece(j, k, count_v));
-            pieces[b * columns + a].points[(j - b * k) * (n + 1) + (i - a * n)]
-        });
-        let net = net.collect();
-        Self::new((n, k), knots(n, inner_u, u), knots(k, inner_v, v), net)
+        self.patches().within(self.degrees(), u, v)
     }
 
     /// Point and first derivatives at `(u, v)`, clamped to the domain.
@@ -227,6 +200,42 @@ impl PatchGrid {
         let starts_v = patches.iter().step_by(count_u).map(|p| p.v.0);
         let starts = patches[..count_u].iter().map(|p| p.u.0).chain(starts_v).collect();
         Self { count_u, count_v: patches.len() / count_u, patches, starts }
+    }
+
+    /// [`Surface::within`] of the surface of degrees `n` and `k` that this was cut from: the part over a rectangle
+    /// inside the domain, as Bézier patches with their own parameters.
+    ///
+    /// Exact up to the rounding of one subdivision at each side.
+    ///
+    /// # Errors
+    /// [`SplineError`] when the rectangle is empty or outside the domain.
+    pub fn within(&self, (n, k): (usize, usize), u: (f64, f64), v: (f64, f64)) -> Result<Surface, SplineError> {
+        let touches = |a: (f64, f64), b: (f64, f64)| a.1 > b.0 && a.0 < b.1;
+        let columns = self.patches[..self.count_u].iter().filter(|p| touches(p.u, u)).count();
+        let kept: Vec<_> = self.patches.iter().filter(|p| touches(p.u, u) && touches(p.v, v)).collect();
+        if kept.is_empty() {
+            return Err(SplineError::EmptyDomain);
+        }
+        let local = |range: (f64, f64), to: (f64, f64)| {
+            let at = |t: f64| ((t - range.0) / (range.1 - range.0)).clamp(0.0, 1.0);
+            (at(to.0), at(to.1))
+        };
+        let pieces: Vec<Patch> = kept.iter().map(|p| p.patch.rectangle(local(p.u, u), local(p.v, v))).collect();
+        let knots = |degree: usize, inner: Vec<f64>, (a, b): (f64, f64)| -> Vec<f64> {
+            let inner = inner.into_iter().flat_map(|t| [t].repeat(degree));
+            [a].repeat(degree + 1).into_iter().chain(inner).chain([b].repeat(degree + 1)).collect()
+        };
+        let inner_u = kept[1..columns].iter().map(|p| p.u.0).collect();
+        let inner_v = kept.iter().step_by(columns).skip(1).map(|p| p.v.0).collect();
+        let (count_u, count_v) = (columns * n + 1, kept.len() / columns * k + 1);
+        let net = (0..count_v).flat_map(|j| (0..count_u).map(move |i| (i, j))).map(|(i, j)| {
+            // a point that two pieces share is the later one's, but for the last
+            let piece = |at: usize, degree: usize, count: usize| (at / degree).min((count - 1) / degree - 1);
+            let (a, b) = (piece(i, n, count_u), piece(j, k, count_v));
+            pieces[b * columns + a].points[(j - b * k) * (n + 1) + (i - a * n)]
+        });
+        let net = net.collect();
+        Surface::new((n, k), knots(n, inner_u, u), knots(k, inner_v, v), net)
     }
 
     /// The patch that holds `(u, v)`, clamped to the domain, and the local parameters.
