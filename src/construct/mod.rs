@@ -18,6 +18,7 @@
 //! | grids of points, pictures of heights | [`grid`] |
 //! | outlines cast on a surface | [`project()`] |
 //! | dimensions: blocks, balls, gears, a pot | [`shapes`] |
+//! | control meshes | [`subdivide`] |
 //!
 //! | answer | meaning |
 //! |---|---|
@@ -45,6 +46,7 @@ mod project;
 mod ruled;
 pub mod shapes;
 mod solid;
+pub mod subdivide;
 mod sweep;
 mod tube;
 

@@ -37,6 +37,7 @@ mod step;
 
 pub use camera::{Lens, NamedCamera, PictureSettings, Stance};
 pub use error::ImportError;
+pub use obj::cage::Cage;
 pub(crate) use progress::FaceCount;
 pub use progress::{Options, Stage};
 pub(crate) use report::Warnings;
@@ -86,16 +87,7 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
 /// As [`open`].
 pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportError> {
     let name = path.display().to_string();
-    let unreadable = |source| ImportError::Read { file: name.clone(), source };
-    let size = std::fs::metadata(path).map_err(unreadable)?.len();
-    if size > u64::from(u32::MAX) {
-        return Err(ImportError::TooLarge { file: name });
-    }
-    options.tell(Stage::Read { bytes: size });
-    let mut bytes = std::fs::read(path).map_err(unreadable)?;
-    if bytes.starts_with(&[0x1f, 0x8b]) {
-        bytes = inflate(&bytes, &name)?;
-    }
+    let bytes = load(path, &name, options)?;
     options.tell(Stage::Parse { bytes: bytes.len() as u64 });
     if native::recognise(&bytes) {
         return native(&bytes, &name);
@@ -141,6 +133,18 @@ pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportErr
     }
 }
 
+/// The bytes of a file, gzip undone.
+fn load(path: &Path, name: &str, options: &Options<'_>) -> Result<Vec<u8>, ImportError> {
+    let unreadable = |source| ImportError::Read { file: name.to_owned(), source };
+    let size = std::fs::metadata(path).map_err(unreadable)?.len();
+    if size > u64::from(u32::MAX) {
+        return Err(ImportError::TooLarge { file: name.to_owned() });
+    }
+    options.tell(Stage::Read { bytes: size });
+    let bytes = std::fs::read(path).map_err(unreadable)?;
+    if bytes.starts_with(&[0x1f, 0x8b]) { inflate(&bytes, name) } else { Ok(bytes) }
+}
+
 /// Reads ISO 10303-21 text (STEP AP203, AP214, AP242); `name` is the file's name in messages.
 ///
 /// # Errors
@@ -184,6 +188,23 @@ pub fn scene(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, 
 /// [`ImportError::Nothing`] when the text holds no vertex.
 pub fn obj(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
     obj::read(bytes, name, folder)
+}
+
+/// Reads the polygons of Wavefront OBJ text as control meshes, for subdivision; one an object.
+///
+/// # Errors
+/// [`ImportError::Solid`] names the first line that cannot be read, [`ImportError::Nothing`] a file without polygons.
+pub fn cages(bytes: &[u8], name: &str) -> Result<Vec<Cage>, ImportError> {
+    obj::cage::read(bytes, name)
+}
+
+/// Reads a file of polygons as control meshes; gzip is undone first.
+///
+/// # Errors
+/// As [`cages`], and when the file cannot be read.
+pub fn open_cages(path: &Path) -> Result<Vec<Cage>, ImportError> {
+    let name = path.display().to_string();
+    cages(&load(path, &name, &Options::default())?, &name)
 }
 
 /// Reads a BezierView `.bv` file.

@@ -9,6 +9,7 @@ mod projected;
 mod shapes;
 mod skins;
 mod solids;
+mod subdivision;
 mod sweeps;
 
 use glam::{DVec2, DVec3, DVec4};

@@ -29,7 +29,7 @@ const SIZE: Size = Size(1920, 1080);
 /// A camera and what it is called in reports.
 #[derive(Clone, Debug)]
 pub struct View {
-    pub name: &'static str,
+    pub name: String,
     pub camera: Camera,
 }
 
@@ -85,15 +85,29 @@ impl CameraArgs {
         let mut list = Vec::new();
         if wanted(Views::Whole) {
             let given = self.eye.is_some() || self.target.is_some() || self.named(import)?.is_some();
-            list.push(View { name: if given { "given" } else { "whole" }, camera: whole });
+            list.push(View { name: if given { "given" } else { "whole" }.to_string(), camera: whole });
         }
         if wanted(Views::Close) {
-            list.push(View { name: "close", camera: fitted(closer(model, whole), bounds)? });
+            list.push(View { name: "close".to_string(), camera: fitted(closer(model, whole, CLOSER), bounds)? });
         }
         if wanted(Views::Grazing) {
-            list.push(View { name: "grazing", camera: fitted(self.grazing(bounds, size), bounds)? });
+            list.push(View { name: "grazing".to_string(), camera: fitted(self.grazing(bounds, size), bounds)? });
         }
         Ok(list)
+    }
+
+    /// So many times closer each.
+    pub fn zooms(&self, times: &[f64], import: &Import) -> Result<Vec<View>> {
+        let bounds = import.model.bounds();
+        let whole = self.of(import)?;
+        let view = |&times: &f64| {
+            let mut camera = fitted(closer(&import.model, whole, times), bounds)?;
+            // nothing of interest is nearer than a tenth of the distance
+            let near = (camera.eye - camera.target).length() * 0.1;
+            camera.depth_range.0 = camera.depth_range.0.min(near);
+            Ok(View { name: format!("{times} x"), camera })
+        };
+        times.iter().map(view).collect()
     }
 
     fn grazing(&self, bounds: Bounds, size: (u32, u32)) -> Camera {
@@ -121,24 +135,28 @@ fn fitted(mut camera: Camera, bounds: Bounds) -> Result<Camera> {
     Ok(camera)
 }
 
-/// [`CLOSER`] to the start of the trim curve or the vertex nearest to the eye: certainly in sight, and at
+/// `times` closer to the start of the trim curve or the vertex nearest to the eye: certainly in sight, and at
 /// an edge.
-fn closer(model: &Model, mut camera: Camera) -> Camera {
+pub fn closer(model: &Model, mut camera: Camera, times: f64) -> Camera {
     let depth = |p: &DVec3| (*p - camera.eye).dot(camera.axes().2);
-    let placed = model.instances.iter().flat_map(|instance| {
+    let Some(detail) = details(model).min_by(|a, b| depth(a).total_cmp(&depth(b))) else { return camera };
+    let back = camera.eye - camera.target;
+    camera.target = detail;
+    match &mut camera.projection {
+        Projection::Perspective { .. } => camera.eye = detail + back / times,
+        Projection::Orthographic { height } => (camera.eye, *height) = (detail + back, *height / times),
+    }
+    camera
+}
+
+/// Starts of trim curves and vertices of the placed parts.
+fn details(model: &Model) -> impl Iterator<Item = DVec3> + '_ {
+    model.instances.iter().flat_map(|instance| {
         let part = &model.parts[instance.part];
         let vertices = part.meshes.iter().flat_map(|m| m.positions().iter().copied());
         let points = part.faces.iter().flat_map(boundary_points).chain(vertices);
         points.map(|p| instance.transform.transform_point3(p))
-    });
-    let Some(detail) = placed.min_by(|a, b| depth(a).total_cmp(&depth(b))) else { return camera };
-    let back = camera.eye - camera.target;
-    camera.target = detail;
-    match &mut camera.projection {
-        Projection::Perspective { .. } => camera.eye = detail + back / CLOSER,
-        Projection::Orthographic { height } => (camera.eye, *height) = (detail + back, *height / CLOSER),
-    }
-    camera
+    })
 }
 
 /// Where the trim curves of a face start, in part coordinates; the corners of its domain if it has none.
@@ -150,6 +168,25 @@ fn boundary_points(face: &Face) -> Vec<DVec3> {
     }
     let starts = face.loops.iter().flat_map(|l| l.curves().map(|c| c.point(0.0)).collect::<Vec<_>>());
     starts.map(|uv| grid.point(uv.x, uv.y)).collect()
+}
+
+/// `zoom` times magnified: the eye stays, the angle narrows. From 1 on the picture's middle moves from the
+/// model's to the start of a trim curve: of an open shell to the one nearest to the model's middle, of a
+/// solid to the one nearest to the eye, which is certainly in sight.
+pub fn zoomed(model: &Model, size: (u32, u32), zoom: f64) -> Camera {
+    let bounds = model.bounds();
+    let mut camera = Camera::framing(bounds, FROM, DVec3::Z, 35f64.to_radians(), size);
+    let solid = model.parts.iter().any(|part| part.closed);
+    let from = if solid { camera.eye } else { bounds.centre() };
+    let nearest = |p: &DVec3| p.distance_squared(from);
+    if let Some(detail) = details(model).min_by(|a, b| nearest(a).total_cmp(&nearest(b))) {
+        camera.target = camera.target.lerp(detail, 1.0 - 1.0 / zoom);
+    }
+    if let Projection::Perspective { fov_y } = &mut camera.projection {
+        *fov_y = 2.0 * ((*fov_y * 0.5).tan() / zoom).atan();
+    }
+    camera.fit_depth(bounds);
+    camera
 }
 
 /// A camera as other programs read it.
@@ -202,6 +239,23 @@ mod tests {
     fn framing(words: &[&str]) -> Result<Camera> {
         let args = args(words);
         args.camera(BOX, args.pixels(&Import::default()))
+    }
+
+    #[test]
+    fn a_zoom_magnifies_by_its_number() {
+        let model = selvedge::rivals::many_holes(3);
+        let whole = zoomed(&model, (400, 400), 1.0);
+        for zoom in [10.0, 1000.0] {
+            let camera = zoomed(&model, (400, 400), zoom);
+            assert_eq!((camera.check(), camera.eye), (Ok(()), whole.eye));
+            let step = camera.axes().0 * 1e-4;
+            let pixels = |c: &Camera| {
+                let at = |p| c.project(p).expect("in front").0;
+                at(camera.target + step).distance(at(camera.target))
+            };
+            let times = pixels(&camera) / pixels(&whole);
+            assert!((times / zoom - 1.0).abs() < 0.05, "{times} instead of {zoom}"); // another direction, too
+        }
     }
 
     fn corners_inside(camera: &Camera) -> bool {
