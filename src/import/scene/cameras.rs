@@ -1,6 +1,6 @@
 //! `[camera.NAME]` and `[picture]`.
 
-use super::scene::Scene;
+use super::items::Scene;
 use super::text::{Outcome, Table, Value};
 use crate::import::camera::{Lens, NamedCamera, PictureSettings, Stance};
 use crate::model::Bounds;

@@ -5,7 +5,7 @@
 //!               exact conics                   │     by control points   │   by points      │ end to end
 //! ```
 
-use super::scene::Scene;
+use super::items::Scene;
 use super::text::{Fault, Outcome, Table, Value};
 use crate::construct::curve::{CurveEnds, Parameters, chain, circle, ellipse, hyperbola, interpolate, line, parabola};
 use crate::construct::polyloop::PolyLoop;
@@ -287,7 +287,7 @@ fn joined(curves: &[Curve], names: &[Value<'_>]) -> Outcome<Curve> {
                 }
                 // one point belongs to both: the earlier one's, with weights to match
                 let scale = last.w / piece[0].w;
-                piece.iter_mut().for_each(|p| *p = *p * scale);
+                piece.iter_mut().for_each(|p| *p *= scale);
                 piece[0] = last;
             }
             points.extend(piece);

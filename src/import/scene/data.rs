@@ -6,7 +6,7 @@
 //!   file = "heights.png"             beside the scene file, or below it
 //! ```
 
-use super::scene::Scene;
+use super::items::Scene;
 use super::surface::{MOST_NET, Made, in_expression};
 use super::text::{Outcome, Table, Value};
 use super::{curve, files};

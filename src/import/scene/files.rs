@@ -3,7 +3,7 @@
 //! A path is relative to the scene's folder and never leads out of it: no `..`, nothing absolute. A scene is not read
 //! within a scene, so files cannot name each other in a circle.
 
-use super::scene::Scene;
+use super::items::Scene;
 use super::text::{Outcome, Value, shortened};
 use crate::import::Import;
 use std::path::{Component, Path, PathBuf};

@@ -5,7 +5,7 @@
 //!                 repeat = 6   step = { rotate = 60 }   is drawn once, where it is
 //! ```
 
-use super::scene::{Scene, Section, Thing};
+use super::items::{Scene, Section, Thing};
 use super::solid::{self, Adding, Form};
 use super::text::{Fault, Outcome, Table, Value, shortened};
 use super::{VERSION, cameras, place};

@@ -1,6 +1,6 @@
 //! Ready-made solids: gears, pipes, the pieces of a teapot; and primitives as trimmed faces instead of equations.
 
-use super::scene::Scene;
+use super::items::Scene;
 use super::text::{Outcome, Table, Value};
 use crate::construct::shapes::{Body, GearBlank, Keyway, SpurGear, block, cone, cylinder, sphere, teapot, torus, tube};
 use crate::construct::{ConstructError, capped_solid};

@@ -7,7 +7,7 @@
 //! ```
 
 use super::curve::unknown;
-use super::scene::{File, Scene, Thing};
+use super::items::{File, Scene, Thing};
 use super::text::{Fault, Outcome, Table, Value};
 use super::{place, shapes, trim};
 use crate::construct::{extruded_solid, lathed_solid};

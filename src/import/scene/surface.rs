@@ -7,7 +7,7 @@
 
 use super::curve::{self, Curve, planar, unknown};
 use super::data;
-use super::scene::Scene;
+use super::items::Scene;
 use super::text::{Fault, Outcome, Table, Value};
 use super::{place, trim};
 use crate::construct::{

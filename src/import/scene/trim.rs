@@ -11,8 +11,8 @@
 //! Kept is what lies inside an odd number of loops.
 
 use super::curve::{self, Curve, planar};
+use super::items::Scene;
 use super::place;
-use super::scene::Scene;
 use super::surface::Made;
 use super::text::{Fault, Outcome, Table, Value};
 use crate::construct::{Chain, project, trim_loops};
