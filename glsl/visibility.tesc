@@ -6,6 +6,9 @@
 #include "scene.glsl"
 #include "view.glsl"
 
+layout(constant_id = 10) const bool SCENE_HAS_OPERANDS = false;
+layout(constant_id = 11) const bool DRAWS_OPERANDS = false;
+
 layout(vertices = 1) out;
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
@@ -62,6 +65,9 @@ void main() {
     outer.y = place.y == 0u ? edges.y / splits.x : inner.x;
     outer.z = place.x + 1u == splits.x ? edges.z / splits.y : inner.y;
     outer.w = place.y + 1u == splits.y ? edges.w / splits.x : inner.x;
+    // faces of operands are among the others
+    bool operand = (faces[fi.face].flags & FACE_OPERAND) != 0u;
+    if (SCENE_HAS_OPERANDS && operand != DRAWS_OPERANDS) outer = uvec4(0u);
     if (splits != uvec2(1u)) {
         vec2 lo = vec2(place) / vec2(splits);
         vec2 hi = vec2(place + 1u) / vec2(splits);

@@ -35,6 +35,7 @@ use crate::scene::{MeshBuffers, Scene, SceneData, Trims};
 use solids::SolidPasses;
 use std::mem::offset_of;
 
+mod resolved;
 mod solids;
 
 pub(crate) use solids::Centres;
@@ -66,7 +67,12 @@ struct TrimPasses {
 
 impl Passes {
     pub(crate) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Self, GpuError> {
-        let kinds = Kinds { rational: data.has_rational, plain: data.has_plain, trimmed: data.has_trimmed };
+        let kinds = Kinds {
+            rational: data.has_rational,
+            plain: data.has_plain,
+            trimmed: data.has_trimmed,
+            operands: data.has_operands,
+        };
         let trim = |_| {
             Ok(TrimPasses {
                 density: density::Density::new(device)?,
@@ -85,13 +91,18 @@ impl Passes {
             scan: scan::Scan::new(device)?,
             emit: emit::Emit::new(device)?,
             trim: data.has_trimmed.then_some(()).map(trim).transpose()?,
-            solids: SolidPasses::new(device, &data.solids)?,
+            solids: SolidPasses::new(device, data)?,
             visibility: visibility::Visibility::new(device, kinds)?,
             mesh: data.has_meshes().then(|| mesh::Mesh::new(device, VISIBILITY_FORMAT, DEPTH_FORMAT)).transpose()?,
             resolve: resolve::Resolve::new(
                 device,
                 formats,
-                resolve::Kinds { rational: data.has_rational, meshes: data.has_meshes(), solids: data.solids.kinds() },
+                resolve::Kinds {
+                    rational: data.has_rational,
+                    meshes: data.has_meshes(),
+                    solids: data.solids.kinds(),
+                    operands: data.has_operands,
+                },
             )?,
         })
     }
@@ -157,6 +168,9 @@ impl Frame<'_> {
             cmd.fill(&t.strip_heights, 0);
             cmd.fill(&t.face_speeds, 0);
             cmd.fill(&t.row_counts, 0);
+        }
+        if let Some(f) = b.solids.as_ref().and_then(|s| s.fragments.as_ref()) {
+            cmd.fill(&f.counts, 0);
         }
         let r = reset::Bindings { frame: self.constants, draws: &b.draws, counters: &b.counters };
         self.passes.reset.record(cmd, &r, 2 * b.capacities.draws);
@@ -451,44 +465,17 @@ impl Frame<'_> {
             doubts: &t.doubts,
             counters: &b.counters,
             instances: &s.instances,
-            others: s.meshes.as_ref().zip(b.others.as_ref()).map(|(m, seen)| heal::Others {
+            others: b.others.as_ref().map(|seen| heal::Others {
                 seen,
-                mesh_instances: &m.instances,
-                triangles: &m.triangles,
-                positions: &m.positions,
+                meshes: s.meshes.as_ref().map(|m| heal::Meshes {
+                    instances: &m.instances,
+                    triangles: &m.triangles,
+                    positions: &m.positions,
+                }),
             }),
             dispatches: &t.dispatches,
         };
         p.heal.record(cmd, &heal);
-    }
-
-    fn resolve(&self, cmd: &Commands<'_>) {
-        let (s, b) = (self.scene, self.buffers);
-        let bindings = resolve::Bindings {
-            frame: self.constants,
-            views: self.views,
-            face_instances: &s.face_instances,
-            faces: &s.faces,
-            patches: &s.patches,
-            items: &s.items,
-            points: &s.points,
-            instances: &s.instances,
-            visibility: &b.visibility,
-        };
-        let meshes = s.meshes.as_ref().map(|m| resolve::MeshBindings {
-            frame: self.constants,
-            views: self.views,
-            instances: &s.instances,
-            mesh_instances: &m.instances,
-            meshes: &m.meshes,
-            triangles: &m.triangles,
-            positions: &m.positions,
-            normals: &m.normals,
-            visibility: &b.visibility,
-            others: b.others.as_ref().unwrap_or(&b.visibility),
-        });
-        let solids = self.solids().map(|parts| parts.resolve(self));
-        self.passes.resolve.record(cmd, &bindings, meshes.as_ref(), solids.as_ref(), self.colour, self.depth);
     }
 }
 

@@ -71,6 +71,14 @@ pub struct FrameStats {
     /// Patches whose tessellation factor would have exceeded the largest split: the promise is not
     /// kept there. 0 in a good frame.
     pub clamps: u64,
+    /// Crossings of rays with operands of Boolean solids that are meshes or spline parts.
+    pub fragments: u64,
+    /// Of those rays, how many slip between two faces of an operand and were given the face that is nearest
+    /// beside the gap, within the tolerance.
+    pub mended: u64,
+    /// Rays that enter an operand and never leave it, or leave it without having entered: it is not closed. What
+    /// is entered stays so, what is left without is left out.
+    pub unpaired: u64,
     /// Times the frame was recorded again because a buffer was too small.
     pub retries: u32,
     /// Bytes per memory pool.

@@ -300,6 +300,9 @@ impl Renderer {
             trim_rows: u64::from(c.rows),
             trim_intercepts: u64::from(c.intercepts),
             clamps: u64::from(c.clamps),
+            fragments: u64::from(c.fragments),
+            mended: u64::from(c.mended),
+            unpaired: u64::from(c.unpaired),
             retries: 0,
             pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),
             device: self.device.name().to_owned(),
@@ -322,6 +325,7 @@ impl Renderer {
         finished.retired.clear();
         finished.recorded = false;
         let Some(loaded) = &mut self.loaded else { return Ok(()) };
+        loaded.counts.check_size(size)?;
         let range = self.device.limits().max_storage_buffer_range;
         let capacities = match (had, report) {
             // else another slot's frame has made them larger since
@@ -455,6 +459,7 @@ fn constants(device: &Device, loaded: &Loaded, input: &FrameInput<'_>, formats: 
         leaf_count: counts.leaves,
         block_leaf_capacity: room.block_leaves,
         tile_leaf_capacity: room.tile_leaves,
+        fragment_capacity: room.fragments,
         right: right.as_vec3().to_array(),
         up: up.as_vec3().to_array(),
         forward: forward.as_vec3().to_array(),

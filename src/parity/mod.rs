@@ -41,6 +41,10 @@ mod segments;
 #[cfg(feature = "headless")]
 mod sizes;
 #[cfg(feature = "headless")]
+mod operand_sort;
+#[cfg(feature = "headless")]
+mod solid_lists;
+#[cfg(feature = "headless")]
 mod solids;
 #[cfg(feature = "headless")]
 mod sort;

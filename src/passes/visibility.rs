@@ -27,6 +27,8 @@ pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 const SCENE_HAS_RATIONAL: u32 = 0;
 /// `constant_id` of `TRIMMED`.
 const TRIMMED: u32 = 2;
+/// `constant_id` of `SCENE_HAS_OPERANDS`.
+const SCENE_HAS_OPERANDS: u32 = 10;
 
 /// The pass: a pipeline for each kind of patch that the scene has.
 pub(crate) struct Visibility {
@@ -40,6 +42,8 @@ pub(crate) struct Kinds {
     pub rational: bool,
     pub plain: bool,
     pub trimmed: bool,
+    /// Some patches bound operands of Boolean solids: they are not drawn here.
+    pub operands: bool,
 }
 
 /// Its buffers, in binding order; the trim table only where the scene has one.
@@ -85,7 +89,11 @@ impl Visibility {
                     ],
                     bindings: &bindings(trimmed),
                     push_bytes: 0,
-                    constants: &[(SCENE_HAS_RATIONAL, u32::from(kinds.rational)), (TRIMMED, u32::from(trimmed))],
+                    constants: &[
+                        (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
+                        (TRIMMED, u32::from(trimmed)),
+                        (SCENE_HAS_OPERANDS, u32::from(kinds.operands)),
+                    ],
                     topology: vk::PrimitiveTopology::PATCH_LIST,
                     patch_points: 1,
                     cull: vk::CullModeFlags::NONE,

@@ -24,4 +24,4 @@ mod upload;
 pub(crate) use data::{SceneData, focal_and_slant, view};
 pub(crate) use solids::SolidData;
 pub use solids::UndrawnSolid;
-pub(crate) use upload::{MeshBuffers, Scene, Solids, Trims};
+pub(crate) use upload::{MeshBuffers, Scene, Shells, Solids, Trims};

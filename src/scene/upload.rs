@@ -1,6 +1,6 @@
 //! The scene's persistent buffers: only those that its model needs.
 
-use super::SceneData;
+use super::{SceneData, SolidData};
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texels, Uploads};
 use ash::vk;
 use bytemuck::Pod;
@@ -28,6 +28,18 @@ pub(crate) struct Solids {
     pub leaves: Buffer,
     pub leaf_surfaces: Buffer,
     pub surfaces: Buffer,
+    /// `None` where every operand has equations.
+    pub shells: Option<Shells>,
+}
+
+/// Operands without equations: a leaf of each, and the meshes around them.
+pub(crate) struct Shells {
+    pub leaves: Buffer,
+    pub meshes: Buffer,
+    pub triangles: Buffer,
+    pub positions: Buffer,
+    /// Corners of the triangles of each mesh.
+    pub draws: Vec<Range<u32>>,
 }
 
 /// Triangles, where they are placed, and the draws that cover them.
@@ -83,6 +95,9 @@ impl Scene {
                         leaves: persistent(&mut uploads, cmd, "solid leaves", &data.solids.leaves)?,
                         leaf_surfaces: persistent(&mut uploads, cmd, "solid sides", &data.solids.leaf_surfaces)?,
                         surfaces: persistent(&mut uploads, cmd, "solid surfaces", &data.solids.surfaces)?,
+                        shells: (!data.solids.shell_leaves.is_empty())
+                            .then(|| shells(&mut uploads, cmd, &data.solids))
+                            .transpose()?,
                     })
                 })
                 .transpose()?,
@@ -104,6 +119,16 @@ impl Scene {
         uploads.finish(cmd, Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ);
         Ok((scene, uploads))
     }
+}
+
+fn shells(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SolidData) -> Result<Shells, GpuError> {
+    Ok(Shells {
+        leaves: persistent(uploads, cmd, "operand leaves", &data.shell_leaves)?,
+        meshes: persistent(uploads, cmd, "operand meshes", &data.operand_meshes)?,
+        triangles: persistent(uploads, cmd, "operand triangles", &data.operand_triangles)?,
+        positions: persistent(uploads, cmd, "operand positions", &data.operand_positions)?,
+        draws: data.operand_draws.clone(),
+    })
 }
 
 fn persistent<T: Pod>(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &[T]) -> Result<Buffer, GpuError> {

@@ -10,6 +10,7 @@ mod errors;
 mod every_shape;
 mod meshes;
 mod objects;
+mod operands;
 mod room;
 mod samples;
 #[path = "../shapes/mod.rs"]

@@ -4,12 +4,9 @@ use crate::shapes::{self, solids};
 use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched};
 use glam::{DAffine3, DVec3};
 use selvedge::csg::Op;
-use selvedge::headless::{HeadlessError, HeadlessRenderer};
-use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Shape, Solid};
-use selvedge::picture::{FrameSettings, Outputs};
+use selvedge::headless::HeadlessRenderer;
+use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Solid};
 use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
-use selvedge::renderer::{RenderError, UndrawnSolid};
-use std::sync::Arc;
 
 const SIZE: (u32, u32) = (240, 160);
 /// Single precision of a root on a tube a twentieth of its ring, grazed at a cosine of 0.1: a place off by
@@ -39,12 +36,17 @@ fn few_ties(j: &Judgement) -> bool {
 }
 
 fn all_right(cases: Vec<solids::Named>, blank: bool) {
+    right_at(SIZE, cases, blank);
+}
+
+/// Every pixel of pictures of this size is right, from two eyes.
+pub fn right_at(size: (u32, u32), cases: Vec<solids::Named>, blank: bool) {
     let mut renderer = watched(&Model::default());
     let mut wrong = Vec::new();
     for (name, model) in &cases {
         renderer.upload(model).unwrap();
         let tracer = Tracer::new(model);
-        for (view, camera) in [("perspective", perspective(model, SIZE)), ("parallel", orthographic(model, SIZE))] {
+        for (view, camera) in [("perspective", perspective(model, size)), ("parallel", orthographic(model, size))] {
             let fault = faults(&mut renderer, &tracer, &camera, blank);
             wrong.extend(fault.map(|f| format!("{name}, {view}: {f}")));
         }
@@ -176,24 +178,4 @@ fn solids_among_patches_and_meshes() {
         ("solids and shells before meshes", through(shapes::floor())),
     ];
     all_right(cases, false);
-}
-
-/// Operands without equations are told of, by solid and primitive.
-#[test]
-fn an_operand_that_is_not_drawn_is_an_error() {
-    let mesh = Shape::Mesh(Arc::new(shapes::torus_mesh(8)));
-    let part = Shape::Part(Arc::new(shapes::sphere().parts.remove(0)));
-    for (shape, kind) in [(mesh, "mesh"), (part, "spline solid")] {
-        let mut model = solids::solid("A", vec![solids::ball(1.0, 0.0)]);
-        let operand = solids::primitive(shape, DAffine3::IDENTITY);
-        model.solids.extend(solids::solid("A-B", vec![solids::ball(1.0, 0.0), operand]).solids);
-        let mut renderer = watched(&Model::default());
-        let error = renderer.upload(&model).unwrap_err();
-        let expected = UndrawnSolid::Operand { solid: 1, primitive: 1, kind };
-        let HeadlessError::Render(RenderError::Solid(found)) = &error else { panic!("{error}") };
-        assert_eq!((found, error.to_string().contains(kind)), (&expected, true));
-        // what was there before is drawn on
-        renderer.render(&perspective(&Model::default(), SIZE), &FrameSettings::default(), Outputs::default()).unwrap();
-        assert_silent(renderer);
-    }
 }
