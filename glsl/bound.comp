@@ -23,10 +23,12 @@ void main() {
     uint item = gl_GlobalInvocationID.x;
     if (item >= frame.item_count) return;
     FaceInstance fi = face_instances[item_face_instance[item]];
-    Patch patch_ = patches[faces[fi.face].first_patch + item - fi.first_item];
+    Face face = faces[fi.face];
+    Patch patch_ = patches[face.first_patch + item - fi.first_item];
     taus[item] = 0u;
     if (side_of(patch_.shape) == SIDE_OUTSIDE) return;
-    float w = visible_w(views[fi.instance], frame, patch_.box_min, patch_.box_max, frame.ring_px + 1.0);
+    float far = far_of(face, frame);
+    float w = visible_w(views[fi.instance], frame, patch_.box_min, patch_.box_max, frame.ring_px + 1.0, far);
     if (w < 0.0) return;
     float pixels = pixels_per_unit(frame, instances[fi.instance], w);
     vec2 tau = factors(patch_.bend, 8.0 * frame.deviation_px / pixels);

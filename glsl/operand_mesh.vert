@@ -16,10 +16,6 @@ layout(scalar, binding = 4) readonly buffer Positions { vec3 positions[]; };
 layout(location = 0) flat out uvec3 crossed; // shell, side, mirrored
 layout(location = 1) flat out vec2 range;    // of the corners' depths
 
-// In a parallel view depth runs on beyond the far plane, to this many times its distance from the near
-// one.
-const float RUN = 16.0;
-
 void main() {
     OperandMesh mesh = operand_meshes[gl_InstanceIndex];
     View view = views[mesh.instance];
@@ -27,9 +23,7 @@ void main() {
     uint first = corner - corner % 3u;
     vec3 depths;
     for (uint k = 0u; k < 3u; ++k) depths[k] = row_times(view.depth, vec4(positions[triangles[first + k]], 1.0));
-    vec4 q = to_pixel(view, vec4(positions[triangles[corner]], 1.0));
-    float z = frame.perspective != 0u ? frame.near : 1.0 - (q.z - frame.near) / (RUN * (frame.far - frame.near));
-    gl_Position = vec4(q.xy * 2.0 / frame.size - q.w, z, q.w);
+    gl_Position = to_clip_unending(frame, to_pixel(view, vec4(positions[triangles[corner]], 1.0)));
     crossed = uvec3(mesh.shell, mesh.first_side + first / 3u - mesh.first_triangle, mesh.mirrored);
     range = vec2(min(depths.x, min(depths.y, depths.z)), max(depths.x, max(depths.y, depths.z)));
 }

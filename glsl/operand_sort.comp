@@ -12,6 +12,9 @@
 //                 E? L          ray slips through a gap (`mended`), else it is left out
 //           E  E  L             the second E, the reverse; at the end, too
 //
+//           L  E  E  L          no ring helps, but it is left as often as entered: as for a mesh. Near a
+//                               silhouette two fragments may have changed places
+//
 //   Entries without an exit stay, exits without an entry go: both are `unpaired`, unless the camera's depth
 //   range cuts the shell.
 #include "scene.glsl"
@@ -27,8 +30,6 @@ layout(scalar, binding = 4) readonly buffer FragmentStarts { uint fragment_start
 layout(scalar, binding = 5) buffer FragmentCounts { uint fragment_counts[]; };
 layout(scalar, binding = 6) buffer Fragments { Fragment fragments[]; };
 layout(scalar, binding = 7) buffer CountersBuffer { Counters counters; };
-
-const uint NONE = 0xffffffffu;
 
 // A total order: two that are equal are the same.
 bool before(Fragment a, Fragment b) {
@@ -68,6 +69,78 @@ uint cuts(uint shell) {
     return (middle - reach < frame.near ? 1u : 0u) | (middle + reach > frame.far ? 2u : 0u);
 }
 
+// What is kept of the shell at hand, from place `kept` on.
+uint kept;
+
+void keep(Fragment f, uint bits) {
+    f.shell = f.shell & ~(FRAGMENT_RING | FRAGMENT_LEAVES) | bits;
+    fragments[kept] = f;
+    ++kept;
+}
+
+// By how often the ray is within, from `number` on; returns whether that ends with 0.
+bool by_winding(uint from, uint end, int number, uint start) {
+    bool within = number != 0; // before the fragments of one depth
+    Fragment owner;            // the last of them that turned the right way
+    bool any = false;
+    float depth = 0.0;
+    for (uint i = from; i <= end; ++i) {
+        Fragment f;
+        bool more = i < end;
+        if (more) f = fragments[i];
+        if (more && (f.shell & FRAGMENT_RING) != 0u) continue;
+        if (any && (!more || f.depth != depth)) {
+            bool now = number != 0;
+            if (now != within) keep(owner, start | (now ? 0u : FRAGMENT_LEAVES));
+            within = now;
+        }
+        if (!more) break;
+        number += (f.shell & FRAGMENT_LEAVES) != 0u ? -1 : 1;
+        if ((number != 0) != within) owner = f;
+        any = true;
+        depth = f.depth;
+    }
+    return number == 0;
+}
+
+// Entering and leaving in turn, mended by rings; returns whether they do. Keeps nothing unless it `writes`.
+bool in_turn(uint from, uint end, bool within, uint start, bool writes) {
+    Fragment ring[2]; // the first of a ring since the last that was kept: entering, leaving
+    bool has_ring[2] = bool[](false, false);
+    bool lost = false;
+    for (uint i = from; i < end; ++i) {
+        Fragment f = fragments[i];
+        uint kind = (f.shell & FRAGMENT_LEAVES) != 0u ? 1u : 0u;
+        if ((f.shell & FRAGMENT_RING) != 0u) {
+            if (!has_ring[kind]) ring[kind] = f;
+            has_ring[kind] = true;
+            continue;
+        }
+        if ((kind == 1u) != within) {
+            // one is missing between: of the other kind
+            if (!has_ring[1u - kind]) {
+                lost = lost || kind == 1u;
+                continue;
+            }
+            if (writes) {
+                keep(ring[1u - kind], start | (kind == 1u ? 0u : FRAGMENT_LEAVES));
+                atomicAdd(counters.mended, 1u);
+            }
+        }
+        within = kind == 0u;
+        has_ring = bool[](false, false);
+        if (writes) keep(f, start | (f.shell & FRAGMENT_LEAVES));
+    }
+    if (within && has_ring[1]) {
+        if (writes) {
+            keep(ring[1], start | FRAGMENT_LEAVES);
+            atomicAdd(counters.mended, 1u);
+        }
+        within = false;
+    }
+    return !within && !lost;
+}
+
 void main() {
     uvec2 at = gl_GlobalInvocationID.xy;
     uvec2 size = uvec2(frame.size);
@@ -82,100 +155,38 @@ void main() {
     if (end > frame.fragment_capacity) end = first; // the frame is recorded again
     sort(first, end - first);
 
-    uint kept = first;
-    uint shell = NONE;
-    bool patches = false;
-    uint cut = 0u;
-    int number = 0;          // of a mesh: how often the ray is within
-    bool group_within = false; // before the fragments of one depth
-    Fragment owner;
-    bool within = false;     // of faces
-    bool lost = false;
-    uint start = 0u;
-    Fragment ring[2];        // the first ring's fragments since the last that was kept: entering, leaving
-    bool has_ring[2] = bool[](false, false);
-    for (uint i = first; i <= end; ++i) {
-        bool more = i < end;
-        Fragment f;
-        if (more) f = fragments[i];
-        bool next_shell = !more || (f.shell & FRAGMENT_SHELL) != shell;
-        if (next_shell && shell != NONE) {
-            // the shell before ends
-            if (patches && within && has_ring[1]) {
-                ring[1].shell = ring[1].shell & ~FRAGMENT_RING | start;
-                fragments[kept] = ring[1];
-                ++kept;
-                within = false;
-                atomicAdd(counters.mended, 1u);
-            }
-            bool open = lost || (patches ? within : number != 0);
-            if (open && (cut & 2u) == 0u) atomicAdd(counters.unpaired, 1u);
+    kept = first;
+    uint from = first;
+    while (from < end) {
+        uint shell = fragments[from].shell & FRAGMENT_SHELL;
+        bool patches = (fragments[from].shell & FRAGMENT_PATCH) != 0u;
+        int sum = 0; // how much oftener it is left than entered
+        bool leaves_first = false;
+        bool any = false;
+        uint stop = from;
+        for (; stop < end; ++stop) {
+            uint word = fragments[stop].shell;
+            if ((word & FRAGMENT_SHELL) != shell) break;
+            if ((word & FRAGMENT_RING) != 0u) continue;
+            bool leaves_ = (word & FRAGMENT_LEAVES) != 0u;
+            sum += leaves_ ? 1 : -1;
+            if (!any) leaves_first = leaves_;
+            any = true;
         }
-        if (!more) break;
-        bool leaves_ = (f.shell & FRAGMENT_LEAVES) != 0u;
-        if (next_shell) {
-            shell = f.shell & FRAGMENT_SHELL;
-            patches = (f.shell & FRAGMENT_PATCH) != 0u;
-            cut = cuts(shell);
-            number = 0;
-            lost = false;
-            within = false;
-            has_ring = bool[](false, false);
-            if ((cut & 1u) != 0u) {
-                int sum = 0;
-                bool found = false;
-                for (uint k = i; k < end && (fragments[k].shell & FRAGMENT_SHELL) == shell; ++k) {
-                    bool exits = (fragments[k].shell & FRAGMENT_LEAVES) != 0u;
-                    sum += exits ? 1 : -1;
-                    if (!found && (fragments[k].shell & FRAGMENT_RING) == 0u) {
-                        within = exits;
-                        found = true;
-                    }
-                }
-                if (!patches) number = sum;
-            }
-            bool starts_within = patches ? within : number != 0;
-            start = starts_within ? FRAGMENT_WITHIN : 0u;
-            group_within = starts_within;
-        }
-        if (patches) {
-            uint kind = leaves_ ? 1u : 0u;
-            if ((f.shell & FRAGMENT_RING) != 0u) {
-                if (!has_ring[kind]) ring[kind] = f;
-                has_ring[kind] = true;
-                continue;
-            }
-            if (leaves_ != within) {
-                // one is missing between: of the other kind
-                uint wanted = 1u - kind;
-                if (!has_ring[wanted]) {
-                    lost = lost || leaves_;
-                    continue;
-                }
-                Fragment mend = ring[wanted];
-                mend.shell = mend.shell & ~FRAGMENT_RING | start;
-                fragments[kept] = mend;
-                ++kept;
-                atomicAdd(counters.mended, 1u);
-            }
-            within = !leaves_;
-            has_ring = bool[](false, false);
-            f.shell |= start;
-            fragments[kept] = f;
-            ++kept;
-        } else {
-            number += leaves_ ? -1 : 1;
-            bool now = number != 0;
-            if (now != group_within) owner = f;
-            bool last = i + 1u >= end || (fragments[i + 1u].shell & FRAGMENT_SHELL) != shell ||
-                        fragments[i + 1u].depth != f.depth;
-            if (last && now != group_within) {
-                owner.shell = shell | start | (now ? 0u : FRAGMENT_LEAVES);
-                fragments[kept] = owner;
-                ++kept;
-            }
-            if (last) group_within = now;
-        }
+        uint cut = cuts(shell);
+        int number = (cut & 1u) != 0u ? sum : 0;
+        bool within = (cut & 1u) != 0u && leaves_first;
+        bool turns = patches;
+        if (patches && sum == number) turns = in_turn(from, stop, within, 0u, false);
+        bool starts_within = turns ? within : number != 0;
+        uint start = starts_within ? FRAGMENT_WITHIN : 0u;
+        bool closed;
+        if (turns) closed = in_turn(from, stop, within, start, true);
+        else closed = by_winding(from, stop, number, start);
+        if (!closed && (cut & 2u) == 0u) atomicAdd(counters.unpaired, 1u);
+        from = stop;
     }
+    // a driver that ends long loops is told of
+    if (from != end) atomicAdd(counters.clamps, 1u);
     fragment_counts[pixel] = kept - first;
 }

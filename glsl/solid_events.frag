@@ -35,6 +35,8 @@ layout(scalar, binding = 8) readonly buffer FragmentStarts { uint fragment_start
 layout(scalar, binding = 9) readonly buffer FragmentCounts { uint fragment_counts[]; };
 layout(scalar, binding = 10) readonly buffer Fragments { Fragment fragments[]; };
 
+layout(scalar, binding = 11) buffer CountersBuffer { Counters counters; };
+
 // Whether some leaf is a shell: compiled in only then.
 layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
 
@@ -121,13 +123,19 @@ void main() {
     // four events a leaf, at most as many questions about owners, and one about the side
     uint most = 8u * (end - first) + 2u * fragment_count + 4u;
     bool done = false;
+    bool passed = false; // the far plane
+    // a driver that ends long loops is found by what is missing
+    uint wanted = 0u;
+    uint steps = 0u;
     for (uint scan = 0u; scan < most && !done; ++scan) {
         uint at = entry;
         uint at_before = entry; // the walk in front of t
         float next = NEVER;
         Candidates found = Candidates(NOBODY, NOBODY);
         uint candidates = 0u;
+        wanted += end - first;
         for (uint i = first; i < end; ++i) {
+            ++steps;
             TileLeaf here = tile_leaves[i];
             Leaf leaf = leaves[here.leaf];
             bool is_kept = i - first < KEPT;
@@ -200,11 +208,15 @@ void main() {
             negatives = found.positive == NOBODY;
             purpose = candidates > 1u ? OWNER : SIDE;
         } else {
-            if (next >= frame.far) break;
+            if (next >= frame.far) {
+                passed = true;
+                break;
+            }
             before = inside;
             t = next;
         }
     }
+    if (steps != wanted || !(done || passed)) atomicAdd(counters.clamps, 1u);
     if (!done) discard;
     visible = uvec2(word | side, floatBitsToUint(t));
     gl_FragDepth = reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0);

@@ -32,7 +32,7 @@ layout(location = 5) patch out uvec4 out_edges; // segments of the patch's sides
 
 // A split patch reaches far beyond the picture: leave out the sub-patches that nobody sees. Every
 // point of one lies within `bend / 8 n^2` of the bilinear surface through its corners.
-bool seen(Patch patch_, View view, vec2 lo, vec2 hi) {
+bool seen(Patch patch_, View view, vec2 lo, vec2 hi, float far) {
     vec3 a = patch_jet(patch_.first, patch_.shape, lo).point;
     vec3 b = patch_jet(patch_.first, patch_.shape, hi).point;
     vec3 c = patch_jet(patch_.first, patch_.shape, vec2(lo.x, hi.y)).point;
@@ -42,7 +42,7 @@ bool seen(Patch patch_, View view, vec2 lo, vec2 hi) {
                  patch_.bend.z * size.y * size.y) / 8.0;
     vec3 low = min(min(a, b), min(c, d)) - off;
     vec3 high = max(max(a, b), max(c, d)) + off;
-    return visible_w(view, frame, low, high, frame.ring_px + 1.0) >= 0.0;
+    return visible_w(view, frame, low, high, frame.ring_px + 1.0, far) >= 0.0;
 }
 
 void main() {
@@ -71,7 +71,7 @@ void main() {
     if (splits != uvec2(1u)) {
         vec2 lo = vec2(place) / vec2(splits);
         vec2 hi = vec2(place + 1u) / vec2(splits);
-        if (!seen(patches[index], views[fi.instance], lo, hi)) outer = uvec4(0u);
+        if (!seen(patches[index], views[fi.instance], lo, hi, far_of(faces[fi.face], frame))) outer = uvec4(0u);
     }
     gl_TessLevelOuter[0] = float(outer.x);
     gl_TessLevelOuter[1] = float(outer.y);

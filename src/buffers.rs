@@ -299,11 +299,7 @@ impl Buffers {
                                 Ok(FragmentBuffers {
                                     counts: words("operand fragment counts", pixels)?,
                                     starts: words("operand fragment starts", pixels + 1)?,
-                                    all: structs(
-                                        "operand fragments",
-                                        capacities.fragments,
-                                        size_of::<Fragment>(),
-                                    )?,
+                                    all: structs("operand fragments", capacities.fragments, size_of::<Fragment>())?,
                                 })
                             })
                             .transpose()?,

@@ -68,8 +68,9 @@ pub struct FrameStats {
     pub trim_rows: u64,
     /// u-intercepts stored in the trim table.
     pub trim_intercepts: u64,
-    /// Patches whose tessellation factor would have exceeded the largest split: the promise is not
-    /// kept there. 0 in a good frame.
+    /// Patches whose tessellation factor would have exceeded the largest split, and rays through Boolean
+    /// solids that need more steps than the driver lets a shader make: the promise is not kept there. 0 in a
+    /// good frame.
     pub clamps: u64,
     /// Crossings of rays with operands of Boolean solids that are meshes or spline parts.
     pub fragments: u64,

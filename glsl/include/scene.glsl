@@ -183,6 +183,9 @@ const uint MAX_FACTOR = 64u;   // the hardware's tessellation factor
 const uint MAX_SPLIT = 64u;    // sub-patches along one side
 const uint MAX_ROWS = 65536u;  // scan lines of one strip
 
+// A ray's way through an operand is told by all of its faces: they do not end at the far plane.
+float far_of(Face face, Frame frame) { return (face.flags & FACE_OPERAND) != 0u ? 3.0e38 : frame.far; }
+
 uint degree_u(uint shape) { return shape & 15u; }
 uint degree_v(uint shape) { return (shape >> 4) & 15u; }
 bool is_rational(uint shape) { return ((shape >> 8) & 1u) != 0u; }

@@ -34,9 +34,18 @@ vec4 to_clip(Frame frame, vec4 q) {
     return vec4(q.xy * 2.0 / frame.size - q.w, reversed_depth(frame, q.z), q.w);
 }
 
+// In a parallel view depth runs on beyond the far plane, to this many times its distance from the near one.
+const float RUN = 16.0;
+
+// The same where nothing is cut off at the far plane.
+vec4 to_clip_unending(Frame frame, vec4 q) {
+    float z = frame.perspective != 0u ? frame.near : 1.0 - (q.z - frame.near) / (RUN * (frame.far - frame.near));
+    return vec4(q.xy * 2.0 / frame.size - q.w, z, q.w);
+}
+
 // The smallest W of the box in front of the near plane, or a negative number when no part of the
-// box can be seen. `margin` widens the picture, in pixels.
-float visible_w(View view, Frame frame, vec3 lo, vec3 hi, float margin) {
+// box can be seen. `margin` widens the picture, in pixels; `far` is the far plane's depth.
+float visible_w(View view, Frame frame, vec3 lo, vec3 hi, float margin, float far) {
     float w_min = 3.0e38;
     uint outside = 63u;
     for (uint i = 0u; i < 8u; ++i) {
@@ -51,7 +60,7 @@ float visible_w(View view, Frame frame, vec3 lo, vec3 hi, float margin) {
         here |= low.y < 0.0 ? 4u : 0u;
         here |= high.y > 0.0 ? 8u : 0u;
         here |= q.z < frame.near ? 16u : 0u;
-        here |= q.z > frame.far ? 32u : 0u;
+        here |= q.z > far ? 32u : 0u;
         outside &= here;
     }
     if (outside != 0u) return -1.0;

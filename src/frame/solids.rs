@@ -38,7 +38,8 @@ impl SolidPasses {
         let Some(tori) = data.solids.kinds() else { return Ok(None) };
         let shells = !data.solids.shell_leaves.is_empty();
         let meshes = !data.solids.operand_draws.is_empty();
-        let patches = |()| operand_patch::OperandPatch::new(device, data.has_rational, data.has_plain, data.has_trimmed);
+        let patches =
+            |()| operand_patch::OperandPatch::new(device, data.has_rational, data.has_plain, data.has_trimmed);
         let shell_passes = |()| {
             Ok(ShellPasses {
                 meshes: meshes.then(|| operand_mesh::OperandMesh::new(device)).transpose()?,
@@ -159,6 +160,7 @@ impl<'a> Frame<'a> {
                 counts: &f.counts,
                 all: &f.all,
             }),
+            counters: &self.buffers.counters,
         };
         let b = self.buffers;
         let seen = b.others.as_ref().unwrap_or(&b.visibility);
@@ -166,7 +168,9 @@ impl<'a> Frame<'a> {
         let drawn = self.scene.meshes.is_some();
         let colour = Attachment { image: seen, load: if drawn { Load::Keep } else { Load::ColourU32([0; 4]) } };
         let depth = Attachment { image: &b.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
+        barrier::buffers(cmd, &[(&b.counters, w, Access::FRAGMENT_WRITE)]);
         p.events.record(cmd, &events, (colour, depth));
+        barrier::buffers(cmd, &[(&b.counters, Access::FRAGMENT_WRITE, w)]);
         barrier::images(
             cmd,
             &[(seen, Access::COLOUR_WRITE, Access::COLOUR_WRITE), (&b.depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],
@@ -232,22 +236,13 @@ impl Frame<'_> {
         };
         let (w, r) = WRITE_TO_READ;
         let drawn = Access::FRAGMENT_WRITE;
-        barrier::buffers(
-            cmd,
-            &[(&f.counts, Access::TRANSFER_WRITE, drawn), (&b.counters, w, Access::INDIRECT_READ)],
-        );
+        barrier::buffers(cmd, &[(&f.counts, Access::TRANSFER_WRITE, drawn), (&b.counters, w, Access::INDIRECT_READ)]);
         rastered(false);
-        barrier::buffers(
-            cmd,
-            &[(&f.counts, drawn, r), (&f.starts, Access::FRAGMENT_READ, w), (&f.all, drawn, drawn)],
-        );
+        barrier::buffers(cmd, &[(&f.counts, drawn, r), (&f.starts, Access::FRAGMENT_READ, w), (&f.all, drawn, drawn)]);
         self.scan(cmd, &f.counts, &f.starts, size.0 * size.1);
         barrier::buffers(cmd, &[(&f.counts, r, drawn), (&f.starts, w, Access::FRAGMENT_READ | r)]);
         rastered(true);
-        barrier::buffers(
-            cmd,
-            &[(&f.counts, drawn, w), (&f.all, drawn, w), (&b.counters, Access::INDIRECT_READ, w)],
-        );
+        barrier::buffers(cmd, &[(&f.counts, drawn, w), (&f.all, drawn, w), (&b.counters, Access::INDIRECT_READ, w)]);
         let sort = operand_sort::Bindings {
             frame: self.constants,
             leaves: &parts.scene.leaves,

@@ -35,13 +35,13 @@ mod harness;
 #[cfg(feature = "headless")]
 mod lines;
 #[cfg(feature = "headless")]
+mod operand_sort;
+#[cfg(feature = "headless")]
 mod reset;
 #[cfg(feature = "headless")]
 mod segments;
 #[cfg(feature = "headless")]
 mod sizes;
-#[cfg(feature = "headless")]
-mod operand_sort;
 #[cfg(feature = "headless")]
 mod solid_lists;
 #[cfg(feature = "headless")]

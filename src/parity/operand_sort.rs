@@ -33,7 +33,12 @@ fn case(random: &mut Random, most: u32) -> Case {
             }
             // few depths, so that some are equal
             let depth = 1.0 + random.integer(0, 40) as f32;
-            fragments.push(Fragment { shell: shell | bits, depth, what: random.integer(0, 9), uv: random.integer(0, 9) });
+            fragments.push(Fragment {
+                shell: shell | bits,
+                depth,
+                what: random.integer(0, 9),
+                uv: random.integer(0, 9),
+            });
         }
         starts.push(fragments.len() as u32);
     }
@@ -134,4 +139,6 @@ fn gaps_are_mended_by_rings_alone() {
     // two faces that overlap at their border
     assert_eq!(one(&[enter(2.0), enter(2.1), leave(4.0)]), (vec![2.0, 4.0], 0, 0));
     assert_eq!(one(&[ring_in(2.0), ring_out(3.0)]), (vec![], 0, 0));
+    // near a silhouette, two changed places
+    assert_eq!(one(&[leave(1.0), enter(1.01), enter(3.0), leave(4.0)]), (vec![1.0, 1.01, 3.0, 4.0], 0, 0));
 }

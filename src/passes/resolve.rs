@@ -199,7 +199,8 @@ impl Resolve {
                 cmd.bind(pipeline, &resources, &[]);
                 cmd.draw(3, 0, 1);
                 if let (Some(pipeline), Some(fragments)) = (&self.operands, s.fragments) {
-                    let resources: Vec<_> = buffers.into_iter().chain(rest).chain([s.others.into(), fragments.into()]).collect();
+                    let resources: Vec<_> =
+                        buffers.into_iter().chain(rest).chain([s.others.into(), fragments.into()]).collect();
                     cmd.bind(pipeline, &resources, &[]);
                     cmd.draw(3, 0, 1);
                 }

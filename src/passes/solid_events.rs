@@ -36,6 +36,8 @@ pub(crate) struct Bindings<'a> {
     pub tile_entries: &'a Buffer,
     /// Where rays cross operands without equations; `None` where there are none.
     pub fragments: Option<Fragments<'a>>,
+    /// `clamps`: rays that a driver did not let come to their end.
+    pub counters: &'a Buffer,
 }
 
 /// Of each pixel, sorted.
@@ -62,7 +64,7 @@ impl SolidEvents {
                     (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
                     (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_EVENTS_FRAG),
                 ],
-                bindings: &[Binding::Storage; 11],
+                bindings: &[Binding::Storage; 12],
                 push_bytes: 0,
                 constants: &[(SOLIDS_HAVE_TORI, u32::from(tori)), (SOLIDS_HAVE_SHELLS, u32::from(shells))],
                 topology: vk::PrimitiveTopology::TRIANGLE_LIST,
@@ -89,7 +91,8 @@ impl SolidEvents {
         let none = Fragments { starts: b.frame, counts: b.frame, all: b.frame };
         let f = b.fragments.as_ref().unwrap_or(&none);
         let fragments = [f.starts, f.counts, f.all];
-        let resources: Vec<_> = solid.into_iter().chain(tiles).chain(fragments).map(Into::into).collect();
+        let resources: Vec<_> =
+            solid.into_iter().chain(tiles).chain(fragments).chain([b.counters]).map(Into::into).collect();
         cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
             cmd.bind(&self.pipeline, &resources, &[]);
             cmd.draw(3, 0, 1);

@@ -5,7 +5,7 @@
 //! ```
 
 use super::Scene;
-use super::view::{pixels_per_unit, visible_w};
+use super::view::{far_of, pixels_per_unit, visible_w};
 use crate::abi::Frame;
 
 /// What the pass writes.
@@ -29,7 +29,8 @@ pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
         let face = scene.faces[placed.face as usize];
         let cell = scene.cells[face.first_cell as usize + item - placed.first_cell as usize];
         let view = &scene.views[placed.instance as usize];
-        let Some(w) = visible_w(view, frame, cell.box_min, cell.box_max, frame.ring_px + 1.0) else { continue };
+        let (margin, far) = (frame.ring_px + 1.0, far_of(&face, frame));
+        let Some(w) = visible_w(view, frame, cell.box_min, cell.box_max, margin, far) else { continue };
         let pixels = pixels_per_unit(frame, &scene.instances[placed.instance as usize], w);
         let height = &mut out.strip_heights[(placed.first_strip + cell.strip) as usize];
         // a visible strip gets a scan line, however flat it is seen

@@ -6,12 +6,11 @@
 //!           E  ·     ·  L       not 0
 //!
 //!   faces   E  ·  L  L          the second L wants an entry: a ring's fragment E between the two, where the
-//!                 E? L          ray slips through a gap, else it is left out
+//!                 E? L          ray slips through a gap, else it is left out; but where it is left as often
+//!                               as entered, as for a mesh
 //! ```
 
-use crate::abi::{
-    Counters, FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_RING, FRAGMENT_WITHIN, Fragment, Frame, Leaf,
-};
+use crate::abi::{Counters, FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_RING, FRAGMENT_WITHIN, Fragment, Frame, Leaf};
 
 const FLAGS: u32 = FRAGMENT_LEAVES | FRAGMENT_RING | FRAGMENT_PATCH | FRAGMENT_WITHIN;
 const FAILED_FRAGMENTS: u32 = 128;
@@ -51,12 +50,19 @@ pub fn operand_sort(
         let mut kept = Vec::with_capacity(here.len());
         for of_one in here.chunk_by(|a, b| shell_of(a) == shell_of(b)) {
             let cuts = cuts(frame, shells, shell_of(&of_one[0]));
+            let real: Vec<Fragment> = of_one.iter().filter(|f| f.shell & FRAGMENT_RING == 0).copied().collect();
+            let sum: i32 = real.iter().map(|f| if leaves(f) { 1 } else { -1 }).sum();
+            let number = if cuts.0 { sum } else { 0 };
+            let before = kept.len();
+            let mended = counters.mended;
             let patches = of_one[0].shell & FRAGMENT_PATCH != 0;
-            let closed = if patches {
-                in_turn(of_one, cuts.0, &mut kept, counters)
-            } else {
-                by_winding(of_one, cuts.0, &mut kept)
-            };
+            let mut closed = patches && in_turn(of_one, cuts.0, &mut kept, counters);
+            if !patches || (!closed && sum == number) {
+                // what was tried goes
+                kept.truncate(before);
+                counters.mended = mended;
+                closed = by_winding(&real, number, &mut kept);
+            }
             counters.unpaired += u32::from(!closed && !cuts.1);
         }
         here[..kept.len()].copy_from_slice(&kept);
@@ -82,23 +88,22 @@ fn cuts(frame: &Frame, shells: Shells<'_>, shell: u32) -> (bool, bool) {
     (middle - reach < frame.near, middle + reach > frame.far)
 }
 
-/// Of a mesh; returns whether the ray ends outside.
-fn by_winding(all: &[Fragment], cut: bool, kept: &mut Vec<Fragment>) -> bool {
-    let turn = |f: &Fragment| if leaves(f) { -1 } else { 1 };
-    let mut number: i32 = if cut { -all.iter().map(turn).sum::<i32>() } else { 0 };
+/// By how often the ray is within, from `number` on; returns whether that ends with 0.
+fn by_winding(all: &[Fragment], mut number: i32, kept: &mut Vec<Fragment>) -> bool {
     let start = if number != 0 { FRAGMENT_WITHIN } else { 0 };
     for group in all.chunk_by(|a, b| a.depth == b.depth) {
         let before = number != 0;
         let mut owner = group[0];
         for f in group {
-            number += turn(f);
+            number += if leaves(f) { -1 } else { 1 };
             if (number != 0) != before {
                 owner = *f;
             }
         }
         if (number != 0) != before {
             let side = if before { FRAGMENT_LEAVES } else { 0 };
-            kept.push(Fragment { shell: shell_of(&owner) | start | side, ..owner });
+            let shell = owner.shell & !FRAGMENT_LEAVES | start | side;
+            kept.push(Fragment { shell, ..owner });
         }
     }
     number == 0

@@ -8,7 +8,7 @@
 //!
 //! The planes are linear in `(X, Y, D, W)`, so the test also holds for corners behind the eye.
 
-use crate::abi::{Frame, Instance, View};
+use crate::abi::{FACE_OPERAND, Face, Frame, Instance, View};
 
 fn row_times(row: [f32; 4], p: [f32; 4]) -> f32 {
     row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3] * p[3]
@@ -20,10 +20,10 @@ pub fn to_pixel(view: &View, p: [f32; 4]) -> [f32; 4] {
 }
 
 /// The smallest `W` of the box `lo..hi` (part coordinates) in front of the near plane: 1 in a parallel
-/// view. `None` when no part of the box can be seen in the picture widened by `margin` pixels.
+/// view. `None` when no part of the box can be seen in the picture widened by `margin` pixels, in front of `far`.
 ///
 /// Conservative: a box that passes may still be out of sight, near a corner of the picture.
-pub fn visible_w(view: &View, frame: &Frame, lo: [f32; 3], hi: [f32; 3], margin: f32) -> Option<f32> {
+pub fn visible_w(view: &View, frame: &Frame, lo: [f32; 3], hi: [f32; 3], margin: f32, far: f32) -> Option<f32> {
     let mut w_min = 3.0e38f32;
     let mut outside = 63u32;
     for corner in 0..8u32 {
@@ -36,7 +36,7 @@ pub fn visible_w(view: &View, frame: &Frame, lo: [f32; 3], hi: [f32; 3], margin:
             y + margin * w < 0.0,
             y - (frame.size[1] + margin) * w > 0.0,
             depth < frame.near,
-            depth > frame.far,
+            depth > far,
         ];
         outside &= planes.iter().enumerate().fold(0, |bits, (i, &beyond)| bits | u32::from(beyond) << i);
     }
@@ -46,4 +46,9 @@ pub fn visible_w(view: &View, frame: &Frame, lo: [f32; 3], hi: [f32; 3], margin:
 /// Pixels that one part unit can cover at homogeneous weight `w`; derived in [`factor`](super::factor).
 pub fn pixels_per_unit(frame: &Frame, instance: &Instance, w: f32) -> f32 {
     frame.focal * frame.slant * instance.scale / w
+}
+
+/// Depth beyond which a face is not seen: those of operands tell a ray's way to the end.
+pub fn far_of(face: &Face, frame: &Frame) -> f32 {
+    if face.flags & FACE_OPERAND != 0 { 3.0e38 } else { frame.far }
 }

@@ -93,6 +93,26 @@ fn many_primitives() {
     all_right(cases, false);
 }
 
+/// Holes that make a tile see more than 1024 leaves, and 10 001 of them: few pixels, whose truth takes long.
+#[test]
+fn thousands_of_primitives() {
+    right_at((48, 32), vec![("1024 holes", solids::holes(32)), ("10 000 holes", solids::holes(100))], false);
+}
+
+/// A ray that needs more steps than the driver allows is counted, not drawn wrongly in silence.
+#[test]
+fn rays_without_an_end_are_counted() {
+    let mut all: Vec<Primitive> = (0..1500).map(|i| solids::ball(0.5, f64::from(i) * 1e-4)).collect();
+    all.insert(0, solids::block([-1.0; 3], [2.0, 0.1, 1.0]));
+    let model = solids::folded(Op::Difference, all);
+    let camera = perspective(&model, (32, 24));
+    let mut renderer = watched(&model);
+    let picture = render(&mut renderer, &camera);
+    let j = judge(&Tracer::new(&model), &camera, &picture, &JudgeOptions::default());
+    assert!(j.wrong == 0 || picture.stats.clamps > 0, "{} wrong, {:?}", j.wrong, j.mismatches.first());
+    assert_silent(renderer);
+}
+
 /// The eye within a solid, within a hole, on a face, and the near plane through the middle.
 #[test]
 fn the_near_plane_cuts() {

@@ -44,8 +44,14 @@ pub fn meshes() -> Vec<Named> {
         }),
         // faces that coincide
         ("a mesh through a block", solid("A-B", vec![wide(), box_mesh([-1.0, -1.0, 0.0], [1.0, 1.0, 1.0])])),
-        ("a block through a mesh", solid("B-A", vec![block([-1.0, -1.0, 0.0], [1.0; 3]), box_mesh([-2.0, -2.0, 0.0], [2.0, 2.0, 1.0])])),
-        ("a mesh beside a block", solid("A+B", vec![block([0.0; 3], [1.0; 3]), box_mesh([1.0, 0.0, 0.0], [2.0, 1.0, 1.0])])),
+        (
+            "a block through a mesh",
+            solid("B-A", vec![block([-1.0, -1.0, 0.0], [1.0; 3]), box_mesh([-2.0, -2.0, 0.0], [2.0, 2.0, 1.0])]),
+        ),
+        (
+            "a mesh beside a block",
+            solid("A+B", vec![block([0.0; 3], [1.0; 3]), box_mesh([1.0, 0.0, 0.0], [2.0, 1.0, 1.0])]),
+        ),
         ("a mesh pocket", solid("A-B", vec![wide(), box_mesh([-1.0, -1.0, 0.5], [1.0, 1.0, 1.0])])),
         ("turned together", {
             let m = turned(0.3, 0.7, 1.1) * at(3.0, 2.0, 1.0);
@@ -53,7 +59,13 @@ pub fn meshes() -> Vec<Named> {
             solid("A-B+C", vec![moved(m, wide()), hole, moved(m, post(0.4, 0.0, 1.0))])
         }),
         // transforms
-        ("a mesh at 1e6", solid("A-B", vec![moved(at(1e6, -1e6, 1e6), mesh(ball_mesh(2))), moved(at(1e6, -1e6, 1e6), ball(0.7, 0.6))])),
+        (
+            "a mesh at 1e6",
+            solid(
+                "A-B",
+                vec![moved(at(1e6, -1e6, 1e6), mesh(ball_mesh(2))), moved(at(1e6, -1e6, 1e6), ball(0.7, 0.6))],
+            ),
+        ),
     ]
 }
 
@@ -63,13 +75,28 @@ pub fn splines() -> Vec<Named> {
     let c = CUBE_HALF;
     vec![
         ("a spline sphere", solid("A", vec![part(sphere())])),
-        ("a spline torus less a post", solid("A-B", vec![part(torus()), moved(at(3.0, 0.0, 0.0), post(0.6, -4.0, 8.0))])),
+        (
+            "a spline torus less a post",
+            solid("A-B", vec![part(torus()), moved(at(3.0, 0.0, 0.0), post(0.6, -4.0, 8.0))]),
+        ),
         ("a block less a spline torus", solid("B-A", vec![part(torus()), block([-4.0, -4.0, -4.0], [4.0, 0.0, 0.0])])),
         ("a trimmed cube", solid("A", vec![part(cube())])),
         ("a trimmed cube less a ball", solid("A-B", vec![part(cube()), ball(1.2 * c, c)])),
-        ("a ball less a trimmed cube", solid("B-A", vec![moved(turned(0.3, 0.5, 0.2), part(cube())), ball(1.5 * c, 0.3)])),
+        (
+            "a ball less a trimmed cube",
+            solid("B-A", vec![moved(turned(0.3, 0.5, 0.2), part(cube())), ball(1.5 * c, 0.3)]),
+        ),
         ("a trimmed cube in a sphere", solid("AB", vec![part(cube()), moved(at(0.2, 0.1, 0.3), part(sphere()))])),
-        ("a mirrored torus in a mesh", solid("B-A", vec![moved(DAffine3::from_mat3(squeezed), part(torus())), moved(DAffine3::from_scale(DVec3::splat(3.0)), mesh(ball_mesh(3)))])),
+        (
+            "a mirrored torus in a mesh",
+            solid(
+                "B-A",
+                vec![
+                    moved(DAffine3::from_mat3(squeezed), part(torus())),
+                    moved(DAffine3::from_scale(DVec3::splat(3.0)), mesh(ball_mesh(3))),
+                ],
+            ),
+        ),
         ("a spline torus and a ring", solid("A+B", vec![part(torus()), moved(turned(1.5, 0.0, 0.0), ring(3.0, 0.5))])),
     ]
 }
@@ -106,4 +133,25 @@ pub fn unclean() -> Vec<Named> {
         ("one that intersects itself", solid("A-B", vec![mesh(beside.unwrap()), cut()])),
         ("a T-junction", solid("A-B", vec![mesh(t_junction), moved(at(0.0, 0.0, 1.0), ball(0.6, 0.0))])),
     ]
+}
+
+/// A ball of triangles without some of them.
+pub fn open_mesh() -> Model {
+    let round = ball_mesh(2);
+    let triangles = round.triangles()[..round.triangles().len() - 6].to_vec();
+    let open = Mesh::new(1, round.positions().to_vec(), triangles, vec![]).unwrap();
+    solid("A+B", vec![mesh(open), ball(0.3, 2.0)])
+}
+
+/// A comb of `n` walls, one mesh: a ray along them crosses `2 n` triangles.
+pub fn comb(n: u32) -> Mesh {
+    let (mut positions, mut triangles) = (Vec::new(), Vec::new());
+    for i in 0..n {
+        let x = f64::from(i) / f64::from(n);
+        let wall = block_mesh(DVec3::new(x, 0.0, 0.0), DVec3::new(x + 0.5 / f64::from(n), 1.0, 1.0), 1);
+        let first = positions.len() as u32;
+        positions.extend_from_slice(wall.positions());
+        triangles.extend(wall.triangles().iter().map(|t| t.map(|v| first + v)));
+    }
+    Mesh::new(1, positions, triangles, vec![]).unwrap()
 }
