@@ -28,7 +28,8 @@ void main() {
     FaceInstance fi = face_instances[placed];
     Face face = faces[fi.face];
     Cell cell = cells[face.first_cell + item - fi.first_cell];
-    float w = visible_w(views[fi.instance], frame, cell.box_min, cell.box_max, frame.ring_px + 1.0, far_of(faces[fi.face], frame));
+    if (cell.speed_v < 0.0) return; // no loop meets its patch
+    float w = visible_w(views[fi.instance], frame, cell.box_min, cell.box_max, frame.ring_px + 1.0, far_of(face, frame));
     if (w < 0.0) return;
     float pixels = pixels_per_unit(frame, instances[fi.instance], w);
     // positive floats order like their bits

@@ -52,9 +52,6 @@ const uint SEARCH = 0u; // the next event
 const uint OWNER = 1u;  // does leaf `asked`, taken for what it is not, change the solid before or behind t?
 const uint SIDE = 2u;   // which side of leaf `asked` ends at t?
 
-// Of an empty span nothing ends.
-bool ends_at(Span s, float t) { return s.lo < s.hi && (s.lo == t || s.hi == t || s.g0 == t || s.g1 == t); }
-
 // What a scan wants to know of a leaf at depth t.
 struct Crossing {
     bool inside;   // just behind t

@@ -12,6 +12,7 @@ use crate::abi::{BLOCK, Counters, Factors, Fragment, Rect, SubPatch, TILE, TileL
 use crate::gpu::{Buffer, Device, GpuError, Image, ImageInfo, Pool};
 use crate::passes::scan;
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
+use crate::picture::TrimWay;
 use crate::scene::SceneData;
 use ash::vk;
 
@@ -31,7 +32,8 @@ pub(crate) struct Counts {
     /// Of leaves.
     pub sides: u32,
     pub mesh_instances: u32,
-    pub trimmed: bool,
+    /// How faces are trimmed, where some are.
+    pub trim: Option<TrimWay>,
 }
 
 impl Counts {
@@ -48,7 +50,7 @@ impl Counts {
             triangles: count(data.meshes.triangles.len().max(data.meshes.positions.len() / 3)),
             sides: count(data.solids.leaf_surfaces.len()),
             mesh_instances: count(data.meshes.instances.len()),
-            trimmed: data.has_trimmed,
+            trim: data.trim_way(),
         }
     }
 
@@ -122,12 +124,13 @@ const FAILED_DRAWS: u32 = 2;
 impl Capacities {
     /// A first guess that fits most scenes in full view.
     pub(crate) fn first(counts: Counts) -> Self {
-        let trimmed = u32::from(counts.trimmed);
+        let trimmed = u32::from(counts.trim.is_some());
+        let table = u32::from(counts.trim == Some(TrimWay::Table));
         Self {
             sub_patches: counts.items.saturating_add(256),
             draws: 64,
-            rows: trimmed * (1 << 16).max(2 * counts.strips).min(MOST_ROWS),
-            intercepts: trimmed * (1 << 18).max(4 * counts.strips),
+            rows: table * (1 << 16).max(2 * counts.strips).min(MOST_ROWS),
+            intercepts: table * (1 << 18).max(4 * counts.strips),
             doubts: trimmed * (1 << 14),
             block_leaves: counts.leaves.saturating_mul(4),
             tile_leaves: if counts.leaves > 0 { counts.leaves.saturating_mul(16).max(1 << 14) } else { 0 },
@@ -189,8 +192,16 @@ pub(crate) struct Buffers {
     pub depth: Image,
 }
 
-/// The trim table and what leads to it.
+/// What trimmed patches need, whatever the way to trim.
 pub(crate) struct TrimBuffers {
+    pub doubts: Buffer,
+    pub heal_dispatch: Buffer,
+    /// `None` where another way trims.
+    pub table: Option<TableBuffers>,
+}
+
+/// The trim table and what leads to it.
+pub(crate) struct TableBuffers {
     pub strip_heights: Buffer,
     pub face_speeds: Buffer,
     pub line_counts: Buffer,
@@ -202,7 +213,13 @@ pub(crate) struct TrimBuffers {
     pub row_starts: Buffer,
     pub row_total: Buffer,
     pub intercepts: Buffer,
-    pub doubts: Buffer,
+}
+
+impl TableBuffers {
+    /// Zero when the frame begins.
+    pub(crate) fn cleared(&self) -> [&Buffer; 3] {
+        [&self.strip_heights, &self.face_speeds, &self.row_counts]
+    }
 }
 
 /// Which leaves of Boolean solids each part of the picture sees.
@@ -249,6 +266,21 @@ impl Buffers {
         let pixels = if counts.shells > 0 { size.0 * size.1 } else { 0 };
         let scanned = (2 * n).max(counts.strips).max(counts.curves).max(capacities.rows).max(tiles).max(pixels);
         let draw_bytes = 2 * u64::from(capacities.draws) * size_of::<vk::DrawIndirectCommand>() as u64;
+        let table = || {
+            Ok::<_, GpuError>(TableBuffers {
+                strip_heights: words("trim strip heights", counts.strips)?,
+                face_speeds: words("trim face speeds", 2 * counts.face_instances)?,
+                line_counts: words("trim line counts", counts.strips)?,
+                line_starts: words("trim line starts", counts.strips + 1)?,
+                segment_counts: words("trim segment counts", counts.curves)?,
+                segment_starts: words("trim segment starts", counts.curves + 1)?,
+                dispatches: indirect("trim dispatches", 3 * size_of::<[u32; 3]>() as u64)?,
+                row_counts: words("trim row counts", capacities.rows)?,
+                row_starts: words("trim row starts", capacities.rows)?,
+                row_total: words("trim row total", 1)?,
+                intercepts: words("trim intercepts", capacities.intercepts)?,
+            })
+        };
         Ok(Self {
             counts,
             capacities,
@@ -263,21 +295,12 @@ impl Buffers {
             draws: indirect("draws", draw_bytes)?,
             counters: indirect("counters", size_of::<Counters>() as u64)?,
             trim: counts
-                .trimmed
-                .then(|| {
+                .trim
+                .map(|way| {
                     Ok(TrimBuffers {
-                        strip_heights: words("trim strip heights", counts.strips)?,
-                        face_speeds: words("trim face speeds", 2 * counts.face_instances)?,
-                        line_counts: words("trim line counts", counts.strips)?,
-                        line_starts: words("trim line starts", counts.strips + 1)?,
-                        segment_counts: words("trim segment counts", counts.curves)?,
-                        segment_starts: words("trim segment starts", counts.curves + 1)?,
-                        dispatches: indirect("trim dispatches", 4 * size_of::<[u32; 3]>() as u64)?,
-                        row_counts: words("trim row counts", capacities.rows)?,
-                        row_starts: words("trim row starts", capacities.rows)?,
-                        row_total: words("trim row total", 1)?,
-                        intercepts: words("trim intercepts", capacities.intercepts)?,
                         doubts: words("trim doubts", capacities.doubts)?,
+                        heal_dispatch: indirect("heal dispatch", size_of::<[u32; 3]>() as u64)?,
+                        table: (way == TrimWay::Table).then(table).transpose()?,
                     })
                 })
                 .transpose()?,
@@ -307,7 +330,7 @@ impl Buffers {
                 })
                 .transpose()?,
             visibility: image("visibility", VISIBILITY_FORMAT, drawn_and_read)?,
-            others: (counts.trimmed && (counts.mesh_instances > 0 || counts.leaves > 0))
+            others: (counts.trim.is_some() && (counts.mesh_instances > 0 || counts.leaves > 0))
                 .then(|| image("visibility of others", VISIBILITY_FORMAT, drawn_and_read))
                 .transpose()?,
             depth: image("visibility depth", DEPTH_FORMAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?,
@@ -323,7 +346,7 @@ mod tests {
     const RANGE: u32 = 1 << 27;
 
     fn first() -> Capacities {
-        Capacities::first(Counts { items: 1000, strips: 8, trimmed: true, ..Default::default() })
+        Capacities::first(Counts { items: 1000, strips: 8, trim: Some(TrimWay::Table), ..Default::default() })
     }
 
     #[test]

@@ -6,6 +6,10 @@
 /// Vulkan's bindings and the allocator, in the versions that [`gpu::HostDevice`] takes.
 pub use {ash, gpu_allocator};
 
+/// Shared test shapes name the library as its users do.
+#[cfg(test)]
+extern crate self as selvedge;
+
 pub mod abi;
 pub mod brep;
 mod budget;

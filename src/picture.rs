@@ -19,6 +19,93 @@ impl Default for FrameSettings {
     }
 }
 
+/// How pixels on trimmed patches are told from those that the loops cut away. All ways draw the same
+/// picture within [`FrameSettings::tolerance_px`]; see `ARCHITECTURE.md` for what each costs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TrimWay {
+    /// The u-intercept table: made anew for each view, one binary search a pixel.
+    Table,
+    /// The loops themselves, in bands and cells made once: a few monotone arcs a pixel.
+    Exact,
+}
+
+impl TrimWay {
+    /// Every way.
+    pub const ALL: &'static [Self] = &[Self::Table, Self::Exact];
+
+    /// As in command lines and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Table => "table",
+            Self::Exact => "exact",
+        }
+    }
+}
+
+impl std::str::FromStr for TrimWay {
+    type Err = UnknownTrimWay;
+
+    fn from_str(name: &str) -> Result<Self, UnknownTrimWay> {
+        Self::ALL.iter().copied().find(|way| way.name() == name).ok_or_else(|| UnknownTrimWay(name.to_owned()))
+    }
+}
+
+/// No way to trim is called so.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no way to trim is called `{0}`; there are: {names}", names = TrimWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
+pub struct UnknownTrimWay(String);
+
+/// How Boolean solids are drawn. Both ways draw the same picture, bit for bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SolidWay {
+    /// One ray a pixel, followed from event to event until it enters the solid.
+    #[default]
+    Events,
+    /// The faces of each primitive, trimmed by the Blist of the others: constructive solid trimming. Scenes in
+    /// which some operand is a mesh or a spline part are drawn by events.
+    Cst,
+}
+
+impl SolidWay {
+    /// Every way.
+    pub const ALL: &'static [Self] = &[Self::Events, Self::Cst];
+
+    /// As in command lines and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Events => "events",
+            Self::Cst => "cst",
+        }
+    }
+}
+
+impl std::str::FromStr for SolidWay {
+    type Err = UnknownSolidWay;
+
+    fn from_str(name: &str) -> Result<Self, UnknownSolidWay> {
+        Self::ALL.iter().copied().find(|way| way.name() == name).ok_or_else(|| UnknownSolidWay(name.to_owned()))
+    }
+}
+
+/// No way to draw Boolean solids is called so.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no way to draw solids is called `{0}`; there are: {names}", names = SolidWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
+pub struct UnknownSolidWay(String);
+
+/// What the caller decides about a loaded model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneSettings {
+    /// How to trim; `None` takes what suits the model.
+    pub trim: Option<TrimWay>,
+    /// How to draw Boolean solids.
+    pub solids: SolidWay,
+    /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover. The model is
+    /// trimmed by [`TrimWay::Table`] then, which is made anew for each frame in any case.
+    pub editable: bool,
+}
+
 /// Images wanted beside the colour.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 #[allow(missing_docs)]
@@ -82,6 +169,8 @@ pub struct FrameStats {
     pub unpaired: u64,
     /// Times the frame was recorded again because a buffer was too small.
     pub retries: u32,
+    /// Bytes copied for edits of trim loops since the frame before.
+    pub edit_bytes: u64,
     /// Bytes per memory pool.
     pub pools: Vec<PoolBytes>,
     /// Device name.

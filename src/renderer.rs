@@ -12,6 +12,8 @@
 //! GPU can tell (the trim table, the list of sub-patches) may be too small for a new view: the report
 //! of that frame says `complete: false`, and the next `record` into its slot makes them larger.
 
+mod edit;
+
 use crate::abi;
 use crate::abi::Counters;
 use crate::budget::Budget;
@@ -19,13 +21,14 @@ pub use crate::buffers::TooMany;
 use crate::buffers::{Buffers, Capacities, Counts};
 use crate::frame::{Centres, Frame, Passes, target};
 use crate::gpu::{
-    Buffer, BufferInfo, Commands, Device, GpuError, Home, HostDevice, Image, Load, Pool, ReadBack, Timestamps, Uploads,
+    Attachment, Buffer, BufferInfo, Commands, Device, GpuError, Home, HostDevice, Image, Load, Pool, ReadBack,
+    Timestamps, Uploads,
 };
 use crate::model::{Camera, CameraError, Model, Projection};
 use crate::passes::resolve;
-use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes};
-pub use crate::scene::UndrawnSolid;
-use crate::scene::{Scene, SceneData, SolidData, focal_and_slant, view};
+use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, SceneSettings};
+pub use crate::scene::{EditError, UndrawnSolid};
+use crate::scene::{Scene, SceneData, SolidData, Write, focal_and_slant, view};
 use ash::vk;
 
 /// Formats of the images that the host will pass to [`Renderer::record`].
@@ -129,6 +132,8 @@ struct Loaded {
     passes: Passes,
     scene: Option<Scene>,
     buffers: Option<Buffers>,
+    /// Edits that the next frame copies.
+    edits: Vec<Write>,
 }
 
 /// What one frame in flight owns.
@@ -142,6 +147,8 @@ struct Slot {
     /// Freed when the slot comes round again.
     retired: Vec<Retired>,
     recorded: bool,
+    /// Copied for edits at the beginning of the frame.
+    edit_bytes: u64,
     /// What the frame had room for; `None` when its model has been replaced since.
     capacities: Option<Capacities>,
 }
@@ -189,13 +196,29 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before stays.
     pub fn upload(&mut self, model: &Model) -> Result<(), RenderError> {
-        let data = SceneData::new(model)?;
+        self.upload_with(model, SceneSettings::default())
+    }
+
+    /// As [`upload`](Self::upload), with settings that hold as long as the model.
+    ///
+    /// # Errors
+    /// As [`upload`](Self::upload).
+    pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), RenderError> {
+        let data = SceneData::new(model, settings)?;
         let counts = Counts::of(&data);
         counts.check()?;
         let formats =
             resolve::Formats { colour: self.formats.colour, depth: self.formats.depth, aovs: self.formats.aovs };
         let passes = Passes::new(&self.device, &data, formats)?;
-        let loaded = Loaded { data, counts, capacities: Capacities::first(counts), passes, scene: None, buffers: None };
+        let loaded = Loaded {
+            data,
+            counts,
+            capacities: Capacities::first(counts),
+            passes,
+            scene: None,
+            buffers: None,
+            edits: Vec::new(),
+        };
         if let Some(old) = self.loaded.replace(loaded) {
             self.retire(Retired::Loaded(Box::new(old)));
             self.slots.iter_mut().for_each(|slot| slot.capacities = None);
@@ -249,6 +272,13 @@ impl Renderer {
             loaded.scene = Some(scene);
             loaded.data.drop_uploaded();
         }
+        slot.edit_bytes = 0;
+        if let Some(scene) = loaded.scene.as_ref().filter(|_| !loaded.edits.is_empty()) {
+            let uploads = Frame::edit(&cmd, scene, &loaded.edits)?;
+            slot.edit_bytes = uploads.staging_bytes();
+            slot.retired.push(Retired::Uploads(uploads));
+            loaded.edits.clear();
+        }
         let (Some(scene), Some(buffers), Some(views)) = (&loaded.scene, &loaded.buffers, &slot.views) else {
             unreachable!("made above")
         };
@@ -256,11 +286,8 @@ impl Renderer {
         let mut colour = vec![target(targets.colour, keep)];
         colour.extend(targets.aovs.iter().flatten().map(|image| target(image, keep)));
         let depth = targets.depth.map(|image| {
-            let mut depth = target(image, keep);
-            if !keep {
-                depth.load = Load::Depth(0.0);
-            }
-            depth
+            let kept = target(image, keep);
+            if keep { kept } else { Attachment { load: Load::Depth(0.0), ..kept } }
         });
         let frame = Frame {
             passes: &loaded.passes,
@@ -304,6 +331,7 @@ impl Renderer {
             mended: u64::from(c.mended),
             unpaired: u64::from(c.unpaired),
             retries: 0,
+            edit_bytes: slot.edit_bytes,
             pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),
             device: self.device.name().to_owned(),
             driver: self.device.driver().to_owned(),
@@ -363,6 +391,7 @@ impl Slot {
             times: Timestamps::new(device, SCOPES)?,
             retired: Vec::new(),
             recorded: false,
+            edit_bytes: 0,
             capacities: None,
         })
     }
@@ -393,9 +422,7 @@ impl Slot {
         self.constants.write(0, &[constants(device, loaded, input, formats)]);
         Ok(())
     }
-}
 
-impl Slot {
     /// Writes where the parts of Boolean solids are, seen from the eye.
     fn write_centres(&mut self, device: &Device, solids: &SolidData, camera: &Camera) -> Result<(), GpuError> {
         if solids.leaf_centres.is_empty() {
@@ -468,6 +495,5 @@ fn constants(device: &Device, loaded: &Loaded, input: &FrameInput<'_>, formats: 
     }
 }
 
-/// Vertices of one sub-patch at the hardware's factor of 64: a draw may exceed its budget by one
-/// sub-patch.
+/// Vertices of one sub-patch at the hardware's factor of 64: a draw may exceed its budget by so many.
 const MOST_VERTICES: u32 = 65 * 65;

@@ -17,6 +17,38 @@ const fn words<const COUNT: usize>(bytes: &[u8]) -> [u32; COUNT] {
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
+/// One way to trim, as the passes know it that ask: `glsl/include/trim.glsl`.
+#[derive(Clone, Copy, Debug)]
+pub struct TrimTest {
+    /// Its name in the pipelines'.
+    pub way: &'static str,
+    /// Fragment shader of pass `visibility`.
+    pub visibility: &'static [u32],
+    /// Fragment shader of pass `operand_patch`.
+    pub operand_patch: &'static [u32],
+    /// Second step of pass `heal`.
+    pub heal: &'static [u32],
+    /// Storage buffers of the test; they follow the bindings of the pass.
+    pub buffers: usize,
+}
+
+/// The u-intercept table.
+pub static TRIM_TABLE: TrimTest = TrimTest {
+    way: "table",
+    visibility: VISIBILITY_TABLE_FRAG,
+    operand_patch: OPERAND_PATCH_TABLE_FRAG,
+    heal: HEAL_TABLE_COMP,
+    buffers: 4,
+};
+/// Arcs in bands and cells.
+pub static TRIM_EXACT: TrimTest = TrimTest {
+    way: "exact",
+    visibility: VISIBILITY_EXACT_FRAG,
+    operand_patch: OPERAND_PATCH_EXACT_FRAG,
+    heal: HEAL_EXACT_COMP,
+    buffers: 6,
+};
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -26,9 +26,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("shaders", &[]),
     ("passes", &["abi", "gpu", "shaders"]),
     // where both meet
-    ("scene", &["abi", "csg", "gpu", "math", "spline", "trim", "model"]),
-    ("buffers", &["abi", "gpu", "passes", "scene"]),
-    ("frame", &["abi", "buffers", "gpu", "passes", "scene"]),
+    ("scene", &["abi", "csg", "gpu", "math", "spline", "trim", "model", "picture"]),
+    ("buffers", &["abi", "gpu", "passes", "picture", "scene"]),
+    ("frame", &["abi", "buffers", "gpu", "passes", "picture", "scene", "shaders"]),
     ("renderer", &["abi", "budget", "buffers", "frame", "gpu", "model", "passes", "picture", "scene"]),
     ("headless", &["gpu", "model", "picture", "renderer"]),
 ];
@@ -39,7 +39,8 @@ const VULKAN: &[&str] = &["gpu", "scene", "passes", "buffers", "renderer", "head
 const UNSAFE: &[&str] = &["gpu", "renderer", "headless"];
 /// Files beside `gpu` and `headless` that may record barriers: the frame, and the one pass that has steps
 /// of its own.
-const BARRIERS: &[&str] = &["src/frame.rs", "src/frame/solids.rs", "src/passes/scan.rs"];
+const BARRIERS: &[&str] =
+    &["src/frame.rs", "src/frame/edit.rs", "src/frame/solids.rs", "src/frame/table.rs", "src/passes/scan.rs"];
 /// What a library leaves to its host.
 const HOSTS: &[&str] =
     &["println!", "print!(", "eprintln!", "eprint!(", "dbg!(", "std::env::", "process::exit", "process::abort"];

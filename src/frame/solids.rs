@@ -12,8 +12,9 @@ use crate::buffers::{FragmentBuffers, SolidBuffers};
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, barrier};
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
 use crate::passes::{operand_mesh, operand_patch, operand_sort};
-use crate::passes::{resolve, solid_blocks, solid_events, solid_fold, solid_rects, solid_tiles};
+use crate::passes::{resolve, solid_blocks, solid_cst, solid_events, solid_fold, solid_rects, solid_tiles};
 use crate::scene::{SceneData, Shells, Solids};
+use crate::shaders::TrimTest;
 
 /// The passes of Boolean solids.
 pub(super) struct SolidPasses {
@@ -21,8 +22,14 @@ pub(super) struct SolidPasses {
     blocks: solid_blocks::SolidBlocks,
     tiles: solid_tiles::SolidTiles,
     fold: solid_fold::SolidFold,
-    events: solid_events::SolidEvents,
+    way: Way,
     shells: Option<ShellPasses>,
+}
+
+/// Who finds the faces.
+enum Way {
+    Events(solid_events::SolidEvents),
+    Cst(solid_cst::SolidCst),
 }
 
 /// Those of operands without equations.
@@ -34,12 +41,11 @@ struct ShellPasses {
 
 impl SolidPasses {
     /// `None` when the scene has no Boolean solid.
-    pub(super) fn new(device: &Device, data: &SceneData) -> Result<Option<Self>, GpuError> {
+    pub(super) fn new(device: &Device, data: &SceneData, trim: Option<&TrimTest>) -> Result<Option<Self>, GpuError> {
         let Some(tori) = data.solids.kinds() else { return Ok(None) };
         let shells = !data.solids.shell_leaves.is_empty();
         let meshes = !data.solids.operand_draws.is_empty();
-        let patches =
-            |()| operand_patch::OperandPatch::new(device, data.has_rational, data.has_plain, data.has_trimmed);
+        let patches = |()| operand_patch::OperandPatch::new(device, data.has_rational, data.has_plain, trim);
         let shell_passes = |()| {
             Ok(ShellPasses {
                 meshes: meshes.then(|| operand_mesh::OperandMesh::new(device)).transpose()?,
@@ -52,7 +58,11 @@ impl SolidPasses {
             blocks: solid_blocks::SolidBlocks::new(device)?,
             tiles: solid_tiles::SolidTiles::new(device)?,
             fold: solid_fold::SolidFold::new(device)?,
-            events: solid_events::SolidEvents::new(device, (tori, shells), VISIBILITY_FORMAT, DEPTH_FORMAT)?,
+            way: if data.solids.order.is_empty() {
+                Way::Events(solid_events::SolidEvents::new(device, (tori, shells), VISIBILITY_FORMAT, DEPTH_FORMAT)?)
+            } else {
+                Way::Cst(solid_cst::SolidCst::new(device, tori, VISIBILITY_FORMAT, DEPTH_FORMAT)?)
+            },
             shells: shells.then_some(()).map(shell_passes).transpose()?,
         }))
     }
@@ -82,7 +92,7 @@ impl<'a> Frame<'a> {
     }
 
     /// Which leaves each tile sees, then the pixels.
-    pub(super) fn solid_events(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>) {
+    pub(super) fn solid_faces(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>) {
         let (p, s, t) = (parts.passes, parts.scene, parts.buffers);
         let (w, r) = WRITE_TO_READ;
         let rects = solid_rects::Bindings {
@@ -92,7 +102,7 @@ impl<'a> Frame<'a> {
             rects: &t.rects,
         };
         p.rects.record(cmd, &rects, self.buffers.counts.leaves);
-        barrier::buffers(cmd, &[(&t.rects, w, r)]);
+        barrier::buffers(cmd, &[(&t.rects, w, r | Access::VERTEX_READ)]);
 
         let blocks = solid_blocks::Bindings {
             frame: self.constants,
@@ -146,31 +156,51 @@ impl<'a> Frame<'a> {
         if let (Some(passes), Some(shells), Some(f)) = (&p.shells, &s.shells, &t.fragments) {
             self.operands(cmd, parts, passes, shells, f);
         }
-        let events = solid_events::Bindings {
-            frame: self.constants,
-            leaves: &s.leaves,
-            leaf_surfaces: &s.leaf_surfaces,
-            surfaces: &s.surfaces,
-            surface_centres: parts.centres.surfaces,
-            tile_starts: &t.tile_starts,
-            tile_leaves: &t.tile_leaves,
-            tile_entries: &t.tile_entries,
-            fragments: t.fragments.as_ref().map(|f| solid_events::Fragments {
-                starts: &f.starts,
-                counts: &f.counts,
-                all: &f.all,
-            }),
-            counters: &self.buffers.counters,
-        };
         let b = self.buffers;
         let seen = b.others.as_ref().unwrap_or(&b.visibility);
         // meshes came before
         let drawn = self.scene.meshes.is_some();
         let colour = Attachment { image: seen, load: if drawn { Load::Keep } else { Load::ColourU32([0; 4]) } };
         let depth = Attachment { image: &b.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
-        barrier::buffers(cmd, &[(&b.counters, w, Access::FRAGMENT_WRITE)]);
-        p.events.record(cmd, &events, (colour, depth));
-        barrier::buffers(cmd, &[(&b.counters, Access::FRAGMENT_WRITE, w)]);
+        match (&p.way, &s.order) {
+            (Way::Cst(cst), Some((order, drawn))) => {
+                let cst_bindings = solid_cst::Bindings {
+                    frame: self.constants,
+                    leaves: &s.leaves,
+                    leaf_surfaces: &s.leaf_surfaces,
+                    surfaces: &s.surfaces,
+                    surface_centres: parts.centres.surfaces,
+                    tile_starts: &t.tile_starts,
+                    tile_leaves: &t.tile_leaves,
+                    tile_entries: &t.tile_entries,
+                    rects: &t.rects,
+                    order,
+                };
+                cst.record(cmd, &cst_bindings, (colour, depth), *drawn);
+            }
+            (Way::Events(events), _) => {
+                let bindings = solid_events::Bindings {
+                    frame: self.constants,
+                    leaves: &s.leaves,
+                    leaf_surfaces: &s.leaf_surfaces,
+                    surfaces: &s.surfaces,
+                    surface_centres: parts.centres.surfaces,
+                    tile_starts: &t.tile_starts,
+                    tile_leaves: &t.tile_leaves,
+                    tile_entries: &t.tile_entries,
+                    fragments: t.fragments.as_ref().map(|f| solid_events::Fragments {
+                        starts: &f.starts,
+                        counts: &f.counts,
+                        all: &f.all,
+                    }),
+                    counters: &b.counters,
+                };
+                barrier::buffers(cmd, &[(&b.counters, w, Access::FRAGMENT_WRITE)]);
+                events.record(cmd, &bindings, (colour, depth));
+                barrier::buffers(cmd, &[(&b.counters, Access::FRAGMENT_WRITE, w)]);
+            }
+            (Way::Cst(_), None) => unreachable!("the pass is made of the order"),
+        }
         barrier::images(
             cmd,
             &[(seen, Access::COLOUR_WRITE, Access::COLOUR_WRITE), (&b.depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],
@@ -190,6 +220,7 @@ impl Frame<'_> {
     ) {
         let (s, b) = (self.scene, self.buffers);
         let size = b.visibility.size();
+        let trim = self.trim().map_or_else(Vec::new, |parts| parts.test());
         let meshes = operand_mesh::Bindings {
             frame: self.constants,
             views: self.views,
@@ -217,12 +248,7 @@ impl Frame<'_> {
             counts: &f.counts,
             starts: &f.starts,
             fragments: &f.all,
-            table: b.trim.as_ref().map(|t| operand_patch::Table {
-                line_starts: &t.line_starts,
-                row_starts: &t.row_starts,
-                row_counts: &t.row_counts,
-                flips: &t.intercepts,
-            }),
+            trim: &trim,
             draws: &b.draws,
             counters: &b.counters,
         };

@@ -13,6 +13,8 @@
 
 mod case;
 mod chain;
+mod exact;
+mod hard;
 mod random;
 mod shapes;
 

@@ -18,6 +18,7 @@ pub mod scan;
 pub(crate) mod segments;
 pub(crate) mod sizes;
 pub(crate) mod solid_blocks;
+pub(crate) mod solid_cst;
 pub(crate) mod solid_events;
 pub(crate) mod solid_fold;
 pub(crate) mod solid_rects;

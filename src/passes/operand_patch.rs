@@ -10,7 +10,7 @@
 
 use crate::abi::Counters;
 use crate::gpu::{Binding, Buffer, Commands, Device, GpuError, GraphicsInfo, Pipeline, Texels};
-use crate::shaders;
+use crate::shaders::{self, TrimTest};
 use ash::vk;
 use std::mem::offset_of;
 
@@ -36,7 +36,7 @@ struct Kinds {
     trimmed: Option<Pipeline>,
 }
 
-/// Its buffers, in binding order; the trim table only where the scene has one.
+/// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub views: &'a Buffer,
@@ -51,32 +51,30 @@ pub(crate) struct Bindings<'a> {
     pub counts: &'a Buffer,
     pub starts: &'a Buffer,
     pub fragments: &'a Buffer,
-    pub table: Option<Table<'a>>,
+    /// What the trim test reads, in its order.
+    pub trim: &'a [&'a Buffer],
     pub draws: &'a Buffer,
     pub counters: &'a Buffer,
 }
 
-/// The trim table.
-pub(crate) struct Table<'a> {
-    pub line_starts: &'a Buffer,
-    pub row_starts: &'a Buffer,
-    pub row_counts: &'a Buffer,
-    pub flips: &'a Buffer,
-}
-
 impl OperandPatch {
-    /// `plain`, `trimmed`: the scene has patches of the kind.
-    pub(crate) fn new(device: &Device, rational: bool, plain: bool, trimmed: bool) -> Result<Self, GpuError> {
-        let pipeline = |fills: bool, trimmed: bool| {
-            let kind = if trimmed { "trimmed" } else { "plain" };
+    /// `plain`: the scene has patches without a trim test; `trimmed`: how the others are trimmed, if there are any.
+    pub(crate) fn new(
+        device: &Device,
+        rational: bool,
+        plain: bool,
+        trimmed: Option<&TrimTest>,
+    ) -> Result<Self, GpuError> {
+        let pipeline = |fills: bool, trimmed: Option<&TrimTest>| {
+            let (fragment, kind) = trimmed.map_or((shaders::OPERAND_PATCH_FRAG, "plain"), |t| (t.operand_patch, t.way));
             let constants = [
                 (SCENE_HAS_RATIONAL, u32::from(rational)),
-                (TRIMMED, u32::from(trimmed)),
+                (TRIMMED, u32::from(trimmed.is_some())),
                 (SCENE_HAS_OPERANDS, 1),
                 (DRAWS_OPERANDS, 1),
                 (FILLS, u32::from(fills)),
             ];
-            let mut bindings = [Binding::Storage; 17];
+            let mut bindings = vec![Binding::Storage; 13 + trimmed.map_or(0, |test| test.buffers)];
             bindings[6] = Binding::Texels;
             Pipeline::graphics(
                 device,
@@ -86,7 +84,7 @@ impl OperandPatch {
                         (vk::ShaderStageFlags::VERTEX, shaders::VISIBILITY_VERT),
                         (vk::ShaderStageFlags::TESSELLATION_CONTROL, shaders::VISIBILITY_TESC),
                         (vk::ShaderStageFlags::TESSELLATION_EVALUATION, shaders::VISIBILITY_TESE),
-                        (vk::ShaderStageFlags::FRAGMENT, shaders::OPERAND_PATCH_FRAG),
+                        (vk::ShaderStageFlags::FRAGMENT, fragment),
                     ],
                     bindings: &bindings,
                     push_bytes: 0,
@@ -102,8 +100,8 @@ impl OperandPatch {
         };
         let kinds = |fills| {
             Ok(Kinds {
-                plain: plain.then(|| pipeline(fills, false)).transpose()?,
-                trimmed: trimmed.then(|| pipeline(fills, true)).transpose()?,
+                plain: plain.then(|| pipeline(fills, None)).transpose()?,
+                trimmed: trimmed.map(|test| pipeline(fills, Some(test))).transpose()?,
             })
         };
         Ok(Self { count: kinds(false)?, fill: kinds(true)? })
@@ -122,21 +120,16 @@ impl OperandPatch {
         let bytes = u64::from(draw_capacity) * size_of::<vk::DrawIndirectCommand>() as u64;
         let scene = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items];
         let lists = [b.factors, b.sub_patches, b.instances, b.counts, b.starts, b.fragments];
-        // the shader has these bindings in every scene, and reads them only where faces are trimmed
-        let none = Table { line_starts: b.frame, row_starts: b.frame, row_counts: b.frame, flips: b.frame };
-        let t = b.table.as_ref().unwrap_or(&none);
-        let table = [t.line_starts, t.row_starts, t.row_counts, t.flips];
-        let resources: Vec<_> = (scene.into_iter().map(Into::into).chain([b.points.into()]))
-            .chain(lists.into_iter().chain(table).map(Into::into))
-            .collect();
+        let shared = || scene.into_iter().map(Into::into).chain([b.points.into()]).chain(lists.map(Into::into));
         let step = if fills { &self.fill } else { &self.count };
         cmd.rendering(size, &[], None, || {
             if let Some(plain) = &step.plain {
-                cmd.bind(plain, &resources, &[]);
+                cmd.bind(plain, &shared().collect::<Vec<_>>(), &[]);
                 let count = offset_of!(Counters, plain_draws) as u64;
                 cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
             }
             if let Some(trimmed) = &step.trimmed {
+                let resources: Vec<_> = shared().chain(b.trim.iter().map(|&buffer| buffer.into())).collect();
                 cmd.bind(trimmed, &resources, &[]);
                 let count = offset_of!(Counters, trimmed_draws) as u64;
                 cmd.draw_indirect_count(b.draws, bytes, b.counters, count, draw_capacity);

@@ -15,6 +15,8 @@
 //! `f64` every frame.
 
 mod data;
+mod edit;
+mod exact;
 mod face;
 mod flatten;
 mod mesh;
@@ -22,6 +24,10 @@ mod solids;
 mod upload;
 
 pub(crate) use data::{SceneData, focal_and_slant, view};
+pub use edit::EditError;
+pub(crate) use edit::{EditTarget, Write};
+#[cfg(test)]
+pub(crate) use exact::ExactData;
 pub(crate) use solids::SolidData;
 pub use solids::UndrawnSolid;
-pub(crate) use upload::{MeshBuffers, Scene, Shells, Solids, Trims};
+pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Shells, Solids, TableScene, Trims};

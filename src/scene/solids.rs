@@ -9,6 +9,7 @@
 //! A surface is stored in coordinates of its own, of about the size of 1, so single precision suffices;
 //! where it is stays in `f64` and is given relative to the eye every frame.
 
+mod order;
 mod shell;
 mod surface;
 
@@ -16,6 +17,7 @@ use super::face::pack_colour;
 use crate::abi;
 use crate::csg::Blist;
 use crate::model::{Solid, SolidError, SurfaceTable};
+use crate::picture::SolidWay;
 use glam::DVec3;
 use std::ops::Range;
 use surface::sides_of;
@@ -40,6 +42,8 @@ pub(crate) struct SolidData {
     pub operand_draws: Vec<Range<u32>>,
     /// Those that the scene has to place yet.
     pub(super) operands: Vec<shell::Operand>,
+    /// For [`SolidWay::Cst`]: the leaves as they are drawn.
+    pub order: Vec<u32>,
 }
 
 /// Why a solid is not drawn.
@@ -53,7 +57,7 @@ pub enum UndrawnSolid {
 
 impl SolidData {
     /// The union of all `solids`.
-    pub(crate) fn new(solids: &[Solid]) -> Result<Self, UndrawnSolid> {
+    pub(crate) fn new(solids: &[Solid], way: SolidWay) -> Result<Self, UndrawnSolid> {
         let mut data = Self::default();
         let whole = Solid::union(solids)?;
         let table = SurfaceTable::new(&whole, SurfaceTable::DRAWN);
@@ -131,6 +135,11 @@ impl SolidData {
             });
         }
         number_exits(&mut data.leaves);
+        if way == SolidWay::Cst && data.shell_leaves.is_empty() {
+            let mut used = vec![false; data.surfaces.len()];
+            let shared = |side: &abi::LeafSurface| std::mem::replace(&mut used[side.surface as usize >> 1], true);
+            data.order = order::order(&data.leaves, data.leaf_surfaces.iter().any(shared));
+        }
         Ok(data)
     }
 

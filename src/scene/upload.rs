@@ -2,6 +2,7 @@
 
 use super::{SceneData, SolidData};
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texels, Uploads};
+use crate::picture::TrimWay;
 use ash::vk;
 use bytemuck::Pod;
 use std::ops::Range;
@@ -28,6 +29,8 @@ pub(crate) struct Solids {
     pub leaves: Buffer,
     pub leaf_surfaces: Buffer,
     pub surfaces: Buffer,
+    /// The leaves as they are drawn, and how many; only where each is drawn by itself.
+    pub order: Option<(Buffer, u32)>,
     /// `None` where every operand has equations.
     pub shells: Option<Shells>,
 }
@@ -53,8 +56,24 @@ pub(crate) struct MeshBuffers {
     pub draws: Vec<(Range<u32>, Range<u32>)>,
 }
 
+/// What the scene's way to trim needs.
+pub(crate) enum Trims {
+    Table(TableScene),
+    Exact(ExactScene),
+}
+
+/// Arcs in bands and cells; see `glsl/include/exact.glsl`.
+pub(crate) struct ExactScene {
+    pub faces: Buffer,
+    pub bands: Buffer,
+    pub cells: Buffer,
+    pub entries: Buffer,
+    pub arcs: Buffer,
+    pub points: Buffer,
+}
+
 /// Trim curves and the cells that tell their density.
-pub(crate) struct Trims {
+pub(crate) struct TableScene {
     pub cells: Buffer,
     pub cell_items: Buffer,
     pub curves: Buffer,
@@ -77,18 +96,24 @@ impl Scene {
             face_instances: persistent(&mut uploads, cmd, "face instances", &data.face_instances)?,
             instances: persistent(&mut uploads, cmd, "instances", &data.instances)?,
             items: persistent(&mut uploads, cmd, "items", &data.items)?,
-            trims: data
-                .has_trimmed
-                .then(|| {
-                    Ok(Trims {
-                        cells: persistent(&mut uploads, cmd, "trim cells", &data.cells)?,
-                        cell_items: persistent(&mut uploads, cmd, "trim cell items", &data.cell_items)?,
-                        curves: persistent(&mut uploads, cmd, "trim curves", &data.curves)?,
-                        curve_points: persistent(&mut uploads, cmd, "trim curve points", &data.curve_points)?,
-                        curve_items: persistent(&mut uploads, cmd, "trim curve items", &data.curve_items)?,
-                    })
-                })
-                .transpose()?,
+            trims: match data.trim_way() {
+                None => None,
+                Some(TrimWay::Table) => Some(Trims::Table(TableScene {
+                    cells: persistent(&mut uploads, cmd, "trim cells", &data.cells)?,
+                    cell_items: persistent(&mut uploads, cmd, "trim cell items", &data.cell_items)?,
+                    curves: persistent(&mut uploads, cmd, "trim curves", &data.curves)?,
+                    curve_points: persistent(&mut uploads, cmd, "trim curve points", &data.curve_points)?,
+                    curve_items: persistent(&mut uploads, cmd, "trim curve items", &data.curve_items)?,
+                })),
+                Some(TrimWay::Exact) => Some(Trims::Exact(ExactScene {
+                    faces: persistent(&mut uploads, cmd, "trim faces", &data.exact.faces)?,
+                    bands: persistent(&mut uploads, cmd, "trim bands", &data.exact.bands)?,
+                    cells: persistent(&mut uploads, cmd, "trim band cells", &data.exact.cells)?,
+                    entries: persistent(&mut uploads, cmd, "trim entries", &data.exact.entries)?,
+                    arcs: persistent(&mut uploads, cmd, "trim arcs", &data.exact.arcs)?,
+                    points: persistent(&mut uploads, cmd, "trim arc points", &data.exact.points)?,
+                })),
+            },
             solids: (!data.solids.leaves.is_empty())
                 .then(|| {
                     Ok(Solids {
@@ -98,6 +123,10 @@ impl Scene {
                         shells: (!data.solids.shell_leaves.is_empty())
                             .then(|| shells(&mut uploads, cmd, &data.solids))
                             .transpose()?,
+                        order: (!data.solids.order.is_empty())
+                            .then(|| persistent(&mut uploads, cmd, "solid order", &data.solids.order))
+                            .transpose()?
+                            .map(|order| (order, data.solids.order.len() as u32)),
                     })
                 })
                 .transpose()?,

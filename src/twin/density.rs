@@ -28,6 +28,9 @@ pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
         let placed = scene.face_instances[placed_index];
         let face = scene.faces[placed.face as usize];
         let cell = scene.cells[face.first_cell as usize + item - placed.first_cell as usize];
+        if cell.speed_v < 0.0 {
+            continue;
+        }
         let view = &scene.views[placed.instance as usize];
         let (margin, far) = (frame.ring_px + 1.0, far_of(&face, frame));
         let Some(w) = visible_w(view, frame, cell.box_min, cell.box_max, margin, far) else { continue };

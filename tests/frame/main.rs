@@ -8,6 +8,7 @@ mod accuracy;
 mod distance;
 mod errors;
 mod every_shape;
+mod hard_trims;
 mod meshes;
 mod objects;
 mod operands;
@@ -18,3 +19,5 @@ mod shapes;
 mod solids;
 mod support;
 mod touching;
+#[path = "../shapes/trims.rs"]
+mod trims;

@@ -6,6 +6,7 @@ use glam::{DAffine3, DVec3};
 use selvedge::csg::Op;
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Solid};
+use selvedge::picture::{SceneSettings, SolidWay};
 use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
 
 const SIZE: (u32, u32) = (240, 160);
@@ -44,11 +45,23 @@ pub fn right_at(size: (u32, u32), cases: Vec<solids::Named>, blank: bool) {
     let mut renderer = watched(&Model::default());
     let mut wrong = Vec::new();
     for (name, model) in &cases {
-        renderer.upload(model).unwrap();
         let tracer = Tracer::new(model);
-        for (view, camera) in [("perspective", perspective(model, size)), ("parallel", orthographic(model, size))] {
-            let fault = faults(&mut renderer, &tracer, &camera, blank);
+        let views = [("perspective", perspective(model, size)), ("parallel", orthographic(model, size))];
+        renderer.upload(model).unwrap();
+        let mut pictures = Vec::new();
+        for (view, camera) in &views {
+            let fault = faults(&mut renderer, &tracer, camera, blank);
             wrong.extend(fault.map(|f| format!("{name}, {view}: {f}")));
+            pictures.push(render(&mut renderer, camera));
+        }
+        renderer.upload_with(model, SceneSettings { solids: SolidWay::Cst, ..Default::default() }).unwrap();
+        for ((view, camera), events) in views.iter().zip(&pictures) {
+            let trimmed = render(&mut renderer, camera);
+            let same = trimmed.face == events.face && trimmed.colour == events.colour && trimmed.depth == events.depth;
+            if !same {
+                let differ = trimmed.face.iter().zip(&events.face).filter(|(a, b)| a != b).count();
+                wrong.push(format!("{name}, {view}: by cst {differ} other faces, or depths"));
+            }
         }
     }
     assert_silent(renderer);

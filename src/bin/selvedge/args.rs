@@ -2,6 +2,7 @@
 
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
+use selvedge::picture::{SolidWay, TrimWay};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -122,6 +123,10 @@ pub struct BenchArgs {
     pub size: Size,
     #[command(flatten)]
     pub frame: FrameArgs,
+    /// Drag a loop of the face with the most loops, once a frame, instead of moving the camera: latency, bytes sent,
+    /// and whether pictures equal those of a fresh upload
+    #[arg(long)]
+    pub edit: bool,
     /// Folder for bench.json and bench.csv
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -165,6 +170,12 @@ pub struct FrameArgs {
     /// Largest distance in pixels between a drawn boundary and the true one, at least 0.125
     #[arg(long, value_name = "PX", default_value_t = 0.5, value_parser = tolerance)]
     pub tolerance: f64,
+    /// How to trim: table (made for each view) or exact (made once). Without it what suits the model
+    #[arg(long, value_name = "WAY")]
+    pub trim: Option<TrimWay>,
+    /// How to draw Boolean solids: events (a ray a pixel) or cst (each primitive, trimmed by the others)
+    #[arg(long, value_name = "WAY", default_value = "events")]
+    pub solids: SolidWay,
     /// Part of the name of the Vulkan device to use
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,

@@ -7,7 +7,7 @@ use crate::args::{BenchArgs, Size};
 use crate::progress::during;
 use crate::series::{Gathered, Row};
 use crate::session::{self, Session};
-use crate::{Outcome, output, path, verdict};
+use crate::{Outcome, edit, output, path, verdict};
 use anyhow::{Context, Result};
 use comfy_table::CellAlignment;
 use selvedge::picture::{FrameStats, Outputs};
@@ -51,6 +51,9 @@ struct Error {
 
 /// Measures every model; prints a table each and writes them all.
 pub fn run(args: &BenchArgs) -> Result<Outcome> {
+    if args.edit {
+        return edit::run(args);
+    }
     let mut reports = Vec::new();
     let mut outcome = Outcome::Good;
     for model in &args.models {

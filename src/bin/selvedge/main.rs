@@ -14,6 +14,7 @@ mod bench;
 mod camera;
 mod check;
 mod convert;
+mod edit;
 mod export;
 mod info;
 mod npy;
