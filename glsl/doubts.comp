@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(binding = 1, rg32ui) readonly uniform uimage2D visibility;
 layout(scalar, binding = 2) writeonly buffer Doubts { uint doubts[]; }; // column | row << 16
-layout(scalar, binding = 3) buffer Dispatches { uvec3 dispatches[]; }; // the last is pass heal's
+layout(scalar, binding = 3) buffer Dispatch { uvec3 dispatch; }; // of the second step; zero before
 layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
 
 const uint GROUP = 64u; // threads of a workgroup of the second step
@@ -24,5 +24,7 @@ void main() {
         return;
     }
     doubts[at] = pixel.x | pixel.y << 16;
-    atomicMax(dispatches[3].x, at / GROUP + 1u);
+    atomicMax(dispatch.x, at / GROUP + 1u);
+    atomicMax(dispatch.y, 1u);
+    atomicMax(dispatch.z, 1u);
 }

@@ -71,6 +71,9 @@ pub enum ConstructError {
     /// The same, at a point of a surface.
     #[error("the surface folds at ({u}, {v}): it reaches {reach:e} towards a centre of curvature {radius:e} away")]
     FoldsAt { u: f64, v: f64, reach: f64, radius: f64 },
+    /// A line that does not meet the surface, or touches it only.
+    #[error("{what} misses the surface, or reaches its border or outline, at {parameter}")]
+    Misses { what: &'static str, parameter: f64 },
     /// A tolerance that the largest allowed number of pieces does not reach.
     #[error("a deviation of {asked:e} was asked for and {reached:e} reached with {pieces} pieces")]
     Bound { asked: f64, reached: f64, pieces: usize },

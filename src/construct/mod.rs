@@ -16,6 +16,7 @@
 //! | closed control polygons | [`polyloop`] |
 //! | equations `S(u, v)`, as closures or as text | [`fit`] |
 //! | grids of points, pictures of heights | [`grid`] |
+//! | outlines cast on a surface | [`project()`] |
 //! | dimensions: blocks, balls, gears, a pot | [`shapes`] |
 //! | control meshes | [`subdivide`] |
 //!
@@ -41,6 +42,7 @@ mod loft;
 mod motion;
 mod offset;
 pub mod polyloop;
+mod project;
 mod ruled;
 pub mod shapes;
 mod solid;
@@ -57,8 +59,9 @@ pub use gordon::{Network, gordon};
 pub use lathe::lathe;
 pub use loft::loft;
 pub use offset::offset;
+pub use project::{Projected, project};
 pub use ruled::ruled;
-pub use solid::{Chain, extruded_solid, lathed_solid};
+pub use solid::{Chain, extruded_solid, lathed_solid, trim_loops};
 pub use sweep::Sweep;
 pub use tube::tube;
 

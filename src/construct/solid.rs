@@ -86,6 +86,14 @@ pub fn lathed_solid(profile: &[Chain], angle: f64) -> Result<Part, ConstructErro
     Ok(solid)
 }
 
+/// Closed chains of curves in `(u, v)` as trim loops, in the order given: what lies inside an odd number of them is kept.
+///
+/// # Errors
+/// No curve; a chain that is open or crosses itself or another.
+pub fn trim_loops(chains: &[Chain]) -> Result<Vec<TrimLoop>, ConstructError> {
+    Ok(Profile::new(chains)?.loops)
+}
+
 /// Oriented chains, and the same as trim loops.
 struct Profile {
     chains: Vec<Chain>,

@@ -5,6 +5,7 @@
 //!                                                    ├▶ obj, bv ─────┤
 //!                                                    ├▶ rhino ───────┤
 //!                                                    ├▶ scad, brlcad ┤  Boolean solids
+//!                                                    ├▶ scene ───────┤  by the file's name
 //!                                                    └▶ native ──────┘
 //! ```
 //!
@@ -14,6 +15,7 @@
 
 mod brlcad;
 mod bv;
+mod camera;
 mod chain;
 mod colour;
 mod error;
@@ -28,9 +30,12 @@ mod report;
 #[cfg(feature = "rhino")]
 mod rhino;
 mod scad;
+#[cfg(feature = "scene")]
+mod scene;
 mod solid;
 mod step;
 
+pub use camera::{Lens, NamedCamera, PictureSettings, Stance};
 pub use error::ImportError;
 pub use obj::cage::Cage;
 pub(crate) use progress::FaceCount;
@@ -52,6 +57,10 @@ pub struct Import {
     pub warnings: Vec<Warning>,
     /// Counts for people.
     pub report: ImportReport,
+    /// Cameras that the file names; only scenes have any.
+    pub cameras: Vec<NamedCamera>,
+    /// What the file asks of its picture; only scenes ask.
+    pub picture: PictureSettings,
 }
 
 /// A gzip stream may expand by this factor at most. STEP text shrinks 4 to 12 times; deflate itself
@@ -107,6 +116,8 @@ pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportErr
         brlcad(&bytes, &name)
     } else if named(&[".bv", ".bv.gz"]) {
         bv(&bytes, &name)
+    } else if named(&[".toml", ".toml.gz"]) {
+        scene(&bytes, &name, path.parent())
     } else if named(&[".obj", ".obj.gz"]) {
         obj(&bytes, &name, path.parent())
     } else if scad::recognise(text) {
@@ -148,6 +159,27 @@ pub fn step(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 /// [`ImportError::Native`] when the bytes hold no valid model.
 pub fn native(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     native::read(bytes, name)
+}
+
+/// Reads a scene file, see `docs/scene.md`; other files are looked for in `folder`, if there is one.
+///
+/// # Errors
+/// [`ImportError::Scene`] names the line and column of the first thing that is wrong, or says that the library was
+/// built without the feature `scene`.
+pub fn scene(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
+    #[cfg(feature = "scene")]
+    return scene::read(bytes, name, folder);
+    #[cfg(not(feature = "scene"))]
+    return Err(ImportError::Scene {
+        file: name.to_owned(),
+        line: 1,
+        column: 1,
+        message: format!(
+            "{} bytes of a scene{}, for which the feature `scene` is not built in",
+            bytes.len(),
+            folder.map(|f| format!(" in {}", f.display())).unwrap_or_default()
+        ),
+    });
 }
 
 /// Reads Wavefront OBJ text; materials are looked for in `folder`, if there is one.
@@ -275,7 +307,7 @@ mod tests {
     fn missing_and_unknown_files_are_named() {
         let error = open(Path::new("no/such/file.step")).unwrap_err();
         assert!(error.to_string().contains("no/such/file.step"));
-        let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml");
-        assert!(matches!(open(&manifest), Err(ImportError::Format { .. })));
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("build.rs");
+        assert!(matches!(open(&script), Err(ImportError::Format { .. })));
     }
 }

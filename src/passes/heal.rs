@@ -4,17 +4,17 @@
 //!   visibility image ──find──▶ list of doubtful pixels ──record──▶ visibility image
 //!
 //!        ┌───┬───┬───┐     asks the faces of the neighbours, on their exact surfaces at the pixel's
-//!        │ A │ A │ B │     centre, which of them is there; the rules stand in glsl/heal.comp
+//!        │ A │ A │ B │     centre, which of them is there; the rules stand in glsl/include/heal.glsl
 //!        ├───┼───┼───┤
 //!        │ A │ ? │ B │     a gap is narrower than the trim table's error, so a neighbour knows
 //!        └───┴───┴───┘
 //! ```
 //!
-//! Reads: everything that the bindings name but what it writes. Writes: `find`: `doubts`, `dispatches`,
+//! Reads: everything that the bindings name but what it writes. Writes: `find`: `doubts`, `dispatch`,
 //! `counters`; `record`: the visibility image, at doubtful pixels only.
 
 use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Texels};
-use crate::shaders;
+use crate::shaders::{self, TrimTest};
 
 /// Threads of a workgroup of the first step.
 const GROUP: u32 = 64;
@@ -35,7 +35,8 @@ pub(crate) struct DoubtBindings<'a> {
     pub frame: &'a Buffer,
     pub visibility: &'a Image,
     pub doubts: &'a Buffer,
-    pub dispatches: &'a Buffer,
+    /// Of the second step; zero before.
+    pub dispatch: &'a Buffer,
     pub counters: &'a Buffer,
 }
 
@@ -48,18 +49,15 @@ pub(crate) struct Bindings<'a> {
     pub patches: &'a Buffer,
     pub items: &'a Buffer,
     pub points: &'a Texels,
-    pub line_starts: &'a Buffer,
-    pub row_starts: &'a Buffer,
-    pub row_counts: &'a Buffer,
-    pub flips: &'a Buffer,
     pub visibility: &'a Image,
     pub doubts: &'a Buffer,
     pub counters: &'a Buffer,
     pub instances: &'a Buffer,
     /// What is no patch; `None` where the scene has nothing else.
     pub others: Option<Others<'a>>,
-    /// Its own is the fourth.
-    pub dispatches: &'a Buffer,
+    /// What the trim test reads, in its order.
+    pub trim: &'a [&'a Buffer],
+    pub dispatch: &'a Buffer,
 }
 
 /// What is no patch, in binding order.
@@ -71,22 +69,22 @@ pub(crate) struct Others<'a> {
 }
 
 impl Heal {
-    /// `others`: the scene has things that are no patches.
-    pub(crate) fn new(device: &Device, rational: bool, others: bool) -> Result<Self, GpuError> {
+    /// `test`: how faces are trimmed; `others`: the scene has things that are no patches.
+    pub(crate) fn new(device: &Device, test: &TrimTest, rational: bool, others: bool) -> Result<Self, GpuError> {
         let mut find = [Binding::Storage; 5];
         find[1] = Binding::StorageImage;
-        let mut heal = [Binding::Storage; 19];
+        let mut heal = vec![Binding::Storage; 15 + test.buffers];
         heal[6] = Binding::Texels;
+        heal[7] = Binding::StorageImage;
         heal[11] = Binding::StorageImage;
-        heal[15] = Binding::StorageImage;
         let weights = if rational { "rational" } else { "polynomial" };
-        let pipeline = |name, spirv, bindings| {
+        let pipeline = |name: &str, spirv, bindings: &[Binding]| {
             let constants = &[(SCENE_HAS_RATIONAL, u32::from(rational)), (SCENE_HAS_OTHERS, u32::from(others))];
             Pipeline::compute(device, &ComputeInfo { name, spirv, bindings, push_bytes: 0, constants })
         };
         Ok(Self {
             find: pipeline("heal (find)", shaders::DOUBTS_COMP, &find)?,
-            heal: pipeline(&format!("heal ({weights})"), shaders::HEAL_COMP, &heal)?,
+            heal: pipeline(&format!("heal ({}, {weights})", test.way), test.heal, &heal)?,
         })
     }
 
@@ -94,7 +92,7 @@ impl Heal {
     /// that no picture needs more of them than every device has.
     pub(crate) fn find(&self, cmd: &Commands<'_>, b: &DoubtBindings<'_>) {
         let (width, height) = b.visibility.size();
-        let resources = [b.frame.into(), b.visibility.into(), b.doubts.into(), b.dispatches.into(), b.counters.into()];
+        let resources = [b.frame.into(), b.visibility.into(), b.doubts.into(), b.dispatch.into(), b.counters.into()];
         cmd.bind(&self.find, &resources, &[]);
         cmd.dispatch_grid([width.div_ceil(GROUP), height, 1]);
     }
@@ -112,10 +110,6 @@ impl Heal {
             b.patches.into(),
             b.items.into(),
             b.points.into(),
-            b.line_starts.into(),
-            b.row_starts.into(),
-            b.row_counts.into(),
-            b.flips.into(),
             b.visibility.into(),
             b.doubts.into(),
             b.counters.into(),
@@ -125,7 +119,8 @@ impl Heal {
             others.triangles.into(),
             others.positions.into(),
         ];
+        let resources: Vec<_> = resources.into_iter().chain(b.trim.iter().map(|&buffer| buffer.into())).collect();
         cmd.bind(&self.heal, &resources, &[]);
-        cmd.dispatch_indirect(b.dispatches, 3 * size_of::<[u32; 3]>() as u64);
+        cmd.dispatch_indirect(b.dispatch, 0);
     }
 }

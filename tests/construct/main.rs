@@ -5,6 +5,7 @@
 mod errors;
 mod exact;
 mod offsets;
+mod projected;
 mod shapes;
 mod skins;
 mod solids;

@@ -8,6 +8,8 @@ mod accuracy;
 mod distance;
 mod errors;
 mod every_shape;
+mod hard;
+mod hard_trims;
 mod meshes;
 mod objects;
 mod room;
@@ -17,3 +19,6 @@ mod shapes;
 mod solids;
 mod support;
 mod touching;
+#[path = "../shapes/trims.rs"]
+mod trims;
+mod zoom;

@@ -6,8 +6,8 @@ use crate::progress::{during, importing};
 use anyhow::Result;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::import::{self, Import};
-use selvedge::model::Camera;
-use selvedge::picture::{FrameSettings, Outputs, Picture};
+use selvedge::model::{Camera, LoopAt, TrimLoop};
+use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
 use std::path::Path;
 use std::time::Instant;
 
@@ -36,10 +36,22 @@ pub struct Session {
 impl Session {
     /// Opens the device and hands it the model.
     pub fn new(args: &FrameArgs, import: &Import) -> Result<Self> {
+        Self::with(args, import, false)
+    }
+
+    /// The same with a model whose loops may be edited.
+    pub fn editable(args: &FrameArgs, import: &Import) -> Result<Self> {
+        Self::with(args, import, true)
+    }
+
+    fn with(args: &FrameArgs, import: &Import, editable: bool) -> Result<Self> {
         let options = HeadlessOptions { device: args.device.clone(), validation: args.validation };
+        let scene = SceneSettings { trim: args.trim, editable, solids: args.solids };
         let mut renderer = during("opening the device", || HeadlessRenderer::new(&options))?;
-        during("uploading the model", || renderer.upload(&import.model))?;
-        let settings = FrameSettings { tolerance_px: args.tolerance, ..FrameSettings::default() };
+        during("uploading the model", || renderer.upload_with(&import.model, scene))?;
+        let mut settings =
+            FrameSettings { tolerance_px: args.tolerance, levels: args.factors.0, ..FrameSettings::default() };
+        settings.background = import.picture.background.or(settings.background);
         Ok(Self { renderer, settings })
     }
 
@@ -48,6 +60,11 @@ impl Session {
         let picture = during("drawing", || self.renderer.render(camera, &self.settings, outputs))?;
         output::clamps(&picture.stats);
         Ok(picture)
+    }
+
+    /// Replaces a loop; the next frame shows it.
+    pub fn edit(&mut self, at: LoopAt, new: &TrimLoop) -> Result<()> {
+        Ok(self.renderer.edit_loop(at, new)?)
     }
 
     /// What the validation layer said, told on standard error.

@@ -1,7 +1,5 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_GOOGLE_include_directive : require
-// Pass `heal`, second step: who is seen at a doubtful pixel? One thread a pixel.
+// Pass `heal`, second step: who is seen at a doubtful pixel? One thread a pixel. The trim test is that of one
+// way (trim.glsl).
 //
 //        ┌───┬───┬───┐     the faces of the eight neighbours are asked, on their exact surfaces at
 //        │ A │ A │ B │     this pixel's centre:
@@ -37,25 +35,22 @@ layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
 layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
 layout(binding = 6) uniform samplerBuffer points;
-layout(scalar, binding = 7) readonly buffer LineStarts { uint line_starts[]; };
-layout(scalar, binding = 8) readonly buffer RowStarts { uint row_starts[]; };
-layout(scalar, binding = 9) readonly buffer RowCounts { uint row_counts[]; };
-layout(scalar, binding = 10) readonly buffer Flips { float flips[]; };
-layout(binding = 11, rg32ui) uniform uimage2D visibility;
-layout(scalar, binding = 12) readonly buffer Doubts { uint doubts[]; };
-layout(scalar, binding = 13) readonly buffer CountersBuffer { Counters counters; };
-layout(scalar, binding = 14) readonly buffer Instances { Instance instances[]; };
-layout(binding = 15, rg32ui) readonly uniform uimage2D others;
-layout(scalar, binding = 16) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
-layout(scalar, binding = 17) readonly buffer Triangles { uint triangles[]; };
-layout(scalar, binding = 18) readonly buffer Positions { vec3 positions[]; };
+layout(binding = 7, rg32ui) uniform uimage2D visibility;
+layout(scalar, binding = 8) readonly buffer Doubts { uint doubts[]; };
+layout(scalar, binding = 9) readonly buffer CountersBuffer { Counters counters; };
+layout(scalar, binding = 10) readonly buffer Instances { Instance instances[]; };
+layout(binding = 11, rg32ui) readonly uniform uimage2D others;
+layout(scalar, binding = 12) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
+layout(scalar, binding = 13) readonly buffer Triangles { uint triangles[]; };
+layout(scalar, binding = 14) readonly buffer Positions { vec3 positions[]; };
 
+#define TRIM_BINDING 15
+#include "trim.glsl"
 #include "facet.glsl"
 #include "facing.glsl"
 #include "patch.glsl"
 #include "refine.glsl"
 #include "ring.glsl"
-#include "table.glsl"
 #include "visible.glsl"
 
 const uint NO = 0u;
@@ -92,9 +87,9 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     View view = views[fi.instance];
     Sample s = refine(patch_, view, unpack_uv(seen.y), pixel);
     Answer answer = Answer(NO, s.q.z, length(s.miss), true, uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)))));
-    float strips = float(face.strip_count);
     vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
-    bool inside = face.strip_count == 0u || table_inside(fi.first_strip, strips, at);
+    bool trimmed = (face.flags & FACE_TRIMMED) != 0u;
+    bool inside = !trimmed || trim_inside(fi, face, at);
     if (answer.miss > ON_PIXEL_PX) {
         // a silhouette beside the pixel
         if (inside && answer.miss <= RING_SLACK * frame.ring_px) answer.kind = HELPER;
@@ -108,12 +103,12 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     float det = pu.x * pv.y - pu.y * pv.x;
     answer.away = looks_away(det, face, instances[fi.instance]);
     if (inside) answer.kind = WITNESS;
-    if (inside != real || face.strip_count == 0u) return answer;
+    if (inside != real || !trimmed) return answer;
     if (abs(det) < 1e-12) return answer;
     for (uint k = 0u; k < RING_POINTS; ++k) {
         vec2 step_ = frame.ring_px * RING[k];
         vec2 duv = vec2(step_.x * pv.y - step_.y * pv.x, pu.x * step_.y - pu.y * step_.x) / det;
-        bool there = table_inside(fi.first_strip, strips, at + duv * patch_.domain.zw);
+        bool there = trim_inside(fi, face, at + duv * patch_.domain.zw);
         if (inside && !there) {
             answer.kind = HELPER;
             break;
