@@ -35,6 +35,8 @@ pub mod rivals;
 mod scene;
 mod shaders;
 pub mod spline;
+#[cfg(any(test, feature = "rivals"))]
+mod trial;
 pub mod trim;
 pub mod twin;
 

@@ -11,11 +11,23 @@ pub struct FrameSettings {
     pub tolerance_px: f64,
     /// Colour behind the model; `None` keeps what the target holds.
     pub background: Option<Colour>,
+    /// How finely patches are divided.
+    pub levels: Levels,
+}
+
+/// How the number of segments along a patch's sides is chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Levels {
+    /// From bounds on its derivatives, for each view: the promise is kept.
+    #[default]
+    Bound,
+    /// The same number everywhere, 1 to 64. The promise is *not* kept; for comparisons.
+    Fixed(u32),
 }
 
 impl Default for FrameSettings {
     fn default() -> Self {
-        Self { tolerance_px: 0.5, background: Some([1.0, 1.0, 1.0, 1.0]) }
+        Self { tolerance_px: 0.5, background: Some([1.0, 1.0, 1.0, 1.0]), levels: Levels::Bound }
     }
 }
 
@@ -174,6 +186,8 @@ pub struct Picture {
 pub struct FrameStats {
     /// Name and GPU time in milliseconds of each pass, in order.
     pub passes: Vec<PassTime>,
+    /// Patches of the loaded model, those of each instance counted; of a view from very near, those near it.
+    pub patches: u64,
     /// Triangles that the tessellator made, and those of meshes.
     pub triangles: u64,
     /// Sub-patches drawn.

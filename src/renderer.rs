@@ -25,8 +25,8 @@ use crate::gpu::{
 };
 use crate::model::{Camera, CameraError, Model, Projection};
 use crate::passes::resolve;
-use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, SceneSettings};
-pub use crate::scene::{EditError, UndrawnSolid};
+use crate::picture::{FrameSettings, FrameStats, Levels, PassTime, PoolBytes, SceneSettings};
+pub use crate::scene::{CloseUp, EditError, UndrawnSolid};
 use crate::scene::{Scene, SceneData, SolidData, Write, focal_and_slant, view};
 use ash::vk;
 
@@ -324,6 +324,7 @@ impl Renderer {
         let scopes = slot.times.read()?;
         let stats = FrameStats {
             passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
+            patches: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.items)),
             triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
             sub_patches: u64::from(c.plain) + u64::from(c.trimmed),
             trim_rows: u64::from(c.rows),
@@ -473,6 +474,10 @@ fn constants(device: &Device, loaded: &Loaded, input: &FrameInput<'_>, formats: 
         ring_px: budget.ring as f32,
         row_px: budget.row as f32,
         chord_px: budget.chord as f32,
+        fixed_factor: match input.settings.levels {
+            Levels::Bound => 0,
+            Levels::Fixed(level) => level.clamp(1, 64),
+        },
         item_count: counts.items,
         cell_count: counts.cells,
         strip_count: counts.strips,

@@ -21,6 +21,8 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("budget", &[]),
     ("abi", &[]),
     ("twin", &["abi", "math", "spline", "trim", "model"]),
+    // for tests and measurements
+    ("trial", &["abi", "budget", "model", "picture", "scene", "spline", "twin"]),
     // GPU: no geometry
     ("gpu", &[]),
     ("shaders", &[]),
@@ -32,7 +34,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("renderer", &["abi", "budget", "buffers", "frame", "gpu", "model", "passes", "picture", "scene"]),
     ("headless", &["gpu", "model", "picture", "renderer"]),
     // for benchmarks and tests
-    ("rivals", &["abi", "math", "model", "picture", "scene", "spline", "trim", "twin"]),
+    ("rivals", &["abi", "math", "model", "picture", "scene", "spline", "trial", "trim", "twin"]),
 ];
 
 /// Modules that may name Vulkan's types.

@@ -25,10 +25,11 @@ fn help_names_every_command_and_the_exit_statuses() {
     let help = selvedge(&["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let help = text(&help.stdout);
-    for word in ["render", "info", "check", "bench", "trims", "convert", "Exit status: 0 done; 1 a picture breaks"] {
+    let commands = ["render", "info", "check", "bench", "trims", "sweep", "convert"];
+    for word in commands.into_iter().chain(["Exit status: 0 done; 1 a picture breaks"]) {
         assert!(help.contains(word), "{word} in {help}");
     }
-    for command in ["render", "info", "check", "bench", "trims", "convert"] {
+    for command in commands {
         let help = selvedge(&[command, "--help"]);
         assert_eq!(help.status.code(), Some(0));
         assert!(text(&help.stdout).contains("Exit status:"), "{command}");
@@ -52,6 +53,10 @@ fn wrong_arguments_are_usage_errors() {
     render(&["--aov", "colour=c.npy"], "depth, face, uv or normal");
     refused(&["check", "m.step", "--samples", "0"], "above 0");
     refused(&["check", "m.step", "--views", "close", "--eye", "1,2,3"], "cannot be used with");
+    refused(&["check", "m.step", "--zoom", "1e3,0.5"], "from 1 to 1e9");
+    refused(&["check", "m.step", "--zoom", "10", "--views", "close"], "cannot be used with");
+    render(&["--factors", "65"], "a level from 1 to 64");
+    refused(&["sweep", "m.step", "--sizes", "400"], "WIDTHxHEIGHT");
     render(&["--camera", "front", "--fov", "30"], "cannot be used with");
     refused(&["bench"], "MODELS");
     refused(&["convert", "m.step"], "OUT.selvedge");

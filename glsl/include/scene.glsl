@@ -115,6 +115,7 @@ struct Frame {
     float ring_px;      // how far a trimmed face reaches over its border to close cracks
     float row_px;       // spacing of the trim table's scan lines
     float chord_px;     // budget of a trim curve's linear segments
+    uint fixed_factor;  // of every patch; 0: what the bound asks for
     uint item_count;
     uint cell_count;
     uint strip_count;

@@ -193,7 +193,7 @@ impl SceneData {
 
 /// The largest factor by which a linear map lengthens a vector, rounded up: exact for similarity
 /// transforms, else the bound `sqrt(|M|_1 |M|_inf)`.
-fn stretch(m: DMat3) -> f64 {
+pub(super) fn stretch(m: DMat3) -> f64 {
     let gram = m.transpose() * m;
     let s2 = gram.x_axis.x;
     let off = gram - DMat3::from_diagonal(DVec3::splat(s2));

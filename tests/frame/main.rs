@@ -8,6 +8,7 @@ mod accuracy;
 mod distance;
 mod errors;
 mod every_shape;
+mod hard;
 mod hard_trims;
 mod meshes;
 mod objects;
@@ -20,3 +21,4 @@ mod support;
 mod touching;
 #[path = "../shapes/trims.rs"]
 mod trims;
+mod zoom;

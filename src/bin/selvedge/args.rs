@@ -3,7 +3,7 @@
 use crate::trims::Way;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
-use selvedge::picture::{SolidWay, TrimWay};
+use selvedge::picture::{Levels, SolidWay, TrimWay};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -39,6 +39,9 @@ pub enum Command {
     /// Measure time and memory per pass along a fixed camera path, next to the error of the same frames
     #[command(after_help = STATUSES)]
     Bench(BenchArgs),
+    /// Measure time against error over tolerances, sizes, levels, zooms and numbers of copies, all in turn
+    #[command(after_help = STATUSES)]
+    Sweep(SweepArgs),
     /// Put the ways to trim side by side: time, memory and error over zoom, picture size and each way's accuracy
     #[command(after_help = STATUSES)]
     Trims(TrimsArgs),
@@ -110,6 +113,12 @@ pub struct CheckArgs {
     /// Built-in views; not together with a camera
     #[arg(long, value_enum, default_value_t = Views::Whole, conflicts_with_all = ["eye", "target", "camera"])]
     pub views: Views,
+    /// In place of the views: so many times closer than the whole model, at the detail nearest to the eye; once each
+    #[arg(long, value_name = "TIMES", value_parser = times, value_delimiter = ',', conflicts_with_all = ["eye", "target", "camera", "views"])]
+    pub zoom: Vec<f64>,
+    /// Move the model by this before anything is drawn
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub moved: Option<DVec3>,
     /// Pixels to judge in each view, spread evenly; those at which the face changes are judged in any case
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = at_least_one)]
     pub samples: usize,
@@ -141,6 +150,43 @@ pub struct BenchArgs {
     pub edit: bool,
     /// Folder for bench.json and bench.csv
     #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct SweepArgs {
+    /// The models: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    #[arg(required = true)]
+    pub models: Vec<PathBuf>,
+    /// How patches are divided: bound, or a level from 1 to 64; several, with commas
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "bound")]
+    pub factors: Vec<Factors>,
+    /// Tolerances in pixels
+    #[arg(long, value_name = "LIST", value_parser = tolerance, value_delimiter = ',', default_value = "0.5")]
+    pub tolerances: Vec<f64>,
+    /// Sizes in pixels
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1920x1080")]
+    pub sizes: Vec<Size>,
+    /// How many times closer than the whole model
+    #[arg(long, value_name = "LIST", value_parser = times, value_delimiter = ',', default_value = "1")]
+    pub zooms: Vec<f64>,
+    /// How many copies of the model, in a cube
+    #[arg(long, value_name = "LIST", value_parser = at_least_one, value_delimiter = ',', default_value = "1")]
+    pub copies: Vec<usize>,
+    /// Copy the parts too, not only their placements
+    #[arg(long)]
+    pub distinct: bool,
+    /// Measured frames of each
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one)]
+    pub frames: usize,
+    /// Pixels judged in the first frame of each; 0 judges none
+    #[arg(long, value_name = "N", default_value_t = 2_000)]
+    pub samples: usize,
+    /// Part of the name of the Vulkan device to use
+    #[arg(long, value_name = "NAME")]
+    pub device: Option<String>,
+    /// Table to write
+    #[arg(long, value_name = "FILE.csv")]
     pub out: Option<PathBuf>,
 }
 
@@ -226,6 +272,10 @@ pub struct FrameArgs {
     /// Largest distance in pixels between a drawn boundary and the true one, at least 0.125
     #[arg(long, value_name = "PX", default_value_t = 0.5, value_parser = tolerance)]
     pub tolerance: f64,
+    /// How finely patches are divided: bound, which keeps the promise, or the same level from 1 to 64 everywhere, which does
+    /// not
+    #[arg(long, value_name = "bound|N", default_value = "bound")]
+    pub factors: Factors,
     /// How to trim: table (made for each view) or exact (made once). Without it what suits the model
     #[arg(long, value_name = "WAY")]
     pub trim: Option<TrimWay>,
@@ -238,6 +288,28 @@ pub struct FrameArgs {
     /// Load the Vulkan validation layer; a message from it counts as a broken promise
     #[arg(long)]
     pub validation: bool,
+}
+
+/// How patches are divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Factors(pub Levels);
+
+impl FromStr for Factors {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let level = || text.parse().ok().filter(|n| (1..=64).contains(n)).map(Levels::Fixed);
+        let levels = if text == "bound" { Some(Levels::Bound) } else { level() };
+        levels.map(Self).ok_or_else(|| "wants `bound` or a level from 1 to 64".into())
+    }
+}
+
+impl std::fmt::Display for Factors {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.0 {
+            Levels::Bound => f.write_str("bound"),
+            Levels::Fixed(level) => write!(f, "{level}"),
+        }
+    }
 }
 
 /// What becomes of polygons.
@@ -327,6 +399,12 @@ fn tolerance(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|t| t.is_finite() && *t >= 0.125)
         .ok_or_else(|| "wants a number of pixels, at least 0.125".into())
+}
+
+/// How many times closer.
+fn times(text: &str) -> Result<f64, String> {
+    let times = text.parse::<f64>().ok().filter(|t| (1.0..=1e9).contains(t));
+    times.ok_or_else(|| "wants a number from 1 to 1e9".into())
 }
 
 fn length(text: &str) -> Result<f64, String> {

@@ -101,7 +101,7 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         let camera = camera(index);
         let picture = session.render(&camera, Outputs::ALL)?;
         let what = format!("frame {index}");
-        error.add(&verdict::of(&tracer, &camera, &picture, JUDGED_SAMPLES, args.frame.tolerance, &what));
+        error.add(&verdict::of(&tracer, &camera, &picture, JUDGED_SAMPLES, args.frame.tolerance, 1.0, &what));
     }
     let report = Report {
         model: model.display().to_string(),

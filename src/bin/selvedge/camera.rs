@@ -29,7 +29,7 @@ const SIZE: Size = Size(1920, 1080);
 /// A camera and what it is called in reports.
 #[derive(Clone, Debug)]
 pub struct View {
-    pub name: &'static str,
+    pub name: String,
     pub camera: Camera,
 }
 
@@ -85,15 +85,29 @@ impl CameraArgs {
         let mut list = Vec::new();
         if wanted(Views::Whole) {
             let given = self.eye.is_some() || self.target.is_some() || self.named(import)?.is_some();
-            list.push(View { name: if given { "given" } else { "whole" }, camera: whole });
+            list.push(View { name: if given { "given" } else { "whole" }.to_string(), camera: whole });
         }
         if wanted(Views::Close) {
-            list.push(View { name: "close", camera: fitted(closer(model, whole), bounds)? });
+            list.push(View { name: "close".to_string(), camera: fitted(closer(model, whole, CLOSER), bounds)? });
         }
         if wanted(Views::Grazing) {
-            list.push(View { name: "grazing", camera: fitted(self.grazing(bounds, size), bounds)? });
+            list.push(View { name: "grazing".to_string(), camera: fitted(self.grazing(bounds, size), bounds)? });
         }
         Ok(list)
+    }
+
+    /// So many times closer each.
+    pub fn zooms(&self, times: &[f64], import: &Import) -> Result<Vec<View>> {
+        let bounds = import.model.bounds();
+        let whole = self.of(import)?;
+        let view = |&times: &f64| {
+            let mut camera = fitted(closer(&import.model, whole, times), bounds)?;
+            // nothing of interest is nearer than a tenth of the distance
+            let near = (camera.eye - camera.target).length() * 0.1;
+            camera.depth_range.0 = camera.depth_range.0.min(near);
+            Ok(View { name: format!("{times} x"), camera })
+        };
+        times.iter().map(view).collect()
     }
 
     fn grazing(&self, bounds: Bounds, size: (u32, u32)) -> Camera {
@@ -121,16 +135,16 @@ fn fitted(mut camera: Camera, bounds: Bounds) -> Result<Camera> {
     Ok(camera)
 }
 
-/// [`CLOSER`] to the start of the trim curve or the vertex nearest to the eye: certainly in sight, and at
+/// `times` closer to the start of the trim curve or the vertex nearest to the eye: certainly in sight, and at
 /// an edge.
-fn closer(model: &Model, mut camera: Camera) -> Camera {
+pub fn closer(model: &Model, mut camera: Camera, times: f64) -> Camera {
     let depth = |p: &DVec3| (*p - camera.eye).dot(camera.axes().2);
     let Some(detail) = details(model).min_by(|a, b| depth(a).total_cmp(&depth(b))) else { return camera };
     let back = camera.eye - camera.target;
     camera.target = detail;
     match &mut camera.projection {
-        Projection::Perspective { .. } => camera.eye = detail + back / CLOSER,
-        Projection::Orthographic { height } => (camera.eye, *height) = (detail + back, *height / CLOSER),
+        Projection::Perspective { .. } => camera.eye = detail + back / times,
+        Projection::Orthographic { height } => (camera.eye, *height) = (detail + back, *height / times),
     }
     camera
 }

@@ -3,7 +3,7 @@
 //! ```text
 //!   render   model ─▶ picture and images      info    model ─▶ what the file holds
 //!   check    picture against exact rays       bench   time and memory beside the error
-//!   trims    ways to trim, side by side
+//!   trims    ways to trim, side by side       sweep   time against error, over many settings
 //!   convert  model ─▶ the engine's own form
 //!   export   model ─▶ STEP file
 //! ```
@@ -26,6 +26,7 @@ mod render;
 mod series;
 mod session;
 mod subdivide;
+mod sweep;
 mod trims;
 mod verdict;
 
@@ -69,6 +70,7 @@ fn main() -> ExitCode {
         Command::Export(args) => export::run(args),
         Command::Check(args) => check::run(args),
         Command::Bench(args) => bench::run(args),
+        Command::Sweep(args) => sweep::run(args),
         Command::Trims(args) => trims::run(args),
         Command::Convert(args) => convert::run(args),
     };

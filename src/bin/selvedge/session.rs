@@ -49,7 +49,8 @@ impl Session {
         let scene = SceneSettings { trim: args.trim, editable, solids: args.solids };
         let mut renderer = during("opening the device", || HeadlessRenderer::new(&options))?;
         during("uploading the model", || renderer.upload_with(&import.model, scene))?;
-        let mut settings = FrameSettings { tolerance_px: args.tolerance, ..FrameSettings::default() };
+        let mut settings =
+            FrameSettings { tolerance_px: args.tolerance, levels: args.factors.0, ..FrameSettings::default() };
         settings.background = import.picture.background.or(settings.background);
         Ok(Self { renderer, settings })
     }
