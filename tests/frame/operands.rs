@@ -20,6 +20,18 @@ fn spline_parts() {
     right_at(SIZE, operands::splines(), false);
 }
 
+/// Near a silhouette Newton's method may end on the other sheet of a squeezed torus, so that its fragments are
+/// out of order: no more than one pixel of the picture may show it.
+#[test]
+fn a_squeezed_torus_in_a_mesh() {
+    let model = operands::squeezed_torus();
+    let mut renderer = watched(&model);
+    let camera = perspective(&model, SIZE);
+    let j = judge(&Tracer::new(&model), &camera, &render(&mut renderer, &camera), &JudgeOptions::default());
+    assert!(j.wrong <= 1, "{} wrong, {:?}", j.wrong, j.mismatches);
+    assert_silent(renderer);
+}
+
 #[test]
 fn unclean_meshes() {
     right_at(SIZE, operands::unclean(), false);
@@ -78,7 +90,8 @@ fn deep_meshes_repeat() {
     let tracer = Tracer::new(&model);
     let j = judge(&tracer, &camera, &picture, &JudgeOptions::default());
     assert_eq!((j.wrong, picture.stats.clamps, picture.stats.unpaired), (0, 0, 0), "{:?}", j.mismatches.first());
-    assert!(picture.stats.fragments > 300 * 500, "{}", picture.stats.fragments);
+    // 300 walls behind each of a hundred pixels at least
+    assert!(picture.stats.fragments > 300 * 100, "{}", picture.stats.fragments);
     assert_identical(&picture, &render(&mut renderer, &camera), "again");
     assert_silent(renderer);
 }
