@@ -345,11 +345,6 @@ impl Renderer {
         self.device.objects()
     }
 
-    /// The same with the bytes that each takes.
-    pub fn object_bytes(&self) -> Vec<(String, u64)> {
-        self.device.object_bytes()
-    }
-
     /// Frees what the slot kept for the frame before, and makes the buffers large enough for what
     /// that frame reported and for the picture's size.
     fn make_room(&mut self, slot: usize, size: (u32, u32)) -> Result<(), RenderError> {

@@ -130,7 +130,7 @@ impl HeadlessRenderer {
 
     /// The same with the bytes that each takes.
     pub fn object_bytes(&self) -> Vec<(String, u64)> {
-        self.renderer.object_bytes()
+        self.device.device().object_bytes()
     }
 
     /// Frees everything and returns all validation messages, those about leaks included.

@@ -139,8 +139,8 @@ impl Net<'_> {
         DVec2::new(p.x, p.y) / self.scale
     }
 
-    /// Where the triangles that bulge beyond the deflection are to be cut: at their middles, because a
-    /// point beside the border would stand on it, and the neighbour knows nothing of it.
+    /// Where the triangles that bulge beyond the deflection are to be cut: at the middle of the inner side
+    /// that bulges, or at their own. The border stays as it is: the neighbour knows nothing of new points.
     fn bulging(&self, index: &LoopIndex, deflection: f64) -> Vec<DVec2> {
         let at = |p: DVec2| self.grid.point(p.x, p.y);
         let mut cuts = Vec::new();
@@ -153,13 +153,16 @@ impl Net<'_> {
             let corners = t.map(at);
             let flat = (corners[0] + corners[1] + corners[2]) / 3.0;
             let sides = f.adjacent_edges().into_iter().filter(|side| !side.is_constraint_edge());
-            let bulges = at(middle).distance(flat) > deflection
-                || sides.into_iter().any(|side| {
-                    let [a, b] = side.vertices().map(|v| self.uv(v.position()));
-                    at(0.5 * (a + b)).distance(0.5 * (at(a) + at(b))) > deflection
-                });
-            if bulges {
-                cuts.push(middle);
+            let bulge = |side: [DVec2; 2]| {
+                let [a, b] = side;
+                let half = 0.5 * (a + b);
+                (half, at(half).distance(0.5 * (at(a) + at(b))))
+            };
+            let sides = sides.into_iter().map(|side| bulge(side.vertices().map(|v| self.uv(v.position()))));
+            let inner = (middle, at(middle).distance(flat));
+            let worst = sides.fold(inner, |worst, one| if one.1 > worst.1 { one } else { worst });
+            if worst.1 > deflection {
+                cuts.push(worst.0);
             }
         }
         cuts

@@ -46,7 +46,7 @@ pub(crate) fn flattened(grid: PatchGrid) -> PatchGrid {
         }
     }
     weld(&mut patches, count_u, count_v);
-    PatchGrid { count_u, count_v, patches }
+    PatchGrid::new(count_u, patches)
 }
 
 /// Two pieces compute the side that they share from different ends, and round apart. Each takes the

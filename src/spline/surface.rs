@@ -1,6 +1,7 @@
 //! Rational tensor-product B-spline surfaces and their cut into Bézier patches.
 
 use super::bspline::{SplineError, check_knots, check_points, to_beziers};
+use super::spare::{spare, without};
 use super::{Jet, Patch};
 use glam::{DVec3, DVec4};
 use serde::{Deserialize, Serialize};
@@ -57,10 +58,13 @@ pub struct PatchGrid {
     pub count_v: usize,
     /// `patches[j * count_u + i]`.
     pub patches: Vec<SurfacePatch>,
+    /// Where the patches begin along `u`, then along `v`: side by side in memory, for [`PatchGrid::locate`].
+    starts: Vec<f64>,
 }
 
 impl Surface {
-    /// Checks the invariants.
+    /// Checks the invariants. A knot inside the domain that is there more often than the degree allows is taken as
+    /// often as that, where the control points say that the surface is one piece.
     ///
     /// # Errors
     /// The first of [`SplineError`] that does not hold, `u` before `v`.
@@ -72,6 +76,17 @@ impl Surface {
     ) -> Result<Self, SplineError> {
         let count_u = knots_u.len().saturating_sub(degrees.0).saturating_sub(1);
         let count_v = knots_v.len().saturating_sub(degrees.1).saturating_sub(1);
+        if points.len() == count_u * count_v {
+            let same = |i: usize, j: usize| (0..count_v).all(|k| points[k * count_u + i] == points[k * count_u + j]);
+            let spare_u = spare(degrees.0, &knots_u, same);
+            let row = |k: usize| &points[k * count_u..(k + 1) * count_u];
+            let spare_v = spare(degrees.1, &knots_v, |i, j| row(i) == row(j));
+            if !spare_u.is_empty() || !spare_v.is_empty() {
+                let rows = without(&(0..count_v).collect::<Vec<_>>(), &spare_v);
+                let net = rows.into_iter().flat_map(|k| without(row(k), &spare_u)).collect();
+                return Self::new(degrees, without(&knots_u, &spare_u), without(&knots_v, &spare_v), net);
+            }
+        }
         check_knots(degrees.0, &knots_u, count_u)?;
         check_knots(degrees.1, &knots_v, count_v)?;
         if points.len() != count_u * count_v {
@@ -151,7 +166,7 @@ impl Surface {
                 });
             }
         }
-        PatchGrid { count_u, count_v, patches }
+        PatchGrid::new(count_u, patches)
     }
 
     /// The part over a rectangle inside the domain, as Bézier patches with their own parameters.
@@ -180,6 +195,13 @@ impl Surface {
 }
 
 impl PatchGrid {
+    /// Patches row by row, `count_u` in a row.
+    pub(crate) fn new(count_u: usize, patches: Vec<SurfacePatch>) -> Self {
+        let starts_v = patches.iter().step_by(count_u).map(|p| p.v.0);
+        let starts = patches[..count_u].iter().map(|p| p.u.0).chain(starts_v).collect();
+        Self { count_u, count_v: patches.len() / count_u, patches, starts }
+    }
+
     /// [`Surface::within`] of the surface of degrees `n` and `k` that this was cut from: the part over a rectangle
     /// inside the domain, as Bézier patches with their own parameters.
     ///
@@ -218,17 +240,9 @@ impl PatchGrid {
 
     /// The patch that holds `(u, v)`, clamped to the domain, and the local parameters.
     pub fn locate(&self, u: f64, v: f64) -> (&SurfacePatch, f64, f64) {
-        let row = &self.patches[..self.count_u];
-        let i = row.partition_point(|p| p.u.0 <= u).clamp(1, self.count_u) - 1;
-        let (mut j, mut end) = (0, self.count_v);
-        while end - j > 1 {
-            let middle = (j + end) / 2;
-            if self.patches[middle * self.count_u].v.0 <= v {
-                j = middle;
-            } else {
-                end = middle;
-            }
-        }
+        let last = |starts: &[f64], x: f64| starts.partition_point(|start| *start <= x).max(1) - 1;
+        let (along_u, along_v) = self.starts.split_at(self.count_u);
+        let (i, j) = (last(along_u, u), last(along_v, v));
         let p = &self.patches[j * self.count_u + i];
         let s = ((u - p.u.0) / (p.u.1 - p.u.0)).clamp(0.0, 1.0);
         let t = ((v - p.v.0) / (p.v.1 - p.v.0)).clamp(0.0, 1.0);

@@ -47,10 +47,11 @@ fn sixteen_steps_are_as_exact_as_single_precision() {
 fn each_step_is_worth_its_name() {
     let model = many_holes(2);
     let off = |steps| disagreements(face(&model), steps, 200_000).1;
-    // a chord of a quarter circle of radius r bulges by 0.29 r, of a half of it by a quarter of that
+    // a chord of a quarter circle of radius r bulges by 0.293 r, of a half of it by a quarter of that; equal
+    // steps of the parameter are unequal arcs, so a little more
     let radius = 0.3 / 2.0;
     for steps in 0..4u32 {
-        let bulge = radius * 0.3 / 4f64.powi(steps as i32);
+        let bulge = radius * 0.35 / 4f64.powi(steps as i32);
         let off = off(steps);
         assert!(off <= bulge && off > bulge / 8.0, "{off} with {steps} steps, not up to {bulge}");
     }

@@ -45,5 +45,5 @@ pub fn open(path: &Path, smooth: Smooth, args: &SubdivideArgs) -> Result<Import>
         model.parts.push(made.part);
     }
     report.bodies = model.parts.len();
-    Ok(Import { model, warnings: Vec::new(), report })
+    Ok(Import { model, report, ..Import::default() })
 }

@@ -147,11 +147,9 @@ impl Topology {
                 self.first[v] = h as u32;
             }
         }
-        for v in 0..self.positions.len() {
-            if self.first[v] != NONE && self.fan(v).out.len() != degree[v] {
-                let what = "joins faces that share no edge there";
-                return Err(ConstructError::Vertex { vertex: v, what });
-            }
+        let whole = |v: usize| self.first[v] == NONE || self.fan(v).out.len() == degree[v];
+        if let Some(vertex) = (0..degree.len()).find(|v| !whole(*v)) {
+            return Err(ConstructError::Vertex { vertex, what: "joins faces that share no edge there" });
         }
         Ok(())
     }

@@ -261,18 +261,10 @@ fn children(b: &Quartic) -> [Quartic; 4] {
     from_fn(|child| {
         let to = corners(child);
         let mut out = [[DVec3::ZERO; 5]; 5];
-        for k in 0..5 {
-            for i in 0..5 - k {
+        for (k, row) in out.iter_mut().enumerate() {
+            for (i, p) in row[..5 - k].iter_mut().enumerate() {
                 let mut d = *b;
-                let arguments = (0..4).map(|n| {
-                    if n < k {
-                        to[2]
-                    } else if n < k + i {
-                        to[1]
-                    } else {
-                        to[0]
-                    }
-                });
+                let arguments = (0..4).map(|n| if n < k { to[2] } else { to[usize::from(n < k + i)] });
                 for (n, t) in arguments.enumerate() {
                     for row in 0..4 - n {
                         for at in 0..4 - n - row {
@@ -280,7 +272,7 @@ fn children(b: &Quartic) -> [Quartic; 4] {
                         }
                     }
                 }
-                out[k][i] = d[0][0];
+                *p = d[0][0];
             }
         }
         out

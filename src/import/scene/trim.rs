@@ -16,11 +16,14 @@ use super::scene::Scene;
 use super::surface::Made;
 use super::text::{Fault, Outcome, Table, Value};
 use crate::construct::{Chain, project, trim_loops};
-use crate::spline::{BSpline, Bezier, Surface};
+use crate::spline::arc::assemble;
+use crate::spline::{BSpline, Bezier, Span, Surface};
 use glam::{DVec2, DVec3};
 
 /// Most Bézier pieces in all loops of a face or a profile: every chord is compared with its neighbours.
 const MOST_PIECES: usize = 1 << 12;
+/// Angle between tangents, radians, above which a joint is a corner.
+const CORNER: f64 = 1e-6;
 /// Share of a domain by which loops may leave it: rounding.
 const OUTSIDE: f64 = 1e-9;
 
@@ -64,13 +67,31 @@ fn flat(loop_: &Written<'_>) -> Outcome<Chain> {
     loop_.curves.iter().enumerate().map(|(i, c)| planar(c, name(i))).collect()
 }
 
-/// Loops of a profile, in its plane.
+/// Loops of a profile, in its plane, cut at their corners: every smooth piece becomes a face of its own, as edges of
+/// solids are edges of faces.
 pub(super) fn profile<'a>(scene: &mut Scene<'a>, value: Value<'a>) -> Outcome<Vec<Chain>> {
     let all = written(scene, value)?;
     if let Some(along) = all.iter().find_map(|l| l.along) {
         return Err(along.fault("a profile is not cast on anything"));
     }
-    all.iter().map(flat).collect()
+    all.iter().map(|l| flat(l).map(|chain| chain.iter().flat_map(smooth_pieces).collect())).collect()
+}
+
+/// The curve's pieces between corners.
+fn smooth_pieces(curve: &BSpline<DVec3>) -> Vec<BSpline<DVec3>> {
+    let spans = curve.beziers();
+    let tangent = |b: &Bezier<DVec3>, t: f64| {
+        let (p, d) = b.jet(t);
+        (d.truncate() * p.z - p.truncate() * d.z).normalize_or_zero()
+    };
+    let smooth = |a: &Span<Bezier<DVec3>>, b: &Span<Bezier<DVec3>>| {
+        tangent(&a.piece, 1.0).distance(tangent(&b.piece, 0.0)) <= CORNER
+    };
+    let one = |spans: &[Span<Bezier<DVec3>>]| {
+        let (degree, knots, points) = assemble(spans);
+        BSpline::new(degree, knots, points).expect("pieces of a curve are curves")
+    };
+    spans.chunk_by(smooth).map(one).collect()
 }
 
 /// Trims a surface by the loops of its table.

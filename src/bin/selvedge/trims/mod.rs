@@ -38,7 +38,7 @@ pub fn run(args: &TrimsArgs) -> Result<Outcome> {
     }
     for path in &args.models {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        rows.extend(measured(args, &name, session::open(path)?.model)?);
+        rows.extend(measured(args, &name, session::open(path, &Default::default())?.model)?);
     }
     output::print(&report::table(&rows))?;
     output::print(&fit::text(&rows))?;

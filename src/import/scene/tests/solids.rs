@@ -127,3 +127,14 @@ fn parts_are_shared() {
     assert!(import.model.instances.iter().all(|i| i.name == "c"));
     assert_eq!(import.report.nodes["plane"], 2);
 }
+
+/// A polygon's corners are edges: four walls and two lids; a smooth curve stays one wall.
+#[test]
+fn profiles_are_cut_at_their_corners() {
+    let text = "[curve.c]\nshape = \"polyline\"\nclosed = true\npoints = [[0, 0], [3, 0], [3, 2], [0, 2]]\n\
+                [curve.p]\nshape = \"polyloop\"\npoints = [[0, 0], [3, 0], [3, 2], [0, 2]]\n\
+                [solid.a]\nshape = \"extrude\"\nloops = [\"c\"]\nalong = [0, 0, 1]\n\
+                [solid.b]\nshape = \"extrude\"\nloops = [\"p\"]\nalong = [0, 0, 1]\n";
+    let import = import(text);
+    assert_eq!(import.model.parts.iter().map(|p| p.faces.len()).collect::<Vec<_>>(), [6, 3]);
+}
