@@ -30,9 +30,13 @@ pub mod passes;
 pub mod picture;
 pub mod reference;
 pub mod renderer;
+#[cfg(feature = "rivals")]
+pub mod rivals;
 mod scene;
 mod shaders;
 pub mod spline;
+#[cfg(any(test, feature = "rivals"))]
+mod trial;
 pub mod trim;
 pub mod twin;
 

@@ -11,11 +11,23 @@ pub struct FrameSettings {
     pub tolerance_px: f64,
     /// Colour behind the model; `None` keeps what the target holds.
     pub background: Option<Colour>,
+    /// How finely patches are divided.
+    pub levels: Levels,
+}
+
+/// How the number of segments along a patch's sides is chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Levels {
+    /// From bounds on its derivatives, for each view: the promise is kept.
+    #[default]
+    Bound,
+    /// The same number everywhere, 1 to 64. The promise is *not* kept; for comparisons.
+    Fixed(u32),
 }
 
 impl Default for FrameSettings {
     fn default() -> Self {
-        Self { tolerance_px: 0.5, background: Some([1.0, 1.0, 1.0, 1.0]) }
+        Self { tolerance_px: 0.5, background: Some([1.0, 1.0, 1.0, 1.0]), levels: Levels::Bound }
     }
 }
 
@@ -28,6 +40,28 @@ pub enum TrimWay {
     Table,
     /// The loops themselves, in bands and cells made once: a few monotone arcs a pixel.
     Exact,
+    /// One to compare with; never chosen, never met by an embedder.
+    #[cfg(feature = "rivals")]
+    Rival(Rival),
+}
+
+/// Other ways to trim, each with the number that its accuracy hangs on: see [`crate::rivals`].
+#[cfg(feature = "rivals")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Rival {
+    /// No test: what a frame costs before it is trimmed.
+    Untrimmed,
+    /// Monotone pieces, bisected in every pixel.
+    Bisect {
+        /// Most steps.
+        steps: u32,
+    },
+    /// A texture of one bit a texel for each face.
+    Texture {
+        /// Eighths of a texel to a pixel.
+        eighths: u32,
+    },
 }
 
 impl TrimWay {
@@ -39,6 +73,12 @@ impl TrimWay {
         match self {
             Self::Table => "table",
             Self::Exact => "exact",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Untrimmed) => "untrimmed",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Bisect { .. }) => "bisect",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Texture { .. }) => "texture",
         }
     }
 }
@@ -56,11 +96,51 @@ impl std::str::FromStr for TrimWay {
 #[error("no way to trim is called `{0}`; there are: {names}", names = TrimWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
 pub struct UnknownTrimWay(String);
 
+/// How Boolean solids are drawn. Both ways draw the same picture, bit for bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SolidWay {
+    /// One ray a pixel, followed from event to event until it enters the solid.
+    #[default]
+    Events,
+    /// The faces of each primitive, trimmed by the Blist of the others: constructive solid trimming. Scenes in
+    /// which some operand is a mesh or a spline part are drawn by events.
+    Cst,
+}
+
+impl SolidWay {
+    /// Every way.
+    pub const ALL: &'static [Self] = &[Self::Events, Self::Cst];
+
+    /// As in command lines and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Events => "events",
+            Self::Cst => "cst",
+        }
+    }
+}
+
+impl std::str::FromStr for SolidWay {
+    type Err = UnknownSolidWay;
+
+    fn from_str(name: &str) -> Result<Self, UnknownSolidWay> {
+        Self::ALL.iter().copied().find(|way| way.name() == name).ok_or_else(|| UnknownSolidWay(name.to_owned()))
+    }
+}
+
+/// No way to draw Boolean solids is called so.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no way to draw solids is called `{0}`; there are: {names}", names = SolidWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
+pub struct UnknownSolidWay(String);
+
 /// What the caller decides about a loaded model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneSettings {
     /// How to trim; `None` takes what suits the model.
     pub trim: Option<TrimWay>,
+    /// How to draw Boolean solids.
+    pub solids: SolidWay,
     /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover. The model is
     /// trimmed by [`TrimWay::Table`] then, which is made anew for each frame in any case.
     pub editable: bool,
@@ -107,17 +187,30 @@ pub struct Picture {
 pub struct FrameStats {
     /// Name and GPU time in milliseconds of each pass, in order.
     pub passes: Vec<PassTime>,
+    /// Patches of the loaded model, those of each instance counted; of a view from very near, those near it.
+    pub patches: u64,
     /// Triangles that the tessellator made, and those of meshes.
     pub triangles: u64,
     /// Sub-patches drawn.
     pub sub_patches: u64,
     /// Scan lines of the trim table.
     pub trim_rows: u64,
+    /// Chords of trim curves that the trim table was made from.
+    pub trim_segments: u64,
     /// u-intercepts stored in the trim table.
     pub trim_intercepts: u64,
-    /// Patches whose tessellation factor would have exceeded the largest split: the promise is not
-    /// kept there. 0 in a good frame.
+    /// Patches whose tessellation factor would have exceeded the largest split, and rays through Boolean
+    /// solids that need more steps than the driver lets a shader make: the promise is not kept there. 0 in a
+    /// good frame.
     pub clamps: u64,
+    /// Crossings of rays with operands of Boolean solids that are meshes or spline parts.
+    pub fragments: u64,
+    /// Of those rays, how many slip between two faces of an operand and were given the face that is nearest
+    /// beside the gap, within the tolerance.
+    pub mended: u64,
+    /// Rays that enter an operand and never leave it, or leave it without having entered: it is not closed. What
+    /// is entered stays so, what is left without is left out.
+    pub unpaired: u64,
     /// Times the frame was recorded again because a buffer was too small.
     pub retries: u32,
     /// Bytes copied for edits of trim loops since the frame before.

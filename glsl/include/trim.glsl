@@ -28,4 +28,30 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 }
 #endif
 
+// Ways to compare with: src/rivals.
+#ifdef TRIM_BY_BISECT
+#include "rivals/bisect.glsl"
+#endif
+
+#ifdef TRIM_BY_UNTRIMMED
+bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
+    return true;
+}
+#endif
+
+#ifdef TRIM_BY_TEXTURE
+#include "rivals/texture.glsl"
+layout(scalar, binding = TRIM_BINDING + 0) readonly buffer TexturePlaces { TexturePlace texture_places[]; };
+layout(scalar, binding = TRIM_BINDING + 1) readonly buffer Texels { uint texels[]; };
+
+bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
+    if (any(lessThan(uv, vec2(0.0))) || any(greaterThanEqual(uv, vec2(1.0)))) return false;
+    TexturePlace place = texture_places[fi.first_strip];
+    if (place.size.words == 0u) return false;
+    uint column = min(uint(uv.x * float(place.size.columns)), place.size.columns - 1u);
+    uint row = min(uint(uv.y * float(place.size.rows)), place.size.rows - 1u);
+    return (texels[place.start + row * place.size.words + column / 32u] >> (column & 31u) & 1u) != 0u;
+}
+#endif
+
 #endif

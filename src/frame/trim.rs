@@ -10,6 +10,8 @@
 //! test is compiled into the passes `visibility` and `heal` ([`TrimTest`](crate::shaders::TrimTest)).
 
 use super::Frame;
+#[cfg(feature = "rivals")]
+use super::rival::{RivalParts, RivalPasses};
 use super::table::{TableParts, TablePasses};
 use crate::buffers::TrimBuffers;
 use crate::gpu::{Buffer, Device, GpuError};
@@ -27,6 +29,8 @@ pub(super) struct TrimPasses {
 enum Way {
     Table(Box<TablePasses>),
     Exact,
+    #[cfg(feature = "rivals")]
+    Rival(RivalPasses),
 }
 
 impl TrimPasses {
@@ -36,6 +40,8 @@ impl TrimPasses {
         let way = match way {
             TrimWay::Table => Way::Table(Box::new(TablePasses::new(device)?)),
             TrimWay::Exact => Way::Exact,
+            #[cfg(feature = "rivals")]
+            TrimWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival)?),
         };
         let others = data.has_meshes() || data.solids.kinds().is_some();
         let heal = heal::Heal::new(device, way.test(), data.has_rational, others)?;
@@ -52,6 +58,8 @@ impl Way {
         match self {
             Self::Table(_) => &TRIM_TABLE,
             Self::Exact => &TRIM_EXACT,
+            #[cfg(feature = "rivals")]
+            Self::Rival(passes) => passes.test(),
         }
     }
 }
@@ -66,6 +74,8 @@ pub(super) struct TrimParts<'a> {
 enum Parts<'a> {
     Table(TableParts<'a>),
     Exact(&'a ExactScene),
+    #[cfg(feature = "rivals")]
+    Rival(RivalParts<'a>),
 }
 
 impl<'a> Frame<'a> {
@@ -76,6 +86,10 @@ impl<'a> Frame<'a> {
         let way = match (&passes.way, scene) {
             (Way::Table(passes), Trims::Table(scene)) => {
                 Parts::Table(TableParts { passes, scene, buffers: buffers.table.as_ref()? })
+            }
+            #[cfg(feature = "rivals")]
+            (Way::Rival(passes), Trims::Rival(scene)) => {
+                Parts::Rival(RivalParts { passes, scene, buffers: buffers.texture.as_ref() })
             }
             (Way::Exact, Trims::Exact(scene)) => Parts::Exact(scene),
             _ => unreachable!("passes and buffers are made for one way"),
@@ -90,6 +104,17 @@ impl<'a> TrimParts<'a> {
         match self.way {
             Parts::Table(parts) => Some(parts),
             Parts::Exact(_) => None,
+            #[cfg(feature = "rivals")]
+            Parts::Rival(_) => None,
+        }
+    }
+
+    /// A way to compare with, where the scene is trimmed so.
+    #[cfg(feature = "rivals")]
+    pub(super) fn rival(&self) -> Option<RivalParts<'a>> {
+        match self.way {
+            Parts::Rival(parts) => Some(parts),
+            _ => None,
         }
     }
 
@@ -98,6 +123,8 @@ impl<'a> TrimParts<'a> {
         match self.way {
             Parts::Table(parts) => parts.test(),
             Parts::Exact(s) => vec![&s.faces, &s.bands, &s.cells, &s.entries, &s.arcs, &s.points],
+            #[cfg(feature = "rivals")]
+            Parts::Rival(parts) => parts.test(),
         }
     }
 }

@@ -4,7 +4,7 @@ use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
 use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
 use crate::model::{Camera, LoopAt, Model, TrimLoop};
 use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
-use crate::renderer::{EditError, FrameInput, RenderError, Renderer, TargetFormats, Targets};
+use crate::renderer::{CloseUp, EditError, FrameInput, RenderError, Renderer, TargetFormats, Targets};
 use ash::vk;
 use bytemuck::Pod;
 use std::mem::ManuallyDrop;
@@ -23,6 +23,9 @@ pub struct HeadlessRenderer {
     device: ManuallyDrop<HeadlessDevice>,
     aovs: bool,
     model: Option<(Model, SceneSettings)>,
+    close_up: CloseUp,
+    /// The renderer holds what one view saw close up, not the model.
+    close: bool,
 }
 
 /// Images of one size, and the buffers that they are copied to.
@@ -45,6 +48,8 @@ impl HeadlessRenderer {
             device: ManuallyDrop::new(device),
             aovs: false,
             model: None,
+            close_up: CloseUp::default(),
+            close: false,
         })
     }
 
@@ -62,6 +67,8 @@ impl HeadlessRenderer {
     /// [`HeadlessError::Gpu`].
     pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), HeadlessError> {
         self.model = Some((model.clone(), settings));
+        self.close_up = CloseUp::new(model);
+        self.close = false;
         Ok(self.renderer.upload_with(model, settings)?)
     }
 
@@ -95,6 +102,7 @@ impl HeadlessRenderer {
     ) -> Result<Picture, HeadlessError> {
         camera.check().map_err(RenderError::from)?;
         self.prepare(camera.size, outputs != Outputs::default())?;
+        self.approach(camera)?;
         let (mut retries, mut edit_bytes) = (0, 0);
         let stats = loop {
             let report = self.frame(camera, settings)?;
@@ -118,6 +126,11 @@ impl HeadlessRenderer {
     /// Names of the buffers, images and pipelines that exist.
     pub fn objects(&self) -> Vec<String> {
         self.renderer.objects()
+    }
+
+    /// The same with the bytes that each takes.
+    pub fn object_bytes(&self) -> Vec<(String, u64)> {
+        self.device.device().object_bytes()
     }
 
     /// Frees everything and returns all validation messages, those about leaks included.
@@ -161,12 +174,25 @@ impl HeadlessRenderer {
             renderer.upload_with(model, *settings)?;
             *self.renderer = renderer;
             self.aovs = aovs;
+            self.close = false;
             *self.targets = None;
         }
         if self.targets.as_ref().is_none_or(|t| t.colour.0.size() != size) {
             *self.targets = None;
             *self.targets = Some(TargetImages::new(self.device.device(), size, aovs)?);
         }
+        Ok(())
+    }
+
+    /// Has the renderer hold what resolves this view: the model, or what is seen of it close up.
+    fn approach(&mut self, camera: &Camera) -> Result<(), HeadlessError> {
+        let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
+        // loops that are being edited stay where they are
+        let near = if settings.editable { None } else { self.close_up.of(model, camera) };
+        if near.is_some() || self.close {
+            self.renderer.upload_with(near.as_ref().unwrap_or(model), *settings)?;
+        }
+        self.close = near.is_some();
         Ok(())
     }
 

@@ -11,15 +11,12 @@
 //! [`frame`] then holds whole frames against the chain. Every file also feeds the GPU one changed
 //! number and asks that the comparison names the place.
 
-mod case;
 mod chain;
 mod exact;
 mod hard;
-mod random;
 mod shapes;
 
-pub(crate) use case::Case;
-pub(crate) use random::Random;
+pub(crate) use crate::trial::{Case, Random};
 pub(crate) use shapes::{placed, untrimmed};
 
 #[cfg(feature = "headless")]
@@ -37,11 +34,15 @@ mod harness;
 #[cfg(feature = "headless")]
 mod lines;
 #[cfg(feature = "headless")]
+mod operand_sort;
+#[cfg(feature = "headless")]
 mod reset;
 #[cfg(feature = "headless")]
 mod segments;
 #[cfg(feature = "headless")]
 mod sizes;
+#[cfg(feature = "headless")]
+mod solid_lists;
 #[cfg(feature = "headless")]
 mod solids;
 #[cfg(feature = "headless")]

@@ -5,6 +5,8 @@ use super::flatten::flattened;
 use crate::abi;
 use crate::abi::Side;
 use crate::model::{Face, TrimLoop};
+#[cfg(feature = "rivals")]
+use crate::picture::Rival;
 use crate::picture::TrimWay;
 use crate::spline::{Bezier, Control, Patch, PatchGrid, SurfacePatch};
 use crate::trim::{ExactTrim, LoopIndex, RectSide, chord_bend};
@@ -51,8 +53,8 @@ impl FaceData {
         let domain = Domain { origin: DVec2::new(u0, v0), size: DVec2::new(u1 - u0, v1 - v0) };
         let sides = sides(&grid, &face.loops);
         let trimmed = sides.contains(&Side::Boundary);
-        let table = trimmed && way == TrimWay::Table;
-        let editable = editable && table;
+        let table = trimmed && needs_curves(way);
+        let editable = editable && trimmed && way == TrimWay::Table;
         let mut data = Self {
             face: abi::Face {
                 domain: [u0 as f32, v0 as f32, (u1 - u0) as f32, (v1 - v0) as f32],
@@ -280,6 +282,16 @@ pub(super) const DEFAULT_COLOUR: u32 = 0xff8c_8c8c;
 /// Linear colour to unorm bytes, red lowest.
 pub(super) fn pack_colour(c: crate::model::Colour) -> u32 {
     u32::from_le_bytes(c.map(|x| (x.clamp(0.0, 1.0) * 255.0).round() as u8))
+}
+
+/// The way is made of curves and cells in every view.
+fn needs_curves(way: TrimWay) -> bool {
+    match way {
+        TrimWay::Table => true,
+        TrimWay::Exact => false,
+        #[cfg(feature = "rivals")]
+        TrimWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
+    }
 }
 
 fn strip_count(rows: usize) -> u32 {

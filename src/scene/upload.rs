@@ -1,7 +1,9 @@
 //! The scene's persistent buffers: only those that its model needs.
 
-use super::SceneData;
+use super::{SceneData, SolidData};
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texels, Uploads};
+#[cfg(feature = "rivals")]
+use crate::picture::Rival;
 use crate::picture::TrimWay;
 use ash::vk;
 use bytemuck::Pod;
@@ -29,6 +31,20 @@ pub(crate) struct Solids {
     pub leaves: Buffer,
     pub leaf_surfaces: Buffer,
     pub surfaces: Buffer,
+    /// The leaves as they are drawn, and how many; only where each is drawn by itself.
+    pub order: Option<(Buffer, u32)>,
+    /// `None` where every operand has equations.
+    pub shells: Option<Shells>,
+}
+
+/// Operands without equations: a leaf of each, and the meshes around them.
+pub(crate) struct Shells {
+    pub leaves: Buffer,
+    pub meshes: Buffer,
+    pub triangles: Buffer,
+    pub positions: Buffer,
+    /// Corners of the triangles of each mesh.
+    pub draws: Vec<Range<u32>>,
 }
 
 /// Triangles, where they are placed, and the draws that cover them.
@@ -46,6 +62,18 @@ pub(crate) struct MeshBuffers {
 pub(crate) enum Trims {
     Table(TableScene),
     Exact(ExactScene),
+    #[cfg(feature = "rivals")]
+    Rival(RivalScene),
+}
+
+/// What a way to compare with needs.
+#[cfg(feature = "rivals")]
+pub(crate) enum RivalScene {
+    Untrimmed,
+    /// Faces, bands, cells, lists, pieces, points.
+    Bisect([Buffer; 6]),
+    /// Curves and cells; texels to a pixel and the number of placed faces.
+    Texture(TableScene, Buffer),
 }
 
 /// Arcs in bands and cells; see `glsl/include/exact.glsl`.
@@ -84,13 +112,9 @@ impl Scene {
             items: persistent(&mut uploads, cmd, "items", &data.items)?,
             trims: match data.trim_way() {
                 None => None,
-                Some(TrimWay::Table) => Some(Trims::Table(TableScene {
-                    cells: persistent(&mut uploads, cmd, "trim cells", &data.cells)?,
-                    cell_items: persistent(&mut uploads, cmd, "trim cell items", &data.cell_items)?,
-                    curves: persistent(&mut uploads, cmd, "trim curves", &data.curves)?,
-                    curve_points: persistent(&mut uploads, cmd, "trim curve points", &data.curve_points)?,
-                    curve_items: persistent(&mut uploads, cmd, "trim curve items", &data.curve_items)?,
-                })),
+                Some(TrimWay::Table) => Some(Trims::Table(table_scene(&mut uploads, cmd, data)?)),
+                #[cfg(feature = "rivals")]
+                Some(TrimWay::Rival(rival)) => Some(Trims::Rival(rival_scene(&mut uploads, cmd, data, rival)?)),
                 Some(TrimWay::Exact) => Some(Trims::Exact(ExactScene {
                     faces: persistent(&mut uploads, cmd, "trim faces", &data.exact.faces)?,
                     bands: persistent(&mut uploads, cmd, "trim bands", &data.exact.bands)?,
@@ -106,6 +130,13 @@ impl Scene {
                         leaves: persistent(&mut uploads, cmd, "solid leaves", &data.solids.leaves)?,
                         leaf_surfaces: persistent(&mut uploads, cmd, "solid sides", &data.solids.leaf_surfaces)?,
                         surfaces: persistent(&mut uploads, cmd, "solid surfaces", &data.solids.surfaces)?,
+                        shells: (!data.solids.shell_leaves.is_empty())
+                            .then(|| shells(&mut uploads, cmd, &data.solids))
+                            .transpose()?,
+                        order: (!data.solids.order.is_empty())
+                            .then(|| persistent(&mut uploads, cmd, "solid order", &data.solids.order))
+                            .transpose()?
+                            .map(|order| (order, data.solids.order.len() as u32)),
                     })
                 })
                 .transpose()?,
@@ -127,6 +158,54 @@ impl Scene {
         uploads.finish(cmd, Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ);
         Ok((scene, uploads))
     }
+}
+
+fn table_scene(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SceneData) -> Result<TableScene, GpuError> {
+    Ok(TableScene {
+        cells: persistent(uploads, cmd, "trim cells", &data.cells)?,
+        cell_items: persistent(uploads, cmd, "trim cell items", &data.cell_items)?,
+        curves: persistent(uploads, cmd, "trim curves", &data.curves)?,
+        curve_points: persistent(uploads, cmd, "trim curve points", &data.curve_points)?,
+        curve_items: persistent(uploads, cmd, "trim curve items", &data.curve_items)?,
+    })
+}
+
+#[cfg(feature = "rivals")]
+fn rival_scene(
+    uploads: &mut Uploads,
+    cmd: &Commands<'_>,
+    data: &SceneData,
+    rival: Rival,
+) -> Result<RivalScene, GpuError> {
+    Ok(match rival {
+        Rival::Untrimmed => RivalScene::Untrimmed,
+        Rival::Bisect { .. } => {
+            let b = &data.bisect;
+            RivalScene::Bisect([
+                persistent(uploads, cmd, "trim bisect faces", &b.faces)?,
+                persistent(uploads, cmd, "trim bisect bands", &b.bands)?,
+                persistent(uploads, cmd, "trim bisect cells", &b.cells)?,
+                persistent(uploads, cmd, "trim bisect lists", &b.lists)?,
+                persistent(uploads, cmd, "trim bisect pieces", &b.pieces)?,
+                persistent(uploads, cmd, "trim bisect points", &b.points)?,
+            ])
+        }
+        Rival::Texture { eighths } => {
+            let knob = [(eighths as f32 / 8.0).to_bits(), data.face_instances.len() as u32];
+            let knob = persistent(uploads, cmd, "trim texture knob", &knob)?;
+            RivalScene::Texture(table_scene(uploads, cmd, data)?, knob)
+        }
+    })
+}
+
+fn shells(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SolidData) -> Result<Shells, GpuError> {
+    Ok(Shells {
+        leaves: persistent(uploads, cmd, "operand leaves", &data.shell_leaves)?,
+        meshes: persistent(uploads, cmd, "operand meshes", &data.operand_meshes)?,
+        triangles: persistent(uploads, cmd, "operand triangles", &data.operand_triangles)?,
+        positions: persistent(uploads, cmd, "operand positions", &data.operand_positions)?,
+        draws: data.operand_draws.clone(),
+    })
 }
 
 fn persistent<T: Pod>(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &[T]) -> Result<Buffer, GpuError> {

@@ -39,6 +39,7 @@ mod winding;
 pub use classify::RectSide;
 pub use exact::{AT_HIGH, AT_LOW, ExactTrim};
 pub use flatten::{chord_bend, polyline, segment_count};
+pub use piece::{MonotonePiece, monotone_pieces};
 pub use table::TrimTable;
 pub use winding::LoopIndex;
 

@@ -95,7 +95,7 @@ fn judge(picture: &Picture, case: &trims::TrimCase, id: u32, (focus, zoom): (DVe
 
 fn every_case(way: TrimWay, zooms: &[f64]) {
     let cases = trims::all();
-    let mut renderer = renderer(&model(&cases), SceneSettings { trim: Some(way), editable: false });
+    let mut renderer = renderer(&model(&cases), SceneSettings { trim: Some(way), ..Default::default() });
     for (i, case) in cases.iter().enumerate() {
         // what the judge knows is what was stated by hand
         let index = LoopIndex::new(&case.loops);
@@ -147,7 +147,7 @@ fn no_frame_depends_on_the_one_before() {
     let i = cases.iter().position(|case| case.name == "7 holes").unwrap();
     let model = model(&cases[i..=i]);
     for &trim in TrimWay::ALL {
-        let settings = SceneSettings { trim: Some(trim), editable: false };
+        let settings = SceneSettings { trim: Some(trim), ..Default::default() };
         let mut old = renderer(&model, settings);
         let focus = DVec2::from(cases[i].focus);
         let away =
@@ -176,7 +176,7 @@ fn an_edited_loop_is_drawn_as_if_uploaded_afresh() {
     model.parts[0].faces[0].surface = Surface::new((1, 1), knots(), knots(), points).unwrap();
     let at = LoopAt { part: 0, face: 0, trim_loop: 0 };
     let view = Camera { size: (64, 64), ..camera(0, DVec2::splat(0.5), 1.0) };
-    let mut edited = renderer(&model, SceneSettings { trim: None, editable: true });
+    let mut edited = renderer(&model, SceneSettings { editable: true, ..Default::default() });
     draw(&mut edited, &view);
     for frame in 0..6 {
         let start = model.parts[0].faces[0].loops[0].clone();
@@ -212,7 +212,7 @@ fn edits_that_cannot_be() {
     let mut fixed = renderer(&model, SceneSettings::default());
     assert_eq!(fixed.edit_loop(at, shape), Err(EditError::NotEditable));
     assert_silent(fixed);
-    let mut edited = renderer(&model, SceneSettings { trim: None, editable: true });
+    let mut edited = renderer(&model, SceneSettings { editable: true, ..Default::default() });
     for wrong in [LoopAt { part: 7, ..at }, LoopAt { face: 1, ..at }, LoopAt { trim_loop: 1, ..at }] {
         assert_eq!(edited.edit_loop(wrong, shape), Err(EditError::NoSuchLoop(wrong)));
     }

@@ -8,9 +8,11 @@ mod accuracy;
 mod distance;
 mod errors;
 mod every_shape;
+mod hard;
 mod hard_trims;
 mod meshes;
 mod objects;
+mod operands;
 mod room;
 mod samples;
 #[path = "../shapes/mod.rs"]
@@ -20,3 +22,4 @@ mod support;
 mod touching;
 #[path = "../shapes/trims.rs"]
 mod trims;
+mod zoom;

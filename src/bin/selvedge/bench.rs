@@ -75,7 +75,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
 
 /// One model along the path; true when the validation layer complained.
 fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
-    let import = session::open(model)?;
+    let import = session::open(model, &Default::default())?;
     let bounds = import.model.bounds();
     let Size(width, height) = args.size;
     let camera = |index| path::camera(bounds, (width, height), index, args.frames);
@@ -101,7 +101,7 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         let camera = camera(index);
         let picture = session.render(&camera, Outputs::ALL)?;
         let what = format!("frame {index}");
-        error.add(&verdict::of(&tracer, &camera, &picture, JUDGED_SAMPLES, args.frame.tolerance, &what));
+        error.add(&verdict::of(&tracer, &camera, &picture, JUDGED_SAMPLES, args.frame.tolerance, 1.0, &what));
     }
     let report = Report {
         model: model.display().to_string(),

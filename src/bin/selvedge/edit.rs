@@ -56,7 +56,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
 }
 
 fn drag(args: &BenchArgs, path: &Path) -> Result<(Report, bool)> {
-    let mut import = session::open(path)?;
+    let mut import = session::open(path, &Default::default())?;
     let Some(at) = busiest(&import.model) else { bail!("{}: no face has a loop", path.display()) };
     let Size(width, height) = args.size;
     let camera = path::camera(import.model.bounds(), (width, height), 0, FRAMES);

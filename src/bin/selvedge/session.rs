@@ -1,6 +1,6 @@
 //! A model read and a renderer opened, with everything worth knowing told on standard error.
 
-use crate::args::FrameArgs;
+use crate::args::{FrameArgs, SubdivideArgs};
 use crate::output;
 use crate::progress::{during, importing};
 use anyhow::Result;
@@ -11,9 +11,14 @@ use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
 use std::path::Path;
 use std::time::Instant;
 
-/// Reads a file and tells its warnings.
-pub fn open(path: &Path) -> Result<Import> {
+/// Reads a file, its polygons as `subdivide` says, and tells its warnings.
+pub fn open(path: &Path, subdivide: &SubdivideArgs) -> Result<Import> {
     let start = Instant::now();
+    if let Some(smooth) = subdivide.subdivide {
+        let import = crate::subdivide::open(path, smooth, subdivide)?;
+        tracing::info!("read {} in {:.1?}", path.display(), start.elapsed());
+        return Ok(import);
+    }
     let import = importing(&path.display().to_string(), |tell| {
         import::open_with(path, &import::Options { progress: Some(tell) })
     })?;
@@ -41,10 +46,12 @@ impl Session {
 
     fn with(args: &FrameArgs, import: &Import, editable: bool) -> Result<Self> {
         let options = HeadlessOptions { device: args.device.clone(), validation: args.validation };
-        let scene = SceneSettings { trim: args.trim, editable };
+        let scene = SceneSettings { trim: args.trim, editable, solids: args.solids };
         let mut renderer = during("opening the device", || HeadlessRenderer::new(&options))?;
         during("uploading the model", || renderer.upload_with(&import.model, scene))?;
-        let settings = FrameSettings { tolerance_px: args.tolerance, ..FrameSettings::default() };
+        let mut settings =
+            FrameSettings { tolerance_px: args.tolerance, levels: args.factors.0, ..FrameSettings::default() };
+        settings.background = import.picture.background.or(settings.background);
         Ok(Self { renderer, settings })
     }
 

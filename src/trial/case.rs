@@ -19,7 +19,7 @@ impl Case {
     /// Room for everything; draws are cut small enough that there are several.
     pub(crate) fn new(model: &Model, camera: &Camera, tolerance_px: f64) -> Self {
         camera.check().expect("the camera of a case shows something");
-        let data = SceneData::new(model, SceneSettings { trim: Some(TrimWay::Table), editable: false })
+        let data = SceneData::new(model, SceneSettings { trim: Some(TrimWay::Table), ..Default::default() })
             .expect("no operand that cannot be drawn");
         let pixels = camera.pixel_matrix();
         let views = data.placements.iter().map(|&placement| view(pixels, placement)).collect();
