@@ -170,7 +170,7 @@ impl<'a> Bench<'a> {
         let without = if trims { self.without(camera)? } else { time(&stats, "visibility") };
         row.cost = Some(cost(&stats, without, objects));
         let picture = entered.judged.render(camera, &settings, Outputs::ALL)?;
-        let j = verdict::of(self.tracer, camera, &picture, self.args.samples, 0.5, &what);
+        let j = verdict::of(self.tracer, camera, &picture, self.args.samples, 0.5, zoom, &what);
         row.error =
             Some(Error { judged: j.sampled, wrong: verdict::wrong(&j), worst_shift_px: verdict::worst_shift_px(&j) });
         Ok(row)
