@@ -23,10 +23,11 @@ void main() {
     uint item = gl_GlobalInvocationID.x;
     if (item >= frame.item_count) return;
     FaceInstance fi = face_instances[item_face_instance[item]];
-    Patch patch_ = patches[faces[fi.face].first_patch + item - fi.first_item];
+    Face face = faces[fi.face];
+    Patch patch_ = patches[face.first_patch + item - fi.first_item];
     taus[item] = 0u;
     if (side_of(patch_.shape) == SIDE_OUTSIDE) return;
-    Seen seen = see(views[fi.instance], frame, patch_.box_min, patch_.box_max, frame.ring_px + 1.0);
+    Seen seen = see(views[fi.instance], frame, patch_.box_min, patch_.box_max, frame.ring_px + 1.0, far_of(face, frame));
     if (seen.w < 0.0) return;
     // a ring may reach farther than the box
     if (side_of(patch_.shape) == SIDE_INSIDE && !covers_a_centre(seen, frame.deviation_px)) return;

@@ -29,7 +29,7 @@ void main() {
     Face face = faces[fi.face];
     Cell cell = cells[face.first_cell + item - fi.first_cell];
     if (cell.speed_v < 0.0) return; // no loop meets its patch
-    Seen seen = see(views[fi.instance], frame, cell.box_min, cell.box_max, frame.ring_px + 1.0);
+    Seen seen = see(views[fi.instance], frame, cell.box_min, cell.box_max, frame.ring_px + 1.0, far_of(face, frame));
     if (seen.w < 0.0) return;
     float pixels = pixels_per_unit(frame, instances[fi.instance], seen);
     // positive floats order like their bits

@@ -18,21 +18,10 @@ layout(binding = 6) uniform samplerBuffer points;
 layout(scalar, binding = 7) readonly buffer Instances { Instance instances[]; };
 layout(binding = 8, rg32ui) readonly uniform uimage2D visibility;
 
+#include "eye_ray.glsl"
 #include "patch.glsl"
-#include "refine.glsl"
-#include "visible.glsl"
 #include "resolved.glsl"
-
-// S_u x S_v, or where it vanishes (pole, collapsed side) its limit from the patch's inside.
-vec3 normal_of(Patch patch_, Jet jet, vec2 uv) {
-    vec3 n = cross(jet.du, jet.dv);
-    float size = dot(jet.du, jet.du) + dot(jet.dv, jet.dv);
-    for (float step_ = 1e-3; step_ < 0.3 && dot(n, n) < 1e-10 * size * size; step_ *= 4.0) {
-        Jet inner = patch_jet(patch_.first, patch_.shape, mix(uv, vec2(0.5), step_));
-        n = cross(inner.du, inner.dv);
-    }
-    return n;
-}
+#include "resolved_patch.glsl"
 
 void main() {
     uvec2 seen = imageLoad(visibility, ivec2(gl_FragCoord.xy)).xy;
@@ -41,18 +30,5 @@ void main() {
         write_nothing();
         return;
     }
-    uint item = seen_item(seen.x);
-    FaceInstance fi = face_instances[item_face_instance[item]];
-    Face face = faces[fi.face];
-    Patch patch_ = patches[face.first_patch + item - fi.first_item];
-    Instance instance = instances[fi.instance];
-    View view = views[fi.instance];
-    vec2 pixel = gl_FragCoord.xy;
-    Sample s = refine(patch_, view, unpack_uv(seen.y), pixel);
-    vec3 n = normalize(instance.normal * normal_of(patch_, s.jet, s.uv));
-    bool flip = ((face.flags & FACE_SAME_SENSE) == 0u) != (instance.mirrored != 0u);
-    if (flip) n = -n;
-    vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
-    bool solid = (face.flags & FACE_SOLID) != 0u;
-    write_surface(face.colour, instance, n, solid, s.q.z, face.id, face.domain.xy + at * face.domain.zw);
+    write_patch(seen, false);
 }

@@ -32,6 +32,6 @@ void main() {
     vec3 n = normalize(surface_gradient(surfaces[at], ray.o + t * ray.d - surface_centres[at]));
     // the solid begins here: its outside is before
     if (dot(n, ray.d) > 0.0) n = -n;
-    Instance nowhere = Instance(mat3(1.0), 1.0, 0u, 0u); // leaves are where they are
+    Instance nowhere = Instance(mat3(1.0), 1.0, 0u, 0u, 0u); // leaves are where they are
     write_surface(leaf.colour, nowhere, n, true, t, leaf.id, vec2(uintBitsToFloat(0x7fc00000u)));
 }

@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Pass `solid_blocks`: which leaves each block of tiles may see, in Blist order: counted first, then
 // listed where the prefix sum says. One thread a block.
+// Twin: src/twin/solid_blocks.rs.
 #include "scene.glsl"
 #include "tiles.glsl"
 

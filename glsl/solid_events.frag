@@ -16,6 +16,7 @@
 // equations are compiled once.
 #include "scene.glsl"
 #include "solids.glsl"
+#include "shells.glsl"
 #include "tiles.glsl"
 #include "eye_ray.glsl"
 #include "view.glsl"
@@ -30,6 +31,15 @@ layout(scalar, binding = 5) readonly buffer TileStarts { uint tile_starts[]; };
 layout(scalar, binding = 6) readonly buffer TileLeaves { TileLeaf tile_leaves[]; };
 layout(scalar, binding = 7) readonly buffer TileEntries { uint tile_entries[]; };
 
+layout(scalar, binding = 8) readonly buffer FragmentStarts { uint fragment_starts[]; };
+layout(scalar, binding = 9) readonly buffer FragmentCounts { uint fragment_counts[]; };
+layout(scalar, binding = 10) readonly buffer Fragments { Fragment fragments[]; };
+
+layout(scalar, binding = 11) buffer CountersBuffer { Counters counters; };
+
+// Whether some leaf is a shell: compiled in only then.
+layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
+
 layout(location = 0) out uvec2 visible;
 
 const uint NOBODY = 0xffffffffu;
@@ -41,6 +51,43 @@ const uint KEPT = 12u;
 const uint SEARCH = 0u; // the next event
 const uint OWNER = 1u;  // does leaf `asked`, taken for what it is not, change the solid before or behind t?
 const uint SIDE = 2u;   // which side of leaf `asked` ends at t?
+
+// What a scan wants to know of a leaf at depth t.
+struct Crossing {
+    bool inside;   // just behind t
+    bool before;   // just in front of it
+    bool ends;     // the leaf begins or ends there
+    float next;    // where it does next
+};
+
+Crossing crossing_of(Span s, float t) {
+    return Crossing(inside_span(s, t), inside_before(s, t), ends_at(s, t), next_of_span(s, t));
+}
+
+// Of a shell, and its last fragment at t.
+Crossing crossing_of(uint shell, float t, uint first, uint count, out uint last) {
+    Crossing c = Crossing(false, false, false, NEVER);
+    last = 0u;
+    for (uint i = first; i < first + count; ++i) {
+        Fragment f = fragments[i];
+        if ((f.shell & FRAGMENT_SHELL) != shell) continue;
+        bool leaves_ = (f.shell & FRAGMENT_LEAVES) != 0u;
+        bool passed = f.depth <= t;
+        if (f.depth > t) c.next = min(c.next, f.depth);
+        // entering and leaving follow each other: the first behind t tells, else the last before it
+        if (passed) c.inside = !leaves_;
+        if (f.depth < t) c.before = !leaves_;
+        if (i == first || (fragments[i - 1u].shell & FRAGMENT_SHELL) != shell) {
+            if (!passed) c.inside = leaves_;
+            if (!(f.depth < t)) c.before = leaves_;
+        }
+        if (f.depth == t) {
+            c.ends = true;
+            last = i;
+        }
+    }
+    return c;
+}
 
 // The leaves whose spans begin or end at depth t: the first positive one, the first subtracted one.
 struct Candidates {
@@ -57,6 +104,9 @@ void main() {
     uint entry = tile_entries[n];
     if (entry == EXIT_FALSE) discard;
     Ray ray = eye_ray(frame, gl_FragCoord.xy);
+    uint pixel = uint(gl_FragCoord.y) * uint(frame.size.x) + uint(gl_FragCoord.x);
+    uint first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
+    uint fragment_count = SOLIDS_HAVE_SHELLS ? fragment_counts[pixel] : 0u;
     Span kept[KEPT];
     uint purpose = SEARCH;
     uint asked = NOBODY;
@@ -64,23 +114,33 @@ void main() {
     uint fallback = NOBODY;
     bool negatives = false; // the candidates asked are the subtracted ones
     uint side = 0u;
+    uint word = SEEN_SOLID;
     float t = frame.near;
     bool before = true; // the near plane cuts: what is inside there is not entered
     // four events a leaf, at most as many questions about owners, and one about the side
-    uint most = 8u * (end - first) + 4u;
+    uint most = 8u * (end - first) + 2u * fragment_count + 4u;
     bool done = false;
+    bool passed = false; // the far plane
+    // a driver that ends long loops is found by what is missing
+    uint wanted = 0u;
+    uint steps = 0u;
     for (uint scan = 0u; scan < most && !done; ++scan) {
         uint at = entry;
         uint at_before = entry; // the walk in front of t
         float next = NEVER;
         Candidates found = Candidates(NOBODY, NOBODY);
         uint candidates = 0u;
+        wanted += end - first;
         for (uint i = first; i < end; ++i) {
+            ++steps;
             TileLeaf here = tile_leaves[i];
             Leaf leaf = leaves[here.leaf];
             bool is_kept = i - first < KEPT;
+            bool shell = SOLIDS_HAVE_SHELLS && (leaf.flags & LEAF_SHELL) != 0u;
             Span s = EVERYTHING;
-            if (is_kept && scan > 0u && purpose != SIDE) {
+            if (shell) {
+                // asked below
+            } else if (is_kept && scan > 0u && purpose != SIDE) {
                 s = kept[i - first];
             } else if (purpose != SIDE || i == asked) {
                 for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
@@ -92,15 +152,27 @@ void main() {
                 }
                 if (is_kept) kept[i - first] = s;
             }
+            Crossing c;
+            if (shell) {
+                uint last;
+                c = crossing_of(leaf.first, t, first_fragment, fragment_count, last);
+                if (purpose == SIDE && i == asked) {
+                    bool patch_ = (fragments[last].shell & FRAGMENT_PATCH) != 0u;
+                    side = patch_ ? last : fragments[last].what;
+                    word = patch_ ? SEEN_OPERAND : SEEN_SOLID;
+                }
+            } else {
+                c = crossing_of(s, t);
+            }
             if (i == at) {
-                bool inside = inside_span(s, t) != (purpose == OWNER && i == asked);
+                bool inside = c.inside != (purpose == OWNER && i == asked);
                 at = inside ? here.in_exit : here.out_exit;
             }
             if (purpose == OWNER && i == at_before) {
-                at_before = inside_before(s, t) != (i == asked) ? here.in_exit : here.out_exit;
+                at_before = c.before != (i == asked) ? here.in_exit : here.out_exit;
             }
-            next = min(next, next_of_span(s, t));
-            if (i >= after && ends_at(s, t)) {
+            next = min(next, c.next);
+            if (i >= after && c.ends) {
                 ++candidates;
                 if ((leaf.flags & LEAF_NEGATIVE) != 0u) found.negative = min(found.negative, i);
                 else found.positive = min(found.positive, i);
@@ -133,12 +205,16 @@ void main() {
             negatives = found.positive == NOBODY;
             purpose = candidates > 1u ? OWNER : SIDE;
         } else {
-            if (next >= frame.far) break;
+            if (next >= frame.far) {
+                passed = true;
+                break;
+            }
             before = inside;
             t = next;
         }
     }
+    if (steps != wanted || !(done || passed)) atomicAdd(counters.clamps, 1u);
     if (!done) discard;
-    visible = uvec2(SEEN_SOLID | side, floatBitsToUint(t));
+    visible = uvec2(word | side, floatBitsToUint(t));
     gl_FragDepth = reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0);
 }

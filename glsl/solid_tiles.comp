@@ -3,6 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Pass `solid_tiles`: which leaves each tile may see, of those of its block: counted first, then
 // listed. One thread a tile.
+// Twin: src/twin/solid_tiles.rs.
 #include "scene.glsl"
 #include "tiles.glsl"
 

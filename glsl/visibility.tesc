@@ -6,6 +6,9 @@
 #include "scene.glsl"
 #include "view.glsl"
 
+layout(constant_id = 10) const bool SCENE_HAS_OPERANDS = false;
+layout(constant_id = 11) const bool DRAWS_OPERANDS = false;
+
 layout(vertices = 1) out;
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
@@ -29,7 +32,7 @@ layout(location = 5) patch out uvec4 out_edges; // segments of the patch's sides
 
 // A split patch reaches far beyond the picture: leave out the sub-patches that nobody sees. Every
 // point of one lies within `bend / 8 n^2` of the bilinear surface through its corners.
-bool seen(Patch patch_, View view, vec2 lo, vec2 hi) {
+bool seen(Patch patch_, View view, vec2 lo, vec2 hi, float far) {
     vec3 a = patch_jet(patch_.first, patch_.shape, lo).point;
     vec3 b = patch_jet(patch_.first, patch_.shape, hi).point;
     vec3 c = patch_jet(patch_.first, patch_.shape, vec2(lo.x, hi.y)).point;
@@ -39,7 +42,7 @@ bool seen(Patch patch_, View view, vec2 lo, vec2 hi) {
                  patch_.bend.z * size.y * size.y) / 8.0;
     vec3 low = min(min(a, b), min(c, d)) - off;
     vec3 high = max(max(a, b), max(c, d)) + off;
-    return see(view, frame, low, high, frame.ring_px + 1.0).w >= 0.0;
+    return see(view, frame, low, high, frame.ring_px + 1.0, far).w >= 0.0;
 }
 
 void main() {
@@ -62,10 +65,13 @@ void main() {
     outer.y = place.y == 0u ? edges.y / splits.x : inner.x;
     outer.z = place.x + 1u == splits.x ? edges.z / splits.y : inner.y;
     outer.w = place.y + 1u == splits.y ? edges.w / splits.x : inner.x;
+    // faces of operands are among the others
+    bool operand = (faces[fi.face].flags & FACE_OPERAND) != 0u;
+    if (SCENE_HAS_OPERANDS && operand != DRAWS_OPERANDS) outer = uvec4(0u);
     if (splits != uvec2(1u)) {
         vec2 lo = vec2(place) / vec2(splits);
         vec2 hi = vec2(place + 1u) / vec2(splits);
-        if (!seen(patches[index], views[fi.instance], lo, hi)) outer = uvec4(0u);
+        if (!seen(patches[index], views[fi.instance], lo, hi, far_of(faces[fi.face], frame))) outer = uvec4(0u);
     }
     gl_TessLevelOuter[0] = float(outer.x);
     gl_TessLevelOuter[1] = float(outer.y);

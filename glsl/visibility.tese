@@ -11,6 +11,7 @@
 #include "view.glsl"
 
 layout(constant_id = 2) const bool TRIMMED = false;
+layout(constant_id = 11) const bool DRAWS_OPERANDS = false;
 
 layout(quads, equal_spacing, ccw) in;
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
@@ -77,7 +78,8 @@ void main() {
             jet.point = patch_jet(patch_.first, patch_.shape, uv).point;
         }
     }
-    gl_Position = to_clip(frame, to_pixel(view, vec4(jet.point, 1.0)));
+    vec4 q = to_pixel(view, vec4(jet.point, 1.0));
+    gl_Position = DRAWS_OPERANDS ? to_clip_unending(frame, q) : to_clip(frame, q);
     out_uv = uv;
     out_item = in_item;
 }

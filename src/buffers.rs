@@ -8,7 +8,7 @@
 //!                    Counters.failed, and the next frame gets what it would have needed
 //! ```
 
-use crate::abi::{BLOCK, Counters, Factors, Rect, SubPatch, TILE, TileLeaf};
+use crate::abi::{BLOCK, Counters, Factors, Fragment, Rect, SubPatch, TILE, TileLeaf};
 use crate::gpu::{Buffer, Device, GpuError, Image, ImageInfo, Pool};
 use crate::passes::scan;
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
@@ -28,7 +28,11 @@ pub(crate) struct Counts {
     pub face_instances: u32,
     /// Leaves of Boolean solids.
     pub leaves: u32,
+    /// Operands of theirs without equations.
+    pub shells: u32,
     pub triangles: u32,
+    /// Of leaves.
+    pub sides: u32,
     pub mesh_instances: u32,
     /// How faces are trimmed, where some are.
     pub trim: Option<TrimWay>,
@@ -44,10 +48,21 @@ impl Counts {
             curves: data.curve_items.len() as u32,
             face_instances: data.face_instances.len() as u32,
             leaves: data.solids.leaves.len() as u32,
+            shells: data.solids.shell_leaves.len() as u32,
             triangles: count(data.meshes.triangles.len().max(data.meshes.positions.len() / 3)),
+            sides: count(data.solids.leaf_surfaces.len()),
             mesh_instances: count(data.meshes.instances.len()),
             trim: data.trim_way(),
         }
+    }
+
+    /// Whether one dispatch covers a picture of this size, where its pixels are counted.
+    pub(crate) fn check_size(self, size: (u32, u32)) -> Result<(), TooMany> {
+        let count = size.0.saturating_mul(size.1);
+        if self.shells > 0 && count > scan::MAX_COUNT {
+            return Err(TooMany { what: "pixels with operands of meshes or splines", count, most: scan::MAX_COUNT });
+        }
+        Ok(())
     }
 
     /// Whether one dispatch covers each of them, and numbers tell them apart.
@@ -59,7 +74,8 @@ impl Counts {
             ("curves", self.curves, MOST_THREADS),
             ("triangles", self.triangles, MOST_TRIANGLES),
             ("primitives", self.leaves, MOST_THREADS),
-            ("placed meshes", self.mesh_instances, MOST_MESH_INSTANCES),
+            ("placed meshes", self.mesh_instances, MOST_SEEN),
+            ("sides of primitives", self.sides, MOST_SEEN),
         ];
         match all.into_iter().find(|(_, count, most)| count > most) {
             Some((what, count, most)) => Err(TooMany { what, count, most }),
@@ -87,7 +103,7 @@ const MOST_THREADS: u32 = MOST_GROUPS * 64;
 /// Triangles whose corners, and vertices whose coordinates, have numbers of 32 bits.
 const MOST_TRIANGLES: u32 = u32::MAX / 3;
 /// What the bits of the visibility image tell apart.
-const MOST_MESH_INSTANCES: u32 = 1 << 29;
+const MOST_SEEN: u32 = 1 << 29;
 /// Rows that pass `sort` takes, 128 to a workgroup.
 const MOST_ROWS: u32 = MOST_GROUPS * 128;
 
@@ -101,6 +117,7 @@ pub(crate) struct Capacities {
     pub doubts: u32,
     pub block_leaves: u32,
     pub tile_leaves: u32,
+    pub fragments: u32,
 }
 
 /// Bits of [`Counters::failed`], as in `scene.glsl`.
@@ -120,6 +137,7 @@ impl Capacities {
             doubts: trimmed * (1 << 14),
             block_leaves: counts.leaves.saturating_mul(4),
             tile_leaves: if counts.leaves > 0 { counts.leaves.saturating_mul(16).max(1 << 14) } else { 0 },
+            fragments: if counts.shells > 0 { 1 << 18 } else { 0 },
         }
     }
 
@@ -128,6 +146,10 @@ impl Capacities {
     pub(crate) fn grown(self, c: &Counters, range: u32) -> Result<Self, TooMany> {
         if c.wanted_rows > MOST_ROWS {
             return Err(TooMany { what: "scan lines", count: c.wanted_rows, most: MOST_ROWS });
+        }
+        let most_fragments = (range / size_of::<Fragment>() as u32).min(MOST_SEEN);
+        if c.fragments > most_fragments {
+            return Err(TooMany { what: "crossings of operands", count: c.fragments, most: most_fragments });
         }
         let room = |had: u32, wanted: u32, most: u32| {
             let spare = wanted.saturating_add(wanted / 4).min(most);
@@ -146,6 +168,7 @@ impl Capacities {
             doubts: room(self.doubts, c.doubts, range / size_of::<u32>() as u32),
             block_leaves: room(self.block_leaves, c.block_leaves, range / size_of::<u32>() as u32),
             tile_leaves: room(self.tile_leaves, c.tile_leaves, range / size_of::<TileLeaf>() as u32),
+            fragments: room(self.fragments, c.fragments, most_fragments),
         })
     }
 }
@@ -245,6 +268,14 @@ pub(crate) struct SolidBuffers {
     pub tile_starts: Buffer,
     pub tile_leaves: Buffer,
     pub tile_entries: Buffer,
+    pub fragments: Option<FragmentBuffers>,
+}
+
+/// Where each pixel's ray crosses operands without equations.
+pub(crate) struct FragmentBuffers {
+    pub counts: Buffer,
+    pub starts: Buffer,
+    pub all: Buffer,
 }
 
 impl Buffers {
@@ -266,8 +297,9 @@ impl Buffers {
         let n = counts.items;
         let across = |side: u32| (size.0.div_ceil(side) * size.1.div_ceil(side)) * u32::from(counts.leaves > 0);
         let (tiles, blocks) = (across(TILE), across(TILE * BLOCK));
-        let scanned =
-            (2 * n).max(counts.strips).max(counts.curves).max(capacities.rows).max(tiles).max(counts.face_instances);
+        let pixels = if counts.shells > 0 { size.0 * size.1 } else { 0 };
+        let scanned = [2 * n, counts.strips, counts.curves, counts.face_instances, capacities.rows, tiles, pixels];
+        let scanned = scanned.into_iter().max().unwrap_or(0);
         let draw_bytes = 2 * u64::from(capacities.draws) * size_of::<vk::DrawIndirectCommand>() as u64;
         let table = || {
             Ok::<_, GpuError>(TableBuffers {
@@ -333,6 +365,15 @@ impl Buffers {
                         tile_starts: words("solid tile starts", tiles + 1)?,
                         tile_leaves: structs("solid tile leaves", capacities.tile_leaves, size_of::<TileLeaf>())?,
                         tile_entries: words("solid tile entries", tiles)?,
+                        fragments: (pixels > 0)
+                            .then(|| {
+                                Ok(FragmentBuffers {
+                                    counts: words("operand fragment counts", pixels)?,
+                                    starts: words("operand fragment starts", pixels + 1)?,
+                                    all: structs("operand fragments", capacities.fragments, size_of::<Fragment>())?,
+                                })
+                            })
+                            .transpose()?,
                     })
                 })
                 .transpose()?,
@@ -380,11 +421,11 @@ mod tests {
         let counts = Counts { items: MOST_THREADS, ..Default::default() };
         assert!(counts.check().is_ok());
         assert!(matches!(Counts { curves: MOST_THREADS + 1, ..counts }.check(), Err(TooMany { .. })));
-        let counts = Counts { triangles: MOST_TRIANGLES, mesh_instances: MOST_MESH_INSTANCES, ..counts };
+        let counts = Counts { triangles: MOST_TRIANGLES, mesh_instances: MOST_SEEN, ..counts };
         assert!(counts.check().is_ok());
         let more = Counts { triangles: MOST_TRIANGLES + 1, ..counts };
         assert!(matches!(more.check(), Err(TooMany { what: "triangles", .. })));
-        let more = Counts { mesh_instances: MOST_MESH_INSTANCES + 1, ..counts };
+        let more = Counts { mesh_instances: MOST_SEEN + 1, ..counts };
         assert!(matches!(more.check(), Err(TooMany { what: "placed meshes", .. })));
     }
 }

@@ -34,6 +34,7 @@ use solids::SolidPasses;
 use trim::{TrimParts, TrimPasses};
 
 mod edit;
+mod resolved;
 #[cfg(feature = "rivals")]
 mod rival;
 mod solids;
@@ -60,7 +61,8 @@ impl Passes {
     pub(crate) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Self, GpuError> {
         let trim = TrimPasses::new(device, data)?;
         let test = trim.as_ref().map(TrimPasses::test);
-        let kinds = Kinds { rational: data.has_rational, plain: data.has_plain, trimmed: test };
+        let kinds =
+            Kinds { rational: data.has_rational, plain: data.has_plain, trimmed: test, operands: data.has_operands };
         let visibility = visibility::Visibility::new(device, kinds)?;
         Ok(Self {
             reset: reset::Reset::new(device)?,
@@ -69,13 +71,18 @@ impl Passes {
             scan: scan::Scan::new(device)?,
             emit: emit::Emit::new(device)?,
             trim,
-            solids: SolidPasses::new(device, &data.solids)?,
+            solids: SolidPasses::new(device, data, test)?,
             visibility,
             mesh: data.has_meshes().then(|| mesh::Mesh::new(device, VISIBILITY_FORMAT, DEPTH_FORMAT)).transpose()?,
             resolve: resolve::Resolve::new(
                 device,
                 formats,
-                resolve::Kinds { rational: data.has_rational, meshes: data.has_meshes(), solids: data.solids.kinds() },
+                resolve::Kinds {
+                    rational: data.has_rational,
+                    meshes: data.has_meshes(),
+                    solids: data.solids.kinds(),
+                    operands: data.has_operands,
+                },
             )?,
         })
     }
@@ -152,6 +159,9 @@ impl Frame<'_> {
             for counted in t.texture.iter().flat_map(crate::buffers::TextureBuffers::cleared) {
                 cmd.fill(counted, 0);
             }
+        }
+        if let Some(f) = b.solids.as_ref().and_then(|s| s.fragments.as_ref()) {
+            cmd.fill(&f.counts, 0);
         }
         let r = reset::Bindings { frame: self.constants, draws: &b.draws, counters: &b.counters };
         self.passes.reset.record(cmd, &r, 2 * b.capacities.draws);
@@ -315,45 +325,18 @@ impl Frame<'_> {
             doubts: &t.doubts,
             counters: &b.counters,
             instances: &s.instances,
-            others: s.meshes.as_ref().zip(b.others.as_ref()).map(|(m, seen)| heal::Others {
+            others: b.others.as_ref().map(|seen| heal::Others {
                 seen,
-                mesh_instances: &m.instances,
-                triangles: &m.triangles,
-                positions: &m.positions,
+                meshes: s.meshes.as_ref().map(|m| heal::Meshes {
+                    instances: &m.instances,
+                    triangles: &m.triangles,
+                    positions: &m.positions,
+                }),
             }),
             trim: test,
             dispatch: &t.heal_dispatch,
         };
         p.heal.record(cmd, &heal);
-    }
-
-    fn resolve(&self, cmd: &Commands<'_>) {
-        let (s, b) = (self.scene, self.buffers);
-        let bindings = resolve::Bindings {
-            frame: self.constants,
-            views: self.views,
-            face_instances: &s.face_instances,
-            faces: &s.faces,
-            patches: &s.patches,
-            items: &s.items,
-            points: &s.points,
-            instances: &s.instances,
-            visibility: &b.visibility,
-        };
-        let meshes = s.meshes.as_ref().map(|m| resolve::MeshBindings {
-            frame: self.constants,
-            views: self.views,
-            instances: &s.instances,
-            mesh_instances: &m.instances,
-            meshes: &m.meshes,
-            triangles: &m.triangles,
-            positions: &m.positions,
-            normals: &m.normals,
-            visibility: &b.visibility,
-            others: b.others.as_ref().unwrap_or(&b.visibility),
-        });
-        let solids = self.solids().map(|parts| parts.resolve(self));
-        self.passes.resolve.record(cmd, &bindings, meshes.as_ref(), solids.as_ref(), self.colour, self.depth);
     }
 }
 

@@ -113,7 +113,8 @@ pub enum SolidWay {
     /// One ray a pixel, followed from event to event until it enters the solid.
     #[default]
     Events,
-    /// The faces of each primitive, trimmed by the Blist of the others: constructive solid trimming.
+    /// The faces of each primitive, trimmed by the Blist of the others: constructive solid trimming. Scenes in
+    /// which some operand is a mesh or a spline part are drawn by events.
     Cst,
 }
 
@@ -208,9 +209,18 @@ pub struct FrameStats {
     pub trim_segments: u64,
     /// u-intercepts stored in the trim table.
     pub trim_intercepts: u64,
-    /// Patches whose tessellation factor would have exceeded the largest split: the promise is not
-    /// kept there. 0 in a good frame.
+    /// Patches whose tessellation factor would have exceeded the largest split, and rays through Boolean
+    /// solids that need more steps than the driver lets a shader make: the promise is not kept there. 0 in a
+    /// good frame.
     pub clamps: u64,
+    /// Crossings of rays with operands of Boolean solids that are meshes or spline parts.
+    pub fragments: u64,
+    /// Of those rays, how many slip between two faces of an operand and were given the face that is nearest
+    /// beside the gap, within the tolerance.
+    pub mended: u64,
+    /// Rays that enter an operand and never leave it, or leave it without having entered: it is not closed. What
+    /// is entered stays so, what is left without is left out.
+    pub unpaired: u64,
     /// Times the frame was recorded again because a buffer was too small.
     pub retries: u32,
     /// Bytes copied for edits of trim loops since the frame before.

@@ -21,7 +21,8 @@ pub use crate::buffers::TooMany;
 use crate::buffers::{Buffers, Capacities, Counts};
 use crate::frame::{Centres, Frame, Passes, target};
 use crate::gpu::{
-    Buffer, BufferInfo, Commands, Device, GpuError, Home, HostDevice, Image, Load, Pool, ReadBack, Timestamps, Uploads,
+    Attachment, Buffer, BufferInfo, Commands, Device, GpuError, Home, HostDevice, Image, Load, Pool, ReadBack,
+    Timestamps, Uploads,
 };
 use crate::model::{Camera, CameraError, Model, Projection};
 use crate::passes::resolve;
@@ -283,11 +284,8 @@ impl Renderer {
         let mut colour = vec![target(targets.colour, keep)];
         colour.extend(targets.aovs.iter().flatten().map(|image| target(image, keep)));
         let depth = targets.depth.map(|image| {
-            let mut depth = target(image, keep);
-            if !keep {
-                depth.load = Load::Depth(0.0);
-            }
-            depth
+            let kept = target(image, keep);
+            if keep { kept } else { Attachment { load: Load::Depth(0.0), ..kept } }
         });
         let frame = Frame {
             passes: &loaded.passes,
@@ -329,6 +327,9 @@ impl Renderer {
             trim_segments: u64::from(c.segments),
             trim_intercepts: u64::from(c.intercepts),
             clamps: u64::from(c.clamps),
+            fragments: u64::from(c.fragments),
+            mended: u64::from(c.mended),
+            unpaired: u64::from(c.unpaired),
             retries: 0,
             edit_bytes: slot.edit_bytes,
             pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),
@@ -352,6 +353,7 @@ impl Renderer {
         finished.retired.clear();
         finished.recorded = false;
         let Some(loaded) = &mut self.loaded else { return Ok(()) };
+        loaded.counts.check_size(size)?;
         let range = self.device.limits().max_storage_buffer_range;
         let capacities = match (had, report) {
             // else another slot's frame has made them larger since
@@ -420,9 +422,7 @@ impl Slot {
         self.constants.write(0, &[constants(device, loaded, input, formats)]);
         Ok(())
     }
-}
 
-impl Slot {
     /// Writes where the parts of Boolean solids are, seen from the eye.
     fn write_centres(&mut self, device: &Device, solids: &SolidData, camera: &Camera) -> Result<(), GpuError> {
         if solids.leaf_centres.is_empty() {
@@ -487,6 +487,7 @@ fn constants(device: &Device, loaded: &Loaded, input: &FrameInput<'_>, formats: 
         leaf_count: counts.leaves,
         block_leaf_capacity: room.block_leaves,
         tile_leaf_capacity: room.tile_leaves,
+        fragment_capacity: room.fragments,
         right: right.as_vec3().to_array(),
         up: up.as_vec3().to_array(),
         forward: forward.as_vec3().to_array(),
@@ -495,6 +496,5 @@ fn constants(device: &Device, loaded: &Loaded, input: &FrameInput<'_>, formats: 
     }
 }
 
-/// Vertices of one sub-patch at the hardware's factor of 64: a draw may exceed its budget by one
-/// sub-patch.
+/// Vertices of one sub-patch at the hardware's factor of 64: a draw may exceed its budget by so many.
 const MOST_VERTICES: u32 = 65 * 65;

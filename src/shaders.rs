@@ -24,6 +24,8 @@ pub struct TrimTest {
     pub way: &'static str,
     /// Fragment shader of pass `visibility`.
     pub visibility: &'static [u32],
+    /// Fragment shader of pass `operand_patch`.
+    pub operand_patch: &'static [u32],
     /// Second step of pass `heal`.
     pub heal: &'static [u32],
     /// Storage buffers of the test; they follow the bindings of the pass.
@@ -31,30 +33,51 @@ pub struct TrimTest {
 }
 
 /// The u-intercept table.
-pub static TRIM_TABLE: TrimTest =
-    TrimTest { way: "table", visibility: VISIBILITY_TABLE_FRAG, heal: HEAL_TABLE_COMP, buffers: 4 };
+pub static TRIM_TABLE: TrimTest = TrimTest {
+    way: "table",
+    visibility: VISIBILITY_TABLE_FRAG,
+    operand_patch: OPERAND_PATCH_TABLE_FRAG,
+    heal: HEAL_TABLE_COMP,
+    buffers: 4,
+};
 /// Arcs in bands and cells.
-pub static TRIM_EXACT: TrimTest =
-    TrimTest { way: "exact", visibility: VISIBILITY_EXACT_FRAG, heal: HEAL_EXACT_COMP, buffers: 6 };
+pub static TRIM_EXACT: TrimTest = TrimTest {
+    way: "exact",
+    visibility: VISIBILITY_EXACT_FRAG,
+    operand_patch: OPERAND_PATCH_EXACT_FRAG,
+    heal: HEAL_EXACT_COMP,
+    buffers: 6,
+};
 
 /// No test at all.
 #[cfg(feature = "rivals")]
 pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
     way: "untrimmed",
     visibility: RIVAL_VISIBILITY_UNTRIMMED_FRAG,
+    operand_patch: RIVAL_OPERAND_PATCH_UNTRIMMED_FRAG,
     heal: RIVAL_HEAL_UNTRIMMED_COMP,
     buffers: 0,
 };
 
 /// Bisection of monotone pieces.
 #[cfg(feature = "rivals")]
-pub static TRIM_BISECT: TrimTest =
-    TrimTest { way: "bisect", visibility: RIVAL_VISIBILITY_BISECT_FRAG, heal: RIVAL_HEAL_BISECT_COMP, buffers: 6 };
+pub static TRIM_BISECT: TrimTest = TrimTest {
+    way: "bisect",
+    visibility: RIVAL_VISIBILITY_BISECT_FRAG,
+    operand_patch: RIVAL_OPERAND_PATCH_BISECT_FRAG,
+    heal: RIVAL_HEAL_BISECT_COMP,
+    buffers: 6,
+};
 
 /// Trim textures.
 #[cfg(feature = "rivals")]
-pub static TRIM_TEXTURE: TrimTest =
-    TrimTest { way: "texture", visibility: RIVAL_VISIBILITY_TEXTURE_FRAG, heal: RIVAL_HEAL_TEXTURE_COMP, buffers: 2 };
+pub static TRIM_TEXTURE: TrimTest = TrimTest {
+    way: "texture",
+    visibility: RIVAL_VISIBILITY_TEXTURE_FRAG,
+    operand_patch: RIVAL_OPERAND_PATCH_TEXTURE_FRAG,
+    heal: RIVAL_HEAL_TEXTURE_COMP,
+    buffers: 2,
+};
 
 #[cfg(test)]
 mod tests {

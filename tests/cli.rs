@@ -139,6 +139,29 @@ fn info_tells_bodies_faces_and_the_assembly() {
     );
 }
 
+/// Polygons become the smooth surface of their scheme, closed where they are; what cannot be is named with its file.
+#[test]
+fn polygons_are_subdivided() {
+    let folder = std::env::temp_dir().join(format!("selvedge-subdivide-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let (cube, made, step) = (path("cube.obj"), path("cube.selvedge"), path("cube.step"));
+    let vertices: String = (0..8).map(|i| format!("v {} {} {}\n", i & 1, i >> 1 & 1, i >> 2)).collect();
+    std::fs::write(&cube, vertices + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n").unwrap();
+    let smooth = ["--subdivide", "catmull-clark", "--within", "0.001"];
+    let output = selvedge(&[&["convert", &cube, &made][..], &smooth].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let model = selvedge::import::open(std::path::Path::new(&made)).unwrap().model;
+    // one step parts the corners; each of the 24 faces has one of them
+    assert!(model.parts[0].closed && model.parts[0].faces.len() == 24);
+    assert_eq!(selvedge(&[&["export", &cube, &step][..], &smooth].concat()).status.code(), Some(0));
+    assert!(std::fs::read_to_string(&step).unwrap().contains("MANIFOLD_SOLID_BREP"));
+    refused(&["info", &cube, "--subdivide", "loop"], "cube.obj: face 0 of the mesh (from 0) is no triangle");
+    refused(&["info", &cube, "--within", "1"], "--subdivide");
+    refused(&["info", &cube, "--subdivide", "loop", "--within", "0"], "a length above 0");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
 /// A ball and a trimmed sheet, small enough to be drawn in a test.
 const SCENE: &str = r##"
 selvedge = 1

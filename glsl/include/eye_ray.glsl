@@ -8,9 +8,11 @@ struct Ray {
 };
 
 Ray eye_ray(Frame frame, vec2 pixel) {
-    vec2 p = (pixel - 0.5 * frame.size) / frame.focal;
-    vec3 across = p.x * frame.right - p.y * frame.up;
-    if (frame.perspective != 0u) return Ray(vec3(0.0), frame.forward + across);
+    // in every pass the same bits
+    precise vec2 p = (pixel - 0.5 * frame.size) / frame.focal;
+    precise vec3 across = p.x * frame.right - p.y * frame.up;
+    precise vec3 ahead = frame.forward + across;
+    if (frame.perspective != 0u) return Ray(vec3(0.0), ahead);
     return Ray(across, frame.forward);
 }
 

@@ -9,8 +9,8 @@
 //        │   │   │ B │     The doubtful face itself is `real` when its own surface is inside its trims,
 //        └───┴───┴───┘     and the whole ring too: farther from its border than any error.
 //
-//   its own front, across a fold, is a witness too; so is a mesh behind the pixel, where an end of the
-//   patches is near: a neighbour sees nothing or a mesh behind the doubtful face, or there is a witness
+//   its own front, across a fold, is a witness too; so is what is no patch behind the pixel, where an
+//   end of the patches is near: a neighbour sees nothing or such a thing behind the doubtful face, or there is a witness
 //   real (a gap looks into the solid):   the nearest witness or helper before it, else whichever
 //                                        neighbour's surface passes beside the pixel's centre
 //   not real (its ring reaches out):
@@ -18,7 +18,7 @@
 //     a witness                                    the nearest: behind a silhouette
 //     a neighbour that sees nothing                nothing
 //     a helper                                     the nearest
-//     a mesh behind the pixel                      nothing, so that it is seen
+//     what is no patch behind the pixel            nothing, so that it is seen
 //
 // Without any of these the doubtful face stays. Doubtful neighbours are not asked, and healed pixels
 // stay marked, so the order of the threads does not matter. Where a front and a back nearly touch, doubtful
@@ -123,8 +123,9 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     return answer;
 }
 
-// Of a mesh seen at a pixel.
-float mesh_depth(uvec2 seen, vec2 pixel) {
+// Of what is no patch, seen at a pixel.
+float other_depth(uvec2 seen, vec2 pixel) {
+    if (!sees_mesh(seen.x)) return uintBitsToFloat(seen.y);
     return facet_at(seen.y, views[mesh_instances[seen_mesh_instance(seen.x)].instance], pixel).depth;
 }
 
@@ -149,7 +150,7 @@ void main() {
         if (front && answer.depth < witness.depth) witness = answer;
     }
     bool beside_nothing = false;
-    bool beside_behind = false; // a mesh that is behind the doubtful face
+    bool beside_behind = false; // something else that is behind the doubtful face
     uint helping_face = 0u; // index + 1; helpers of two faces meet in an edge here
     bool two_help = false;
     for (uint k = 0u; k < RING_POINTS; ++k) {
@@ -170,7 +171,7 @@ void main() {
             uvec2 other = SCENE_HAS_OTHERS ? imageLoad(others, beside).xy : uvec2(0u);
             // one that stands before the doubtful face may hide its neighbour: it tells nothing
             if (other.x == 0u) beside_nothing = true;
-            else if (mesh_depth(other, vec2(beside) + 0.5) > self.depth) beside_behind = true;
+            else if (other_depth(other, vec2(beside) + 0.5) > self.depth) beside_behind = true;
             continue;
         }
         Answer answer = ask(seen, pixel, false);
@@ -186,10 +187,10 @@ void main() {
             helping_face = fi.face + 1u;
         }
     }
-    // where an end of the patches is near, the mesh behind them is known at the very pixel
+    // where an end of the patches is near, what is behind them is known at the very pixel
     uvec2 other = SCENE_HAS_OTHERS ? imageLoad(others, at).xy : uvec2(0u);
-    if (!real && sees_mesh(other.x) && (beside_nothing || beside_behind || witness.kind == WITNESS)) {
-        float depth = mesh_depth(other, pixel);
+    if (!real && other.x != 0u && (beside_nothing || beside_behind || witness.kind == WITNESS)) {
+        float depth = other_depth(other, pixel);
         if (depth < witness.depth) witness = Answer(WITNESS, depth, 0.0, false, uvec2(0u));
     }
     uvec2 healed = own;
@@ -208,7 +209,7 @@ void main() {
         healed = uvec2(0u);
     } else if (has_helper) {
         healed = helper.word;
-    } else if (sees_mesh(other.x)) {
+    } else if (other.x != 0u) {
         healed = uvec2(0u);
     }
     imageStore(visibility, at, uvec4(healed.x | DOUBTFUL, healed.y, 0u, 0u));

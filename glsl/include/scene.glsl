@@ -39,6 +39,7 @@ const uint FACE_CLOSED_V = 2u;
 const uint FACE_SAME_SENSE = 4u; // outward normal is S_u x S_v
 const uint FACE_SOLID = 8u;      // the part is closed: back faces are never seen
 const uint FACE_TRIMMED = 16u;   // some patch meets a trim curve
+const uint FACE_OPERAND = 32u;   // of a Boolean solid: drawn as its fragments only
 
 struct Face {
     vec4 domain;        // u0, v0, u1 - u0, v1 - v0 of the source's own parameters
@@ -67,6 +68,7 @@ struct Instance {
     float scale;   // largest stretch of the transform
     uint colour;   // as Face.colour; opacity 0: the faces keep theirs
     uint mirrored; // 1 when the transform turns the space inside out
+    uint shell;    // of its FACE_OPERAND faces: which operand of the Boolean solids they bound
 };
 
 const uint MESH_SOLID = 1u;   // the part is closed
@@ -130,6 +132,7 @@ struct Frame {
     uint leaf_count;    // of Boolean solids
     uint block_leaf_capacity;
     uint tile_leaf_capacity;
+    uint fragment_capacity;
     vec3 right;         // camera axes in model space
     vec3 up;
     vec3 forward;
@@ -149,6 +152,9 @@ struct Counters {
     uint doubts;       // pixels for pass heal
     uint block_leaves; // leaves of Boolean solids in all blocks of tiles, and in all tiles
     uint tile_leaves;
+    uint fragments;    // of operands of Boolean solids
+    uint mended;       // rays through an operand that wanted a fragment from beside a gap
+    uint unpaired;     // rays that enter an operand and never leave it, or the reverse
     uint clamps;       // factors or densities above their hard limits
     uint failed;       // one bit a buffer that was too small
 };
@@ -160,6 +166,7 @@ const uint FAILED_INTERCEPTS = 8u;
 const uint FAILED_DOUBTS = 16u;
 const uint FAILED_BLOCK_LEAVES = 32u;
 const uint FAILED_TILE_LEAVES = 64u;
+const uint FAILED_FRAGMENTS = 128u;
 
 // Tessellation of one item, decided by the split pass. Totals over the whole patch.
 struct Factors {
@@ -177,6 +184,9 @@ struct SubPatch {
 const uint MAX_FACTOR = 64u;   // the hardware's tessellation factor
 const uint MAX_SPLIT = 64u;    // sub-patches along one side
 const uint MAX_ROWS = 65536u;  // scan lines of one strip
+
+// A ray's way through an operand is told by all of its faces: they do not end at the far plane.
+float far_of(Face face, Frame frame) { return (face.flags & FACE_OPERAND) != 0u ? 3.0e38 : frame.far; }
 
 uint degree_u(uint shape) { return shape & 15u; }
 uint degree_v(uint shape) { return (shape >> 4) & 15u; }

@@ -54,6 +54,7 @@ const uint EXIT_TRUE = 0xffffffffu;
 const uint LEAF_UNBOUNDED = 1u;      // no box: in every tile
 const uint LEAF_NEGATIVE = 2u;       // under an odd number of complements: its outside counts
 const uint LEAF_FALLS = 4u;          // its chain of out-exits ends at EXIT_FALSE, else at EXIT_TRUE
+const uint LEAF_SHELL = 8u;          // an operand without equations, number `first`: see shells.glsl
 
 const float NEVER = 3.0e38;
 
@@ -158,18 +159,38 @@ float torus_value(Torus f, float t) {
 
 float torus_slope(Torus f, float t) { return (4.0 * t * t + 2.0 * f.p) * t + f.q; }
 
-const uint BISECTIONS = 30u; // from the torus's size to below single precision
+// Newton's method doubles the digits; where two roots nearly meet it gains one bit a step, as halving does.
+const uint MOST_STEPS = 30u;
+// A step this small, relative to the torus, is rounding.
+const float SETTLED = 6e-8;
 
-// The root of the value (or of its slope) between lo and hi, where it changes its sign.
-float torus_root(Torus f, float lo, float hi, bool slope) {
-    bool rising = (slope ? torus_slope(f, lo) : torus_value(f, lo)) < 0.0;
-    for (uint i = 0u; i < BISECTIONS; ++i) {
-        float mid = 0.5 * (lo + hi);
-        bool below = (slope ? torus_slope(f, mid) : torus_value(f, mid)) < 0.0;
-        if (below == rising) lo = mid;
-        else hi = mid;
+// A root of the slope, from a point on the side on which the slope bends away from 0: no step oversteps it.
+float torus_turn(Torus f, float t) {
+    for (uint i = 0u; i < MOST_STEPS; ++i) {
+        float bend = 12.0 * t * t + 2.0 * f.p;
+        float step_ = bend == 0.0 ? 0.0 : torus_slope(f, t) / bend;
+        t -= step_;
+        if (abs(step_) <= SETTLED) break;
     }
-    return 0.5 * (lo + hi);
+    return t;
+}
+
+// The root of the value between lo and hi, where it is monotone and changes its sign: Newton's method, but
+// halving where that leaves the interval.
+float torus_root(Torus f, float lo, float hi) {
+    bool rising = torus_value(f, lo) < 0.0;
+    float t = 0.5 * (lo + hi);
+    for (uint i = 0u; i < MOST_STEPS; ++i) {
+        float value = torus_value(f, t);
+        if ((value < 0.0) == rising) lo = t;
+        else hi = t;
+        float next = t - value / torus_slope(f, t);
+        if (!(next > lo && next < hi)) next = 0.5 * (lo + hi);
+        bool settled = abs(next - t) <= SETTLED;
+        t = next;
+        if (settled) break;
+    }
+    return t;
 }
 
 // o and d in the torus's own coordinates.
@@ -195,7 +216,7 @@ Span torus_span(vec3 o, vec3 d, float r) {
     for (uint i = 0u; i < 3u; ++i) {
         float to = i == 0u ? -w : i == 1u ? w : reach;
         if (from < to && (torus_slope(f, from) < 0.0) != (torus_slope(f, to) < 0.0)) {
-            stops[stop_count] = torus_root(f, from, to, true);
+            stops[stop_count] = clamp(torus_turn(f, i == 0u ? from : i == 1u ? 0.0 : to), from, to);
             ++stop_count;
         }
         from = to;
@@ -206,7 +227,7 @@ Span torus_span(vec3 o, vec3 d, float r) {
     for (uint i = 0u; i < 4u; ++i) {
         if (i >= stop_count) break;
         if ((torus_value(f, stops[i]) < 0.0) == (torus_value(f, stops[i + 1u]) < 0.0)) continue;
-        float t = torus_root(f, stops[i], stops[i + 1u], false);
+        float t = torus_root(f, stops[i], stops[i + 1u]);
         // a spindle torus: the value is positive again within the lemon, where the solid is not hollow
         if (t * t + f.e < 0.0) continue;
         precise float root = (t + shift) / speed;

@@ -34,6 +34,15 @@ vec4 to_clip(Frame frame, vec4 q) {
     return vec4(q.xy * 2.0 / frame.size - q.w, reversed_depth(frame, q.z), q.w);
 }
 
+// In a parallel view depth runs on beyond the far plane, to this many times its distance from the near one.
+const float RUN = 16.0;
+
+// The same where nothing is cut off at the far plane.
+vec4 to_clip_unending(Frame frame, vec4 q) {
+    float z = frame.perspective != 0u ? frame.near : 1.0 - (q.z - frame.near) / (RUN * (frame.far - frame.near));
+    return vec4(q.xy * 2.0 / frame.size - q.w, z, q.w);
+}
+
 // A box as the picture sees it.
 struct Seen {
     float w;     // smallest in front of the near plane, 1 in a parallel view; negative when no part is seen
@@ -42,8 +51,8 @@ struct Seen {
     vec2 high;
 };
 
-// The box `lo` to `hi`; `margin` widens the picture, in pixels.
-Seen see(View view, Frame frame, vec3 lo, vec3 hi, float margin) {
+// The box `lo` to `hi`; `margin` widens the picture, in pixels; `far` is the far plane's depth.
+Seen see(View view, Frame frame, vec3 lo, vec3 hi, float margin, float far) {
     Seen seen = Seen(3.0e38, 0.0, vec2(3.0e38), vec2(-3.0e38));
     float steepest = 0.0; // squared slope
     uint outside = 63u;
@@ -65,7 +74,7 @@ Seen see(View view, Frame frame, vec3 lo, vec3 hi, float margin) {
         here |= below.y < 0.0 ? 4u : 0u;
         here |= above.y > 0.0 ? 8u : 0u;
         here |= q.z < frame.near ? 16u : 0u;
-        here |= q.z > frame.far ? 32u : 0u;
+        here |= q.z > far ? 32u : 0u;
         outside &= here;
     }
     if (outside != 0u) return Seen(-1.0, 0.0, vec2(0.0), vec2(0.0));

@@ -5,8 +5,9 @@
 //   a patch        d      0   item + 1           (u, v) of the patch, two 16-bit numbers
 //   a mesh         0      1   mesh instance      triangle of the scene
 //   a solid        0      2   side of a leaf     depth along the view axis, a float
+//   an operand     0      3   fragment           the same; of a spline face that bounds a solid's operand
 //
-// d: doubtful, for pass `heal`. Of kind 3 nothing is drawn. In scenes with trims, what is no
+// d: doubtful, for pass `heal`. In scenes with trims, what is no
 // patch is in an image of its own, `others`, and seen where `visibility` has nothing.
 #ifndef VISIBLE_GLSL
 #define VISIBLE_GLSL
@@ -15,6 +16,7 @@ const uint DOUBTFUL = 0x80000000u;
 const uint SEEN_KIND = 0x60000000u;
 const uint SEEN_MESH = 0x20000000u;
 const uint SEEN_SOLID = 0x40000000u; // Boolean
+const uint SEEN_OPERAND = 0x60000000u;
 
 // The scene has things that are no patches.
 layout(constant_id = 4) const bool SCENE_HAS_OTHERS = false;
@@ -23,10 +25,12 @@ bool sees_nothing(uint word) { return (word & ~DOUBTFUL) == 0u; }
 bool sees_other(uint word) { return SCENE_HAS_OTHERS && (word & SEEN_KIND) != 0u; } // than a patch
 bool sees_mesh(uint word) { return (word & SEEN_KIND) == SEEN_MESH; }
 bool sees_solid(uint word) { return (word & SEEN_KIND) == SEEN_SOLID; }
+bool sees_operand(uint word) { return (word & SEEN_KIND) == SEEN_OPERAND; }
 
 uint seen_item(uint word) { return (word & ~DOUBTFUL) - 1u; }
 uint seen_mesh_instance(uint word) { return word & ~(DOUBTFUL | SEEN_KIND); }
 uint seen_side(uint word) { return word & ~(DOUBTFUL | SEEN_KIND); }
+uint seen_fragment(uint word) { return word & ~(DOUBTFUL | SEEN_KIND); }
 
 // A border of a patch may be continued by less than its width.
 uint pack_uv(vec2 uv) { return packUnorm2x16((uv + 1.0) / 3.0); }

@@ -41,6 +41,7 @@ pub struct Frame {
     pub leaf_count: u32,
     pub block_leaf_capacity: u32,
     pub tile_leaf_capacity: u32,
+    pub fragment_capacity: u32,
     pub right: [f32; 3],
     pub up: [f32; 3],
     pub forward: [f32; 3],
@@ -62,6 +63,9 @@ pub struct Counters {
     pub doubts: u32,
     pub block_leaves: u32,
     pub tile_leaves: u32,
+    pub fragments: u32,
+    pub mended: u32,
+    pub unpaired: u32,
     pub clamps: u32,
     pub failed: u32,
 }

@@ -31,6 +31,8 @@ pub const FACE_CLOSED_V: u32 = 2;
 pub const FACE_SAME_SENSE: u32 = 4;
 /// The face belongs to a closed part.
 pub const FACE_SOLID: u32 = 8;
+/// The face bounds an operand of a Boolean solid.
+pub const FACE_OPERAND: u32 = 32;
 
 /// Some patch of the face meets a trim curve.
 pub const FACE_TRIMMED: u32 = 16;
@@ -109,6 +111,7 @@ pub struct Instance {
     pub scale: f32,
     pub colour: u32,
     pub mirrored: u32,
+    pub shell: u32,
 }
 
 /// The mesh belongs to a closed part.

@@ -21,6 +21,9 @@ pub const LEAF_NEGATIVE: u32 = 2;
 /// Its chain of out-exits ends at [`EXIT_FALSE`].
 pub const LEAF_FALLS: u32 = 4;
 
+/// An operand without equations: [`Leaf::first`] is its number among them.
+pub const LEAF_SHELL: u32 = 8;
+
 /// Pixels along a tile's side.
 pub const TILE: u32 = 16;
 /// Tiles along a block's side.
@@ -76,4 +79,34 @@ pub struct TileLeaf {
     pub leaf: u32,
     pub in_exit: u32,
     pub out_exit: u32,
+}
+
+/// A mesh that bounds an operand.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct OperandMesh {
+    pub shell: u32,
+    pub instance: u32,
+    pub first_triangle: u32,
+    pub first_side: u32,
+    pub mirrored: u32,
+}
+
+/// [`Fragment::shell`]: the ray leaves the operand.
+pub const FRAGMENT_LEAVES: u32 = 0x8000_0000;
+/// [`Fragment::shell`]: of the ring around a trimmed face.
+pub const FRAGMENT_RING: u32 = 0x4000_0000;
+/// [`Fragment::shell`]: of a spline face, else of a triangle.
+pub const FRAGMENT_PATCH: u32 = 0x2000_0000;
+/// [`Fragment::shell`]: the near plane is within the operand.
+pub const FRAGMENT_WITHIN: u32 = 0x1000_0000;
+
+/// Where a ray crosses an operand.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct Fragment {
+    pub shell: u32,
+    pub depth: f32,
+    pub what: u32,
+    pub uv: u32,
 }

@@ -168,22 +168,23 @@ impl Cast {
         let misses = |t: f64| ConstructError::Misses { what: WHAT, parameter: from + t };
         let (mut t, mut step) = (0.0, 0.25);
         let mut slope = self.slope(at, piece, 0.0).ok_or_else(|| misses(0.0))?;
-        let mut reached = f64::INFINITY;
+        let mut reached;
         while t < 1.0 {
             let end = if t + step > 1.0 - 0.5 * SHORTEST { 1.0 } else { t + step };
-            if let Some((next, after, error)) = self.step(piece, (t, at, slope), end) {
-                reached = error;
-                if error <= tolerance {
+            match self.step(piece, (t, at, slope), end) {
+                Some((next, after, error)) if error <= tolerance => {
                     let h = (end - t) / 3.0;
                     let points = [at, at + slope * h, next - after * h, next].map(|p| DVec3::from_point(p, 1.0));
                     out.curves.push(BSpline::from_bezier(Bezier { points: points.to_vec() }, 0.0, 1.0)?);
                     out.deviation = out.deviation.max(error);
                     if out.curves.len() > MOST_STEPS {
-                        return Err(ConstructError::Bound { asked: tolerance, reached, pieces: MOST_STEPS });
+                        return Err(ConstructError::Bound { asked: tolerance, reached: error, pieces: MOST_STEPS });
                     }
                     (t, at, slope, step) = (end, next, after, 2.0 * (end - t));
                     continue;
                 }
+                // what stops a step at last: its error, or that there is nothing to meet
+                found => reached = found.map_or(f64::INFINITY, |f| f.2),
             }
             step = 0.5 * (end - t);
             if step < SHORTEST {

@@ -3,14 +3,18 @@
 //! ```text
 //!   leaves ──solid_rects──▶ rects ──solid_blocks, solid_tiles (each: count, scan, list)──▶ leaves of each tile
 //!          ──solid_fold──▶ their Blist ──solid_events──▶ visibility of what is no patch, depth
+//!   operands ──operand_mesh, operand_patch (each: count, scan, fill)──▶ fragments of each pixel
+//!            ──operand_sort──▶ in order ──▲
 //! ```
 
 use super::{Frame, WRITE_TO_READ};
-use crate::buffers::SolidBuffers;
+use crate::buffers::{FragmentBuffers, SolidBuffers};
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, barrier};
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
+use crate::passes::{operand_mesh, operand_patch, operand_sort};
 use crate::passes::{resolve, solid_blocks, solid_cst, solid_events, solid_fold, solid_rects, solid_tiles};
-use crate::scene::{SolidData, Solids};
+use crate::scene::{SceneData, Shells, Solids};
+use crate::shaders::TrimTest;
 
 /// The passes of Boolean solids.
 pub(super) struct SolidPasses {
@@ -19,6 +23,7 @@ pub(super) struct SolidPasses {
     tiles: solid_tiles::SolidTiles,
     fold: solid_fold::SolidFold,
     way: Way,
+    shells: Option<ShellPasses>,
 }
 
 /// Who finds the faces.
@@ -27,20 +32,38 @@ enum Way {
     Cst(solid_cst::SolidCst),
 }
 
+/// Those of operands without equations.
+struct ShellPasses {
+    meshes: Option<operand_mesh::OperandMesh>,
+    patches: Option<operand_patch::OperandPatch>,
+    sort: operand_sort::OperandSort,
+}
+
 impl SolidPasses {
     /// `None` when the scene has no Boolean solid.
-    pub(super) fn new(device: &Device, solids: &SolidData) -> Result<Option<Self>, GpuError> {
-        let Some(tori) = solids.kinds() else { return Ok(None) };
+    pub(super) fn new(device: &Device, data: &SceneData, trim: Option<&TrimTest>) -> Result<Option<Self>, GpuError> {
+        let Some(tori) = data.solids.kinds() else { return Ok(None) };
+        let shells = !data.solids.shell_leaves.is_empty();
+        let meshes = !data.solids.operand_draws.is_empty();
+        let patches = |()| operand_patch::OperandPatch::new(device, data.has_rational, data.has_plain, trim);
+        let shell_passes = |()| {
+            Ok(ShellPasses {
+                meshes: meshes.then(|| operand_mesh::OperandMesh::new(device)).transpose()?,
+                patches: data.has_operands.then_some(()).map(patches).transpose()?,
+                sort: operand_sort::OperandSort::new(device)?,
+            })
+        };
         Ok(Some(Self {
             rects: solid_rects::SolidRects::new(device)?,
             blocks: solid_blocks::SolidBlocks::new(device)?,
             tiles: solid_tiles::SolidTiles::new(device)?,
             fold: solid_fold::SolidFold::new(device)?,
-            way: if solids.order.is_empty() {
-                Way::Events(solid_events::SolidEvents::new(device, tori, VISIBILITY_FORMAT, DEPTH_FORMAT)?)
+            way: if data.solids.order.is_empty() {
+                Way::Events(solid_events::SolidEvents::new(device, (tori, shells), VISIBILITY_FORMAT, DEPTH_FORMAT)?)
             } else {
                 Way::Cst(solid_cst::SolidCst::new(device, tori, VISIBILITY_FORMAT, DEPTH_FORMAT)?)
             },
+            shells: shells.then_some(()).map(shell_passes).transpose()?,
         }))
     }
 }
@@ -130,6 +153,9 @@ impl<'a> Frame<'a> {
             ],
         );
 
+        if let (Some(passes), Some(shells), Some(f)) = (&p.shells, &s.shells, &t.fragments) {
+            self.operands(cmd, parts, passes, shells, f);
+        }
         let b = self.buffers;
         let seen = b.others.as_ref().unwrap_or(&b.visibility);
         // meshes came before
@@ -162,14 +188,101 @@ impl<'a> Frame<'a> {
                     tile_starts: &t.tile_starts,
                     tile_leaves: &t.tile_leaves,
                     tile_entries: &t.tile_entries,
+                    fragments: t.fragments.as_ref().map(|f| solid_events::Fragments {
+                        starts: &f.starts,
+                        counts: &f.counts,
+                        all: &f.all,
+                    }),
+                    counters: &b.counters,
                 };
+                barrier::buffers(cmd, &[(&b.counters, w, Access::FRAGMENT_WRITE)]);
                 events.record(cmd, &bindings, (colour, depth));
+                barrier::buffers(cmd, &[(&b.counters, Access::FRAGMENT_WRITE, w)]);
             }
             (Way::Cst(_), None) => unreachable!("the pass is made of the order"),
         }
         barrier::images(
             cmd,
             &[(seen, Access::COLOUR_WRITE, Access::COLOUR_WRITE), (&b.depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],
+        );
+    }
+}
+
+impl Frame<'_> {
+    /// The fragments of operands without equations: counted, stored, put in order.
+    fn operands(
+        &self,
+        cmd: &Commands<'_>,
+        parts: &SolidParts<'_>,
+        passes: &ShellPasses,
+        shells: &Shells,
+        f: &FragmentBuffers,
+    ) {
+        let (s, b) = (self.scene, self.buffers);
+        let size = b.visibility.size();
+        let trim = self.trim().map_or_else(Vec::new, |parts| parts.test());
+        let meshes = operand_mesh::Bindings {
+            frame: self.constants,
+            views: self.views,
+            meshes: &shells.meshes,
+            triangles: &shells.triangles,
+            positions: &shells.positions,
+            leaf_surfaces: &parts.scene.leaf_surfaces,
+            surfaces: &parts.scene.surfaces,
+            surface_centres: parts.centres.surfaces,
+            counts: &f.counts,
+            starts: &f.starts,
+            fragments: &f.all,
+        };
+        let patches = operand_patch::Bindings {
+            frame: self.constants,
+            views: self.views,
+            face_instances: &s.face_instances,
+            faces: &s.faces,
+            patches: &s.patches,
+            items: &s.items,
+            points: &s.points,
+            factors: &b.factors,
+            sub_patches: &b.sub_patches,
+            instances: &s.instances,
+            counts: &f.counts,
+            starts: &f.starts,
+            fragments: &f.all,
+            trim: &trim,
+            draws: &b.draws,
+            counters: &b.counters,
+        };
+        let rastered = |fills: bool| {
+            if let Some(pass) = &passes.meshes {
+                pass.record(cmd, &meshes, size, &shells.draws, fills);
+            }
+            if let Some(pass) = &passes.patches {
+                pass.record(cmd, &patches, size, b.capacities.draws, fills);
+            }
+        };
+        let (w, r) = WRITE_TO_READ;
+        let drawn = Access::FRAGMENT_WRITE;
+        barrier::buffers(cmd, &[(&f.counts, Access::TRANSFER_WRITE, drawn), (&b.counters, w, Access::INDIRECT_READ)]);
+        rastered(false);
+        barrier::buffers(cmd, &[(&f.counts, drawn, r), (&f.starts, Access::FRAGMENT_READ, w), (&f.all, drawn, drawn)]);
+        self.scan(cmd, &f.counts, &f.starts, size.0 * size.1);
+        barrier::buffers(cmd, &[(&f.counts, r, drawn), (&f.starts, w, Access::FRAGMENT_READ | r)]);
+        rastered(true);
+        barrier::buffers(cmd, &[(&f.counts, drawn, w), (&f.all, drawn, w), (&b.counters, Access::INDIRECT_READ, w)]);
+        let sort = operand_sort::Bindings {
+            frame: self.constants,
+            leaves: &parts.scene.leaves,
+            leaf_centres: parts.centres.leaves,
+            shell_leaves: &shells.leaves,
+            starts: &f.starts,
+            counts: &f.counts,
+            fragments: &f.all,
+            counters: &b.counters,
+        };
+        passes.sort.record(cmd, &sort, size);
+        barrier::buffers(
+            cmd,
+            &[(&f.counts, w, Access::FRAGMENT_READ), (&f.all, w, Access::FRAGMENT_READ), (&b.counters, w, w)],
         );
     }
 }
@@ -186,6 +299,7 @@ impl<'a> SolidParts<'a> {
             surface_centres: self.centres.surfaces,
             visibility: &b.visibility,
             others: b.others.as_ref().unwrap_or(&b.visibility),
+            fragments: self.buffers.fragments.as_ref().map(|f| &f.all),
         }
     }
 }

@@ -34,11 +34,15 @@ mod harness;
 #[cfg(feature = "headless")]
 mod lines;
 #[cfg(feature = "headless")]
+mod operand_sort;
+#[cfg(feature = "headless")]
 mod reset;
 #[cfg(feature = "headless")]
 mod segments;
 #[cfg(feature = "headless")]
 mod sizes;
+#[cfg(feature = "headless")]
+mod solid_lists;
 #[cfg(feature = "headless")]
 mod solids;
 #[cfg(feature = "headless")]

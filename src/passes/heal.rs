@@ -63,7 +63,13 @@ pub(crate) struct Bindings<'a> {
 /// What is no patch, in binding order.
 pub(crate) struct Others<'a> {
     pub seen: &'a Image,
-    pub mesh_instances: &'a Buffer,
+    /// `None` where the scene has no mesh.
+    pub meshes: Option<Meshes<'a>>,
+}
+
+/// Triangles, and where they are placed.
+pub(crate) struct Meshes<'a> {
+    pub instances: &'a Buffer,
     pub triangles: &'a Buffer,
     pub positions: &'a Buffer,
 }
@@ -100,8 +106,9 @@ impl Heal {
     /// One thread a doubtful pixel.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
         // the shader has these bindings in every scene, and reads them only where there are others
-        let none = Others { seen: b.visibility, mesh_instances: b.frame, triangles: b.frame, positions: b.frame };
-        let others = b.others.as_ref().unwrap_or(&none);
+        let seen = b.others.as_ref().map_or(b.visibility, |o| o.seen);
+        let none = Meshes { instances: b.frame, triangles: b.frame, positions: b.frame };
+        let meshes = b.others.as_ref().and_then(|o| o.meshes.as_ref()).unwrap_or(&none);
         let resources = [
             b.frame.into(),
             b.views.into(),
@@ -114,10 +121,10 @@ impl Heal {
             b.doubts.into(),
             b.counters.into(),
             b.instances.into(),
-            others.seen.into(),
-            others.mesh_instances.into(),
-            others.triangles.into(),
-            others.positions.into(),
+            seen.into(),
+            meshes.instances.into(),
+            meshes.triangles.into(),
+            meshes.positions.into(),
         ];
         let resources: Vec<_> = resources.into_iter().chain(b.trim.iter().map(|&buffer| buffer.into())).collect();
         cmd.bind(&self.heal, &resources, &[]);

@@ -9,6 +9,9 @@ pub(crate) mod emit;
 pub(crate) mod heal;
 pub(crate) mod lines;
 pub(crate) mod mesh;
+pub(crate) mod operand_mesh;
+pub(crate) mod operand_patch;
+pub(crate) mod operand_sort;
 pub(crate) mod reset;
 pub(crate) mod resolve;
 #[cfg(feature = "rivals")]

@@ -39,6 +39,7 @@ pub(crate) struct Resolve {
     patches: Pipeline,
     meshes: Option<Pipeline>,
     solids: Option<Pipeline>,
+    operands: Option<Pipeline>,
 }
 
 /// What the scene asks of the pass.
@@ -48,6 +49,8 @@ pub(crate) struct Kinds {
     pub meshes: bool,
     /// Boolean ones, and whether a torus is among their surfaces.
     pub solids: Option<bool>,
+    /// Patches bound operands of Boolean solids.
+    pub operands: bool,
 }
 
 /// Formats that the host draws into.
@@ -97,6 +100,8 @@ pub(crate) struct SolidBindings<'a> {
     pub visibility: &'a Image,
     /// The visibility image again where the scene has no trims.
     pub others: &'a Image,
+    /// Where rays cross operands without equations.
+    pub fragments: Option<&'a Buffer>,
 }
 
 impl Resolve {
@@ -146,13 +151,21 @@ impl Resolve {
             pipeline("solid", shaders::RESOLVE_SOLID_FRAG, &of_solid, &constants)
         };
         let solids = kinds.solids.map(solid).transpose()?;
+        let mut of_operand = [Binding::Storage; 11];
+        of_operand[6] = Binding::Texels;
+        of_operand[8..10].fill(Binding::StorageImage);
+        let operand = |()| {
+            let constants = [aovs, (SCENE_HAS_RATIONAL, u32::from(kinds.rational))];
+            pipeline("operand", shaders::RESOLVE_OPERAND_FRAG, &of_operand, &constants)
+        };
+        let operands = kinds.operands.then_some(()).map(operand).transpose()?;
         let weights = if kinds.rational { "rational" } else { "polynomial" };
         let constants = [
             (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
             aovs,
             (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some())),
         ];
-        Ok(Self { patches: pipeline(weights, shaders::RESOLVE_FRAG, &bindings, &constants)?, meshes, solids })
+        Ok(Self { patches: pipeline(weights, shaders::RESOLVE_FRAG, &bindings, &constants)?, meshes, solids, operands })
     }
 
     /// One triangle over the targets for each kind of thing.
@@ -181,10 +194,16 @@ impl Resolve {
                 cmd.draw(3, 0, 1);
             }
             if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
-                let buffers = [s.frame, s.leaves, s.leaf_surfaces, s.surfaces, s.surface_centres].map(Into::into);
-                let resources: Vec<_> = buffers.into_iter().chain([s.visibility.into(), s.others.into()]).collect();
+                let solid = [s.frame, s.leaves, s.leaf_surfaces, s.surfaces, s.surface_centres].map(Into::into);
+                let resources: Vec<_> = solid.into_iter().chain([s.visibility.into(), s.others.into()]).collect();
                 cmd.bind(pipeline, &resources, &[]);
                 cmd.draw(3, 0, 1);
+                if let (Some(pipeline), Some(fragments)) = (&self.operands, s.fragments) {
+                    let resources: Vec<_> =
+                        buffers.into_iter().chain(rest).chain([s.others.into(), fragments.into()]).collect();
+                    cmd.bind(pipeline, &resources, &[]);
+                    cmd.draw(3, 0, 1);
+                }
             }
         });
     }

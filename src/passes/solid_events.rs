@@ -5,7 +5,7 @@
 //! ```
 //!
 //! Reads: everything that `Bindings` names. Writes: the visibility image (side, depth) and depth, beside what
-//! pass `visibility` drew. Needs no storage per pixel.
+//! pass `visibility` drew. Needs no storage per pixel beside the fragments of operands without equations.
 
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
@@ -15,6 +15,8 @@ use ash::vk;
 
 /// `constant_id` of `SOLIDS_HAVE_TORI`.
 const SOLIDS_HAVE_TORI: u32 = 5;
+/// `constant_id` of `SOLIDS_HAVE_SHELLS`.
+const SOLIDS_HAVE_SHELLS: u32 = 13;
 
 /// The pass.
 pub(crate) struct SolidEvents {
@@ -32,13 +34,25 @@ pub(crate) struct Bindings<'a> {
     pub tile_starts: &'a Buffer,
     pub tile_leaves: &'a Buffer,
     pub tile_entries: &'a Buffer,
+    /// Where rays cross operands without equations; `None` where there are none.
+    pub fragments: Option<Fragments<'a>>,
+    /// `clamps`: rays that a driver did not let come to their end.
+    pub counters: &'a Buffer,
+}
+
+/// Of each pixel, sorted.
+pub(crate) struct Fragments<'a> {
+    pub starts: &'a Buffer,
+    pub counts: &'a Buffer,
+    pub all: &'a Buffer,
 }
 
 impl SolidEvents {
-    /// For images of these formats; `tori`: whether some surface is a torus.
+    /// For images of these formats; `tori`: whether some surface is a torus; `shells`: whether some operand has
+    /// no equations.
     pub(crate) fn new(
         device: &Device,
-        tori: bool,
+        (tori, shells): (bool, bool),
         visibility: vk::Format,
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
@@ -50,9 +64,9 @@ impl SolidEvents {
                     (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
                     (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_EVENTS_FRAG),
                 ],
-                bindings: &[Binding::Storage; 8],
+                bindings: &[Binding::Storage; 12],
                 push_bytes: 0,
-                constants: &[(SOLIDS_HAVE_TORI, u32::from(tori))],
+                constants: &[(SOLIDS_HAVE_TORI, u32::from(tori)), (SOLIDS_HAVE_SHELLS, u32::from(shells))],
                 topology: vk::PrimitiveTopology::TRIANGLE_LIST,
                 patch_points: 0,
                 cull: vk::CullModeFlags::NONE,
@@ -73,7 +87,12 @@ impl SolidEvents {
     ) {
         let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres];
         let tiles = [b.tile_starts, b.tile_leaves, b.tile_entries];
-        let resources: Vec<_> = solid.into_iter().chain(tiles).map(Into::into).collect();
+        // the shader has these bindings in every scene, and reads them only where there are shells
+        let none = Fragments { starts: b.frame, counts: b.frame, all: b.frame };
+        let f = b.fragments.as_ref().unwrap_or(&none);
+        let fragments = [f.starts, f.counts, f.all];
+        let resources: Vec<_> =
+            solid.into_iter().chain(tiles).chain(fragments).chain([b.counters]).map(Into::into).collect();
         cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
             cmd.bind(&self.pipeline, &resources, &[]);
             cmd.draw(3, 0, 1);

@@ -27,6 +27,8 @@ pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 const SCENE_HAS_RATIONAL: u32 = 0;
 /// `constant_id` of `TRIMMED`.
 const TRIMMED: u32 = 2;
+/// `constant_id` of `SCENE_HAS_OPERANDS`.
+const SCENE_HAS_OPERANDS: u32 = 10;
 
 /// The pass: a pipeline for each kind of patch that the scene has.
 pub(crate) struct Visibility {
@@ -41,6 +43,8 @@ pub(crate) struct Kinds<'a> {
     pub plain: bool,
     /// How faces are trimmed, where some are.
     pub trimmed: Option<&'a TrimTest>,
+    /// Some patches bound operands of Boolean solids: they are not drawn here.
+    pub operands: bool,
 }
 
 /// Its buffers, in binding order.
@@ -81,6 +85,7 @@ impl Visibility {
                     constants: &[
                         (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
                         (TRIMMED, u32::from(trimmed.is_some())),
+                        (SCENE_HAS_OPERANDS, u32::from(kinds.operands)),
                     ],
                     topology: vk::PrimitiveTopology::PATCH_LIST,
                     patch_points: 1,

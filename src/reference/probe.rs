@@ -4,7 +4,7 @@ use super::bvh::Slabs;
 use super::leaf::{Meeting, Ray};
 use super::solver::Solver;
 use super::{Hit, Placed, Tracer};
-use crate::model::Camera;
+use crate::model::{Camera, Shape};
 use glam::{DVec2, DVec3};
 use std::sync::atomic::Ordering;
 
@@ -36,6 +36,13 @@ impl<'a> Probe<'a> {
     /// The view.
     pub fn camera(&self) -> &'a Camera {
         self.camera
+    }
+
+    /// Whether the hit is on a Boolean solid, on a face of a spline part that is an operand.
+    pub(super) fn on_spline_operand(&self, hit: &Hit) -> bool {
+        let solids = self.tracer.solids.iter().filter(|_| hit.part >= self.tracer.parts.len());
+        let mut primitives = solids.filter_map(|s| s.primitives().get(hit.face_index));
+        primitives.any(|p| matches!(p.shape, Shape::Part(_)))
     }
 
     /// See [`Tracer::hits`].

@@ -6,12 +6,13 @@ use super::face::{FaceData, pack_colour};
 use super::mesh::Meshes;
 use super::solids::{SolidData, UndrawnSolid};
 use crate::abi;
-use crate::model::{Camera, Model, Projection};
+use crate::model::{Camera, Instance, Model, Projection};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
 use crate::picture::{SceneSettings, TrimWay};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use rayon::prelude::*;
+use std::ops::Range;
 
 /// The arrays that the GPU gets; see `glsl/include/scene.glsl` for how they refer to each other.
 #[derive(Clone, Debug, Default)]
@@ -48,6 +49,8 @@ pub(crate) struct SceneData {
     pub placements: Vec<DAffine3>,
     /// Boolean solids.
     pub solids: SolidData,
+    /// Some patch bounds an operand of theirs.
+    pub has_operands: bool,
 }
 
 impl SceneData {
@@ -81,12 +84,13 @@ impl SceneData {
         for instance in &model.instances {
             let part = &model.parts[instance.part];
             let first = first_faces[instance.part];
-            data.push_instance(instance, origins[instance.part], first..first + part.faces.len());
+            data.push_instance(instance, origins[instance.part], first..first + part.faces.len(), 0);
         }
         if let Some(edit) = &mut data.edit {
             edit.first_faces = first_faces;
         }
         data.meshes = Meshes::new(model, &origins);
+        data.push_operands(way);
         Ok(data)
     }
 
@@ -106,6 +110,28 @@ impl SceneData {
         let solids = std::mem::take(&mut self.solids).centres_only();
         let edit = self.edit.take();
         *self = Self { placements, solids, edit, ..Self::default() };
+    }
+
+    /// Operands of Boolean solids without equations are placed as parts are, after them.
+    fn push_operands(&mut self, way: TrimWay) {
+        for operand in std::mem::take(&mut self.solids.operands) {
+            let first = self.faces.len();
+            for face in operand.faces() {
+                let mut f = FaceData::new(face, operand.origin, true, way, false);
+                f.face.flags |= abi::FACE_OPERAND;
+                (f.face.id, f.face.colour) = (operand.primitive.id, pack_colour(operand.primitive.colour));
+                self.push_face(f);
+            }
+            let faces = first..self.faces.len();
+            self.has_operands |= !faces.is_empty();
+            let transform = operand.primitive.transform;
+            let instance = Instance { part: 0, transform, colour: None, name: String::new() };
+            let number = self.instances.len() as u32;
+            self.push_instance(&instance, operand.origin, faces, operand.shell);
+            for mesh in operand.meshes {
+                self.solids.operand_meshes[mesh].instance = number;
+            }
+        }
     }
 
     fn push_face(&mut self, mut f: FaceData) {
@@ -148,7 +174,7 @@ impl SceneData {
         self.curve_points.append(&mut f.curve_points);
     }
 
-    fn push_instance(&mut self, i: &crate::model::Instance, origin: DVec3, faces: std::ops::Range<usize>) {
+    fn push_instance(&mut self, i: &Instance, origin: DVec3, faces: Range<usize>, shell: u32) {
         let linear = i.transform.matrix3;
         // normals transform by the cofactors: the inverse transposed times the determinant, which
         // also exists for singular transforms; the sign of the determinant is told apart
@@ -164,6 +190,7 @@ impl SceneData {
             scale: (stretch(linear) as f32).next_up(),
             colour: i.colour.map_or(0, |c| pack_colour([c[0], c[1], c[2], 1.0])),
             mirrored: u32::from(mirrored),
+            shell,
         });
         self.placements.push(i.transform * DAffine3::from_translation(origin));
         let instance = self.instances.len() as u32 - 1;

@@ -36,4 +36,4 @@ pub(crate) use solids::SolidData;
 pub use solids::UndrawnSolid;
 #[cfg(feature = "rivals")]
 pub(crate) use upload::RivalScene;
-pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Solids, TableScene, Trims};
+pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Shells, Solids, TableScene, Trims};

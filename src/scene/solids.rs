@@ -10,6 +10,7 @@
 //! where it is stays in `f64` and is given relative to the eye every frame.
 
 mod order;
+mod shell;
 mod surface;
 
 use super::face::pack_colour;
@@ -18,6 +19,7 @@ use crate::csg::Blist;
 use crate::model::{Solid, SolidError, SurfaceTable};
 use crate::picture::SolidWay;
 use glam::DVec3;
+use std::ops::Range;
 use surface::sides_of;
 
 /// The arrays that the GPU gets, and the centres that change with the eye.
@@ -30,6 +32,16 @@ pub(crate) struct SolidData {
     pub leaf_centres: Vec<DVec3>,
     /// Origin of each surface's own coordinates, in model coordinates.
     pub surface_centres: Vec<DVec3>,
+    /// Of each operand without equations, a leaf that shows it.
+    pub shell_leaves: Vec<u32>,
+    /// The meshes around them: triangles, vertices relative to the middle of the operand's box, and corners to
+    /// draw of each.
+    pub operand_meshes: Vec<abi::OperandMesh>,
+    pub operand_triangles: Vec<[u32; 3]>,
+    pub operand_positions: Vec<[f32; 3]>,
+    pub operand_draws: Vec<Range<u32>>,
+    /// Those that the scene has to place yet.
+    pub(super) operands: Vec<shell::Operand>,
     /// For [`SolidWay::Cst`]: the leaves as they are drawn.
     pub order: Vec<u32>,
 }
@@ -38,9 +50,6 @@ pub(crate) struct SolidData {
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // the messages say what each field is
 pub enum UndrawnSolid {
-    /// An operand that has no equations.
-    #[error("solid {solid}, primitive {primitive}: a {kind} as operand is not drawn")]
-    Operand { solid: usize, primitive: u32, kind: &'static str },
     /// There are too many primitives, or their expression is too large.
     #[error(transparent)]
     Union(#[from] SolidError),
@@ -55,7 +64,7 @@ impl SolidData {
         let list = Blist::new(whole.tree()).map_err(SolidError::from)?;
         let middle = middle_of(solids);
         for (p, primitive) in (0..).zip(whole.primitives()) {
-            let sides = sides_of(primitive, middle).map_err(|kind| operand(solids, p, kind))?;
+            let sides = sides_of(primitive, middle);
             // a surface is numbered when its first face is met: that face says where it is
             for (face, placed) in table.faces(p).iter().zip(sides) {
                 if face.surface as usize == data.surfaces.len() {
@@ -64,7 +73,8 @@ impl SolidData {
                 }
             }
         }
-        let nothing = data.surfaces.len() as u32;
+        let mut nothing = None;
+        let mut shells: Vec<Option<u32>> = vec![None; whole.primitives().len()];
         let exits = list.entries().iter().enumerate().map(|(i, entry)| {
             let (t, f) = entry.exits(i as u32);
             let (in_exit, out_exit) = if entry.negative() { (f, t) } else { (t, f) };
@@ -88,22 +98,33 @@ impl SolidData {
             flags |= if bounded { 0 } else { abi::LEAF_UNBOUNDED };
             flags |= if entry.negative() { abi::LEAF_NEGATIVE } else { 0 };
             let leaf = data.leaves.len() as u32;
+            let p = entry.primitive();
+            let is_shell = shell::is_shell(primitive);
+            let shell = if is_shell {
+                let number = shells[p as usize].unwrap_or_else(|| data.push_shell(&table, p, primitive, leaf));
+                shells[p as usize] = Some(number);
+                flags |= abi::LEAF_SHELL;
+                Some(number)
+            } else {
+                None
+            };
             let first = data.leaf_surfaces.len() as u32;
-            let faces = table.faces(entry.primitive());
+            let faces = if is_shell { &[] } else { table.faces(p) };
             let sides = faces.iter().map(|f| f.surface << 1 | u32::from(f.flipped));
             data.leaf_surfaces.extend(sides.map(|surface| abi::LeafSurface { surface, leaf }));
-            if faces.is_empty() {
+            if faces.is_empty() && !is_shell {
                 // a primitive without volume is the inside of no point
-                if data.surfaces.len() == nothing as usize {
+                let nothing = *nothing.get_or_insert_with(|| {
                     data.surfaces.push(surface::nowhere());
                     data.surface_centres.push(middle);
-                }
+                    data.surfaces.len() as u32 - 1
+                });
                 data.leaf_surfaces.push(abi::LeafSurface { surface: nothing << 1, leaf });
             }
             data.leaf_centres.push(centre);
             data.leaves.push(abi::Leaf {
                 half_size: half.as_vec3().to_array().map(f32::next_up),
-                first,
+                first: shell.unwrap_or(first),
                 count: data.leaf_surfaces.len() as u32 - first,
                 colour: pack_colour(primitive.colour),
                 id: primitive.id,
@@ -114,7 +135,7 @@ impl SolidData {
             });
         }
         number_exits(&mut data.leaves);
-        if way == SolidWay::Cst {
+        if way == SolidWay::Cst && data.shell_leaves.is_empty() {
             let mut used = vec![false; data.surfaces.len()];
             let shared = |side: &abi::LeafSurface| std::mem::replace(&mut used[side.surface as usize >> 1], true);
             data.order = order::order(&data.leaves, data.leaf_surfaces.iter().any(shared));
@@ -132,15 +153,6 @@ impl SolidData {
         let Self { leaf_centres, surface_centres, .. } = self;
         Self { leaf_centres, surface_centres, ..Self::default() }
     }
-}
-
-/// Names operand `p` of the union by its solid and its place there.
-fn operand(solids: &[Solid], p: u32, kind: &'static str) -> UndrawnSolid {
-    let (mut solid, mut primitive) = (0, p);
-    while let Some(rest) = primitive.checked_sub(solids[solid].primitives().len() as u32) {
-        (solid, primitive) = (solid + 1, rest);
-    }
-    UndrawnSolid::Operand { solid, primitive, kind }
 }
 
 /// A point near everything that is bounded.

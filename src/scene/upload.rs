@@ -1,6 +1,6 @@
 //! The scene's persistent buffers: only those that its model needs.
 
-use super::SceneData;
+use super::{SceneData, SolidData};
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texels, Uploads};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
@@ -33,6 +33,18 @@ pub(crate) struct Solids {
     pub surfaces: Buffer,
     /// The leaves as they are drawn, and how many; only where each is drawn by itself.
     pub order: Option<(Buffer, u32)>,
+    /// `None` where every operand has equations.
+    pub shells: Option<Shells>,
+}
+
+/// Operands without equations: a leaf of each, and the meshes around them.
+pub(crate) struct Shells {
+    pub leaves: Buffer,
+    pub meshes: Buffer,
+    pub triangles: Buffer,
+    pub positions: Buffer,
+    /// Corners of the triangles of each mesh.
+    pub draws: Vec<Range<u32>>,
 }
 
 /// Triangles, where they are placed, and the draws that cover them.
@@ -118,6 +130,9 @@ impl Scene {
                         leaves: persistent(&mut uploads, cmd, "solid leaves", &data.solids.leaves)?,
                         leaf_surfaces: persistent(&mut uploads, cmd, "solid sides", &data.solids.leaf_surfaces)?,
                         surfaces: persistent(&mut uploads, cmd, "solid surfaces", &data.solids.surfaces)?,
+                        shells: (!data.solids.shell_leaves.is_empty())
+                            .then(|| shells(&mut uploads, cmd, &data.solids))
+                            .transpose()?,
                         order: (!data.solids.order.is_empty())
                             .then(|| persistent(&mut uploads, cmd, "solid order", &data.solids.order))
                             .transpose()?
@@ -180,6 +195,16 @@ fn rival_scene(
             let knob = persistent(uploads, cmd, "trim texture knob", &knob)?;
             RivalScene::Texture(table_scene(uploads, cmd, data)?, knob)
         }
+    })
+}
+
+fn shells(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SolidData) -> Result<Shells, GpuError> {
+    Ok(Shells {
+        leaves: persistent(uploads, cmd, "operand leaves", &data.shell_leaves)?,
+        meshes: persistent(uploads, cmd, "operand meshes", &data.operand_meshes)?,
+        triangles: persistent(uploads, cmd, "operand triangles", &data.operand_triangles)?,
+        positions: persistent(uploads, cmd, "operand positions", &data.operand_positions)?,
+        draws: data.operand_draws.clone(),
     })
 }
 

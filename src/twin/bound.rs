@@ -2,7 +2,7 @@
 //! divided.
 
 use super::factor::factors;
-use super::view::{covers_a_centre, pixels_per_unit, see};
+use super::view::{covers_a_centre, far_of, pixels_per_unit, see};
 use super::{MOST_SEGMENTS, Scene};
 use crate::abi::{Counters, Frame, Side};
 
@@ -11,12 +11,13 @@ use crate::abi::{Counters, Frame, Side};
 pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u32> {
     (0..frame.item_count as usize)
         .map(|item| {
-            let (placed, _, patch) = scene.item(item);
+            let (placed, face, patch) = scene.item(item);
             let view = &scene.views[placed.instance as usize];
             if patch.side() == Side::Outside {
                 return 0;
             }
-            let Some(seen) = see(view, frame, patch.box_min, patch.box_max, frame.ring_px + 1.0) else { return 0 };
+            let (margin, far) = (frame.ring_px + 1.0, far_of(&face, frame));
+            let Some(seen) = see(view, frame, patch.box_min, patch.box_max, margin, far) else { return 0 };
             // a ring may reach farther than the box
             if patch.side() == Side::Inside && !covers_a_centre(&seen, frame.deviation_px) {
                 return 0;

@@ -5,7 +5,7 @@
 //! ```
 
 use super::Scene;
-use super::view::{pixels_per_unit, see};
+use super::view::{far_of, pixels_per_unit, see};
 use crate::abi::Frame;
 
 /// What the pass writes.
@@ -32,7 +32,8 @@ pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
             continue;
         }
         let view = &scene.views[placed.instance as usize];
-        let Some(seen) = see(view, frame, cell.box_min, cell.box_max, frame.ring_px + 1.0) else { continue };
+        let (margin, far) = (frame.ring_px + 1.0, far_of(&face, frame));
+        let Some(seen) = see(view, frame, cell.box_min, cell.box_max, margin, far) else { continue };
         let pixels = pixels_per_unit(frame, &scene.instances[placed.instance as usize], &seen);
         let height = &mut out.strip_heights[(placed.first_strip + cell.strip) as usize];
         // a visible strip gets a scan line, however flat it is seen

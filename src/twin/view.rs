@@ -8,7 +8,7 @@
 //!
 //! The planes are linear in `(X, Y, D, W)`, so the test also holds for corners behind the eye.
 
-use crate::abi::{Frame, Instance, View};
+use crate::abi::{FACE_OPERAND, Face, Frame, Instance, View};
 
 fn row_times(row: [f32; 4], p: [f32; 4]) -> f32 {
     row[0] * p[0] + row[1] * p[1] + row[2] * p[2] + row[3] * p[3]
@@ -32,13 +32,13 @@ pub struct Seen {
     pub high: [f32; 2],
 }
 
-/// The box `lo..hi` (part coordinates) in the picture widened by `margin` pixels; `None` when no part of it can be
-/// seen.
+/// The box `lo..hi` (part coordinates) in the picture widened by `margin` pixels, in front of `far`; `None` when
+/// no part of it can be seen.
 ///
 /// Conservative: a box that passes may still be out of sight, near a corner of the picture. Pixel and slope are quotients
 /// of linear functions, so corners have the largest ones where all are in front of the eye; where one is not, the
 /// picture's slant and no limits stand.
-pub fn see(view: &View, frame: &Frame, lo: [f32; 3], hi: [f32; 3], margin: f32) -> Option<Seen> {
+pub fn see(view: &View, frame: &Frame, lo: [f32; 3], hi: [f32; 3], margin: f32, far: f32) -> Option<Seen> {
     let mut seen = Seen { w: 3.0e38, slant: 0.0, low: [3.0e38; 2], high: [-3.0e38; 2] };
     let mut steepest = 0.0f32;
     let mut outside = 63u32;
@@ -58,7 +58,7 @@ pub fn see(view: &View, frame: &Frame, lo: [f32; 3], hi: [f32; 3], margin: f32) 
             y + margin * w < 0.0,
             y - (frame.size[1] + margin) * w > 0.0,
             depth < frame.near,
-            depth > frame.far,
+            depth > far,
         ];
         outside &= planes.iter().enumerate().fold(0, |bits, (i, &beyond)| bits | u32::from(beyond) << i);
     }
@@ -86,4 +86,9 @@ pub fn covers_a_centre(seen: &Seen, margin: f32) -> bool {
 /// Pixels that one part unit of what is seen can cover; derived in [`factor`](super::factor).
 pub fn pixels_per_unit(frame: &Frame, instance: &Instance, seen: &Seen) -> f32 {
     frame.focal * seen.slant * instance.scale / seen.w
+}
+
+/// Depth beyond which a face is not seen: those of operands tell a ray's way to the end.
+pub fn far_of(face: &Face, frame: &Frame) -> f32 {
+    if face.flags & FACE_OPERAND != 0 { 3.0e38 } else { frame.far }
 }

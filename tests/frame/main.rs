@@ -12,6 +12,7 @@ mod hard;
 mod hard_trims;
 mod meshes;
 mod objects;
+mod operands;
 mod room;
 mod samples;
 #[path = "../shapes/mod.rs"]

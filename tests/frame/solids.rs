@@ -4,12 +4,10 @@ use crate::shapes::{self, solids};
 use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched};
 use glam::{DAffine3, DVec3};
 use selvedge::csg::Op;
-use selvedge::headless::{HeadlessError, HeadlessRenderer};
-use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Shape, Solid};
-use selvedge::picture::{FrameSettings, Outputs, SceneSettings, SolidWay};
+use selvedge::headless::HeadlessRenderer;
+use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Solid};
+use selvedge::picture::{SceneSettings, SolidWay};
 use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
-use selvedge::renderer::{RenderError, UndrawnSolid};
-use std::sync::Arc;
 
 const SIZE: (u32, u32) = (240, 160);
 /// Single precision of a root on a tube a twentieth of its ring, grazed at a cosine of 0.1: a place off by
@@ -39,11 +37,16 @@ fn few_ties(j: &Judgement) -> bool {
 }
 
 fn all_right(cases: Vec<solids::Named>, blank: bool) {
+    right_at(SIZE, cases, blank);
+}
+
+/// Every pixel of pictures of this size is right, from two eyes.
+pub fn right_at(size: (u32, u32), cases: Vec<solids::Named>, blank: bool) {
     let mut renderer = watched(&Model::default());
     let mut wrong = Vec::new();
     for (name, model) in &cases {
         let tracer = Tracer::new(model);
-        let views = [("perspective", perspective(model, SIZE)), ("parallel", orthographic(model, SIZE))];
+        let views = [("perspective", perspective(model, size)), ("parallel", orthographic(model, size))];
         renderer.upload(model).unwrap();
         let mut pictures = Vec::new();
         for (view, camera) in &views {
@@ -101,6 +104,26 @@ fn many_primitives() {
     };
     let cases = vec![("70 in a tile", row(70)), ("300 in a tile", row(300)), ("100 holes", solids::holes(10))];
     all_right(cases, false);
+}
+
+/// Holes that make a tile see more than 1024 leaves, and 10 001 of them: few pixels, whose truth takes long.
+#[test]
+fn thousands_of_primitives() {
+    right_at((48, 32), vec![("1024 holes", solids::holes(32)), ("10 000 holes", solids::holes(100))], false);
+}
+
+/// A ray that needs more steps than the driver allows is counted, not drawn wrongly in silence.
+#[test]
+fn rays_without_an_end_are_counted() {
+    let mut all: Vec<Primitive> = (0..1500).map(|i| solids::ball(0.5, f64::from(i) * 1e-4)).collect();
+    all.insert(0, solids::block([-1.0; 3], [2.0, 0.1, 1.0]));
+    let model = solids::folded(Op::Difference, all);
+    let camera = perspective(&model, (32, 24));
+    let mut renderer = watched(&model);
+    let picture = render(&mut renderer, &camera);
+    let j = judge(&Tracer::new(&model), &camera, &picture, &JudgeOptions::default());
+    assert!(j.wrong == 0 || picture.stats.clamps > 0, "{} wrong, {:?}", j.wrong, j.mismatches.first());
+    assert_silent(renderer);
 }
 
 /// The eye within a solid, within a hole, on a face, and the near plane through the middle.
@@ -188,24 +211,4 @@ fn solids_among_patches_and_meshes() {
         ("solids and shells before meshes", through(shapes::floor())),
     ];
     all_right(cases, false);
-}
-
-/// Operands without equations are told of, by solid and primitive.
-#[test]
-fn an_operand_that_is_not_drawn_is_an_error() {
-    let mesh = Shape::Mesh(Arc::new(shapes::torus_mesh(8)));
-    let part = Shape::Part(Arc::new(shapes::sphere().parts.remove(0)));
-    for (shape, kind) in [(mesh, "mesh"), (part, "spline solid")] {
-        let mut model = solids::solid("A", vec![solids::ball(1.0, 0.0)]);
-        let operand = solids::primitive(shape, DAffine3::IDENTITY);
-        model.solids.extend(solids::solid("A-B", vec![solids::ball(1.0, 0.0), operand]).solids);
-        let mut renderer = watched(&Model::default());
-        let error = renderer.upload(&model).unwrap_err();
-        let expected = UndrawnSolid::Operand { solid: 1, primitive: 1, kind };
-        let HeadlessError::Render(RenderError::Solid(found)) = &error else { panic!("{error}") };
-        assert_eq!((found, error.to_string().contains(kind)), (&expected, true));
-        // what was there before is drawn on
-        renderer.render(&perspective(&Model::default(), SIZE), &FrameSettings::default(), Outputs::default()).unwrap();
-        assert_silent(renderer);
-    }
 }

@@ -21,12 +21,12 @@ pub fn facets() -> Model {
 
 /// The trimmed cylinder, and a mesh cube that cuts into it.
 pub fn beside() -> Model {
-    with_meshes(cylinder(), vec![block(DVec3::new(0.4, -1.6, 1.5), DVec3::new(2.0, 1.7, 1.1), 7)])
+    with_meshes(cylinder(), vec![block_mesh(DVec3::new(0.4, -1.6, 1.5), DVec3::new(2.0, 1.7, 1.1), 7)])
 }
 
 /// The whole sphere, and a mesh cube that cuts into it: no trims.
 pub fn globe() -> Model {
-    with_meshes(sphere(), vec![block(DVec3::new(0.4, -4.0, 0.5), DVec3::new(2.0, 1.7, 2.1), 7)])
+    with_meshes(sphere(), vec![block_mesh(DVec3::new(0.4, -4.0, 0.5), DVec3::new(2.0, 1.7, 2.1), 7)])
 }
 
 /// The spline cube and, beside it, the plate with its hole, over a coarse and before a fine mesh.
@@ -39,7 +39,7 @@ pub fn floor() -> Model {
     model.instances.push(selvedge::model::Instance { part: 1, ..placed(beside, None) });
     let wall =
         Mesh::new(31, grid(90, |u, v| DVec3::new(14.0 * u - 10.0, 5.0 + u * v, 8.0 * v - 2.5)), cells(90), vec![]);
-    with_meshes(model, vec![block(DVec3::new(-9.0, -4.0, -1.5), DVec3::new(4.0, 5.0, -1.0), 30), wall.unwrap()])
+    with_meshes(model, vec![block_mesh(DVec3::new(-9.0, -4.0, -1.5), DVec3::new(4.0, 5.0, -1.0), 30), wall.unwrap()])
 }
 
 /// A coarse ball of radius 1 whose normals are the sphere's.
@@ -69,7 +69,7 @@ fn tetra_mesh(id: u32) -> Mesh {
 }
 
 /// A box between two corners: eight vertices, twelve triangles.
-fn block(low: DVec3, high: DVec3, id: u32) -> Mesh {
+pub fn block_mesh(low: DVec3, high: DVec3, id: u32) -> Mesh {
     let pick = |i: usize, axis: usize| if i >> axis & 1 == 0 { low[axis] } else { high[axis] };
     let corners = (0..8).map(|i| DVec3::new(pick(i, 0), pick(i, 1), pick(i, 2)));
     let sides = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];

@@ -19,6 +19,7 @@
 #![allow(dead_code)] // each test binary takes what it needs
 
 mod meshes;
+pub mod operands;
 pub mod solids;
 
 pub use meshes::*;

@@ -2,15 +2,17 @@
 //!
 //! ```text
 //!   whole     the bounding sphere in the picture, from FROM
-//!   close     the same direction, CLOSER times nearer, at the boundary point nearest to the eye
+//!   close     the same direction, CLOSER times nearer, at the boundary point nearest to the eye; of Boolean
+//!             solids alone, at the nearest of LOOKS x LOOKS rays beside which another face is seen
 //!   grazing   along the largest extent, GRAZING_DEG above the two larger ones
 //! ```
 
 use crate::args::{CameraArgs, Size, Views};
 use anyhow::{Context, Result, bail};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use selvedge::import::{Import, NamedCamera};
 use selvedge::model::{Bounds, Camera, Face, Model, Projection};
+use selvedge::reference::{Hit, Tracer};
 use serde::Serialize;
 
 /// From the model towards the eye: front, right, a little above; no axis of the model seen edge-on.
@@ -18,6 +20,8 @@ const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
 /// How much nearer the close view is. At six times a 1080p picture shows what 6480 lines would: far
 /// past what a mesh made for the whole view resolves.
 const CLOSER: f64 = 6.0;
+/// Rays along a side of the picture that look for an edge of Boolean solids.
+const LOOKS: usize = 48;
 /// Low enough that a silhouette crosses many surfaces, high enough that a flat model shows its face.
 const GRAZING_DEG: f64 = 8.0;
 
@@ -139,7 +143,8 @@ fn fitted(mut camera: Camera, bounds: Bounds) -> Result<Camera> {
 /// an edge.
 pub fn closer(model: &Model, mut camera: Camera, times: f64) -> Camera {
     let depth = |p: &DVec3| (*p - camera.eye).dot(camera.axes().2);
-    let Some(detail) = details(model).min_by(|a, b| depth(a).total_cmp(&depth(b))) else { return camera };
+    let nearest = details(model).min_by(|a, b| depth(a).total_cmp(&depth(b)));
+    let Some(detail) = nearest.or_else(|| edge_of_solids(model, &camera)) else { return camera };
     let back = camera.eye - camera.target;
     camera.target = detail;
     match &mut camera.projection {
@@ -157,6 +162,23 @@ fn details(model: &Model) -> impl Iterator<Item = DVec3> + '_ {
         let points = part.faces.iter().flat_map(boundary_points).chain(vertices);
         points.map(|p| instance.transform.transform_point3(p))
     })
+}
+
+/// The nearest place at which two of the rays over the picture see different faces, or else the nearest that
+/// any of them sees.
+fn edge_of_solids(model: &Model, camera: &Camera) -> Option<DVec3> {
+    let tracer = (!model.solids.is_empty()).then(|| Tracer::new(model))?;
+    let step = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1)) / LOOKS as f64;
+    let ray = |k: usize| DVec2::new((k % LOOKS) as f64 + 0.5, (k / LOOKS) as f64 + 0.5) * step;
+    let mut probe = tracer.probe(camera);
+    let hits: Vec<Option<Hit>> = (0..LOOKS * LOOKS).map(|k| probe.first(ray(k))).collect();
+    let face = |k: usize| hits.get(k).and_then(|h| h.as_ref()).map(|h| h.face);
+    let at_edge = |k: usize| face(k) != face(k + 1) || face(k) != face(k + LOOKS);
+    let nearest = |wanted: &dyn Fn(usize) -> bool| {
+        let seen = hits.iter().enumerate().filter(|(k, _)| wanted(*k)).filter_map(|(_, h)| h.as_ref());
+        seen.min_by(|a, b| a.depth.total_cmp(&b.depth)).map(|h| h.point)
+    };
+    nearest(&at_edge).or_else(|| nearest(&|_| true))
 }
 
 /// Where the trim curves of a face start, in part coordinates; the corners of its domain if it has none.

@@ -81,6 +81,8 @@ struct Bench<'a> {
     picture: &'a Picture,
     /// The depth of a tie in model units.
     slack: f64,
+    /// [`JudgeOptions::limit_px`].
+    limit: f64,
 }
 
 /// Compares `picture`, drawn with `camera`, with what `tracer` says.
@@ -92,7 +94,7 @@ struct Bench<'a> {
 pub fn judge(tracer: &Tracer, camera: &Camera, picture: &Picture, options: &JudgeOptions) -> Judgement {
     let pixels = picture.size.0 as usize * picture.size.1 as usize;
     assert!(picture.size == camera.size && picture.face.len() == pixels, "picture and camera differ in size");
-    let bench = Bench { camera, picture, slack: options.tie * tracer.bounds().diagonal() };
+    let bench = Bench { camera, picture, slack: options.tie * tracer.bounds().diagonal(), limit: options.limit_px };
     let sampled = samples(picture, options.samples);
     let progress = |done: usize| {
         if let Some(call) = options.progress {
@@ -190,8 +192,15 @@ impl Bench<'_> {
             let drawn = DVec3::new(f64::from(n[0]), f64::from(n[1]), f64::from(n[2]));
             let mut angle = angle_between(drawn, hit.normal);
             if hit.facet && angle > SMOOTH {
-                let beside = beside(centre).filter_map(|p| probe.first(p)).filter(|h| h.face == drawn_id);
+                let beside = beside(centre, FACET_PX).filter_map(|p| probe.first(p)).filter(|h| h.face == drawn_id);
                 angle = beside.map(|h| angle_between(drawn, h.normal)).fold(angle, f64::min);
+            }
+            // faces of a spline part that is an operand have one id: an edge between them may be as far off as
+            // any boundary
+            if angle > SMOOTH && probe.on_spline_operand(&hit) {
+                let ring = [0.25, 0.5, 1.0].into_iter().flat_map(|far| beside(centre, far * self.limit));
+                let ring = ring.filter_map(|p| probe.first(p)).filter(|h| h.face == drawn_id);
+                angle = ring.map(|h| angle_between(drawn, h.normal)).fold(angle, f64::min);
             }
             tally.normal.add(index, angle.to_degrees());
         }
@@ -205,8 +214,8 @@ fn angle_between(a: DVec3, b: DVec3) -> f64 {
 }
 
 /// Places around a pixel's centre at which a neighbouring triangle may be what was drawn.
-fn beside(centre: DVec2) -> impl Iterator<Item = DVec2> {
-    (0..8).map(move |k| centre + DVec2::from_angle(f64::from(k) * FRAC_PI_4) * FACET_PX)
+fn beside(centre: DVec2, far: f64) -> impl Iterator<Item = DVec2> {
+    (0..8).map(move |k| centre + DVec2::from_angle(f64::from(k) * FRAC_PI_4) * far)
 }
 
 /// Side of a pixel in model units at `depth`.

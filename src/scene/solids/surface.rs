@@ -125,18 +125,13 @@ impl Local {
 }
 
 /// The sides of a primitive, in the order of [`Shape::carriers`]; planes get a point close to `near`. None
-/// of a primitive without volume. The error is the kind of operand that has no equations.
-pub(super) fn sides_of(p: &Primitive, near: DVec3) -> Result<Vec<Placed>, &'static str> {
-    match p.shape {
-        Shape::Mesh(_) => return Err("mesh"),
-        Shape::Part(_) => return Err("spline solid"),
-        _ => {}
-    }
-    let Some(to_own) = p.to_own().filter(|_| !p.shape.bounds().is_empty()) else { return Ok(Vec::new()) };
+/// of a part, nor of a primitive without volume.
+pub(super) fn sides_of(p: &Primitive, near: DVec3) -> Vec<Placed> {
+    let Some(to_own) = p.to_own().filter(|_| !p.shape.bounds().is_empty()) else { return Vec::new() };
     let plane = |own: DVec3, offset: f64| Placed::plane(to_own, own, offset, near);
     let round = |centre: DVec3, size: f64, surface| Placed::round(p, to_own, centre, size, surface);
     let between = |side: Placed, height: f64| vec![side, plane(DVec3::NEG_Z, 0.0), plane(DVec3::Z, height)];
-    Ok(match &p.shape {
+    match &p.shape {
         Shape::Sphere { radius } => vec![round(DVec3::ZERO, *radius, quadric([1.0; 3], 0.0, -1.0))],
         Shape::Cylinder { radius, height } => {
             between(round(DVec3::Z * (height * 0.5), *radius, quadric([1.0, 1.0, 0.0], 0.0, -1.0)), *height)
@@ -155,7 +150,7 @@ pub(super) fn sides_of(p: &Primitive, near: DVec3) -> Result<Vec<Placed>, &'stat
         }
         // without a circle to run around, the tube is a ball
         Shape::Torus { minor, .. } => vec![round(DVec3::ZERO, *minor, quadric([1.0; 3], 0.0, -1.0))],
-        Shape::HalfSpace { .. } | Shape::Block { .. } | Shape::Quadric(_) => {
+        Shape::HalfSpace { .. } | Shape::Block { .. } | Shape::Quadric(_) | Shape::Mesh(_) => {
             let side = |carrier: &Carrier| match carrier {
                 Carrier::Plane { normal, offset } => plane(*normal, *offset),
                 Carrier::Quadric(q) => Placed::quadric(p, to_own, q, near),
@@ -163,6 +158,6 @@ pub(super) fn sides_of(p: &Primitive, near: DVec3) -> Result<Vec<Placed>, &'stat
             };
             p.shape.carriers().iter().map(side).collect()
         }
-        Shape::Mesh(_) | Shape::Part(_) => Vec::new(),
-    })
+        Shape::Part(_) => Vec::new(),
+    }
 }

@@ -1,0 +1,64 @@
+// Pass `operand_patch`: a ray crosses a spline face of an operand, after the tessellation of pass
+// `visibility`. The depth is that of the exact surface at the pixel's centre.
+//
+// Faces that meet along an edge are trimmed apart from each other, so a ray may slip between them. The ring
+// around each trimmed face gives fragments of its own, which pass `operand_sort` takes where a ray would
+// else leave without having entered, or the reverse. The entry point defines TRIMMED and its way to trim.
+#include "scene.glsl"
+#include "view.glsl"
+#include "shells.glsl"
+
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
+layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
+layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
+layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
+layout(binding = 6) uniform samplerBuffer points;
+layout(scalar, binding = 9) readonly buffer Instances { Instance instances[]; };
+layout(scalar, binding = 10) buffer FragmentCounts { uint fragment_counts[]; };
+layout(scalar, binding = 11) readonly buffer FragmentStarts { uint fragment_starts[]; };
+layout(scalar, binding = 12) writeonly buffer Fragments { Fragment fragments[]; };
+
+#ifdef TRIMMED
+#define TRIM_BINDING 13
+#include "trim.glsl"
+#endif
+#include "facing.glsl"
+#include "patch.glsl"
+#include "put_fragment.glsl"
+#include "refine.glsl"
+#include "ring.glsl"
+#include "visible.glsl"
+
+layout(location = 0) in vec2 uv;
+layout(location = 1) flat in uint item;
+
+void main() {
+    FaceInstance fi = face_instances[item_face_instance[item]];
+    Face face = faces[fi.face];
+    Patch patch_ = patches[face.first_patch + item - fi.first_item];
+    Instance instance = instances[fi.instance];
+    vec2 dx = dFdx(uv) * patch_.domain.zw;
+    vec2 dy = dFdy(uv) * patch_.domain.zw;
+    uint shell = instance.shell | FRAGMENT_PATCH;
+    if (looks_away(dx, dy, face, instance)) shell |= FRAGMENT_LEAVES;
+#ifdef TRIMMED
+    vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
+    bool inside = trim_inside(fi, face, at);
+    bool near = inside;
+    for (uint k = 0u; !near && k < RING_POINTS; ++k) {
+        vec2 step_ = frame.ring_px * RING[k];
+        near = trim_inside(fi, face, at + step_.x * dx + step_.y * dy);
+    }
+    if (!near) discard;
+    if (!inside) shell |= FRAGMENT_RING;
+#endif
+    Fragment f = Fragment(shell, 0.0, item + 1u, 0u);
+    if (FILLS) {
+        Sample s = refine(patch_, views[fi.instance], uv, gl_FragCoord.xy);
+        f.depth = s.q.z;
+        f.uv = pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)));
+    }
+    put_fragment(f);
+}

@@ -1,0 +1,21 @@
+// A fragment of an operand: counted first, then stored where the prefix sum says. Needs `frame`, shells.glsl
+// and buffers `uint fragment_counts[]`, `uint fragment_starts[]`, `Fragment fragments[]`. The order within
+// a pixel is the rasteriser's: pass `operand_sort` makes it one's own.
+#ifndef PUT_FRAGMENT_GLSL
+#define PUT_FRAGMENT_GLSL
+
+layout(constant_id = 12) const bool FILLS = false;
+
+void put_fragment(Fragment f) {
+    uint pixel = uint(gl_FragCoord.y) * uint(frame.size.x) + uint(gl_FragCoord.x);
+    if (!FILLS) {
+        atomicAdd(fragment_counts[pixel], 1u);
+        return;
+    }
+    // the counts go down to 0 again
+    uint left = atomicAdd(fragment_counts[pixel], 0xffffffffu);
+    uint at = fragment_starts[pixel] + left - 1u;
+    if (left > 0u && at < frame.fragment_capacity) fragments[at] = f;
+}
+
+#endif

@@ -1,0 +1,33 @@
+// Operands of Boolean solids without equations, *shells*: where the pixel's ray crosses their surfaces.
+// Twin of src/abi/solids.rs.
+//
+//   pixel ──fragment_starts──▶ Fragment[fragment_counts]   by shell, then by depth
+//
+//   before pass `operand_sort`: as rastered      behind it: entering and leaving in turn, of each shell
+#ifndef SHELLS_GLSL
+#define SHELLS_GLSL
+
+// Fragment.shell: the shell's number and four bits.
+const uint FRAGMENT_LEAVES = 0x80000000u; // the ray leaves the shell here
+const uint FRAGMENT_RING = 0x40000000u;   // of the ring around a trimmed face: counts in a gap only
+const uint FRAGMENT_PATCH = 0x20000000u;  // of a spline face, else of a triangle
+const uint FRAGMENT_WITHIN = 0x10000000u; // sorted: the near plane is within the shell
+const uint FRAGMENT_SHELL = 0x0fffffffu;
+
+struct Fragment {
+    uint shell;
+    float depth;
+    uint what;   // side of a leaf; of a spline face item + 1
+    uint uv;     // of the patch
+};
+
+// A mesh around a shell, placed.
+struct OperandMesh {
+    uint shell;
+    uint instance;
+    uint first_triangle;
+    uint first_side;  // one side of a leaf for each triangle
+    uint mirrored;
+};
+
+#endif

@@ -1,0 +1,7 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `operand_patch`, trimmed patches, by the exact arcs.
+#define TRIMMED
+#define TRIM_BY_EXACT
+#include "operand_patch.glsl"

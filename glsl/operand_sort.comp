@@ -1,0 +1,192 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `operand_sort`: the fragments of each pixel by shell and depth, entering and leaving in turn. One
+// thread a pixel.
+// Twin: src/twin/operand_sort.rs.
+//
+//   mesh    E  E     L  L       how often the ray is within counts up and down; it is within where that is
+//           E  ·     ·  L       not 0. A near plane in its box: begin so that the end is 0
+//
+//   faces   E  ·  L  L          the second L wants an entry: a ring's fragment E between the two, where the
+//                 E? L          ray slips through a gap (`mended`), else it is left out
+//           E  E  L             the second E, the reverse; at the end, too
+//
+//           L  E  E  L          no ring helps, but it is left as often as entered: as for a mesh. Near a
+//                               silhouette two fragments may have changed places
+//
+//   Entries without an exit stay, exits without an entry go: both are `unpaired`, unless the camera's depth
+//   range cuts the shell.
+#include "scene.glsl"
+#include "solids.glsl"
+#include "shells.glsl"
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
+layout(scalar, binding = 2) readonly buffer LeafCentres { vec3 leaf_centres[]; };
+layout(scalar, binding = 3) readonly buffer ShellLeaves { uint shell_leaves[]; };
+layout(scalar, binding = 4) readonly buffer FragmentStarts { uint fragment_starts[]; };
+layout(scalar, binding = 5) buffer FragmentCounts { uint fragment_counts[]; };
+layout(scalar, binding = 6) buffer Fragments { Fragment fragments[]; };
+layout(scalar, binding = 7) buffer CountersBuffer { Counters counters; };
+
+// A total order: two that are equal are the same.
+bool before(Fragment a, Fragment b) {
+    uint x = a.shell & FRAGMENT_SHELL;
+    uint y = b.shell & FRAGMENT_SHELL;
+    if (x != y) return x < y;
+    if (a.depth != b.depth) return a.depth < b.depth;
+    if (a.what != b.what) return a.what < b.what;
+    if (a.shell != b.shell) return a.shell < b.shell;
+    return a.uv < b.uv;
+}
+
+// D. L. Shell, A High-Speed Sorting Procedure, 1959, with the steps of M. Ciura, Best Increments for the
+// Average Case of Shellsort, 2001: no storage, and far fewer steps than insertion where there are many.
+const uint GAPS[11] = uint[](9881u, 4391u, 1750u, 701u, 301u, 132u, 57u, 23u, 10u, 4u, 1u);
+
+void sort(uint first, uint count) {
+    for (uint g = 0u; g < 11u; ++g) {
+        uint gap = GAPS[g];
+        for (uint i = gap; i < count; ++i) {
+            Fragment f = fragments[first + i];
+            uint j = i;
+            while (j >= gap && before(f, fragments[first + j - gap])) {
+                fragments[first + j] = fragments[first + j - gap];
+                j -= gap;
+            }
+            if (j != i) fragments[first + j] = f;
+        }
+    }
+}
+
+// The near plane in the box around a shell (1), the far plane (2).
+uint cuts(uint shell) {
+    Leaf leaf = leaves[shell_leaves[shell]];
+    float middle = dot(frame.forward, leaf_centres[shell_leaves[shell]]);
+    float reach = dot(abs(frame.forward), leaf.half_size);
+    return (middle - reach < frame.near ? 1u : 0u) | (middle + reach > frame.far ? 2u : 0u);
+}
+
+// What is kept of the shell at hand, from place `kept` on.
+uint kept;
+
+void keep(Fragment f, uint bits) {
+    f.shell = f.shell & ~(FRAGMENT_RING | FRAGMENT_LEAVES) | bits;
+    fragments[kept] = f;
+    ++kept;
+}
+
+// By how often the ray is within, from `number` on; returns whether that ends with 0.
+bool by_winding(uint from, uint end, int number, uint start) {
+    bool within = number != 0; // before the fragments of one depth
+    Fragment owner;            // the last of them that turned the right way
+    bool any = false;
+    float depth = 0.0;
+    for (uint i = from; i <= end; ++i) {
+        Fragment f;
+        bool more = i < end;
+        if (more) f = fragments[i];
+        if (more && (f.shell & FRAGMENT_RING) != 0u) continue;
+        if (any && (!more || f.depth != depth)) {
+            bool now = number != 0;
+            if (now != within) keep(owner, start | (now ? 0u : FRAGMENT_LEAVES));
+            within = now;
+        }
+        if (!more) break;
+        number += (f.shell & FRAGMENT_LEAVES) != 0u ? -1 : 1;
+        if ((number != 0) != within) owner = f;
+        any = true;
+        depth = f.depth;
+    }
+    return number == 0;
+}
+
+// Entering and leaving in turn, mended by rings; returns whether they do. Keeps nothing unless it `writes`.
+bool in_turn(uint from, uint end, bool within, uint start, bool writes) {
+    Fragment ring[2]; // the first of a ring since the last that was kept: entering, leaving
+    bool has_ring[2] = bool[](false, false);
+    bool lost = false;
+    for (uint i = from; i < end; ++i) {
+        Fragment f = fragments[i];
+        uint kind = (f.shell & FRAGMENT_LEAVES) != 0u ? 1u : 0u;
+        if ((f.shell & FRAGMENT_RING) != 0u) {
+            if (!has_ring[kind]) ring[kind] = f;
+            has_ring[kind] = true;
+            continue;
+        }
+        if ((kind == 1u) != within) {
+            // one is missing between: of the other kind
+            if (!has_ring[1u - kind]) {
+                lost = lost || kind == 1u;
+                continue;
+            }
+            if (writes) {
+                keep(ring[1u - kind], start | (kind == 1u ? 0u : FRAGMENT_LEAVES));
+                atomicAdd(counters.mended, 1u);
+            }
+        }
+        within = kind == 0u;
+        has_ring = bool[](false, false);
+        if (writes) keep(f, start | (f.shell & FRAGMENT_LEAVES));
+    }
+    if (within && has_ring[1]) {
+        if (writes) {
+            keep(ring[1], start | FRAGMENT_LEAVES);
+            atomicAdd(counters.mended, 1u);
+        }
+        within = false;
+    }
+    return !within && !lost;
+}
+
+void main() {
+    uvec2 at = gl_GlobalInvocationID.xy;
+    uvec2 size = uvec2(frame.size);
+    if (at.x >= size.x) return;
+    if (at == uvec2(0u)) {
+        counters.fragments = fragment_starts[size.x * size.y];
+        if (counters.fragments > frame.fragment_capacity) atomicOr(counters.failed, FAILED_FRAGMENTS);
+    }
+    uint pixel = at.y * size.x + at.x;
+    uint first = fragment_starts[pixel];
+    uint end = fragment_starts[pixel + 1u];
+    if (end > frame.fragment_capacity) end = first; // the frame is recorded again
+    sort(first, end - first);
+
+    kept = first;
+    uint from = first;
+    while (from < end) {
+        uint shell = fragments[from].shell & FRAGMENT_SHELL;
+        bool patches = (fragments[from].shell & FRAGMENT_PATCH) != 0u;
+        int sum = 0; // how much oftener it is left than entered
+        bool leaves_first = false;
+        bool any = false;
+        uint stop = from;
+        for (; stop < end; ++stop) {
+            uint word = fragments[stop].shell;
+            if ((word & FRAGMENT_SHELL) != shell) break;
+            if ((word & FRAGMENT_RING) != 0u) continue;
+            bool leaves_ = (word & FRAGMENT_LEAVES) != 0u;
+            sum += leaves_ ? 1 : -1;
+            if (!any) leaves_first = leaves_;
+            any = true;
+        }
+        uint cut = cuts(shell);
+        int number = (cut & 1u) != 0u ? sum : 0;
+        bool within = (cut & 1u) != 0u && leaves_first;
+        bool turns = patches;
+        if (patches && sum == number) turns = in_turn(from, stop, within, 0u, false);
+        bool starts_within = turns ? within : number != 0;
+        uint start = starts_within ? FRAGMENT_WITHIN : 0u;
+        bool closed;
+        if (turns) closed = in_turn(from, stop, within, start, true);
+        else closed = by_winding(from, stop, number, start);
+        if (!closed && (cut & 2u) == 0u) atomicAdd(counters.unpaired, 1u);
+        from = stop;
+    }
+    // a driver that ends long loops is told of
+    if (from != end) atomicAdd(counters.clamps, 1u);
+    fragment_counts[pixel] = kept - first;
+}

@@ -1,0 +1,144 @@
+//! Parity of the pass `operand_sort`: exact, of clean and of torn rays; and what its rules promise.
+
+use super::Random;
+use super::harness::{Gpu, Mismatch, same};
+use crate::abi::{Counters, FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_RING, Fragment, Frame, Leaf};
+use crate::passes::operand_sort::{Bindings, OperandSort};
+use crate::twin::operand_sort::{Shells, operand_sort};
+
+const WIDTH: u32 = 70;
+const HEIGHT: u32 = 3;
+
+/// Shells 0 and 1 are meshes, 2 and 3 have faces; 1 and 3 lie across the near plane, 3 across the far one.
+struct Case {
+    frame: Frame,
+    leaves: Vec<Leaf>,
+    centres: Vec<[f32; 3]>,
+    shell_leaves: Vec<u32>,
+    starts: Vec<u32>,
+    fragments: Vec<Fragment>,
+}
+
+fn case(random: &mut Random, most: u32) -> Case {
+    let boxes = [(50.0, 10.0), (10.0, 12.0), (40.0, 20.0), (50.0, 60.0)];
+    let leaves = boxes.map(|(_, half)| Leaf { half_size: [half; 3], ..Leaf::default() }).to_vec();
+    let centres = boxes.map(|(z, _)| [3.0, -2.0, z]).to_vec();
+    let (mut starts, mut fragments) = (vec![0], Vec::new());
+    for _ in 0..WIDTH * HEIGHT {
+        for _ in 0..random.integer(0, most) {
+            let shell = random.integer(0, 3);
+            let mut bits = if random.integer(0, 1) == 0 { FRAGMENT_LEAVES } else { 0 };
+            if shell > 1 {
+                bits |= FRAGMENT_PATCH | if random.integer(0, 2) == 0 { FRAGMENT_RING } else { 0 };
+            }
+            // few depths, so that some are equal
+            let depth = 1.0 + random.integer(0, 40) as f32;
+            fragments.push(Fragment {
+                shell: shell | bits,
+                depth,
+                what: random.integer(0, 9),
+                uv: random.integer(0, 9),
+            });
+        }
+        starts.push(fragments.len() as u32);
+    }
+    let frame = Frame {
+        size: [WIDTH as f32, HEIGHT as f32],
+        near: 0.5,
+        far: 100.0,
+        forward: [0.0, 0.0, 1.0],
+        fragment_capacity: fragments.len() as u32,
+        ..Frame::default()
+    };
+    Case { frame, leaves, centres, shell_leaves: vec![0, 1, 2, 3], starts, fragments }
+}
+
+/// What is kept, pixel by pixel.
+fn kept(starts: &[u32], counts: &[u32], fragments: &[Fragment]) -> Vec<Fragment> {
+    let pixel = |(s, c): (&u32, &u32)| fragments[*s as usize..(*s + *c) as usize].to_vec();
+    starts.iter().zip(counts).flat_map(pixel).collect()
+}
+
+fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
+    let frame = gpu.upload("frame", &[given.frame]);
+    let leaves = gpu.upload("leaves", &given.leaves);
+    let leaf_centres = gpu.upload("centres", &given.centres);
+    let shell_leaves = gpu.upload("shell leaves", &given.shell_leaves);
+    let starts = gpu.upload("starts", &given.starts);
+    let counts = gpu.upload("counts", &vec![0u32; given.starts.len() - 1]);
+    let fragments = gpu.upload("fragments", &given.fragments);
+    let counters = gpu.upload("counters", &[Counters::default()]);
+    let pass = OperandSort::new(gpu.device()).unwrap();
+    let bindings = Bindings {
+        frame: &frame,
+        leaves: &leaves,
+        leaf_centres: &leaf_centres,
+        shell_leaves: &shell_leaves,
+        starts: &starts,
+        counts: &counts,
+        fragments: &fragments,
+        counters: &counters,
+    };
+    gpu.run(|cmd| pass.record(cmd, &bindings, (WIDTH, HEIGHT)));
+    let c = expected;
+    let shells = Shells { leaves: &c.leaves, centres: &c.centres, shell_leaves: &c.shell_leaves };
+    let (mut twin, mut twin_counters) = (c.fragments.clone(), Counters::default());
+    let twin_counts = operand_sort(&c.frame, shells, &c.starts, &mut twin, &mut twin_counters);
+    let gpu_counts = gpu.read(&counts, twin_counts.len());
+    same("counts", &gpu_counts, &twin_counts)?;
+    let found = gpu.read(&fragments, twin.len());
+    same("fragments", &kept(&c.starts, &gpu_counts, &found), &kept(&c.starts, &twin_counts, &twin))?;
+    same("counters", &gpu.read(&counters, 1), &[twin_counters])
+}
+
+#[test]
+fn parity() {
+    let gpu = Gpu::new();
+    let mut random = Random::new(23);
+    for most in [3, 12, 300] {
+        let case = case(&mut random, most);
+        compare(&gpu, &case, &case).unwrap();
+        let less = Case { frame: Frame { fragment_capacity: case.frame.fragment_capacity / 2, ..case.frame }, ..case };
+        compare(&gpu, &less, &less).unwrap();
+    }
+    // one depth off is seen
+    let given = case(&mut Random::new(4), 6);
+    let mut other = case(&mut Random::new(4), 6);
+    other.fragments.iter_mut().for_each(|f| f.depth += if f.what == 3 { 7.0 } else { 0.0 });
+    assert!(compare(&gpu, &other, &given).is_err());
+    gpu.finish();
+}
+
+fn fragment(bits: u32, depth: f32) -> Fragment {
+    Fragment { shell: 2 | FRAGMENT_PATCH | bits, depth, ..Fragment::default() }
+}
+
+/// Depths kept of one ray through shell 2, and the counters.
+fn one(fragments: &[Fragment]) -> (Vec<f32>, u32, u32) {
+    let c = case(&mut Random::new(1), 1);
+    let shells = Shells { leaves: &c.leaves, centres: &c.centres, shell_leaves: &c.shell_leaves };
+    let (mut all, mut counters) = (fragments.to_vec(), Counters::default());
+    let frame = Frame { fragment_capacity: 99, near: -99.0, ..c.frame };
+    let count = operand_sort(&frame, shells, &[0, all.len() as u32], &mut all, &mut counters)[0];
+    (all[..count as usize].iter().map(|f| f.depth).collect(), counters.mended, counters.unpaired)
+}
+
+/// The rules for rays that slip between two faces.
+#[test]
+fn gaps_are_mended_by_rings_alone() {
+    let (enter, leave) = (|t| fragment(0, t), |t| fragment(FRAGMENT_LEAVES, t));
+    let (ring_in, ring_out) = (|t| fragment(FRAGMENT_RING, t), |t| fragment(FRAGMENT_RING | FRAGMENT_LEAVES, t));
+    // rings beside a clean ray are not asked
+    assert_eq!(one(&[ring_in(1.0), enter(2.0), leave(5.0), ring_out(6.0)]), (vec![2.0, 5.0], 0, 0));
+    assert_eq!(one(&[leave(5.0), ring_in(2.0)]), (vec![2.0, 5.0], 1, 0));
+    assert_eq!(one(&[enter(2.0), ring_out(4.0)]), (vec![2.0, 4.0], 1, 0));
+    assert_eq!(one(&[enter(1.0), ring_out(2.0), enter(3.0), leave(4.0)]), (vec![1.0, 2.0, 3.0, 4.0], 1, 0));
+    // without one: what was entered stays, what is left is left out
+    assert_eq!(one(&[enter(2.0)]), (vec![2.0], 0, 1));
+    assert_eq!(one(&[leave(2.0), enter(3.0), leave(4.0)]), (vec![3.0, 4.0], 0, 1));
+    // two faces that overlap at their border
+    assert_eq!(one(&[enter(2.0), enter(2.1), leave(4.0)]), (vec![2.0, 4.0], 0, 0));
+    assert_eq!(one(&[ring_in(2.0), ring_out(3.0)]), (vec![], 0, 0));
+    // near a silhouette, two changed places
+    assert_eq!(one(&[leave(1.0), enter(1.01), enter(3.0), leave(4.0)]), (vec![1.0, 1.01, 3.0, 4.0], 0, 0));
+}

@@ -1,0 +1,102 @@
+//! Parity of the passes `solid_blocks` and `solid_tiles`: exact, and of those that run out of room.
+
+use super::Random;
+use super::harness::{Gpu, Mismatch, same};
+use crate::abi::{Counters, Frame, Rect, TileLeaf};
+use crate::passes::{solid_blocks, solid_tiles};
+use crate::twin;
+
+const UNTOUCHED: u32 = 0xabcd_1234;
+
+fn random_rects(random: &mut Random, tiles: [u32; 2], count: u32) -> Vec<Rect> {
+    let one = |_| {
+        let mut side = |k: usize| {
+            let first = random.integer(0, tiles[k] - 1);
+            (first, (first + random.integer(0, 4)).min(tiles[k] - 1))
+        };
+        let (x, y) = (side(0), side(1));
+        Rect { first: [x.0, y.0], last: [x.1, y.1] }
+    };
+    let mut all: Vec<Rect> = (0..count).map(one).collect();
+    all.extend([twin::solid_rects::NOWHERE, Rect { first: [0; 2], last: tiles.map(|n| n - 1) }]);
+    all
+}
+
+/// Whether the GPU makes of `given` what the twin makes of `expected`; `room` for as many entries.
+fn compare(gpu: &Gpu, frame: &Frame, given: &[Rect], expected: &[Rect]) -> Result<(), Mismatch> {
+    let frames = gpu.upload("frame", &[*frame]);
+    let rects = gpu.upload("rects", given);
+    let (starts, leaves) = twin::solid_blocks::solid_blocks(frame, expected);
+    let blocks = starts.len() as u32 - 1;
+    let counts = gpu.upload("counts", &vec![UNTOUCHED; blocks as usize]);
+    let block_starts = gpu.upload("starts", &starts);
+    let block_leaves = gpu.upload("leaves", &vec![UNTOUCHED; leaves.len() + 1]);
+    let pass = solid_blocks::SolidBlocks::new(gpu.device()).unwrap();
+    let bindings = solid_blocks::Bindings {
+        frame: &frames,
+        rects: &rects,
+        counts: &counts,
+        starts: &block_starts,
+        leaves: &block_leaves,
+    };
+    gpu.run(|cmd| pass.count(cmd, &bindings, blocks));
+    gpu.run(|cmd| pass.list(cmd, &bindings, blocks));
+    let sizes = |starts: &[u32]| starts.windows(2).map(|w| w[1] - w[0]).collect::<Vec<_>>();
+    let cut = |all: &[u32], room: u32| {
+        let fits = |(i, v): (usize, &u32)| if i < room as usize { *v } else { UNTOUCHED };
+        all.iter().chain([&UNTOUCHED]).enumerate().map(fits).collect::<Vec<_>>()
+    };
+    same("block counts", &gpu.read(&counts, blocks as usize), &sizes(&starts))?;
+    same("block leaves", &gpu.read(&block_leaves, leaves.len() + 1), &cut(&leaves, frame.block_leaf_capacity))?;
+
+    let wanted = leaves.len() as u32;
+    let (tile_starts, tile_leaves) = twin::solid_tiles::solid_tiles(frame, expected, &starts, &leaves);
+    let tiles = tile_starts.len() as u32 - 1;
+    let whole = gpu.upload("leaves", &leaves);
+    let counts = gpu.upload("counts", &vec![UNTOUCHED; tiles as usize]);
+    let gpu_starts = gpu.upload("starts", &tile_starts);
+    let empty = TileLeaf { leaf: UNTOUCHED, ..TileLeaf::default() };
+    let listed = gpu.upload("leaves", &vec![empty; tile_leaves.len() + 1]);
+    let counters = gpu.upload("counters", &[Counters::default()]);
+    let pass = solid_tiles::SolidTiles::new(gpu.device()).unwrap();
+    // all of the blocks' lists, so that what the tiles lack is theirs alone
+    let roomy = gpu.upload("frame", &[Frame { block_leaf_capacity: wanted, ..*frame }]);
+    let bindings = solid_tiles::Bindings {
+        frame: &roomy,
+        rects: &rects,
+        block_starts: &block_starts,
+        block_leaves: &whole,
+        counts: &counts,
+        starts: &gpu_starts,
+        leaves: &listed,
+        counters: &counters,
+    };
+    gpu.run(|cmd| pass.count(cmd, &bindings, tiles));
+    gpu.run(|cmd| pass.list(cmd, &bindings, tiles));
+    same("tile counts", &gpu.read(&counts, tiles as usize), &sizes(&tile_starts))?;
+    let found: Vec<u32> = gpu.read::<TileLeaf>(&listed, tile_leaves.len() + 1).iter().map(|t| t.leaf).collect();
+    same("tile leaves", &found, &cut(&tile_leaves, frame.tile_leaf_capacity))?;
+    let failed = if tile_leaves.len() as u32 > frame.tile_leaf_capacity { 64 } else { 0 };
+    let c = Counters { block_leaves: wanted, tile_leaves: tile_leaves.len() as u32, failed, ..Counters::default() };
+    same("counters", &gpu.read(&counters, 1), &[c])
+}
+
+#[test]
+fn parity() {
+    let gpu = Gpu::new();
+    let mut random = Random::new(17);
+    for (size, count) in [([333.0, 211.0], 300), ([16.0, 16.0], 3), ([700.0, 40.0], 1200)] {
+        let frame = Frame { size, ..Frame::default() };
+        let rects = random_rects(&mut random, twin::solid_rects::tile_count(&frame), count);
+        let frame = Frame { leaf_count: rects.len() as u32, ..frame };
+        let room = Frame { block_leaf_capacity: 1 << 20, tile_leaf_capacity: 1 << 20, ..frame };
+        compare(&gpu, &room, &rects, &rects).unwrap();
+        // too little room: what fits is there, the rest is told
+        let tight = Frame { block_leaf_capacity: 3, tile_leaf_capacity: 2, ..frame };
+        compare(&gpu, &tight, &rects, &rects).unwrap();
+        let mut other = rects.clone();
+        other[0] = twin::solid_rects::NOWHERE;
+        assert_eq!(compare(&gpu, &room, &other, &rects).unwrap_err().buffer, "block counts");
+    }
+    gpu.finish();
+}

@@ -1,0 +1,90 @@
+//! Pass `operand_mesh`: where rays cross the meshes around operands of Boolean solids.
+//!
+//! ```text
+//!   triangles ──raster, no depth test──▶ fragments of each pixel: counted, then stored where the prefix sum
+//!                                        says: shell, side, depth of the triangle's plane
+//! ```
+//!
+//! Reads: everything that `Bindings` names but what it writes. Writes: `counts`; the second time `counts`,
+//! which go down to 0 again, and `fragments`.
+
+use crate::gpu::{Binding, Buffer, Commands, Device, GpuError, GraphicsInfo, Pipeline};
+use crate::shaders;
+use ash::vk;
+use std::ops::Range;
+
+/// `constant_id` of `SOLIDS_HAVE_TORI`.
+const SOLIDS_HAVE_TORI: u32 = 5;
+/// `constant_id` of `FILLS`.
+const FILLS: u32 = 12;
+
+/// The pass, in its two steps.
+pub(crate) struct OperandMesh {
+    count: Pipeline,
+    fill: Pipeline,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub views: &'a Buffer,
+    pub meshes: &'a Buffer,
+    pub triangles: &'a Buffer,
+    pub positions: &'a Buffer,
+    pub leaf_surfaces: &'a Buffer,
+    pub surfaces: &'a Buffer,
+    /// Model axes, seen from the eye.
+    pub surface_centres: &'a Buffer,
+    pub counts: &'a Buffer,
+    pub starts: &'a Buffer,
+    pub fragments: &'a Buffer,
+}
+
+impl OperandMesh {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let pipeline = |name, fills: bool| {
+            Pipeline::graphics(
+                device,
+                &GraphicsInfo {
+                    name,
+                    stages: &[
+                        (vk::ShaderStageFlags::VERTEX, shaders::OPERAND_MESH_VERT),
+                        (vk::ShaderStageFlags::FRAGMENT, shaders::OPERAND_MESH_FRAG),
+                    ],
+                    bindings: &[Binding::Storage; 11],
+                    push_bytes: 0,
+                    // triangles are planes
+                    constants: &[(SOLIDS_HAVE_TORI, 0), (FILLS, u32::from(fills))],
+                    topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+                    patch_points: 0,
+                    cull: vk::CullModeFlags::NONE,
+                    front: vk::FrontFace::COUNTER_CLOCKWISE,
+                    colour: &[],
+                    depth: None,
+                },
+            )
+        };
+        Ok(Self { count: pipeline("operand mesh (count)", false)?, fill: pipeline("operand mesh (fill)", true)? })
+    }
+
+    /// Counts the fragments of each pixel of a picture of this size, or stores them (`fills`). `draws` has the
+    /// corners of each mesh, in order.
+    pub(crate) fn record(
+        &self,
+        cmd: &Commands<'_>,
+        b: &Bindings<'_>,
+        size: (u32, u32),
+        draws: &[Range<u32>],
+        fills: bool,
+    ) {
+        let placed = [b.frame, b.views, b.meshes, b.triangles, b.positions];
+        let solid = [b.leaf_surfaces, b.surfaces, b.surface_centres, b.counts, b.starts, b.fragments];
+        let resources: Vec<_> = placed.into_iter().chain(solid).map(Into::into).collect();
+        cmd.rendering(size, &[], None, || {
+            cmd.bind(if fills { &self.fill } else { &self.count }, &resources, &[]);
+            for (mesh, corners) in (0..).zip(draws) {
+                cmd.draw_instances(corners.clone(), mesh..mesh + 1);
+            }
+        });
+    }
+}

@@ -1,0 +1,139 @@
+//! Pass `operand_patch`: where rays cross the spline faces around operands of Boolean solids.
+//!
+//! ```text
+//!   sub-patches ──stages of pass `visibility`──▶ fragments of each pixel: counted, then stored where the
+//!                 ──trim test, Newton──▶         prefix sum says: shell, patch, (u, v), exact depth
+//! ```
+//!
+//! Reads: everything that `Bindings` names but what it writes. Writes: `counts`; the second time `counts`,
+//! which go down to 0 again, and `fragments`.
+
+use crate::abi::Counters;
+use crate::gpu::{Binding, Buffer, Commands, Device, GpuError, GraphicsInfo, Pipeline, Texels};
+use crate::shaders::{self, TrimTest};
+use ash::vk;
+use std::mem::offset_of;
+
+/// `constant_id` of `SCENE_HAS_RATIONAL`.
+const SCENE_HAS_RATIONAL: u32 = 0;
+/// `constant_id` of `TRIMMED`.
+const TRIMMED: u32 = 2;
+/// `constant_id` of `SCENE_HAS_OPERANDS`.
+const SCENE_HAS_OPERANDS: u32 = 10;
+/// `constant_id` of `DRAWS_OPERANDS`.
+const DRAWS_OPERANDS: u32 = 11;
+/// `constant_id` of `FILLS`.
+const FILLS: u32 = 12;
+
+/// The pass, in its two steps: a pipeline for each kind of patch that the scene has.
+pub(crate) struct OperandPatch {
+    count: Kinds,
+    fill: Kinds,
+}
+
+struct Kinds {
+    plain: Option<Pipeline>,
+    trimmed: Option<Pipeline>,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub views: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub patches: &'a Buffer,
+    pub items: &'a Buffer,
+    pub points: &'a Texels,
+    pub factors: &'a Buffer,
+    pub sub_patches: &'a Buffer,
+    pub instances: &'a Buffer,
+    pub counts: &'a Buffer,
+    pub starts: &'a Buffer,
+    pub fragments: &'a Buffer,
+    /// What the trim test reads, in its order.
+    pub trim: &'a [&'a Buffer],
+    pub draws: &'a Buffer,
+    pub counters: &'a Buffer,
+}
+
+impl OperandPatch {
+    /// `plain`: the scene has patches without a trim test; `trimmed`: how the others are trimmed, if there are any.
+    pub(crate) fn new(
+        device: &Device,
+        rational: bool,
+        plain: bool,
+        trimmed: Option<&TrimTest>,
+    ) -> Result<Self, GpuError> {
+        let pipeline = |fills: bool, trimmed: Option<&TrimTest>| {
+            let (fragment, kind) = trimmed.map_or((shaders::OPERAND_PATCH_FRAG, "plain"), |t| (t.operand_patch, t.way));
+            let constants = [
+                (SCENE_HAS_RATIONAL, u32::from(rational)),
+                (TRIMMED, u32::from(trimmed.is_some())),
+                (SCENE_HAS_OPERANDS, 1),
+                (DRAWS_OPERANDS, 1),
+                (FILLS, u32::from(fills)),
+            ];
+            let mut bindings = vec![Binding::Storage; 13 + trimmed.map_or(0, |test| test.buffers)];
+            bindings[6] = Binding::Texels;
+            Pipeline::graphics(
+                device,
+                &GraphicsInfo {
+                    name: &format!("operand patch ({kind}, {})", if fills { "fill" } else { "count" }),
+                    stages: &[
+                        (vk::ShaderStageFlags::VERTEX, shaders::VISIBILITY_VERT),
+                        (vk::ShaderStageFlags::TESSELLATION_CONTROL, shaders::VISIBILITY_TESC),
+                        (vk::ShaderStageFlags::TESSELLATION_EVALUATION, shaders::VISIBILITY_TESE),
+                        (vk::ShaderStageFlags::FRAGMENT, fragment),
+                    ],
+                    bindings: &bindings,
+                    push_bytes: 0,
+                    constants: &constants,
+                    topology: vk::PrimitiveTopology::PATCH_LIST,
+                    patch_points: 1,
+                    cull: vk::CullModeFlags::NONE,
+                    front: vk::FrontFace::COUNTER_CLOCKWISE,
+                    colour: &[],
+                    depth: None,
+                },
+            )
+        };
+        let kinds = |fills| {
+            Ok(Kinds {
+                plain: plain.then(|| pipeline(fills, None)).transpose()?,
+                trimmed: trimmed.map(|test| pipeline(fills, Some(test))).transpose()?,
+            })
+        };
+        Ok(Self { count: kinds(false)?, fill: kinds(true)? })
+    }
+
+    /// Counts the fragments of each pixel of a picture of this size, or stores them (`fills`). `draw_capacity`
+    /// draws of each kind lie in `draws`, plain first.
+    pub(crate) fn record(
+        &self,
+        cmd: &Commands<'_>,
+        b: &Bindings<'_>,
+        size: (u32, u32),
+        draw_capacity: u32,
+        fills: bool,
+    ) {
+        let bytes = u64::from(draw_capacity) * size_of::<vk::DrawIndirectCommand>() as u64;
+        let scene = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items];
+        let lists = [b.factors, b.sub_patches, b.instances, b.counts, b.starts, b.fragments];
+        let shared = || scene.into_iter().map(Into::into).chain([b.points.into()]).chain(lists.map(Into::into));
+        let step = if fills { &self.fill } else { &self.count };
+        cmd.rendering(size, &[], None, || {
+            if let Some(plain) = &step.plain {
+                cmd.bind(plain, &shared().collect::<Vec<_>>(), &[]);
+                let count = offset_of!(Counters, plain_draws) as u64;
+                cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
+            }
+            if let Some(trimmed) = &step.trimmed {
+                let resources: Vec<_> = shared().chain(b.trim.iter().map(|&buffer| buffer.into())).collect();
+                cmd.bind(trimmed, &resources, &[]);
+                let count = offset_of!(Counters, trimmed_draws) as u64;
+                cmd.draw_indirect_count(b.draws, bytes, b.counters, count, draw_capacity);
+            }
+        });
+    }
+}

@@ -1,0 +1,58 @@
+//! Pass `operand_sort`: the fragments of each pixel in order, entering and leaving in turn.
+//!
+//! ```text
+//!   E2 L1 E1 L2 e1 ──by shell, by depth──▶ E1 e1 L1 │ E2 L2 ──what follows in turn──▶ E1 L1 │ E2 L2
+//! ```
+//!
+//! Reads: everything that `Bindings` names but what it writes. Writes: `counts`, `fragments`, `counters`.
+//! Twin: `src/twin/operand_sort.rs`.
+
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::shaders;
+
+/// Threads of a workgroup, as in the shader.
+const GROUP: u32 = 64;
+
+/// The pass.
+pub(crate) struct OperandSort {
+    pipeline: Pipeline,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub leaves: &'a Buffer,
+    /// Model axes, seen from the eye.
+    pub leaf_centres: &'a Buffer,
+    /// A leaf of each shell.
+    pub shell_leaves: &'a Buffer,
+    pub starts: &'a Buffer,
+    pub counts: &'a Buffer,
+    pub fragments: &'a Buffer,
+    pub counters: &'a Buffer,
+}
+
+impl OperandSort {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let pipeline = Pipeline::compute(
+            device,
+            &ComputeInfo {
+                name: "operand sort",
+                spirv: shaders::OPERAND_SORT_COMP,
+                bindings: &[Binding::Storage; 8],
+                push_bytes: 0,
+                constants: &[],
+            },
+        )?;
+        Ok(Self { pipeline })
+    }
+
+    /// One thread a pixel of a picture of this size.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, (width, height): (u32, u32)) {
+        let solid = [b.frame, b.leaves, b.leaf_centres, b.shell_leaves];
+        let lists = [b.starts, b.counts, b.fragments, b.counters];
+        let resources: Vec<_> = solid.into_iter().chain(lists).map(Into::into).collect();
+        cmd.bind(&self.pipeline, &resources, &[]);
+        cmd.dispatch_grid([width.div_ceil(GROUP), height, 1]);
+    }
+}

@@ -1,0 +1,147 @@
+//! Twin of `glsl/operand_sort.comp`: the fragments of each pixel by shell and depth, entering and leaving in
+//! turn.
+//!
+//! ```text
+//!   mesh    E  E     L  L       how often the ray is within counts up and down; it is within where that is
+//!           E  ·     ·  L       not 0
+//!
+//!   faces   E  ·  L  L          the second L wants an entry: a ring's fragment E between the two, where the
+//!                 E? L          ray slips through a gap, else it is left out; but where it is left as often
+//!                               as entered, as for a mesh
+//! ```
+
+use crate::abi::{Counters, FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_RING, FRAGMENT_WITHIN, Fragment, Frame, Leaf};
+
+const FLAGS: u32 = FRAGMENT_LEAVES | FRAGMENT_RING | FRAGMENT_PATCH | FRAGMENT_WITHIN;
+const FAILED_FRAGMENTS: u32 = 128;
+
+/// Leaves, their centres seen from the eye, and a leaf of each shell.
+#[derive(Clone, Copy, Debug)]
+pub struct Shells<'a> {
+    /// All of the Blist.
+    pub leaves: &'a [Leaf],
+    /// Of their boxes.
+    pub centres: &'a [[f32; 3]],
+    /// Indices into `leaves`.
+    pub shell_leaves: &'a [u32],
+}
+
+/// Puts the fragments of each pixel in order, and returns how many it keeps of each, first of all. Pixel `n`
+/// has those from `starts[n]` to `starts[n + 1]`.
+pub fn operand_sort(
+    frame: &Frame,
+    shells: Shells<'_>,
+    starts: &[u32],
+    fragments: &mut [Fragment],
+    counters: &mut Counters,
+) -> Vec<u32> {
+    counters.fragments = starts[starts.len() - 1];
+    if counters.fragments > frame.fragment_capacity {
+        counters.failed |= FAILED_FRAGMENTS;
+    }
+    let pixel = |ends: &[u32]| {
+        let end = if ends[1] > frame.fragment_capacity { ends[0] } else { ends[1] };
+        let here = &mut fragments[ends[0] as usize..end as usize];
+        here.sort_by(|a, b| {
+            let depth = a.depth.partial_cmp(&b.depth).expect("depths are numbers");
+            let rest = (a.what, a.shell, a.uv).cmp(&(b.what, b.shell, b.uv));
+            shell_of(a).cmp(&shell_of(b)).then(depth).then(rest)
+        });
+        let mut kept = Vec::with_capacity(here.len());
+        for of_one in here.chunk_by(|a, b| shell_of(a) == shell_of(b)) {
+            let cuts = cuts(frame, shells, shell_of(&of_one[0]));
+            let real: Vec<Fragment> = of_one.iter().filter(|f| f.shell & FRAGMENT_RING == 0).copied().collect();
+            let sum: i32 = real.iter().map(|f| if leaves(f) { 1 } else { -1 }).sum();
+            let number = if cuts.0 { sum } else { 0 };
+            let before = kept.len();
+            let mended = counters.mended;
+            let patches = of_one[0].shell & FRAGMENT_PATCH != 0;
+            let mut closed = patches && in_turn(of_one, cuts.0, &mut kept, counters);
+            if !patches || (!closed && sum == number) {
+                // what was tried goes
+                kept.truncate(before);
+                counters.mended = mended;
+                closed = by_winding(&real, number, &mut kept);
+            }
+            counters.unpaired += u32::from(!closed && !cuts.1);
+        }
+        here[..kept.len()].copy_from_slice(&kept);
+        kept.len() as u32
+    };
+    starts.windows(2).map(pixel).collect()
+}
+
+fn shell_of(f: &Fragment) -> u32 {
+    f.shell & !FLAGS
+}
+
+fn leaves(f: &Fragment) -> bool {
+    f.shell & FRAGMENT_LEAVES != 0
+}
+
+/// Whether the near and the far plane cut the box around a shell.
+fn cuts(frame: &Frame, shells: Shells<'_>, shell: u32) -> (bool, bool) {
+    let leaf = shells.shell_leaves[shell as usize] as usize;
+    let dot = |a: [f32; 3], b: [f32; 3]| a[0] * b[0] + a[1] * b[1] + a[2] * b[2];
+    let middle = dot(frame.forward, shells.centres[leaf]);
+    let reach = dot(frame.forward.map(f32::abs), shells.leaves[leaf].half_size);
+    (middle - reach < frame.near, middle + reach > frame.far)
+}
+
+/// By how often the ray is within, from `number` on; returns whether that ends with 0.
+fn by_winding(all: &[Fragment], mut number: i32, kept: &mut Vec<Fragment>) -> bool {
+    let start = if number != 0 { FRAGMENT_WITHIN } else { 0 };
+    for group in all.chunk_by(|a, b| a.depth == b.depth) {
+        let before = number != 0;
+        let mut owner = group[0];
+        for f in group {
+            number += if leaves(f) { -1 } else { 1 };
+            if (number != 0) != before {
+                owner = *f;
+            }
+        }
+        if (number != 0) != before {
+            let side = if before { FRAGMENT_LEAVES } else { 0 };
+            let shell = owner.shell & !FRAGMENT_LEAVES | start | side;
+            kept.push(Fragment { shell, ..owner });
+        }
+    }
+    number == 0
+}
+
+/// Of faces; returns whether entering and leaving go in turn, mended where a gap is.
+fn in_turn(all: &[Fragment], cut: bool, kept: &mut Vec<Fragment>, counters: &mut Counters) -> bool {
+    let first = all.iter().find(|f| f.shell & FRAGMENT_RING == 0);
+    let mut within = cut && first.is_some_and(leaves);
+    let start = if within { FRAGMENT_WITHIN } else { 0 };
+    let mut rings: [Option<Fragment>; 2] = [None; 2]; // entering, leaving
+    let mut lost = false;
+    let mut mend = |ring: Fragment, kept: &mut Vec<Fragment>| {
+        kept.push(Fragment { shell: ring.shell & !FRAGMENT_RING | start, ..ring });
+        counters.mended += 1;
+    };
+    for f in all {
+        let kind = usize::from(leaves(f));
+        if f.shell & FRAGMENT_RING != 0 {
+            rings[kind].get_or_insert(*f);
+            continue;
+        }
+        if leaves(f) != within {
+            match rings[1 - kind] {
+                Some(ring) => mend(ring, kept),
+                None => {
+                    lost |= leaves(f);
+                    continue;
+                }
+            }
+        }
+        within = !leaves(f);
+        rings = [None; 2];
+        kept.push(Fragment { shell: f.shell | start, ..*f });
+    }
+    if let (true, Some(ring)) = (within, rings[1]) {
+        mend(ring, kept);
+        within = false;
+    }
+    !within && !lost
+}

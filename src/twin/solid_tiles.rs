@@ -1,0 +1,32 @@
+//! Twin of `glsl/solid_tiles.comp`: which leaves each tile may see, of those of its block.
+
+use crate::abi::{BLOCK, Frame, Rect};
+use crate::twin::solid_blocks::block_count;
+use crate::twin::solid_rects::tile_count;
+
+/// Whether a leaf's rectangle has a tile between `first` and `last`, both counted in.
+pub fn meets(rect: &Rect, first: [u32; 2], last: [u32; 2]) -> bool {
+    (0..2).all(|k| rect.first[k] <= last[k] && rect.last[k] >= first[k] && rect.first[k] <= rect.last[k])
+}
+
+/// `count` lists one after another, and where each begins.
+pub(super) fn lists_of(count: u32, list: impl Fn(u32) -> Vec<u32>) -> (Vec<u32>, Vec<u32>) {
+    let (mut starts, mut all) = (vec![0], Vec::new());
+    for n in 0..count {
+        all.extend(list(n));
+        starts.push(all.len() as u32);
+    }
+    (starts, all)
+}
+
+/// Where the list of each tile begins (and the last one ends), and all lists; those of the blocks are given.
+pub fn solid_tiles(frame: &Frame, rects: &[Rect], block_starts: &[u32], block_leaves: &[u32]) -> (Vec<u32>, Vec<u32>) {
+    let [across, down] = tile_count(frame);
+    let list = |n: u32| {
+        let tile = [n % across, n / across];
+        let block = (tile[1] / BLOCK * block_count(frame)[0] + tile[0] / BLOCK) as usize;
+        let here = &block_leaves[block_starts[block] as usize..block_starts[block + 1] as usize];
+        here.iter().copied().filter(|leaf| meets(&rects[*leaf as usize], tile, tile)).collect()
+    };
+    lists_of(across * down, list)
+}

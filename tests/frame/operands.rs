@@ -1,0 +1,122 @@
+//! Boolean solids with operands of meshes and spline parts, against the exact reference, every pixel.
+
+use crate::shapes::{self, operands, solids};
+use crate::solids::right_at;
+use crate::support::{assert_identical, assert_silent, perspective, render, watched};
+use glam::DVec3;
+use selvedge::model::{Camera, Model, Projection};
+use selvedge::reference::{JudgeOptions, Tracer, judge};
+
+/// The exact reference takes its time for meshes and splines.
+const SIZE: (u32, u32) = (96, 64);
+
+#[test]
+fn meshes() {
+    right_at(SIZE, operands::meshes(), false);
+}
+
+#[test]
+fn spline_parts() {
+    right_at(SIZE, operands::splines(), false);
+}
+
+/// Near a silhouette Newton's method may end on the other sheet of a squeezed torus, so that its fragments are
+/// out of order: no more than one pixel of the picture may show it.
+#[test]
+fn a_squeezed_torus_in_a_mesh() {
+    let model = operands::squeezed_torus();
+    let mut renderer = watched(&model);
+    let camera = perspective(&model, SIZE);
+    let j = judge(&Tracer::new(&model), &camera, &render(&mut renderer, &camera), &JudgeOptions::default());
+    assert!(j.wrong <= 1, "{} wrong, {:?}", j.wrong, j.mismatches);
+    assert_silent(renderer);
+}
+
+#[test]
+fn unclean_meshes() {
+    right_at(SIZE, operands::unclean(), false);
+}
+
+/// What is not closed is told of, and the rest of the picture stands.
+#[test]
+fn open_meshes_are_counted() {
+    let open = operands::open_mesh();
+    let whole = solids::solid("A", vec![operands::mesh(shapes::ball_mesh(2))]);
+    let mut renderer = watched(&open);
+    let camera = Camera { eye: DVec3::new(0.0, -9.0, 0.1), ..perspective(&open, SIZE) };
+    let counted = render(&mut renderer, &camera).stats;
+    assert!(counted.unpaired > 0 && counted.clamps == 0, "{counted:?}");
+    renderer.upload(&whole).unwrap();
+    let closed = render(&mut renderer, &perspective(&whole, SIZE)).stats;
+    assert_eq!((closed.unpaired, closed.mended, closed.fragments > 0), (0, 0, true));
+    assert_silent(renderer);
+}
+
+/// The eye within operands, the near plane through them, the far plane before their ends.
+#[test]
+fn the_camera_stands_within_operands() {
+    let rock = || operands::mesh(shapes::torus_mesh(24));
+    let cases = vec![
+        solids::solid("A-B", vec![solids::ball(6.0, 0.0), rock()]),
+        solids::solid("AB", vec![operands::part(shapes::sphere()), solids::block([-1.0; 3], [1.0, 1.0, 0.4])]),
+        solids::solid("A-B", vec![operands::part(shapes::sphere()), operands::part(shapes::cube())]),
+    ];
+    let mut renderer = watched(&Model::default());
+    let mut wrong = Vec::new();
+    for (k, model) in cases.iter().enumerate() {
+        renderer.upload(model).unwrap();
+        let tracer = Tracer::new(model);
+        for (eye, near, far) in [(DVec3::new(3.0, 0.1, 0.2), 0.01, 30.0), (DVec3::new(-5.0, -7.0, 1.0), 6.0, 9.5)] {
+            let (up, projection) = (DVec3::Z, Projection::Perspective { fov_y: 1.0 });
+            let camera = Camera { eye, target: DVec3::ZERO, up, projection, depth_range: (near, far), size: SIZE };
+            let picture = render(&mut renderer, &camera);
+            let j = judge(&tracer, &camera, &picture, &JudgeOptions::default());
+            let fault = j.wrong != 0 || picture.stats.clamps != 0;
+            wrong.extend(fault.then(|| format!("{k} from {eye}: {} wrong, {:?}", j.wrong, j.mismatches.first())));
+        }
+    }
+    assert_silent(renderer);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// More than 255 layers of one mesh behind a pixel; all of them are taken from a block, and then repeat.
+#[test]
+fn deep_meshes_repeat() {
+    let model = solids::solid("A-B", vec![solids::block([-0.1; 3], [1.1; 3]), operands::mesh(operands::comb(150))]);
+    let mut camera = perspective(&model, SIZE);
+    camera.eye = DVec3::new(9.0, 0.5, 0.6);
+    let mut renderer = watched(&model);
+    let picture = render(&mut renderer, &camera);
+    let tracer = Tracer::new(&model);
+    let j = judge(&tracer, &camera, &picture, &JudgeOptions::default());
+    assert_eq!((j.wrong, picture.stats.clamps, picture.stats.unpaired), (0, 0, 0), "{:?}", j.mismatches.first());
+    // 300 walls behind each of a hundred pixels at least
+    assert!(picture.stats.fragments > 300 * 100, "{}", picture.stats.fragments);
+    assert_identical(&picture, &render(&mut renderer, &camera), "again");
+    assert_silent(renderer);
+}
+
+/// Expressions that are equal show the same faces at the same depths, bit for bit.
+#[test]
+fn equal_expressions_are_equal_pictures() {
+    let one = |text: &str| {
+        let rock = operands::mesh(shapes::torus_mesh(20));
+        let mut model = solids::solid(text, vec![rock, operands::part(shapes::sphere()), solids::ball(1.3, 3.0)]);
+        let solid = &model.solids[0];
+        let same = solid.primitives().iter().map(|p| selvedge::model::Primitive { id: 1, ..p.clone() }).collect();
+        model.solids = vec![selvedge::model::Solid::new(same, solid.tree().clone()).unwrap()];
+        model
+    };
+    let first = one("A-(B+C)");
+    let camera = perspective(&first, SIZE);
+    let mut renderer = watched(&first);
+    let picture = render(&mut renderer, &camera);
+    assert!(picture.face.iter().any(|id| *id == 1));
+    for text in ["(A-B)-C", "(A-C)-B", "A!B!C", "!(!A+(C+B))", "A-(A-(A-(B+C)))"] {
+        renderer.upload(&one(text)).unwrap();
+        let drawn = render(&mut renderer, &camera);
+        let differ = drawn.depth.iter().zip(&picture.depth).filter(|(a, b)| a.to_bits() != b.to_bits()).count();
+        assert_eq!((differ, drawn.face == picture.face), (0, true), "{text}");
+    }
+    assert_silent(renderer);
+}
