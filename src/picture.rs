@@ -31,6 +31,16 @@ impl Default for FrameSettings {
     }
 }
 
+impl Levels {
+    /// The level where it is fixed, within what the hardware has.
+    pub(crate) fn fixed(self) -> Option<u32> {
+        match self {
+            Self::Bound => None,
+            Self::Fixed(level) => Some(level.clamp(1, 64)),
+        }
+    }
+}
+
 /// How pixels on trimmed patches are told from those that the loops cut away. All ways draw the same
 /// picture within [`FrameSettings::tolerance_px`]; see `ARCHITECTURE.md` for what each costs.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]

@@ -8,9 +8,9 @@
 //!                                      report(slot) ─▶ complete? times, counts, bytes
 //! ```
 //!
-//! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the
-//! GPU can tell (the trim table, the list of sub-patches) may be too small for a new view: the report
-//! of that frame says `complete: false`, and the next `record` into its slot makes them larger.
+//! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the GPU can tell (the trim
+//! table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete: false`, and
+//! the next `record` into its slot makes them larger. A view from very near is resolved by what [`CloseUp`] cuts for it.
 
 mod edit;
 
@@ -26,7 +26,7 @@ use crate::gpu::{
 };
 use crate::model::{Camera, CameraError, Model, Projection};
 use crate::passes::resolve;
-use crate::picture::{FrameSettings, FrameStats, Levels, PassTime, PoolBytes, SceneSettings};
+use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, SceneSettings};
 pub use crate::scene::{CloseUp, EditError, UndrawnSolid};
 use crate::scene::{Scene, SceneData, SolidData, Write, focal_and_slant, view};
 use ash::vk;
@@ -36,10 +36,9 @@ use ash::vk;
 pub struct TargetFormats {
     /// Colour target; an sRGB format encodes by itself, for others the renderer encodes.
     pub colour: vk::Format,
-    /// Depth target, if the host wants the model's depth among its own. Reversed: at distance `z` along
-    /// the view axis `near (far - z) / (z (far - near))` in a perspective view and
-    /// `(far - z) / (far - near)` in a parallel one; 1 at the near plane, 0 at the far one. Tested with
-    /// `GREATER_OR_EQUAL`, and written.
+    /// Depth target, if the host wants the model's depth among its own. Reversed: at distance `z` along the view axis
+    /// `near (far - z) / (z (far - near))` in a perspective view and `(far - z) / (far - near)` in a parallel one; 1 at
+    /// the near plane, 0 at the far one. Tested with `GREATER_OR_EQUAL`, and written.
     pub depth: Option<vk::Format>,
     /// Four more colour targets follow: [`Renderer::AOV_FORMATS`].
     pub aovs: bool,
@@ -68,8 +67,7 @@ pub struct FrameInput<'a> {
     pub camera: &'a Camera,
     /// Tolerance and background.
     pub settings: FrameSettings,
-    /// Frame slot, below the number given to [`Renderer::new`]. The frame recorded into it before
-    /// has finished on the GPU.
+    /// Frame slot, below the number given to [`Renderer::new`]; the frame before in it has finished on the GPU.
     pub slot: usize,
     /// Where the picture goes.
     pub targets: Targets<'a>,
@@ -474,10 +472,7 @@ fn constants(device: &Device, loaded: &Loaded, input: &FrameInput<'_>, formats: 
         ring_px: budget.ring as f32,
         row_px: budget.row as f32,
         chord_px: budget.chord as f32,
-        fixed_factor: match input.settings.levels {
-            Levels::Bound => 0,
-            Levels::Fixed(level) => level.clamp(1, 64),
-        },
+        fixed_factor: input.settings.levels.fixed().unwrap_or(0),
         item_count: counts.items,
         cell_count: counts.cells,
         strip_count: counts.strips,
