@@ -179,6 +179,8 @@ pub(crate) struct TrimBuffers {
     pub row_starts: Buffer,
     pub row_total: Buffer,
     pub intercepts: Buffer,
+    /// How near the nearest ring comes, a word a pixel.
+    pub rings: Buffer,
     pub doubts: Buffer,
 }
 
@@ -212,6 +214,8 @@ impl Buffers {
             Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })
         };
         let drawn_and_read = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE;
+        let sampled = if counts.trimmed { vk::ImageUsageFlags::SAMPLED } else { vk::ImageUsageFlags::empty() };
+        let depth_usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | sampled;
         let n = counts.items;
         let across = |side: u32| (size.0.div_ceil(side) * size.1.div_ceil(side)) * u32::from(counts.leaves > 0);
         let (tiles, blocks) = (across(TILE), across(TILE * BLOCK));
@@ -245,6 +249,12 @@ impl Buffers {
                         row_starts: words("trim row starts", capacities.rows)?,
                         row_total: words("trim row total", 1)?,
                         intercepts: words("trim intercepts", capacities.intercepts)?,
+                        rings: Buffer::storage(
+                            device,
+                            Pool::Transient,
+                            "trim rings",
+                            4 * u64::from(size.0) * u64::from(size.1),
+                        )?,
                         doubts: words("trim doubts", capacities.doubts)?,
                     })
                 })
@@ -269,7 +279,7 @@ impl Buffers {
             others: (counts.trimmed && (counts.mesh_instances > 0 || counts.leaves > 0))
                 .then(|| image("visibility of others", VISIBILITY_FORMAT, drawn_and_read))
                 .transpose()?,
-            depth: image("visibility depth", DEPTH_FORMAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?,
+            depth: image("visibility depth", DEPTH_FORMAT, depth_usage)?,
         })
     }
 }

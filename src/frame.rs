@@ -157,6 +157,7 @@ impl Frame<'_> {
             cmd.fill(&t.strip_heights, 0);
             cmd.fill(&t.face_speeds, 0);
             cmd.fill(&t.row_counts, 0);
+            cmd.fill(&t.rings, 0);
         }
         let r = reset::Bindings { frame: self.constants, draws: &b.draws, counters: &b.counters };
         self.passes.reset.record(cmd, &r, 2 * b.capacities.draws);
@@ -363,7 +364,7 @@ impl Frame<'_> {
         let others = b.others.iter().map(|image| (image, read, Access::COLOUR_WRITE));
         let fixed = [
             (&b.visibility, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE),
-            (&b.depth, Access::DEPTH_WRITE.discarded(), Access::DEPTH_WRITE),
+            (&b.depth, Access::DEPTH_WRITE.discarded() | Access::COMPUTE_READ.discarded(), Access::DEPTH_WRITE),
         ];
         barrier::images(cmd, &fixed.into_iter().chain(others).collect::<Vec<_>>());
     }
@@ -389,6 +390,9 @@ impl Frame<'_> {
     fn visibility(&self, cmd: &Commands<'_>) {
         let (s, b) = (self.scene, self.buffers);
         barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE, Access::INDIRECT_READ)]);
+        if let Some(t) = &b.trim {
+            barrier::buffers(cmd, &[(&t.rings, Access::TRANSFER_WRITE, Access::FRAGMENT_WRITE)]);
+        }
         let bindings = visibility::Bindings {
             frame: self.constants,
             views: self.views,
@@ -405,6 +409,7 @@ impl Frame<'_> {
                 row_starts: &t.row_starts,
                 row_counts: &t.row_counts,
                 flips: &t.intercepts,
+                rings: &t.rings,
             }),
             draws: &b.draws,
             counters: &b.counters,
@@ -420,20 +425,29 @@ impl Frame<'_> {
     fn heal(&self, cmd: &Commands<'_>, p: &TrimPasses, t: &TrimBuffers) {
         let (s, b) = (self.scene, self.buffers);
         let (w, r) = WRITE_TO_READ;
-        barrier::images(cmd, &[(&b.visibility, Access::COLOUR_WRITE, Access::COMPUTE_READ)]);
+        barrier::images(cmd, &[(&b.visibility, Access::COLOUR_WRITE, w), (&b.depth, Access::DEPTH_WRITE, r)]);
         if let Some(others) = &b.others {
             barrier::images(cmd, &[(others, Access::COLOUR_WRITE, Access::COMPUTE_READ | Access::FRAGMENT_READ)]);
         }
-        barrier::buffers(cmd, &[(&b.counters, Access::INDIRECT_READ, w), (&t.dispatches, Access::INDIRECT_READ, w)]);
+        barrier::buffers(
+            cmd,
+            &[
+                (&t.rings, Access::FRAGMENT_WRITE, r),
+                (&b.counters, Access::INDIRECT_READ, w),
+                (&t.dispatches, Access::INDIRECT_READ, w),
+            ],
+        );
         let doubts = heal::DoubtBindings {
             frame: self.constants,
             visibility: &b.visibility,
             doubts: &t.doubts,
             dispatches: &t.dispatches,
             counters: &b.counters,
+            depth: &b.depth,
+            rings: &t.rings,
         };
         p.heal.find(cmd, &doubts);
-        barrier::images(cmd, &[(&b.visibility, r, w)]);
+        barrier::images(cmd, &[(&b.visibility, w, w)]);
         barrier::buffers(cmd, &[(&t.doubts, w, r), (&b.counters, w, r), (&t.dispatches, w, Access::INDIRECT_READ)]);
         let heal = heal::Bindings {
             frame: self.constants,

@@ -68,6 +68,8 @@ pub struct FrameStats {
     pub trim_rows: u64,
     /// u-intercepts stored in the trim table.
     pub trim_intercepts: u64,
+    /// Pixels near borders of trimmed faces at which more than one face was asked who is seen.
+    pub doubtful_pixels: u64,
     /// Patches whose tessellation factor would have exceeded the largest split: the promise is not
     /// kept there. 0 in a good frame.
     pub clamps: u64,

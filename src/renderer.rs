@@ -299,6 +299,7 @@ impl Renderer {
             sub_patches: u64::from(c.plain) + u64::from(c.trimmed),
             trim_rows: u64::from(c.rows),
             trim_intercepts: u64::from(c.intercepts),
+            doubtful_pixels: u64::from(c.doubts),
             clamps: u64::from(c.clamps),
             retries: 0,
             pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),

@@ -3,11 +3,11 @@
 //! ```text
 //!   sub-patch ──tesc──▶ levels ──tese──▶ exact surface at the vertices ──▶ triangles
 //!        plain    frag  ──────────────────────────────▶ item, (u, v)   depth
-//!        trimmed  frag  row of the trim table, search ▶ item, (u, v)   depth, pushed back in a ring
+//!        trimmed  frag  row of the trim table, search ▶ item, (u, v)   depth, rings apart
 //! ```
 //!
 //! Reads: everything that `Bindings` names but the images. Writes: the visibility image and depth
-//! (reversed: 1 at the near plane), which begin cleared or with what is no patch.
+//! (reversed: 1 at the near plane), which begin cleared or with what is no patch; `rings`, cleared before.
 
 use crate::abi::Counters;
 use crate::gpu::{
@@ -59,12 +59,13 @@ pub(crate) struct Bindings<'a> {
     pub counters: &'a Buffer,
 }
 
-/// The trim table.
+/// The trim table, and where rings are found.
 pub(crate) struct Table<'a> {
     pub line_starts: &'a Buffer,
     pub row_starts: &'a Buffer,
     pub row_counts: &'a Buffer,
     pub flips: &'a Buffer,
+    pub rings: &'a Buffer,
 }
 
 impl Visibility {
@@ -120,7 +121,7 @@ impl Visibility {
                 cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
             }
             if let (Some(trimmed), Some(t)) = (&self.trimmed, &b.table) {
-                let table = [t.line_starts, t.row_starts, t.row_counts, t.flips].map(Into::into);
+                let table = [t.line_starts, t.row_starts, t.row_counts, t.flips, t.rings].map(Into::into);
                 let resources: Vec<_> = shared().chain(table).collect();
                 cmd.bind(trimmed, &resources, &[]);
                 let count = offset_of!(Counters, trimmed_draws) as u64;
@@ -132,7 +133,7 @@ impl Visibility {
 
 /// Bindings of the plain or of the trimmed pipeline.
 fn bindings(trimmed: bool) -> Vec<Binding> {
-    let mut bindings = vec![Binding::Storage; if trimmed { 14 } else { 10 }];
+    let mut bindings = vec![Binding::Storage; if trimmed { 15 } else { 10 }];
     bindings[6] = Binding::Texels;
     bindings
 }

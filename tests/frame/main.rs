@@ -8,6 +8,7 @@ mod accuracy;
 mod distance;
 mod errors;
 mod every_shape;
+mod ledges;
 mod meshes;
 mod objects;
 mod room;
