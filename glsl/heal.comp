@@ -123,8 +123,11 @@ Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec
         if (side_of(there.shape) == SIDE_OUTSIDE) break; // it has no control points
         Patch here = patches[face.first_patch + uint(n)];
         vec2 from = (here.domain.xy + s.uv * here.domain.zw - there.domain.xy) / there.domain.zw;
+        Sample t = refine(there, view, clamp(from, 0.0, 1.0), pixel);
+        // beside a silhouette it may not come as near: then the first patch's continuation is better
+        if (length(t.miss) > max(length(s.miss), ON_PIXEL_PX)) break;
         item = fi.first_item + uint(next.y * count.x + next.x);
-        s = refine(there, view, clamp(from, 0.0, 1.0), pixel);
+        s = t;
     }
     return s;
 }
