@@ -54,16 +54,17 @@ fn make_artefacts(root: &Path, artefacts: &Path) {
     copy_files(&root.join("glsl/spirv"), artefacts);
 }
 
-/// `shaders.rs`: `scan_add.comp.spv` becomes `SCAN_ADD_COMP`.
+/// `shaders.rs`: `scan_add.comp.spv` becomes `SCAN_ADD_COMP`. Those of `glsl/rivals` are there with their feature only.
 fn list_shaders(artefacts: &Path) -> String {
     let mut text = String::new();
     for path in files(artefacts).iter().filter(|path| path.extension().is_some_and(|e| e == "spv")) {
         let entry_point = path.file_stem().expect("it has an extension").to_string_lossy();
         let name = entry_point.replace('.', "_").to_uppercase();
         let bytes = fs::metadata(path).map_or_else(|e| panic!("{}: {e}", path.display()), |m| m.len());
+        let only = if entry_point.starts_with("rival_") { "#[cfg(feature = \"rivals\")]\n" } else { "" };
         writeln!(
             text,
-            "/// `glsl/{entry_point}`\npub static {name}: &[u32] = &words::<{}>(include_bytes!({path:?}));",
+            "/// `glsl/{entry_point}`\n{only}pub static {name}: &[u32] = &words::<{}>(include_bytes!({path:?}));",
             bytes / 4
         )
         .expect("writing to a string");

@@ -12,7 +12,7 @@ pub fn all(root: &Path, artefacts: &Path) -> Result<(), String> {
     let shipped = options(&glsl, shaderc::OptimizationLevel::Performance)?;
     let mut layouts = reflect::Layouts::new(&root.join("src/abi"))?;
     let mut errors = Vec::new();
-    for path in files(&glsl) {
+    for path in files(&glsl).into_iter().chain(files(&glsl.join("rivals"))) {
         let kind = match path.extension().and_then(|extension| extension.to_str()) {
             Some("comp") => shaderc::ShaderKind::Compute,
             Some("vert") => shaderc::ShaderKind::Vertex,

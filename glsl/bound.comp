@@ -26,10 +26,13 @@ void main() {
     Patch patch_ = patches[faces[fi.face].first_patch + item - fi.first_item];
     taus[item] = 0u;
     if (side_of(patch_.shape) == SIDE_OUTSIDE) return;
-    float w = visible_w(views[fi.instance], frame, patch_.box_min, patch_.box_max, frame.ring_px + 1.0);
-    if (w < 0.0) return;
-    float pixels = pixels_per_unit(frame, instances[fi.instance], w);
+    Seen seen = see(views[fi.instance], frame, patch_.box_min, patch_.box_max, frame.ring_px + 1.0);
+    if (seen.w < 0.0) return;
+    // a ring may reach farther than the box
+    if (side_of(patch_.shape) == SIDE_INSIDE && !covers_a_centre(seen, frame.deviation_px)) return;
+    float pixels = pixels_per_unit(frame, instances[fi.instance], seen);
     vec2 tau = factors(patch_.bend, 8.0 * frame.deviation_px / pixels);
+    if (frame.fixed_factor != 0u) tau = vec2(frame.fixed_factor);
     if (max(tau.x, tau.y) > float(MAX_FACTOR * MAX_SPLIT)) atomicAdd(counters.clamps, 1u);
     uvec2 t = uvec2(min(tau, vec2(MAX_FACTOR * MAX_SPLIT)));
     taus[item] = t.x | t.y << 16;

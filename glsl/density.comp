@@ -28,9 +28,10 @@ void main() {
     FaceInstance fi = face_instances[placed];
     Face face = faces[fi.face];
     Cell cell = cells[face.first_cell + item - fi.first_cell];
-    float w = visible_w(views[fi.instance], frame, cell.box_min, cell.box_max, frame.ring_px + 1.0);
-    if (w < 0.0) return;
-    float pixels = pixels_per_unit(frame, instances[fi.instance], w);
+    if (cell.speed_v < 0.0) return; // no loop meets its patch
+    Seen seen = see(views[fi.instance], frame, cell.box_min, cell.box_max, frame.ring_px + 1.0);
+    if (seen.w < 0.0) return;
+    float pixels = pixels_per_unit(frame, instances[fi.instance], seen);
     // positive floats order like their bits
     float height = cell.speed_v * pixels / float(face.strip_count);
     atomicMax(strip_heights[fi.first_strip + cell.strip], floatBitsToUint(max(height, 1e-6)));

@@ -10,7 +10,7 @@ layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(binding = 1, rg32ui) uniform uimage2D visibility;
 layout(scalar, binding = 2) writeonly buffer Doubts { uint doubts[]; }; // column | row << 16 | RINGED
-layout(scalar, binding = 3) buffer Dispatches { uvec3 dispatches[]; }; // the last is pass heal's
+layout(scalar, binding = 3) buffer Dispatch { uvec3 dispatch; }; // of the second step; zero before
 layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
 layout(binding = 5) uniform sampler2D depth; // reversed
 layout(scalar, binding = 6) readonly buffer Rings { uint rings[]; };
@@ -34,5 +34,7 @@ void main() {
         return;
     }
     doubts[at] = pixel.x | pixel.y << 16 | ringed;
-    atomicMax(dispatches[3].x, at / GROUP + 1u);
+    atomicMax(dispatch.x, at / GROUP + 1u);
+    atomicMax(dispatch.y, 1u);
+    atomicMax(dispatch.z, 1u);
 }

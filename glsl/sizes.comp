@@ -9,7 +9,7 @@ layout(local_size_x = 1) in;
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer LineStarts { uint line_starts[]; };
 layout(scalar, binding = 2) readonly buffer SegmentStarts { uint segment_starts[]; };
-layout(scalar, binding = 3) writeonly buffer Dispatches { uvec3 dispatches[]; }; // cross, sort, scan of the rows, heal
+layout(scalar, binding = 3) writeonly buffer Dispatches { uvec3 dispatches[]; }; // cross, sort, scan of the rows
 layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
 
 const uint GROUP = 128u;        // threads of a workgroup in passes cross and sort
@@ -31,5 +31,4 @@ void main() {
     dispatches[0] = uvec3((segments + GROUP - 1u) / GROUP, 1u, 1u);
     dispatches[1] = uvec3((rows + GROUP - 1u) / GROUP, 1u, 1u);
     dispatches[2] = uvec3((rows + SCAN_BLOCK - 1u) / SCAN_BLOCK, 1u, 1u);
-    dispatches[3] = uvec3(0u, 1u, 1u); // pass doubts counts
 }

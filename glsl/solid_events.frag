@@ -42,9 +42,6 @@ const uint SEARCH = 0u; // the next event
 const uint OWNER = 1u;  // does leaf `asked`, taken for what it is not, change the solid before or behind t?
 const uint SIDE = 2u;   // which side of leaf `asked` ends at t?
 
-// Of an empty span nothing ends.
-bool ends_at(Span s, float t) { return s.lo < s.hi && (s.lo == t || s.hi == t || s.g0 == t || s.g1 == t); }
-
 // The leaves whose spans begin or end at depth t: the first positive one, the first subtracted one.
 struct Candidates {
     uint positive;

@@ -2,7 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `visibility`, patches without a trim test: who is seen, and where on its patch. A face of a
-// solid that is seen from behind is doubtful, as in visibility_trimmed.frag.
+// solid that is seen from behind is doubtful, as in visibility_trimmed.glsl.
 #include "scene.glsl"
 #include "facing.glsl"
 #include "visible.glsl"

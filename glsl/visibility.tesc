@@ -39,7 +39,7 @@ bool seen(Patch patch_, View view, vec2 lo, vec2 hi) {
                  patch_.bend.z * size.y * size.y) / 8.0;
     vec3 low = min(min(a, b), min(c, d)) - off;
     vec3 high = max(max(a, b), max(c, d)) + off;
-    return visible_w(view, frame, low, high, frame.ring_px + 1.0) >= 0.0;
+    return see(view, frame, low, high, frame.ring_px + 1.0).w >= 0.0;
 }
 
 void main() {

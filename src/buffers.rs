@@ -12,6 +12,9 @@ use crate::abi::{BLOCK, Counters, Factors, Rect, SubPatch, TILE, TileLeaf};
 use crate::gpu::{Buffer, Device, GpuError, Image, ImageInfo, Pool};
 use crate::passes::scan;
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
+#[cfg(feature = "rivals")]
+use crate::picture::Rival;
+use crate::picture::TrimWay;
 use crate::scene::SceneData;
 use ash::vk;
 
@@ -27,7 +30,8 @@ pub(crate) struct Counts {
     pub leaves: u32,
     pub triangles: u32,
     pub mesh_instances: u32,
-    pub trimmed: bool,
+    /// How faces are trimmed, where some are.
+    pub trim: Option<TrimWay>,
 }
 
 impl Counts {
@@ -42,7 +46,7 @@ impl Counts {
             leaves: data.solids.leaves.len() as u32,
             triangles: count(data.meshes.triangles.len().max(data.meshes.positions.len() / 3)),
             mesh_instances: count(data.meshes.instances.len()),
-            trimmed: data.has_trimmed,
+            trim: data.trim_way(),
         }
     }
 
@@ -105,12 +109,14 @@ const FAILED_DRAWS: u32 = 2;
 impl Capacities {
     /// A first guess that fits most scenes in full view.
     pub(crate) fn first(counts: Counts) -> Self {
-        let trimmed = u32::from(counts.trimmed);
+        let trimmed = u32::from(counts.trim.is_some());
+        let table = u32::from(counts.trim == Some(TrimWay::Table));
+        let counted = table.max(u32::from(counts.trim.is_some_and(is_texture)));
         Self {
             sub_patches: counts.items.saturating_add(256),
             draws: 64,
-            rows: trimmed * (1 << 16).max(2 * counts.strips).min(MOST_ROWS),
-            intercepts: trimmed * (1 << 18).max(4 * counts.strips),
+            rows: table * (1 << 16).max(2 * counts.strips).min(MOST_ROWS),
+            intercepts: counted * (1 << 18).max(4 * counts.strips),
             doubts: trimmed * (1 << 14),
             block_leaves: counts.leaves.saturating_mul(4),
             tile_leaves: if counts.leaves > 0 { counts.leaves.saturating_mul(16).max(1 << 14) } else { 0 },
@@ -166,8 +172,49 @@ pub(crate) struct Buffers {
     pub depth: Image,
 }
 
-/// The trim table and what leads to it.
+/// What trimmed patches need, whatever the way to trim.
 pub(crate) struct TrimBuffers {
+    /// How near the nearest ring comes, a word a pixel.
+    pub rings: Buffer,
+    pub doubts: Buffer,
+    pub heal_dispatch: Buffer,
+    /// `None` where another way trims.
+    pub table: Option<TableBuffers>,
+    #[cfg(feature = "rivals")]
+    pub texture: Option<TextureBuffers>,
+}
+
+/// Trim textures and what leads to them.
+#[cfg(feature = "rivals")]
+pub(crate) struct TextureBuffers {
+    pub strip_heights: Buffer,
+    pub face_speeds: Buffer,
+    pub words: Buffer,
+    pub starts: Buffer,
+    pub places: Buffer,
+    /// As large as the capacity of intercepts.
+    pub texels: Buffer,
+}
+
+#[cfg(feature = "rivals")]
+impl TextureBuffers {
+    /// Zero when the frame begins.
+    pub(crate) fn cleared(&self) -> [&Buffer; 3] {
+        [&self.strip_heights, &self.face_speeds, &self.texels]
+    }
+}
+
+/// The way draws textures.
+fn is_texture(way: TrimWay) -> bool {
+    match way {
+        TrimWay::Table | TrimWay::Exact => false,
+        #[cfg(feature = "rivals")]
+        TrimWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
+    }
+}
+
+/// The trim table and what leads to it.
+pub(crate) struct TableBuffers {
     pub strip_heights: Buffer,
     pub face_speeds: Buffer,
     pub line_counts: Buffer,
@@ -179,9 +226,13 @@ pub(crate) struct TrimBuffers {
     pub row_starts: Buffer,
     pub row_total: Buffer,
     pub intercepts: Buffer,
-    /// How near the nearest ring comes, a word a pixel.
-    pub rings: Buffer,
-    pub doubts: Buffer,
+}
+
+impl TableBuffers {
+    /// Zero when the frame begins.
+    pub(crate) fn cleared(&self) -> [&Buffer; 3] {
+        [&self.strip_heights, &self.face_speeds, &self.row_counts]
+    }
 }
 
 /// Which leaves of Boolean solids each part of the picture sees.
@@ -214,13 +265,40 @@ impl Buffers {
             Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })
         };
         let drawn_and_read = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE;
-        let sampled = if counts.trimmed { vk::ImageUsageFlags::SAMPLED } else { vk::ImageUsageFlags::empty() };
+        let sampled = if counts.trim.is_some() { vk::ImageUsageFlags::SAMPLED } else { vk::ImageUsageFlags::empty() };
         let depth_usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | sampled;
         let n = counts.items;
         let across = |side: u32| (size.0.div_ceil(side) * size.1.div_ceil(side)) * u32::from(counts.leaves > 0);
         let (tiles, blocks) = (across(TILE), across(TILE * BLOCK));
-        let scanned = (2 * n).max(counts.strips).max(counts.curves).max(capacities.rows).max(tiles);
+        let scanned =
+            (2 * n).max(counts.strips).max(counts.curves).max(capacities.rows).max(tiles).max(counts.face_instances);
         let draw_bytes = 2 * u64::from(capacities.draws) * size_of::<vk::DrawIndirectCommand>() as u64;
+        let table = || {
+            Ok::<_, GpuError>(TableBuffers {
+                strip_heights: words("trim strip heights", counts.strips)?,
+                face_speeds: words("trim face speeds", 2 * counts.face_instances)?,
+                line_counts: words("trim line counts", counts.strips)?,
+                line_starts: words("trim line starts", counts.strips + 1)?,
+                segment_counts: words("trim segment counts", counts.curves)?,
+                segment_starts: words("trim segment starts", counts.curves + 1)?,
+                dispatches: indirect("trim dispatches", 3 * size_of::<[u32; 3]>() as u64)?,
+                row_counts: words("trim row counts", capacities.rows)?,
+                row_starts: words("trim row starts", capacities.rows)?,
+                row_total: words("trim row total", 1)?,
+                intercepts: words("trim intercepts", capacities.intercepts)?,
+            })
+        };
+        #[cfg(feature = "rivals")]
+        let texture = || {
+            Ok::<_, GpuError>(TextureBuffers {
+                strip_heights: words("trim strip heights", counts.strips)?,
+                face_speeds: words("trim face speeds", 2 * counts.face_instances)?,
+                words: words("trim texture sizes", counts.face_instances)?,
+                starts: words("trim texture starts", counts.face_instances + 1)?,
+                places: structs("trim texture places", counts.strips, size_of::<[u32; 4]>())?,
+                texels: words("trim texels", capacities.intercepts)?,
+            })
+        };
         Ok(Self {
             counts,
             capacities,
@@ -235,27 +313,15 @@ impl Buffers {
             draws: indirect("draws", draw_bytes)?,
             counters: indirect("counters", size_of::<Counters>() as u64)?,
             trim: counts
-                .trimmed
-                .then(|| {
+                .trim
+                .map(|way| {
                     Ok(TrimBuffers {
-                        strip_heights: words("trim strip heights", counts.strips)?,
-                        face_speeds: words("trim face speeds", 2 * counts.face_instances)?,
-                        line_counts: words("trim line counts", counts.strips)?,
-                        line_starts: words("trim line starts", counts.strips + 1)?,
-                        segment_counts: words("trim segment counts", counts.curves)?,
-                        segment_starts: words("trim segment starts", counts.curves + 1)?,
-                        dispatches: indirect("trim dispatches", 4 * size_of::<[u32; 3]>() as u64)?,
-                        row_counts: words("trim row counts", capacities.rows)?,
-                        row_starts: words("trim row starts", capacities.rows)?,
-                        row_total: words("trim row total", 1)?,
-                        intercepts: words("trim intercepts", capacities.intercepts)?,
-                        rings: Buffer::storage(
-                            device,
-                            Pool::Transient,
-                            "trim rings",
-                            4 * u64::from(size.0) * u64::from(size.1),
-                        )?,
+                        rings: structs("trim rings", size.0 * size.1, size_of::<u32>())?,
                         doubts: words("trim doubts", capacities.doubts)?,
+                        heal_dispatch: indirect("heal dispatch", size_of::<[u32; 3]>() as u64)?,
+                        table: (way == TrimWay::Table).then(table).transpose()?,
+                        #[cfg(feature = "rivals")]
+                        texture: is_texture(way).then(texture).transpose()?,
                     })
                 })
                 .transpose()?,
@@ -276,7 +342,7 @@ impl Buffers {
                 })
                 .transpose()?,
             visibility: image("visibility", VISIBILITY_FORMAT, drawn_and_read)?,
-            others: (counts.trimmed && (counts.mesh_instances > 0 || counts.leaves > 0))
+            others: (counts.trim.is_some() && (counts.mesh_instances > 0 || counts.leaves > 0))
                 .then(|| image("visibility of others", VISIBILITY_FORMAT, drawn_and_read))
                 .transpose()?,
             depth: image("visibility depth", DEPTH_FORMAT, depth_usage)?,
@@ -292,7 +358,7 @@ mod tests {
     const RANGE: u32 = 1 << 27;
 
     fn first() -> Capacities {
-        Capacities::first(Counts { items: 1000, strips: 8, trimmed: true, ..Default::default() })
+        Capacities::first(Counts { items: 1000, strips: 8, trim: Some(TrimWay::Table), ..Default::default() })
     }
 
     #[test]

@@ -4,7 +4,7 @@
 //!                 view, instances
 //!                      │
 //!    ┌─────────────────┴──────────────────┐
-//!    ▼                                    ▼  trimmed scenes only
+//!    ▼                                    ▼  scenes trimmed by table only
 //!  bound    tau per patch               density    height of each v-strip in pixels
 //!  split    segments per side           lines      scan lines per strip ──(scan)──▶ rows
 //!    │(scan) sub-patches, vertices      segments   chords per curve     ──(scan)──▶
@@ -25,17 +25,20 @@
 //! ```
 
 use crate::abi::Counters;
-use crate::buffers::{Buffers, TrimBuffers};
+use crate::buffers::{Buffers, TableBuffers};
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Timestamps, barrier};
 use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
-use crate::passes::{
-    bound, cross, density, emit, heal, lines, mesh, reset, resolve, scan, segments, sizes, sort, split, visibility,
-};
-use crate::scene::{MeshBuffers, Scene, SceneData, Trims};
+use crate::passes::{bound, emit, heal, mesh, reset, resolve, scan, split, visibility};
+use crate::scene::{MeshBuffers, Scene, SceneData};
 use solids::SolidPasses;
-use std::mem::offset_of;
+use trim::{TrimParts, TrimPasses};
 
+mod edit;
+#[cfg(feature = "rivals")]
+mod rival;
 mod solids;
+mod table;
+mod trim;
 
 pub(crate) use solids::Centres;
 
@@ -53,40 +56,21 @@ pub(crate) struct Passes {
     resolve: resolve::Resolve,
 }
 
-/// The passes of the trim table.
-struct TrimPasses {
-    density: density::Density,
-    lines: lines::Lines,
-    segments: segments::Segments,
-    sizes: sizes::Sizes,
-    cross: cross::Cross,
-    sort: sort::Sort,
-    heal: heal::Heal,
-}
-
 impl Passes {
     pub(crate) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Self, GpuError> {
-        let kinds = Kinds { rational: data.has_rational, plain: data.has_plain, trimmed: data.has_trimmed };
-        let trim = |_| {
-            Ok(TrimPasses {
-                density: density::Density::new(device)?,
-                lines: lines::Lines::new(device)?,
-                segments: segments::Segments::new(device)?,
-                sizes: sizes::Sizes::new(device)?,
-                cross: cross::Cross::new(device)?,
-                sort: sort::Sort::new(device)?,
-                heal: heal::Heal::new(device, data.has_rational, data.has_meshes() || data.solids.kinds().is_some())?,
-            })
-        };
+        let trim = TrimPasses::new(device, data)?;
+        let test = trim.as_ref().map(TrimPasses::test);
+        let kinds = Kinds { rational: data.has_rational, plain: data.has_plain, trimmed: test };
+        let visibility = visibility::Visibility::new(device, kinds)?;
         Ok(Self {
             reset: reset::Reset::new(device)?,
             bound: bound::Bound::new(device)?,
             split: split::Split::new(device)?,
             scan: scan::Scan::new(device)?,
             emit: emit::Emit::new(device)?,
-            trim: data.has_trimmed.then_some(()).map(trim).transpose()?,
+            trim,
             solids: SolidPasses::new(device, &data.solids)?,
-            visibility: visibility::Visibility::new(device, kinds)?,
+            visibility,
             mesh: data.has_meshes().then(|| mesh::Mesh::new(device, VISIBILITY_FORMAT, DEPTH_FORMAT)).transpose()?,
             resolve: resolve::Resolve::new(
                 device,
@@ -122,20 +106,26 @@ impl Frame<'_> {
     pub(crate) fn record(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
         self.begin(cmd);
         times.scope(cmd, "tessellation", || self.tessellation(cmd));
-        if let (Some(passes), Some(trims), Some(buffers)) = (&self.passes.trim, &self.scene.trims, &self.buffers.trim) {
-            times.scope(cmd, "trim table", || self.trim_table(cmd, passes, trims, buffers));
+        let trim = self.trim();
+        if let Some(table) = trim.as_ref().and_then(TrimParts::table) {
+            times.scope(cmd, "trim table", || table.record(self, cmd));
+        }
+        #[cfg(feature = "rivals")]
+        if let Some(texture) = trim.as_ref().and_then(TrimParts::rival).and_then(|parts| parts.texture()) {
+            times.scope(cmd, "trim texture", || texture.record(self, cmd));
         }
         self.begin_images(cmd);
         if let (Some(pass), Some(meshes)) = (&self.passes.mesh, &self.scene.meshes) {
             times.drawing(cmd, "mesh", || self.mesh(cmd, pass, meshes));
         }
         if let Some(parts) = self.solids() {
-            times.scope(cmd, "solids", || self.solid_events(cmd, &parts));
+            times.scope(cmd, "solids", || self.solid_faces(cmd, &parts));
         }
-        times.drawing(cmd, "visibility", || self.visibility(cmd));
+        let test = trim.as_ref().map_or(Vec::new(), TrimParts::test);
+        times.drawing(cmd, "visibility", || self.visibility(cmd, &test));
         let mut drawn = Access::COLOUR_WRITE;
-        if let (Some(passes), Some(buffers)) = (&self.passes.trim, &self.buffers.trim) {
-            times.scope(cmd, "heal", || self.heal(cmd, passes, buffers));
+        if let Some(parts) = &trim {
+            times.scope(cmd, "heal", || self.heal(cmd, parts, &test));
             drawn = Access::COMPUTE_WRITE;
         }
         barrier::images(cmd, &[(&self.buffers.visibility, drawn, Access::FRAGMENT_READ)]);
@@ -154,10 +144,15 @@ impl Frame<'_> {
         let clear = Access { layout: before.layout, ..Access::TRANSFER_WRITE };
         barrier::memory(cmd, before | transfer, Access::COMPUTE_WRITE | clear);
         if let Some(t) = &b.trim {
-            cmd.fill(&t.strip_heights, 0);
-            cmd.fill(&t.face_speeds, 0);
-            cmd.fill(&t.row_counts, 0);
+            cmd.fill(&t.heal_dispatch, 0);
             cmd.fill(&t.rings, 0);
+            for counted in t.table.iter().flat_map(TableBuffers::cleared) {
+                cmd.fill(counted, 0);
+            }
+            #[cfg(feature = "rivals")]
+            for counted in t.texture.iter().flat_map(crate::buffers::TextureBuffers::cleared) {
+                cmd.fill(counted, 0);
+            }
         }
         let r = reset::Bindings { frame: self.constants, draws: &b.draws, counters: &b.counters };
         self.passes.reset.record(cmd, &r, 2 * b.capacities.draws);
@@ -225,130 +220,6 @@ impl Frame<'_> {
         );
     }
 
-    fn trim_table(&self, cmd: &Commands<'_>, p: &TrimPasses, trims: &Trims, t: &TrimBuffers) {
-        let (s, b) = (self.scene, self.buffers);
-        let (w, r) = WRITE_TO_READ;
-        let cleared = (Access::TRANSFER_WRITE, Access::COMPUTE_WRITE);
-        barrier::buffers(
-            cmd,
-            &[
-                (&t.strip_heights, cleared.0, cleared.1),
-                (&t.face_speeds, cleared.0, cleared.1),
-                (&t.row_counts, cleared.0, cleared.1),
-            ],
-        );
-        let density = density::Bindings {
-            frame: self.constants,
-            views: self.views,
-            instances: &s.instances,
-            face_instances: &s.face_instances,
-            faces: &s.faces,
-            cells: &trims.cells,
-            cell_items: &trims.cell_items,
-            strip_heights: &t.strip_heights,
-            face_speeds: &t.face_speeds,
-        };
-        p.density.record(cmd, &density, b.counts.cells);
-        barrier::buffers(cmd, &[(&t.strip_heights, w, r), (&t.face_speeds, w, r)]);
-
-        let lines = lines::Bindings {
-            frame: self.constants,
-            strip_heights: &t.strip_heights,
-            line_counts: &t.line_counts,
-            counters: &b.counters,
-        };
-        p.lines.record(cmd, &lines, b.counts.strips);
-        barrier::buffers(cmd, &[(&t.line_counts, w, r), (&b.counters, w, w)]);
-        self.scan(cmd, &t.line_counts, &t.line_starts, b.counts.strips);
-        barrier::buffers(cmd, &[(&t.line_starts, w, r)]);
-
-        let segments = segments::Bindings {
-            frame: self.constants,
-            face_instances: &s.face_instances,
-            faces: &s.faces,
-            curves: &trims.curves,
-            curve_items: &trims.curve_items,
-            face_speeds: &t.face_speeds,
-            line_starts: &t.line_starts,
-            segment_counts: &t.segment_counts,
-        };
-        p.segments.record(cmd, &segments, b.counts.curves);
-        barrier::buffers(cmd, &[(&t.segment_counts, w, r)]);
-        self.scan(cmd, &t.segment_counts, &t.segment_starts, b.counts.curves);
-        barrier::buffers(cmd, &[(&t.segment_starts, w, r)]);
-
-        let sizes = sizes::Bindings {
-            frame: self.constants,
-            line_starts: &t.line_starts,
-            segment_starts: &t.segment_starts,
-            dispatches: &t.dispatches,
-            counters: &b.counters,
-        };
-        p.sizes.record(cmd, &sizes);
-        barrier::buffers(cmd, &[(&t.dispatches, w, Access::INDIRECT_READ), (&b.counters, w, w)]);
-
-        let cross = cross::Bindings {
-            frame: self.constants,
-            face_instances: &s.face_instances,
-            faces: &s.faces,
-            curves: &trims.curves,
-            curve_points: &trims.curve_points,
-            curve_items: &trims.curve_items,
-            line_starts: &t.line_starts,
-            segment_starts: &t.segment_starts,
-            row_counts: &t.row_counts,
-            row_starts: &t.row_starts,
-            intercepts: &t.intercepts,
-            dispatches: &t.dispatches,
-        };
-        p.cross.count(cmd, &cross);
-        barrier::buffers(cmd, &[(&t.row_counts, w, r), (&t.row_starts, r, w), (&b.sums, w, w)]);
-        let word = |offset: usize| (offset / size_of::<u32>()) as u32;
-        self.passes.scan.record(
-            cmd,
-            scan::Count::Gpu {
-                counts: &b.counters,
-                index: word(offset_of!(Counters, rows)),
-                arguments: &t.dispatches,
-                offset: 2 * size_of::<[u32; 3]>() as u64,
-                capacity: b.capacities.rows,
-            },
-            &scan::Bindings {
-                values: &t.row_counts,
-                offsets: &t.row_starts,
-                sums: &b.sums,
-                total: &t.row_total,
-                total_index: 0,
-            },
-        );
-        barrier::buffers(
-            cmd,
-            &[(&t.row_starts, w, r), (&t.row_total, w, r), (&t.row_counts, r, w), (&b.counters, r, w)],
-        );
-        p.cross.insert(cmd, &cross);
-        barrier::buffers(cmd, &[(&t.intercepts, w, w), (&t.row_counts, w, w)]);
-
-        let sort = sort::Bindings {
-            frame: self.constants,
-            row_starts: &t.row_starts,
-            row_total: &t.row_total,
-            row_counts: &t.row_counts,
-            intercepts: &t.intercepts,
-            counters: &b.counters,
-            dispatches: &t.dispatches,
-        };
-        p.sort.record(cmd, &sort);
-        barrier::buffers(
-            cmd,
-            &[
-                (&t.line_starts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
-                (&t.row_starts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
-                (&t.row_counts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
-                (&t.intercepts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
-            ],
-        );
-    }
-
     /// One prefix sum; the total follows the last start.
     fn scan(&self, cmd: &Commands<'_>, counts: &Buffer, starts: &Buffer, count: u32) {
         let sums = &self.buffers.sums;
@@ -387,7 +258,7 @@ impl Frame<'_> {
         );
     }
 
-    fn visibility(&self, cmd: &Commands<'_>) {
+    fn visibility(&self, cmd: &Commands<'_>, test: &[&Buffer]) {
         let (s, b) = (self.scene, self.buffers);
         barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE, Access::INDIRECT_READ)]);
         if let Some(t) = &b.trim {
@@ -404,13 +275,8 @@ impl Frame<'_> {
             factors: &b.factors,
             sub_patches: &b.sub_patches,
             instances: &s.instances,
-            table: b.trim.as_ref().map(|t| visibility::Table {
-                line_starts: &t.line_starts,
-                row_starts: &t.row_starts,
-                row_counts: &t.row_counts,
-                flips: &t.intercepts,
-                rings: &t.rings,
-            }),
+            rings: b.trim.as_ref().map(|t| &t.rings),
+            trim: test,
             draws: &b.draws,
             counters: &b.counters,
         };
@@ -422,33 +288,35 @@ impl Frame<'_> {
     }
 
     /// Pixels that look through a gap between faces get the face that belongs there.
-    fn heal(&self, cmd: &Commands<'_>, p: &TrimPasses, t: &TrimBuffers) {
+    fn heal(&self, cmd: &Commands<'_>, parts: &TrimParts<'_>, test: &[&Buffer]) {
         let (s, b) = (self.scene, self.buffers);
+        let (p, t) = (parts.passes, parts.buffers);
         let (w, r) = WRITE_TO_READ;
         barrier::images(cmd, &[(&b.visibility, Access::COLOUR_WRITE, w), (&b.depth, Access::DEPTH_WRITE, r)]);
         if let Some(others) = &b.others {
             barrier::images(cmd, &[(others, Access::COLOUR_WRITE, Access::COMPUTE_READ | Access::FRAGMENT_READ)]);
         }
+        let cleared = Access { layout: w.layout, ..Access::TRANSFER_WRITE };
         barrier::buffers(
             cmd,
             &[
                 (&t.rings, Access::FRAGMENT_WRITE, r),
                 (&b.counters, Access::INDIRECT_READ, w),
-                (&t.dispatches, Access::INDIRECT_READ, w),
+                (&t.heal_dispatch, cleared, w),
             ],
         );
         let doubts = heal::DoubtBindings {
             frame: self.constants,
             visibility: &b.visibility,
             doubts: &t.doubts,
-            dispatches: &t.dispatches,
+            dispatch: &t.heal_dispatch,
             counters: &b.counters,
             depth: &b.depth,
             rings: &t.rings,
         };
         p.heal.find(cmd, &doubts);
         barrier::images(cmd, &[(&b.visibility, w, w)]);
-        barrier::buffers(cmd, &[(&t.doubts, w, r), (&b.counters, w, r), (&t.dispatches, w, Access::INDIRECT_READ)]);
+        barrier::buffers(cmd, &[(&t.doubts, w, r), (&b.counters, w, r), (&t.heal_dispatch, w, Access::INDIRECT_READ)]);
         let heal = heal::Bindings {
             frame: self.constants,
             views: self.views,
@@ -457,10 +325,6 @@ impl Frame<'_> {
             patches: &s.patches,
             items: &s.items,
             points: &s.points,
-            line_starts: &t.line_starts,
-            row_starts: &t.row_starts,
-            row_counts: &t.row_counts,
-            flips: &t.intercepts,
             visibility: &b.visibility,
             doubts: &t.doubts,
             counters: &b.counters,
@@ -471,7 +335,8 @@ impl Frame<'_> {
                 triangles: &m.triangles,
                 positions: &m.positions,
             }),
-            dispatches: &t.dispatches,
+            trim: test,
+            dispatch: &t.heal_dispatch,
         };
         p.heal.record(cmd, &heal);
     }

@@ -6,6 +6,10 @@
 /// Vulkan's bindings and the allocator, in the versions that [`gpu::HostDevice`] takes.
 pub use {ash, gpu_allocator};
 
+/// Shared test shapes name the library as its users do.
+#[cfg(test)]
+extern crate self as selvedge;
+
 pub mod abi;
 pub mod brep;
 mod budget;
@@ -26,9 +30,13 @@ pub mod passes;
 pub mod picture;
 pub mod reference;
 pub mod renderer;
+#[cfg(feature = "rivals")]
+pub mod rivals;
 mod scene;
 mod shaders;
 pub mod spline;
+#[cfg(any(test, feature = "rivals"))]
+mod trial;
 pub mod trim;
 pub mod twin;
 

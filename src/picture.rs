@@ -11,12 +11,138 @@ pub struct FrameSettings {
     pub tolerance_px: f64,
     /// Colour behind the model; `None` keeps what the target holds.
     pub background: Option<Colour>,
+    /// How finely patches are divided.
+    pub levels: Levels,
+}
+
+/// How the number of segments along a patch's sides is chosen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Levels {
+    /// From bounds on its derivatives, for each view: the promise is kept.
+    #[default]
+    Bound,
+    /// The same number everywhere, 1 to 64. The promise is *not* kept; for comparisons.
+    Fixed(u32),
 }
 
 impl Default for FrameSettings {
     fn default() -> Self {
-        Self { tolerance_px: 0.5, background: Some([1.0, 1.0, 1.0, 1.0]) }
+        Self { tolerance_px: 0.5, background: Some([1.0, 1.0, 1.0, 1.0]), levels: Levels::Bound }
     }
+}
+
+/// How pixels on trimmed patches are told from those that the loops cut away. All ways draw the same
+/// picture within [`FrameSettings::tolerance_px`]; see `ARCHITECTURE.md` for what each costs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum TrimWay {
+    /// The u-intercept table: made anew for each view, one binary search a pixel.
+    Table,
+    /// The loops themselves, in bands and cells made once: a few monotone arcs a pixel.
+    Exact,
+    /// One to compare with; never chosen, never met by an embedder.
+    #[cfg(feature = "rivals")]
+    Rival(Rival),
+}
+
+/// Other ways to trim, each with the number that its accuracy hangs on: see [`crate::rivals`].
+#[cfg(feature = "rivals")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Rival {
+    /// No test: what a frame costs before it is trimmed.
+    Untrimmed,
+    /// Monotone pieces, bisected in every pixel.
+    Bisect {
+        /// Most steps.
+        steps: u32,
+    },
+    /// A texture of one bit a texel for each face.
+    Texture {
+        /// Eighths of a texel to a pixel.
+        eighths: u32,
+    },
+}
+
+impl TrimWay {
+    /// Every way.
+    pub const ALL: &'static [Self] = &[Self::Table, Self::Exact];
+
+    /// As in command lines and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Table => "table",
+            Self::Exact => "exact",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Untrimmed) => "untrimmed",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Bisect { .. }) => "bisect",
+            #[cfg(feature = "rivals")]
+            Self::Rival(Rival::Texture { .. }) => "texture",
+        }
+    }
+}
+
+impl std::str::FromStr for TrimWay {
+    type Err = UnknownTrimWay;
+
+    fn from_str(name: &str) -> Result<Self, UnknownTrimWay> {
+        Self::ALL.iter().copied().find(|way| way.name() == name).ok_or_else(|| UnknownTrimWay(name.to_owned()))
+    }
+}
+
+/// No way to trim is called so.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no way to trim is called `{0}`; there are: {names}", names = TrimWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
+pub struct UnknownTrimWay(String);
+
+/// How Boolean solids are drawn. Both ways draw the same picture, bit for bit.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum SolidWay {
+    /// One ray a pixel, followed from event to event until it enters the solid.
+    #[default]
+    Events,
+    /// The faces of each primitive, trimmed by the Blist of the others: constructive solid trimming.
+    Cst,
+}
+
+impl SolidWay {
+    /// Every way.
+    pub const ALL: &'static [Self] = &[Self::Events, Self::Cst];
+
+    /// As in command lines and tables.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Events => "events",
+            Self::Cst => "cst",
+        }
+    }
+}
+
+impl std::str::FromStr for SolidWay {
+    type Err = UnknownSolidWay;
+
+    fn from_str(name: &str) -> Result<Self, UnknownSolidWay> {
+        Self::ALL.iter().copied().find(|way| way.name() == name).ok_or_else(|| UnknownSolidWay(name.to_owned()))
+    }
+}
+
+/// No way to draw Boolean solids is called so.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("no way to draw solids is called `{0}`; there are: {names}", names = SolidWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
+pub struct UnknownSolidWay(String);
+
+/// What the caller decides about a loaded model.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct SceneSettings {
+    /// How to trim; `None` takes what suits the model.
+    pub trim: Option<TrimWay>,
+    /// How to draw Boolean solids.
+    pub solids: SolidWay,
+    /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover. The model is
+    /// trimmed by [`TrimWay::Table`] then, which is made anew for each frame in any case.
+    pub editable: bool,
 }
 
 /// Images wanted beside the colour.
@@ -60,12 +186,16 @@ pub struct Picture {
 pub struct FrameStats {
     /// Name and GPU time in milliseconds of each pass, in order.
     pub passes: Vec<PassTime>,
+    /// Patches of the loaded model, those of each instance counted; of a view from very near, those near it.
+    pub patches: u64,
     /// Triangles that the tessellator made, and those of meshes.
     pub triangles: u64,
     /// Sub-patches drawn.
     pub sub_patches: u64,
     /// Scan lines of the trim table.
     pub trim_rows: u64,
+    /// Chords of trim curves that the trim table was made from.
+    pub trim_segments: u64,
     /// u-intercepts stored in the trim table.
     pub trim_intercepts: u64,
     /// Pixels near borders of trimmed faces at which more than one face was asked who is seen.
@@ -75,6 +205,8 @@ pub struct FrameStats {
     pub clamps: u64,
     /// Times the frame was recorded again because a buffer was too small.
     pub retries: u32,
+    /// Bytes copied for edits of trim loops since the frame before.
+    pub edit_bytes: u64,
     /// Bytes per memory pool.
     pub pools: Vec<PoolBytes>,
     /// Device name.

@@ -12,6 +12,8 @@
 //! GPU can tell (the trim table, the list of sub-patches) may be too small for a new view: the report
 //! of that frame says `complete: false`, and the next `record` into its slot makes them larger.
 
+mod edit;
+
 use crate::abi;
 use crate::abi::Counters;
 use crate::budget::Budget;
@@ -23,9 +25,9 @@ use crate::gpu::{
 };
 use crate::model::{Camera, CameraError, Model, Projection};
 use crate::passes::resolve;
-use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes};
-pub use crate::scene::UndrawnSolid;
-use crate::scene::{Scene, SceneData, SolidData, focal_and_slant, view};
+use crate::picture::{FrameSettings, FrameStats, Levels, PassTime, PoolBytes, SceneSettings};
+pub use crate::scene::{CloseUp, EditError, UndrawnSolid};
+use crate::scene::{Scene, SceneData, SolidData, Write, focal_and_slant, view};
 use ash::vk;
 
 /// Formats of the images that the host will pass to [`Renderer::record`].
@@ -129,6 +131,8 @@ struct Loaded {
     passes: Passes,
     scene: Option<Scene>,
     buffers: Option<Buffers>,
+    /// Edits that the next frame copies.
+    edits: Vec<Write>,
 }
 
 /// What one frame in flight owns.
@@ -142,6 +146,8 @@ struct Slot {
     /// Freed when the slot comes round again.
     retired: Vec<Retired>,
     recorded: bool,
+    /// Copied for edits at the beginning of the frame.
+    edit_bytes: u64,
     /// What the frame had room for; `None` when its model has been replaced since.
     capacities: Option<Capacities>,
 }
@@ -189,13 +195,29 @@ impl Renderer {
     /// # Errors
     /// [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before stays.
     pub fn upload(&mut self, model: &Model) -> Result<(), RenderError> {
-        let data = SceneData::new(model)?;
+        self.upload_with(model, SceneSettings::default())
+    }
+
+    /// As [`upload`](Self::upload), with settings that hold as long as the model.
+    ///
+    /// # Errors
+    /// As [`upload`](Self::upload).
+    pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), RenderError> {
+        let data = SceneData::new(model, settings)?;
         let counts = Counts::of(&data);
         counts.check()?;
         let formats =
             resolve::Formats { colour: self.formats.colour, depth: self.formats.depth, aovs: self.formats.aovs };
         let passes = Passes::new(&self.device, &data, formats)?;
-        let loaded = Loaded { data, counts, capacities: Capacities::first(counts), passes, scene: None, buffers: None };
+        let loaded = Loaded {
+            data,
+            counts,
+            capacities: Capacities::first(counts),
+            passes,
+            scene: None,
+            buffers: None,
+            edits: Vec::new(),
+        };
         if let Some(old) = self.loaded.replace(loaded) {
             self.retire(Retired::Loaded(Box::new(old)));
             self.slots.iter_mut().for_each(|slot| slot.capacities = None);
@@ -249,6 +271,13 @@ impl Renderer {
             loaded.scene = Some(scene);
             loaded.data.drop_uploaded();
         }
+        slot.edit_bytes = 0;
+        if let Some(scene) = loaded.scene.as_ref().filter(|_| !loaded.edits.is_empty()) {
+            let uploads = Frame::edit(&cmd, scene, &loaded.edits)?;
+            slot.edit_bytes = uploads.staging_bytes();
+            slot.retired.push(Retired::Uploads(uploads));
+            loaded.edits.clear();
+        }
         let (Some(scene), Some(buffers), Some(views)) = (&loaded.scene, &loaded.buffers, &slot.views) else {
             unreachable!("made above")
         };
@@ -295,13 +324,16 @@ impl Renderer {
         let scopes = slot.times.read()?;
         let stats = FrameStats {
             passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
+            patches: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.items)),
             triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
             sub_patches: u64::from(c.plain) + u64::from(c.trimmed),
             trim_rows: u64::from(c.rows),
+            trim_segments: u64::from(c.segments),
             trim_intercepts: u64::from(c.intercepts),
             doubtful_pixels: u64::from(c.doubts),
             clamps: u64::from(c.clamps),
             retries: 0,
+            edit_bytes: slot.edit_bytes,
             pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),
             device: self.device.name().to_owned(),
             driver: self.device.driver().to_owned(),
@@ -360,6 +392,7 @@ impl Slot {
             times: Timestamps::new(device, SCOPES)?,
             retired: Vec::new(),
             recorded: false,
+            edit_bytes: 0,
             capacities: None,
         })
     }
@@ -442,6 +475,10 @@ fn constants(device: &Device, loaded: &Loaded, input: &FrameInput<'_>, formats: 
         ring_px: budget.ring as f32,
         row_px: budget.row as f32,
         chord_px: budget.chord as f32,
+        fixed_factor: match input.settings.levels {
+            Levels::Bound => 0,
+            Levels::Fixed(level) => level.clamp(1, 64),
+        },
         item_count: counts.items,
         cell_count: counts.cells,
         strip_count: counts.strips,

@@ -17,6 +17,45 @@ const fn words<const COUNT: usize>(bytes: &[u8]) -> [u32; COUNT] {
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
+/// One way to trim, as the passes know it that ask: `glsl/include/trim.glsl`.
+#[derive(Clone, Copy, Debug)]
+pub struct TrimTest {
+    /// Its name in the pipelines'.
+    pub way: &'static str,
+    /// Fragment shader of pass `visibility`.
+    pub visibility: &'static [u32],
+    /// Second step of pass `heal`.
+    pub heal: &'static [u32],
+    /// Storage buffers of the test; they follow the bindings of the pass.
+    pub buffers: usize,
+}
+
+/// The u-intercept table.
+pub static TRIM_TABLE: TrimTest =
+    TrimTest { way: "table", visibility: VISIBILITY_TABLE_FRAG, heal: HEAL_TABLE_COMP, buffers: 4 };
+/// Arcs in bands and cells.
+pub static TRIM_EXACT: TrimTest =
+    TrimTest { way: "exact", visibility: VISIBILITY_EXACT_FRAG, heal: HEAL_EXACT_COMP, buffers: 6 };
+
+/// No test at all.
+#[cfg(feature = "rivals")]
+pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
+    way: "untrimmed",
+    visibility: RIVAL_VISIBILITY_UNTRIMMED_FRAG,
+    heal: RIVAL_HEAL_UNTRIMMED_COMP,
+    buffers: 0,
+};
+
+/// Bisection of monotone pieces.
+#[cfg(feature = "rivals")]
+pub static TRIM_BISECT: TrimTest =
+    TrimTest { way: "bisect", visibility: RIVAL_VISIBILITY_BISECT_FRAG, heal: RIVAL_HEAL_BISECT_COMP, buffers: 6 };
+
+/// Trim textures.
+#[cfg(feature = "rivals")]
+pub static TRIM_TEXTURE: TrimTest =
+    TrimTest { way: "texture", visibility: RIVAL_VISIBILITY_TEXTURE_FRAG, heal: RIVAL_HEAL_TEXTURE_COMP, buffers: 2 };
+
 #[cfg(test)]
 mod tests {
     use super::*;

@@ -14,23 +14,27 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("construct", &["math", "spline", "model", "trim"]),
     ("csg", &[]),
     ("brep", &["math", "spline", "trim", "model"]),
-    ("import", &["brep", "csg", "spline", "model"]),
+    ("import", &["brep", "construct", "csg", "spline", "model"]),
     ("export", &["spline", "trim", "model"]),
     ("picture", &["model"]),
     ("reference", &["csg", "math", "spline", "trim", "model", "picture"]),
     ("budget", &[]),
     ("abi", &[]),
     ("twin", &["abi", "math", "spline", "trim", "model"]),
+    // for tests and measurements
+    ("trial", &["abi", "budget", "model", "picture", "scene", "spline", "twin"]),
     // GPU: no geometry
     ("gpu", &[]),
     ("shaders", &[]),
     ("passes", &["abi", "gpu", "shaders"]),
     // where both meet
-    ("scene", &["abi", "csg", "gpu", "math", "spline", "trim", "model"]),
-    ("buffers", &["abi", "gpu", "passes", "scene"]),
-    ("frame", &["abi", "buffers", "gpu", "passes", "scene"]),
+    ("scene", &["abi", "csg", "gpu", "math", "spline", "trim", "model", "picture", "rivals"]),
+    ("buffers", &["abi", "gpu", "passes", "picture", "scene"]),
+    ("frame", &["abi", "buffers", "gpu", "passes", "picture", "scene", "shaders"]),
     ("renderer", &["abi", "budget", "buffers", "frame", "gpu", "model", "passes", "picture", "scene"]),
     ("headless", &["gpu", "model", "picture", "renderer"]),
+    // for benchmarks and tests
+    ("rivals", &["abi", "math", "model", "picture", "scene", "spline", "trial", "trim", "twin"]),
 ];
 
 /// Modules that may name Vulkan's types.
@@ -39,7 +43,14 @@ const VULKAN: &[&str] = &["gpu", "scene", "passes", "buffers", "renderer", "head
 const UNSAFE: &[&str] = &["gpu", "renderer", "headless"];
 /// Files beside `gpu` and `headless` that may record barriers: the frame, and the one pass that has steps
 /// of its own.
-const BARRIERS: &[&str] = &["src/frame.rs", "src/frame/solids.rs", "src/passes/scan.rs"];
+const BARRIERS: &[&str] = &[
+    "src/frame.rs",
+    "src/frame/edit.rs",
+    "src/frame/rival.rs",
+    "src/frame/solids.rs",
+    "src/frame/table.rs",
+    "src/passes/scan.rs",
+];
 /// What a library leaves to its host.
 const HOSTS: &[&str] =
     &["println!", "print!(", "eprintln!", "eprint!(", "dbg!(", "std::env::", "process::exit", "process::abort"];

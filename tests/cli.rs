@@ -1,4 +1,4 @@
-//! The command line where no GPU is needed: arguments, messages, exit statuses.
+//! The command line: arguments, messages, exit statuses; and scenes through every command, the only ones that draw.
 
 use std::process::{Command, Output};
 
@@ -25,10 +25,11 @@ fn help_names_every_command_and_the_exit_statuses() {
     let help = selvedge(&["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let help = text(&help.stdout);
-    for word in ["render", "info", "check", "bench", "convert", "Exit status: 0 done; 1 a picture breaks"] {
+    let commands = ["render", "info", "check", "bench", "trims", "sweep", "convert"];
+    for word in commands.into_iter().chain(["Exit status: 0 done; 1 a picture breaks"]) {
         assert!(help.contains(word), "{word} in {help}");
     }
-    for command in ["render", "info", "check", "bench", "convert"] {
+    for command in commands {
         let help = selvedge(&[command, "--help"]);
         assert_eq!(help.status.code(), Some(0));
         assert!(text(&help.stdout).contains("Exit status:"), "{command}");
@@ -52,6 +53,11 @@ fn wrong_arguments_are_usage_errors() {
     render(&["--aov", "colour=c.npy"], "depth, face, uv or normal");
     refused(&["check", "m.step", "--samples", "0"], "above 0");
     refused(&["check", "m.step", "--views", "close", "--eye", "1,2,3"], "cannot be used with");
+    refused(&["check", "m.step", "--zoom", "1e3,0.5"], "from 1 to 1e9");
+    refused(&["check", "m.step", "--zoom", "10", "--views", "close"], "cannot be used with");
+    render(&["--factors", "65"], "a level from 1 to 64");
+    refused(&["sweep", "m.step", "--sizes", "400"], "WIDTHxHEIGHT");
+    render(&["--camera", "front", "--fov", "30"], "cannot be used with");
     refused(&["bench"], "MODELS");
     refused(&["convert", "m.step"], "OUT.selvedge");
     refused(&["convert", "m.step", "m.xyz"], "m.xyz: writes .selvedge files only");
@@ -131,4 +137,102 @@ fn info_tells_bodies_faces_and_the_assembly() {
         (&json["report"]["dropped"], &json["report"]["layers"]),
         (&serde_json::json!({}), &serde_json::json!({}))
     );
+}
+
+/// A ball and a trimmed sheet, small enough to be drawn in a test.
+const SCENE: &str = r##"
+selvedge = 1
+name = "small"
+
+[curve.ring]
+shape = "circle"
+radius = 3
+
+[surface.sheet]
+shape = "plane"
+u = [-8, 8]
+v = [-6, 6]
+border = true
+loops = ["ring"]
+colour = "#4f7fa8"
+
+[solid.ball]
+shape = "sphere"
+radius = 2
+
+[camera.front]
+eye = [0, -30, 30]
+target = [0, 0, 0]
+
+[camera.top]
+from = [0, 0, 1]
+up = [0, 1, 0]
+ortho = true
+
+[picture]
+size = [48, 36]
+camera = "front"
+background = "#102030"
+"##;
+
+/// Width, height and a pixel of a picture.
+fn pixel(path: &str, x: u32, y: u32) -> ((u32, u32), [u8; 4]) {
+    let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    let at = 4 * (y * info.width + x) as usize;
+    ((info.width, info.height), bytes[at..at + 4].try_into().unwrap())
+}
+
+#[test]
+fn a_scene_goes_through_every_command() {
+    let folder = std::env::temp_dir().join(format!("selvedge-scenes-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let scene = path("small.toml");
+    std::fs::write(&scene, SCENE).unwrap();
+    let done = |arguments: &[&str]| {
+        let output = selvedge(arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
+        text(&output.stdout)
+    };
+
+    let told: serde_json::Value = serde_json::from_str(&done(&["info", "--json", &scene])).unwrap();
+    assert_eq!((&told["name"], &told["faces"]), (&"small".into(), &1.into()));
+    assert_eq!(told["report"]["format"], "selvedge scene 1");
+    assert_eq!(told["boolean_solids"].as_array().unwrap().len(), 1);
+    assert_eq!(told["report"]["nodes"], serde_json::json!({ "circle": 1, "plane": 1, "sphere": 1 }));
+
+    // the scene's own picture: its size, its camera, its background in the corner
+    let picture = path("front.png");
+    done(&["render", &scene, "-o", &picture]);
+    assert_eq!(pixel(&picture, 0, 0), ((48, 36), [0x10, 0x20, 0x30, 0xff]));
+    // from above, the ball in the hole leaves a ring of background between 2 and 3 from the middle
+    let above = path("top.png");
+    done(&["render", &scene, "-o", &above, "--camera", "top", "--size", "96x72"]);
+    let (size, middle) = pixel(&above, 48, 36);
+    let camera = path("camera.json");
+    done(&["render", &scene, "-o", &above, "--camera", "top", "--size", "96x72", "--camera-out", &camera]);
+    let half: serde_json::Value = serde_json::from_slice(&std::fs::read(&camera).unwrap()).unwrap();
+    let scale = 36.0 / half["ortho"].as_f64().unwrap(); // pixels a unit
+    let background = [0x10, 0x20, 0x30, 0xff];
+    assert_eq!(size, (96, 72));
+    assert_ne!(middle, background);
+    assert_eq!(pixel(&above, (48.0 + 2.5 * scale) as u32, 36).1, background);
+    assert_ne!(pixel(&above, (48.0 + 4.0 * scale) as u32, 36).1, background);
+
+    let verdict = done(&["check", &scene, "--samples", "500"]);
+    assert!(verdict.contains("given") && verdict.contains("kept"), "{verdict}");
+    refused(&["render", &scene, "-o", &picture, "--camera", "back"], "no camera `back`; it has front, top");
+    done(&["convert", &scene, &path("small.selvedge")]);
+    let again: serde_json::Value = serde_json::from_str(&done(&["info", "--json", &path("small.selvedge")])).unwrap();
+    assert_eq!(again["faces"], told["faces"]);
+    done(&["export", &scene, &path("small.step")]);
+    std::fs::write(&scene, SCENE.replace("radius = 3", "radius = 7")).unwrap();
+    let told = selvedge(&["info", &scene]);
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert_eq!(told.status.code(), Some(2));
+    let told = text(&told.stderr);
+    assert!(told.contains("small.toml:14:10: the loop reaches"), "{told}");
 }

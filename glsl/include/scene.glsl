@@ -18,7 +18,7 @@
 // Patch.shape: degree_u | degree_v << 4 | rational << 8 | side << 9 | borders << 11
 const uint SIDE_OUTSIDE = 0u;  // wholly trimmed away: never drawn
 const uint SIDE_INSIDE = 1u;   // no trim curve meets it: drawn without a test
-const uint SIDE_BOUNDARY = 2u; // the trim table decides per pixel
+const uint SIDE_BOUNDARY = 2u; // the trim test decides per pixel
 const uint BORDER_U0 = 1u;     // the side u = 0 of the patch is a border of the face's surface
 const uint BORDER_U1 = 2u;
 const uint BORDER_V0 = 4u;
@@ -38,6 +38,7 @@ const uint FACE_CLOSED_U = 1u;   // the sides u = 0 and u = 1 coincide
 const uint FACE_CLOSED_V = 2u;
 const uint FACE_SAME_SENSE = 4u; // outward normal is S_u x S_v
 const uint FACE_SOLID = 8u;      // the part is closed: back faces are never seen
+const uint FACE_TRIMMED = 16u;   // some patch meets a trim curve
 
 struct Face {
     vec4 domain;        // u0, v0, u1 - u0, v1 - v0 of the source's own parameters
@@ -49,7 +50,7 @@ struct Face {
     uint colour;        // linear light, unorm 8 bits each, red lowest
     uint first_cell;
     uint first_curve;
-    uint strip_count;   // uniform v-strips; 0 for an untrimmed face
+    uint strip_count;   // uniform v-strips of the trim table; 0 where there is none
 };
 
 struct FaceInstance {
@@ -89,7 +90,7 @@ struct Cell {
     vec3 box_min;
     float speed_u; // largest |S_u|, |S_v| there, part units per unit of normalised u, v
     vec3 box_max;
-    float speed_v;
+    float speed_v; // negative where no loop meets the patch, in scenes whose loops may be edited
     uint strip;
 };
 
@@ -114,6 +115,7 @@ struct Frame {
     float ring_px;      // how far a trimmed face reaches over its border to close cracks
     float row_px;       // spacing of the trim table's scan lines
     float chord_px;     // budget of a trim curve's linear segments
+    uint fixed_factor;  // of every patch; 0: what the bound asks for
     uint item_count;
     uint cell_count;
     uint strip_count;

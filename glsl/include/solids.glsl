@@ -77,6 +77,9 @@ bool inside_before(Span s, float t) {
     return s.lo < t && t <= s.hi && !(s.g0 < t && t <= s.g1);
 }
 
+// Of an empty span nothing ends.
+bool ends_at(Span s, float t) { return s.lo < s.hi && (s.lo == t || s.hi == t || s.g0 == t || s.g1 == t); }
+
 // The first depth behind t where the span begins or ends.
 float next_of_span(Span s, float t) {
     float next = NEVER;

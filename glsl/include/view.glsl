@@ -34,33 +34,62 @@ vec4 to_clip(Frame frame, vec4 q) {
     return vec4(q.xy * 2.0 / frame.size - q.w, reversed_depth(frame, q.z), q.w);
 }
 
-// The smallest W of the box in front of the near plane, or a negative number when no part of the
-// box can be seen. `margin` widens the picture, in pixels.
-float visible_w(View view, Frame frame, vec3 lo, vec3 hi, float margin) {
-    float w_min = 3.0e38;
+// A box as the picture sees it.
+struct Seen {
+    float w;     // smallest in front of the near plane, 1 in a parallel view; negative when no part is seen
+    float slant; // largest stretch of a pixel towards its corners, at most the picture's
+    vec2 low;    // its pixels
+    vec2 high;
+};
+
+// The box `lo` to `hi`; `margin` widens the picture, in pixels.
+Seen see(View view, Frame frame, vec3 lo, vec3 hi, float margin) {
+    Seen seen = Seen(3.0e38, 0.0, vec2(3.0e38), vec2(-3.0e38));
+    float steepest = 0.0; // squared slope
     uint outside = 63u;
     for (uint i = 0u; i < 8u; ++i) {
         vec3 c = vec3((i & 1u) == 0u ? lo.x : hi.x, (i & 2u) == 0u ? lo.y : hi.y, (i & 4u) == 0u ? lo.z : hi.z);
         vec4 q = to_pixel(view, vec4(c, 1.0));
-        w_min = min(w_min, q.w);
-        precise vec2 low = q.xy + margin * q.w;                  // negative left of and above the picture
-        precise vec2 high = q.xy - (frame.size + margin) * q.w;  // positive right of and below it
+        seen.w = min(seen.w, q.w);
+        precise vec2 pixel = q.xy / q.w;
+        seen.low = min(seen.low, pixel);
+        seen.high = max(seen.high, pixel);
+        precise vec2 slope = (pixel - 0.5 * frame.size) / frame.focal;
+        precise float slope2 = slope.x * slope.x + slope.y * slope.y;
+        steepest = max(steepest, slope2);
+        precise vec2 below = q.xy + margin * q.w;                 // negative left of and above the picture
+        precise vec2 above = q.xy - (frame.size + margin) * q.w;  // positive right of and below it
         uint here = 0u;
-        here |= low.x < 0.0 ? 1u : 0u;
-        here |= high.x > 0.0 ? 2u : 0u;
-        here |= low.y < 0.0 ? 4u : 0u;
-        here |= high.y > 0.0 ? 8u : 0u;
+        here |= below.x < 0.0 ? 1u : 0u;
+        here |= above.x > 0.0 ? 2u : 0u;
+        here |= below.y < 0.0 ? 4u : 0u;
+        here |= above.y > 0.0 ? 8u : 0u;
         here |= q.z < frame.near ? 16u : 0u;
         here |= q.z > frame.far ? 32u : 0u;
         outside &= here;
     }
-    if (outside != 0u) return -1.0;
-    return frame.perspective != 0u ? max(w_min, frame.near) : 1.0;
+    if (outside != 0u) return Seen(-1.0, 0.0, vec2(0.0), vec2(0.0));
+    if (frame.perspective == 0u) return Seen(1.0, 1.0, seen.low, seen.high);
+    if (seen.w < frame.near) return Seen(frame.near, frame.slant, vec2(-3.0e38), vec2(3.0e38));
+    precise float slant = sqrt(1.0 + steepest);
+    seen.slant = min(slant, frame.slant);
+    return seen;
 }
 
-// Pixels that one part unit can cover at homogeneous weight w.
-float pixels_per_unit(Frame frame, Instance instance, float w) {
-    return frame.focal * frame.slant * instance.scale / w;
+// Rounding of a vertex' pixel; far above that of single precision for pictures up to 16384 pixels.
+const float PIXEL_ROUNDING = 0.015625;
+
+// Whether the centre of a pixel is within `margin` pixels of the box.
+bool covers_a_centre(Seen seen, float margin) {
+    vec2 reach = vec2(margin + PIXEL_ROUNDING);
+    precise vec2 first = ceil(seen.low - reach - 0.5);
+    precise vec2 last = floor(seen.high + reach - 0.5);
+    return first.x <= last.x && first.y <= last.y;
+}
+
+// Pixels that one part unit of what is seen can cover.
+float pixels_per_unit(Frame frame, Instance instance, Seen seen) {
+    return frame.focal * seen.slant * instance.scale / seen.w;
 }
 
 #endif

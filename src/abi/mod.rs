@@ -1,14 +1,16 @@
 //! The structures that Rust and GLSL share, in scalar layout. Twins of `glsl/include/scene.glsl`,
-//! `view.glsl`, `solids.glsl` and `tiles.glsl`; the build asserts every offset and stride against the compiled shaders.
+//! `view.glsl`, `exact.glsl`, `solids.glsl` and `tiles.glsl`; the build asserts every offset and stride against the compiled shaders.
 
 // Fields carry their meaning and units in the GLSL, which the build holds them against.
 #![allow(missing_docs)]
 
+mod exact;
 mod frame;
 mod scan;
 mod scene;
 mod solids;
 
+pub use exact::*;
 pub use frame::*;
 pub use scan::ScanParams;
 pub use scene::*;

@@ -32,6 +32,9 @@ pub const FACE_SAME_SENSE: u32 = 4;
 /// The face belongs to a closed part.
 pub const FACE_SOLID: u32 = 8;
 
+/// Some patch of the face meets a trim curve.
+pub const FACE_TRIMMED: u32 = 16;
+
 /// One Bézier patch.
 ///
 /// ```text
@@ -53,6 +56,11 @@ impl Patch {
     /// Packs [`Patch::shape`].
     pub fn pack_shape(degrees: (usize, usize), rational: bool, side: Side, borders: u32) -> u32 {
         degrees.0 as u32 | (degrees.1 as u32) << 4 | u32::from(rational) << 8 | (side as u32) << 9 | borders << 11
+    }
+
+    /// The same word with another side.
+    pub fn with_side(shape: u32, side: Side) -> u32 {
+        (shape & !(3 << 9)) | (side as u32) << 9
     }
 
     /// The side stored in [`Patch::shape`].

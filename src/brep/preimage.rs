@@ -64,7 +64,7 @@ impl Strand {
             start: ends[0],
             end: ends[1],
             path: if straight { Path::Line } else { Path::Exact(curves) },
-            part: Some(Part { trace: Rc::new(trace), from: 0.0, to: 1.0 }),
+            part: Some(Part::new(support, Rc::new(trace), 0.0, 1.0)),
             locked: [false; 2],
             poles: [None; 2],
             vertices: edge.vertices,
@@ -92,7 +92,7 @@ impl Strand {
             strand.locked[axis] = true;
             strand.path = Path::Line;
         }
-        strand.part = Some(Part { from: first.0, to: last.0, trace });
+        strand.part = Some(Part::new(support, trace, first.0, last.0));
         strand
     }
 }
@@ -103,8 +103,7 @@ impl Strand {
 /// a spline is met within ten times the target: edges along it are often approximations of it, and
 /// fitting their noise would serve nobody.
 fn constant_line(support: &Support, trace: &Trace, lines: &mut Lines) -> Option<(usize, f64)> {
-    let (axis, value, off) = trace.constant(support)?;
-    let speed = trace.regular().iter().map(|(_, p)| support.speed(*p)[axis]).fold(0.0, f64::max);
+    let (axis, value, off, speed) = trace.constant(support)?;
     let close = |x: f64, reach: f64| (x - value).abs() * speed <= reach;
     let near = |x: f64| support.periods[axis].map_or(x, |period| nearest(x, value, period));
     let border = 10.0 * support.target;

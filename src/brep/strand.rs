@@ -2,6 +2,7 @@
 
 use super::support::Support;
 use super::trace::Trace;
+use crate::math::root::bracketed;
 use crate::spline::Bezier;
 use glam::{DVec2, DVec3};
 use std::rc::Rc;
@@ -26,9 +27,16 @@ pub(super) struct Part {
     pub from: f64,
     /// Fraction of the edge at the strand's end.
     pub to: f64,
+    /// The pre-image at both, native: asked for with every point between.
+    ends: [DVec2; 2],
 }
 
 impl Part {
+    pub fn new(support: &Support, trace: Rc<Trace>, from: f64, to: f64) -> Self {
+        let ends = [from, to].map(|s| trace.at(support, s));
+        Self { trace, from, to, ends }
+    }
+
     /// Native parameters at the fraction `s` of the part.
     fn at(&self, support: &Support, s: f64) -> DVec2 {
         self.trace.at(support, self.from + (self.to - self.from) * s)
@@ -83,6 +91,7 @@ impl Strand {
         self.vertices.reverse();
         if let Some(part) = &mut self.part {
             std::mem::swap(&mut part.from, &mut part.to);
+            part.ends.reverse();
         }
         if let Path::Exact(curves) = &mut self.path {
             curves.reverse();
@@ -103,19 +112,19 @@ impl Strand {
         if s == 1.0 {
             return self.end;
         }
-        self.pulled(support, part, s, part.at(support, s))
+        self.pulled(part, s, part.at(support, s))
     }
 
     /// The pre-image at `s`, carried along with the ends.
-    fn pulled(&self, support: &Support, part: &Part, s: f64, raw: DVec2) -> DVec2 {
-        raw + (self.start - part.at(support, 0.0)) * (1.0 - s) + (self.end - part.at(support, 1.0)) * s
+    fn pulled(&self, part: &Part, s: f64, raw: DVec2) -> DVec2 {
+        raw + (self.start - part.ends[0]) * (1.0 - s) + (self.end - part.ends[1]) * s
     }
 
     /// [`Strand::at`] and the pre-image that it was pulled from, strictly between the ends.
     pub fn at_and_raw(&self, support: &Support, s: f64) -> (DVec2, Option<DVec2>) {
         let Some(part) = &self.part else { return (self.at(support, s), None) };
         let raw = part.at(support, s);
-        (self.pulled(support, part, s, raw), Some(raw))
+        (self.pulled(part, s, raw), Some(raw))
     }
 
     /// The point of the surface nearest to the edge at `s`, wherever the strand's ends were pulled.
@@ -171,18 +180,10 @@ impl Strand {
         }
     }
 
-    /// The fraction between `a` and `b` at which coordinate `axis` is `value`, by bisection; it
-    /// must be below on one side and not below on the other.
-    pub fn solve(&self, support: &Support, axis: usize, value: f64, (mut a, mut b): (f64, f64)) -> f64 {
-        let rising = self.at(support, a)[axis] < value;
-        for _ in 0..60 {
-            let m = 0.5 * (a + b);
-            if m <= a || m >= b {
-                break;
-            }
-            if (self.at(support, m)[axis] < value) == rising { a = m } else { b = m }
-        }
-        0.5 * (a + b)
+    /// The fraction between `a` and `b` at which coordinate `axis` is `value`, to `1e-13` of the way between
+    /// them; it must be below on one side and not below on the other.
+    pub fn solve(&self, support: &Support, axis: usize, value: f64, (a, b): (f64, f64)) -> f64 {
+        bracketed(|s| self.at(support, s)[axis] - value, a, b, 1e-13 * (b - a))
     }
 
     /// The two parts before and after `s`; at the cut coordinate `axis` is exactly `value`.
@@ -209,6 +210,8 @@ impl Strand {
         if let (Some(l), Some(r)) = (&mut left.part, &mut right.part) {
             let cut = l.from + (l.to - l.from) * s;
             (l.to, r.from) = (cut, cut);
+            l.ends[1] = l.trace.at(support, cut);
+            r.ends[0] = l.ends[1];
         }
         (left, right)
     }

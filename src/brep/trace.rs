@@ -57,7 +57,6 @@ impl Trace {
             this.step(support, s, p, 24);
             hint = Some(p);
         }
-        this.gap = this.samples.iter().map(|(s, p)| support.point(*p).distance(edge.point(*s))).fold(0.0, f64::max);
         this.add_poles(support, poles, (from, to));
         this
     }
@@ -67,12 +66,14 @@ impl Trace {
         Self { edge: edge.clone(), samples, at_pole: [false; 2], gap, accept: gap }
     }
 
-    /// Inverts the point at `s`; learns how far from the support the edge may be.
+    /// Inverts the point at `s`, which becomes a sample; learns how far from the support the edge may be.
     fn look(&mut self, support: &Support, s: f64, hint: Option<DVec2>) -> DVec2 {
         let point = self.edge.point(s);
         let p = support.invert(point, hint, self.accept);
         // a residual above `accept` means that the search was made, and is the truth
-        self.accept = self.accept.max(1.5 * support.point(p).distance(point));
+        let distance = support.point(p).distance(point);
+        self.accept = self.accept.max(1.5 * distance);
+        self.gap = self.gap.max(distance);
         p
     }
 
@@ -143,9 +144,10 @@ impl Trace {
         &self.samples[usize::from(self.at_pole[0])..n - usize::from(self.at_pole[1])]
     }
 
-    /// The coordinate that changes least along the trace: its axis, its mean, and how far in mm any
-    /// sample would move to have it exactly. `None` when neither is a number.
-    pub fn constant(&self, support: &Support) -> Option<(usize, f64, f64)> {
+    /// The coordinate that changes least along the trace: its axis, its mean, how far in mm any sample would
+    /// move to have it exactly, and the largest speed of the surface along it, mm a unit. `None` when neither
+    /// coordinate is a number.
+    pub fn constant(&self, support: &Support) -> Option<(usize, f64, f64, f64)> {
         let samples: Vec<(DVec2, DVec2)> = self.regular().iter().map(|(_, p)| (*p, support.speed(*p))).collect();
         let spread = |axis: usize| {
             let mass: f64 = samples.iter().map(|(_, speed)| speed[axis].powi(2)).sum();
@@ -155,6 +157,7 @@ impl Trace {
         };
         let found = [spread(0), spread(1)];
         let axis = usize::from(found[1].0 < found[0].0 || found[0].0.is_nan());
-        found[axis].0.is_finite().then_some((axis, found[axis].1, found[axis].0))
+        let fastest = samples.iter().map(|(_, speed)| speed[axis]).fold(0.0, f64::max);
+        found[axis].0.is_finite().then_some((axis, found[axis].1, found[axis].0, fastest))
     }
 }

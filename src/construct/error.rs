@@ -38,6 +38,9 @@ pub enum ConstructError {
     /// Something that must be closed is not.
     #[error("{what} is open by {gap:e}")]
     Open { what: &'static str, gap: f64 },
+    /// Something that must lie in a plane does not.
+    #[error("{what} is {gap:e} out of its plane")]
+    NotPlanar { what: &'static str, gap: f64 },
     /// A curve that meets itself.
     #[error("{what} crosses itself at parameters {first} and {second}")]
     SelfCrossing { what: &'static str, first: f64, second: f64 },
@@ -68,6 +71,9 @@ pub enum ConstructError {
     /// The same, at a point of a surface.
     #[error("the surface folds at ({u}, {v}): it reaches {reach:e} towards a centre of curvature {radius:e} away")]
     FoldsAt { u: f64, v: f64, reach: f64, radius: f64 },
+    /// A line that does not meet the surface, or touches it only.
+    #[error("{what} misses the surface, or reaches its border or outline, at {parameter}")]
+    Misses { what: &'static str, parameter: f64 },
     /// A tolerance that the largest allowed number of pieces does not reach.
     #[error("a deviation of {asked:e} was asked for and {reached:e} reached with {pieces} pieces")]
     Bound { asked: f64, reached: f64, pieces: usize },
@@ -83,6 +89,15 @@ pub enum ConstructError {
     /// A table or a picture that holds no grid; `source_name` says where.
     #[error("{source_name}: {message}")]
     Data { source_name: String, message: String },
+    /// A vertex of a control mesh.
+    #[error("vertex {vertex} of the mesh (from 0) {what}")]
+    Vertex { vertex: usize, what: &'static str },
+    /// An edge of a control mesh.
+    #[error("the edge between vertices {first} and {second} of the mesh (from 0) {what}")]
+    Edge { first: u32, second: u32, what: &'static str },
+    /// A face of a control mesh.
+    #[error("face {face} of the mesh (from 0) {what}")]
+    Polygon { face: usize, what: &'static str },
     /// Parameters so uneven that rounding leaves no solution.
     #[error(transparent)]
     System(#[from] Singular),

@@ -16,6 +16,9 @@
 //! | closed control polygons | [`polyloop`] |
 //! | equations `S(u, v)`, as closures or as text | [`fit`] |
 //! | grids of points, pictures of heights | [`grid`] |
+//! | outlines cast on a surface | [`project()`] |
+//! | dimensions: blocks, balls, gears, a pot | [`shapes`] |
+//! | control meshes | [`subdivide`] |
 //!
 //! | answer | meaning |
 //! |---|---|
@@ -24,6 +27,7 @@
 //!
 //! Surfaces are made in their natural frame (a lathe turns about `z`) and placed by an affine map, which is exact.
 
+mod capped;
 mod compat;
 mod coons;
 pub mod curve;
@@ -38,11 +42,15 @@ mod loft;
 mod motion;
 mod offset;
 pub mod polyloop;
+mod project;
 mod ruled;
+pub mod shapes;
 mod solid;
+pub mod subdivide;
 mod sweep;
 mod tube;
 
+pub use capped::capped_solid;
 pub use compat::compatible;
 pub use coons::{Boundary, coons};
 pub use error::ConstructError;
@@ -51,8 +59,9 @@ pub use gordon::{Network, gordon};
 pub use lathe::lathe;
 pub use loft::loft;
 pub use offset::offset;
+pub use project::{Projected, project};
 pub use ruled::ruled;
-pub use solid::{Chain, extruded_solid, lathed_solid};
+pub use solid::{Chain, extruded_solid, lathed_solid, trim_loops};
 pub use sweep::Sweep;
 pub use tube::tube;
 

@@ -13,7 +13,7 @@
 
 use super::{ConstructError, extrude, lathe};
 use crate::math::orientation::orientation;
-use crate::model::{Face, Part, SurfaceKind, TrimLoop};
+use crate::model::{Part, SurfaceKind, TrimLoop};
 use crate::spline::{BSpline, Control, Surface};
 use glam::{DVec2, DVec3, DVec4};
 use std::f64::consts::TAU;
@@ -41,7 +41,7 @@ pub fn extruded_solid(profile: &[Chain], vector: DVec3) -> Result<Part, Construc
     }
     let profile = Profile::new(profile)?;
     let up = vector.z > 0.0;
-    let mut solid = Solid::default();
+    let mut solid = Part { closed: true, ..Part::default() };
     for c in profile.chains.iter().flatten() {
         let space = c.points().iter().map(|p| DVec4::new(p.x, p.y, 0.0, p.z)).collect();
         let space = BSpline::new(c.degree(), c.knots().to_vec(), space)?;
@@ -50,7 +50,7 @@ pub fn extruded_solid(profile: &[Chain], vector: DVec3) -> Result<Part, Construc
     for (origin, outward) in [(DVec3::ZERO, !up), (vector, up)] {
         solid.add(SurfaceKind::Plane, profile.plane(origin, DVec3::X, DVec3::Y)?, profile.loops.clone(), outward);
     }
-    Ok(solid.part)
+    Ok(solid)
 }
 
 /// The solid that `profile`, in coordinates `(radius, height)`, sweeps out in a turn by `angle` about `z`. Exact.
@@ -69,7 +69,7 @@ pub fn lathed_solid(profile: &[Chain], angle: f64) -> Result<Part, ConstructErro
     }
     // turned the half plane opposite, every normal is
     let right = most > -least;
-    let mut solid = Solid::default();
+    let mut solid = Part { closed: true, ..Part::default() };
     for c in profile.chains.iter().flatten() {
         match lathe(c, angle) {
             Err(ConstructError::OnAxis) => {}
@@ -83,25 +83,15 @@ pub fn lathed_solid(profile: &[Chain], angle: f64) -> Result<Part, ConstructErro
             solid.add(SurfaceKind::Plane, profile.plane(DVec3::ZERO, out, DVec3::Z)?, profile.loops.clone(), outward);
         }
     }
-    Ok(solid.part)
+    Ok(solid)
 }
 
-/// Faces so far.
-struct Solid {
-    part: Part,
-}
-
-impl Default for Solid {
-    fn default() -> Self {
-        Self { part: Part { closed: true, ..Part::default() } }
-    }
-}
-
-impl Solid {
-    fn add(&mut self, kind: SurfaceKind, surface: Surface, loops: Vec<TrimLoop>, same_sense: bool) {
-        let id = self.part.faces.len() as u32 + 1;
-        self.part.faces.push(Face { id, kind, surface, loops, same_sense, colour: None });
-    }
+/// Closed chains of curves in `(u, v)` as trim loops, in the order given: what lies inside an odd number of them is kept.
+///
+/// # Errors
+/// No curve; a chain that is open or crosses itself or another.
+pub fn trim_loops(chains: &[Chain]) -> Result<Vec<TrimLoop>, ConstructError> {
+    Ok(Profile::new(chains)?.loops)
 }
 
 /// Oriented chains, and the same as trim loops.

@@ -240,12 +240,17 @@ fn stretches(sheet: &Sheet, pieces: &[Bezier<DVec3>], order: &[(DVec3, usize)], 
 
 /// Finds the edges: stretches in order, each with the nearest free one between the same vertices.
 fn pair(out: &mut Boundaries, reach: f64) {
-    let mut between: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
-    for (i, s) in out.stretches.iter().enumerate() {
-        between.entry(s.ends).or_default().push(i);
-    }
     out.edge_of = vec![usize::MAX; out.stretches.len()];
-    for first in 0..out.stretches.len() {
+    let all: Vec<usize> = (0..out.stretches.len()).collect();
+    pair_of(out, &all, reach);
+}
+
+fn pair_of(out: &mut Boundaries, some: &[usize], reach: f64) {
+    let mut between: HashMap<[usize; 2], Vec<usize>> = HashMap::new();
+    for &i in some {
+        between.entry(out.stretches[i].ends).or_default().push(i);
+    }
+    for &first in some {
         if out.edge_of[first] != usize::MAX {
             continue;
         }
@@ -271,9 +276,58 @@ fn apart(a: &BSpline<DVec4>, b: &BSpline<DVec4>) -> f64 {
 }
 
 impl Boundaries {
+    /// Joins edges that have one stretch only, where a file's edges lie off its surfaces: their ends within `loose` of
+    /// each other become one vertex, those that are within `loose` of a point go, and the others are paired again.
+    pub fn mend(&mut self, loose: f64) {
+        let single: Vec<usize> = self.edges.iter().filter(|e| e.second.is_none()).map(|e| e.first).collect();
+        let mut ends: Vec<usize> = single.iter().flat_map(|s| self.stretches[*s].ends).collect();
+        ends.sort_by(|a, b| self.vertices[*a].x.total_cmp(&self.vertices[*b].x));
+        ends.dedup();
+        let mut to: HashMap<usize, usize> = HashMap::new();
+        for (k, &a) in ends.iter().enumerate() {
+            let p = self.vertices[a];
+            let own = *to.entry(a).or_insert(a);
+            for &b in ends[k + 1..].iter().take_while(|b| self.vertices[**b].x <= p.x + loose) {
+                let distance = self.vertices[b].distance(p);
+                // only to the first of a cluster, so that none grows along a chain
+                if distance <= loose && !to.contains_key(&b) && own == a {
+                    to.insert(b, a);
+                    self.deviation = self.deviation.max(distance);
+                }
+            }
+        }
+        let moved = |v: usize| to.get(&v).copied().unwrap_or(v);
+        for s in &mut self.stretches {
+            s.ends = s.ends.map(moved);
+        }
+        let is_point = |s: &Stretch| {
+            let (a, b) = s.both.space.domain();
+            let at = |k: usize| s.both.space.point(a + (b - a) * k as f64 / CHORDS as f64);
+            s.ends[0] == s.ends[1] && (0..=CHORDS).all(|k| at(k).distance(self.vertices[s.ends[0]]) <= loose)
+        };
+        let gone: Vec<usize> = single.iter().copied().filter(|s| is_point(&self.stretches[*s])).collect();
+        for l in self.loops.iter_mut().flatten() {
+            l.retain(|s| !gone.contains(s));
+        }
+        self.edges.retain(|e| e.second.is_some());
+        self.edge_of.fill(usize::MAX);
+        for (k, e) in self.edges.iter().enumerate() {
+            for s in [Some(e.first), e.second].into_iter().flatten() {
+                self.edge_of[s] = k;
+            }
+        }
+        let rest: Vec<usize> = single.into_iter().filter(|s| !gone.contains(s)).collect();
+        pair_of(self, &rest, loose);
+    }
+
+    /// Edges of one stretch.
+    pub fn single(&self) -> usize {
+        self.edges.iter().filter(|e| e.second.is_none()).count()
+    }
+
     /// Every edge has two stretches.
     pub fn closed(&self) -> bool {
-        self.edges.iter().all(|e| e.second.is_some())
+        self.single() == 0
     }
 
     /// Whether the edge's second stretch runs against its first.

@@ -9,7 +9,7 @@ use super::{Frame, WRITE_TO_READ};
 use crate::buffers::SolidBuffers;
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, barrier};
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
-use crate::passes::{resolve, solid_blocks, solid_events, solid_fold, solid_rects, solid_tiles};
+use crate::passes::{resolve, solid_blocks, solid_cst, solid_events, solid_fold, solid_rects, solid_tiles};
 use crate::scene::{SolidData, Solids};
 
 /// The passes of Boolean solids.
@@ -18,7 +18,13 @@ pub(super) struct SolidPasses {
     blocks: solid_blocks::SolidBlocks,
     tiles: solid_tiles::SolidTiles,
     fold: solid_fold::SolidFold,
-    events: solid_events::SolidEvents,
+    way: Way,
+}
+
+/// Who finds the faces.
+enum Way {
+    Events(solid_events::SolidEvents),
+    Cst(solid_cst::SolidCst),
 }
 
 impl SolidPasses {
@@ -30,7 +36,11 @@ impl SolidPasses {
             blocks: solid_blocks::SolidBlocks::new(device)?,
             tiles: solid_tiles::SolidTiles::new(device)?,
             fold: solid_fold::SolidFold::new(device)?,
-            events: solid_events::SolidEvents::new(device, tori, VISIBILITY_FORMAT, DEPTH_FORMAT)?,
+            way: if solids.order.is_empty() {
+                Way::Events(solid_events::SolidEvents::new(device, tori, VISIBILITY_FORMAT, DEPTH_FORMAT)?)
+            } else {
+                Way::Cst(solid_cst::SolidCst::new(device, tori, VISIBILITY_FORMAT, DEPTH_FORMAT)?)
+            },
         }))
     }
 }
@@ -59,7 +69,7 @@ impl<'a> Frame<'a> {
     }
 
     /// Which leaves each tile sees, then the pixels.
-    pub(super) fn solid_events(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>) {
+    pub(super) fn solid_faces(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>) {
         let (p, s, t) = (parts.passes, parts.scene, parts.buffers);
         let (w, r) = WRITE_TO_READ;
         let rects = solid_rects::Bindings {
@@ -69,7 +79,7 @@ impl<'a> Frame<'a> {
             rects: &t.rects,
         };
         p.rects.record(cmd, &rects, self.buffers.counts.leaves);
-        barrier::buffers(cmd, &[(&t.rects, w, r)]);
+        barrier::buffers(cmd, &[(&t.rects, w, r | Access::VERTEX_READ)]);
 
         let blocks = solid_blocks::Bindings {
             frame: self.constants,
@@ -120,23 +130,43 @@ impl<'a> Frame<'a> {
             ],
         );
 
-        let events = solid_events::Bindings {
-            frame: self.constants,
-            leaves: &s.leaves,
-            leaf_surfaces: &s.leaf_surfaces,
-            surfaces: &s.surfaces,
-            surface_centres: parts.centres.surfaces,
-            tile_starts: &t.tile_starts,
-            tile_leaves: &t.tile_leaves,
-            tile_entries: &t.tile_entries,
-        };
         let b = self.buffers;
         let seen = b.others.as_ref().unwrap_or(&b.visibility);
         // meshes came before
         let drawn = self.scene.meshes.is_some();
         let colour = Attachment { image: seen, load: if drawn { Load::Keep } else { Load::ColourU32([0; 4]) } };
         let depth = Attachment { image: &b.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
-        p.events.record(cmd, &events, (colour, depth));
+        match (&p.way, &s.order) {
+            (Way::Cst(cst), Some((order, drawn))) => {
+                let cst_bindings = solid_cst::Bindings {
+                    frame: self.constants,
+                    leaves: &s.leaves,
+                    leaf_surfaces: &s.leaf_surfaces,
+                    surfaces: &s.surfaces,
+                    surface_centres: parts.centres.surfaces,
+                    tile_starts: &t.tile_starts,
+                    tile_leaves: &t.tile_leaves,
+                    tile_entries: &t.tile_entries,
+                    rects: &t.rects,
+                    order,
+                };
+                cst.record(cmd, &cst_bindings, (colour, depth), *drawn);
+            }
+            (Way::Events(events), _) => {
+                let bindings = solid_events::Bindings {
+                    frame: self.constants,
+                    leaves: &s.leaves,
+                    leaf_surfaces: &s.leaf_surfaces,
+                    surfaces: &s.surfaces,
+                    surface_centres: parts.centres.surfaces,
+                    tile_starts: &t.tile_starts,
+                    tile_leaves: &t.tile_leaves,
+                    tile_entries: &t.tile_entries,
+                };
+                events.record(cmd, &bindings, (colour, depth));
+            }
+            (Way::Cst(_), None) => unreachable!("the pass is made of the order"),
+        }
         barrier::images(
             cmd,
             &[(seen, Access::COLOUR_WRITE, Access::COLOUR_WRITE), (&b.depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],

@@ -74,7 +74,7 @@ impl Buffer {
             unsafe { device.raw().destroy_buffer(handle, None) }
         })?;
         device.set_name(handle, info.name);
-        let registration = device.register(info.name);
+        let registration = device.register(info.name, memory.bytes());
         Ok(Self { handle, bytes, name: info.name.to_owned(), memory, registration })
     }
 

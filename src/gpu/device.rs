@@ -45,7 +45,7 @@ struct Inner {
     quirks: Quirks,
     allocator: Arc<Mutex<Allocator>>,
     pool_bytes: [AtomicI64; Pool::ALL.len()],
-    objects: Mutex<BTreeMap<u64, String>>,
+    objects: Mutex<BTreeMap<u64, (String, u64)>>,
     next_object: AtomicU64,
 }
 
@@ -123,6 +123,11 @@ impl Device {
 
     /// Names of the live buffers, images and pipelines, oldest first.
     pub fn objects(&self) -> Vec<String> {
+        lock(&self.0.objects).values().map(|(name, _)| name.clone()).collect()
+    }
+
+    /// The same with the bytes of memory that each takes; 0 for a pipeline.
+    pub fn object_bytes(&self) -> Vec<(String, u64)> {
         lock(&self.0.objects).values().cloned().collect()
     }
 
@@ -166,10 +171,10 @@ impl Device {
         let _ = unsafe { debug.set_debug_utils_object_name(&info) };
     }
 
-    /// Lists a named object until the returned entry is dropped.
-    pub(crate) fn register(&self, name: &str) -> Registration {
+    /// Lists a named object of so many bytes until the returned entry is dropped.
+    pub(crate) fn register(&self, name: &str, bytes: u64) -> Registration {
         let key = self.0.next_object.fetch_add(1, Ordering::Relaxed);
-        lock(&self.0.objects).insert(key, name.to_owned());
+        lock(&self.0.objects).insert(key, (name.to_owned(), bytes));
         Registration { device: self.clone(), key }
     }
 }

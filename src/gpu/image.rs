@@ -81,7 +81,7 @@ impl Image {
         device.set_name(handle, info.name);
         device.set_name(view, info.name);
         let (size, format, name) = (info.size, info.format, info.name.to_owned());
-        let registration = Some(device.register(info.name));
+        let registration = Some(device.register(info.name, memory.bytes()));
         Ok(Self { handle, view, size, format, aspect, name, memory: Some(memory), registration })
     }
 

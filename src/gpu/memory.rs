@@ -58,6 +58,11 @@ pub(crate) struct Memory {
 }
 
 impl Memory {
+    /// Its size.
+    pub(crate) fn bytes(&self) -> u64 {
+        self.allocation.size()
+    }
+
     pub(crate) fn new(
         device: &Device,
         name: &str,

@@ -74,7 +74,7 @@ impl Pipeline {
         name: &str,
     ) -> Self {
         device.set_name(handle, name);
-        let registration = device.register(name);
+        let registration = device.register(name, 0);
         Self { handle, layout, point, bindings: bindings.to_vec(), push_bytes, name: name.to_owned(), registration }
     }
 

@@ -2,9 +2,9 @@
 
 use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
 use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
-use crate::model::{Camera, Model};
-use crate::picture::{FrameSettings, FrameStats, Outputs, Picture};
-use crate::renderer::{FrameInput, RenderError, Renderer, TargetFormats, Targets};
+use crate::model::{Camera, LoopAt, Model, TrimLoop};
+use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
+use crate::renderer::{CloseUp, EditError, FrameInput, RenderError, Renderer, TargetFormats, Targets};
 use ash::vk;
 use bytemuck::Pod;
 use std::mem::ManuallyDrop;
@@ -22,7 +22,10 @@ pub struct HeadlessRenderer {
     targets: ManuallyDrop<Option<TargetImages>>,
     device: ManuallyDrop<HeadlessDevice>,
     aovs: bool,
-    model: Option<Model>,
+    model: Option<(Model, SceneSettings)>,
+    close_up: CloseUp,
+    /// The renderer holds what one view saw close up, not the model.
+    close: bool,
 }
 
 /// Images of one size, and the buffers that they are copied to.
@@ -45,6 +48,8 @@ impl HeadlessRenderer {
             device: ManuallyDrop::new(device),
             aovs: false,
             model: None,
+            close_up: CloseUp::default(),
+            close: false,
         })
     }
 
@@ -53,8 +58,33 @@ impl HeadlessRenderer {
     /// # Errors
     /// [`HeadlessError::Gpu`].
     pub fn upload(&mut self, model: &Model) -> Result<(), HeadlessError> {
-        self.model = Some(model.clone());
-        Ok(self.renderer.upload(model)?)
+        self.upload_with(model, SceneSettings::default())
+    }
+
+    /// As [`upload`](Self::upload), with settings that hold as long as the model.
+    ///
+    /// # Errors
+    /// [`HeadlessError::Gpu`].
+    pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), HeadlessError> {
+        self.model = Some((model.clone(), settings));
+        self.close_up = CloseUp::new(model);
+        self.close = false;
+        Ok(self.renderer.upload_with(model, settings)?)
+    }
+
+    /// Replaces a trim loop of the model, which was uploaded as editable; see [`Renderer::edit_loop`].
+    ///
+    /// # Errors
+    /// [`EditError`]; the scene is as it was.
+    ///
+    /// # Panics
+    /// When no model was uploaded.
+    pub fn edit_loop(&mut self, at: LoopAt, new: &TrimLoop) -> Result<(), EditError> {
+        self.renderer.edit_loop(at, new)?;
+        if let Some((model, _)) = &mut self.model {
+            model.parts[at.part].faces[at.face].loops[at.trim_loop] = new.clone();
+        }
+        Ok(())
     }
 
     /// Renders one picture and waits for it.
@@ -72,9 +102,11 @@ impl HeadlessRenderer {
     ) -> Result<Picture, HeadlessError> {
         camera.check().map_err(RenderError::from)?;
         self.prepare(camera.size, outputs != Outputs::default())?;
-        let mut retries = 0;
+        self.approach(camera)?;
+        let (mut retries, mut edit_bytes) = (0, 0);
         let stats = loop {
             let report = self.frame(camera, settings)?;
+            edit_bytes += report.1.edit_bytes;
             if report.0 {
                 break report.1;
             }
@@ -83,7 +115,7 @@ impl HeadlessRenderer {
                 return Err(HeadlessError::NeverComplete);
             }
         };
-        Ok(self.read(camera.size, outputs, FrameStats { retries, ..stats }))
+        Ok(self.read(camera.size, outputs, FrameStats { retries, edit_bytes, ..stats }))
     }
 
     /// Validation messages so far.
@@ -94,6 +126,11 @@ impl HeadlessRenderer {
     /// Names of the buffers, images and pipelines that exist.
     pub fn objects(&self) -> Vec<String> {
         self.renderer.objects()
+    }
+
+    /// The same with the bytes that each takes.
+    pub fn object_bytes(&self) -> Vec<(String, u64)> {
+        self.device.device().object_bytes()
     }
 
     /// Frees everything and returns all validation messages, those about leaks included.
@@ -133,16 +170,29 @@ impl HeadlessRenderer {
     fn prepare(&mut self, size: (u32, u32), aovs: bool) -> Result<(), HeadlessError> {
         if aovs != self.aovs {
             let mut renderer = Renderer::on(self.device.device(), formats(aovs), 1)?;
-            let Some(model) = &self.model else { panic!("upload a model before rendering") };
-            renderer.upload(model)?;
+            let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
+            renderer.upload_with(model, *settings)?;
             *self.renderer = renderer;
             self.aovs = aovs;
+            self.close = false;
             *self.targets = None;
         }
         if self.targets.as_ref().is_none_or(|t| t.colour.0.size() != size) {
             *self.targets = None;
             *self.targets = Some(TargetImages::new(self.device.device(), size, aovs)?);
         }
+        Ok(())
+    }
+
+    /// Has the renderer hold what resolves this view: the model, or what is seen of it close up.
+    fn approach(&mut self, camera: &Camera) -> Result<(), HeadlessError> {
+        let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
+        // loops that are being edited stay where they are
+        let near = if settings.editable { None } else { self.close_up.of(model, camera) };
+        if near.is_some() || self.close {
+            self.renderer.upload_with(near.as_ref().unwrap_or(model), *settings)?;
+        }
+        self.close = near.is_some();
         Ok(())
     }
 

@@ -43,6 +43,9 @@ pub enum ImportError {
     /// The engine's own form, of another version or damaged.
     #[error("{file}: {source}")]
     Native { file: String, source: crate::model::native::NativeError },
+    /// A scene that is not one.
+    #[error("{file}:{line}:{column}: {message}")]
+    Scene { file: String, line: usize, column: usize, message: String },
     /// Text that is not a Boolean solid's, or a node that has no exact counterpart.
     #[error("{file}:{line}: {message}")]
     Solid { file: String, line: usize, message: String },

@@ -5,6 +5,7 @@
 //!                                                    ├▶ obj, bv ─────┤
 //!                                                    ├▶ rhino ───────┤
 //!                                                    ├▶ scad, brlcad ┤  Boolean solids
+//!                                                    ├▶ scene ───────┤  by the file's name
 //!                                                    └▶ native ──────┘
 //! ```
 //!
@@ -14,6 +15,7 @@
 
 mod brlcad;
 mod bv;
+mod camera;
 mod chain;
 mod colour;
 mod error;
@@ -28,10 +30,14 @@ mod report;
 #[cfg(feature = "rhino")]
 mod rhino;
 mod scad;
+#[cfg(feature = "scene")]
+mod scene;
 mod solid;
 mod step;
 
+pub use camera::{Lens, NamedCamera, PictureSettings, Stance};
 pub use error::ImportError;
+pub use obj::cage::Cage;
 pub(crate) use progress::FaceCount;
 pub use progress::{Options, Stage};
 pub(crate) use report::Warnings;
@@ -51,6 +57,10 @@ pub struct Import {
     pub warnings: Vec<Warning>,
     /// Counts for people.
     pub report: ImportReport,
+    /// Cameras that the file names; only scenes have any.
+    pub cameras: Vec<NamedCamera>,
+    /// What the file asks of its picture; only scenes ask.
+    pub picture: PictureSettings,
 }
 
 /// A gzip stream may expand by this factor at most. STEP text shrinks 4 to 12 times; deflate itself
@@ -77,16 +87,7 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
 /// As [`open`].
 pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportError> {
     let name = path.display().to_string();
-    let unreadable = |source| ImportError::Read { file: name.clone(), source };
-    let size = std::fs::metadata(path).map_err(unreadable)?.len();
-    if size > u64::from(u32::MAX) {
-        return Err(ImportError::TooLarge { file: name });
-    }
-    options.tell(Stage::Read { bytes: size });
-    let mut bytes = std::fs::read(path).map_err(unreadable)?;
-    if bytes.starts_with(&[0x1f, 0x8b]) {
-        bytes = inflate(&bytes, &name)?;
-    }
+    let bytes = load(path, &name, options)?;
     options.tell(Stage::Parse { bytes: bytes.len() as u64 });
     if native::recognise(&bytes) {
         return native(&bytes, &name);
@@ -115,6 +116,8 @@ pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportErr
         brlcad(&bytes, &name)
     } else if named(&[".bv", ".bv.gz"]) {
         bv(&bytes, &name)
+    } else if named(&[".toml", ".toml.gz"]) {
+        scene(&bytes, &name, path.parent())
     } else if named(&[".obj", ".obj.gz"]) {
         obj(&bytes, &name, path.parent())
     } else if scad::recognise(text) {
@@ -128,6 +131,18 @@ pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportErr
     } else {
         Err(ImportError::Format { file: name })
     }
+}
+
+/// The bytes of a file, gzip undone.
+fn load(path: &Path, name: &str, options: &Options<'_>) -> Result<Vec<u8>, ImportError> {
+    let unreadable = |source| ImportError::Read { file: name.to_owned(), source };
+    let size = std::fs::metadata(path).map_err(unreadable)?.len();
+    if size > u64::from(u32::MAX) {
+        return Err(ImportError::TooLarge { file: name.to_owned() });
+    }
+    options.tell(Stage::Read { bytes: size });
+    let bytes = std::fs::read(path).map_err(unreadable)?;
+    if bytes.starts_with(&[0x1f, 0x8b]) { inflate(&bytes, name) } else { Ok(bytes) }
 }
 
 /// Reads ISO 10303-21 text (STEP AP203, AP214, AP242); `name` is the file's name in messages.
@@ -146,12 +161,50 @@ pub fn native(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     native::read(bytes, name)
 }
 
+/// Reads a scene file, see `docs/scene.md`; other files are looked for in `folder`, if there is one.
+///
+/// # Errors
+/// [`ImportError::Scene`] names the line and column of the first thing that is wrong, or says that the library was
+/// built without the feature `scene`.
+pub fn scene(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
+    #[cfg(feature = "scene")]
+    return scene::read(bytes, name, folder);
+    #[cfg(not(feature = "scene"))]
+    return Err(ImportError::Scene {
+        file: name.to_owned(),
+        line: 1,
+        column: 1,
+        message: format!(
+            "{} bytes of a scene{}, for which the feature `scene` is not built in",
+            bytes.len(),
+            folder.map(|f| format!(" in {}", f.display())).unwrap_or_default()
+        ),
+    });
+}
+
 /// Reads Wavefront OBJ text; materials are looked for in `folder`, if there is one.
 ///
 /// # Errors
 /// [`ImportError::Nothing`] when the text holds no vertex.
 pub fn obj(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
     obj::read(bytes, name, folder)
+}
+
+/// Reads the polygons of Wavefront OBJ text as control meshes, for subdivision; one an object.
+///
+/// # Errors
+/// [`ImportError::Solid`] names the first line that cannot be read, [`ImportError::Nothing`] a file without polygons.
+pub fn cages(bytes: &[u8], name: &str) -> Result<Vec<Cage>, ImportError> {
+    obj::cage::read(bytes, name)
+}
+
+/// Reads a file of polygons as control meshes; gzip is undone first.
+///
+/// # Errors
+/// As [`cages`], and when the file cannot be read.
+pub fn open_cages(path: &Path) -> Result<Vec<Cage>, ImportError> {
+    let name = path.display().to_string();
+    cages(&load(path, &name, &Options::default())?, &name)
 }
 
 /// Reads a BezierView `.bv` file.
@@ -254,7 +307,7 @@ mod tests {
     fn missing_and_unknown_files_are_named() {
         let error = open(Path::new("no/such/file.step")).unwrap_err();
         assert!(error.to_string().contains("no/such/file.step"));
-        let manifest = Path::new(env!("CARGO_MANIFEST_DIR")).join("Cargo.toml");
-        assert!(matches!(open(&manifest), Err(ImportError::Format { .. })));
+        let script = Path::new(env!("CARGO_MANIFEST_DIR")).join("build.rs");
+        assert!(matches!(open(&script), Err(ImportError::Format { .. })));
     }
 }

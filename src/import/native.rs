@@ -16,5 +16,5 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
         occurrences: model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect(),
         ..ImportReport::default()
     };
-    Ok(Import { model, warnings: Vec::new(), report })
+    Ok(Import { model, report, ..Import::default() })
 }

@@ -30,6 +30,17 @@ pub struct TrimLoop {
     curves: Vec<Vec<DVec3>>,
 }
 
+/// A trim loop of a model, by numbers.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+pub struct LoopAt {
+    /// In [`Model::parts`](super::Model::parts).
+    pub part: usize,
+    /// In the part's faces.
+    pub face: usize,
+    /// In the face's loops.
+    pub trim_loop: usize,
+}
+
 /// One face.
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "super::stored::FaceData")]
@@ -61,6 +72,9 @@ pub enum FaceError {
     /// Not finite, or a weight that is not positive.
     #[error("trim curve {curve} has a control point that is not finite or a weight that is not positive")]
     ControlPoint { curve: usize },
+    /// There is no such control point.
+    #[error("trim curve {curve} has no control point {point}, or there is no such curve")]
+    NoPoint { curve: usize, point: usize },
     /// Degree 0, or above [`MAX_DEGREE`].
     #[error("trim curve {curve} has degree {degree}, which is not between 1 and {MAX_DEGREE}")]
     Degree { curve: usize, degree: usize },
@@ -136,6 +150,41 @@ impl TrimLoop {
     /// The curves in order.
     pub fn curves(&self) -> impl ExactSizeIterator<Item = Bezier<DVec3>> + '_ {
         self.curves.iter().map(|points| Bezier { points: points.clone() })
+    }
+
+    /// The loop with one control point moved to `to` in `(u, v)`; its weight stays. The last one of a curve is
+    /// the first of the next: both move.
+    ///
+    /// # Errors
+    /// [`FaceError::NoPoint`], or [`FaceError::ControlPoint`] for a place that is none.
+    pub fn with_point(&self, curve: usize, point: usize, to: DVec2) -> Result<Self, FaceError> {
+        let mut curves = self.curves.clone();
+        let count = curves.len();
+        let moved = curves.get_mut(curve).and_then(|c| c.get_mut(point)).ok_or(FaceError::NoPoint { curve, point })?;
+        *moved = DVec3::from_point(to, moved.z);
+        // the start of a curve is made from the end before, as in `new`
+        let end = if point == 0 { (curve + count - 1) % count } else { curve };
+        if point == 0 || point + 1 == curves[curve].len() {
+            let last = curves[end].last_mut().expect("curves have points");
+            *last = DVec3::from_point(to, last.z);
+            let joint = last.point();
+            let start = &mut curves[(end + 1) % count][0];
+            *start = DVec3::from_point(joint, start.z);
+        }
+        check_curves(&curves)?;
+        Ok(Self { curves })
+    }
+
+    /// The loop moved by `step` in `(u, v)`.
+    ///
+    /// # Errors
+    /// [`FaceError`] where it is no step.
+    pub fn translated(&self, step: DVec2) -> Result<Self, FaceError> {
+        let point = |p: &DVec3| DVec3::from_point(p.point() + step, p.z);
+        let curves = self.curves.iter().map(|c| Bezier { points: c.iter().map(point).collect() }).collect();
+        // two homogeneous forms of one point may round apart
+        let (lo, hi) = self.bounds();
+        Self::new(curves, STORED_GAP * (lo.abs().max(hi.abs()) + step.abs()))
     }
 
     /// Twice the signed area of the control polygons' enclosed region: positive when the loop runs

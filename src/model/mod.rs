@@ -24,7 +24,7 @@ mod solid;
 mod stored;
 
 pub use camera::{Camera, CameraError, Projection};
-pub use face::{Face, FaceError, SurfaceKind, TrimLoop};
+pub use face::{Face, FaceError, LoopAt, SurfaceKind, TrimLoop};
 pub use mesh::{Mesh, MeshError};
 pub use solid::{
     CarriedFace, Carrier, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,

@@ -26,7 +26,7 @@ pub(super) struct Chain {
     pub line_starts: Vec<u32>,
     pub segment_counts: Vec<u32>,
     pub segment_starts: Vec<u32>,
-    pub dispatches: [[u32; 3]; 4],
+    pub dispatches: [[u32; 3]; 3],
     pub row_counts: Vec<u32>,
     pub row_starts: Vec<u32>,
     pub row_total: u32,

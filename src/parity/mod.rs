@@ -11,13 +11,12 @@
 //! [`frame`] then holds whole frames against the chain. Every file also feeds the GPU one changed
 //! number and asks that the comparison names the place.
 
-mod case;
 mod chain;
-mod random;
+mod exact;
+mod hard;
 mod shapes;
 
-pub(crate) use case::Case;
-pub(crate) use random::Random;
+pub(crate) use crate::trial::{Case, Random};
 pub(crate) use shapes::{placed, untrimmed};
 
 #[cfg(feature = "headless")]

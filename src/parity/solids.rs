@@ -7,6 +7,7 @@ use crate::abi::{EXIT_TRUE, Frame, Leaf, TileLeaf};
 use crate::csg::{Blist, Builder, Op, Tree};
 use crate::model::{Camera, Model, Primitive, Projection, Shape, Solid};
 use crate::passes::{solid_fold, solid_rects};
+use crate::picture::SceneSettings;
 use crate::scene::{SceneData, focal_and_slant};
 use crate::twin;
 use glam::{DAffine3, DVec3};
@@ -48,7 +49,7 @@ fn random_solid(random: &mut Random, count: u32) -> Solid {
 }
 
 fn leaves_of(solid: &Solid) -> SceneData {
-    SceneData::new(&Model { solids: vec![solid.clone()], ..Model::default() }).unwrap()
+    SceneData::new(&Model { solids: vec![solid.clone()], ..Model::default() }, SceneSettings::default()).unwrap()
 }
 
 /// Random tiles: each sees each leaf with a chance of its own.

@@ -4,19 +4,19 @@
 //!   visibility image, rings ──find──▶ list of doubtful pixels ──record──▶ visibility image
 //!
 //!        ┌───┬───┬───┐     asks the faces of the neighbours, on their exact surfaces at the pixel's
-//!        │ A │ A │ B │     centre, which of them is there; the rules stand in glsl/heal.comp
+//!        │ A │ A │ B │     centre, which of them is there; the rules stand in glsl/include/heal.glsl
 //!        ├───┼───┼───┤
 //!        │ A │ ? │ B │     a gap is narrower than the trim table's error, so a neighbour knows
 //!        └───┴───┴───┘
 //! ```
 //!
-//! Reads: everything that the bindings name but what it writes. Writes: `find`: `doubts`, `dispatches`,
+//! Reads: everything that the bindings name but what it writes. Writes: `find`: `doubts`, `dispatch`,
 //! `counters`, and the mark in the visibility image; `record`: the visibility image. Both at doubtful pixels only.
 
 use crate::gpu::{
     Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Resource, Sampler, Texels,
 };
-use crate::shaders;
+use crate::shaders::{self, TrimTest};
 use ash::vk;
 
 /// Threads of a workgroup of the first step.
@@ -39,7 +39,8 @@ pub(crate) struct DoubtBindings<'a> {
     pub frame: &'a Buffer,
     pub visibility: &'a Image,
     pub doubts: &'a Buffer,
-    pub dispatches: &'a Buffer,
+    /// Of the second step; zero before.
+    pub dispatch: &'a Buffer,
     pub counters: &'a Buffer,
     pub depth: &'a Image,
     pub rings: &'a Buffer,
@@ -54,18 +55,15 @@ pub(crate) struct Bindings<'a> {
     pub patches: &'a Buffer,
     pub items: &'a Buffer,
     pub points: &'a Texels,
-    pub line_starts: &'a Buffer,
-    pub row_starts: &'a Buffer,
-    pub row_counts: &'a Buffer,
-    pub flips: &'a Buffer,
     pub visibility: &'a Image,
     pub doubts: &'a Buffer,
     pub counters: &'a Buffer,
     pub instances: &'a Buffer,
     /// What is no patch; `None` where the scene has nothing else.
     pub others: Option<Others<'a>>,
-    /// Its own is the fourth.
-    pub dispatches: &'a Buffer,
+    /// What the trim test reads, in its order.
+    pub trim: &'a [&'a Buffer],
+    pub dispatch: &'a Buffer,
 }
 
 /// What is no patch, in binding order.
@@ -77,23 +75,23 @@ pub(crate) struct Others<'a> {
 }
 
 impl Heal {
-    /// `others`: the scene has things that are no patches.
-    pub(crate) fn new(device: &Device, rational: bool, others: bool) -> Result<Self, GpuError> {
+    /// `test`: how faces are trimmed; `others`: the scene has things that are no patches.
+    pub(crate) fn new(device: &Device, test: &TrimTest, rational: bool, others: bool) -> Result<Self, GpuError> {
         let mut find = [Binding::Storage; 7];
         find[1] = Binding::StorageImage;
         find[5] = Binding::Sampled;
-        let mut heal = [Binding::Storage; 19];
+        let mut heal = vec![Binding::Storage; 15 + test.buffers];
         heal[6] = Binding::Texels;
+        heal[7] = Binding::StorageImage;
         heal[11] = Binding::StorageImage;
-        heal[15] = Binding::StorageImage;
         let weights = if rational { "rational" } else { "polynomial" };
-        let pipeline = |name, spirv, bindings| {
+        let pipeline = |name: &str, spirv, bindings: &[Binding]| {
             let constants = &[(SCENE_HAS_RATIONAL, u32::from(rational)), (SCENE_HAS_OTHERS, u32::from(others))];
             Pipeline::compute(device, &ComputeInfo { name, spirv, bindings, push_bytes: 0, constants })
         };
         Ok(Self {
             find: pipeline("heal (find)", shaders::DOUBTS_COMP, &find)?,
-            heal: pipeline(&format!("heal ({weights})"), shaders::HEAL_COMP, &heal)?,
+            heal: pipeline(&format!("heal ({}, {weights})", test.way), test.heal, &heal)?,
             nearest: Sampler::new(device, vk::Filter::NEAREST)?,
         })
     }
@@ -106,7 +104,7 @@ impl Heal {
             b.frame.into(),
             b.visibility.into(),
             b.doubts.into(),
-            b.dispatches.into(),
+            b.dispatch.into(),
             b.counters.into(),
             Resource::Sampled(b.depth, &self.nearest),
             b.rings.into(),
@@ -128,10 +126,6 @@ impl Heal {
             b.patches.into(),
             b.items.into(),
             b.points.into(),
-            b.line_starts.into(),
-            b.row_starts.into(),
-            b.row_counts.into(),
-            b.flips.into(),
             b.visibility.into(),
             b.doubts.into(),
             b.counters.into(),
@@ -141,7 +135,8 @@ impl Heal {
             others.triangles.into(),
             others.positions.into(),
         ];
+        let resources: Vec<_> = resources.into_iter().chain(b.trim.iter().map(|&buffer| buffer.into())).collect();
         cmd.bind(&self.heal, &resources, &[]);
-        cmd.dispatch_indirect(b.dispatches, 3 * size_of::<[u32; 3]>() as u64);
+        cmd.dispatch_indirect(b.dispatch, 0);
     }
 }

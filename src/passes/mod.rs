@@ -11,10 +11,13 @@ pub(crate) mod lines;
 pub(crate) mod mesh;
 pub(crate) mod reset;
 pub(crate) mod resolve;
+#[cfg(feature = "rivals")]
+pub(crate) mod rival_texture;
 pub mod scan;
 pub(crate) mod segments;
 pub(crate) mod sizes;
 pub(crate) mod solid_blocks;
+pub(crate) mod solid_cst;
 pub(crate) mod solid_events;
 pub(crate) mod solid_fold;
 pub(crate) mod solid_rects;

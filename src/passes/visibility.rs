@@ -3,7 +3,7 @@
 //! ```text
 //!   sub-patch ──tesc──▶ levels ──tese──▶ exact surface at the vertices ──▶ triangles
 //!        plain    frag  ──────────────────────────────▶ item, (u, v)   depth
-//!        trimmed  frag  row of the trim table, search ▶ item, (u, v)   depth, rings apart
+//!        trimmed  frag  trim test of one way          ▶ item, (u, v)   depth, rings apart
 //! ```
 //!
 //! Reads: everything that `Bindings` names but the images. Writes: the visibility image and depth
@@ -14,7 +14,7 @@ use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
     Texels,
 };
-use crate::shaders;
+use crate::shaders::{self, TrimTest};
 use ash::vk;
 use std::mem::offset_of;
 
@@ -36,13 +36,14 @@ pub(crate) struct Visibility {
 
 /// What the scene asks of the pass.
 #[derive(Clone, Copy)]
-pub(crate) struct Kinds {
+pub(crate) struct Kinds<'a> {
     pub rational: bool,
     pub plain: bool,
-    pub trimmed: bool,
+    /// How faces are trimmed, where some are.
+    pub trimmed: Option<&'a TrimTest>,
 }
 
-/// Its buffers, in binding order; the trim table only where the scene has one.
+/// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub views: &'a Buffer,
@@ -54,25 +55,18 @@ pub(crate) struct Bindings<'a> {
     pub factors: &'a Buffer,
     pub sub_patches: &'a Buffer,
     pub instances: &'a Buffer,
-    pub table: Option<Table<'a>>,
+    /// Where rings are found; in scenes with trims only.
+    pub rings: Option<&'a Buffer>,
+    /// What the trim test reads, in its order.
+    pub trim: &'a [&'a Buffer],
     pub draws: &'a Buffer,
     pub counters: &'a Buffer,
 }
 
-/// The trim table, and where rings are found.
-pub(crate) struct Table<'a> {
-    pub line_starts: &'a Buffer,
-    pub row_starts: &'a Buffer,
-    pub row_counts: &'a Buffer,
-    pub flips: &'a Buffer,
-    pub rings: &'a Buffer,
-}
-
 impl Visibility {
-    pub(crate) fn new(device: &Device, kinds: Kinds) -> Result<Self, GpuError> {
-        let pipeline = |trimmed: bool| {
-            let fragment = if trimmed { shaders::VISIBILITY_TRIMMED_FRAG } else { shaders::VISIBILITY_FRAG };
-            let kind = if trimmed { "trimmed" } else { "plain" };
+    pub(crate) fn new(device: &Device, kinds: Kinds<'_>) -> Result<Self, GpuError> {
+        let pipeline = |trimmed: Option<&TrimTest>| {
+            let (fragment, kind) = trimmed.map_or((shaders::VISIBILITY_FRAG, "plain"), |t| (t.visibility, t.way));
             let weights = if kinds.rational { "rational" } else { "polynomial" };
             Pipeline::graphics(
                 device,
@@ -84,9 +78,12 @@ impl Visibility {
                         (vk::ShaderStageFlags::TESSELLATION_EVALUATION, shaders::VISIBILITY_TESE),
                         (vk::ShaderStageFlags::FRAGMENT, fragment),
                     ],
-                    bindings: &bindings(trimmed),
+                    bindings: &bindings(trimmed.map(|test| test.buffers)),
                     push_bytes: 0,
-                    constants: &[(SCENE_HAS_RATIONAL, u32::from(kinds.rational)), (TRIMMED, u32::from(trimmed))],
+                    constants: &[
+                        (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
+                        (TRIMMED, u32::from(trimmed.is_some())),
+                    ],
                     topology: vk::PrimitiveTopology::PATCH_LIST,
                     patch_points: 1,
                     cull: vk::CullModeFlags::NONE,
@@ -97,8 +94,8 @@ impl Visibility {
             )
         };
         Ok(Self {
-            plain: kinds.plain.then(|| pipeline(false)).transpose()?,
-            trimmed: kinds.trimmed.then(|| pipeline(true)).transpose()?,
+            plain: kinds.plain.then(|| pipeline(None)).transpose()?,
+            trimmed: kinds.trimmed.map(|test| pipeline(Some(test))).transpose()?,
         })
     }
 
@@ -120,9 +117,9 @@ impl Visibility {
                 let count = offset_of!(Counters, plain_draws) as u64;
                 cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
             }
-            if let (Some(trimmed), Some(t)) = (&self.trimmed, &b.table) {
-                let table = [t.line_starts, t.row_starts, t.row_counts, t.flips, t.rings].map(Into::into);
-                let resources: Vec<_> = shared().chain(table).collect();
+            if let (Some(trimmed), Some(rings)) = (&self.trimmed, b.rings) {
+                let test = b.trim.iter().map(|&buffer| buffer.into());
+                let resources: Vec<_> = shared().chain([rings.into()]).chain(test).collect();
                 cmd.bind(trimmed, &resources, &[]);
                 let count = offset_of!(Counters, trimmed_draws) as u64;
                 cmd.draw_indirect_count(b.draws, bytes, b.counters, count, draw_capacity);
@@ -131,9 +128,9 @@ impl Visibility {
     }
 }
 
-/// Bindings of the plain or of the trimmed pipeline.
-fn bindings(trimmed: bool) -> Vec<Binding> {
-    let mut bindings = vec![Binding::Storage; if trimmed { 15 } else { 10 }];
+/// Bindings of a pipeline whose trim test reads so many buffers beside the rings; `None`: without one.
+fn bindings(of_test: Option<usize>) -> Vec<Binding> {
+    let mut bindings = vec![Binding::Storage; 10 + of_test.map_or(0, |buffers| 1 + buffers)];
     bindings[6] = Binding::Texels;
     bindings
 }

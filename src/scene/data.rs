@@ -1,10 +1,15 @@
 //! The whole scene as plain arrays, and the transforms that stay in `f64`.
 
+use super::edit::EditScene;
+use super::exact::ExactData;
 use super::face::{FaceData, pack_colour};
 use super::mesh::Meshes;
 use super::solids::{SolidData, UndrawnSolid};
 use crate::abi;
 use crate::model::{Camera, Model, Projection};
+#[cfg(feature = "rivals")]
+use crate::picture::Rival;
+use crate::picture::{SceneSettings, TrimWay};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use rayon::prelude::*;
 
@@ -24,13 +29,21 @@ pub(crate) struct SceneData {
     pub cells: Vec<abi::Cell>,
     pub curves: Vec<abi::Curve>,
     pub curve_points: Vec<f32>,
+    pub exact: ExactData,
     pub meshes: Meshes,
     /// Some patch has unequal weights.
     pub has_rational: bool,
     /// Some patch is drawn without a trim test.
     pub has_plain: bool,
-    /// Some patch needs the trim table.
+    /// Some patch needs a trim test.
     pub has_trimmed: bool,
+    /// What edits of loops need, where they may come.
+    pub edit: Option<EditScene>,
+    /// Of the scene's faces, where they are bisected.
+    #[cfg(feature = "rivals")]
+    pub bisect: crate::rivals::bisect::Bisect,
+    /// How faces would be trimmed.
+    way: Option<TrimWay>,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
     /// Boolean solids.
@@ -38,8 +51,11 @@ pub(crate) struct SceneData {
 }
 
 impl SceneData {
-    pub(crate) fn new(model: &Model) -> Result<Self, UndrawnSolid> {
-        let mut data = Self { solids: SolidData::new(&model.solids)?, ..Self::default() };
+    pub(crate) fn new(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
+        let way = settings.trim.unwrap_or(TrimWay::Table);
+        let edit = (settings.editable && way == TrimWay::Table).then(EditScene::default);
+        let solids = SolidData::new(&model.solids, settings.solids)?;
+        let mut data = Self { solids, way: Some(way), edit, ..Self::default() };
         let mut used = vec![false; model.parts.len()];
         model.instances.iter().for_each(|i| used[i.part] = true);
         let mut first_faces = Vec::with_capacity(model.parts.len());
@@ -50,9 +66,16 @@ impl SceneData {
             let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
             origins.push(origin);
             if used {
-                let faces: Vec<FaceData> =
-                    part.faces.par_iter().map(|f| FaceData::new(f, origin, part.closed)).collect();
+                let faces: Vec<FaceData> = part
+                    .faces
+                    .par_iter()
+                    .map(|f| FaceData::new(f, origin, part.closed, way, settings.editable))
+                    .collect();
                 faces.into_iter().for_each(|f| data.push_face(f));
+                #[cfg(feature = "rivals")]
+                if let TrimWay::Rival(Rival::Bisect { steps }) = way {
+                    part.faces.iter().for_each(|f| data.bisect.push(f, steps));
+                }
             }
         }
         for instance in &model.instances {
@@ -60,8 +83,16 @@ impl SceneData {
             let first = first_faces[instance.part];
             data.push_instance(instance, origins[instance.part], first..first + part.faces.len());
         }
+        if let Some(edit) = &mut data.edit {
+            edit.first_faces = first_faces;
+        }
         data.meshes = Meshes::new(model, &origins);
         Ok(data)
+    }
+
+    /// How faces are trimmed; `None` when no patch is.
+    pub(crate) fn trim_way(&self) -> Option<TrimWay> {
+        self.way.filter(|_| self.has_trimmed)
     }
 
     /// Some mesh is placed.
@@ -73,7 +104,8 @@ impl SceneData {
     pub(crate) fn drop_uploaded(&mut self) {
         let placements = std::mem::take(&mut self.placements);
         let solids = std::mem::take(&mut self.solids).centres_only();
-        *self = Self { placements, solids, ..Self::default() };
+        let edit = self.edit.take();
+        *self = Self { placements, solids, edit, ..Self::default() };
     }
 
     fn push_face(&mut self, mut f: FaceData) {
@@ -92,8 +124,23 @@ impl SceneData {
             }
         }
         f.curves.iter_mut().for_each(|c| c.first += curve_point);
+        if let Some(scene) = &mut self.edit {
+            if let Some(face) = &mut f.edit {
+                (face.first_patch, face.first_cell) = (f.face.first_patch, f.face.first_cell);
+                for l in &mut face.loops {
+                    l.first_curve += f.face.first_curve;
+                    l.first_point += curve_point;
+                }
+                // an edit may take every loop off a patch
+                self.has_plain = true;
+            }
+            scene.faces.push(f.edit.take());
+        }
         self.has_rational |= f.rational;
         self.faces.push(f.face);
+        if self.way == Some(TrimWay::Exact) {
+            self.exact.push(&f.exact);
+        }
         self.patches.append(&mut f.patches);
         self.points.append(&mut f.points);
         self.cells.append(&mut f.cells);
@@ -146,7 +193,7 @@ impl SceneData {
 
 /// The largest factor by which a linear map lengthens a vector, rounded up: exact for similarity
 /// transforms, else the bound `sqrt(|M|_1 |M|_inf)`.
-fn stretch(m: DMat3) -> f64 {
+pub(super) fn stretch(m: DMat3) -> f64 {
     let gram = m.transpose() * m;
     let s2 = gram.x_axis.x;
     let off = gram - DMat3::from_diagonal(DVec3::splat(s2));

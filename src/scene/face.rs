@@ -1,11 +1,15 @@
 //! One face: patches, cells and trim curves, with indices relative to the face.
 
+use super::edit::{EditFace, EditLoop, EditPatch};
 use super::flatten::flattened;
 use crate::abi;
 use crate::abi::Side;
 use crate::model::{Face, TrimLoop};
+#[cfg(feature = "rivals")]
+use crate::picture::Rival;
+use crate::picture::TrimWay;
 use crate::spline::{Bezier, Control, Patch, PatchGrid, SurfacePatch};
-use crate::trim::{LoopIndex, RectSide, chord_bend};
+use crate::trim::{ExactTrim, LoopIndex, RectSide, chord_bend};
 use glam::{DVec2, DVec3};
 
 /// v-strips of a face with few rows of patches. More strips follow a changing density more closely
@@ -22,11 +26,16 @@ pub(super) struct FaceData {
     pub cells: Vec<abi::Cell>,
     pub curves: Vec<abi::Curve>,
     pub curve_points: Vec<f32>,
+    /// Empty where another way trims.
+    pub exact: ExactTrim,
+    /// What edits need, where they may come.
+    pub edit: Option<EditFace>,
     pub rational: bool,
 }
 
 /// The rectangle of the surface's parameters, and its map to the unit square.
-struct Domain {
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Domain {
     origin: DVec2,
     size: DVec2,
 }
@@ -38,12 +47,14 @@ impl Domain {
 }
 
 impl FaceData {
-    pub(super) fn new(face: &Face, origin: DVec3, solid: bool) -> Self {
+    pub(super) fn new(face: &Face, origin: DVec3, solid: bool, way: TrimWay, editable: bool) -> Self {
         let grid = flattened(face.surface.patches());
         let ((u0, u1), (v0, v1)) = face.surface.domain();
         let domain = Domain { origin: DVec2::new(u0, v0), size: DVec2::new(u1 - u0, v1 - v0) };
         let sides = sides(&grid, &face.loops);
         let trimmed = sides.contains(&Side::Boundary);
+        let table = trimmed && needs_curves(way);
+        let editable = editable && trimmed && way == TrimWay::Table;
         let mut data = Self {
             face: abi::Face {
                 domain: [u0 as f32, v0 as f32, (u1 - u0) as f32, (v1 - v0) as f32],
@@ -51,7 +62,7 @@ impl FaceData {
                 count_v: grid.count_v as u32,
                 id: face.id,
                 colour: face.colour.map_or(DEFAULT_COLOUR, pack_colour),
-                strip_count: if trimmed { strip_count(grid.count_v) } else { 0 },
+                strip_count: if table { strip_count(grid.count_v) } else { 0 },
                 ..Default::default()
             },
             patches: Vec::new(),
@@ -59,25 +70,51 @@ impl FaceData {
             cells: Vec::new(),
             curves: Vec::new(),
             curve_points: Vec::new(),
+            exact: match way {
+                TrimWay::Exact if trimmed => ExactTrim::new(&face.loops, domain.origin, domain.size),
+                _ => ExactTrim::default(),
+            },
+            edit: None,
             rational: !face.surface.is_polynomial(),
         };
         let flag = |on: bool, bit: u32| if on { bit } else { 0 };
-        data.face.flags = flag(face.same_sense, abi::FACE_SAME_SENSE) | flag(solid, abi::FACE_SOLID);
+        data.face.flags = flag(face.same_sense, abi::FACE_SAME_SENSE)
+            | flag(solid, abi::FACE_SOLID)
+            | flag(trimmed, abi::FACE_TRIMMED);
         for (n, (patch, side)) in grid.patches.iter().zip(&sides).enumerate() {
-            data.push_patch(&grid, n, patch, *side, origin, &domain);
+            data.push_patch(&grid, n, patch, (*side, editable), origin, &domain);
         }
-        if trimmed {
-            for (patch, _) in grid.patches.iter().zip(&sides).filter(|(_, side)| **side == Side::Boundary) {
-                data.push_cells(patch, origin, &domain);
+        if table {
+            data.edit = editable.then(|| data.edit_face(&grid, domain));
+            for (n, (patch, side)) in grid.patches.iter().zip(&sides).enumerate() {
+                let (first, cut) = (data.cells.len(), *side == Side::Boundary);
+                if cut || editable {
+                    data.push_cells(patch, origin, &domain);
+                }
+                if let Some(edit) = &mut data.edit {
+                    edit.cells.extend(data.cells[first..].iter().map(|cell| (n as u32, cell.speed_v)));
+                }
+                if !cut {
+                    data.cells[first..].iter_mut().for_each(|cell| cell.speed_v = -cell.speed_v);
+                }
             }
-            face.loops.iter().for_each(|l| data.push_loop(l, &domain));
-        } else {
+            face.loops.iter().for_each(|l| data.push_loop(l, &domain, editable));
+        }
+        if !trimmed {
             data.close_seams(grid.count_u, grid.count_v);
         }
         data
     }
 
-    fn push_patch(&mut self, grid: &PatchGrid, n: usize, p: &SurfacePatch, side: Side, origin: DVec3, domain: &Domain) {
+    fn push_patch(
+        &mut self,
+        grid: &PatchGrid,
+        n: usize,
+        p: &SurfacePatch,
+        (side, editable): (Side, bool),
+        origin: DVec3,
+        domain: &Domain,
+    ) {
         let (i, j) = (n % grid.count_u, n / grid.count_u);
         let border = |on: bool, bit: u32| if on { bit } else { 0 };
         let borders = border(i == 0, abi::BORDER_U0)
@@ -97,7 +134,7 @@ impl FaceData {
             bend: flat_is_zero([bend.uu, bend.uv, bend.vv], p.patch.bounds()).map(|x| x as f32),
             face: 0,
         });
-        if side == Side::Outside {
+        if side == Side::Outside && !editable {
             return; // never drawn: its control points stay at home
         }
         // only the ratios of weights matter: one unit for the whole face keeps shared control points
@@ -112,6 +149,17 @@ impl FaceData {
                 if self.rational { (q.w / unit) as f32 } else { 1.0 },
             ]);
         }
+    }
+
+    /// What edits need to know of the patches.
+    fn edit_face(&self, grid: &PatchGrid, domain: Domain) -> EditFace {
+        let rect = |p: &SurfacePatch| (DVec2::new(p.u.0, p.v.0), DVec2::new(p.u.1, p.v.1));
+        let patch = |(p, word): (&SurfacePatch, &abi::Patch)| {
+            let (lo, hi) = rect(p);
+            EditPatch { lo, hi, shape: word.shape }
+        };
+        let patches = grid.patches.iter().zip(&self.patches).map(patch).collect();
+        EditFace { domain, loops: Vec::new(), patches, first_patch: 0, first_cell: 0, cells: Vec::new() }
     }
 
     /// One cell for each v-strip that the patch reaches.
@@ -140,37 +188,15 @@ impl FaceData {
         }
     }
 
-    fn push_loop(&mut self, l: &TrimLoop, domain: &Domain) {
-        // every joint is rounded once and used by both its curves, so the loop stays closed in f32
-        let curves: Vec<Bezier<DVec3>> = l.curves().collect();
-        let joint = |c: &Bezier<DVec3>| {
-            let p = domain.unit(c.points[0].point());
-            [p.x as f32, p.y as f32]
-        };
-        for (k, c) in curves.iter().enumerate() {
-            let (start, end) = (joint(c), joint(&curves[(k + 1) % curves.len()]));
-            let unit: Vec<DVec3> =
-                c.points.iter().map(|p| DVec3::from_point(domain.unit(p.point()), p.z / c.points[0].z)).collect();
-            let v = |p: &DVec3| (p.y / p.z) as f32;
-            let lowest = unit.iter().map(v).fold(start[1].min(end[1]), f32::min);
-            let highest = unit.iter().map(v).fold(start[1].max(end[1]), f32::max);
-            if lowest == highest {
-                continue; // along a scan line: it crosses none
-            }
-            let degree = c.degree() as u32;
-            let bend = chord_bend(&Bezier { points: unit.clone() });
-            self.curves.push(abi::Curve {
-                start,
-                end,
-                first: self.curve_points.len() as u32,
-                degree,
-                bend: [round_up(bend.x), round_up(bend.y)],
-                range_v: [lowest, highest],
-            });
-            if degree > 1 {
-                self.curve_points.extend(unit.iter().flat_map(|p| [p.x as f32, p.y as f32, p.z as f32]));
-            }
+    fn push_loop(&mut self, l: &TrimLoop, domain: &Domain, editable: bool) {
+        let (mut curves, points) = loop_curves(l, domain, editable);
+        let first = self.curve_points.len() as u32;
+        curves.iter_mut().for_each(|c| c.first += first);
+        if let Some(edit) = &mut self.edit {
+            edit.loops.push(EditLoop::new(l, self.curves.len() as u32, first));
         }
+        self.curves.extend(curves);
+        self.curve_points.extend(points);
     }
 
     /// Where the first and last column (row) of control points are the same up to rounding, makes
@@ -213,12 +239,59 @@ impl FaceData {
     }
 }
 
+/// A loop's curves and their control points, with indices relative to them. Curves along a scan line
+/// cross none: they are left out, but for a loop that may be edited.
+pub(super) fn loop_curves(l: &TrimLoop, domain: &Domain, editable: bool) -> (Vec<abi::Curve>, Vec<f32>) {
+    // every joint is rounded once and used by both its curves, so the loop stays closed in f32
+    let curves: Vec<Bezier<DVec3>> = l.curves().collect();
+    let (mut out, mut points) = (Vec::with_capacity(curves.len()), Vec::new());
+    let joint = |c: &Bezier<DVec3>| {
+        let p = domain.unit(c.points[0].point());
+        [p.x as f32, p.y as f32]
+    };
+    for (k, c) in curves.iter().enumerate() {
+        let (start, end) = (joint(c), joint(&curves[(k + 1) % curves.len()]));
+        let unit: Vec<DVec3> =
+            c.points.iter().map(|p| DVec3::from_point(domain.unit(p.point()), p.z / c.points[0].z)).collect();
+        let v = |p: &DVec3| (p.y / p.z) as f32;
+        let lowest = unit.iter().map(v).fold(start[1].min(end[1]), f32::min);
+        let highest = unit.iter().map(v).fold(start[1].max(end[1]), f32::max);
+        if lowest == highest && !editable {
+            continue;
+        }
+        let degree = c.degree() as u32;
+        let bend = chord_bend(&Bezier { points: unit.clone() });
+        out.push(abi::Curve {
+            start,
+            end,
+            first: points.len() as u32,
+            degree,
+            bend: [round_up(bend.x), round_up(bend.y)],
+            range_v: [lowest, highest],
+        });
+        if degree > 1 {
+            points.extend(unit.iter().flat_map(|p| [p.x as f32, p.y as f32, p.z as f32]));
+        }
+    }
+    (out, points)
+}
+
 /// Neutral grey, linear 0.55, opaque.
 pub(super) const DEFAULT_COLOUR: u32 = 0xff8c_8c8c;
 
 /// Linear colour to unorm bytes, red lowest.
 pub(super) fn pack_colour(c: crate::model::Colour) -> u32 {
     u32::from_le_bytes(c.map(|x| (x.clamp(0.0, 1.0) * 255.0).round() as u8))
+}
+
+/// The way is made of curves and cells in every view.
+fn needs_curves(way: TrimWay) -> bool {
+    match way {
+        TrimWay::Table => true,
+        TrimWay::Exact => false,
+        #[cfg(feature = "rivals")]
+        TrimWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
+    }
 }
 
 fn strip_count(rows: usize) -> u32 {

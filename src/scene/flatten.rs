@@ -18,7 +18,7 @@ const MOST_BULGE: f64 = 0.02;
 const MOST_PIECES: usize = 4;
 
 /// The grid with all its patches cut alike into flatter ones.
-pub(super) fn flattened(grid: PatchGrid) -> PatchGrid {
+pub(crate) fn flattened(grid: PatchGrid) -> PatchGrid {
     let pieces = |bend: f64, speed: f64| {
         let bulge = bend / 8.0 / speed.max(f64::MIN_POSITIVE);
         ((bulge / MOST_BULGE).sqrt().ceil() as usize).clamp(1, MOST_PIECES)
@@ -46,7 +46,7 @@ pub(super) fn flattened(grid: PatchGrid) -> PatchGrid {
         }
     }
     weld(&mut patches, count_u, count_v);
-    PatchGrid { count_u, count_v, patches }
+    PatchGrid::new(count_u, patches)
 }
 
 /// Two pieces compute the side that they share from different ends, and round apart. Each takes the

@@ -14,14 +14,26 @@
 //! relative to the centre of their part, and the transform from there to the eye is composed in
 //! `f64` every frame.
 
+mod closeup;
 mod data;
+mod edit;
+mod exact;
 mod face;
 mod flatten;
 mod mesh;
 mod solids;
 mod upload;
 
+pub use closeup::CloseUp;
 pub(crate) use data::{SceneData, focal_and_slant, view};
+pub use edit::EditError;
+pub(crate) use edit::{EditTarget, Write};
+#[cfg(test)]
+pub(crate) use exact::ExactData;
+#[cfg(any(test, feature = "rivals"))]
+pub(crate) use flatten::flattened;
 pub(crate) use solids::SolidData;
 pub use solids::UndrawnSolid;
-pub(crate) use upload::{MeshBuffers, Scene, Solids, Trims};
+#[cfg(feature = "rivals")]
+pub(crate) use upload::RivalScene;
+pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Solids, TableScene, Trims};

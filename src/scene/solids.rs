@@ -9,12 +9,14 @@
 //! A surface is stored in coordinates of its own, of about the size of 1, so single precision suffices;
 //! where it is stays in `f64` and is given relative to the eye every frame.
 
+mod order;
 mod surface;
 
 use super::face::pack_colour;
 use crate::abi;
 use crate::csg::Blist;
 use crate::model::{Solid, SolidError, SurfaceTable};
+use crate::picture::SolidWay;
 use glam::DVec3;
 use surface::sides_of;
 
@@ -28,6 +30,8 @@ pub(crate) struct SolidData {
     pub leaf_centres: Vec<DVec3>,
     /// Origin of each surface's own coordinates, in model coordinates.
     pub surface_centres: Vec<DVec3>,
+    /// For [`SolidWay::Cst`]: the leaves as they are drawn.
+    pub order: Vec<u32>,
 }
 
 /// Why a solid is not drawn.
@@ -44,7 +48,7 @@ pub enum UndrawnSolid {
 
 impl SolidData {
     /// The union of all `solids`.
-    pub(crate) fn new(solids: &[Solid]) -> Result<Self, UndrawnSolid> {
+    pub(crate) fn new(solids: &[Solid], way: SolidWay) -> Result<Self, UndrawnSolid> {
         let mut data = Self::default();
         let whole = Solid::union(solids)?;
         let table = SurfaceTable::new(&whole, SurfaceTable::DRAWN);
@@ -110,6 +114,11 @@ impl SolidData {
             });
         }
         number_exits(&mut data.leaves);
+        if way == SolidWay::Cst {
+            let mut used = vec![false; data.surfaces.len()];
+            let shared = |side: &abi::LeafSurface| std::mem::replace(&mut used[side.surface as usize >> 1], true);
+            data.order = order::order(&data.leaves, data.leaf_surfaces.iter().any(shared));
+        }
         Ok(data)
     }
 

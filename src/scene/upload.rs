@@ -2,6 +2,9 @@
 
 use super::SceneData;
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texels, Uploads};
+#[cfg(feature = "rivals")]
+use crate::picture::Rival;
+use crate::picture::TrimWay;
 use ash::vk;
 use bytemuck::Pod;
 use std::ops::Range;
@@ -28,6 +31,8 @@ pub(crate) struct Solids {
     pub leaves: Buffer,
     pub leaf_surfaces: Buffer,
     pub surfaces: Buffer,
+    /// The leaves as they are drawn, and how many; only where each is drawn by itself.
+    pub order: Option<(Buffer, u32)>,
 }
 
 /// Triangles, where they are placed, and the draws that cover them.
@@ -41,8 +46,36 @@ pub(crate) struct MeshBuffers {
     pub draws: Vec<(Range<u32>, Range<u32>)>,
 }
 
+/// What the scene's way to trim needs.
+pub(crate) enum Trims {
+    Table(TableScene),
+    Exact(ExactScene),
+    #[cfg(feature = "rivals")]
+    Rival(RivalScene),
+}
+
+/// What a way to compare with needs.
+#[cfg(feature = "rivals")]
+pub(crate) enum RivalScene {
+    Untrimmed,
+    /// Faces, bands, cells, lists, pieces, points.
+    Bisect([Buffer; 6]),
+    /// Curves and cells; texels to a pixel and the number of placed faces.
+    Texture(TableScene, Buffer),
+}
+
+/// Arcs in bands and cells; see `glsl/include/exact.glsl`.
+pub(crate) struct ExactScene {
+    pub faces: Buffer,
+    pub bands: Buffer,
+    pub cells: Buffer,
+    pub entries: Buffer,
+    pub arcs: Buffer,
+    pub points: Buffer,
+}
+
 /// Trim curves and the cells that tell their density.
-pub(crate) struct Trims {
+pub(crate) struct TableScene {
     pub cells: Buffer,
     pub cell_items: Buffer,
     pub curves: Buffer,
@@ -65,24 +98,30 @@ impl Scene {
             face_instances: persistent(&mut uploads, cmd, "face instances", &data.face_instances)?,
             instances: persistent(&mut uploads, cmd, "instances", &data.instances)?,
             items: persistent(&mut uploads, cmd, "items", &data.items)?,
-            trims: data
-                .has_trimmed
-                .then(|| {
-                    Ok(Trims {
-                        cells: persistent(&mut uploads, cmd, "trim cells", &data.cells)?,
-                        cell_items: persistent(&mut uploads, cmd, "trim cell items", &data.cell_items)?,
-                        curves: persistent(&mut uploads, cmd, "trim curves", &data.curves)?,
-                        curve_points: persistent(&mut uploads, cmd, "trim curve points", &data.curve_points)?,
-                        curve_items: persistent(&mut uploads, cmd, "trim curve items", &data.curve_items)?,
-                    })
-                })
-                .transpose()?,
+            trims: match data.trim_way() {
+                None => None,
+                Some(TrimWay::Table) => Some(Trims::Table(table_scene(&mut uploads, cmd, data)?)),
+                #[cfg(feature = "rivals")]
+                Some(TrimWay::Rival(rival)) => Some(Trims::Rival(rival_scene(&mut uploads, cmd, data, rival)?)),
+                Some(TrimWay::Exact) => Some(Trims::Exact(ExactScene {
+                    faces: persistent(&mut uploads, cmd, "trim faces", &data.exact.faces)?,
+                    bands: persistent(&mut uploads, cmd, "trim bands", &data.exact.bands)?,
+                    cells: persistent(&mut uploads, cmd, "trim band cells", &data.exact.cells)?,
+                    entries: persistent(&mut uploads, cmd, "trim entries", &data.exact.entries)?,
+                    arcs: persistent(&mut uploads, cmd, "trim arcs", &data.exact.arcs)?,
+                    points: persistent(&mut uploads, cmd, "trim arc points", &data.exact.points)?,
+                })),
+            },
             solids: (!data.solids.leaves.is_empty())
                 .then(|| {
                     Ok(Solids {
                         leaves: persistent(&mut uploads, cmd, "solid leaves", &data.solids.leaves)?,
                         leaf_surfaces: persistent(&mut uploads, cmd, "solid sides", &data.solids.leaf_surfaces)?,
                         surfaces: persistent(&mut uploads, cmd, "solid surfaces", &data.solids.surfaces)?,
+                        order: (!data.solids.order.is_empty())
+                            .then(|| persistent(&mut uploads, cmd, "solid order", &data.solids.order))
+                            .transpose()?
+                            .map(|order| (order, data.solids.order.len() as u32)),
                     })
                 })
                 .transpose()?,
@@ -104,6 +143,44 @@ impl Scene {
         uploads.finish(cmd, Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ);
         Ok((scene, uploads))
     }
+}
+
+fn table_scene(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SceneData) -> Result<TableScene, GpuError> {
+    Ok(TableScene {
+        cells: persistent(uploads, cmd, "trim cells", &data.cells)?,
+        cell_items: persistent(uploads, cmd, "trim cell items", &data.cell_items)?,
+        curves: persistent(uploads, cmd, "trim curves", &data.curves)?,
+        curve_points: persistent(uploads, cmd, "trim curve points", &data.curve_points)?,
+        curve_items: persistent(uploads, cmd, "trim curve items", &data.curve_items)?,
+    })
+}
+
+#[cfg(feature = "rivals")]
+fn rival_scene(
+    uploads: &mut Uploads,
+    cmd: &Commands<'_>,
+    data: &SceneData,
+    rival: Rival,
+) -> Result<RivalScene, GpuError> {
+    Ok(match rival {
+        Rival::Untrimmed => RivalScene::Untrimmed,
+        Rival::Bisect { .. } => {
+            let b = &data.bisect;
+            RivalScene::Bisect([
+                persistent(uploads, cmd, "trim bisect faces", &b.faces)?,
+                persistent(uploads, cmd, "trim bisect bands", &b.bands)?,
+                persistent(uploads, cmd, "trim bisect cells", &b.cells)?,
+                persistent(uploads, cmd, "trim bisect lists", &b.lists)?,
+                persistent(uploads, cmd, "trim bisect pieces", &b.pieces)?,
+                persistent(uploads, cmd, "trim bisect points", &b.points)?,
+            ])
+        }
+        Rival::Texture { eighths } => {
+            let knob = [(eighths as f32 / 8.0).to_bits(), data.face_instances.len() as u32];
+            let knob = persistent(uploads, cmd, "trim texture knob", &knob)?;
+            RivalScene::Texture(table_scene(uploads, cmd, data)?, knob)
+        }
+    })
 }
 
 fn persistent<T: Pod>(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &[T]) -> Result<Buffer, GpuError> {

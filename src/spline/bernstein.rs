@@ -55,18 +55,22 @@ const CHOOSE: [[f64; MAX_DEGREE + 1]; MAX_DEGREE + 1] = {
     table
 };
 
+/// Room in a [`Row`] for every degree.
+pub(super) const FULL: usize = MAX_DEGREE + 1;
+
 /// What [`horner`] multiplies the points with, for many rows at one `t`; the values are its own, bit
 /// for bit.
-pub(super) struct Row {
+pub(super) struct Row<const ROOM: usize> {
     s: f64,
     degree: usize,
-    weights: [f64; MAX_DEGREE + 1],
+    weights: [f64; ROOM],
 }
 
-impl Row {
-    /// For rows of `degree + 1` points; `degree` is at most [`MAX_DEGREE`].
+impl<const ROOM: usize> Row<ROOM> {
+    /// For rows of `degree + 1` points; `degree` is less than `ROOM`.
+    #[inline]
     pub fn new(degree: usize, t: f64) -> Self {
-        let mut weights = [1.0; MAX_DEGREE + 1];
+        let mut weights = [1.0; ROOM];
         let mut factor = 1.0;
         let choose = &CHOOSE[degree];
         for i in 1..degree {
@@ -90,6 +94,30 @@ impl Row {
         sum + points[self.degree] * weights[self.degree]
     }
 
+    /// [`Row::value`] of a row whose length the compiler knows; `degree` was one less.
+    #[inline]
+    pub fn value_of<P: Control>(&self, points: &[P; ROOM]) -> P {
+        let mut sum = points[0] * self.s;
+        for (point, weight) in points[1..ROOM - 1].iter().zip(&self.weights[1..]) {
+            sum = (sum + *point * *weight) * self.s;
+        }
+        sum + points[ROOM - 1] * self.weights[ROOM - 1]
+    }
+
+    /// [`Row::jet`] of a row whose length, at least 2, the compiler knows; `degree` was two less.
+    #[inline]
+    pub fn jet_of<P: Control>(&self, points: &[P; ROOM], t: f64) -> (P, P) {
+        let value = |points: &[P]| {
+            let mut sum = points[0] * self.s;
+            for (point, weight) in points[1..ROOM - 2].iter().zip(&self.weights[1..]) {
+                sum = (sum + *point * *weight) * self.s;
+            }
+            sum + points[ROOM - 2] * self.weights[ROOM - 2]
+        };
+        let (a, b) = if ROOM == 2 { (points[0], points[1]) } else { (value(&points[..ROOM - 1]), value(&points[1..])) };
+        (a * (1.0 - t) + b * t, (b - a) * (ROOM - 1) as f64)
+    }
+
     /// `horner_jet(points, t)` for points of one degree more than the row's, which may both be 0.
     pub fn jet<P: Control>(&self, points: &[P], t: f64) -> (P, P) {
         let n = points.len() - 1;
@@ -110,7 +138,7 @@ pub(super) fn horner_jet<P: Control>(points: &[P], t: f64) -> (P, P) {
         return (points[0], P::ZERO);
     }
     if n <= MAX_DEGREE {
-        return Row::new(n - 1, t).jet(points, t);
+        return Row::<FULL>::new(n - 1, t).jet(points, t);
     }
     let (a, b) = (horner(&points[..n], t), horner(&points[1..], t));
     (a * (1.0 - t) + b * t, (b - a) * n as f64)
@@ -163,7 +191,7 @@ mod tests {
                     assert_eq!(horner_jet(row, t), jet, "degree {degree}, t {t}");
                 }
                 if degree <= MAX_DEGREE {
-                    assert_eq!(Row::new(degree, t).value(row), divided(row, t), "degree {degree}, t {t}");
+                    assert_eq!(Row::<FULL>::new(degree, t).value(row), divided(row, t), "degree {degree}, t {t}");
                 }
             }
         }

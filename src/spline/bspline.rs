@@ -1,5 +1,6 @@
 //! B-spline curves, and the checks that every knot vector passes.
 
+use super::spare::{spare, without};
 use super::{Bezier, Control, MAX_DEGREE, Span};
 use serde::{Deserialize, Serialize};
 
@@ -62,14 +63,39 @@ impl<P: Control> TryFrom<BSplineData<P>> for BSpline<P> {
 }
 
 impl<P: Control> BSpline<P> {
-    /// Checks the invariants.
+    /// Checks the invariants. A knot inside the domain that is there more often than the degree allows is taken as
+    /// often as that, where the control points say that the curve is one piece.
     ///
     /// # Errors
     /// The first of [`SplineError`] that does not hold.
     pub fn new(degree: usize, knots: Vec<f64>, points: Vec<P>) -> Result<Self, SplineError> {
+        let same = |i: usize, j: usize| i < points.len() && j < points.len() && points[i] == points[j];
+        let spare = spare(degree, &knots, same);
+        if !spare.is_empty() && knots.len() - degree - 1 == points.len() {
+            return Self::new(degree, without(&knots, &spare), without(&points, &spare));
+        }
         check_knots(degree, &knots, points.len())?;
         check_points(&points)?;
         Ok(Self { degree, knots, points })
+    }
+
+    /// As [`BSpline::new`]; a curve that is torn at knots inside its domain comes as its pieces, in order.
+    ///
+    /// # Errors
+    /// As [`BSpline::new`].
+    pub fn pieces(degree: usize, knots: Vec<f64>, points: Vec<P>) -> Result<Vec<Self>, SplineError> {
+        match Self::new(degree, knots.clone(), points.clone()) {
+            Err(SplineError::Multiplicity { value, .. }) => {
+                let first = knots.partition_point(|k| *k < value);
+                let last = knots.partition_point(|k| *k <= value);
+                let behind = last - degree - 1;
+                let before = (knots[..first + degree + 1].to_vec(), points[..first].to_vec());
+                let mut all = Self::pieces(degree, before.0, before.1)?;
+                all.extend(Self::pieces(degree, knots[behind..].to_vec(), points[behind..].to_vec())?);
+                Ok(all)
+            }
+            other => other.map(|whole| vec![whole]),
+        }
     }
 
     /// One Bézier segment over `[start, end]`.
@@ -211,7 +237,8 @@ pub(super) fn find_span(degree: usize, knots: &[f64], points: usize, t: f64) -> 
 
 /// de Boor's algorithm on the `degree + 1` control points that act on span `k`.
 fn de_boor<P: Control>(degree: usize, knots: &[f64], k: usize, t: f64, points: &[P]) -> P {
-    let mut d = points.to_vec();
+    let mut d = [P::ZERO; MAX_DEGREE + 1];
+    d[..=degree].copy_from_slice(points);
     for r in 1..=degree {
         for j in (r..=degree).rev() {
             let lo = knots[j + k - degree];
@@ -247,7 +274,9 @@ pub(super) fn to_beziers<P: Control>(degree: usize, knots: &[f64], points: &[P])
 
 /// Polar value at `degree - late` copies of `a` and `late` copies of `b`, on span `k`.
 fn blossom<P: Control>(degree: usize, knots: &[f64], k: usize, points: &[P], a: f64, b: f64, late: usize) -> P {
-    let mut d = points.to_vec();
+    let mut d = [P::ZERO; MAX_DEGREE + 1];
+    let d = &mut d[..=degree];
+    d.copy_from_slice(points);
     for r in 1..=degree {
         let t = if r <= degree - late { a } else { b };
         for j in (r..=degree).rev() {

@@ -31,6 +31,7 @@ mod differential;
 mod net;
 mod patch;
 mod refine;
+mod spare;
 mod surface;
 mod triangle;
 

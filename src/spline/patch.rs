@@ -1,6 +1,6 @@
 //! One rational tensor-product Bézier patch.
 
-use super::bernstein::Row;
+use super::bernstein::{FULL, Row};
 use super::{Control, MAX_DEGREE, bernstein};
 use glam::{DVec3, DVec4};
 
@@ -37,10 +37,42 @@ impl Patch {
 
     /// Homogeneous value and both first derivatives `(P, P_u, P_v)`.
     pub fn homogeneous_jet(&self, u: f64, v: f64) -> (DVec4, DVec4, DVec4) {
+        match self.degree_u {
+            1 => self.jet_of::<2>(u, v),
+            2 => self.jet_of::<3>(u, v),
+            3 => self.jet_of::<4>(u, v),
+            5 => self.jet_of::<6>(u, v),
+            _ => self.jet_any(u, v),
+        }
+    }
+
+    /// Rows of `N` points: loops of known length, for the degrees that most surfaces have.
+    fn jet_of<const N: usize>(&self, u: f64, v: f64) -> (DVec4, DVec4, DVec4) {
+        match self.degree_v {
+            1 => self.jet_at::<N, 2>(u, v),
+            2 => self.jet_at::<N, 3>(u, v),
+            3 => self.jet_at::<N, 4>(u, v),
+            5 => self.jet_at::<N, 6>(u, v),
+            _ => self.jet_any(u, v),
+        }
+    }
+
+    /// As [`Patch::jet_any`], bit for bit.
+    fn jet_at<const N: usize, const K: usize>(&self, u: f64, v: f64) -> (DVec4, DVec4, DVec4) {
+        let (mut values, mut slopes) = ([DVec4::ZERO; K], [DVec4::ZERO; K]);
+        let row = Row::<N>::new(N - 2, u);
+        for ((points, value), slope) in self.points.as_chunks::<N>().0.iter().zip(&mut values).zip(&mut slopes) {
+            (*value, *slope) = row.jet_of(points, u);
+        }
+        let (p, dv) = Row::<K>::new(K - 2, v).jet_of(&values, v);
+        (p, Row::<K>::new(K - 1, v).value_of(&slopes), dv)
+    }
+
+    fn jet_any(&self, u: f64, v: f64) -> (DVec4, DVec4, DVec4) {
         match self.degree_v {
             0..4 => self.jet_in::<4>(u, v),
             4..8 => self.jet_in::<8>(u, v),
-            _ => self.jet_in::<{ MAX_DEGREE + 1 }>(u, v),
+            _ => self.jet_in::<FULL>(u, v),
         }
     }
 
@@ -49,18 +81,18 @@ impl Patch {
     fn jet_in<const ROWS: usize>(&self, u: f64, v: f64) -> (DVec4, DVec4, DVec4) {
         let (n, k) = (self.degree_u, self.degree_v);
         let (mut values, mut slopes) = ([DVec4::ZERO; ROWS], [DVec4::ZERO; ROWS]);
-        let row = Row::new(n.saturating_sub(1), u);
+        let row = Row::<FULL>::new(n.saturating_sub(1), u);
         for ((points, value), slope) in self.points.chunks_exact(n + 1).zip(&mut values).zip(&mut slopes) {
             (*value, *slope) = row.jet(points, u);
         }
-        let (p, dv) = Row::new(k.saturating_sub(1), v).jet(&values[..=k], v);
-        (p, Row::new(k, v).value(&slopes[..=k]), dv)
+        let (p, dv) = Row::<FULL>::new(k.saturating_sub(1), v).jet(&values[..=k], v);
+        (p, Row::<FULL>::new(k, v).value(&slopes[..=k]), dv)
     }
 
     /// Homogeneous value.
     pub fn homogeneous(&self, u: f64, v: f64) -> DVec4 {
         let mut values = [DVec4::ZERO; MAX_DEGREE + 1];
-        let row = Row::new(self.degree_u, u);
+        let row = Row::<FULL>::new(self.degree_u, u);
         for (points, value) in self.points.chunks_exact(self.degree_u + 1).zip(&mut values) {
             *value = row.value(points);
         }

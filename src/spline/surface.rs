@@ -1,6 +1,7 @@
 //! Rational tensor-product B-spline surfaces and their cut into Bézier patches.
 
 use super::bspline::{SplineError, check_knots, check_points, to_beziers};
+use super::spare::{spare, without};
 use super::{Jet, Patch};
 use glam::{DVec3, DVec4};
 use serde::{Deserialize, Serialize};
@@ -57,10 +58,13 @@ pub struct PatchGrid {
     pub count_v: usize,
     /// `patches[j * count_u + i]`.
     pub patches: Vec<SurfacePatch>,
+    /// Where the patches begin along `u`, then along `v`: side by side in memory, for [`PatchGrid::locate`].
+    starts: Vec<f64>,
 }
 
 impl Surface {
-    /// Checks the invariants.
+    /// Checks the invariants. A knot inside the domain that is there more often than the degree allows is taken as
+    /// often as that, where the control points say that the surface is one piece.
     ///
     /// # Errors
     /// The first of [`SplineError`] that does not hold, `u` before `v`.
@@ -72,6 +76,17 @@ impl Surface {
     ) -> Result<Self, SplineError> {
         let count_u = knots_u.len().saturating_sub(degrees.0).saturating_sub(1);
         let count_v = knots_v.len().saturating_sub(degrees.1).saturating_sub(1);
+        if points.len() == count_u * count_v {
+            let same = |i: usize, j: usize| (0..count_v).all(|k| points[k * count_u + i] == points[k * count_u + j]);
+            let spare_u = spare(degrees.0, &knots_u, same);
+            let row = |k: usize| &points[k * count_u..(k + 1) * count_u];
+            let spare_v = spare(degrees.1, &knots_v, |i, j| row(i) == row(j));
+            if !spare_u.is_empty() || !spare_v.is_empty() {
+                let rows = without(&(0..count_v).collect::<Vec<_>>(), &spare_v);
+                let net = rows.into_iter().flat_map(|k| without(row(k), &spare_u)).collect();
+                return Self::new(degrees, without(&knots_u, &spare_u), without(&knots_v, &spare_v), net);
+            }
+        }
         check_knots(degrees.0, &knots_u, count_u)?;
         check_knots(degrees.1, &knots_v, count_v)?;
         if points.len() != count_u * count_v {
@@ -151,7 +166,7 @@ impl Surface {
                 });
             }
         }
-        PatchGrid { count_u, count_v, patches }
+        PatchGrid::new(count_u, patches)
     }
 
     /// The part over a rectangle inside the domain, as Bézier patches with their own parameters.
@@ -161,34 +176,7 @@ impl Surface {
     /// # Errors
     /// [`SplineError`] when the rectangle is empty or outside the domain.
     pub fn within(&self, u: (f64, f64), v: (f64, f64)) -> Result<Self, SplineError> {
-        let grid = self.patches();
-        let touches = |a: (f64, f64), b: (f64, f64)| a.1 > b.0 && a.0 < b.1;
-        let columns = grid.patches[..grid.count_u].iter().filter(|p| touches(p.u, u)).count();
-        let kept: Vec<_> = grid.patches.iter().filter(|p| touches(p.u, u) && touches(p.v, v)).collect();
-        if kept.is_empty() {
-            return Err(SplineError::EmptyDomain);
-        }
-        let local = |range: (f64, f64), to: (f64, f64)| {
-            let at = |t: f64| ((t - range.0) / (range.1 - range.0)).clamp(0.0, 1.0);
-            (at(to.0), at(to.1))
-        };
-        let pieces: Vec<Patch> = kept.iter().map(|p| p.patch.rectangle(local(p.u, u), local(p.v, v))).collect();
-        let knots = |degree: usize, inner: Vec<f64>, (a, b): (f64, f64)| -> Vec<f64> {
-            let inner = inner.into_iter().flat_map(|t| [t].repeat(degree));
-            [a].repeat(degree + 1).into_iter().chain(inner).chain([b].repeat(degree + 1)).collect()
-        };
-        let inner_u = kept[1..columns].iter().map(|p| p.u.0).collect();
-        let inner_v = kept.iter().step_by(columns).skip(1).map(|p| p.v.0).collect();
-        let (n, k) = (self.degree_u, self.degree_v);
-        let (count_u, count_v) = (columns * n + 1, kept.len() / columns * k + 1);
-        let net = (0..count_v).flat_map(|j| (0..count_u).map(move |i| (i, j))).map(|(i, j)| {
-            // a point that two pieces share is the later one's, but for the last
-            let piece = |at: usize, degree: usize, count: usize| (at / degree).min((count - 1) / degree - 1);
-            let (a, b) = (piece(i, n, count_u), piece(j, k, count_v));
-            pieces[b * columns + a].points[(j - b * k) * (n + 1) + (i - a * n)]
-        });
-        let net = net.collect();
-        Self::new((n, k), knots(n, inner_u, u), knots(k, inner_v, v), net)
+        self.patches().within(self.degrees(), u, v)
     }
 
     /// Point and first derivatives at `(u, v)`, clamped to the domain.
@@ -207,19 +195,54 @@ impl Surface {
 }
 
 impl PatchGrid {
+    /// Patches row by row, `count_u` in a row.
+    pub(crate) fn new(count_u: usize, patches: Vec<SurfacePatch>) -> Self {
+        let starts_v = patches.iter().step_by(count_u).map(|p| p.v.0);
+        let starts = patches[..count_u].iter().map(|p| p.u.0).chain(starts_v).collect();
+        Self { count_u, count_v: patches.len() / count_u, patches, starts }
+    }
+
+    /// [`Surface::within`] of the surface of degrees `n` and `k` that this was cut from: the part over a rectangle
+    /// inside the domain, as Bézier patches with their own parameters.
+    ///
+    /// Exact up to the rounding of one subdivision at each side.
+    ///
+    /// # Errors
+    /// [`SplineError`] when the rectangle is empty or outside the domain.
+    pub fn within(&self, (n, k): (usize, usize), u: (f64, f64), v: (f64, f64)) -> Result<Surface, SplineError> {
+        let touches = |a: (f64, f64), b: (f64, f64)| a.1 > b.0 && a.0 < b.1;
+        let columns = self.patches[..self.count_u].iter().filter(|p| touches(p.u, u)).count();
+        let kept: Vec<_> = self.patches.iter().filter(|p| touches(p.u, u) && touches(p.v, v)).collect();
+        if kept.is_empty() {
+            return Err(SplineError::EmptyDomain);
+        }
+        let local = |range: (f64, f64), to: (f64, f64)| {
+            let at = |t: f64| ((t - range.0) / (range.1 - range.0)).clamp(0.0, 1.0);
+            (at(to.0), at(to.1))
+        };
+        let pieces: Vec<Patch> = kept.iter().map(|p| p.patch.rectangle(local(p.u, u), local(p.v, v))).collect();
+        let knots = |degree: usize, inner: Vec<f64>, (a, b): (f64, f64)| -> Vec<f64> {
+            let inner = inner.into_iter().flat_map(|t| [t].repeat(degree));
+            [a].repeat(degree + 1).into_iter().chain(inner).chain([b].repeat(degree + 1)).collect()
+        };
+        let inner_u = kept[1..columns].iter().map(|p| p.u.0).collect();
+        let inner_v = kept.iter().step_by(columns).skip(1).map(|p| p.v.0).collect();
+        let (count_u, count_v) = (columns * n + 1, kept.len() / columns * k + 1);
+        let net = (0..count_v).flat_map(|j| (0..count_u).map(move |i| (i, j))).map(|(i, j)| {
+            // a point that two pieces share is the later one's, but for the last
+            let piece = |at: usize, degree: usize, count: usize| (at / degree).min((count - 1) / degree - 1);
+            let (a, b) = (piece(i, n, count_u), piece(j, k, count_v));
+            pieces[b * columns + a].points[(j - b * k) * (n + 1) + (i - a * n)]
+        });
+        let net = net.collect();
+        Surface::new((n, k), knots(n, inner_u, u), knots(k, inner_v, v), net)
+    }
+
     /// The patch that holds `(u, v)`, clamped to the domain, and the local parameters.
     pub fn locate(&self, u: f64, v: f64) -> (&SurfacePatch, f64, f64) {
-        let row = &self.patches[..self.count_u];
-        let i = row.partition_point(|p| p.u.0 <= u).clamp(1, self.count_u) - 1;
-        let (mut j, mut end) = (0, self.count_v);
-        while end - j > 1 {
-            let middle = (j + end) / 2;
-            if self.patches[middle * self.count_u].v.0 <= v {
-                j = middle;
-            } else {
-                end = middle;
-            }
-        }
+        let last = |starts: &[f64], x: f64| starts.partition_point(|start| *start <= x).max(1) - 1;
+        let (along_u, along_v) = self.starts.split_at(self.count_u);
+        let (i, j) = (last(along_u, u), last(along_v, v));
         let p = &self.patches[j * self.count_u + i];
         let s = ((u - p.u.0) / (p.u.1 - p.u.0)).clamp(0.0, 1.0);
         let t = ((v - p.v.0) / (p.v.1 - p.v.0)).clamp(0.0, 1.0);

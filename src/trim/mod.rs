@@ -21,6 +21,7 @@
 //! |---|---|---|
 //! | [`LoopIndex`] | winding number, rectangle class, distance: exact curves | `O(log n)` |
 //! | [`TrimTable`] | in or out, by scan line, the way the GPU does | one binary search |
+//! | [`ExactTrim`] | winding number in single precision, as the GPU does without a table | `O(log n)` |
 //! | [`chord_bend, segment_count`] | how many chords stay within a tolerance | closed form |
 //!
 //! Sources: R. Wu, J. Peters, *Correct resolution rendering of trimmed spline surfaces*, 2014 (the
@@ -29,13 +30,16 @@
 
 mod classify;
 mod distance;
+mod exact;
 mod flatten;
 mod piece;
 mod table;
 mod winding;
 
 pub use classify::RectSide;
+pub use exact::{AT_HIGH, AT_LOW, ExactTrim};
 pub use flatten::{chord_bend, polyline, segment_count};
+pub use piece::{MonotonePiece, monotone_pieces};
 pub use table::TrimTable;
 pub use winding::LoopIndex;
 

@@ -10,7 +10,8 @@
 
 use super::climbs;
 use crate::math::{bernstein, orientation::orientation};
-use crate::spline::{Bezier, binomial};
+use crate::model::TrimLoop;
+use crate::spline::{Bezier, Control, binomial};
 use glam::{DVec2, DVec3};
 
 /// Bisections of a piece before a point counts as on it. The bracket is then 2^-64 of the curve's
@@ -56,6 +57,38 @@ impl Piece {
         };
         if right { sign } else { 0 }
     }
+}
+
+/// A part of a trim curve that turns back in neither coordinate, as a curve of its own.
+#[derive(Clone, Debug, PartialEq)]
+pub struct MonotonePiece {
+    /// First point; bit for bit the last of the piece before.
+    pub start: DVec2,
+    /// Last point.
+    pub end: DVec2,
+    /// The image is the line segment from `start` to `end`.
+    pub straight: bool,
+    /// The piece over `[0, 1]`; its ends are `start` and `end` within rounding.
+    pub curve: Bezier<DVec3>,
+}
+
+/// The monotone pieces of a loop, in its order.
+pub fn monotone_pieces(trim_loop: &TrimLoop) -> Vec<MonotonePiece> {
+    let curves: Vec<Bezier<DVec3>> = trim_loop.curves().collect();
+    let Some(last) = curves.last() else { return Vec::new() };
+    let mut at = last.points[last.degree()].point();
+    let mut pieces = Vec::new();
+    for (index, curve) in curves.iter().enumerate() {
+        append_pieces(&mut pieces, index as u32, curve, at);
+        at = curve.points[curve.degree()].point();
+    }
+    let cut = |p: Piece| MonotonePiece {
+        start: p.start,
+        end: p.end,
+        straight: p.straight,
+        curve: curves[p.curve as usize].segment(p.t.0, p.t.1),
+    };
+    pieces.into_iter().map(cut).collect()
 }
 
 /// Whether the piece that climbs from `a` to `b` passes `p.y` at some `u > p.x`: bisection in the

@@ -2,7 +2,7 @@
 //! divided.
 
 use super::factor::factors;
-use super::view::{pixels_per_unit, visible_w};
+use super::view::{covers_a_centre, pixels_per_unit, see};
 use super::{MOST_SEGMENTS, Scene};
 use crate::abi::{Counters, Frame, Side};
 
@@ -16,9 +16,16 @@ pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u
             if patch.side() == Side::Outside {
                 return 0;
             }
-            let Some(w) = visible_w(view, frame, patch.box_min, patch.box_max, frame.ring_px + 1.0) else { return 0 };
-            let pixels = pixels_per_unit(frame, &scene.instances[placed.instance as usize], w);
-            let tau = factors(patch.bend, 8.0 * frame.deviation_px / pixels);
+            let Some(seen) = see(view, frame, patch.box_min, patch.box_max, frame.ring_px + 1.0) else { return 0 };
+            // a ring may reach farther than the box
+            if patch.side() == Side::Inside && !covers_a_centre(&seen, frame.deviation_px) {
+                return 0;
+            }
+            let pixels = pixels_per_unit(frame, &scene.instances[placed.instance as usize], &seen);
+            let tau = match frame.fixed_factor {
+                0 => factors(patch.bend, 8.0 * frame.deviation_px / pixels),
+                fixed => [fixed as f32; 2],
+            };
             let most = MOST_SEGMENTS as f32;
             counters.clamps += u32::from(tau[0].max(tau[1]) > most);
             tau[0].min(most) as u32 | (tau[1].min(most) as u32) << 16

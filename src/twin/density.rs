@@ -5,7 +5,7 @@
 //! ```
 
 use super::Scene;
-use super::view::{pixels_per_unit, visible_w};
+use super::view::{pixels_per_unit, see};
 use crate::abi::Frame;
 
 /// What the pass writes.
@@ -28,9 +28,12 @@ pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
         let placed = scene.face_instances[placed_index];
         let face = scene.faces[placed.face as usize];
         let cell = scene.cells[face.first_cell as usize + item - placed.first_cell as usize];
+        if cell.speed_v < 0.0 {
+            continue;
+        }
         let view = &scene.views[placed.instance as usize];
-        let Some(w) = visible_w(view, frame, cell.box_min, cell.box_max, frame.ring_px + 1.0) else { continue };
-        let pixels = pixels_per_unit(frame, &scene.instances[placed.instance as usize], w);
+        let Some(seen) = see(view, frame, cell.box_min, cell.box_max, frame.ring_px + 1.0) else { continue };
+        let pixels = pixels_per_unit(frame, &scene.instances[placed.instance as usize], &seen);
         let height = &mut out.strip_heights[(placed.first_strip + cell.strip) as usize];
         // a visible strip gets a scan line, however flat it is seen
         *height = height.max((cell.speed_v * pixels / face.strip_count as f32).max(1e-6));

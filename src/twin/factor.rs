@@ -33,10 +33,10 @@
 //!   focal |e_xy - (S_xy / S_z) e_z| / T_z        focal |e_xy - (T_xy / T_z) e_z| / S_z
 //! ```
 //!
-//! By Cauchy and Schwarz `|e_xy - s e_z| ≤ |e| sqrt(1 + |s|²)`. Where `S` or `T` is in the picture, `|s|` is
-//! at most the slope of the picture's corner: `slant = sqrt(1 + tan²)`. `S` and `T` lie in the box of the
-//! control points, so both depths are at least its `W_min`, and a placement stretches `e` by `scale` at
-//! most:
+//! By Cauchy and Schwarz `|e_xy - s e_z| ≤ |e| sqrt(1 + |s|²)`. `S` and `T` lie in the box of the control
+//! points, so both depths are at least its `W_min`, and `|s|` is at most the slope of the box's steepest
+//! corner; where `S` or `T` is in the picture, at most that of the picture's: `slant = sqrt(1 + tan²)` with the
+//! smaller one. A placement stretches `e` by `scale` at most:
 //!
 //! ```text
 //!   deviation_px ≤ E · scale · focal · slant / W_min

@@ -16,6 +16,7 @@ pub mod cross;
 pub mod curve;
 pub mod density;
 pub mod emit;
+pub mod exact;
 pub mod factor;
 pub mod lines;
 pub mod reset;

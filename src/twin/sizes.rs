@@ -13,9 +13,9 @@ const MAX_GROUPS: u32 = 65535;
 /// Most segments that pass `cross` can be given.
 pub const MOST_SEGMENTS: u32 = MAX_GROUPS * GROUP;
 
-/// Workgroups of `cross`, of `sort`, of the scan of the rows, and of `heal`, none yet. Sets `rows`,
+/// Workgroups of `cross`, of `sort` and of the scan of the rows. Sets `rows`,
 /// `wanted_rows` and `segments` of the counters.
-pub fn sizes(frame: &Frame, line_starts: &[u32], segment_starts: &[u32], counters: &mut Counters) -> [[u32; 3]; 4] {
+pub fn sizes(frame: &Frame, line_starts: &[u32], segment_starts: &[u32], counters: &mut Counters) -> [[u32; 3]; 3] {
     let wanted = line_starts[frame.strip_count as usize];
     let segments = segment_starts[frame.curve_count as usize];
     if wanted > frame.row_capacity {
@@ -26,5 +26,5 @@ pub fn sizes(frame: &Frame, line_starts: &[u32], segment_starts: &[u32], counter
     counters.wanted_rows = wanted;
     counters.segments = segments.min(MOST_SEGMENTS);
     let groups = |threads: u32, group: u32| [threads.div_ceil(group), 1, 1];
-    [groups(counters.segments, GROUP), groups(counters.rows, GROUP), groups(counters.rows, SCAN_BLOCK), groups(0, 1)]
+    [groups(counters.segments, GROUP), groups(counters.rows, GROUP), groups(counters.rows, SCAN_BLOCK)]
 }

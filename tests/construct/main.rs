@@ -5,8 +5,11 @@
 mod errors;
 mod exact;
 mod offsets;
+mod projected;
+mod shapes;
 mod skins;
 mod solids;
+mod subdivision;
 mod sweeps;
 
 use glam::{DVec2, DVec3, DVec4};

@@ -26,7 +26,7 @@ fn record(host: &Host, renderer: &mut Renderer, slot: usize, targets: &Targets, 
     let cmd = host.begin(slot);
     targets.draw(host, cmd, [0.0, 0.0, 0.0, 1.0], &[]);
     targets.hand_over(host, cmd);
-    let settings = FrameSettings { tolerance_px, background: None };
+    let settings = FrameSettings { tolerance_px, background: None, ..FrameSettings::default() };
     let into = Into { colour: &targets.colour, depth: Some(&targets.depth), aovs: None };
     // SAFETY: recording; `begin` waited for the slot's frame before.
     unsafe { renderer.record(cmd, &FrameInput { camera, settings, slot, targets: into }) }.unwrap();

@@ -1,10 +1,12 @@
 //! Made solids out as STEP and in again: the same faces, on the same surfaces, closed at shared edges.
 
-use glam::{DAffine3, DVec2, DVec3};
+use glam::{DAffine3, DQuat, DVec2, DVec3};
+use selvedge::construct::shapes::{self, GearBlank, Keyway, SpurGear};
+use selvedge::construct::subdivide::{ControlMesh, Scheme, subdivide};
 use selvedge::construct::{Chain, extruded_solid, lathed_solid};
 use selvedge::export;
 use selvedge::import;
-use selvedge::model::{Instance, Model, Part};
+use selvedge::model::{Colour, Face, Instance, Model, Part};
 use selvedge::spline::{BSpline, Control};
 use std::f64::consts::TAU;
 
@@ -122,4 +124,126 @@ fn what_is_lost_is_said() {
     assert_eq!(warnings.len(), 1);
     assert!(warnings[0].message.contains("3 of 9 edges"), "{}", warnings[0].message);
     assert_eq!(count(&String::from_utf8(text).unwrap(), "OPEN_SHELL"), 1);
+}
+
+/// A ball with a ball-shaped hole: two shells, of which one is the void.
+#[test]
+fn a_hollow_solid_has_a_void() {
+    let mut part = shapes::sphere(3.0).unwrap().part;
+    let hole = shapes::torus(1.5, 0.5).unwrap().part;
+    part.faces.extend(hole.faces.into_iter().map(|f| Face { id: 2, same_sense: false, ..f }));
+    let text = written(&model(part.clone(), &[DAffine3::IDENTITY]));
+    assert_eq!((count(&text, "BREP_WITH_VOIDS"), count(&text, "MANIFOLD_SOLID_BREP")), (1, 0));
+    assert_eq!((count(&text, "CLOSED_SHELL"), count(&text, "ORIENTED_CLOSED_SHELL")), (2, 1));
+    compare(&part, &text);
+    // a solid beside it is one of its own
+    part.faces.extend(shapes::block(DVec3::splat(10.0), DVec3::splat(11.0)).unwrap().part.faces);
+    let text = written(&model(part, &[DAffine3::IDENTITY]));
+    assert_eq!((count(&text, "BREP_WITH_VOIDS"), count(&text, "MANIFOLD_SOLID_BREP")), (1, 1));
+}
+
+/// STEP places rigidly: what scales, shears or mirrors is carried out, and normals still point outwards.
+#[test]
+fn instances_that_scale_or_mirror_are_parts_of_their_own() {
+    let blank = GearBlank { radius: 5.0, width: 1.0, hub_radius: 2.0, hub_width: 2.0, bore: 1.0, keyway: None };
+    let part = blank.build().unwrap().part;
+    let mirror = DAffine3::from_scale(DVec3::new(-1.0, 1.0, 1.0));
+    let stretched = DAffine3::from_scale_rotation_translation(
+        DVec3::new(2.0, 1.0, 0.5),
+        DQuat::from_rotation_y(0.3),
+        DVec3::new(20.0, 0.0, 0.0),
+    );
+    let places = [DAffine3::IDENTITY, mirror, stretched];
+    let text = written(&model(part.clone(), &places));
+    assert_eq!(count(&text, "MANIFOLD_SOLID_BREP"), 3);
+    let read = import::step(text.as_bytes(), "made.step").unwrap();
+    assert!(read.warnings.is_empty(), "{:?}", read.warnings);
+    assert_eq!((read.model.parts.len(), read.model.instances.len()), (3, 3));
+    for (place, back) in places.iter().zip(&read.model.instances) {
+        let found = &read.model.parts[back.part];
+        assert!(found.closed && back.transform.abs_diff_eq(DAffine3::IDENTITY, 1e-12));
+        for (a, b) in part.faces.iter().zip(&found.faces) {
+            // the middle of a wall, and its normal
+            let ((u0, u1), (v0, v1)) = a.surface.domain();
+            if a.surface.degrees() == (1, 1) {
+                continue;
+            }
+            let (u, v) = (u0 + 0.3 * (u1 - u0), 0.5 * (v0 + v1));
+            let (mine, theirs) = (a.surface.jet(u, v), b.surface.jet(u, v));
+            let sign = |f: &Face| if f.same_sense { 1.0 } else { -1.0 };
+            let matrix = place.matrix3;
+            let outwards = matrix.inverse().transpose() * (mine.du.cross(mine.dv) * sign(a));
+            assert!(place.transform_point3(mine.point).distance(theirs.point) <= SAME * 20.0);
+            assert!(outwards.dot(theirs.du.cross(theirs.dv) * sign(b)) > 0.0, "face {}", a.id);
+        }
+    }
+}
+
+/// What cannot be written of a part is told with the part's own number, carried out or not.
+#[test]
+fn warnings_name_the_part() {
+    let mut part = shapes::cone(2.0, 1.0, 3.0).unwrap().part;
+    part.faces.pop();
+    let mut text = Vec::new();
+    let warnings = export::step(&model(part, &[DAffine3::from_scale(DVec3::new(1.0, 1.0, -2.0))]), &mut text).unwrap();
+    assert_eq!(warnings.iter().map(|w| w.part).collect::<Vec<_>>(), [0]);
+}
+
+/// Colours and opacity, of faces and of instances, come back to the 8 bits and more that sRGB keeps.
+#[test]
+fn colours_and_transparency_come_back() {
+    let mut part = shapes::cylinder(1.0, 2.0).unwrap().part;
+    part.faces[1].colour = Some([0.8, 0.1, 0.25, 0.5]);
+    part.faces[2].colour = Some([0.0, 1.0, 0.002, 1.0]);
+    let mut made = model(part, &[DAffine3::IDENTITY, DAffine3::from_translation(DVec3::X * 5.0)]);
+    made.instances[1].colour = Some([0.2, 0.3, 0.4, 0.75]);
+    let text = written(&made);
+    assert_eq!(count(&text, "SURFACE_STYLE_TRANSPARENT"), 2);
+    let read = import::step(text.as_bytes(), "made.step").unwrap().model;
+    let same = |a: Option<Colour>, b: Colour| {
+        let a = a.expect("a colour");
+        assert!(a.iter().zip(b).all(|(x, y)| (x - y).abs() <= 1e-6), "{a:?} for {b:?}");
+    };
+    let seen = |instance: usize, face: usize| {
+        let i = &read.instances[instance];
+        i.colour.or(read.parts[i.part].faces[face].colour)
+    };
+    same(seen(0, 1), [0.8, 0.1, 0.25, 0.5]);
+    same(seen(0, 2), [0.0, 1.0, 0.002, 1.0]);
+    assert_eq!(seen(0, 0), None);
+    (0..3).for_each(|face| same(seen(1, face), [0.2, 0.3, 0.4, 0.75]));
+}
+
+/// Every ready-made shape, and a subdivision surface, closes edge by edge.
+#[test]
+fn shapes_are_written_as_solids() {
+    let pot = shapes::teapot().unwrap();
+    let keyway = Some(Keyway { width: 0.6, depth: 0.3 });
+    let blank = GearBlank { radius: 5.0, width: 1.0, hub_radius: 2.0, hub_width: 2.0, bore: 1.0, keyway };
+    let bodies = [
+        shapes::block(DVec3::NEG_ONE, DVec3::ONE).unwrap(),
+        shapes::sphere(2.0).unwrap(),
+        shapes::cylinder(1.0, 2.0).unwrap(),
+        shapes::cone(1.0, 0.0, 2.0).unwrap(),
+        shapes::torus(3.0, 1.0).unwrap(),
+        shapes::tube(2.0, 1.0, 4.0).unwrap(),
+        blank.build().unwrap(),
+        SpurGear::new(1.0, 8, 2.0, 1.0).build().unwrap(),
+        pot.pot,
+        pot.lid,
+        pot.handle,
+        pot.spout,
+    ];
+    for body in bodies {
+        let text = written(&model(body.part.clone(), &[DAffine3::IDENTITY]));
+        assert_eq!(count(&text, "MANIFOLD_SOLID_BREP"), 1);
+        compare(&body.part, &text);
+    }
+    let positions = (0..8).map(|i| DVec3::new((i & 1) as f64, (i >> 1 & 1) as f64, (i >> 2) as f64)).collect();
+    let faces = [[0, 2, 3, 1], [4, 5, 7, 6], [0, 1, 5, 4], [2, 6, 7, 3], [0, 4, 6, 2], [1, 3, 7, 5]];
+    let mesh = ControlMesh { positions, faces: faces.map(|f| f.to_vec()).to_vec(), creases: Vec::new() };
+    let made = subdivide(&mesh, Scheme::CatmullClark, 1e-3).unwrap();
+    let text = written(&model(made.part.clone(), &[DAffine3::IDENTITY]));
+    assert_eq!(count(&text, "MANIFOLD_SOLID_BREP"), 1);
+    compare(&made.part, &text);
 }

@@ -130,6 +130,27 @@ proptest! {
         prop_assert_eq!(curve.point(0.0), curve.point(n as f64));
     }
 
+    /// A vertex that is moved moves four segments of the approximating curve; what is inserted and removed again
+    /// leaves no trace.
+    #[test]
+    fn edits_are_local_and_can_be_undone(l in any_loop(), at in 0usize..12, to in (-1.0f64..1.0, -1.0f64..1.0)) {
+        let n = l.vertices().len();
+        let (at, to) = (at % n, p(to.0, to.1));
+        let mut edited = l.clone();
+        edited.insert(at, to).unwrap();
+        edited.remove(at).unwrap();
+        prop_assert_eq!(&edited, &l);
+        edited.move_to(at, to).unwrap();
+        let (before, after) = (l.approximating().unwrap(), edited.approximating().unwrap());
+        for i in 0..n {
+            // segment i runs from vertex i: vertices i - 1 to i + 2 have a say
+            let near = (0..4).any(|k| (i + n - 1 + k) % n == at);
+            let t = i as f64 + 0.37;
+            let moved = before.point(t).distance(after.point(t));
+            prop_assert!(if near { moved > 0.0 } else { moved < 1e-15 * 8.0 }, "segment {i} of {n}: {moved:e}");
+        }
+    }
+
     #[test]
     fn interpolating_curves_go_through_the_vertices(l in any_loop(), tension in -0.5f64..1.0, w in 0.0f64..0.125) {
         let n = l.vertices().len();

@@ -8,6 +8,8 @@ mod accuracy;
 mod distance;
 mod errors;
 mod every_shape;
+mod hard;
+mod hard_trims;
 mod ledges;
 mod meshes;
 mod objects;
@@ -18,3 +20,6 @@ mod shapes;
 mod solids;
 mod support;
 mod touching;
+#[path = "../shapes/trims.rs"]
+mod trims;
+mod zoom;

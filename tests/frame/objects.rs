@@ -18,7 +18,11 @@ fn objects(model: &Model, outputs: Outputs) -> (HeadlessRenderer, Vec<String>) {
 }
 
 fn is_of_trimming(name: &str) -> bool {
-    name.starts_with("trim") || name.contains("(trimmed") || TRIM_PASSES.iter().any(|pass| name.starts_with(pass))
+    name.starts_with("trim")
+        || name.contains("(table")
+        || name.contains("(exact")
+        || name.starts_with("heal")
+        || TRIM_PASSES.iter().any(|pass| name.starts_with(pass))
 }
 
 #[test]
@@ -28,7 +32,7 @@ fn only_a_trimmed_scene_has_a_trim_table() {
         let of_trimming: Vec<_> = objects.iter().filter(|name| is_of_trimming(name)).collect();
         if shape.trimmed {
             // the table's buffers, the scene's curves and cells, and a pipeline for each pass
-            for needed in ["trim intercepts", "trim curves", "cross (count)", "visibility (trimmed"] {
+            for needed in ["trim intercepts", "trim curves", "cross (count)", "visibility (table", "heal (table"] {
                 assert!(objects.iter().any(|name| name.starts_with(needed)), "{needed} in {}: {objects:?}", shape.name);
             }
         } else {

@@ -6,7 +6,7 @@ use glam::{DAffine3, DVec3};
 use selvedge::csg::Op;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Shape, Solid};
-use selvedge::picture::{FrameSettings, Outputs};
+use selvedge::picture::{FrameSettings, Outputs, SceneSettings, SolidWay};
 use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
 use selvedge::renderer::{RenderError, UndrawnSolid};
 use std::sync::Arc;
@@ -42,11 +42,23 @@ fn all_right(cases: Vec<solids::Named>, blank: bool) {
     let mut renderer = watched(&Model::default());
     let mut wrong = Vec::new();
     for (name, model) in &cases {
-        renderer.upload(model).unwrap();
         let tracer = Tracer::new(model);
-        for (view, camera) in [("perspective", perspective(model, SIZE)), ("parallel", orthographic(model, SIZE))] {
-            let fault = faults(&mut renderer, &tracer, &camera, blank);
+        let views = [("perspective", perspective(model, SIZE)), ("parallel", orthographic(model, SIZE))];
+        renderer.upload(model).unwrap();
+        let mut pictures = Vec::new();
+        for (view, camera) in &views {
+            let fault = faults(&mut renderer, &tracer, camera, blank);
             wrong.extend(fault.map(|f| format!("{name}, {view}: {f}")));
+            pictures.push(render(&mut renderer, camera));
+        }
+        renderer.upload_with(model, SceneSettings { solids: SolidWay::Cst, ..Default::default() }).unwrap();
+        for ((view, camera), events) in views.iter().zip(&pictures) {
+            let trimmed = render(&mut renderer, camera);
+            let same = trimmed.face == events.face && trimmed.colour == events.colour && trimmed.depth == events.depth;
+            if !same {
+                let differ = trimmed.face.iter().zip(&events.face).filter(|(a, b)| a != b).count();
+                wrong.push(format!("{name}, {view}: by cst {differ} other faces, or depths"));
+            }
         }
     }
     assert_silent(renderer);

@@ -109,6 +109,22 @@ proptest! {
         prop_assert!(patch.transposed().point(v, u).distance(sum) < 1e-14);
     }
 
+    /// Moving control point `(i, j)` moves the surface by `B_i(u) B_j(v)` of that: its weight in the tensor product.
+    #[test]
+    fn weights_are_products(n in 1usize..6, k in 1usize..6, at in (0usize..6, 0usize..6), points in prop::collection::vec(vector(), 36), d in vector(), u in 0.0f64..1.0, v in 0.0f64..1.0) {
+        let (i, j) = (at.0.min(n), at.1.min(k));
+        let before = polynomial(n, k, &points[..(n + 1) * (k + 1)]);
+        let mut after = before.clone();
+        after.points[j * (n + 1) + i] += d.extend(0.0);
+        // Bernstein polynomials by Pascal's triangle
+        let bernstein = |n: usize, i: usize, t: f64| {
+            let choose = (0..i).fold(1.0, |c, m| c * (n - m) as f64 / (m + 1) as f64);
+            choose * t.powi(i as i32) * (1.0 - t).powi((n - i) as i32)
+        };
+        let expected = d * (bernstein(n, i, u) * bernstein(k, j, v));
+        prop_assert!((after.point(u, v) - before.point(u, v)).distance(expected) < 1e-14);
+    }
+
     /// Along any direction the patch does not pass its farthest control point: it lies in the convex hull.
     #[test]
     fn convex_hull(patch in any_patch(), u in 0.0f64..1.0, v in 0.0f64..1.0, d in vector()) {

@@ -181,6 +181,27 @@ proptest! {
         }
     }
 
+    /// Parity of a polygon is the exclusive or of the triangles (o, edge), whatever the origin o.
+    #[test]
+    fn parity_is_the_xor_of_triangles(corners in prop::collection::vec((-1f64..1.0, -1f64..1.0), 3..12), origin in (-2f64..2.0, -2f64..2.0), probes in points()) {
+        let index = LoopIndex::new(&[crate::shapes::polygon(&corners)]);
+        let corners: Vec<DVec2> = corners.iter().map(|&(u, v)| at(u, v)).collect();
+        let o = at(origin.0, origin.1);
+        let left = |a: DVec2, b: DVec2, p: DVec2| (b - a).perp_dot(p - a);
+        for p in probes {
+            let mut inside = false;
+            let mut sure = true;
+            for (a, b) in chords(&corners) {
+                let sides = [left(o, a, p), left(a, b, p), left(b, o, p)];
+                sure &= sides.iter().all(|s| s.abs() > 1e-12);
+                inside ^= sides.iter().all(|s| *s > 0.0) || sides.iter().all(|s| *s < 0.0);
+            }
+            if sure {
+                prop_assert_eq!(index.winding(p).rem_euclid(2) == 1, inside);
+            }
+        }
+    }
+
     /// Straight loops have no deviation at all.
     #[test]
     fn the_table_of_a_polygon(corners in prop::collection::vec((-1f64..1.0, -1f64..1.0), 3..12), rows in 1u32..60) {

@@ -1,7 +1,9 @@
 //! What the command line accepts, checked before anything is opened.
 
+use crate::trims::Way;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
+use selvedge::picture::{Levels, SolidWay, TrimWay};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -37,6 +39,12 @@ pub enum Command {
     /// Measure time and memory per pass along a fixed camera path, next to the error of the same frames
     #[command(after_help = STATUSES)]
     Bench(BenchArgs),
+    /// Measure time against error over tolerances, sizes, levels, zooms and numbers of copies, all in turn
+    #[command(after_help = STATUSES)]
+    Sweep(SweepArgs),
+    /// Put the ways to trim side by side: time, memory and error over zoom, picture size and each way's accuracy
+    #[command(after_help = STATUSES)]
+    Trims(TrimsArgs),
     /// Write a model in another form, so that it is read once and opens fast; needs no GPU
     #[command(after_help = STATUSES)]
     Convert(ConvertArgs),
@@ -44,8 +52,10 @@ pub enum Command {
 
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
     pub model: PathBuf,
+    #[command(flatten)]
+    pub subdivide: SubdivideArgs,
     /// PNG file to write
     #[arg(short, long, value_name = "OUT.png")]
     pub output: PathBuf,
@@ -67,8 +77,10 @@ pub struct RenderArgs {
 
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
     pub model: PathBuf,
+    #[command(flatten)]
+    pub subdivide: SubdivideArgs,
     /// List every face: deviation, gap, loops, notes; and the worst of them
     #[arg(long)]
     pub deep: bool,
@@ -79,8 +91,10 @@ pub struct InfoArgs {
 
 #[derive(Debug, Args)]
 pub struct ExportArgs {
-    /// The model (STEP)
+    /// The model, as for `render`
     pub model: PathBuf,
+    #[command(flatten)]
+    pub subdivide: SubdivideArgs,
     /// STEP file to write
     #[arg(value_name = "OUT.step")]
     pub output: PathBuf,
@@ -88,15 +102,23 @@ pub struct ExportArgs {
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
     pub model: PathBuf,
+    #[command(flatten)]
+    pub subdivide: SubdivideArgs,
     #[command(flatten)]
     pub camera: CameraArgs,
     #[command(flatten)]
     pub frame: FrameArgs,
     /// Built-in views; not together with a camera
-    #[arg(long, value_enum, default_value_t = Views::Whole, conflicts_with_all = ["eye", "target"])]
+    #[arg(long, value_enum, default_value_t = Views::Whole, conflicts_with_all = ["eye", "target", "camera"])]
     pub views: Views,
+    /// In place of the views: so many times closer than the whole model, at the detail nearest to the eye; once each
+    #[arg(long, value_name = "TIMES", value_parser = times, value_delimiter = ',', conflicts_with_all = ["eye", "target", "camera", "views"])]
+    pub zoom: Vec<f64>,
+    /// Move the model by this before anything is drawn
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub moved: Option<DVec3>,
     /// Pixels to judge in each view, spread evenly; those at which the face changes are judged in any case
     #[arg(long, value_name = "N", default_value_t = 20_000, value_parser = at_least_one)]
     pub samples: usize,
@@ -111,7 +133,7 @@ pub struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub struct BenchArgs {
-    /// The models: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    /// The models: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, scenes .toml, or .3dm with the feature rhino
     #[arg(required = true)]
     pub models: Vec<PathBuf>,
     /// Measured frames for each model, after the warm-up
@@ -122,15 +144,97 @@ pub struct BenchArgs {
     pub size: Size,
     #[command(flatten)]
     pub frame: FrameArgs,
+    /// Drag a loop of the face with the most loops, once a frame, instead of moving the camera: latency, bytes sent,
+    /// and whether pictures equal those of a fresh upload
+    #[arg(long)]
+    pub edit: bool,
     /// Folder for bench.json and bench.csv
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
 }
 
 #[derive(Debug, Args)]
+pub struct SweepArgs {
+    /// The models: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    #[arg(required = true)]
+    pub models: Vec<PathBuf>,
+    /// How patches are divided: bound, or a level from 1 to 64; several, with commas
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "bound")]
+    pub factors: Vec<Factors>,
+    /// Tolerances in pixels
+    #[arg(long, value_name = "LIST", value_parser = tolerance, value_delimiter = ',', default_value = "0.5")]
+    pub tolerances: Vec<f64>,
+    /// Sizes in pixels
+    #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "1920x1080")]
+    pub sizes: Vec<Size>,
+    /// How many times closer than the whole model
+    #[arg(long, value_name = "LIST", value_parser = times, value_delimiter = ',', default_value = "1")]
+    pub zooms: Vec<f64>,
+    /// How many copies of the model, in a cube
+    #[arg(long, value_name = "LIST", value_parser = at_least_one, value_delimiter = ',', default_value = "1")]
+    pub copies: Vec<usize>,
+    /// Copy the parts too, not only their placements
+    #[arg(long)]
+    pub distinct: bool,
+    /// Measured frames of each
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one)]
+    pub frames: usize,
+    /// Pixels judged in the first frame of each; 0 judges none
+    #[arg(long, value_name = "N", default_value_t = 2_000)]
+    pub samples: usize,
+    /// Part of the name of the Vulkan device to use
+    #[arg(long, value_name = "NAME")]
+    pub device: Option<String>,
+    /// Table to write
+    #[arg(long, value_name = "FILE.csv")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
+pub struct TrimsArgs {
+    /// Models beside the generated face: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    pub models: Vec<PathBuf>,
+    /// Holes along each side of the generated face; 0 leaves it out
+    #[arg(long, value_name = "N", default_value_t = 100)]
+    pub holes: usize,
+    /// Ways to put side by side
+    #[arg(long, value_delimiter = ',', value_name = "WAYS", default_values_t = Way::all())]
+    pub ways: Vec<Way>,
+    /// Magnifications of the view of the whole model
+    #[arg(long, value_delimiter = ',', value_name = "TIMES", default_value = "1,10,100,1000", value_parser = zoom)]
+    pub zooms: Vec<f64>,
+    /// Pictures of the sweep over sizes
+    #[arg(long, value_delimiter = ',', value_name = "WxH", default_value = "400x400,800x800,1600x1600")]
+    pub sizes: Vec<Size>,
+    /// Picture of the other sweeps
+    #[arg(long, value_name = "WxH", default_value = "800x800")]
+    pub size: Size,
+    /// Magnification of the sweeps over sizes and accuracies
+    #[arg(long, value_name = "TIMES", default_value = "1", value_parser = zoom)]
+    pub zoom: f64,
+    /// Leave out the sweep over each way's own accuracy
+    #[arg(long)]
+    pub no_knobs: bool,
+    /// Frames of each measurement; the quickest counts, because others measure what else the machine does
+    #[arg(long, value_name = "N", default_value_t = 5, value_parser = at_least_one)]
+    pub frames: usize,
+    /// Pixels to judge in each view beside those at which the face changes
+    #[arg(long, value_name = "N", default_value_t = 2_000, value_parser = at_least_one)]
+    pub samples: usize,
+    /// Part of the name of the Vulkan device to use
+    #[arg(long, value_name = "NAME")]
+    pub device: Option<String>,
+    /// Folder for trims.json, trims.csv and the plots
+    #[arg(long, value_name = "DIR")]
+    pub out: Option<PathBuf>,
+}
+
+#[derive(Debug, Args)]
 pub struct ConvertArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
     pub model: PathBuf,
+    #[command(flatten)]
+    pub subdivide: SubdivideArgs,
     /// File to write; its extension chooses the form: .selvedge is the engine's own, bit for bit
     #[arg(value_name = "OUT.selvedge")]
     pub output: PathBuf,
@@ -139,21 +243,24 @@ pub struct ConvertArgs {
 /// Where the eye is.
 #[derive(Debug, Args)]
 pub struct CameraArgs {
-    /// Width and height in pixels
-    #[arg(long, value_name = "WxH", default_value = "1920x1080")]
-    pub size: Size,
+    /// Width and height in pixels; 1920x1080 where a scene does not say
+    #[arg(long, value_name = "WxH")]
+    pub size: Option<Size>,
+    /// A camera of the scene file, by its name; without it the one that the scene's picture names, if any
+    #[arg(long, value_name = "NAME", conflicts_with_all = ["eye", "target", "up", "fov", "ortho"])]
+    pub camera: Option<String>,
     /// Position of the eye, millimetres; without it the whole model is framed
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub eye: Option<DVec3>,
     /// Point that the eye looks at; the middle of the model without it
     #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
     pub target: Option<DVec3>,
-    /// Direction that points up in the picture
-    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true, default_value = "0,0,1")]
-    pub up: DVec3,
-    /// Vertical field of view in degrees
-    #[arg(long, value_name = "DEG", default_value_t = 35.0, conflicts_with = "ortho")]
-    pub fov: f64,
+    /// Direction that points up in the picture; 0,0,1 without it
+    #[arg(long, value_name = "X,Y,Z", value_parser = vector, allow_hyphen_values = true)]
+    pub up: Option<DVec3>,
+    /// Vertical field of view in degrees; 35 without it
+    #[arg(long, value_name = "DEG", conflicts_with = "ortho")]
+    pub fov: Option<f64>,
     /// Parallel projection; the height of the picture in millimetres
     #[arg(long, value_name = "HEIGHT")]
     pub ortho: Option<f64>,
@@ -165,12 +272,64 @@ pub struct FrameArgs {
     /// Largest distance in pixels between a drawn boundary and the true one, at least 0.125
     #[arg(long, value_name = "PX", default_value_t = 0.5, value_parser = tolerance)]
     pub tolerance: f64,
+    /// How finely patches are divided: bound, which keeps the promise, or the same level from 1 to 64 everywhere, which does
+    /// not
+    #[arg(long, value_name = "bound|N", default_value = "bound")]
+    pub factors: Factors,
+    /// How to trim: table (made for each view) or exact (made once). Without it what suits the model
+    #[arg(long, value_name = "WAY")]
+    pub trim: Option<TrimWay>,
+    /// How to draw Boolean solids: events (a ray a pixel) or cst (each primitive, trimmed by the others)
+    #[arg(long, value_name = "WAY", default_value = "events")]
+    pub solids: SolidWay,
     /// Part of the name of the Vulkan device to use
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
     /// Load the Vulkan validation layer; a message from it counts as a broken promise
     #[arg(long)]
     pub validation: bool,
+}
+
+/// How patches are divided.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Factors(pub Levels);
+
+impl FromStr for Factors {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let level = || text.parse().ok().filter(|n| (1..=64).contains(n)).map(Levels::Fixed);
+        let levels = if text == "bound" { Some(Levels::Bound) } else { level() };
+        levels.map(Self).ok_or_else(|| "wants `bound` or a level from 1 to 64".into())
+    }
+}
+
+impl std::fmt::Display for Factors {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        match self.0 {
+            Levels::Bound => f.write_str("bound"),
+            Levels::Fixed(level) => write!(f, "{level}"),
+        }
+    }
+}
+
+/// What becomes of polygons.
+#[derive(Debug, Default, Args)]
+pub struct SubdivideArgs {
+    /// Read an OBJ file's polygons as the control mesh of a smooth surface
+    #[arg(long, value_enum, value_name = "SCHEME")]
+    pub subdivide: Option<Smooth>,
+    /// Largest distance of the faces from that surface, in the file's units; a hundred-thousandth of the size without it
+    #[arg(long, value_name = "LENGTH", requires = "subdivide", value_parser = length)]
+    pub within: Option<f64>,
+}
+
+/// Schemes of subdivision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Smooth {
+    /// Any polygons, bicubic patches
+    CatmullClark,
+    /// Triangles, quartic patches
+    Loop,
 }
 
 /// Built-in views of `check`.
@@ -240,6 +399,22 @@ fn tolerance(text: &str) -> Result<f64, String> {
         .ok()
         .filter(|t| t.is_finite() && *t >= 0.125)
         .ok_or_else(|| "wants a number of pixels, at least 0.125".into())
+}
+
+/// How many times closer.
+fn times(text: &str) -> Result<f64, String> {
+    let times = text.parse::<f64>().ok().filter(|t| (1.0..=1e9).contains(t));
+    times.ok_or_else(|| "wants a number from 1 to 1e9".into())
+}
+
+fn length(text: &str) -> Result<f64, String> {
+    text.parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| "wants a length above 0".into())
+}
+
+/// A magnification.
+fn zoom(text: &str) -> Result<f64, String> {
+    let good = text.parse::<f64>().ok().filter(|z| (1.0..=1e6).contains(z));
+    good.ok_or_else(|| "wants a magnification from 1 to 1000000".into())
 }
 
 fn at_least_one(text: &str) -> Result<usize, String> {

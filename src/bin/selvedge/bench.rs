@@ -7,7 +7,7 @@ use crate::args::{BenchArgs, Size};
 use crate::progress::during;
 use crate::series::{Gathered, Row};
 use crate::session::{self, Session};
-use crate::{Outcome, output, path, verdict};
+use crate::{Outcome, edit, output, path, verdict};
 use anyhow::{Context, Result};
 use comfy_table::CellAlignment;
 use selvedge::picture::{FrameStats, Outputs};
@@ -51,6 +51,9 @@ struct Error {
 
 /// Measures every model; prints a table each and writes them all.
 pub fn run(args: &BenchArgs) -> Result<Outcome> {
+    if args.edit {
+        return edit::run(args);
+    }
     let mut reports = Vec::new();
     let mut outcome = Outcome::Good;
     for model in &args.models {
@@ -72,7 +75,7 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
 
 /// One model along the path; true when the validation layer complained.
 fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
-    let import = session::open(model)?;
+    let import = session::open(model, &Default::default())?;
     let bounds = import.model.bounds();
     let Size(width, height) = args.size;
     let camera = |index| path::camera(bounds, (width, height), index, args.frames);
@@ -98,7 +101,7 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         let camera = camera(index);
         let picture = session.render(&camera, Outputs::ALL)?;
         let what = format!("frame {index}");
-        error.add(&verdict::of(&tracer, &camera, &picture, JUDGED_SAMPLES, args.frame.tolerance, &what));
+        error.add(&verdict::of(&tracer, &camera, &picture, JUDGED_SAMPLES, args.frame.tolerance, 1.0, &what));
     }
     let report = Report {
         model: model.display().to_string(),

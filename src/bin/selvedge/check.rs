@@ -6,6 +6,7 @@ use crate::progress::during;
 use crate::session::{self, Session};
 use crate::{Outcome, output, verdict};
 use anyhow::Result;
+use glam::DAffine3;
 use selvedge::picture::{FrameStats, Outputs};
 use selvedge::reference::{Judgement, Tracer};
 use serde::Serialize;
@@ -14,7 +15,7 @@ use std::path::{Path, PathBuf};
 /// What was found in one view.
 #[derive(Debug, Serialize)]
 struct Verdict {
-    view: &'static str,
+    view: String,
     camera: CameraFile,
     tolerance_px: f64,
     kept: bool,
@@ -24,22 +25,30 @@ struct Verdict {
 
 /// Draws and judges each view.
 pub fn run(args: &CheckArgs) -> Result<Outcome> {
-    let import = session::open(&args.model)?;
-    let views = args.camera.views(args.views, &import.model)?;
+    let mut import = session::open(&args.model, &args.subdivide)?;
+    if let Some(by) = args.moved {
+        let by = DAffine3::from_translation(by);
+        import.model.instances.iter_mut().for_each(|i| i.transform = by * i.transform);
+    }
+    let views = match args.zoom.as_slice() {
+        [] => args.camera.views(args.views, &import)?,
+        times => args.camera.zooms(times, &import)?,
+    };
     let mut session = Session::new(&args.frame, &import)?;
     let tracer = during("preparing the exact model", || Tracer::new(&import.model));
     let tolerance_px = args.frame.tolerance;
     let mut verdicts = Vec::new();
-    for View { name, camera } in &views {
+    for (index, View { name, camera }) in views.iter().enumerate() {
+        let times = args.zoom.get(index).copied().unwrap_or(1.0);
         let picture = session.render(camera, Outputs::ALL)?;
-        let judgement = verdict::of(&tracer, camera, &picture, args.samples, tolerance_px, name);
+        let judgement = verdict::of(&tracer, camera, &picture, args.samples, tolerance_px, times, name);
         if let Some(path) = &args.difference {
             let path = if views.len() > 1 { with_name(path, name) } else { path.clone() };
             output::png(&path, picture.size, &judgement.paint())?;
         }
         let kept = verdict::wrong(&judgement) == 0 && picture.stats.clamps == 0;
         let camera = camera.into();
-        verdicts.push(Verdict { view: name, camera, tolerance_px, kept, judgement, stats: picture.stats });
+        verdicts.push(Verdict { view: name.clone(), camera, tolerance_px, kept, judgement, stats: picture.stats });
     }
     output::print(&table(&verdicts, tolerance_px))?;
     if let Some(missing) = output::missing_faces(&import.report) {
@@ -67,7 +76,7 @@ fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
     for Verdict { view, judgement, stats, kept, .. } in verdicts {
         let depth = judgement.depth_regular.model;
         table.add_row([
-            (*view).to_string(),
+            view.clone(),
             judgement.sampled.to_string(),
             verdict::wrong(judgement).to_string(),
             format!("{:.3}", verdict::worst_shift_px(judgement)),

@@ -13,7 +13,7 @@ pub fn run(args: &ConvertArgs) -> Result<Outcome> {
         Some("selvedge") => native::write,
         _ => bail!("{}: writes .selvedge files only", args.output.display()),
     };
-    let import = session::open(&args.model)?;
+    let import = session::open(&args.model, &args.subdivide)?;
     let bytes = write(&import.model);
     output::file(&args.output, |to| Ok(to.write_all(&bytes)?))?;
     tracing::info!("wrote {} bytes to {}", bytes.len(), args.output.display());

@@ -9,7 +9,7 @@ use std::io::{BufWriter, Write};
 
 /// Reads the model and writes the file.
 pub fn run(args: &ExportArgs) -> Result<Outcome> {
-    let model = session::open(&args.model)?.model;
+    let model = session::open(&args.model, &args.subdivide)?.model;
     let name = || args.output.display().to_string();
     let mut out = BufWriter::new(File::create(&args.output).with_context(name)?);
     let warnings = export::step(&model, &mut out).with_context(name)?;

@@ -3,6 +3,7 @@
 //! ```text
 //!   render   model ─▶ picture and images      info    model ─▶ what the file holds
 //!   check    picture against exact rays       bench   time and memory beside the error
+//!   trims    ways to trim, side by side       sweep   time against error, over many settings
 //!   convert  model ─▶ the engine's own form
 //!   export   model ─▶ STEP file
 //! ```
@@ -14,6 +15,7 @@ mod bench;
 mod camera;
 mod check;
 mod convert;
+mod edit;
 mod export;
 mod info;
 mod npy;
@@ -23,6 +25,9 @@ mod progress;
 mod render;
 mod series;
 mod session;
+mod subdivide;
+mod sweep;
+mod trims;
 mod verdict;
 
 use args::{Cli, Command};
@@ -65,6 +70,8 @@ fn main() -> ExitCode {
         Command::Export(args) => export::run(args),
         Command::Check(args) => check::run(args),
         Command::Bench(args) => bench::run(args),
+        Command::Sweep(args) => sweep::run(args),
+        Command::Trims(args) => trims::run(args),
         Command::Convert(args) => convert::run(args),
     };
     match result {

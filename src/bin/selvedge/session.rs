@@ -1,19 +1,24 @@
 //! A model read and a renderer opened, with everything worth knowing told on standard error.
 
-use crate::args::FrameArgs;
+use crate::args::{FrameArgs, SubdivideArgs};
 use crate::output;
 use crate::progress::{during, importing};
 use anyhow::Result;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::import::{self, Import};
-use selvedge::model::Camera;
-use selvedge::picture::{FrameSettings, Outputs, Picture};
+use selvedge::model::{Camera, LoopAt, TrimLoop};
+use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
 use std::path::Path;
 use std::time::Instant;
 
-/// Reads a file and tells its warnings.
-pub fn open(path: &Path) -> Result<Import> {
+/// Reads a file, its polygons as `subdivide` says, and tells its warnings.
+pub fn open(path: &Path, subdivide: &SubdivideArgs) -> Result<Import> {
     let start = Instant::now();
+    if let Some(smooth) = subdivide.subdivide {
+        let import = crate::subdivide::open(path, smooth, subdivide)?;
+        tracing::info!("read {} in {:.1?}", path.display(), start.elapsed());
+        return Ok(import);
+    }
     let import = importing(&path.display().to_string(), |tell| {
         import::open_with(path, &import::Options { progress: Some(tell) })
     })?;
@@ -31,10 +36,22 @@ pub struct Session {
 impl Session {
     /// Opens the device and hands it the model.
     pub fn new(args: &FrameArgs, import: &Import) -> Result<Self> {
+        Self::with(args, import, false)
+    }
+
+    /// The same with a model whose loops may be edited.
+    pub fn editable(args: &FrameArgs, import: &Import) -> Result<Self> {
+        Self::with(args, import, true)
+    }
+
+    fn with(args: &FrameArgs, import: &Import, editable: bool) -> Result<Self> {
         let options = HeadlessOptions { device: args.device.clone(), validation: args.validation };
+        let scene = SceneSettings { trim: args.trim, editable, solids: args.solids };
         let mut renderer = during("opening the device", || HeadlessRenderer::new(&options))?;
-        during("uploading the model", || renderer.upload(&import.model))?;
-        let settings = FrameSettings { tolerance_px: args.tolerance, ..FrameSettings::default() };
+        during("uploading the model", || renderer.upload_with(&import.model, scene))?;
+        let mut settings =
+            FrameSettings { tolerance_px: args.tolerance, levels: args.factors.0, ..FrameSettings::default() };
+        settings.background = import.picture.background.or(settings.background);
         Ok(Self { renderer, settings })
     }
 
@@ -43,6 +60,11 @@ impl Session {
         let picture = during("drawing", || self.renderer.render(camera, &self.settings, outputs))?;
         output::clamps(&picture.stats);
         Ok(picture)
+    }
+
+    /// Replaces a loop; the next frame shows it.
+    pub fn edit(&mut self, at: LoopAt, new: &TrimLoop) -> Result<()> {
+        Ok(self.renderer.edit_loop(at, new)?)
     }
 
     /// What the validation layer said, told on standard error.

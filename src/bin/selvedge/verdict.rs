@@ -9,19 +9,22 @@ use selvedge::model::Camera;
 use selvedge::picture::Picture;
 use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
 
-/// Judges about `samples` pixels of a picture, and every one at which the face changes.
+/// Judges about `samples` pixels of a picture, and every one at which the face changes. In a view `times` closer than
+/// the whole model faces that much nearer to each other are told apart.
 pub fn of(
     tracer: &Tracer,
     camera: &Camera,
     picture: &Picture,
     samples: usize,
     tolerance: f64,
+    times: f64,
     what: &str,
 ) -> Judgement {
     counting(&format!("judging {what}, pixels"), |tick| {
         let options = JudgeOptions {
             samples: Some(samples),
             limit_px: tolerance,
+            tie: JudgeOptions::default().tie / times,
             progress: Some(tick),
             ..JudgeOptions::default()
         };

@@ -20,12 +20,12 @@
 
 mod approximate;
 mod height;
-#[cfg(feature = "cli")]
+#[cfg(feature = "scene")]
 mod read;
 
 pub use approximate::approximate;
 pub use height::{HeightField, height_field};
-#[cfg(feature = "cli")]
+#[cfg(feature = "scene")]
 pub use read::{heights_from_png, points_from_csv};
 
 use super::ConstructError;

@@ -27,9 +27,9 @@ const RIGID: f64 = 1e-12;
 /// Writes `model` as ISO 10303-21 text (AP214), millimetres. The same model gives the same bytes.
 ///
 /// Planes are written as such, every other face as its exact rational B-spline. Edges of faces that meet within
-/// 1e-5 of the part's diagonal are shared (1e-4 or 1e-3 where that closes a part that says it is closed); their curves
-/// in space are exact on planes and along parameter lines, else fitted to 1e-8 of the diagonal. The largest distance
-/// met is the file's UNCERTAINTY.
+/// 1e-5 of the part's diagonal are shared, and within 2e-4 those of a part that says it is closed that would stay alone;
+/// their curves in space are exact on planes and along parameter lines, else fitted to 1e-8 of the diagonal. The largest
+/// distance met is the file's UNCERTAINTY.
 ///
 /// Meshes, and parts without instances, are not written: a warning names them. So is a part that says it is closed
 /// but whose edges do not meet; it becomes an open shell.
@@ -74,7 +74,10 @@ pub fn step(model: &Model, out: &mut impl Write) -> Result<Vec<ExportWarning>, E
 /// A part as it is written, and where it stands.
 struct Product {
     part: Part,
+    /// Of the part in the model.
     index: usize,
+    /// Stands for one instance alone, its transform carried out.
+    baked: bool,
     colour: Option<Colour>,
     places: Vec<(DAffine3, String)>,
 }
@@ -94,11 +97,12 @@ fn products(model: &Model, warnings: &mut Vec<ExportWarning>) -> Result<Vec<Prod
         }
         let place = (i.transform, i.name.clone());
         let rigid = is_rigid(&i.transform.matrix3);
-        let same = |p: &&mut Product| rigid && p.index == i.part && p.colour == i.colour;
+        let same = |p: &&mut Product| rigid && !p.baked && p.index == i.part && p.colour == i.colour;
         match all.iter_mut().find(same) {
             Some(product) => product.places.push(place),
             None if rigid => {
-                all.push(Product { part: part.clone(), index: i.part, colour: i.colour, places: vec![place] });
+                let (index, colour) = (i.part, i.colour);
+                all.push(Product { part: part.clone(), index, baked: false, colour, places: vec![place] });
             }
             None => all.push(baked(part, i)),
         }
@@ -129,8 +133,8 @@ fn baked(part: &Part, i: &Instance) -> Product {
         ..f.clone()
     };
     let part = Part { faces: part.faces.iter().map(face).collect(), meshes: Vec::new(), ..part.clone() };
-    // no part has this index: nothing else may join
-    Product { part, index: usize::MAX, colour: i.colour, places: vec![(DAffine3::IDENTITY, i.name.clone())] }
+    let places = vec![(DAffine3::IDENTITY, i.name.clone())];
+    Product { part, index: i.part, baked: true, colour: i.colour, places }
 }
 
 /// The file so far.

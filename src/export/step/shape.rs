@@ -22,6 +22,10 @@ use std::io::Write;
 
 /// Points that are the same, in shares of the part's diagonal.
 const JOIN: f64 = 1e-5;
+/// The same for parts that bound a volume but whose edges do not meet, in turn.
+const RETRIED: [f64; 2] = [1e-5, 4e-5];
+/// Of those, how far apart edges may lie that nothing else meets: a few times what is found in sloppy files.
+const LOOSE: f64 = 2e-4;
 /// Aim of fitted curves, in shares of the part's diagonal.
 const FIT: f64 = 1e-8;
 /// Samples along each side of a patch, for the sign of a volume.
@@ -47,7 +51,19 @@ pub(super) fn shape<W: Write>(
     let size = part.faces.iter().map(|f| f.bounds()).fold(Bounds::EMPTY, Bounds::union).diagonal();
     let face_error =
         |(face, source): (usize, SplineError)| ExportError::Face { part: index, face: part.faces[face].id, source };
-    let out = join(&sheets, JOIN * size, FIT * size).map_err(face_error)?;
+    let mut out = join(&sheets, JOIN * size, FIT * size).map_err(face_error)?;
+    for reach in if part.closed { &RETRIED[..] } else { &[] } {
+        if out.closed() {
+            break;
+        }
+        let mut other = join(&sheets, reach * size, FIT * size).map_err(face_error)?;
+        other.mend(LOOSE * size);
+        // a reach that swallows a loop is too wide
+        let same = out.loops.iter().zip(&other.loops).all(|(a, b)| a.len() == b.len());
+        if same && other.single() < out.single() {
+            out = other;
+        }
+    }
     for (sheet, kept) in sheets.iter().zip(&out.loops) {
         let lost = sheet.face.loops.len().saturating_sub(kept.len());
         if lost > 0 {
@@ -125,12 +141,15 @@ pub(super) fn shape<W: Write>(
     }
     let closed = out.closed();
     if part.closed && !closed {
-        let free = out.edges.iter().filter(|e| e.second.is_none()).count();
         let message = format!(
-            "{free} of {} edges have one face only within {:e} mm: written as an open shell",
+            "{} of {} edges have one face only within {:e} mm: written as an open shell",
+            out.single(),
             out.edges.len(),
-            JOIN * size
+            LOOSE * size
         );
+        warnings.push(ExportWarning { part: index, message });
+    } else if out.deviation > JOIN * size {
+        let message = format!("edges up to {:.1e} mm apart were joined", out.deviation);
         warnings.push(ExportWarning { part: index, message });
     }
     let solid = part.closed && closed;

@@ -76,6 +76,10 @@ pub(super) fn read(text: &str, name: &str) -> Result<Import, ImportError> {
     if roots.is_empty() && !objects.is_empty() {
         return Err(failed(Fault::new(1, "every combination is part of another")));
     }
+    if let Some(object) = circular(&objects, &named) {
+        let name = object.statement.words[1];
+        return Err(failed(Fault::new(object.statement.line, format!("`{name}` is part of itself"))));
+    }
     if !roots.is_empty() {
         let root = assembly.nodes.fold(Op::Union, roots);
         model.solids.push(assembly.finish(root).map_err(|message| failed(Fault::new(1, message)))?);
@@ -83,7 +87,38 @@ pub(super) fn read(text: &str, name: &str) -> Result<Import, ImportError> {
     report.bodies = model.solids.len();
     let (warnings, counts) = Warnings::new(name).finish();
     report.warnings = counts;
-    Ok(Import { model, warnings, report })
+    Ok(Import { model, warnings, report, ..Import::default() })
+}
+
+/// An object that only what it is part of leads to, if there is one: nothing that is drawn would show it.
+fn circular<'o, 'a>(objects: &'o BTreeMap<&'a str, Object<'a>>, named: &HashSet<&str>) -> Option<&'o Object<'a>> {
+    let members = |name: &str| objects.get(name).and_then(|o| o.items.as_ref()).into_iter().flatten();
+    let mut todo: Vec<&str> = objects.keys().copied().filter(|name| !named.contains(name)).collect();
+    let mut reached: HashSet<&str> = todo.iter().copied().collect();
+    while let Some(name) = todo.pop() {
+        todo.extend(members(name).filter_map(Item::name).filter(|member| reached.insert(member)));
+    }
+    // whoever names one that is not reached is not reached either: going on so comes round
+    let mut owner: BTreeMap<&str, &str> = BTreeMap::new();
+    for name in objects.keys().copied().filter(|name| !reached.contains(name)) {
+        owner.extend(members(name).filter_map(Item::name).map(|member| (member, name)));
+    }
+    let mut at = *owner.keys().find(|name| objects.contains_key(*name))?;
+    let mut seen = HashSet::new();
+    while seen.insert(at) {
+        at = owner.get(at)?;
+    }
+    // the cycle once more, for the one that stands first in the file
+    let mut first = at;
+    loop {
+        at = owner.get(at)?;
+        if objects[at].statement.line < objects[first].statement.line {
+            first = at;
+        }
+        if !seen.remove(at) {
+            return objects.get(first);
+        }
+    }
 }
 
 /// All objects by name.

@@ -1,5 +1,7 @@
 //! Small databases against closed forms.
 
+mod classes;
+
 use crate::import::{Import, brlcad, open};
 use crate::model::Shape;
 use glam::DVec3;

@@ -74,7 +74,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     report.occurrences = model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect();
     let (warnings, counts) = warnings.finish();
     report.warnings = counts;
-    Ok(Import { model, warnings, report })
+    Ok(Import { model, warnings, report, ..Import::default() })
 }
 
 struct Reader<'t> {

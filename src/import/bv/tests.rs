@@ -1,5 +1,7 @@
 //! Hand-made patches with known points, and damaged text.
 
+mod classes;
+
 use super::PALETTE;
 use crate::import::{Import, bv, open};
 use crate::model::Face;

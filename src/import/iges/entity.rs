@@ -89,8 +89,8 @@ impl<'a> Entity<'a> {
     fn number(self, index: usize) -> Option<f64> {
         match self.value(index) {
             Value::Number(x) => Some(x),
-            // the standard's default for numbers
-            Value::Empty => Some(0.0),
+            // the standard's default for numbers; of a record that is not there at all nothing is known
+            Value::Empty if !self.file.values(self.entry).is_empty() => Some(0.0),
             _ => None,
         }
     }

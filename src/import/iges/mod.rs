@@ -88,7 +88,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     report.dropped = dropped;
     let (list, counts) = warnings.finish();
     report.warnings = counts;
-    Ok(Import { model, warnings: list, report })
+    Ok(Import { model, warnings: list, report, ..Import::default() })
 }
 
 /// Builds all faces, in parallel; results are taken in file order.

@@ -14,6 +14,7 @@
 //! nothing of surfaces are counted.
 
 mod axis;
+pub(super) mod cage;
 mod freeform;
 mod lines;
 mod material;

@@ -291,7 +291,7 @@ impl<'f> Reader<'f> {
         self.report.occurrences = model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect();
         let (warnings, counts) = self.warnings.finish();
         self.report.warnings = counts;
-        Ok(Import { model, warnings, report: self.report })
+        Ok(Import { model, warnings, report: self.report, ..Import::default() })
     }
 }
 

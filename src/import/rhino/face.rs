@@ -102,7 +102,7 @@ impl<'i> Tables<'i> {
             let edge = self.edges.get(coedge.edge.as_str()).copied();
             for used in &coedge.pcurves {
                 let pcurve = self.pcurves.get(used.pcurve.as_str()).ok_or("no such curve in (u, v)")?;
-                ring.push((spline(&pcurve.geometry)?, edge));
+                ring.extend(splines(&pcurve.geometry)?.into_iter().map(|piece| (piece, edge)));
             }
         }
         if ring.is_empty() { Err("a loop without curves in (u, v)".into()) } else { Ok(ring) }
@@ -122,15 +122,15 @@ impl<'i> Tables<'i> {
     }
 }
 
-/// The spline of a curve in `(u, v)`.
-fn spline(geometry: &PcurveGeometry) -> Result<BSpline<DVec3>, String> {
+/// The spline of a curve in `(u, v)`: curves joined of several may be torn where those meet, by rounding.
+fn splines(geometry: &PcurveGeometry) -> Result<Vec<BSpline<DVec3>>, String> {
     let PcurveGeometry::Nurbs { nurbs } = geometry else { return Err("a curve in (u, v) that is no spline".into()) };
     let rows = nurbs.pole_rows();
     let weights = rows.weights();
     let weight = |i: usize| weights.as_ref().map_or(1.0, |w| w[i]);
     let points = rows.raw_points().into_iter().enumerate();
     let points = points.map(|(i, p)| DVec3::from_point(DVec2::new(p.u, p.v), weight(i))).collect();
-    BSpline::new(nurbs.degree() as usize, nurbs.knots().as_slice().to_vec(), points).map_err(|e| e.to_string())
+    BSpline::pieces(nurbs.degree() as usize, nurbs.knots().as_slice().to_vec(), points).map_err(|e| e.to_string())
 }
 
 /// The surface, and whether its stated normal is against `S_u x S_v`.

@@ -65,7 +65,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     report.face_records.iter_mut().for_each(|r| r.part = r.part.min(model.parts.len()));
     let (warnings, counts) = warnings.finish();
     report.warnings = counts;
-    Ok(Import { model, warnings, report })
+    Ok(Import { model, warnings, report, ..Import::default() })
 }
 
 /// One part a body; places of parts by the names of bodies.

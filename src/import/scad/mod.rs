@@ -120,7 +120,7 @@ pub(super) fn read(text: &str, name: &str, facets: Facets) -> Result<Import, Imp
     let (warnings, counts) = reader.warnings.finish();
     reader.report.warnings = counts;
     reader.report.bodies = model.solids.len();
-    Ok(Import { model, warnings, report: reader.report })
+    Ok(Import { model, warnings, report: reader.report, ..Import::default() })
 }
 
 struct Reader<'a> {

@@ -1,5 +1,7 @@
 //! Small texts against closed forms: which points are in.
 
+mod classes;
+
 use super::Facets;
 use crate::import::{Import, ImportError, Place, open, scad};
 use crate::model::{Primitive, Shape, Solid};

@@ -112,7 +112,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
     report.ignored = notes.ignored;
     let (list, counts) = notes.warnings.finish();
     report.warnings = counts;
-    Ok(Import { model, warnings: list, report })
+    Ok(Import { model, warnings: list, report, ..Import::default() })
 }
 
 /// Builds all faces, in parallel; results are taken in file order. What a face was made from is freed

@@ -78,7 +78,7 @@ struct PartRow<'a> {
 
 /// Reads the model and prints what it holds.
 pub fn run(args: &InfoArgs) -> Result<Outcome> {
-    let import = session::open(&args.model)?;
+    let import = session::open(&args.model, &args.subdivide)?;
     let info = Info::new(&import);
     if args.json {
         output::print(&serde_json::to_string_pretty(&info)?)?;

@@ -1,5 +1,6 @@
 //! Hand-made files with exact numbers, damaged files, and the models of a folder.
 
+mod classes;
 mod damage;
 mod models;
 mod shapes;

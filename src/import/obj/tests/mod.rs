@@ -1,5 +1,6 @@
 //! Whole files: hand-made text with exact numbers, and damaged text.
 
+mod classes;
 mod damage;
 mod freeform;
 mod polygons;

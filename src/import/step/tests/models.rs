@@ -34,7 +34,7 @@ fn face_counts_of_a_folder() {
     let mut wrong = Vec::new();
     for (path, expected) in files {
         let start = std::time::Instant::now();
-        let Import { model, report, warnings } = open(&path).expect("readable");
+        let Import { model, report, warnings, .. } = open(&path).expect("readable");
         let milliseconds = start.elapsed().as_secs_f64() * 1e3;
         let name = path.file_name().unwrap_or_default().to_string_lossy().into_owned();
         let found = (report.faces, model.face_instance_count());

@@ -3,6 +3,7 @@
 use crate::abi;
 use crate::budget::Budget;
 use crate::model::{Camera, Model, Projection};
+use crate::picture::{SceneSettings, TrimWay};
 use crate::scene::{SceneData, focal_and_slant, view};
 use crate::twin;
 
@@ -18,7 +19,8 @@ impl Case {
     /// Room for everything; draws are cut small enough that there are several.
     pub(crate) fn new(model: &Model, camera: &Camera, tolerance_px: f64) -> Self {
         camera.check().expect("the camera of a case shows something");
-        let data = SceneData::new(model).expect("no operand that cannot be drawn");
+        let data = SceneData::new(model, SceneSettings { trim: Some(TrimWay::Table), ..Default::default() })
+            .expect("no operand that cannot be drawn");
         let pixels = camera.pixel_matrix();
         let views = data.placements.iter().map(|&placement| view(pixels, placement)).collect();
         let (focal, slant) = focal_and_slant(camera);

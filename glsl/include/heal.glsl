@@ -1,7 +1,5 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_GOOGLE_include_directive : require
-// Pass `heal`, second step: who is seen at a doubtful pixel? One thread a pixel.
+// Pass `heal`, second step: who is seen at a doubtful pixel? One thread a pixel. The trim test is that of one
+// way (trim.glsl).
 //
 //        ┌───┬───┬───┐     the faces of the eight neighbours are asked, on their exact surfaces at
 //        │ A │ A │ B │     this pixel's centre:
@@ -43,25 +41,22 @@ layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
 layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
 layout(binding = 6) uniform samplerBuffer points;
-layout(scalar, binding = 7) readonly buffer LineStarts { uint line_starts[]; };
-layout(scalar, binding = 8) readonly buffer RowStarts { uint row_starts[]; };
-layout(scalar, binding = 9) readonly buffer RowCounts { uint row_counts[]; };
-layout(scalar, binding = 10) readonly buffer Flips { float flips[]; };
-layout(binding = 11, rg32ui) uniform uimage2D visibility;
-layout(scalar, binding = 12) readonly buffer Doubts { uint doubts[]; };
-layout(scalar, binding = 13) readonly buffer CountersBuffer { Counters counters; };
-layout(scalar, binding = 14) readonly buffer Instances { Instance instances[]; };
-layout(binding = 15, rg32ui) readonly uniform uimage2D others;
-layout(scalar, binding = 16) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
-layout(scalar, binding = 17) readonly buffer Triangles { uint triangles[]; };
-layout(scalar, binding = 18) readonly buffer Positions { vec3 positions[]; };
+layout(binding = 7, rg32ui) uniform uimage2D visibility;
+layout(scalar, binding = 8) readonly buffer Doubts { uint doubts[]; };
+layout(scalar, binding = 9) readonly buffer CountersBuffer { Counters counters; };
+layout(scalar, binding = 10) readonly buffer Instances { Instance instances[]; };
+layout(binding = 11, rg32ui) readonly uniform uimage2D others;
+layout(scalar, binding = 12) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
+layout(scalar, binding = 13) readonly buffer Triangles { uint triangles[]; };
+layout(scalar, binding = 14) readonly buffer Positions { vec3 positions[]; };
 
+#define TRIM_BINDING 15
+#include "trim.glsl"
 #include "facet.glsl"
 #include "facing.glsl"
 #include "patch.glsl"
 #include "refine.glsl"
 #include "ring.glsl"
-#include "table.glsl"
 #include "visible.glsl"
 
 const uint NO = 0u;
@@ -97,15 +92,17 @@ struct Answer {
 // Whether the face is there at (u, v) of the patch. The table has rows only where its border runs: not for
 // strips in which all patches are whole.
 bool is_there(FaceInstance fi, Face face, Patch patch_, vec2 uv) {
-    if (face.strip_count == 0u) return true;
-    float strips = float(face.strip_count);
+    if ((face.flags & FACE_TRIMMED) == 0u) return true;
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
+#ifdef TRIM_BY_TABLE
     if (side_of(patch_.shape) == SIDE_INSIDE) {
         if (clamp(uv, 0.0, 1.0) == uv) return true;
+        float strips = float(face.strip_count);
         uint strip = fi.first_strip + uint(clamp(at.y * strips, 0.0, strips - 1.0));
         if (line_starts[strip] == line_starts[strip + 1u]) return true;
     }
-    return table_inside(fi.first_strip, strips, at);
+#endif
+    return trim_inside(fi, face, at);
 }
 
 // `refine` from one patch of a face into the next where the point lies beyond a side. `item` becomes the
@@ -155,7 +152,7 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     float det = pu.x * pv.y - pu.y * pv.x;
     answer.away = looks_away(det, face, instances[fi.instance]);
     if (inside) answer.kind = WITNESS;
-    if (inside != real || face.strip_count == 0u) return answer;
+    if (inside != real || (face.flags & FACE_TRIMMED) == 0u) return answer;
     if (abs(det) < 1e-12) return answer;
     for (uint k = 0u; k < RING_POINTS; ++k) {
         vec2 step_ = frame.ring_px * RING[k];
@@ -175,14 +172,10 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     return answer;
 }
 
-// Of a mesh seen at a pixel.
-float mesh_depth(uvec2 seen, vec2 pixel) {
+// Of what is no patch, seen at a pixel.
+float other_depth(uvec2 seen, vec2 pixel) {
+    if (!sees_mesh(seen.x)) return uintBitsToFloat(seen.y);
     return facet_at(seen.y, views[mesh_instances[seen_mesh_instance(seen.x)].instance], pixel).depth;
-}
-
-// What is no patch at a pixel where no patch is seen.
-float other_depth(uvec2 other, vec2 pixel) {
-    return sees_mesh(other.x) ? mesh_depth(other, pixel) : uintBitsToFloat(other.y);
 }
 
 void main() {
@@ -257,9 +250,9 @@ void main() {
             helping_face = fi.face + 1u;
         }
     }
-    // where an end of the patches is near, the mesh behind them is known at the very pixel
-    if (!ringed && !real && sees_mesh(other.x) && (beside_nothing || beside_behind || witness.kind == WITNESS)) {
-        float depth = mesh_depth(other, pixel);
+    // where an end of the patches is near, what is no patch behind them is known at the very pixel
+    if (!ringed && !real && other.x != 0u && (beside_nothing || beside_behind || witness.kind == WITNESS)) {
+        float depth = other_depth(other, pixel);
         if (depth < witness.depth) witness = Answer(WITNESS, depth, 0.0, false, uvec2(0u));
     }
     uvec2 healed = own;
@@ -278,7 +271,7 @@ void main() {
         healed = uvec2(0u);
     } else if (has_helper) {
         healed = helper.word;
-    } else if (!ringed && sees_mesh(other.x)) {
+    } else if (!ringed && other.x != 0u) {
         healed = uvec2(0u);
     }
     imageStore(visibility, at, uvec4(healed.x | DOUBTFUL, healed.y, 0u, 0u));

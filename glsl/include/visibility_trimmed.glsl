@@ -1,7 +1,4 @@
-#version 460
-#extension GL_EXT_scalar_block_layout : require
-#extension GL_GOOGLE_include_directive : require
-// Pass `visibility`, trimmed patches: the same after the trim test.
+// Pass `visibility`, trimmed patches: as visibility.frag, after the trim test of one way (trim.glsl).
 //
 // Two faces that meet along an edge are trimmed apart from each other, each with its own rounding;
 // a pixel in the gap would show what lies behind. Such pixels must be found, then mended by pass
@@ -25,14 +22,11 @@ layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
 layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
 layout(scalar, binding = 9) readonly buffer Instances { Instance instances[]; };
-layout(scalar, binding = 10) readonly buffer LineStarts { uint line_starts[]; };
-layout(scalar, binding = 11) readonly buffer RowStarts { uint row_starts[]; };
-layout(scalar, binding = 12) readonly buffer RowCounts { uint row_counts[]; };
-layout(scalar, binding = 13) readonly buffer Flips { float flips[]; };
-layout(scalar, binding = 14) buffer Rings { uint rings[]; }; // depth's bits for each pixel, 0 without a ring
+layout(scalar, binding = 10) buffer Rings { uint rings[]; }; // depth's bits for each pixel, 0 without a ring
 
+#define TRIM_BINDING 11
+#include "trim.glsl"
 #include "facing.glsl"
-#include "table.glsl"
 #include "ring.glsl"
 #include "visible.glsl"
 
@@ -56,16 +50,15 @@ void main() {
     vec2 dx = dFdx(uv) * patch_.domain.zw;
     vec2 dy = dFdy(uv) * patch_.domain.zw;
     vec2 slope = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z));
-    float strips = float(face.strip_count);
     bool away = looks_away(dx, dy, face, instances[fi.instance]);
     bool solid = (face.flags & FACE_SOLID) != 0u;
     bool doubtful = solid && away;
-    bool inside = table_inside(fi.first_strip, strips, at);
+    bool inside = trim_inside(fi, face, at);
     float reach = solid && !away ? GROWTH * frame.ring_px : frame.ring_px;
     float border_depth = -1.0; // nearest to the viewer among the ring's points inside the face
     for (uint k = 0u; !inside && k < RING_POINTS; ++k) {
         vec2 step_ = reach * RING[k];
-        if (table_inside(fi.first_strip, strips, at + step_.x * dx + step_.y * dy)) {
+        if (trim_inside(fi, face, at + step_.x * dx + step_.y * dy)) {
             border_depth = max(border_depth, gl_FragCoord.z + dot(step_, slope));
         }
     }

@@ -1,0 +1,67 @@
+//! Ways to choose tessellation factors, on random patches and on models: how often each breaks half a pixel, and how
+//! much finer than needed it divides.
+//!
+//! `cargo bench --features rivals --bench factors -- [PATCHES [SEARCHED]] [MODEL ...]`
+
+use glam::DVec3;
+use selvedge::import;
+use selvedge::model::{Bounds, Camera};
+use selvedge::rivals::factors::{Way, Ways, of_model, of_random};
+use std::path::Path;
+
+const WAYS: [Way; 10] = [
+    Way::Bound,
+    Way::Homogeneous { cuts: 1 },
+    Way::Homogeneous { cuts: 2 },
+    Way::Corrected { segments: 3 },
+    Way::Corrected { segments: 9 },
+    Way::Ipass { segments: 3 },
+    Way::Ipass { segments: 9 },
+    Way::Fixed(4),
+    Way::Fixed(16),
+    Way::Fixed(64),
+];
+
+fn print(what: &str, all: &[Ways]) {
+    println!("{what}: {} patches in the picture", all[0].patches);
+    println!(
+        "{:28}{:>12}{:>12}{:>12}{:>14}{:>12}{:>10}",
+        "way", "unanswered", "> 0.5 px", "worst px", "quads", "polynomial", "rational"
+    );
+    for w in all {
+        println!(
+            "{:28}{:>12}{:>12}{:>12.3}{:>14.0}{:>12.2}{:>10.2}",
+            format!("{:?}", w.way),
+            w.unanswered,
+            w.violations,
+            w.worst / 2.0,
+            w.quads,
+            w.finer_polynomial,
+            w.finer_rational
+        );
+    }
+}
+
+fn camera(bounds: Bounds, closer: f64) -> Camera {
+    let mut camera = Camera::framing(bounds, DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), (1920, 1080));
+    camera.eye = camera.target + (camera.eye - camera.target) / closer;
+    camera.fit_depth(bounds);
+    camera
+}
+
+fn main() {
+    let words: Vec<String> = std::env::args().skip(1).filter(|w| w != "--bench").collect();
+    let numbers: Vec<u64> = words.iter().map_while(|w| w.parse().ok()).collect();
+    let count = numbers.first().copied().unwrap_or(2_000);
+    let searched = numbers.get(1).copied().unwrap_or(count.min(2_000));
+    if count > 0 {
+        print("random, degrees 2 to 7, weights to 100 : 1", &of_random(count, searched, &WAYS));
+    }
+    for file in &words[numbers.len()..] {
+        let import = import::open(Path::new(file)).expect("a model");
+        for closer in [1.0, 8.0] {
+            let camera = camera(import.model.bounds(), closer);
+            print(&format!("\n{file}, {closer} x"), &of_model(&import.model, &camera, &WAYS));
+        }
+    }
+}

@@ -1,0 +1,7 @@
+#![no_main]
+use selvedge::import::{Facets, scad};
+
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| {
+    selvedge_fuzz::sound(scad(bytes, "fuzz.csg", Facets::Round));
+    selvedge_fuzz::sound(scad(bytes, "fuzz.csg", Facets::AsWritten));
+});

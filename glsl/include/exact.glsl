@@ -1,0 +1,135 @@
+// The exact trim test: band, cell, and the few arcs that the cell holds. Twin of src/twin/exact.rs; what
+// the structures mean stands in src/trim/exact.
+//
+//   face ──▶ bands: binary search in v ──▶ cells: binary search in u ──▶ winding + entries ──▶ arcs ──▶ points
+//
+// Whoever includes this defines EXACT_BINDING, where its six buffers begin.
+#ifndef EXACT_GLSL
+#define EXACT_GLSL
+
+struct ExactFace {
+    uint first_band;
+    uint band_count;
+};
+
+struct ExactBand {
+    float top;
+    uint end; // one past its last cell
+};
+
+struct ExactCell {
+    float right;
+    int winding; // by what lies right of it
+    uint first;
+    uint count;
+};
+
+struct ExactArc {
+    vec2 low;
+    vec2 high;
+    vec2 hull;  // least and largest chord x (control point - low)
+    uint first; // float in exact_points, three a control point
+    uint shape; // degree, 1 for a straight arc; ARC_UP: the loop runs from low to high
+};
+
+layout(scalar, binding = EXACT_BINDING + 0) readonly buffer ExactFaces { ExactFace exact_faces[]; };
+layout(scalar, binding = EXACT_BINDING + 1) readonly buffer ExactBands { ExactBand exact_bands[]; };
+layout(scalar, binding = EXACT_BINDING + 2) readonly buffer ExactCells { ExactCell exact_cells[]; };
+layout(scalar, binding = EXACT_BINDING + 3) readonly buffer ExactEntries { uint exact_entries[]; };
+layout(scalar, binding = EXACT_BINDING + 4) readonly buffer ExactArcs { ExactArc exact_arcs[]; };
+layout(scalar, binding = EXACT_BINDING + 5) readonly buffer ExactPoints { float exact_points[]; };
+
+const uint AT_LOW = 1u;  // flags of an entry: a chain leaves the cell from this end of the arc
+const uint AT_HIGH = 2u;
+const uint ARC_DEGREE = 31u;
+const uint ARC_UP = 32u;
+const uint MAX_STEPS = 40u;  // every second one halves: 2^-20 of the arc, in parameter, at the least
+
+// Sign of the crossing's place: the arc passes uv.y, low.y < uv.y <= high.y, at some u > uv.x.
+bool arc_right(ExactArc arc, vec2 uv) {
+    if (uv.x < min(arc.low.x, arc.high.x)) return true;
+    if (uv.x >= max(arc.low.x, arc.high.x)) return false;
+    if (uv.y == arc.high.y) return arc.high.x > uv.x; // at a flat end the parameter tells nothing
+    precise vec2 p = uv - arc.low;
+    precise vec2 chord = arc.high - arc.low;
+    precise float side = chord.x * p.y - p.x * chord.y;
+    if (side > arc.hull.y) return true;
+    uint degree = arc.shape & ARC_DEGREE;
+    if (side < arc.hull.x || degree <= 1u) return false;
+    float ta = 0.0;
+    float tb = 1.0;
+    vec2 a = vec2(0.0);
+    vec2 b = chord;
+    for (uint step_ = 0u; step_ < MAX_STEPS; ++step_) {
+        precise float share = (step_ & 1u) == 0u ? (p.y - a.y) / (b.y - a.y) : 0.5;
+        precise float t = ta + (tb - ta) * share;
+        if (!(t > ta && t < tb)) {
+            t = 0.5 * (ta + tb);
+            if (!(t > ta && t < tb)) break;
+        }
+        precise float s = 1.0 - t;
+        precise float f = 1.0;
+        precise float c = 1.0;
+        uint at = arc.first;
+        precise vec3 sum = vec3(exact_points[at], exact_points[at + 1u], exact_points[at + 2u]) * s;
+        for (uint k = 1u; k < degree; ++k) {
+            at += 3u;
+            f = f * t;
+            c = c * (float(degree - k + 1u) / float(k));
+            sum = (sum + vec3(exact_points[at], exact_points[at + 1u], exact_points[at + 2u]) * (f * c)) * s;
+        }
+        at += 3u;
+        sum = sum + vec3(exact_points[at], exact_points[at + 1u], exact_points[at + 2u]) * (f * t);
+        precise vec2 q = sum.xy / sum.z;
+        q = clamp(q, min(a, b), max(a, b));
+        if (q.y >= p.y) {
+            tb = t;
+            b = q;
+        } else {
+            ta = t;
+            a = q;
+        }
+        if (p.x < min(a.x, b.x)) return true;
+        if (p.x >= max(a.x, b.x)) return false;
+    }
+    precise float last = (b.x - a.x) * (p.y - a.y) - (p.x - a.x) * (b.y - a.y);
+    return last > 0.0;
+}
+
+// Winding number of the face's loops around uv.
+int exact_winding(uint face, vec2 uv) {
+    ExactFace f = exact_faces[face];
+    if (f.band_count < 2u) return 0;
+    uint lo = f.first_band + 1u;
+    uint hi = f.first_band + f.band_count;
+    uint end = hi;
+    if (!(uv.y > exact_bands[f.first_band].top)) return 0;
+    while (lo < hi) {
+        uint mid = (lo + hi) / 2u;
+        if (exact_bands[mid].top < uv.y) lo = mid + 1u;
+        else hi = mid;
+    }
+    if (lo >= end) return 0;
+    uint cell = exact_bands[lo - 1u].end;
+    uint last = exact_bands[lo].end;
+    hi = last;
+    while (cell < hi) {
+        uint mid = (cell + hi) / 2u;
+        if (exact_cells[mid].right < uv.x) cell = mid + 1u;
+        else hi = mid;
+    }
+    if (cell >= last) return 0;
+    ExactCell c = exact_cells[cell];
+    int winding = c.winding;
+    for (uint i = 0u; i < c.count; ++i) {
+        uint entry = exact_entries[c.first + i];
+        ExactArc arc = exact_arcs[entry >> 2u];
+        int direction = (arc.shape & ARC_UP) != 0u ? 1 : -1;
+        if ((entry & AT_LOW) != 0u && arc.low.y < uv.y) winding -= direction;
+        if ((entry & AT_HIGH) != 0u && arc.high.y < uv.y) winding += direction;
+        if (arc.low.y < uv.y && uv.y <= arc.high.y && arc_right(arc, uv)) winding += direction;
+    }
+    return winding;
+}
+
+#endif

@@ -1,0 +1,109 @@
+// Trimming by bisection of monotone pieces in every pixel. What the structure is, and its twin:
+// src/rivals/bisect.rs.
+#ifndef BISECT_GLSL
+#define BISECT_GLSL
+
+struct BisectFace {
+    uint first_band;
+    uint band_count;
+    uint steps;
+};
+
+struct BisectBand {
+    float v;
+    uint first_cell;
+};
+
+struct BisectCell {
+    float u_lo;
+    float u_hi;
+    uint first;
+    uint count; // of pieces | parity left of the cell << 30 | parity right of it << 31
+};
+
+struct BisectPiece {
+    vec2 start;
+    vec2 end;
+    uint first;
+    uint degree;
+};
+
+layout(scalar, binding = TRIM_BINDING + 0) readonly buffer BisectFaces { BisectFace bisect_faces[]; };
+layout(scalar, binding = TRIM_BINDING + 1) readonly buffer BisectBands { BisectBand bisect_bands[]; };
+layout(scalar, binding = TRIM_BINDING + 2) readonly buffer BisectCells { BisectCell bisect_cells[]; };
+layout(scalar, binding = TRIM_BINDING + 3) readonly buffer BisectLists { uint bisect_lists[]; };
+layout(scalar, binding = TRIM_BINDING + 4) readonly buffer BisectPieces { BisectPiece bisect_pieces[]; };
+layout(scalar, binding = TRIM_BINDING + 5) readonly buffer BisectPoints { vec3 bisect_points[]; };
+
+vec2 bisect_point(BisectPiece piece, float t) {
+    float s = 1.0 - t;
+    float f = 1.0;
+    float c = 1.0;
+    vec3 sum = bisect_points[piece.first] * s;
+    for (uint k = 1u; k < piece.degree; ++k) {
+        f *= t;
+        c *= float(piece.degree - k + 1u) / float(k);
+        sum = (sum + bisect_points[piece.first + k] * (f * c)) * s;
+    }
+    sum += bisect_points[piece.first + piece.degree] * (f * t);
+    return sum.xy / sum.z;
+}
+
+// The piece crosses the point's scan line at or left of it.
+bool bisect_left(BisectPiece piece, vec2 p, uint steps) {
+    vec2 a = piece.start;
+    vec2 b = piece.end;
+    if ((a.y >= p.y) == (b.y >= p.y)) return false;
+    vec2 lo = min(a, b);
+    vec2 hi = max(a, b);
+    float ta = 0.0;
+    float tb = 1.0;
+    uint step_ = piece.degree <= 1u ? steps : 0u;
+    for (; step_ < steps && p.x >= min(a.x, b.x) && p.x < max(a.x, b.x); ++step_) {
+        float t = 0.5 * (ta + tb);
+        vec2 m = clamp(bisect_point(piece, t), lo, hi);
+        bool like_a = (m.y >= p.y) == (a.y >= p.y);
+        a = like_a ? m : a;
+        ta = like_a ? t : ta;
+        b = like_a ? b : m;
+        tb = like_a ? tb : t;
+    }
+    if (p.x < min(a.x, b.x)) return false;
+    if (p.x >= max(a.x, b.x)) return true;
+    return a.x + (b.x - a.x) * ((p.y - a.y) / (b.y - a.y)) <= p.x;
+}
+
+bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
+    BisectFace own = bisect_faces[fi.face];
+    // the number of bands that begin below the point
+    uint lo = 0u;
+    uint hi = own.band_count == 0u ? 0u : own.band_count + 1u;
+    uint ends = hi;
+    while (lo < hi) {
+        uint mid = (lo + hi) / 2u;
+        if (bisect_bands[own.first_band + mid].v < uv.y) lo = mid + 1u;
+        else hi = mid;
+    }
+    if (lo == 0u || lo == ends) return false;
+    uint band = own.first_band + lo - 1u;
+    uint first = bisect_bands[band].first_cell;
+    lo = first;
+    hi = bisect_bands[band + 1u].first_cell;
+    while (lo < hi) {
+        uint mid = (lo + hi) / 2u;
+        if (bisect_cells[mid].u_lo <= uv.x) lo = mid + 1u;
+        else hi = mid;
+    }
+    if (lo == first) return false;
+    BisectCell cell = bisect_cells[lo - 1u];
+    if (uv.x > cell.u_hi) return (cell.count >> 31) != 0u;
+    uint count = cell.count & 0x3fffffffu;
+    bool inside = ((cell.count >> 30) & 1u) != 0u;
+    for (uint k = 0u; k < count; ++k) {
+        BisectPiece piece = bisect_pieces[bisect_lists[cell.first + k]];
+        inside = inside != bisect_left(piece, uv, own.steps);
+    }
+    return inside;
+}
+
+#endif

@@ -1,0 +1,57 @@
+// Whether a point of a face survives its trims: the seam between the passes that ask and the ways to
+// answer. The entry point defines TRIM_BY_<WAY>; whoever includes this declares `frame` and defines
+// TRIM_BINDING, where the way's own buffers begin. Each way answers
+//
+//   bool trim_inside(FaceInstance fi, Face face, vec2 uv)     (u, v) normalised to the face's surface;
+//                                                             face has FACE_TRIMMED
+#ifndef TRIM_GLSL
+#define TRIM_GLSL
+
+#ifdef TRIM_BY_TABLE
+layout(scalar, binding = TRIM_BINDING + 0) readonly buffer LineStarts { uint line_starts[]; };
+layout(scalar, binding = TRIM_BINDING + 1) readonly buffer RowStarts { uint row_starts[]; };
+layout(scalar, binding = TRIM_BINDING + 2) readonly buffer RowCounts { uint row_counts[]; };
+layout(scalar, binding = TRIM_BINDING + 3) readonly buffer Flips { float flips[]; };
+#include "table.glsl"
+
+bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
+    return table_inside(fi.first_strip, float(face.strip_count), uv);
+}
+#endif
+
+#ifdef TRIM_BY_EXACT
+#define EXACT_BINDING TRIM_BINDING
+#include "exact.glsl"
+
+bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
+    return exact_winding(fi.face, uv) != 0;
+}
+#endif
+
+// Ways to compare with: src/rivals.
+#ifdef TRIM_BY_BISECT
+#include "rivals/bisect.glsl"
+#endif
+
+#ifdef TRIM_BY_UNTRIMMED
+bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
+    return true;
+}
+#endif
+
+#ifdef TRIM_BY_TEXTURE
+#include "rivals/texture.glsl"
+layout(scalar, binding = TRIM_BINDING + 0) readonly buffer TexturePlaces { TexturePlace texture_places[]; };
+layout(scalar, binding = TRIM_BINDING + 1) readonly buffer Texels { uint texels[]; };
+
+bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
+    if (any(lessThan(uv, vec2(0.0))) || any(greaterThanEqual(uv, vec2(1.0)))) return false;
+    TexturePlace place = texture_places[fi.first_strip];
+    if (place.size.words == 0u) return false;
+    uint column = min(uint(uv.x * float(place.size.columns)), place.size.columns - 1u);
+    uint row = min(uint(uv.y * float(place.size.rows)), place.size.rows - 1u);
+    return (texels[place.start + row * place.size.words + column / 32u] >> (column & 31u) & 1u) != 0u;
+}
+#endif
+
+#endif

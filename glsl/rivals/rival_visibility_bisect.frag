@@ -1,0 +1,6 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `visibility`, trimmed patches by bisection in every pixel.
+#define TRIM_BY_BISECT
+#include "visibility_trimmed.glsl"

@@ -1,0 +1,122 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `solid_cst`: the faces of one leaf, trimmed by the others.
+//
+//      ray ──┬──────────┬─────────┬──▶
+//   leaf   ──┼──────────┤█████████├──    up to four ends
+//            ▲          ▲         ▲
+//            │     outside in front, inside behind: a face of the solid is here
+//      the tile's Blist, walked in front of the end and behind it
+//
+// The walk visits only the leaves that it is led to, and nothing is kept. The depth test finds the
+// nearest face. A leaf is the owner of a face when it alone changes the solid there, in front or behind:
+// with the leaf flipped, the walk ends elsewhere (the Boolean derivative, whose inside is the leaf's
+// active zone). Everything is one loop, so that the surfaces' equations are compiled once.
+#include "scene.glsl"
+#include "solids.glsl"
+#include "tiles.glsl"
+#include "trimmed_leaf.glsl"
+#include "eye_ray.glsl"
+#include "view.glsl"
+#include "visible.glsl"
+
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
+layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
+layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
+layout(scalar, binding = 5) readonly buffer TileStarts { uint tile_starts[]; };
+layout(scalar, binding = 6) readonly buffer TileLeaves { TileLeaf tile_leaves[]; };
+layout(scalar, binding = 7) readonly buffer TileEntries { uint tile_entries[]; };
+
+layout(location = 0) flat in uint asked;
+layout(location = 0) out uvec2 visible;
+
+// What a step of the loop is for.
+const uint OWN = 0u;  // the leaf's own span
+const uint WALK = 1u; // the next leaf of the Blist at an end of it
+const uint SIDE = 2u; // which side ends there?
+
+// Where the walks are: in front of the end and behind it, then the same with the leaf flipped.
+struct Walks {
+    uint before;
+    uint behind;
+    uint before_flipped;
+    uint behind_flipped;
+};
+
+float end_of(Span s, uint k) { return k == 0u ? s.lo : k == 1u ? s.g0 : k == 2u ? s.g1 : s.hi; }
+
+void main() {
+    uvec2 tiles = tile_count(frame);
+    uvec2 tile = uvec2(gl_FragCoord.xy) / TILE;
+    uint n = tile.y * tiles.x + tile.x;
+    uint first = min(tile_starts[n], frame.tile_leaf_capacity);
+    uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
+    uint entry = tile_entries[n];
+    if (entry >= EXIT_FALSE) discard; // the same everywhere in the tile
+    uint own = asked & LEAF_OF;
+    Ray ray = eye_ray(frame, gl_FragCoord.xy);
+    Span mine = NOTHING;
+    uint purpose = OWN;
+    uint tried = 0u; // ends
+    float t = 0.0;
+    Walks at = Walks(EXIT_FALSE, EXIT_FALSE, EXIT_FALSE, EXIT_FALSE);
+    uint side = 0u;
+    bool found = false;
+    // each end walks through every leaf at most
+    uint most = 4u * (end - first) + 8u;
+    for (uint step_ = 0u; step_ < most && !found; ++step_) {
+        uint next = min(min(at.before, at.behind), min(at.before_flipped, at.behind_flipped));
+        if (purpose == WALK && next >= EXIT_FALSE) {
+            bool appears = at.before == EXIT_FALSE && at.behind == EXIT_TRUE;
+            bool owns = at.before_flipped == EXIT_TRUE || at.behind_flipped == EXIT_FALSE;
+            if (appears && (owns || (asked & UNOWNED) != 0u)) {
+                purpose = SIDE;
+            } else {
+                // the next end between the near plane and the far one
+                bool valid = false;
+                while (!valid && tried < 4u) {
+                    t = end_of(mine, tried);
+                    bool gap = tried == 1u || tried == 2u;
+                    valid = t > frame.near && t < frame.far && mine.lo < mine.hi && (!gap || mine.g0 < mine.g1);
+                    ++tried;
+                }
+                if (!valid) break;
+                at = Walks(entry, entry, entry, entry);
+                next = entry;
+            }
+        }
+        TileLeaf here = TileLeaf(own, EXIT_FALSE, EXIT_FALSE);
+        if (purpose == WALK) here = tile_leaves[next];
+        Leaf leaf = leaves[here.leaf];
+        bool is_own = here.leaf == own;
+        Span s = is_own && purpose == WALK ? mine : EVERYTHING;
+        if (purpose != WALK || !is_own) {
+            for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
+                uint surface = leaf_surfaces[k].surface;
+                Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
+                if (purpose == SIDE && ends_at(one, t)) side = k;
+                if ((surface & 1u) != 0u) one = complement(one);
+                s = both(s, one);
+            }
+        }
+        if (purpose == SIDE) {
+            found = true;
+        } else if (purpose == OWN) {
+            mine = s;
+            purpose = WALK;
+        } else {
+            bool before = inside_before(s, t);
+            bool behind = inside_span(s, t);
+            if (at.before == next) at.before = before ? here.in_exit : here.out_exit;
+            if (at.behind == next) at.behind = behind ? here.in_exit : here.out_exit;
+            if (at.before_flipped == next) at.before_flipped = before != is_own ? here.in_exit : here.out_exit;
+            if (at.behind_flipped == next) at.behind_flipped = behind != is_own ? here.in_exit : here.out_exit;
+        }
+    }
+    if (!found) discard;
+    visible = uvec2(SEEN_SOLID | side, floatBitsToUint(t));
+    gl_FragDepth = reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0);
+}

@@ -1,0 +1,288 @@
+//! `selvedge sweep`: speed against error, over tolerances, sizes, levels, zooms and numbers of copies.
+//!
+//! ```text
+//!   model ─▶ copies ─▶ zoom ─▶ size ─▶ { every way and tolerance, in turn, frame by frame } ─▶ a row each
+//! ```
+//!
+//! What stands in one group of rows was measured in turn, so that whatever else the machine does slows all of it
+//! alike; their ratios mean something where times do not. In the end, how time grows with each quantity that was swept:
+//! the exponent `p` of `time ~ quantity^p`, fitted by least squares of the logarithms.
+
+use crate::args::{Factors, Size, SubdivideArgs, SweepArgs};
+use crate::camera::closer;
+use crate::progress::during;
+use crate::{Outcome, output, session, verdict};
+use anyhow::Result;
+use glam::{DAffine3, DVec3};
+use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
+use selvedge::model::{Camera, Model};
+use selvedge::picture::{FrameSettings, FrameStats, Outputs};
+use selvedge::reference::Tracer;
+use serde::Serialize;
+
+const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
+const FOV_DEG: f64 = 35.0;
+/// Frames of each way before the first measured one.
+const WARM_UP_FRAMES: usize = 1;
+
+/// One setting.
+#[derive(Debug, Serialize)]
+struct Row {
+    model: String,
+    copies: usize,
+    zoom: f64,
+    width: u32,
+    height: u32,
+    factors: String,
+    tolerance_px: f64,
+    patches: u64,
+    sub_patches: u64,
+    triangles: u64,
+    /// Median milliseconds of all passes, and of those in quotes in `ARCHITECTURE.md`.
+    all_ms: f64,
+    tessellation_ms: f64,
+    visibility_ms: f64,
+    resolve_ms: f64,
+    persistent_bytes: u64,
+    transient_bytes: u64,
+    /// Pixels with something on them.
+    covered: usize,
+    judged: u64,
+    wrong: u64,
+    worst_shift_px: f64,
+    clamps: u64,
+}
+
+/// Sweeps every model.
+pub fn run(args: &SweepArgs) -> Result<Outcome> {
+    let mut rows = Vec::new();
+    let mut device = String::new();
+    for file in &args.models {
+        let import = session::open(file, &SubdivideArgs::default())?;
+        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        for &copies in &args.copies {
+            let model = copied(&import.model, copies, args.distinct);
+            let options = HeadlessOptions { device: args.device.clone(), validation: false };
+            let mut renderer = HeadlessRenderer::new(&options)?;
+            during("uploading the model", || renderer.upload(&model))?;
+            let tracer = (args.samples > 0).then(|| Tracer::new(&model));
+            for &zoom in &args.zooms {
+                for &Size(width, height) in &args.sizes {
+                    let camera = camera(&model, zoom, (width, height));
+                    let mut group = Group { name: &name, copies, zoom, camera, tracer: tracer.as_ref() };
+                    let measured = during("measuring", || group.measure(args, &mut renderer, &mut device))?;
+                    rows.extend(measured);
+                }
+            }
+        }
+    }
+    output::print(&format!("{device}\n{}\n{}", table(&rows), exponents(&rows)))?;
+    if let Some(path) = &args.out {
+        output::file(path, |to| {
+            let mut lines = csv::Writer::from_writer(to);
+            rows.iter().try_for_each(|row| lines.serialize(row))?;
+            Ok(lines.flush()?)
+        })?;
+    }
+    Ok(Outcome::Good)
+}
+
+/// In a cube of copies, a tenth of the model apart.
+fn copied(model: &Model, copies: usize, distinct: bool) -> Model {
+    let bounds = model.bounds();
+    let step = (bounds.max - bounds.min) * 1.1;
+    let side = (1..).find(|n: &usize| n.pow(3) >= copies).unwrap_or(1);
+    let mut all = Model { parts: model.parts.clone(), solids: model.solids.clone(), ..Model::default() };
+    for copy in 0..copies {
+        if distinct && copy > 0 {
+            all.parts.extend(model.parts.iter().cloned());
+        }
+        let first = if distinct { copy * model.parts.len() } else { 0 };
+        let place = DVec3::new((copy % side) as f64, (copy / side % side) as f64, (copy / side / side) as f64);
+        let moved = DAffine3::from_translation(place * step);
+        all.instances.extend(model.instances.iter().map(|i| {
+            let transform = if copy == 0 { i.transform } else { moved * i.transform };
+            selvedge::model::Instance { part: first + i.part, transform, ..i.clone() }
+        }));
+    }
+    all
+}
+
+fn camera(model: &Model, zoom: f64, size: (u32, u32)) -> Camera {
+    let bounds = model.bounds();
+    let whole = Camera::framing(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size);
+    let mut camera = if zoom > 1.0 { closer(model, whole, zoom) } else { whole };
+    camera.fit_depth(bounds);
+    camera.depth_range.0 = camera.depth_range.0.min((camera.eye - camera.target).length() * 0.1);
+    camera
+}
+
+/// What is measured in turn.
+struct Group<'a> {
+    name: &'a str,
+    copies: usize,
+    zoom: f64,
+    camera: Camera,
+    tracer: Option<&'a Tracer>,
+}
+
+impl Group<'_> {
+    fn measure(&mut self, args: &SweepArgs, renderer: &mut HeadlessRenderer, device: &mut String) -> Result<Vec<Row>> {
+        let ways = args.factors.iter().flat_map(|f| args.tolerances.iter().map(move |t| (*f, *t)));
+        let ways: Vec<(Factors, f64)> = ways.collect();
+        let settings = |(factors, tolerance_px): (Factors, f64)| FrameSettings {
+            tolerance_px,
+            levels: factors.0,
+            ..FrameSettings::default()
+        };
+        let mut frames: Vec<Vec<FrameStats>> = vec![Vec::new(); ways.len()];
+        for frame in 0..WARM_UP_FRAMES + args.frames {
+            for (way, stats) in ways.iter().zip(&mut frames) {
+                let picture = renderer.render(&self.camera, &settings(*way), Outputs::default())?;
+                if frame >= WARM_UP_FRAMES {
+                    stats.push(picture.stats);
+                }
+            }
+        }
+        let mut rows = Vec::new();
+        for (way, stats) in ways.iter().zip(&frames) {
+            let picture = renderer.render(&self.camera, &settings(*way), Outputs::ALL)?;
+            let judged = self
+                .tracer
+                .map(|t| verdict::of(t, &self.camera, &picture, args.samples, way.1, self.zoom, &way.0.to_string()));
+            let last = stats.last().expect("at least one frame");
+            *device = format!("{} ({})", last.device, last.driver);
+            let pass = |name: &str| {
+                let of = |s: &FrameStats| {
+                    s.passes.iter().filter(|p| name.is_empty() || p.name == name).map(|p| p.gpu_ms).sum()
+                };
+                median(stats.iter().map(of).collect())
+            };
+            let pool = |name: &str| last.pools.iter().filter(|p| p.name == name).map(|p| p.bytes).sum();
+            rows.push(Row {
+                model: self.name.to_owned(),
+                copies: self.copies,
+                zoom: self.zoom,
+                width: self.camera.size.0,
+                height: self.camera.size.1,
+                factors: way.0.to_string(),
+                tolerance_px: way.1,
+                patches: last.patches,
+                sub_patches: last.sub_patches,
+                triangles: last.triangles,
+                all_ms: pass(""),
+                tessellation_ms: pass("tessellation"),
+                visibility_ms: pass("visibility"),
+                resolve_ms: pass("resolve"),
+                persistent_bytes: pool("persistent"),
+                transient_bytes: pool("transient"),
+                covered: picture.face.iter().filter(|id| **id != 0).count(),
+                judged: judged.as_ref().map_or(0, |j| j.sampled),
+                wrong: judged.as_ref().map_or(0, verdict::wrong),
+                worst_shift_px: judged.as_ref().map_or(f64::NAN, verdict::worst_shift_px),
+                clamps: last.clamps,
+            });
+        }
+        Ok(rows)
+    }
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values[values.len() / 2]
+}
+
+fn table(rows: &[Row]) -> String {
+    let mut table = output::table([
+        "model",
+        "copies",
+        "zoom",
+        "size",
+        "factors",
+        "px",
+        "patches",
+        "triangles",
+        "all, ms",
+        "tessellation",
+        "visibility",
+        "resolve",
+        "bytes/patch",
+        "covered",
+        "judged",
+        "wrong",
+        "worst px",
+    ]);
+    for r in rows {
+        table.add_row([
+            r.model.clone(),
+            r.copies.to_string(),
+            r.zoom.to_string(),
+            format!("{}x{}", r.width, r.height),
+            r.factors.clone(),
+            r.tolerance_px.to_string(),
+            r.patches.to_string(),
+            r.triangles.to_string(),
+            format!("{:.2}", r.all_ms),
+            format!("{:.2}", r.tessellation_ms),
+            format!("{:.2}", r.visibility_ms),
+            format!("{:.2}", r.resolve_ms),
+            format!("{:.0}", r.persistent_bytes as f64 / r.patches.max(1) as f64),
+            r.covered.to_string(),
+            r.judged.to_string(),
+            r.wrong.to_string(),
+            format!("{:.3}", r.worst_shift_px),
+        ]);
+    }
+    table.to_string()
+}
+
+/// A quantity of a row.
+type Quantity = (&'static str, fn(&Row) -> f64);
+
+/// Exponents of what was swept, over the rows of `bound`.
+fn exponents(rows: &[Row]) -> String {
+    let quantities: [Quantity; 3] = [
+        ("patches", |r| r.patches as f64),
+        ("covered pixels", |r| r.covered as f64),
+        ("triangles", |r| r.triangles as f64),
+    ];
+    let line = |(name, of): &Quantity| {
+        let points: Vec<_> =
+            rows.iter().filter(|r| r.factors == "bound").map(|r| (of(r).ln(), r.all_ms.ln())).collect();
+        exponent(&points).map(|p| format!("time grows with {name} to the power of {p:.2}"))
+    };
+    quantities.iter().filter_map(line).collect::<Vec<_>>().join("\n")
+}
+
+/// The slope of the least-squares line; `None` where the abscissae do not differ by a factor of two.
+fn exponent(points: &[(f64, f64)]) -> Option<f64> {
+    let n = points.len() as f64;
+    let (mx, my) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
+    let (lo, hi) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p.0), hi.max(p.0)));
+    let spread: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
+    (hi - lo > 2f64.ln()).then(|| points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>() / spread)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_power_law_has_its_exponent() {
+        let points: Vec<_> = [1.0f64, 3.0, 20.0].iter().map(|x| (x.ln(), (5.0 * x.powf(0.75)).ln())).collect();
+        assert!((exponent(&points).expect("spread") - 0.75).abs() < 1e-12);
+        assert_eq!(exponent(&[(1.0, 2.0), (1.1, 3.0)]), None);
+    }
+
+    #[test]
+    fn copies_stand_apart() {
+        let part = selvedge::model::Part::default();
+        let instance =
+            selvedge::model::Instance { part: 0, transform: DAffine3::IDENTITY, colour: None, name: String::new() };
+        let model = Model { parts: vec![part], instances: vec![instance], ..Model::default() };
+        let shared = copied(&model, 9, false);
+        assert_eq!((shared.parts.len(), shared.instances.len()), (1, 9));
+        let distinct = copied(&model, 9, true);
+        assert_eq!(distinct.instances.iter().map(|i| i.part).collect::<Vec<_>>(), (0..9).collect::<Vec<_>>());
+    }
+}

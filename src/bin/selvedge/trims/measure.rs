@@ -1,0 +1,278 @@
+//! One measurement: a way, a view, what it costs and how wrong it is.
+//!
+//! ```text
+//!   trim time = passes that the way has of its own                    "trim table", "trim texture"
+//!             + pass "visibility" - the same without a test           what the tests in the pixels cost
+//! ```
+//!
+//! Without a test pixels are kept that a test discards, so the difference can be below zero.
+
+use super::way::{Contender, Way};
+use crate::args::TrimsArgs;
+use crate::progress::during;
+use crate::verdict;
+use anyhow::Result;
+use selvedge::gpu::GpuError;
+use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
+use selvedge::model::{Camera, Model};
+use selvedge::picture::{FrameSettings, FrameStats, Outputs, Rival, SceneSettings, TrimWay};
+use selvedge::reference::Tracer;
+use selvedge::renderer::RenderError;
+use selvedge::rivals::{pretessellated::pretessellated, texture};
+use serde::Serialize;
+use std::time::Instant;
+
+/// Frames before the first measured one: buffers have grown, pipelines are compiled.
+const WARM_UP_FRAMES: usize = 2;
+
+/// Which of the plots a row belongs to.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sweep {
+    Zoom,
+    Size,
+    Knob,
+}
+
+/// One measurement.
+#[derive(Clone, Debug, Serialize)]
+pub struct Row {
+    pub model: String,
+    pub way: Way,
+    pub sweep: Sweep,
+    pub knob: &'static str,
+    pub knob_at: f64,
+    pub zoom: f64,
+    pub size: [u32; 2],
+    /// Work on the CPU before the first frame: upload, and the triangulation where there is one.
+    pub prepare_ms: f64,
+    /// Bytes that the way needs for this view, whether the device has them or not.
+    pub trim_bytes: f64,
+    /// `None`: the device has no room for it.
+    pub cost: Option<Cost>,
+    pub error: Option<Error>,
+    pub device: String,
+}
+
+/// What a frame costs.
+#[derive(Clone, Debug, Serialize)]
+pub struct Cost {
+    pub trim_ms: f64,
+    pub own_passes_ms: f64,
+    pub heal_ms: f64,
+    pub frame_ms: f64,
+    pub passes: Vec<(String, f64)>,
+    pub bytes: u64,
+    pub objects: Vec<(String, u64)>,
+    pub trim_rows: u64,
+    pub trim_segments: u64,
+    pub trim_intercepts: u64,
+    pub triangles: u64,
+    pub clamps: u64,
+}
+
+/// How wrong it is.
+#[derive(Clone, Debug, Serialize)]
+pub struct Error {
+    pub judged: u64,
+    /// Beyond half a pixel.
+    pub wrong: u64,
+    pub worst_shift_px: f64,
+}
+
+/// A contender with its renderers: one that is timed, one that also writes what is judged.
+pub struct Entered {
+    contender: Contender,
+    prepare_ms: f64,
+    timed: HeadlessRenderer,
+    judged: HeadlessRenderer,
+}
+
+/// The measurements of one model.
+pub struct Bench<'a> {
+    args: &'a TrimsArgs,
+    name: &'a str,
+    model: &'a Model,
+    tracer: &'a Tracer,
+    /// Trims nothing.
+    untrimmed: Option<HeadlessRenderer>,
+    /// Milliseconds of pass "visibility" without a test, view by view.
+    without: Vec<(Camera, f64)>,
+}
+
+impl<'a> Bench<'a> {
+    pub fn new(args: &'a TrimsArgs, name: &'a str, model: &'a Model, tracer: &'a Tracer) -> Self {
+        Self { args, name, model, tracer, untrimmed: None, without: Vec::new() }
+    }
+
+    fn renderer(&self, model: &Model, trim: Option<TrimWay>) -> Result<HeadlessRenderer> {
+        let options = HeadlessOptions { device: self.args.device.clone(), validation: false };
+        let mut renderer = HeadlessRenderer::new(&options)?;
+        renderer.upload_with(model, SceneSettings { trim, ..SceneSettings::default() })?;
+        Ok(renderer)
+    }
+
+    /// Makes a contender ready.
+    pub fn enter(&self, contender: Contender) -> Result<Entered> {
+        let what = format!("{}: preparing {}", self.name, contender.way());
+        let start = Instant::now();
+        let mesh = match contender {
+            Contender::Pretessellated { deflection } => {
+                let chord = deflection * self.model.bounds().diagonal();
+                let (mesh, made) = during(&what, || pretessellated(self.model, chord));
+                if made.missing > 0 || made.beyond > 0 {
+                    tracing::warn!("{}: {} faces missing, {} triangles bulge", self.name, made.missing, made.beyond);
+                }
+                Some(mesh)
+            }
+            _ => None,
+        };
+        let model = mesh.as_ref().unwrap_or(self.model);
+        let timed = during(&what, || self.renderer(model, contender.trim()))?;
+        let prepare_ms = start.elapsed().as_secs_f64() * 1e3;
+        Ok(Entered { contender, prepare_ms, timed, judged: self.renderer(model, contender.trim())? })
+    }
+
+    /// Measures and judges one view.
+    pub fn row(&mut self, entered: &mut Entered, sweep: Sweep, zoom: f64, camera: &Camera) -> Result<Row> {
+        let contender = entered.contender;
+        let (way, (knob, knob_at)) = (contender.way(), contender.knob());
+        let what = format!("{}: {way}, {zoom} times, {} x {}", self.name, camera.size.0, camera.size.1);
+        tracing::info!("{what}");
+        let mut row = Row {
+            model: self.name.to_owned(),
+            way,
+            sweep,
+            knob,
+            knob_at,
+            zoom,
+            size: camera.size.into(),
+            prepare_ms: entered.prepare_ms,
+            trim_bytes: 0.0,
+            cost: None,
+            error: None,
+            device: String::new(),
+        };
+        if let Contender::Texture { eighths } = contender {
+            row.trim_bytes = texture::wanted_bytes(self.model, camera, eighths)?;
+        }
+        let settings = FrameSettings { tolerance_px: contender.tolerance_px(), ..FrameSettings::default() };
+        let frames = self.args.frames;
+        let Some(stats) = during(&what, || quickest(&mut entered.timed, camera, &settings, frames))? else {
+            return Ok(row);
+        };
+        row.device = format!("{} ({})", stats.device, stats.driver);
+        let objects = entered.timed.object_bytes();
+        if !matches!(contender, Contender::Texture { .. }) {
+            row.trim_bytes = objects.iter().filter(|(name, _)| is_for_trims(way, name)).map(|(_, b)| *b as f64).sum();
+        }
+        let trims = !matches!(contender, Contender::Pretessellated { .. });
+        let without = if trims { self.without(camera)? } else { time(&stats, "visibility") };
+        row.cost = Some(cost(&stats, without, objects));
+        let picture = entered.judged.render(camera, &settings, Outputs::ALL)?;
+        let j = verdict::of(self.tracer, camera, &picture, self.args.samples, 0.5, &what);
+        row.error =
+            Some(Error { judged: j.sampled, wrong: verdict::wrong(&j), worst_shift_px: verdict::worst_shift_px(&j) });
+        Ok(row)
+    }
+
+    /// Pass "visibility" of this view without a test.
+    fn without(&mut self, camera: &Camera) -> Result<f64> {
+        if let Some((_, ms)) = self.without.iter().find(|(known, _)| known == camera) {
+            return Ok(*ms);
+        }
+        if self.untrimmed.is_none() {
+            self.untrimmed = Some(self.renderer(self.model, Some(TrimWay::Rival(Rival::Untrimmed)))?);
+        }
+        let Some(renderer) = &mut self.untrimmed else { unreachable!("made above") };
+        let stats = quickest(renderer, camera, &FrameSettings::default(), self.args.frames)?;
+        let ms = stats.map_or(0.0, |stats| time(&stats, "visibility"));
+        self.without.push((*camera, ms));
+        Ok(ms)
+    }
+}
+
+/// The least time of each pass over some frames; `None` when the device has no room.
+fn quickest(
+    renderer: &mut HeadlessRenderer,
+    camera: &Camera,
+    settings: &FrameSettings,
+    frames: usize,
+) -> Result<Option<FrameStats>> {
+    let mut best: Option<FrameStats> = None;
+    for frame in 0..WARM_UP_FRAMES + frames {
+        let stats = match renderer.render(camera, settings, Outputs::default()) {
+            Ok(picture) => picture.stats,
+            Err(error) if no_room(&error) => return Ok(None),
+            Err(error) => return Err(error.into()),
+        };
+        match &mut best {
+            Some(best) if frame > WARM_UP_FRAMES => {
+                best.passes.iter_mut().zip(&stats.passes).for_each(|(b, s)| b.gpu_ms = b.gpu_ms.min(s.gpu_ms));
+            }
+            _ => best = Some(stats),
+        }
+    }
+    Ok(best)
+}
+
+/// What the frame needs is more than the device has.
+fn no_room(error: &HeadlessError) -> bool {
+    let gpu = match error {
+        HeadlessError::Gpu(gpu) | HeadlessError::Render(RenderError::Gpu(gpu)) => gpu,
+        _ => return false,
+    };
+    matches!(gpu, GpuError::TooLarge { .. } | GpuError::Allocation { .. })
+}
+
+fn time(stats: &FrameStats, pass: &str) -> f64 {
+    stats.passes.iter().filter(|p| p.name == pass).map(|p| p.gpu_ms).sum()
+}
+
+fn cost(stats: &FrameStats, without: f64, objects: Vec<(String, u64)>) -> Cost {
+    let own_passes_ms = stats.passes.iter().filter(|p| p.name.starts_with("trim")).map(|p| p.gpu_ms).sum();
+    Cost {
+        trim_ms: own_passes_ms + time(stats, "visibility") - without,
+        own_passes_ms,
+        heal_ms: time(stats, "heal"),
+        frame_ms: stats.passes.iter().map(|p| p.gpu_ms).sum(),
+        passes: stats.passes.iter().map(|p| (p.name.clone(), p.gpu_ms)).collect(),
+        bytes: objects.iter().map(|(_, bytes)| bytes).sum(),
+        objects,
+        trim_rows: stats.trim_rows,
+        trim_segments: stats.trim_segments,
+        trim_intercepts: stats.trim_intercepts,
+        triangles: stats.triangles,
+        clamps: stats.clamps,
+    }
+}
+
+/// The object is there because faces are trimmed this way; the list of doubtful pixels is everybody's.
+fn is_for_trims(way: Way, object: &str) -> bool {
+    match way {
+        Way::Pretessellated => object.starts_with("mesh"),
+        _ => object.starts_with("trim") && object != "trim doubts",
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use selvedge::picture::PassTime;
+
+    #[test]
+    fn trim_time_is_own_passes_and_the_difference() {
+        let pass = |name: &str, gpu_ms| PassTime { name: name.into(), gpu_ms };
+        let passes = vec![pass("trim table", 2.0), pass("visibility", 7.0), pass("heal", 1.0), pass("resolve", 3.0)];
+        let cost = cost(&FrameStats { passes, ..FrameStats::default() }, 5.5, vec![("trim rows".into(), 12)]);
+        assert_eq!((cost.trim_ms, cost.own_passes_ms, cost.heal_ms, cost.frame_ms), (3.5, 2.0, 1.0, 13.0));
+        assert_eq!(cost.bytes, 12);
+    }
+
+    #[test]
+    fn objects_of_trims() {
+        let table = Way::Own(TrimWay::Table);
+        assert!(is_for_trims(table, "trim intercepts") && !is_for_trims(table, "trim doubts"));
+        assert!(!is_for_trims(table, "visibility") && is_for_trims(Way::Pretessellated, "mesh positions"));
+    }
+}

@@ -1,0 +1,133 @@
+//! The frame's part for ways to trim that only benchmarks and tests use: see `src/rivals`.
+//!
+//! ```text
+//!   cells ──density──▶ face speeds ──sizes──(scan)──▶ starts      textures only; the others have no pass
+//!   curves ──flip──▶ bits ──fill──▶ texels, places
+//! ```
+
+use super::{Frame, WRITE_TO_READ, WRITE_TO_WRITE};
+use crate::buffers::TextureBuffers;
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
+use crate::passes::{density, rival_texture};
+use crate::picture::Rival;
+use crate::scene::{RivalScene, TableScene};
+use crate::shaders::{TRIM_BISECT, TRIM_TEXTURE, TRIM_UNTRIMMED, TrimTest};
+
+/// The passes of such a way.
+pub(super) enum RivalPasses {
+    Untrimmed,
+    Bisect,
+    Texture(Box<TexturePasses>),
+}
+
+/// The passes of trim textures.
+pub(super) struct TexturePasses {
+    density: density::Density,
+    texture: rival_texture::RivalTexture,
+}
+
+impl RivalPasses {
+    pub(super) fn new(device: &Device, rival: Rival) -> Result<Self, GpuError> {
+        Ok(match rival {
+            Rival::Untrimmed => Self::Untrimmed,
+            Rival::Bisect { .. } => Self::Bisect,
+            Rival::Texture { .. } => Self::Texture(Box::new(TexturePasses {
+                density: density::Density::new(device)?,
+                texture: rival_texture::RivalTexture::new(device)?,
+            })),
+        })
+    }
+
+    pub(super) fn test(&self) -> &'static TrimTest {
+        match self {
+            Self::Untrimmed => &TRIM_UNTRIMMED,
+            Self::Bisect => &TRIM_BISECT,
+            Self::Texture(_) => &TRIM_TEXTURE,
+        }
+    }
+}
+
+/// What such a way works on.
+#[derive(Clone, Copy)]
+pub(super) struct RivalParts<'a> {
+    pub passes: &'a RivalPasses,
+    pub scene: &'a RivalScene,
+    pub buffers: Option<&'a TextureBuffers>,
+}
+
+/// What trim textures are made of and with.
+pub(super) struct TextureParts<'a> {
+    passes: &'a TexturePasses,
+    scene: &'a TableScene,
+    knob: &'a Buffer,
+    buffers: &'a TextureBuffers,
+}
+
+impl<'a> RivalParts<'a> {
+    /// What the test reads, in its order.
+    pub(super) fn test(&self) -> Vec<&'a Buffer> {
+        match (self.scene, self.buffers) {
+            (RivalScene::Bisect(buffers), _) => buffers.iter().collect(),
+            (RivalScene::Texture(..), Some(b)) => vec![&b.places, &b.texels],
+            _ => Vec::new(),
+        }
+    }
+
+    pub(super) fn texture(self) -> Option<TextureParts<'a>> {
+        match (self.passes, self.scene, self.buffers) {
+            (RivalPasses::Texture(passes), RivalScene::Texture(scene, knob), Some(buffers)) => {
+                Some(TextureParts { passes, scene, knob, buffers })
+            }
+            _ => None,
+        }
+    }
+}
+
+impl TextureParts<'_> {
+    /// Records the passes; what the trim test reads is then ready for it.
+    pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        let (s, b, t) = (frame.scene, frame.buffers, self.buffers);
+        let (w, r) = WRITE_TO_READ;
+        let (w1, w2) = WRITE_TO_WRITE;
+        let cleared = (Access::TRANSFER_WRITE, Access::COMPUTE_WRITE);
+        barrier::buffers(cmd, &t.cleared().map(|buffer| (buffer, cleared.0, cleared.1)));
+        let density = density::Bindings {
+            frame: frame.constants,
+            views: frame.views,
+            instances: &s.instances,
+            face_instances: &s.face_instances,
+            faces: &s.faces,
+            cells: &self.scene.cells,
+            cell_items: &self.scene.cell_items,
+            strip_heights: &t.strip_heights,
+            face_speeds: &t.face_speeds,
+        };
+        self.passes.density.record(cmd, &density, b.counts.cells);
+        barrier::buffers(cmd, &[(&t.face_speeds, w, r), (&b.counters, w1, w2)]);
+        let bindings = rival_texture::Bindings {
+            knob: self.knob,
+            frame: frame.constants,
+            face_instances: &s.face_instances,
+            faces: &s.faces,
+            curves: &self.scene.curves,
+            curve_points: &self.scene.curve_points,
+            curve_items: &self.scene.curve_items,
+            face_speeds: &t.face_speeds,
+            words: &t.words,
+            starts: &t.starts,
+            places: &t.places,
+            texels: &t.texels,
+            counters: &b.counters,
+        };
+        let (p, placed) = (&self.passes.texture, b.counts.face_instances);
+        p.sizes(cmd, &bindings, placed);
+        barrier::buffers(cmd, &[(&t.words, w, r), (&b.counters, w1, w2)]);
+        frame.scan(cmd, &t.words, &t.starts, placed);
+        barrier::buffers(cmd, &[(&t.starts, w, r)]);
+        p.flip(cmd, &bindings, b.counts.curves);
+        barrier::buffers(cmd, &[(&t.texels, w1, w2), (&b.counters, w, r)]);
+        p.fill(cmd, &bindings, placed);
+        let tested = Access::FRAGMENT_READ | Access::COMPUTE_READ;
+        barrier::buffers(cmd, &[(&t.texels, w, tested), (&t.places, w, tested), (&b.counters, r, w)]);
+    }
+}

@@ -1,0 +1,130 @@
+//! The ways to trim, as the frame sees them.
+//!
+//! ```text
+//!   way      scene buffers   buffers of the frame   passes before the draw     what the test reads
+//!   table    TableScene      TableBuffers           table.rs: density … sort   TableParts::test
+//!   exact    ExactScene      none                   none                       its buffers
+//! ```
+//!
+//! A scene uses one way; the others' passes, pipelines and buffers do not exist. Whatever the way, its
+//! test is compiled into the passes `visibility` and `heal` ([`TrimTest`](crate::shaders::TrimTest)).
+
+use super::Frame;
+#[cfg(feature = "rivals")]
+use super::rival::{RivalParts, RivalPasses};
+use super::table::{TableParts, TablePasses};
+use crate::buffers::TrimBuffers;
+use crate::gpu::{Buffer, Device, GpuError};
+use crate::passes::heal;
+use crate::picture::TrimWay;
+use crate::scene::{ExactScene, SceneData, Trims};
+use crate::shaders::{TRIM_EXACT, TRIM_TABLE, TrimTest};
+
+/// The passes of the way that the scene uses, and `heal`.
+pub(super) struct TrimPasses {
+    way: Way,
+    pub heal: heal::Heal,
+}
+
+enum Way {
+    Table(Box<TablePasses>),
+    Exact,
+    #[cfg(feature = "rivals")]
+    Rival(RivalPasses),
+}
+
+impl TrimPasses {
+    /// `None` when no patch is trimmed.
+    pub(super) fn new(device: &Device, data: &SceneData) -> Result<Option<Self>, GpuError> {
+        let Some(way) = data.trim_way() else { return Ok(None) };
+        let way = match way {
+            TrimWay::Table => Way::Table(Box::new(TablePasses::new(device)?)),
+            TrimWay::Exact => Way::Exact,
+            #[cfg(feature = "rivals")]
+            TrimWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival)?),
+        };
+        let others = data.has_meshes() || data.solids.kinds().is_some();
+        let heal = heal::Heal::new(device, way.test(), data.has_rational, others)?;
+        Ok(Some(Self { way, heal }))
+    }
+
+    pub(super) fn test(&self) -> &'static TrimTest {
+        self.way.test()
+    }
+}
+
+impl Way {
+    fn test(&self) -> &'static TrimTest {
+        match self {
+            Self::Table(_) => &TRIM_TABLE,
+            Self::Exact => &TRIM_EXACT,
+            #[cfg(feature = "rivals")]
+            Self::Rival(passes) => passes.test(),
+        }
+    }
+}
+
+/// What trimming works on in one frame.
+pub(super) struct TrimParts<'a> {
+    pub passes: &'a TrimPasses,
+    pub buffers: &'a TrimBuffers,
+    way: Parts<'a>,
+}
+
+enum Parts<'a> {
+    Table(TableParts<'a>),
+    Exact(&'a ExactScene),
+    #[cfg(feature = "rivals")]
+    Rival(RivalParts<'a>),
+}
+
+impl<'a> Frame<'a> {
+    /// `None` when no patch is trimmed.
+    pub(super) fn trim(&self) -> Option<TrimParts<'a>> {
+        let passes = self.passes.trim.as_ref()?;
+        let (scene, buffers) = (self.scene.trims.as_ref()?, self.buffers.trim.as_ref()?);
+        let way = match (&passes.way, scene) {
+            (Way::Table(passes), Trims::Table(scene)) => {
+                Parts::Table(TableParts { passes, scene, buffers: buffers.table.as_ref()? })
+            }
+            #[cfg(feature = "rivals")]
+            (Way::Rival(passes), Trims::Rival(scene)) => {
+                Parts::Rival(RivalParts { passes, scene, buffers: buffers.texture.as_ref() })
+            }
+            (Way::Exact, Trims::Exact(scene)) => Parts::Exact(scene),
+            _ => unreachable!("passes and buffers are made for one way"),
+        };
+        Some(TrimParts { passes, buffers, way })
+    }
+}
+
+impl<'a> TrimParts<'a> {
+    /// The table's passes, where the scene is trimmed by table.
+    pub(super) fn table(&self) -> Option<TableParts<'a>> {
+        match self.way {
+            Parts::Table(parts) => Some(parts),
+            Parts::Exact(_) => None,
+            #[cfg(feature = "rivals")]
+            Parts::Rival(_) => None,
+        }
+    }
+
+    /// A way to compare with, where the scene is trimmed so.
+    #[cfg(feature = "rivals")]
+    pub(super) fn rival(&self) -> Option<RivalParts<'a>> {
+        match self.way {
+            Parts::Rival(parts) => Some(parts),
+            _ => None,
+        }
+    }
+
+    /// What the trim test reads, in its order.
+    pub(super) fn test(&self) -> Vec<&'a Buffer> {
+        match self.way {
+            Parts::Table(parts) => parts.test(),
+            Parts::Exact(s) => vec![&s.faces, &s.bands, &s.cells, &s.entries, &s.arcs, &s.points],
+            #[cfg(feature = "rivals")]
+            Parts::Rival(parts) => parts.test(),
+        }
+    }
+}

@@ -1,0 +1,62 @@
+//! Every class of damage with the message that it must have, word for word.
+//!
+//! A Boolean solid is one thing: without a member of it, what is left is another solid. So a fault refuses
+//! the file.
+
+use super::{BOX, ROD};
+use crate::import::brlcad;
+
+/// The error, or how many primitives there are.
+fn first(text: &str) -> (String, usize) {
+    match brlcad(text.as_bytes(), "t.asc") {
+        Ok(read) => {
+            let told = read.warnings.first().map(ToString::to_string);
+            (told.unwrap_or_default(), read.model.solids.iter().map(|s| s.primitives().len()).sum())
+        }
+        Err(error) => (format!("error: {error}"), 0),
+    }
+}
+
+#[test]
+fn one_change_one_message() {
+    let good = format!(
+        "title {{A box}}\nunits mm\n{BOX}{ROD}put two comb tree {{u {{l box}} {{l rod}}}}\nput all comb region yes tree {{- {{l two}} {{l rod {{1 0 0 2 0 1 0 2 0 0 1 0 0 0 0 1}}}}}}\n"
+    );
+    assert_eq!(first(&good), (String::new(), 9));
+    let mut wrong = Vec::new();
+    for (class, from, to, message, primitives) in [
+        ("truncated", "V3 {4 4 0}", "", "error: t.asc:3: box arb8: `V3` is missing", 0),
+        ("truncated", "4 0} V4", "", "error: t.asc:3: a brace or quote does not close", 0),
+        ("truncated", "{l rod}}", "", "error: t.asc:5: a brace or quote does not close", 0),
+        ("truncated", "put all", "", "", 8),
+        ("swapped", "{l box}", "{l bux}", "error: t.asc:5: `bux` does not exist", 0),
+        (
+            "swapped",
+            "V5 {0 0 4}",
+            "V5 {4 4 4}",
+            "error: t.asc:3: box arb8: faces that are not flat, or no convex solid, are not read",
+            0,
+        ),
+        ("swapped", "arb8", "tgc", "error: t.asc:3: box tgc: `V` is missing", 0),
+        ("cycle", "{l box}", "{l all}", "error: t.asc:5: `two` is part of itself", 0),
+        ("cycle", "{l box}", "{l two}", "error: t.asc:5: `two` is part of itself", 0),
+        ("huge", "H {0 0 9}", "H {0 0 1e999}", "error: t.asc:4: rod tgc: `H` is not 3 finite numbers", 0),
+        ("huge", "H {0 0 9}", "H {0 0 9 9 9 9 9 9}", "error: t.asc:4: rod tgc: `H` is not 3 finite numbers", 0),
+        ("NaN", "A {1 0 0}", "A {nan 0 0}", "error: t.asc:4: rod tgc: `A` is not 3 finite numbers", 0),
+        ("NaN", "{1 0 0 2 0 1", "{1 0 0 nan 0 1", "error: t.asc:6: tree: not a matrix", 0),
+        ("NaN", "V3 {4 4 0}", "V3 {4 inf 0}", "error: t.asc:3: box arb8: `V3` is not 3 finite numbers", 0),
+        ("type", "A {1 0 0}", "A {one 0 0}", "error: t.asc:4: rod tgc: `A` is not 3 finite numbers", 0),
+        ("type", "A {1 0 0}", "A 1", "error: t.asc:4: rod tgc: `A` is not 3 finite numbers", 0),
+        ("type", "{1 0 0 2 0 1", "{x 0 0 2 0 1", "error: t.asc:6: tree: `x` with 0 operands is not read", 0),
+        ("type", "{- {l two}", "{7 {l two}", "error: t.asc:6: tree: `7` with 2 operands is not read", 0),
+        ("type", "put two comb", "pot two comb", "error: t.asc:5: `pot` is not a statement of such a file", 0),
+    ] {
+        let at = good.find(from).unwrap_or_else(|| panic!("{from}"));
+        let text = if class == "truncated" { good[..at].to_owned() } else { good.replacen(from, to, 1) };
+        let found = first(&text);
+        if found != (message.to_owned(), primitives) {
+            wrong.push(format!("{class}: {from} -> {to}: {found:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}

@@ -1,0 +1,121 @@
+//! Every class of damage with the message that it must have, word for word.
+//!
+//! A Boolean solid is one thing: without a node of it, what is left is another solid. So a fault refuses the
+//! file, and only what is empty by its own numbers is told and left out.
+
+use crate::import::{Facets, scad};
+
+const GOOD: &str = "group() {\n\tdifference() {\n\t\tcube(size = [4, 4, 4], center = true);\n\t\tsphere($fn = 0, $fa = 12, $fs = 2, r = 2.5);\n\t}\n\tmultmatrix([[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) {\n\t\tpolyhedron(points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], faces = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]], convexity = 1);\n\t}\n\tlinear_extrude(height = 2, $fn = 0, $fa = 12, $fs = 2) {\n\t\tpolygon(points = [[0, 0], [3, 0], [0, 3]], paths = undef, convexity = 1);\n\t}\n}\n";
+
+/// The first warning or the error, and the primitives.
+fn first(text: &str) -> (String, usize) {
+    match scad(text.as_bytes(), "t.csg", Facets::Round) {
+        Ok(read) => {
+            let told = read.warnings.first().map(ToString::to_string);
+            (told.unwrap_or_default(), read.model.solids.iter().map(|s| s.primitives().len()).sum())
+        }
+        Err(error) => (format!("error: {error}"), 0),
+    }
+}
+
+#[test]
+fn one_change_one_message() {
+    let whole = first(GOOD);
+    assert_eq!(whole, (String::new(), 11));
+    let mut wrong = Vec::new();
+    for (class, from, to, message, primitives) in [
+        ("truncated", "size = [4", "", "error: t.csg:3: a value expected, not the end of the file", 0),
+        ("truncated", "r = 2.5", "", "error: t.csg:4: a value expected, not the end of the file", 0),
+        ("truncated", "}\n\tmult", "", "error: t.csg:5: the file ends 2 `}` too early", 0),
+        ("truncated", "convexity = 1);\n\t}\n}", "", "error: t.csg:10: a value expected, not the end of the file", 0),
+        // the form refers to points by their numbers, and to nothing else
+        (
+            "swapped",
+            "[0, 3, 1]",
+            "[0, 3, 4]",
+            "error: t.csg:7: polyhedron: `faces` are not lists of indices below 4",
+            0,
+        ),
+        (
+            "swapped",
+            "[0, 3, 1]",
+            "[0, 1, 3]",
+            "error: t.csg:7: polyhedron: the faces do not close, so there is no inside",
+            0,
+        ),
+        (
+            "swapped",
+            "paths = undef",
+            "paths = [[0, 1, 7]]",
+            "error: t.csg:10: polygon: `paths` are not lists of indices below 3",
+            0,
+        ),
+        ("swapped", "}\n\tmult", "mult", "error: t.csg:12: the file ends 1 `}` too early", 0),
+        ("huge", "$fn = 0, $fa = 12, $fs = 2, r", "$fn = 1e9, $fa = 12, $fs = 2, r", "", 11),
+        (
+            "huge",
+            "[0, 3, 1]",
+            "[0, 3, 4294967297]",
+            "error: t.csg:7: polyhedron: `faces` are not lists of indices below 4",
+            0,
+        ),
+        ("huge", "r = 2.5", "r = 1e308", "", 11),
+        ("NaN", "r = 2.5", "r = nan", "t.csg:4: empty solid: `sphere` has the dimension NaN", 10),
+        (
+            "NaN",
+            "[1, 0, 0, 5]",
+            "[1, 0, 0, nan]",
+            "t.csg:7: empty solid: the matrices around `polyhedron` flatten it, or are not finite",
+            6,
+        ),
+        (
+            "NaN",
+            "[0, 0, 1]], faces",
+            "[0, 0, inf]], faces",
+            "error: t.csg:7: polyhedron: `points` are not points of 3 finite numbers",
+            0,
+        ),
+        (
+            "NaN",
+            "[3, 0], [0, 3]",
+            "[3, 0], [nan, 3]",
+            "error: t.csg:10: polygon: `points` are not points of 2 finite numbers",
+            0,
+        ),
+        ("type", "r = 2.5", "r = true", "error: t.csg:4: sphere: `r` is not a number", 0),
+        ("type", "r = 2.5", "r = [1, 2]", "error: t.csg:4: sphere: `r` is not a number", 0),
+        ("type", "[4, 4, 4]", "\"4\"", "error: t.csg:3: cube: `size` is not 3 numbers", 0),
+        (
+            "type",
+            "[0, 3, 1]",
+            "[0, 3, \"1\"]",
+            "error: t.csg:7: polyhedron: `faces` are not lists of indices below 4",
+            0,
+        ),
+        ("type", "[1, 0, 0, 5]", "5", "error: t.csg:6: multmatrix: not a matrix of 4 rows of 4 numbers", 0),
+        ("type", "sphere", "7", "error: t.csg:4: a node expected, not `7`", 0),
+    ] {
+        let at = GOOD.find(from).unwrap_or_else(|| panic!("{from}"));
+        let text = if class == "truncated" { GOOD[..at].to_owned() } else { GOOD.replacen(from, to, 1) };
+        let found = first(&text);
+        if found != (message.to_owned(), primitives) {
+            wrong.push(format!("{class}: {from} -> {to}: {found:?}"));
+        }
+    }
+    assert!(wrong.is_empty(), "{wrong:#?}");
+}
+
+/// A file that would read itself is not read at all.
+#[test]
+fn cycles() {
+    assert_eq!(
+        first("group() { import(file = \"t.csg\"); }"),
+        ("error: t.csg:1: import: such a node has no exact solid and is not read".to_owned(), 0)
+    );
+}
+
+#[test]
+fn text_that_is_not_unicode() {
+    let error = scad(b"cube();\n\xff", "t.csg", Facets::Round).unwrap_err();
+    assert_eq!(error.to_string(), "t.csg:2: not UTF-8 text");
+}

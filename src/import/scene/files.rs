@@ -1,0 +1,47 @@
+//! Other files: models and data, beside the scene file or in folders below it.
+//!
+//! A path is relative to the scene's folder and never leads out of it: no `..`, nothing absolute. A scene is not read
+//! within a scene, so files cannot name each other in a circle.
+
+use super::scene::Scene;
+use super::text::{Outcome, Value, shortened};
+use crate::import::Import;
+use std::path::{Component, Path, PathBuf};
+
+/// Largest file of data, bytes.
+const MOST_BYTES: u64 = 1 << 26;
+
+/// The path that a value names.
+fn path(scene: &Scene<'_>, value: Value<'_>) -> Outcome<PathBuf> {
+    let text = value.text()?;
+    let inside = |c: Component<'_>| matches!(c, Component::Normal(_) | Component::CurDir);
+    if text.is_empty() || text.contains(['\\', '\0']) || !Path::new(text).components().all(inside) {
+        let text = shortened(text);
+        return Err(value.fault(format!("`{text}` is not a relative path within the scene's own folder")));
+    }
+    match scene.folder {
+        Some(folder) => Ok(folder.join(text)),
+        None => Err(value.fault("the scene has no folder in which other files could be")),
+    }
+}
+
+/// Bytes and name of a file of data.
+pub(super) fn data(scene: &Scene<'_>, value: Value<'_>) -> Outcome<(Vec<u8>, String)> {
+    let path = path(scene, value)?;
+    let shown = path.display().to_string();
+    let unreadable = |e: std::io::Error| value.fault(format!("{shown}: {e}"));
+    let size = std::fs::metadata(&path).map_err(unreadable)?.len();
+    if size > MOST_BYTES {
+        return Err(value.fault(format!("{shown} has {size} bytes, and at most {MOST_BYTES} are read")));
+    }
+    Ok((std::fs::read(&path).map_err(unreadable)?, shown))
+}
+
+/// The model in a file.
+pub(super) fn model(scene: &Scene<'_>, value: Value<'_>) -> Outcome<Import> {
+    let path = path(scene, value)?;
+    if super::named(&path) {
+        return Err(value.fault("a scene within a scene is not read"));
+    }
+    crate::import::open(&path).map_err(|e| value.fault(e))
+}

@@ -1,0 +1,81 @@
+//! Other files: where they may be, and what becomes of them.
+
+use crate::import::{open, scene};
+use std::path::PathBuf;
+
+/// A folder of its own, with a scene.
+fn folder(name: &str) -> PathBuf {
+    let folder = std::env::temp_dir().join(format!("selvedge-scene-{name}-{}", std::process::id()));
+    std::fs::create_dir_all(folder.join("sub")).unwrap();
+    folder
+}
+
+#[test]
+fn a_step_file_is_placed_and_keeps_its_own_colours() {
+    let folder = folder("step");
+    let good = include_bytes!("../../step/tests/good.step");
+    std::fs::write(folder.join("sub/part.step"), good).unwrap();
+    let text = "selvedge = 1\n[file.f]\npath = \"sub/part.step\"\n[[instance]]\nof = \"f\"\nat = [100, 0, 0]\n\
+                [[instance]]\nof = \"f\"\ncolour = \"#ff0000\"\n[solid.s]\nshape = \"sphere\"\nradius = 1\n\
+                [[instance]]\nof = \"s\"\n";
+    std::fs::write(folder.join("a.toml"), text).unwrap();
+    let import = open(&folder.join("a.toml"));
+    let alone = open(&folder.join("sub/part.step")).unwrap();
+    std::fs::remove_dir_all(&folder).unwrap();
+    let import = import.unwrap();
+    let (a, b) = (alone.model.bounds(), import.model.bounds());
+    assert_eq!(import.model.parts.len(), alone.model.parts.len());
+    assert_eq!(import.model.face_instance_count(), 2 * alone.model.face_instance_count());
+    assert!((b.max.x - a.max.x - 100.0).abs() < 1e-9);
+    assert_eq!(import.model.instances.last().unwrap().colour, Some([1.0, 0.0, 0.0, 1.0]));
+    assert_eq!(import.report.faces, alone.report.faces);
+    // numbers of faces and primitives do not meet
+    let faces: Vec<u32> = import.model.parts.iter().flat_map(|p| &p.faces).map(|f| f.id).collect();
+    assert!(!faces.contains(&import.model.solids[0].primitives()[0].id));
+}
+
+#[test]
+fn paths_stay_within_the_folder() {
+    let folder = folder("paths");
+    let told = |path: &str| {
+        let text = format!("selvedge = 1\n[file.f]\npath = {path}\n");
+        let error = scene(text.as_bytes(), "t.toml", Some(&folder)).expect_err("no scene");
+        error.to_string()
+    };
+    let outside =
+        |path: &str| format!("t.toml:3:8: `path`: `{path}` is not a relative path within the scene's own folder");
+    for path in ["../part.step", "sub/../../part.step", "/etc/passwd", ""] {
+        assert_eq!(told(&format!("\"{path}\"")), outside(path));
+    }
+    assert_eq!(told("'C:\\part.step'"), outside("C:\\part.step"));
+    assert_eq!(told("\"t.TOML\""), "t.toml:3:8: `path`: a scene within a scene is not read");
+    assert!(told("\"gone.step\"").starts_with("t.toml:3:8: `path`: "), "{}", told("\"gone.step\""));
+    std::fs::remove_dir_all(&folder).unwrap();
+    let nowhere = scene(b"selvedge = 1\n[file.f]\npath = \"a.step\"\n", "t.toml", None).unwrap_err().to_string();
+    assert_eq!(nowhere, "t.toml:3:8: `path`: the scene has no folder in which other files could be");
+}
+
+#[test]
+fn a_table_of_points_is_met() {
+    let folder = folder("csv");
+    let rows: Vec<String> =
+        (0..5).map(|j| (0..6).map(|i| format!("{i},{j},{}", (i * j) % 4)).collect::<Vec<_>>().join(",")).collect();
+    std::fs::write(folder.join("p.csv"), rows.join("\n")).unwrap();
+    let text = |more: &str| format!("selvedge = 1\n[surface.s]\nshape = \"grid\"\nfile = \"p.csv\"\n{more}\n");
+    let read = |more: &str| scene(text(more).as_bytes(), "t.toml", Some(&folder));
+    let (met, near, few) = (read(""), read("controls = [5, 4]"), read("controls = [7, 4]"));
+    std::fs::write(folder.join("p.csv"), "1,2,3\n4,5,x\n").unwrap();
+    let broken = read("").unwrap_err().to_string();
+    std::fs::remove_dir_all(&folder).unwrap();
+    let surface = met.unwrap().model.parts[0].faces[0].surface.clone();
+    let ((u0, u1), (v0, v1)) = surface.domain();
+    for (u, v, p) in [(u0, v0, [0.0, 0.0, 0.0]), (u1, v0, [5.0, 0.0, 0.0]), (u1, v1, [5.0, 4.0, 0.0])] {
+        assert!(surface.point(u, v).distance(p.into()) < 1e-12);
+    }
+    let near = near.unwrap();
+    assert_eq!(near.model.parts[0].faces[0].surface.counts(), (5, 4));
+    let notes = &near.report.face_records[0].notes;
+    assert!(notes[0].starts_with("data met within"), "{notes:?}");
+    assert_eq!(few.unwrap_err().to_string(), "t.toml:3:9: `shape`: 7 control points in u, but at most 6 are taken");
+    assert!(broken.contains("p.csv, line 2, field 3: `x` is not a finite number"), "{broken}");
+}

@@ -1,0 +1,236 @@
+//! The exact trim test: its twin against the loops in `f64`, and parity of `exact.glsl` with its twin.
+
+use super::Random;
+use super::hard;
+use crate::model::TrimLoop;
+use crate::scene::ExactData;
+use crate::spline::{Bezier, Control};
+use crate::trim::{ExactTrim, LoopIndex};
+use crate::twin::exact::Exact;
+use glam::{DVec2, DVec3};
+
+/// Largest distance in the unit domain at which an answer may differ from that in `f64`, for loops within it:
+/// four roundings of a coordinate below 1 (of a joint, and of the difference to a point, in u and in v).
+/// That of the curve's own evaluation is far smaller: it is relative to the arc, and met near its ends only.
+const TOLERANCE: f64 = 4.0 / 16_777_216.0;
+
+fn twin(data: &ExactData) -> Exact<'_> {
+    Exact {
+        faces: &data.faces,
+        bands: &data.bands,
+        cells: &data.cells,
+        entries: &data.entries,
+        arcs: &data.arcs,
+        points: &data.points,
+    }
+}
+
+fn data(faces: &[Vec<TrimLoop>]) -> ExactData {
+    let mut data = ExactData::default();
+    faces.iter().for_each(|loops| data.push(&ExactTrim::new(loops, DVec2::ZERO, DVec2::ONE)));
+    data
+}
+
+/// A closed chain of one to five curves of degree 1 to 9; some control points repeat, some joints share
+/// a coordinate, so that degenerate forms come up.
+fn random_loop(random: &mut Random) -> TrimLoop {
+    let grid = random.integer(0, 3) == 0;
+    let coordinate = |random: &mut Random| {
+        let x = random.range(0.05, 0.95);
+        if grid { (x * 16.0).round() / 16.0 } else { x }
+    };
+    let count = random.integer(1, 5) as usize;
+    let mut curves: Vec<Vec<DVec3>> = Vec::new();
+    for _ in 0..count {
+        let degree = random.integer(1, 9);
+        let rational = random.integer(0, 1) == 0;
+        let mut points = Vec::new();
+        for _ in 0..degree {
+            let weight = if rational { 2f64.powf(random.range(-3.0, 3.0)) } else { 1.0 };
+            let p = DVec2::new(coordinate(random), coordinate(random));
+            let p = if random.integer(0, 9) == 0 { points.last().map_or(p, |q: &DVec3| q.point()) } else { p };
+            points.push(DVec3::from_point(p, weight));
+        }
+        curves.push(points);
+    }
+    for i in 0..count {
+        let next = curves[(i + 1) % count][0];
+        curves[i].push(next);
+    }
+    let curves = curves.into_iter().map(|points| Bezier { points }).collect();
+    TrimLoop::new(curves, DVec2::splat(1e-14)).expect("closed by construction")
+}
+
+/// Largest distance from a loop at which the twin differs from the exact loops, and how many points
+/// were asked.
+fn worst_difference(seed: u64, faces: usize, points: usize) -> (f64, usize) {
+    let mut random = Random::new(seed);
+    let mut worst = 0.0f64;
+    for _ in 0..faces {
+        let loops: Vec<TrimLoop> = (0..random.integer(1, 3)).map(|_| random_loop(&mut random)).collect();
+        let (index, data) = (LoopIndex::new(&loops), data(std::slice::from_ref(&loops)));
+        let curves: Vec<_> = loops.iter().flat_map(TrimLoop::curves).collect();
+        for k in 0..points {
+            // half of them within a few 1e-6 of a curve, where answers are at stake
+            let p = if k % 2 == 0 {
+                DVec2::new(random.range(-0.05, 1.05), random.range(-0.05, 1.05))
+            } else {
+                let near = curves[random.integer(0, curves.len() as u32 - 1) as usize].point(random.range(0.0, 1.0));
+                near + DVec2::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0)) * 1e-5
+            };
+            let uv = p.as_vec2().to_array();
+            let p = DVec2::from(uv.map(f64::from));
+            let (found, exact) = (twin(&data).winding(0, uv), index.winding(p));
+            if found != exact {
+                let off = index.distance(p, 1.0);
+                assert!(off <= TOLERANCE, "{p}: {found}, not {exact}, {off:e} from the nearest loop of {loops:?}");
+                worst = worst.max(off);
+            }
+        }
+    }
+    (worst, faces * points)
+}
+
+#[test]
+fn the_twin_decides_as_the_exact_loops_do() {
+    let (worst, asked) = worst_difference(1, 400, 60);
+    assert!(asked == 24_000 && worst > 0.0, "points next to a curve must show the rounding of single precision");
+}
+
+/// `cargo nextest run --run-ignored only a_hundred_thousand_loops`: tells the figures.
+#[test]
+#[ignore = "minutes"]
+fn a_hundred_thousand_loops() {
+    use rayon::prelude::*;
+    let all = (0..1000u64).into_par_iter().map(|seed| worst_difference(1000 + seed, 50, 200));
+    let (worst, asked) = all.reduce(|| (0.0, 0), |a, b| (a.0.max(b.0), a.1 + b.1));
+    println!("{asked} points: answers differ at most {worst:e} from a loop");
+}
+
+/// Every hard case, and again with every joint moved by one unit of single precision in each direction.
+#[test]
+fn hard_cases() {
+    for case in hard::all() {
+        for (du, dv) in [(0, 0), (1, 0), (-1, 0), (0, 1), (0, -1), (1, 1)] {
+            let loops: Vec<_> = case.loops.iter().map(|l| hard::moved(l, (du, dv))).collect();
+            let (index, data) = (LoopIndex::new(&loops), data(std::slice::from_ref(&loops)));
+            let mut judged = 0;
+            for &(u, v, winding) in &case.rows {
+                let uv = [u as f32, v as f32];
+                // a row on or next to a curve holds where the curve is as stated
+                let far = index.distance(DVec2::new(u, v), 1.0) > 1e-6;
+                if (du, dv) == (0, 0) || far {
+                    assert_eq!(twin(&data).winding(0, uv), winding, "{} moved {du} {dv} at ({u:e}, {v:e})", case.name);
+                    judged += 1;
+                }
+            }
+            assert!(judged > 0, "{} has no row away from its loops", case.name);
+        }
+    }
+}
+
+/// Lists stay linear in the arcs, also where all of them cross each other; and 10^4 holes are cheap.
+#[test]
+fn memory_is_linear_in_arcs() {
+    let bytes = |loops: &[TrimLoop]| {
+        let trim = ExactTrim::new(loops, DVec2::ZERO, DVec2::ONE);
+        trim.bytes() as f64 / trim.arcs.len() as f64
+    };
+    let mut random = Random::new(7);
+    let mut polygon = |corners: usize| {
+        let points: Vec<DVec2> =
+            (0..corners).map(|_| DVec2::new(random.range(0.0, 1.0), random.range(0.0, 1.0))).collect();
+        let side = |i: usize| Bezier::line(points[i], points[(i + 1) % corners]);
+        TrimLoop::new((0..corners).map(side).collect(), DVec2::ZERO).unwrap()
+    };
+    let (few, many) = (bytes(&[polygon(100)]), bytes(&[polygon(2000)]));
+    assert!(few < 1500.0 && many < 1500.0, "{few} and {many} bytes a side of a wild polygon");
+    let holes = hard::all().into_iter().find(|case| case.name == "7 holes").unwrap();
+    let each = bytes(&holes.loops);
+    assert!(each < 250.0, "{each} bytes a quarter circle");
+}
+
+/// Of `tests/gpu/glsl/exact.comp`, which wraps the include.
+#[cfg(feature = "headless")]
+mod parity {
+    use super::super::harness::{Gpu, Mismatch, same};
+    use super::*;
+    use crate::gpu::{Binding, ComputeInfo, Pipeline};
+
+    fn spirv() -> Vec<u32> {
+        let bytes = include_bytes!("../../tests/gpu/spirv/exact.comp.spv");
+        bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
+    }
+
+    /// Points of each face on the GPU, with the data of `given`, against the twin with `expected`.
+    fn compare(gpu: &Gpu, given: &ExactData, expected: &ExactData, points: &[Vec<[f32; 2]>]) -> Result<(), Mismatch> {
+        let buffers = [
+            gpu.upload("faces", &given.faces),
+            gpu.upload("bands", &given.bands),
+            gpu.upload("cells", &given.cells),
+            gpu.upload("entries", &given.entries),
+            gpu.upload("arcs", &given.arcs),
+            gpu.upload("points", &given.points),
+        ];
+        let (spirv, bindings) = (spirv(), [Binding::Storage; 8]);
+        let info = ComputeInfo { name: "exact", spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
+        let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
+        for (face, points) in points.iter().enumerate() {
+            let asked = gpu.upload("asked", points);
+            let windings = gpu.upload("windings", &vec![99i32; points.len()]);
+            gpu.run(|cmd| {
+                let resources: Vec<_> = buffers.iter().chain([&asked, &windings]).map(Into::into).collect();
+                cmd.bind(&pipeline, &resources, bytemuck::bytes_of(&[face as u32, points.len() as u32]));
+                cmd.dispatch(points.len().div_ceil(64) as u32);
+            });
+            let twin: Vec<i32> = points.iter().map(|&uv| twin(expected).winding(face, uv)).collect();
+            same("windings", &gpu.read(&windings, points.len()), &twin)?;
+        }
+        Ok(())
+    }
+
+    /// Rows of the hard cases, points beside the curves, and points that are none.
+    fn faces() -> (Vec<Vec<TrimLoop>>, Vec<Vec<[f32; 2]>>) {
+        let mut random = Random::new(3);
+        let mut faces: Vec<Vec<TrimLoop>> = Vec::new();
+        let mut points = Vec::new();
+        for case in hard::all() {
+            let mut all: Vec<[f32; 2]> = case.rows.iter().map(|&(u, v, _)| [u as f32, v as f32]).collect();
+            all.extend([[f32::NAN, 0.5], [0.5, f32::NAN], [-1.0, 2.0], [f32::INFINITY, 0.5]]);
+            faces.push(case.loops);
+            points.push(all);
+        }
+        faces.extend((0..30).map(|_| vec![random_loop(&mut random), random_loop(&mut random)]));
+        points.resize(faces.len(), Vec::new());
+        for (loops, points) in faces.iter().zip(&mut points) {
+            let curves: Vec<_> = loops.iter().flat_map(TrimLoop::curves).collect();
+            for _ in 0..200 {
+                let curve = &curves[random.integer(0, curves.len() as u32 - 1) as usize];
+                let reach = DVec2::new(random.range(-1e-3, 1e-3), random.range(-1e-3, 1e-3));
+                points.push((curve.point(random.range(0.0, 1.0)) + reach * reach.x.abs()).as_vec2().to_array());
+            }
+        }
+        (faces, points)
+    }
+
+    #[test]
+    fn parity() {
+        let gpu = Gpu::new();
+        let (faces, points) = faces();
+        let data = data(&faces);
+        compare(&gpu, &data, &data, &points).unwrap();
+        gpu.finish();
+    }
+
+    #[test]
+    fn a_difference_is_seen() {
+        let gpu = Gpu::new();
+        let (faces, points) = faces();
+        let data = data(&faces);
+        let mut other = data.clone();
+        let arc = other.arcs.iter().position(|arc| arc.shape & 31 == 2).unwrap();
+        other.arcs[arc].shape ^= crate::abi::ARC_UP;
+        assert!(compare(&gpu, &other, &data, &points).is_err());
+        gpu.finish();
+    }
+}

@@ -1,0 +1,93 @@
+//! Trim textures: one bit a texel for each placed face that is seen, at the resolution of this view.
+//!
+//! ```text
+//!   face speeds ──sizes──▶ words ──(prefix sum)──▶ starts
+//!   curves ──flip──▶ a bit where a row meets a curve ──fill──▶ parity of the bits up to each texel
+//! ```
+//!
+//! Writes: `sizes`: `words`, `counters`; `flip`: `texels`, `counters`; `fill`: `texels`, `places`. Barriers
+//! between the steps are the caller's. What the method is: `src/rivals/texture.rs`.
+
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::shaders;
+
+/// Threads of a workgroup of the first step.
+const GROUP: u32 = 64;
+/// Workgroups that share the rows of one face in the third step.
+const ROW_GROUPS: u32 = 16;
+
+/// The steps.
+pub(crate) struct RivalTexture {
+    sizes: Pipeline,
+    flip: Pipeline,
+    fill: Pipeline,
+}
+
+/// Of all steps.
+pub(crate) struct Bindings<'a> {
+    pub knob: &'a Buffer,
+    pub frame: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub curves: &'a Buffer,
+    pub curve_points: &'a Buffer,
+    pub curve_items: &'a Buffer,
+    pub face_speeds: &'a Buffer,
+    pub words: &'a Buffer,
+    pub starts: &'a Buffer,
+    pub places: &'a Buffer,
+    pub texels: &'a Buffer,
+    pub counters: &'a Buffer,
+}
+
+impl RivalTexture {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let pipeline = |name, spirv, bindings: usize| {
+            let bindings = &vec![Binding::Storage; bindings];
+            Pipeline::compute(device, &ComputeInfo { name, spirv, bindings, push_bytes: 0, constants: &[] })
+        };
+        Ok(Self {
+            sizes: pipeline("rival texture (sizes)", shaders::RIVAL_TEXTURE_SIZES_COMP, 4)?,
+            flip: pipeline("rival texture (flip)", shaders::RIVAL_TEXTURE_FLIP_COMP, 11)?,
+            fill: pipeline("rival texture (fill)", shaders::RIVAL_TEXTURE_FILL_COMP, 8)?,
+        })
+    }
+
+    /// Words of each of `placed` faces.
+    pub(crate) fn sizes(&self, cmd: &Commands<'_>, b: &Bindings<'_>, placed: u32) {
+        cmd.bind(&self.sizes, &[b.knob, b.face_speeds, b.words, b.counters].map(Into::into), &[]);
+        cmd.dispatch(placed.div_ceil(GROUP));
+    }
+
+    /// Flips along each of `curves`.
+    pub(crate) fn flip(&self, cmd: &Commands<'_>, b: &Bindings<'_>, curves: u32) {
+        let resources = [
+            b.knob,
+            b.frame,
+            b.face_instances,
+            b.faces,
+            b.curves,
+            b.curve_points,
+            b.curve_items,
+            b.face_speeds,
+            b.starts,
+            b.texels,
+            b.counters,
+        ];
+        cmd.bind(&self.flip, &resources.map(Into::into), &[]);
+        cmd.dispatch_grid(grid(curves, 1));
+    }
+
+    /// Parities along the rows of each of `placed` faces.
+    pub(crate) fn fill(&self, cmd: &Commands<'_>, b: &Bindings<'_>, placed: u32) {
+        let resources = [b.knob, b.face_speeds, b.starts, b.texels, b.counters, b.face_instances, b.faces, b.places];
+        cmd.bind(&self.fill, &resources.map(Into::into), &[]);
+        cmd.dispatch_grid(grid(placed, ROW_GROUPS));
+    }
+}
+
+/// So many columns of workgroups, folded into the third dimension beyond what every device has in the first.
+fn grid(columns: u32, rows: u32) -> [u32; 3] {
+    const MOST: u32 = 65_535;
+    [columns.min(MOST), rows, columns.div_ceil(MOST)]
+}

@@ -1,0 +1,87 @@
+//! Pass `solid_cst`: the faces of each leaf of the Boolean solids, trimmed by the others.
+//!
+//! ```text
+//!   leaf ──its tiles──▶ two triangles ──▶ ends of its span ──Blist in front and behind──▶ face or not
+//!                                                              the depth test keeps the nearest
+//! ```
+//!
+//! Reads: everything that `Bindings` names. Writes: the visibility image (side, depth) and depth. Needs no
+//! storage per pixel. Source: J. Hable, J. Rossignac, *CST: constructive solid trimming*, 2007.
+
+use crate::gpu::{
+    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
+};
+use crate::shaders;
+use ash::vk;
+
+/// `constant_id` of `SOLIDS_HAVE_TORI`.
+const SOLIDS_HAVE_TORI: u32 = 5;
+
+/// The pass.
+pub(crate) struct SolidCst {
+    pipeline: Pipeline,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub leaves: &'a Buffer,
+    pub leaf_surfaces: &'a Buffer,
+    pub surfaces: &'a Buffer,
+    /// Model axes, seen from the eye.
+    pub surface_centres: &'a Buffer,
+    pub tile_starts: &'a Buffer,
+    pub tile_leaves: &'a Buffer,
+    pub tile_entries: &'a Buffer,
+    pub rects: &'a Buffer,
+    /// Which leaf an instance draws, as `trimmed_leaf.glsl` says.
+    pub order: &'a Buffer,
+}
+
+impl SolidCst {
+    /// For images of these formats; `tori`: whether some surface is a torus.
+    pub(crate) fn new(
+        device: &Device,
+        tori: bool,
+        visibility: vk::Format,
+        depth: vk::Format,
+    ) -> Result<Self, GpuError> {
+        let pipeline = Pipeline::graphics(
+            device,
+            &GraphicsInfo {
+                name: if tori { "solid cst (tori)" } else { "solid cst" },
+                stages: &[
+                    (vk::ShaderStageFlags::VERTEX, shaders::SOLID_CST_VERT),
+                    (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_CST_FRAG),
+                ],
+                bindings: &[Binding::Storage; 10],
+                push_bytes: 0,
+                constants: &[(SOLIDS_HAVE_TORI, u32::from(tori))],
+                topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+                patch_points: 0,
+                cull: vk::CullModeFlags::NONE,
+                front: vk::FrontFace::COUNTER_CLOCKWISE,
+                colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
+                depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
+            },
+        )?;
+        Ok(Self { pipeline })
+    }
+
+    /// One instance for each of `drawn`, the length of the order; what is there already stays where it is nearer.
+    pub(crate) fn record(
+        &self,
+        cmd: &Commands<'_>,
+        b: &Bindings<'_>,
+        (visibility, depth): (Attachment<'_>, Attachment<'_>),
+        drawn: u32,
+    ) {
+        let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres];
+        let tiles = [b.tile_starts, b.tile_leaves, b.tile_entries, b.rects, b.order];
+        let resources: Vec<_> = solid.into_iter().chain(tiles).map(Into::into).collect();
+        cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
+            cmd.bind(&self.pipeline, &resources, &[]);
+            cmd.draw_instances(0..6, 0..drawn);
+        });
+    }
+}

@@ -1,0 +1,133 @@
+//! How often each way breaks the budget, and how much finer than needed it divides.
+
+use super::Way;
+use crate::model::{Camera, Model};
+use crate::trial::{Emit, Kind, Trial};
+use rayon::prelude::*;
+
+/// Lattice intervals along one side of a cell: the middle of the diagonal is where triangles are off by most.
+const FINENESS: usize = 2;
+/// Finer triangulations take no part in the search for the smallest sufficient one.
+const MOST_SEARCHED: usize = 64;
+/// A budget of half a pixel for the tessellation alone; see `Budget`.
+const TOLERANCE_PX: f64 = 6.0;
+
+/// What came of one way on one patch.
+struct Outcome {
+    rational: bool,
+    answered: bool,
+    /// Pixels over the budget; at most 1 where it holds.
+    excess: f64,
+    quads: f64,
+    /// How much finer than the smallest sufficient factors of the same ratio, where that was looked for.
+    finer: Option<f64>,
+}
+
+/// Every way on the same patches.
+#[derive(Clone, Debug)]
+pub struct Ways {
+    /// The way.
+    pub way: Way,
+    /// Patches in the picture.
+    pub patches: usize,
+    /// Patches for which the way has no answer below 4096 segments.
+    pub unanswered: usize,
+    /// Patches off by more than half a pixel.
+    pub violations: usize,
+    /// The largest deviation over the budget.
+    pub worst: f64,
+    /// Quads of all patches together.
+    pub quads: f64,
+    /// Median of factor over smallest sufficient factor, polynomial patches; not a number where there are none.
+    pub finer_polynomial: f64,
+    /// The same, rational patches.
+    pub finer_rational: f64,
+}
+
+/// Random patches of degrees 2 to 7 with weights to 100 : 1, in perspective and through the near plane. The smallest
+/// sufficient factors are looked for in the first `searched`.
+pub fn of_random(count: u64, searched: u64, ways: &[Way]) -> Vec<Ways> {
+    let kind = Kind { degrees: (2, 7), ratios: &[1.5, 5.0, 100.0], tolerances: &[TOLERANCE_PX] };
+    let outcomes = (0..count).into_par_iter().map(|seed| on(&Trial::random(seed, kind), ways, seed < searched));
+    summaries(ways, &outcomes.collect::<Vec<_>>())
+}
+
+/// Every patch of a model in one view.
+pub fn of_model(model: &Model, camera: &Camera, ways: &[Way]) -> Vec<Ways> {
+    let trials = Trial::of_model(model, camera, TOLERANCE_PX);
+    let outcomes: Vec<_> = trials.par_iter().map(|trial| on(trial, ways, true)).collect();
+    summaries(ways, &outcomes)
+}
+
+/// One outcome a way; none for a patch that nobody sees.
+fn on(trial: &Trial, ways: &[Way], search: bool) -> Vec<Outcome> {
+    if trial.tau[0] == 0 || trial.measure([8; 2], 1, Emit::Point).points == 0 {
+        return Vec::new();
+    }
+    ways.iter().map(|way| outcome(trial, *way, search)).collect()
+}
+
+fn outcome(trial: &Trial, way: Way, search: bool) -> Outcome {
+    let (rational, emit) = (trial.rational(), way.emits());
+    let Some(tau) = way.factors(trial) else {
+        return Outcome { rational, answered: false, excess: 0.0, quads: 0.0, finer: None };
+    };
+    let deviation = trial.measure(tau, FINENESS, emit);
+    let allowed = trial.allowed();
+    let count = |[u, v]: [usize; 2]| (u * v) as f64;
+    let quads = count(tau);
+    let kept = deviation.px <= allowed;
+    let searched = search && kept && deviation.whole && tau != [1, 1] && tau[0].max(tau[1]) <= MOST_SEARCHED;
+    let finer = searched.then(|| (quads / count(trial.smallest(tau, FINENESS, emit))).sqrt());
+    Outcome { rational, answered: true, excess: deviation.px / allowed, quads, finer }
+}
+
+fn summaries(ways: &[Way], outcomes: &[Vec<Outcome>]) -> Vec<Ways> {
+    let seen: Vec<_> = outcomes.iter().filter(|all| !all.is_empty()).collect();
+    let summary = |(k, way): (usize, &Way)| {
+        let all = || seen.iter().map(|outcomes| &outcomes[k]);
+        let finer = |rational: bool| median(all().filter(|o| o.rational == rational).filter_map(|o| o.finer).collect());
+        Ways {
+            way: *way,
+            patches: seen.len(),
+            unanswered: all().filter(|o| !o.answered).count(),
+            violations: all().filter(|o| o.excess > 1.0).count(),
+            worst: all().map(|o| o.excess).fold(0.0, f64::max),
+            quads: all().map(|o| o.quads).sum(),
+            finer_polynomial: finer(false),
+            finer_rational: finer(true),
+        }
+    };
+    ways.iter().enumerate().map(summary).collect()
+}
+
+fn median(mut values: Vec<f64>) -> f64 {
+    values.sort_by(f64::total_cmp);
+    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Of 120 random patches: ways with a proof break no budget; the plain slefe and a fixed level do.
+    #[test]
+    fn proofs_hold_and_habits_do_not() {
+        let ways = [
+            Way::Bound,
+            Way::Homogeneous { cuts: 2 },
+            Way::Corrected { segments: 3 },
+            Way::Ipass { segments: 3 },
+            Way::Fixed(16),
+        ];
+        let all = of_random(120, 0, &ways);
+        assert!(all[0].patches > 80, "{all:?}");
+        for proved in &all[..3] {
+            assert_eq!(proved.violations, 0, "{proved:?}");
+            assert!(proved.unanswered * 10 < proved.patches, "{proved:?}");
+        }
+        for habit in &all[3..] {
+            assert!(habit.violations * 10 > habit.patches, "{habit:?}");
+        }
+    }
+}

@@ -1,0 +1,130 @@
+use super::*;
+use crate::model::{Projection, SurfaceKind};
+use crate::spline::{Bezier, Control, Surface};
+use crate::trial::Random;
+use glam::DAffine3;
+
+/// Three cubic curves around, from random points.
+fn random_loop(r: &mut Random) -> TrimLoop {
+    let mut point = || DVec3::from_point(DVec2::new(r.range(-1.0, 2.0), r.range(-1.0, 2.0)), r.range(0.5, 2.0));
+    let mut points: Vec<DVec3> = (0..9).map(|_| point()).collect();
+    points.push(points[0]);
+    let curves = points.windows(4).step_by(3).map(|w| Bezier { points: w.to_vec() }).collect();
+    TrimLoop::new(curves, DVec2::ZERO).unwrap()
+}
+
+/// Within windows from the size of the loop down to a millionth, most at a point of the loop.
+#[test]
+fn a_clipped_loop_winds_alike_in_the_window() {
+    let mut r = Random::new(3);
+    let (mut crossed, mut odd) = (0, 0);
+    for round in 0..300 {
+        let whole = random_loop(&mut r);
+        let size = 10f64.powf(-r.range(0.0, 6.0));
+        let curve = whole.curves().nth(round % 3).unwrap();
+        let at = curve.point(r.range(0.0, 1.0)) + DVec2::new(r.range(-0.7, 0.7), r.range(-0.7, 0.7)) * size;
+        let (lo, hi) = (at - size / 2.0, at + size / 2.0);
+        let index = LoopIndex::new(std::slice::from_ref(&whole));
+        let clipped = loops::clipped(&whole, lo, hi);
+        crossed += u32::from(index.classify(lo, hi) == RectSide::Boundary);
+        if let Some(l) = &clipped {
+            let (a, b) = l.bounds();
+            assert!(a.cmpge(lo - 1.01 * size).all() && b.cmple(hi + 1.01 * size).all(), "{a} {b} about {lo} {hi}");
+        }
+        let near = clipped.map(|l| LoopIndex::new(&[l]));
+        for _ in 0..50 {
+            let p = DVec2::new(r.range(lo.x, hi.x), r.range(lo.y, hi.y));
+            let expected = index.winding(p);
+            assert_eq!(near.as_ref().map_or(0, |i| i.winding(p)), expected, "round {round}, {p} in {lo} {hi}");
+            odd += u32::from(expected != 0);
+        }
+    }
+    assert!(crossed > 150 && odd > 3000, "{crossed} windows are crossed, {odd} points are inside");
+}
+
+/// Quadratic and cubic, four by two patches, with a hole.
+fn wavy() -> Model {
+    let points = (0..5).flat_map(|j| (0..6).map(move |i| (f64::from(i), f64::from(j))));
+    let points = points.map(|(x, y)| DVec4::new(x, y, (x * 1.7).sin() + (y * 2.3).cos(), 1.0)).collect();
+    let knots = |n: usize, inner: &[f64]| [&vec![0.0; n + 1], inner, &vec![1.0; n + 1]].concat();
+    let surface = Surface::new((2, 3), knots(2, &[0.3, 0.5, 0.8]), knots(3, &[0.4]), points).unwrap();
+    let square = |a: f64, b: f64| {
+        let corners = [(a, a), (b, a), (b, b), (a, b), (a, a)].map(|(x, y)| DVec2::new(x, y));
+        TrimLoop::new(corners.windows(2).map(|w| Bezier::line(w[0], w[1])).collect(), DVec2::ZERO).unwrap()
+    };
+    let loops = vec![square(0.0, 1.0), square(0.6, 0.7).reversed()];
+    let face = Face { id: 7, kind: SurfaceKind::BSpline, surface, loops, same_sense: true, colour: None };
+    let instance = Instance {
+        part: 0,
+        transform: DAffine3::from_translation(DVec3::new(1e6, -2e6, 3e5)),
+        colour: None,
+        name: String::new(),
+    };
+    Model {
+        parts: vec![Part { faces: vec![face], closed: true, ..Part::default() }],
+        instances: vec![instance],
+        ..Model::default()
+    }
+}
+
+/// Looks at the point of (u, v) from `distance`.
+fn camera(model: &Model, uv: DVec2, distance: f64) -> Camera {
+    let target = model.instances[0].transform.transform_point3(model.parts[0].faces[0].surface.jet(uv.x, uv.y).point);
+    Camera {
+        eye: target + DVec3::new(0.3, -0.5, 1.0).normalize() * distance,
+        target,
+        up: DVec3::Y,
+        projection: Projection::Perspective { fov_y: 0.6 },
+        depth_range: (distance * 0.1, 100.0),
+        size: (800, 600),
+    }
+}
+
+#[test]
+fn an_ordinary_view_keeps_the_model() {
+    let model = wavy();
+    assert_eq!(CloseUp::new(&model).of(&model, &camera(&model, DVec2::splat(0.5), 10.0)), None);
+}
+
+/// At (u, v) in the picture there is a window, small enough, and its surface is the face's; windows stay few.
+#[test]
+fn windows_cover_what_is_seen() {
+    let model = wavy();
+    let face = &model.parts[0].faces[0];
+    let mut close_up = CloseUp::new(&model);
+    let mut r = Random::new(9);
+    for distance in [1e-2, 1e-4, 1e-6] {
+        for uv in [DVec2::new(0.45, 0.2), DVec2::new(0.5, 0.4), DVec2::new(0.6, 0.65), DVec2::new(0.0, 1.0)] {
+            let camera = camera(&model, uv, distance);
+            let near = close_up.of(&model, &camera).expect("too close for single precision");
+            let faces: Vec<&Face> = near.parts.iter().flat_map(|p| &p.faces).collect();
+            assert!(!faces.is_empty() && faces.len() < 40, "{} windows from {distance}", faces.len());
+            assert!(near.parts.iter().all(|p| p.closed) && faces.iter().all(|f| f.id == 7 && f.same_sense));
+            let mut seen = 0;
+            for _ in 0..400 {
+                let off = DVec2::new(r.range(-1.0, 1.0), r.range(-1.0, 1.0)) * distance;
+                let p = (uv + off * 0.1).clamp(DVec2::ZERO, DVec2::ONE);
+                let point = face.surface.jet(p.x, p.y).point;
+                let placed = model.instances[0].transform.transform_point3(point);
+                let Some((pixel, _)) = camera.project(placed) else { continue };
+                if pixel.clamp(DVec2::ZERO, DVec2::new(800.0, 600.0)) != pixel {
+                    continue;
+                }
+                seen += 1;
+                let inside = |f: &&&Face| {
+                    let ((u0, u1), (v0, v1)) = f.surface.domain();
+                    (u0..=u1).contains(&p.x) && (v0..=v1).contains(&p.y)
+                };
+                let windows: Vec<_> = faces.iter().filter(inside).collect();
+                let kept = LoopIndex::new(&face.loops).contains(p);
+                let drawn = windows.iter().any(|f| LoopIndex::new(&f.loops).contains(p));
+                assert_eq!(drawn, kept, "{p} from {distance}");
+                for f in windows {
+                    // some roundings of coordinates up to 5, at parameters that differ by 1e-9 of the domain
+                    assert!(f.surface.jet(p.x, p.y).point.distance(point) < 1e-13);
+                }
+            }
+            assert!(seen > 50, "only {seen} points are in the picture");
+        }
+    }
+}

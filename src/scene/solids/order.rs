@@ -1,0 +1,31 @@
+//! The order in which leaves are drawn where each is drawn by itself.
+
+use crate::abi::{LEAF_NEGATIVE, Leaf};
+
+/// As in `trimmed_leaf.glsl`: draw also where no leaf owns the face.
+const UNOWNED: u32 = 0x8000_0000;
+
+/// The leaves in the order in which they are drawn. Of faces at the same depth the first wins: the solids that
+/// add before those that are taken away, then in the order of the tree. `shared`: whether some leaves share a
+/// surface; then all come once more, for faces that none of them owns.
+pub(crate) fn order(leaves: &[Leaf], shared: bool) -> Vec<u32> {
+    let negative = |of: bool| {
+        (0..).zip(leaves).filter(move |(_, leaf)| (leaf.flags & LEAF_NEGATIVE != 0) == of).map(|(i, _): (u32, _)| i)
+    };
+    let once: Vec<u32> = negative(false).chain(negative(true)).collect();
+    let again = once.iter().map(|i| i | UNOWNED);
+    if shared { once.iter().copied().chain(again).collect() } else { once }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn those_that_add_come_first() {
+        let leaf = |flags| Leaf { flags, ..Leaf::default() };
+        let leaves = [leaf(LEAF_NEGATIVE), leaf(0), leaf(LEAF_NEGATIVE), leaf(0)];
+        assert_eq!(order(&leaves, false), [1, 3, 0, 2]);
+        assert_eq!(order(&leaves, true), [1, 3, 0, 2, 1 | UNOWNED, 3 | UNOWNED, UNOWNED, 2 | UNOWNED]);
+    }
+}

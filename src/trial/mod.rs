@@ -1,0 +1,10 @@
+//! Scenes without a GPU, for tests and measurements: a [`Case`] as the passes' twins get it, and a [`Trial`] of how far
+//! the triangulation of one patch is from the patch.
+
+mod case;
+mod patch;
+mod random;
+
+pub(crate) use case::Case;
+pub(crate) use patch::{Emit, Kind, Trial};
+pub(crate) use random::Random;

@@ -1,0 +1,222 @@
+//! The hard cases of trimming through whole frames, by every way to trim, at several zooms.
+//!
+//! Each case is a plane of its own, the unit square of its (u, v), and the cameras look straight at it: a
+//! pixel's centre is a point whose answer the exact loops know. A pixel may differ only where a loop
+//! passes within the tolerance of its centre.
+
+use crate::shapes;
+use crate::support::assert_silent;
+use crate::trims;
+use glam::{DAffine3, DVec2, DVec3, DVec4};
+use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
+use selvedge::model::{Camera, Face, LoopAt, Model, Projection, SurfaceKind};
+use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings, TrimWay};
+use selvedge::spline::Surface;
+use selvedge::trim::LoopIndex;
+
+/// Pixels along each side.
+const SIZE: u32 = 96;
+/// Pictures of the whole square, and of smaller and smaller parts around the focus.
+const ZOOMS: [f64; 4] = [1.0, 10.0, 100.0, 1000.0];
+
+/// The unit square, moved to `x`.
+fn square(x: f64, id: u32, case: &trims::TrimCase) -> Face {
+    let corners = [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0)].map(|(u, v)| DVec4::new(x + u, v, 0.0, 1.0));
+    let knots = || vec![0.0, 0.0, 1.0, 1.0];
+    let surface = Surface::new((1, 1), knots(), knots(), corners.to_vec()).expect("a plane");
+    let loops = case.loops.clone();
+    Face { id, kind: SurfaceKind::Plane, surface, loops, same_sense: true, colour: None }
+}
+
+/// One part a case, so that each is near its own origin.
+fn model(cases: &[trims::TrimCase]) -> Model {
+    let mut all = Model::default();
+    for (i, case) in cases.iter().enumerate() {
+        let one = shapes::one(case.name, false, vec![square(2.0 * i as f64, i as u32 + 1, case)]);
+        all.parts.extend(one.parts);
+        all.instances.push(selvedge::model::Instance { part: i, ..shapes::placed(DAffine3::IDENTITY, None) });
+    }
+    all
+}
+
+/// Looks down at `focus` of case `i`; the picture is `1 / zoom` wide.
+fn camera(i: usize, focus: DVec2, zoom: f64) -> Camera {
+    let centre = if zoom == 1.0 { DVec2::splat(0.5) } else { focus };
+    let target = DVec3::new(2.0 * i as f64 + centre.x, centre.y, 0.0);
+    Camera {
+        eye: target + DVec3::Z * 2.0,
+        target,
+        up: DVec3::Y,
+        projection: Projection::Orthographic { height: 1.0 / zoom },
+        depth_range: (1.0, 3.0),
+        size: (SIZE, SIZE),
+    }
+}
+
+fn renderer(model: &Model, settings: SceneSettings) -> HeadlessRenderer {
+    let options = HeadlessOptions { device: None, validation: true };
+    let mut renderer =
+        HeadlessRenderer::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"));
+    renderer.upload_with(model, settings).unwrap();
+    renderer
+}
+
+fn draw(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
+    let outputs = Outputs { face: true, ..Outputs::default() };
+    let picture = renderer.render(camera, &FrameSettings::default(), outputs).unwrap();
+    assert_eq!(picture.stats.clamps, 0);
+    picture
+}
+
+/// Wrong pixels whose centre is farther than the tolerance from every loop, and pixels judged.
+fn judge(picture: &Picture, case: &trims::TrimCase, id: u32, (focus, zoom): (DVec2, f64)) -> (Vec<DVec2>, usize) {
+    let index = LoopIndex::new(&case.loops);
+    let centre = if zoom == 1.0 { DVec2::splat(0.5) } else { focus };
+    let pixel = 1.0 / (zoom * f64::from(SIZE));
+    let tolerance = FrameSettings::default().tolerance_px * pixel;
+    let (mut wrong, mut judged) = (Vec::new(), 0);
+    for y in 0..SIZE {
+        for x in 0..SIZE {
+            let off = DVec2::new(f64::from(x) + 0.5, f64::from(SIZE - y) - 0.5) - 0.5 * f64::from(SIZE);
+            let p = centre + off * pixel;
+            // the border of the surface is a border of the picture too
+            let beside = p.min(DVec2::ONE - p).min_element();
+            if index.distance(p, 1.0) <= tolerance || beside.abs() <= tolerance {
+                continue;
+            }
+            let inside = beside > 0.0 && index.contains(p);
+            let seen = picture.face[(y * SIZE + x) as usize];
+            if seen != if inside { id } else { 0 } {
+                wrong.push(p);
+            }
+            judged += 1;
+        }
+    }
+    (wrong, judged)
+}
+
+fn every_case(way: TrimWay) {
+    let cases = trims::all();
+    let mut renderer = renderer(&model(&cases), SceneSettings { trim: Some(way), ..Default::default() });
+    for (i, case) in cases.iter().enumerate() {
+        // what the judge knows is what was stated by hand
+        let index = LoopIndex::new(&case.loops);
+        for &(u, v, winding) in case.rows.iter().filter(|r| index.distance(DVec2::new(r.0, r.1), 1.0) > 1e-6) {
+            assert_eq!(index.winding(DVec2::new(u, v)), winding, "{} at ({u}, {v})", case.name);
+        }
+        for zoom in ZOOMS {
+            let focus = DVec2::from(case.focus);
+            let picture = draw(&mut renderer, &camera(i, focus, zoom));
+            let (wrong, judged) = judge(&picture, case, i as u32 + 1, (focus, zoom));
+            let what = format!("{way:?}, {}, zoom {zoom}: {} of {judged}", case.name, wrong.len());
+            assert!(wrong.is_empty(), "{what} pixels wrong, the first at {:?}", wrong[0]);
+        }
+    }
+    assert_silent(renderer);
+}
+
+#[test]
+fn by_table() {
+    every_case(TrimWay::Table);
+}
+
+#[test]
+fn by_exact_arcs() {
+    every_case(TrimWay::Exact);
+}
+
+/// The judge sees a case drawn as another.
+#[test]
+fn a_wrong_case_is_seen() {
+    let cases = trims::all();
+    let find = |name: &str| cases.iter().position(|case| case.name == name).unwrap();
+    let (eight, star) = (find("5 figure of eight"), find("5 pentagram"));
+    let mut renderer = renderer(&model(&cases), SceneSettings::default());
+    let focus = DVec2::from(cases[star].focus);
+    let picture = draw(&mut renderer, &camera(star, focus, 1.0));
+    assert!(!judge(&picture, &cases[eight], star as u32 + 1, (focus, 1.0)).0.is_empty());
+    assert_silent(renderer);
+}
+
+/// 13: a first frame, a jump of a thousand times closer, and a face seen again after it was out of the picture
+/// are each what a renderer draws that never saw anything else.
+#[test]
+fn no_frame_depends_on_the_one_before() {
+    let cases = trims::all();
+    let i = cases.iter().position(|case| case.name == "7 holes").unwrap();
+    let model = model(&cases[i..=i]);
+    for &trim in TrimWay::ALL {
+        let settings = SceneSettings { trim: Some(trim), ..Default::default() };
+        let mut old = renderer(&model, settings);
+        let focus = DVec2::from(cases[i].focus);
+        let away =
+            Camera { eye: DVec3::new(50.0, 0.0, 2.0), target: DVec3::new(50.0, 0.0, 0.0), ..camera(0, focus, 1.0) };
+        for view in [camera(0, focus, 1.0), camera(0, focus, 1000.0), away, camera(0, focus, 3.0)] {
+            let picture = draw(&mut old, &view);
+            let mut fresh = renderer(&model, settings);
+            let same = draw(&mut fresh, &view);
+            assert!(picture.face == same.face && picture.colour == same.colour, "{trim:?}");
+            assert_silent(fresh);
+        }
+        assert_silent(old);
+    }
+}
+
+/// 14: a loop edited every frame gives, bit for bit, what a fresh upload of the edited model gives; patches come
+/// under the loop and leave it.
+#[test]
+fn an_edited_loop_is_drawn_as_if_uploaded_afresh() {
+    let cases = trims::all();
+    let i = cases.iter().position(|case| case.name == "10 outer loop not first").unwrap();
+    let mut model = model(&cases[i..=i]);
+    // 4 x 4 patches: the hole leaves some and meets others
+    let knots = || vec![0.0, 0.0, 0.25, 0.5, 0.75, 1.0, 1.0];
+    let points = (0..25).map(|k| DVec4::new(f64::from(k % 5) / 4.0, f64::from(k / 5) / 4.0, 0.0, 1.0)).collect();
+    model.parts[0].faces[0].surface = Surface::new((1, 1), knots(), knots(), points).unwrap();
+    let at = LoopAt { part: 0, face: 0, trim_loop: 0 };
+    let view = Camera { size: (64, 64), ..camera(0, DVec2::splat(0.5), 1.0) };
+    let mut edited = renderer(&model, SceneSettings { editable: true, ..Default::default() });
+    draw(&mut edited, &view);
+    for frame in 0..6 {
+        let start = model.parts[0].faces[0].loops[0].clone();
+        let next = match frame {
+            0 => start.translated(DVec2::new(0.2, 0.0)).unwrap(),
+            1 => start.translated(DVec2::new(-0.125, 0.2)).unwrap(),
+            // one control point: where two curves meet, and an inner one
+            2 => start.with_point(1, 0, DVec2::new(0.4, 0.6)).unwrap(),
+            3 => start.with_point(2, 1, DVec2::new(0.25, 0.25)).unwrap(),
+            4 => start.translated(DVec2::new(0.0, -0.3)).unwrap(),
+            _ => start.translated(DVec2::new(0.01, 0.01)).unwrap(),
+        };
+        edited.edit_loop(at, &next).unwrap();
+        model.parts[0].faces[0].loops[0] = next;
+        let (a, mut fresh) = (draw(&mut edited, &view), renderer(&model, SceneSettings::default()));
+        let b = draw(&mut fresh, &view);
+        assert!(a.colour == b.colour && a.face == b.face, "frame {frame}");
+        assert!(a.stats.edit_bytes > 0 && a.stats.edit_bytes < 4096, "{} bytes", a.stats.edit_bytes);
+        assert_silent(fresh);
+    }
+    assert_eq!(draw(&mut edited, &view).stats.edit_bytes, 0, "nothing was edited since");
+    assert_silent(edited);
+}
+
+/// What cannot be edited is told, and leaves the scene as it was.
+#[test]
+fn edits_that_cannot_be() {
+    use selvedge::renderer::EditError;
+    let cases = trims::all();
+    let model = model(&cases[..1]);
+    let at = LoopAt { part: 0, face: 0, trim_loop: 0 };
+    let shape = &model.parts[0].faces[0].loops[0];
+    let mut fixed = renderer(&model, SceneSettings::default());
+    assert_eq!(fixed.edit_loop(at, shape), Err(EditError::NotEditable));
+    assert_silent(fixed);
+    let mut edited = renderer(&model, SceneSettings { editable: true, ..Default::default() });
+    for wrong in [LoopAt { part: 7, ..at }, LoopAt { face: 1, ..at }, LoopAt { trim_loop: 1, ..at }] {
+        assert_eq!(edited.edit_loop(wrong, shape), Err(EditError::NoSuchLoop(wrong)));
+    }
+    let other = &trims::all()[7].loops[0];
+    assert_eq!(edited.edit_loop(at, other), Err(EditError::OtherCurves));
+    assert!(shape.with_point(0, 9, DVec2::ZERO).is_err() && shape.with_point(0, 0, DVec2::NAN).is_err());
+    assert_silent(edited);
+}

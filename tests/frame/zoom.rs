@@ -1,0 +1,85 @@
+//! Deep zoom against the exact reference: a thousand and a million times closer, at the origin and far from it.
+
+use crate::support::{assert_silent, render, watched};
+use glam::{DAffine3, DVec2, DVec3};
+use selvedge::model::{Camera, Model};
+use selvedge::reference::{JudgeOptions, Tracer, judge};
+use std::path::Path;
+
+const SIZE: (u32, u32) = (160, 120);
+
+/// `times` closer to the point of a face at (u, v), shares of its domain; or to where its first loop starts.
+fn closer(model: &Model, face: usize, at: Option<DVec2>, times: f64) -> Camera {
+    let mut camera = Camera::framing(model.bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, SIZE);
+    let instance = &model.instances[0];
+    let face = &model.parts[instance.part].faces[face];
+    let ((u0, u1), (v0, v1)) = face.surface.domain();
+    let start = || face.loops[0].curves().next().unwrap().point(0.0);
+    let uv = at.map_or_else(start, |s| DVec2::new(u0 + (u1 - u0) * s.x, v0 + (v1 - v0) * s.y));
+    let jet = face.surface.jet(uv.x, uv.y);
+    let point = instance.transform.transform_point3(jet.point);
+    // from outside, a little aside
+    let sense = if face.same_sense { 1.0 } else { -1.0 };
+    let normal = instance.transform.transform_vector3(jet.du.cross(jet.dv)).normalize() * sense;
+    let distance = (camera.eye - camera.target).length() / times;
+    camera.target = point;
+    camera.eye = point + (normal + 0.4 * DVec3::new(0.3, 0.5, -0.6)).normalize() * distance;
+    camera.depth_range = (distance * 0.1, camera.depth_range.1);
+    camera
+}
+
+/// Moved by `by` in each coordinate.
+fn moved(mut model: Model, by: f64) -> Model {
+    for instance in &mut model.instances {
+        instance.transform = DAffine3::from_translation(DVec3::splat(by)) * instance.transform;
+    }
+    model
+}
+
+fn keeps_the_promise(model: &Model, times: f64) {
+    let tracer = Tracer::new(model);
+    let mut renderer = watched(model);
+    let faces = model.parts[model.instances[0].part].faces.len();
+    let mut seen = 0;
+    for face in (0..faces).step_by(faces.div_ceil(4)) {
+        for at in [Some(DVec2::new(0.37, 0.61)), None] {
+            let face_has_loops = !model.parts[model.instances[0].part].faces[face].loops.is_empty();
+            if at.is_none() && !face_has_loops {
+                continue;
+            }
+            let camera = closer(model, face, at, times);
+            let picture = render(&mut renderer, &camera);
+            // what is a tie at the whole model's scale is not one here
+            let options = JudgeOptions { tie: 1e-6 / times, ..JudgeOptions::default() };
+            let j = judge(&tracer, &camera, &picture, &options);
+            assert_eq!(
+                (j.wrong, picture.stats.clamps, j.given_up),
+                (0, 0, 0),
+                "face {face}, {at:?}: {:?}",
+                j.mismatches
+            );
+            seen += picture.face.iter().filter(|id| **id != 0).count();
+        }
+    }
+    assert!(seen > 3 * 160 * 120, "only {seen} pixels show a face");
+    assert_silent(renderer);
+}
+
+fn sample(name: &str) -> Model {
+    selvedge::import::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("samples").join(name)).unwrap().model
+}
+
+#[test]
+fn bracket_a_thousand_times_closer() {
+    keeps_the_promise(&sample("bracket.step"), 1e3);
+}
+
+#[test]
+fn bracket_a_million_times_closer() {
+    keeps_the_promise(&sample("bracket.step"), 1e6);
+}
+
+#[test]
+fn bracket_a_million_times_closer_and_a_million_units_away() {
+    keeps_the_promise(&moved(sample("bracket.step"), 1e6), 1e6);
+}

@@ -1,0 +1,112 @@
+//! Frames trimmed by each rival against the exact reference, watched by the validation layers.
+
+use glam::DVec3;
+use selvedge::gpu::GpuError;
+use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
+use selvedge::model::{Camera, Model, Projection};
+use selvedge::picture::{FrameSettings, Outputs, Rival, SceneSettings, TrimWay};
+use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
+use selvedge::renderer::RenderError;
+use selvedge::rivals::pretessellated::pretessellated;
+use selvedge::rivals::{many_holes, texture};
+use std::path::Path;
+
+const SIZE: (u32, u32) = (320, 240);
+
+fn camera(model: &Model) -> Camera {
+    Camera::framing(model.bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), SIZE)
+}
+
+fn panel() -> Model {
+    selvedge::import::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/panel.step")).unwrap().model
+}
+
+fn watched(model: &Model, trim: Option<TrimWay>) -> HeadlessRenderer {
+    let options = HeadlessOptions { device: None, validation: true };
+    let mut renderer =
+        HeadlessRenderer::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"));
+    renderer.upload_with(model, SceneSettings { trim, ..SceneSettings::default() }).unwrap();
+    renderer
+}
+
+/// Draws `drawn` and judges it against `model`: every pixel.
+fn judged(drawn: &Model, trim: Option<TrimWay>, model: &Model) -> Judgement {
+    let mut renderer = watched(drawn, trim);
+    let camera = camera(model);
+    let picture = renderer.render(&camera, &FrameSettings::default(), Outputs::ALL).unwrap();
+    let messages = renderer.shutdown();
+    assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
+    judge(&Tracer::new(model), &camera, &picture, &JudgeOptions::default())
+}
+
+fn rival(model: &Model, rival: Rival) -> Judgement {
+    judged(model, Some(TrimWay::Rival(rival)), model)
+}
+
+#[test]
+fn bisection_keeps_half_a_pixel_and_one_step_does_not() {
+    for model in [many_holes(6), panel()] {
+        let j = rival(&model, Rival::Bisect { steps: 16 });
+        assert_eq!(j.wrong, 0, "{}: {:?}", model.name, j.mismatches);
+    }
+    // holes of 20 pixels, whose quarters become chords that bulge by a third of the radius
+    let j = rival(&many_holes(6), Rival::Bisect { steps: 0 });
+    assert!(j.wrong > 100 && j.worst_shift_px > 1.0, "{} wrong, {} px", j.wrong, j.worst_shift_px);
+}
+
+#[test]
+fn textures_are_off_by_half_a_texel_each_way() {
+    for model in [many_holes(6), panel()] {
+        let j = rival(&model, Rival::Texture { eighths: 16 });
+        assert_eq!(j.wrong, 0, "{}: {:?}", model.name, j.mismatches);
+    }
+    // four pixels a texel: up to two pixels each way, but the density is a bound, and mostly finer
+    let j = rival(&many_holes(6), Rival::Texture { eighths: 2 });
+    assert!(j.wrong > 100 && j.worst_shift_px > 0.7, "{} wrong, {} px", j.wrong, j.worst_shift_px);
+}
+
+#[test]
+fn meshes_are_off_by_their_deflection() {
+    for model in [many_holes(6), panel()] {
+        let camera = camera(&model);
+        let Projection::Perspective { fov_y } = camera.projection else { panic!("framing makes perspective views") };
+        let pixel = 2.0 * (fov_y * 0.5).tan() * camera.depth_range.0 / f64::from(SIZE.1);
+        let (mesh, made) = pretessellated(&model, 0.4 * pixel);
+        assert_eq!((made.missing, made.beyond), (0, 0));
+        let j = judged(&mesh, None, &model);
+        assert_eq!(j.wrong, 0, "{}: {:?}", model.name, j.mismatches);
+        let j = judged(&pretessellated(&model, 4.0 * pixel).0, None, &model);
+        assert!(j.wrong > 10 && j.worst_shift_px > 0.7, "{} wrong, {} px", j.wrong, j.worst_shift_px);
+    }
+}
+
+/// A frame without a test is what the harness calls wrong.
+#[test]
+fn a_frame_that_is_not_trimmed_is_wrong() {
+    let j = rival(&many_holes(6), Rival::Untrimmed);
+    assert!(j.wrong > 1000, "{}", j.wrong);
+}
+
+#[test]
+fn a_texture_beyond_the_device_is_told_and_the_next_view_drawn() {
+    let model = many_holes(3);
+    let trim = Some(TrimWay::Rival(Rival::Texture { eighths: 16 }));
+    let mut renderer = watched(&model, trim);
+    let whole = camera(&model);
+    let close = Camera { projection: Projection::Perspective { fov_y: 35f64.to_radians() / 1000.0 }, ..whole };
+    let settings = FrameSettings::default();
+    match renderer.render(&close, &settings, Outputs::default()) {
+        Err(HeadlessError::Gpu(GpuError::TooLarge { .. }))
+        | Err(HeadlessError::Render(RenderError::Gpu(GpuError::TooLarge { .. }))) => {}
+        other => panic!("{:?}", other.map(|picture| picture.stats)),
+    }
+    let wanted = |camera: &Camera| texture::wanted_bytes(&model, camera, 16).unwrap();
+    // a million times the texels, and a little for the narrower bound of the slant
+    assert!(wanted(&close) > 1e5 * wanted(&whole));
+    let picture = renderer.render(&whole, &settings, Outputs::default()).unwrap();
+    let words = wanted(&whole) / 4.0;
+    let counted = picture.stats.trim_intercepts as f64;
+    // single precision rounds sizes up or down by a texel
+    assert!((counted / words - 1.0).abs() < 0.01, "{counted} words instead of {words}");
+    assert!(renderer.shutdown().is_empty());
+}
