@@ -72,7 +72,13 @@ void main() {
             vec2 pv = (qv.xy - q.xy / w * qv.w) / w;
             float area = abs(pu.x * pv.y - pu.y * pv.x);
             // a step du moves the border by du * area / |pv| pixels across itself
-            vec2 push = min(vec2(MAX_PUSH), 2.0 * frame.ring_px * vec2(length(pv), length(pu)) / max(area, 1e-12));
+            vec2 push = 2.0 * frame.ring_px * vec2(length(pv), length(pu)) / max(area, 1e-12);
+            // where a shared side meets the border, both its patches must push alike, bit for bit: along it
+            bool shared_u = (uv.x == 0.0 || uv.x == 1.0) && !(left || right);
+            bool shared_v = (uv.y == 0.0 || uv.y == 1.0) && !(bottom || top);
+            if (shared_u) push.y = 2.0 * frame.ring_px / max(length(pv), 1e-12);
+            if (shared_v) push.x = 2.0 * frame.ring_px / max(length(pu), 1e-12);
+            push = min(vec2(MAX_PUSH), push);
             uv.x += right ? push.x : left ? -push.x : 0.0;
             uv.y += top ? push.y : bottom ? -push.y : 0.0;
             jet.point = patch_jet(patch_.first, patch_.shape, uv).point;

@@ -197,6 +197,8 @@ pub(crate) struct Buffers {
 
 /// What trimmed patches need, whatever the way to trim.
 pub(crate) struct TrimBuffers {
+    /// How near the nearest ring comes, a word a pixel.
+    pub rings: Buffer,
     pub doubts: Buffer,
     pub heal_dispatch: Buffer,
     /// `None` where another way trims.
@@ -294,6 +296,8 @@ impl Buffers {
             Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })
         };
         let drawn_and_read = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE;
+        let sampled = if counts.trim.is_some() { vk::ImageUsageFlags::SAMPLED } else { vk::ImageUsageFlags::empty() };
+        let depth_usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | sampled;
         let n = counts.items;
         let across = |side: u32| (size.0.div_ceil(side) * size.1.div_ceil(side)) * u32::from(counts.leaves > 0);
         let (tiles, blocks) = (across(TILE), across(TILE * BLOCK));
@@ -344,6 +348,7 @@ impl Buffers {
                 .trim
                 .map(|way| {
                     Ok(TrimBuffers {
+                        rings: structs("trim rings", size.0 * size.1, size_of::<u32>())?,
                         doubts: words("trim doubts", capacities.doubts)?,
                         heal_dispatch: indirect("heal dispatch", size_of::<[u32; 3]>() as u64)?,
                         table: (way == TrimWay::Table).then(table).transpose()?,
@@ -381,7 +386,7 @@ impl Buffers {
             others: (counts.trim.is_some() && (counts.mesh_instances > 0 || counts.leaves > 0))
                 .then(|| image("visibility of others", VISIBILITY_FORMAT, drawn_and_read))
                 .transpose()?,
-            depth: image("visibility depth", DEPTH_FORMAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT)?,
+            depth: image("visibility depth", DEPTH_FORMAT, depth_usage)?,
         })
     }
 }

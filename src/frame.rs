@@ -152,6 +152,7 @@ impl Frame<'_> {
         barrier::memory(cmd, before | transfer, Access::COMPUTE_WRITE | clear);
         if let Some(t) = &b.trim {
             cmd.fill(&t.heal_dispatch, 0);
+            cmd.fill(&t.rings, 0);
             for counted in t.table.iter().flat_map(TableBuffers::cleared) {
                 cmd.fill(counted, 0);
             }
@@ -244,7 +245,7 @@ impl Frame<'_> {
         let others = b.others.iter().map(|image| (image, read, Access::COLOUR_WRITE));
         let fixed = [
             (&b.visibility, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE),
-            (&b.depth, Access::DEPTH_WRITE.discarded(), Access::DEPTH_WRITE),
+            (&b.depth, Access::DEPTH_WRITE.discarded() | Access::COMPUTE_READ.discarded(), Access::DEPTH_WRITE),
         ];
         barrier::images(cmd, &fixed.into_iter().chain(others).collect::<Vec<_>>());
     }
@@ -270,6 +271,9 @@ impl Frame<'_> {
     fn visibility(&self, cmd: &Commands<'_>, test: &[&Buffer]) {
         let (s, b) = (self.scene, self.buffers);
         barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE, Access::INDIRECT_READ)]);
+        if let Some(t) = &b.trim {
+            barrier::buffers(cmd, &[(&t.rings, Access::TRANSFER_WRITE, Access::FRAGMENT_WRITE)]);
+        }
         let bindings = visibility::Bindings {
             frame: self.constants,
             views: self.views,
@@ -281,6 +285,7 @@ impl Frame<'_> {
             factors: &b.factors,
             sub_patches: &b.sub_patches,
             instances: &s.instances,
+            rings: b.trim.as_ref().map(|t| &t.rings),
             trim: test,
             draws: &b.draws,
             counters: &b.counters,
@@ -297,21 +302,30 @@ impl Frame<'_> {
         let (s, b) = (self.scene, self.buffers);
         let (p, t) = (parts.passes, parts.buffers);
         let (w, r) = WRITE_TO_READ;
-        barrier::images(cmd, &[(&b.visibility, Access::COLOUR_WRITE, Access::COMPUTE_READ)]);
+        barrier::images(cmd, &[(&b.visibility, Access::COLOUR_WRITE, w), (&b.depth, Access::DEPTH_WRITE, r)]);
         if let Some(others) = &b.others {
             barrier::images(cmd, &[(others, Access::COLOUR_WRITE, Access::COMPUTE_READ | Access::FRAGMENT_READ)]);
         }
         let cleared = Access { layout: w.layout, ..Access::TRANSFER_WRITE };
-        barrier::buffers(cmd, &[(&b.counters, Access::INDIRECT_READ, w), (&t.heal_dispatch, cleared, w)]);
+        barrier::buffers(
+            cmd,
+            &[
+                (&t.rings, Access::FRAGMENT_WRITE, r),
+                (&b.counters, Access::INDIRECT_READ, w),
+                (&t.heal_dispatch, cleared, w),
+            ],
+        );
         let doubts = heal::DoubtBindings {
             frame: self.constants,
             visibility: &b.visibility,
             doubts: &t.doubts,
             dispatch: &t.heal_dispatch,
             counters: &b.counters,
+            depth: &b.depth,
+            rings: &t.rings,
         };
         p.heal.find(cmd, &doubts);
-        barrier::images(cmd, &[(&b.visibility, r, w)]);
+        barrier::images(cmd, &[(&b.visibility, w, w)]);
         barrier::buffers(cmd, &[(&t.doubts, w, r), (&b.counters, w, r), (&t.heal_dispatch, w, Access::INDIRECT_READ)]);
         let heal = heal::Bindings {
             frame: self.constants,

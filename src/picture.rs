@@ -209,6 +209,8 @@ pub struct FrameStats {
     pub trim_segments: u64,
     /// u-intercepts stored in the trim table.
     pub trim_intercepts: u64,
+    /// Pixels near borders of trimmed faces at which more than one face was asked who is seen.
+    pub doubtful_pixels: u64,
     /// Patches whose tessellation factor would have exceeded the largest split, and rays through Boolean
     /// solids that need more steps than the driver lets a shader make: the promise is not kept there. 0 in a
     /// good frame.

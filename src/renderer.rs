@@ -326,6 +326,7 @@ impl Renderer {
             trim_rows: u64::from(c.rows),
             trim_segments: u64::from(c.segments),
             trim_intercepts: u64::from(c.intercepts),
+            doubtful_pixels: u64::from(c.doubts),
             clamps: u64::from(c.clamps),
             fragments: u64::from(c.fragments),
             mended: u64::from(c.mended),

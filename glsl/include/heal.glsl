@@ -11,16 +11,22 @@
 //
 //   its own front, across a fold, is a witness too; so is what is no patch behind the pixel, where an
 //   end of the patches is near: a neighbour sees nothing or such a thing behind the doubtful face, or there is a witness
-//   real (a gap looks into the solid):   the nearest witness or helper before it, else whichever
-//                                        neighbour's surface passes beside the pixel's centre
-//   not real (its ring reaches out):
+//   a face from behind, real (a gap looks into the solid):
+//                                  the nearest witness or helper before it, else whichever neighbour's
+//                                  surface passes beside the pixel's centre, one before it if possible
+//   a face from behind, not real (its border is near):
 //     helpers of two faces before every witness    the nearest: an edge runs here
 //     a witness                                    the nearest: behind a silhouette
 //     a neighbour that sees nothing                nothing
 //     a helper                                     the nearest
 //     what is no patch behind the pixel            nothing, so that it is seen
+//   a ring before what is seen, which is asked like a neighbour:
+//     helpers of two faces before every witness    the nearest: an edge runs here
+//     a witness                                    the nearest: behind a silhouette, or no border at all
+//     nothing is seen                              nothing
+//     a helper                                     the nearest
 //
-// Without any of these the doubtful face stays. Doubtful neighbours are not asked, and healed pixels
+// Without any of these what was seen stays. Doubtful neighbours are not asked, and healed pixels
 // stay marked, so the order of the threads does not matter. Where a front and a back nearly touch, doubtful
 // pixels fill a band: then the first pixel beyond it is asked, in each of the eight directions, and heard
 // only as a witness that looks at the viewer.
@@ -67,6 +73,11 @@ const float SAME_DEPTH = 1e-6;
 // How far away a neighbour is looked for.
 const uint BAND_PX = 4u;
 
+// How many patches of its face a neighbour's answer may lead across: a patch may be smaller than a pixel.
+const uint MAX_HOPS = 8u;
+// Of a patch's width: less beyond its side is rounding, and the side's own point.
+const float BEYOND = 1e-4;
+
 // How far across a fold, in widths of the patch.
 const float ACROSS = 0.2;
 
@@ -78,18 +89,56 @@ struct Answer {
     uvec2 word;
 };
 
+// Whether the face is there at (u, v) of the patch. The table has rows only where its border runs: not for
+// strips in which all patches are whole.
+bool is_there(FaceInstance fi, Face face, Patch patch_, vec2 uv) {
+    if ((face.flags & FACE_TRIMMED) == 0u) return true;
+    vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
+#ifdef TRIM_BY_TABLE
+    if (side_of(patch_.shape) == SIDE_INSIDE) {
+        if (clamp(uv, 0.0, 1.0) == uv) return true;
+        float strips = float(face.strip_count);
+        uint strip = fi.first_strip + uint(clamp(at.y * strips, 0.0, strips - 1.0));
+        if (line_starts[strip] == line_starts[strip + 1u]) return true;
+    }
+#endif
+    return trim_inside(fi, face, at);
+}
+
+// `refine` from one patch of a face into the next where the point lies beyond a side. `item` becomes the
+// one in which it ended.
+Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec2 uv, vec2 pixel) {
+    ivec2 count = ivec2(face.count_u, face.count_v);
+    Sample s = refine(patches[face.first_patch + item - fi.first_item], view, uv, pixel);
+    for (uint hop = 0u; hop < MAX_HOPS; ++hop) {
+        ivec2 way = ivec2(greaterThan(s.uv, vec2(1.0 + BEYOND))) - ivec2(lessThan(s.uv, vec2(-BEYOND)));
+        int n = int(item - fi.first_item);
+        ivec2 place = ivec2(n % max(count.x, 1), n / max(count.x, 1));
+        ivec2 next = clamp(place + way, ivec2(0), count - 1);
+        if (next == place) break;
+        Patch there = patches[face.first_patch + uint(next.y * count.x + next.x)];
+        if (side_of(there.shape) == SIDE_OUTSIDE) break; // it has no control points
+        Patch here = patches[face.first_patch + uint(n)];
+        vec2 from = (here.domain.xy + s.uv * here.domain.zw - there.domain.xy) / there.domain.zw;
+        Sample t = refine(there, view, clamp(from, 0.0, 1.0), pixel);
+        // beside a silhouette it may not come as near: then the first patch's continuation is better
+        if (length(t.miss) > max(length(s.miss), ON_PIXEL_PX)) break;
+        item = fi.first_item + uint(next.y * count.x + next.x);
+        s = t;
+    }
+    return s;
+}
+
 // Who is asked about being `real` must have the whole ring inside.
 Answer ask(uvec2 seen, vec2 pixel, bool real) {
     uint item = seen_item(seen.x);
     FaceInstance fi = face_instances[item_face_instance[item]];
     Face face = faces[fi.face];
-    Patch patch_ = patches[face.first_patch + item - fi.first_item];
     View view = views[fi.instance];
-    Sample s = refine(patch_, view, unpack_uv(seen.y), pixel);
+    Sample s = refine_across(fi, face, view, item, unpack_uv(seen.y), pixel);
+    Patch patch_ = patches[face.first_patch + item - fi.first_item];
     Answer answer = Answer(NO, s.q.z, length(s.miss), true, uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)))));
-    vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
-    bool trimmed = (face.flags & FACE_TRIMMED) != 0u;
-    bool inside = !trimmed || trim_inside(fi, face, at);
+    bool inside = is_there(fi, face, patch_, s.uv);
     if (answer.miss > ON_PIXEL_PX) {
         // a silhouette beside the pixel
         if (inside && answer.miss <= RING_SLACK * frame.ring_px) answer.kind = HELPER;
@@ -103,12 +152,12 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     float det = pu.x * pv.y - pu.y * pv.x;
     answer.away = looks_away(det, face, instances[fi.instance]);
     if (inside) answer.kind = WITNESS;
-    if (inside != real || !trimmed) return answer;
+    if (inside != real || (face.flags & FACE_TRIMMED) == 0u) return answer;
     if (abs(det) < 1e-12) return answer;
     for (uint k = 0u; k < RING_POINTS; ++k) {
         vec2 step_ = frame.ring_px * RING[k];
         vec2 duv = vec2(step_.x * pv.y - step_.y * pv.x, pu.x * step_.y - pu.y * step_.x) / det;
-        bool there = trim_inside(fi, face, at + duv * patch_.domain.zw);
+        bool there = is_there(fi, face, patch_, s.uv + duv);
         if (inside && !there) {
             answer.kind = HELPER;
             break;
@@ -132,18 +181,30 @@ float other_depth(uvec2 seen, vec2 pixel) {
 void main() {
     uint n = gl_GlobalInvocationID.x;
     if (n >= min(counters.doubts, frame.doubt_capacity)) return;
-    ivec2 at = ivec2(doubts[n] & 0xffffu, doubts[n] >> 16);
+    bool ringed = (doubts[n] & RINGED) != 0u;
+    ivec2 at = ivec2(doubts[n] & 0xffffu, (doubts[n] & ~RINGED) >> 16);
     vec2 pixel = vec2(at) + 0.5;
     uvec2 own = imageLoad(visibility, at).xy;
-    Answer self = ask(own, pixel, true);
-    bool real = self.kind == WITNESS;
+    uvec2 other = SCENE_HAS_OTHERS ? imageLoad(others, at).xy : uvec2(0u);
+    bool nothing = sees_nothing(own.x);
+    Answer none = Answer(NO, 3.0e38, 3.0e38, false, uvec2(0u));
+    Answer self = none;
+    if (!nothing) self = ask(own, pixel, !ringed);
+    bool real = !ringed && self.kind == WITNESS;
     float limit = real ? self.depth * (1.0 - SAME_DEPTH) : 3.0e38;
-    Answer witness = Answer(NO, 3.0e38, 3.0e38, false, uvec2(0u));
-    Answer helper = witness;
-    Answer closest = witness;
+    Answer witness = none;
+    Answer helper = none;
+    Answer closest = none;
+    bool closest_before = false;
+    uint helping_face = 0u; // index + 1; helpers of two faces meet in an edge here
+    bool two_help = false;
+    if (ringed) {
+        if (nothing && other.x != 0u) witness = Answer(WITNESS, other_depth(other, pixel), 0.0, false, uvec2(0u));
+        if (self.kind == WITNESS) witness = self; // its border tells nothing: the face may be hidden but for that
+    }
     // a curved face can show its front at the same pixel, narrower than the tessellation's error:
     // look for it across the fold
-    for (uint k = 0u; k < RING_POINTS; ++k) {
+    for (uint k = 0u; k < RING_POINTS && !ringed; ++k) {
         uvec2 seen = uvec2(own.x, pack_uv(unpack_uv(own.y) + ACROSS * RING[k]));
         Answer answer = ask(seen, pixel, false);
         bool front = answer.kind == WITNESS && !answer.away && answer.depth < limit;
@@ -151,8 +212,6 @@ void main() {
     }
     bool beside_nothing = false;
     bool beside_behind = false; // something else that is behind the doubtful face
-    uint helping_face = 0u; // index + 1; helpers of two faces meet in an edge here
-    bool two_help = false;
     for (uint k = 0u; k < RING_POINTS; ++k) {
         // where fronts and backs touch, doubtful pixels fill a band: look across it
         ivec2 step_ = ivec2(sign(RING[k]));
@@ -168,17 +227,21 @@ void main() {
         if ((seen.x & DOUBTFUL) != 0u) continue;
         if (sees_nothing(seen.x)) {
             if (steps > 1u) continue;
-            uvec2 other = SCENE_HAS_OTHERS ? imageLoad(others, beside).xy : uvec2(0u);
+            uvec2 there = SCENE_HAS_OTHERS ? imageLoad(others, beside).xy : uvec2(0u);
             // one that stands before the doubtful face may hide its neighbour: it tells nothing
-            if (other.x == 0u) beside_nothing = true;
-            else if (other_depth(other, vec2(beside) + 0.5) > self.depth) beside_behind = true;
+            if (there.x == 0u) beside_nothing = true;
+            else if (other_depth(there, vec2(beside) + 0.5) > self.depth) beside_behind = true;
             continue;
         }
         Answer answer = ask(seen, pixel, false);
         // who is farther away must be there, and look here: its border tells nothing
         if (steps > 1u && (answer.kind != WITNESS || answer.away)) continue;
-        if (answer.miss < closest.miss) closest = answer;
-        if (answer.depth > limit) continue;
+        bool before = answer.depth <= limit;
+        if (before && !closest_before || before == closest_before && answer.miss < closest.miss) {
+            closest = answer;
+            closest_before = before;
+        }
+        if (!before) continue;
         if (answer.kind == WITNESS && answer.depth < witness.depth) witness = answer;
         if (answer.kind == HELPER) {
             if (answer.depth < helper.depth) helper = answer;
@@ -187,9 +250,8 @@ void main() {
             helping_face = fi.face + 1u;
         }
     }
-    // where an end of the patches is near, what is behind them is known at the very pixel
-    uvec2 other = SCENE_HAS_OTHERS ? imageLoad(others, at).xy : uvec2(0u);
-    if (!real && other.x != 0u && (beside_nothing || beside_behind || witness.kind == WITNESS)) {
+    // where an end of the patches is near, what is no patch behind them is known at the very pixel
+    if (!ringed && !real && other.x != 0u && (beside_nothing || beside_behind || witness.kind == WITNESS)) {
         float depth = other_depth(other, pixel);
         if (depth < witness.depth) witness = Answer(WITNESS, depth, 0.0, false, uvec2(0u));
     }
@@ -205,11 +267,11 @@ void main() {
         healed = helper.word;
     } else if (has_witness) {
         healed = witness.word;
-    } else if (beside_nothing) {
+    } else if (ringed ? nothing : beside_nothing) {
         healed = uvec2(0u);
     } else if (has_helper) {
         healed = helper.word;
-    } else if (other.x != 0u) {
+    } else if (!ringed && other.x != 0u) {
         healed = uvec2(0u);
     }
     imageStore(visibility, at, uvec4(healed.x | DOUBTFUL, healed.y, 0u, 0u));

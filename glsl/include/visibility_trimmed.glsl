@@ -2,12 +2,15 @@
 //
 // Two faces that meet along an edge are trimmed apart from each other, each with its own rounding;
 // a pixel in the gap would show what lies behind. Such pixels must be found, then mended by pass
-// `heal`, which looks closer. They are found where something is seen that no pixel should show:
+// `heal`, which looks closer:
 //
-//   * a face of a solid from behind: the gap looks into the solid. Its own border is widened by a
-//     ring, so that the faces behind leave no gap themselves, and it wins over a face of another
-//     solid that touches it.
-//   * of an open shell, the ring, ring_px wide, around each face.
+//   * a face of a solid seen from behind: the gap looks into the solid. It wins over a face of
+//     another solid that touches it.
+//   * the ring, ring_px wide, around a face of a solid seen from behind, so that the faces behind
+//     leave no gap themselves, and around each face of an open shell.
+//
+// Rings are not drawn: what they are before may be right, and narrower than they are. Only how near
+// the nearest of them comes is kept for each pixel.
 //
 // The ring of an open shell continues the surface, but never nearer to the viewer than the border
 // that it continues: a floor seen from a low angle must not flow over what stands before its edge.
@@ -19,8 +22,9 @@ layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
 layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
 layout(scalar, binding = 9) readonly buffer Instances { Instance instances[]; };
+layout(scalar, binding = 10) buffer Rings { uint rings[]; }; // depth's bits for each pixel, 0 without a ring
 
-#define TRIM_BINDING 10
+#define TRIM_BINDING 11
 #include "trim.glsl"
 #include "facing.glsl"
 #include "ring.glsl"
@@ -61,14 +65,20 @@ void main() {
     if (!inside && border_depth < 0.0) discard;
     float z = gl_FragCoord.z;
     float stand_back = 0.0;
-    if (!doubtful) {
+    if (solid && !away) {
         float px = 2.0 * frame.deviation_px;
         // depth per unit along the view axis, times the size of a pixel there
         float range = frame.far - frame.near;
         float unit = frame.perspective != 0u ? frame.near * frame.far * gl_FragCoord.w / range : 1.0 / range;
         stand_back = px * (abs(slope.x) + abs(slope.y) + unit / frame.focal) + STAND_BACK * z;
     }
-    doubtful = doubtful || (!inside && !solid);
+    if (!inside && (doubtful || !solid)) {
+        float nearest = (solid ? z : min(z, border_depth)) - stand_back;
+        uvec2 pixel = uvec2(gl_FragCoord.xy);
+        // depths are not negative, so they order like their bits
+        atomicMax(rings[pixel.y * uint(frame.size.x) + pixel.x], floatBitsToUint(max(nearest, 0.0)));
+        discard;
+    }
     visible = uvec2(item + 1u | (doubtful ? DOUBTFUL : 0u), pack_uv(uv));
-    gl_FragDepth = (inside || solid ? z : min(z, border_depth)) - stand_back;
+    gl_FragDepth = z - stand_back;
 }

@@ -1,7 +1,7 @@
 //! Pass `heal`: pixels that look through a gap between two faces get the face that belongs there.
 //!
 //! ```text
-//!   visibility image ──find──▶ list of doubtful pixels ──record──▶ visibility image
+//!   visibility image, rings ──find──▶ list of doubtful pixels ──record──▶ visibility image
 //!
 //!        ┌───┬───┬───┐     asks the faces of the neighbours, on their exact surfaces at the pixel's
 //!        │ A │ A │ B │     centre, which of them is there; the rules stand in glsl/include/heal.glsl
@@ -11,10 +11,13 @@
 //! ```
 //!
 //! Reads: everything that the bindings name but what it writes. Writes: `find`: `doubts`, `dispatch`,
-//! `counters`; `record`: the visibility image, at doubtful pixels only.
+//! `counters`, and the mark in the visibility image; `record`: the visibility image. Both at doubtful pixels only.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Texels};
+use crate::gpu::{
+    Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Resource, Sampler, Texels,
+};
 use crate::shaders::{self, TrimTest};
+use ash::vk;
 
 /// Threads of a workgroup of the first step.
 const GROUP: u32 = 64;
@@ -28,6 +31,7 @@ const SCENE_HAS_OTHERS: u32 = 4;
 pub(crate) struct Heal {
     find: Pipeline,
     heal: Pipeline,
+    nearest: Sampler,
 }
 
 /// Of the first step, in binding order.
@@ -38,6 +42,8 @@ pub(crate) struct DoubtBindings<'a> {
     /// Of the second step; zero before.
     pub dispatch: &'a Buffer,
     pub counters: &'a Buffer,
+    pub depth: &'a Image,
+    pub rings: &'a Buffer,
 }
 
 /// Of the second step, in binding order, and its dispatch.
@@ -77,8 +83,9 @@ pub(crate) struct Meshes<'a> {
 impl Heal {
     /// `test`: how faces are trimmed; `others`: the scene has things that are no patches.
     pub(crate) fn new(device: &Device, test: &TrimTest, rational: bool, others: bool) -> Result<Self, GpuError> {
-        let mut find = [Binding::Storage; 5];
+        let mut find = [Binding::Storage; 7];
         find[1] = Binding::StorageImage;
+        find[5] = Binding::Sampled;
         let mut heal = vec![Binding::Storage; 15 + test.buffers];
         heal[6] = Binding::Texels;
         heal[7] = Binding::StorageImage;
@@ -91,6 +98,7 @@ impl Heal {
         Ok(Self {
             find: pipeline("heal (find)", shaders::DOUBTS_COMP, &find)?,
             heal: pipeline(&format!("heal ({}, {weights})", test.way), test.heal, &heal)?,
+            nearest: Sampler::new(device, vk::Filter::NEAREST)?,
         })
     }
 
@@ -98,7 +106,15 @@ impl Heal {
     /// that no picture needs more of them than every device has.
     pub(crate) fn find(&self, cmd: &Commands<'_>, b: &DoubtBindings<'_>) {
         let (width, height) = b.visibility.size();
-        let resources = [b.frame.into(), b.visibility.into(), b.doubts.into(), b.dispatch.into(), b.counters.into()];
+        let resources = [
+            b.frame.into(),
+            b.visibility.into(),
+            b.doubts.into(),
+            b.dispatch.into(),
+            b.counters.into(),
+            Resource::Sampled(b.depth, &self.nearest),
+            b.rings.into(),
+        ];
         cmd.bind(&self.find, &resources, &[]);
         cmd.dispatch_grid([width.div_ceil(GROUP), height, 1]);
     }

@@ -3,11 +3,11 @@
 //! ```text
 //!   sub-patch ──tesc──▶ levels ──tese──▶ exact surface at the vertices ──▶ triangles
 //!        plain    frag  ──────────────────────────────▶ item, (u, v)   depth
-//!        trimmed  frag  trim test of one way          ▶ item, (u, v)   depth, pushed back in a ring
+//!        trimmed  frag  trim test of one way          ▶ item, (u, v)   depth, rings apart
 //! ```
 //!
 //! Reads: everything that `Bindings` names but the images. Writes: the visibility image and depth
-//! (reversed: 1 at the near plane), which begin cleared or with what is no patch.
+//! (reversed: 1 at the near plane), which begin cleared or with what is no patch; `rings`, cleared before.
 
 use crate::abi::Counters;
 use crate::gpu::{
@@ -59,6 +59,8 @@ pub(crate) struct Bindings<'a> {
     pub factors: &'a Buffer,
     pub sub_patches: &'a Buffer,
     pub instances: &'a Buffer,
+    /// Where rings are found; in scenes with trims only.
+    pub rings: Option<&'a Buffer>,
     /// What the trim test reads, in its order.
     pub trim: &'a [&'a Buffer],
     pub draws: &'a Buffer,
@@ -80,7 +82,7 @@ impl Visibility {
                         (vk::ShaderStageFlags::TESSELLATION_EVALUATION, shaders::VISIBILITY_TESE),
                         (vk::ShaderStageFlags::FRAGMENT, fragment),
                     ],
-                    bindings: &bindings(trimmed.map_or(0, |test| test.buffers)),
+                    bindings: &bindings(trimmed.map(|test| test.buffers)),
                     push_bytes: 0,
                     constants: &[
                         (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
@@ -120,8 +122,9 @@ impl Visibility {
                 let count = offset_of!(Counters, plain_draws) as u64;
                 cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
             }
-            if let Some(trimmed) = &self.trimmed {
-                let resources: Vec<_> = shared().chain(b.trim.iter().map(|&buffer| buffer.into())).collect();
+            if let (Some(trimmed), Some(rings)) = (&self.trimmed, b.rings) {
+                let test = b.trim.iter().map(|&buffer| buffer.into());
+                let resources: Vec<_> = shared().chain([rings.into()]).chain(test).collect();
                 cmd.bind(trimmed, &resources, &[]);
                 let count = offset_of!(Counters, trimmed_draws) as u64;
                 cmd.draw_indirect_count(b.draws, bytes, b.counters, count, draw_capacity);
@@ -130,9 +133,9 @@ impl Visibility {
     }
 }
 
-/// Bindings of a pipeline whose trim test reads so many buffers.
-fn bindings(of_test: usize) -> Vec<Binding> {
-    let mut bindings = vec![Binding::Storage; 10 + of_test];
+/// Bindings of a pipeline whose trim test reads so many buffers beside the rings; `None`: without one.
+fn bindings(of_test: Option<usize>) -> Vec<Binding> {
+    let mut bindings = vec![Binding::Storage; 10 + of_test.map_or(0, |buffers| 1 + buffers)];
     bindings[6] = Binding::Texels;
     bindings
 }

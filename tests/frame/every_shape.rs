@@ -45,7 +45,7 @@ macro_rules! every_shape {
     };
 }
 
-every_shape!(sphere torus cylinder plate cube wave ripple pair far_away mirrored tetra facets beside globe floor ball touching empty);
+every_shape!(sphere torus cylinder plate cube wave ripple pair far_away mirrored tetra facets beside globe floor ball touching ledges empty);
 
 #[test]
 fn a_full_picture_is_silent() {

@@ -10,6 +10,7 @@ mod errors;
 mod every_shape;
 mod hard;
 mod hard_trims;
+mod ledges;
 mod meshes;
 mod objects;
 mod operands;

@@ -11,6 +11,7 @@
 //!   beside     a mesh that cuts into a trimmed face           globe    and into one without trims
 //!   floor      solids and shells before meshes                ball     a mesh with normals
 //!   touching   a front just before another solid's back   empty    nothing at all
+//!   ledges     walls that rise a third of a pixel above one another
 //! ```
 //!
 //! Circles are quadratic arcs of a quarter turn with weights 1, 1/√2, 1 (Piegl and Tiller, *The NURBS
@@ -47,6 +48,9 @@ pub const TOUCHING_GAP: f64 = 0.003;
 /// Half its width.
 pub const TOUCHING_STRIP: f64 = 0.375;
 
+/// Tops of the walls of [`ledges`], face 1 to 4, nearest first.
+pub const LEDGES: [f64; 4] = [0.0, 0.31, 0.75, 8.0];
+
 /// A model and what a scene of it must not contain.
 pub struct Shape {
     pub name: &'static str,
@@ -78,6 +82,7 @@ pub fn all() -> Vec<Shape> {
         shape("floor", floor(), true, false),
         shape("ball", ball(), false, false),
         shape("touching", touching(), true, false),
+        shape("ledges", ledges(), true, false),
         shape("empty", empty(), false, false),
     ]
 }
@@ -191,6 +196,18 @@ pub fn touching() -> Model {
     model.parts.extend(strip.parts);
     model.instances.push(Instance { part: 1, ..placed(DAffine3::IDENTITY, None) });
     model
+}
+
+/// Walls of solids that look along -y, one behind the other, faces 1 to 4, each a little higher than the one
+/// before; and the back of the nearest, 5, which ends where its front does.
+pub fn ledges() -> Model {
+    let wall = |id: u32, top: f64, y: f64| Face {
+        loops: vec![rectangle(DVec2::splat(-8.0), DVec2::new(8.0, top))],
+        same_sense: id != 5,
+        ..face(id, SurfaceKind::Plane, plane(DVec3::Y * y, DVec3::X, DVec3::Z, 12.0))
+    };
+    let fronts = (1..).zip(LEDGES).map(|(id, top)| wall(id, top, 2.0 * f64::from(id)));
+    one("ledges", true, fronts.chain([wall(5, LEDGES[0], 3.0)]).collect())
 }
 
 /// No part and no instance.
