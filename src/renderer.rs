@@ -12,11 +12,11 @@
 //! table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete: false`, and
 //! the next `record` into its slot makes them larger. A view from very near is resolved by what [`CloseUp`] cuts for it.
 
+mod constants;
 mod edit;
 
 use crate::abi;
 use crate::abi::Counters;
-use crate::budget::Budget;
 pub use crate::buffers::TooMany;
 use crate::buffers::{Buffers, Capacities, Counts};
 use crate::frame::{Centres, Frame, Passes, target};
@@ -24,12 +24,13 @@ use crate::gpu::{
     Attachment, Buffer, BufferInfo, Commands, Device, GpuError, Home, HostDevice, Image, Load, Pool, ReadBack,
     Timestamps, Uploads,
 };
-use crate::model::{Camera, CameraError, Model, Projection};
+use crate::model::{Camera, CameraError, Model};
 use crate::passes::resolve;
 use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, SceneSettings};
 pub use crate::scene::{CloseUp, EditError, UndrawnSolid};
-use crate::scene::{Scene, SceneData, SolidData, Write, focal_and_slant, view};
+use crate::scene::{Scene, SceneData, SolidData, Write, view};
 use ash::vk;
+use constants::constants;
 
 /// Formats of the images that the host will pass to [`Renderer::record`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -451,51 +452,3 @@ fn upload_buffer(device: &Device, name: &str, bytes: u64) -> Result<Buffer, GpuE
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
     Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })
 }
-
-fn constants(device: &Device, loaded: &Loaded, input: &FrameInput<'_>, formats: &TargetFormats) -> abi::Frame {
-    let camera = input.camera;
-    let budget = Budget::of(input.settings.tolerance_px);
-    let (focal, slant) = focal_and_slant(camera);
-    let (right, up, forward) = camera.axes();
-    let (counts, room) = (loaded.counts, loaded.capacities);
-    let encodes = matches!(
-        formats.colour,
-        vk::Format::R8G8B8A8_SRGB | vk::Format::B8G8R8A8_SRGB | vk::Format::A8B8G8R8_SRGB_PACK32
-    );
-    abi::Frame {
-        size: [camera.size.0 as f32, camera.size.1 as f32],
-        focal: focal as f32,
-        slant: slant as f32,
-        near: camera.depth_range.0 as f32,
-        far: camera.depth_range.1 as f32,
-        perspective: u32::from(matches!(camera.projection, Projection::Perspective { .. })),
-        deviation_px: budget.deviation as f32,
-        ring_px: budget.ring as f32,
-        row_px: budget.row as f32,
-        chord_px: budget.chord as f32,
-        fixed_factor: input.settings.levels.fixed().unwrap_or(0),
-        item_count: counts.items,
-        cell_count: counts.cells,
-        strip_count: counts.strips,
-        curve_count: counts.curves,
-        draw_vertices: device.quirks().max_tessellated_vertices_per_draw.saturating_sub(MOST_VERTICES).max(1),
-        encode_srgb: u32::from(!encodes),
-        sub_patch_capacity: room.sub_patches,
-        draw_capacity: room.draws,
-        row_capacity: room.rows,
-        intercept_capacity: room.intercepts,
-        doubt_capacity: room.doubts,
-        leaf_count: counts.leaves,
-        block_leaf_capacity: room.block_leaves,
-        tile_leaf_capacity: room.tile_leaves,
-        fragment_capacity: room.fragments,
-        right: right.as_vec3().to_array(),
-        up: up.as_vec3().to_array(),
-        forward: forward.as_vec3().to_array(),
-        // a negative opacity tells the shader to leave the background alone
-        background: input.settings.background.unwrap_or([0.0, 0.0, 0.0, -1.0]),
-    }
-}
-
-/// Vertices of one sub-patch at the hardware's factor of 64: a draw may exceed its budget by so many.
-const MOST_VERTICES: u32 = 65 * 65;

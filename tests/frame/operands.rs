@@ -56,7 +56,7 @@ fn open_meshes_are_counted() {
 #[test]
 fn the_camera_stands_within_operands() {
     let rock = || operands::mesh(shapes::torus_mesh(24));
-    let cases = vec![
+    let cases = [
         solids::solid("A-B", vec![solids::ball(6.0, 0.0), rock()]),
         solids::solid("AB", vec![operands::part(shapes::sphere()), solids::block([-1.0; 3], [1.0, 1.0, 0.4])]),
         solids::solid("A-B", vec![operands::part(shapes::sphere()), operands::part(shapes::cube())]),
@@ -111,7 +111,7 @@ fn equal_expressions_are_equal_pictures() {
     let camera = perspective(&first, SIZE);
     let mut renderer = watched(&first);
     let picture = render(&mut renderer, &camera);
-    assert!(picture.face.iter().any(|id| *id == 1));
+    assert!(picture.face.contains(&1));
     for text in ["(A-B)-C", "(A-C)-B", "A!B!C", "!(!A+(C+B))", "A-(A-(A-(B+C)))"] {
         renderer.upload(&one(text)).unwrap();
         let drawn = render(&mut renderer, &camera);

@@ -32,6 +32,7 @@
 mod limit;
 mod mesh;
 mod quads;
+mod quartic;
 mod triangles;
 
 pub use limit::Limit;

@@ -1,0 +1,63 @@
+//! One frame's constants, from the camera, its settings and the room that there is.
+
+use super::{FrameInput, Loaded, TargetFormats};
+use crate::abi;
+use crate::budget::Budget;
+use crate::gpu::Device;
+use crate::model::Projection;
+use crate::scene::focal_and_slant;
+use ash::vk;
+
+/// What every shader of the frame reads.
+pub(super) fn constants(
+    device: &Device,
+    loaded: &Loaded,
+    input: &FrameInput<'_>,
+    formats: &TargetFormats,
+) -> abi::Frame {
+    let camera = input.camera;
+    let budget = Budget::of(input.settings.tolerance_px);
+    let (focal, slant) = focal_and_slant(camera);
+    let (right, up, forward) = camera.axes();
+    let (counts, room) = (loaded.counts, loaded.capacities);
+    let encodes = matches!(
+        formats.colour,
+        vk::Format::R8G8B8A8_SRGB | vk::Format::B8G8R8A8_SRGB | vk::Format::A8B8G8R8_SRGB_PACK32
+    );
+    abi::Frame {
+        size: [camera.size.0 as f32, camera.size.1 as f32],
+        focal: focal as f32,
+        slant: slant as f32,
+        near: camera.depth_range.0 as f32,
+        far: camera.depth_range.1 as f32,
+        perspective: u32::from(matches!(camera.projection, Projection::Perspective { .. })),
+        deviation_px: budget.deviation as f32,
+        ring_px: budget.ring as f32,
+        row_px: budget.row as f32,
+        chord_px: budget.chord as f32,
+        fixed_factor: input.settings.levels.fixed().unwrap_or(0),
+        item_count: counts.items,
+        cell_count: counts.cells,
+        strip_count: counts.strips,
+        curve_count: counts.curves,
+        draw_vertices: device.quirks().max_tessellated_vertices_per_draw.saturating_sub(MOST_VERTICES).max(1),
+        encode_srgb: u32::from(!encodes),
+        sub_patch_capacity: room.sub_patches,
+        draw_capacity: room.draws,
+        row_capacity: room.rows,
+        intercept_capacity: room.intercepts,
+        doubt_capacity: room.doubts,
+        leaf_count: counts.leaves,
+        block_leaf_capacity: room.block_leaves,
+        tile_leaf_capacity: room.tile_leaves,
+        fragment_capacity: room.fragments,
+        right: right.as_vec3().to_array(),
+        up: up.as_vec3().to_array(),
+        forward: forward.as_vec3().to_array(),
+        // a negative opacity tells the shader to leave the background alone
+        background: input.settings.background.unwrap_or([0.0, 0.0, 0.0, -1.0]),
+    }
+}
+
+/// Vertices of one sub-patch at the hardware's factor of 64: a draw may exceed its budget by so many.
+const MOST_VERTICES: u32 = 65 * 65;
