@@ -63,10 +63,11 @@ mod table {
             size: (SIZE, SIZE),
         };
         let index = LoopIndex::new(&loops);
-        let case_ = Case::new(&placed(vec![square(loops)], DAffine3::IDENTITY), &camera, TOLERANCE_PX);
+        let mut case_ = Case::new(&placed(vec![square(loops)], DAffine3::IDENTITY), &camera, TOLERANCE_PX);
         if !case_.data.has_trimmed {
             return 0; // every patch is in or out whole
         }
+        case_.frame.intercept_capacity = 1 << 24; // rows through hundreds of holes
         let chain = Chain::new(&case_);
         assert_eq!((chain.counters.failed, chain.counters.clamps), (0, 0), "{}", case.name);
         let flips: Vec<f32> = chain.flips.iter().map(|&bits| f32::from_bits(bits)).collect();
@@ -97,7 +98,7 @@ mod table {
     fn every_case_at_every_zoom() {
         let mut all_judged = 0;
         for case in all() {
-            for zoom in [1.0, 20.0, 400.0] {
+            for zoom in [1.0, 20.0, 100.0] {
                 all_judged += judged(&case, case.loops.clone(), zoom);
             }
             for by in [(1, 0), (-1, 0), (0, 1), (0, -1)] {

@@ -103,8 +103,8 @@ fn sizes_and_models_change_in_flight() {
 fn a_frame_without_room_says_so_and_the_next_is_whole() {
     let host = Host::new();
     let mut model = shapes::plate();
-    let place = |i: u32| DVec3::new(f64::from(i % 8), f64::from(i / 8), 0.0) * 7.0;
-    model.instances = (0..64).map(|i| shapes::placed(DAffine3::from_translation(place(i)), Some(RED))).collect();
+    let place = |i: u32| DVec3::new(f64::from(i % 16), f64::from(i / 16), 0.0) * 7.0;
+    model.instances = (0..256).map(|i| shapes::placed(DAffine3::from_translation(place(i)), Some(RED))).collect();
     let size = (560, 420);
     let camera = Camera::framing(model.bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, size);
     let mut renderer = renderer(&host, &model, FORMAT);

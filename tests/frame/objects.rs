@@ -91,7 +91,7 @@ fn only_a_rational_scene_has_rational_pipelines() {
 /// A scene whose every patch is cut by a trim curve has no pipeline for whole ones, and the reverse.
 #[test]
 fn a_kind_of_patch_that_no_face_has_gets_no_pipeline() {
-    for (model, has, lacks) in [(shapes::plate(), "trimmed", "plain"), (shapes::wave(), "plain", "trimmed")] {
+    for (model, has, lacks) in [(shapes::plate(), "table", "plain"), (shapes::wave(), "plain", "table")] {
         let (renderer, objects) = objects(&model, Outputs::default());
         let drawing = |kind: &str| objects.iter().any(|name| name.starts_with(&format!("visibility ({kind}")));
         assert!(drawing(has) && !drawing(lacks), "{objects:?}");

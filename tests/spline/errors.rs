@@ -41,7 +41,10 @@ fn multiplicity_of_interior_knots() {
     let knots = |times: usize| [vec![0.0; 3], vec![0.5; times], vec![1.0; 3]].concat();
     assert!(build(2, &knots(2), 5).is_ok());
     let refused = SplineError::Multiplicity { value: 0.5, multiplicity: 3, degree: 2 };
-    assert_eq!(build(2, &knots(3), 6), Err(refused));
+    let torn = (0..6).map(|i| DVec3::new(f64::from(i), 0.0, 1.0)).collect();
+    assert_eq!(BSpline::new(2, knots(3), torn), Err(refused));
+    // the same point on both sides is one too many, and so is the knot
+    assert_eq!(build(2, &knots(3), 6), build(2, &knots(2), 5));
     // more than degree + 1 at an end shifts the domain, and is no break inside it
     let long = [vec![0.0; 4], vec![1.0; 3]].concat();
     let curve = build(2, &long, 4).unwrap();

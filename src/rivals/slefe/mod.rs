@@ -24,6 +24,7 @@
 //! literature. Sources: D. Lutterkort, J. Peters, *Optimized refinable enclosures of multivariate polynomial pieces*,
 //! CAGD 18, 2001; Y. I. Yeo, L. Bin, J. Peters, *Efficient pixel-accurate rendering of curved surfaces*, 2012.
 
+use std::cmp::Ordering;
 use std::collections::HashMap;
 use std::sync::LazyLock;
 
@@ -85,7 +86,13 @@ impl Slefe {
         let breaks = || (0..=segments).map(|i| i as f64 / segments as f64);
         let lower = |j: usize| {
             let stored = &LOWER[&[degree, segments, j.min(degree - j)]];
-            if 2 * j > degree { stored.iter().rev().copied().collect() } else { stored.clone() }
+            let mirrored = || stored.iter().rev().copied();
+            match (2 * j).cmp(&degree) {
+                Ordering::Less => stored.clone(),
+                // its own mirror image, but for the last digit of the program's solution
+                Ordering::Equal => stored.iter().zip(mirrored()).map(|(a, b)| a.min(b)).collect(),
+                Ordering::Greater => mirrored().collect(),
+            }
         };
         let bounds = (1..degree).map(|j| (breaks().map(|t| value(&basis(degree, j), t)).collect(), lower(j))).collect();
         Self { degree, segments, bounds }

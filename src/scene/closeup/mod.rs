@@ -21,7 +21,7 @@ mod loops;
 
 use super::data::stretch;
 use super::focal_and_slant;
-use crate::model::{Camera, Face, Instance, Model, Part, TrimLoop};
+use crate::model::{Bounds, Camera, Face, Instance, Model, Part, TrimLoop};
 use crate::spline::{Patch, PatchGrid};
 use crate::trim::{LoopIndex, RectSide};
 use glam::{DMat4, DVec2, DVec3, DVec4};
@@ -80,35 +80,30 @@ impl Sight {
         }
     }
 
-    /// Pixels per part unit where what is within the hull of the homogeneous `points` is seen nearest; `None` where
-    /// nothing of it is.
-    fn pixels_per_unit(&self, points: impl Iterator<Item = DVec4>) -> Option<f64> {
+    /// Pixels per part unit where the box is seen nearest; `None` where nothing of it is.
+    fn of_box(&self, (min, max): (DVec3, DVec3)) -> Option<f64> {
         let (mut outside, mut nearest) = (63u32, f64::INFINITY);
-        for p in points {
-            let q = self.to_pixels * p;
+        for corner in (Bounds { min, max }).corners() {
+            let q = self.to_pixels * corner.extend(1.0);
             let (low, high) = (DVec2::splat(-BESIDE_PX), self.size + BESIDE_PX);
             let beyond = [
                 q.x < low.x * q.w,
                 q.x > high.x * q.w,
                 q.y < low.y * q.w,
                 q.y > high.y * q.w,
-                q.z < self.near * p.w,
-                q.z > self.far * p.w,
+                q.z < self.near,
+                q.z > self.far,
             ];
             outside &= beyond.iter().enumerate().fold(0, |bits, (i, &b)| bits | u32::from(b) << i);
-            nearest = nearest.min(q.z / p.w);
+            nearest = nearest.min(q.z);
         }
         let w = if self.perspective { nearest.max(self.near) } else { 1.0 };
         (outside == 0).then(|| self.pixels / w)
     }
 
-    fn of_box(&self, (lo, hi): (DVec3, DVec3)) -> Option<f64> {
-        let corners = crate::model::Bounds { min: lo, max: hi }.corners();
-        self.pixels_per_unit(corners.into_iter().map(|c| c.extend(1.0)))
-    }
-
+    /// The same by the box around a patch, as pass `bound` sees it: its hull may stay farther away.
     fn of_patch(&self, patch: &Patch) -> Option<f64> {
-        self.pixels_per_unit(patch.points.iter().copied())
+        self.of_box(patch.bounds())
     }
 }
 
