@@ -112,7 +112,7 @@ fn a_frame_without_room_says_so_and_the_next_is_whole() {
     assert_eq!(renderer.report(0).unwrap(), None, "no frame has been recorded");
 
     let mut complete = Vec::new();
-    for frame in 0..6 {
+    for frame in 0..8 {
         let slot = frame % SLOTS;
         host.wait(slot);
         complete.extend(renderer.report(slot).unwrap().map(|report| report.complete));
