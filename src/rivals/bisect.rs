@@ -10,7 +10,7 @@
 //! ```
 //!
 //! Pieces are rational Bézier curves that turn back in neither coordinate. Tuned beyond the source: bands
-//! end at ends of pieces but are not more than [`most_bands`], because a band for each end of 40,000
+//! end at ends of pieces but are not more than `most_bands`, because a band for each end of 40,000
 //! pieces costs tens of megabytes and is slower; the bracket that is left after the last step is taken as
 //! a chord; straight pieces need no step. The shader is `glsl/include/bisect.glsl`, its twin is
 //! [`Bisect::contains`].
