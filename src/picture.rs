@@ -147,7 +147,7 @@ pub struct UnknownSolidWay(String);
 /// What the caller decides about a loaded model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneSettings {
-    /// How to trim; `None` takes what suits the model.
+    /// How to trim; `None` takes [`TrimWay::Table`].
     pub trim: Option<TrimWay>,
     /// How to draw Boolean solids.
     pub solids: SolidWay,

@@ -119,7 +119,8 @@ pub struct Judgement {
     pub depth_regular: DepthErrors,
     /// Depth wherever ids agree.
     pub depth_all: DepthErrors,
-    /// Angle between drawn and true normal in degrees, where `depth_regular` counts.
+    /// Angle between drawn and true normal in degrees, where `depth_regular` counts. On a spline part that is an
+    /// operand, whose faces share one id, the nearest of the normals that the part shows within the limit is the true one.
     pub normal_deg: Errors,
     /// Faces that hide themselves.
     pub folds: Folds,
