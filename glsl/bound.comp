@@ -30,7 +30,7 @@ void main() {
     Seen seen = see(views[fi.instance], frame, patch_.box_min, patch_.box_max, frame.ring_px + 1.0, far_of(face, frame));
     if (seen.w < 0.0) return;
     // a ring may reach farther than the box
-    if (side_of(patch_.shape) == SIDE_INSIDE && !covers_a_centre(seen, frame.deviation_px)) return;
+    if (side_of(patch_.shape) == SIDE_INSIDE && !covers_a_centre(seen, frame.deviation_px + frame.spread_px)) return;
     float pixels = pixels_per_unit(frame, instances[fi.instance], seen);
     vec2 tau = factors(patch_.bend, 8.0 * frame.deviation_px / pixels);
     if (frame.fixed_factor != 0u) tau = vec2(frame.fixed_factor);

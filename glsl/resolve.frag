@@ -17,6 +17,7 @@ layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; }
 layout(binding = 6) uniform samplerBuffer points;
 layout(scalar, binding = 7) readonly buffer Instances { Instance instances[]; };
 layout(binding = 8, rg32ui) readonly uniform uimage2D visibility;
+layout(binding = 9, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
 
 #include "eye_ray.glsl"
 #include "patch.glsl"
@@ -27,6 +28,8 @@ void main() {
     uvec2 seen = imageLoad(visibility, ivec2(gl_FragCoord.xy)).xy;
     if (sees_other(seen.x)) discard;
     if (sees_nothing(seen.x)) {
+        // samples are added up: nothing may be written below what is no patch
+        if (SCENE_HAS_OTHERS && imageLoad(others, ivec2(gl_FragCoord.xy)).x != 0u) discard;
         write_nothing();
         return;
     }

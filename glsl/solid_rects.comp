@@ -15,7 +15,7 @@ layout(scalar, binding = 3) writeonly buffer Rects { Rect rects[]; };
 
 const Rect NOWHERE = Rect(uvec2(1u), uvec2(0u));
 
-// A pixel's place is rounded: widen by more than that.
+// A pixel's place is rounded, and its samples lie up to 7/16 beside it: widen by more than that.
 const float MARGIN_PX = 0.5;
 
 Rect rect_of(Leaf leaf, vec3 centre) {

@@ -3,18 +3,19 @@
 //! ```text
 //!   by the scene     taus, factors, counts and starts per item; per strip, face and curve if trimmed
 //!   by the picture   visibility, that of what is no patch where faces are trimmed, depth; per tile and block
-//!                    of tiles if there are Boolean solids
+//!                    of tiles if there are Boolean solids; the sum of a pixel's samples where it has several
 //!   by the view      sub-patches, draws, rows, intercepts, doubts, leaves in tiles: a pass that runs out says so in
 //!                    Counters.failed, and the next frame gets what it would have needed
 //! ```
 
 use crate::abi::{BLOCK, Counters, Factors, Fragment, Rect, SubPatch, TILE, TileLeaf};
 use crate::gpu::{Buffer, Device, GpuError, Image, ImageInfo, Pool};
+use crate::passes::average::SUM_FORMAT;
 use crate::passes::scan;
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
-use crate::picture::TrimWay;
+use crate::picture::{Samples, TrimWay};
 use crate::scene::SceneData;
 use ash::vk;
 
@@ -36,6 +37,8 @@ pub(crate) struct Counts {
     pub mesh_instances: u32,
     /// How faces are trimmed, where some are.
     pub trim: Option<TrimWay>,
+    /// Of each pixel.
+    pub samples: Samples,
 }
 
 impl Counts {
@@ -53,6 +56,7 @@ impl Counts {
             sides: count(data.solids.leaf_surfaces.len()),
             mesh_instances: count(data.meshes.instances.len()),
             trim: data.trim_way(),
+            samples: data.samples,
         }
     }
 
@@ -193,6 +197,8 @@ pub(crate) struct Buffers {
     /// What is no patch, where pass `heal` needs it apart.
     pub others: Option<Image>,
     pub depth: Image,
+    /// The sum of the samples' colours, where there are more than one.
+    pub sum: Option<Image>,
 }
 
 /// What trimmed patches need, whatever the way to trim.
@@ -387,6 +393,9 @@ impl Buffers {
                 .then(|| image("visibility of others", VISIBILITY_FORMAT, drawn_and_read))
                 .transpose()?,
             depth: image("visibility depth", DEPTH_FORMAT, depth_usage)?,
+            sum: (counts.samples != Samples::One)
+                .then(|| image("sum of samples", SUM_FORMAT, drawn_and_read))
+                .transpose()?,
         })
     }
 }

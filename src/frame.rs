@@ -22,6 +22,8 @@
 //!                    heal        pixels that look through a gap between trimmed faces
 //!                      ▼
 //!                  resolve       exact point and normal per pixel, light ──▶ the host's targets
+//!
+//!  from mesh on once for each of a pixel's samples, where there are several: samples.rs
 //! ```
 
 use crate::abi::Counters;
@@ -30,6 +32,7 @@ use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, 
 use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::passes::{bound, emit, heal, mesh, reset, resolve, scan, split, visibility};
 use crate::scene::{MeshBuffers, Scene, SceneData};
+use samples::{SamplePasses, Scopes};
 use solids::SolidPasses;
 use trim::{TrimParts, TrimPasses};
 
@@ -37,10 +40,12 @@ mod edit;
 mod resolved;
 #[cfg(feature = "rivals")]
 mod rival;
+mod samples;
 mod solids;
 mod table;
 mod trim;
 
+pub(crate) use samples::SampleBuffers;
 pub(crate) use solids::Centres;
 
 /// The passes that a scene needs.
@@ -54,7 +59,9 @@ pub(crate) struct Passes {
     solids: Option<SolidPasses>,
     visibility: visibility::Visibility,
     mesh: Option<mesh::Mesh>,
-    resolve: resolve::Resolve,
+    /// Into the host's targets; `None` where they are but a colour, made of samples.
+    resolve: Option<resolve::Resolve>,
+    samples: Option<SamplePasses>,
 }
 
 impl Passes {
@@ -74,21 +81,14 @@ impl Passes {
             solids: SolidPasses::new(device, data, test)?,
             visibility,
             mesh: data.has_meshes().then(|| mesh::Mesh::new(device, VISIBILITY_FORMAT, DEPTH_FORMAT)).transpose()?,
-            resolve: resolve::Resolve::new(
-                device,
-                formats,
-                resolve::Kinds {
-                    rational: data.has_rational,
-                    meshes: data.has_meshes(),
-                    solids: data.solids.kinds(),
-                    operands: data.has_operands,
-                },
-            )?,
+            resolve: resolved::targets(device, data, formats)?,
+            samples: SamplePasses::new(device, data, formats)?,
         })
     }
 }
 
 /// Everything that one frame touches.
+#[derive(Clone, Copy)]
 pub(crate) struct Frame<'a> {
     pub passes: &'a Passes,
     pub scene: &'a Scene,
@@ -96,6 +96,8 @@ pub(crate) struct Frame<'a> {
     /// This slot's constants and transforms, written by the host.
     pub constants: &'a Buffer,
     pub views: &'a Buffer,
+    /// The same for each of a pixel's samples, where there are several.
+    pub samples: &'a [SampleBuffers],
     pub centres: Option<Centres<'a>>,
     pub counters: &'a ReadBack,
     pub colour: &'a [Attachment<'a>],
@@ -121,6 +123,16 @@ impl Frame<'_> {
         if let Some(texture) = trim.as_ref().and_then(TrimParts::rival).and_then(|parts| parts.texture()) {
             times.scope(cmd, "trim texture", || texture.record(self, cmd));
         }
+        match &self.passes.samples {
+            Some(passes) => self.record_samples(cmd, times, passes),
+            None => self.draw(cmd, &mut Scopes::of(times), self.passes.resolve.as_ref(), 0),
+        }
+    }
+
+    /// What is seen, from the patches and the trim table, resolved into `self.colour` and `self.depth`; the `nth` time
+    /// in this frame.
+    fn draw(&self, cmd: &Commands<'_>, times: &mut Scopes<'_>, resolve: Option<&resolve::Resolve>, nth: u64) {
+        let trim = self.trim();
         self.begin_images(cmd);
         if let (Some(pass), Some(meshes)) = (&self.passes.mesh, &self.scene.meshes) {
             times.drawing(cmd, "mesh", || self.mesh(cmd, pass, meshes));
@@ -136,14 +148,33 @@ impl Frame<'_> {
             drawn = Access::COMPUTE_WRITE;
         }
         barrier::images(cmd, &[(&self.buffers.visibility, drawn, Access::FRAGMENT_READ)]);
-        times.scope(cmd, "resolve", || self.resolve(cmd));
+        if let Some(pass) = resolve {
+            times.scope(cmd, "resolve", || self.resolve(cmd, pass));
+        }
         let b = self.buffers;
         barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, COPIED)]);
-        self.counters.record(cmd, &b.counters, size_of::<Counters>() as u64);
+        self.counters.record_nth(cmd, &b.counters, size_of::<Counters>() as u64, nth);
     }
 
     /// The transient buffers may still be read by the frame before: wait, then clear what counts.
     fn begin(&self, cmd: &Commands<'_>) {
+        let b = self.buffers;
+        self.clear(cmd);
+        for counted in b.trim.iter().flat_map(|t| &t.table).flat_map(TableBuffers::cleared) {
+            cmd.fill(counted, 0);
+        }
+        #[cfg(feature = "rivals")]
+        for counted in b.trim.iter().flat_map(|t| &t.texture).flat_map(crate::buffers::TextureBuffers::cleared) {
+            cmd.fill(counted, 0);
+        }
+        let r = reset::Bindings { frame: self.constants, draws: &b.draws, counters: &b.counters };
+        self.passes.reset.record(cmd, &r, 2 * b.capacities.draws);
+        let (w, w2) = WRITE_TO_WRITE;
+        barrier::buffers(cmd, &[(&b.draws, w, w2), (&b.counters, w, w2)]);
+    }
+
+    /// Waits for what was drawn before, and clears what each drawing counts.
+    fn clear(&self, cmd: &Commands<'_>) {
         let b = self.buffers;
         let before = [Access::COMPUTE_WRITE, Access::VERTEX_READ, Access::FRAGMENT_READ, Access::INDIRECT_READ];
         let before = before.into_iter().fold(Access::COMPUTE_READ, |all, one| all | one);
@@ -153,21 +184,10 @@ impl Frame<'_> {
         if let Some(t) = &b.trim {
             cmd.fill(&t.heal_dispatch, 0);
             cmd.fill(&t.rings, 0);
-            for counted in t.table.iter().flat_map(TableBuffers::cleared) {
-                cmd.fill(counted, 0);
-            }
-            #[cfg(feature = "rivals")]
-            for counted in t.texture.iter().flat_map(crate::buffers::TextureBuffers::cleared) {
-                cmd.fill(counted, 0);
-            }
         }
         if let Some(f) = b.solids.as_ref().and_then(|s| s.fragments.as_ref()) {
             cmd.fill(&f.counts, 0);
         }
-        let r = reset::Bindings { frame: self.constants, draws: &b.draws, counters: &b.counters };
-        self.passes.reset.record(cmd, &r, 2 * b.capacities.draws);
-        let (w, w2) = WRITE_TO_WRITE;
-        barrier::buffers(cmd, &[(&b.draws, w, w2), (&b.counters, w, w2)]);
     }
 
     fn tessellation(&self, cmd: &Commands<'_>) {

@@ -144,6 +144,68 @@ impl std::str::FromStr for SolidWay {
 #[error("no way to draw solids is called `{0}`; there are: {names}", names = SolidWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
 pub struct UnknownSolidWay(String);
 
+/// How many samples of a pixel its colour is the mean of.
+///
+/// The mean is of linear colours, each clamped to what the target holds. The images beside the colour, and the
+/// host's depth, hold what is seen at the pixel's centre, whatever the number.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Samples {
+    /// One, at the centre.
+    #[default]
+    One,
+    /// Four, no two in one row or column.
+    Four,
+    /// Eight, no two in one row or column.
+    Eight,
+}
+
+impl Samples {
+    /// How many.
+    pub fn count(self) -> u32 {
+        match self {
+            Self::One => 1,
+            Self::Four => 4,
+            Self::Eight => 8,
+        }
+    }
+
+    /// Where they lie, pixels from the centre, y down; none for [`One`](Self::One). Source: Vulkan 1.3, section 25.3
+    /// (standard sample locations).
+    pub(crate) fn offsets(self) -> &'static [[f64; 2]] {
+        const FOUR: [[f64; 2]; 4] = [[-0.125, -0.375], [0.375, -0.125], [-0.375, 0.125], [0.125, 0.375]];
+        const EIGHT: [[f64; 2]; 8] = [
+            [0.0625, -0.1875],
+            [-0.0625, 0.1875],
+            [0.3125, 0.0625],
+            [-0.1875, -0.3125],
+            [-0.3125, 0.3125],
+            [-0.4375, -0.0625],
+            [0.1875, 0.4375],
+            [0.4375, -0.4375],
+        ];
+        match self {
+            Self::One => &[],
+            Self::Four => &FOUR,
+            Self::Eight => &EIGHT,
+        }
+    }
+}
+
+impl std::str::FromStr for Samples {
+    type Err = UnknownSamples;
+
+    fn from_str(count: &str) -> Result<Self, UnknownSamples> {
+        let all = [Self::One, Self::Four, Self::Eight];
+        all.into_iter().find(|s| s.count().to_string() == count).ok_or_else(|| UnknownSamples(count.to_owned()))
+    }
+}
+
+/// No picture has so many samples a pixel.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("`{0}` samples a pixel: there may be 1, 4 or 8")]
+pub struct UnknownSamples(String);
+
 /// What the caller decides about a loaded model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneSettings {
@@ -154,6 +216,8 @@ pub struct SceneSettings {
     /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover. The model is
     /// trimmed by [`TrimWay::Table`] then, which is made anew for each frame in any case.
     pub editable: bool,
+    /// Samples of each pixel's colour: edges are smoothed where there are more than one.
+    pub samples: Samples,
 }
 
 /// Images wanted beside the colour.
@@ -195,11 +259,12 @@ pub struct Picture {
 /// What a frame cost and whether anything was clamped.
 #[derive(Clone, Debug, Default, PartialEq, Serialize)]
 pub struct FrameStats {
-    /// Name and GPU time in milliseconds of each pass, in order.
+    /// Name and GPU time in milliseconds of each pass, in order. Where pixels have several samples, passes are those of
+    /// the first one; the others are `more samples`, and what is no colour is `centre sample`.
     pub passes: Vec<PassTime>,
     /// Patches of the loaded model, those of each instance counted; of a view from very near, those near it.
     pub patches: u64,
-    /// Triangles that the tessellator made, and those of meshes.
+    /// Triangles that the tessellator made, and those of meshes; for one sample.
     pub triangles: u64,
     /// Sub-patches drawn.
     pub sub_patches: u64,
@@ -209,7 +274,8 @@ pub struct FrameStats {
     pub trim_segments: u64,
     /// u-intercepts stored in the trim table.
     pub trim_intercepts: u64,
-    /// Pixels near borders of trimmed faces at which more than one face was asked who is seen.
+    /// Pixels near borders of trimmed faces at which more than one face was asked who is seen; of the sample with the
+    /// most.
     pub doubtful_pixels: u64,
     /// Patches whose tessellation factor would have exceeded the largest split, and rays through Boolean
     /// solids that need more steps than the driver lets a shader make: the promise is not kept there. 0 in a

@@ -14,23 +14,19 @@
 
 mod constants;
 mod edit;
+mod slot;
 
-use crate::abi;
-use crate::abi::Counters;
 pub use crate::buffers::TooMany;
 use crate::buffers::{Buffers, Capacities, Counts};
 use crate::frame::{Centres, Frame, Passes, target};
-use crate::gpu::{
-    Attachment, Buffer, BufferInfo, Commands, Device, GpuError, Home, HostDevice, Image, Load, Pool, ReadBack,
-    Timestamps, Uploads,
-};
+use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Uploads};
 use crate::model::{Camera, CameraError, Model};
 use crate::passes::resolve;
 use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, SceneSettings};
 pub use crate::scene::{CloseUp, EditError, UndrawnSolid};
-use crate::scene::{Scene, SceneData, SolidData, Write, view};
+use crate::scene::{Scene, SceneData, Write};
 use ash::vk;
-use constants::constants;
+use slot::Slot;
 
 /// Formats of the images that the host will pass to [`Renderer::record`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -135,23 +131,6 @@ struct Loaded {
     edits: Vec<Write>,
 }
 
-/// What one frame in flight owns.
-struct Slot {
-    constants: Buffer,
-    views: Option<Buffer>,
-    /// Of leaves and of surfaces of Boolean solids.
-    centres: Option<[Buffer; 2]>,
-    counters: ReadBack,
-    times: Timestamps,
-    /// Freed when the slot comes round again.
-    retired: Vec<Retired>,
-    recorded: bool,
-    /// Copied for edits at the beginning of the frame.
-    edit_bytes: u64,
-    /// What the frame had room for; `None` when its model has been replaced since.
-    capacities: Option<Capacities>,
-}
-
 #[allow(dead_code)] // held for their drop
 enum Retired {
     Buffers(Box<Buffers>),
@@ -160,8 +139,6 @@ enum Retired {
     Buffer(Buffer),
 }
 
-/// Timed scopes in a frame.
-const SCOPES: u32 = 10;
 /// Tolerances below this ask for more than single precision gives at full zoom.
 const LEAST_TOLERANCE_PX: f64 = 0.125;
 
@@ -294,6 +271,7 @@ impl Renderer {
             buffers,
             constants: &slot.constants,
             views,
+            samples: &slot.samples,
             centres: slot.centres.as_ref().map(|[leaves, surfaces]| Centres { leaves, surfaces }),
             counters: &slot.counters,
             colour: &colour,
@@ -381,74 +359,4 @@ impl Renderer {
             slot.retired.push(what);
         }
     }
-}
-
-impl Slot {
-    fn new(device: &Device) -> Result<Self, GpuError> {
-        Ok(Self {
-            constants: upload_buffer(device, "frame constants", size_of::<abi::Frame>() as u64)?,
-            views: None,
-            centres: None,
-            counters: ReadBack::new(device, "counters (read back)", size_of::<Counters>() as u64)?,
-            times: Timestamps::new(device, SCOPES)?,
-            retired: Vec::new(),
-            recorded: false,
-            edit_bytes: 0,
-            capacities: None,
-        })
-    }
-
-    fn read_counters(&self) -> Counters {
-        self.counters.values::<Counters>(1)[0]
-    }
-
-    /// Writes this frame's constants and transforms.
-    fn write(
-        &mut self,
-        device: &Device,
-        loaded: &Loaded,
-        input: &FrameInput<'_>,
-        formats: &TargetFormats,
-    ) -> Result<(), GpuError> {
-        let pixels = input.camera.pixel_matrix();
-        let views: Vec<abi::View> = loaded.data.placements.iter().map(|p| view(pixels, *p)).collect();
-        let bytes = size_of_val(views.as_slice()) as u64;
-        if self.views.as_ref().is_none_or(|b| b.bytes() < bytes) {
-            let made = upload_buffer(device, "views", bytes)?;
-            self.retired.extend(self.views.replace(made).map(Retired::Buffer));
-        }
-        if let Some(buffer) = &mut self.views {
-            buffer.write(0, &views);
-        }
-        self.write_centres(device, &loaded.data.solids, input.camera)?;
-        self.constants.write(0, &[constants(device, loaded, input, formats)]);
-        Ok(())
-    }
-
-    /// Writes where the parts of Boolean solids are, seen from the eye.
-    fn write_centres(&mut self, device: &Device, solids: &SolidData, camera: &Camera) -> Result<(), GpuError> {
-        if solids.leaf_centres.is_empty() {
-            self.retired.extend(self.centres.take().into_iter().flatten().map(Retired::Buffer));
-            return Ok(());
-        }
-        let all = [&solids.leaf_centres, &solids.surface_centres];
-        let bytes = all.map(|list| (list.len() * size_of::<[f32; 3]>()) as u64);
-        if self.centres.as_ref().is_none_or(|b| b[0].bytes() < bytes[0] || b[1].bytes() < bytes[1]) {
-            let made = [
-                upload_buffer(device, "solid leaf centres", bytes[0])?,
-                upload_buffer(device, "solid surface centres", bytes[1])?,
-            ];
-            self.retired.extend(self.centres.replace(made).into_iter().flatten().map(Retired::Buffer));
-        }
-        for (buffer, list) in self.centres.iter_mut().flatten().zip(all) {
-            let seen: Vec<[f32; 3]> = list.iter().map(|c| (*c - camera.eye).as_vec3().to_array()).collect();
-            buffer.write(0, &seen);
-        }
-        Ok(())
-    }
-}
-
-fn upload_buffer(device: &Device, name: &str, bytes: u64) -> Result<Buffer, GpuError> {
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
-    Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })
 }

@@ -47,6 +47,7 @@ const BARRIERS: &[&str] = &[
     "src/frame.rs",
     "src/frame/edit.rs",
     "src/frame/rival.rs",
+    "src/frame/samples.rs",
     "src/frame/solids.rs",
     "src/frame/table.rs",
     "src/passes/scan.rs",

@@ -77,6 +77,8 @@ const uint BAND_PX = 4u;
 const uint MAX_HOPS = 8u;
 // Of a patch's width: less beyond its side is rounding, and the side's own point.
 const float BEYOND = 1e-4;
+// The same for the end of a face without trims: single precision, and what Newton's method leaves of 100 pixels.
+const float ROUNDED = 1e-5;
 
 // How far across a fold, in widths of the patch.
 const float ACROSS = 0.2;
@@ -89,17 +91,37 @@ struct Answer {
     uvec2 word;
 };
 
-// Whether the face is there at (u, v) of the patch. The table has rows only where its border runs: not for
-// strips in which all patches are whole.
-bool is_there(FaceInstance fi, Face face, Patch patch_, vec2 uv) {
-    if ((face.flags & FACE_TRIMMED) == 0u) return true;
+// Column and row of the `n`th patch of a face.
+ivec2 place_of(Face face, int n) {
+    int across = int(max(face.count_u, 1u));
+    return ivec2(n % across, n / across);
+}
+
+// Which way a point of a patch lies beyond it, by more than `slack`.
+ivec2 way_beyond(vec2 uv, float slack) {
+    return ivec2(greaterThan(uv, vec2(1.0 + slack))) - ivec2(lessThan(uv, vec2(-slack)));
+}
+
+// Whether (u, v) of a patch that no loop cuts is in it, or in one beside it that the loops leave. A surface
+// goes on beyond its own end, but the face does not.
+bool in_whole_patch(FaceInstance fi, Face face, uint item, vec2 uv) {
+    ivec2 count = ivec2(face.count_u, face.count_v);
+    ivec2 place = place_of(face, int(item - fi.first_item)) + way_beyond(uv, ROUNDED);
+    if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, count))) return false;
+    return side_of(patches[face.first_patch + uint(place.y * count.x + place.x)].shape) != SIDE_OUTSIDE;
+}
+
+// Whether the face is there at (u, v) of the item's patch. The table has rows only where its border runs: not
+// for strips in which all patches are whole.
+bool is_there(FaceInstance fi, Face face, uint item, Patch patch_, vec2 uv) {
+    if ((face.flags & FACE_TRIMMED) == 0u) return in_whole_patch(fi, face, item, uv);
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
 #ifdef TRIM_BY_TABLE
     if (side_of(patch_.shape) == SIDE_INSIDE) {
         if (clamp(uv, 0.0, 1.0) == uv) return true;
         float strips = float(face.strip_count);
         uint strip = fi.first_strip + uint(clamp(at.y * strips, 0.0, strips - 1.0));
-        if (line_starts[strip] == line_starts[strip + 1u]) return true;
+        if (line_starts[strip] == line_starts[strip + 1u]) return in_whole_patch(fi, face, item, uv);
     }
 #endif
     return trim_inside(fi, face, at);
@@ -111,10 +133,9 @@ Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec
     ivec2 count = ivec2(face.count_u, face.count_v);
     Sample s = refine(patches[face.first_patch + item - fi.first_item], view, uv, pixel);
     for (uint hop = 0u; hop < MAX_HOPS; ++hop) {
-        ivec2 way = ivec2(greaterThan(s.uv, vec2(1.0 + BEYOND))) - ivec2(lessThan(s.uv, vec2(-BEYOND)));
         int n = int(item - fi.first_item);
-        ivec2 place = ivec2(n % max(count.x, 1), n / max(count.x, 1));
-        ivec2 next = clamp(place + way, ivec2(0), count - 1);
+        ivec2 place = place_of(face, n);
+        ivec2 next = clamp(place + way_beyond(s.uv, BEYOND), ivec2(0), count - 1);
         if (next == place) break;
         Patch there = patches[face.first_patch + uint(next.y * count.x + next.x)];
         if (side_of(there.shape) == SIDE_OUTSIDE) break; // it has no control points
@@ -138,7 +159,7 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     Sample s = refine_across(fi, face, view, item, unpack_uv(seen.y), pixel);
     Patch patch_ = patches[face.first_patch + item - fi.first_item];
     Answer answer = Answer(NO, s.q.z, length(s.miss), true, uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)))));
-    bool inside = is_there(fi, face, patch_, s.uv);
+    bool inside = is_there(fi, face, item, patch_, s.uv);
     if (answer.miss > ON_PIXEL_PX) {
         // a silhouette beside the pixel
         if (inside && answer.miss <= RING_SLACK * frame.ring_px) answer.kind = HELPER;
@@ -152,12 +173,12 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     float det = pu.x * pv.y - pu.y * pv.x;
     answer.away = looks_away(det, face, instances[fi.instance]);
     if (inside) answer.kind = WITNESS;
-    if (inside != real || (face.flags & FACE_TRIMMED) == 0u) return answer;
+    if (inside != real) return answer;
     if (abs(det) < 1e-12) return answer;
     for (uint k = 0u; k < RING_POINTS; ++k) {
         vec2 step_ = frame.ring_px * RING[k];
         vec2 duv = vec2(step_.x * pv.y - step_.y * pv.x, pu.x * step_.y - pu.y * step_.x) / det;
-        bool there = is_there(fi, face, patch_, s.uv + duv);
+        bool there = is_there(fi, face, item, patch_, s.uv + duv);
         if (inside && !there) {
             answer.kind = HELPER;
             break;

@@ -2,6 +2,7 @@
 #ifndef RESOLVED_GLSL
 #define RESOLVED_GLSL
 
+#include "eye_ray.glsl"
 #include "shade.glsl"
 
 layout(constant_id = 3) const bool HAS_AOVS = false;
@@ -30,7 +31,7 @@ void write_nothing() {
 void write_surface(uint own, Instance instance, vec3 n, bool solid, float depth, uint id, vec2 uv) {
     vec4 placed = unpackUnorm4x8(instance.colour);
     vec4 colour = placed.a > 0.0 ? placed : unpackUnorm4x8(own);
-    out_colour = encode(vec4(shade(colour.rgb, n, frame, !solid), 1.0), frame.encode_srgb);
+    out_colour = encode(vec4(shade(colour.rgb, n, frame, !solid, eye_ray(frame, gl_FragCoord.xy).d), 1.0), frame.encode_srgb);
     if (HAS_AOVS) {
         out_depth = depth;
         out_face = id;

@@ -123,7 +123,7 @@ struct Frame {
     uint strip_count;
     uint curve_count;
     uint draw_vertices; // most tessellated vertices in one draw
-    uint encode_srgb;   // 1: the colour target does not encode by itself
+    uint encode_srgb;   // 1: the colour target does not encode by itself; ENCODE_SUMMED
     uint sub_patch_capacity;
     uint draw_capacity;
     uint row_capacity;
@@ -137,7 +137,13 @@ struct Frame {
     vec3 up;
     vec3 forward;
     vec4 background;
+    vec2 offset;        // of the sample from the pixel's centre, pixels
+    float spread_px;    // how far from the centre samples lie, along each axis
+    uint samples;       // of each pixel's colour
 };
+
+// Frame.encode_srgb, beside 0 and 1: linear, but within what colour targets hold.
+const uint ENCODE_SUMMED = 2u;
 
 // Written by the passes, read back by the host.
 struct Counters {

@@ -12,9 +12,11 @@ const float FLOOR_STRENGTH = 0.12;
 const float GLOSS = 0.10;      // strength of the highlight
 const float SHININESS = 48.0;
 
-vec3 shade(vec3 colour, vec3 n, Frame frame, bool two_sided) {
+// `ray` runs from the eye to the point: in a perspective view it, not the view's axis, tells which side of a
+// surface without an inside is seen.
+vec3 shade(vec3 colour, vec3 n, Frame frame, bool two_sided, vec3 ray) {
+    if (two_sided && dot(n, ray) > 0.0) n = -n;
     vec3 v = vec3(dot(frame.right, n), dot(frame.up, n), -dot(frame.forward, n));
-    if (two_sided && v.z < 0.0) v = -v;
     float key = max(dot(v, KEY), 0.0);
     float fill = max(dot(v, FILL), 0.0);
     float sky = mix(FLOOR_STRENGTH, SKY_STRENGTH, 0.5 + 0.5 * v.y);
@@ -25,6 +27,7 @@ vec3 shade(vec3 colour, vec3 n, Frame frame, bool two_sided) {
 vec4 encode(vec4 linear, uint srgb) {
     if (srgb == 0u) return linear;
     vec3 c = clamp(linear.rgb, 0.0, 1.0);
+    if (srgb == ENCODE_SUMMED) return vec4(c, linear.a);
     vec3 low = c * 12.92;
     vec3 high = 1.055 * pow(c, vec3(1.0 / 2.4)) - 0.055;
     return vec4(mix(high, low, lessThanEqual(c, vec3(0.0031308))), linear.a);

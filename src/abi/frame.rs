@@ -46,7 +46,26 @@ pub struct Frame {
     pub up: [f32; 3],
     pub forward: [f32; 3],
     pub background: [f32; 4],
+    pub offset: [f32; 2],
+    pub spread_px: f32,
+    pub samples: u32,
 }
+
+/// [`Frame::encode_srgb`] of colours that are summed up: linear, but within what colour targets hold.
+pub const ENCODE_SUMMED: u32 = 2;
+
+impl Counters {
+    /// The larger of each count, of two samples of one frame.
+    pub fn most(self, other: Self) -> Self {
+        let (mut all, others) = (self, bytemuck::cast::<Self, [u32; COUNTERS]>(other));
+        let words: &mut [u32; COUNTERS] = bytemuck::cast_mut(&mut all);
+        words.iter_mut().zip(others).for_each(|(word, other)| *word = other.max(*word));
+        all.failed = self.failed | other.failed;
+        all
+    }
+}
+
+const COUNTERS: usize = size_of::<Counters>() / size_of::<u32>();
 
 /// Written by the passes, read back by the host.
 #[repr(C)]

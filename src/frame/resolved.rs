@@ -1,11 +1,37 @@
 //! The frame's last pass: what each kind of thing gives pass `resolve`.
 
 use super::Frame;
-use crate::gpu::Commands;
+use crate::gpu::{Commands, Device, GpuError};
 use crate::passes::resolve;
+use crate::picture::Samples;
+use crate::scene::SceneData;
+
+/// What the scene asks of the pass.
+pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
+    resolve::Kinds {
+        rational: data.has_rational,
+        meshes: data.has_meshes(),
+        solids: data.solids.kinds(),
+        operands: data.has_operands,
+    }
+}
+
+/// The pass into the host's targets; `None` where samples make all of them.
+pub(super) fn targets(
+    device: &Device,
+    data: &SceneData,
+    formats: resolve::Formats,
+) -> Result<Option<resolve::Resolve>, GpuError> {
+    let into = match data.samples {
+        Samples::One => resolve::Destination::Targets,
+        Samples::Four | Samples::Eight if formats.aovs || formats.depth.is_some() => resolve::Destination::AllButColour,
+        Samples::Four | Samples::Eight => return Ok(None),
+    };
+    resolve::Resolve::new(device, into, formats, kinds(data)).map(Some)
+}
 
 impl Frame<'_> {
-    pub(super) fn resolve(&self, cmd: &Commands<'_>) {
+    pub(super) fn resolve(&self, cmd: &Commands<'_>, pass: &resolve::Resolve) {
         let (s, b) = (self.scene, self.buffers);
         let bindings = resolve::Bindings {
             frame: self.constants,
@@ -17,6 +43,7 @@ impl Frame<'_> {
             points: &s.points,
             instances: &s.instances,
             visibility: &b.visibility,
+            others: b.others.as_ref().unwrap_or(&b.visibility),
         };
         let meshes = s.meshes.as_ref().map(|m| resolve::MeshBindings {
             frame: self.constants,
@@ -31,6 +58,6 @@ impl Frame<'_> {
             others: b.others.as_ref().unwrap_or(&b.visibility),
         });
         let solids = self.solids().map(|parts| parts.resolve(self));
-        self.passes.resolve.record(cmd, &bindings, meshes.as_ref(), solids.as_ref(), self.colour, self.depth);
+        pass.record(cmd, &bindings, meshes.as_ref(), solids.as_ref(), self.colour, self.depth);
     }
 }

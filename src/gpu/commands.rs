@@ -153,6 +153,13 @@ impl<'a> Commands<'a> {
         unsafe { self.device.raw().cmd_fill_buffer(self.raw, buffer.handle(), 0, vk::WHOLE_SIZE, word) };
     }
 
+    /// Fills one word, the `nth`, as a transfer write.
+    pub fn fill_word(&self, buffer: &Buffer, nth: u64, word: u32) {
+        let bytes = size_of::<u32>() as u64;
+        // SAFETY: recording outside rendering; the buffer belongs to this device.
+        unsafe { self.device.raw().cmd_fill_buffer(self.raw, buffer.handle(), nth * bytes, bytes, word) };
+    }
+
     /// Copies bytes between buffers: [`Access::TRANSFER_READ`] to [`Access::TRANSFER_WRITE`].
     ///
     /// # Panics

@@ -53,6 +53,8 @@ pub enum Blend {
     Over,
     /// `source + target`.
     Add,
+    /// The target stays as it is.
+    Leave,
 }
 
 /// Depth test of a pipeline.
@@ -152,6 +154,7 @@ impl Blend {
         let state = vk::PipelineColorBlendAttachmentState::default().color_write_mask(vk::ColorComponentFlags::RGBA);
         let target = match self {
             Self::Replace => return state,
+            Self::Leave => return state.color_write_mask(vk::ColorComponentFlags::empty()),
             Self::Over => vk::BlendFactor::ONE_MINUS_SRC_ALPHA,
             Self::Add => vk::BlendFactor::ONE,
         };

@@ -26,7 +26,15 @@ impl ReadBack {
     /// # Panics
     /// When they do not fit.
     pub fn record(&self, cmd: &Commands<'_>, from: &Buffer, bytes: u64) {
-        cmd.copy(from, 0, &self.buffer, 0, bytes);
+        self.record_nth(cmd, from, bytes, 0);
+    }
+
+    /// The same behind `nth` others of the same size.
+    ///
+    /// # Panics
+    /// When they do not fit.
+    pub fn record_nth(&self, cmd: &Commands<'_>, from: &Buffer, bytes: u64, nth: u64) {
+        cmd.copy(from, 0, &self.buffer, nth * bytes, bytes);
         barrier::buffers(cmd, &[(&self.buffer, Access::TRANSFER_WRITE, Access::HOST_READ)]);
     }
 

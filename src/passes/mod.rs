@@ -2,6 +2,7 @@
 //! `record`. A pass never allocates, submits or waits while recording, and never knows another pass;
 //! the barriers between passes stand in `frame.rs`.
 
+pub(crate) mod average;
 pub(crate) mod bound;
 pub(crate) mod cross;
 pub(crate) mod density;

@@ -61,7 +61,18 @@ pub(crate) struct Formats {
     pub aovs: bool,
 }
 
-/// Buffers and image for patches, in binding order.
+/// Where the picture goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Destination {
+    /// The host's targets.
+    Targets,
+    /// The sum of a pixel's samples, of the colour's format. The host's depth hides what is behind it, and stays.
+    Sum,
+    /// The host's targets but for the colour, which is made of samples.
+    AllButColour,
+}
+
+/// Buffers and images for patches, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub views: &'a Buffer,
@@ -72,9 +83,11 @@ pub(crate) struct Bindings<'a> {
     pub points: &'a Texels,
     pub instances: &'a Buffer,
     pub visibility: &'a Image,
+    /// The visibility image again where the scene has no trims, or nothing but patches.
+    pub others: &'a Image,
 }
 
-/// Buffers and image for meshes, in binding order.
+/// Buffers and images for meshes, in binding order.
 pub(crate) struct MeshBindings<'a> {
     pub frame: &'a Buffer,
     pub views: &'a Buffer,
@@ -105,20 +118,24 @@ pub(crate) struct SolidBindings<'a> {
 }
 
 impl Resolve {
-    pub(crate) fn new(device: &Device, formats: Formats, kinds: Kinds) -> Result<Self, GpuError> {
-        let replace = |format| ColourTarget { format, blend: Blend::Replace };
-        let mut colour = vec![replace(formats.colour)];
+    pub(crate) fn new(device: &Device, into: Destination, formats: Formats, kinds: Kinds) -> Result<Self, GpuError> {
+        let (format, blend, of_samples) = match into {
+            Destination::Targets => (formats.colour, Blend::Replace, ""),
+            Destination::Sum => (formats.colour, Blend::Add, ", samples"),
+            Destination::AllButColour => (formats.colour, Blend::Leave, ", beside samples"),
+        };
+        let mut colour = vec![ColourTarget { format, blend }];
         if formats.aovs {
-            colour.extend(AOV_FORMATS.map(replace));
+            colour.extend(AOV_FORMATS.map(|format| ColourTarget { format, blend: Blend::Replace }));
         }
-        let mut bindings = [Binding::Storage; 9];
+        let mut bindings = [Binding::Storage; 10];
         bindings[6] = Binding::Texels;
-        bindings[8] = Binding::StorageImage;
+        bindings[8..].fill(Binding::StorageImage);
         let pipeline = |name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
             Pipeline::graphics(
                 device,
                 &GraphicsInfo {
-                    name: &format!("resolve ({name})"),
+                    name: &format!("resolve ({name}{of_samples})"),
                     stages: &[
                         (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
                         (vk::ShaderStageFlags::FRAGMENT, fragment),
@@ -134,7 +151,7 @@ impl Resolve {
                     depth: formats.depth.map(|format| DepthTest {
                         format,
                         compare: vk::CompareOp::GREATER_OR_EQUAL,
-                        write: true,
+                        write: into != Destination::Sum,
                     }),
                 },
             )
@@ -182,7 +199,7 @@ impl Resolve {
         cmd.rendering(size, colour, depth, || {
             let buffers = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items].map(Into::into);
             let rest = [b.points.into(), b.instances.into(), b.visibility.into()];
-            let resources: Vec<_> = buffers.into_iter().chain(rest).collect();
+            let resources: Vec<_> = buffers.into_iter().chain(rest).chain([b.others.into()]).collect();
             cmd.bind(&self.patches, &resources, &[]);
             cmd.draw(3, 0, 1);
             if let (Some(pipeline), Some(m)) = (&self.meshes, meshes) {

@@ -56,6 +56,9 @@ pub(super) fn constants(
         forward: forward.as_vec3().to_array(),
         // a negative opacity tells the shader to leave the background alone
         background: input.settings.background.unwrap_or([0.0, 0.0, 0.0, -1.0]),
+        offset: [0.0; 2],
+        spread_px: counts.samples.offsets().iter().flatten().fold(0.0f64, |far, x| far.max(x.abs())) as f32,
+        samples: counts.samples.count(),
     }
 }
 

@@ -9,7 +9,7 @@ use crate::abi;
 use crate::model::{Camera, Instance, Model, Projection};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
-use crate::picture::{SceneSettings, TrimWay};
+use crate::picture::{Samples, SceneSettings, TrimWay};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use rayon::prelude::*;
 use std::ops::Range;
@@ -45,6 +45,8 @@ pub(crate) struct SceneData {
     pub bisect: crate::rivals::bisect::Bisect,
     /// How faces would be trimmed.
     way: Option<TrimWay>,
+    /// Of each pixel.
+    pub samples: Samples,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
     /// Boolean solids.
@@ -58,7 +60,7 @@ impl SceneData {
         let way = settings.trim.unwrap_or(TrimWay::Table);
         let edit = (settings.editable && way == TrimWay::Table).then(EditScene::default);
         let solids = SolidData::new(&model.solids, settings.solids)?;
-        let mut data = Self { solids, way: Some(way), edit, ..Self::default() };
+        let mut data = Self { solids, way: Some(way), samples: settings.samples, edit, ..Self::default() };
         let mut used = vec![false; model.parts.len()];
         model.instances.iter().for_each(|i| used[i.part] = true);
         let mut first_faces = Vec::with_capacity(model.parts.len());

@@ -19,7 +19,7 @@ pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u
             let (margin, far) = (frame.ring_px + 1.0, far_of(&face, frame));
             let Some(seen) = see(view, frame, patch.box_min, patch.box_max, margin, far) else { return 0 };
             // a ring may reach farther than the box
-            if patch.side() == Side::Inside && !covers_a_centre(&seen, frame.deviation_px) {
+            if patch.side() == Side::Inside && !covers_a_centre(&seen, frame.deviation_px + frame.spread_px) {
                 return 0;
             }
             let pixels = pixels_per_unit(frame, &scene.instances[placed.instance as usize], &seen);

@@ -6,7 +6,7 @@ use crate::targets::{DEPTH_FORMAT, Targets};
 use ash::vk;
 use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, Model, Projection};
-use selvedge::picture::FrameSettings;
+use selvedge::picture::{FrameSettings, Samples, SceneSettings};
 use selvedge::renderer::{FrameInput, Renderer, TargetFormats, Targets as Into};
 
 const SIZE: (u32, u32) = (120, 90);
@@ -78,7 +78,14 @@ fn it_stands_among_what_the_host_drew() {
     let host = Host::new();
     let mut renderer = renderer(&host, &shapes::sphere(), vk::Format::R8G8B8A8_UNORM);
     let targets = Targets::new(&host, SIZE, vk::Format::R8G8B8A8_UNORM);
-    for camera in [camera(), parallel()] {
+    for (samples, camera) in [
+        (Samples::One, camera()),
+        (Samples::One, parallel()),
+        (Samples::Four, camera()),
+        (Samples::Eight, parallel()),
+        (Samples::One, camera()),
+    ] {
+        renderer.upload_with(&shapes::sphere(), SceneSettings { samples, ..Default::default() }).unwrap();
         draw(&host, &mut renderer, &targets, &camera, None);
         let (colour, depth) = targets.values();
         let (mut seen, mut hidden) = (0, 0);
@@ -126,12 +133,15 @@ fn a_background_is_encoded_once() {
         let host = Host::new();
         let mut renderer = renderer(&host, &shapes::sphere(), format);
         let targets = Targets::new(&host, SIZE, format);
-        draw(&host, &mut renderer, &targets, &camera(), Some([0.5, 0.25, 0.125, 1.0]));
-        let (colour, depth) = targets.values();
-        let corner = (SIZE.0 * SIZE.1 - 1) as usize;
-        let [r, g, b, a] = colour[corner];
-        assert!(r.abs_diff(188) <= 1 && g.abs_diff(137) <= 1 && b.abs_diff(99) <= 1, "{format:?}: {r}, {g}, {b}");
-        assert_eq!((a, depth[corner]), (255, 0.0), "{format:?}");
+        for samples in [Samples::One, Samples::Eight] {
+            renderer.upload_with(&shapes::sphere(), SceneSettings { samples, ..Default::default() }).unwrap();
+            draw(&host, &mut renderer, &targets, &camera(), Some([0.5, 0.25, 0.125, 1.0]));
+            let (colour, depth) = targets.values();
+            let corner = (SIZE.0 * SIZE.1 - 1) as usize;
+            let [r, g, b, a] = colour[corner];
+            assert!(r.abs_diff(188) <= 1 && g.abs_diff(137) <= 1 && b.abs_diff(99) <= 1, "{format:?}: {r}, {g}, {b}");
+            assert_eq!((a, depth[corner]), (255, 0.0), "{format:?}");
+        }
         targets.destroy(&host);
         drop(renderer);
         assert_eq!(host.shutdown(), [""; 0]);

@@ -11,6 +11,7 @@ mod every_shape;
 mod hard;
 mod hard_trims;
 mod ledges;
+mod light;
 mod meshes;
 mod objects;
 mod operands;
@@ -18,7 +19,9 @@ mod room;
 mod samples;
 #[path = "../shapes/mod.rs"]
 mod shapes;
+mod smooth;
 mod solids;
+mod stair;
 mod support;
 mod touching;
 #[path = "../shapes/trims.rs"]

@@ -12,6 +12,7 @@
 //!   floor      solids and shells before meshes                ball     a mesh with normals
 //!   touching   a front just before another solid's back   empty    nothing at all
 //!   ledges     walls that rise a third of a pixel above one another
+//!   stair      plates whose sides have no trims, beside trimmed tops and bottoms
 //! ```
 //!
 //! Circles are quadratic arcs of a quarter turn with weights 1, 1/√2, 1 (Piegl and Tiller, *The NURBS
@@ -28,7 +29,7 @@ pub use meshes::*;
 use glam::{DAffine3, DMat3, DVec2, DVec3, DVec4};
 use selvedge::model::{Colour, Face, Instance, Model, Part, SurfaceKind, TrimLoop};
 use selvedge::spline::{Bezier, Control, Surface};
-use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, SQRT_2};
+use std::f64::consts::{FRAC_1_SQRT_2, FRAC_PI_2, FRAC_PI_8, SQRT_2};
 
 /// Radius of [`sphere`], around the origin.
 pub const SPHERE_RADIUS: f64 = 3.0;
@@ -208,6 +209,32 @@ pub fn ledges() -> Model {
     };
     let fronts = (1..).zip(LEDGES).map(|(id, top)| wall(id, top, 2.0 * f64::from(id)));
     one("ledges", true, fronts.chain([wall(5, LEDGES[0], 3.0)]).collect())
+}
+
+/// Twenty-four treads around the z axis, as of a spiral stair. Top and bottom, faces 1 and 2, are trimmed; the sides,
+/// 3 to 6, are bilinear and end where their surfaces end.
+pub fn stair() -> Model {
+    let corners = [(6.0, -3.0), (44.0, -9.0), (44.0, 9.0), (6.0, 3.0)].map(|(x, y)| DVec2::new(x, y));
+    let side = |i: usize| (corners[i], corners[(i + 1) % 4]);
+    let outline = || closed((0..4).map(|i| Bezier::line(side(i).0, side(i).1)).collect());
+    let level = |id: u32, z: f64| Face {
+        loops: vec![outline()],
+        same_sense: id == 1,
+        ..face(id, SurfaceKind::Plane, plane(DVec3::Z * z, DVec3::X, DVec3::Y, 50.0))
+    };
+    let wall = |i: usize| {
+        let (a, b) = side(i);
+        let points = [a.extend(0.0), b.extend(0.0), a.extend(3.0), b.extend(3.0)].map(|p| p.extend(1.0));
+        let knots = vec![0.0, 0.0, 1.0, 1.0];
+        let surface = Surface::new((1, 1), knots.clone(), knots, points.to_vec()).expect("a quadrilateral");
+        face(3 + i as u32, SurfaceKind::Plane, surface)
+    };
+    let mut model = one("stair", true, [level(1, 3.0), level(2, 0.0)].into_iter().chain((0..4).map(wall)).collect());
+    let step = |k: i32| {
+        DAffine3::from_translation(DVec3::Z * 4.5 * f64::from(k)) * DAffine3::from_rotation_z(f64::from(k) * FRAC_PI_8)
+    };
+    model.instances = (0..24).map(|k| placed(step(k), None)).collect();
+    model
 }
 
 /// No part and no instance.

@@ -3,7 +3,7 @@
 use crate::trims::Way;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
-use selvedge::picture::{Levels, SolidWay, TrimWay};
+use selvedge::picture::{Levels, Samples, SolidWay, TrimWay};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -63,6 +63,9 @@ pub struct RenderArgs {
     pub camera: CameraArgs,
     #[command(flatten)]
     pub frame: FrameArgs,
+    /// Samples of each pixel's colour, 1, 4 or 8: smooth edges, at about as many times the cost
+    #[arg(long, value_name = "N", default_value = "1")]
+    pub samples: Samples,
     /// Also write an image as a NumPy array, row 0 on top: depth (f32, H x W, +inf is background), face (u32, H x W,
     /// 0 is background), uv (f32, H x W x 2, NaN is background), normal (f32, H x W x 3, 0 is background)
     #[arg(long, value_name = "IMAGE=FILE.npy")]
@@ -144,6 +147,9 @@ pub struct BenchArgs {
     pub size: Size,
     #[command(flatten)]
     pub frame: FrameArgs,
+    /// Samples of each pixel's colour, 1, 4 or 8: smooth edges, at about as many times the cost
+    #[arg(long, value_name = "N", default_value = "1")]
+    pub samples: Samples,
     /// Drag a loop of the face with the most loops, once a frame, instead of moving the camera: latency, bytes sent,
     /// and whether pictures equal those of a fresh upload
     #[arg(long)]

@@ -7,7 +7,7 @@ use anyhow::Result;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::import::{self, Import};
 use selvedge::model::{Camera, LoopAt, TrimLoop};
-use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
+use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings};
 use std::path::Path;
 use std::time::Instant;
 
@@ -36,17 +36,22 @@ pub struct Session {
 impl Session {
     /// Opens the device and hands it the model.
     pub fn new(args: &FrameArgs, import: &Import) -> Result<Self> {
-        Self::with(args, import, false)
+        Self::with(args, import, SceneSettings::default())
+    }
+
+    /// The same with several samples of each pixel's colour.
+    pub fn sampled(args: &FrameArgs, import: &Import, samples: Samples) -> Result<Self> {
+        Self::with(args, import, SceneSettings { samples, ..SceneSettings::default() })
     }
 
     /// The same with a model whose loops may be edited.
     pub fn editable(args: &FrameArgs, import: &Import) -> Result<Self> {
-        Self::with(args, import, true)
+        Self::with(args, import, SceneSettings { editable: true, ..SceneSettings::default() })
     }
 
-    fn with(args: &FrameArgs, import: &Import, editable: bool) -> Result<Self> {
+    fn with(args: &FrameArgs, import: &Import, scene: SceneSettings) -> Result<Self> {
         let options = HeadlessOptions { device: args.device.clone(), validation: args.validation };
-        let scene = SceneSettings { trim: args.trim, editable, solids: args.solids };
+        let scene = SceneSettings { trim: args.trim, solids: args.solids, ..scene };
         let mut renderer = during("opening the device", || HeadlessRenderer::new(&options))?;
         during("uploading the model", || renderer.upload_with(&import.model, scene))?;
         let mut settings =

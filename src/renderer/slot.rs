@@ -1,0 +1,159 @@
+//! What one frame in flight owns, and what the host writes of it.
+
+use super::constants::constants;
+use super::{FrameInput, Loaded, Retired, TargetFormats};
+use crate::abi;
+use crate::abi::Counters;
+use crate::buffers::Capacities;
+use crate::frame::SampleBuffers;
+use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Pool, ReadBack, Timestamps};
+use crate::model::Camera;
+use crate::scene::{SolidData, view};
+use ash::vk;
+use glam::{DMat4, DVec3};
+
+/// Timed scopes in a frame.
+const SCOPES: u32 = 13;
+
+/// What one frame in flight owns.
+pub(super) struct Slot {
+    pub(super) constants: Buffer,
+    pub(super) views: Option<Buffer>,
+    /// The same for each of a pixel's samples, where there are several.
+    pub(super) samples: Vec<SampleBuffers>,
+    /// Of leaves and of surfaces of Boolean solids.
+    pub(super) centres: Option<[Buffer; 2]>,
+    pub(super) counters: ReadBack,
+    /// What `counters` has room for, and how many the frame reports.
+    pub(super) counter_room: usize,
+    pub(super) counted: usize,
+    pub(super) times: Timestamps,
+    /// Freed when the slot comes round again.
+    pub(super) retired: Vec<Retired>,
+    pub(super) recorded: bool,
+    /// Copied for edits at the beginning of the frame.
+    pub(super) edit_bytes: u64,
+    /// What the frame had room for; `None` when its model has been replaced since.
+    pub(super) capacities: Option<Capacities>,
+}
+
+impl Slot {
+    pub(super) fn new(device: &Device) -> Result<Self, GpuError> {
+        Ok(Self {
+            constants: upload_buffer(device, "frame constants", size_of::<abi::Frame>() as u64)?,
+            views: None,
+            samples: Vec::new(),
+            centres: None,
+            counters: read_counters(device, 1)?,
+            counter_room: 1,
+            counted: 1,
+            times: Timestamps::new(device, SCOPES)?,
+            retired: Vec::new(),
+            recorded: false,
+            edit_bytes: 0,
+            capacities: None,
+        })
+    }
+
+    pub(super) fn read_counters(&self) -> Counters {
+        let all = self.counters.values::<Counters>(self.counted);
+        all.into_iter().fold(Counters::default(), Counters::most)
+    }
+
+    /// Writes this frame's constants and transforms.
+    pub(super) fn write(
+        &mut self,
+        device: &Device,
+        loaded: &Loaded,
+        input: &FrameInput<'_>,
+        formats: &TargetFormats,
+    ) -> Result<(), GpuError> {
+        let pixels = input.camera.pixel_matrix();
+        let views: Vec<abi::View> = loaded.data.placements.iter().map(|p| view(pixels, *p)).collect();
+        let bytes = size_of_val(views.as_slice()) as u64;
+        if self.views.as_ref().is_none_or(|b| b.bytes() < bytes) {
+            let made = upload_buffer(device, "views", bytes)?;
+            self.retired.extend(self.views.replace(made).map(Retired::Buffer));
+        }
+        if let Some(buffer) = &mut self.views {
+            buffer.write(0, &views);
+        }
+        self.write_centres(device, &loaded.data.solids, input.camera)?;
+        let centre = constants(device, loaded, input, formats);
+        self.constants.write(0, &[centre]);
+        self.write_samples(device, loaded, input.camera, centre)?;
+        // a drawing for each sample, and one for what is not their mean
+        let beside = formats.aovs || formats.depth.is_some() || self.samples.is_empty();
+        self.counted = self.samples.len() + usize::from(beside);
+        if self.counter_room < self.counted {
+            self.counters = read_counters(device, self.counted)?;
+            self.counter_room = self.counted;
+        }
+        Ok(())
+    }
+
+    /// Writes the views of a pixel's samples.
+    fn write_samples(
+        &mut self,
+        device: &Device,
+        loaded: &Loaded,
+        camera: &Camera,
+        centre: abi::Frame,
+    ) -> Result<(), GpuError> {
+        let offsets = loaded.counts.samples.offsets();
+        let placements = &loaded.data.placements;
+        let bytes = (placements.len() * size_of::<abi::View>()) as u64;
+        if self.samples.len() != offsets.len() || self.samples.iter().any(|s| s.views.bytes() < bytes) {
+            let gone = std::mem::take(&mut self.samples).into_iter().flat_map(|s| [s.constants, s.views]);
+            self.retired.extend(gone.map(Retired::Buffer));
+            for _ in offsets {
+                let constants = upload_buffer(device, "sample constants", size_of::<abi::Frame>() as u64)?;
+                self.samples.push(SampleBuffers { constants, views: upload_buffer(device, "sample views", bytes)? });
+            }
+        }
+        for (sample, &offset) in self.samples.iter_mut().zip(offsets) {
+            let pixels = beside(camera.pixel_matrix(), offset);
+            let views: Vec<abi::View> = placements.iter().map(|p| view(pixels, *p)).collect();
+            sample.views.write(0, &views);
+            let offset = offset.map(|x| x as f32);
+            sample.constants.write(0, &[abi::Frame { offset, encode_srgb: abi::ENCODE_SUMMED, ..centre }]);
+        }
+        Ok(())
+    }
+
+    /// Writes where the parts of Boolean solids are, seen from the eye.
+    fn write_centres(&mut self, device: &Device, solids: &SolidData, camera: &Camera) -> Result<(), GpuError> {
+        if solids.leaf_centres.is_empty() {
+            self.retired.extend(self.centres.take().into_iter().flatten().map(Retired::Buffer));
+            return Ok(());
+        }
+        let all = [&solids.leaf_centres, &solids.surface_centres];
+        let bytes = all.map(|list| (list.len() * size_of::<[f32; 3]>()) as u64);
+        if self.centres.as_ref().is_none_or(|b| b[0].bytes() < bytes[0] || b[1].bytes() < bytes[1]) {
+            let made = [
+                upload_buffer(device, "solid leaf centres", bytes[0])?,
+                upload_buffer(device, "solid surface centres", bytes[1])?,
+            ];
+            self.retired.extend(self.centres.replace(made).into_iter().flatten().map(Retired::Buffer));
+        }
+        for (buffer, list) in self.centres.iter_mut().flatten().zip(all) {
+            let seen: Vec<[f32; 3]> = list.iter().map(|c| (*c - camera.eye).as_vec3().to_array()).collect();
+            buffer.write(0, &seen);
+        }
+        Ok(())
+    }
+}
+
+/// The matrix to pixels whose centres lie `offset` farther right and down: what projects there moves to the centres.
+fn beside(pixels: DMat4, [right, down]: [f64; 2]) -> DMat4 {
+    DMat4::from_translation(DVec3::new(-right, -down, 0.0)) * pixels
+}
+
+fn read_counters(device: &Device, count: usize) -> Result<ReadBack, GpuError> {
+    ReadBack::new(device, "counters (read back)", (count * size_of::<Counters>()) as u64)
+}
+
+fn upload_buffer(device: &Device, name: &str, bytes: u64) -> Result<Buffer, GpuError> {
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+    Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })
+}
