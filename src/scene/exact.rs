@@ -13,13 +13,23 @@ pub(crate) struct ExactData {
     pub entries: Vec<u32>,
     pub arcs: Vec<abi::ExactArc>,
     pub points: Vec<f32>,
+    /// Grids.
+    pub words: Vec<u32>,
 }
 
 impl ExactData {
     /// Adds the next face.
     pub(crate) fn push(&mut self, trim: &ExactTrim) {
         let (cells, entries, arcs) = (self.cells.len() as u32, self.entries.len() as u32, self.arcs.len() as u32);
-        self.faces.push(abi::ExactFace { first_band: self.bands.len() as u32, band_count: trim.bands.len() as u32 });
+        self.faces.push(abi::ExactFace {
+            first_band: self.bands.len() as u32,
+            band_count: trim.bands.len() as u32,
+            first_word: self.words.len() as u32,
+            across: trim.grid.across,
+            origin: trim.grid.origin,
+            scale: trim.grid.scale,
+        });
+        self.words.extend(&trim.grid.words);
         self.bands.extend(trim.bands.iter().map(|b| abi::ExactBand { top: b.top, end: cells + b.end }));
         self.cells.extend(trim.cells.iter().map(|c| abi::ExactCell {
             right: c.right,
