@@ -36,7 +36,7 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 uint trim_area(FaceInstance fi, vec2 lo, vec2 hi) {
     return exact_area(fi.face, lo, hi);
 }
-#else
+#elif !defined(TRIM_BY_BISECT)
 uint trim_area(FaceInstance fi, vec2 lo, vec2 hi) {
     return TRIM_MIXED;
 }

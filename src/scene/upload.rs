@@ -87,6 +87,13 @@ pub(crate) struct ExactScene {
     pub words: Buffer,
 }
 
+impl ExactScene {
+    /// As the trim test reads them.
+    pub(crate) fn all(&self) -> [&Buffer; 7] {
+        [&self.faces, &self.bands, &self.cells, &self.entries, &self.arcs, &self.points, &self.words]
+    }
+}
+
 /// Trim curves and the cells that tell their density.
 pub(crate) struct TableScene {
     pub cells: Buffer,
