@@ -66,6 +66,8 @@ pub enum Rival {
     Bisect {
         /// Most steps.
         steps: u32,
+        /// How they are sorted.
+        sorted: crate::rivals::bisect::Sorted,
     },
     /// A texture of one bit a texel for each face.
     Texture {
@@ -147,12 +149,12 @@ pub struct UnknownSolidWay(String);
 /// What the caller decides about a loaded model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneSettings {
-    /// How to trim; `None` takes [`TrimWay::Table`].
+    /// How to trim; `None` takes [`TrimWay::Exact`], which was the faster one in every scene measured:
+    /// `docs/trimming.md`.
     pub trim: Option<TrimWay>,
     /// How to draw Boolean solids.
     pub solids: SolidWay,
-    /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover. The model is
-    /// trimmed by [`TrimWay::Table`] then, which is made anew for each frame in any case.
+    /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover or grow into.
     pub editable: bool,
 }
 

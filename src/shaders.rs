@@ -46,7 +46,7 @@ pub static TRIM_EXACT: TrimTest = TrimTest {
     visibility: VISIBILITY_EXACT_FRAG,
     operand_patch: OPERAND_PATCH_EXACT_FRAG,
     heal: HEAL_EXACT_COMP,
-    buffers: 6,
+    buffers: 7,
 };
 
 /// No test at all.

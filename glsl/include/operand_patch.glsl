@@ -45,7 +45,10 @@ void main() {
     if (looks_away(dx, dy, face, instance)) shell |= FRAGMENT_LEAVES;
 #ifdef TRIMMED
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
-    bool inside = trim_inside(fi, face, at);
+    vec2 around = frame.ring_px * (abs(dx) + abs(dy)); // of the point: its ring is in that box
+    uint area = trim_area(fi, at - around, at + around);
+    if (area == TRIM_OUT) discard;
+    bool inside = area == TRIM_IN || trim_inside(fi, face, at);
     bool near = inside;
     for (uint k = 0u; !near && k < RING_POINTS; ++k) {
         vec2 step_ = frame.ring_px * RING[k];

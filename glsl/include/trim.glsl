@@ -4,8 +4,14 @@
 //
 //   bool trim_inside(FaceInstance fi, Face face, vec2 uv)     (u, v) normalised to the face's surface;
 //                                                             face has FACE_TRIMMED
+//   uint trim_area(FaceInstance fi, vec2 lo, vec2 hi)         of a box in (u, v): all of it inside, all of it
+//                                                             outside, or neither is easily told
 #ifndef TRIM_GLSL
 #define TRIM_GLSL
+
+const uint TRIM_OUT = 0u;
+const uint TRIM_IN = 1u;
+const uint TRIM_MIXED = 2u;
 
 #ifdef TRIM_BY_TABLE
 layout(scalar, binding = TRIM_BINDING + 0) readonly buffer LineStarts { uint line_starts[]; };
@@ -24,7 +30,15 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 #include "exact.glsl"
 
 bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
-    return exact_winding(fi.face, uv) != 0;
+    return exact_inside(fi.face, uv);
+}
+
+uint trim_area(FaceInstance fi, vec2 lo, vec2 hi) {
+    return exact_area(fi.face, lo, hi);
+}
+#elif !defined(TRIM_BY_BISECT)
+uint trim_area(FaceInstance fi, vec2 lo, vec2 hi) {
+    return TRIM_MIXED;
 }
 #endif
 

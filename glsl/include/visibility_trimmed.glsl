@@ -53,8 +53,11 @@ void main() {
     bool away = looks_away(dx, dy, face, instances[fi.instance]);
     bool solid = (face.flags & FACE_SOLID) != 0u;
     bool doubtful = solid && away;
-    bool inside = trim_inside(fi, face, at);
     float reach = solid && !away ? GROWTH * frame.ring_px : frame.ring_px;
+    vec2 around = reach * (abs(dx) + abs(dy)); // of the point: its ring is in that box
+    uint area = trim_area(fi, at - around, at + around);
+    if (area == TRIM_OUT) discard;
+    bool inside = area == TRIM_IN || trim_inside(fi, face, at);
     float border_depth = -1.0; // nearest to the viewer among the ring's points inside the face
     for (uint k = 0u; !inside && k < RING_POINTS; ++k) {
         vec2 step_ = reach * RING[k];

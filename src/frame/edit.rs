@@ -1,7 +1,7 @@
 //! Edits of trim loops, before everything else of a frame.
 //!
 //! ```text
-//!   frames before ──read──▶ patches, cells, curves, control points ◀──copies of what was edited
+//!   frames before ──read──▶ patches, curves, arcs and what sorts them ◀──copies of what was edited
 //! ```
 
 use super::Frame;
@@ -25,13 +25,14 @@ impl Frame<'_> {
     }
 }
 
-/// `None` where another way than the table trims: such a scene is never edited.
+/// `None` where another way trims than the one that the edit was made for: never.
 fn target(scene: &Scene, to: EditTarget) -> Option<&Buffer> {
-    let Some(Trims::Table(trims)) = &scene.trims else { return None };
-    Some(match to {
-        EditTarget::Patches => &scene.patches,
-        EditTarget::Cells => &trims.cells,
-        EditTarget::Curves => &trims.curves,
-        EditTarget::CurvePoints => &trims.curve_points,
-    })
+    match (to, scene.trims.as_ref()?) {
+        (EditTarget::Patches, _) => Some(&scene.patches),
+        (EditTarget::Cells, Trims::Table(trims)) => Some(&trims.cells),
+        (EditTarget::Curves, Trims::Table(trims)) => Some(&trims.curves),
+        (EditTarget::CurvePoints, Trims::Table(trims)) => Some(&trims.curve_points),
+        (EditTarget::Exact(array), Trims::Exact(trims)) => trims.all().get(array).copied(),
+        _ => None,
+    }
 }

@@ -122,7 +122,7 @@ impl<'a> TrimParts<'a> {
     pub(super) fn test(&self) -> Vec<&'a Buffer> {
         match self.way {
             Parts::Table(parts) => parts.test(),
-            Parts::Exact(s) => vec![&s.faces, &s.bands, &s.cells, &s.entries, &s.arcs, &s.points],
+            Parts::Exact(s) => s.all().to_vec(),
             #[cfg(feature = "rivals")]
             Parts::Rival(parts) => parts.test(),
         }

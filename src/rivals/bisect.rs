@@ -9,10 +9,12 @@
 //!     └───────────────────────▶ u         remains of it lies on one side of the point
 //! ```
 //!
-//! Pieces are rational Bézier curves that turn back in neither coordinate. Tuned beyond the source: bands
-//! end at ends of pieces but are not more than `most_bands`, because a band for each end of 40,000
-//! pieces costs tens of megabytes and is slower; the bracket that is left after the last step is taken as
-//! a chord; straight pieces need no step. The shader is `glsl/include/bisect.glsl`, its twin is
+//! Pieces are rational Bézier curves that turn back in neither coordinate. In the source bands end at every
+//! end of a piece, and cells are made of the boxes of whole pieces: [`Sorted::Source`]. Tuned beyond it,
+//! [`Sorted::Tuned`]: bands are not more than `most_bands`, because a band for each end of 40,000 pieces costs
+//! tens of megabytes; and a piece reaches in a cell only as far as in its band. Beyond the source in both: the
+//! bracket that is left after the last step is taken as a chord, straight pieces need no step, and a box that
+//! lies between two cells is told as a whole. The shader is `glsl/include/rivals/bisect.glsl`, its twin is
 //! [`Bisect::contains`].
 
 use crate::model::{Face, TrimLoop};
@@ -20,9 +22,20 @@ use crate::spline::{Bezier, Control};
 use crate::trim::monotone_pieces;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec2};
+use serde::Serialize;
 
 /// Steps in the source.
 pub const STEPS: u32 = 16;
+
+/// How pieces are sorted into bands and cells.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sorted {
+    /// A band ends at every end of a piece; cells hold pieces whose boxes overlap.
+    Source,
+    /// Fewer bands; cells hold pieces whose boxes within the band overlap.
+    Tuned,
+}
 
 /// Of one face.
 #[repr(C)]
@@ -106,7 +119,7 @@ struct Clipped {
 
 impl Bisect {
     /// Appends a face, whose `(u, v)` becomes the unit square.
-    pub fn push(&mut self, face: &Face, steps: u32) {
+    pub fn push(&mut self, face: &Face, steps: u32, sorted: Sorted) {
         let ((u0, u1), (v0, v1)) = face.surface.domain();
         let (origin, size) = (DVec2::new(u0, v0), DVec2::new(u1 - u0, v1 - v0));
         let first_piece = self.pieces.len();
@@ -115,7 +128,7 @@ impl Bisect {
             self.push_loop(trim_loop, origin, size, &mut curves);
         }
         let first_band = self.bands.len() as u32;
-        let ends = self.band_ends(first_piece);
+        let ends = self.band_ends(first_piece, sorted);
         let mut members = vec![Vec::new(); ends.len()];
         for (k, piece) in self.pieces[first_piece..].iter().enumerate() {
             let (lo, hi) = (piece.start[1].min(piece.end[1]), piece.start[1].max(piece.end[1]));
@@ -129,7 +142,10 @@ impl Bisect {
             if let Some(&top) = ends.get(k + 1) {
                 let clip = |&m: &usize| {
                     let piece = &self.pieces[first_piece + m];
-                    let (u_lo, u_hi) = clipped(piece, &curves[m], v, top);
+                    let (u_lo, u_hi) = match sorted {
+                        Sorted::Source => (piece.start[0].min(piece.end[0]), piece.start[0].max(piece.end[0])),
+                        Sorted::Tuned => clipped(piece, &curves[m], v, top),
+                    };
                     Clipped { u_lo, u_hi, piece: (first_piece + m) as u32 }
                 };
                 let pieces = members[k].iter().map(clip).collect();
@@ -158,13 +174,16 @@ impl Bisect {
     }
 
     /// Where bands begin, and where the last one ends: at ends of pieces.
-    fn band_ends(&self, first_piece: usize) -> Vec<f32> {
+    fn band_ends(&self, first_piece: usize, sorted: Sorted) -> Vec<f32> {
         let pieces = &self.pieces[first_piece..];
         let mut ends: Vec<f32> = pieces.iter().flat_map(|p| [p.start[1], p.end[1]]).collect();
         ends.sort_by(f32::total_cmp);
         ends.dedup();
         let Some(&last) = ends.last() else { return ends };
-        let stride = ends.len().div_ceil(most_bands(pieces.len()));
+        let stride = match sorted {
+            Sorted::Source => 1,
+            Sorted::Tuned => ends.len().div_ceil(most_bands(pieces.len())),
+        };
         let mut kept: Vec<f32> = ends.into_iter().step_by(stride).collect();
         if kept.last().is_some_and(|v| *v < last) {
             kept.push(last);

@@ -55,8 +55,9 @@ pub(crate) struct SceneData {
 
 impl SceneData {
     pub(crate) fn new(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        let way = settings.trim.unwrap_or(TrimWay::Table);
-        let edit = (settings.editable && way == TrimWay::Table).then(EditScene::default);
+        let way = settings.trim.unwrap_or(TrimWay::Exact);
+        let edits = settings.editable && matches!(way, TrimWay::Table | TrimWay::Exact);
+        let edit = edits.then(EditScene::default);
         let solids = SolidData::new(&model.solids, settings.solids)?;
         let mut data = Self { solids, way: Some(way), edit, ..Self::default() };
         let mut used = vec![false; model.parts.len()];
@@ -76,8 +77,8 @@ impl SceneData {
                     .collect();
                 faces.into_iter().for_each(|f| data.push_face(f));
                 #[cfg(feature = "rivals")]
-                if let TrimWay::Rival(Rival::Bisect { steps }) = way {
-                    part.faces.iter().for_each(|f| data.bisect.push(f, steps));
+                if let TrimWay::Rival(Rival::Bisect { steps, sorted }) = way {
+                    part.faces.iter().for_each(|f| data.bisect.push(f, steps, sorted));
                 }
             }
         }
@@ -150,6 +151,12 @@ impl SceneData {
             }
         }
         f.curves.iter_mut().for_each(|c| c.first += curve_point);
+        if self.way == Some(TrimWay::Exact) {
+            let place = self.exact.push(&f.exact, f.edit.is_some());
+            if let Some(face) = &mut f.edit {
+                face.exact = Some((place, ExactData::of(&f.exact, &place)));
+            }
+        }
         if let Some(scene) = &mut self.edit {
             if let Some(face) = &mut f.edit {
                 (face.first_patch, face.first_cell) = (f.face.first_patch, f.face.first_cell);
@@ -164,9 +171,6 @@ impl SceneData {
         }
         self.has_rational |= f.rational;
         self.faces.push(f.face);
-        if self.way == Some(TrimWay::Exact) {
-            self.exact.push(&f.exact);
-        }
         self.patches.append(&mut f.patches);
         self.points.append(&mut f.points);
         self.cells.append(&mut f.cells);

@@ -1,7 +1,8 @@
 //! Trim loops that change while the scene is drawn.
 //!
 //! ```text
-//!   edit_loop(at, new loop) ──▶ its curves and control points    always
+//!   edit_loop(at, new loop) ──▶ its curves and control points    trimmed by table
+//!                           ──▶ what differs in its face's arcs, bands, cells and grid    trimmed exactly
 //!                           ──▶ words of patches and cells       those that its old or new box meets, and
 //!                                                                whose side has changed
 //!                    └──────▶ Writes ──record──▶ copies at the beginning of the next frame
@@ -9,15 +10,17 @@
 //!
 //! A scene made for it keeps what an edit may need: curves along scan lines, control points of patches
 //! that are trimmed away, and cells of patches that no loop meets, which the sign of their speed tells
-//! pass `density` to skip. So every edit overwrites in place, and what is drawn is what a fresh scene of
+//! pass `density` to skip; and for each face's arcs, bands and cells more room than they take, since their number
+//! changes with a loop's shape. So every edit overwrites in place, and what is drawn is what a fresh scene of
 //! the edited model would draw. What an edit costs depends on its face alone; winding numbers add up, so
 //! each loop has an index of its own, and only the edited one's is made anew.
 
 use super::SceneData;
+use super::exact::{ExactData, ExactPlace};
 use super::face::{Domain, loop_curves};
 use crate::abi::{self, Side};
 use crate::model::{FaceError, LoopAt, TrimLoop};
-use crate::trim::{LoopIndex, RectSide};
+use crate::trim::{ExactTrim, LoopIndex, RectSide};
 use bytemuck::Pod;
 use glam::DVec2;
 
@@ -36,6 +39,10 @@ pub enum EditError {
     /// The new loop has other curves: their number and degrees stay.
     #[error("the new loop has other curves than the old one: their number and degrees must stay")]
     OtherCurves,
+    /// The face is trimmed exactly, and its loops turn back more than twice as often as when the model was uploaded:
+    /// there is no room for their arcs. Upload the edited model.
+    #[error("no room for the arcs of face {} of part {}: upload the edited model", .0.face, .0.part)]
+    NoRoom(LoopAt),
     /// There is no such control point, or the loop would not be one.
     #[error(transparent)]
     Loop(#[from] FaceError),
@@ -60,6 +67,8 @@ pub(crate) struct EditFace {
     pub first_cell: u32,
     /// Patch of the face, and speed in `v`, of each cell.
     pub cells: Vec<(u32, f32)>,
+    /// Where its arcs are, and what they are now; `None` where it is trimmed by table.
+    pub exact: Option<(ExactPlace, ExactData)>,
 }
 
 /// A loop, and where its curves are in the scene's arrays.
@@ -87,6 +96,8 @@ pub(crate) enum EditTarget {
     Cells,
     Curves,
     CurvePoints,
+    /// Of [`ExactScene::all`](super::ExactScene::all), by number.
+    Exact(usize),
 }
 
 /// Bytes to overwrite.
@@ -100,6 +111,16 @@ pub(crate) struct Write {
 impl EditLoop {
     pub(super) fn new(shape: &TrimLoop, first_curve: u32, first_point: u32) -> Self {
         Self { shape: shape.clone(), index: None, first_curve, first_point }
+    }
+
+    /// Its curves and control points for the table.
+    fn curve_writes(&self, new: &TrimLoop, domain: &Domain) -> Vec<Write> {
+        let (mut curves, points) = loop_curves(new, domain, true);
+        curves.iter_mut().for_each(|c| c.first += self.first_point);
+        vec![
+            write(EditTarget::Curves, self.first_curve, &curves),
+            write(EditTarget::CurvePoints, self.first_point, &points),
+        ]
     }
 
     fn index(&self) -> &LoopIndex {
@@ -129,12 +150,24 @@ impl EditScene {
         }
         let face = self.find(at)?;
         let face = self.faces[face].as_mut().expect("a loop was found in it");
-        Ok(face.replace(at.trim_loop, new))
+        face.replace(at, new)
     }
 }
 
 impl EditFace {
-    fn replace(&mut self, edited: usize, new: &TrimLoop) -> Vec<Write> {
+    fn replace(&mut self, at: LoopAt, new: &TrimLoop) -> Result<Vec<Write>, EditError> {
+        let edited = at.trim_loop;
+        let mut writes = match &self.exact {
+            None => self.loops[edited].curve_writes(new, &self.domain),
+            Some((place, old)) => {
+                let mut loops: Vec<TrimLoop> = self.loops.iter().map(|l| l.shape.clone()).collect();
+                loops[edited] = new.clone();
+                let exact = ExactData::of(&ExactTrim::new(&loops, self.domain.origin, self.domain.size), place);
+                let writes = place.writes(old, &exact).ok_or(EditError::NoRoom(at))?;
+                self.exact = Some((*place, exact));
+                writes
+            }
+        };
         let (old_lo, old_hi) = self.loops[edited].shape.bounds();
         let (new_lo, new_hi) = new.bounds();
         let (lo, hi) = (old_lo.min(new_lo), old_hi.max(new_hi));
@@ -144,13 +177,6 @@ impl EditFace {
         for l in &mut self.loops {
             l.index.get_or_insert_with(|| LoopIndex::new(std::slice::from_ref(&l.shape)));
         }
-        let l = &self.loops[edited];
-        let (mut curves, points) = loop_curves(new, &self.domain, true);
-        curves.iter_mut().for_each(|c| c.first += l.first_point);
-        let mut writes = vec![
-            write(EditTarget::Curves, l.first_curve, &curves),
-            write(EditTarget::CurvePoints, l.first_point, &points),
-        ];
         for i in 0..self.patches.len() {
             // beyond both boxes no winding number has changed
             let p = &self.patches[i];
@@ -160,7 +186,7 @@ impl EditFace {
             }
         }
         writes.retain(|w| !w.bytes.is_empty());
-        writes
+        Ok(writes)
     }
 
     /// Of a patch against all loops.
@@ -207,6 +233,7 @@ impl SceneData {
                 EditTarget::Cells => bytemuck::cast_slice_mut(&mut self.cells),
                 EditTarget::Curves => bytemuck::cast_slice_mut(&mut self.curves),
                 EditTarget::CurvePoints => bytemuck::cast_slice_mut(&mut self.curve_points),
+                EditTarget::Exact(array) => self.exact.bytes_mut(array),
             };
             bytes[w.offset as usize..][..w.bytes.len()].copy_from_slice(&w.bytes);
         }

@@ -1,7 +1,9 @@
 //! The exact way's arrays: those of every face behind each other.
 
+use super::edit::{EditTarget, Write};
 use crate::abi;
 use crate::trim::ExactTrim;
+use bytemuck::Pod;
 
 /// See [`ExactTrim`]; numbers count from the beginning of the scene's arrays.
 #[derive(Clone, Debug, Default)]
@@ -13,31 +15,138 @@ pub(crate) struct ExactData {
     pub entries: Vec<u32>,
     pub arcs: Vec<abi::ExactArc>,
     pub points: Vec<f32>,
+    /// Grids.
+    pub words: Vec<u32>,
+}
+
+/// Where a face's arrays are.
+#[derive(Clone, Copy, Debug, Default)]
+pub(crate) struct ExactPlace {
+    face: u32,
+    /// First band, cell, entry, arc, float of a point, word.
+    first: [usize; 6],
+    /// Elements that each has room for.
+    room: [usize; 6],
 }
 
 impl ExactData {
-    /// Adds the next face.
-    pub(crate) fn push(&mut self, trim: &ExactTrim) {
-        let (cells, entries, arcs) = (self.cells.len() as u32, self.entries.len() as u32, self.arcs.len() as u32);
-        self.faces.push(abi::ExactFace { first_band: self.bands.len() as u32, band_count: trim.bands.len() as u32 });
-        self.bands.extend(trim.bands.iter().map(|b| abi::ExactBand { top: b.top, end: cells + b.end }));
-        self.cells.extend(trim.cells.iter().map(|c| abi::ExactCell {
+    /// Adds the next face. One that may be edited gets room for more arcs than it has: see [`ExactPlace::writes`].
+    pub(crate) fn push(&mut self, trim: &ExactTrim, editable: bool) -> ExactPlace {
+        let mut place = ExactPlace { face: self.faces.len() as u32, first: self.lengths(), room: [0; 6] };
+        let own = Self::of(trim, &place);
+        self.faces.extend(&own.faces);
+        self.bands.extend(&own.bands);
+        self.cells.extend(&own.cells);
+        self.entries.extend(&own.entries);
+        self.arcs.extend(&own.arcs);
+        self.points.extend(&own.points);
+        self.words.extend(&own.words);
+        place.room = own.lengths();
+        if editable {
+            place.room = place.room.map(|length| 2 * length + SPARE);
+            let [bands, cells, entries, arcs, points, words] = std::array::from_fn(|i| place.first[i] + place.room[i]);
+            self.bands.resize(bands, Default::default());
+            self.cells.resize(cells, Default::default());
+            self.entries.resize(entries, 0);
+            self.arcs.resize(arcs, Default::default());
+            self.points.resize(points, 0.0);
+            self.words.resize(words, 0);
+        }
+        place
+    }
+
+    /// The arrays of one face.
+    pub(super) fn of(trim: &ExactTrim, place: &ExactPlace) -> Self {
+        let [band, cell, entry, arc, point, word] = place.first.map(|first| first as u32);
+        let mut own = Self {
+            faces: vec![abi::ExactFace {
+                first_band: band,
+                band_count: trim.bands.len() as u32,
+                first_word: word,
+                across: trim.grid.across,
+                origin: trim.grid.origin,
+                scale: trim.grid.scale,
+            }],
+            bands: trim.bands.iter().map(|b| abi::ExactBand { top: b.top, end: cell + b.end }).collect(),
+            cells: Vec::with_capacity(trim.cells.len()),
+            entries: trim.entries.iter().map(|e| e + (arc << 2)).collect(),
+            arcs: Vec::with_capacity(trim.arcs.len()),
+            points: Vec::new(),
+            words: trim.grid.words.clone(),
+        };
+        own.cells.extend(trim.cells.iter().map(|c| abi::ExactCell {
             right: c.right,
             winding: c.winding,
-            first: entries + c.first,
+            first: entry + c.first,
             count: c.count,
         }));
-        self.entries.extend(trim.entries.iter().map(|entry| entry + (arcs << 2)));
         for arc in &trim.arcs {
             let degree = (arc.points.len().max(2) - 1) as u32;
-            self.arcs.push(abi::ExactArc {
+            own.arcs.push(abi::ExactArc {
                 low: arc.low,
                 high: arc.high,
                 hull: arc.hull,
-                first: self.points.len() as u32,
+                first: point + own.points.len() as u32,
                 shape: degree | if arc.up { abi::ARC_UP } else { 0 },
             });
-            self.points.extend(arc.points.iter().flatten());
+            own.points.extend(arc.points.iter().flatten());
         }
+        own
+    }
+
+    fn lengths(&self) -> [usize; 6] {
+        let (bands, cells, entries) = (self.bands.len(), self.cells.len(), self.entries.len());
+        [bands, cells, entries, self.arcs.len(), self.points.len(), self.words.len()]
+    }
+
+    /// The arrays' bytes, in the order of [`EditTarget::Exact`].
+    pub(super) fn bytes_mut(&mut self, array: usize) -> &mut [u8] {
+        match array {
+            0 => bytemuck::cast_slice_mut(&mut self.faces),
+            1 => bytemuck::cast_slice_mut(&mut self.bands),
+            2 => bytemuck::cast_slice_mut(&mut self.cells),
+            3 => bytemuck::cast_slice_mut(&mut self.entries),
+            4 => bytemuck::cast_slice_mut(&mut self.arcs),
+            5 => bytemuck::cast_slice_mut(&mut self.points),
+            _ => bytemuck::cast_slice_mut(&mut self.words),
+        }
+    }
+}
+
+/// Elements that an array may grow by beside twice its length: a loop that has been turned may be cut into
+/// twice as many arcs, and the grid's tiles are 16 words each.
+const SPARE: usize = 4096;
+
+impl ExactPlace {
+    /// What has to be told to put `new` in the place of `old`: the elements that differ. `None` where there is no
+    /// room.
+    pub(super) fn writes(&self, old: &ExactData, new: &ExactData) -> Option<Vec<Write>> {
+        if new.lengths().iter().zip(self.room).any(|(length, room)| *length > room) {
+            return None;
+        }
+        let writes = [
+            changed(0, self.face as usize, &old.faces, &new.faces),
+            changed(1, self.first[0], &old.bands, &new.bands),
+            changed(2, self.first[1], &old.cells, &new.cells),
+            changed(3, self.first[2], &old.entries, &new.entries),
+            changed(4, self.first[3], &old.arcs, &new.arcs),
+            changed(5, self.first[4], &old.points, &new.points),
+            changed(6, self.first[5], &old.words, &new.words),
+        ];
+        Some(writes.into_iter().filter(|write| !write.bytes.is_empty()).collect())
+    }
+}
+
+/// From the first element that differs to the last.
+fn changed<T: Pod + PartialEq>(array: usize, first: usize, old: &[T], new: &[T]) -> Write {
+    let same = |(a, b): &(&T, &T)| a == b;
+    let begin = old.iter().zip(new).take_while(same).count();
+    let behind =
+        if old.len() == new.len() { old.iter().rev().zip(new.iter().rev()).take_while(same).count() } else { 0 };
+    let end = (new.len() - behind.min(new.len())).max(begin);
+    Write {
+        to: EditTarget::Exact(array),
+        offset: ((first + begin) * size_of::<T>()) as u64,
+        bytes: bytemuck::cast_slice(&new[begin..end]).to_vec(),
     }
 }

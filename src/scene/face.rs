@@ -36,8 +36,8 @@ pub(super) struct FaceData {
 /// The rectangle of the surface's parameters, and its map to the unit square.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Domain {
-    origin: DVec2,
-    size: DVec2,
+    pub origin: DVec2,
+    pub size: DVec2,
 }
 
 impl Domain {
@@ -54,7 +54,7 @@ impl FaceData {
         let sides = sides(&grid, &face.loops);
         let trimmed = sides.contains(&Side::Boundary);
         let table = trimmed && needs_curves(way);
-        let editable = editable && trimmed && way == TrimWay::Table;
+        let editable = editable && trimmed && matches!(way, TrimWay::Table | TrimWay::Exact);
         let mut data = Self {
             face: abi::Face {
                 domain: [u0 as f32, v0 as f32, (u1 - u0) as f32, (v1 - v0) as f32],
@@ -84,8 +84,11 @@ impl FaceData {
         for (n, (patch, side)) in grid.patches.iter().zip(&sides).enumerate() {
             data.push_patch(&grid, n, patch, (*side, editable), origin, &domain);
         }
+        data.edit = editable.then(|| data.edit_face(&grid, domain));
+        if let Some(edit) = data.edit.as_mut().filter(|_| !table) {
+            edit.loops.extend(face.loops.iter().map(|l| EditLoop::new(l, 0, 0)));
+        }
         if table {
-            data.edit = editable.then(|| data.edit_face(&grid, domain));
             for (n, (patch, side)) in grid.patches.iter().zip(&sides).enumerate() {
                 let (first, cut) = (data.cells.len(), *side == Side::Boundary);
                 if cut || editable {
@@ -159,7 +162,7 @@ impl FaceData {
             EditPatch { lo, hi, shape: word.shape }
         };
         let patches = grid.patches.iter().zip(&self.patches).map(patch).collect();
-        EditFace { domain, loops: Vec::new(), patches, first_patch: 0, first_cell: 0, cells: Vec::new() }
+        EditFace { domain, loops: Vec::new(), patches, first_patch: 0, first_cell: 0, cells: Vec::new(), exact: None }
     }
 
     /// One cell for each v-strip that the patch reaches.

@@ -167,6 +167,12 @@ fn no_frame_depends_on_the_one_before() {
 /// under the loop and leave it.
 #[test]
 fn an_edited_loop_is_drawn_as_if_uploaded_afresh() {
+    // what one loop of twelve numbers takes, and what an exactly trimmed face of two loops does
+    edited_as_if_uploaded_afresh(TrimWay::Table, 4096);
+    edited_as_if_uploaded_afresh(TrimWay::Exact, 16_384);
+}
+
+fn edited_as_if_uploaded_afresh(trim: TrimWay, most_bytes: u64) {
     let cases = trims::all();
     let i = cases.iter().position(|case| case.name == "10 outer loop not first").unwrap();
     let mut model = model(&cases[i..=i]);
@@ -176,7 +182,8 @@ fn an_edited_loop_is_drawn_as_if_uploaded_afresh() {
     model.parts[0].faces[0].surface = Surface::new((1, 1), knots(), knots(), points).unwrap();
     let at = LoopAt { part: 0, face: 0, trim_loop: 0 };
     let view = Camera { size: (64, 64), ..camera(0, DVec2::splat(0.5), 1.0) };
-    let mut edited = renderer(&model, SceneSettings { editable: true, ..Default::default() });
+    let fixed = SceneSettings { trim: Some(trim), ..Default::default() };
+    let mut edited = renderer(&model, SceneSettings { editable: true, ..fixed });
     draw(&mut edited, &view);
     for frame in 0..6 {
         let start = model.parts[0].faces[0].loops[0].clone();
@@ -191,14 +198,37 @@ fn an_edited_loop_is_drawn_as_if_uploaded_afresh() {
         };
         edited.edit_loop(at, &next).unwrap();
         model.parts[0].faces[0].loops[0] = next;
-        let (a, mut fresh) = (draw(&mut edited, &view), renderer(&model, SceneSettings::default()));
+        let (a, mut fresh) = (draw(&mut edited, &view), renderer(&model, fixed));
         let b = draw(&mut fresh, &view);
         assert!(a.colour == b.colour && a.face == b.face, "frame {frame}");
-        assert!(a.stats.edit_bytes > 0 && a.stats.edit_bytes < 4096, "{} bytes", a.stats.edit_bytes);
+        assert!(a.stats.edit_bytes > 0 && a.stats.edit_bytes < most_bytes, "{trim:?}: {} bytes", a.stats.edit_bytes);
         assert_silent(fresh);
     }
     assert_eq!(draw(&mut edited, &view).stats.edit_bytes, 0, "nothing was edited since");
     assert_silent(edited);
+}
+
+/// What an edit sends hangs on its own face: beside others with many loops the same bytes go.
+#[test]
+fn an_edit_costs_what_its_face_costs() {
+    let named = |name: &&str| trims::all().into_iter().find(|case| case.name == *name).unwrap();
+    let (one, many) = ("10 outer loop not first", "7 holes");
+    let at = LoopAt { part: 0, face: 0, trim_loop: 0 };
+    let view = Camera { size: (64, 64), ..camera(0, DVec2::splat(0.5), 1.0) };
+    for &trim in TrimWay::ALL {
+        let settings = SceneSettings { trim: Some(trim), editable: true, ..Default::default() };
+        let sent = [&[one][..], &[one, many, many]].map(|names| {
+            let cases: Vec<_> = names.iter().map(named).collect();
+            let mut edited = renderer(&model(&cases), settings);
+            draw(&mut edited, &view);
+            let moved = cases[0].loops[0].translated(DVec2::new(0.01, 0.02)).unwrap();
+            edited.edit_loop(at, &moved).unwrap();
+            let bytes = draw(&mut edited, &view).stats.edit_bytes;
+            assert_silent(edited);
+            bytes
+        });
+        assert!(sent[0] > 0 && sent[0] == sent[1], "{trim:?}: {sent:?}");
+    }
 }
 
 /// What cannot be edited is told, and leaves the scene as it was.

@@ -1,17 +1,21 @@
 //! A scene makes only the buffers, images and pipelines that it needs.
 
 use crate::shapes;
-use crate::support::{assert_silent, perspective, watched};
+use crate::support::{assert_silent, perspective, watched_with};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::Model;
-use selvedge::picture::{FrameSettings, Outputs};
+use selvedge::picture::{FrameSettings, Outputs, SceneSettings, TrimWay};
 
 /// Pipelines of the trim table.
 const TRIM_PASSES: [&str; 6] = ["density", "lines", "segments", "sizes", "cross", "sort"];
 
 /// Names of what exists after one frame.
 fn objects(model: &Model, outputs: Outputs) -> (HeadlessRenderer, Vec<String>) {
-    let mut renderer = watched(model);
+    objects_with(model, SceneSettings::default(), outputs)
+}
+
+fn objects_with(model: &Model, settings: SceneSettings, outputs: Outputs) -> (HeadlessRenderer, Vec<String>) {
+    let mut renderer = watched_with(model, settings);
     renderer.render(&perspective(model, (64, 48)), &FrameSettings::default(), outputs).unwrap();
     let objects = renderer.objects();
     (renderer, objects)
@@ -26,15 +30,29 @@ fn is_of_trimming(name: &str) -> bool {
 }
 
 #[test]
-fn only_a_trimmed_scene_has_a_trim_table() {
+fn only_a_trimmed_scene_has_what_its_way_to_trim_needs() {
+    // the table's buffers, the scene's curves, and a pipeline for each pass
+    has_what_it_needs(
+        TrimWay::Table,
+        &["trim intercepts", "trim curves", "cross (count)", "visibility (table", "heal (table"],
+        &["trim arcs", "visibility (exact", "heal (exact"],
+    );
+    has_what_it_needs(
+        TrimWay::Exact,
+        &["trim arcs", "trim grids", "visibility (exact", "heal (exact"],
+        &["trim intercepts", "trim curves", "cross", "sort", "density", "visibility (table", "heal (table"],
+    );
+}
+
+fn has_what_it_needs(way: TrimWay, needed: &[&str], others: &[&str]) {
+    let settings = SceneSettings { trim: Some(way), ..SceneSettings::default() };
     for shape in shapes::all() {
-        let (renderer, objects) = objects(&shape.model, Outputs::default());
+        let (renderer, objects) = objects_with(&shape.model, settings, Outputs::default());
         let of_trimming: Vec<_> = objects.iter().filter(|name| is_of_trimming(name)).collect();
         if shape.trimmed {
-            // the table's buffers, the scene's curves and cells, and a pipeline for each pass
-            for needed in ["trim intercepts", "trim curves", "cross (count)", "visibility (table", "heal (table"] {
-                assert!(objects.iter().any(|name| name.starts_with(needed)), "{needed} in {}: {objects:?}", shape.name);
-            }
+            let has = |start: &str| objects.iter().any(|name| name.starts_with(start));
+            assert!(needed.iter().all(|start| has(start)), "{needed:?} in {}: {objects:?}", shape.name);
+            assert!(!others.iter().any(|start| has(start)), "{others:?} in {}: {objects:?}", shape.name);
         } else {
             assert!(of_trimming.is_empty(), "{}: {of_trimming:?}", shape.name);
         }

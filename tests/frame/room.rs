@@ -1,11 +1,14 @@
 //! Views that need larger buffers than a scene begins with: drawn again until all of it is there.
 
 use crate::shapes;
-use crate::support::{assert_identical, assert_silent, watched};
+use crate::support::{assert_identical, assert_silent, watched_with};
 use glam::{DAffine3, DQuat, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Model, Projection};
-use selvedge::picture::{FrameSettings, Outputs, Picture};
+use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings, SolidWay, TrimWay};
+
+/// Its buffers grow with the view.
+const BY_TABLE: SceneSettings = SceneSettings { trim: Some(TrimWay::Table), solids: SolidWay::Events, editable: false };
 
 fn draw(renderer: &mut HeadlessRenderer, camera: &Camera, tolerance_px: f64) -> Picture {
     let settings = FrameSettings { tolerance_px, ..FrameSettings::default() };
@@ -15,7 +18,7 @@ fn draw(renderer: &mut HeadlessRenderer, camera: &Camera, tolerance_px: f64) -> 
 /// Draws a view for which the first buffers are too small. The picture must be the one that buffers
 /// large enough from the start give, which a small view at first does not have.
 fn check(model: &Model, camera: &Camera, tolerance_px: f64) -> Picture {
-    let mut renderer = watched(model);
+    let mut renderer = watched_with(model, BY_TABLE);
     let grown = draw(&mut renderer, camera, tolerance_px);
     assert!(grown.stats.retries > 0, "the first buffers were large enough: {:?}", grown.stats);
     let again = draw(&mut renderer, camera, tolerance_px);
@@ -23,7 +26,7 @@ fn check(model: &Model, camera: &Camera, tolerance_px: f64) -> Picture {
     assert_identical(&grown, &again, "with room from the start");
     assert_silent(renderer);
 
-    let mut fresh = watched(model);
+    let mut fresh = watched_with(model, BY_TABLE);
     let small = Camera { size: (8, 6), ..*camera };
     assert_eq!(draw(&mut fresh, &small, 2.0).stats.retries, 0);
     assert_identical(&grown, &draw(&mut fresh, camera, tolerance_px), "after a small view");

@@ -3,14 +3,19 @@
 use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Model, Projection};
-use selvedge::picture::{FrameSettings, Outputs, Picture};
+use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
 
 /// A renderer under validation and synchronisation validation, with a model.
 pub fn watched(model: &Model) -> HeadlessRenderer {
+    watched_with(model, SceneSettings::default())
+}
+
+/// As [`watched`], with settings of the scene.
+pub fn watched_with(model: &Model, settings: SceneSettings) -> HeadlessRenderer {
     let options = HeadlessOptions { device: None, validation: true };
     let mut renderer =
         HeadlessRenderer::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"));
-    renderer.upload(model).unwrap();
+    renderer.upload_with(model, settings).unwrap();
     renderer
 }
 

@@ -2,7 +2,7 @@
 
 use glam::{DVec2, Vec2};
 use selvedge::model::{Face, Model};
-use selvedge::rivals::bisect::{Bisect, STEPS};
+use selvedge::rivals::bisect::{Bisect, STEPS, Sorted};
 use selvedge::rivals::many_holes;
 use selvedge::trim::LoopIndex;
 
@@ -18,9 +18,9 @@ fn points(count: u32) -> impl Iterator<Item = Vec2> {
 }
 
 /// Points on the wrong side, and the farthest of them from a curve, in units of the domain.
-fn disagreements(face: &Face, steps: u32, count: u32) -> (usize, f64) {
+fn disagreements(face: &Face, (steps, sorted): (u32, Sorted), count: u32) -> (usize, f64) {
     let mut bisect = Bisect::default();
-    bisect.push(face, steps);
+    bisect.push(face, steps, sorted);
     let index = LoopIndex::new(&face.loops);
     let ((u0, u1), (v0, v1)) = face.surface.domain();
     let size = DVec2::new(u1 - u0, v1 - v0);
@@ -36,17 +36,19 @@ fn disagreements(face: &Face, steps: u32, count: u32) -> (usize, f64) {
 
 #[test]
 fn sixteen_steps_are_as_exact_as_single_precision() {
-    for across in [1, 2, 9, 30] {
-        let (_, off) = disagreements(face(&many_holes(across)), STEPS, 100_000);
-        // a few units in the last place of coordinates up to 1
-        assert!(off < 4.0 * f64::from(f32::EPSILON), "{off} with {across} holes a row");
+    for sorted in [Sorted::Source, Sorted::Tuned] {
+        for across in [1, 2, 9, 30] {
+            let (_, off) = disagreements(face(&many_holes(across)), (STEPS, sorted), 100_000);
+            // a few units in the last place of coordinates up to 1
+            assert!(off < 4.0 * f64::from(f32::EPSILON), "{off} with {across} holes a row, {sorted:?}");
+        }
     }
 }
 
 #[test]
 fn each_step_is_worth_its_name() {
     let model = many_holes(2);
-    let off = |steps| disagreements(face(&model), steps, 200_000).1;
+    let off = |steps| disagreements(face(&model), (steps, Sorted::Tuned), 200_000).1;
     // a chord of a quarter circle of radius r bulges by 0.293 r, of a half of it by a quarter of that; equal
     // steps of the parameter are unequal arcs, so a little more
     let radius = 0.3 / 2.0;
@@ -59,9 +61,16 @@ fn each_step_is_worth_its_name() {
 
 #[test]
 fn the_structure_stays_small() {
-    let mut bisect = Bisect::default();
-    bisect.push(face(&many_holes(50)), STEPS);
-    assert_eq!(bisect.pieces.len(), 4 * 2501);
+    let sorted = |sorted| {
+        let mut bisect = Bisect::default();
+        bisect.push(face(&many_holes(50)), STEPS, sorted);
+        bisect
+    };
+    let (tuned, source) = (sorted(Sorted::Tuned), sorted(Sorted::Source));
+    assert_eq!((tuned.pieces.len(), source.pieces.len()), (4 * 2501, 4 * 2501));
     // each piece and its control points, and twice as much for the search
-    assert!(bisect.bytes() < 3 * 10_000 * (24 + 36), "{}", bisect.bytes());
+    assert!(tuned.bytes() < 3 * 10_000 * (24 + 36), "{}", tuned.bytes());
+    // three ends to a hole, none at the same height as another; the sheet's border has two more
+    assert_eq!(source.faces[0].band_count, 3 * 2500 + 1);
+    assert!(source.bytes() > 5 * tuned.bytes(), "{} against {}", source.bytes(), tuned.bytes());
 }

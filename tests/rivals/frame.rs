@@ -7,6 +7,7 @@ use selvedge::model::{Camera, Model, Projection};
 use selvedge::picture::{FrameSettings, Outputs, Rival, SceneSettings, TrimWay};
 use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
 use selvedge::renderer::RenderError;
+use selvedge::rivals::bisect::Sorted;
 use selvedge::rivals::pretessellated::pretessellated;
 use selvedge::rivals::{many_holes, texture};
 use std::path::Path;
@@ -46,11 +47,13 @@ fn rival(model: &Model, rival: Rival) -> Judgement {
 #[test]
 fn bisection_keeps_half_a_pixel_and_one_step_does_not() {
     for model in [many_holes(6), panel()] {
-        let j = rival(&model, Rival::Bisect { steps: 16 });
-        assert_eq!(j.wrong, 0, "{}: {:?}", model.name, j.mismatches);
+        for sorted in [Sorted::Source, Sorted::Tuned] {
+            let j = rival(&model, Rival::Bisect { steps: 16, sorted });
+            assert_eq!(j.wrong, 0, "{}, {sorted:?}: {:?}", model.name, j.mismatches);
+        }
     }
     // holes of 20 pixels, whose quarters become chords that bulge by a third of the radius
-    let j = rival(&many_holes(6), Rival::Bisect { steps: 0 });
+    let j = rival(&many_holes(6), Rival::Bisect { steps: 0, sorted: Sorted::Tuned });
     assert!(j.wrong > 100 && j.worst_shift_px > 1.0, "{} wrong, {} px", j.wrong, j.worst_shift_px);
 }
 

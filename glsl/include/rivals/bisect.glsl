@@ -73,8 +73,8 @@ bool bisect_left(BisectPiece piece, vec2 p, uint steps) {
     return a.x + (b.x - a.x) * ((p.y - a.y) / (b.y - a.y)) <= p.x;
 }
 
-bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
-    BisectFace own = bisect_faces[fi.face];
+// Index of the cell of the band of v that begins at or left of u, and of the band; false where there is none: outside.
+bool bisect_cell(BisectFace own, vec2 uv, out uint band, out uint cell) {
     // the number of bands that begin below the point
     uint lo = 0u;
     uint hi = own.band_count == 0u ? 0u : own.band_count + 1u;
@@ -84,8 +84,9 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
         if (bisect_bands[own.first_band + mid].v < uv.y) lo = mid + 1u;
         else hi = mid;
     }
+    band = own.first_band + lo - 1u;
+    cell = 0u;
     if (lo == 0u || lo == ends) return false;
-    uint band = own.first_band + lo - 1u;
     uint first = bisect_bands[band].first_cell;
     lo = first;
     hi = bisect_bands[band + 1u].first_cell;
@@ -94,8 +95,30 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
         if (bisect_cells[mid].u_lo <= uv.x) lo = mid + 1u;
         else hi = mid;
     }
-    if (lo == first) return false;
-    BisectCell cell = bisect_cells[lo - 1u];
+    cell = lo - 1u;
+    return lo != first;
+}
+
+// Of a box within a band: it lies between two cells or beyond all.
+uint trim_area(FaceInstance fi, vec2 lo, vec2 hi) {
+    BisectFace own = bisect_faces[fi.face];
+    uint band;
+    uint cell;
+    if (own.band_count == 0u || hi.y <= bisect_bands[own.first_band].v) return TRIM_OUT;
+    if (lo.y > bisect_bands[own.first_band + own.band_count].v) return TRIM_OUT;
+    bool right = bisect_cell(own, hi, band, cell);
+    if (band >= own.first_band + own.band_count || bisect_bands[band].v >= lo.y) return TRIM_MIXED;
+    if (!right) return TRIM_OUT;
+    if (lo.x <= bisect_cells[cell].u_hi) return TRIM_MIXED;
+    return (bisect_cells[cell].count >> 31) != 0u ? TRIM_IN : TRIM_OUT;
+}
+
+bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
+    BisectFace own = bisect_faces[fi.face];
+    uint band;
+    uint at;
+    if (!bisect_cell(own, uv, band, at)) return false;
+    BisectCell cell = bisect_cells[at];
     if (uv.x > cell.u_hi) return (cell.count >> 31) != 0u;
     uint count = cell.count & 0x3fffffffu;
     bool inside = ((cell.count >> 30) & 1u) != 0u;

@@ -192,7 +192,9 @@ pub struct SweepArgs {
 
 #[derive(Debug, Args)]
 pub struct TrimsArgs {
-    /// Models beside the generated face: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    /// Models beside the generated face: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature
+    /// rhino. Without any: samples/panel.step, and nist_pmi_2.stp and m6_countersunk_screw.step in the folder that
+    /// SELVEDGE_MODELS names, those that are there
     pub models: Vec<PathBuf>,
     /// Holes along each side of the generated face; 0 leaves it out
     #[arg(long, value_name = "N", default_value_t = 100)]
@@ -204,7 +206,7 @@ pub struct TrimsArgs {
     #[arg(long, value_delimiter = ',', value_name = "TIMES", default_value = "1,10,100,1000", value_parser = zoom)]
     pub zooms: Vec<f64>,
     /// Pictures of the sweep over sizes
-    #[arg(long, value_delimiter = ',', value_name = "WxH", default_value = "400x400,800x800,1600x1600")]
+    #[arg(long, value_delimiter = ',', value_name = "WxH", default_value = "400x400,800x800,1600x1600,3840x2160")]
     pub sizes: Vec<Size>,
     /// Picture of the other sweeps
     #[arg(long, value_name = "WxH", default_value = "800x800")]
@@ -276,7 +278,7 @@ pub struct FrameArgs {
     /// not
     #[arg(long, value_name = "bound|N", default_value = "bound")]
     pub factors: Factors,
-    /// How to trim: table (made for each view) or exact (made once); table without it
+    /// How to trim: table (made for each view) or exact (made once); exact without it
     #[arg(long, value_name = "WAY")]
     pub trim: Option<TrimWay>,
     /// How to draw Boolean solids: events (a ray a pixel) or cst (each primitive, trimmed by the others)

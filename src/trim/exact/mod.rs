@@ -22,6 +22,9 @@
 //!    the box of the bracket is left or right of the point. Monotony makes each step certain, so
 //!    inflections, flat ends and cusps need no care.
 //!
+//! **Far from a loop** a [`Grid`] over the face answers at a look, also for a whole box around a point: what a
+//! pixel asks on behalf of its neighbourhood. Bands and cells are for what is near a loop.
+//!
 //! **Winding.** The winding number of `p` counts crossings right of `p`. Arcs left of a cell add
 //! nothing; those in it are asked. Those right of it add up to one number for all its points, provided
 //! that they form whole chains; a chain that leaves an arc of the cell at a joint inside the band is
@@ -40,6 +43,9 @@
 
 mod arcs;
 mod bands;
+mod grid;
+
+pub use grid::Grid;
 
 use crate::model::TrimLoop;
 use glam::DVec2;
@@ -100,13 +106,17 @@ pub struct ExactTrim {
     pub cells: Vec<Cell>,
     /// Number of an arc, times 4, and flags.
     pub entries: Vec<u32>,
+    /// What need not ask any of these.
+    pub grid: Grid,
 }
 
 impl ExactTrim {
     /// Prepares `loops`, whose coordinates `p` become `(p - origin) / size`; `O(n log n)`.
     pub fn new(loops: &[TrimLoop], origin: DVec2, size: DVec2) -> Self {
         let chains = arcs::chains(loops, origin, size);
-        bands::sorted_into(chains)
+        let mut trim = bands::sorted_into(chains);
+        trim.grid = Grid::new(&trim);
+        trim
     }
 
     /// Bound of the distance between an arc of this degree as the shader evaluates it and the true one,
@@ -121,9 +131,10 @@ impl ExactTrim {
     }
 
     /// Bytes in GPU memory: 32 an arc and 12 a control point of a bent one, 8 a band, 16 a cell, 4 an
-    /// entry.
+    /// entry and a word of the grid.
     pub fn bytes(&self) -> usize {
         let points: usize = self.arcs.iter().map(|arc| arc.points.len()).sum();
-        32 * self.arcs.len() + 12 * points + 8 * self.bands.len() + 16 * self.cells.len() + 4 * self.entries.len()
+        let words = self.entries.len() + self.grid.words.len();
+        32 * self.arcs.len() + 12 * points + 8 * self.bands.len() + 16 * self.cells.len() + 4 * words
     }
 }

@@ -27,6 +27,7 @@ use measure::{Bench, Row, Sweep};
 use selvedge::model::Model;
 use selvedge::reference::Tracer;
 use selvedge::rivals::many_holes;
+use std::path::PathBuf;
 use way::Contender;
 
 /// Measures everything; prints and writes it.
@@ -36,7 +37,7 @@ pub fn run(args: &TrimsArgs) -> Result<Outcome> {
         let model = many_holes(args.holes);
         rows.extend(measured(args, &model.name.clone(), model)?);
     }
-    for path in &args.models {
+    for path in &models(args) {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         rows.extend(measured(args, &name, session::open(path, &Default::default())?.model)?);
     }
@@ -50,6 +51,21 @@ pub fn run(args: &TrimsArgs) -> Result<Outcome> {
     }
     let broken = rows.iter().any(|row| row.way.promises() && row.error.as_ref().is_some_and(|e| e.wrong > 0));
     Ok(if broken { Outcome::Broken } else { Outcome::Good })
+}
+
+/// Those that were named; without any, a sample, and two of the folder that `SELVEDGE_MODELS` names: those that
+/// are there.
+fn models(args: &TrimsArgs) -> Vec<PathBuf> {
+    if !args.models.is_empty() {
+        return args.models.clone();
+    }
+    let mut usual = vec![PathBuf::from("samples/panel.step")];
+    if let Some(folder) = std::env::var_os("SELVEDGE_MODELS").map(PathBuf::from) {
+        usual.extend(["nist_pmi_2.stp", "m6_countersunk_screw.step"].map(|name| folder.join(name)));
+    }
+    let (there, missing): (Vec<_>, Vec<_>) = usual.into_iter().partition(|path| path.exists());
+    missing.iter().for_each(|path| tracing::warn!("{} is not there", path.display()));
+    there
 }
 
 /// All sweeps over one model.

@@ -1,6 +1,7 @@
 //! The ways to trim and their knobs.
 
 use selvedge::picture::{Rival, TrimWay};
+use selvedge::rivals::bisect::Sorted;
 use serde::Serialize;
 use std::fmt;
 use std::str::FromStr;
@@ -10,13 +11,13 @@ use std::str::FromStr;
 #[serde(into = "String")]
 pub enum Way {
     Own(TrimWay),
-    Bisect,
+    Bisect(Sorted),
     Texture,
     Pretessellated,
 }
 
 /// Ways to compare with.
-const RIVALS: [Way; 3] = [Way::Bisect, Way::Texture, Way::Pretessellated];
+const RIVALS: [Way; 4] = [Way::Bisect(Sorted::Source), Way::Bisect(Sorted::Tuned), Way::Texture, Way::Pretessellated];
 
 impl Way {
     /// Every way, the engine's own first.
@@ -28,7 +29,8 @@ impl Way {
     pub fn name(self) -> &'static str {
         match self {
             Self::Own(way) => way.name(),
-            Self::Bisect => "bisect",
+            Self::Bisect(Sorted::Source) => "bisect",
+            Self::Bisect(Sorted::Tuned) => "bisect-tuned",
             Self::Texture => "texture",
             Self::Pretessellated => "pretessellated",
         }
@@ -67,7 +69,7 @@ pub enum Contender {
     /// The largest distance of a boundary, pixels.
     Own { way: TrimWay, tolerance_px: f64 },
     /// Most steps.
-    Bisect { steps: u32 },
+    Bisect { steps: u32, sorted: Sorted },
     /// Eighths of a texel to a pixel.
     Texture { eighths: u32 },
     /// Deflection relative to the model's diagonal.
@@ -80,7 +82,7 @@ impl Contender {
     pub fn usual(way: Way) -> Self {
         match way {
             Way::Own(way) => Self::Own { way, tolerance_px: 0.5 },
-            Way::Bisect => Self::Bisect { steps: selvedge::rivals::bisect::STEPS },
+            Way::Bisect(sorted) => Self::Bisect { steps: selvedge::rivals::bisect::STEPS, sorted },
             Way::Texture => Self::Texture { eighths: 16 },
             Way::Pretessellated => Self::Pretessellated { deflection: 1e-3 },
         }
@@ -90,7 +92,7 @@ impl Contender {
     pub fn knobs(way: Way) -> Vec<Self> {
         match way {
             Way::Own(way) => [2.0, 1.0, 0.5, 0.25].map(|tolerance_px| Self::Own { way, tolerance_px }).to_vec(),
-            Way::Bisect => [0, 2, 4, 8, 16].map(|steps| Self::Bisect { steps }).to_vec(),
+            Way::Bisect(sorted) => [0, 2, 4, 8, 16].map(|steps| Self::Bisect { steps, sorted }).to_vec(),
             Way::Texture => [4, 8, 16, 32].map(|eighths| Self::Texture { eighths }).to_vec(),
             Way::Pretessellated => [1e-2, 1e-3, 1e-4].map(|deflection| Self::Pretessellated { deflection }).to_vec(),
         }
@@ -99,7 +101,7 @@ impl Contender {
     pub fn way(self) -> Way {
         match self {
             Self::Own { way, .. } => Way::Own(way),
-            Self::Bisect { .. } => Way::Bisect,
+            Self::Bisect { sorted, .. } => Way::Bisect(sorted),
             Self::Texture { .. } => Way::Texture,
             Self::Pretessellated { .. } => Way::Pretessellated,
         }
@@ -114,7 +116,7 @@ impl Contender {
     pub fn trim(self) -> Option<TrimWay> {
         match self {
             Self::Own { way, .. } => Some(way),
-            Self::Bisect { steps } => Some(TrimWay::Rival(Rival::Bisect { steps })),
+            Self::Bisect { steps, sorted } => Some(TrimWay::Rival(Rival::Bisect { steps, sorted })),
             Self::Texture { eighths } => Some(TrimWay::Rival(Rival::Texture { eighths })),
             Self::Pretessellated { .. } => None,
         }
@@ -124,7 +126,7 @@ impl Contender {
     pub fn knob(self) -> (&'static str, f64) {
         match self {
             Self::Own { tolerance_px, .. } => ("tolerance, px", tolerance_px),
-            Self::Bisect { steps } => ("steps", f64::from(steps)),
+            Self::Bisect { steps, .. } => ("steps", f64::from(steps)),
             Self::Texture { eighths } => ("texels a pixel", f64::from(eighths) / 8.0),
             Self::Pretessellated { deflection } => ("deflection of the diagonal", deflection),
         }
