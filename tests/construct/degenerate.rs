@@ -265,10 +265,10 @@ fn grids() {
 
 #[test]
 fn solids() {
-    let square = chain(&SQUARE);
+    let square = [chain(&SQUARE)];
     let inside: Vec<(f64, f64)> = SQUARE.iter().map(|&(x, y)| (x + 0.5, y + 0.5)).collect();
-    let pair = [square.clone(), chain(&inside)];
-    let point = vec![planar(&[(1.0, 1.0), (1.0, 1.0)])];
+    let pair = [chain(&SQUARE), chain(&inside)];
+    let point = [vec![planar(&[(1.0, 1.0), (1.0, 1.0)])]];
     let open = vec![planar(&SQUARE)];
     let line = chain(&[(1.0, 0.0), (2.0, 0.0)]);
     judge(&[
@@ -281,18 +281,14 @@ fn solids() {
         row("walls that cross", capped_solid(&[wall(&SQUARE), wall(&inside)]), "the end of a wall (by its chords)"),
         row("a wall over a line", capped_solid(&[wall(&[(0.0, 0.0), (1.0, 0.0), (2.0, 0.0)])]), "seen along its axis,"),
         row("a wall", capped_solid(&[wall(&SQUARE)]), ""),
-        row("a point, extruded", extruded_solid(&[point.clone()], DVec3::Z), "the profile has no length"),
-        row("a point, turned", lathed_solid(&[point.clone()], TAU), "the profile has no length"),
-        row("a point as a loop", trim_loops(&[point]), "the profile has no length"),
+        row("a point, extruded", extruded_solid(&point, DVec3::Z), "the profile has no length"),
+        row("a point, turned", lathed_solid(&point, TAU), "the profile has no length"),
+        row("a point as a loop", trim_loops(&point), "the profile has no length"),
         row("an open chain", extruded_solid(&[open], DVec3::Z), "open"),
         row("a line there and back", extruded_solid(&[line], DVec3::Z), "the profile encloses no area"),
-        row(
-            "extruded within its plane",
-            extruded_solid(&[square.clone()], DVec3::X),
-            "across the plane of its profile",
-        ),
-        row("extruded by a NaN", extruded_solid(&[square.clone()], DVec3::NAN), "is not a finite number"),
-        row("turned by a NaN", lathed_solid(&[square.clone()], NAN), "the angle of a lathe is NaN"),
+        row("extruded within its plane", extruded_solid(&square, DVec3::X), "across the plane of its profile"),
+        row("extruded by a NaN", extruded_solid(&square, DVec3::NAN), "is not a finite number"),
+        row("turned by a NaN", lathed_solid(&square, NAN), "the angle of a lathe is NaN"),
         row("no loops", trim_loops(&[]), "0 curves of a profile"),
         row("a ball of nothing", shapes::sphere(0.0), "the radius of a sphere is 0"),
         row("a ball of NaN", shapes::sphere(NAN), "the radius of a sphere is not a finite number"),

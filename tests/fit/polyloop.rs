@@ -106,7 +106,53 @@ fn any_loop() -> impl Strategy<Value = PolyLoop> {
         .prop_filter_map("neighbours coincide", |v| PolyLoop::new(v.into_iter().map(|(x, y)| p(x, y)).collect()).ok())
 }
 
+/// Vertices at whole numbers, all different, none straight on: whatever is asked has an exact answer in integers.
+fn whole_loop() -> impl Strategy<Value = Vec<[i64; 2]>> {
+    prop::collection::vec(prop::array::uniform2(-6i64..7), 3..9).prop_filter("straight on, or twice", |v| {
+        let n = v.len();
+        (0..n).all(|i| cross(v, i) != 0 && v[..i].iter().all(|p| *p != v[i]))
+    })
+}
+
+/// `cross(AB, BC)` about vertex `i`.
+fn cross(v: &[[i64; 2]], i: usize) -> i64 {
+    let n = v.len();
+    side(v[(i + n - 1) % n], v[i], v[(i + 1) % n])
+}
+
+/// Where `c` lies of the line from `a` to `b`: positive on its left.
+fn side(a: [i64; 2], b: [i64; 2], c: [i64; 2]) -> i64 {
+    (b[0] - a[0]) * (c[1] - a[1]) - (b[1] - a[1]) * (c[0] - a[0])
+}
+
 proptest! {
+    /// Left turns, inflection edges and convexity are what integers say: a loop is convex when no vertex lies on
+    /// the other side of any edge. Orientation is the sign of the area of a loop around a point that all edges see.
+    #[test]
+    fn turns_inflections_and_convexity_by_integers(v in whole_loop()) {
+        let n = v.len();
+        let l = PolyLoop::new(v.iter().map(|[x, y]| p(*x as f64, *y as f64)).collect()).unwrap();
+        for i in 0..n {
+            prop_assert_eq!(l.turn(i), cross(&v, i) as f64);
+        }
+        let bends = (0..n).filter(|i| (cross(&v, *i) > 0) != (cross(&v, (i + 1) % n) > 0)).collect::<Vec<_>>();
+        prop_assert_eq!(l.inflection_edges(), bends);
+        let sides = |i: usize| (0..n).map(move |k| (i, k)).map(|(i, k)| side(v[i], v[(i + 1) % n], v[k]));
+        let hull = [1, -1].iter().any(|s| (0..n).all(|i| sides(i).all(|x| x * s >= 0)));
+        prop_assert_eq!(l.is_convex(), hull);
+        let area = |c: [i64; 2]| (0..n).map(|i| side(c, v[i], v[(i + 1) % n])).collect::<Vec<_>>();
+        let seen = area([0, 0]);
+        // once around the origin, always the same way: a star, and its orientation that of any of its triangles
+        let round: f64 = (0..n).map(|i| l.vertices()[i].angle_to(l.vertices()[(i + 1) % n])).sum();
+        if seen.iter().all(|a| *a > 0) && round < 7.0 {
+            prop_assert_eq!(l.winding(), Winding::CounterClockwise);
+        } else if seen.iter().all(|a| *a < 0) && round > -7.0 {
+            prop_assert_eq!(l.winding(), Winding::Clockwise);
+        }
+        let r = l.reversed();
+        prop_assert!((0..n).all(|i| r.turn(i) == -(cross(&v, (n - i) % n) as f64)));
+    }
+
     /// The approximating curve is C² and is the limit of corner cutting: limit points of every round lie on it.
     #[test]
     fn corner_cutting_ends_in_the_spline(l in any_loop()) {
