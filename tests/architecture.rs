@@ -15,7 +15,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("csg", &[]),
     ("brep", &["math", "spline", "trim", "model"]),
     ("import", &["brep", "construct", "csg", "spline", "model"]),
-    ("export", &["spline", "trim", "model"]),
+    ("export", &["construct", "csg", "spline", "trim", "model"]),
     ("picture", &["model"]),
     ("reference", &["csg", "math", "spline", "trim", "model", "picture"]),
     ("budget", &[]),

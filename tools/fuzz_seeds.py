@@ -1,7 +1,7 @@
 #!/usr/bin/env python3
 """Seeds and dictionaries for fuzzing the file readers, made from what the repository holds.
 
-    tools/fuzz_seeds.py FORMAT FOLDER DICTIONARY      FORMAT: step iges obj bv native scad brlcad rhino
+    tools/fuzz_seeds.py FORMAT FOLDER DICTIONARY      FORMAT: step iges obj bv native scad brlcad rhino scene
 
 FOLDER gets small inputs: the files and the quoted texts of the reader's tests; for STEP also each face of
 samples/*.step as a file of its own (one of each combination of entity types); for the engine's own form
@@ -187,6 +187,14 @@ def rhino() -> list:
     return [path.read_bytes() for path in sorted((ROOT / "src/import/rhino").rglob("*.3dm"))] + small(".3dm")
 
 
+def scene() -> list:
+    """The gallery, and the texts of the reader's tests; what they leave out is their first line."""
+    version = "selvedge = 1\n"
+    files = [path.read_text() for path in sorted((ROOT / "samples/gallery").glob("*.toml"))]
+    texts = [text if text.startswith("selvedge") else version + text for text in quoted("src/import/scene") if "=" in text]
+    return files + texts + small(".toml")
+
+
 def native() -> list[bytes]:
     """What follows the header of converted files."""
     program = pathlib.Path(os.environ.get("SELVEDGE", ROOT / "target/release/selvedge"))
@@ -241,6 +249,7 @@ FORMATS = {
     "native": (native, "src/model", plain_words),
     "scad": (scad, "src/import/scad", plain_words),
     "brlcad": (brlcad, "src/import/brlcad", plain_words),
+    "scene": (scene, "src/import/scene", plain_words),
     "rhino": (rhino, "src/import/rhino", rhino_words),
 }
 

@@ -165,6 +165,7 @@ impl Fitter<'_> {
         let at = |x: f64| self.to_carrier(strand.at(self.support, a.0 + (b.0 - a.0) * x));
         let middle = 0.5 * (a.0 + b.0);
         let last = depth == 0 || out.curves.len() >= most || middle <= a.0 || middle >= b.0;
+        let target = self.support.target_of(strand.part.as_ref().map_or(0.0, |p| p.trace.gap));
         let mut best: Option<(f64, f64, Bezier<DVec3>)> = None;
         for degree in [3, 5] {
             let values: Vec<DVec2> = (0..=degree)
@@ -190,19 +191,19 @@ impl Fitter<'_> {
                     let traced = if same { wanted } else { self.support.point(raw) };
                     deviation = deviation.max(PEAK * fitted.distance(traced));
                 }
-                if error > self.support.target && !last {
+                if error > target && !last {
                     break; // how bad it is matters only where it must be taken
                 }
             }
             if best.as_ref().is_none_or(|b| error < b.0) {
                 best = Some((error, deviation, curve));
             }
-            if error <= self.support.target {
+            if error <= target {
                 break;
             }
         }
         let Some((error, deviation, curve)) = best else { return };
-        if error <= self.support.target || last {
+        if error <= target || last {
             out.deviation = out.deviation.max(deviation);
             out.curves.push(curve);
             return;

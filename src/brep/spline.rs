@@ -172,6 +172,7 @@ impl SplineForm {
         let mut at = clamp(start);
         let mut jet = self.jet(at);
         let mut distance = jet.point.distance(p);
+        let mut before = 0.0;
         for _ in 0..STEPS {
             let r = p - jet.point;
             let mut g = DVec2::new(jet.du.dot(r), jet.dv.dot(r));
@@ -192,12 +193,16 @@ impl SplineForm {
             if det <= 0.0 || !step.is_finite() {
                 break;
             }
-            // the last step of a quadratic iteration: its error is the square of a rounding error
-            if (step * DVec2::new(jet.du.length(), jet.dv.length())).length() <= fine {
+            // a quadratic iteration leaves less behind this step than what shrinking by the same factor once
+            // more would; the step is so short that the tangent plane is the surface
+            let length = (step * DVec2::new(jet.du.length(), jet.dv.length())).length();
+            if length <= fine || (length <= 1e5 * fine && length * length <= fine * before) {
                 let last = clamp(at + step);
-                let last_distance = self.jet(last).point.distance(p);
+                let by = last - at;
+                let last_distance = (jet.point + jet.du * by.x + jet.dv * by.y).distance(p);
                 return if last_distance <= distance { (last_distance, last) } else { (distance, at) };
             }
+            before = length;
             let mut factor = 1.0;
             let mut moved = false;
             while factor > 1e-3 {

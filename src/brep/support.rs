@@ -68,6 +68,8 @@ pub(super) struct Support {
     pub eps: f64,
     /// Distance in mm by which a trim curve may leave the pre-image of its edge.
     pub target: f64,
+    /// The largest that `target` may grow to for an edge that does not lie on the surface: [`Support::target_of`].
+    pub noise: f64,
 }
 
 impl Support {
@@ -161,7 +163,17 @@ impl Support {
     }
 
     fn with(form: Form, frame: Frame, natural: [Option<(f64, f64)>; 2], eps: f64) -> Self {
-        Self { form, frame, poles: Vec::new(), periods: [None; 2], natural, window: None, eps, target: 1e-2 * eps }
+        Self {
+            form,
+            frame,
+            poles: Vec::new(),
+            periods: [None; 2],
+            natural,
+            window: None,
+            eps,
+            target: 1e-2 * eps,
+            noise: 0.0,
+        }
     }
 
     fn find_periods(&self) -> [Option<f64>; 2] {
@@ -254,6 +266,12 @@ impl Support {
     /// Point at native `(u, v)`.
     pub fn point(&self, p: DVec2) -> DVec3 {
         self.jet(p).point
+    }
+
+    /// By how much a trim curve may leave the pre-image of an edge that lies `gap` mm off the surface: a hundredth of
+    /// that, for no more is known about where it is.
+    pub fn target_of(&self, gap: f64) -> f64 {
+        self.target.max((1e-2 * gap).min(self.noise))
     }
 
     /// Lengths of the two derivatives: millimetres per unit of `u` and of `v`.

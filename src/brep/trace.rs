@@ -129,13 +129,26 @@ impl Trace {
         match (i.checked_sub(1).map(|j| self.samples[j]), self.samples.get(i)) {
             (_, Some(&(t, p))) if t == s => p,
             (Some((t0, p0)), Some(&(t1, p1))) => {
-                let guess = p0.lerp(p1, (s - t0) / (t1 - t0));
+                let line = p0.lerp(p1, (s - t0) / (t1 - t0));
+                let guess = self.cubic(i, s).filter(|c| (c - line).abs().cmple((p1 - p0).abs()).all()).unwrap_or(line);
                 support.invert(self.edge.point(s), Some(guess), self.accept)
             }
             (Some((_, p)), None) => p,
             (None, Some(&(_, p))) => p,
             (None, None) => DVec2::ZERO,
         }
+    }
+
+    /// The cubic through the four samples around `s`, which lies between the samples `i - 1` and `i`: a start for
+    /// Newton's method that saves it a step or two. `None` where there are not four regular ones.
+    fn cubic(&self, i: usize, s: f64) -> Option<DVec2> {
+        let four = self.samples.get(i.checked_sub(2)?..i + 2)?;
+        let ends = (self.at_pole[0] && i == 2) || (self.at_pole[1] && i + 2 == self.samples.len());
+        let weight = |j: usize| {
+            let others = four.iter().enumerate().filter(|(k, _)| *k != j);
+            others.map(|(_, (t, _))| (s - t) / (four[j].0 - t)).product::<f64>()
+        };
+        (!ends).then(|| (0..4).map(|j| four[j].1 * weight(j)).sum())
     }
 
     /// Samples where both coordinates have a meaning.

@@ -11,6 +11,7 @@
 
 use super::ConstructError;
 use super::compat::apart;
+use super::solid::{crossings, outline};
 use crate::model::{Face, Part, SurfaceKind, TrimLoop};
 use crate::spline::{BSpline, Control, Surface};
 use glam::{DVec2, DVec3, DVec4};
@@ -21,11 +22,12 @@ const SNAP: f64 = 1e-9;
 /// The solid between the first wall and the others, which are its holes from end to end. Exact: the caps' loops
 /// have the control points of the walls' ends.
 ///
-/// A wall's ends may be points (poles), or meet each other. That walls do not cross themselves or each other is not
-/// looked for.
+/// A wall's ends may be points (poles), or meet each other. Crossings of ends with themselves and each other are
+/// looked for between chords, 16 in each of their Bézier pieces; those of walls between their ends are not.
 ///
 /// # Errors
-/// No wall; a wall whose `u` does not close; an end that is not in one plane, or not in that of the first wall.
+/// No wall; a wall whose `u` does not close; an end that is not in one plane, or not in that of the first wall, that
+/// crosses itself or another.
 pub fn capped_solid(walls: &[Surface]) -> Result<Part, ConstructError> {
     let Some(outer) = walls.first() else {
         return Err(ConstructError::TooFew { what: "walls of a solid", got: 0, needed: 1 });
@@ -113,8 +115,16 @@ impl End {
         if points.iter().all(|p| p.distance(first) <= reach) {
             return Ok(None);
         }
-        let area: DVec3 = points.windows(2).map(|w| (w[0] - first).cross(w[1] - first)).sum();
-        let Some(normal) = area.try_normalize() else {
+        let arms: Vec<DVec3> = points.iter().map(|p| *p - first).collect();
+        let area: DVec3 = arms.windows(2).map(|w| w[0].cross(w[1])).sum();
+        let long = |a: DVec3, b: DVec3| if b.length_squared() > a.length_squared() { b } else { a };
+        let longest = arms.iter().copied().fold(DVec3::ZERO, long);
+        // of an eight, whose halves cancel, the plane is that of its points
+        let widest = arms.iter().map(|p| longest.cross(*p)).fold(DVec3::ZERO, long);
+        let flat = area.length() <= SNAP * widest.length();
+        let Some(normal) =
+            if flat { widest } else { area }.try_normalize().filter(|_| widest.length() > reach * longest.length())
+        else {
             return Err(ConstructError::ZeroLength { what: "the end of a wall, seen along its axis," });
         };
         Ok(Some(Self { curve, normal, ahead: normal.dot(along) > 0.0 }))
@@ -125,7 +135,7 @@ impl End {
         let origin = self.curve.points()[0].point();
         let x = self.normal.any_orthonormal_vector();
         let y = self.normal.cross(x);
-        let mut loops = Vec::new();
+        let (mut loops, mut outlines) = (Vec::new(), Vec::new());
         let (mut low, mut high) = (DVec2::INFINITY, DVec2::NEG_INFINITY);
         for (k, end) in [self].into_iter().chain(holes).enumerate() {
             let arm = |p: &DVec4| p.truncate() - origin * p.w;
@@ -139,11 +149,13 @@ impl End {
                 (low, high) = (low.min(p), high.max(p));
             }
             let flat = BSpline::new(end.curve.degree(), end.curve.knots().to_vec(), points)?;
+            outlines.push(outline(std::slice::from_ref(&flat)));
             let pieces = flat.beziers().into_iter().map(|s| s.piece).collect();
             let trim = TrimLoop::new(pieces, DVec2::splat(reach))?;
             let outwards = trim.signed_area() > 0.0;
             loops.push(if outwards == (k == 0) { trim } else { trim.reversed() });
         }
+        crossings("the end of a wall (by its chords)", &outlines)?;
         let corner = |u: f64, v: f64| (origin + x * u + y * v).extend(1.0);
         let net = vec![corner(low.x, low.y), corner(high.x, low.y), corner(low.x, high.y), corner(high.x, high.y)];
         let knots = |a: f64, b: f64| vec![a, a, b, b];

@@ -15,7 +15,7 @@
 
 use super::ConstructError;
 use super::compat::{compatible, unit_ends};
-use super::gordon::boolean_sum;
+use super::gordon::{boolean_sum, gap_allowed};
 use crate::spline::{BSpline, Surface};
 use glam::DVec4;
 
@@ -37,15 +37,17 @@ pub struct Boundary<'a> {
 /// Its sides are the four curves, to rounding where they meet exactly, else within half of the gap at their corners.
 ///
 /// # Errors
-/// Curves more than `tolerance` apart at a corner; weights so small (below 1/2 of those at the corners) that the sum
+/// A tolerance that is no distance; curves more than `tolerance` apart at a corner; opposite curves that are one, with
+/// points between them; weights so small (below 1/2 of those at the corners) that the sum
 /// has one that is not positive.
 pub fn coons(boundary: Boundary, tolerance: f64) -> Result<Surface, ConstructError> {
     let Boundary { bottom, top, left, right } = boundary;
+    gap_allowed(tolerance)?;
     let ends = |c: &BSpline<DVec4>| (c.point(c.domain().0), c.point(c.domain().1));
     let (b, t, l, r) = (ends(bottom), ends(top), ends(left), ends(right));
     for (corner, (p, q)) in [(b.0, l.0), (b.1, r.0), (t.0, l.1), (t.1, r.1)].into_iter().enumerate() {
         let gap = p.distance(q);
-        if gap > tolerance || tolerance.is_nan() {
+        if gap > tolerance {
             return Err(ConstructError::CornerMismatch { corner, gap });
         }
     }

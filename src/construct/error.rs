@@ -35,6 +35,9 @@ pub enum ConstructError {
     /// A path, direction, axis or curve without length.
     #[error("{what} has no length")]
     ZeroLength { what: &'static str },
+    /// A closed curve, or several, with nothing inside.
+    #[error("{what} encloses no area")]
+    NoArea { what: &'static str },
     /// Something that must be closed is not.
     #[error("{what} is open by {gap:e}")]
     Open { what: &'static str, gap: f64 },
@@ -80,6 +83,9 @@ pub enum ConstructError {
     /// A surface without a finite value.
     #[error("the surface has no finite value at (u, v) = ({u}, {v})")]
     NotFiniteAt { u: f64, v: f64 },
+    /// A surface whose tangents span no plane, nor do they in a limit.
+    #[error("the surface has no normal at (u, v) = ({u}, {v})")]
+    NoNormal { u: f64, v: f64 },
     /// A point of a grid that is a NaN or an infinity.
     #[error("the point in row {row}, column {column} of the grid (from 0) is not finite")]
     PointNotFinite { row: usize, column: usize },

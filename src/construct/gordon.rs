@@ -15,8 +15,8 @@
 //! *The NURBS Book*, 1997, section 10.5.
 
 use super::ConstructError;
-use super::compat::{compatible, compatible_surfaces};
-use super::loft::{positive, scaled, skin};
+use super::compat::{apart, compatible, compatible_surfaces, size};
+use super::loft::{SAME_SECTION, positive, scaled, skin};
 use crate::spline::cubic::{Cubic, Ends, tensor};
 use crate::spline::{BSpline, Control, Surface};
 use glam::DVec4;
@@ -41,23 +41,39 @@ pub struct Network<'a> {
 /// parameters). C² between the curves, whose own continuity it keeps.
 ///
 /// # Errors
-/// Fewer than two curves either way; parameters that do not run from 0 to 1; curves that do not meet; rational
+/// A tolerance that is no distance; fewer than two curves either way; curves that are all one, with points between
+/// them; parameters that do not run from 0 to 1; curves that do not meet; rational
 /// curves whose weights at the crossings no scaling of the curves brings together.
 pub fn gordon(network: Network, tolerance: f64) -> Result<Surface, ConstructError> {
     parameters("curves along u", network.u_curves.len(), "parameters v", network.v)?;
     parameters("curves along v", network.v_curves.len(), "parameters u", network.u)?;
+    gap_allowed(tolerance)?;
     let c = compatible(network.u_curves)?;
     let d = compatible(network.v_curves)?;
     for (k, c) in c.iter().enumerate() {
         for (l, d) in d.iter().enumerate() {
             let gap = c.point(network.u[l]).distance(d.point(network.v[k]));
-            if gap > tolerance || tolerance.is_nan() {
+            if gap > tolerance {
                 return Err(ConstructError::NetworkMismatch { u_curve: k, v_curve: l, gap });
             }
         }
     }
     let (c, d) = weighted(c, d, network.u, network.v)?;
     boolean_sum(&c, &d, network.u, network.v)
+}
+
+/// How far curves may miss each other.
+pub(super) fn gap_allowed(tolerance: f64) -> Result<(), ConstructError> {
+    if tolerance >= 0.0 && tolerance.is_finite() {
+        return Ok(());
+    }
+    Err(ConstructError::Range { what: "the tolerance", value: tolerance, must: "a distance" })
+}
+
+/// The curves of one direction are one, and those of the other are points: there is no surface between them.
+fn no_area(c: &[BSpline<DVec4>], d: &[BSpline<DVec4>]) -> bool {
+    let fine = SAME_SECTION * size(c.iter().chain(d));
+    c.iter().all(|x| apart(x, &c[0]) <= fine) && d.iter().all(|x| size([x]) <= fine)
 }
 
 /// `L1 + L2 - T` of compatible curves whose weights agree where they meet.
@@ -67,6 +83,9 @@ pub(super) fn boolean_sum(
     u: &[f64],
     v: &[f64],
 ) -> Result<Surface, ConstructError> {
+    if no_area(c, d) || no_area(d, c) {
+        return Err(ConstructError::CoincidentSections { first: 0, second: 1 });
+    }
     let (along_u, along_v) = (Cubic::new(u, Ends::NotAKnot)?, Cubic::new(v, Ends::NotAKnot)?);
     let meet = |k: usize, l: usize| (c[k].homogeneous(u[l]) + d[l].homogeneous(v[k])) * 0.5;
     let crossings: Vec<DVec4> =

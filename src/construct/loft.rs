@@ -19,7 +19,7 @@ use crate::spline::{BSpline, Control, Surface};
 use glam::DVec4;
 
 /// Share of the size below which neighbouring sections are one.
-const SAME_SECTION: f64 = 1e-12;
+pub(super) const SAME_SECTION: f64 = 1e-12;
 
 /// The surface through `sections` at increasing `v`, over the unit square; `u` runs along the sections.
 ///

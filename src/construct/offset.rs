@@ -147,7 +147,7 @@ impl Source<'_> {
     fn point(&self, u: f64, v: f64) -> Result<DVec3, ConstructError> {
         let (found, s, t) = self.grid.locate(u, v);
         let Some((p, n)) = self.normal(&found.patch, s, t) else {
-            return Err(ConstructError::NotFiniteAt { u, v });
+            return Err(ConstructError::NoNormal { u, v });
         };
         Ok(p + n * self.distance)
     }

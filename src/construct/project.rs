@@ -45,7 +45,7 @@ const WHAT: &str = "the projected outline";
 /// on the surface.
 ///
 /// # Errors
-/// A line that misses the surface, runs along it or reaches its border; a tolerance that is not reached.
+/// A direction or tolerance that is not finite and positive; a line that misses the surface, runs along it or reaches its border; a tolerance that is not reached.
 pub fn project(
     surface: &Surface,
     outline: &[BSpline<DVec4>],
@@ -54,6 +54,9 @@ pub fn project(
 ) -> Result<Projected, ConstructError> {
     if !(tolerance > 0.0 && tolerance.is_finite()) {
         return Err(ConstructError::Range { what: "the tolerance", value: tolerance, must: "positive" });
+    }
+    if !direction.is_finite() {
+        return Err(ConstructError::NotFinite { what: "the direction of a projection" });
     }
     let Some(along) = direction.try_normalize() else {
         return Err(ConstructError::ZeroLength { what: "the direction of a projection" });

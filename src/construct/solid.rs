@@ -31,7 +31,7 @@ const CHORDS: u32 = 16;
 /// Crossings of the profile with itself are looked for between chords, 16 in each of its Bézier pieces.
 ///
 /// # Errors
-/// No curve; a chain that is open or crosses itself or another; a vector in the plane.
+/// No curve; a chain that is open, encloses nothing, or crosses itself or another; a vector in the plane.
 pub fn extruded_solid(profile: &[Chain], vector: DVec3) -> Result<Part, ConstructError> {
     if !vector.is_finite() {
         return Err(ConstructError::NotFinite { what: "the direction of an extrusion" });
@@ -58,7 +58,7 @@ pub fn extruded_solid(profile: &[Chain], vector: DVec3) -> Result<Part, Construc
 /// Curves of the profile on the axis close it and make no face. Crossings as [`extruded_solid`].
 ///
 /// # Errors
-/// No curve; a chain that is open or crosses itself or another; a profile on both sides of the axis; an angle
+/// No curve; a chain that is open, encloses nothing, or crosses itself or another; a profile on both sides of the axis; an angle
 /// outside `(0, 2π]`.
 pub fn lathed_solid(profile: &[Chain], angle: f64) -> Result<Part, ConstructError> {
     let profile = Profile::new(profile)?;
@@ -89,7 +89,7 @@ pub fn lathed_solid(profile: &[Chain], angle: f64) -> Result<Part, ConstructErro
 /// Closed chains of curves in `(u, v)` as trim loops, in the order given: what lies inside an odd number of them is kept.
 ///
 /// # Errors
-/// No curve; a chain that is open or crosses itself or another.
+/// No curve; a chain that is open, encloses nothing, or crosses itself or another.
 pub fn trim_loops(chains: &[Chain]) -> Result<Vec<TrimLoop>, ConstructError> {
     Ok(Profile::new(chains)?.loops)
 }
@@ -115,13 +115,16 @@ impl Profile {
         if size == 0.0 {
             return Err(ConstructError::ZeroLength { what: "the profile" });
         }
-        let outlines: Vec<Vec<DVec2>> = chains.iter().map(outline).collect();
-        crossings(&outlines)?;
+        let outlines: Vec<Vec<DVec2>> = chains.iter().map(|c| outline(c)).collect();
+        crossings("the profile (by its chords)", &outlines)?;
         let mut oriented = Vec::new();
         let mut loops = Vec::new();
         for (i, chain) in chains.iter().enumerate() {
             let curves = chain.iter().flat_map(|c| c.beziers()).map(|s| s.piece).collect();
             let trim = TrimLoop::new(curves, DVec2::splat(SNAP * size))?;
+            if trim.signed_area().abs() <= SNAP * SNAP * size * size {
+                return Err(ConstructError::NoArea { what: "the profile" });
+            }
             let others = outlines.iter().enumerate().filter(|(j, _)| *j != i);
             let depth = others.filter(|(_, o)| holds(o, outlines[i][0])).count();
             if (trim.signed_area() > 0.0) == depth.is_multiple_of(2) {
@@ -145,7 +148,7 @@ impl Profile {
 }
 
 /// Corners of the chords of a chain, the last one without its end.
-fn outline(chain: &Chain) -> Vec<DVec2> {
+pub(super) fn outline(chain: &[BSpline<DVec3>]) -> Vec<DVec2> {
     let spans = chain.iter().flat_map(|c| c.beziers()).map(|s| s.piece);
     let chords = spans.flat_map(|b| {
         let count = if b.degree() == 1 { 1 } else { CHORDS };
@@ -169,7 +172,7 @@ fn holds(outline: &[DVec2], p: DVec2) -> bool {
 /// No two chords cross.
 ///
 /// Chords in order of their left ends: only those that overlap in `x` are compared.
-fn crossings(outlines: &[Vec<DVec2>]) -> Result<(), ConstructError> {
+pub(super) fn crossings(what: &'static str, outlines: &[Vec<DVec2>]) -> Result<(), ConstructError> {
     let mut chords: Vec<(DVec2, DVec2, usize)> = Vec::new();
     for outline in outlines {
         let ends = outline.iter().zip(outline.iter().cycle().skip(1));
@@ -184,7 +187,7 @@ fn crossings(outlines: &[Vec<DVec2>]) -> Result<(), ConstructError> {
             let apart = |p: DVec2, q: DVec2, r: DVec2, s: DVec2| orientation(p, q, r) * orientation(p, q, s) >= 0.0;
             if !apart(*a, *b, *c, *d) && !apart(*c, *d, *a, *b) {
                 let (first, second) = (*first.min(second) as f64, *first.max(second) as f64);
-                return Err(ConstructError::SelfCrossing { what: "the profile (by its chords)", first, second });
+                return Err(ConstructError::SelfCrossing { what, first, second });
             }
         }
     }

@@ -87,6 +87,9 @@ impl<'a> Sweep<'a> {
         if !self.twist.is_finite() {
             return Err(ConstructError::NotFinite { what: "the twist of a sweep" });
         }
+        if self.up.is_some_and(|up| !up.is_finite()) {
+            return Err(ConstructError::NotFinite { what: "the direction of the profile's x" });
+        }
         for (what, value) in [
             ("a scale of a sweep", self.scale.0),
             ("a scale of a sweep", self.scale.1),
@@ -143,10 +146,21 @@ impl<'a> Sweep<'a> {
             let d = (x * p.x + y * p.y) * s;
             DVec3::new(circle.radius * p.z + d.dot(radial), d.dot(axis), p.z)
         };
+        // the centre of the path's circle is an axis that no profile crosses
+        let inwards = samples(self.profile).into_iter().map(|p| -(x * p.x + y * p.y).dot(radial) * s);
+        let reach = inwards.fold(0.0, f64::max);
+        let folds = || ConstructError::Folds { parameter: 0.0, reach, radius: circle.radius };
+        if reach > circle.radius * (1.0 + 1e-12) {
+            return Err(folds());
+        }
         let profile = self.profile.points().iter().map(turned).collect();
         let profile = BSpline::new(self.profile.degree(), self.profile.knots().to_vec(), profile)?;
         let place = DAffine3::from_mat3_translation(DMat3::from_cols(radial, t, axis), circle.centre);
-        let turned = lathe(&profile, circle.angle)?.transformed(&place).transposed();
+        let turned = lathe(&profile, circle.angle).map_err(|e| match e {
+            ConstructError::CrossesAxis { .. } | ConstructError::OnAxis => folds(),
+            e => e,
+        })?;
+        let turned = turned.transformed(&place).transposed();
         let (ku, kv) = turned.knots();
         let kv = kv.iter().map(|k| if *k == circle.angle { 1.0 } else { k / circle.angle }).collect();
         Ok(Some(Surface::new(turned.degrees(), ku.to_vec(), kv, turned.points().to_vec())?))

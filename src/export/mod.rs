@@ -5,20 +5,41 @@
 //!         ──join──────▶ edges that two faces share ──step──▶ ISO 10303-21 text
 //! ```
 //!
-//! Faces keep their exact rational surfaces. What a file of the format cannot say is left out, and a
-//! [`ExportWarning`] names the part.
+//! Faces keep their exact rational surfaces, and so do the faces of a solid that is one primitive. What a file of the
+//! format cannot say is left out, and an [`ExportWarning`] names it.
 
 mod boundary;
 mod join;
+mod primitive;
 mod step;
 
 pub use step::step;
 
+use std::fmt;
+
+/// A thing of a model that a file has, or has not.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Item {
+    /// Index into [`Model::parts`](crate::model::Model::parts).
+    Part(usize),
+    /// Index into [`Model::solids`](crate::model::Model::solids).
+    Solid(usize),
+}
+
+impl fmt::Display for Item {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self {
+            Self::Part(i) => write!(f, "part {i}"),
+            Self::Solid(i) => write!(f, "solid {i}"),
+        }
+    }
+}
+
 /// Something of a model that is not in the file as it was in the model.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct ExportWarning {
-    /// Index into [`Model::parts`](crate::model::Model::parts).
-    pub part: usize,
+    /// What it happened to.
+    pub item: Item,
     /// What was wrong and what was done.
     pub message: String,
 }
@@ -37,6 +58,6 @@ pub enum ExportError {
     #[error("instance {instance} has a transform that is not finite or has no inverse")]
     Transform { instance: usize },
     /// A loop that cannot be a curve.
-    #[error("part {part}, face #{face}: {source}")]
-    Face { part: usize, face: u32, source: crate::spline::SplineError },
+    #[error("{item}, face #{face}: {source}")]
+    Face { item: Item, face: u32, source: crate::spline::SplineError },
 }

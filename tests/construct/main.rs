@@ -1,7 +1,8 @@
 //! Surfaces made from curves: what they must pass through, how far they may be off, and what cannot be made.
 //!
-//! Random cases by number: `PROPTEST_CASES=10000` runs as many of each.
+//! `tools/random_cases` runs 10,000 random cases of each; see [`cases`].
 
+mod degenerate;
 mod errors;
 mod exact;
 mod offsets;
@@ -18,6 +19,12 @@ use selvedge::spline::{BSpline, Control, Surface};
 
 /// Rounding of an exact construction, of the size.
 pub const EXACT: f64 = 1e-12;
+
+/// As many random cases as the variable `PROPTEST_CASES` says, or `few`.
+pub fn cases(few: u32) -> ProptestConfig {
+    let cases = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(few);
+    ProptestConfig { cases, max_global_rejects: 100 * cases, ..ProptestConfig::default() }
+}
 
 /// A clamped knot vector over a random domain: interior knots of any multiplicity below the degree.
 pub fn knots(degree: usize) -> impl Strategy<Value = Vec<f64>> {

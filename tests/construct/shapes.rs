@@ -192,9 +192,7 @@ fn close(found: f64, expected: f64, share: f64) {
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(
-        std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(12)
-    ))]
+    #![proptest_config(crate::cases(12))]
 
     /// Primitives have the closed forms' volume, lie on their carriers, and close.
     #[test]
@@ -245,6 +243,32 @@ proptest! {
     }
 }
 
+/// Every point of a flank is as far along its tangent to the base circle as the arc that was unrolled, within what
+/// the gear says; returns half the angles of a tooth's tip and of the gap at the root.
+fn flanks_are_involutes(gear: &SpurGear, body: &Body) -> [f64; 2] {
+    assert!(body.deviation <= gear.tolerance);
+    let n = f64::from(gear.teeth);
+    let pitch = 0.5 * gear.module * n;
+    let (base, tip, root) = (pitch * gear.pressure_angle.cos(), pitch + gear.module, pitch - 1.25 * gear.module);
+    let at = |r: f64| ((r / base).powi(2) - 1.0).max(0.0).sqrt();
+    let turn = |t: f64| t - t.atan();
+    let middle = 0.5 * PI / n + turn(gear.pressure_angle.tan());
+    for face in body.part.faces.iter().filter(|f| f.kind == SurfaceKind::Extrusion).take(2) {
+        let grid = face.surface.patches();
+        let ((u0, u1), _) = face.surface.domain();
+        for k in 0..=600 {
+            let p = grid.point(u0 + (u1 - u0) * f64::from(k) / 600.0, 0.3).truncate();
+            if p.length() > base {
+                // an angle about the centre unrolls as far on the base circle, along the involute's normal
+                let off = (p.y.atan2(p.x).abs() - (middle - turn(at(p.length())))).abs() * base;
+                assert!(off <= body.deviation + EXACT * tip, "{off:e} of {:e} at {}", body.deviation, p.length());
+                assert!(p.length() <= tip * (1.0 + EXACT) + body.deviation);
+            }
+        }
+    }
+    [middle - turn(at(tip)), PI / n - middle + turn(at(root))]
+}
+
 /// The area under an involute is `base² t³ / 6`; flanks are off by no more than they say.
 #[test]
 fn spur_gears_have_involute_teeth() {
@@ -252,43 +276,43 @@ fn spur_gears_have_involute_teeth() {
         for tolerance in [1e-3, 1e-9] {
             let gear = SpurGear { tolerance: tolerance * module, ..SpurGear::new(module, teeth, 1.5, bore) };
             let body = gear.build().unwrap();
-            assert!(body.deviation <= gear.tolerance);
+            let [top, gap] = flanks_are_involutes(&gear, &body);
             let n = f64::from(teeth);
             let pitch = 0.5 * module * n;
             let (base, tip, root) = (pitch * gear.pressure_angle.cos(), pitch + module, pitch - 1.25 * module);
             let at = |r: f64| ((r / base).powi(2) - 1.0).max(0.0).sqrt();
-            let turn = |t: f64| t - t.atan();
-            let middle = 0.5 * PI / n + turn(gear.pressure_angle.tan());
-            let (top, gap) = (middle - turn(at(tip)), PI / n - middle + turn(at(root)));
             let flanks = base * base * (at(tip).powi(3) - at(root).powi(3)) / 3.0;
             let area = n * (flanks + tip * tip * top + root * root * gap) - PI * bore * bore;
             let length = 2.0 * n * 2.5 * module; // of all flanks, at most
             let slack = 1.5 * length * body.deviation + EXACT * area;
             let found = volume(&body.part);
             assert!((found - 1.5 * area).abs() <= 1.5 * slack, "{found} for {} within {slack:e}", 1.5 * area);
-            // every point of a flank is as far along its tangent to the base circle as the arc that was unrolled
-            for face in body.part.faces.iter().filter(|f| f.kind == SurfaceKind::Extrusion).take(2) {
-                let grid = face.surface.patches();
-                let ((u0, u1), _) = face.surface.domain();
-                for k in 0..=200 {
-                    let p = grid.point(u0 + (u1 - u0) * f64::from(k) / 200.0, 0.3).truncate();
-                    let t = at(p.length());
-                    if p.length() > base && p.length() < tip {
-                        let expected = middle - turn(t);
-                        // a distance from the involute is this many times larger across the radius, at most
-                        let steep = (1.0 + t * t).sqrt() / t.max(1e-3);
-                        let off = (p.y.atan2(p.x).abs() - expected).abs() * p.length();
-                        assert!(
-                            off <= 2.0 * steep.max(1.0) * gear.tolerance + EXACT * tip,
-                            "{off:e} at {}",
-                            p.length()
-                        );
-                    }
-                }
-            }
             if tolerance > 1e-6 && teeth < 20 {
                 edges_are_shared(&body.part);
             }
+        }
+    }
+}
+
+proptest! {
+    #![proptest_config(crate::cases(24))]
+
+    #[test]
+    fn flanks_keep_their_tolerance(
+        teeth in 4u32..60, module in 0.1..5.0f64, degrees in 14.0..30.0f64, digits in 2.0..10.0f64,
+    ) {
+        let (pressure_angle, tolerance) = (degrees.to_radians(), module * 10f64.powf(-digits));
+        let gear = SpurGear { pressure_angle, tolerance, ..SpurGear::new(module, teeth, 1.0, 0.0) };
+        match gear.build() {
+            Ok(body) => {
+                let [top, gap] = flanks_are_involutes(&gear, &body);
+                prop_assert!(top > 0.0 && gap > 0.0);
+            }
+            Err(ConstructError::Range { what, value, .. }) => {
+                // teeth of steep flanks end in a point below the tip circle
+                prop_assert!(what == "half the angle of a tooth's tip" && value <= 0.0 && degrees > 20.0, "{what}");
+            }
+            Err(e) => prop_assert!(false, "{e}"),
         }
     }
 }

@@ -39,6 +39,8 @@ fn stack(n: std::ops::Range<usize>) -> impl Strategy<Value = Vec<BSpline<DVec4>>
 }
 
 proptest! {
+    #![proptest_config(crate::cases(256))]
+
     #[test]
     fn a_loft_passes_through_its_sections(sections in stack(2..7)) {
         let built = loft(&sections, false);

@@ -279,9 +279,7 @@ fn all_right(mesh: &ControlMesh, scheme: Scheme, tolerance: f64, steps: usize) -
 }
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(
-        std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(3)
-    ))]
+    #![proptest_config(crate::cases(3))]
 
     #[test]
     fn catmull_clark_meets_its_bound(by in prop::collection::vec(-1.0..1.0f64, 40), n in 3u32..9, tolerance in 1e-6..1e-3f64) {

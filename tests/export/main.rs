@@ -186,7 +186,7 @@ fn warnings_name_the_part() {
     part.faces.pop();
     let mut text = Vec::new();
     let warnings = export::step(&model(part, &[DAffine3::from_scale(DVec3::new(1.0, 1.0, -2.0))]), &mut text).unwrap();
-    assert_eq!(warnings.iter().map(|w| w.part).collect::<Vec<_>>(), [0]);
+    assert_eq!(warnings.iter().map(|w| w.item).collect::<Vec<_>>(), [export::Item::Part(0)]);
 }
 
 /// Colours and opacity, of faces and of instances, come back to the 8 bits and more that sRGB keeps.
@@ -246,4 +246,68 @@ fn shapes_are_written_as_solids() {
     let text = written(&model(made.part.clone(), &[DAffine3::IDENTITY]));
     assert_eq!(count(&text, "MANIFOLD_SOLID_BREP"), 1);
     compare(&made.part, &text);
+}
+
+/// A solid that is one primitive is written as its faces where it stands, and its colour with them; nothing else of
+/// the solids is lost without a word.
+#[test]
+fn primitives_are_written_and_expressions_named() {
+    use selvedge::csg::{Builder, Tree};
+    use selvedge::model::{Primitive, Quadric, Shape, Solid};
+    let leaf = |b: &mut Builder, k| b.leaf(k);
+    let one = || -> Tree {
+        let mut b = Builder::new();
+        let root = leaf(&mut b, 0);
+        b.finish(root).unwrap()
+    };
+    let place = DAffine3::from_translation(DVec3::new(5.0, 6.0, 7.0));
+    let primitive = |shape, transform| Primitive { shape, transform, colour: [0.2, 0.3, 0.4, 1.0], id: 9 };
+    let solid = |shape, transform| Solid::new(vec![primitive(shape, transform)], one()).unwrap();
+    let squeezed = DAffine3::from_scale(DVec3::new(1.0, 1.0, -0.5));
+    let both = {
+        let mut b = Builder::new();
+        let pair = [leaf(&mut b, 0), leaf(&mut b, 1)];
+        let root = b.pair(selvedge::csg::Op::Difference, pair[0], pair[1]);
+        let shapes = [1.0, 2.0].map(|radius| primitive(Shape::Sphere { radius }, place));
+        Solid::new(shapes.to_vec(), b.finish(root).unwrap()).unwrap()
+    };
+    let ball = Quadric { squares: DVec3::ONE, constant: -1.0, ..Quadric::default() };
+    let solids = vec![
+        solid(Shape::Block { min: DVec3::ZERO, max: DVec3::ONE }, place),
+        solid(Shape::Cone { bottom: 2.0, top: 1.0, height: 3.0 }, squeezed),
+        solid(Shape::Sphere { radius: 1.0 }, DAffine3::IDENTITY),
+        solid(Shape::Cylinder { radius: 1.0, height: 2.0 }, place),
+        solid(Shape::Torus { major: 3.0, minor: 1.0 }, place),
+        both,
+        solid(Shape::Quadric(ball), place),
+        solid(Shape::Sphere { radius: 0.0 }, place),
+        solid(Shape::Sphere { radius: 1.0 }, DAffine3::from_scale(DVec3::new(1.0, 1.0, 0.0))),
+    ];
+    let made = Model { name: "solids".into(), solids, ..Model::default() };
+    let mut text = Vec::new();
+    let warnings = export::step(&made, &mut text).unwrap();
+    let told: Vec<String> = warnings.iter().map(|w| format!("{} {}", w.item, w.message)).collect();
+    assert_eq!(
+        told,
+        [
+            "solid 5 is a Boolean expression over 2 primitives and was left out",
+            "solid 6 has no bounded faces and was left out",
+            "solid 7 was left out: the radius of a sphere is 0, but must be positive and finite",
+            "solid 8 is flat and was left out",
+        ]
+    );
+    let text = String::from_utf8(text).unwrap();
+    assert_eq!(count(&text, "MANIFOLD_SOLID_BREP"), 5);
+    let read = import::step(text.as_bytes(), "solids.step").unwrap();
+    assert!(read.warnings.is_empty(), "{:?}", read.warnings);
+    let counts: Vec<usize> = read.model.parts.iter().map(|p| p.faces.len()).collect();
+    assert_eq!(counts, [6, 3, 1, 3, 1]);
+    let boxes: Vec<_> = read.model.instances.iter().map(|i| (i, read.model.parts[i.part].bounds())).collect();
+    let middle = |k: usize| boxes[k].0.transform.transform_point3(boxes[k].1.centre());
+    assert!(middle(0).distance(DVec3::new(5.5, 6.5, 7.5)) <= SAME * 10.0);
+    assert!(middle(1).distance(DVec3::new(0.0, 0.0, -0.75)) <= SAME * 10.0);
+    for (i, _) in &boxes {
+        let colour = i.colour.or(read.model.parts[i.part].faces[0].colour).expect("a colour");
+        assert!(colour.iter().zip([0.2, 0.3, 0.4, 1.0]).all(|(a, b): (&f32, f32)| (a - b).abs() <= 1e-6), "{colour:?}");
+    }
 }

@@ -150,9 +150,9 @@ fn case(c: [f64; 10], exponent: f64) {
     assert!(met <= fit.bound && fit.bound <= tolerance, "{c:?}: {met:e} {:e} {tolerance:e}", fit.bound);
 }
 
-/// More cases by `SELVEDGE_CASES`.
+/// As many as the variable `PROPTEST_CASES` says (`tools/random_cases`), or `few`.
 fn cases(few: u32) -> ProptestConfig {
-    let cases = std::env::var("SELVEDGE_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(few);
+    let cases = std::env::var("PROPTEST_CASES").ok().and_then(|n| n.parse().ok()).unwrap_or(few);
     ProptestConfig { cases, max_global_rejects: 100 * cases, ..ProptestConfig::default() }
 }
 

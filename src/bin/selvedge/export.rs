@@ -15,7 +15,11 @@ pub fn run(args: &ExportArgs) -> Result<Outcome> {
     let warnings = export::step(&model, &mut out).with_context(name)?;
     out.flush().with_context(name)?;
     for w in warnings {
-        tracing::warn!("part {} {:?}: {}", w.part, model.parts.get(w.part).map_or("", |p| &p.name), w.message);
+        let name = match w.item {
+            export::Item::Part(p) => model.parts.get(p).map_or("", |p| &p.name),
+            export::Item::Solid(_) => "",
+        };
+        tracing::warn!("{} {name:?}: {}", w.item, w.message);
     }
     Ok(Outcome::Good)
 }

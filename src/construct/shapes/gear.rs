@@ -24,6 +24,8 @@ use std::f64::consts::{FRAC_PI_2, PI, TAU};
 const MOST_TEETH: u32 = 1024;
 /// Halvings of a flank's parameters.
 const HALVINGS: u32 = 40;
+/// For what lies between the samples of a flank's error, which has one hump a piece.
+const MARGIN: f64 = 1.1;
 
 /// A rectangular slot along a bore, at its side of positive x.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -227,7 +229,7 @@ impl SpurGear {
             let points = [point(a), point(a) + slope(a) * third, point(b) - slope(b) * third, point(b)];
             let piece = Bezier { points: points.iter().map(|p| p.extend(1.0)).collect() };
             let off = (1..16).map(|k| f64::from(k) / 16.0);
-            let off = off.map(|x| piece.point(x).distance(point(a + (b - a) * x))).fold(0.0, f64::max);
+            let off = off.map(|x| piece.point(x).distance(point(a + (b - a) * x))).fold(0.0, f64::max) * MARGIN;
             if off > self.tolerance {
                 if halvings == 0 {
                     return Err(ConstructError::Bound { asked: self.tolerance, reached: off, pieces: spans.len() + 1 });

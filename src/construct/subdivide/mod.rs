@@ -42,8 +42,9 @@ use super::ConstructError;
 use crate::model::{Bounds, Part, SurfaceKind};
 use mesh::Topology;
 
-/// Most rings around a vertex.
-const MOST_RINGS: usize = 24;
+/// Most rings around a vertex. A ring takes a cap's deviation by 0.61 at a vertex of 8 (by 1/2 at one of 4, by 0.65 at
+/// those of many): 32 of them reach some `1e-7` of the size.
+const MOST_RINGS: usize = 32;
 /// Levels after a cap's own that it is compared with.
 const JUDGED_LEVELS: usize = 40;
 /// Share of a cap's deviation below which what is left near the vertex need not be looked at.
@@ -98,7 +99,7 @@ impl Bound {
 /// # Errors
 /// A mesh that is no manifold (an edge of three faces, faces that turn against each other, faces that meet in a vertex
 /// alone); a vertex that is not finite or not there; a polygon of fewer than three corners, for Loop's scheme of more;
-/// a crease along no edge, or one that ends inside; a tolerance that is not positive, or that 24 rings do not reach.
+/// a crease along no edge, or one that ends inside; a tolerance that is not positive, or that 32 rings do not reach.
 pub fn subdivide(mesh: &ControlMesh, scheme: Scheme, tolerance: f64) -> Result<Subdivided, ConstructError> {
     if tolerance.is_nan() || tolerance <= 0.0 {
         return Err(ConstructError::Range { what: "the tolerance", value: tolerance, must: "positive" });

@@ -15,8 +15,9 @@ mod geometry;
 mod shape;
 mod text;
 
-use super::{ExportError, ExportWarning};
-use crate::model::{Colour, Face, Instance, Model, Part};
+use super::primitive;
+use super::{ExportError, ExportWarning, Item};
+use crate::model::{Colour, Face, Instance, Model, Part, Primitive};
 use glam::{DAffine3, DMat3, DVec3};
 use std::io::{self, Write};
 use text::{Id, List, Quoted, Real, Text, reals};
@@ -31,8 +32,9 @@ const RIGID: f64 = 1e-12;
 /// their curves in space are exact on planes and along parameter lines, else fitted to 1e-8 of the diagonal. The largest
 /// distance met is the file's UNCERTAINTY.
 ///
-/// Meshes, and parts without instances, are not written: a warning names them. So is a part that says it is closed
-/// but whose edges do not meet; it becomes an open shell.
+/// A solid that is one primitive is written as its exact faces. Boolean expressions, half-spaces, quadrics and meshes,
+/// and parts without instances, are not written: a warning names them. So is a part that says it is closed but whose
+/// edges do not meet; it becomes an open shell.
 ///
 /// # Errors
 /// [`ExportError`] when writing fails or the model's instances are not sound.
@@ -74,8 +76,8 @@ pub fn step(model: &Model, out: &mut impl Write) -> Result<Vec<ExportWarning>, E
 /// A part as it is written, and where it stands.
 struct Product {
     part: Part,
-    /// Of the part in the model.
-    index: usize,
+    /// Where it is from.
+    item: Item,
     /// Stands for one instance alone, its transform carried out.
     baked: bool,
     colour: Option<Colour>,
@@ -97,26 +99,47 @@ fn products(model: &Model, warnings: &mut Vec<ExportWarning>) -> Result<Vec<Prod
         }
         let place = (i.transform, i.name.clone());
         let rigid = is_rigid(&i.transform.matrix3);
-        let same = |p: &&mut Product| rigid && !p.baked && p.index == i.part && p.colour == i.colour;
+        let same = |p: &&mut Product| rigid && !p.baked && p.item == Item::Part(i.part) && p.colour == i.colour;
         match all.iter_mut().find(same) {
             Some(product) => product.places.push(place),
             None if rigid => {
-                let (index, colour) = (i.part, i.colour);
-                all.push(Product { part: part.clone(), index, baked: false, colour, places: vec![place] });
+                let (item, colour) = (Item::Part(i.part), i.colour);
+                all.push(Product { part: part.clone(), item, baked: false, colour, places: vec![place] });
             }
-            None => all.push(baked(part, i)),
+            None => all.push(baked(part, i, Item::Part(i.part))),
         }
     }
     for (part, p) in model.parts.iter().enumerate() {
         if !p.meshes.is_empty() {
             let message = format!("{} meshes were left out", p.meshes.len());
-            warnings.push(ExportWarning { part, message });
+            warnings.push(ExportWarning { item: Item::Part(part), message });
         }
         if !model.instances.iter().any(|i| i.part == part) {
-            warnings.push(ExportWarning { part, message: "has no instance and was left out".into() });
+            let message = "has no instance and was left out".into();
+            warnings.push(ExportWarning { item: Item::Part(part), message });
+        }
+    }
+    for (k, solid) in model.solids.iter().enumerate() {
+        let item = Item::Solid(k);
+        let sound = |t: &DAffine3| t.is_finite() && t.matrix3.determinant() != 0.0;
+        match primitive::faces(solid) {
+            Ok((p, part)) if sound(&p.transform) => all.push(placed_solid(p, part, item)),
+            Ok(_) => warnings.push(ExportWarning { item, message: "is flat and was left out".into() }),
+            Err(message) => warnings.push(ExportWarning { item, message }),
         }
     }
     Ok(all)
+}
+
+/// The product of a solid that is one primitive.
+fn placed_solid(p: &Primitive, part: Part, item: Item) -> Product {
+    let part = Part { name: format!("solid {}", p.id), ..part };
+    let instance = Instance { part: 0, transform: p.transform, colour: Some(p.colour), name: part.name.clone() };
+    if is_rigid(&p.transform.matrix3) {
+        let places = vec![(p.transform, part.name.clone())];
+        return Product { part, item, baked: false, colour: instance.colour, places };
+    }
+    baked(&part, &instance, item)
 }
 
 fn is_rigid(m: &DMat3) -> bool {
@@ -125,7 +148,7 @@ fn is_rigid(m: &DMat3) -> bool {
 }
 
 /// A part with its transform carried out.
-fn baked(part: &Part, i: &Instance) -> Product {
+fn baked(part: &Part, i: &Instance, item: Item) -> Product {
     let mirrored = i.transform.matrix3.determinant() < 0.0;
     let face = |f: &Face| Face {
         surface: f.surface.transformed(&i.transform),
@@ -134,7 +157,7 @@ fn baked(part: &Part, i: &Instance) -> Product {
     };
     let part = Part { faces: part.faces.iter().map(face).collect(), meshes: Vec::new(), ..part.clone() };
     let places = vec![(DAffine3::IDENTITY, i.name.clone())];
-    Product { part, index: i.part, baked: true, colour: i.colour, places }
+    Product { part, item, baked: true, colour: i.colour, places }
 }
 
 /// The file so far.
@@ -163,7 +186,7 @@ impl<W: Write> Writer<'_, '_, W> {
         if p.colour.is_some() {
             part.faces.iter_mut().for_each(|f| f.colour = None);
         }
-        let mut shape = shape::shape(self.text, &part, p.index, &mut self.styled, warnings)?;
+        let mut shape = shape::shape(self.text, &part, p.item, &mut self.styled, warnings)?;
         self.uncertainty = self.uncertainty.max(shape.deviation);
         if let Some(colour) = p.colour {
             for item in &shape.items {

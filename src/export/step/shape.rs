@@ -11,7 +11,7 @@
 
 use super::super::boundary::Sheet;
 use super::super::join::{Boundaries, Edge, join};
-use super::super::{ExportError, ExportWarning};
+use super::super::{ExportError, ExportWarning, Item};
 use super::text::{Id, List, Text};
 use super::{Colours, style};
 use crate::model::{Bounds, Part};
@@ -43,14 +43,14 @@ pub(super) struct Shape {
 pub(super) fn shape<W: Write>(
     text: &mut Text<W>,
     part: &Part,
-    index: usize,
+    item: Item,
     colours: &mut Colours,
     warnings: &mut Vec<ExportWarning>,
 ) -> Result<Shape, ExportError> {
     let sheets: Vec<Sheet> = part.faces.iter().map(Sheet::new).collect();
     let size = part.faces.iter().map(|f| f.bounds()).fold(Bounds::EMPTY, Bounds::union).diagonal();
     let face_error =
-        |(face, source): (usize, SplineError)| ExportError::Face { part: index, face: part.faces[face].id, source };
+        |(face, source): (usize, SplineError)| ExportError::Face { item, face: part.faces[face].id, source };
     let mut out = join(&sheets, JOIN * size, FIT * size).map_err(face_error)?;
     for reach in if part.closed { &RETRIED[..] } else { &[] } {
         if out.closed() {
@@ -69,7 +69,7 @@ pub(super) fn shape<W: Write>(
         if lost > 0 {
             let message =
                 format!("face {}: {lost} loops within {:e} mm of a point were left out", sheet.face.id, JOIN * size);
-            warnings.push(ExportWarning { part: index, message });
+            warnings.push(ExportWarning { item, message });
         }
     }
     let frames: Vec<Option<[DVec3; 3]>> = sheets.iter().map(|s| s.plane.map(frame)).collect();
@@ -147,10 +147,10 @@ pub(super) fn shape<W: Write>(
             out.edges.len(),
             LOOSE * size
         );
-        warnings.push(ExportWarning { part: index, message });
+        warnings.push(ExportWarning { item, message });
     } else if out.deviation > JOIN * size {
         let message = format!("edges up to {:.1e} mm apart were joined", out.deviation);
-        warnings.push(ExportWarning { part: index, message });
+        warnings.push(ExportWarning { item, message });
     }
     let solid = part.closed && closed;
     let items = shells(text, &part.name, &sheets, &out, &faces, solid)?;
