@@ -211,8 +211,7 @@ pub struct UnknownSamples(String);
 /// What the caller decides about a loaded model.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub struct SceneSettings {
-    /// How to trim; `None` takes [`TrimWay::Exact`], which was the faster one in every scene measured:
-    /// `docs/trimming.md`.
+    /// How to trim; `None` takes [`TrimWay::Table`].
     pub trim: Option<TrimWay>,
     /// How to draw Boolean solids.
     pub solids: SolidWay,

@@ -57,7 +57,7 @@ pub(crate) struct SceneData {
 
 impl SceneData {
     pub(crate) fn new(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        let way = settings.trim.unwrap_or(TrimWay::Exact);
+        let way = settings.trim.unwrap_or(TrimWay::Table);
         let edits = settings.editable && matches!(way, TrimWay::Table | TrimWay::Exact);
         let edit = edits.then(EditScene::default);
         let solids = SolidData::new(&model.solids, settings.solids)?;

@@ -61,16 +61,9 @@ fn each_step_is_worth_its_name() {
 
 #[test]
 fn the_structure_stays_small() {
-    let sorted = |sorted| {
-        let mut bisect = Bisect::default();
-        bisect.push(face(&many_holes(50)), STEPS, sorted);
-        bisect
-    };
-    let (tuned, source) = (sorted(Sorted::Tuned), sorted(Sorted::Source));
-    assert_eq!((tuned.pieces.len(), source.pieces.len()), (4 * 2501, 4 * 2501));
+    let mut bisect = Bisect::default();
+    bisect.push(face(&many_holes(50)), STEPS, Sorted::Tuned);
+    assert_eq!(bisect.pieces.len(), 4 * 2501);
     // each piece and its control points, and twice as much for the search
-    assert!(tuned.bytes() < 3 * 10_000 * (24 + 36), "{}", tuned.bytes());
-    // three ends to a hole, none at the same height as another; the sheet's border has two more
-    assert_eq!(source.faces[0].band_count, 3 * 2500 + 1);
-    assert!(source.bytes() > 5 * tuned.bytes(), "{} against {}", source.bytes(), tuned.bytes());
+    assert!(bisect.bytes() < 3 * 10_000 * (24 + 36), "{}", bisect.bytes());
 }

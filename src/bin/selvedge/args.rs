@@ -284,7 +284,7 @@ pub struct FrameArgs {
     /// not
     #[arg(long, value_name = "bound|N", default_value = "bound")]
     pub factors: Factors,
-    /// How to trim: table (made for each view) or exact (made once); exact without it
+    /// How to trim: table (made for each view) or exact (made once); table without it
     #[arg(long, value_name = "WAY")]
     pub trim: Option<TrimWay>,
     /// How to draw Boolean solids: events (a ray a pixel) or cst (each primitive, trimmed by the others)
