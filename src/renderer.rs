@@ -12,6 +12,7 @@
 //! table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete: false`, and
 //! the next `record` into its slot makes them larger. A view from very near is resolved by what [`CloseUp`] cuts for it.
 
+mod centres;
 mod constants;
 mod edit;
 
@@ -19,7 +20,7 @@ use crate::abi;
 use crate::abi::Counters;
 pub use crate::buffers::TooMany;
 use crate::buffers::{Buffers, Capacities, Counts};
-use crate::frame::{Centres, Frame, Passes, target};
+use crate::frame::{Frame, Passes, target};
 use crate::gpu::{
     Attachment, Buffer, BufferInfo, Commands, Device, GpuError, Home, HostDevice, Image, Load, Pool, ReadBack,
     Timestamps, Uploads,
@@ -28,8 +29,9 @@ use crate::model::{Camera, CameraError, Model};
 use crate::passes::resolve;
 use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, SceneSettings};
 pub use crate::scene::{CloseUp, EditError, UndrawnSolid};
-use crate::scene::{Scene, SceneData, SolidData, Write, view};
+use crate::scene::{Scene, SceneData, Write, view};
 use ash::vk;
+use centres::SlotCentres;
 use constants::constants;
 
 /// Formats of the images that the host will pass to [`Renderer::record`].
@@ -139,8 +141,7 @@ struct Loaded {
 struct Slot {
     constants: Buffer,
     views: Option<Buffer>,
-    /// Of leaves and of surfaces of Boolean solids.
-    centres: Option<[Buffer; 2]>,
+    centres: SlotCentres,
     counters: ReadBack,
     times: Timestamps,
     /// Freed when the slot comes round again.
@@ -294,7 +295,8 @@ impl Renderer {
             buffers,
             constants: &slot.constants,
             views,
-            centres: slot.centres.as_ref().map(|[leaves, surfaces]| Centres { leaves, surfaces }),
+            centres: slot.centres.solids(),
+            volume_centres: slot.centres.volume(),
             counters: &slot.counters,
             colour: &colour,
             depth,
@@ -388,7 +390,7 @@ impl Slot {
         Ok(Self {
             constants: upload_buffer(device, "frame constants", size_of::<abi::Frame>() as u64)?,
             views: None,
-            centres: None,
+            centres: SlotCentres::default(),
             counters: ReadBack::new(device, "counters (read back)", size_of::<Counters>() as u64)?,
             times: Timestamps::new(device, SCOPES)?,
             retired: Vec::new(),
@@ -420,30 +422,8 @@ impl Slot {
         if let Some(buffer) = &mut self.views {
             buffer.write(0, &views);
         }
-        self.write_centres(device, &loaded.data.solids, input.camera)?;
+        self.retired.extend(self.centres.write(device, &loaded.data, input.camera)?.map(Retired::Buffer));
         self.constants.write(0, &[constants(device, loaded, input, formats)]);
-        Ok(())
-    }
-
-    /// Writes where the parts of Boolean solids are, seen from the eye.
-    fn write_centres(&mut self, device: &Device, solids: &SolidData, camera: &Camera) -> Result<(), GpuError> {
-        if solids.leaf_centres.is_empty() {
-            self.retired.extend(self.centres.take().into_iter().flatten().map(Retired::Buffer));
-            return Ok(());
-        }
-        let all = [&solids.leaf_centres, &solids.surface_centres];
-        let bytes = all.map(|list| (list.len() * size_of::<[f32; 3]>()) as u64);
-        if self.centres.as_ref().is_none_or(|b| b[0].bytes() < bytes[0] || b[1].bytes() < bytes[1]) {
-            let made = [
-                upload_buffer(device, "solid leaf centres", bytes[0])?,
-                upload_buffer(device, "solid surface centres", bytes[1])?,
-            ];
-            self.retired.extend(self.centres.replace(made).into_iter().flatten().map(Retired::Buffer));
-        }
-        for (buffer, list) in self.centres.iter_mut().flatten().zip(all) {
-            let seen: Vec<[f32; 3]> = list.iter().map(|c| (*c - camera.eye).as_vec3().to_array()).collect();
-            buffer.write(0, &seen);
-        }
         Ok(())
     }
 }

@@ -8,6 +8,7 @@
 #define TRIM_GLSL
 
 #ifdef TRIM_BY_TABLE
+#define TRIM_BUFFERS 4
 layout(scalar, binding = TRIM_BINDING + 0) readonly buffer LineStarts { uint line_starts[]; };
 layout(scalar, binding = TRIM_BINDING + 1) readonly buffer RowStarts { uint row_starts[]; };
 layout(scalar, binding = TRIM_BINDING + 2) readonly buffer RowCounts { uint row_counts[]; };
@@ -20,6 +21,7 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 #endif
 
 #ifdef TRIM_BY_EXACT
+#define TRIM_BUFFERS 6
 #define EXACT_BINDING TRIM_BINDING
 #include "exact.glsl"
 
