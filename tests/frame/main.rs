@@ -10,6 +10,7 @@ mod distance;
 mod errors;
 mod every_shape;
 mod hard;
+mod hard_solids;
 mod hard_trims;
 mod ledges;
 mod meshes;
