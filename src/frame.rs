@@ -31,7 +31,7 @@ use crate::buffers::{Buffers, TableBuffers};
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Timestamps, barrier};
 use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::passes::{bound, emit, heal, mesh, reset, resolve, scan, split, visibility};
-use crate::scene::{MeshBuffers, Scene, SceneData};
+use crate::scene::{MeshBuffers, Scene, SceneData, SolidData};
 use samples::{SamplePasses, Scopes};
 use solids::SolidPasses;
 use trim::{TrimParts, TrimPasses};
@@ -68,8 +68,14 @@ impl Passes {
     pub(crate) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Self, GpuError> {
         let trim = TrimPasses::new(device, data)?;
         let test = trim.as_ref().map(TrimPasses::test);
-        let kinds =
-            Kinds { rational: data.has_rational, plain: data.has_plain, trimmed: test, operands: data.has_operands };
+        let volume = data.volume.as_ref().and_then(SolidData::kinds);
+        let kinds = Kinds {
+            rational: data.has_rational,
+            plain: data.has_plain,
+            trimmed: test,
+            operands: data.has_operands,
+            volume,
+        };
         let visibility = visibility::Visibility::new(device, kinds)?;
         Ok(Self {
             reset: reset::Reset::new(device)?,
@@ -80,7 +86,10 @@ impl Passes {
             trim,
             solids: SolidPasses::new(device, data, test)?,
             visibility,
-            mesh: data.has_meshes().then(|| mesh::Mesh::new(device, VISIBILITY_FORMAT, DEPTH_FORMAT)).transpose()?,
+            mesh: data
+                .has_meshes()
+                .then(|| mesh::Mesh::new(device, (VISIBILITY_FORMAT, DEPTH_FORMAT), volume))
+                .transpose()?,
             resolve: resolved::targets(device, data, formats)?,
             samples: SamplePasses::new(device, data, formats)?,
         })
@@ -99,6 +108,8 @@ pub(crate) struct Frame<'a> {
     /// The same for each of a pixel's samples, where there are several.
     pub samples: &'a [SampleBuffers],
     pub centres: Option<Centres<'a>>,
+    /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.
+    pub volume_centres: Option<&'a Buffer>,
     pub counters: &'a ReadBack,
     pub colour: &'a [Attachment<'a>],
     pub depth: Option<Attachment<'a>>,
@@ -270,6 +281,12 @@ impl Frame<'_> {
         barrier::images(cmd, &fixed.into_iter().chain(others).collect::<Vec<_>>());
     }
 
+    /// What tests against the volume that trims the scene read, in their order; nothing without one.
+    fn volume(&self) -> Vec<&Buffer> {
+        let volume = self.scene.volume.as_ref().zip(self.volume_centres);
+        volume.map_or_else(Vec::new, |(v, centres)| vec![&v.leaves, &v.sides, &v.surfaces, centres])
+    }
+
     /// Meshes first: what hides them may be in doubt.
     fn mesh(&self, cmd: &Commands<'_>, pass: &mesh::Mesh, m: &MeshBuffers) {
         let b = self.buffers;
@@ -279,6 +296,7 @@ impl Frame<'_> {
             mesh_instances: &m.instances,
             triangles: &m.triangles,
             positions: &m.positions,
+            volume: &self.volume(),
         };
         let seen = b.others.as_ref().unwrap_or(&b.visibility);
         pass.record(cmd, &bindings, (seen, &b.depth), m.draws.iter());
@@ -307,6 +325,7 @@ impl Frame<'_> {
             instances: &s.instances,
             rings: b.trim.as_ref().map(|t| &t.rings),
             trim: test,
+            volume: &self.volume(),
             draws: &b.draws,
             counters: &b.counters,
         };
@@ -368,6 +387,7 @@ impl Frame<'_> {
                 }),
             }),
             trim: test,
+            volume: &self.volume(),
             dispatch: &t.heal_dispatch,
         };
         p.heal.record(cmd, &heal);

@@ -55,6 +55,17 @@ pub enum TrimWay {
     Rival(Rival),
 }
 
+/// How bisection sorts monotone pieces into bands and cells.
+#[cfg(feature = "rivals")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+#[serde(rename_all = "lowercase")]
+pub enum Sorted {
+    /// A band ends at every end of a piece; cells hold pieces whose boxes overlap.
+    Source,
+    /// Fewer bands; cells hold pieces whose boxes within the band overlap.
+    Tuned,
+}
+
 /// Other ways to trim, each with the number that its accuracy hangs on: see [`crate::rivals`].
 #[cfg(feature = "rivals")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
@@ -67,7 +78,7 @@ pub enum Rival {
         /// Most steps.
         steps: u32,
         /// How they are sorted.
-        sorted: crate::rivals::bisect::Sorted,
+        sorted: Sorted,
     },
     /// A texture of one bit a texel for each face.
     Texture {

@@ -12,13 +12,14 @@
 //! table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete: false`, and
 //! the next `record` into its slot makes them larger. A view from very near is resolved by what [`CloseUp`] cuts for it.
 
+mod centres;
 mod constants;
 mod edit;
 mod slot;
 
 pub use crate::buffers::TooMany;
 use crate::buffers::{Buffers, Capacities, Counts};
-use crate::frame::{Centres, Frame, Passes, target};
+use crate::frame::{Frame, Passes, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Uploads};
 use crate::model::{Camera, CameraError, Model};
 use crate::passes::resolve;
@@ -272,7 +273,8 @@ impl Renderer {
             constants: &slot.constants,
             views,
             samples: &slot.samples,
-            centres: slot.centres.as_ref().map(|[leaves, surfaces]| Centres { leaves, surfaces }),
+            centres: slot.centres.solids(),
+            volume_centres: slot.centres.volume(),
             counters: &slot.counters,
             colour: &colour,
             depth,

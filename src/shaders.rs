@@ -28,9 +28,23 @@ pub struct TrimTest {
     pub operand_patch: &'static [u32],
     /// Second step of pass `heal`.
     pub heal: &'static [u32],
+    /// Both again, within a volume that trims the scene; `None`: the way draws no such scene.
+    pub within: Option<Within>,
     /// Storage buffers of the test; they follow the bindings of the pass.
     pub buffers: usize,
 }
+
+/// Shaders of scenes that a volume trims: `glsl/include/volume.glsl`.
+#[derive(Clone, Copy, Debug)]
+pub struct Within {
+    /// Fragment shader of pass `visibility`.
+    pub visibility: &'static [u32],
+    /// Second step of pass `heal`.
+    pub heal: &'static [u32],
+}
+
+/// Storage buffers of the volume; they follow all others of a pass.
+pub const VOLUME_BUFFERS: usize = 4;
 
 /// The u-intercept table.
 pub static TRIM_TABLE: TrimTest = TrimTest {
@@ -38,6 +52,7 @@ pub static TRIM_TABLE: TrimTest = TrimTest {
     visibility: VISIBILITY_TABLE_FRAG,
     operand_patch: OPERAND_PATCH_TABLE_FRAG,
     heal: HEAL_TABLE_COMP,
+    within: Some(Within { visibility: VISIBILITY_TABLE_VOLUME_FRAG, heal: HEAL_TABLE_VOLUME_COMP }),
     buffers: 4,
 };
 /// Arcs in bands and cells.
@@ -46,6 +61,7 @@ pub static TRIM_EXACT: TrimTest = TrimTest {
     visibility: VISIBILITY_EXACT_FRAG,
     operand_patch: OPERAND_PATCH_EXACT_FRAG,
     heal: HEAL_EXACT_COMP,
+    within: Some(Within { visibility: VISIBILITY_EXACT_VOLUME_FRAG, heal: HEAL_EXACT_VOLUME_COMP }),
     buffers: 7,
 };
 
@@ -56,6 +72,7 @@ pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
     visibility: RIVAL_VISIBILITY_UNTRIMMED_FRAG,
     operand_patch: RIVAL_OPERAND_PATCH_UNTRIMMED_FRAG,
     heal: RIVAL_HEAL_UNTRIMMED_COMP,
+    within: None,
     buffers: 0,
 };
 
@@ -66,6 +83,7 @@ pub static TRIM_BISECT: TrimTest = TrimTest {
     visibility: RIVAL_VISIBILITY_BISECT_FRAG,
     operand_patch: RIVAL_OPERAND_PATCH_BISECT_FRAG,
     heal: RIVAL_HEAL_BISECT_COMP,
+    within: None,
     buffers: 6,
 };
 
@@ -76,6 +94,7 @@ pub static TRIM_TEXTURE: TrimTest = TrimTest {
     visibility: RIVAL_VISIBILITY_TEXTURE_FRAG,
     operand_patch: RIVAL_OPERAND_PATCH_TEXTURE_FRAG,
     heal: RIVAL_HEAL_TEXTURE_COMP,
+    within: None,
     buffers: 2,
 };
 

@@ -56,6 +56,9 @@ fn wrong_arguments_are_usage_errors() {
     refused(&["check", "m.step", "--zoom", "1e3,0.5"], "from 1 to 1e9");
     refused(&["check", "m.step", "--zoom", "10", "--views", "close"], "cannot be used with");
     render(&["--factors", "65"], "a level from 1 to 64");
+    render(&["--section", "1,0,0"], "four finite numbers");
+    render(&["--section", "0,0,0,1"], "all 0");
+    refused(&["bench", "m.step", "--edit", "--section", "1,0,0,0"], "cannot be used with");
     refused(&["sweep", "m.step", "--sizes", "400"], "WIDTHxHEIGHT");
     render(&["--camera", "front", "--fov", "30"], "cannot be used with");
     refused(&["bench"], "MODELS");
@@ -197,6 +200,36 @@ size = [48, 36]
 camera = "front"
 background = "#102030"
 "##;
+
+/// The ball goes behind the plane y = 0, and shows a cap towards the eye; the sheet is cut open. Then a quarter of
+/// the same within a block of another file.
+#[test]
+fn a_model_is_cut_open() {
+    let folder = std::env::temp_dir().join(format!("selvedge-cut-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let (scene, by, picture) = (path("small.toml"), path("by.csg"), path("a.png"));
+    std::fs::write(&scene, SCENE).unwrap();
+    std::fs::write(
+        &by,
+        "multmatrix([[1,0,0,-9],[0,1,0,0],[0,0,1,-9],[0,0,0,1]]) { cube(size = [18, 9, 18], center = false); }\n",
+    )
+    .unwrap();
+    for cut in [["--section", "0,-1,0,0"], ["--trim-by", &by]] {
+        let draw = [&["render", &scene, "-o", &picture][..], &cut].concat();
+        let output = selvedge(&draw);
+        assert_eq!(output.status.code(), Some(0), "{cut:?}: {}", text(&output.stderr));
+        // the sheet before the plane is gone, behind it it is there
+        let background = [0x10, 0x20, 0x30, 255];
+        assert_eq!(pixel(&picture, 24, 22).1, background, "{cut:?}");
+        assert_ne!(pixel(&picture, 24, 14).1, background, "{cut:?}");
+        assert_ne!(pixel(&picture, 24, 17).1, background, "{cut:?}");
+        let check = selvedge(&[&["check", &scene][..], &cut].concat());
+        assert_eq!(check.status.code(), Some(0), "{cut:?}: {}", text(&check.stdout));
+    }
+    refused(&["render", &scene, "-o", &picture, "--trim-by", &scene], "needs equations");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
 
 /// Width, height and a pixel of a picture.
 fn pixel(path: &str, x: u32, y: u32) -> ((u32, u32), [u8; 4]) {

@@ -25,6 +25,8 @@
 //     a witness                                    the nearest: behind a silhouette, or no border at all
 //     nothing is seen                              nothing
 //     a helper                                     the nearest
+//   and where a volume cuts the scene open (WITHIN_VOLUME), before a face from behind:
+//     helpers of one face                          the nearest: the outline of the part runs here
 //
 // Without any of these what was seen stays. Doubtful neighbours are not asked, and healed pixels
 // stay marked, so the order of the threads does not matter. Where a front and a back nearly touch, doubtful
@@ -52,6 +54,10 @@ layout(scalar, binding = 14) readonly buffer Positions { vec3 positions[]; };
 
 #define TRIM_BINDING 15
 #include "trim.glsl"
+#ifdef WITHIN_VOLUME
+#define VOLUME_BINDING (TRIM_BINDING + TRIM_BUFFERS)
+#include "volume.glsl"
+#endif
 #include "facet.glsl"
 #include "facing.glsl"
 #include "patch.glsl"
@@ -159,7 +165,12 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     Sample s = refine_across(fi, face, view, item, unpack_uv(seen.y), pixel);
     Patch patch_ = patches[face.first_patch + item - fi.first_item];
     Answer answer = Answer(NO, s.q.z, length(s.miss), true, uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)))));
+#ifdef WITHIN_VOLUME
+    if (!in_volume(s.q, RING_SLACK * frame.ring_px)) return answer;
+    bool inside = in_volume(s.q, ON_PX) && is_there(fi, face, item, patch_, s.uv);
+#else
     bool inside = is_there(fi, face, item, patch_, s.uv);
+#endif
     if (answer.miss > ON_PIXEL_PX) {
         // a silhouette beside the pixel
         if (inside && answer.miss <= RING_SLACK * frame.ring_px) answer.kind = HELPER;
@@ -280,6 +291,10 @@ void main() {
     bool has_witness = witness.kind == WITNESS;
     bool has_helper = helper.kind == HELPER;
     bool edge = two_help && helper.depth < witness.depth;
+#ifdef WITHIN_VOLUME
+    // the inside of what the volume cuts open, and before it the border of one face: the part's outline
+    if (ringed && self.kind == WITNESS && self.away) edge = edge || has_helper && helper.depth < self.depth;
+#endif
     if (real) {
         if (has_witness && !(has_helper && helper.depth < witness.depth)) healed = witness.word;
         else if (has_helper) healed = helper.word;

@@ -255,6 +255,15 @@ Span surface_span(Surface s, vec3 o, vec3 d) {
     return below_zero(a, b, c, shift);
 }
 
+// The surface's function at p, which is seen from its centre.
+float surface_value(Surface s, vec3 p) {
+    vec3 q = s.to_local * p;
+    if (SOLIDS_HAVE_TORI && s.kind == SURFACE_TORUS) {
+        return dot(q, q) + (1.0 - s.constant) * (1.0 + s.constant) - 2.0 * length(q.xy);
+    }
+    return dot(s.squares * q, q) + 2.0 * s.linear * q.z + s.constant;
+}
+
 // Outward where the surface's function grows; model directions, not of unit length.
 vec3 surface_gradient(Surface s, vec3 p) {
     vec3 q = s.to_local * p;

@@ -14,6 +14,7 @@ const uint TRIM_IN = 1u;
 const uint TRIM_MIXED = 2u;
 
 #ifdef TRIM_BY_TABLE
+#define TRIM_BUFFERS 4
 layout(scalar, binding = TRIM_BINDING + 0) readonly buffer LineStarts { uint line_starts[]; };
 layout(scalar, binding = TRIM_BINDING + 1) readonly buffer RowStarts { uint row_starts[]; };
 layout(scalar, binding = TRIM_BINDING + 2) readonly buffer RowCounts { uint row_counts[]; };
@@ -26,6 +27,7 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 #endif
 
 #ifdef TRIM_BY_EXACT
+#define TRIM_BUFFERS 6
 #define EXACT_BINDING TRIM_BINDING
 #include "exact.glsl"
 

@@ -12,6 +12,8 @@
 // Rings are not drawn: what they are before may be right, and narrower than they are. Only how near
 // the nearest of them comes is kept for each pixel.
 //
+// Where a volume trims the scene (WITHIN_VOLUME), the exact point at (u, v) must be within it, of rings too.
+//
 // The ring of an open shell continues the surface, but never nearer to the viewer than the border
 // that it continues: a floor seen from a low angle must not flow over what stands before its edge.
 #include "scene.glsl"
@@ -26,6 +28,10 @@ layout(scalar, binding = 10) buffer Rings { uint rings[]; }; // depth's bits for
 
 #define TRIM_BINDING 11
 #include "trim.glsl"
+#ifdef WITHIN_VOLUME
+#define VOLUME_BINDING (TRIM_BINDING + TRIM_BUFFERS)
+#include "exact_point.glsl"
+#endif
 #include "facing.glsl"
 #include "ring.glsl"
 #include "visible.glsl"
@@ -66,6 +72,10 @@ void main() {
         }
     }
     if (!inside && border_depth < 0.0) discard;
+#ifdef WITHIN_VOLUME
+    // a gap between faces may run along the volume's boundary: rings reach beyond it
+    if (!in_volume(exact_point(patch_, views[fi.instance], uv), inside ? ON_PX : frame.ring_px)) discard;
+#endif
     float z = gl_FragCoord.z;
     float stand_back = 0.0;
     if (solid && !away) {

@@ -17,7 +17,7 @@ use crate::buffers::TrimBuffers;
 use crate::gpu::{Buffer, Device, GpuError};
 use crate::passes::heal;
 use crate::picture::TrimWay;
-use crate::scene::{ExactScene, SceneData, Trims};
+use crate::scene::{ExactScene, SceneData, SolidData, Trims};
 use crate::shaders::{TRIM_EXACT, TRIM_TABLE, TrimTest};
 
 /// The passes of the way that the scene uses, and `heal`.
@@ -44,7 +44,8 @@ impl TrimPasses {
             TrimWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival)?),
         };
         let others = data.has_meshes() || data.solids.kinds().is_some();
-        let heal = heal::Heal::new(device, way.test(), data.has_rational, others)?;
+        let volume = data.volume.as_ref().and_then(SolidData::kinds);
+        let heal = heal::Heal::new(device, way.test(), (data.has_rational, others), volume)?;
         Ok(Some(Self { way, heal }))
     }
 

@@ -8,7 +8,7 @@
 //! ```
 
 use crate::csg::{Builder, Node, Op};
-use crate::model::{Bounds, Colour, Primitive, Shape, Solid};
+use crate::model::{Bounds, Colour, GREY, Primitive, Shape, Solid};
 use glam::{DAffine3, DVec3};
 
 /// Where a primitive stands and how it looks.
@@ -24,9 +24,6 @@ pub(super) struct Placed {
 
 /// `normal · x <= offset`.
 pub(super) type Plane = (DVec3, f64);
-
-/// Colour of what has none in its source: the same grey as faces without colour.
-pub(super) const GREY: Colour = [0.262, 0.262, 0.262, 1.0];
 
 /// Primitives and nodes so far.
 #[derive(Debug, Default)]

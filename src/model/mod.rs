@@ -20,6 +20,7 @@ mod camera;
 mod face;
 mod mesh;
 pub mod native;
+mod section;
 mod solid;
 mod stored;
 
@@ -38,6 +39,9 @@ use serde::{Deserialize, Serialize};
 /// Red, green, blue, opacity in linear light, each in `[0, 1]`.
 pub type Colour = [f32; 4];
 
+/// Colour of what has none in its source.
+pub(crate) const GREY: Colour = [0.262, 0.262, 0.262, 1.0];
+
 /// Everything that one file or scene holds.
 #[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "stored::ModelData")]
@@ -50,6 +54,8 @@ pub struct Model {
     pub instances: Vec<Instance>,
     /// Boolean solids, in model coordinates; what is drawn is their union.
     pub solids: Vec<Solid>,
+    /// Volume within which faces and meshes are drawn: see [`Model::trim_by`]. `None`: everywhere.
+    pub trim: Option<Solid>,
     /// Length unit of the source, for the record; coordinates are already millimetres.
     pub unit: String,
 }

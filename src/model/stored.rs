@@ -37,6 +37,7 @@ pub(super) struct ModelData {
     parts: Vec<Part>,
     instances: Vec<Instance>,
     solids: Vec<Solid>,
+    trim: Option<Solid>,
     unit: String,
 }
 
@@ -65,14 +66,14 @@ impl TryFrom<ModelData> for Model {
     type Error = ModelError;
 
     fn try_from(data: ModelData) -> Result<Self, ModelError> {
-        let ModelData { name, parts, instances, solids, unit } = data;
+        let ModelData { name, parts, instances, solids, trim, unit } = data;
         for mesh in parts.iter().flat_map(|part| &part.meshes) {
             check_colour(mesh.colour)?;
             if mesh.id == 0 {
                 return Err(ModelError::Number);
             }
         }
-        solids.iter().flat_map(|s| s.primitives()).try_for_each(|p| check_colour(Some(p.colour)))?;
+        solids.iter().chain(&trim).flat_map(|s| s.primitives()).try_for_each(|p| check_colour(Some(p.colour)))?;
         for (instance, placed) in instances.iter().enumerate() {
             check_colour(placed.colour)?;
             if placed.part >= parts.len() {
@@ -82,7 +83,7 @@ impl TryFrom<ModelData> for Model {
                 return Err(ModelError::Transform { instance });
             }
         }
-        Ok(Self { name, parts, instances, solids, unit })
+        Ok(Self { name, parts, instances, solids, trim, unit })
     }
 }
 

@@ -16,7 +16,7 @@
 use crate::gpu::{
     Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Resource, Sampler, Texels,
 };
-use crate::shaders::{self, TrimTest};
+use crate::shaders::{self, TrimTest, VOLUME_BUFFERS};
 use ash::vk;
 
 /// Threads of a workgroup of the first step.
@@ -26,6 +26,9 @@ const SCENE_HAS_RATIONAL: u32 = 0;
 
 /// `constant_id` of `SCENE_HAS_OTHERS`.
 const SCENE_HAS_OTHERS: u32 = 4;
+
+/// `constant_id` of `SOLIDS_HAVE_TORI`.
+const SOLIDS_HAVE_TORI: u32 = 5;
 
 /// The pass, in its two steps.
 pub(crate) struct Heal {
@@ -63,6 +66,8 @@ pub(crate) struct Bindings<'a> {
     pub others: Option<Others<'a>>,
     /// What the trim test reads, in its order.
     pub trim: &'a [&'a Buffer],
+    /// The volume that trims the scene; none where there is none.
+    pub volume: &'a [&'a Buffer],
     pub dispatch: &'a Buffer,
 }
 
@@ -81,23 +86,37 @@ pub(crate) struct Meshes<'a> {
 }
 
 impl Heal {
-    /// `test`: how faces are trimmed; `others`: the scene has things that are no patches.
-    pub(crate) fn new(device: &Device, test: &TrimTest, rational: bool, others: bool) -> Result<Self, GpuError> {
+    /// `test`: how faces are trimmed; `others`: the scene has things that are no patches; `volume`: one trims the
+    /// scene, and whether some surface of it is a torus.
+    pub(crate) fn new(
+        device: &Device,
+        test: &TrimTest,
+        (rational, others): (bool, bool),
+        volume: Option<bool>,
+    ) -> Result<Self, GpuError> {
         let mut find = [Binding::Storage; 7];
         find[1] = Binding::StorageImage;
         find[5] = Binding::Sampled;
-        let mut heal = vec![Binding::Storage; 15 + test.buffers];
+        let mut heal = vec![Binding::Storage; 15 + test.buffers + volume.map_or(0, |_| VOLUME_BUFFERS)];
         heal[6] = Binding::Texels;
         heal[7] = Binding::StorageImage;
         heal[11] = Binding::StorageImage;
         let weights = if rational { "rational" } else { "polynomial" };
         let pipeline = |name: &str, spirv, bindings: &[Binding]| {
-            let constants = &[(SCENE_HAS_RATIONAL, u32::from(rational)), (SCENE_HAS_OTHERS, u32::from(others))];
+            let constants = &[
+                (SCENE_HAS_RATIONAL, u32::from(rational)),
+                (SCENE_HAS_OTHERS, u32::from(others)),
+                (SOLIDS_HAVE_TORI, u32::from(volume == Some(true))),
+            ];
             Pipeline::compute(device, &ComputeInfo { name, spirv, bindings, push_bytes: 0, constants })
+        };
+        let (second, within) = match test.within.filter(|_| volume.is_some()) {
+            Some(within) => (within.heal, ", within a volume"),
+            None => (test.heal, ""),
         };
         Ok(Self {
             find: pipeline("heal (find)", shaders::DOUBTS_COMP, &find)?,
-            heal: pipeline(&format!("heal ({}, {weights})", test.way), test.heal, &heal)?,
+            heal: pipeline(&format!("heal ({}, {weights}{within})", test.way), second, &heal)?,
             nearest: Sampler::new(device, vk::Filter::NEAREST)?,
         })
     }
@@ -142,7 +161,8 @@ impl Heal {
             meshes.triangles.into(),
             meshes.positions.into(),
         ];
-        let resources: Vec<_> = resources.into_iter().chain(b.trim.iter().map(|&buffer| buffer.into())).collect();
+        let resources: Vec<_> =
+            resources.into_iter().chain(b.trim.iter().chain(b.volume).map(|&buffer| buffer.into())).collect();
         cmd.bind(&self.heal, &resources, &[]);
         cmd.dispatch_indirect(b.dispatch, 0);
     }

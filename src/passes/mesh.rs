@@ -15,9 +15,12 @@ use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image, Load,
     Pipeline,
 };
-use crate::shaders;
+use crate::shaders::{self, VOLUME_BUFFERS};
 use ash::vk;
 use std::ops::Range;
+
+/// `constant_id` of `SOLIDS_HAVE_TORI`.
+const SOLIDS_HAVE_TORI: u32 = 5;
 
 /// The pass.
 pub(crate) struct Mesh {
@@ -31,22 +34,32 @@ pub(crate) struct Bindings<'a> {
     pub mesh_instances: &'a Buffer,
     pub triangles: &'a Buffer,
     pub positions: &'a Buffer,
+    /// The volume that trims the scene; none where there is none.
+    pub volume: &'a [&'a Buffer],
 }
 
 impl Mesh {
-    /// For images of these formats.
-    pub(crate) fn new(device: &Device, visibility: vk::Format, depth: vk::Format) -> Result<Self, GpuError> {
+    /// For images of these formats; `volume`: one trims the scene, and whether some surface of it is a torus.
+    pub(crate) fn new(
+        device: &Device,
+        (visibility, depth): (vk::Format, vk::Format),
+        volume: Option<bool>,
+    ) -> Result<Self, GpuError> {
+        let (name, fragment) = match volume {
+            None => ("mesh", shaders::MESH_FRAG),
+            Some(_) => ("mesh (within a volume)", shaders::MESH_VOLUME_FRAG),
+        };
         let pipeline = Pipeline::graphics(
             device,
             &GraphicsInfo {
-                name: "mesh",
+                name,
                 stages: &[
                     (vk::ShaderStageFlags::VERTEX, shaders::MESH_VERT),
-                    (vk::ShaderStageFlags::FRAGMENT, shaders::MESH_FRAG),
+                    (vk::ShaderStageFlags::FRAGMENT, fragment),
                 ],
-                bindings: &[Binding::Storage; 5],
+                bindings: &vec![Binding::Storage; 5 + volume.map_or(0, |_| VOLUME_BUFFERS)],
                 push_bytes: 0,
-                constants: &[],
+                constants: &[(SOLIDS_HAVE_TORI, u32::from(volume == Some(true)))],
                 topology: vk::PrimitiveTopology::TRIANGLE_LIST,
                 patch_points: 0,
                 cull: vk::CullModeFlags::NONE,
@@ -70,7 +83,8 @@ impl Mesh {
         let colour = [Attachment { image: seen, load: Load::ColourU32([0; 4]) }];
         let depth = Attachment { image: depth, load: Load::Depth(0.0) };
         cmd.rendering(seen.size(), &colour, Some(depth), || {
-            let resources = [b.frame, b.views, b.mesh_instances, b.triangles, b.positions].map(Into::into);
+            let own = [b.frame, b.views, b.mesh_instances, b.triangles, b.positions];
+            let resources: Vec<_> = own.iter().chain(b.volume).map(|&buffer| buffer.into()).collect();
             cmd.bind(&self.pipeline, &resources, &[]);
             for (corners, instances) in draws {
                 cmd.draw_instances(corners.clone(), instances.clone());

@@ -14,7 +14,7 @@ use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
     Texels,
 };
-use crate::shaders::{self, TrimTest};
+use crate::shaders::{self, TrimTest, VOLUME_BUFFERS};
 use ash::vk;
 use std::mem::offset_of;
 
@@ -27,6 +27,8 @@ pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 const SCENE_HAS_RATIONAL: u32 = 0;
 /// `constant_id` of `TRIMMED`.
 const TRIMMED: u32 = 2;
+/// `constant_id` of `SOLIDS_HAVE_TORI`.
+const SOLIDS_HAVE_TORI: u32 = 5;
 /// `constant_id` of `SCENE_HAS_OPERANDS`.
 const SCENE_HAS_OPERANDS: u32 = 10;
 
@@ -45,6 +47,8 @@ pub(crate) struct Kinds<'a> {
     pub trimmed: Option<&'a TrimTest>,
     /// Some patches bound operands of Boolean solids: they are not drawn here.
     pub operands: bool,
+    /// A volume trims the scene; whether some surface of it is a torus.
+    pub volume: Option<bool>,
 }
 
 /// Its buffers, in binding order.
@@ -63,6 +67,8 @@ pub(crate) struct Bindings<'a> {
     pub rings: Option<&'a Buffer>,
     /// What the trim test reads, in its order.
     pub trim: &'a [&'a Buffer],
+    /// The volume that trims the scene; none where there is none.
+    pub volume: &'a [&'a Buffer],
     pub draws: &'a Buffer,
     pub counters: &'a Buffer,
 }
@@ -70,24 +76,31 @@ pub(crate) struct Bindings<'a> {
 impl Visibility {
     pub(crate) fn new(device: &Device, kinds: Kinds<'_>) -> Result<Self, GpuError> {
         let pipeline = |trimmed: Option<&TrimTest>| {
-            let (fragment, kind) = trimmed.map_or((shaders::VISIBILITY_FRAG, "plain"), |t| (t.visibility, t.way));
+            let within = kinds.volume.is_some();
+            let (fragment, kind) = match trimmed {
+                None if within => (shaders::VISIBILITY_VOLUME_FRAG, "plain"),
+                None => (shaders::VISIBILITY_FRAG, "plain"),
+                Some(t) => (t.within.filter(|_| within).map_or(t.visibility, |w| w.visibility), t.way),
+            };
+            let within = if within { ", within a volume" } else { "" };
             let weights = if kinds.rational { "rational" } else { "polynomial" };
             Pipeline::graphics(
                 device,
                 &GraphicsInfo {
-                    name: &format!("visibility ({kind}, {weights})"),
+                    name: &format!("visibility ({kind}, {weights}{within})"),
                     stages: &[
                         (vk::ShaderStageFlags::VERTEX, shaders::VISIBILITY_VERT),
                         (vk::ShaderStageFlags::TESSELLATION_CONTROL, shaders::VISIBILITY_TESC),
                         (vk::ShaderStageFlags::TESSELLATION_EVALUATION, shaders::VISIBILITY_TESE),
                         (vk::ShaderStageFlags::FRAGMENT, fragment),
                     ],
-                    bindings: &bindings(trimmed.map(|test| test.buffers)),
+                    bindings: &bindings(trimmed.map(|test| test.buffers), kinds.volume.is_some()),
                     push_bytes: 0,
                     constants: &[
                         (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
                         (TRIMMED, u32::from(trimmed.is_some())),
                         (SCENE_HAS_OPERANDS, u32::from(kinds.operands)),
+                        (SOLIDS_HAVE_TORI, u32::from(kinds.volume == Some(true))),
                     ],
                     topology: vk::PrimitiveTopology::PATCH_LIST,
                     patch_points: 1,
@@ -118,12 +131,13 @@ impl Visibility {
         let shared = || shared.into_iter().map(Into::into).chain([b.points.into()]).chain(lists.map(Into::into));
         cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
             if let Some(plain) = &self.plain {
-                cmd.bind(plain, &shared().collect::<Vec<_>>(), &[]);
+                let volume = b.volume.iter().map(|&buffer| buffer.into());
+                cmd.bind(plain, &shared().chain(volume).collect::<Vec<_>>(), &[]);
                 let count = offset_of!(Counters, plain_draws) as u64;
                 cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
             }
             if let (Some(trimmed), Some(rings)) = (&self.trimmed, b.rings) {
-                let test = b.trim.iter().map(|&buffer| buffer.into());
+                let test = b.trim.iter().chain(b.volume).map(|&buffer| buffer.into());
                 let resources: Vec<_> = shared().chain([rings.into()]).chain(test).collect();
                 cmd.bind(trimmed, &resources, &[]);
                 let count = offset_of!(Counters, trimmed_draws) as u64;
@@ -134,8 +148,9 @@ impl Visibility {
 }
 
 /// Bindings of a pipeline whose trim test reads so many buffers beside the rings; `None`: without one.
-fn bindings(of_test: Option<usize>) -> Vec<Binding> {
-    let mut bindings = vec![Binding::Storage; 10 + of_test.map_or(0, |buffers| 1 + buffers)];
+fn bindings(of_test: Option<usize>, volume: bool) -> Vec<Binding> {
+    let of_volume = if volume { VOLUME_BUFFERS } else { 0 };
+    let mut bindings = vec![Binding::Storage; 10 + of_test.map_or(0, |buffers| 1 + buffers) + of_volume];
     bindings[6] = Binding::Texels;
     bindings
 }

@@ -13,7 +13,8 @@
 //! proof that there is none (see the `solver` module). What the reference leaves out by rule, because
 //! it covers no area: surface that is seen exactly edge-on. A solid shows where the ray comes from outside
 //! to inside, at the near plane or behind it: a near plane within a solid cuts it open, and the first face
-//! entered from there is seen.
+//! entered from there is seen. Faces and meshes of a model that a volume trims are met within it, and nearer to
+//! its boundary than [`ON`].
 //!
 //! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`].
 
@@ -77,6 +78,8 @@ pub struct Tracer {
     top: Bvh,
     /// The union of the model's Boolean solids.
     solids: Option<csg::SolidTracer>,
+    /// The volume that trims faces and meshes.
+    trim: Option<csg::SolidTracer>,
     bounds: Bounds,
     given_up: AtomicU64,
 }
@@ -115,7 +118,8 @@ impl Tracer {
     ///
     /// Cost: microseconds a leaf, a leaf for every 20° or so that a surface turns. Instances whose
     /// transform flattens space are left out: they have no inside and no outward side. Boolean solids whose
-    /// union is larger than a [`Tree`](crate::csg::Tree) may be are left out and count as given up.
+    /// union is larger than a [`Tree`](crate::csg::Tree) may be are left out and count as given up; a volume
+    /// that trims the model, too.
     pub fn new(model: &Model) -> Self {
         let parts: Vec<PartTree> = model.parts.par_iter().map(PartTree::new).collect();
         let place = |(instance, i): (usize, &crate::model::Instance)| {
@@ -141,9 +145,11 @@ impl Tracer {
         let union = |solids: &[Solid]| csg::SolidTracer::new(&Solid::union(solids).ok()?, SurfaceTable::DRAWN).ok();
         let some = !model.solids.is_empty();
         let solids = some.then(|| union(&model.solids)).flatten();
-        let given_up = AtomicU64::new(u64::from(some && solids.is_none()));
+        let trim = model.trim.as_ref().and_then(|v| csg::SolidTracer::new(v, SurfaceTable::DRAWN).ok());
+        let lost = u64::from(some && solids.is_none()) + u64::from(model.trim.is_some() && trim.is_none());
+        let given_up = AtomicU64::new(lost);
         let bounds = solids.iter().fold(bounds, |all, s| all.union(s.bounds()));
-        Self { parts, placed, top, solids, bounds, given_up }
+        Self { parts, placed, top, solids, trim, bounds, given_up }
     }
 
     /// A box around everything that can be hit, but for unbounded solids, of which only the bounded
@@ -198,6 +204,10 @@ impl Tracer {
         }
     }
 }
+
+/// Points this near to the boundary of a volume that trims the model, along the ray and relative to the model's
+/// diagonal, are within it: a face that lies in the boundary is there, whatever the rounding.
+pub const ON: f64 = 1e-6;
 
 /// Padding of boxes relative to the diagonal of what they are in: above the rounding of a slab test,
 /// below the size of anything.

@@ -3,7 +3,7 @@
 use super::bvh::Slabs;
 use super::leaf::{Meeting, Ray};
 use super::solver::Solver;
-use super::{Hit, Placed, Tracer};
+use super::{Hit, ON, Placed, Tracer};
 use crate::model::{Camera, Shape};
 use glam::{DVec2, DVec3};
 use std::sync::atomic::Ordering;
@@ -65,6 +65,9 @@ impl<'a> Probe<'a> {
         let Self { tracer, camera, forward, solver, found, .. } = self;
         let tracer: &Tracer = tracer;
         found.clear();
+        let trim = tracer.trim.as_ref().map(|volume| volume.trace(origin, direction));
+        let on = ON * tracer.bounds.diagonal();
+        let kept = |t: f64| trim.as_ref().is_none_or(|v| [t - on, t, t + on].iter().any(|t| v.inside(*t)));
         tracer.top.visit(&Slabs::new(origin, direction), (start, end), |item| {
             let placed = &tracer.placed[item as usize];
             let part = &tracer.parts[placed.part];
@@ -75,7 +78,8 @@ impl<'a> Probe<'a> {
                 if let Some(leaf) = part.leaves.get(index) {
                     leaf.meet(&ray, solver, |m| {
                         let face = &part.faces[leaf.face as usize];
-                        if m.t >= start && m.t <= end && (leaf.inside || face.loops.contains(m.uv)) {
+                        let in_range = m.t >= start && m.t <= end;
+                        if in_range && (leaf.inside || face.loops.contains(m.uv)) && kept(m.t) {
                             let mut hit = placed.hit(&m, camera.eye, *forward);
                             hit.face = face.id;
                             hit.face_index = leaf.face as usize;
@@ -87,6 +91,7 @@ impl<'a> Probe<'a> {
                 } else if let Some((mesh, m)) = part.facets.meet(&ray, index - part.leaves.len())
                     && m.t >= start
                     && m.t <= end
+                    && kept(m.t)
                 {
                     let mut hit = placed.hit(&m, camera.eye, *forward);
                     hit.face = part.facets.meshes()[mesh].id;

@@ -1,5 +1,6 @@
 //! What one frame in flight owns, and what the host writes of it.
 
+use super::centres::SlotCentres;
 use super::constants::constants;
 use super::{FrameInput, Loaded, Retired, TargetFormats};
 use crate::abi;
@@ -8,7 +9,7 @@ use crate::buffers::Capacities;
 use crate::frame::SampleBuffers;
 use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Pool, ReadBack, Timestamps};
 use crate::model::Camera;
-use crate::scene::{SolidData, view};
+use crate::scene::view;
 use ash::vk;
 use glam::{DMat4, DVec3};
 
@@ -21,8 +22,7 @@ pub(super) struct Slot {
     pub(super) views: Option<Buffer>,
     /// The same for each of a pixel's samples, where there are several.
     pub(super) samples: Vec<SampleBuffers>,
-    /// Of leaves and of surfaces of Boolean solids.
-    pub(super) centres: Option<[Buffer; 2]>,
+    pub(super) centres: SlotCentres,
     pub(super) counters: ReadBack,
     /// What `counters` has room for, and how many the frame reports.
     pub(super) counter_room: usize,
@@ -43,7 +43,7 @@ impl Slot {
             constants: upload_buffer(device, "frame constants", size_of::<abi::Frame>() as u64)?,
             views: None,
             samples: Vec::new(),
-            centres: None,
+            centres: SlotCentres::default(),
             counters: read_counters(device, 1)?,
             counter_room: 1,
             counted: 1,
@@ -78,7 +78,7 @@ impl Slot {
         if let Some(buffer) = &mut self.views {
             buffer.write(0, &views);
         }
-        self.write_centres(device, &loaded.data.solids, input.camera)?;
+        self.retired.extend(self.centres.write(device, &loaded.data, input.camera)?.map(Retired::Buffer));
         let centre = constants(device, loaded, input, formats);
         self.constants.write(0, &[centre]);
         self.write_samples(device, loaded, input.camera, centre)?;
@@ -120,28 +120,6 @@ impl Slot {
         }
         Ok(())
     }
-
-    /// Writes where the parts of Boolean solids are, seen from the eye.
-    fn write_centres(&mut self, device: &Device, solids: &SolidData, camera: &Camera) -> Result<(), GpuError> {
-        if solids.leaf_centres.is_empty() {
-            self.retired.extend(self.centres.take().into_iter().flatten().map(Retired::Buffer));
-            return Ok(());
-        }
-        let all = [&solids.leaf_centres, &solids.surface_centres];
-        let bytes = all.map(|list| (list.len() * size_of::<[f32; 3]>()) as u64);
-        if self.centres.as_ref().is_none_or(|b| b[0].bytes() < bytes[0] || b[1].bytes() < bytes[1]) {
-            let made = [
-                upload_buffer(device, "solid leaf centres", bytes[0])?,
-                upload_buffer(device, "solid surface centres", bytes[1])?,
-            ];
-            self.retired.extend(self.centres.replace(made).into_iter().flatten().map(Retired::Buffer));
-        }
-        for (buffer, list) in self.centres.iter_mut().flatten().zip(all) {
-            let seen: Vec<[f32; 3]> = list.iter().map(|c| (*c - camera.eye).as_vec3().to_array()).collect();
-            buffer.write(0, &seen);
-        }
-        Ok(())
-    }
 }
 
 /// The matrix to pixels whose centres lie `offset` farther right and down: what projects there moves to the centres.
@@ -153,7 +131,7 @@ fn read_counters(device: &Device, count: usize) -> Result<ReadBack, GpuError> {
     ReadBack::new(device, "counters (read back)", (count * size_of::<Counters>()) as u64)
 }
 
-fn upload_buffer(device: &Device, name: &str, bytes: u64) -> Result<Buffer, GpuError> {
+pub(super) fn upload_buffer(device: &Device, name: &str, bytes: u64) -> Result<Buffer, GpuError> {
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
     Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })
 }

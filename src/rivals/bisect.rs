@@ -18,24 +18,14 @@
 //! [`Bisect::contains`].
 
 use crate::model::{Face, TrimLoop};
+use crate::picture::Sorted;
 use crate::spline::{Bezier, Control};
 use crate::trim::monotone_pieces;
 use bytemuck::{Pod, Zeroable};
 use glam::{DVec2, DVec3, Vec2};
-use serde::Serialize;
 
 /// Steps in the source.
 pub const STEPS: u32 = 16;
-
-/// How pieces are sorted into bands and cells.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
-pub enum Sorted {
-    /// A band ends at every end of a piece; cells hold pieces whose boxes overlap.
-    Source,
-    /// Fewer bands; cells hold pieces whose boxes within the band overlap.
-    Tuned,
-}
 
 /// Of one face.
 #[repr(C)]

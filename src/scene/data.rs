@@ -51,6 +51,8 @@ pub(crate) struct SceneData {
     pub placements: Vec<DAffine3>,
     /// Boolean solids.
     pub solids: SolidData,
+    /// The volume that trims faces and meshes, but for one that is everywhere.
+    pub volume: Option<SolidData>,
     /// Some patch bounds an operand of theirs.
     pub has_operands: bool,
 }
@@ -61,7 +63,10 @@ impl SceneData {
         let edits = settings.editable && matches!(way, TrimWay::Table | TrimWay::Exact);
         let edit = edits.then(EditScene::default);
         let solids = SolidData::new(&model.solids, settings.solids)?;
-        let mut data = Self { solids, way: Some(way), samples: settings.samples, edit, ..Self::default() };
+        let volume = model.trim.as_ref().map(|volume| SolidData::volume(volume, way)).transpose()?.flatten();
+        let mut data = Self { solids, volume, way: Some(way), samples: settings.samples, edit, ..Self::default() };
+        // cut open, a part has no inside
+        let open = data.volume.is_some();
         let mut used = vec![false; model.parts.len()];
         model.instances.iter().for_each(|i| used[i.part] = true);
         let mut first_faces = Vec::with_capacity(model.parts.len());
@@ -75,7 +80,7 @@ impl SceneData {
                 let faces: Vec<FaceData> = part
                     .faces
                     .par_iter()
-                    .map(|f| FaceData::new(f, origin, part.closed, way, settings.editable))
+                    .map(|f| FaceData::new(f, origin, part.closed && !open, way, settings.editable))
                     .collect();
                 faces.into_iter().for_each(|f| data.push_face(f));
                 #[cfg(feature = "rivals")]
@@ -92,7 +97,7 @@ impl SceneData {
         if let Some(edit) = &mut data.edit {
             edit.first_faces = first_faces;
         }
-        data.meshes = Meshes::new(model, &origins);
+        data.meshes = Meshes::new(model, &origins, open);
         data.push_operands(way);
         Ok(data)
     }
@@ -111,8 +116,9 @@ impl SceneData {
     pub(crate) fn drop_uploaded(&mut self) {
         let placements = std::mem::take(&mut self.placements);
         let solids = std::mem::take(&mut self.solids).centres_only();
+        let volume = self.volume.take().map(SolidData::centres_only);
         let edit = self.edit.take();
-        *self = Self { placements, solids, edit, ..Self::default() };
+        *self = Self { placements, solids, volume, edit, ..Self::default() };
     }
 
     /// Operands of Boolean solids without equations are placed as parts are, after them.
@@ -122,7 +128,10 @@ impl SceneData {
             for face in operand.faces() {
                 let mut f = FaceData::new(face, operand.origin, true, way, false);
                 f.face.flags |= abi::FACE_OPERAND;
-                (f.face.id, f.face.colour) = (operand.primitive.id, pack_colour(operand.primitive.colour));
+                f.face.id = operand.primitive.id;
+                if face.colour.is_none() {
+                    f.face.colour = pack_colour(operand.primitive.colour);
+                }
                 self.push_face(f);
             }
             let faces = first..self.faces.len();

@@ -28,14 +28,14 @@ pub(crate) struct Meshes {
 }
 
 impl Meshes {
-    /// `origins` has the centre of each part.
-    pub(super) fn new(model: &Model, origins: &[DVec3]) -> Self {
+    /// `origins` has the centre of each part; `open`: a volume cuts the scene open.
+    pub(super) fn new(model: &Model, origins: &[DVec3], open: bool) -> Self {
         let mut placed = vec![Vec::new(); model.parts.len()];
         (0..).zip(&model.instances).for_each(|(index, i)| placed[i.part].push(index));
         let mut all = Self::default();
         for ((part, &origin), placed) in model.parts.iter().zip(origins).zip(&placed) {
             for mesh in part.meshes.iter().filter(|m| !m.triangles().is_empty() && !placed.is_empty()) {
-                all.push(mesh, origin, part.closed, placed);
+                all.push(mesh, origin, part.closed && !open, placed);
             }
         }
         all

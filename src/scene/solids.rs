@@ -17,7 +17,7 @@ use super::face::pack_colour;
 use crate::abi;
 use crate::csg::Blist;
 use crate::model::{Solid, SolidError, SurfaceTable};
-use crate::picture::SolidWay;
+use crate::picture::{SolidWay, TrimWay};
 use glam::DVec3;
 use std::ops::Range;
 use surface::sides_of;
@@ -53,6 +53,12 @@ pub enum UndrawnSolid {
     /// There are too many primitives, or their expression is too large.
     #[error(transparent)]
     Union(#[from] SolidError),
+    /// A volume that trims a model is not made of what has equations.
+    #[error("a volume that trims a model has a mesh or a part among its primitives; it needs equations")]
+    Volume,
+    /// The way to trim is for comparisons.
+    #[error("what a volume trims is not drawn by `{0}`")]
+    VolumeBy(&'static str),
 }
 
 impl SolidData {
@@ -141,6 +147,35 @@ impl SolidData {
             data.order = order::order(&data.leaves, data.leaf_surfaces.iter().any(shared));
         }
         Ok(data)
+    }
+
+    /// The volume that trims a scene; `None` when it is everywhere.
+    pub(super) fn volume(volume: &Solid, way: TrimWay) -> Result<Option<Self>, UndrawnSolid> {
+        let by_comparison = !TrimWay::ALL.contains(&way);
+        if by_comparison {
+            return Err(UndrawnSolid::VolumeBy(way.name()));
+        }
+        if volume.tree().fold(|_| None).as_constant() == Some(true) {
+            return Ok(None);
+        }
+        let mut data = Self::new(std::slice::from_ref(volume), SolidWay::Events)?;
+        if !data.shell_leaves.is_empty() {
+            return Err(UndrawnSolid::Volume);
+        }
+        if data.leaves.is_empty() {
+            data.push_nothing(); // every walk begins at a leaf
+        }
+        Ok(Some(data))
+    }
+
+    /// A leaf that no point is in.
+    fn push_nothing(&mut self) {
+        self.surfaces.push(surface::nowhere());
+        self.surface_centres.push(DVec3::ZERO);
+        self.leaf_surfaces.push(abi::LeafSurface { surface: (self.surfaces.len() as u32 - 1) << 1, leaf: 0 });
+        let (in_exit, out_exit) = (abi::EXIT_TRUE, abi::EXIT_FALSE);
+        self.leaf_centres.push(DVec3::ZERO);
+        self.leaves.push(abi::Leaf { count: 1, in_exit, out_exit, ..Default::default() });
     }
 
     /// `None` without leaves, else whether some surface is a torus.

@@ -24,6 +24,15 @@ pub(crate) struct Scene {
     pub solids: Option<Solids>,
     /// What meshes need; `None` when there is none.
     pub meshes: Option<MeshBuffers>,
+    /// The volume that trims faces and meshes; `None` when none does.
+    pub volume: Option<Volume>,
+}
+
+/// A volume's switches, and their surfaces.
+pub(crate) struct Volume {
+    pub leaves: Buffer,
+    pub sides: Buffer,
+    pub surfaces: Buffer,
 }
 
 /// The switches of the Blist, and their surfaces.
@@ -160,6 +169,17 @@ impl Scene {
                         triangles: persistent(&mut uploads, cmd, "mesh triangles", &m.triangles)?,
                         normals: persistent(&mut uploads, cmd, "mesh normals", &m.normals)?,
                         draws: m.draws.clone(),
+                    })
+                })
+                .transpose()?,
+            volume: data
+                .volume
+                .as_ref()
+                .map(|v| {
+                    Ok(Volume {
+                        leaves: persistent(&mut uploads, cmd, "volume leaves", &v.leaves)?,
+                        sides: persistent(&mut uploads, cmd, "volume sides", &v.leaf_surfaces)?,
+                        surfaces: persistent(&mut uploads, cmd, "volume surfaces", &v.surfaces)?,
                     })
                 })
                 .transpose()?,

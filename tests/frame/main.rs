@@ -5,10 +5,12 @@
 //! mesa-vulkan-drivers vulkan-validationlayers`. Without them these tests fail and say so.
 
 mod accuracy;
+mod cuts;
 mod distance;
 mod errors;
 mod every_shape;
 mod hard;
+mod hard_solids;
 mod hard_trims;
 mod ledges;
 mod light;

@@ -84,7 +84,7 @@ fn only_a_scene_with_solids_has_what_they_need() {
     let needed = ["solid rects", "solid fold", "solid leaves", "solid sides", "solid surfaces", "resolve (solid)"];
     for shape in shapes::all() {
         let (renderer, objects) = objects(&shape.model, Outputs::default());
-        assert!(!objects.iter().any(|o| o.contains("solid")), "{}: {objects:?}", shape.name);
+        assert!(!objects.iter().any(|o| o.contains("solid") || o.contains("volume")), "{}: {objects:?}", shape.name);
         assert_silent(renderer);
     }
     let (renderer, objects) = objects(&shapes::solids::holes(2), Outputs::default());
@@ -150,5 +150,22 @@ fn a_replaced_model_leaves_nothing_behind() {
         names
     };
     assert_eq!(sorted(renderer.objects()), sorted(before));
+    assert_silent(renderer);
+}
+
+/// Buffers and pipelines of a volume that trims, where there is one; that others have none is looked at above.
+#[test]
+fn a_scene_that_a_volume_trims_has_what_that_needs() {
+    let mut model = shapes::beside();
+    model.trim_by(&shapes::solids::solid("A", vec![shapes::solids::ball(1.0, 0.0)]).solids[0]).unwrap();
+    let (renderer, objects) = objects(&model, Outputs::default());
+    let of_volume = |o: &&String| o.contains("volume");
+    let buffers = ["volume leaves", "volume sides", "volume surfaces", "volume centres", "mesh (within a volume)"];
+    for name in buffers {
+        assert!(objects.iter().any(|o| o == name), "{name}: {objects:?}");
+    }
+    // beside them visibility and heal, which are told of by their ends
+    assert!(objects.iter().filter(of_volume).count() >= buffers.len() + 2, "{objects:?}");
+    assert!(!objects.iter().any(|o| o.contains("solid")), "{objects:?}");
     assert_silent(renderer);
 }

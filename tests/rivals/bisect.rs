@@ -2,7 +2,8 @@
 
 use glam::{DVec2, Vec2};
 use selvedge::model::{Face, Model};
-use selvedge::rivals::bisect::{Bisect, STEPS, Sorted};
+use selvedge::picture::Sorted;
+use selvedge::rivals::bisect::{Bisect, STEPS};
 use selvedge::rivals::many_holes;
 use selvedge::trim::LoopIndex;
 

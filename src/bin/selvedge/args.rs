@@ -1,5 +1,6 @@
 //! What the command line accepts, checked before anything is opened.
 
+use crate::cut::CutArgs;
 use crate::trims::Way;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
@@ -56,6 +57,8 @@ pub struct RenderArgs {
     pub model: PathBuf,
     #[command(flatten)]
     pub subdivide: SubdivideArgs,
+    #[command(flatten)]
+    pub cut: CutArgs,
     /// PNG file to write
     #[arg(short, long, value_name = "OUT.png")]
     pub output: PathBuf,
@@ -110,6 +113,8 @@ pub struct CheckArgs {
     #[command(flatten)]
     pub subdivide: SubdivideArgs,
     #[command(flatten)]
+    pub cut: CutArgs,
+    #[command(flatten)]
     pub camera: CameraArgs,
     #[command(flatten)]
     pub frame: FrameArgs,
@@ -150,9 +155,11 @@ pub struct BenchArgs {
     /// Samples of each pixel's colour, 1, 4 or 8: smooth edges, at about as many times the cost
     #[arg(long, value_name = "N", default_value = "1")]
     pub samples: Samples,
+    #[command(flatten)]
+    pub cut: CutArgs,
     /// Drag a loop of the face with the most loops, once a frame, instead of moving the camera: latency, bytes sent,
     /// and whether pictures equal those of a fresh upload
-    #[arg(long)]
+    #[arg(long, conflicts_with_all = ["section", "trim_by"])]
     pub edit: bool,
     /// Folder for bench.json and bench.csv
     #[arg(long, value_name = "DIR")]

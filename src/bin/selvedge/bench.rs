@@ -75,7 +75,8 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
 
 /// One model along the path; true when the validation layer complained.
 fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
-    let import = session::open(model, &Default::default())?;
+    let mut import = session::open(model, &Default::default())?;
+    args.cut.apply(&mut import.model)?;
     let bounds = import.model.bounds();
     let Size(width, height) = args.size;
     let camera = |index| path::camera(bounds, (width, height), index, args.frames);

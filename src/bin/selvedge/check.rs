@@ -30,6 +30,7 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
         let by = DAffine3::from_translation(by);
         import.model.instances.iter_mut().for_each(|i| i.transform = by * i.transform);
     }
+    args.cut.apply(&mut import.model)?;
     let views = match args.zoom.as_slice() {
         [] => args.camera.views(args.views, &import)?,
         times => args.camera.zooms(times, &import)?,

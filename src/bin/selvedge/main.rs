@@ -15,6 +15,7 @@ mod bench;
 mod camera;
 mod check;
 mod convert;
+mod cut;
 mod edit;
 mod export;
 mod info;

@@ -9,7 +9,8 @@ use selvedge::picture::{Outputs, Picture};
 
 /// Draws the picture and writes every file asked for.
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
-    let import = session::open(&args.model, &args.subdivide)?;
+    let mut import = session::open(&args.model, &args.subdivide)?;
+    args.cut.apply(&mut import.model)?;
     let camera = args.camera.of(&import)?;
     if let Some(path) = &args.camera_out {
         output::json(path, &CameraFile::from(&camera))?;

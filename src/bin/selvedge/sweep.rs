@@ -12,7 +12,7 @@ use crate::args::{Factors, Size, SubdivideArgs, SweepArgs};
 use crate::camera::closer;
 use crate::progress::during;
 use crate::{Outcome, output, session, verdict};
-use anyhow::Result;
+use anyhow::{Result, bail};
 use glam::{DAffine3, DVec3};
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Model};
@@ -59,6 +59,9 @@ pub fn run(args: &SweepArgs) -> Result<Outcome> {
     let mut device = String::new();
     for file in &args.models {
         let import = session::open(file, &SubdivideArgs::default())?;
+        if import.model.trim.is_some() {
+            bail!("{}: a volume trims it, and would not go with the copies", file.display());
+        }
         let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
         for &copies in &args.copies {
             let model = copied(&import.model, copies, args.distinct);

@@ -176,7 +176,7 @@ fn colours_are_linear_and_the_outermost_wins() {
     let colours: Vec<_> = import.model.solids[0].primitives().iter().map(|p| p.colour).collect();
     // sRGB 0.5 is 0.21404 in linear light (IEC 61966-2-1)
     assert!((colours[0][1] - 0.214_041).abs() < 1e-5 && colours[0][0] == 1.0 && colours[0][3] == 0.25);
-    assert_eq!(colours[1], super::super::solid::GREY);
+    assert_eq!(colours[1], crate::model::GREY);
 }
 
 #[test]

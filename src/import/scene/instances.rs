@@ -8,7 +8,7 @@
 use super::items::{Scene, Section, Thing};
 use super::solid::{self, Adding, Form};
 use super::text::{Fault, Outcome, Table, Value, shortened};
-use super::{VERSION, cameras, place};
+use super::{VERSION, cameras, cuts, place};
 use crate::brep::BuiltFace;
 use crate::import::camera::PictureSettings;
 use crate::import::solid::Assembly;
@@ -42,10 +42,12 @@ pub(super) fn read(text: &str, file: &str, folder: Option<&Path>) -> Outcome<Imp
     scene.list(&mut table)?;
     let (instances, named) = (table.get("instance"), table.get("camera"));
     let picture = table.read("picture", Value::table)?;
+    let (trim, sections) = (table.get("trim"), table.get("section"));
     table.finish()?;
     for item in scene.items.clone() {
         scene.make(item)?;
     }
+    let trim = trim.map(|name| cuts::volume(&mut scene, name)).transpose()?;
     model.unit = UNITS.iter().find(|u| u.1 == scene.unit).map_or("mm", |u| u.0).to_owned();
     let mut builder = Builder { model, ..Builder::default() };
     match instances {
@@ -70,6 +72,7 @@ pub(super) fn read(text: &str, file: &str, folder: Option<&Path>) -> Outcome<Imp
     let picture = picture.map_or(Ok(PictureSettings::default()), |t| cameras::picture(t, &list))?;
     let mut import = builder.finish(&scene);
     (import.cameras, import.picture) = (list, picture);
+    cuts::cut(&scene, &mut import.model, trim.as_ref(), sections)?;
     Ok(import)
 }
 

@@ -15,6 +15,7 @@
 
 mod cameras;
 mod curve;
+mod cuts;
 mod data;
 mod files;
 mod instances;

@@ -271,7 +271,10 @@ pub(super) fn add<'a>(
     let placed = Placed { transform, colour: how.over.or(body.colour).or(how.inherited), id: body.id };
     Ok(match &body.form {
         Form::Primitive(shape) => to.add(shape.clone(), &placed),
-        Form::Part(part) => to.add(Shape::Part(part.clone()), &placed),
+        Form::Part(part) => {
+            let part = if how.over.is_some() { Part::uncoloured(part) } else { part.clone() };
+            to.add(Shape::Part(part), &placed)
+        }
         Form::Boolean(expression, operands) => {
             let how = Adding { transform, inherited: body.colour.or(how.inherited), ..how };
             let leaves = operands.iter().map(|o| add(scene, to, o, how, value)).collect::<Outcome<Vec<_>>>()?;
@@ -305,7 +308,9 @@ fn add_file(scene: &mut Scene<'_>, to: &mut Assembly, file: &File, how: Adding, 
         scene.spend(1, value)?;
         let part = parts[instance.part].clone();
         let id = part.faces.first().map(|f| f.id).or(part.meshes.first().map(|m| m.id)).unwrap_or(1);
-        let colour = over.or(instance.colour).or(how.inherited);
+        let over = over.or(instance.colour);
+        let part = if over.is_some() { Part::uncoloured(&part) } else { part };
+        let colour = over.or(how.inherited);
         nodes.push(to.add(Shape::Part(part), &Placed { transform: all * instance.transform, colour, id }));
     }
     for solid in &model.solids {

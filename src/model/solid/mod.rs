@@ -79,12 +79,32 @@ impl Solid {
         }
     }
 
-    /// The union of `solids`, which is what a model shows of them: primitives one solid after another, and
-    /// one tree over them.
+    /// One primitive.
+    ///
+    /// # Errors
+    /// [`SolidError::Shape`].
+    pub fn of(primitive: Primitive) -> Result<Self, SolidError> {
+        Self::new(vec![primitive], Tree::leaf(0))
+    }
+
+    /// The union of `solids`, which is what a model shows of them.
     ///
     /// # Errors
     /// [`SolidError::TooMany`] primitives, or [`SolidError::Tree`].
     pub fn union(solids: &[Self]) -> Result<Self, SolidError> {
+        Self::joined(Op::Union, solids)
+    }
+
+    /// What is in both.
+    ///
+    /// # Errors
+    /// As [`Solid::union`].
+    pub fn intersection(&self, other: &Self) -> Result<Self, SolidError> {
+        Self::joined(Op::Intersection, &[self.clone(), other.clone()])
+    }
+
+    /// `solids` under one operation: primitives one solid after another, and one tree over them.
+    fn joined(op: Op, solids: &[Self]) -> Result<Self, SolidError> {
         let mut builder = Builder::new();
         let mut primitives = Vec::new();
         let mut roots = Vec::with_capacity(solids.len());
@@ -105,7 +125,7 @@ impl Solid {
             }
             roots.extend(map.last());
         }
-        let root = builder.fold(Op::Union, roots);
+        let root = builder.fold(op, roots);
         Ok(Self { primitives, tree: builder.finish(root)? })
     }
 

@@ -150,6 +150,7 @@ impl CloseUp {
             name: model.name.clone(),
             unit: model.unit.clone(),
             solids: model.solids.clone(),
+            trim: model.trim.clone(),
             ..Model::default()
         };
         for (placed, sight, faces) in &seen {

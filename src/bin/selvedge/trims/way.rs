@@ -1,7 +1,7 @@
 //! The ways to trim and their knobs.
 
+use selvedge::picture::Sorted;
 use selvedge::picture::{Rival, TrimWay};
-use selvedge::rivals::bisect::Sorted;
 use serde::Serialize;
 use std::fmt;
 use std::str::FromStr;

@@ -1,5 +1,6 @@
 //! Scene files: what they make, and what they refuse and where.
 
+mod cuts;
 mod errors;
 mod files;
 mod made;

@@ -1,0 +1,56 @@
+// Whether a point is within the volume that trims the scene's faces and meshes (Model::trim_by). Whoever includes
+// this declares `frame` and defines VOLUME_BINDING, where four buffers begin.
+//
+//   point ──▶ leaf: behind all its sides? ──in or out exit──▶ leaf … ──▶ EXIT_TRUE: kept
+//
+// Exits lead forward, so the walk ends. A point on the volume's boundary is kept: leaves that add are larger by
+// what a point may be off, those that are taken away smaller.
+#ifndef VOLUME_GLSL
+#define VOLUME_GLSL
+
+#include "solids.glsl"
+#include "eye_ray.glsl"
+
+layout(scalar, binding = VOLUME_BINDING + 0) readonly buffer VolumeLeaves { Leaf volume_leaves[]; };
+layout(scalar, binding = VOLUME_BINDING + 1) readonly buffer VolumeSides { LeafSurface volume_sides[]; };
+layout(scalar, binding = VOLUME_BINDING + 2) readonly buffer VolumeSurfaces { Surface volume_surfaces[]; };
+layout(scalar, binding = VOLUME_BINDING + 3) readonly buffer VolumeCentres { vec3 volume_centres[]; };
+
+// What counts as on the boundary: pixels, far below any tolerance, and a share of the depth, above the rounding
+// of a point seen from the eye.
+const float ON_PX = 0.01;
+const float ON_DEPTH = 2e-6;
+
+// Behind all sides of the leaf, or at most `slack` before them; p is seen from the eye.
+bool in_leaf(Leaf leaf, vec3 p, float slack) {
+    bool inside = true;
+    for (uint k = leaf.first; k < leaf.first + leaf.count && inside; ++k) {
+        uint word = volume_sides[k].surface;
+        Surface s = volume_surfaces[word >> 1];
+        vec3 at = p - volume_centres[word >> 1];
+        float value = surface_value(s, at);
+        // the value grows by twice this a unit of length
+        float slope = 2.0 * length(surface_gradient(s, at));
+        inside = ((word & 1u) != 0u ? -value : value) <= slack * slope;
+    }
+    return inside;
+}
+
+// Within the volume or at most `margin_px` from it; `q` is the point as a homogeneous pixel, its depth third.
+bool in_volume(vec4 q, float margin_px) {
+    Ray ray = eye_ray(frame, q.xy / q.w);
+    vec3 p = ray.o + q.z * ray.d;
+    float unit = (frame.perspective != 0u ? q.z : 1.0) / frame.focal; // of a pixel there
+    float on = margin_px * unit + ON_DEPTH * abs(q.z);
+    uint at = 0u;
+    for (;;) {
+        Leaf leaf = volume_leaves[at];
+        bool inside = in_leaf(leaf, p, (leaf.flags & LEAF_NEGATIVE) != 0u ? -on : on);
+        uint next = inside ? leaf.in_exit : leaf.out_exit;
+        // lanes that only keep others company read zeros
+        if (next <= at || next >= EXIT_FALSE) return next == EXIT_TRUE;
+        at = next;
+    }
+}
+
+#endif

@@ -1,0 +1,82 @@
+//! A model cut open before it is drawn: `--section`, `--trim-by`.
+
+use crate::session;
+use anyhow::{Context, Result, bail};
+use clap::Args;
+use glam::DVec3;
+use selvedge::model::{Model, Solid};
+use std::path::PathBuf;
+use std::str::FromStr;
+
+/// How the model is cut open.
+#[derive(Debug, Default, Args)]
+pub struct CutArgs {
+    /// Draw only what lies where NX x + NY y + NZ z <= D, millimetres, with caps on what is closed; several cut one
+    /// after another
+    #[arg(long, value_name = "NX,NY,NZ,D", allow_hyphen_values = true)]
+    pub section: Vec<Plane>,
+    /// Draw only the surface that lies within the solids of another file (.csg, .asc or a scene), open where it is cut;
+    /// before any section
+    #[arg(long, value_name = "FILE")]
+    pub trim_by: Option<PathBuf>,
+}
+
+/// `normal · p <= offset`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Plane {
+    normal: DVec3,
+    offset: f64,
+}
+
+impl FromStr for Plane {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse::<f64>()).collect();
+        match numbers.as_deref() {
+            Ok(&[x, y, z, offset]) if [x, y, z, offset].iter().all(|n| n.is_finite()) => {
+                let normal = DVec3::new(x, y, z);
+                if normal == DVec3::ZERO {
+                    Err("the first three numbers are all 0".into())
+                } else {
+                    Ok(Self { normal, offset })
+                }
+            }
+            _ => Err("wants four finite numbers, as in 1,0,0,2.5".into()),
+        }
+    }
+}
+
+impl CutArgs {
+    /// Cuts the model.
+    pub fn apply(&self, model: &mut Model) -> Result<()> {
+        if let Some(path) = &self.trim_by {
+            let by = session::open(path, &Default::default())?.model;
+            let told = || path.display().to_string();
+            if !by.instances.is_empty() {
+                bail!("{}: holds parts, and a volume that trims needs equations", told());
+            }
+            if by.solids.is_empty() {
+                bail!("{}: holds no solid to trim by", told());
+            }
+            let volume = Solid::union(&by.solids).with_context(told)?;
+            model.trim_by(&volume).with_context(told)?;
+        }
+        for plane in &self.section {
+            *model = model.section(plane.normal, plane.offset)?;
+        }
+        Ok(())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn planes() {
+        assert_eq!("-1, 0,2,3e1".parse(), Ok(Plane { normal: DVec3::new(-1.0, 0.0, 2.0), offset: 30.0 }));
+        for bad in ["1,0,0", "0,0,0,1", "1,0,0,x", "1,0,0,inf", "1,2,3,4,5", ""] {
+            assert!(bad.parse::<Plane>().is_err(), "{bad}");
+        }
+    }
+}

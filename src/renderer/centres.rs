@@ -1,0 +1,59 @@
+//! Where surfaces of solids are, seen from a frame's eye: what changes with the camera and stays in `f64`.
+
+use super::slot::upload_buffer;
+use crate::frame::Centres;
+use crate::gpu::{Buffer, Device, GpuError};
+use crate::model::Camera;
+use crate::scene::SceneData;
+use glam::DVec3;
+
+/// Buffers of one frame slot; `None` where the scene has nothing of the kind.
+#[derive(Default)]
+pub(super) struct SlotCentres {
+    leaves: Option<Buffer>,
+    surfaces: Option<Buffer>,
+    /// Surfaces of the volume that trims the scene.
+    volume: Option<Buffer>,
+}
+
+impl SlotCentres {
+    /// Writes them for a camera; returns the buffers that were too small or are not needed any more.
+    pub(super) fn write(
+        &mut self,
+        device: &Device,
+        data: &SceneData,
+        camera: &Camera,
+    ) -> Result<impl Iterator<Item = Buffer>, GpuError> {
+        let none = Vec::new();
+        let volume = data.volume.as_ref().map_or(&none, |v| &v.surface_centres);
+        let lists: [(&mut Option<Buffer>, &str, &[DVec3]); 3] = [
+            (&mut self.leaves, "solid leaf centres", &data.solids.leaf_centres),
+            (&mut self.surfaces, "solid surface centres", &data.solids.surface_centres),
+            (&mut self.volume, "volume centres", volume),
+        ];
+        let mut gone = Vec::new();
+        for (place, name, list) in lists {
+            let bytes = (list.len() * size_of::<[f32; 3]>()) as u64;
+            if list.is_empty() {
+                gone.extend(place.take());
+                continue;
+            }
+            if place.as_ref().is_none_or(|b| b.bytes() < bytes) {
+                gone.extend(place.replace(upload_buffer(device, name, bytes)?));
+            }
+            let seen: Vec<[f32; 3]> = list.iter().map(|c| (*c - camera.eye).as_vec3().to_array()).collect();
+            place.iter_mut().for_each(|buffer| buffer.write(0, &seen));
+        }
+        Ok(gone.into_iter())
+    }
+
+    /// Of Boolean solids.
+    pub(super) fn solids(&self) -> Option<Centres<'_>> {
+        let (leaves, surfaces) = (self.leaves.as_ref()?, self.surfaces.as_ref()?);
+        Some(Centres { leaves, surfaces })
+    }
+
+    pub(super) fn volume(&self) -> Option<&Buffer> {
+        self.volume.as_ref()
+    }
+}
