@@ -62,7 +62,7 @@ pub static TRIM_EXACT: TrimTest = TrimTest {
     operand_patch: OPERAND_PATCH_EXACT_FRAG,
     heal: HEAL_EXACT_COMP,
     within: Some(Within { visibility: VISIBILITY_EXACT_VOLUME_FRAG, heal: HEAL_EXACT_VOLUME_COMP }),
-    buffers: 7,
+    buffers: 6,
 };
 
 /// No test at all.

@@ -1,20 +1,15 @@
-// The exact trim test: a look at a grid; near a loop band, cell, and the few arcs that the cell holds. Twin of
+// The exact trim test: band, cell, and the few arcs that the cell holds. Twin of
 // src/twin/exact.rs; what the structures mean stands in src/trim/exact.
 //
-//   face ──▶ grid: a word, or the tile behind it                     out, in or near a loop
-//        ──▶ bands: binary search in v ──▶ cells: binary search in u ──▶ winding + entries ──▶ arcs ──▶ points
+//   face ──▶ bands: binary search in v ──▶ cells: binary search in u ──▶ winding + entries ──▶ arcs ──▶ points
 //
-// Whoever includes this defines EXACT_BINDING, where its seven buffers begin.
+// Whoever includes this defines EXACT_BINDING, where its six buffers begin.
 #ifndef EXACT_GLSL
 #define EXACT_GLSL
 
 struct ExactFace {
     uint first_band;
     uint band_count;
-    uint first_word; // of its grid
-    uint across;     // coarse cells along each side of the grid
-    vec2 origin;
-    vec2 scale;      // fine cells a unit
 };
 
 struct ExactBand {
@@ -43,14 +38,12 @@ layout(scalar, binding = EXACT_BINDING + 2) readonly buffer ExactCells { ExactCe
 layout(scalar, binding = EXACT_BINDING + 3) readonly buffer ExactEntries { uint exact_entries[]; };
 layout(scalar, binding = EXACT_BINDING + 4) readonly buffer ExactArcs { ExactArc exact_arcs[]; };
 layout(scalar, binding = EXACT_BINDING + 5) readonly buffer ExactPoints { float exact_points[]; };
-layout(scalar, binding = EXACT_BINDING + 6) readonly buffer ExactWords { uint exact_words[]; };
 
 const uint AT_LOW = 1u;  // flags of an entry: a chain leaves the cell from this end of the arc
 const uint AT_HIGH = 2u;
-const uint AREA_OUT = 0u; // what an area holds; its fine cells hold the same numbers
+const uint AREA_OUT = 0u; // what an area holds
 const uint AREA_IN = 1u;
 const uint AREA_MIXED = 2u; // or what is not easily told
-const uint TILE = 16u; // fine cells along the side of a coarse one
 const uint ARC_DEGREE = 31u;
 const uint ARC_UP = 32u;
 const uint MAX_STEPS = 40u;  // every second one halves: 2^-20 of the arc, in parameter, at the least
@@ -150,88 +143,22 @@ int exact_winding(uint face, vec2 uv) {
     return winding;
 }
 
-// By the grid, whether the box is inside.
-uint exact_look(uint face, vec2 lo, vec2 hi) {
-    ExactFace f = exact_faces[face];
-    if (f.across == 0u) return AREA_OUT;
-    uint last = f.across * TILE - 1u;
-    precise vec2 a = (lo - f.origin) * f.scale;
-    precise vec2 b = (hi - f.origin) * f.scale;
-    uvec2 from = uvec2(clamp(a, vec2(0.0), vec2(last)));
-    uvec2 to = uvec2(clamp(b, vec2(0.0), vec2(last)));
-    bool fine = all(lessThanEqual(to - from, uvec2(1u)));
-    if (!fine && any(greaterThan(to / TILE - from / TILE, uvec2(1u)))) return AREA_MIXED;
-    // four corners meet all cells of either kind that the box meets; one does where they are the same
-    uint corners = from == to ? 1u : 4u;
-    uint area = AREA_MIXED;
-    for (uint i = 0u; i < corners; ++i) {
-        uvec2 cell = uvec2((i & 1u) == 0u ? from.x : to.x, (i & 2u) == 0u ? from.y : to.y);
-        uint here = exact_words[f.first_word + cell.y / TILE * f.across + cell.x / TILE];
-        if (here > AREA_IN) {
-            if (!fine) return AREA_MIXED;
-            uint line = exact_words[f.first_word + here + cell.y % TILE];
-            here = line >> 2u * (cell.x % TILE) & 3u;
-            if (here == AREA_MIXED) return AREA_MIXED;
-        }
-        if (i > 0u && here != area) return AREA_MIXED;
-        area = here;
-    }
-    return area;
-}
-
-// As exact_look, by the arcs of the cell that holds the box, if one does: what lies between two borders.
-uint exact_among(uint face, vec2 lo, vec2 hi) {
+// Whether all of a box is inside the face, all of it outside, or neither is told by the one cell that holds it. Cells
+// with arcs are not asked: a wide machine would do it beside the point by point test, not in its place.
+uint exact_area(uint face, vec2 lo, vec2 hi) {
     ExactFace f = exact_faces[face];
     if (f.band_count < 2u || !(hi.y > exact_bands[f.first_band].top)) return AREA_OUT;
     uint band = exact_band(f, hi.y);
-    if (band >= f.first_band + f.band_count || !(exact_bands[band - 1u].top < lo.y)) return AREA_MIXED;
+    if (!(exact_bands[band - 1u].top < lo.y)) return AREA_MIXED;
+    if (band >= f.first_band + f.band_count) return AREA_OUT;
     uint first = exact_bands[band - 1u].end;
     uint last = exact_bands[band].end;
     uint cell = exact_cell(first, last, hi.x);
     if (cell > first && !(exact_cells[cell - 1u].right < lo.x)) return AREA_MIXED;
     if (cell >= last) return AREA_OUT;
     ExactCell c = exact_cells[cell];
-    int winding = c.winding;
-    for (uint i = 0u; i < c.count; ++i) {
-        uint entry = exact_entries[c.first + i];
-        ExactArc arc = exact_arcs[entry >> 2u];
-        int direction = (arc.shape & ARC_UP) != 0u ? 1 : -1;
-        if ((entry & AT_LOW) != 0u && arc.low.y < hi.y) {
-            if (arc.low.y >= lo.y) return AREA_MIXED;
-            winding -= direction;
-        }
-        if ((entry & AT_HIGH) != 0u && arc.high.y < hi.y) {
-            if (arc.high.y >= lo.y) return AREA_MIXED;
-            winding += direction;
-        }
-        if (arc.low.y >= hi.y || arc.high.y < lo.y || lo.x >= max(arc.low.x, arc.high.x)) continue;
-        if (!(arc.low.y < lo.y && hi.y <= arc.high.y)) return AREA_MIXED;
-        bool right = hi.x < min(arc.low.x, arc.high.x);
-        if (!right) {
-            // the cross product with the chord, which climbs, at the corners where it is least and most
-            precise vec2 chord = arc.high - arc.low;
-            precise vec2 p = vec2(hi.x, chord.x < 0.0 ? hi.y : lo.y) - arc.low;
-            precise vec2 q = vec2(lo.x, chord.x < 0.0 ? lo.y : hi.y) - arc.low;
-            precise float least = chord.x * p.y - p.x * chord.y;
-            precise float most = chord.x * q.y - q.x * chord.y;
-            right = least > arc.hull.y;
-            if (!right && !(most < arc.hull.x)) return AREA_MIXED;
-        }
-        if (right) winding += direction;
-    }
-    return winding != 0 ? AREA_IN : AREA_OUT;
-}
-
-// Whether all of a box is inside the face, all of it outside, or neither is easily told.
-uint exact_area(uint face, vec2 lo, vec2 hi) {
-    uint area = exact_look(face, lo, hi);
-    return area == AREA_MIXED ? exact_among(face, lo, hi) : area;
-}
-
-// Whether uv belongs to the face.
-bool exact_inside(uint face, vec2 uv) {
-    uint area = exact_look(face, uv, uv);
-    return area == AREA_MIXED ? exact_winding(face, uv) != 0 : area == AREA_IN;
+    if (c.count > 0u) return AREA_MIXED;
+    return c.winding != 0 ? AREA_IN : AREA_OUT;
 }
 
 #endif

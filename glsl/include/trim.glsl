@@ -32,7 +32,7 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 #include "exact.glsl"
 
 bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
-    return exact_inside(fi.face, uv);
+    return exact_winding(fi.face, uv) != 0;
 }
 
 uint trim_area(FaceInstance fi, vec2 lo, vec2 hi) {

@@ -45,11 +45,7 @@ const _: () = assert!(core::mem::offset_of!(crate::abi::ExactCell, count) == 12)
 const _: () = assert!(core::mem::size_of::<crate::abi::ExactCell>() == 16);
 const _: () = assert!(core::mem::offset_of!(crate::abi::ExactFace, first_band) == 0);
 const _: () = assert!(core::mem::offset_of!(crate::abi::ExactFace, band_count) == 4);
-const _: () = assert!(core::mem::offset_of!(crate::abi::ExactFace, first_word) == 8);
-const _: () = assert!(core::mem::offset_of!(crate::abi::ExactFace, across) == 12);
-const _: () = assert!(core::mem::offset_of!(crate::abi::ExactFace, origin) == 16);
-const _: () = assert!(core::mem::offset_of!(crate::abi::ExactFace, scale) == 24);
-const _: () = assert!(core::mem::size_of::<crate::abi::ExactFace>() == 32);
+const _: () = assert!(core::mem::size_of::<crate::abi::ExactFace>() == 8);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Face, domain) == 0);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Face, first_patch) == 16);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Face, count_u) == 20);

@@ -5,16 +5,12 @@ use bytemuck::{Pod, Zeroable};
 /// [`ExactArc::shape`]: the loop runs from the lower end to the higher one.
 pub const ARC_UP: u32 = 32;
 
-/// Where a face's bands are, and its grid.
+/// Where a face's bands are.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct ExactFace {
     pub first_band: u32,
     pub band_count: u32,
-    pub first_word: u32,
-    pub across: u32,
-    pub origin: [f32; 2],
-    pub scale: [f32; 2],
 }
 
 /// Arcs between two scan lines.

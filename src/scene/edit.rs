@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   edit_loop(at, new loop) ──▶ its curves and control points    trimmed by table
-//!                           ──▶ what differs in its face's arcs, bands, cells and grid    trimmed exactly
+//!                           ──▶ what differs in its face's arcs, bands and cells          trimmed exactly
 //!                           ──▶ words of patches and cells       those that its old or new box meets, and
 //!                                                                whose side has changed
 //!                    └──────▶ Writes ──record──▶ copies at the beginning of the next frame

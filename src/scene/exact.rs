@@ -15,24 +15,22 @@ pub(crate) struct ExactData {
     pub entries: Vec<u32>,
     pub arcs: Vec<abi::ExactArc>,
     pub points: Vec<f32>,
-    /// Grids.
-    pub words: Vec<u32>,
 }
 
 /// Where a face's arrays are.
 #[derive(Clone, Copy, Debug, Default)]
 pub(crate) struct ExactPlace {
     face: u32,
-    /// First band, cell, entry, arc, float of a point, word.
-    first: [usize; 6],
+    /// First band, cell, entry, arc, float of a point.
+    first: [usize; 5],
     /// Elements that each has room for.
-    room: [usize; 6],
+    room: [usize; 5],
 }
 
 impl ExactData {
     /// Adds the next face. One that may be edited gets room for more arcs than it has: see [`ExactPlace::writes`].
     pub(crate) fn push(&mut self, trim: &ExactTrim, editable: bool) -> ExactPlace {
-        let mut place = ExactPlace { face: self.faces.len() as u32, first: self.lengths(), room: [0; 6] };
+        let mut place = ExactPlace { face: self.faces.len() as u32, first: self.lengths(), room: [0; 5] };
         let own = Self::of(trim, &place);
         self.faces.extend(&own.faces);
         self.bands.extend(&own.bands);
@@ -40,39 +38,29 @@ impl ExactData {
         self.entries.extend(&own.entries);
         self.arcs.extend(&own.arcs);
         self.points.extend(&own.points);
-        self.words.extend(&own.words);
         place.room = own.lengths();
         if editable {
             place.room = place.room.map(|length| 2 * length + SPARE);
-            let [bands, cells, entries, arcs, points, words] = std::array::from_fn(|i| place.first[i] + place.room[i]);
+            let [bands, cells, entries, arcs, points] = std::array::from_fn(|i| place.first[i] + place.room[i]);
             self.bands.resize(bands, Default::default());
             self.cells.resize(cells, Default::default());
             self.entries.resize(entries, 0);
             self.arcs.resize(arcs, Default::default());
             self.points.resize(points, 0.0);
-            self.words.resize(words, 0);
         }
         place
     }
 
     /// The arrays of one face.
     pub(super) fn of(trim: &ExactTrim, place: &ExactPlace) -> Self {
-        let [band, cell, entry, arc, point, word] = place.first.map(|first| first as u32);
+        let [band, cell, entry, arc, point] = place.first.map(|first| first as u32);
         let mut own = Self {
-            faces: vec![abi::ExactFace {
-                first_band: band,
-                band_count: trim.bands.len() as u32,
-                first_word: word,
-                across: trim.grid.across,
-                origin: trim.grid.origin,
-                scale: trim.grid.scale,
-            }],
+            faces: vec![abi::ExactFace { first_band: band, band_count: trim.bands.len() as u32 }],
             bands: trim.bands.iter().map(|b| abi::ExactBand { top: b.top, end: cell + b.end }).collect(),
             cells: Vec::with_capacity(trim.cells.len()),
             entries: trim.entries.iter().map(|e| e + (arc << 2)).collect(),
             arcs: Vec::with_capacity(trim.arcs.len()),
             points: Vec::new(),
-            words: trim.grid.words.clone(),
         };
         own.cells.extend(trim.cells.iter().map(|c| abi::ExactCell {
             right: c.right,
@@ -94,9 +82,9 @@ impl ExactData {
         own
     }
 
-    fn lengths(&self) -> [usize; 6] {
+    fn lengths(&self) -> [usize; 5] {
         let (bands, cells, entries) = (self.bands.len(), self.cells.len(), self.entries.len());
-        [bands, cells, entries, self.arcs.len(), self.points.len(), self.words.len()]
+        [bands, cells, entries, self.arcs.len(), self.points.len()]
     }
 
     /// The arrays' bytes, in the order of [`EditTarget::Exact`].
@@ -107,14 +95,13 @@ impl ExactData {
             2 => bytemuck::cast_slice_mut(&mut self.cells),
             3 => bytemuck::cast_slice_mut(&mut self.entries),
             4 => bytemuck::cast_slice_mut(&mut self.arcs),
-            5 => bytemuck::cast_slice_mut(&mut self.points),
-            _ => bytemuck::cast_slice_mut(&mut self.words),
+            _ => bytemuck::cast_slice_mut(&mut self.points),
         }
     }
 }
 
 /// Elements that an array may grow by beside twice its length: a loop that has been turned may be cut into
-/// twice as many arcs, and the grid's tiles are 16 words each.
+/// twice as many arcs.
 const SPARE: usize = 4096;
 
 impl ExactPlace {
@@ -131,7 +118,6 @@ impl ExactPlace {
             changed(3, self.first[2], &old.entries, &new.entries),
             changed(4, self.first[3], &old.arcs, &new.arcs),
             changed(5, self.first[4], &old.points, &new.points),
-            changed(6, self.first[5], &old.words, &new.words),
         ];
         Some(writes.into_iter().filter(|write| !write.bytes.is_empty()).collect())
     }

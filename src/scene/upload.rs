@@ -93,13 +93,12 @@ pub(crate) struct ExactScene {
     pub entries: Buffer,
     pub arcs: Buffer,
     pub points: Buffer,
-    pub words: Buffer,
 }
 
 impl ExactScene {
     /// As the trim test reads them.
-    pub(crate) fn all(&self) -> [&Buffer; 7] {
-        [&self.faces, &self.bands, &self.cells, &self.entries, &self.arcs, &self.points, &self.words]
+    pub(crate) fn all(&self) -> [&Buffer; 6] {
+        [&self.faces, &self.bands, &self.cells, &self.entries, &self.arcs, &self.points]
     }
 }
 
@@ -139,7 +138,6 @@ impl Scene {
                     entries: persistent(&mut uploads, cmd, "trim entries", &data.exact.entries)?,
                     arcs: persistent(&mut uploads, cmd, "trim arcs", &data.exact.arcs)?,
                     points: persistent(&mut uploads, cmd, "trim arc points", &data.exact.points)?,
-                    words: persistent(&mut uploads, cmd, "trim grids", &data.exact.words)?,
                 })),
             },
             solids: (!data.solids.leaves.is_empty())

@@ -5,7 +5,6 @@ use crate::abi::{ARC_UP, ExactArc, ExactBand, ExactCell, ExactFace};
 use crate::trim::{AT_HIGH, AT_LOW};
 
 const MAX_STEPS: u32 = 40;
-const TILE: u32 = 16;
 
 /// What a box of the domain holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -33,8 +32,6 @@ pub struct Exact<'a> {
     pub arcs: &'a [ExactArc],
     /// Homogeneous control points of bent arcs, three numbers each.
     pub points: &'a [f32],
-    /// Grids.
-    pub words: &'a [u32],
 }
 
 impl Exact<'_> {
@@ -68,108 +65,30 @@ impl Exact<'_> {
         winding
     }
 
-    /// Whether `(u, v)` belongs to the face.
-    pub fn inside(&self, face: usize, uv: [f32; 2]) -> bool {
-        match self.look(face, uv, uv) {
-            Area::Mixed => self.winding(face, uv) != 0,
-            area => area == Area::In,
-        }
-    }
-
-    /// Whether all of a box is inside the face, all of it outside, or neither is easily told.
+    /// Whether all of a box is inside the face, all of it outside, or neither is told by the one cell that holds it.
     pub fn area(&self, face: usize, lo: [f32; 2], hi: [f32; 2]) -> Area {
-        match self.look(face, lo, hi) {
-            Area::Mixed => self.among(face, lo, hi),
-            area => area,
-        }
-    }
-
-    /// By the grid.
-    pub fn look(&self, face: usize, lo: [f32; 2], hi: [f32; 2]) -> Area {
-        let f = self.faces[face];
-        if f.across == 0 {
-            return Area::Out;
-        }
-        let last = (f.across * TILE - 1) as f32;
-        let cell = |p: [f32; 2]| -> [u32; 2] {
-            std::array::from_fn(|i| ((p[i] - f.origin[i]) * f.scale[i]).max(0.0).min(last) as u32)
-        };
-        let (from, to) = (cell(lo), cell(hi));
-        let fine = (0..2).all(|i| to[i] - from[i] <= 1);
-        if !fine && (0..2).any(|i| to[i] / TILE - from[i] / TILE > 1) {
-            return Area::Mixed;
-        }
-        let words = &self.words[f.first_word as usize..];
-        let here = |[x, y]: [u32; 2]| match words[(y / TILE * f.across + x / TILE) as usize] {
-            0 => Area::Out,
-            1 => Area::In,
-            _ if !fine => Area::Mixed,
-            tile => match words[(tile + y % TILE) as usize] >> (2 * (x % TILE)) & 3 {
-                0 => Area::Out,
-                1 => Area::In,
-                _ => Area::Mixed,
-            },
-        };
-        let corners = [[to[0], from[1]], [from[0], to[1]], to];
-        let area = here(from);
-        if corners.iter().all(|&corner| here(corner) == area) { area } else { Area::Mixed }
-    }
-
-    /// By the arcs of the cell that holds the box, if one does.
-    fn among(&self, face: usize, lo: [f32; 2], hi: [f32; 2]) -> Area {
         let f = self.faces[face];
         let bands = &self.bands[f.first_band as usize..][..f.band_count as usize];
         if bands.len() < 2 || hi[1].is_nan() || hi[1] <= bands[0].top {
             return Area::Out;
         }
         let band = 1 + bands[1..].partition_point(|band| band.top < hi[1]);
-        if band >= bands.len() || bands[band - 1].top >= lo[1] || lo[1].is_nan() {
+        if bands[band - 1].top >= lo[1] || lo[1].is_nan() {
             return Area::Mixed;
+        }
+        if band >= bands.len() {
+            return Area::Out;
         }
         let cells = &self.cells[bands[band - 1].end as usize..bands[band].end as usize];
         let cell = cells.partition_point(|cell| cell.right < hi[0]);
         if cell > 0 && (cells[cell - 1].right >= lo[0] || lo[0].is_nan()) {
             return Area::Mixed;
         }
-        let Some(cell) = cells.get(cell) else { return Area::Out };
-        let mut winding = cell.winding;
-        for &entry in &self.entries[cell.first as usize..][..cell.count as usize] {
-            let arc = &self.arcs[(entry >> 2) as usize];
-            let direction = if arc.shape & ARC_UP != 0 { 1 } else { -1 };
-            for (flag, v, sign) in [(AT_LOW, arc.low[1], -direction), (AT_HIGH, arc.high[1], direction)] {
-                if entry & flag != 0 && v < hi[1] {
-                    if v >= lo[1] {
-                        return Area::Mixed;
-                    }
-                    winding += sign;
-                }
-            }
-            match Self::box_right(arc, lo, hi) {
-                Some(right) => winding += if right { direction } else { 0 },
-                None => return Area::Mixed,
-            }
-        }
-        if winding != 0 { Area::In } else { Area::Out }
-    }
-
-    /// The arc passes every scan line of the box right of it; or none. `None` where neither is easily told.
-    fn box_right(arc: &ExactArc, lo: [f32; 2], hi: [f32; 2]) -> Option<bool> {
-        if arc.low[1] >= hi[1] || arc.high[1] < lo[1] || lo[0] >= arc.low[0].max(arc.high[0]) {
-            return Some(false);
-        }
-        if !(arc.low[1] < lo[1] && hi[1] <= arc.high[1]) {
-            return None;
-        }
-        if hi[0] < arc.low[0].min(arc.high[0]) {
-            return Some(true);
-        }
-        let chord = [arc.high[0] - arc.low[0], arc.high[1] - arc.low[1]];
-        let side = |u: f32, v: f32| chord[0] * (v - arc.low[1]) - (u - arc.low[0]) * chord[1];
-        let (first, last) = if chord[0] < 0.0 { (hi[1], lo[1]) } else { (lo[1], hi[1]) };
-        match (side(hi[0], first) > arc.hull[1], side(lo[0], last) < arc.hull[0]) {
-            (true, _) => Some(true),
-            (_, true) => Some(false),
-            _ => None,
+        match cells.get(cell) {
+            None => Area::Out,
+            Some(cell) if cell.count > 0 => Area::Mixed,
+            Some(cell) if cell.winding != 0 => Area::In,
+            Some(_) => Area::Out,
         }
     }
 

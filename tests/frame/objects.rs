@@ -39,7 +39,7 @@ fn only_a_trimmed_scene_has_what_its_way_to_trim_needs() {
     );
     has_what_it_needs(
         TrimWay::Exact,
-        &["trim arcs", "trim grids", "visibility (exact", "heal (exact"],
+        &["trim arcs", "visibility (exact", "heal (exact"],
         &["trim intercepts", "trim curves", "cross", "sort", "density", "visibility (table", "heal (table"],
     );
 }

@@ -87,7 +87,7 @@ fn part(arcs: &[Arc], i: usize, lo: f32, hi: f32) -> Part {
 }
 
 /// Between which `u` the arc passes the scan line `v`, which is above its lower end and below its higher.
-pub(super) fn crossing(arc: &Arc, v: f32) -> (f32, f32) {
+fn crossing(arc: &Arc, v: f32) -> (f32, f32) {
     let low = DVec2::from(arc.low.map(f64::from));
     let chord = DVec2::from(arc.high.map(f64::from)) - low;
     let y = f64::from(v) - low.y;

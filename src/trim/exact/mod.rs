@@ -22,8 +22,8 @@
 //!    the box of the bracket is left or right of the point. Monotony makes each step certain, so
 //!    inflections, flat ends and cusps need no care.
 //!
-//! **Far from a loop** a [`Grid`] over the face answers at a look, also for a whole box around a point: what a
-//! pixel asks on behalf of its neighbourhood. Bands and cells are for what is near a loop.
+//! **Far from a loop** a cell without arcs answers for a whole box around a point: what a pixel asks on behalf of its
+//! neighbourhood.
 //!
 //! **Winding.** The winding number of `p` counts crossings right of `p`. Arcs left of a cell add
 //! nothing; those in it are asked. Those right of it add up to one number for all its points, provided
@@ -43,9 +43,6 @@
 
 mod arcs;
 mod bands;
-mod grid;
-
-pub use grid::Grid;
 
 use crate::model::TrimLoop;
 use glam::DVec2;
@@ -106,17 +103,13 @@ pub struct ExactTrim {
     pub cells: Vec<Cell>,
     /// Number of an arc, times 4, and flags.
     pub entries: Vec<u32>,
-    /// What need not ask any of these.
-    pub grid: Grid,
 }
 
 impl ExactTrim {
     /// Prepares `loops`, whose coordinates `p` become `(p - origin) / size`; `O(n log n)`.
     pub fn new(loops: &[TrimLoop], origin: DVec2, size: DVec2) -> Self {
         let chains = arcs::chains(loops, origin, size);
-        let mut trim = bands::sorted_into(chains);
-        trim.grid = Grid::new(&trim);
-        trim
+        bands::sorted_into(chains)
     }
 
     /// Bound of the distance between an arc of this degree as the shader evaluates it and the true one,
@@ -131,10 +124,10 @@ impl ExactTrim {
     }
 
     /// Bytes in GPU memory: 32 an arc and 12 a control point of a bent one, 8 a band, 16 a cell, 4 an
-    /// entry and a word of the grid.
+    /// entry.
     pub fn bytes(&self) -> usize {
         let points: usize = self.arcs.iter().map(|arc| arc.points.len()).sum();
-        let words = self.entries.len() + self.grid.words.len();
-        32 * self.arcs.len() + 12 * points + 8 * self.bands.len() + 16 * self.cells.len() + 4 * words
+        let entries = self.entries.len();
+        32 * self.arcs.len() + 12 * points + 8 * self.bands.len() + 16 * self.cells.len() + 4 * entries
     }
 }

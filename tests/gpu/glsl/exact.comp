@@ -8,13 +8,11 @@
 layout(local_size_x = 64) in;
 struct Answer {
     int winding;
-    uint inside;
     uint area; // of the box from this point to the next
-    uint look; // the same by the grid alone
 };
 
-layout(scalar, binding = 7) readonly buffer Points { vec2 points[]; };
-layout(scalar, binding = 8) writeonly buffer Answers { Answer answers[]; };
+layout(scalar, binding = 6) readonly buffer Points { vec2 points[]; };
+layout(scalar, binding = 7) writeonly buffer Answers { Answer answers[]; };
 layout(push_constant) uniform Push { uint face; uint count; };
 
 void main() {
@@ -24,5 +22,5 @@ void main() {
     vec2 q = points[min(i + 1u, count - 1u)];
     vec2 lo = min(p, q);
     vec2 hi = max(p, q);
-    answers[i] = Answer(exact_winding(face, p), uint(exact_inside(face, p)), exact_area(face, lo, hi), exact_look(face, lo, hi));
+    answers[i] = Answer(exact_winding(face, p), exact_area(face, lo, hi));
 }
