@@ -46,6 +46,9 @@ pub enum ImportError {
     /// A scene that is not one.
     #[error("{file}:{line}:{column}: {message}")]
     Scene { file: String, line: usize, column: usize, message: String },
+    /// Polygons that are no control mesh of a smooth surface.
+    #[error("{file}: {source}")]
+    Construct { file: String, source: crate::construct::ConstructError },
     /// Text that is not a Boolean solid's, or a node that has no exact counterpart.
     #[error("{file}:{line}: {message}")]
     Solid { file: String, line: usize, message: String },

@@ -34,6 +34,7 @@ mod scad;
 mod scene;
 mod solid;
 mod step;
+mod subdivided;
 
 pub use camera::{Lens, NamedCamera, PictureSettings, Stance};
 pub use error::ImportError;
@@ -43,6 +44,7 @@ pub use progress::{Options, Stage};
 pub(crate) use report::Warnings;
 pub use report::{FaceRecord, ImportReport, Place, Warning};
 pub use scad::Facets;
+pub use subdivided::open_subdivided;
 
 use crate::model::Model;
 use std::io::Read;

@@ -4,6 +4,7 @@ use crate::cut::CutArgs;
 use crate::trims::Way;
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
+use selvedge::construct::subdivide::Scheme;
 use selvedge::picture::{Levels, Samples, SolidWay, TrimWay};
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -345,6 +346,15 @@ pub enum Smooth {
     CatmullClark,
     /// Triangles, quartic patches
     Loop,
+}
+
+impl Smooth {
+    pub fn scheme(self) -> Scheme {
+        match self {
+            Self::CatmullClark => Scheme::CatmullClark,
+            Self::Loop => Scheme::Loop,
+        }
+    }
 }
 
 /// Built-in views of `check`.

@@ -26,7 +26,6 @@ mod progress;
 mod render;
 mod series;
 mod session;
-mod subdivide;
 mod sweep;
 mod trims;
 mod verdict;

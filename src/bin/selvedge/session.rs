@@ -15,8 +15,10 @@ use std::time::Instant;
 pub fn open(path: &Path, subdivide: &SubdivideArgs) -> Result<Import> {
     let start = Instant::now();
     if let Some(smooth) = subdivide.subdivide {
-        let import = crate::subdivide::open(path, smooth, subdivide)?;
+        let import = import::open_subdivided(path, smooth.scheme(), subdivide.within)?;
         tracing::info!("read {} in {:.1?}", path.display(), start.elapsed());
+        let (faces, off) = (import.report.faces, import.report.deviation);
+        tracing::info!("{faces} faces within {off:.2e} mm of the limit surface");
         return Ok(import);
     }
     let import = importing(&path.display().to_string(), |tell| {

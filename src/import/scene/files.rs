@@ -5,6 +5,7 @@
 
 use super::items::Scene;
 use super::text::{Outcome, Value, shortened};
+use crate::construct::subdivide::Scheme;
 use crate::import::Import;
 use std::path::{Component, Path, PathBuf};
 
@@ -44,4 +45,10 @@ pub(super) fn model(scene: &Scene<'_>, value: Value<'_>) -> Outcome<Import> {
         return Err(value.fault("a scene within a scene is not read"));
     }
     crate::import::open(&path).map_err(|e| value.fault(e))
+}
+
+/// The polygons of a file as the control meshes of smooth surfaces, within `tolerance` millimetres.
+pub(super) fn subdivided(scene: &Scene<'_>, value: Value<'_>, scheme: Scheme, tolerance: f64) -> Outcome<Import> {
+    let path = path(scene, value)?;
+    crate::import::open_subdivided(&path, scheme, Some(tolerance)).map_err(|e| value.fault(e))
 }

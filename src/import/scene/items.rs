@@ -10,6 +10,7 @@ use super::files;
 use super::solid::{self, Body};
 use super::surface::{self, Made};
 use super::text::{Fault, Outcome, Table, Value, shortened};
+use crate::construct::subdivide::Scheme;
 use crate::import::Import;
 use crate::model::{Colour, Part};
 use glam::DAffine3;
@@ -228,7 +229,15 @@ impl<'a> Scene<'a> {
 
     fn file(&mut self, table: &mut Table<'a>) -> Outcome<File> {
         let path = table.need("path")?;
-        let mut import = files::model(self, path)?;
+        let scheme =
+            table.read("subdivide", |v| v.word(&[("catmull-clark", Scheme::CatmullClark), ("loop", Scheme::Loop)]))?;
+        let mut import = match scheme {
+            Some(scheme) => {
+                let tolerance = table.read("tolerance", Value::positive)?.unwrap_or(self.tolerance);
+                files::subdivided(self, path, scheme, tolerance * self.unit)?
+            }
+            None => files::model(self, path)?,
+        };
         let faces = import.model.parts.iter().flat_map(|p| &p.faces).map(|f| f.id);
         let meshes = import.model.parts.iter().flat_map(|p| &p.meshes).map(|m| m.id);
         let leaves = import.model.solids.iter().flat_map(|s| s.primitives()).map(|p| p.id);

@@ -34,6 +34,48 @@ fn a_step_file_is_placed_and_keeps_its_own_colours() {
     assert!(!faces.contains(&import.model.solids[0].primitives()[0].id));
 }
 
+/// A cube of six squares, its corners at `(±1, ±1, ±1)`.
+const CUBE: &str = "v -1 -1 -1\nv 1 -1 -1\nv -1 1 -1\nv 1 1 -1\nv -1 -1 1\nv 1 -1 1\nv -1 1 1\nv 1 1 1\n\
+                    f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n";
+
+#[test]
+fn polygons_are_control_meshes_where_the_scene_says_so() {
+    let folder = folder("cage");
+    std::fs::write(folder.join("cube.obj"), CUBE).unwrap();
+    let read = |keys: &str| {
+        let text = format!(
+            "selvedge = 1\n[file.c]\npath = \"cube.obj\"\n{keys}\n[solid.b]\nshape = \"sphere\"\nradius = 0.2\n\
+             [solid.d]\nexpression = \"A-B\"\nwith = {{ A = \"c\", B = \"b\" }}\n[[instance]]\nof = \"c\"\n\
+             [[instance]]\nof = \"d\"\n"
+        );
+        scene(text.as_bytes(), "t.toml", Some(&folder))
+    };
+    let made = read("subdivide = \"catmull-clark\"\ntolerance = 1e-4");
+    let told = |keys: &str| read(keys).expect_err("no scene").to_string();
+    let (no_triangles, no_scheme) = (told("subdivide = \"loop\""), told("subdivide = \"doo-sabin\""));
+    let no_scheme_at_all = told("tolerance = 1e-4");
+    std::fs::remove_dir_all(&folder).unwrap();
+    let made = made.unwrap();
+    let part = &made.model.parts[0];
+    assert!(part.closed && part.meshes.is_empty() && part.faces.len() == 24, "{} faces", part.faces.len());
+    assert!(made.report.deviation <= 1e-4 && made.report.deviation > 0.0);
+    // one step makes 1, 3/4 and 5/9 of a side's middle, of its edges' and of its corners; the limit of the middle is
+    // (16 + 4 * 4 * 3/4 + 4 * 5/9) / 36 of it
+    let corners = part.faces.iter().flat_map(|f| {
+        let ((u0, u1), (v0, v1)) = f.surface.domain();
+        [(u0, v0), (u1, v0), (u0, v1), (u1, v1)].map(|(u, v)| f.surface.point(u, v).z)
+    });
+    let top = corners.fold(0.0, f64::max);
+    assert!((top - 68.0 / 81.0).abs() <= 1e-4, "{top}");
+    assert_eq!(made.model.solids.len(), 1);
+    assert!(
+        no_triangles.starts_with("t.toml:3:8: `path`: ") && no_triangles.contains("is no triangle"),
+        "{no_triangles}"
+    );
+    assert!(no_scheme.starts_with("t.toml:4:13: `subdivide`: `doo-sabin` is none of"), "{no_scheme}");
+    assert!(no_scheme_at_all.starts_with("t.toml:4:1: `tolerance` is not known here"), "{no_scheme_at_all}");
+}
+
 #[test]
 fn paths_stay_within_the_folder() {
     let folder = folder("paths");
