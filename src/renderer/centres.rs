@@ -26,15 +26,17 @@ impl SlotCentres {
     ) -> Result<impl Iterator<Item = Buffer>, GpuError> {
         let none = Vec::new();
         let volume = data.volume.as_ref().map_or(&none, |v| &v.surface_centres);
-        let lists: [(&mut Option<Buffer>, &str, &[DVec3]); 3] = [
-            (&mut self.leaves, "solid leaf centres", &data.solids.leaf_centres),
-            (&mut self.surfaces, "solid surface centres", &data.solids.surface_centres),
-            (&mut self.volume, "volume centres", volume),
+        let solids = &data.solids;
+        let any = !solids.leaf_centres.is_empty(); // of which none need have a surface with an equation
+        let lists: [(&mut Option<Buffer>, &str, &[DVec3], bool); 3] = [
+            (&mut self.leaves, "solid leaf centres", &solids.leaf_centres, any),
+            (&mut self.surfaces, "solid surface centres", &solids.surface_centres, any),
+            (&mut self.volume, "volume centres", volume, !volume.is_empty()),
         ];
         let mut gone = Vec::new();
-        for (place, name, list) in lists {
+        for (place, name, list, wanted) in lists {
             let bytes = (list.len() * size_of::<[f32; 3]>()) as u64;
-            if list.is_empty() {
+            if !wanted {
                 gone.extend(place.take());
                 continue;
             }

@@ -45,7 +45,7 @@ fn polygons_are_control_meshes_where_the_scene_says_so() {
     let read = |keys: &str| {
         let text = format!(
             "selvedge = 1\n[file.c]\npath = \"cube.obj\"\n{keys}\n[solid.b]\nshape = \"sphere\"\nradius = 0.2\n\
-             [solid.d]\nexpression = \"A-B\"\nwith = {{ A = \"c\", B = \"b\" }}\n[[instance]]\nof = \"c\"\n\
+             [solid.d]\nshape = \"boolean\"\nof = \"A-B\"\nwith = {{ A = \"c\", B = \"b\" }}\n[[instance]]\nof = \"c\"\n\
              [[instance]]\nof = \"d\"\n"
         );
         scene(text.as_bytes(), "t.toml", Some(&folder))
