@@ -40,6 +40,11 @@ layout(scalar, binding = 11) buffer CountersBuffer { Counters counters; };
 // Whether some leaf is a shell: compiled in only then.
 layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
 
+// Whether lists of items that rays are followed through come after those of the union.
+layout(constant_id = 14) const bool SOLIDS_ARE_FOLLOWED = false;
+
+#include "crossing.glsl"
+
 layout(location = 0) out uvec2 visible;
 
 const uint NOBODY = 0xffffffffu;
@@ -51,43 +56,6 @@ const uint KEPT = 12u;
 const uint SEARCH = 0u; // the next event
 const uint OWNER = 1u;  // does leaf `asked`, taken for what it is not, change the solid before or behind t?
 const uint SIDE = 2u;   // which side of leaf `asked` ends at t?
-
-// What a scan wants to know of a leaf at depth t.
-struct Crossing {
-    bool inside;   // just behind t
-    bool before;   // just in front of it
-    bool ends;     // the leaf begins or ends there
-    float next;    // where it does next
-};
-
-Crossing crossing_of(Span s, float t) {
-    return Crossing(inside_span(s, t), inside_before(s, t), ends_at(s, t), next_of_span(s, t));
-}
-
-// Of a shell, and its last fragment at t.
-Crossing crossing_of(uint shell, float t, uint first, uint count, out uint last) {
-    Crossing c = Crossing(false, false, false, NEVER);
-    last = 0u;
-    for (uint i = first; i < first + count; ++i) {
-        Fragment f = fragments[i];
-        if ((f.shell & FRAGMENT_SHELL) != shell) continue;
-        bool leaves_ = (f.shell & FRAGMENT_LEAVES) != 0u;
-        bool passed = f.depth <= t;
-        if (f.depth > t) c.next = min(c.next, f.depth);
-        // entering and leaving follow each other: the first behind t tells, else the last before it
-        if (passed) c.inside = !leaves_;
-        if (f.depth < t) c.before = !leaves_;
-        if (i == first || (fragments[i - 1u].shell & FRAGMENT_SHELL) != shell) {
-            if (!passed) c.inside = leaves_;
-            if (!(f.depth < t)) c.before = leaves_;
-        }
-        if (f.depth == t) {
-            c.ends = true;
-            last = i;
-        }
-    }
-    return c;
-}
 
 // The leaves whose spans begin or end at depth t: the first positive one, the first subtracted one.
 struct Candidates {
@@ -101,6 +69,9 @@ void main() {
     uint n = tile.y * tiles.x + tile.x;
     uint first = min(tile_starts[n], frame.tile_leaf_capacity);
     uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
+    if (SOLIDS_ARE_FOLLOWED) {
+        while (end > first && (tile_leaves[end - 1u].leaf & ~TILE_LEAF_ENTRY) >= frame.followed_leaf) --end;
+    }
     uint entry = tile_entries[n];
     if (entry == EXIT_FALSE) discard;
     Ray ray = eye_ray(frame, gl_FragCoord.xy);

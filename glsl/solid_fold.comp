@@ -34,6 +34,7 @@ uint fold(uint to, uint from, uint end) {
     return (leaves[to].flags & LEAF_FALLS) != 0u ? EXIT_FALSE : EXIT_TRUE;
 }
 
+// Items that rays are followed through are lists of their own, one after another: where each begins is marked.
 void main() {
     uint n = gl_GlobalInvocationID.x;
     uvec2 tiles = tile_count(frame);
@@ -41,9 +42,18 @@ void main() {
     uint start = min(tile_starts[n], frame.tile_leaf_capacity);
     uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
     tile_entries[n] = fold(0u, start, end);
+    uint item = EXIT_FALSE;
+    uint entry = EXIT_FALSE;
     for (uint i = start; i < end; ++i) {
-        Leaf leaf = leaves[tile_leaves[i].leaf];
+        uint at = tile_leaves[i].leaf;
+        Leaf leaf = leaves[at];
         tile_leaves[i].in_exit = fold(leaf.in_exit, i + 1u, end);
         tile_leaves[i].out_exit = fold(leaf.out_exit, i + 1u, end);
+        if (at < frame.followed_leaf) continue;
+        if (leaf.item != item) {
+            item = leaf.item;
+            entry = fold(item, i, end);
+        }
+        if (i == entry) tile_leaves[i].leaf = at | TILE_LEAF_ENTRY; // nobody looks back at it
     }
 }

@@ -3,7 +3,8 @@
 //! ```text
 //!   by the scene     taus, factors, counts and starts per item; per strip, face and curve if trimmed
 //!   by the picture   visibility, that of what is no patch where faces are trimmed, depth; per tile and block
-//!                    of tiles if there are Boolean solids; the sum of a pixel's samples where it has several
+//!                    of tiles if there are Boolean solids; the sum of a pixel's samples where it has several;
+//!                    what is behind layers where rays are followed through solids
 //!   by the view      sub-patches, draws, rows, intercepts, doubts, leaves in tiles: a pass that runs out says so in
 //!                    Counters.failed, and the next frame gets what it would have needed
 //! ```
@@ -11,6 +12,7 @@
 use crate::abi::{BLOCK, Counters, Factors, Fragment, Rect, SubPatch, TILE, TileLeaf};
 use crate::gpu::{Buffer, Device, GpuError, Image, ImageInfo, Pool};
 use crate::passes::average::SUM_FORMAT;
+use crate::passes::resolve::BEHIND_FORMAT;
 use crate::passes::scan;
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
 #[cfg(feature = "rivals")]
@@ -39,6 +41,13 @@ pub(crate) struct Counts {
     pub trim: Option<TrimWay>,
     /// Of each pixel.
     pub samples: Samples,
+    /// The first leaf of items that rays are followed through; there are some.
+    pub followed_leaf: u32,
+    pub is_followed: bool,
+    /// Lengths within solids are wanted.
+    pub thickness: bool,
+    /// Instances drawn opaque because they are not closed.
+    pub open: u32,
 }
 
 impl Counts {
@@ -57,6 +66,10 @@ impl Counts {
             mesh_instances: count(data.meshes.instances.len()),
             trim: data.trim_way(),
             samples: data.samples,
+            followed_leaf: data.solids.followed,
+            is_followed: data.solids.is_followed(),
+            thickness: data.thickness,
+            open: count(data.open),
         }
     }
 
@@ -199,6 +212,8 @@ pub(crate) struct Buffers {
     pub depth: Image,
     /// The sum of the samples' colours, where there are more than one.
     pub sum: Option<Image>,
+    /// What is seen behind layers.
+    pub behind: Option<Image>,
 }
 
 /// What trimmed patches need, whatever the way to trim.
@@ -396,6 +411,7 @@ impl Buffers {
             sum: (counts.samples != Samples::One)
                 .then(|| image("sum of samples", SUM_FORMAT, drawn_and_read))
                 .transpose()?,
+            behind: counts.is_followed.then(|| image("behind layers", BEHIND_FORMAT, drawn_and_read)).transpose()?,
         })
     }
 }

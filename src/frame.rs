@@ -22,6 +22,8 @@
 //!                    heal        pixels that look through a gap between trimmed faces
 //!                      ▼
 //!                  resolve       exact point and normal per pixel, light ──▶ the host's targets
+//!                      ▼
+//!               solid_layers     scenes with something to see through: its faces, over what resolve drew
 //!
 //!  from mesh on once for each of a pixel's samples, where there are several: samples.rs
 //! ```
@@ -32,11 +34,13 @@ use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, 
 use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::passes::{bound, emit, heal, mesh, reset, resolve, scan, split, visibility};
 use crate::scene::{MeshBuffers, Scene, SceneData, SolidData};
+use layers::{Drawing, LayerPasses};
 use samples::{SamplePasses, Scopes};
 use solids::SolidPasses;
 use trim::{TrimParts, TrimPasses};
 
 mod edit;
+mod layers;
 mod resolved;
 #[cfg(feature = "rivals")]
 mod rival;
@@ -62,6 +66,7 @@ pub(crate) struct Passes {
     /// Into the host's targets; `None` where they are but a colour, made of samples.
     resolve: Option<resolve::Resolve>,
     samples: Option<SamplePasses>,
+    layers: Option<LayerPasses>,
 }
 
 impl Passes {
@@ -92,6 +97,7 @@ impl Passes {
                 .transpose()?,
             resolve: resolved::targets(device, data, formats)?,
             samples: SamplePasses::new(device, data, formats)?,
+            layers: LayerPasses::new(device, data, formats)?,
         })
     }
 }
@@ -113,6 +119,8 @@ pub(crate) struct Frame<'a> {
     pub counters: &'a ReadBack,
     pub colour: &'a [Attachment<'a>],
     pub depth: Option<Attachment<'a>>,
+    /// Length of the pixel's ray within solids; cleared to 0 when it is drawn into.
+    pub thickness: Option<Attachment<'a>>,
 }
 
 const WRITE_TO_READ: (Access, Access) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);
@@ -136,13 +144,20 @@ impl Frame<'_> {
         }
         match &self.passes.samples {
             Some(passes) => self.record_samples(cmd, times, passes),
-            None => self.draw(cmd, &mut Scopes::of(times), self.passes.resolve.as_ref(), 0),
+            None => self.draw(cmd, &mut Scopes::of(times), (self.passes.resolve.as_ref(), Drawing::Whole), 0),
         }
+        self.no_thickness(cmd);
     }
 
     /// What is seen, from the patches and the trim table, resolved into `self.colour` and `self.depth`; the `nth` time
     /// in this frame.
-    fn draw(&self, cmd: &Commands<'_>, times: &mut Scopes<'_>, resolve: Option<&resolve::Resolve>, nth: u64) {
+    fn draw(
+        &self,
+        cmd: &Commands<'_>,
+        times: &mut Scopes<'_>,
+        (resolve, drawing): (Option<&resolve::Resolve>, Drawing),
+        nth: u64,
+    ) {
         let trim = self.trim();
         self.begin_images(cmd);
         if let (Some(pass), Some(meshes)) = (&self.passes.mesh, &self.scene.meshes) {
@@ -161,6 +176,9 @@ impl Frame<'_> {
         barrier::images(cmd, &[(&self.buffers.visibility, drawn, Access::FRAGMENT_READ)]);
         if let Some(pass) = resolve {
             times.scope(cmd, "resolve", || self.resolve(cmd, pass));
+        }
+        if let Some(passes) = &self.passes.layers {
+            times.scope(cmd, "layers", || self.layers(cmd, passes, drawing));
         }
         let b = self.buffers;
         barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, COPIED)]);
@@ -278,7 +296,8 @@ impl Frame<'_> {
             (&b.visibility, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE),
             (&b.depth, Access::DEPTH_WRITE.discarded() | Access::COMPUTE_READ.discarded(), Access::DEPTH_WRITE),
         ];
-        barrier::images(cmd, &fixed.into_iter().chain(others).collect::<Vec<_>>());
+        let behind = b.behind.iter().map(|image| (image, read, Access::COLOUR_WRITE));
+        barrier::images(cmd, &fixed.into_iter().chain(others).chain(behind).collect::<Vec<_>>());
     }
 
     /// What tests against the volume that trims the scene read, in their order; nothing without one.

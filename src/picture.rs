@@ -219,8 +219,26 @@ impl std::str::FromStr for Samples {
 #[error("`{0}` samples a pixel: there may be 1, 4 or 8")]
 pub struct UnknownSamples(String);
 
+/// Colours of places where solids of an assembly meet, in linear light; the opacity is that of the mark, which lies
+/// before everything. Solids here are the model's Boolean solids and closed parts, each by itself.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Highlight {
+    /// Where a pixel's ray meets coincident faces of two solids: those that share a surface with an equation, or a
+    /// triangle's plane, to the bit. Spline faces never do: a gap or overlap of rounding lies between them.
+    pub contact: Colour,
+    /// Where it is within two solids at once.
+    pub overlap: Colour,
+}
+
+impl Default for Highlight {
+    /// Blue contacts and red overlaps, both half opaque.
+    fn default() -> Self {
+        Self { contact: [0.0, 0.1, 1.0, 0.5], overlap: [1.0, 0.0, 0.0, 0.5] }
+    }
+}
+
 /// What the caller decides about a loaded model.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SceneSettings {
     /// How to trim; `None` takes [`TrimWay::Table`], which was the faster one wherever both were measured:
     /// `docs/trimming.md`.
@@ -231,6 +249,10 @@ pub struct SceneSettings {
     pub editable: bool,
     /// Samples of each pixel's colour: edges are smoothed where there are more than one.
     pub samples: Samples,
+    /// The length of rays within solids will be asked for: rays are followed through all of them.
+    pub thickness: bool,
+    /// Mark contacts and overlaps, and count their pixels: rays are followed through all solids.
+    pub highlight: Option<Highlight>,
 }
 
 /// Images wanted beside the colour.
@@ -241,15 +263,18 @@ pub struct Outputs {
     pub face: bool,
     pub uv: bool,
     pub normal: bool,
+    pub thickness: bool,
 }
 
 impl Outputs {
-    /// Every image.
-    pub const ALL: Self = Self { depth: true, face: true, uv: true, normal: true };
+    /// Every image of the face that is seen first; `thickness`, for which rays are followed to the far plane, is not
+    /// among them.
+    pub const ALL: Self = Self { depth: true, face: true, uv: true, normal: true, thickness: false };
 }
 
 /// A finished picture in host memory. Row 0 is on top; samples are taken at pixel centres. Images
-/// that were not asked for are empty.
+/// that were not asked for are empty. Depth, face, (u, v) and normal are those of the first face whose opacity is not 0,
+/// seen through or not.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
     /// Width and height in pixels.
@@ -265,6 +290,9 @@ pub struct Picture {
     pub uv: Vec<[f32; 2]>,
     /// Unit outward normal in model space; 0 for background.
     pub normal: Vec<[f32; 3]>,
+    /// Length of the pixel's ray within solids, between the near and the far plane: Boolean solids and closed parts,
+    /// model units, where several overlap counted once; 0 without any.
+    pub thickness: Vec<f32>,
     /// What the frame cost.
     pub stats: FrameStats,
 }
@@ -302,6 +330,14 @@ pub struct FrameStats {
     /// Rays that enter an operand and never leave it, or leave it without having entered: it is not closed. What
     /// is entered stays so, what is left without is left out.
     pub unpaired: u64,
+    /// Pixels whose rays meet coincident faces of two solids, where [`SceneSettings::highlight`] asks for them; of the
+    /// sample with the most.
+    pub contact_pixels: u64,
+    /// The same of rays that are within two solids at once.
+    pub overlap_pixels: u64,
+    /// Instances with faces that would be seen through, but are not closed, or cut open by a volume: they have no inside,
+    /// and are drawn opaque.
+    pub open_clear: u64,
     /// Times the frame was recorded again because a buffer was too small.
     pub retries: u32,
     /// Bytes copied for edits of trim loops since the frame before.

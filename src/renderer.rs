@@ -22,7 +22,7 @@ use crate::buffers::{Buffers, Capacities, Counts};
 use crate::frame::{Frame, Passes, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Uploads};
 use crate::model::{Camera, CameraError, Model};
-use crate::passes::resolve;
+use crate::passes::{resolve, solid_layers};
 use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, SceneSettings};
 pub use crate::scene::{CloseUp, EditError, UndrawnSolid};
 use crate::scene::{Scene, SceneData, Write};
@@ -146,6 +146,8 @@ const LEAST_TOLERANCE_PX: f64 = 0.125;
 impl Renderer {
     /// Formats of the images of depth, face, (u, v) and normal.
     pub const AOV_FORMATS: [vk::Format; 4] = resolve::AOV_FORMATS;
+    /// Format of the image of thickness.
+    pub const THICKNESS_FORMAT: vk::Format = solid_layers::THICKNESS_FORMAT;
 
     /// Takes the host's device on loan; `frame_slots` frames may be in flight.
     ///
@@ -218,14 +220,52 @@ impl Renderer {
     /// the frame recorded before into the same slot has finished on the GPU; frames are submitted in
     /// the order in which they are recorded, to one queue.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, input: &FrameInput<'_>) -> Result<(), RenderError> {
+        // SAFETY: the caller's promise.
+        unsafe { self.record_with(cmd, input, None) }
+    }
+
+    /// As [`record`](Self::record), and the length of each pixel's ray within solids, between near and far plane and in
+    /// model units, into an image of [`THICKNESS_FORMAT`](Self::THICKNESS_FORMAT) of the camera's size: Boolean solids
+    /// and closed parts, where several overlap counted once; 0 where there is none. Its layouts and barriers are as those
+    /// of the colour target. The model was uploaded with [`SceneSettings::thickness`].
+    ///
+    /// # Errors
+    /// As [`record`](Self::record).
+    ///
+    /// # Panics
+    /// As [`record`](Self::record), and where the model was uploaded without [`SceneSettings::thickness`].
+    ///
+    /// # Safety
+    /// As [`record`](Self::record).
+    pub unsafe fn record_with_thickness(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        input: &FrameInput<'_>,
+        thickness: &Image,
+    ) -> Result<(), RenderError> {
+        let wanted = self.loaded.as_ref().is_none_or(|l| l.counts.thickness);
+        assert!(wanted, "the model is uploaded with SceneSettings::thickness");
+        // SAFETY: the caller's promise.
+        unsafe { self.record_with(cmd, input, Some(thickness)) }
+    }
+
+    /// # Safety
+    /// As [`record`](Self::record).
+    unsafe fn record_with(
+        &mut self,
+        cmd: vk::CommandBuffer,
+        input: &FrameInput<'_>,
+        thickness: Option<&Image>,
+    ) -> Result<(), RenderError> {
         input.camera.check()?;
         let tolerance = input.settings.tolerance_px;
         if !(tolerance >= LEAST_TOLERANCE_PX && tolerance.is_finite()) {
             return Err(RenderError::Tolerance(tolerance));
         }
         let targets = input.targets;
-        for image in
-            [Some(targets.colour), targets.depth].into_iter().chain(targets.aovs.iter().flatten().map(|i| Some(*i)))
+        for image in [Some(targets.colour), targets.depth, thickness]
+            .into_iter()
+            .chain(targets.aovs.iter().flatten().map(|i| Some(*i)))
         {
             if let Some(image) = image.filter(|i| i.size() != input.camera.size) {
                 let (width, height) = image.size();
@@ -278,6 +318,7 @@ impl Renderer {
             counters: &slot.counters,
             colour: &colour,
             depth,
+            thickness: thickness.map(|image| Attachment { image, load: Load::ColourF32([0.0; 4]) }),
         };
         slot.times.reset(&cmd);
         frame.record(&cmd, &mut slot.times);
@@ -312,6 +353,9 @@ impl Renderer {
             fragments: u64::from(c.fragments),
             mended: u64::from(c.mended),
             unpaired: u64::from(c.unpaired),
+            contact_pixels: u64::from(c.contacts),
+            overlap_pixels: u64::from(c.overlaps),
+            open_clear: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.open)),
             retries: 0,
             edit_bytes: slot.edit_bytes,
             pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),

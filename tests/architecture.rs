@@ -46,6 +46,7 @@ const UNSAFE: &[&str] = &["gpu", "renderer", "headless"];
 const BARRIERS: &[&str] = &[
     "src/frame.rs",
     "src/frame/edit.rs",
+    "src/frame/layers.rs",
     "src/frame/rival.rs",
     "src/frame/samples.rs",
     "src/frame/solids.rs",

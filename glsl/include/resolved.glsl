@@ -7,6 +7,11 @@
 
 layout(constant_id = 3) const bool HAS_AOVS = false;
 
+// What pass `solid_layers` looks through to: the colour is linear and has the depth beside it.
+layout(constant_id = 18) const bool BEHIND = false;
+// Depth of nothing.
+const float UNSEEN = 3.0e38;
+
 layout(location = 0) out vec4 out_colour;
 layout(location = 1) out float out_depth;
 layout(location = 2) out uint out_face;
@@ -16,7 +21,7 @@ layout(location = 4) out vec4 out_normal;
 // The background, unless the host keeps its picture.
 void write_nothing() {
     if (frame.background.a < 0.0) discard;
-    out_colour = encode(frame.background, frame.encode_srgb);
+    out_colour = BEHIND ? vec4(0.0, 0.0, 0.0, UNSEEN) : encode(frame.background, frame.encode_srgb);
     if (HAS_AOVS) {
         out_depth = uintBitsToFloat(0x7f800000u);
         out_face = 0u;
@@ -31,7 +36,8 @@ void write_nothing() {
 void write_surface(uint own, Instance instance, vec3 n, bool solid, float depth, uint id, vec2 uv) {
     vec4 placed = unpackUnorm4x8(instance.colour);
     vec4 colour = placed.a > 0.0 ? placed : unpackUnorm4x8(own);
-    out_colour = encode(vec4(shade(colour.rgb, n, frame, !solid, eye_ray(frame, gl_FragCoord.xy).d), 1.0), frame.encode_srgb);
+    vec3 lit = shade(colour.rgb, n, frame, !solid, eye_ray(frame, gl_FragCoord.xy).d);
+    out_colour = BEHIND ? vec4(clamp(lit, 0.0, 1.0), depth) : encode(vec4(lit, 1.0), frame.encode_srgb);
     if (HAS_AOVS) {
         out_depth = depth;
         out_face = id;

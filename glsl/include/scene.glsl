@@ -133,6 +133,7 @@ struct Frame {
     uint block_leaf_capacity;
     uint tile_leaf_capacity;
     uint fragment_capacity;
+    uint followed_leaf; // from it on lists of items that rays are followed through; before it the union that is seen
     vec3 right;         // camera axes in model space
     vec3 up;
     vec3 forward;
@@ -161,6 +162,8 @@ struct Counters {
     uint fragments;    // of operands of Boolean solids
     uint mended;       // rays through an operand that wanted a fragment from beside a gap
     uint unpaired;     // rays that enter an operand and never leave it, or the reverse
+    uint contacts;     // pixels whose rays meet coincident faces of two items, and that are within two at once
+    uint overlaps;
     uint clamps;       // factors or densities above their hard limits
     uint failed;       // one bit a buffer that was too small
 };

@@ -47,6 +47,7 @@ struct Leaf {
     uint pre;        // the tree whose parent is the out-exit, in preorder: a leaf's descendants are
     uint end;        // [pre, end)
     uint flags;
+    uint item;       // the first leaf of its list: of the union, or of an item that rays are followed through
 };
 
 const uint EXIT_FALSE = 0xfffffffeu; // outside of the solid
@@ -55,6 +56,8 @@ const uint LEAF_UNBOUNDED = 1u;      // no box: in every tile
 const uint LEAF_NEGATIVE = 2u;       // under an odd number of complements: its outside counts
 const uint LEAF_FALLS = 4u;          // its chain of out-exits ends at EXIT_FALSE, else at EXIT_TRUE
 const uint LEAF_SHELL = 8u;          // an operand without equations, number `first`: see shells.glsl
+
+const uint LEAF_ELSEWHERE = 16u;     // of an item that rays are followed through, drawn by another pass
 
 const float NEVER = 3.0e38;
 

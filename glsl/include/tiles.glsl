@@ -13,10 +13,13 @@ struct Rect {
 
 // A leaf in a tile, wired to the others there; exits are TileLeaf indices or EXIT_*.
 struct TileLeaf {
-    uint leaf;
+    uint leaf;      // and TILE_LEAF_ENTRY
     uint in_exit;
     uint out_exit;
 };
+
+// The walk of an item that rays are followed through begins here.
+const uint TILE_LEAF_ENTRY = 0x80000000u;
 
 uvec2 tile_count(Frame frame) { return (uvec2(frame.size) + TILE - 1u) / TILE; }
 uvec2 block_count(Frame frame) { return (tile_count(frame) + BLOCK - 1u) / BLOCK; }

@@ -24,6 +24,12 @@ pub const LEAF_FALLS: u32 = 4;
 /// An operand without equations: [`Leaf::first`] is its number among them.
 pub const LEAF_SHELL: u32 = 8;
 
+/// Of an item that rays are followed through, and that is drawn by another pass.
+pub const LEAF_ELSEWHERE: u32 = 16;
+
+/// [`TileLeaf::leaf`]: the walk of an item that rays are followed through begins here.
+pub const TILE_LEAF_ENTRY: u32 = 0x8000_0000;
+
 /// Pixels along a tile's side.
 pub const TILE: u32 = 16;
 /// Tiles along a block's side.
@@ -62,6 +68,7 @@ pub struct Leaf {
     pub pre: u32,
     pub end: u32,
     pub flags: u32,
+    pub item: u32,
 }
 
 /// Tiles from first to last.

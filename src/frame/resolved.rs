@@ -23,8 +23,16 @@ pub(super) fn targets(
     formats: resolve::Formats,
 ) -> Result<Option<resolve::Resolve>, GpuError> {
     let into = match data.samples {
+        Samples::One if data.is_layered => resolve::Destination::Behind { writes_depth: true },
+        Samples::Four | Samples::Eight
+            if data.is_layered && (formats.aovs || formats.depth.is_some() || data.thickness) =>
+        {
+            resolve::Destination::Behind { writes_depth: true }
+        }
         Samples::One => resolve::Destination::Targets,
-        Samples::Four | Samples::Eight if formats.aovs || formats.depth.is_some() => resolve::Destination::AllButColour,
+        Samples::Four | Samples::Eight if formats.aovs || formats.depth.is_some() || data.thickness => {
+            resolve::Destination::AllButColour
+        }
         Samples::Four | Samples::Eight => return Ok(None),
     };
     resolve::Resolve::new(device, into, formats, kinds(data)).map(Some)
@@ -58,6 +66,6 @@ impl Frame<'_> {
             others: b.others.as_ref().unwrap_or(&b.visibility),
         });
         let solids = self.solids().map(|parts| parts.resolve(self));
-        pass.record(cmd, &bindings, meshes.as_ref(), solids.as_ref(), self.colour, self.depth);
+        pass.record(cmd, &bindings, meshes.as_ref(), solids.as_ref(), &self.resolved_into(), self.depth);
     }
 }

@@ -15,7 +15,7 @@
 //! a thousandth. Boxes are looked for a pixel beyond the picture, of which borders take half, and `spread_px` around
 //! centres.
 
-use super::{Frame, resolved};
+use super::{Drawing, Frame, resolved};
 use crate::abi::Counters;
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, Timestamps, barrier};
 use crate::passes::{average, resolve};
@@ -36,7 +36,11 @@ impl SamplePasses {
             return Ok(None);
         }
         let sums = resolve::Formats { colour: average::SUM_FORMAT, aovs: false, ..formats };
-        let resolve = resolve::Resolve::new(device, resolve::Destination::Sum, sums, resolved::kinds(data))?;
+        let into = match data.is_layered {
+            true => resolve::Destination::Behind { writes_depth: false },
+            false => resolve::Destination::Sum,
+        };
+        let resolve = resolve::Resolve::new(device, into, sums, resolved::kinds(data))?;
         Ok(Some(Self { resolve, average: average::Average::new(device, formats.colour)? }))
     }
 }
@@ -81,13 +85,13 @@ impl Frame<'_> {
         let cleared = into(Load::ColourF32([0.0; 4]));
         let (constants, views) = (&first.constants, &first.views);
         let sample = Frame { constants, views, colour: &cleared, ..*self };
-        sample.draw(cmd, &mut Scopes::of(times), Some(&passes.resolve), 0);
+        sample.draw(cmd, &mut Scopes::of(times), (Some(&passes.resolve), Drawing::Sample), 0);
         let added = into(Load::Keep);
         times.scope(cmd, "more samples", || {
             for (nth, SampleBuffers { constants, views }) in (1..).zip(others) {
                 let sample = Frame { constants, views, colour: &added, ..*self };
                 sample.begin_again(cmd, sum);
-                sample.draw(cmd, &mut Scopes(None), Some(&passes.resolve), nth);
+                sample.draw(cmd, &mut Scopes(None), (Some(&passes.resolve), Drawing::Sample), nth);
             }
         });
         barrier::images(cmd, &[(sum, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);
@@ -103,7 +107,7 @@ impl Frame<'_> {
             let centre = Frame { colour: &colour, ..*self };
             times.scope(cmd, "centre sample", || {
                 centre.begin_again(cmd, self.colour[0].image);
-                centre.draw(cmd, &mut Scopes(None), Some(resolve), self.samples.len() as u64);
+                centre.draw(cmd, &mut Scopes(None), (Some(resolve), Drawing::Beside), self.samples.len() as u64);
             });
         }
     }

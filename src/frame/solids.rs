@@ -59,7 +59,12 @@ impl SolidPasses {
             tiles: solid_tiles::SolidTiles::new(device)?,
             fold: solid_fold::SolidFold::new(device)?,
             way: if data.solids.order.is_empty() {
-                Way::Events(solid_events::SolidEvents::new(device, (tori, shells), VISIBILITY_FORMAT, DEPTH_FORMAT)?)
+                Way::Events(solid_events::SolidEvents::new(
+                    device,
+                    (tori, shells, data.solids.is_followed()),
+                    VISIBILITY_FORMAT,
+                    DEPTH_FORMAT,
+                )?)
             } else {
                 Way::Cst(solid_cst::SolidCst::new(device, tori, VISIBILITY_FORMAT, DEPTH_FORMAT)?)
             },
@@ -288,6 +293,11 @@ impl Frame<'_> {
 }
 
 impl<'a> SolidParts<'a> {
+    /// What rays are followed through.
+    pub(super) fn followed(&self) -> (&'a Solids, &'a SolidBuffers, Centres<'a>) {
+        (self.scene, self.buffers, self.centres)
+    }
+
     /// What pass `resolve` needs of them.
     pub(super) fn resolve(&self, frame: &Frame<'a>) -> resolve::SolidBindings<'a> {
         let b = frame.buffers;

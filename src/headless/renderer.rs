@@ -32,6 +32,7 @@ pub struct HeadlessRenderer {
 struct TargetImages {
     colour: (Image, ReadBack),
     aovs: Option<[(Image, ReadBack); 4]>,
+    thickness: Option<(Image, ReadBack)>,
 }
 
 impl HeadlessRenderer {
@@ -101,7 +102,7 @@ impl HeadlessRenderer {
         outputs: Outputs,
     ) -> Result<Picture, HeadlessError> {
         camera.check().map_err(RenderError::from)?;
-        self.prepare(camera.size, outputs != Outputs::default())?;
+        self.prepare(camera.size, outputs)?;
         self.approach(camera)?;
         let (mut retries, mut edit_bytes) = (0, 0);
         let stats = loop {
@@ -158,7 +159,12 @@ impl HeadlessRenderer {
             };
             let input = FrameInput { camera, settings: *settings, slot: 0, targets };
             // SAFETY: recording; the submission is waited for, so the slot is free again.
-            unsafe { renderer.record(cmd.raw(), &input) }?;
+            unsafe {
+                match &images.thickness {
+                    Some((thickness, _)) => renderer.record_with_thickness(cmd.raw(), &input, thickness),
+                    None => renderer.record(cmd.raw(), &input),
+                }
+            }?;
             images.end(cmd);
             Ok(())
         })??;
@@ -167,8 +173,14 @@ impl HeadlessRenderer {
     }
 
     /// Makes targets of this size, and a renderer that writes the images asked for.
-    fn prepare(&mut self, size: (u32, u32), aovs: bool) -> Result<(), HeadlessError> {
-        if aovs != self.aovs {
+    fn prepare(&mut self, size: (u32, u32), outputs: Outputs) -> Result<(), HeadlessError> {
+        let thickness = outputs.thickness;
+        let aovs = Outputs { thickness: false, ..outputs } != Outputs::default();
+        let followed = self.model.as_ref().is_some_and(|(_, settings)| settings.thickness);
+        if let Some((_, settings)) = self.model.as_mut().filter(|_| thickness) {
+            settings.thickness = true;
+        }
+        if aovs != self.aovs || thickness && !followed {
             let mut renderer = Renderer::on(self.device.device(), formats(aovs), 1)?;
             let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
             renderer.upload_with(model, *settings)?;
@@ -177,9 +189,10 @@ impl HeadlessRenderer {
             self.close = false;
             *self.targets = None;
         }
-        if self.targets.as_ref().is_none_or(|t| t.colour.0.size() != size) {
+        let fits = |t: &TargetImages| t.colour.0.size() == size && t.thickness.is_some() == thickness;
+        if !self.targets.as_ref().is_some_and(fits) {
             *self.targets = None;
-            *self.targets = Some(TargetImages::new(self.device.device(), size, aovs)?);
+            *self.targets = Some(TargetImages::new(self.device.device(), size, aovs, thickness)?);
         }
         Ok(())
     }
@@ -187,8 +200,9 @@ impl HeadlessRenderer {
     /// Has the renderer hold what resolves this view: the model, or what is seen of it close up.
     fn approach(&mut self, camera: &Camera) -> Result<(), HeadlessError> {
         let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
-        // loops that are being edited stay where they are
-        let near = if settings.editable { None } else { self.close_up.of(model, camera) };
+        // loops that are being edited stay where they are, and parts are followed through as a whole
+        let whole = settings.editable || settings.thickness || settings.highlight.is_some();
+        let near = if whole { None } else { self.close_up.of(model, camera) };
         if near.is_some() || self.close {
             self.renderer.upload_with(near.as_ref().unwrap_or(model), *settings)?;
         }
@@ -210,6 +224,7 @@ impl HeadlessRenderer {
             face: values(aov(1), outputs.face, count),
             uv: values(aov(2), outputs.uv, count),
             normal: values::<[f32; 4]>(aov(3), outputs.normal, count).iter().map(|n| [n[0], n[1], n[2]]).collect(),
+            thickness: values(images.thickness.as_ref().map(|t| &t.1), outputs.thickness, count),
             stats,
         }
     }
@@ -231,7 +246,7 @@ fn formats(aovs: bool) -> TargetFormats {
 }
 
 impl TargetImages {
-    fn new(device: &Device, size: (u32, u32), aovs: bool) -> Result<Self, GpuError> {
+    fn new(device: &Device, size: (u32, u32), aovs: bool, thickness: bool) -> Result<Self, GpuError> {
         let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
         let target = |name: &str, format, bytes: u64| {
             let image = Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })?;
@@ -250,11 +265,12 @@ impl TargetImages {
                 ])
             })
             .transpose()?;
-        Ok(Self { colour, aovs })
+        let thickness = thickness.then(|| target("thickness", Renderer::THICKNESS_FORMAT, 4)).transpose()?;
+        Ok(Self { colour, aovs, thickness })
     }
 
     fn all(&self) -> impl Iterator<Item = &(Image, ReadBack)> {
-        std::iter::once(&self.colour).chain(self.aovs.iter().flatten())
+        std::iter::once(&self.colour).chain(self.aovs.iter().flatten()).chain(&self.thickness)
     }
 
     /// Ready to be drawn into; what they held goes.

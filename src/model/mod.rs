@@ -18,20 +18,24 @@
 
 mod camera;
 mod face;
+mod items;
 mod mesh;
 pub mod native;
 mod section;
 mod solid;
 mod stored;
+mod xray;
 
 pub use camera::{Camera, CameraError, Projection};
 pub use face::{Face, FaceError, LoopAt, SurfaceKind, TrimLoop};
+pub use items::Items;
 pub use mesh::{Mesh, MeshError};
 pub use solid::{
     CarriedFace, Carrier, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
     SurfaceTable,
 };
 pub use stored::ModelError;
+pub use xray::UnknownName;
 
 use glam::{DAffine3, DVec3};
 use serde::{Deserialize, Serialize};

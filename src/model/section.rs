@@ -164,7 +164,7 @@ impl Model {
 
 impl Instance {
     /// The placed part as a primitive, with the number of its first face.
-    fn operand(&self, part: &Arc<Part>) -> Primitive {
+    pub(super) fn operand(&self, part: &Arc<Part>) -> Primitive {
         let part = if self.colour.is_some() { &Part::uncoloured(part) } else { part };
         let own = part.faces.iter().map(|f| f.colour).chain(part.meshes.iter().map(|m| m.colour));
         let id = part.faces.iter().map(|f| f.id).chain(part.meshes.iter().map(|m| m.id)).next();

@@ -88,7 +88,7 @@ fn a_folded_list_is_the_folded_tree() {
         let present = (0..leaves.len() as u32).filter(|leaf| !absent[primitive(*leaf) as usize]);
         let mut tile_leaves: Vec<TileLeaf> = present.map(|leaf| TileLeaf { leaf, ..TileLeaf::default() }).collect();
         let starts = [0, tile_leaves.len() as u32];
-        let entry = twin::solid_fold::solid_fold(&leaves, &starts, &mut tile_leaves)[0];
+        let entry = twin::solid_fold::solid_fold(&leaves, u32::MAX, &starts, &mut tile_leaves)[0];
         let folded = solid.tree().fold(|p| absent[p as usize].then_some(false));
         let list = Blist::new(&folded).unwrap();
         for _ in 0..40 {
@@ -106,6 +106,7 @@ fn fold_on_gpu(
     gpu: &Gpu,
     given: &[Leaf],
     expected: &[Leaf],
+    followed: [u32; 2], // there, here
     starts: &[u32],
     tile_leaves: &[TileLeaf],
 ) -> Result<(), Mismatch> {
@@ -115,6 +116,7 @@ fn fold_on_gpu(
         size: [(tiles * 16) as f32, 9.0],
         leaf_count: given.len() as u32,
         tile_leaf_capacity: tile_leaves.len() as u32,
+        followed_leaf: followed[0],
         ..Frame::default()
     };
     let frames = gpu.upload("frame", &[frame]);
@@ -132,7 +134,7 @@ fn fold_on_gpu(
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, tiles));
     let mut twin = tile_leaves.to_vec();
-    let twin_entries = twin::solid_fold::solid_fold(expected, starts, &mut twin);
+    let twin_entries = twin::solid_fold::solid_fold(expected, followed[1], starts, &mut twin);
     same("tile leaves", &gpu.read(&wired, twin.len()), &twin)?;
     same("tile entries", &gpu.read(&entries, tiles as usize), &twin_entries)
 }
@@ -144,16 +146,33 @@ fn fold_parity() {
     for count in [1, 2, 9, 40, 200] {
         let leaves = leaves_of(&random_solid(&mut random, count)).solids.leaves;
         let (starts, tile_leaves) = random_tiles(&mut random, leaves.len() as u32, 150);
-        fold_on_gpu(&gpu, &leaves, &leaves, &starts, &tile_leaves).unwrap();
+        let none = [u32::MAX; 2];
+        fold_on_gpu(&gpu, &leaves, &leaves, none, &starts, &tile_leaves).unwrap();
         // one exit off is seen
         if count == 40 {
             let mut other = leaves.clone();
             other[0].in_exit = EXIT_TRUE - (EXIT_TRUE - other[0].in_exit).min(1);
             other[0].out_exit = other[0].in_exit;
-            let mismatch = fold_on_gpu(&gpu, &other, &leaves, &starts, &tile_leaves).unwrap_err();
+            let mismatch = fold_on_gpu(&gpu, &other, &leaves, none, &starts, &tile_leaves).unwrap_err();
             assert_eq!(mismatch.buffer, "tile leaves");
         }
     }
+    // a union and items behind it, of which each tile marks the beginnings
+    let opaque = random_solid(&mut random, 7);
+    let clear = [3, 12].map(|count| {
+        let solid = random_solid(&mut random, count);
+        let glass = |p: &Primitive| Primitive { colour: [0.5; 4], ..p.clone() };
+        Solid::new(solid.primitives().iter().map(glass).collect(), solid.tree().clone()).unwrap()
+    });
+    let model = Model { solids: [vec![opaque], clear.to_vec()].concat(), ..Model::default() };
+    let data = SceneData::new(&model, SceneSettings::default()).unwrap().solids;
+    assert!(data.followed > 0 && data.is_followed());
+    let (starts, tile_leaves) = random_tiles(&mut random, data.leaves.len() as u32, 150);
+    let followed = [data.followed; 2];
+    fold_on_gpu(&gpu, &data.leaves, &data.leaves, followed, &starts, &tile_leaves).unwrap();
+    let other = [data.followed, u32::MAX];
+    let unmarked = fold_on_gpu(&gpu, &data.leaves, &data.leaves, other, &starts, &tile_leaves).unwrap_err();
+    assert_eq!(unmarked.buffer, "tile leaves");
     gpu.finish();
 }
 

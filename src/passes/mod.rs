@@ -24,6 +24,7 @@ pub(crate) mod solid_blocks;
 pub(crate) mod solid_cst;
 pub(crate) mod solid_events;
 pub(crate) mod solid_fold;
+pub(crate) mod solid_layers;
 pub(crate) mod solid_rects;
 pub(crate) mod solid_tiles;
 pub(crate) mod sort;

@@ -33,6 +33,12 @@ const SCENE_HAS_OTHERS: u32 = 4;
 /// `constant_id` of `SOLIDS_HAVE_TORI`.
 const SOLIDS_HAVE_TORI: u32 = 5;
 
+/// `constant_id` of `BEHIND`.
+const BEHIND: u32 = 18;
+
+/// Format of what is behind layers: linear colour and depth.
+pub(crate) const BEHIND_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
 /// The pass: a pipeline for each kind of thing that the scene has.
 pub(crate) struct Resolve {
     /// And the background, in every scene.
@@ -70,6 +76,11 @@ pub(crate) enum Destination {
     Sum,
     /// The host's targets but for the colour, which is made of samples.
     AllButColour,
+    /// What is behind layers, in the colour's place.
+    Behind {
+        /// Of the host's target.
+        writes_depth: bool,
+    },
 }
 
 /// Buffers and images for patches, in binding order.
@@ -123,6 +134,8 @@ impl Resolve {
             Destination::Targets => (formats.colour, Blend::Replace, ""),
             Destination::Sum => (formats.colour, Blend::Add, ", samples"),
             Destination::AllButColour => (formats.colour, Blend::Leave, ", beside samples"),
+            Destination::Behind { writes_depth: true } => (BEHIND_FORMAT, Blend::Replace, ", behind layers"),
+            Destination::Behind { writes_depth: false } => (BEHIND_FORMAT, Blend::Replace, ", behind layers, samples"),
         };
         let mut colour = vec![ColourTarget { format, blend }];
         if formats.aovs {
@@ -151,20 +164,21 @@ impl Resolve {
                     depth: formats.depth.map(|format| DepthTest {
                         format,
                         compare: vk::CompareOp::GREATER_OR_EQUAL,
-                        write: into != Destination::Sum,
+                        write: !matches!(into, Destination::Sum | Destination::Behind { writes_depth: false }),
                     }),
                 },
             )
         };
         let aovs = (HAS_AOVS, u32::from(formats.aovs));
+        let behind = (BEHIND, u32::from(matches!(into, Destination::Behind { .. })));
         let mut of_mesh = [Binding::Storage; 10];
         of_mesh[8..].fill(Binding::StorageImage);
-        let mesh = |()| pipeline("mesh", shaders::RESOLVE_MESH_FRAG, &of_mesh, &[aovs]);
+        let mesh = |()| pipeline("mesh", shaders::RESOLVE_MESH_FRAG, &of_mesh, &[aovs, behind]);
         let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
         let mut of_solid = [Binding::Storage; 7];
         of_solid[5..].fill(Binding::StorageImage);
         let solid = |tori: bool| {
-            let constants = [aovs, (SOLIDS_HAVE_TORI, u32::from(tori))];
+            let constants = [aovs, behind, (SOLIDS_HAVE_TORI, u32::from(tori))];
             pipeline("solid", shaders::RESOLVE_SOLID_FRAG, &of_solid, &constants)
         };
         let solids = kinds.solids.map(solid).transpose()?;
@@ -172,7 +186,7 @@ impl Resolve {
         of_operand[6] = Binding::Texels;
         of_operand[8..10].fill(Binding::StorageImage);
         let operand = |()| {
-            let constants = [aovs, (SCENE_HAS_RATIONAL, u32::from(kinds.rational))];
+            let constants = [aovs, behind, (SCENE_HAS_RATIONAL, u32::from(kinds.rational))];
             pipeline("operand", shaders::RESOLVE_OPERAND_FRAG, &of_operand, &constants)
         };
         let operands = kinds.operands.then_some(()).map(operand).transpose()?;
@@ -180,6 +194,7 @@ impl Resolve {
         let constants = [
             (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
             aovs,
+            behind,
             (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some())),
         ];
         Ok(Self { patches: pipeline(weights, shaders::RESOLVE_FRAG, &bindings, &constants)?, meshes, solids, operands })

@@ -17,6 +17,8 @@ use ash::vk;
 const SOLIDS_HAVE_TORI: u32 = 5;
 /// `constant_id` of `SOLIDS_HAVE_SHELLS`.
 const SOLIDS_HAVE_SHELLS: u32 = 13;
+/// `constant_id` of `SOLIDS_ARE_FOLLOWED`.
+const SOLIDS_ARE_FOLLOWED: u32 = 14;
 
 /// The pass.
 pub(crate) struct SolidEvents {
@@ -49,10 +51,10 @@ pub(crate) struct Fragments<'a> {
 
 impl SolidEvents {
     /// For images of these formats; `tori`: whether some surface is a torus; `shells`: whether some operand has
-    /// no equations.
+    /// no equations; `followed`: whether there are items that rays are followed through.
     pub(crate) fn new(
         device: &Device,
-        (tori, shells): (bool, bool),
+        (tori, shells, followed): (bool, bool, bool),
         visibility: vk::Format,
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
@@ -66,7 +68,11 @@ impl SolidEvents {
                 ],
                 bindings: &[Binding::Storage; 12],
                 push_bytes: 0,
-                constants: &[(SOLIDS_HAVE_TORI, u32::from(tori)), (SOLIDS_HAVE_SHELLS, u32::from(shells))],
+                constants: &[
+                    (SOLIDS_HAVE_TORI, u32::from(tori)),
+                    (SOLIDS_HAVE_SHELLS, u32::from(shells)),
+                    (SOLIDS_ARE_FOLLOWED, u32::from(followed)),
+                ],
                 topology: vk::PrimitiveTopology::TRIANGLE_LIST,
                 patch_points: 0,
                 cull: vk::CullModeFlags::NONE,

@@ -5,7 +5,7 @@
 //!   pixel ──Camera::ray──▶ line ──Bvh over instances, then leaves──▶ candidates
 //!         ──Solver──▶ all (u, v) where the line meets the surface ──LoopIndex──▶ those inside the loops
 //!         ──Facets──▶ triangles of meshes, by exact signs
-//!         ──SolidTracer──▶ where the union of the Boolean solids is entered
+//!         ──LayerTracer──▶ where the union of the opaque Boolean solids is entered, and faces seen through
 //! ```
 //!
 //! Nothing is tessellated and nothing is sampled: a hit is a root of the surface's own rational
@@ -13,7 +13,8 @@
 //! proof that there is none (see the `solver` module). What the reference leaves out by rule, because
 //! it covers no area: surface that is seen exactly edge-on. A solid shows where the ray comes from outside
 //! to inside, at the near plane or behind it: a near plane within a solid cuts it open, and the first face
-//! entered from there is seen. Faces and meshes of a model that a volume trims are met within it, and nearer to
+//! entered from there is seen. Of solids that are seen through every face shows, entered or left, unless its opacity
+//! is 0: hits are those, and what is opaque. Faces and meshes of a model that a volume trims are met within it, and nearer to
 //! its boundary than [`ON`].
 //!
 //! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`].
@@ -32,7 +33,7 @@ mod tests;
 pub use judge::{Bin, Class, DepthErrors, Errors, Folds, GRAZING_COSINE, JudgeOptions, Judgement, Mismatch, judge};
 pub use probe::Probe;
 
-use crate::model::{Bounds, Camera, Model, Solid, SurfaceTable};
+use crate::model::{Bounds, Camera, Items, Model, SurfaceTable};
 use crate::picture::Picture;
 use crate::trim::LoopIndex;
 use bvh::Bvh;
@@ -76,8 +77,8 @@ pub struct Tracer {
     parts: Vec<PartTree>,
     placed: Vec<Placed>,
     top: Bvh,
-    /// The union of the model's Boolean solids.
-    solids: Option<csg::SolidTracer>,
+    /// The model's Boolean solids and closed parts that are seen through: those that are opaque are one.
+    solids: Option<csg::LayerTracer>,
     /// The volume that trims faces and meshes.
     trim: Option<csg::SolidTracer>,
     bounds: Bounds,
@@ -121,10 +122,12 @@ impl Tracer {
     /// union is larger than a [`Tree`](crate::csg::Tree) may be are left out and count as given up; a volume
     /// that trims the model, too.
     pub fn new(model: &Model) -> Self {
+        let items = model.items(false);
+        let drawn = |instance: usize| items.as_ref().ok().is_none_or(|items| items.drawn[instance]);
         let parts: Vec<PartTree> = model.parts.par_iter().map(PartTree::new).collect();
         let place = |(instance, i): (usize, &crate::model::Instance)| {
             let to_part = i.transform.inverse();
-            (i.part < parts.len() && to_part.is_finite()).then(|| Placed {
+            (i.part < parts.len() && to_part.is_finite() && drawn(instance)).then(|| Placed {
                 instance,
                 part: i.part,
                 to_model: i.transform,
@@ -142,13 +145,13 @@ impl Tracer {
             .collect();
         let bounds = boxes.iter().fold(Bounds::EMPTY, |a, b| a.union(*b));
         let top = Bvh::new(&boxes, PAD * bounds.diagonal());
-        let union = |solids: &[Solid]| csg::SolidTracer::new(&Solid::union(solids).ok()?, SurfaceTable::DRAWN).ok();
-        let some = !model.solids.is_empty();
-        let solids = some.then(|| union(&model.solids)).flatten();
+        let some = items.as_ref().ok().is_none_or(|i| !(i.opaque.is_empty() && i.clear.is_empty()));
+        let layers = |items: Items| csg::LayerTracer::new(&items, SurfaceTable::DRAWN).ok();
+        let solids = items.ok().filter(|_| some).and_then(layers);
         let trim = model.trim.as_ref().and_then(|v| csg::SolidTracer::new(v, SurfaceTable::DRAWN).ok());
         let lost = u64::from(some && solids.is_none()) + u64::from(model.trim.is_some() && trim.is_none());
         let given_up = AtomicU64::new(lost);
-        let bounds = solids.iter().fold(bounds, |all, s| all.union(s.bounds()));
+        let bounds = solids.iter().fold(bounds, |all, s| all.union(s.union().bounds()));
         Self { parts, placed, top, solids, trim, bounds, given_up }
     }
 

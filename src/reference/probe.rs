@@ -41,7 +41,7 @@ impl<'a> Probe<'a> {
     /// Whether the hit is on a Boolean solid, on a face of a spline part that is an operand.
     pub(super) fn on_spline_operand(&self, hit: &Hit) -> bool {
         let solids = self.tracer.solids.iter().filter(|_| hit.part >= self.tracer.parts.len());
-        let mut primitives = solids.filter_map(|s| s.primitives().get(hit.face_index));
+        let mut primitives = solids.filter_map(|s| s.union().primitives().get(hit.face_index));
         primitives.any(|p| matches!(p.shape, Shape::Part(_)))
     }
 
@@ -104,9 +104,12 @@ impl<'a> Probe<'a> {
             });
             end
         });
-        let solids = tracer.solids.iter().flat_map(|s| s.trace(origin, direction).boundaries);
-        let seen = solids.filter(|b| b.entering && b.t >= start && b.t <= end);
-        found.extend(seen.map(|b| {
+        let solids = tracer.solids.iter().flat_map(|s| {
+            let (layers, opaque) = s.layers(origin, direction, start);
+            let shown = layers.into_iter().map(|l| l.boundary).filter(|b| s.primitive(b).colour[3] * 255.0 >= 0.5);
+            shown.chain(opaque.boundaries.into_iter().filter(|b| b.entering && b.t >= start)).collect::<Vec<_>>()
+        });
+        found.extend(solids.filter(|b| b.t <= end).map(|b| {
             let hit = Hit {
                 depth: (b.point - camera.eye).dot(*forward),
                 face: b.id,

@@ -14,7 +14,7 @@ use ash::vk;
 use glam::{DMat4, DVec3};
 
 /// Timed scopes in a frame.
-const SCOPES: u32 = 13;
+const SCOPES: u32 = 14;
 
 /// What one frame in flight owns.
 pub(super) struct Slot {
@@ -83,7 +83,7 @@ impl Slot {
         self.constants.write(0, &[centre]);
         self.write_samples(device, loaded, input.camera, centre)?;
         // a drawing for each sample, and one for what is not their mean
-        let beside = formats.aovs || formats.depth.is_some() || self.samples.is_empty();
+        let beside = formats.aovs || formats.depth.is_some() || loaded.counts.thickness || self.samples.is_empty();
         self.counted = self.samples.len() + usize::from(beside);
         if self.counter_room < self.counted {
             self.counters = read_counters(device, self.counted)?;

@@ -4,14 +4,15 @@ use super::edit::EditScene;
 use super::exact::ExactData;
 use super::face::{FaceData, pack_colour};
 use super::mesh::Meshes;
-use super::solids::{SolidData, UndrawnSolid};
+use super::solids::{Lists, SolidData, UndrawnSolid};
 use crate::abi;
 use crate::model::{Camera, Instance, Model, Projection};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
-use crate::picture::{Samples, SceneSettings, TrimWay};
+use crate::picture::{Highlight, Samples, SceneSettings, TrimWay};
 use glam::{DAffine3, DMat3, DMat4, DVec3};
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::ops::Range;
 
 /// The arrays that the GPU gets; see `glsl/include/scene.glsl` for how they refer to each other.
@@ -55,6 +56,13 @@ pub(crate) struct SceneData {
     pub volume: Option<SolidData>,
     /// Some patch bounds an operand of theirs.
     pub has_operands: bool,
+    /// Something is seen through, or marked.
+    pub is_layered: bool,
+    /// Lengths within solids are wanted.
+    pub thickness: bool,
+    pub highlight: Option<Highlight>,
+    /// Instances that are not closed and would be seen through: drawn opaque.
+    pub open: usize,
 }
 
 impl SceneData {
@@ -62,9 +70,31 @@ impl SceneData {
         let way = settings.trim.unwrap_or(TrimWay::Table);
         let edits = settings.editable && matches!(way, TrimWay::Table | TrimWay::Exact);
         let edit = edits.then(EditScene::default);
-        let solids = SolidData::new(&model.solids, settings.solids)?;
+        let all = settings.thickness || settings.highlight.is_some();
+        let items = (all || !model.is_opaque()).then(|| model.items(all)).transpose()?;
+        let mut model = Cow::Borrowed(model);
+        if let Some(items) = items.as_ref().filter(|items| items.drawn.contains(&false)) {
+            let mut drawn = items.drawn.iter();
+            model.to_mut().instances.retain(|_| drawn.next() == Some(&true));
+        }
+        let model = &*model;
+        let open = items.as_ref().map_or(0, |items| items.open);
+        let clear = items.as_ref().is_some_and(|items| !items.clear.is_empty());
+        let lists = items.map_or_else(|| Lists::union(&model.solids), |items| Lists::of(items, all));
+        let solids = SolidData::new(&lists, settings.solids)?;
         let volume = model.trim.as_ref().map(|volume| SolidData::volume(volume, way)).transpose()?.flatten();
-        let mut data = Self { solids, volume, way: Some(way), samples: settings.samples, edit, ..Self::default() };
+        let mut data = Self {
+            is_layered: (clear || settings.highlight.is_some()) && solids.is_followed(),
+            thickness: settings.thickness,
+            highlight: settings.highlight,
+            open,
+            solids,
+            volume,
+            way: Some(way),
+            samples: settings.samples,
+            edit,
+            ..Self::default()
+        };
         // cut open, a part has no inside
         let open = data.volume.is_some();
         let mut used = vec![false; model.parts.len()];

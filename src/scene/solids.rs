@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   solids ──one tree: their union──▶ Blist ──▶ Leaf per switch ──▶ LeafSurface per side ──▶ Surface
-//!                                                                                        (shared where
+//!          ──those seen through─────▶ a Blist each, behind it                            (shared where
 //!   cylinder:  round side (quadric) ∩ below the top ∩ above the bottom                    sides coincide)
 //! ```
 //!
@@ -16,9 +16,10 @@ mod surface;
 use super::face::pack_colour;
 use crate::abi;
 use crate::csg::Blist;
-use crate::model::{Solid, SolidError, SurfaceTable};
+use crate::model::{Items, Solid, SolidError, SurfaceTable};
 use crate::picture::{SolidWay, TrimWay};
 use glam::DVec3;
+use std::borrow::Cow;
 use std::ops::Range;
 use surface::sides_of;
 
@@ -26,6 +27,8 @@ use surface::sides_of;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SolidData {
     pub leaves: Vec<abi::Leaf>,
+    /// From this one on they are lists of items that rays are followed through; before it, of the union that is seen.
+    pub followed: u32,
     pub leaf_surfaces: Vec<abi::LeafSurface>,
     pub surfaces: Vec<abi::Surface>,
     /// Middle of each leaf's box, model coordinates.
@@ -61,14 +64,50 @@ pub enum UndrawnSolid {
     VolumeBy(&'static str),
 }
 
+/// Solids, and what becomes of them: the first `opaque` are one union, from `followed` on rays are followed through
+/// each, and those from `clear` on are drawn so.
+#[derive(Clone, Debug)]
+pub(crate) struct Lists<'a> {
+    pub solids: Cow<'a, [Solid]>,
+    pub opaque: usize,
+    pub followed: usize,
+    pub clear: usize,
+}
+
+impl<'a> Lists<'a> {
+    /// The union of all.
+    pub(super) fn union(solids: &'a [Solid]) -> Self {
+        let count = solids.len();
+        Self { solids: Cow::Borrowed(solids), opaque: count, followed: count, clear: count }
+    }
+
+    /// What is seen through is followed; `all`: everything is.
+    pub(super) fn of(items: Items, all: bool) -> Self {
+        let Items { opaque, parts, clear, .. } = items;
+        let (first, second) = (opaque.len(), opaque.len() + parts.len());
+        let solids = Cow::Owned([opaque, parts, clear].concat());
+        Self { solids, opaque: first, followed: if all { 0 } else { first }, clear: second }
+    }
+}
+
+/// Primitives and the surfaces that they share.
+struct Shared {
+    whole: Solid,
+    table: SurfaceTable,
+    middle: DVec3,
+    /// Numbers of the primitives that are shells.
+    shells: Vec<Option<u32>>,
+    /// The surface of what has no volume.
+    nothing: Option<u32>,
+}
+
 impl SolidData {
-    /// The union of all `solids`.
-    pub(crate) fn new(solids: &[Solid], way: SolidWay) -> Result<Self, UndrawnSolid> {
+    /// The switches of all lists, one list after another.
+    pub(crate) fn new(lists: &Lists<'_>, way: SolidWay) -> Result<Self, UndrawnSolid> {
         let mut data = Self::default();
-        let whole = Solid::union(solids)?;
+        let whole = Solid::union(&lists.solids)?;
         let table = SurfaceTable::new(&whole, SurfaceTable::DRAWN);
-        let list = Blist::new(whole.tree()).map_err(SolidError::from)?;
-        let middle = middle_of(solids);
+        let middle = middle_of(&lists.solids);
         for (p, primitive) in (0..).zip(whole.primitives()) {
             let sides = sides_of(primitive, middle);
             // a surface is numbered when its first face is met: that face says where it is
@@ -79,74 +118,101 @@ impl SolidData {
                 }
             }
         }
-        let mut nothing = None;
-        let mut shells: Vec<Option<u32>> = vec![None; whole.primitives().len()];
-        let exits = list.entries().iter().enumerate().map(|(i, entry)| {
-            let (t, f) = entry.exits(i as u32);
-            let (in_exit, out_exit) = if entry.negative() { (f, t) } else { (t, f) };
-            let exit = |to: u32| match to.checked_sub(list.outside()) {
-                None => to,
-                Some(0) => abi::EXIT_FALSE,
-                Some(_) => abi::EXIT_TRUE,
-            };
-            (entry, exit(in_exit), exit(out_exit))
-        });
-        for (entry, in_exit, out_exit) in exits {
-            let primitive = &whole.primitives()[entry.primitive() as usize];
-            let bounds = primitive.bounds();
-            let bounded = bounds.min.is_finite() && bounds.max.is_finite();
-            let (centre, half) = match bounded {
-                true if !bounds.is_empty() => (bounds.centre(), (bounds.max - bounds.min) * 0.5),
-                true => (middle, DVec3::ZERO),
-                false => (middle, DVec3::INFINITY),
-            };
-            let mut flags = 0;
-            flags |= if bounded { 0 } else { abi::LEAF_UNBOUNDED };
-            flags |= if entry.negative() { abi::LEAF_NEGATIVE } else { 0 };
-            let leaf = data.leaves.len() as u32;
-            let p = entry.primitive();
-            let is_shell = shell::is_shell(primitive);
-            let shell = if is_shell {
-                let number = shells[p as usize].unwrap_or_else(|| data.push_shell(&table, p, primitive, leaf));
-                shells[p as usize] = Some(number);
-                flags |= abi::LEAF_SHELL;
-                Some(number)
-            } else {
-                None
-            };
-            let first = data.leaf_surfaces.len() as u32;
-            let faces = if is_shell { &[] } else { table.faces(p) };
-            let sides = faces.iter().map(|f| f.surface << 1 | u32::from(f.flipped));
-            data.leaf_surfaces.extend(sides.map(|surface| abi::LeafSurface { surface, leaf }));
-            if faces.is_empty() && !is_shell {
-                // a primitive without volume is the inside of no point
-                let nothing = *nothing.get_or_insert_with(|| {
-                    data.surfaces.push(surface::nowhere());
-                    data.surface_centres.push(middle);
-                    data.surfaces.len() as u32 - 1
-                });
-                data.leaf_surfaces.push(abi::LeafSurface { surface: nothing << 1, leaf });
+        let shells = vec![None; whole.primitives().len()];
+        let mut shared = Shared { whole, table, middle, shells, nothing: None };
+        let union = match lists.opaque == lists.solids.len() {
+            true => Blist::new(shared.whole.tree()),
+            false => Blist::new(Solid::union(&lists.solids[..lists.opaque])?.tree()),
+        };
+        data.push_list(&mut shared, &union.map_err(SolidError::from)?, 0, 0);
+        data.followed = data.leaves.len() as u32;
+        let mut first = 0;
+        for (k, solid) in lists.solids.iter().enumerate() {
+            if k >= lists.followed {
+                let list = Blist::new(solid.tree()).map_err(SolidError::from)?;
+                let flags = if k < lists.clear { abi::LEAF_ELSEWHERE } else { 0 };
+                data.push_list(&mut shared, &list, first, flags);
             }
-            data.leaf_centres.push(centre);
-            data.leaves.push(abi::Leaf {
-                half_size: half.as_vec3().to_array().map(f32::next_up),
-                first: shell.unwrap_or(first),
-                count: data.leaf_surfaces.len() as u32 - first,
-                colour: pack_colour(primitive.colour),
-                id: primitive.id,
-                in_exit,
-                out_exit,
-                flags,
-                ..Default::default()
-            });
+            first += solid.primitives().len() as u32;
         }
         number_exits(&mut data.leaves);
-        if way == SolidWay::Cst && data.shell_leaves.is_empty() {
+        for item in data.followed as usize..data.leaves.len() {
+            // an item that holds all that is far away is there in every tile
+            let leaf = &mut data.leaves[item];
+            if leaf.item as usize == item && leaf.flags & abi::LEAF_FALLS == 0 {
+                leaf.flags |= abi::LEAF_UNBOUNDED;
+            }
+        }
+        if way == SolidWay::Cst && data.shell_leaves.is_empty() && !data.is_followed() {
             let mut used = vec![false; data.surfaces.len()];
             let shared = |side: &abi::LeafSurface| std::mem::replace(&mut used[side.surface as usize >> 1], true);
             data.order = order::order(&data.leaves, data.leaf_surfaces.iter().any(shared));
         }
         Ok(data)
+    }
+
+    /// The switches of one list, whose primitives are those from `first_primitive` on.
+    fn push_list(&mut self, shared: &mut Shared, list: &Blist, first_primitive: u32, all_flags: u32) {
+        let item = self.leaves.len() as u32;
+        for (i, entry) in (0..).zip(list.entries()) {
+            let (t, f) = entry.exits(i);
+            let (in_exit, out_exit) = if entry.negative() { (f, t) } else { (t, f) };
+            let exit = |to: u32| match to.checked_sub(list.outside()) {
+                None => item + to,
+                Some(0) => abi::EXIT_FALSE,
+                Some(_) => abi::EXIT_TRUE,
+            };
+            let p = first_primitive + entry.primitive();
+            let primitive = &shared.whole.primitives()[p as usize];
+            let bounds = primitive.bounds();
+            let bounded = bounds.min.is_finite() && bounds.max.is_finite();
+            let (centre, half) = match bounded {
+                true if !bounds.is_empty() => (bounds.centre(), (bounds.max - bounds.min) * 0.5),
+                true => (shared.middle, DVec3::ZERO),
+                false => (shared.middle, DVec3::INFINITY),
+            };
+            let mut flags = all_flags;
+            flags |= if bounded { 0 } else { abi::LEAF_UNBOUNDED };
+            flags |= if entry.negative() { abi::LEAF_NEGATIVE } else { 0 };
+            let leaf = self.leaves.len() as u32;
+            let is_shell = shell::is_shell(primitive);
+            let shell = is_shell.then(|| {
+                let known = &mut shared.shells[p as usize];
+                *known.get_or_insert_with(|| self.push_shell(&shared.table, p, primitive, leaf))
+            });
+            flags |= if is_shell { abi::LEAF_SHELL } else { 0 };
+            let first = self.leaf_surfaces.len() as u32;
+            let faces = if is_shell { &[] } else { shared.table.faces(p) };
+            let sides = faces.iter().map(|f| f.surface << 1 | u32::from(f.flipped));
+            self.leaf_surfaces.extend(sides.map(|surface| abi::LeafSurface { surface, leaf }));
+            if faces.is_empty() && !is_shell {
+                // a primitive without volume is the inside of no point
+                let nothing = *shared.nothing.get_or_insert_with(|| {
+                    self.surfaces.push(surface::nowhere());
+                    self.surface_centres.push(shared.middle);
+                    self.surfaces.len() as u32 - 1
+                });
+                self.leaf_surfaces.push(abi::LeafSurface { surface: nothing << 1, leaf });
+            }
+            self.leaf_centres.push(centre);
+            self.leaves.push(abi::Leaf {
+                half_size: half.as_vec3().to_array().map(f32::next_up),
+                first: shell.unwrap_or(first),
+                count: self.leaf_surfaces.len() as u32 - first,
+                colour: pack_colour(primitive.colour),
+                id: primitive.id,
+                in_exit: exit(in_exit),
+                out_exit: exit(out_exit),
+                flags,
+                item,
+                ..Default::default()
+            });
+        }
+    }
+
+    /// Whether rays are followed through some of the lists.
+    pub(crate) fn is_followed(&self) -> bool {
+        (self.followed as usize) < self.leaves.len()
     }
 
     /// The volume that trims a scene; `None` when it is everywhere.
@@ -158,7 +224,7 @@ impl SolidData {
         if volume.tree().fold(|_| None).as_constant() == Some(true) {
             return Ok(None);
         }
-        let mut data = Self::new(std::slice::from_ref(volume), SolidWay::Events)?;
+        let mut data = Self::new(&Lists::union(std::slice::from_ref(volume)), SolidWay::Events)?;
         if !data.shell_leaves.is_empty() {
             return Err(UndrawnSolid::Volume);
         }

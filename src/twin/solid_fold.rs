@@ -5,20 +5,29 @@
 //!                                                                that the tile sees
 //! ```
 
-use crate::abi::{EXIT_FALSE, EXIT_TRUE, LEAF_FALLS, Leaf, TileLeaf};
+use crate::abi::{EXIT_FALSE, EXIT_TRUE, LEAF_FALLS, Leaf, TILE_LEAF_ENTRY, TileLeaf};
 
 /// Wires `tile_leaves`, of which tile `n` has those from `tile_starts[n]` to `tile_starts[n + 1]`, to each
-/// other; returns where the walk of each tile begins.
-pub fn solid_fold(leaves: &[Leaf], tile_starts: &[u32], tile_leaves: &mut [TileLeaf]) -> Vec<u32> {
+/// other; returns where the walk of each tile begins. From leaf `followed` on lists are items of their own, and where
+/// each begins is marked.
+pub fn solid_fold(leaves: &[Leaf], followed: u32, tile_starts: &[u32], tile_leaves: &mut [TileLeaf]) -> Vec<u32> {
     let tile = |ends: &[u32]| {
         let (start, end) = (ends[0], ends[1]);
+        let union = fold(leaves, tile_leaves, 0, start, end);
+        let (mut item, mut entry) = (None, EXIT_FALSE);
         for i in start..end {
-            let leaf = leaves[tile_leaves[i as usize].leaf as usize];
+            let at = tile_leaves[i as usize].leaf;
+            let leaf = leaves[at as usize];
             let in_exit = fold(leaves, tile_leaves, leaf.in_exit, i + 1, end);
             let out_exit = fold(leaves, tile_leaves, leaf.out_exit, i + 1, end);
-            tile_leaves[i as usize] = TileLeaf { in_exit, out_exit, ..tile_leaves[i as usize] };
+            if at >= followed && item != Some(leaf.item) {
+                item = Some(leaf.item);
+                entry = fold(leaves, tile_leaves, leaf.item, i, end);
+            }
+            let mark = if at >= followed && i == entry { TILE_LEAF_ENTRY } else { 0 };
+            tile_leaves[i as usize] = TileLeaf { leaf: at | mark, in_exit, out_exit };
         }
-        fold(leaves, tile_leaves, 0, start, end)
+        union
     };
     tile_starts.windows(2).map(tile).collect()
 }

@@ -12,6 +12,7 @@ mod every_shape;
 mod hard;
 mod hard_solids;
 mod hard_trims;
+mod layers;
 mod ledges;
 mod light;
 mod meshes;

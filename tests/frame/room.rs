@@ -8,8 +8,14 @@ use selvedge::model::{Camera, Model, Projection};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, SolidWay, TrimWay};
 
 /// Its buffers grow with the view.
-const BY_TABLE: SceneSettings =
-    SceneSettings { trim: Some(TrimWay::Table), solids: SolidWay::Events, editable: false, samples: Samples::One };
+const BY_TABLE: SceneSettings = SceneSettings {
+    trim: Some(TrimWay::Table),
+    solids: SolidWay::Events,
+    editable: false,
+    samples: Samples::One,
+    thickness: false,
+    highlight: None,
+};
 
 fn draw(renderer: &mut HeadlessRenderer, camera: &Camera, tolerance_px: f64) -> Picture {
     let settings = FrameSettings { tolerance_px, ..FrameSettings::default() };

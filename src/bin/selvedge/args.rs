@@ -71,7 +71,8 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", default_value = "1")]
     pub samples: Samples,
     /// Also write an image as a NumPy array, row 0 on top: depth (f32, H x W, +inf is background), face (u32, H x W,
-    /// 0 is background), uv (f32, H x W x 2, NaN is background), normal (f32, H x W x 3, 0 is background)
+    /// 0 is background), uv (f32, H x W x 2, NaN is background), normal (f32, H x W x 3, 0 is background), thickness (f32,
+    /// H x W: length of the ray within solids and closed parts, overlaps counted once)
     #[arg(long, value_name = "IMAGE=FILE.npy")]
     pub aov: Vec<Aov>,
     /// Write the frame's statistics as JSON
@@ -298,6 +299,10 @@ pub struct FrameArgs {
     /// How to draw Boolean solids: events (a ray a pixel) or cst (each primitive, trimmed by the others)
     #[arg(long, value_name = "WAY", default_value = "events")]
     pub solids: SolidWay,
+    /// Mark, before everything, where faces of two solids or closed parts coincide, blue, and where two overlap, red; counts
+    /// of the pixels are told, and stand in the statistics
+    #[arg(long)]
+    pub highlight: bool,
     /// Part of the name of the Vulkan device to use
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
@@ -398,12 +403,13 @@ pub enum Image {
     Face,
     Uv,
     Normal,
+    Thickness,
 }
 
 impl FromStr for Aov {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
-        let wanted = || "wants IMAGE=FILE.npy, the image being depth, face, uv or normal".to_string();
+        let wanted = || "wants IMAGE=FILE.npy, the image being depth, face, uv, normal or thickness".to_string();
         let (image, file) = text.split_once('=').filter(|(_, file)| !file.is_empty()).ok_or_else(wanted)?;
         Ok(Self { image: Image::from_str(image, false).map_err(|_| wanted())?, file: file.into() })
     }

@@ -1,4 +1,4 @@
-//! A model cut open before it is drawn: `--section`, `--trim-by`.
+//! A model cut open or seen through before it is drawn: `--section`, `--trim-by`, `--xray`.
 
 use crate::session;
 use anyhow::{Context, Result, bail};
@@ -19,6 +19,31 @@ pub struct CutArgs {
     /// before any section
     #[arg(long, value_name = "FILE")]
     pub trim_by: Option<PathBuf>,
+    /// See through occurrences and parts of this name, or faces and primitives of number N with #N, as the face image tells
+    /// it; opacity from 0 to 1, 0.25 without it; several may be named
+    #[arg(long, value_name = "NAME[=OPACITY]")]
+    pub xray: Vec<Xray>,
+}
+
+/// Who is seen through, and their opacity.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Xray {
+    name: String,
+    opacity: f32,
+}
+
+impl FromStr for Xray {
+    type Err = String;
+    fn from_str(text: &str) -> Result<Self, String> {
+        let (name, opacity) = match text.rsplit_once('=') {
+            Some((name, opacity)) => (name, opacity.parse().map_err(|_| "wants NAME=OPACITY, as in lid=0.3")?),
+            None => (text, 0.25),
+        };
+        if !(0.0..=1.0).contains(&opacity) {
+            return Err("an opacity is from 0 to 1".into());
+        }
+        Ok(Self { name: name.to_owned(), opacity })
+    }
 }
 
 /// `normal · p <= offset`.
@@ -49,6 +74,9 @@ impl FromStr for Plane {
 impl CutArgs {
     /// Cuts the model.
     pub fn apply(&self, model: &mut Model) -> Result<()> {
+        for Xray { name, opacity } in &self.xray {
+            model.xray(&[name], *opacity).context("--xray")?;
+        }
         if let Some(path) = &self.trim_by {
             let by = session::open(path, &Default::default())?.model;
             let told = || path.display().to_string();
@@ -71,6 +99,17 @@ impl CutArgs {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    #[test]
+    fn opacities() {
+        let of = |name: &str, opacity| Ok(Xray { name: name.to_owned(), opacity });
+        assert_eq!("lid".parse(), of("lid", 0.25));
+        assert_eq!("a=b=0.5".parse(), of("a=b", 0.5));
+        assert_eq!("#3=0".parse(), of("#3", 0.0));
+        for bad in ["a=b", "a=2", "a=-1", "a=nan", "a="] {
+            assert!(bad.parse::<Xray>().is_err(), "{bad}");
+        }
+    }
 
     #[test]
     fn planes() {

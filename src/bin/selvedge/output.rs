@@ -81,4 +81,7 @@ pub fn clamps(stats: &FrameStats) {
     if stats.clamps > 0 {
         tracing::warn!("{} patches were not split finely enough: the tolerance is not kept there", stats.clamps);
     }
+    if stats.open_clear > 0 {
+        tracing::warn!("{} parts to be seen through are not closed: they are drawn opaque", stats.open_clear);
+    }
 }

@@ -21,6 +21,10 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     for aov in &args.aov {
         write(aov, &picture)?;
     }
+    if args.frame.highlight {
+        let stats = &picture.stats;
+        tracing::warn!("{} pixels show contact, {} overlap", stats.contact_pixels, stats.overlap_pixels);
+    }
     if let Some(path) = &args.stats {
         output::json(path, &picture.stats)?;
     }
@@ -31,7 +35,13 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
 
 fn wanted(aovs: &[Aov]) -> Outputs {
     let has = |image| aovs.iter().any(|a| a.image == image);
-    Outputs { depth: has(Image::Depth), face: has(Image::Face), uv: has(Image::Uv), normal: has(Image::Normal) }
+    Outputs {
+        depth: has(Image::Depth),
+        face: has(Image::Face),
+        uv: has(Image::Uv),
+        normal: has(Image::Normal),
+        thickness: has(Image::Thickness),
+    }
 }
 
 fn write(aov: &Aov, picture: &Picture) -> Result<()> {
@@ -42,6 +52,7 @@ fn write(aov: &Aov, picture: &Picture) -> Result<()> {
             Image::Face => npy::write(to, &[height, width], &picture.face)?,
             Image::Uv => npy::write(to, &[height, width, 2], picture.uv.as_flattened())?,
             Image::Normal => npy::write(to, &[height, width, 3], picture.normal.as_flattened())?,
+            Image::Thickness => npy::write(to, &[height, width], &picture.thickness)?,
         }
         Ok(())
     })

@@ -7,7 +7,7 @@ use anyhow::Result;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::import::{self, Import};
 use selvedge::model::{Camera, LoopAt, TrimLoop};
-use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings};
+use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, Samples, SceneSettings};
 use std::path::Path;
 use std::time::Instant;
 
@@ -53,7 +53,8 @@ impl Session {
 
     fn with(args: &FrameArgs, import: &Import, scene: SceneSettings) -> Result<Self> {
         let options = HeadlessOptions { device: args.device.clone(), validation: args.validation };
-        let scene = SceneSettings { trim: args.trim, solids: args.solids, ..scene };
+        let highlight = args.highlight.then(Highlight::default);
+        let scene = SceneSettings { trim: args.trim, solids: args.solids, highlight, ..scene };
         let mut renderer = during("opening the device", || HeadlessRenderer::new(&options))?;
         during("uploading the model", || renderer.upload_with(&import.model, scene))?;
         let mut settings =

@@ -15,11 +15,14 @@ use crate::import::solid::Assembly;
 use crate::import::{FaceRecord, Import, ImportReport, Warning};
 use crate::model::{Colour, Face, Instance, Model, Part, Primitive, Solid};
 use glam::DAffine3;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
 use std::path::Path;
 use toml::Spanned;
 use toml::de::{DeTable, DeValue};
+
+/// Names listed in a message.
+const MOST_LISTED: usize = 20;
 
 /// Millimetres of the units of length.
 const UNITS: [(&str, f64); 7] =
@@ -42,7 +45,7 @@ pub(super) fn read(text: &str, file: &str, folder: Option<&Path>) -> Outcome<Imp
     scene.list(&mut table)?;
     let (instances, named) = (table.get("instance"), table.get("camera"));
     let picture = table.read("picture", Value::table)?;
-    let (trim, sections) = (table.get("trim"), table.get("section"));
+    let (trim, sections, clear) = (table.get("trim"), table.get("section"), table.get("xray"));
     table.finish()?;
     for item in scene.items.clone() {
         scene.make(item)?;
@@ -70,6 +73,9 @@ pub(super) fn read(text: &str, file: &str, folder: Option<&Path>) -> Outcome<Imp
         }
     }
     let picture = picture.map_or(Ok(PictureSettings::default()), |t| cameras::picture(t, &list))?;
+    if let Some(clear) = clear {
+        builder.xray(clear)?;
+    }
     let mut import = builder.finish(&scene);
     (import.cameras, import.picture) = (list, picture);
     cuts::cut(&scene, &mut import.model, trim.as_ref(), sections)?;
@@ -278,6 +284,37 @@ impl<'a> Builder<'a> {
     fn add(&mut self, part: usize, placing: &Placing<'_>, transform: DAffine3) {
         let (colour, name) = (placing.colour, placing.name.to_owned());
         self.model.instances.push(Instance { part, transform, colour, name });
+    }
+
+    /// What was placed of the items of some names is seen through.
+    fn xray(&mut self, clear: Value<'_>) -> Outcome<()> {
+        let all = if clear.is_table() { vec![clear] } else { clear.list()? };
+        for one in all {
+            let mut table = one.table()?;
+            let names = table.need("of")?.names()?;
+            let opacity = table.need("opacity")?;
+            table.finish()?;
+            let alpha = opacity.number()?;
+            if !(0.0..=1.0).contains(&alpha) {
+                return Err(opacity.fault(format!("an opacity is from 0 to 1, not {alpha}")));
+            }
+            for name in names {
+                let word = name.text()?;
+                if !self.placed.iter().any(|p| p.0 == word) {
+                    let known: BTreeSet<&str> = self.placed.iter().map(|p| p.0).collect();
+                    let known: Vec<_> = known.iter().take(MOST_LISTED).map(|n| format!("`{n}`")).collect();
+                    let message = format!(
+                        "nothing that is called `{}` is placed; there are {}",
+                        shortened(word),
+                        known.join(", ")
+                    );
+                    return Err(name.fault(message));
+                }
+                let of = self.placed.iter().filter(|p| p.0 == word).map(|p| (p.1.clone(), p.2.clone()));
+                of.for_each(|(instances, solids)| self.model.xray_placed(instances, solids, alpha as f32));
+            }
+        }
+        Ok(())
     }
 
     /// Box of all that was placed of the item of a name.

@@ -19,7 +19,7 @@ use serde::{Deserialize, Serialize};
 #[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
 #[serde(try_from = "SolidData")]
 pub struct Solid {
-    primitives: Vec<Primitive>,
+    pub(super) primitives: Vec<Primitive>,
     tree: Tree,
 }
 

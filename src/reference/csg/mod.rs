@@ -15,10 +15,13 @@
 //! the rest; primitives that some leaf adds come before those that are only taken away, then those earlier
 //! in the tree.
 
+mod layers;
 mod roots;
 mod shell;
 #[cfg(test)]
 mod tests;
+
+pub use layers::{Layer, LayerTracer};
 
 use crate::csg::{Tree, TreeError};
 use crate::model::{Bounds, Primitive, Solid, SurfaceTable};
@@ -172,25 +175,38 @@ impl SolidTracer {
         if !(speed > 0.0 && speed.is_finite() && origin.is_finite()) {
             return Trace::default();
         }
-        let (mut crossings, mut state, leaks) = self.crossings(origin, direction);
-        crossings.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.primitive.cmp(&b.primitive)));
+        let (crossings, state, leaks) = self.sorted_crossings(origin, direction);
+        Trace { leaks, ..self.through(&self.tree, 0, &crossings, state, (origin, direction)) }
+    }
+
+    /// The way through one tree, whose leaves name primitives from `first` on.
+    fn through(
+        &self,
+        tree: &Tree,
+        first: u32,
+        crossings: &[Crossing],
+        mut state: Vec<bool>,
+        (origin, direction): (DVec3, DVec3),
+    ) -> Trace {
+        let speed = direction.length();
         // what the line does not cross keeps its state: a smaller tree
         let mut crossed = vec![false; state.len()];
         crossings.iter().for_each(|c| crossed[c.primitive as usize] = true);
-        let tree = self.tree.fold(|p| (!crossed[p as usize]).then(|| state[p as usize]));
-        let mut inside = tree.contains(|p| state[p as usize]);
-        let mut trace = Trace { inside_before: inside, boundaries: Vec::new(), leaks };
+        let at = |p: u32| (first + p) as usize;
+        let tree = tree.fold(|p| (!crossed[at(p)]).then(|| state[at(p)]));
+        let mut inside = tree.contains(|p| state[at(p)]);
+        let mut trace = Trace { inside_before: inside, ..Trace::default() };
         let same = FALLBACK * self.size / speed;
-        let mut rest = &crossings[..];
-        while let Some(first) = rest.first() {
-            let count = rest.iter().take_while(|c| self.one_place(first, c, same)).count();
+        let mut rest = crossings;
+        while let Some(nearest) = rest.first() {
+            let count = rest.iter().take_while(|c| self.one_place(nearest, c, same)).count();
             let (group, behind) = rest.split_at(count);
             rest = behind;
             let before = state.clone();
             group.iter().for_each(|c| state[c.primitive as usize] ^= true);
-            let after = tree.contains(|p| state[p as usize]);
+            let after = tree.contains(|p| state[at(p)]);
             if after != inside {
-                let owner = self.owner(&tree, group, &before, &state, inside);
+                let owner = self.owner((&tree, first), group, &before, &state, inside);
                 trace.boundaries.push(self.boundary(&owner, origin, direction, after));
                 inside = after;
             }
@@ -201,6 +217,13 @@ impl SolidTracer {
     fn one_place(&self, first: &Crossing, c: &Crossing, same: f64) -> bool {
         let exact = |c: &Crossing| self.shells[c.primitive as usize].is_none();
         c.t == first.t || !(exact(first) && exact(c)) && c.t - first.t <= same
+    }
+
+    /// As [`Self::crossings`], in order.
+    fn sorted_crossings(&self, origin: DVec3, direction: DVec3) -> (Vec<Crossing>, Vec<bool>, u32) {
+        let (mut crossings, state, leaks) = self.crossings(origin, direction);
+        crossings.sort_by(|a, b| a.t.total_cmp(&b.t).then(a.primitive.cmp(&b.primitive)));
+        (crossings, state, leaks)
     }
 
     /// Crossings of all primitives, their state before the first, and leaks.
@@ -252,10 +275,17 @@ impl SolidTracer {
     }
 
     /// The crossing of `group` that owns the face; see the module.
-    fn owner(&self, tree: &Tree, group: &[Crossing], before: &[bool], after: &[bool], inside: bool) -> Crossing {
+    fn owner(
+        &self,
+        (tree, first): (&Tree, u32),
+        group: &[Crossing],
+        before: &[bool],
+        after: &[bool],
+        inside: bool,
+    ) -> Crossing {
         let rank = |c: &Crossing| self.ranks[c.primitive as usize];
         let active = |c: &Crossing| {
-            let alone = |state: &[bool]| tree.contains(|p| state[p as usize] != (p == c.primitive));
+            let alone = |state: &[bool]| tree.contains(|p| state[(first + p) as usize] != (first + p == c.primitive));
             alone(before) != inside || alone(after) == inside
         };
         let toggled = |c: &&Crossing| before[c.primitive as usize] != after[c.primitive as usize];

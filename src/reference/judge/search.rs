@@ -211,7 +211,7 @@ impl Reach {
                 reach.add(id, camera, &bounds.corners().map(|c| placed.to_model.transform_point3(c)));
             }
         }
-        let primitives = tracer.solids.iter().flat_map(|s| s.primitives());
+        let primitives = tracer.solids.iter().flat_map(|s| s.union().primitives());
         for p in primitives.filter(|p| wanted.contains(&p.id)) {
             let bounds = p.bounds();
             if bounds.diagonal().is_finite() && !bounds.is_empty() {

@@ -15,6 +15,8 @@
 //! the view sees are made, so memory follows the view, not the zoom. Windows overlap by a margin: next to each other
 //! they show the same surface, and no crack between them. Everything else that is seen stays as it is.
 //!
+//! What is seen through is not cut: a ray is followed through all of it.
+//!
 //! Cost: a face's patches are cut once and kept; a view costs some 50 µs a window and patch near it.
 
 mod loops;
@@ -130,7 +132,14 @@ impl CloseUp {
             let sight = Sight::new(camera, instance);
             let faces = self.faces[instance.part].iter().enumerate();
             let span = spans[instance.part];
-            let seen: Vec<_> = faces.filter_map(|(f, k)| Some((f, sight.of_box(k.bounds)? * span > MOST_PX))).collect();
+            // what is seen through is followed through all of it
+            let part = &model.parts[instance.part];
+            let whole = part.closed && !instance.is_opaque(part);
+            let close = |k: &Known| sight.of_box(k.bounds).map(|pixels| pixels * span > MOST_PX);
+            let seen: Vec<_> = match whole {
+                true => faces.map(|(f, _)| (f, false)).collect(),
+                false => faces.filter_map(|(f, k)| Some((f, close(k)?))).collect(),
+            };
             (placed, sight, seen)
         };
         let mut seen: Vec<_> = model.instances.iter().enumerate().map(coarse).collect();

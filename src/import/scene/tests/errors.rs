@@ -34,7 +34,8 @@ fn unknown_keys_and_words_have_their_place() {
         (
             "colour = 1\n",
             "2:1: `colour` is not known here; known are `selvedge`, `name`, `unit`, `tolerance`, `curve`, `surface`, \
-             `solid`, `part`, `file`, `instance`, `camera`, `picture`, `trim`, `section`",
+             `solid`, `part`, `file`, `instance`, `camera`, `picture`, `trim`, `section`, \
+             `xray`",
         ),
         ("unit = \"parsec\"\n", "2:8: `unit`: `parsec` is none of `mm`, `cm`, `m`, `um`, `km`, `in`, `ft`"),
         ("[solid.a]\nshape = \"sphere\"\nradus = 3\n", "2:8: `radius` is missing"),

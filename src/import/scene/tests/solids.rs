@@ -138,3 +138,25 @@ fn profiles_are_cut_at_their_corners() {
     let import = import(text);
     assert_eq!(import.model.parts.iter().map(|p| p.faces.len()).collect::<Vec<_>>(), [6, 3]);
 }
+
+/// Only what is named is seen through, and an opacity holds for all of it.
+#[test]
+fn what_xray_names_is_seen_through() {
+    let two =
+        format!("{PLATE}[solid.ball]\nshape = \"sphere\"\nradius = 1\n[[instance]]\nof = [\"drilled\", \"ball\"]\n");
+    let opacities = |text: &str| {
+        let import = import(&format!("{text}{two}"));
+        let of = |s: &Solid| s.primitives().iter().map(|p| p.colour[3]).collect::<Vec<_>>();
+        import.model.solids.iter().map(of).collect::<Vec<_>>()
+    };
+    assert_eq!(opacities(""), [vec![1.0; 2], vec![1.0]]);
+    assert_eq!(opacities("xray = { of = \"drilled\", opacity = 0.5 }\n"), [vec![0.5; 2], vec![1.0]]);
+    let both = "xray = [{ of = [\"ball\", \"drilled\"], opacity = 0.5 }, { of = \"ball\", opacity = 0 }]\n";
+    assert_eq!(opacities(both), [vec![0.5; 2], vec![0.0]]);
+    let refused = |text: &str| super::refused(&format!("{text}{two}"));
+    assert_eq!(
+        refused("xray = { of = \"plate\", opacity = 0.5 }\n"),
+        "2:15: `of`: nothing that is called `plate` is placed; there are `ball`, `drilled`"
+    );
+    assert_eq!(refused("xray = { of = \"ball\", opacity = 2 }\n"), "2:33: `opacity`: an opacity is from 0 to 1, not 2");
+}

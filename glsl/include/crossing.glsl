@@ -1,0 +1,43 @@
+// How a leaf of a Boolean solid lies about a depth of the pixel's ray. Needs solids.glsl, shells.glsl and the
+// buffer `fragments`.
+#ifndef CROSSING_GLSL
+#define CROSSING_GLSL
+
+// What a scan wants to know of a leaf at depth t.
+struct Crossing {
+    bool inside;   // just behind t
+    bool before;   // just in front of it
+    bool ends;     // the leaf begins or ends there
+    float next;    // where it does next
+};
+
+Crossing crossing_of(Span s, float t) {
+    return Crossing(inside_span(s, t), inside_before(s, t), ends_at(s, t), next_of_span(s, t));
+}
+
+// Of a shell, and its last fragment at t.
+Crossing crossing_of(uint shell, float t, uint first, uint count, out uint last) {
+    Crossing c = Crossing(false, false, false, NEVER);
+    last = 0u;
+    for (uint i = first; i < first + count; ++i) {
+        Fragment f = fragments[i];
+        if ((f.shell & FRAGMENT_SHELL) != shell) continue;
+        bool leaves_ = (f.shell & FRAGMENT_LEAVES) != 0u;
+        bool passed = f.depth <= t;
+        if (f.depth > t) c.next = min(c.next, f.depth);
+        // entering and leaving follow each other: the first behind t tells, else the last before it
+        if (passed) c.inside = !leaves_;
+        if (f.depth < t) c.before = !leaves_;
+        if (i == first || (fragments[i - 1u].shell & FRAGMENT_SHELL) != shell) {
+            if (!passed) c.inside = leaves_;
+            if (!(f.depth < t)) c.before = leaves_;
+        }
+        if (f.depth == t) {
+            c.ends = true;
+            last = i;
+        }
+    }
+    return c;
+}
+
+#endif

@@ -1,0 +1,181 @@
+//! Pass `solid_layers`: the pixel's ray, followed through solids that are told apart.
+//!
+//! ```text
+//!   behind (what pass `resolve` saw) ──┐
+//!   leaves of the tile, item by item ──┴──▶ layers, front to back ──▶ colour, over what is behind
+//!                                                                 ├─▶ images of the first of them
+//!                                                                 └─▶ length within solids
+//! ```
+//!
+//! Reads: everything that `Bindings` names. Writes: the targets; of the counters `clamps`, `contacts` and `overlaps`.
+//! Needs no storage per pixel beside `behind` and the fragments of operands without equations.
+
+use crate::gpu::{
+    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
+    Pipeline, Texels,
+};
+use crate::shaders;
+use ash::vk;
+
+/// `constant_id` of `SCENE_HAS_RATIONAL`.
+const SCENE_HAS_RATIONAL: u32 = 0;
+/// `constant_id` of `HAS_AOVS`.
+const HAS_AOVS: u32 = 3;
+/// `constant_id` of `SOLIDS_HAVE_TORI`.
+const SOLIDS_HAVE_TORI: u32 = 5;
+/// `constant_id` of `SOLIDS_HAVE_SHELLS`.
+const SOLIDS_HAVE_SHELLS: u32 = 13;
+/// `constant_id` of `FOLLOWED_FOR`.
+const FOLLOWED_FOR: u32 = 15;
+/// `constant_id` of `MARKS`.
+const MARKS: u32 = 16;
+/// `constant_id` of `SOLIDS_HAVE_PATCHES`.
+const SOLIDS_HAVE_PATCHES: u32 = 17;
+
+/// Format of the image of thickness.
+pub(crate) const THICKNESS_FORMAT: vk::Format = vk::Format::R32_SFLOAT;
+/// Depth in `behind` where nothing is, as in `resolved.glsl`.
+pub(crate) const UNSEEN: f32 = 3.0e38;
+
+/// What rays are followed for: a pipeline each.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum For {
+    /// The colour, laid over the target.
+    Colour(vk::Format),
+    /// The colour, added to the sum of a pixel's samples.
+    Sample(vk::Format),
+    /// Beside the colour's target, which stays, those of the images `aovs`; and the host's depth.
+    First { colour: vk::Format, aovs: &'static [vk::Format] },
+    /// The length within solids, its only target.
+    Thickness,
+}
+
+/// What the scene has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kinds {
+    /// Some surface is a torus.
+    pub tori: bool,
+    /// Some operand has no equations.
+    pub shells: bool,
+    /// Some of those are spline parts, some with unequal weights.
+    pub patches: bool,
+    pub rational: bool,
+    /// Linear colour and opacity of contacts and overlaps, where they are wanted.
+    pub marks: Option<[[f32; 4]; 2]>,
+}
+
+/// The pass.
+pub(crate) struct SolidLayers {
+    pipeline: Pipeline,
+    marks: [[f32; 4]; 2],
+}
+
+/// Its buffers and image, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub leaves: &'a Buffer,
+    pub leaf_surfaces: &'a Buffer,
+    pub surfaces: &'a Buffer,
+    /// Model axes, seen from the eye; those of leaves, too.
+    pub surface_centres: &'a Buffer,
+    pub leaf_centres: &'a Buffer,
+    pub tile_starts: &'a Buffer,
+    pub tile_leaves: &'a Buffer,
+    /// Where rays cross operands without equations: starts, counts, all; `None` where there are none.
+    pub fragments: Option<[&'a Buffer; 3]>,
+    pub counters: &'a Buffer,
+    pub behind: &'a Image,
+    pub views: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub patches: &'a Buffer,
+    pub items: &'a Buffer,
+    pub points: &'a Texels,
+    pub instances: &'a Buffer,
+}
+
+impl SolidLayers {
+    /// `depth`: of the host's target. What is hidden behind it stays so; only [`For::First`] writes it.
+    pub(crate) fn new(
+        device: &Device,
+        purpose: For,
+        depth: Option<vk::Format>,
+        kinds: Kinds,
+    ) -> Result<Self, GpuError> {
+        let target = |format, blend| ColourTarget { format, blend };
+        let (number, name, colour) = match purpose {
+            For::Colour(format) => (0, "colour", vec![target(format, Blend::Over)]),
+            For::Sample(format) => (0, "sample", vec![target(format, Blend::Add)]),
+            For::First { colour, aovs } => {
+                let aovs = aovs.iter().map(|format| target(*format, Blend::Replace));
+                (1, "first", std::iter::once(target(colour, Blend::Leave)).chain(aovs).collect())
+            }
+            For::Thickness => (2, "thickness", vec![target(THICKNESS_FORMAT, Blend::Replace)]),
+        };
+        let mut bindings = [Binding::Storage; 20];
+        bindings[12] = Binding::StorageImage;
+        bindings[18] = Binding::Texels;
+        let marks = kinds.marks.filter(|_| number == 0);
+        let writes = matches!(purpose, For::First { .. });
+        let pipeline = Pipeline::graphics(
+            device,
+            &GraphicsInfo {
+                name: &format!("solid layers ({name})"),
+                stages: &[
+                    (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
+                    (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_LAYERS_FRAG),
+                ],
+                bindings: &bindings,
+                push_bytes: size_of::<[[f32; 4]; 2]>() as u32,
+                constants: &[
+                    (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
+                    (HAS_AOVS, u32::from(writes)),
+                    (SOLIDS_HAVE_TORI, u32::from(kinds.tori)),
+                    (SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),
+                    (FOLLOWED_FOR, number),
+                    (MARKS, u32::from(marks.is_some())),
+                    (SOLIDS_HAVE_PATCHES, u32::from(kinds.patches)),
+                ],
+                topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+                patch_points: 0,
+                cull: vk::CullModeFlags::NONE,
+                front: vk::FrontFace::COUNTER_CLOCKWISE,
+                colour: &colour,
+                depth: depth.filter(|_| number != 2).map(|format| DepthTest {
+                    format,
+                    compare: vk::CompareOp::GREATER_OR_EQUAL,
+                    write: writes,
+                }),
+            },
+        )?;
+        Ok(Self { pipeline, marks: marks.unwrap_or_default() })
+    }
+
+    /// One triangle over the targets.
+    pub(crate) fn record(
+        &self,
+        cmd: &Commands<'_>,
+        b: &Bindings<'_>,
+        colour: &[Attachment<'_>],
+        depth: Option<Attachment<'_>>,
+    ) {
+        let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres, b.leaf_centres];
+        // the shader has these bindings in every scene, and reads them only where there are shells
+        let fragments = b.fragments.unwrap_or([b.frame; 3]);
+        let placed = [b.views, b.face_instances, b.faces, b.patches, b.items];
+        let resources: Vec<_> = solid
+            .into_iter()
+            .chain([b.tile_starts, b.tile_leaves])
+            .chain(fragments)
+            .chain([b.counters])
+            .map(Into::into)
+            .chain([b.behind.into()])
+            .chain(placed.into_iter().map(Into::into))
+            .chain([b.points.into(), b.instances.into()])
+            .collect();
+        cmd.rendering(b.behind.size(), colour, depth, || {
+            cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&self.marks));
+            cmd.draw(3, 0, 1);
+        });
+    }
+}
