@@ -68,6 +68,10 @@ const uint KEPT = 12u;
 // Less than this of what lies behind changes no colour of eight bits: sRGB's slope of 12.92 at black, times 255.
 const float OPAQUE = 1.0 / 8192.0;
 
+// Faces of operands without equations that are nearer to an opaque face than this, relative to their depth, touch it:
+// some ten times what Newton's method leaves of a spline's depth.
+const float TOUCHES = 1.0 / 65536.0;
+
 // A box seen from the eye is rounded by less than this, relative to its depth.
 const float BOX = 1e-6;
 
@@ -85,6 +89,7 @@ struct Walk {
     uint positive;  // the first leaves that begin or end there: those that add, those that are taken away
     uint negative;
     uint candidates;
+    bool lives;     // something of it is still to come
 };
 
 // A face of an item.
@@ -103,11 +108,17 @@ Change best;   // the first change after `done_key`
 uint changes; // items that change at t
 uint left;    // those of them after `done_key`
 uint within;  // items behind t
+uint live_from; // what is left of the tile's leaves: items that are behind the ray change nothing any more
+uint live_end;
 
 void close_item(Walk w, uint end, uint first, uint done_key, bool asks) {
     if (w.item == NOBODY) return;
     bool now = w.at == EXIT_TRUE;
     within += now ? 1u : 0u;
+    if (now || w.lives) {
+        live_from = min(live_from, w.from);
+        live_end = end;
+    }
     if (!asks || now == (w.at_before == EXIT_TRUE)) return;
     ++changes;
     uint key = (now ? ENTERED : 0u) | (w.from - first + 1u);
@@ -182,6 +193,8 @@ void main() {
     uint done_key = 0u;
     uint left_then = 0u; // of the last search
     Change layer = Change(0u, 0u, 0u, NOBODY, NOBODY, 0u);
+    uint all_from = first; // of every item that lives
+    uint all_end = end;
     uint scan_from = first;
     uint scan_end = end;
     bool begins = true; // at the near plane nothing is entered
@@ -195,7 +208,9 @@ void main() {
         changes = 0u;
         left = 0u;
         within = 0u;
-        Walk w = Walk(NOBODY, 0u, EXIT_FALSE, EXIT_FALSE, NOBODY, NOBODY, 0u);
+        live_from = end;
+        live_end = first;
+        Walk w = Walk(NOBODY, 0u, EXIT_FALSE, EXIT_FALSE, NOBODY, NOBODY, 0u, false);
         float soonest = NEVER;
         wanted += scan_end - scan_from;
         for (uint i = scan_from; i < scan_end; ++i) {
@@ -205,7 +220,7 @@ void main() {
             Leaf leaf = leaves[number];
             if (leaf.item != w.item) {
                 close_item(w, i, first, done_key, purpose == SEARCH && !begins);
-                w = Walk(leaf.item, i, EXIT_FALSE, EXIT_FALSE, NOBODY, NOBODY, 0u);
+                w = Walk(leaf.item, i, EXIT_FALSE, EXIT_FALSE, NOBODY, NOBODY, 0u, false);
             }
             if ((here.leaf & TILE_LEAF_ENTRY) != 0u) {
                 w.at = i;
@@ -258,6 +273,7 @@ void main() {
             if (i == w.at) w.at = c.inside != turned ? here.in_exit : here.out_exit;
             if (i == w.at_before) w.at_before = c.before != turned ? here.in_exit : here.out_exit;
             soonest = min(soonest, c.next);
+            w.lives = w.lives || c.inside || c.ends || c.next < NEVER;
             if (c.ends && i >= after) {
                 ++w.candidates;
                 if ((leaf.flags & LEAF_NEGATIVE) != 0u) w.negative = min(w.negative, i);
@@ -269,6 +285,8 @@ void main() {
         if (purpose == SEARCH) {
             begins = false;
             next = soonest;
+            all_from = min(live_from, live_end);
+            all_end = live_end;
             if (done_key == 0u) {
                 float to = min(next, frame.far);
                 if (within > 0u) thickness += to - t;
@@ -281,8 +299,9 @@ void main() {
             if (wants) {
                 // an opaque face hides what is entered where it is, and all behind it
                 bool entered = (layer.key & ENTERED) != 0u;
-                bool hidden = entered ? t >= stop : t > stop;
                 uint number = tile_leaves[layer.from].leaf & ~TILE_LEAF_ENTRY;
+                float slack = (leaves[number].flags & LEAF_SHELL) != 0u ? TOUCHES * abs(t) : 0.0;
+                bool hidden = entered ? t + slack >= stop : t - slack > stop;
                 if (hidden) {
                     shows = false;
                     wants = false;
@@ -354,18 +373,19 @@ void main() {
             done_key = layer.key;
             purpose = SEARCH;
             after = 0u;
-            scan_from = first;
-            scan_end = end;
+            scan_from = all_from;
+            scan_end = all_end;
             // others at the same place
             if (shows && left_then > 1u) continue;
         }
         purpose = SEARCH;
         after = 0u;
-        scan_from = first;
-        scan_end = end;
+        scan_from = all_from;
+        scan_end = all_end;
         done_key = 0u;
+        bool ends = FOLLOWED_FOR != FOR_THICKNESS && !MARKS && stop > 0.0;
         bool goes_on = FOLLOWED_FOR == FOR_THICKNESS || MARKS || shows;
-        if (next >= frame.far || !goes_on || !MARKS && next > stop) done = true;
+        if (next >= frame.far || all_from >= all_end || !goes_on || ends && next > stop * (1.0 + TOUCHES)) done = true;
         t = next;
     }
     // a driver that ends long loops is told of

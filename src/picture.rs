@@ -127,7 +127,7 @@ pub enum SolidWay {
     #[default]
     Events,
     /// The faces of each primitive, trimmed by the Blist of the others: constructive solid trimming. Scenes in
-    /// which some operand is a mesh or a spline part are drawn by events.
+    /// which some operand is a mesh or a spline part, or something is seen through, are drawn by events.
     Cst,
 }
 

@@ -102,8 +102,7 @@ impl<'a> Frame<'a> {
             instances: &s.instances,
         };
         let (w, _) = WRITE_TO_READ;
-        let drawn = if passes.is_layered() { Access::COLOUR_WRITE } else { Access::FRAGMENT_READ.discarded() };
-        barrier::images(cmd, &[(behind, drawn, Access::FRAGMENT_READ)]);
+        barrier::images(cmd, &[(behind, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);
         barrier::buffers(cmd, &[(&b.counters, w | Access::INDIRECT_READ, Access::FRAGMENT_WRITE)]);
         let kept = |a: &Attachment<'a>| Attachment { load: Load::Keep, ..*a };
         let depth = self.depth.as_ref().map(kept);

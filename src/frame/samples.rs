@@ -117,8 +117,9 @@ impl Frame<'_> {
     fn begin_again(&self, cmd: &Commands<'_>, colour: &Image) {
         let counters = &self.buffers.counters;
         self.clear(cmd);
-        let word = offset_of!(Counters, doubts) / size_of::<u32>();
-        cmd.fill_word(counters, word as u64, 0);
+        for at in [offset_of!(Counters, doubts), offset_of!(Counters, contacts), offset_of!(Counters, overlaps)] {
+            cmd.fill_word(counters, (at / size_of::<u32>()) as u64, 0);
+        }
         let cleared = Access { layout: Access::COMPUTE_WRITE.layout, ..Access::TRANSFER_WRITE };
         barrier::buffers(cmd, &[(counters, cleared, Access::COMPUTE_WRITE | Access::INDIRECT_READ)]);
         let again = [(colour, Access::COLOUR_WRITE, Access::COLOUR_WRITE)];

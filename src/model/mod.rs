@@ -56,7 +56,8 @@ pub struct Model {
     pub parts: Vec<Part>,
     /// Placed bodies; a part without an instance is not drawn.
     pub instances: Vec<Instance>,
-    /// Boolean solids, in model coordinates; what is drawn is their union.
+    /// Boolean solids, in model coordinates; what is drawn is the union of those that are opaque, and each that is seen
+    /// through by itself: [`Model::items`].
     pub solids: Vec<Solid>,
     /// Volume within which faces and meshes are drawn: see [`Model::trim_by`]. `None`: everywhere.
     pub trim: Option<Solid>,

@@ -1,7 +1,6 @@
 //! Opacity by name: parts and faces that hide what one wants to see.
 
 use super::{Colour, GREY, Model, Part, Shape, Solid};
-use std::ops::Range;
 use std::sync::Arc;
 
 /// No part, face or primitive is called so.
@@ -65,8 +64,14 @@ impl Model {
         self.parts.push(clear);
     }
 
-    /// The opacity of some instances and solids.
-    pub(crate) fn xray_placed(&mut self, instances: Range<usize>, solids: Range<usize>, alpha: f32) {
+    /// The opacity of some instances and solids, for scene files.
+    #[cfg(feature = "scene")]
+    pub(crate) fn xray_placed(
+        &mut self,
+        instances: std::ops::Range<usize>,
+        solids: std::ops::Range<usize>,
+        alpha: f32,
+    ) {
         instances.for_each(|i| self.xray_instance(i, alpha));
         self.solids[solids].iter_mut().for_each(|s| s.set_opacity(alpha, |_| true));
     }

@@ -7,25 +7,25 @@ use crate::support::{assert_identical, assert_silent, orthographic, perspective,
 use glam::{DVec2, DVec3, DVec4};
 use selvedge::csg::{Builder, Op};
 use selvedge::model::{Camera, Colour, Model, Primitive, Projection, Solid, SurfaceTable};
-use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, Samples, SceneSettings};
+use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings};
 use selvedge::reference::csg::LayerTracer;
 use selvedge::reference::{JudgeOptions, Tracer, judge};
 
-const SIZE: (u32, u32) = (160, 120);
+pub const SIZE: (u32, u32) = (160, 120);
 /// Colours of eight bits, one step off: roundings of lit colours and of what is laid over what.
 const STEPS: f64 = 1.0;
 /// Rays this far beside the pixel's centre meet other faces: the pixel is at an edge. A ray's direction and a surface's
 /// place are rounded to 1e-7 of a picture 160 pixels wide, so the drawn edge is nearer than a thousandth.
-const EDGE_PX: f64 = 0.01;
+pub const EDGE_PX: f64 = 0.01;
 /// Most pixels of a picture that may lie at edges, one in so many.
 const EDGES: usize = 12;
 
 const GREEN: Colour = [0.1, 0.7, 0.2, 0.3];
 const RED: Colour = [0.8, 0.1, 0.1, 0.5];
-const BLUE: Colour = [0.1, 0.2, 0.9, 0.25];
-const STEEL: Colour = [0.5, 0.5, 0.55, 1.0];
+pub const BLUE: Colour = [0.1, 0.2, 0.9, 0.25];
+pub const STEEL: Colour = [0.5, 0.5, 0.55, 1.0];
 
-fn painted(colour: Colour, p: Primitive) -> Primitive {
+pub fn painted(colour: Colour, p: Primitive) -> Primitive {
     Primitive { colour, ..p }
 }
 
@@ -38,7 +38,7 @@ fn of(op: Op, all: Vec<Primitive>) -> Solid {
 }
 
 /// Solids, whose primitives are numbered in order.
-fn model(solids: Vec<Solid>) -> Model {
+pub fn model(solids: Vec<Solid>) -> Model {
     let mut id = 0;
     let solids = solids.iter().map(|solid| {
         let numbered = solid.primitives().iter().map(|p| {
@@ -50,16 +50,16 @@ fn model(solids: Vec<Solid>) -> Model {
     Model { solids: solids.collect(), ..Model::default() }
 }
 
-fn one(p: Primitive) -> Solid {
+pub fn one(p: Primitive) -> Solid {
     Solid::of(p).unwrap()
 }
 
-fn glass(colour: Colour, min: [f64; 3], max: [f64; 3]) -> Solid {
+pub fn glass(colour: Colour, min: [f64; 3], max: [f64; 3]) -> Solid {
     one(painted(colour, block(min, max)))
 }
 
 /// A toothed wheel: a disc, teeth, a hole.
-fn gear() -> Solid {
+pub fn gear() -> Solid {
     let tooth = |k: u32| {
         moved(turned(0.0, 0.0, f64::from(k) * 0.785), painted(STEEL, block([0.6, -0.12, -0.2], [1.0, 0.12, 0.2])))
     };
@@ -74,7 +74,7 @@ fn gear() -> Solid {
     Solid::new(all, b.finish(root).unwrap()).unwrap()
 }
 
-fn tracer(model: &Model) -> LayerTracer {
+pub fn tracer(model: &Model) -> LayerTracer {
     LayerTracer::new(&model.items(false).unwrap(), SurfaceTable::DRAWN).unwrap()
 }
 
@@ -91,14 +91,14 @@ fn faces(layers: &LayerTracer, camera: &Camera, pixel: DVec2) -> Vec<(usize, u32
     clear.chain(opaque.first(camera.depth_range.0 / d.dot(forward)).map(|b| (usize::MAX, b.id, true))).collect()
 }
 
-fn centre(i: usize, size: (u32, u32)) -> DVec2 {
+pub fn centre(i: usize, size: (u32, u32)) -> DVec2 {
     DVec2::new((i as u32 % size.0) as f64 + 0.5, (i as u32 / size.0) as f64 + 0.5)
 }
 
 /// Sides of a pixel.
-const AROUND: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
+pub const AROUND: [DVec2; 4] = [DVec2::X, DVec2::Y, DVec2::NEG_X, DVec2::NEG_Y];
 
-fn is_at_edge(layers: &LayerTracer, camera: &Camera, at: DVec2, far: f64) -> bool {
+pub fn is_at_edge(layers: &LayerTracer, camera: &Camera, at: DVec2, far: f64) -> bool {
     let here = faces(layers, camera, at);
     AROUND.iter().any(|d| faces(layers, camera, at + *d * far) != here)
 }
@@ -161,7 +161,7 @@ fn right_at(size: (u32, u32), cases: Vec<(&str, Model)>) {
     assert_silent(renderer);
 }
 
-fn in_glass() -> Model {
+pub fn in_glass() -> Model {
     model(vec![glass(BLUE, [-1.3, -1.3, -0.6], [1.3, 1.3, 0.6]), gear()])
 }
 
@@ -392,107 +392,6 @@ fn solids_may_be_swapped() {
     assert_silent(renderer);
 }
 
-/// Lengths within solids, and none where there is none. Parts that are closed count, too.
-#[test]
-fn thickness() {
-    let mut solid = in_glass();
-    solid.solids.push(one(painted(STEEL, ball(0.5, 1.4))));
-    let mut with_part = model(vec![glass(BLUE, [-0.5, -0.5, -0.5], [2.0, 0.5, 0.5])]);
-    let same_as = model(vec![with_part.solids[0].clone(), one(part(sphere()))]);
-    let placed = sphere();
-    (with_part.parts, with_part.instances) = (placed.parts, placed.instances);
-    let outputs = Outputs { thickness: true, ..Outputs::default() };
-    let cases = [
-        ("solids", &solid, &solid),
-        ("a part", &with_part, &same_as),
-        ("nothing", &Model::default(), &Model::default()),
-    ];
-    let mut renderer = watched(&Model::default());
-    for (name, m, truth) in cases {
-        let whole = Solid::union(&truth.solids).unwrap();
-        let layers = tracer(&model(vec![whole]));
-        let framed = if m.solids.is_empty() { &solid } else { m };
-        for camera in [perspective(framed, SIZE), orthographic(framed, SIZE)] {
-            renderer.upload(m).unwrap();
-            let picture = renderer.render(&camera, &FrameSettings::default(), outputs).unwrap();
-            assert_eq!(picture.thickness.len(), picture.colour.len());
-            let (_, _, forward) = camera.axes();
-            let (mut seen, size) = (0, framed.bounds().diagonal());
-            for (i, drawn) in picture.thickness.iter().enumerate() {
-                let at = centre(i, SIZE);
-                if !m.solids.is_empty() && is_at_edge(&layers, &camera, at, EDGE_PX) {
-                    continue;
-                }
-                let (_, d) = camera.ray(at);
-                let (near, far) = camera.depth_range;
-                let cosine = d.dot(forward);
-                let length = |at: DVec2| {
-                    let (o, d) = camera.ray(at);
-                    let trace = || layers.union().trace(o, d).thickness(near / cosine, far / cosine);
-                    if m.solids.is_empty() { 0.0 } else { trace() }
-                };
-                let exact = length(at);
-                let beside = AROUND.map(|d| (length(at + d * EDGE_PX) - exact).abs()).into_iter().fold(0.0, f64::max);
-                // some roundings of a depth, which is a few times the model's size; or as truly is that near
-                let bound = 2e-6 * size + beside;
-                assert!((exact - f64::from(*drawn)).abs() < bound, "{name} at {at}: {drawn}, truly {exact}");
-                assert!(exact > 0.0 || drawn.to_bits() == 0, "{name} at {at}: {drawn}");
-                seen += usize::from(exact > 0.0);
-            }
-            assert!(seen > 2000 || m.solids.is_empty(), "{name}: {seen}");
-        }
-    }
-    assert_silent(renderer);
-}
-
-/// Who touches and who overlaps is marked, and counted.
-#[test]
-fn contacts_and_overlaps() {
-    let steel = |x: f64, to: f64| glass(STEEL, [x, -0.98, -0.48], [to, 0.98, 0.48]);
-    let cases = [
-        ("apart", vec![steel(-1.0, 0.0), steel(0.01, 1.0)]),
-        ("touching", vec![steel(-1.0, 0.0), steel(0.0, 1.0)]),
-        ("overlapping", vec![steel(-1.0, 0.1), steel(-0.1, 1.0)]),
-        ("flush and overlapping", vec![steel(-1.0, 0.5), steel(-1.0, 1.0)]),
-        ("of glass", vec![glass(BLUE, [-1.0, -0.98, -0.48], [0.0, 0.98, 0.48]), steel(0.0, 1.0)]),
-    ];
-    let marks = SceneSettings { highlight: Some(Highlight::default()), ..SceneSettings::default() };
-    let mut renderer = watched_with(&Model::default(), marks);
-    for (name, solids) in cases {
-        let m = model(solids);
-        let camera = orthographic(&m, SIZE);
-        renderer.upload_with(&m, marks).unwrap();
-        let picture = render(&mut renderer, &camera);
-        // each by itself
-        let all: Vec<LayerTracer> =
-            m.solids.iter().map(|s| tracer(&Model { solids: vec![s.clone()], ..Model::default() })).collect();
-        let (mut contacts, mut overlaps, mut edges) = (0, 0, 0);
-        for i in 0..picture.colour.len() {
-            let (o, d) = camera.ray(centre(i, SIZE));
-            let (a, b) = (all[0].union().trace(o, d), all[1].union().trace(o, d));
-            let near = |x: f64, y: f64| (x - y).abs() < 1e-9;
-            contacts += u64::from(a.boundaries.iter().any(|x| b.boundaries.iter().any(|y| near(x.t, y.t))));
-            let both = a.thickness(0.0, 1e3) + b.thickness(0.0, 1e3);
-            let union = tracer(&Model { solids: vec![Solid::union(&m.solids).unwrap()], ..Model::default() });
-            overlaps += u64::from(both - union.union().trace(o, d).thickness(0.0, 1e3) > 1e-9);
-            edges += u64::from(all.iter().any(|t| is_at_edge(t, &camera, centre(i, SIZE), EDGE_PX)));
-        }
-        let stats = &picture.stats;
-        assert!(
-            stats.contact_pixels.abs_diff(contacts) <= edges,
-            "{name}: {} of {contacts} touch",
-            stats.contact_pixels
-        );
-        assert!(stats.overlap_pixels.abs_diff(overlaps) <= edges, "{name}: {} of {overlaps}", stats.overlap_pixels);
-        assert!(edges < 120, "{name}: {edges}");
-        assert_eq!(contacts > 300, name != "apart" && name != "overlapping", "{name}: {contacts}");
-        assert_eq!(overlaps > 300, name.contains("overlapping"), "{name}: {overlaps}");
-        let tinted = picture.colour.iter().filter(|c| c[0].abs_diff(c[2]) > 60).count() as u64;
-        assert!(name == "of glass" || tinted.abs_diff(contacts.max(overlaps)) <= edges + 60, "{name}: {tinted} marked");
-    }
-    assert_silent(renderer);
-}
-
 /// Closed parts that are painted with glass are seen through; open ones are drawn, and counted.
 #[test]
 fn parts_of_glass() {
@@ -516,32 +415,4 @@ fn parts_of_glass() {
     renderer.upload(&m).unwrap();
     assert_identical(&open, &render(&mut renderer, &camera), "drawn opaque");
     assert_silent(renderer);
-}
-
-/// An opaque scene has nothing of this, and each wish what it needs.
-#[test]
-fn only_who_is_followed_has_what_that_needs() {
-    let opaque = model(vec![gear()]);
-    let camera = perspective(&opaque, SIZE);
-    let names = |m: &Model, settings: SceneSettings, outputs: Outputs| {
-        let mut renderer = watched_with(m, settings);
-        renderer.render(&camera, &FrameSettings::default(), outputs).unwrap();
-        let mut names = renderer.objects();
-        names.retain(|name| name.contains("layers") || name.contains("thickness"));
-        names.sort();
-        assert_silent(renderer);
-        names
-    };
-    let (plain, aovs) = (SceneSettings::default(), Outputs::ALL);
-    assert!(names(&opaque, plain, aovs).is_empty());
-    let colour = names(&in_glass(), plain, Outputs::default());
-    assert!(
-        colour.iter().any(|n| n == "behind layers") && colour.iter().any(|n| n == "solid layers (colour)"),
-        "{colour:?}"
-    );
-    assert!(!colour.iter().any(|n| n.contains("first") || n.contains("thickness")), "{colour:?}");
-    assert!(names(&in_glass(), plain, aovs).iter().any(|n| n == "solid layers (first)"));
-    let thick = names(&opaque, plain, Outputs { thickness: true, ..Outputs::default() });
-    assert!(thick.iter().any(|n| n == "solid layers (thickness)"), "{thick:?}");
-    assert!(!thick.iter().any(|n| n.contains("colour")), "{thick:?}");
 }

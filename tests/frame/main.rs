@@ -14,6 +14,7 @@ mod hard_solids;
 mod hard_trims;
 mod layers;
 mod ledges;
+mod lengths;
 mod light;
 mod meshes;
 mod objects;
