@@ -36,6 +36,7 @@ use samples::{SamplePasses, Scopes};
 use solids::SolidPasses;
 use trim::{TrimParts, TrimPasses};
 
+mod blister;
 mod edit;
 mod resolved;
 #[cfg(feature = "rivals")]
@@ -46,7 +47,7 @@ mod table;
 mod trim;
 
 pub(crate) use samples::SampleBuffers;
-pub(crate) use solids::Centres;
+pub(crate) use solids::{Centres, Near};
 
 /// The passes that a scene needs.
 pub(crate) struct Passes {
@@ -108,6 +109,7 @@ pub(crate) struct Frame<'a> {
     /// The same for each of a pixel's samples, where there are several.
     pub samples: &'a [SampleBuffers],
     pub centres: Option<Centres<'a>>,
+    pub near: Near,
     /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.
     pub volume_centres: Option<&'a Buffer>,
     pub counters: &'a ReadBack,

@@ -17,9 +17,10 @@ mod constants;
 mod edit;
 mod slot;
 
-pub use crate::buffers::TooMany;
-use crate::buffers::{Buffers, Capacities, Counts};
-use crate::frame::{Frame, Passes, target};
+use crate::buffers::Buffers;
+pub use crate::capacities::TooMany;
+use crate::capacities::{Capacities, Counts};
+use crate::frame::{Frame, Near, Passes, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Uploads};
 use crate::model::{Camera, CameraError, Model};
 use crate::passes::resolve;
@@ -266,6 +267,11 @@ impl Renderer {
             let kept = target(image, keep);
             if keep { kept } else { Attachment { load: Load::Depth(0.0), ..kept } }
         });
+        let solids = scene.solids.as_ref().and_then(|s| s.blister.as_ref());
+        let near = Near {
+            depth: input.camera.depth_range.0 as f32,
+            may_cut: solids.is_some_and(|(walk, _)| walk.may_be_cut(input.camera)),
+        };
         let frame = Frame {
             passes: &loaded.passes,
             scene,
@@ -274,6 +280,7 @@ impl Renderer {
             views,
             samples: &slot.samples,
             centres: slot.centres.solids(),
+            near,
             volume_centres: slot.centres.volume(),
             counters: &slot.counters,
             colour: &colour,
@@ -312,6 +319,7 @@ impl Renderer {
             fragments: u64::from(c.fragments),
             mended: u64::from(c.mended),
             unpaired: u64::from(c.unpaired),
+            layers: u64::from(c.layers),
             retries: 0,
             edit_bytes: slot.edit_bytes,
             pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),

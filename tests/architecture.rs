@@ -29,9 +29,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("passes", &["abi", "gpu", "shaders"]),
     // where both meet
     ("scene", &["abi", "csg", "gpu", "math", "spline", "trim", "model", "picture", "rivals"]),
-    ("buffers", &["abi", "gpu", "passes", "picture", "scene"]),
+    ("capacities", &["abi", "passes", "picture", "scene"]),
+    ("buffers", &["abi", "capacities", "gpu", "passes", "picture"]),
     ("frame", &["abi", "buffers", "gpu", "passes", "picture", "scene", "shaders"]),
-    ("renderer", &["abi", "budget", "buffers", "frame", "gpu", "model", "passes", "picture", "scene"]),
+    ("renderer", &["abi", "budget", "buffers", "capacities", "frame", "gpu", "model", "passes", "picture", "scene"]),
     ("headless", &["gpu", "model", "picture", "renderer"]),
     // for benchmarks and tests
     ("rivals", &["abi", "math", "model", "picture", "scene", "spline", "trial", "trim", "twin"]),

@@ -133,6 +133,7 @@ struct Frame {
     uint block_leaf_capacity;
     uint tile_leaf_capacity;
     uint fragment_capacity;
+    uint layer_capacity; // of way `blister`
     vec3 right;         // camera axes in model space
     vec3 up;
     vec3 forward;
@@ -161,6 +162,7 @@ struct Counters {
     uint fragments;    // of operands of Boolean solids
     uint mended;       // rays through an operand that wanted a fragment from beside a gap
     uint unpaired;     // rays that enter an operand and never leave it, or the reverse
+    uint layers;       // peeled by way `blister`
     uint clamps;       // factors or densities above their hard limits
     uint failed;       // one bit a buffer that was too small
 };
@@ -173,6 +175,7 @@ const uint FAILED_DOUBTS = 16u;
 const uint FAILED_BLOCK_LEAVES = 32u;
 const uint FAILED_TILE_LEAVES = 64u;
 const uint FAILED_FRAGMENTS = 128u;
+const uint FAILED_LAYERS = 256u;
 
 // Tessellation of one item, decided by the split pass. Totals over the whole patch.
 struct Factors {

@@ -42,6 +42,7 @@ pub struct Frame {
     pub block_leaf_capacity: u32,
     pub tile_leaf_capacity: u32,
     pub fragment_capacity: u32,
+    pub layer_capacity: u32,
     pub right: [f32; 3],
     pub up: [f32; 3],
     pub forward: [f32; 3],
@@ -85,6 +86,7 @@ pub struct Counters {
     pub fragments: u32,
     pub mended: u32,
     pub unpaired: u32,
+    pub layers: u32,
     pub clamps: u32,
     pub failed: u32,
 }

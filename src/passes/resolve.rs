@@ -153,6 +153,7 @@ impl Resolve {
                         compare: vk::CompareOp::GREATER_OR_EQUAL,
                         write: into != Destination::Sum,
                     }),
+                    stencil: None,
                 },
             )
         };

@@ -51,6 +51,7 @@ pub(super) fn constants(
         block_leaf_capacity: room.block_leaves,
         tile_leaf_capacity: room.tile_leaves,
         fragment_capacity: room.fragments,
+        layer_capacity: room.layers,
         right: right.as_vec3().to_array(),
         up: up.as_vec3().to_array(),
         forward: forward.as_vec3().to_array(),

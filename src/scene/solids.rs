@@ -9,6 +9,7 @@
 //! A surface is stored in coordinates of its own, of about the size of 1, so single precision suffices;
 //! where it is stays in `f64` and is given relative to the eye every frame.
 
+mod blister;
 mod order;
 mod shell;
 mod surface;
@@ -18,6 +19,7 @@ use crate::abi;
 use crate::csg::Blist;
 use crate::model::{Solid, SolidError, SurfaceTable};
 use crate::picture::{SolidWay, TrimWay};
+pub(crate) use blister::{Asked, Blister};
 use glam::DVec3;
 use std::ops::Range;
 use surface::sides_of;
@@ -44,6 +46,8 @@ pub(crate) struct SolidData {
     pub(super) operands: Vec<shell::Operand>,
     /// For [`SolidWay::Cst`]: the leaves as they are drawn.
     pub order: Vec<u32>,
+    /// For [`SolidWay::Blister`].
+    pub blister: Option<Blister>,
 }
 
 /// Why a solid is not drawn.
@@ -81,6 +85,7 @@ impl SolidData {
         }
         let mut nothing = None;
         let mut shells: Vec<Option<u32>> = vec![None; whole.primitives().len()];
+        let mut leaf_of: Vec<[Option<u32>; 2]> = vec![[None; 2]; shells.len()];
         let exits = list.entries().iter().enumerate().map(|(i, entry)| {
             let (t, f) = entry.exits(i as u32);
             let (in_exit, out_exit) = if entry.negative() { (f, t) } else { (t, f) };
@@ -105,6 +110,7 @@ impl SolidData {
             flags |= if entry.negative() { abi::LEAF_NEGATIVE } else { 0 };
             let leaf = data.leaves.len() as u32;
             let p = entry.primitive();
+            leaf_of[p as usize][usize::from(entry.negative())].get_or_insert(leaf);
             let is_shell = shell::is_shell(primitive);
             let shell = if is_shell {
                 let number = shells[p as usize].unwrap_or_else(|| data.push_shell(&table, p, primitive, leaf));
@@ -145,6 +151,11 @@ impl SolidData {
             let mut used = vec![false; data.surfaces.len()];
             let shared = |side: &abi::LeafSurface| std::mem::replace(&mut used[side.surface as usize >> 1], true);
             data.order = order::order(&data.leaves, data.leaf_surfaces.iter().any(shared));
+        }
+        let splines = data.operands.iter().any(|operand| !operand.faces().is_empty());
+        if way == SolidWay::Blister && !splines && !data.leaves.is_empty() && blister::face_outward(&data) {
+            let made = Blister::new(&data, whole.tree(), whole.primitives(), &leaf_of);
+            data.blister = Some(made.map_err(SolidError::from)?);
         }
         Ok(data)
     }

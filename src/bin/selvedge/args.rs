@@ -295,7 +295,8 @@ pub struct FrameArgs {
     /// How to trim: table (made for each view) or exact (made once); table without it
     #[arg(long, value_name = "WAY")]
     pub trim: Option<TrimWay>,
-    /// How to draw Boolean solids: events (a ray a pixel) or cst (each primitive, trimmed by the others)
+    /// How to draw Boolean solids: events (a ray a pixel), cst (each primitive, trimmed by the others) or blister
+    /// (layers of faces, classified by labels)
     #[arg(long, value_name = "WAY", default_value = "events")]
     pub solids: SolidWay,
     /// Part of the name of the Vulkan device to use
