@@ -110,6 +110,8 @@ const MOST_THREADS: u32 = MOST_GROUPS * 64;
 const MOST_TRIANGLES: u32 = u32::MAX / 3;
 /// What the bits of the visibility image tell apart.
 const MOST_SEEN: u32 = 1 << 29;
+/// Layers of faces recorded in any case.
+const FEWEST_LAYERS: u32 = 4;
 /// Of faces, each of which asks every primitive.
 const MOST_LAYERS: u32 = 1 << 10;
 /// Rows that pass `sort` takes, 128 to a workgroup.
@@ -149,8 +151,13 @@ impl Capacities {
             block_leaves: counts.leaves.saturating_mul(4),
             tile_leaves: if counts.leaves > 0 { counts.leaves.saturating_mul(16).max(1 << 14) } else { 0 },
             fragments: if counts.has_fragments() { 1 << 18 } else { 0 },
-            layers: if counts.blister { 8 } else { 0 },
+            layers: if counts.blister { FEWEST_LAYERS } else { 0 },
         }
+    }
+
+    /// Buffers made for these take as much as those made for `others`.
+    pub(crate) fn takes_as_much(self, others: Self) -> bool {
+        Self { layers: others.layers, ..self } == others
     }
 
     /// What the frame that reported `c` would have needed, with a quarter to spare where a storage
@@ -184,7 +191,11 @@ impl Capacities {
             block_leaves: room(self.block_leaves, c.block_leaves, range / size_of::<u32>() as u32),
             tile_leaves: room(self.tile_leaves, c.tile_leaves, range / size_of::<TileLeaf>() as u32),
             fragments: room(self.fragments, c.fragments, most_fragments),
-            layers: if c.failed & FAILED_LAYERS != 0 { 2 * self.layers } else { self.layers },
+            layers: match self.layers {
+                0 => 0,
+                had if c.failed & FAILED_LAYERS != 0 => 2 * had,
+                _ => (c.layers + 1).max(FEWEST_LAYERS),
+            },
         })
     }
 }
@@ -224,6 +235,25 @@ mod tests {
         // no room for a quarter more in one storage buffer
         let c = Counters { intercepts: RANGE / 4 - 1, failed: 8, ..Default::default() };
         assert_eq!(first().grown(&c, RANGE).unwrap().intercepts, RANGE / 4);
+    }
+
+    /// One layer more than were needed, so that it is seen to be empty; twice as many where some were wanting.
+    #[test]
+    fn layers_follow_the_view() {
+        let peels = Capacities::first(Counts { leaves: 3, blister: true, ..Default::default() });
+        assert_eq!((first().layers, peels.layers), (0, FEWEST_LAYERS));
+        let of = |had: Capacities, c| had.grown(&c, RANGE).map(|c| c.layers);
+        let more = Capacities { layers: 16, ..peels };
+        assert_eq!(
+            of(peels, Counters { layers: 5, failed: FAILED_LAYERS, ..Default::default() }),
+            Ok(2 * FEWEST_LAYERS)
+        );
+        assert_eq!(of(more, Counters { layers: 9, ..Default::default() }), Ok(10));
+        assert_eq!(of(more, Counters::default()), Ok(FEWEST_LAYERS));
+        assert!(more.takes_as_much(peels) && !Capacities { draws: 1, ..more }.takes_as_much(peels));
+        let most = Capacities { layers: MOST_LAYERS, ..peels };
+        let c = Counters { layers: MOST_LAYERS + 1, failed: FAILED_LAYERS, ..Default::default() };
+        assert!(matches!(of(most, c), Err(TooMany { what: "layers of faces", .. })));
     }
 
     #[test]

@@ -110,6 +110,8 @@ pub(crate) struct Frame<'a> {
     pub samples: &'a [SampleBuffers],
     pub centres: Option<Centres<'a>>,
     pub near: Near,
+    /// That way `blister` peels.
+    pub layers: u32,
     /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.
     pub volume_centres: Option<&'a Buffer>,
     pub counters: &'a ReadBack,

@@ -281,6 +281,7 @@ impl Renderer {
             samples: &slot.samples,
             centres: slot.centres.solids(),
             near,
+            layers: loaded.capacities.layers,
             volume_centres: slot.centres.volume(),
             counters: &slot.counters,
             colour: &colour,
@@ -289,7 +290,7 @@ impl Renderer {
         slot.times.reset(&cmd);
         frame.record(&cmd, &mut slot.times);
         slot.recorded = true;
-        slot.capacities = Some(buffers.capacities);
+        slot.capacities = Some(loaded.capacities);
         self.last = Some(input.slot);
         Ok(())
     }
@@ -350,14 +351,13 @@ impl Renderer {
             (Some(had), Some(c)) if had == loaded.capacities => had.grown(&c, range)?,
             _ => loaded.capacities,
         };
-        let fits = |b: &Buffers| b.visibility.size() == size && b.capacities == capacities;
-        if !loaded.buffers.as_ref().is_some_and(fits) {
-            let made = Buffers::new(&self.device, loaded.counts, capacities, size)?;
-            // only now: a view that needs more than there is must not spoil the next one
-            loaded.capacities = capacities;
-            if let Some(old) = loaded.buffers.replace(made) {
-                self.retire(Retired::Buffers(Box::new(old)));
-            }
+        let fits = |b: &Buffers| b.visibility.size() == size && b.capacities.takes_as_much(capacities);
+        let fits = loaded.buffers.as_ref().is_some_and(fits);
+        let made = (!fits).then(|| Buffers::new(&self.device, loaded.counts, capacities, size)).transpose()?;
+        // only now: a view that needs more than there is must not spoil the next one
+        loaded.capacities = capacities;
+        if let Some(old) = made.and_then(|made| loaded.buffers.replace(made)) {
+            self.retire(Retired::Buffers(Box::new(old)));
         }
         Ok(())
     }

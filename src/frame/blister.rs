@@ -8,7 +8,8 @@
 //!   layer before = that, or the near plane; peel what begins, ask, lock, …      ──▶ found ──▶ visibility, depth
 //! ```
 //!
-//! How many layers there are is what the frame before needed; one that needs more is recorded again.
+//! As many layers are recorded as the frame before needed, and one that finds nothing; a frame that needs more is
+//! recorded again.
 
 use super::Frame;
 use super::solids::SolidParts;
@@ -102,7 +103,7 @@ impl Frame<'_> {
     /// Peels from the layer `start` on: for the inside, from where the search for the outside left `found`.
     fn search(&self, cmd: &Commands<'_>, parts: &Parts<'_>, start: &Image, search: Search) {
         let images = parts.images;
-        for k in 0..self.buffers.capacities.layers {
+        for k in 0..self.layers {
             let [image, other] = if k % 2 == 0 { [0, 1] } else { [1, 0] }.map(|i| &images.layers[i]);
             let before = if k == 0 { start } else { other };
             let first = k == 0 && search == Search::Inside;
@@ -115,11 +116,11 @@ impl Frame<'_> {
             parts.ask(cmd, image, search, k + 1);
         }
         // whoever waits still wants more layers than there are
-        let last = &images.layers[(self.buffers.capacities.layers as usize + 1) % 2];
+        let last = &images.layers[(self.layers as usize + 1) % 2];
         let stencil = Attachment { image: &images.stencil, load: Load::Keep };
         barrier::images(cmd, &[(&images.stencil, Access::DEPTH_WRITE, Access::DEPTH_WRITE)]);
         cmd.rendering_stencil(last.size(), &[], stencil, || {
-            parts.pass.wait(cmd, &parts.bindings, last, self.buffers.capacities.layers + 1);
+            parts.pass.wait(cmd, &parts.bindings, last, self.layers + 1);
         });
     }
 }

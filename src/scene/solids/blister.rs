@@ -175,3 +175,50 @@ fn faces_outward(data: &SolidData, corners: &Range<u32>) -> bool {
     let once = pairs.windows(2).all(|w| ends(w[0][0]) != ends(w[1][0]));
     volume > 0.0 && rest.is_empty() && both_ways && once
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Mesh, Shape, Solid};
+    use crate::picture::SolidWay;
+    use glam::DAffine3;
+    use std::sync::Arc;
+
+    const CORNERS: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
+    const OUTWARD: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+
+    fn blister(triangles: Vec<[u32; 3]>) -> Option<Blister> {
+        let mesh = Mesh::new(1, CORNERS.map(DVec3::from).to_vec(), triangles, Vec::new()).unwrap();
+        let (shape, transform) = (Shape::Mesh(Arc::new(mesh)), DAffine3::IDENTITY);
+        let primitive = Primitive { id: 1, colour: [0.5; 4], shape, transform };
+        SolidData::new(&[Solid::of(primitive).unwrap()], SolidWay::Blister).unwrap().blister
+    }
+
+    #[test]
+    fn meshes_that_face_outward_are_peeled() {
+        assert!(blister(OUTWARD.to_vec()).is_some());
+        let [a, b, c, d] = OUTWARD;
+        let inverted = OUTWARD.map(|[a, b, c]| [a, c, b]);
+        assert!(blister(inverted.to_vec()).is_none());
+        assert!(blister(vec![a, b, c, d, a, b, c, d]).is_none(), "doubled");
+        assert!(blister(vec![a, b, c]).is_none(), "open");
+        assert!(blister(vec![a, b, c, [1, 3, 2]]).is_none(), "one turned over");
+    }
+
+    #[test]
+    fn a_near_plane_beside_everything_cuts_nothing() {
+        let b = blister(OUTWARD.to_vec()).unwrap();
+        let look = |eye: f64, near: f64| Camera {
+            eye: DVec3::new(eye, 0.3, 0.3),
+            target: DVec3::new(eye - 1.0, 0.3, 0.3),
+            up: DVec3::Z,
+            projection: crate::model::Projection::Perspective { fov_y: 0.6 },
+            depth_range: (near, 50.0),
+            size: (8, 8),
+        };
+        // the box ends at x = 1
+        assert!(!b.may_be_cut(&look(3.0, 1.9)) && b.may_be_cut(&look(3.0, 2.1)));
+        assert!(b.may_be_cut(&look(0.5, 0.1)) && b.may_be_cut(&look(-3.0, 0.1)));
+        assert!(Blister { bounds: None, ..b }.may_be_cut(&look(3.0, 0.1)), "without a box");
+    }
+}
