@@ -159,6 +159,11 @@ fn polygons_are_subdivided() {
     assert!(model.parts[0].closed && model.parts[0].faces.len() == 24);
     assert_eq!(selvedge(&[&["export", &cube, &step][..], &smooth].concat()).status.code(), Some(0));
     assert!(std::fs::read_to_string(&step).unwrap().contains("MANIFOLD_SOLID_BREP"));
+    let told = text(&selvedge(&[&["info", &cube][..], &smooth].concat()).stdout);
+    let off = told.lines().find_map(|l| l.strip_prefix("surfaces made: largest distance ")).expect(&told);
+    let off: f64 = off.split_once(" mm from what they stand for").expect(off).0.parse().unwrap();
+    assert!(off > 0.0 && off <= 1e-3, "{told}");
+    assert!(told.contains("subdivision: 8 irregular vertices") && !told.contains("trim curves:"), "{told}");
     refused(&["info", &cube, "--subdivide", "loop"], "cube.obj: face 0 of the mesh (from 0) is no triangle");
     refused(&["info", &cube, "--within", "1"], "--subdivide");
     refused(&["info", &cube, "--subdivide", "loop", "--within", "0"], "a length above 0");

@@ -67,13 +67,22 @@ impl Info<'_> {
     /// How well it was read, and what was not.
     fn found(&self) -> String {
         let report = self.report;
-        let mut lines = vec![
-            format!("trim curves: largest deviation {:.3e} mm from their edges", report.deviation),
-            format!(
+        let mut lines = Vec::new();
+        if report.edges > 0 || report.deviation > 0.0 {
+            lines.push(format!("trim curves: largest deviation {:.3e} mm from their edges", report.deviation));
+        }
+        if report.edges > 0 || report.gap > 0.0 {
+            lines.push(format!(
                 "edges: largest gap {:.3e} mm off their surfaces; {} faces beyond the file's tolerance",
                 report.gap, report.sloppy
-            ),
-        ];
+            ));
+        }
+        if report.made > 0.0 {
+            lines.push(format!("surfaces made: largest distance {:.3e} mm from what they stand for", report.made));
+        }
+        if report.irregular > 0 {
+            lines.push(format!("subdivision: {} irregular vertices", report.irregular));
+        }
         let mut list = |what: &str, counts: &BTreeMap<String, usize>| {
             if !counts.is_empty() {
                 let total: usize = counts.values().sum();
