@@ -263,6 +263,12 @@ fn a_scene_goes_through_every_command() {
     assert_eq!((&told["name"], &told["faces"]), (&"small".into(), &1.into()));
     assert_eq!(told["report"]["format"], "selvedge scene 1");
     assert_eq!(told["boolean_solids"].as_array().unwrap().len(), 1);
+    // at the size of the scene's picture, and at another
+    assert_eq!(
+        (&told["folded_tiles"]["size"], &told["folded_tiles"]["tiles"]),
+        (&serde_json::json!([48, 36]), &9.into())
+    );
+    assert!(done(&["info", &scene, "--size", "320x200"]).contains("folded tiles at 320x200: "), "told of a view");
     assert_eq!(told["report"]["nodes"], serde_json::json!({ "circle": 1, "plane": 1, "sphere": 1 }));
 
     // the scene's own picture: its size, its camera, its background in the corner

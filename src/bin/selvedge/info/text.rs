@@ -1,6 +1,6 @@
 //! The tables that people read.
 
-use super::{Info, solids};
+use super::{Info, Tiles, solids};
 use crate::output;
 use std::collections::BTreeMap;
 
@@ -11,6 +11,7 @@ impl Info<'_> {
         if !self.boolean_solids.is_empty() {
             blocks.push(solids::text(&self.boolean_solids));
         }
+        blocks.extend(self.folded_tiles.as_ref().map(Tiles::text));
         if self.assembly.bodies.len() + self.assembly.children.len() > 0 {
             blocks.push(format!("assembly:\n{}", self.assembly.text()));
         }
