@@ -88,6 +88,8 @@ pub struct InfoArgs {
     pub model: PathBuf,
     #[command(flatten)]
     pub subdivide: SubdivideArgs,
+    #[command(flatten)]
+    pub camera: CameraArgs,
     /// List every face: deviation, gap, loops, notes; and the worst of them
     #[arg(long)]
     pub deep: bool,
