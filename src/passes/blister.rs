@@ -57,7 +57,6 @@ impl Peel {
 
 /// The pass.
 pub(crate) struct Blister {
-    /// `None` where all operands are meshes.
     peel: Pipeline,
     within: Pipeline,
     meshes: Option<Meshes>,
@@ -158,8 +157,7 @@ impl Blister {
         of_peel.extend([Binding::Storage; 3]);
         let mut of_within = of_peel.clone();
         of_within[6] = Binding::Storage;
-        let mut of_owner = bindings(12, 1);
-        of_owner.truncate(13);
+        let of_owner = bindings(12, 1);
         Ok(Self {
             peel: Pipeline::graphics(
                 device,
