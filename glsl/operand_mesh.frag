@@ -1,8 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `operand_mesh`: a ray crosses a triangle of an operand. The depth is that of the triangle's plane,
-// by the formula that pass `solid_events` uses: faces that coincide are met at the same depth, bit for bit.
+// Pass `operand_mesh`: a ray crosses a triangle of an operand. The depth is that of the triangle's plane.
 #include "scene.glsl"
 #include "solids.glsl"
 #include "eye_ray.glsl"
@@ -17,24 +16,14 @@ layout(scalar, binding = 9) readonly buffer FragmentStarts { uint fragment_start
 layout(scalar, binding = 10) writeonly buffer Fragments { Fragment fragments[]; };
 
 #include "put_fragment.glsl"
+#include "triangle_depth.glsl"
 
 layout(location = 0) flat in uvec3 crossed;
 layout(location = 1) flat in vec2 range;
 
-// A plane seen edge-on is met anywhere: not farther from the corners than they are from each other, and
-// some roundings of a depth.
-const float ROUNDING = 4e-6;
-
 void main() {
     float depth = 0.0;
-    if (FILLS) {
-        uint surface = leaf_surfaces[crossed.y].surface >> 1;
-        Ray ray = eye_ray(frame, gl_FragCoord.xy);
-        precise vec3 o = ray.o - surface_centres[surface];
-        Span s = surface_span(surfaces[surface], o, ray.d);
-        float reach = range.y - range.x + ROUNDING * range.y;
-        depth = clamp(s.lo > -NEVER ? s.lo : s.hi, range.x - reach, range.y + reach);
-    }
+    if (FILLS) depth = triangle_depth(eye_ray(frame, gl_FragCoord.xy), crossed.y, range);
     bool leaves = gl_FrontFacing == (crossed.z != 0u);
     put_fragment(Fragment(crossed.x | (leaves ? FRAGMENT_LEAVES : 0u), depth, crossed.y, 0u));
 }

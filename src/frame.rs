@@ -39,6 +39,7 @@ use samples::{SamplePasses, Scopes};
 use solids::SolidPasses;
 use trim::{TrimParts, TrimPasses};
 
+mod blister;
 mod edit;
 mod layers;
 mod resolved;
@@ -50,7 +51,7 @@ mod table;
 mod trim;
 
 pub(crate) use samples::SampleBuffers;
-pub(crate) use solids::Centres;
+pub(crate) use solids::{Centres, Near};
 
 /// The passes that a scene needs.
 pub(crate) struct Passes {
@@ -114,6 +115,9 @@ pub(crate) struct Frame<'a> {
     /// The same for each of a pixel's samples, where there are several.
     pub samples: &'a [SampleBuffers],
     pub centres: Option<Centres<'a>>,
+    pub near: Near,
+    /// That way `blister` peels.
+    pub layers: u32,
     /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.
     pub volume_centres: Option<&'a Buffer>,
     pub counters: &'a ReadBack,

@@ -14,6 +14,7 @@ pub mod abi;
 pub mod brep;
 mod budget;
 mod buffers;
+mod capacities;
 pub mod construct;
 pub mod csg;
 pub mod export;

@@ -119,7 +119,8 @@ impl std::str::FromStr for TrimWay {
 #[error("no way to trim is called `{0}`; there are: {names}", names = TrimWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
 pub struct UnknownTrimWay(String);
 
-/// How Boolean solids are drawn. Both ways draw the same picture, bit for bit.
+/// How Boolean solids are drawn. All ways draw the same picture, bit for bit, but where [`Blister`](Self::Blister)
+/// says otherwise.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum SolidWay {
@@ -129,17 +130,25 @@ pub enum SolidWay {
     /// The faces of each primitive, trimmed by the Blist of the others: constructive solid trimming. Scenes in
     /// which some operand is a mesh or a spline part, or something is seen through, are drawn by events.
     Cst,
+    /// Layers of faces, peeled off from front to back, and each asked whether it bounds the solid: by labels in a
+    /// stencil image, as Hable and Rossignac have it. Its cost is that of all primitives, once a layer. Scenes in which
+    /// some operand is a spline part, or a mesh whose triangles do not all face outward and meet in pairs, or something is seen through, are drawn
+    /// by events. What a mesh that crosses itself encloses twice is outside here; of a mesh's face and another that
+    /// coincide, the face that is not the mesh's is seen; and a ray that enters and leaves a mesh within the rounding of
+    /// a depth may see either side.
+    Blister,
 }
 
 impl SolidWay {
     /// Every way.
-    pub const ALL: &'static [Self] = &[Self::Events, Self::Cst];
+    pub const ALL: &'static [Self] = &[Self::Events, Self::Cst, Self::Blister];
 
     /// As in command lines and tables.
     pub fn name(self) -> &'static str {
         match self {
             Self::Events => "events",
             Self::Cst => "cst",
+            Self::Blister => "blister",
         }
     }
 }
@@ -338,6 +347,8 @@ pub struct FrameStats {
     /// Instances with faces that would be seen through, but are not closed, or cut open by a volume: they have no inside,
     /// and are drawn opaque.
     pub open_clear: u64,
+    /// Layers of faces that [`SolidWay::Blister`] peeled off before every pixel was decided.
+    pub layers: u64,
     /// Times the frame was recorded again because a buffer was too small.
     pub retries: u32,
     /// Bytes copied for edits of trim loops since the frame before.

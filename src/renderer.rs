@@ -17,9 +17,10 @@ mod constants;
 mod edit;
 mod slot;
 
-pub use crate::buffers::TooMany;
-use crate::buffers::{Buffers, Capacities, Counts};
-use crate::frame::{Frame, Passes, target};
+use crate::buffers::Buffers;
+pub use crate::capacities::TooMany;
+use crate::capacities::{Capacities, Counts};
+use crate::frame::{Frame, Near, Passes, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Uploads};
 use crate::model::{Camera, CameraError, Model};
 use crate::passes::{resolve, solid_layers};
@@ -306,6 +307,11 @@ impl Renderer {
             let kept = target(image, keep);
             if keep { kept } else { Attachment { load: Load::Depth(0.0), ..kept } }
         });
+        let solids = scene.solids.as_ref().and_then(|s| s.blister.as_ref());
+        let near = Near {
+            depth: input.camera.depth_range.0 as f32,
+            may_cut: solids.is_some_and(|(walk, _)| walk.may_be_cut(input.camera)),
+        };
         let frame = Frame {
             passes: &loaded.passes,
             scene,
@@ -314,6 +320,8 @@ impl Renderer {
             views,
             samples: &slot.samples,
             centres: slot.centres.solids(),
+            near,
+            layers: loaded.capacities.layers,
             volume_centres: slot.centres.volume(),
             counters: &slot.counters,
             colour: &colour,
@@ -323,7 +331,7 @@ impl Renderer {
         slot.times.reset(&cmd);
         frame.record(&cmd, &mut slot.times);
         slot.recorded = true;
-        slot.capacities = Some(buffers.capacities);
+        slot.capacities = Some(loaded.capacities);
         self.last = Some(input.slot);
         Ok(())
     }
@@ -356,6 +364,7 @@ impl Renderer {
             contact_pixels: u64::from(c.contacts),
             overlap_pixels: u64::from(c.overlaps),
             open_clear: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.open)),
+            layers: u64::from(c.layers),
             retries: 0,
             edit_bytes: slot.edit_bytes,
             pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),
@@ -386,14 +395,13 @@ impl Renderer {
             (Some(had), Some(c)) if had == loaded.capacities => had.grown(&c, range)?,
             _ => loaded.capacities,
         };
-        let fits = |b: &Buffers| b.visibility.size() == size && b.capacities == capacities;
-        if !loaded.buffers.as_ref().is_some_and(fits) {
-            let made = Buffers::new(&self.device, loaded.counts, capacities, size)?;
-            // only now: a view that needs more than there is must not spoil the next one
-            loaded.capacities = capacities;
-            if let Some(old) = loaded.buffers.replace(made) {
-                self.retire(Retired::Buffers(Box::new(old)));
-            }
+        let fits = |b: &Buffers| b.visibility.size() == size && b.capacities.takes_as_much(capacities);
+        let fits = loaded.buffers.as_ref().is_some_and(fits);
+        let made = (!fits).then(|| Buffers::new(&self.device, loaded.counts, capacities, size)).transpose()?;
+        // only now: a view that needs more than there is must not spoil the next one
+        loaded.capacities = capacities;
+        if let Some(old) = made.and_then(|made| loaded.buffers.replace(made)) {
+            self.retire(Retired::Buffers(Box::new(old)));
         }
         Ok(())
     }

@@ -29,9 +29,10 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("passes", &["abi", "gpu", "shaders"]),
     // where both meet
     ("scene", &["abi", "csg", "gpu", "math", "spline", "trim", "model", "picture", "rivals"]),
-    ("buffers", &["abi", "gpu", "passes", "picture", "scene"]),
+    ("capacities", &["abi", "passes", "picture", "scene"]),
+    ("buffers", &["abi", "capacities", "gpu", "passes", "picture"]),
     ("frame", &["abi", "buffers", "gpu", "passes", "picture", "scene", "shaders"]),
-    ("renderer", &["abi", "budget", "buffers", "frame", "gpu", "model", "passes", "picture", "scene"]),
+    ("renderer", &["abi", "budget", "buffers", "capacities", "frame", "gpu", "model", "passes", "picture", "scene"]),
     ("headless", &["gpu", "model", "picture", "renderer"]),
     // for benchmarks and tests
     ("rivals", &["abi", "math", "model", "picture", "scene", "spline", "trial", "trim", "twin"]),
@@ -45,6 +46,7 @@ const UNSAFE: &[&str] = &["gpu", "renderer", "headless"];
 /// of its own.
 const BARRIERS: &[&str] = &[
     "src/frame.rs",
+    "src/frame/blister.rs",
     "src/frame/edit.rs",
     "src/frame/layers.rs",
     "src/frame/rival.rs",

@@ -159,6 +159,11 @@ fn polygons_are_subdivided() {
     assert!(model.parts[0].closed && model.parts[0].faces.len() == 24);
     assert_eq!(selvedge(&[&["export", &cube, &step][..], &smooth].concat()).status.code(), Some(0));
     assert!(std::fs::read_to_string(&step).unwrap().contains("MANIFOLD_SOLID_BREP"));
+    let told = text(&selvedge(&[&["info", &cube][..], &smooth].concat()).stdout);
+    let off = told.lines().find_map(|l| l.strip_prefix("surfaces made: largest distance ")).expect(&told);
+    let off: f64 = off.split_once(" mm from what they stand for").expect(off).0.parse().unwrap();
+    assert!(off > 0.0 && off <= 1e-3, "{told}");
+    assert!(told.contains("subdivision: 8 irregular vertices") && !told.contains("trim curves:"), "{told}");
     refused(&["info", &cube, "--subdivide", "loop"], "cube.obj: face 0 of the mesh (from 0) is no triangle");
     refused(&["info", &cube, "--within", "1"], "--subdivide");
     refused(&["info", &cube, "--subdivide", "loop", "--within", "0"], "a length above 0");
@@ -258,6 +263,12 @@ fn a_scene_goes_through_every_command() {
     assert_eq!((&told["name"], &told["faces"]), (&"small".into(), &1.into()));
     assert_eq!(told["report"]["format"], "selvedge scene 1");
     assert_eq!(told["boolean_solids"].as_array().unwrap().len(), 1);
+    // at the size of the scene's picture, and at another
+    assert_eq!(
+        (&told["folded_tiles"]["size"], &told["folded_tiles"]["tiles"]),
+        (&serde_json::json!([48, 36]), &9.into())
+    );
+    assert!(done(&["info", &scene, "--size", "320x200"]).contains("folded tiles at 320x200: "), "told of a view");
     assert_eq!(told["report"]["nodes"], serde_json::json!({ "circle": 1, "plane": 1, "sphere": 1 }));
 
     // the scene's own picture: its size, its camera, its background in the corner

@@ -134,6 +134,7 @@ struct Frame {
     uint tile_leaf_capacity;
     uint fragment_capacity;
     uint followed_leaf; // from it on lists of items that rays are followed through; before it the union that is seen
+    uint layer_capacity; // of way `blister`
     vec3 right;         // camera axes in model space
     vec3 up;
     vec3 forward;
@@ -164,6 +165,7 @@ struct Counters {
     uint unpaired;     // rays that enter an operand and never leave it, or the reverse
     uint contacts;     // pixels whose rays meet coincident faces of two items, and that are within two at once
     uint overlaps;
+    uint layers;       // peeled by way `blister`
     uint clamps;       // factors or densities above their hard limits
     uint failed;       // one bit a buffer that was too small
 };
@@ -176,6 +178,7 @@ const uint FAILED_DOUBTS = 16u;
 const uint FAILED_BLOCK_LEAVES = 32u;
 const uint FAILED_TILE_LEAVES = 64u;
 const uint FAILED_FRAGMENTS = 128u;
+const uint FAILED_LAYERS = 256u;
 
 // Tessellation of one item, decided by the split pass. Totals over the whole patch.
 struct Factors {

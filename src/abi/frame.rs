@@ -43,6 +43,7 @@ pub struct Frame {
     pub tile_leaf_capacity: u32,
     pub fragment_capacity: u32,
     pub followed_leaf: u32,
+    pub layer_capacity: u32,
     pub right: [f32; 3],
     pub up: [f32; 3],
     pub forward: [f32; 3],
@@ -88,6 +89,7 @@ pub struct Counters {
     pub unpaired: u32,
     pub contacts: u32,
     pub overlaps: u32,
+    pub layers: u32,
     pub clamps: u32,
     pub failed: u32,
 }

@@ -57,6 +57,8 @@ pub struct Labels {
     pub switches: Vec<Switch>,
     /// The label in which walks inside end; `None` when no walk does.
     pub inside: Option<u32>,
+    /// The same of walks outside.
+    pub outside: Option<u32>,
     /// Labels in use: all are below this.
     pub count: u32,
 }
@@ -107,7 +109,8 @@ impl Blist {
         let outside = self.outside();
         let mut pool = Pool { of: vec![None; outside as usize + 2], free: BinaryHeap::new(), count: 0 };
         if outside == 0 {
-            return Labels { switches: Vec::new(), inside: (self.start() == 1).then_some(0), count: 1 };
+            let end = |inside: bool| ((self.start() == 1) == inside).then_some(0);
+            return Labels { switches: Vec::new(), inside: end(true), outside: end(false), count: 1 };
         }
         if convention == Convention::FromStart {
             pool.of(outside + 1);
@@ -122,7 +125,8 @@ impl Blist {
             let (when_in, when_out) = (pool.of(t), pool.of(f));
             switches.push(Switch { primitive: entry.primitive(), negative: entry.negative(), name, when_in, when_out });
         }
-        Labels { switches, inside: pool.of[outside as usize + 1], count: pool.count }
+        let [outside, inside] = [pool.of[outside as usize], pool.of[outside as usize + 1]];
+        Labels { switches, inside, outside, count: pool.count }
     }
 }
 

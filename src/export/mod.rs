@@ -3,18 +3,24 @@
 //! ```text
 //!   model ──boundary──▶ stretches of loops, in (u, v) and in space
 //!         ──join──────▶ edges that two faces share ──step──▶ ISO 10303-21 text
+//!   solid ──operand───▶ primitives as placed ───────┤
+//!         ──expression▶ unions, intersections, differences
 //! ```
 //!
-//! Faces keep their exact rational surfaces, and so do the faces of a solid that is one primitive. What a file of the
-//! format cannot say is left out, and an [`ExportWarning`] names it.
+//! Faces keep their exact rational surfaces, and so do the faces of a solid that is one primitive; a Boolean solid stays
+//! an expression over exact primitives. What a file of the format cannot say is left out, and an [`ExportWarning`]
+//! names it.
 
 mod boundary;
+mod expression;
 mod join;
-mod primitive;
+mod operand;
 mod step;
 
 pub use step::step;
 
+use crate::model::{Face, Part};
+use glam::DAffine3;
 use std::fmt;
 
 /// A thing of a model that a file has, or has not.
@@ -60,4 +66,15 @@ pub enum ExportError {
     /// A loop that cannot be a curve.
     #[error("{item}, face #{face}: {source}")]
     Face { item: Item, face: u32, source: crate::spline::SplineError },
+}
+
+/// The faces of a part with a transform carried out; its meshes are left behind.
+fn baked(part: &Part, transform: &DAffine3) -> Part {
+    let mirrored = transform.matrix3.determinant() < 0.0;
+    let face = |f: &Face| Face {
+        surface: f.surface.transformed(transform),
+        same_sense: f.same_sense != mirrored,
+        ..f.clone()
+    };
+    Part { faces: part.faces.iter().map(face).collect(), meshes: Vec::new(), ..part.clone() }
 }

@@ -80,7 +80,8 @@ impl<'a> Frame<'a> {
     pub(super) fn layers(&self, cmd: &Commands<'_>, passes: &LayerPasses, drawing: Drawing) {
         let (b, s) = (self.buffers, self.scene);
         let (Some(parts), Some(behind)) = (self.solids(), &b.behind) else { unreachable!("made with the passes") };
-        let (solid, tiles, centres) = parts.followed();
+        let (solid, solids, centres) = parts.followed();
+        let Some(tiles) = &solids.tiles else { unreachable!("made with the passes") };
         let bindings = Bindings {
             frame: self.constants,
             leaves: &solid.leaves,
@@ -90,7 +91,7 @@ impl<'a> Frame<'a> {
             leaf_centres: centres.leaves,
             tile_starts: &tiles.tile_starts,
             tile_leaves: &tiles.tile_leaves,
-            fragments: tiles.fragments.as_ref().map(|f| [&f.starts, &f.counts, &f.all]),
+            fragments: solids.fragments.as_ref().map(|f| [&f.starts, &f.counts, &f.all]),
             counters: &b.counters,
             behind,
             views: self.views,

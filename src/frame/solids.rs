@@ -8,28 +8,34 @@
 //! ```
 
 use super::{Frame, WRITE_TO_READ};
-use crate::buffers::{FragmentBuffers, SolidBuffers};
+use crate::buffers::{FragmentBuffers, SolidBuffers, TileBuffers};
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, barrier};
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
+use crate::passes::{blister, resolve, solid_blocks, solid_cst, solid_events, solid_fold, solid_rects, solid_tiles};
 use crate::passes::{operand_mesh, operand_patch, operand_sort};
-use crate::passes::{resolve, solid_blocks, solid_cst, solid_events, solid_fold, solid_rects, solid_tiles};
 use crate::scene::{SceneData, Shells, Solids};
 use crate::shaders::TrimTest;
 
 /// The passes of Boolean solids.
 pub(super) struct SolidPasses {
     rects: solid_rects::SolidRects,
+    tiles: Option<TilePasses>,
+    way: Way,
+    shells: Option<ShellPasses>,
+}
+
+/// Those that say which leaves each tile sees.
+struct TilePasses {
     blocks: solid_blocks::SolidBlocks,
     tiles: solid_tiles::SolidTiles,
     fold: solid_fold::SolidFold,
-    way: Way,
-    shells: Option<ShellPasses>,
 }
 
 /// Who finds the faces.
 enum Way {
     Events(solid_events::SolidEvents),
     Cst(solid_cst::SolidCst),
+    Blister(Box<blister::Blister>),
 }
 
 /// Those of operands without equations.
@@ -46,6 +52,15 @@ impl SolidPasses {
         let shells = !data.solids.shell_leaves.is_empty();
         let meshes = !data.solids.operand_draws.is_empty();
         let patches = |()| operand_patch::OperandPatch::new(device, data.has_rational, data.has_plain, trim);
+        let tiles = |()| {
+            Ok(TilePasses {
+                blocks: solid_blocks::SolidBlocks::new(device)?,
+                tiles: solid_tiles::SolidTiles::new(device)?,
+                fold: solid_fold::SolidFold::new(device)?,
+            })
+        };
+        let peels = data.solids.blister.is_some();
+        let formats = (VISIBILITY_FORMAT, DEPTH_FORMAT);
         let shell_passes = |()| {
             Ok(ShellPasses {
                 meshes: meshes.then(|| operand_mesh::OperandMesh::new(device)).transpose()?,
@@ -55,20 +70,16 @@ impl SolidPasses {
         };
         Ok(Some(Self {
             rects: solid_rects::SolidRects::new(device)?,
-            blocks: solid_blocks::SolidBlocks::new(device)?,
-            tiles: solid_tiles::SolidTiles::new(device)?,
-            fold: solid_fold::SolidFold::new(device)?,
-            way: if data.solids.order.is_empty() {
-                Way::Events(solid_events::SolidEvents::new(
-                    device,
-                    (tori, shells, data.solids.is_followed()),
-                    VISIBILITY_FORMAT,
-                    DEPTH_FORMAT,
-                )?)
+            tiles: (!(peels && shells)).then_some(()).map(tiles).transpose()?,
+            way: if peels {
+                Way::Blister(Box::new(blister::Blister::new(device, (tori, shells), formats.0, formats.1)?))
+            } else if data.solids.order.is_empty() {
+                let kinds = (tori, shells, data.solids.is_followed());
+                Way::Events(solid_events::SolidEvents::new(device, kinds, formats.0, formats.1)?)
             } else {
-                Way::Cst(solid_cst::SolidCst::new(device, tori, VISIBILITY_FORMAT, DEPTH_FORMAT)?)
+                Way::Cst(solid_cst::SolidCst::new(device, tori, formats.0, formats.1)?)
             },
-            shells: shells.then_some(()).map(shell_passes).transpose()?,
+            shells: (shells && !peels).then_some(()).map(shell_passes).transpose()?,
         }))
     }
 }
@@ -80,12 +91,21 @@ pub(crate) struct Centres<'a> {
     pub surfaces: &'a Buffer,
 }
 
+/// The plane at which rays begin.
+#[derive(Clone, Copy)]
+pub(crate) struct Near {
+    /// Along the view axis.
+    pub depth: f32,
+    /// It may be within the Boolean solids.
+    pub may_cut: bool,
+}
+
 /// What the passes of Boolean solids work on.
 pub(super) struct SolidParts<'a> {
     passes: &'a SolidPasses,
-    scene: &'a Solids,
-    buffers: &'a SolidBuffers,
-    centres: Centres<'a>,
+    pub(super) scene: &'a Solids,
+    pub(super) buffers: &'a SolidBuffers,
+    pub(super) centres: Centres<'a>,
 }
 
 impl<'a> Frame<'a> {
@@ -109,9 +129,75 @@ impl<'a> Frame<'a> {
         p.rects.record(cmd, &rects, self.buffers.counts.leaves);
         barrier::buffers(cmd, &[(&t.rects, w, r | Access::VERTEX_READ)]);
 
+        if let (Some(passes), Some(tiles)) = (&p.tiles, &t.tiles) {
+            self.tiles(cmd, parts, passes, tiles);
+        }
+        if let (Some(passes), Some(shells), Some(f)) = (&p.shells, &s.shells, &t.fragments) {
+            self.operands(cmd, parts, passes, shells, f);
+        }
+        let b = self.buffers;
+        let seen = b.others.as_ref().unwrap_or(&b.visibility);
+        // meshes came before
+        let drawn = self.scene.meshes.is_some();
+        let colour = Attachment { image: seen, load: if drawn { Load::Keep } else { Load::ColourU32([0; 4]) } };
+        let depth = Attachment { image: &b.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
+        match (&p.way, &s.order, &t.tiles) {
+            (Way::Blister(pass), ..) => self.blister(cmd, parts, pass, (colour, depth)),
+            (Way::Cst(cst), Some((order, drawn)), Some(t)) => {
+                let cst_bindings = solid_cst::Bindings {
+                    frame: self.constants,
+                    leaves: &s.leaves,
+                    leaf_surfaces: &s.leaf_surfaces,
+                    surfaces: &s.surfaces,
+                    surface_centres: parts.centres.surfaces,
+                    tile_starts: &t.tile_starts,
+                    tile_leaves: &t.tile_leaves,
+                    tile_entries: &t.tile_entries,
+                    rects: &parts.buffers.rects,
+                    order,
+                };
+                cst.record(cmd, &cst_bindings, (colour, depth), *drawn);
+            }
+            (Way::Events(events), _, Some(tiles)) => {
+                let bindings = solid_events::Bindings {
+                    frame: self.constants,
+                    leaves: &s.leaves,
+                    leaf_surfaces: &s.leaf_surfaces,
+                    surfaces: &s.surfaces,
+                    surface_centres: parts.centres.surfaces,
+                    tile_starts: &tiles.tile_starts,
+                    tile_leaves: &tiles.tile_leaves,
+                    tile_entries: &tiles.tile_entries,
+                    fragments: t.fragments.as_ref().map(|f| solid_events::Fragments {
+                        starts: &f.starts,
+                        counts: &f.counts,
+                        all: &f.all,
+                    }),
+                    counters: &b.counters,
+                };
+                barrier::buffers(cmd, &[(&b.counters, w, Access::FRAGMENT_WRITE)]);
+                events.record(cmd, &bindings, (colour, depth));
+                barrier::buffers(cmd, &[(&b.counters, Access::FRAGMENT_WRITE, w)]);
+            }
+            (Way::Cst(_), None, _) | (_, _, None) => {
+                unreachable!("these ways have tiles, and the pass is made of the order")
+            }
+        }
+        barrier::images(
+            cmd,
+            &[(seen, Access::COLOUR_WRITE, Access::COLOUR_WRITE), (&b.depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],
+        );
+    }
+}
+
+impl Frame<'_> {
+    /// Which leaves each tile sees, and their Blist.
+    fn tiles(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>, p: &TilePasses, t: &TileBuffers) {
+        let (w, r) = WRITE_TO_READ;
+        let rects = &parts.buffers.rects;
         let blocks = solid_blocks::Bindings {
             frame: self.constants,
-            rects: &t.rects,
+            rects,
             counts: &t.block_counts,
             starts: &t.block_starts,
             leaves: &t.block_leaves,
@@ -125,7 +211,7 @@ impl<'a> Frame<'a> {
 
         let tiles = solid_tiles::Bindings {
             frame: self.constants,
-            rects: &t.rects,
+            rects,
             block_starts: &t.block_starts,
             block_leaves: &t.block_leaves,
             counts: &t.tile_counts,
@@ -143,7 +229,7 @@ impl<'a> Frame<'a> {
 
         let fold = solid_fold::Bindings {
             frame: self.constants,
-            leaves: &s.leaves,
+            leaves: &parts.scene.leaves,
             tile_starts: &t.tile_starts,
             tile_leaves: &t.tile_leaves,
             tile_entries: &t.tile_entries,
@@ -157,63 +243,8 @@ impl<'a> Frame<'a> {
                 (&t.tile_entries, w, Access::FRAGMENT_READ),
             ],
         );
-
-        if let (Some(passes), Some(shells), Some(f)) = (&p.shells, &s.shells, &t.fragments) {
-            self.operands(cmd, parts, passes, shells, f);
-        }
-        let b = self.buffers;
-        let seen = b.others.as_ref().unwrap_or(&b.visibility);
-        // meshes came before
-        let drawn = self.scene.meshes.is_some();
-        let colour = Attachment { image: seen, load: if drawn { Load::Keep } else { Load::ColourU32([0; 4]) } };
-        let depth = Attachment { image: &b.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
-        match (&p.way, &s.order) {
-            (Way::Cst(cst), Some((order, drawn))) => {
-                let cst_bindings = solid_cst::Bindings {
-                    frame: self.constants,
-                    leaves: &s.leaves,
-                    leaf_surfaces: &s.leaf_surfaces,
-                    surfaces: &s.surfaces,
-                    surface_centres: parts.centres.surfaces,
-                    tile_starts: &t.tile_starts,
-                    tile_leaves: &t.tile_leaves,
-                    tile_entries: &t.tile_entries,
-                    rects: &t.rects,
-                    order,
-                };
-                cst.record(cmd, &cst_bindings, (colour, depth), *drawn);
-            }
-            (Way::Events(events), _) => {
-                let bindings = solid_events::Bindings {
-                    frame: self.constants,
-                    leaves: &s.leaves,
-                    leaf_surfaces: &s.leaf_surfaces,
-                    surfaces: &s.surfaces,
-                    surface_centres: parts.centres.surfaces,
-                    tile_starts: &t.tile_starts,
-                    tile_leaves: &t.tile_leaves,
-                    tile_entries: &t.tile_entries,
-                    fragments: t.fragments.as_ref().map(|f| solid_events::Fragments {
-                        starts: &f.starts,
-                        counts: &f.counts,
-                        all: &f.all,
-                    }),
-                    counters: &b.counters,
-                };
-                barrier::buffers(cmd, &[(&b.counters, w, Access::FRAGMENT_WRITE)]);
-                events.record(cmd, &bindings, (colour, depth));
-                barrier::buffers(cmd, &[(&b.counters, Access::FRAGMENT_WRITE, w)]);
-            }
-            (Way::Cst(_), None) => unreachable!("the pass is made of the order"),
-        }
-        barrier::images(
-            cmd,
-            &[(seen, Access::COLOUR_WRITE, Access::COLOUR_WRITE), (&b.depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],
-        );
     }
-}
 
-impl Frame<'_> {
     /// The fragments of operands without equations: counted, stored, put in order.
     fn operands(
         &self,

@@ -124,13 +124,38 @@ impl<'a> Commands<'a> {
         depth: Option<Attachment<'_>>,
         record: impl FnOnce() -> R,
     ) -> R {
+        self.rendering_to(size, colour, (depth, None), record)
+    }
+
+    /// As [`rendering`](Self::rendering), with a stencil attachment in place of one for depth.
+    pub fn rendering_stencil<R>(
+        &self,
+        size: (u32, u32),
+        colour: &[Attachment<'_>],
+        stencil: Attachment<'_>,
+        record: impl FnOnce() -> R,
+    ) -> R {
+        self.rendering_to(size, colour, (None, Some(stencil)), record)
+    }
+
+    fn rendering_to<R>(
+        &self,
+        size: (u32, u32),
+        colour: &[Attachment<'_>],
+        (depth, stencil): (Option<Attachment<'_>>, Option<Attachment<'_>>),
+        record: impl FnOnce() -> R,
+    ) -> R {
         let area =
             vk::Rect2D { offset: vk::Offset2D::default(), extent: vk::Extent2D { width: size.0, height: size.1 } };
         let colour: Vec<_> = colour.iter().map(|attachment| attachment.info(Access::COLOUR_WRITE)).collect();
         let depth = depth.map(|attachment| attachment.info(Access::DEPTH_WRITE));
+        let stencil = stencil.map(|attachment| attachment.info(Access::DEPTH_WRITE));
         let mut info = vk::RenderingInfo::default().render_area(area).layer_count(1).color_attachments(&colour);
         if let Some(depth) = &depth {
             info = info.depth_attachment(depth);
+        }
+        if let Some(stencil) = &stencil {
+            info = info.stencil_attachment(stencil);
         }
         let viewport =
             vk::Viewport { width: size.0 as f32, height: size.1 as f32, max_depth: 1.0, ..Default::default() };
@@ -145,6 +170,17 @@ impl<'a> Commands<'a> {
         // SAFETY: begun above.
         unsafe { device.cmd_end_rendering(self.raw) };
         result
+    }
+
+    /// What pipelines with a stencil test compare with, under which mask, and which bits they write.
+    pub fn stencil(&self, reference: u32, compare: u32, write: u32) {
+        let (device, both) = (self.device.raw(), vk::StencilFaceFlags::FRONT_AND_BACK);
+        // SAFETY: recording.
+        unsafe {
+            device.cmd_set_stencil_reference(self.raw, both, reference);
+            device.cmd_set_stencil_compare_mask(self.raw, both, compare);
+            device.cmd_set_stencil_write_mask(self.raw, both, write);
+        }
     }
 
     /// Fills a whole buffer with a word: [`Access::TRANSFER_WRITE`].

@@ -43,6 +43,7 @@ struct Inner {
     name: String,
     driver: String,
     quirks: Quirks,
+    stencil_format: vk::Format,
     allocator: Arc<Mutex<Allocator>>,
     pool_bytes: [AtomicI64; Pool::ALL.len()],
     objects: Mutex<BTreeMap<u64, (String, u64)>>,
@@ -63,6 +64,19 @@ impl Device {
         unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
         let properties = properties.properties;
         // SAFETY: the caller's promise.
+        let of_stencil = unsafe { instance.get_physical_device_format_properties(physical, vk::Format::S8_UINT) };
+        let is_attachment = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;
+        // one of the other two is there by Vulkan 1.3, section 34.3
+        let stencil_format = if of_stencil.optimal_tiling_features.contains(is_attachment) {
+            vk::Format::S8_UINT
+        } else {
+            let format = vk::Format::D24_UNORM_S8_UINT;
+            // SAFETY: the caller's promise.
+            let of_both = unsafe { instance.get_physical_device_format_properties(physical, format) };
+            let has_both = of_both.optimal_tiling_features.contains(is_attachment);
+            if has_both { format } else { vk::Format::D32_SFLOAT_S8_UINT }
+        };
+        // SAFETY: the caller's promise.
         let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
         let text = |chars: &[std::ffi::c_char]| {
             let bytes: Vec<u8> = chars.iter().map(|&c| c as u8).take_while(|&c| c != 0).collect();
@@ -79,6 +93,7 @@ impl Device {
             name: text(&properties.device_name),
             driver: format!("{} {}", text(&driver.driver_name), text(&driver.driver_info)),
             quirks: Quirks::of(driver.driver_id),
+            stencil_format,
             allocator,
             pool_bytes: Default::default(),
             objects: Mutex::default(),
@@ -99,6 +114,11 @@ impl Device {
     /// Vulkan's limits.
     pub fn limits(&self) -> &vk::PhysicalDeviceLimits {
         &self.0.limits
+    }
+
+    /// A format with 8 bits of stencil that can be drawn to, with as little else as the device offers.
+    pub fn stencil_format(&self) -> vk::Format {
+        self.0.stencil_format
     }
 
     /// What this driver gets wrong.

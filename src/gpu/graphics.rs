@@ -33,6 +33,8 @@ pub struct GraphicsInfo<'a> {
     pub colour: &'a [ColourTarget],
     /// Depth attachment.
     pub depth: Option<DepthTest>,
+    /// Stencil attachment.
+    pub stencil: Option<StencilTest>,
 }
 
 /// A colour attachment of a pipeline.
@@ -66,6 +68,28 @@ pub struct DepthTest {
     pub compare: vk::CompareOp,
     /// Passing fragments store their depth.
     pub write: bool,
+}
+
+/// Stencil test of a pipeline, the same for both sides of faces. A fragment passes when the stored bits under the
+/// compare mask are those of the reference; both masks and the reference are what [`Commands::stencil`] says.
+///
+/// [`Commands::stencil`]: super::Commands::stencil
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct StencilTest {
+    /// Format of the attachment.
+    pub format: vk::Format,
+    /// What passing fragments do to the bits under the write mask; others do nothing.
+    pub pass: vk::StencilOp,
+}
+
+impl StencilTest {
+    fn state(self) -> vk::StencilOpState {
+        vk::StencilOpState::default()
+            .compare_op(vk::CompareOp::EQUAL)
+            .pass_op(self.pass)
+            .fail_op(vk::StencilOp::KEEP)
+            .depth_fail_op(vk::StencilOp::KEEP)
+    }
 }
 
 impl Pipeline {
@@ -105,20 +129,29 @@ impl Pipeline {
             .line_width(1.0);
         let samples =
             vk::PipelineMultisampleStateCreateInfo::default().rasterization_samples(vk::SampleCountFlags::TYPE_1);
-        let depth = info.depth.map_or_else(vk::PipelineDepthStencilStateCreateInfo::default, |depth| {
-            vk::PipelineDepthStencilStateCreateInfo::default()
-                .depth_test_enable(true)
-                .depth_write_enable(depth.write)
-                .depth_compare_op(depth.compare)
-        });
+        let mut tests = vk::PipelineDepthStencilStateCreateInfo::default();
+        if let Some(depth) = info.depth {
+            tests = tests.depth_test_enable(true).depth_write_enable(depth.write).depth_compare_op(depth.compare);
+        }
+        if let Some(stencil) = info.stencil {
+            tests = tests.stencil_test_enable(true).front(stencil.state()).back(stencil.state());
+        }
         let blends: Vec<_> = info.colour.iter().map(|target| target.blend.state()).collect();
         let blend = vk::PipelineColorBlendStateCreateInfo::default().attachments(&blends);
-        let dynamic = vk::PipelineDynamicStateCreateInfo::default()
-            .dynamic_states(&[vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR]);
+        let mut states = vec![vk::DynamicState::VIEWPORT, vk::DynamicState::SCISSOR];
+        if info.stencil.is_some() {
+            states.extend([
+                vk::DynamicState::STENCIL_REFERENCE,
+                vk::DynamicState::STENCIL_COMPARE_MASK,
+                vk::DynamicState::STENCIL_WRITE_MASK,
+            ]);
+        }
+        let dynamic = vk::PipelineDynamicStateCreateInfo::default().dynamic_states(&states);
         let formats: Vec<_> = info.colour.iter().map(|target| target.format).collect();
         let mut rendering = vk::PipelineRenderingCreateInfo::default()
             .color_attachment_formats(&formats)
-            .depth_attachment_format(info.depth.map_or(vk::Format::UNDEFINED, |depth| depth.format));
+            .depth_attachment_format(info.depth.map_or(vk::Format::UNDEFINED, |depth| depth.format))
+            .stencil_attachment_format(info.stencil.map_or(vk::Format::UNDEFINED, |stencil| stencil.format));
         let mut create = vk::GraphicsPipelineCreateInfo::default()
             .stages(&stages)
             .vertex_input_state(&vertex_input)
@@ -126,7 +159,7 @@ impl Pipeline {
             .viewport_state(&viewport)
             .rasterization_state(&raster)
             .multisample_state(&samples)
-            .depth_stencil_state(&depth)
+            .depth_stencil_state(&tests)
             .color_blend_state(&blend)
             .dynamic_state(&dynamic)
             .layout(layout.pipeline)

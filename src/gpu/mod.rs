@@ -42,7 +42,7 @@ pub use buffer::{Buffer, BufferInfo};
 pub use commands::Commands;
 pub use device::{Device, HostDevice};
 pub use error::GpuError;
-pub use graphics::{Blend, ColourTarget, DepthTest, GraphicsInfo};
+pub use graphics::{Blend, ColourTarget, DepthTest, GraphicsInfo, StencilTest};
 pub use image::{Image, ImageInfo, Sampler};
 pub use layout::Binding;
 pub use memory::{Home, Pool};

@@ -68,8 +68,13 @@ pub struct ImportReport {
     pub dropped: BTreeMap<String, usize>,
     /// Healed faces, by what was healed.
     pub healed: BTreeMap<String, usize>,
-    /// Largest [`FaceRecord::deviation`]: the engine's own part of the error.
+    /// Largest [`FaceRecord::deviation`] of trim curves: the engine's own part of the error.
     pub deviation: f64,
+    /// Largest distance in millimetres of a surface that was made, not read, from what it stands for: an equation, data,
+    /// an offset, the limit of a subdivision.
+    pub made: f64,
+    /// Vertices of subdivided meshes around which no polynomial patch is exact.
+    pub irregular: usize,
     /// Largest [`FaceRecord::gap`]: the file's part.
     pub gap: f64,
     /// Faces whose edges lie farther off their surface than the file's tolerance.
@@ -89,7 +94,8 @@ pub struct ImportReport {
 pub struct FaceRecord {
     /// Number in the source, as in [`Face::id`](crate::model::Face::id).
     pub id: u32,
-    /// Index of its part in the model; the number of parts for a face left out whose part has no other.
+    /// Index of its part in the model; the number of parts for a face left out whose part has no other, and for a face
+    /// of an operand of a Boolean solid.
     pub part: usize,
     /// What its surface is; `None` when the face was left out, and `notes` says why.
     pub kind: Option<SurfaceKind>,
@@ -101,7 +107,8 @@ pub struct FaceRecord {
     pub loops: usize,
     /// Trim curves in all loops.
     pub curves: usize,
-    /// Largest distance on the surface of a trim curve from the points nearest to its edge.
+    /// Largest distance on the surface of a trim curve from the points nearest to its edge; of a surface that was made,
+    /// its distance from what it stands for.
     pub deviation: f64,
     /// Largest distance of an edge from the surface: how well the file agrees with itself.
     pub gap: f64,
@@ -181,6 +188,20 @@ impl ImportReport {
             notes,
             ..record
         });
+        face
+    }
+
+    /// The same for a face whose surface was made: its deviation is that from what it stands for.
+    pub(crate) fn record_made(
+        &mut self,
+        record: FaceRecord,
+        face: Face,
+        (deviation, notes): (f64, Vec<String>),
+    ) -> Face {
+        self.made = self.made.max(deviation);
+        let curves = self.deviation;
+        let face = self.record(record, BuiltFace { face, notes, deviation, gap: 0.0 });
+        self.deviation = curves;
         face
     }
 

@@ -24,11 +24,11 @@ pub fn open_subdivided(path: &Path, scheme: Scheme, within: Option<f64>) -> Resu
         let named = if object.is_empty() { file.clone() } else { format!("{file}: object {object}") };
         let mut made = subdivide(&ControlMesh { positions, faces, creases }, scheme, within.unwrap_or(WITHIN * size))
             .map_err(|source| ImportError::Construct { file: named.clone(), source })?;
-        *report.nodes.entry("irregular vertices".into()).or_default() += made.irregular;
+        report.irregular += made.irregular;
         // numbers go on from object to object
         made.part.faces.iter_mut().for_each(|face| face.id += report.faces as u32);
         report.faces += made.part.faces.len();
-        report.deviation = report.deviation.max(made.deviation);
+        report.made = report.made.max(made.deviation);
         made.part.name.clone_from(&object);
         model.instances.push(Instance { part, transform: Default::default(), colour: None, name: object });
         model.parts.push(made.part);

@@ -46,6 +46,7 @@ impl Average {
                 front: vk::FrontFace::COUNTER_CLOCKWISE,
                 colour: &[ColourTarget { format: colour, blend: Blend::Over }],
                 depth: None,
+                stencil: None,
             },
         )?;
         Ok(Self { pipeline })

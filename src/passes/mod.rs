@@ -3,6 +3,7 @@
 //! the barriers between passes stand in `frame.rs`.
 
 pub(crate) mod average;
+pub(crate) mod blister;
 pub(crate) mod bound;
 pub(crate) mod cross;
 pub(crate) mod density;

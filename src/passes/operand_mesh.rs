@@ -61,6 +61,7 @@ impl OperandMesh {
                     front: vk::FrontFace::COUNTER_CLOCKWISE,
                     colour: &[],
                     depth: None,
+                    stencil: None,
                 },
             )
         };

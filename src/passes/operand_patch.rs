@@ -95,6 +95,7 @@ impl OperandPatch {
                     front: vk::FrontFace::COUNTER_CLOCKWISE,
                     colour: &[],
                     depth: None,
+                    stencil: None,
                 },
             )
         };

@@ -166,6 +166,7 @@ impl Resolve {
                         compare: vk::CompareOp::GREATER_OR_EQUAL,
                         write: !matches!(into, Destination::Sum | Destination::Behind { writes_depth: false }),
                     }),
+                    stencil: None,
                 },
             )
         };

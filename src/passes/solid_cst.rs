@@ -63,6 +63,7 @@ impl SolidCst {
                 front: vk::FrontFace::COUNTER_CLOCKWISE,
                 colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
                 depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
+                stencil: None,
             },
         )?;
         Ok(Self { pipeline })

@@ -79,6 +79,7 @@ impl SolidEvents {
                 front: vk::FrontFace::COUNTER_CLOCKWISE,
                 colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
                 depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
+                stencil: None,
             },
         )?;
         Ok(Self { pipeline })

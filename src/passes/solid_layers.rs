@@ -146,6 +146,7 @@ impl SolidLayers {
                     compare: vk::CompareOp::GREATER_OR_EQUAL,
                     write: writes,
                 }),
+                stencil: None,
             },
         )?;
         Ok(Self { pipeline, marks: marks.unwrap_or_default() })

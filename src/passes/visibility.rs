@@ -108,6 +108,7 @@ impl Visibility {
                     front: vk::FrontFace::COUNTER_CLOCKWISE,
                     colour: &[ColourTarget { format: VISIBILITY_FORMAT, blend: Blend::Replace }],
                     depth: Some(DepthTest { format: DEPTH_FORMAT, compare: vk::CompareOp::GREATER, write: true }),
+                    stencil: None,
                 },
             )
         };

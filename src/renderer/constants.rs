@@ -52,6 +52,7 @@ pub(super) fn constants(
         tile_leaf_capacity: room.tile_leaves,
         fragment_capacity: room.fragments,
         followed_leaf: counts.followed_leaf,
+        layer_capacity: room.layers,
         right: right.as_vec3().to_array(),
         up: up.as_vec3().to_array(),
         forward: forward.as_vec3().to_array(),

@@ -5,7 +5,7 @@ use super::constants::constants;
 use super::{FrameInput, Loaded, Retired, TargetFormats};
 use crate::abi;
 use crate::abi::Counters;
-use crate::buffers::Capacities;
+use crate::capacities::Capacities;
 use crate::frame::SampleBuffers;
 use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Pool, ReadBack, Timestamps};
 use crate::model::Camera;

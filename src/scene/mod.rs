@@ -32,8 +32,8 @@ pub(crate) use edit::{EditTarget, Write};
 pub(crate) use exact::ExactData;
 #[cfg(any(test, feature = "rivals"))]
 pub(crate) use flatten::flattened;
-pub(crate) use solids::SolidData;
 pub use solids::UndrawnSolid;
+pub(crate) use solids::{Asked, Blister, SolidData};
 #[cfg(feature = "rivals")]
 pub(crate) use upload::RivalScene;
 pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Shells, Solids, TableScene, Trims};

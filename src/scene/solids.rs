@@ -9,6 +9,7 @@
 //! A surface is stored in coordinates of its own, of about the size of 1, so single precision suffices;
 //! where it is stays in `f64` and is given relative to the eye every frame.
 
+mod blister;
 mod order;
 mod shell;
 mod surface;
@@ -18,6 +19,7 @@ use crate::abi;
 use crate::csg::Blist;
 use crate::model::{Items, Solid, SolidError, SurfaceTable};
 use crate::picture::{SolidWay, TrimWay};
+pub(crate) use blister::{Asked, Blister};
 use glam::DVec3;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -47,6 +49,8 @@ pub(crate) struct SolidData {
     pub(super) operands: Vec<shell::Operand>,
     /// For [`SolidWay::Cst`]: the leaves as they are drawn.
     pub order: Vec<u32>,
+    /// For [`SolidWay::Blister`].
+    pub blister: Option<Blister>,
 }
 
 /// Why a solid is not drawn.
@@ -97,6 +101,8 @@ struct Shared {
     middle: DVec3,
     /// Numbers of the primitives that are shells.
     shells: Vec<Option<u32>>,
+    /// First leaves of each in the union: where it adds, and where it is taken away.
+    leaf_of: Vec<[Option<u32>; 2]>,
     /// The surface of what has no volume.
     nothing: Option<u32>,
 }
@@ -119,7 +125,8 @@ impl SolidData {
             }
         }
         let shells = vec![None; whole.primitives().len()];
-        let mut shared = Shared { whole, table, middle, shells, nothing: None };
+        let leaf_of = vec![[None; 2]; whole.primitives().len()];
+        let mut shared = Shared { whole, table, middle, shells, leaf_of, nothing: None };
         let union = match lists.opaque == lists.solids.len() {
             true => Blist::new(shared.whole.tree()),
             false => Blist::new(Solid::union(&lists.solids[..lists.opaque])?.tree()),
@@ -145,8 +152,14 @@ impl SolidData {
         }
         if way == SolidWay::Cst && data.shell_leaves.is_empty() && !data.is_followed() {
             let mut used = vec![false; data.surfaces.len()];
-            let shared = |side: &abi::LeafSurface| std::mem::replace(&mut used[side.surface as usize >> 1], true);
-            data.order = order::order(&data.leaves, data.leaf_surfaces.iter().any(shared));
+            let again = |side: &abi::LeafSurface| std::mem::replace(&mut used[side.surface as usize >> 1], true);
+            data.order = order::order(&data.leaves, data.leaf_surfaces.iter().any(again));
+        }
+        let splines = data.operands.iter().any(|operand| !operand.faces().is_empty());
+        let peels = way == SolidWay::Blister && !splines && !data.is_followed();
+        if peels && !data.leaves.is_empty() && blister::face_outward(&data) {
+            let made = Blister::new(&data, shared.whole.tree(), shared.whole.primitives(), &shared.leaf_of);
+            data.blister = Some(made.map_err(SolidError::from)?);
         }
         Ok(data)
     }
@@ -175,6 +188,7 @@ impl SolidData {
             flags |= if bounded { 0 } else { abi::LEAF_UNBOUNDED };
             flags |= if entry.negative() { abi::LEAF_NEGATIVE } else { 0 };
             let leaf = self.leaves.len() as u32;
+            shared.leaf_of[p as usize][usize::from(entry.negative())].get_or_insert(leaf);
             let is_shell = shell::is_shell(primitive);
             let shell = is_shell.then(|| {
                 let known = &mut shared.shells[p as usize];

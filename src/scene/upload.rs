@@ -1,6 +1,6 @@
 //! The scene's persistent buffers: only those that its model needs.
 
-use super::{SceneData, SolidData};
+use super::{Blister, SceneData, SolidData};
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texels, Uploads};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
@@ -42,6 +42,8 @@ pub(crate) struct Solids {
     pub surfaces: Buffer,
     /// The leaves as they are drawn, and how many; only where each is drawn by itself.
     pub order: Option<(Buffer, u32)>,
+    /// For way `blister`: the walk, and its order.
+    pub blister: Option<(Blister, Buffer)>,
     /// `None` where every operand has equations.
     pub shells: Option<Shells>,
 }
@@ -153,6 +155,12 @@ impl Scene {
                             .then(|| persistent(&mut uploads, cmd, "solid order", &data.solids.order))
                             .transpose()?
                             .map(|order| (order, data.solids.order.len() as u32)),
+                        blister: (data.solids.blister.as_ref())
+                            .map(|b| {
+                                let order = if b.order.is_empty() { &[0] } else { b.order.as_slice() };
+                                Ok((b.clone(), persistent(&mut uploads, cmd, "solid order", order)?))
+                            })
+                            .transpose()?,
                     })
                 })
                 .transpose()?,

@@ -5,6 +5,7 @@
 mod degenerate;
 mod errors;
 mod exact;
+mod kernel;
 mod offsets;
 mod projected;
 mod shapes;

@@ -4,7 +4,7 @@ use crate::shapes;
 use crate::support::{assert_silent, perspective, watched_with};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::Model;
-use selvedge::picture::{FrameSettings, Outputs, SceneSettings, TrimWay};
+use selvedge::picture::{FrameSettings, Outputs, SceneSettings, SolidWay, TrimWay};
 
 /// Pipelines of the trim table.
 const TRIM_PASSES: [&str; 6] = ["density", "lines", "segments", "sizes", "cross", "sort"];
@@ -94,6 +94,32 @@ fn only_a_scene_with_solids_has_what_they_need() {
     assert!(!objects.iter().any(|name| is_of_trimming(name) || name.contains("mesh")), "{objects:?}");
     assert!(!objects.iter().any(|name| name == "visibility of others"), "{objects:?}");
     assert_silent(renderer);
+}
+
+/// Each way to draw solids has its own passes and none of the others'; with a mesh among the operands, layers are peeled
+/// without tiles and without a list of crossings.
+#[test]
+fn a_way_to_draw_solids_has_its_own_passes() {
+    let of = |way: SolidWay, model: &Model| {
+        let settings = SceneSettings { solids: way, ..Default::default() };
+        let (renderer, objects) = objects_with(model, settings, Outputs::default());
+        assert_silent(renderer);
+        objects
+    };
+    let (equations, (_, mesh)) = (shapes::solids::holes(2), shapes::operands::meshes().swap_remove(0));
+    let all = [SolidWay::Events, SolidWay::Cst, SolidWay::Blister];
+    for (way, own) in all.into_iter().zip(["solid events", "solid cst", "blister"]) {
+        let objects = of(way, &equations);
+        let has = |what: &str| objects.iter().any(|o| o.starts_with(what));
+        assert!(has(own) && has("solid tile leaves"), "{}: {objects:?}", way.name());
+        let others = ["solid events", "solid cst", "blister"].into_iter().filter(|other| *other != own);
+        assert!(others.into_iter().all(|other| !has(other)), "{}: {objects:?}", way.name());
+    }
+    let peeled = of(SolidWay::Blister, &mesh);
+    let lacks = |what: &str| !peeled.iter().any(|o| o.starts_with(what));
+    assert!(lacks("solid tile") && lacks("operand fragment") && lacks("operand sort"), "{peeled:?}");
+    assert!(!lacks("blister peel (meshes)"), "{peeled:?}");
+    assert!(!of(SolidWay::Events, &mesh).iter().any(|o| o.starts_with("blister")));
 }
 
 #[test]

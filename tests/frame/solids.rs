@@ -5,7 +5,7 @@ use crate::support::{assert_identical, assert_silent, orthographic, perspective,
 use glam::{DAffine3, DVec3};
 use selvedge::csg::Op;
 use selvedge::headless::HeadlessRenderer;
-use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Solid};
+use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Shape, Solid};
 use selvedge::picture::{SceneSettings, SolidWay};
 use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
 
@@ -13,6 +13,15 @@ const SIZE: (u32, u32) = (240, 160);
 /// Single precision of a root on a tube a twentieth of its ring, grazed at a cosine of 0.1: a place off by
 /// 1e-7 of the ring over 0.05 over 0.1, and some roundings of the quartic. Other sides are far better.
 const NORMAL_DEG: f64 = 0.2;
+
+/// Rays past the silhouette of a mesh that enter and leave it within the rounding of a depth, in a picture: one was
+/// seen. Layers see one of the two sides, or none; what they see is judged.
+const TIED: usize = 2;
+
+fn has_mesh(model: &Model) -> bool {
+    let shapes = model.solids.iter().flat_map(|s| s.primitives()).map(|p| &p.shape);
+    shapes.into_iter().any(|shape| matches!(shape, Shape::Mesh(_)))
+}
 
 /// What is wrong with a picture, or nothing.
 fn faults(renderer: &mut HeadlessRenderer, tracer: &Tracer, camera: &Camera, blank: bool) -> Option<String> {
@@ -54,18 +63,23 @@ pub fn right_at(size: (u32, u32), cases: Vec<solids::Named>, blank: bool) {
             wrong.extend(fault.map(|f| format!("{name}, {view}: {f}")));
             pictures.push(render(&mut renderer, camera));
         }
-        renderer.upload_with(model, SceneSettings { solids: SolidWay::Cst, ..Default::default() }).unwrap();
-        for ((view, camera), events) in views.iter().zip(&pictures) {
-            let trimmed = render(&mut renderer, camera);
-            let same = trimmed.face == events.face && trimmed.colour == events.colour && trimmed.depth == events.depth;
-            if !same {
-                let differ = trimmed.face.iter().zip(&events.face).filter(|(a, b)| a != b).count();
-                wrong.push(format!("{name}, {view}: by cst {differ} other faces, or depths"));
+        for way in [SolidWay::Cst, SolidWay::Blister] {
+            renderer.upload_with(model, SceneSettings { solids: way, ..Default::default() }).unwrap();
+            for ((view, camera), events) in views.iter().zip(&pictures) {
+                let other = render(&mut renderer, camera);
+                let face = other.face.iter().zip(&events.face).map(|(a, b)| a != b);
+                let depth = other.depth.iter().zip(&events.depth).map(|(a, b)| a.to_bits() != b.to_bits());
+                let colour = other.colour.iter().zip(&events.colour).map(|(a, b)| a != b);
+                let differ = face.zip(depth).zip(colour).filter(|((f, d), c)| *f || *d || *c).count();
+                let tied = way == SolidWay::Blister && has_mesh(model) && differ <= TIED;
+                if differ > 0 && !(tied && faults(&mut renderer, &tracer, camera, blank).is_none()) {
+                    wrong.push(format!("{name}, {view}: by {} {differ} pixels are unlike", way.name()));
+                }
             }
         }
     }
-    assert_silent(renderer);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert_silent(renderer);
 }
 
 #[test]
@@ -147,9 +161,12 @@ fn the_near_plane_cuts() {
         ("near plane within the shell", look(DVec3::new(-8.0, -2.5, 0.0), 5.5)),
     ];
     let (tracer, mut renderer) = (Tracer::new(&cut), watched(&cut));
-    for (name, camera) in cases {
-        let fault = faults(&mut renderer, &tracer, &camera, false);
-        assert_eq!(fault, None, "{name}");
+    for way in SolidWay::ALL {
+        renderer.upload_with(&cut, SceneSettings { solids: *way, ..Default::default() }).unwrap();
+        for (name, camera) in &cases {
+            let fault = faults(&mut renderer, &tracer, camera, false);
+            assert_eq!(fault, None, "{name}, by {}", way.name());
+        }
     }
     assert_silent(renderer);
 }

@@ -36,6 +36,7 @@ fn sheet(device: &Device) -> Pipeline {
         front: vk::FrontFace::COUNTER_CLOCKWISE,
         colour: &[ColourTarget { format: vk::Format::R32_UINT, blend: Blend::Replace }],
         depth: Some(DepthTest { format: vk::Format::D32_SFLOAT, compare: vk::CompareOp::LESS, write: true }),
+        stencil: None,
     };
     Pipeline::graphics(device, &info).unwrap()
 }

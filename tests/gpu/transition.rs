@@ -44,6 +44,7 @@ fn pipeline(device: &Device) -> Pipeline {
         front: vk::FrontFace::COUNTER_CLOCKWISE,
         colour: &[ColourTarget { format: vk::Format::R32G32_SFLOAT, blend: Blend::Replace }],
         depth: None,
+        stencil: None,
     };
     Pipeline::graphics(device, &info).unwrap()
 }

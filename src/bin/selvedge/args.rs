@@ -89,6 +89,8 @@ pub struct InfoArgs {
     pub model: PathBuf,
     #[command(flatten)]
     pub subdivide: SubdivideArgs,
+    #[command(flatten)]
+    pub camera: CameraArgs,
     /// List every face: deviation, gap, loops, notes; and the worst of them
     #[arg(long)]
     pub deep: bool,
@@ -296,7 +298,8 @@ pub struct FrameArgs {
     /// How to trim: table (made for each view) or exact (made once); table without it
     #[arg(long, value_name = "WAY")]
     pub trim: Option<TrimWay>,
-    /// How to draw Boolean solids: events (a ray a pixel) or cst (each primitive, trimmed by the others)
+    /// How to draw Boolean solids: events (a ray a pixel), cst (each primitive, trimmed by the others) or blister
+    /// (layers of faces, classified by labels)
     #[arg(long, value_name = "WAY", default_value = "events")]
     pub solids: SolidWay,
     /// Mark, before everything, where faces of two solids or closed parts coincide, blue, and where two overlap, red; counts

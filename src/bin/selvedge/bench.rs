@@ -131,6 +131,7 @@ fn gather(to: &mut Gathered, stats: &FrameStats) {
     to.push("sub-patches", "", stats.sub_patches as f64);
     to.push("trim rows", "", stats.trim_rows as f64);
     to.push("trim intercepts", "", stats.trim_intercepts as f64);
+    to.push("layers", "", stats.layers as f64);
     to.push(CLAMPS, "", stats.clamps as f64);
     to.push("retries", "", f64::from(stats.retries));
     for pool in &stats.pools {

@@ -14,9 +14,6 @@ pub fn run(args: &ExportArgs) -> Result<Outcome> {
     let mut out = BufWriter::new(File::create(&args.output).with_context(name)?);
     let warnings = export::step(&model, &mut out).with_context(name)?;
     out.flush().with_context(name)?;
-    if !model.solids.is_empty() {
-        tracing::warn!("{} Boolean solids are not written: the form has faces only", model.solids.len());
-    }
     if model.trim.is_some() {
         tracing::warn!("the faces are written whole: the form cannot say that a volume trims them");
     }

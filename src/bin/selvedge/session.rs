@@ -17,7 +17,7 @@ pub fn open(path: &Path, subdivide: &SubdivideArgs) -> Result<Import> {
     if let Some(smooth) = subdivide.subdivide {
         let import = import::open_subdivided(path, smooth.scheme(), subdivide.within)?;
         tracing::info!("read {} in {:.1?}", path.display(), start.elapsed());
-        let (faces, off) = (import.report.faces, import.report.deviation);
+        let (faces, off) = (import.report.faces, import.report.made);
         tracing::info!("{faces} faces within {off:.2e} mm of the limit surface");
         return Ok(import);
     }

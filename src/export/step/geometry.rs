@@ -27,8 +27,20 @@ impl<W: Write> Text<'_, W> {
 
     /// Origin, z and x axis.
     pub fn placement(&mut self, origin: DVec3, z: DVec3, x: DVec3) -> io::Result<Id> {
-        let (origin, z, x) = (self.point(origin)?, self.direction(z)?, self.direction(x)?);
+        let origin = self.point(origin)?;
+        self.placement_at(origin, z, x)
+    }
+
+    /// The same at a point that is written already.
+    pub fn placement_at(&mut self, origin: Id, z: DVec3, x: DVec3) -> io::Result<Id> {
+        let (z, x) = (self.direction(z)?, self.direction(x)?);
         self.add(format_args!("AXIS2_PLACEMENT_3D('',{origin},{z},{x})"))
+    }
+
+    /// Origin and direction.
+    pub fn axis(&mut self, origin: DVec3, z: DVec3) -> io::Result<Id> {
+        let (origin, z) = (self.point(origin)?, self.direction(z)?);
+        self.add(format_args!("AXIS1_PLACEMENT('',{origin},{z})"))
     }
 
     pub fn space_curve(&mut self, c: &BSpline<DVec4>) -> io::Result<Id> {

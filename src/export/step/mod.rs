@@ -4,6 +4,7 @@
 //!   model ─▶ PRODUCT of the assembly ◀─ NEXT_ASSEMBLY_USAGE_OCCURRENCE ─ one an instance
 //!                                             │  ITEM_DEFINED_TRANSFORMATION
 //!   part  ─▶ PRODUCT ─▶ shape representation ─▶ solids or shells (`shape`, `geometry`), STYLED_ITEMs
+//!   solid ─▶ PRODUCT ─▶ CSG_SHAPE_REPRESENTATION ─▶ an expression over primitives (`csg`, `facets`)
 //! ```
 //!
 //! A model of one part that stands at the origin is one product without an assembly. STEP places rigidly: an
@@ -11,19 +12,20 @@
 //!
 //! Source: ISO 10303-21, -42, -43, -44, -214, and CAx-IF Recommended Practices.
 
+mod csg;
+mod facets;
 mod geometry;
 mod shape;
 mod text;
 
-use super::primitive;
-use super::{ExportError, ExportWarning, Item};
-use crate::model::{Colour, Face, Instance, Model, Part, Primitive};
+use super::operand::{RIGID, faces};
+use super::{ExportError, ExportWarning, Item, baked};
+use crate::csg::{Node, Tree};
+use crate::model::{Colour, Instance, Model, Part, Primitive, Solid};
 use glam::{DAffine3, DMat3, DVec3};
+use std::collections::HashMap;
 use std::io::{self, Write};
 use text::{Id, List, Quoted, Real, Text, reals};
-
-/// How far a matrix may be from a rotation.
-const RIGID: f64 = 1e-12;
 
 /// Writes `model` as ISO 10303-21 text (AP214), millimetres. The same model gives the same bytes.
 ///
@@ -32,9 +34,12 @@ const RIGID: f64 = 1e-12;
 /// their curves in space are exact on planes and along parameter lines, else fitted to 1e-8 of the diagonal. The largest
 /// distance met is the file's UNCERTAINTY.
 ///
-/// A solid that is one primitive is written as its exact faces. Boolean expressions, half-spaces, quadrics and meshes,
-/// and parts without instances, are not written: a warning names them. So is a part that says it is closed but whose
-/// edges do not meet; it becomes an open shell.
+/// A solid that is one bounded primitive is written as its exact faces, or as its mesh. A Boolean expression becomes a
+/// CSG_SOLID: a tree of operations over primitives with exact dimensions, half-spaces, and solids of exact faces where a
+/// primitive is stretched or a part. Not every program reads those, so a warning names each; what they leave out they
+/// cannot draw. Expressions over quadrics, solids that are empty, meshes of parts, and parts without instances, are not
+/// written: a warning names them. So is a part that says it is closed but whose edges do not meet; it becomes an open
+/// shell.
 ///
 /// # Errors
 /// [`ExportError`] when writing fails or the model's instances are not sound.
@@ -54,18 +59,20 @@ pub fn step(model: &Model, out: &mut impl Write) -> Result<Vec<ExportWarning>, E
     let product = text.add(format_args!("PRODUCT_CONTEXT('',{application},'mechanical')"))?;
     let design = text.add(format_args!("PRODUCT_DEFINITION_CONTEXT('part definition',{application},'design')"))?;
     let origin = text.placement(DVec3::ZERO, DVec3::Z, DVec3::X)?;
-    let mut file = Writer { text, context, product, design, origin, uncertainty: 0.0, styled: Vec::new() };
-    let placed = products(model, &mut warnings)?;
-    let alone = matches!(&placed[..], [p] if matches!(&p.places[..], [(t, _)] if *t == DAffine3::IDENTITY));
+    let mut file = Writer { text, context, product, design, origin, uncertainty: 0.0, styled: Colours::default() };
     let mut children = Vec::new();
-    for p in &placed {
-        children.push((file.part(p, &mut warnings)?, &p.places));
+    for p in products(model, &mut warnings)? {
+        children.push((file.part(&p, &mut warnings)?, p.places));
     }
+    for (k, solid) in model.solids.iter().enumerate() {
+        children.extend(file.solid(k, solid, &mut warnings)?);
+    }
+    let alone = matches!(&children[..], [(_, places)] if matches!(&places[..], [(t, _)] if *t == DAffine3::IDENTITY));
     if !alone {
         file.assembly(&model.name, &children)?;
     }
-    if !file.styled.is_empty() {
-        let items = List(&file.styled);
+    if !file.styled.items.is_empty() {
+        let items = List(&file.styled.items);
         file.text.add(format_args!("MECHANICAL_DESIGN_GEOMETRIC_PRESENTATION_REPRESENTATION('',{items},{context})"))?;
     }
     file.text.context(context, file.uncertainty.max(f64::MIN_POSITIVE))?;
@@ -106,7 +113,7 @@ fn products(model: &Model, warnings: &mut Vec<ExportWarning>) -> Result<Vec<Prod
                 let (item, colour) = (Item::Part(i.part), i.colour);
                 all.push(Product { part: part.clone(), item, baked: false, colour, places: vec![place] });
             }
-            None => all.push(baked(part, i, Item::Part(i.part))),
+            None => all.push(alone(part, i, Item::Part(i.part))),
         }
     }
     for (part, p) in model.parts.iter().enumerate() {
@@ -119,27 +126,18 @@ fn products(model: &Model, warnings: &mut Vec<ExportWarning>) -> Result<Vec<Prod
             warnings.push(ExportWarning { item: Item::Part(part), message });
         }
     }
-    for (k, solid) in model.solids.iter().enumerate() {
-        let item = Item::Solid(k);
-        let sound = |t: &DAffine3| t.is_finite() && t.matrix3.determinant() != 0.0;
-        match primitive::faces(solid) {
-            Ok((p, part)) if sound(&p.transform) => all.push(placed_solid(p, part, item)),
-            Ok(_) => warnings.push(ExportWarning { item, message: "is flat and was left out".into() }),
-            Err(message) => warnings.push(ExportWarning { item, message }),
-        }
-    }
     Ok(all)
 }
 
-/// The product of a solid that is one primitive.
-fn placed_solid(p: &Primitive, part: Part, item: Item) -> Product {
-    let part = Part { name: format!("solid {}", p.id), ..part };
+/// The product of a solid that is one primitive, from its faces in the primitive's own coordinates.
+fn placed_solid(p: &Primitive, part: Part, name: String, item: Item) -> Product {
+    let part = Part { name, ..part };
     let instance = Instance { part: 0, transform: p.transform, colour: Some(p.colour), name: part.name.clone() };
     if is_rigid(&p.transform.matrix3) {
-        let places = vec![(p.transform, part.name.clone())];
+        let places = vec![(p.transform, instance.name)];
         return Product { part, item, baked: false, colour: instance.colour, places };
     }
-    baked(&part, &instance, item)
+    alone(&part, &instance, item)
 }
 
 fn is_rigid(m: &DMat3) -> bool {
@@ -147,17 +145,10 @@ fn is_rigid(m: &DMat3) -> bool {
     off.to_cols_array().iter().all(|x| x.abs() <= RIGID) && m.determinant() > 0.0
 }
 
-/// A part with its transform carried out.
-fn baked(part: &Part, i: &Instance, item: Item) -> Product {
-    let mirrored = i.transform.matrix3.determinant() < 0.0;
-    let face = |f: &Face| Face {
-        surface: f.surface.transformed(&i.transform),
-        same_sense: f.same_sense != mirrored,
-        ..f.clone()
-    };
-    let part = Part { faces: part.faces.iter().map(face).collect(), meshes: Vec::new(), ..part.clone() };
+/// The product of one instance, its transform carried out.
+fn alone(part: &Part, i: &Instance, item: Item) -> Product {
     let places = vec![(DAffine3::IDENTITY, i.name.clone())];
-    Product { part, item, baked: true, colour: i.colour, places }
+    Product { part: baked(part, &i.transform), item, baked: true, colour: i.colour, places }
 }
 
 /// The file so far.
@@ -171,8 +162,23 @@ struct Writer<'t, 'w, W> {
     styled: Colours,
 }
 
-/// Styled items.
-type Colours = Vec<Id>;
+/// Styled items, and the styles that they share.
+#[derive(Default)]
+struct Colours {
+    items: Vec<Id>,
+    styles: HashMap<[u32; 4], Id>,
+}
+
+impl Colours {
+    /// Takes the items of another text.
+    fn append(&mut self, other: Self) {
+        self.items.extend(other.items);
+        self.styles.extend(other.styles);
+    }
+}
+
+/// Where products stand, by name.
+type Places = Vec<(DAffine3, String)>;
 
 /// A product that can be placed.
 struct Written {
@@ -183,7 +189,8 @@ struct Written {
 impl<W: Write> Writer<'_, '_, W> {
     fn part(&mut self, p: &Product, warnings: &mut Vec<ExportWarning>) -> Result<Written, ExportError> {
         let mut part = p.part.clone();
-        if p.colour.is_some() {
+        // an instance's colour is all of its faces', a primitive's that of those without their own
+        if p.colour.is_some() && matches!(p.item, Item::Part(_)) {
             part.faces.iter_mut().for_each(|f| f.colour = None);
         }
         let mut shape = shape::shape(self.text, &part, p.item, &mut self.styled, warnings)?;
@@ -200,6 +207,39 @@ impl<W: Write> Writer<'_, '_, W> {
         Ok(self.product(&part.name, representation)?)
     }
 
+    /// A Boolean solid; a warning says what is not written of it.
+    fn solid(
+        &mut self,
+        index: usize,
+        solid: &Solid,
+        warnings: &mut Vec<ExportWarning>,
+    ) -> Result<Option<(Written, Places)>, ExportError> {
+        let item = Item::Solid(index);
+        let name = format!("solid {}", solid.primitives().first().map_or(index as u32 + 1, |p| p.id));
+        let empty: Vec<bool> = solid.primitives().iter().map(|p| p.bounds().is_empty()).collect();
+        let tree: Tree = solid.tree().fold(|p| empty[p as usize].then_some(false));
+        if let Some(all) = tree.as_constant() {
+            let what = if all { "all space" } else { "empty" };
+            warnings.push(ExportWarning { item, message: format!("is {what} and was left out") });
+            return Ok(None);
+        }
+        if let [Node::Leaf(p)] = *tree.nodes() {
+            let p = &solid.primitives()[p as usize];
+            if let Ok(part) = faces(&p.shape) {
+                let product = placed_solid(p, part, name, item);
+                return Ok(Some((self.part(&product, warnings)?, product.places)));
+            }
+        }
+        let written = csg::solid(self.text, &name, (solid, &tree), item, &mut self.styled, warnings)?;
+        let Some(csg::Written { item, plain, deviation }) = written else { return Ok(None) };
+        self.uncertainty = self.uncertainty.max(deviation);
+        let kind = if plain { "FACETED_BREP" } else { "CSG" };
+        let (origin, context) = (self.origin, self.context);
+        let representation =
+            self.text.add(format_args!("{kind}_SHAPE_REPRESENTATION('',({item},{origin}),{context})"))?;
+        Ok(Some((self.product(&name, representation)?, vec![(DAffine3::IDENTITY, name)])))
+    }
+
     fn product(&mut self, name: &str, representation: Id) -> io::Result<Written> {
         let (name, text) = (Quoted(name), &mut *self.text);
         let product = text.add(format_args!("PRODUCT({name},{name},'',({}))", self.product))?;
@@ -211,9 +251,9 @@ impl<W: Write> Writer<'_, '_, W> {
         Ok(Written { definition, representation })
     }
 
-    fn assembly(&mut self, name: &str, children: &[(Written, &Vec<(DAffine3, String)>)]) -> io::Result<()> {
+    fn assembly(&mut self, name: &str, children: &[(Written, Places)]) -> io::Result<()> {
         let mut items = vec![self.origin];
-        for (transform, _) in children.iter().flat_map(|c| c.1) {
+        for (transform, _) in children.iter().flat_map(|c| &c.1) {
             let m = transform.matrix3;
             items.push(self.text.placement(transform.translation, m.z_axis, m.x_axis)?);
         }
@@ -242,7 +282,18 @@ impl<W: Write> Writer<'_, '_, W> {
 }
 
 /// Gives an item its colour; files hold sRGB.
-fn style<W: Write>(text: &mut Text<W>, styled: &mut Colours, item: Id, colour: Colour) -> io::Result<()> {
+fn style<W: Write>(text: &mut Text<W>, colours: &mut Colours, item: Id, colour: Colour) -> io::Result<()> {
+    let key = colour.map(f32::to_bits);
+    let style = match colours.styles.get(&key) {
+        Some(&style) => style,
+        None => surface_style(text, colour)?,
+    };
+    colours.styles.insert(key, style);
+    colours.items.push(text.add(format_args!("STYLED_ITEM('',({style}),{item})"))?);
+    Ok(())
+}
+
+fn surface_style<W: Write>(text: &mut Text<W>, colour: Colour) -> io::Result<Id> {
     let [r, g, b, opacity] = colour.map(f64::from);
     let rgb = reals([r, g, b].map(encoded));
     let rgb = text.add(format_args!("COLOUR_RGB('',{})", rgb.trim_matches(['(', ')'])))?;
@@ -256,9 +307,7 @@ fn style<W: Write>(text: &mut Text<W>, styled: &mut Colours, item: Id, colour: C
     }
     let side = text.add(format_args!("SURFACE_SIDE_STYLE('',{})", List(&sides)))?;
     let usage = text.add(format_args!("SURFACE_STYLE_USAGE(.BOTH.,{side})"))?;
-    let assigned = text.add(format_args!("PRESENTATION_STYLE_ASSIGNMENT(({usage}))"))?;
-    styled.push(text.add(format_args!("STYLED_ITEM('',({assigned}),{item})"))?);
-    Ok(())
+    text.add(format_args!("PRESENTATION_STYLE_ASSIGNMENT(({usage}))"))
 }
 
 /// Linear light to sRGB (IEC 61966-2-1).

@@ -22,6 +22,22 @@ impl<'w, W: Write> Text<'w, W> {
         self.out.write_all(text.as_bytes())
     }
 
+    /// A text of its own that goes on where this one ends, for [`Text::take`] or to be dropped.
+    pub fn aside<'b>(&self, out: &'b mut Vec<u8>) -> Text<'b, Vec<u8>> {
+        Text { out, last: self.last }
+    }
+
+    /// The last number given.
+    pub fn last(&self) -> Id {
+        Id(self.last)
+    }
+
+    /// Writes what was written aside, whose last number was `last`.
+    pub fn take(&mut self, aside: &[u8], last: Id) -> io::Result<()> {
+        self.last = last.0;
+        self.out.write_all(aside)
+    }
+
     /// A number for an entity that comes later.
     pub fn reserve(&mut self) -> Id {
         self.last += 1;

@@ -66,7 +66,10 @@ impl Axis {
             return Err("fewer than two parameter values".into());
         }
         if basis == Basis::BSpline {
-            let count = parm.len().checked_sub(degree + 1).ok_or("too few knots for the degree")?;
+            let count = parm.len().saturating_sub(degree + 1);
+            if count <= degree {
+                return Err("too few knots for the degree".into());
+            }
             return Ok(Self { degree, knots: parm.to_vec(), count, segments: None });
         }
         let n = degree;

@@ -9,7 +9,6 @@ use super::items::{Scene, Section, Thing};
 use super::solid::{self, Adding, Form};
 use super::text::{Fault, Outcome, Table, Value, shortened};
 use super::{VERSION, cameras, cuts, place};
-use crate::brep::BuiltFace;
 use crate::import::camera::PictureSettings;
 use crate::import::solid::Assembly;
 use crate::import::{FaceRecord, Import, ImportReport, Warning};
@@ -245,10 +244,10 @@ impl<'a> Builder<'a> {
 
     /// A part and the records of its faces.
     fn part(&mut self, scene: &Scene<'_>, mut part: Part, faces: Vec<(Face, (f64, Vec<String>))>) {
-        for (face, (deviation, notes)) in faces {
+        for (face, known) in faces {
             let tolerance = scene.tolerance * scene.unit;
             let record = FaceRecord { id: face.id, part: self.model.parts.len(), tolerance, ..FaceRecord::default() };
-            part.faces.push(self.report.record(record, BuiltFace { face, notes, deviation, gap: 0.0 }));
+            part.faces.push(self.report.record_made(record, face, known));
         }
         self.report.faces += part.faces.len();
         self.model.parts.push(part);
@@ -262,9 +261,19 @@ impl<'a> Builder<'a> {
         own.faces += of.faces;
         own.edges += of.edges;
         own.meshes += of.meshes;
+        let moved = |r: &FaceRecord| FaceRecord { part: r.part + first, ..r.clone() };
+        own.face_records.extend(of.face_records.iter().map(moved));
+        self.told(import);
+    }
+
+    /// What is known of another file, whether or not its parts are placed.
+    fn told(&mut self, import: &Import) {
+        let (own, of) = (&mut self.report, &import.report);
         own.pcurves += of.pcurves;
         own.sloppy += of.sloppy;
         own.deviation = own.deviation.max(of.deviation);
+        own.made = own.made.max(of.made);
+        own.irregular += of.irregular;
         own.gap = own.gap.max(of.gap);
         for (own, of) in [
             (&mut own.warnings, &of.warnings),
@@ -276,8 +285,6 @@ impl<'a> Builder<'a> {
         ] {
             of.iter().for_each(|(what, n)| *own.entry(what.clone()).or_default() += n);
         }
-        let moved = |r: &FaceRecord| FaceRecord { part: r.part + first, ..r.clone() };
-        own.face_records.extend(of.face_records.iter().map(moved));
         self.warnings.extend(import.warnings.iter().cloned());
     }
 
@@ -328,7 +335,13 @@ impl<'a> Builder<'a> {
         Ok(all.fold(crate::model::Bounds::EMPTY, crate::model::Bounds::union))
     }
 
-    fn finish(self, scene: &Scene<'_>) -> Import {
+    fn finish(mut self, scene: &Scene<'a>) -> Import {
+        // files whose solids are operands only
+        for item in scene.items.iter().filter(|item| !self.parts.contains_key(item.name)).collect::<Vec<_>>() {
+            if let Some(Thing::File(file)) = scene.made.get(item.name) {
+                self.told(&file.import);
+            }
+        }
         let mut report = self.report;
         report.format = format!("selvedge scene {VERSION}");
         report.units = vec![self.model.unit.clone()];

@@ -101,7 +101,8 @@ pub(super) struct Scene<'a> {
     /// Names that other items are made of.
     pub used: HashSet<&'a str>,
     places: HashMap<&'a str, usize>,
-    made: HashMap<&'a str, Thing>,
+    /// By name.
+    pub made: HashMap<&'a str, Thing>,
     open: Vec<&'a str>,
     budget: usize,
     numbers: u32,

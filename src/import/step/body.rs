@@ -7,11 +7,13 @@
 //!   SHELL_BASED_SURFACE_MODEL('',(shells))                         closed if every shell is
 //!   FACE_BASED_SURFACE_MODEL, GEOMETRIC_SET, a shell or a face     open
 //!   TESSELLATED_SOLID, TESSELLATED_SHELL, sets of triangles        meshes
+//!   CSG_SOLID and its like                                         not here: see `csg`
 //! ```
 //!
 //! A face that cannot be mapped is left out with a note; the body stays.
 
 use super::colour::Colours;
+use super::csg;
 use super::entity::{Entity, Fault};
 use super::face::EdgeTable;
 use super::geometry::{FACE_LOST, Geometry};
@@ -53,15 +55,12 @@ pub(super) const SHELLS: [&str; 7] = [
 pub(super) const FACES: [&str; 5] = ["ADVANCED_FACE", "FACE_SURFACE", "FACE", "ORIENTED_FACE", "CURVE_BOUNDED_SURFACE"];
 
 /// Geometry that is drawn by other programs but not by this one.
-const UNSUPPORTED: [&str; 9] = [
-    "CSG_SOLID",
-    "BOOLEAN_RESULT",
+const UNSUPPORTED: [&str; 6] = [
     "EXTRUDED_AREA_SOLID",
     "EXTRUDED_FACE_SOLID",
     "REVOLVED_AREA_SOLID",
     "REVOLVED_FACE_SOLID",
     "SWEPT_DISK_SOLID",
-    "SOLID_REPLICA",
     "CUBIC_BEZIER_TRIANGULATED_FACE",
 ];
 
@@ -91,7 +90,7 @@ pub(super) fn role(geometry: &Geometry<'_>, item: Entity<'_>) -> Role {
     if any(&SOLIDS) || any(&MODELS) || any(&SHELLS) || any(&FACES) || is_bare(item) {
         return Role::Body;
     }
-    if tessellated::is_tessellated(item) {
+    if tessellated::is_tessellated(item) || csg::is_boolean(item) {
         return Role::Body;
     }
     if any(&SETS) {

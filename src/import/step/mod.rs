@@ -6,6 +6,7 @@
 //!         ─units──▶ Units           per representation context
 //!         ─curve, spline, surface─▶ CurveGeometry, SurfaceGeometry          one geometry each
 //!         ─face, body, tessellated──▶ Body          faces and the edges that they share; triangles
+//!         ─csg, primitive, solids──▶ Solid          Boolean expressions over primitives and bodies
 //!         ─product, assembly, orphans, walk─▶ one instance per path
 //!         ─colour, presentation──▶ Looks            by styled item; layers, what is hidden
 //!         ─brep::build_face─▶ Face  in parallel, results in file order
@@ -17,6 +18,7 @@
 mod assembly;
 mod body;
 mod colour;
+mod csg;
 mod curve;
 mod entity;
 mod face;
@@ -24,8 +26,10 @@ mod geometry;
 mod orphans;
 mod part21;
 mod presentation;
+mod primitive;
 mod product;
 mod replica;
+mod solids;
 mod spline;
 mod surface;
 mod tessellated;
@@ -47,6 +51,7 @@ use geometry::{FACE_LOST, Geometry, Ledger, Notes};
 use part21::{File, Places};
 use presentation::Presentation;
 use rayon::prelude::*;
+use solids::Solids;
 use std::collections::{BTreeSet, HashMap};
 
 /// Reads STEP text; `name` is the file's name in messages.
@@ -64,34 +69,51 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
     let mut bodies = Vec::new();
     let mut part_of = HashMap::new();
     let mut units = BTreeSet::new();
+    let mut solids = Solids::default();
+    let add = |model: &mut Model, report: &mut ImportReport, name: String, body: &mut Body, tolerance: f64| {
+        let (closed, meshes) = (body.closed, std::mem::take(&mut body.meshes));
+        model.parts.push(Part { name, closed, meshes, ..Part::default() });
+        let lost = |(id, reason): &(u32, String)| FaceRecord {
+            id: *id,
+            part: model.parts.len() - 1,
+            tolerance,
+            notes: vec![reason.clone()],
+            ..FaceRecord::default()
+        };
+        report.face_records.extend(body.lost.iter().map(lost));
+    };
     for group in assembly.groups.values() {
         for &(id, representation) in &group.bodies {
             if part_of.contains_key(&id) {
                 continue;
             }
             let unit = assembly.units_of(representation);
+            units.insert(unit.name.clone());
             let geometry = Geometry { file: &file, units: &unit, ledger: &ledger };
+            if geometry.entity(id).is_ok_and(csg::is_boolean) {
+                solids.read(&geometry, id, looks, representation);
+                continue;
+            }
             let mut body = if assembly.loose.first() == Some(&id) {
                 body::loose(&geometry, &assembly.loose, looks)
             } else {
                 body::body(&geometry, id, looks, &[representation])
             };
             part_of.insert(id, model.parts.len());
-            let (name, closed, meshes) = (part_name(&file, group, id), body.closed, std::mem::take(&mut body.meshes));
-            model.parts.push(Part { name, closed, meshes, ..Part::default() });
-            let lost = |(id, reason): &(u32, String)| FaceRecord {
-                id: *id,
-                part: model.parts.len() - 1,
-                tolerance: unit.tolerance,
-                notes: vec![reason.clone()],
-                ..FaceRecord::default()
-            };
-            report.face_records.extend(body.lost.iter().map(lost));
-            units.insert(unit.name.clone());
+            add(&mut model, &mut report, part_name(&file, group, id), &mut body, unit.tolerance);
             bodies.push((body, unit.tolerance));
         }
     }
+    let parts = model.parts.len();
+    for (id, mut body, tolerance) in solids.operands(parts) {
+        let name = Entity::find(&file, id).map(|e| e.label()).unwrap_or_default();
+        add(&mut model, &mut report, name, &mut body, tolerance);
+        bodies.push((body, tolerance));
+    }
     for placed in assembly.walk(&colours, &ledger) {
+        if solids.place(&placed, &ledger) {
+            continue;
+        }
         let Some(&part) = part_of.get(&placed.body) else { continue };
         let (transform, colour) = (placed.transform, placed.colour);
         model.instances.push(Instance { part, transform, colour, name: placed.name });
@@ -99,7 +121,10 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
     report.units = units.into_iter().collect();
     model.unit = report.units.join(", ");
     report.occurrences = model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect();
-    report.bodies = bodies.len();
+    report.bodies = parts + solids.len();
+    for (kind, count) in solids.kinds() {
+        *report.nodes.entry(kind.to_owned()).or_default() += count;
+    }
     report.meshes = model.parts.iter().map(|p| p.meshes.len()).sum();
     report.edges = bodies.iter().map(|b| b.0.edges.len()).sum();
     report.faces = bodies.iter().map(|b| b.0.faces.len() + b.0.lost.len()).sum();
@@ -108,6 +133,8 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
     drop((assembly, colours));
     let places = file.into_places();
     build(bodies, (&places, &mut notes), &mut model, &mut report, options);
+    solids.finish(parts, &mut model, (&places, &mut notes));
+    report.face_records.iter_mut().for_each(|r| r.part = r.part.min(parts));
     report.dropped = notes.dropped;
     report.ignored = notes.ignored;
     let (list, counts) = notes.warnings.finish();

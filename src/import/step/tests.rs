@@ -3,6 +3,7 @@
 mod assemblies;
 mod classes;
 mod colours;
+mod csg;
 mod damage;
 mod derived;
 mod looks;

@@ -9,6 +9,7 @@
 mod deep;
 mod solids;
 mod text;
+mod tiles;
 mod tree;
 
 use crate::args::InfoArgs;
@@ -19,6 +20,7 @@ use selvedge::model::{Mesh, Model, Part, SurfaceKind};
 use serde::Serialize;
 use solids::SolidRow;
 use std::collections::BTreeMap;
+use tiles::Tiles;
 use tree::Node;
 
 /// Counts of a model; *distinct* where nothing else is said, *instances* counts placed copies.
@@ -37,6 +39,8 @@ struct Info<'a> {
     meshes: MeshCounts,
     surfaces: Vec<SurfaceRow>,
     boolean_solids: Vec<SolidRow>,
+    /// Of the view that the arguments ask for, else of the whole model; absent without Boolean solids.
+    folded_tiles: Option<Tiles>,
     parts: Vec<PartRow<'a>>,
     assembly: Node<'a>,
     /// Millimetres; absent for an empty model.
@@ -79,7 +83,10 @@ struct PartRow<'a> {
 /// Reads the model and prints what it holds.
 pub fn run(args: &InfoArgs) -> Result<Outcome> {
     let import = session::open(&args.model, &args.subdivide)?;
-    let info = Info::new(&import);
+    let mut info = Info::new(&import);
+    if !import.model.solids.is_empty() && info.bounds.is_some() {
+        info.folded_tiles = Tiles::new(&import.model, &args.camera.of(&import)?);
+    }
     if args.json {
         output::print(&serde_json::to_string_pretty(&info)?)?;
         return Ok(Outcome::Good);
@@ -113,6 +120,7 @@ impl<'a> Info<'a> {
             meshes: meshes(model, &parts),
             surfaces: surfaces(model),
             boolean_solids: model.solids.iter().map(SolidRow::new).collect(),
+            folded_tiles: None,
             assembly: Node::new(model),
             bounds: (!bounds.is_empty()).then(|| [bounds.min.into(), bounds.max.into()]),
             warnings: import.warnings.iter().map(ToString::to_string).collect(),

@@ -1,6 +1,6 @@
 //! The tables that people read.
 
-use super::{Info, solids};
+use super::{Info, Tiles, solids};
 use crate::output;
 use std::collections::BTreeMap;
 
@@ -11,6 +11,7 @@ impl Info<'_> {
         if !self.boolean_solids.is_empty() {
             blocks.push(solids::text(&self.boolean_solids));
         }
+        blocks.extend(self.folded_tiles.as_ref().map(Tiles::text));
         if self.assembly.bodies.len() + self.assembly.children.len() > 0 {
             blocks.push(format!("assembly:\n{}", self.assembly.text()));
         }
@@ -67,13 +68,22 @@ impl Info<'_> {
     /// How well it was read, and what was not.
     fn found(&self) -> String {
         let report = self.report;
-        let mut lines = vec![
-            format!("trim curves: largest deviation {:.3e} mm from their edges", report.deviation),
-            format!(
+        let mut lines = Vec::new();
+        if report.edges > 0 || report.deviation > 0.0 {
+            lines.push(format!("trim curves: largest deviation {:.3e} mm from their edges", report.deviation));
+        }
+        if report.edges > 0 || report.gap > 0.0 {
+            lines.push(format!(
                 "edges: largest gap {:.3e} mm off their surfaces; {} faces beyond the file's tolerance",
                 report.gap, report.sloppy
-            ),
-        ];
+            ));
+        }
+        if report.made > 0.0 {
+            lines.push(format!("surfaces made: largest distance {:.3e} mm from what they stand for", report.made));
+        }
+        if report.irregular > 0 {
+            lines.push(format!("subdivision: {} irregular vertices", report.irregular));
+        }
         let mut list = |what: &str, counts: &BTreeMap<String, usize>| {
             if !counts.is_empty() {
                 let total: usize = counts.values().sum();

@@ -31,7 +31,7 @@ fn one_change_one_message() {
             SPEC,
             "2.00 2.00 2.00\ntrim",
             "",
-            "t.obj:32: face left out: 9 control points where parm asks for 0",
+            "t.obj:32: face left out: parm v: too few knots for the degree",
             0,
             0,
         ),

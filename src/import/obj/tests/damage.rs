@@ -24,9 +24,10 @@ fn loses(from: &str, to: &str, why: &str) {
 fn each_damage_names_the_face() {
     loses("deg 2 2", "deg 2 0", "t.obj:32: face left out: parm v: degree 0");
     loses("deg 2 2", "deg 99999999 2", "parm u: degree 99999999 is not");
-    loses("deg 2 2", "deg 3 2", "9 control points where parm asks for 6");
+    loses("deg 2 2", "deg 3 2", "parm u: too few knots for the degree");
     loses("rat bspline", "rat blobs", "no cstype that is known");
-    loses("parm u -1.00 -1.00", "parm u", "9 control points where parm asks for 3");
+    loses("parm u -1.00 -1.00", "parm u", "t.obj:32: face left out: parm u: too few knots for the degree");
+    loses("parm u -1.00 -1.00 -1.00", "parm u", "t.obj:32: face left out: parm u: too few knots for the degree");
     loses("parm u -1.00 -1.00 -1.00 2.50", "parm u -1 -1 2.6 2.5", "is smaller than the one before");
     loses("parm v -2.00", "parm w -2.00", "t.obj:34: face left out: neither u nor v");
     loses("surf -1.0 2.5", "surf nan 2.5", "no finite numbers: nan 2.5");

@@ -51,6 +51,12 @@ fn polygons_are_control_meshes_where_the_scene_says_so() {
         scene(text.as_bytes(), "t.toml", Some(&folder))
     };
     let made = read("subdivide = \"catmull-clark\"\ntolerance = 1e-4");
+    let operand = {
+        let text = "selvedge = 1\n[file.c]\npath = \"cube.obj\"\nsubdivide = \"catmull-clark\"\ntolerance = 1e-4\n\
+                    [solid.b]\nshape = \"sphere\"\nradius = 0.2\n[solid.d]\nshape = \"boolean\"\nof = \"A-B\"\n\
+                    with = { A = \"c\", B = \"b\" }\n[[instance]]\nof = \"d\"\n";
+        scene(text.as_bytes(), "t.toml", Some(&folder)).unwrap()
+    };
     let told = |keys: &str| read(keys).expect_err("no scene").to_string();
     let (no_triangles, no_scheme) = (told("subdivide = \"loop\""), told("subdivide = \"doo-sabin\""));
     let no_scheme_at_all = told("tolerance = 1e-4");
@@ -58,7 +64,11 @@ fn polygons_are_control_meshes_where_the_scene_says_so() {
     let made = made.unwrap();
     let part = &made.model.parts[0];
     assert!(part.closed && part.meshes.is_empty() && part.faces.len() == 24, "{} faces", part.faces.len());
-    assert!(made.report.deviation <= 1e-4 && made.report.deviation > 0.0);
+    // the cube's eight corners; no trim curve is off
+    assert!(made.report.made <= 1e-4 && made.report.made > 0.0);
+    assert_eq!((made.report.irregular, made.report.deviation), (8, 0.0));
+    // as many where the file is an operand only
+    assert_eq!((operand.report.irregular, operand.report.made), (8, made.report.made));
     // one step makes 1, 3/4 and 5/9 of a side's middle, of its edges' and of its corners; the limit of the middle is
     // (16 + 4 * 4 * 3/4 + 4 * 5/9) / 36 of it
     let corners = part.faces.iter().flat_map(|f| {

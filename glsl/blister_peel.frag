@@ -1,0 +1,61 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `blister`: the nearest face of a leaf behind the layer before. The depth test keeps the nearest of all leaves.
+//
+//      ray ──┼────────┬────────┬─────▶
+//   leaf     │    ├───┤████████├───      a leaf that adds shows where the ray enters it, one that is taken away
+//            │        ▲                  where the ray leaves it: nowhere else does a solid begin
+//      layer before
+#include "scene.glsl"
+#include "solids.glsl"
+#include "eye_ray.glsl"
+#include "blister.glsl"
+#include "visible.glsl"
+
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
+layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
+layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
+layout(binding = 5, rg32ui) readonly uniform uimage2D before;
+layout(binding = 6, rg32ui) readonly uniform uimage2D found;
+
+layout(location = 0) flat in uint own;
+layout(location = 0) out uvec2 layer;
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    uvec2 from = imageLoad(before, pixel).xy;
+    if (from.x == 0u) discard;
+    if ((asked & PEEL_UNLOCKS) == 0u && imageLoad(found, pixel).x != 0u) discard; // locked
+    float behind = uintBitsToFloat(from.y);
+    Leaf leaf = leaves[own];
+    Ray ray = eye_ray(frame, gl_FragCoord.xy);
+    bool entries = (asked & ((leaf.flags & LEAF_NEGATIVE) != 0u ? PEEL_EXITS : PEEL_ENTRIES)) != 0u;
+    Span s = EVERYTHING;
+    float t = NEVER;
+    uint side = 0u;
+    // the surfaces twice: what is inside of all of them, then which of them ends there
+    for (uint i = 0u; i < 2u * leaf.count; ++i) {
+        if (i == leaf.count) {
+            float first = entries ? s.lo : s.g0;
+            float second = entries ? s.g1 : s.hi;
+            bool gap = s.g0 < s.g1;
+            bool first_counts = entries || gap;
+            bool second_counts = !entries || gap;
+            if (second_counts && second > behind) t = second;
+            if (first_counts && first > behind) t = first;
+            if (!(s.lo < s.hi) || !(t < frame.far)) break;
+        }
+        uint k = leaf.first + i % leaf.count;
+        uint surface = leaf_surfaces[k].surface;
+        Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
+        if (i >= leaf.count && ends_at(one, t)) side = k;
+        if ((surface & 1u) != 0u) one = complement(one);
+        if (i < leaf.count) s = both(s, one);
+    }
+    if (!(s.lo < s.hi) || !(t < frame.far)) discard;
+    layer = uvec2(SEEN_SOLID | side, floatBitsToUint(t));
+    gl_FragDepth = layer_depth(frame, t);
+}

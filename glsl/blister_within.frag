@@ -1,0 +1,33 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `blister`: whether the point behind the layer's face is within a leaf. What is not is discarded; the stencil
+// test marks the rest.
+#include "scene.glsl"
+#include "solids.glsl"
+#include "eye_ray.glsl"
+
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
+layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
+layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
+layout(binding = 5, rg32ui) readonly uniform uimage2D layer;
+
+layout(location = 0) flat in uint own;
+
+void main() {
+    uvec2 face = imageLoad(layer, ivec2(gl_FragCoord.xy)).xy;
+    if (face.x == 0u) discard;
+    float t = uintBitsToFloat(face.y);
+    Leaf leaf = leaves[own];
+    Ray ray = eye_ray(frame, gl_FragCoord.xy);
+    bool inside = true;
+    for (uint k = leaf.first; k < leaf.first + leaf.count && inside; ++k) {
+        uint surface = leaf_surfaces[k].surface;
+        Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
+        if ((surface & 1u) != 0u) one = complement(one);
+        inside = inside_span(one, t);
+    }
+    if (!inside) discard;
+}

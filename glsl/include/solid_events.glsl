@@ -1,0 +1,203 @@
+// Passes `solid_events` and, with FACE_IS_FOUND, `blister`: the first depth at which the pixel's ray enters the Boolean solid.
+//
+//      ray ──┬──────────┬────┬─────────┬──▶     events: where the ray crosses a side of some leaf
+//   A     ───┤██████████│████├─────────┼──
+//   B     ───┼──────────┤████│█████████├──      sides that coincide share their surface, so their
+//            ▲          ▲    ▲         ▲        depths are equal to the bit and make one event
+//         in A?    the Blist is walked once behind each event
+//
+// The ray is followed from the near plane until outside becomes inside: a near plane within the solid cuts
+// it open, and the first side entered from there is seen. Nothing is stored but the spans of the tile's
+// first leaves: exits of a Blist lead forward, so one scan over the leaves answers both whether the
+// solid is behind depth t and where the next event is. Everything is one loop, so that the surfaces'
+// equations are compiled once. Where the depth of the face is found already, the walk begins there and tells whose it is.
+#ifndef SOLID_EVENTS_GLSL
+#define SOLID_EVENTS_GLSL
+
+#include "scene.glsl"
+#include "solids.glsl"
+#include "shells.glsl"
+#include "tiles.glsl"
+#include "eye_ray.glsl"
+#include "view.glsl"
+#include "visible.glsl"
+
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
+layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
+layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
+layout(scalar, binding = 5) readonly buffer TileStarts { uint tile_starts[]; };
+layout(scalar, binding = 6) readonly buffer TileLeaves { TileLeaf tile_leaves[]; };
+layout(scalar, binding = 7) readonly buffer TileEntries { uint tile_entries[]; };
+
+layout(scalar, binding = 8) readonly buffer FragmentStarts { uint fragment_starts[]; };
+layout(scalar, binding = 9) readonly buffer FragmentCounts { uint fragment_counts[]; };
+layout(scalar, binding = 10) readonly buffer Fragments { Fragment fragments[]; };
+
+layout(scalar, binding = 11) buffer CountersBuffer { Counters counters; };
+
+#ifdef FACE_IS_FOUND
+layout(binding = 12, rg32ui) readonly uniform uimage2D found;
+#endif
+
+// Whether some leaf is a shell: compiled in only then.
+layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
+
+// Whether lists of items that rays are followed through come after those of the union.
+layout(constant_id = 14) const bool SOLIDS_ARE_FOLLOWED = false;
+
+#include "crossing.glsl"
+
+layout(location = 0) out uvec2 visible;
+
+const uint NOBODY = 0xffffffffu;
+
+// Spans kept; those of further leaves are computed in every scan.
+const uint KEPT = 12u;
+
+// What a scan is for.
+const uint SEARCH = 0u; // the next event
+const uint OWNER = 1u;  // does leaf `asked`, taken for what it is not, change the solid before or behind t?
+const uint SIDE = 2u;   // which side of leaf `asked` ends at t?
+
+// The leaves whose spans begin or end at depth t: the first positive one, the first subtracted one.
+struct Candidates {
+    uint positive;
+    uint negative;
+};
+
+void main() {
+    uvec2 tiles = tile_count(frame);
+    uvec2 tile = uvec2(gl_FragCoord.xy) / TILE;
+    uint n = tile.y * tiles.x + tile.x;
+    uint first = min(tile_starts[n], frame.tile_leaf_capacity);
+    uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
+    if (SOLIDS_ARE_FOLLOWED) {
+        while (end > first && (tile_leaves[end - 1u].leaf & ~TILE_LEAF_ENTRY) >= frame.followed_leaf) --end;
+    }
+    uint entry = tile_entries[n];
+    if (entry == EXIT_FALSE) discard;
+    Ray ray = eye_ray(frame, gl_FragCoord.xy);
+    uint pixel = uint(gl_FragCoord.y) * uint(frame.size.x) + uint(gl_FragCoord.x);
+    uint first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
+    uint fragment_count = SOLIDS_HAVE_SHELLS ? fragment_counts[pixel] : 0u;
+    Span kept[KEPT];
+    uint purpose = SEARCH;
+    uint asked = NOBODY;
+    uint after = 0u;        // candidates from here on
+    uint fallback = NOBODY;
+    bool negatives = false; // the candidates asked are the subtracted ones
+    uint side = 0u;
+    uint word = SEEN_SOLID;
+    float t = frame.near;
+    bool before = true; // the near plane cuts: what is inside there is not entered
+#ifdef FACE_IS_FOUND
+    uvec2 face = imageLoad(found, ivec2(gl_FragCoord.xy)).xy;
+    if (face.x == 0u) discard;
+    t = uintBitsToFloat(face.y);
+    before = false;
+#endif
+    // four events a leaf, at most as many questions about owners, and one about the side
+    uint most = 8u * (end - first) + 2u * fragment_count + 4u;
+    bool done = false;
+    bool passed = false; // the far plane
+    // a driver that ends long loops is found by what is missing
+    uint wanted = 0u;
+    uint steps = 0u;
+    for (uint scan = 0u; scan < most && !done; ++scan) {
+        uint at = entry;
+        uint at_before = entry; // the walk in front of t
+        float next = NEVER;
+        Candidates found = Candidates(NOBODY, NOBODY);
+        uint candidates = 0u;
+        wanted += end - first;
+        for (uint i = first; i < end; ++i) {
+            ++steps;
+            TileLeaf here = tile_leaves[i];
+            Leaf leaf = leaves[here.leaf];
+            bool is_kept = i - first < KEPT;
+            bool shell = SOLIDS_HAVE_SHELLS && (leaf.flags & LEAF_SHELL) != 0u;
+            Span s = EVERYTHING;
+            if (shell) {
+                // asked below
+            } else if (is_kept && scan > 0u && purpose != SIDE) {
+                s = kept[i - first];
+            } else if (purpose != SIDE || i == asked) {
+                for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
+                    uint surface = leaf_surfaces[k].surface;
+                    Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
+                    if (purpose == SIDE && ends_at(one, t)) side = k;
+                    if ((surface & 1u) != 0u) one = complement(one);
+                    s = both(s, one);
+                }
+                if (is_kept) kept[i - first] = s;
+            }
+            Crossing c;
+            if (shell) {
+                uint last;
+                c = crossing_of(leaf.first, t, first_fragment, fragment_count, last);
+                if (purpose == SIDE && i == asked) {
+                    bool patch_ = (fragments[last].shell & FRAGMENT_PATCH) != 0u;
+                    side = patch_ ? last : fragments[last].what;
+                    word = patch_ ? SEEN_OPERAND : SEEN_SOLID;
+                }
+            } else {
+                c = crossing_of(s, t);
+            }
+            if (i == at) {
+                bool inside = c.inside != (purpose == OWNER && i == asked);
+                at = inside ? here.in_exit : here.out_exit;
+            }
+            if (purpose == OWNER && i == at_before) {
+                at_before = c.before != (i == asked) ? here.in_exit : here.out_exit;
+            }
+            next = min(next, c.next);
+            if (i >= after && c.ends) {
+                ++candidates;
+                if ((leaf.flags & LEAF_NEGATIVE) != 0u) found.negative = min(found.negative, i);
+                else found.positive = min(found.positive, i);
+            }
+        }
+        bool inside = at == EXIT_TRUE;
+        if (purpose == SIDE) {
+            done = true;
+        } else if (purpose == OWNER) {
+            // the owner is the first leaf that alone changes the solid, in front of the event or behind it
+            uint other = negatives ? found.negative : found.positive;
+            if (!inside || at_before == EXIT_TRUE) {
+                purpose = SIDE;
+            } else if (other != NOBODY) {
+                asked = other;
+                after = other + 1u;
+            } else if (!negatives) {
+                negatives = true;
+                asked = NOBODY; // from the beginning, for subtracted leaves
+                after = first;
+            } else {
+                asked = fallback;
+                purpose = SIDE;
+            }
+        } else if (inside && !before) {
+            asked = min(found.positive, found.negative);
+            if (found.positive != NOBODY) asked = found.positive;
+            fallback = asked;
+            after = asked + 1u;
+            negatives = found.positive == NOBODY;
+            purpose = candidates > 1u ? OWNER : SIDE;
+        } else {
+            if (next >= frame.far) {
+                passed = true;
+                break;
+            }
+            before = inside;
+            t = next;
+        }
+    }
+    if (steps != wanted || !(done || passed)) atomicAdd(counters.clamps, 1u);
+    if (!done) discard;
+    visible = uvec2(word | side, floatBitsToUint(t));
+    gl_FragDepth = reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0);
+}
+
+#endif

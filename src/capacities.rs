@@ -1,0 +1,284 @@
+//! How much of everything a frame has room for: by what the scene has, and by what the frame before wanted.
+//!
+//! ```text
+//!   Counts       what the scene has ──first──▶ Capacities ──Buffers──▶ a frame ──▶ Counters
+//!                                                  ▲                                  │ failed
+//!                                                  └──────────────── grown ◀──────────┘
+//! ```
+
+use crate::abi::{Counters, Fragment, SubPatch, TileLeaf};
+use crate::passes::scan;
+#[cfg(feature = "rivals")]
+use crate::picture::Rival;
+use crate::picture::{Samples, TrimWay};
+use crate::scene::SceneData;
+
+/// What the scene has, per placed face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Counts {
+    pub items: u32,
+    pub cells: u32,
+    pub strips: u32,
+    pub curves: u32,
+    pub face_instances: u32,
+    /// Leaves of Boolean solids.
+    pub leaves: u32,
+    /// Operands of theirs without equations.
+    pub shells: u32,
+    /// [`SolidWay::Blister`](crate::picture::SolidWay::Blister) draws the solids.
+    pub blister: bool,
+    pub triangles: u32,
+    /// Of leaves.
+    pub sides: u32,
+    pub mesh_instances: u32,
+    /// How faces are trimmed, where some are.
+    pub trim: Option<TrimWay>,
+    /// Of each pixel.
+    pub samples: Samples,
+    /// The first leaf of items that rays are followed through; there are some.
+    pub followed_leaf: u32,
+    pub is_followed: bool,
+    /// Lengths within solids are wanted.
+    pub thickness: bool,
+    /// Instances drawn opaque because they are not closed.
+    pub open: u32,
+}
+
+impl Counts {
+    pub(crate) fn of(data: &SceneData) -> Self {
+        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        Self {
+            items: data.items.len() as u32,
+            cells: data.cell_items.len() as u32,
+            strips: data.strip_count,
+            curves: data.curve_items.len() as u32,
+            face_instances: data.face_instances.len() as u32,
+            leaves: data.solids.leaves.len() as u32,
+            shells: data.solids.shell_leaves.len() as u32,
+            blister: data.solids.blister.is_some(),
+            triangles: count(data.meshes.triangles.len().max(data.meshes.positions.len() / 3)),
+            sides: count(data.solids.leaf_surfaces.len()),
+            mesh_instances: count(data.meshes.instances.len()),
+            trim: data.trim_way(),
+            samples: data.samples,
+            followed_leaf: data.solids.followed,
+            is_followed: data.solids.is_followed(),
+            thickness: data.thickness,
+            open: count(data.open),
+        }
+    }
+
+    /// Where rays cross operands is stored.
+    pub(crate) fn has_fragments(self) -> bool {
+        self.shells > 0 && !self.blister
+    }
+
+    /// Whether one dispatch covers a picture of this size, where its pixels are counted.
+    pub(crate) fn check_size(self, size: (u32, u32)) -> Result<(), TooMany> {
+        let count = size.0.saturating_mul(size.1);
+        if self.has_fragments() && count > scan::MAX_COUNT {
+            return Err(TooMany { what: "pixels with operands of meshes or splines", count, most: scan::MAX_COUNT });
+        }
+        Ok(())
+    }
+
+    /// Whether one dispatch covers each of them, and numbers tell them apart.
+    pub(crate) fn check(self) -> Result<(), TooMany> {
+        let all = [
+            ("patches", self.items, MOST_THREADS),
+            ("cells", self.cells, MOST_THREADS),
+            ("v-strips", self.strips, MOST_THREADS),
+            ("curves", self.curves, MOST_THREADS),
+            ("triangles", self.triangles, MOST_TRIANGLES),
+            ("primitives", self.leaves, MOST_THREADS),
+            ("placed meshes", self.mesh_instances, MOST_SEEN),
+            ("sides of primitives", self.sides, MOST_SEEN),
+        ];
+        match all.into_iter().find(|(_, count, most)| count > most) {
+            Some((what, count, most)) => Err(TooMany { what, count, most }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The model, or what a view needs of it, is more than the engine counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{count} {what} are too many: at most {most} can be drawn")]
+pub struct TooMany {
+    /// What there is too much of.
+    pub what: &'static str,
+    /// How many there are.
+    pub count: u32,
+    /// How many there may be.
+    pub most: u32,
+}
+
+/// Workgroups of a dispatch that every device takes.
+const MOST_GROUPS: u32 = 65_535;
+/// Threads of one dispatch of the passes over what the scene has, 64 to a workgroup.
+const MOST_THREADS: u32 = MOST_GROUPS * 64;
+/// Triangles whose corners, and vertices whose coordinates, have numbers of 32 bits.
+const MOST_TRIANGLES: u32 = u32::MAX / 3;
+/// What the bits of the visibility image tell apart.
+const MOST_SEEN: u32 = 1 << 29;
+/// Layers of faces recorded in any case.
+const FEWEST_LAYERS: u32 = 4;
+/// Of faces, each of which asks every primitive.
+const MOST_LAYERS: u32 = 1 << 10;
+/// Rows that pass `sort` takes, 128 to a workgroup.
+const MOST_ROWS: u32 = MOST_GROUPS * 128;
+
+/// Room for what only the GPU can count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Capacities {
+    pub sub_patches: u32,
+    pub draws: u32,
+    pub rows: u32,
+    pub intercepts: u32,
+    pub doubts: u32,
+    pub block_leaves: u32,
+    pub tile_leaves: u32,
+    pub fragments: u32,
+    /// That way `blister` peels.
+    pub layers: u32,
+}
+
+/// Bits of [`Counters::failed`], as in `scene.glsl`.
+const FAILED_DRAWS: u32 = 2;
+const FAILED_LAYERS: u32 = 256;
+
+impl Capacities {
+    /// A first guess that fits most scenes in full view.
+    pub(crate) fn first(counts: Counts) -> Self {
+        let trimmed = u32::from(counts.trim.is_some());
+        let table = u32::from(counts.trim == Some(TrimWay::Table));
+        let counted = table.max(u32::from(counts.trim.is_some_and(is_texture)));
+        Self {
+            sub_patches: counts.items.saturating_add(256),
+            draws: 64,
+            rows: table * (1 << 16).max(2 * counts.strips).min(MOST_ROWS),
+            intercepts: counted * (1 << 18).max(4 * counts.strips),
+            doubts: trimmed * (1 << 14),
+            block_leaves: counts.leaves.saturating_mul(4),
+            tile_leaves: if counts.leaves > 0 { counts.leaves.saturating_mul(16).max(1 << 14) } else { 0 },
+            fragments: if counts.has_fragments() { 1 << 18 } else { 0 },
+            layers: if counts.blister { FEWEST_LAYERS } else { 0 },
+        }
+    }
+
+    /// Buffers made for these take as much as those made for `others`.
+    pub(crate) fn takes_as_much(self, others: Self) -> bool {
+        Self { layers: others.layers, ..self } == others
+    }
+
+    /// What the frame that reported `c` would have needed, with a quarter to spare where a storage
+    /// buffer of `range` bytes has it; the same when it had enough.
+    pub(crate) fn grown(self, c: &Counters, range: u32) -> Result<Self, TooMany> {
+        if c.wanted_rows > MOST_ROWS {
+            return Err(TooMany { what: "scan lines", count: c.wanted_rows, most: MOST_ROWS });
+        }
+        let most_fragments = (range / size_of::<Fragment>() as u32).min(MOST_SEEN);
+        if c.fragments > most_fragments {
+            return Err(TooMany { what: "crossings of operands", count: c.fragments, most: most_fragments });
+        }
+        if c.failed & FAILED_LAYERS != 0 && self.layers >= MOST_LAYERS {
+            return Err(TooMany { what: "layers of faces", count: c.layers, most: MOST_LAYERS });
+        }
+        let room = |had: u32, wanted: u32, most: u32| {
+            let spare = wanted.saturating_add(wanted / 4).min(most);
+            if wanted > had { spare.max(wanted) } else { had }
+        };
+        let more_draws = if c.failed & FAILED_DRAWS != 0 { 4 } else { 1 };
+        Ok(Self {
+            sub_patches: room(
+                self.sub_patches,
+                c.plain.saturating_add(c.trimmed),
+                range / size_of::<SubPatch>() as u32,
+            ),
+            draws: self.draws.saturating_mul(more_draws),
+            rows: room(self.rows, c.wanted_rows, MOST_ROWS),
+            intercepts: room(self.intercepts, c.intercepts, range / size_of::<u32>() as u32),
+            doubts: room(self.doubts, c.doubts, range / size_of::<u32>() as u32),
+            block_leaves: room(self.block_leaves, c.block_leaves, range / size_of::<u32>() as u32),
+            tile_leaves: room(self.tile_leaves, c.tile_leaves, range / size_of::<TileLeaf>() as u32),
+            fragments: room(self.fragments, c.fragments, most_fragments),
+            layers: match self.layers {
+                0 => 0,
+                had if c.failed & FAILED_LAYERS != 0 => 2 * had,
+                _ => (c.layers + 1).max(FEWEST_LAYERS),
+            },
+        })
+    }
+}
+
+/// The way draws textures.
+pub(crate) fn is_texture(way: TrimWay) -> bool {
+    match way {
+        TrimWay::Table | TrimWay::Exact => false,
+        #[cfg(feature = "rivals")]
+        TrimWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every storage buffer of Vulkan's least capable device.
+    const RANGE: u32 = 1 << 27;
+
+    fn first() -> Capacities {
+        Capacities::first(Counts { items: 1000, strips: 8, trim: Some(TrimWay::Table), ..Default::default() })
+    }
+
+    #[test]
+    fn what_sufficed_stays() {
+        let c = Counters { plain: 900, trimmed: 100, wanted_rows: 65_536, intercepts: 262_144, ..Default::default() };
+        assert_eq!(first().grown(&c, RANGE).unwrap(), first());
+    }
+
+    #[test]
+    fn what_did_not_gets_what_it_wanted_and_a_quarter() {
+        let c = Counters { plain: 2000, wanted_rows: 100_000, failed: FAILED_DRAWS | 1 | 4, ..Default::default() };
+        let grown = first().grown(&c, RANGE).unwrap();
+        assert_eq!((grown.sub_patches, grown.rows), (2500, 125_000));
+        assert_eq!((grown.draws, grown.intercepts), (4 * first().draws, first().intercepts));
+        // no room for a quarter more in one storage buffer
+        let c = Counters { intercepts: RANGE / 4 - 1, failed: 8, ..Default::default() };
+        assert_eq!(first().grown(&c, RANGE).unwrap().intercepts, RANGE / 4);
+    }
+
+    /// One layer more than were needed, so that it is seen to be empty; twice as many where some were wanting.
+    #[test]
+    fn layers_follow_the_view() {
+        let peels = Capacities::first(Counts { leaves: 3, blister: true, ..Default::default() });
+        assert_eq!((first().layers, peels.layers), (0, FEWEST_LAYERS));
+        let of = |had: Capacities, c| had.grown(&c, RANGE).map(|c| c.layers);
+        let more = Capacities { layers: 16, ..peels };
+        assert_eq!(
+            of(peels, Counters { layers: 5, failed: FAILED_LAYERS, ..Default::default() }),
+            Ok(2 * FEWEST_LAYERS)
+        );
+        assert_eq!(of(more, Counters { layers: 9, ..Default::default() }), Ok(10));
+        assert_eq!(of(more, Counters::default()), Ok(FEWEST_LAYERS));
+        assert!(more.takes_as_much(peels) && !Capacities { draws: 1, ..more }.takes_as_much(peels));
+        let most = Capacities { layers: MOST_LAYERS, ..peels };
+        let c = Counters { layers: MOST_LAYERS + 1, failed: FAILED_LAYERS, ..Default::default() };
+        assert!(matches!(of(most, c), Err(TooMany { what: "layers of faces", .. })));
+    }
+
+    #[test]
+    fn more_than_can_be_counted_is_an_error() {
+        let c = Counters { wanted_rows: MOST_ROWS + 1, failed: 4, ..Default::default() };
+        assert!(matches!(first().grown(&c, RANGE), Err(TooMany { what: "scan lines", .. })));
+        let counts = Counts { items: MOST_THREADS, ..Default::default() };
+        assert!(counts.check().is_ok());
+        assert!(matches!(Counts { curves: MOST_THREADS + 1, ..counts }.check(), Err(TooMany { .. })));
+        let counts = Counts { triangles: MOST_TRIANGLES, mesh_instances: MOST_SEEN, ..counts };
+        assert!(counts.check().is_ok());
+        let more = Counts { triangles: MOST_TRIANGLES + 1, ..counts };
+        assert!(matches!(more.check(), Err(TooMany { what: "triangles", .. })));
+        let more = Counts { mesh_instances: MOST_SEEN + 1, ..counts };
+        assert!(matches!(more.check(), Err(TooMany { what: "placed meshes", .. })));
+    }
+}

@@ -1,0 +1,387 @@
+//! Pass `blister`: the faces of Boolean solids, layer by layer, classified by labels in a stencil image.
+//!
+//! ```text
+//!   layer k    peel       the nearest face behind layer k - 1, of every primitive that may bound a solid there
+//!              wait       stencil: label 0 in pixels that are not locked
+//!              ask        for each switch of the Blist, in order: where label = name
+//!                           within?  parity 1            (its triangles, or its span)
+//!                           label = without where parity is 0, label = within and parity 0 where it is 1
+//!              lock       where label = inside: the layer's face is found; no later layer sees the pixel
+//!
+//!   stencil    7 parity │ 6 locked │ 5-0 label
+//! ```
+//!
+//! A label becomes another by turning over the bits that differ, since a stencil test that compares with the one cannot
+//! store the other. Reads: everything that `Bindings` names, and the images. Writes: the images, `counters`. Source: J.
+//! Hable, J. Rossignac, *Blister: GPU-based rendering of Boolean combinations of free-form triangulated shapes*,
+//! SIGGRAPH 2005. Departures: depths that are equal are equal to the bit, so no face is tested against its own
+//! primitive's rounding; whose a face is that several share is told as the other ways tell it.
+
+use crate::gpu::{
+    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
+    Pipeline, Resource, StencilTest,
+};
+use crate::shaders;
+use ash::vk;
+use std::ops::Range;
+
+/// Of layers and of what is found: a word of `visible.glsl`, and the depth.
+pub(crate) const LAYER_FORMAT: vk::Format = vk::Format::R32G32_UINT;
+/// Of the depth test among the faces of a layer.
+pub(crate) const LAYER_DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
+
+/// `constant_id` of `SOLIDS_HAVE_TORI`, and of `SOLIDS_HAVE_SHELLS`.
+const SOLIDS_HAVE_TORI: u32 = 5;
+const SOLIDS_HAVE_SHELLS: u32 = 13;
+
+const PARITY: u32 = 0x80;
+const LOCKED: u32 = 0x40;
+const LABEL: u32 = 0x3f;
+
+/// Which faces are peeled; bits as in `blister.glsl`.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Peel {
+    /// Where rays enter what adds and leave what is taken away.
+    pub entries: bool,
+    /// The reverse.
+    pub exits: bool,
+    /// What was found before locks no pixel: the search begins there.
+    pub unlocks: bool,
+}
+
+impl Peel {
+    fn bits(self) -> [u8; 4] {
+        (u32::from(self.entries) | u32::from(self.exits) << 1 | u32::from(self.unlocks) << 2).to_ne_bytes()
+    }
+}
+
+/// The pass.
+pub(crate) struct Blister {
+    peel: Pipeline,
+    within: Pipeline,
+    meshes: Option<Meshes>,
+    wait: Pipeline,
+    turn: Pipeline,
+    lock: Pipeline,
+    show: Show,
+}
+
+/// The same of meshes.
+struct Meshes {
+    peel: Pipeline,
+    within: Pipeline,
+}
+
+/// How the result gets among everything else.
+enum Show {
+    /// As it was found.
+    Found(Pipeline),
+    /// With its owner by the walk of pass `solid_events`.
+    Owned(Pipeline),
+}
+
+/// Its buffers.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub leaves: &'a Buffer,
+    pub leaf_surfaces: &'a Buffer,
+    pub surfaces: &'a Buffer,
+    /// Model axes, seen from the eye.
+    pub surface_centres: &'a Buffer,
+    pub rects: &'a Buffer,
+    /// Which leaf an instance draws.
+    pub order: &'a Buffer,
+    pub counters: &'a Buffer,
+    /// `None` without meshes.
+    pub meshes: Option<MeshBindings<'a>>,
+    /// Starts, leaves and entries of tiles; `None` with meshes, whose faces show as they are found.
+    pub tiles: Option<[&'a Buffer; 3]>,
+}
+
+/// Those of meshes.
+#[derive(Clone, Copy)]
+pub(crate) struct MeshBindings<'a> {
+    pub views: &'a Buffer,
+    pub meshes: &'a Buffer,
+    pub triangles: &'a Buffer,
+    pub positions: &'a Buffer,
+}
+
+/// What a layer is drawn into, and the one before.
+#[derive(Clone, Copy)]
+pub(crate) struct Layer<'a> {
+    pub before: &'a Image,
+    pub image: &'a Image,
+    pub found: &'a Image,
+}
+
+impl Blister {
+    /// `tori`: whether some surface is a torus; `meshes`: whether some operand is a mesh. `visibility` and `depth` are
+    /// the formats of what the result is shown in.
+    pub(crate) fn new(
+        device: &Device,
+        (tori, meshes): (bool, bool),
+        visibility: vk::Format,
+        depth: vk::Format,
+    ) -> Result<Self, GpuError> {
+        let constants = [(SOLIDS_HAVE_TORI, u32::from(tori)), (SOLIDS_HAVE_SHELLS, 0)];
+        let layer = [ColourTarget { format: LAYER_FORMAT, blend: Blend::Replace }];
+        let nearest = DepthTest { format: LAYER_DEPTH_FORMAT, compare: vk::CompareOp::LESS, write: true };
+        let marks = |pass| Some(StencilTest { format: device.stencil_format(), pass });
+        let bindings = |storage: usize, images: usize| {
+            let mut all = vec![Binding::Storage; storage + images];
+            all[storage..].fill(Binding::StorageImage);
+            all
+        };
+        let info = GraphicsInfo {
+            name: "blister",
+            stages: &[],
+            bindings: &[],
+            push_bytes: 0,
+            constants: &constants,
+            topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+            patch_points: 0,
+            cull: vk::CullModeFlags::NONE,
+            front: vk::FrontFace::COUNTER_CLOCKWISE,
+            colour: &[],
+            depth: None,
+            stencil: None,
+        };
+        let vertex = vk::ShaderStageFlags::VERTEX;
+        let fragment = vk::ShaderStageFlags::FRAGMENT;
+        let leaf = (vertex, shaders::SOLID_CST_VERT);
+        let triangle = (vertex, shaders::OPERAND_MESH_VERT);
+        let everywhere = (vertex, shaders::RESOLVE_VERT);
+        // bindings 8 and 9 are the vertex shader's: which leaf, and where
+        let mut of_peel = bindings(5, 2);
+        of_peel.extend([Binding::Storage; 3]);
+        let mut of_within = of_peel.clone();
+        of_within[6] = Binding::Storage;
+        let of_owner = bindings(12, 1);
+        Ok(Self {
+            peel: Pipeline::graphics(
+                device,
+                &GraphicsInfo {
+                    name: "blister peel",
+                    stages: &[leaf, (fragment, shaders::BLISTER_PEEL_FRAG)],
+                    bindings: &of_peel,
+                    push_bytes: 4,
+                    colour: &layer,
+                    depth: Some(nearest),
+                    ..info
+                },
+            )?,
+            within: Pipeline::graphics(
+                device,
+                &GraphicsInfo {
+                    name: "blister within",
+                    stages: &[leaf, (fragment, shaders::BLISTER_WITHIN_FRAG)],
+                    bindings: &of_within,
+                    stencil: marks(vk::StencilOp::REPLACE),
+                    ..info
+                },
+            )?,
+            meshes: meshes
+                .then(|| {
+                    Ok(Meshes {
+                        peel: Pipeline::graphics(
+                            device,
+                            &GraphicsInfo {
+                                name: "blister peel (meshes)",
+                                stages: &[triangle, (fragment, shaders::BLISTER_PEEL_MESH_FRAG)],
+                                bindings: &bindings(8, 2),
+                                push_bytes: 4,
+                                colour: &layer,
+                                depth: Some(nearest),
+                                ..info
+                            },
+                        )?,
+                        within: Pipeline::graphics(
+                            device,
+                            &GraphicsInfo {
+                                name: "blister within (meshes)",
+                                stages: &[triangle, (fragment, shaders::BLISTER_WITHIN_MESH_FRAG)],
+                                bindings: &bindings(8, 1),
+                                stencil: marks(vk::StencilOp::INVERT),
+                                ..info
+                            },
+                        )?,
+                    })
+                })
+                .transpose()?,
+            wait: Pipeline::graphics(
+                device,
+                &GraphicsInfo {
+                    name: "blister wait",
+                    stages: &[everywhere, (fragment, shaders::BLISTER_WAIT_FRAG)],
+                    bindings: &bindings(2, 1),
+                    push_bytes: 4,
+                    stencil: marks(vk::StencilOp::REPLACE),
+                    ..info
+                },
+            )?,
+            turn: Pipeline::graphics(
+                device,
+                &GraphicsInfo {
+                    name: "blister turn",
+                    stages: &[everywhere],
+                    stencil: marks(vk::StencilOp::INVERT),
+                    ..info
+                },
+            )?,
+            lock: Pipeline::graphics(
+                device,
+                &GraphicsInfo {
+                    name: "blister lock",
+                    stages: &[everywhere, (fragment, shaders::BLISTER_LOCK_FRAG)],
+                    bindings: &bindings(0, 1),
+                    colour: &layer,
+                    stencil: marks(vk::StencilOp::REPLACE),
+                    ..info
+                },
+            )?,
+            show: {
+                let shown = GraphicsInfo {
+                    colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
+                    depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
+                    ..info
+                };
+                if meshes {
+                    let stages = [everywhere, (fragment, shaders::BLISTER_SHOW_FRAG)];
+                    let of_show = bindings(1, 1);
+                    let found = GraphicsInfo { name: "blister show", stages: &stages, bindings: &of_show, ..shown };
+                    Show::Found(Pipeline::graphics(device, &found)?)
+                } else {
+                    let stages = [everywhere, (fragment, shaders::BLISTER_OWNER_FRAG)];
+                    let owned = GraphicsInfo { name: "blister owner", stages: &stages, bindings: &of_owner, ..shown };
+                    Show::Owned(Pipeline::graphics(device, &owned)?)
+                }
+            },
+        })
+    }
+
+    /// Draws leaves of `order` and meshes, `(corners, what of them)` each, into a layer that was cleared to nothing.
+    pub(crate) fn peel(
+        &self,
+        cmd: &Commands<'_>,
+        b: &Bindings<'_>,
+        (layer, image, depth): (Layer<'_>, Attachment<'_>, Attachment<'_>),
+        (leaves, peel): (Range<u32>, Peel),
+        meshes: &[(u32, Range<u32>, Peel)],
+    ) {
+        cmd.rendering(image.image.size(), &[image], Some(depth), || {
+            if !leaves.is_empty() {
+                let mut resources: Vec<Resource<'_>> =
+                    [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres].map(Into::into).to_vec();
+                resources.extend([Resource::from(layer.before), layer.found.into()]);
+                resources.extend([b.frame, b.rects, b.order].map(Resource::from));
+                cmd.bind(&self.peel, &resources, &peel.bits());
+                cmd.draw_instances(0..6, leaves);
+            }
+            let Some((pipelines, m)) = self.meshes.as_ref().zip(b.meshes) else { return };
+            let mut resources = b.of_meshes(m);
+            resources.extend([Resource::from(layer.before), layer.found.into()]);
+            for (n, (instance, corners, peel)) in meshes.iter().enumerate() {
+                if n == 0 {
+                    cmd.bind(&pipelines.peel, &resources, &peel.bits());
+                } else {
+                    cmd.push_constants(&pipelines.peel, &peel.bits());
+                }
+                cmd.draw_instances(corners.clone(), *instance..*instance + 1);
+            }
+        });
+    }
+
+    /// Within rendering to the stencil image: every pixel that is not locked begins at label 0. The layer is the
+    /// `nth`, 1 the first.
+    pub(crate) fn wait(&self, cmd: &Commands<'_>, b: &Bindings<'_>, layer: &Image, nth: u32) {
+        let resources = [b.frame.into(), b.counters.into(), layer.into()];
+        cmd.bind(&self.wait, &resources, &nth.to_ne_bytes());
+        cmd.stencil(0, LOCKED, PARITY | LABEL);
+        cmd.draw(3, 0, 1);
+    }
+
+    /// Pixels at label `name` whose point is within the leaf at `place` of the order get parity 1.
+    pub(crate) fn within(&self, cmd: &Commands<'_>, b: &Bindings<'_>, layer: &Image, place: u32, name: u32) {
+        let mut resources: Vec<Resource<'_>> =
+            [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres].map(Into::into).to_vec();
+        resources.push(layer.into());
+        resources.extend([b.frame, b.frame, b.rects, b.order].map(Resource::from));
+        cmd.bind(&self.within, &resources, &[]);
+        cmd.stencil(PARITY | name, LOCKED | LABEL, PARITY);
+        cmd.draw_instances(0..6, place..place + 1);
+    }
+
+    /// The same of meshes, one instance and its corners each.
+    pub(crate) fn within_meshes<'m>(
+        &self,
+        cmd: &Commands<'_>,
+        b: &Bindings<'_>,
+        layer: &Image,
+        meshes: impl Iterator<Item = &'m (u32, Range<u32>)>,
+        name: u32,
+    ) {
+        let Some((pipelines, m)) = self.meshes.as_ref().zip(b.meshes) else { return };
+        let mut resources = b.of_meshes(m);
+        resources.push(layer.into());
+        cmd.bind(&pipelines.within, &resources, &[]);
+        cmd.stencil(name, LOCKED | LABEL, PARITY);
+        for (instance, corners) in meshes {
+            cmd.draw_instances(corners.clone(), *instance..*instance + 1);
+        }
+    }
+
+    /// From label `name` to the next one.
+    pub(crate) fn turn(&self, cmd: &Commands<'_>, name: u32, within: u32, without: u32) {
+        cmd.bind(&self.turn, &[], &[]);
+        // first those without: they could not be told from pixels that go from `name` to `name` afterwards
+        for (parity, next) in [(0, without), (PARITY, within)] {
+            let changes = name ^ next | parity;
+            if changes != 0 {
+                cmd.stencil(parity | name, PARITY | LOCKED | LABEL, changes);
+                cmd.draw(3, 0, 1);
+            }
+        }
+    }
+
+    /// Within rendering to `found` and the stencil image: pixels that ended at label `end`.
+    pub(crate) fn lock(&self, cmd: &Commands<'_>, layer: &Image, end: u32) {
+        cmd.bind(&self.lock, &[layer.into()], &[]);
+        // locked ones stay at their label too, but the layer has nothing there
+        cmd.stencil(LOCKED | end, LABEL, LOCKED);
+        cmd.draw(3, 0, 1);
+    }
+
+    /// One triangle over the picture; what is there already stays where it is nearer.
+    pub(crate) fn show(
+        &self,
+        cmd: &Commands<'_>,
+        b: &Bindings<'_>,
+        found: &Image,
+        (visibility, depth): (Attachment<'_>, Attachment<'_>),
+    ) {
+        let (pipeline, resources): (_, Vec<Resource<'_>>) = match (&self.show, b.tiles) {
+            (Show::Owned(pipeline), Some(tiles)) => {
+                let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres];
+                // fragments, of which there are none
+                let buffers = solid.into_iter().chain(tiles).chain([b.frame; 3]).chain([b.counters]);
+                (pipeline, buffers.map(Resource::from).chain([found.into()]).collect())
+            }
+            (Show::Found(pipeline), _) => (pipeline, vec![b.frame.into(), found.into()]),
+            (Show::Owned(_), None) => unreachable!("tiles are made where there is no mesh"),
+        };
+        cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
+            cmd.bind(pipeline, &resources, &[]);
+            cmd.draw(3, 0, 1);
+        });
+    }
+}
+
+impl Bindings<'_> {
+    /// What the shaders of meshes read, but for the images.
+    fn of_meshes<'b>(&'b self, m: MeshBindings<'b>) -> Vec<Resource<'b>> {
+        let mesh = [m.views, m.meshes, m.triangles, m.positions];
+        let sides = [self.leaf_surfaces, self.surfaces, self.surface_centres];
+        [self.frame].into_iter().chain(mesh).chain(sides).map(Into::into).collect()
+    }
+}
