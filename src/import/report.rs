@@ -192,6 +192,7 @@ impl ImportReport {
     }
 
     /// The same for a face whose surface was made: its deviation is that from what it stands for.
+    #[cfg(feature = "scene")]
     pub(crate) fn record_made(
         &mut self,
         record: FaceRecord,
