@@ -134,7 +134,7 @@ impl Blister {
             all
         };
         let info = GraphicsInfo {
-            name: "blister",
+            name: "",
             stages: &[],
             bindings: &[],
             push_bytes: 0,
@@ -147,115 +147,52 @@ impl Blister {
             depth: None,
             stencil: None,
         };
-        let vertex = vk::ShaderStageFlags::VERTEX;
-        let fragment = vk::ShaderStageFlags::FRAGMENT;
-        let leaf = (vertex, shaders::SOLID_CST_VERT);
-        let triangle = (vertex, shaders::OPERAND_MESH_VERT);
-        let everywhere = (vertex, shaders::RESOLVE_VERT);
-        // bindings 8 and 9 are the vertex shader's: which leaf, and where
+        let make = |name: &str, vertex, fragment: Option<&'static [u32]>, of: GraphicsInfo<'_>| {
+            let fragment = fragment.map(|spirv| (vk::ShaderStageFlags::FRAGMENT, spirv));
+            let stages: Vec<_> = [(vk::ShaderStageFlags::VERTEX, vertex)].into_iter().chain(fragment).collect();
+            Pipeline::graphics(device, &GraphicsInfo { name: &format!("blister {name}"), stages: &stages, ..of })
+        };
+        let (leaf, triangle, everywhere) = (shaders::SOLID_CST_VERT, shaders::OPERAND_MESH_VERT, shaders::RESOLVE_VERT);
+        // a leaf's last bindings are the vertex shader's: where it is, and which one
         let mut of_peel = bindings(5, 2);
         of_peel.extend([Binding::Storage; 3]);
         let mut of_within = of_peel.clone();
         of_within[6] = Binding::Storage;
-        let of_owner = bindings(12, 1);
+        let peels = GraphicsInfo { push_bytes: 4, colour: &layer, depth: Some(nearest), ..info };
+        let replaces = GraphicsInfo { stencil: marks(vk::StencilOp::REPLACE), ..info };
+        let inverts = GraphicsInfo { stencil: marks(vk::StencilOp::INVERT), ..info };
+        let shown = GraphicsInfo {
+            colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
+            depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
+            ..info
+        };
+        let peel = |name, vertex, fragment, bindings: &[Binding]| {
+            make(name, vertex, Some(fragment), GraphicsInfo { bindings, ..peels })
+        };
+        let mesh_pipelines = |()| {
+            let of_within = GraphicsInfo { bindings: &bindings(8, 1), ..inverts };
+            Ok(Meshes {
+                peel: peel("peel (meshes)", triangle, shaders::BLISTER_PEEL_MESH_FRAG, &bindings(8, 2))?,
+                within: make("within (meshes)", triangle, Some(shaders::BLISTER_WITHIN_MESH_FRAG), of_within)?,
+            })
+        };
+        let of_within = GraphicsInfo { bindings: &of_within, ..replaces };
+        let of_wait = GraphicsInfo { bindings: &bindings(2, 1), push_bytes: 4, ..replaces };
+        let of_lock = GraphicsInfo { bindings: &bindings(0, 1), colour: &layer, ..replaces };
+        let (of_show, of_owner) = (bindings(1, 1), bindings(12, 1));
         Ok(Self {
-            peel: Pipeline::graphics(
-                device,
-                &GraphicsInfo {
-                    name: "blister peel",
-                    stages: &[leaf, (fragment, shaders::BLISTER_PEEL_FRAG)],
-                    bindings: &of_peel,
-                    push_bytes: 4,
-                    colour: &layer,
-                    depth: Some(nearest),
-                    ..info
-                },
-            )?,
-            within: Pipeline::graphics(
-                device,
-                &GraphicsInfo {
-                    name: "blister within",
-                    stages: &[leaf, (fragment, shaders::BLISTER_WITHIN_FRAG)],
-                    bindings: &of_within,
-                    stencil: marks(vk::StencilOp::REPLACE),
-                    ..info
-                },
-            )?,
-            meshes: meshes
-                .then(|| {
-                    Ok(Meshes {
-                        peel: Pipeline::graphics(
-                            device,
-                            &GraphicsInfo {
-                                name: "blister peel (meshes)",
-                                stages: &[triangle, (fragment, shaders::BLISTER_PEEL_MESH_FRAG)],
-                                bindings: &bindings(8, 2),
-                                push_bytes: 4,
-                                colour: &layer,
-                                depth: Some(nearest),
-                                ..info
-                            },
-                        )?,
-                        within: Pipeline::graphics(
-                            device,
-                            &GraphicsInfo {
-                                name: "blister within (meshes)",
-                                stages: &[triangle, (fragment, shaders::BLISTER_WITHIN_MESH_FRAG)],
-                                bindings: &bindings(8, 1),
-                                stencil: marks(vk::StencilOp::INVERT),
-                                ..info
-                            },
-                        )?,
-                    })
-                })
-                .transpose()?,
-            wait: Pipeline::graphics(
-                device,
-                &GraphicsInfo {
-                    name: "blister wait",
-                    stages: &[everywhere, (fragment, shaders::BLISTER_WAIT_FRAG)],
-                    bindings: &bindings(2, 1),
-                    push_bytes: 4,
-                    stencil: marks(vk::StencilOp::REPLACE),
-                    ..info
-                },
-            )?,
-            turn: Pipeline::graphics(
-                device,
-                &GraphicsInfo {
-                    name: "blister turn",
-                    stages: &[everywhere],
-                    stencil: marks(vk::StencilOp::INVERT),
-                    ..info
-                },
-            )?,
-            lock: Pipeline::graphics(
-                device,
-                &GraphicsInfo {
-                    name: "blister lock",
-                    stages: &[everywhere, (fragment, shaders::BLISTER_LOCK_FRAG)],
-                    bindings: &bindings(0, 1),
-                    colour: &layer,
-                    stencil: marks(vk::StencilOp::REPLACE),
-                    ..info
-                },
-            )?,
-            show: {
-                let shown = GraphicsInfo {
-                    colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
-                    depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
-                    ..info
-                };
-                if meshes {
-                    let stages = [everywhere, (fragment, shaders::BLISTER_SHOW_FRAG)];
-                    let of_show = bindings(1, 1);
-                    let found = GraphicsInfo { name: "blister show", stages: &stages, bindings: &of_show, ..shown };
-                    Show::Found(Pipeline::graphics(device, &found)?)
-                } else {
-                    let stages = [everywhere, (fragment, shaders::BLISTER_OWNER_FRAG)];
-                    let owned = GraphicsInfo { name: "blister owner", stages: &stages, bindings: &of_owner, ..shown };
-                    Show::Owned(Pipeline::graphics(device, &owned)?)
-                }
+            peel: peel("peel", leaf, shaders::BLISTER_PEEL_FRAG, &of_peel)?,
+            within: make("within", leaf, Some(shaders::BLISTER_WITHIN_FRAG), of_within)?,
+            meshes: meshes.then_some(()).map(mesh_pipelines).transpose()?,
+            wait: make("wait", everywhere, Some(shaders::BLISTER_WAIT_FRAG), of_wait)?,
+            turn: make("turn", everywhere, None, inverts)?,
+            lock: make("lock", everywhere, Some(shaders::BLISTER_LOCK_FRAG), of_lock)?,
+            show: if meshes {
+                let of_show = GraphicsInfo { bindings: &of_show, ..shown };
+                Show::Found(make("show", everywhere, Some(shaders::BLISTER_SHOW_FRAG), of_show)?)
+            } else {
+                let of_owner = GraphicsInfo { bindings: &of_owner, ..shown };
+                Show::Owned(make("owner", everywhere, Some(shaders::BLISTER_OWNER_FRAG), of_owner)?)
             },
         })
     }
@@ -271,8 +208,7 @@ impl Blister {
     ) {
         cmd.rendering(image.image.size(), &[image], Some(depth), || {
             if !leaves.is_empty() {
-                let mut resources: Vec<Resource<'_>> =
-                    [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres].map(Into::into).to_vec();
+                let mut resources: Vec<Resource<'_>> = b.of_leaves().map(Into::into).to_vec();
                 resources.extend([Resource::from(layer.before), layer.found.into()]);
                 resources.extend([b.frame, b.rects, b.order].map(Resource::from));
                 cmd.bind(&self.peel, &resources, &peel.bits());
@@ -303,8 +239,7 @@ impl Blister {
 
     /// Pixels at label `name` whose point is within the leaf at `place` of the order get parity 1.
     pub(crate) fn within(&self, cmd: &Commands<'_>, b: &Bindings<'_>, layer: &Image, place: u32, name: u32) {
-        let mut resources: Vec<Resource<'_>> =
-            [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres].map(Into::into).to_vec();
+        let mut resources: Vec<Resource<'_>> = b.of_leaves().map(Into::into).to_vec();
         resources.push(layer.into());
         resources.extend([b.frame, b.frame, b.rects, b.order].map(Resource::from));
         cmd.bind(&self.within, &resources, &[]);
@@ -362,9 +297,8 @@ impl Blister {
     ) {
         let (pipeline, resources): (_, Vec<Resource<'_>>) = match (&self.show, b.tiles) {
             (Show::Owned(pipeline), Some(tiles)) => {
-                let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres];
                 // fragments, of which there are none
-                let buffers = solid.into_iter().chain(tiles).chain([b.frame; 3]).chain([b.counters]);
+                let buffers = b.of_leaves().into_iter().chain(tiles).chain([b.frame; 3]).chain([b.counters]);
                 (pipeline, buffers.map(Resource::from).chain([found.into()]).collect())
             }
             (Show::Found(pipeline), _) => (pipeline, vec![b.frame.into(), found.into()]),
@@ -378,6 +312,11 @@ impl Blister {
 }
 
 impl Bindings<'_> {
+    /// What the shaders of leaves read first.
+    fn of_leaves(&self) -> [&Buffer; 5] {
+        [self.frame, self.leaves, self.leaf_surfaces, self.surfaces, self.surface_centres]
+    }
+
     /// What the shaders of meshes read, but for the images.
     fn of_meshes<'b>(&'b self, m: MeshBindings<'b>) -> Vec<Resource<'b>> {
         let mesh = [m.views, m.meshes, m.triangles, m.positions];
