@@ -100,16 +100,18 @@ impl Blister {
         let cover = covering_set(&positive, |p| weight(&primitives[p as usize]));
         let covering: Vec<u32> = cover.iter().flatten().map(|&p| leaf(p, false)).collect();
         order.extend(covering.iter().filter(|&&i| !has(i, LEAF_SHELL)));
+        // of each operand: whether a leaf adds it, one takes it away, one covers
+        let mut roles = vec![[false; 3]; data.shell_leaves.len()];
+        let shells = |i: &u32| has(*i, LEAF_SHELL);
+        for i in (0..leaves.len() as u32).filter(shells) {
+            roles[leaves[i as usize].first as usize][usize::from(has(i, LEAF_NEGATIVE))] = true;
+        }
+        for &i in covering.iter().filter(|i| shells(i)) {
+            roles[leaves[i as usize].first as usize][2] = true;
+        }
         let meshes = data.operand_meshes.iter().zip(&data.operand_draws).map(|(mesh, corners)| {
-            let mine = |i: u32| has(i, LEAF_SHELL) && leaves[i as usize].first == mesh.shell;
-            let signed = |negative| (0..leaves.len() as u32).any(|i| mine(i) && has(i, LEAF_NEGATIVE) == negative);
-            PeeledMesh {
-                shell: mesh.shell,
-                corners: corners.clone(),
-                adds: signed(false),
-                takes_away: signed(true),
-                covers: covering.iter().any(|&i| mine(i)),
-            }
+            let [adds, takes_away, covers] = roles[mesh.shell as usize];
+            PeeledMesh { shell: mesh.shell, corners: corners.clone(), adds, takes_away, covers }
         });
         let meshes = meshes.collect();
         let boxed = (0..data.leaves.len() as u32).all(|i| !has(i, LEAF_UNBOUNDED));
