@@ -42,6 +42,8 @@ pub(crate) struct Counts {
     pub thickness: bool,
     /// Instances drawn opaque because they are not closed.
     pub open: u32,
+    /// What casts no shadow in a scene with a sun.
+    pub shadowless: u32,
 }
 
 impl Counts {
@@ -65,6 +67,7 @@ impl Counts {
             is_followed: data.solids.is_followed(),
             thickness: data.thickness,
             open: count(data.open),
+            shadowless: count(data.shadowless),
         }
     }
 

@@ -47,6 +47,7 @@ mod resolved;
 mod rival;
 mod samples;
 mod solids;
+mod sun;
 mod table;
 mod trim;
 
@@ -120,6 +121,8 @@ pub(crate) struct Frame<'a> {
     pub layers: u32,
     /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.
     pub volume_centres: Option<&'a Buffer>,
+    /// Where the sun is, in a scene that has one.
+    pub sun: Option<&'a Buffer>,
     pub counters: &'a ReadBack,
     pub colour: &'a [Attachment<'a>],
     pub depth: Option<Attachment<'a>>,

@@ -1,6 +1,7 @@
 //! What a frame is asked for and what it hands back: settings, images, statistics.
 
 use crate::model::Colour;
+use glam::DVec3;
 use serde::Serialize;
 
 /// What the caller decides about a frame.
@@ -262,6 +263,14 @@ pub struct SceneSettings {
     pub thickness: bool,
     /// Mark contacts and overlaps, and count their pixels: rays are followed through all solids.
     pub highlight: Option<Highlight>,
+    /// Where the key light comes from: a direction from the model towards it, in model axes, of any length but 0; `None`
+    /// for a studio's light, which travels with the camera and casts no shadows.
+    ///
+    /// It is parallel, and reaches a point where no opaque Boolean solid lies on the way, exactly: every face of the scene
+    /// is shaded. Shadows are cast by primitives with equations. What else the scene has casts none, and is counted in
+    /// [`FrameStats::shadowless`]: placed parts, what is seen through, and operands that are meshes or spline parts; such an
+    /// operand is left out of the solid that casts the shadow.
+    pub sun: Option<DVec3>,
 }
 
 /// Images wanted beside the colour.
@@ -299,6 +308,9 @@ pub struct Picture {
     pub uv: Vec<[f32; 2]>,
     /// Unit outward normal in model space; 0 for background.
     pub normal: Vec<[f32; 3]>,
+    /// Whether the sun reaches the point: it faces the sun, and no shadow lies on it. Asked for with the normals; empty in
+    /// scenes without [`SceneSettings::sun`]; false for background.
+    pub sunlit: Vec<bool>,
     /// Length of the pixel's ray within solids, between the near and the far plane: Boolean solids and closed parts,
     /// model units, where several overlap counted once; 0 without any.
     pub thickness: Vec<f32>,
@@ -347,6 +359,9 @@ pub struct FrameStats {
     /// Instances with faces that would be seen through, but are not closed, or cut open by a volume: they have no inside,
     /// and are drawn opaque.
     pub open_clear: u64,
+    /// In a scene with a sun: placed parts, solids that are seen through, and operands of Boolean solids that are meshes or
+    /// spline parts. They cast no shadow.
+    pub shadowless: u64,
     /// Layers of faces that [`SolidWay::Blister`] peeled off before every pixel was decided.
     pub layers: u64,
     /// Times the frame was recorded again because a buffer was too small.

@@ -90,6 +90,9 @@ pub enum RenderError {
     /// A Boolean solid that cannot be drawn.
     #[error(transparent)]
     Solid(#[from] UndrawnSolid),
+    /// [`SceneSettings::sun`] has no length, or no numbers.
+    #[error("the direction towards the sun must be finite and not 0, not {0}")]
+    Sun(glam::DVec3),
     /// A target of another size than the camera's.
     #[error("the target `{name}` is {width} x {height}, the camera's picture another size")]
     TargetSize {
@@ -145,7 +148,8 @@ enum Retired {
 const LEAST_TOLERANCE_PX: f64 = 0.125;
 
 impl Renderer {
-    /// Formats of the images of depth, face, (u, v) and normal.
+    /// Formats of the images of depth, face, (u, v) and normal. The fourth component of a normal is 1, but 0 for background
+    /// and where [`SceneSettings::sun`] does not reach.
     pub const AOV_FORMATS: [vk::Format; 4] = resolve::AOV_FORMATS;
     /// Format of the image of thickness.
     pub const THICKNESS_FORMAT: vk::Format = solid_layers::THICKNESS_FORMAT;
@@ -184,6 +188,9 @@ impl Renderer {
     /// # Errors
     /// As [`upload`](Self::upload).
     pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), RenderError> {
+        if let Some(towards) = settings.sun.filter(|s| !s.is_finite() || *s == glam::DVec3::ZERO) {
+            return Err(RenderError::Sun(towards));
+        }
         let data = SceneData::new(model, settings)?;
         let counts = Counts::of(&data);
         counts.check()?;
@@ -323,6 +330,7 @@ impl Renderer {
             near,
             layers: loaded.capacities.layers,
             volume_centres: slot.centres.volume(),
+            sun: slot.centres.sun(),
             counters: &slot.counters,
             colour: &colour,
             depth,
@@ -364,6 +372,7 @@ impl Renderer {
             contact_pixels: u64::from(c.contacts),
             overlap_pixels: u64::from(c.overlaps),
             open_clear: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.open)),
+            shadowless: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.shadowless)),
             layers: u64::from(c.layers),
             retries: 0,
             edit_bytes: slot.edit_bytes,

@@ -46,6 +46,9 @@ pub struct Within {
 /// Storage buffers of the volume; they follow all others of a pass.
 pub const VOLUME_BUFFERS: usize = 4;
 
+/// Storage buffers of the sun: `glsl/include/sun.glsl`; they follow all others of a pass.
+pub const SUN_BUFFERS: usize = 8;
+
 /// The u-intercept table.
 pub static TRIM_TABLE: TrimTest = TrimTest {
     way: "table",

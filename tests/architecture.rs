@@ -52,6 +52,7 @@ const BARRIERS: &[&str] = &[
     "src/frame/rival.rs",
     "src/frame/samples.rs",
     "src/frame/solids.rs",
+    "src/frame/sun.rs",
     "src/frame/table.rs",
     "src/passes/scan.rs",
 ];

@@ -5,6 +5,13 @@
 #include "eye_ray.glsl"
 #include "shade.glsl"
 
+// Of points that lie on no surface of a Boolean solid, as far as is known.
+const uint NO_SURFACE = 0xffffffffu;
+
+#ifdef SUN_BINDING
+#include "sun.glsl"
+#endif
+
 layout(constant_id = 3) const bool HAS_AOVS = false;
 
 // What pass `solid_layers` looks through to: the colour is linear and has the depth beside it.
@@ -31,18 +38,38 @@ void write_nothing() {
     gl_FragDepth = 0.0;
 }
 
-// A point of a surface with its unit outward normal `n`, in model space. `own` is the surface's colour,
-// which the instance's overrides.
-void write_surface(uint own, Instance instance, vec3 n, bool solid, float depth, uint id, vec2 uv) {
+// The light of a point, and whether the sun is part of it.
+struct Lit {
+    vec3 light;
+    float sun;
+};
+
+// Of a point at a depth of the pixel's ray, with its unit outward normal `n`, in model space; `surface` is the number of
+// the Boolean solids' surface that it lies on, or NO_SURFACE.
+Lit lit_at(vec3 colour, vec3 n, bool two_sided, Ray ray, float depth, uint surface) {
+#ifdef SUN_BINDING
+    vec3 seen = two_sided && dot(n, ray.d) > 0.0 ? -n : n;
+    bool reached = in_sun(ray, depth, seen, surface);
+    return Lit(shade_in_sun(colour, seen, frame, sun.towards, reached), reached ? 1.0 : 0.0);
+#else
+    return Lit(shade(colour, n, frame, two_sided, ray.d), 1.0);
+#endif
+}
+
+// A point of a surface, as for `lit_at`. `own` is the surface's colour, which the instance's overrides.
+void write_surface(
+    uint own, Instance instance, vec3 n, bool solid, float depth, uint id, vec2 uv, uint surface
+) {
     vec4 placed = unpackUnorm4x8(instance.colour);
     vec4 colour = placed.a > 0.0 ? placed : unpackUnorm4x8(own);
-    vec3 lit = shade(colour.rgb, n, frame, !solid, eye_ray(frame, gl_FragCoord.xy).d);
+    Lit at = lit_at(colour.rgb, n, !solid, eye_ray(frame, gl_FragCoord.xy), depth, surface);
+    vec3 lit = at.light;
     out_colour = BEHIND ? vec4(clamp(lit, 0.0, 1.0), depth) : encode(vec4(lit, 1.0), frame.encode_srgb);
     if (HAS_AOVS) {
         out_depth = depth;
         out_face = id;
         out_uv = uv;
-        out_normal = vec4(n, 1.0);
+        out_normal = vec4(n, at.sun);
     }
     gl_FragDepth = reversed_depth(frame, depth) / (frame.perspective != 0u ? depth : 1.0);
 }

@@ -33,7 +33,8 @@ void write_patch(uvec2 seen, bool operand) {
     if (flip) n = -n;
     vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
     bool solid = (face.flags & FACE_SOLID) != 0u;
-    write_surface(face.colour, instance, n, solid, s.q.z, face.id, face.domain.xy + at * face.domain.zw);
+    vec2 own = face.domain.xy + at * face.domain.zw;
+    write_surface(face.colour, instance, n, solid, s.q.z, face.id, own, NO_SURFACE);
 }
 
 #endif

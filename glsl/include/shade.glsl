@@ -12,16 +12,34 @@ const float FLOOR_STRENGTH = 0.12;
 const float GLOSS = 0.10;      // strength of the highlight
 const float SHININESS = 48.0;
 
+vec3 in_view(Frame frame, vec3 v) { return vec3(dot(frame.right, v), dot(frame.up, v), -dot(frame.forward, v)); }
+
+// What the key light's cosines make of a surface with normal `v` in view space, beside the lights that are always there.
+vec3 studio(vec3 colour, vec3 v, float key, float shine) {
+    float fill = max(dot(v, FILL), 0.0);
+    float sky = mix(FLOOR_STRENGTH, SKY_STRENGTH, 0.5 + 0.5 * v.y);
+    float highlight = pow(shine, SHININESS) * GLOSS;
+    return colour * (KEY_STRENGTH * key + FILL_STRENGTH * fill + sky) + highlight;
+}
+
 // `ray` runs from the eye to the point: in a perspective view it, not the view's axis, tells which side of a
 // surface without an inside is seen.
 vec3 shade(vec3 colour, vec3 n, Frame frame, bool two_sided, vec3 ray) {
     if (two_sided && dot(n, ray) > 0.0) n = -n;
-    vec3 v = vec3(dot(frame.right, n), dot(frame.up, n), -dot(frame.forward, n));
-    float key = max(dot(v, KEY), 0.0);
-    float fill = max(dot(v, FILL), 0.0);
-    float sky = mix(FLOOR_STRENGTH, SKY_STRENGTH, 0.5 + 0.5 * v.y);
-    float highlight = pow(max(dot(v, normalize(KEY + vec3(0.0, 0.0, 1.0))), 0.0), SHININESS) * GLOSS;
-    return colour * (KEY_STRENGTH * key + FILL_STRENGTH * fill + sky) + highlight;
+    vec3 v = in_view(frame, n);
+    float shine = max(dot(v, normalize(KEY + vec3(0.0, 0.0, 1.0))), 0.0);
+    return studio(colour, v, max(dot(v, KEY), 0.0), shine);
+}
+
+// The same where the key light is a sun, which stays where it is in the model: `towards` it, in model space and of unit
+// length. `n` looks to the side that is seen.
+vec3 shade_in_sun(vec3 colour, vec3 n, Frame frame, vec3 towards, bool reached) {
+    vec3 v = in_view(frame, n);
+    if (!reached) return studio(colour, v, 0.0, 0.0);
+    vec3 half_way = in_view(frame, towards) + vec3(0.0, 0.0, 1.0);
+    float size = length(half_way);
+    float shine = size > 0.0 ? max(dot(v, half_way / size), 0.0) : 0.0;
+    return studio(colour, v, max(dot(n, towards), 0.0), shine);
 }
 
 vec4 encode(vec4 linear, uint srgb) {

@@ -1,5 +1,5 @@
 //! The structures that Rust and GLSL share, in scalar layout. Twins of `glsl/include/scene.glsl`,
-//! `view.glsl`, `exact.glsl`, `solids.glsl` and `tiles.glsl`; the build asserts every offset and stride against the compiled shaders.
+//! `view.glsl`, `exact.glsl`, `solids.glsl`, `tiles.glsl` and `sun.glsl`; the build asserts every offset and stride against the compiled shaders.
 
 // Fields carry their meaning and units in the GLSL, which the build holds them against.
 #![allow(missing_docs)]
@@ -9,11 +9,13 @@ mod frame;
 mod scan;
 mod scene;
 mod solids;
+mod sun;
 
 pub use exact::*;
 pub use frame::*;
 pub use scan::ScanParams;
 pub use scene::*;
 pub use solids::*;
+pub use sun::*;
 
 include!(concat!(env!("OUT_DIR"), "/spirv/layout.rs"));

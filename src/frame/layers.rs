@@ -43,6 +43,7 @@ impl LayerPasses {
             patches: data.has_operands,
             rational: data.has_rational,
             marks: data.highlight.map(|h| [h.contact, h.overlap]),
+            sun: data.sun.is_some(),
         };
         let make = |purpose| SolidLayers::new(device, purpose, formats.depth, kinds);
         let colour = match data.samples {
@@ -101,6 +102,7 @@ impl<'a> Frame<'a> {
             items: &s.items,
             points: &s.points,
             instances: &s.instances,
+            sun: self.sun_bindings(),
         };
         let (w, _) = WRITE_TO_READ;
         barrier::images(cmd, &[(behind, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);

@@ -13,6 +13,7 @@ pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
         meshes: data.has_meshes(),
         solids: data.solids.kinds(),
         operands: data.has_operands,
+        sun: data.sun.is_some(),
     }
 }
 
@@ -66,6 +67,7 @@ impl Frame<'_> {
             others: b.others.as_ref().unwrap_or(&b.visibility),
         });
         let solids = self.solids().map(|parts| parts.resolve(self));
-        pass.record(cmd, &bindings, meshes.as_ref(), solids.as_ref(), &self.resolved_into(), self.depth);
+        let kinds = (meshes.as_ref(), solids.as_ref());
+        self.under_sun(cmd, |sun| pass.record(cmd, &bindings, kinds, sun, &self.resolved_into(), self.depth));
     }
 }

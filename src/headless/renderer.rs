@@ -217,13 +217,16 @@ impl HeadlessRenderer {
         fn values<T: Pod>(read: Option<&ReadBack>, wanted: bool, count: usize) -> Vec<T> {
             read.filter(|_| wanted).map_or_else(Vec::new, |r| r.values(count))
         }
+        let normals: Vec<[f32; 4]> = values(aov(3), outputs.normal, count);
+        let has_sun = self.model.as_ref().is_some_and(|(_, settings)| settings.sun.is_some());
         Picture {
             size,
             colour: images.colour.1.values(count),
             depth: values(aov(0), outputs.depth, count),
             face: values(aov(1), outputs.face, count),
             uv: values(aov(2), outputs.uv, count),
-            normal: values::<[f32; 4]>(aov(3), outputs.normal, count).iter().map(|n| [n[0], n[1], n[2]]).collect(),
+            normal: normals.iter().map(|n| [n[0], n[1], n[2]]).collect(),
+            sunlit: if has_sun { normals.iter().map(|n| n[3] > 0.0).collect() } else { Vec::new() },
             thickness: values(images.thickness.as_ref().map(|t| &t.1), outputs.thickness, count),
             stats,
         }

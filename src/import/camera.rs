@@ -65,6 +65,8 @@ pub struct PictureSettings {
     pub camera: Option<usize>,
     /// Colour behind the model.
     pub background: Option<Colour>,
+    /// From the model towards the sun; see [`SceneSettings::sun`](crate::picture::SceneSettings::sun).
+    pub sun: Option<DVec3>,
 }
 
 impl NamedCamera {

@@ -4,7 +4,7 @@
 //!   item, (u, v) of the triangle ──Newton──▶ (u, v) whose exact point projects to the pixel's centre
 //!   triangle of a mesh ──plane──▶   │
 //!   side of a Boolean solid ─────▶  │        a pipeline for each kind of thing: each leaves the others'
-//!   nothing ──background────────▶   │        pixels alone
+//!   nothing ──background────────▶   │        pixels alone; in a scene with a sun each asks what lies between
 //!                                   ├──▶ colour, depth into the host's targets
 //!                                   └──▶ depth, face, (u, v), normal images, when asked for
 //! ```
@@ -13,9 +13,9 @@
 
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
-    Pipeline, Texels,
+    Pipeline, Resource, Texels,
 };
-use crate::shaders;
+use crate::shaders::{self, SUN_BUFFERS};
 use ash::vk;
 
 /// Formats of the images of depth, face, (u, v) and normal.
@@ -57,7 +57,31 @@ pub(crate) struct Kinds {
     pub solids: Option<bool>,
     /// Patches bound operands of Boolean solids.
     pub operands: bool,
+    /// The key light is a sun.
+    pub sun: bool,
 }
+
+/// The shaders of one scene.
+struct Shaders {
+    patches: &'static [u32],
+    meshes: &'static [u32],
+    solids: &'static [u32],
+    operands: &'static [u32],
+}
+
+const STUDIO: Shaders = Shaders {
+    patches: shaders::RESOLVE_FRAG,
+    meshes: shaders::RESOLVE_MESH_FRAG,
+    solids: shaders::RESOLVE_SOLID_FRAG,
+    operands: shaders::RESOLVE_OPERAND_FRAG,
+};
+
+const UNDER_SUN: Shaders = Shaders {
+    patches: shaders::RESOLVE_SUN_FRAG,
+    meshes: shaders::RESOLVE_MESH_SUN_FRAG,
+    solids: shaders::RESOLVE_SOLID_SUN_FRAG,
+    operands: shaders::RESOLVE_OPERAND_SUN_FRAG,
+};
 
 /// Formats that the host draws into.
 #[derive(Clone, Copy)]
@@ -141,21 +165,29 @@ impl Resolve {
         if formats.aovs {
             colour.extend(AOV_FORMATS.map(|format| ColourTarget { format, blend: Blend::Replace }));
         }
+        let (of, in_sun) = if kinds.sun { (UNDER_SUN, ", sun") } else { (STUDIO, "") };
+        let aovs = (HAS_AOVS, u32::from(formats.aovs));
+        let behind = (BEHIND, u32::from(matches!(into, Destination::Behind { .. })));
         let mut bindings = [Binding::Storage; 10];
         bindings[6] = Binding::Texels;
         bindings[8..].fill(Binding::StorageImage);
         let pipeline = |name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
+            // torus or not: where a sun casts shadows, and of solids in any case
+            let tori = (SOLIDS_HAVE_TORI, u32::from(kinds.solids == Some(true)));
+            let constants: Vec<_> = constants.iter().copied().chain([aovs, behind, tori]).collect();
+            let sun = if kinds.sun { SUN_BUFFERS } else { 0 };
+            let bindings: Vec<_> = bindings.iter().copied().chain([Binding::Storage].repeat(sun)).collect();
             Pipeline::graphics(
                 device,
                 &GraphicsInfo {
-                    name: &format!("resolve ({name}{of_samples})"),
+                    name: &format!("resolve ({name}{of_samples}{in_sun})"),
                     stages: &[
                         (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
                         (vk::ShaderStageFlags::FRAGMENT, fragment),
                     ],
-                    bindings,
+                    bindings: &bindings,
                     push_bytes: 0,
-                    constants,
+                    constants: &constants,
                     topology: vk::PrimitiveTopology::TRIANGLE_LIST,
                     patch_points: 0,
                     cull: vk::CullModeFlags::NONE,
@@ -170,72 +202,57 @@ impl Resolve {
                 },
             )
         };
-        let aovs = (HAS_AOVS, u32::from(formats.aovs));
-        let behind = (BEHIND, u32::from(matches!(into, Destination::Behind { .. })));
         let mut of_mesh = [Binding::Storage; 10];
         of_mesh[8..].fill(Binding::StorageImage);
-        let mesh = |()| pipeline("mesh", shaders::RESOLVE_MESH_FRAG, &of_mesh, &[aovs, behind]);
+        let mesh = |()| pipeline("mesh", of.meshes, &of_mesh, &[]);
         let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
         let mut of_solid = [Binding::Storage; 7];
         of_solid[5..].fill(Binding::StorageImage);
-        let solid = |tori: bool| {
-            let constants = [aovs, behind, (SOLIDS_HAVE_TORI, u32::from(tori))];
-            pipeline("solid", shaders::RESOLVE_SOLID_FRAG, &of_solid, &constants)
-        };
+        let solid = |_| pipeline("solid", of.solids, &of_solid, &[]);
         let solids = kinds.solids.map(solid).transpose()?;
         let mut of_operand = [Binding::Storage; 11];
         of_operand[6] = Binding::Texels;
         of_operand[8..10].fill(Binding::StorageImage);
-        let operand = |()| {
-            let constants = [aovs, behind, (SCENE_HAS_RATIONAL, u32::from(kinds.rational))];
-            pipeline("operand", shaders::RESOLVE_OPERAND_FRAG, &of_operand, &constants)
-        };
+        let rational = (SCENE_HAS_RATIONAL, u32::from(kinds.rational));
+        let operand = |()| pipeline("operand", of.operands, &of_operand, &[rational]);
         let operands = kinds.operands.then_some(()).map(operand).transpose()?;
         let weights = if kinds.rational { "rational" } else { "polynomial" };
-        let constants = [
-            (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
-            aovs,
-            behind,
-            (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some())),
-        ];
-        Ok(Self { patches: pipeline(weights, shaders::RESOLVE_FRAG, &bindings, &constants)?, meshes, solids, operands })
+        let constants = [rational, (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some()))];
+        Ok(Self { patches: pipeline(weights, of.patches, &bindings, &constants)?, meshes, solids, operands })
     }
 
-    /// One triangle over the targets for each kind of thing.
+    /// One triangle over the targets for each kind of thing; `sun`: what [`Kinds::sun`] asks for.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
-        meshes: Option<&MeshBindings<'_>>,
-        solids: Option<&SolidBindings<'_>>,
+        (meshes, solids): (Option<&MeshBindings<'_>>, Option<&SolidBindings<'_>>),
+        sun: Option<&[&Buffer; SUN_BUFFERS]>,
         colour: &[Attachment<'_>],
         depth: Option<Attachment<'_>>,
     ) {
         let size = b.visibility.size();
+        let bind = |pipeline: &Pipeline, resources: Vec<Resource<'_>>| {
+            let sun = sun.into_iter().flatten().map(|buffer| (*buffer).into());
+            cmd.bind(pipeline, &resources.into_iter().chain(sun).collect::<Vec<_>>(), &[]);
+            cmd.draw(3, 0, 1);
+        };
         cmd.rendering(size, colour, depth, || {
             let buffers = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items].map(Into::into);
             let rest = [b.points.into(), b.instances.into(), b.visibility.into()];
-            let resources: Vec<_> = buffers.into_iter().chain(rest).chain([b.others.into()]).collect();
-            cmd.bind(&self.patches, &resources, &[]);
-            cmd.draw(3, 0, 1);
+            bind(&self.patches, buffers.into_iter().chain(rest).chain([b.others.into()]).collect());
             if let (Some(pipeline), Some(m)) = (&self.meshes, meshes) {
                 let placed = [m.frame, m.views, m.instances, m.mesh_instances, m.meshes].map(Into::into);
                 let shape = [m.triangles, m.positions, m.normals].map(Into::into);
-                let resources: Vec<_> =
-                    placed.into_iter().chain(shape).chain([m.visibility.into(), m.others.into()]).collect();
-                cmd.bind(pipeline, &resources, &[]);
-                cmd.draw(3, 0, 1);
+                let images = [m.visibility.into(), m.others.into()];
+                bind(pipeline, placed.into_iter().chain(shape).chain(images).collect());
             }
             if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
                 let solid = [s.frame, s.leaves, s.leaf_surfaces, s.surfaces, s.surface_centres].map(Into::into);
-                let resources: Vec<_> = solid.into_iter().chain([s.visibility.into(), s.others.into()]).collect();
-                cmd.bind(pipeline, &resources, &[]);
-                cmd.draw(3, 0, 1);
+                bind(pipeline, solid.into_iter().chain([s.visibility.into(), s.others.into()]).collect());
                 if let (Some(pipeline), Some(fragments)) = (&self.operands, s.fragments) {
-                    let resources: Vec<_> =
-                        buffers.into_iter().chain(rest).chain([s.others.into(), fragments.into()]).collect();
-                    cmd.bind(pipeline, &resources, &[]);
-                    cmd.draw(3, 0, 1);
+                    let images = [s.others.into(), fragments.into()];
+                    bind(pipeline, buffers.into_iter().chain(rest).chain(images).collect());
                 }
             }
         });

@@ -14,7 +14,7 @@ use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
     Pipeline, Texels,
 };
-use crate::shaders;
+use crate::shaders::{self, SUN_BUFFERS};
 use ash::vk;
 
 /// `constant_id` of `SCENE_HAS_RATIONAL`.
@@ -62,12 +62,15 @@ pub(crate) struct Kinds {
     pub rational: bool,
     /// Linear colour and opacity of contacts and overlaps, where they are wanted.
     pub marks: Option<[[f32; 4]; 2]>,
+    /// The key light is a sun.
+    pub sun: bool,
 }
 
 /// The pass.
 pub(crate) struct SolidLayers {
     pipeline: Pipeline,
     marks: [[f32; 4]; 2],
+    sun: bool,
 }
 
 /// Its buffers and image, in binding order.
@@ -92,6 +95,8 @@ pub(crate) struct Bindings<'a> {
     pub items: &'a Buffer,
     pub points: &'a Texels,
     pub instances: &'a Buffer,
+    /// What [`Kinds::sun`] asks for.
+    pub sun: Option<[&'a Buffer; SUN_BUFFERS]>,
 }
 
 impl SolidLayers {
@@ -112,7 +117,9 @@ impl SolidLayers {
             }
             For::Thickness => (2, "thickness", vec![target(THICKNESS_FORMAT, Blend::Replace)]),
         };
-        let mut bindings = [Binding::Storage; 20];
+        // lengths within solids are in no light
+        let sun = kinds.sun && number != 2;
+        let mut bindings = vec![Binding::Storage; 20 + if sun { SUN_BUFFERS } else { 0 }];
         bindings[12] = Binding::StorageImage;
         bindings[18] = Binding::Texels;
         let marks = kinds.marks.filter(|_| number == 0);
@@ -123,7 +130,10 @@ impl SolidLayers {
                 name: &format!("solid layers ({name})"),
                 stages: &[
                     (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
-                    (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_LAYERS_FRAG),
+                    (
+                        vk::ShaderStageFlags::FRAGMENT,
+                        if sun { shaders::SOLID_LAYERS_SUN_FRAG } else { shaders::SOLID_LAYERS_FRAG },
+                    ),
                 ],
                 bindings: &bindings,
                 push_bytes: size_of::<[[f32; 4]; 2]>() as u32,
@@ -149,7 +159,7 @@ impl SolidLayers {
                 stencil: None,
             },
         )?;
-        Ok(Self { pipeline, marks: marks.unwrap_or_default() })
+        Ok(Self { pipeline, marks: marks.unwrap_or_default(), sun })
     }
 
     /// One triangle over the targets.
@@ -173,6 +183,7 @@ impl SolidLayers {
             .chain([b.behind.into()])
             .chain(placed.into_iter().map(Into::into))
             .chain([b.points.into(), b.instances.into()])
+            .chain(b.sun.filter(|_| self.sun).into_iter().flatten().map(Into::into))
             .collect();
         cmd.rendering(b.behind.size(), colour, depth, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&self.marks));

@@ -17,7 +17,7 @@
 //! is 0: hits are those, and what is opaque. Faces and meshes of a model that a volume trims are met within it, and nearer to
 //! its boundary than [`ON`].
 //!
-//! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`].
+//! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`]; [`SunTracer`] and [`judge_sun`] do so for the light.
 
 mod bvh;
 pub mod csg;
@@ -27,11 +27,13 @@ mod leaf;
 mod net;
 mod probe;
 mod solver;
+mod sun;
 #[cfg(test)]
 mod tests;
 
 pub use judge::{Bin, Class, DepthErrors, Errors, Folds, GRAZING_COSINE, JudgeOptions, Judgement, Mismatch, judge};
 pub use probe::Probe;
+pub use sun::{SunJudgement, SunTracer, judge_sun};
 
 use crate::model::{Bounds, Camera, Items, Model, SurfaceTable};
 use crate::picture::Picture;

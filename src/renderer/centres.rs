@@ -1,6 +1,7 @@
 //! Where surfaces of solids are, seen from a frame's eye: what changes with the camera and stays in `f64`.
 
 use super::slot::upload_buffer;
+use crate::abi;
 use crate::frame::Centres;
 use crate::gpu::{Buffer, Device, GpuError};
 use crate::model::Camera;
@@ -14,6 +15,8 @@ pub(super) struct SlotCentres {
     surfaces: Option<Buffer>,
     /// Surfaces of the volume that trims the scene.
     volume: Option<Buffer>,
+    /// The sun, and where its picture has the eye.
+    sun: Option<Buffer>,
 }
 
 impl SlotCentres {
@@ -46,6 +49,15 @@ impl SlotCentres {
             let seen: Vec<[f32; 3]> = list.iter().map(|c| (*c - camera.eye).as_vec3().to_array()).collect();
             place.iter_mut().for_each(|buffer| buffer.write(0, &seen));
         }
+        match &data.sun {
+            None => gone.extend(self.sun.take()),
+            Some(sun) => {
+                if self.sun.is_none() {
+                    self.sun = Some(upload_buffer(device, "sun", size_of::<abi::Sun>() as u64)?);
+                }
+                self.sun.iter_mut().for_each(|buffer| buffer.write(0, &[sun.seen_from(camera.eye)]));
+            }
+        }
         Ok(gone.into_iter())
     }
 
@@ -53,6 +65,10 @@ impl SlotCentres {
     pub(super) fn solids(&self) -> Option<Centres<'_>> {
         let (leaves, surfaces) = (self.leaves.as_ref()?, self.surfaces.as_ref()?);
         Some(Centres { leaves, surfaces })
+    }
+
+    pub(super) fn sun(&self) -> Option<&Buffer> {
+        self.sun.as_ref()
     }
 
     pub(super) fn volume(&self) -> Option<&Buffer> {

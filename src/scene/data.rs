@@ -5,6 +5,7 @@ use super::exact::ExactData;
 use super::face::{FaceData, pack_colour};
 use super::mesh::Meshes;
 use super::solids::{Lists, SolidData, UndrawnSolid};
+use super::sun::SunData;
 use crate::abi;
 use crate::model::{Camera, Instance, Model, Projection};
 #[cfg(feature = "rivals")]
@@ -63,6 +64,9 @@ pub(crate) struct SceneData {
     pub highlight: Option<Highlight>,
     /// Instances that are not closed and would be seen through: drawn opaque.
     pub open: usize,
+    pub sun: Option<SunData>,
+    /// Of a scene with a sun: what casts no shadow.
+    pub shadowless: usize,
 }
 
 impl SceneData {
@@ -80,14 +84,19 @@ impl SceneData {
         let model = &*model;
         let open = items.as_ref().map_or(0, |items| items.open);
         let clear = items.as_ref().is_some_and(|items| !items.clear.is_empty());
+        let seen_through = items.as_ref().map_or(0, |items| items.clear.len());
         let lists = items.map_or_else(|| Lists::union(&model.solids), |items| Lists::of(items, all));
         let solids = SolidData::new(&lists, settings.solids)?;
+        let sun = settings.sun.map(|towards| SunData::new(towards, &solids));
+        let shadowless = sun.as_ref().map_or(0, |_| model.instances.len() + seen_through + solids.shells_of_union());
         let volume = model.trim.as_ref().map(|volume| SolidData::volume(volume, way)).transpose()?.flatten();
         let mut data = Self {
             is_layered: (clear || settings.highlight.is_some()) && solids.is_followed(),
             thickness: settings.thickness,
             highlight: settings.highlight,
             open,
+            sun,
+            shadowless,
             solids,
             volume,
             way: Some(way),
@@ -148,7 +157,8 @@ impl SceneData {
         let solids = std::mem::take(&mut self.solids).centres_only();
         let volume = self.volume.take().map(SolidData::centres_only);
         let edit = self.edit.take();
-        *self = Self { placements, solids, volume, edit, ..Self::default() };
+        let sun = self.sun.take().map(SunData::directions_only);
+        *self = Self { placements, solids, volume, edit, sun, ..Self::default() };
     }
 
     /// Operands of Boolean solids without equations are placed as parts are, after them.

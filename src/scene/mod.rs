@@ -22,6 +22,7 @@ mod face;
 mod flatten;
 mod mesh;
 mod solids;
+mod sun;
 mod upload;
 
 pub use closeup::CloseUp;

@@ -229,6 +229,16 @@ impl SolidData {
         (self.followed as usize) < self.leaves.len()
     }
 
+    /// Operands without equations of what is drawn as one union.
+    pub(super) fn shells_of_union(&self) -> usize {
+        let union = &self.leaves[..self.followed as usize];
+        let mut shells: Vec<u32> =
+            union.iter().filter(|l| l.flags & abi::LEAF_SHELL != 0).map(|leaf| leaf.first).collect();
+        shells.sort_unstable();
+        shells.dedup();
+        shells.len()
+    }
+
     /// The volume that trims a scene; `None` when it is everywhere.
     pub(super) fn volume(volume: &Solid, way: TrimWay) -> Result<Option<Self>, UndrawnSolid> {
         let by_comparison = !TrimWay::ALL.contains(&way);

@@ -26,6 +26,14 @@ pub(crate) struct Scene {
     pub meshes: Option<MeshBuffers>,
     /// The volume that trims faces and meshes; `None` when none does.
     pub volume: Option<Volume>,
+    /// What the sun sees; `None` without one, and where nothing casts shadows.
+    pub sun: Option<SunTiles>,
+}
+
+/// The sun's picture.
+pub(crate) struct SunTiles {
+    pub tiles: Buffer,
+    pub leaves: Buffer,
 }
 
 /// A volume's switches, and their surfaces.
@@ -186,6 +194,16 @@ impl Scene {
                         leaves: persistent(&mut uploads, cmd, "volume leaves", &v.leaves)?,
                         sides: persistent(&mut uploads, cmd, "volume sides", &v.leaf_surfaces)?,
                         surfaces: persistent(&mut uploads, cmd, "volume surfaces", &v.surfaces)?,
+                    })
+                })
+                .transpose()?,
+            sun: (data.sun.as_ref().filter(|sun| sun.has_casters()))
+                .map(|sun| {
+                    let none = [Default::default()];
+                    let leaves = if sun.leaves.is_empty() { &none } else { sun.leaves.as_slice() };
+                    Ok(SunTiles {
+                        tiles: persistent(&mut uploads, cmd, "sun tiles", &sun.tiles)?,
+                        leaves: persistent(&mut uploads, cmd, "sun leaves", leaves)?,
                     })
                 })
                 .transpose()?,

@@ -21,6 +21,7 @@ mod objects;
 mod operands;
 mod room;
 mod samples;
+mod shadows;
 #[path = "../shapes/mod.rs"]
 mod shapes;
 mod smooth;

@@ -306,6 +306,10 @@ pub struct FrameArgs {
     /// of the pixels are told, and stand in the statistics
     #[arg(long)]
     pub highlight: bool,
+    /// Light from this direction, which stays where it is in the model, with the shadows that Boolean solids cast: from the
+    /// model towards the sun. Without it the light of a scene file, or one that travels with the camera and casts none
+    #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
+    pub sun: Option<DVec3>,
     /// Part of the name of the Vulkan device to use
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
@@ -427,6 +431,11 @@ fn vector(text: &str) -> Result<DVec3, String> {
     }
 }
 
+/// `X,Y,Z`, not all 0.
+fn direction(text: &str) -> Result<DVec3, String> {
+    vector(text)?.try_normalize().ok_or_else(|| "wants a direction: not 0,0,0".into())
+}
+
 /// A tolerance that the renderer can keep: see [`selvedge::picture::FrameSettings::tolerance_px`].
 fn tolerance(text: &str) -> Result<f64, String> {
     text.parse::<f64>()
@@ -478,6 +487,14 @@ mod tests {
         assert_eq!(vector("-1, 2.5,3e2"), Ok(DVec3::new(-1.0, 2.5, 300.0)));
         for bad in ["1,2", "1,2,3,4", "1,2,x", "1,2,nan", ""] {
             assert!(vector(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn directions() {
+        assert_eq!(direction("0,0,-2"), Ok(DVec3::NEG_Z));
+        for bad in ["0,0,0", "1,2", "1,2,inf"] {
+            assert!(direction(bad).is_err(), "{bad}");
         }
     }
 

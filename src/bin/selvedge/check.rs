@@ -8,7 +8,7 @@ use crate::{Outcome, output, verdict};
 use anyhow::Result;
 use glam::DAffine3;
 use selvedge::picture::{FrameStats, Outputs};
-use selvedge::reference::{Judgement, Tracer};
+use selvedge::reference::{Judgement, SunJudgement, SunTracer, Tracer};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -20,6 +20,7 @@ struct Verdict {
     tolerance_px: f64,
     kept: bool,
     judgement: Judgement,
+    sun: Option<SunJudgement>,
     stats: FrameStats,
 }
 
@@ -37,6 +38,7 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     };
     let mut session = Session::new(&args.frame, &import)?;
     let tracer = during("preparing the exact model", || Tracer::new(&import.model));
+    let sun = session::sun(&args.frame, &import).map(|towards| SunTracer::new(&import.model, towards)).transpose()?;
     let tolerance_px = args.frame.tolerance;
     let mut verdicts = Vec::new();
     for (index, View { name, camera }) in views.iter().enumerate() {
@@ -47,9 +49,11 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
             let path = if views.len() > 1 { with_name(path, name) } else { path.clone() };
             output::png(&path, picture.size, &judgement.paint())?;
         }
-        let kept = verdict::wrong(&judgement) == 0 && picture.stats.clamps == 0;
+        let sun = sun.as_ref().map(|sun| verdict::of_sun(&tracer, sun, camera, &picture, args.samples, tolerance_px));
+        let wrong = verdict::wrong(&judgement) + sun.map_or(0, |sun| sun.wrong);
+        let kept = wrong == 0 && picture.stats.clamps == 0;
         let camera = camera.into();
-        verdicts.push(Verdict { view: name.clone(), camera, tolerance_px, kept, judgement, stats: picture.stats });
+        verdicts.push(Verdict { view: name.clone(), camera, tolerance_px, kept, judgement, sun, stats: picture.stats });
     }
     output::print(&table(&verdicts, tolerance_px))?;
     if let Some(missing) = output::missing_faces(&import.report) {
@@ -64,28 +68,23 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
 
 fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
     let wrong = format!("wrong > {tolerance_px} px");
-    let mut table = output::table([
-        "view",
-        "judged",
-        &wrong,
-        "worst shift, px",
-        "depth error, mm: worst, mean",
-        "normal, deg: worst",
-        "clamps",
-        "promise",
-    ]);
-    for Verdict { view, judgement, stats, kept, .. } in verdicts {
+    let lit = verdicts.iter().any(|v| v.sun.is_some());
+    let light = lit.then_some("light: wrong, worst shift, px");
+    let shape = ["view", "judged", &wrong, "worst shift, px", "depth error, mm: worst, mean", "normal, deg: worst"];
+    let mut table = output::table(shape.into_iter().chain(light).chain(["clamps", "promise"]));
+    for Verdict { view, judgement, sun, stats, kept, .. } in verdicts {
         let depth = judgement.depth_regular.model;
-        table.add_row([
+        let shape = [
             view.clone(),
             judgement.sampled.to_string(),
             verdict::wrong(judgement).to_string(),
             format!("{:.3}", verdict::worst_shift_px(judgement)),
             format!("{:.2e}, {:.2e}", depth.worst, depth.mean),
             format!("{:.3}", judgement.normal_deg.worst),
-            stats.clamps.to_string(),
-            if *kept { "kept" } else { "BROKEN" }.to_string(),
-        ]);
+        ];
+        let light = sun.map(|sun| format!("{}, {:.3}", sun.wrong, sun.worst_shift_px));
+        let end = [stats.clamps.to_string(), if *kept { "kept" } else { "BROKEN" }.to_string()];
+        table.add_row(shape.into_iter().chain(light).chain(end));
     }
     table.to_string()
 }

@@ -84,4 +84,10 @@ pub fn clamps(stats: &FrameStats) {
     if stats.open_clear > 0 {
         tracing::warn!("{} parts to be seen through are not closed: they are drawn opaque", stats.open_clear);
     }
+    if stats.shadowless > 0 {
+        tracing::warn!(
+            "{} parts, operands without equations and solids to be seen through cast no shadow",
+            stats.shadowless
+        );
+    }
 }

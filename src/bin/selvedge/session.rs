@@ -4,6 +4,7 @@ use crate::args::{FrameArgs, SubdivideArgs};
 use crate::output;
 use crate::progress::{during, importing};
 use anyhow::Result;
+use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::import::{self, Import};
 use selvedge::model::{Camera, LoopAt, TrimLoop};
@@ -27,6 +28,11 @@ pub fn open(path: &Path, subdivide: &SubdivideArgs) -> Result<Import> {
     tracing::info!("read {} in {:.1?}", path.display(), start.elapsed());
     output::warnings(&import);
     Ok(import)
+}
+
+/// The direction towards the sun, where one is asked for.
+pub fn sun(args: &FrameArgs, import: &Import) -> Option<DVec3> {
+    args.sun.or(import.picture.sun)
 }
 
 /// A renderer that holds one model.
@@ -54,7 +60,8 @@ impl Session {
     fn with(args: &FrameArgs, import: &Import, scene: SceneSettings) -> Result<Self> {
         let options = HeadlessOptions { device: args.device.clone(), validation: args.validation };
         let highlight = args.highlight.then(Highlight::default);
-        let scene = SceneSettings { trim: args.trim, solids: args.solids, highlight, ..scene };
+        let sun = sun(args, import);
+        let scene = SceneSettings { trim: args.trim, solids: args.solids, highlight, sun, ..scene };
         let mut renderer = during("opening the device", || HeadlessRenderer::new(&options))?;
         during("uploading the model", || renderer.upload_with(&import.model, scene))?;
         let mut settings =

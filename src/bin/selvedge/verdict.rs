@@ -7,7 +7,7 @@
 use crate::progress::counting;
 use selvedge::model::Camera;
 use selvedge::picture::Picture;
-use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
+use selvedge::reference::{JudgeOptions, Judgement, SunJudgement, SunTracer, Tracer, judge, judge_sun};
 
 /// Judges about `samples` pixels of a picture, and every one at which the face changes. In a view `times` closer than
 /// the whole model faces that much nearer to each other are told apart.
@@ -30,6 +30,19 @@ pub fn of(
         };
         judge(tracer, camera, picture, &options)
     })
+}
+
+/// Judges the light of about `samples` pixels, and of every one at which it or the face changes.
+pub fn of_sun(
+    tracer: &Tracer,
+    sun: &SunTracer,
+    camera: &Camera,
+    picture: &Picture,
+    samples: usize,
+    tolerance: f64,
+) -> SunJudgement {
+    let options = JudgeOptions { samples: Some(samples), limit_px: tolerance, ..JudgeOptions::default() };
+    judge_sun(tracer, sun, camera, picture, &options)
 }
 
 /// Pixels that break the promise: the wrong face, or the right face's wrong sheet.

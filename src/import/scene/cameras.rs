@@ -98,6 +98,7 @@ pub(super) fn picture(mut table: Table<'_>, cameras: &[NamedCamera]) -> Outcome<
         index.ok_or_else(|| v.fault(format!("there is no camera `{}`", super::text::shortened(name))))
     })?;
     let background = table.read("background", Value::colour)?;
+    let sun = table.read("sun", Value::direction)?;
     table.finish()?;
-    Ok(PictureSettings { size, camera, background })
+    Ok(PictureSettings { size, camera, background, sun })
 }

@@ -95,7 +95,7 @@ pub fn judge(tracer: &Tracer, camera: &Camera, picture: &Picture, options: &Judg
     let pixels = picture.size.0 as usize * picture.size.1 as usize;
     assert!(picture.size == camera.size && picture.face.len() == pixels, "picture and camera differ in size");
     let bench = Bench { camera, picture, slack: options.tie * tracer.bounds().diagonal(), limit: options.limit_px };
-    let sampled = samples(picture, options.samples);
+    let sampled = samples(picture.size, &picture.face, options.samples);
     let progress = |done: usize| {
         if let Some(call) = options.progress {
             call(done as u64);
@@ -235,9 +235,9 @@ fn fold_depth(camera: &Camera, hit: &Hit, direction: DVec3) -> f64 {
     pixel_size(camera, hit.depth) * (2.0 * slope).max(1.0)
 }
 
-/// The pixels to look at, in raster order.
-fn samples(picture: &Picture, wanted: Option<usize>) -> Vec<usize> {
-    let (w, h) = (picture.size.0 as usize, picture.size.1 as usize);
+/// The pixels to look at, in raster order: about so many, and those beside which a value of `image` changes.
+pub(super) fn samples(size: (u32, u32), image: &[u32], wanted: Option<usize>) -> Vec<usize> {
+    let (w, h) = (size.0 as usize, size.1 as usize);
     let Some(n) = wanted else { return (0..w * h).collect() };
     let mut chosen = vec![false; w * h];
     let step = ((w * h) as f64 / n.max(1) as f64).sqrt().max(1.0);
@@ -255,7 +255,7 @@ fn samples(picture: &Picture, wanted: Option<usize>) -> Vec<usize> {
         }
     }
     let mut pair = |a: usize, b: usize| {
-        if picture.face[a] != picture.face[b] {
+        if image[a] != image[b] {
             chosen[a] = true;
             chosen[b] = true;
         }

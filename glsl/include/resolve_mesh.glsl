@@ -1,0 +1,58 @@
+// Pass `resolve`, meshes: the point of the triangle at the pixel's centre, then light. The image (u, v)
+// gets the weights of the second and the third corner.
+#ifndef RESOLVE_MESH_GLSL
+#define RESOLVE_MESH_GLSL
+
+#include "scene.glsl"
+#include "view.glsl"
+
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
+layout(scalar, binding = 3) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
+layout(scalar, binding = 4) readonly buffer Meshes { Mesh meshes[]; };
+layout(scalar, binding = 5) readonly buffer Triangles { uint triangles[]; };
+layout(scalar, binding = 6) readonly buffer Positions { vec3 positions[]; };
+layout(scalar, binding = 7) readonly buffer Normals { uint normals[]; };
+layout(binding = 8, rg32ui) readonly uniform uimage2D visibility;
+layout(binding = 9, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+
+#include "facet.glsl"
+#include "resolved.glsl"
+#include "visible.glsl"
+
+// A unit vector from the octahedron |x| + |y| + |z| = 1 unfolded to a square. Source: Z. H. Cigolle et
+// al., A Survey of Efficient Representations for Independent Unit Vectors, JCGT 3 (2), 2014.
+vec3 octahedral(uint word) {
+    vec2 e = unpackSnorm2x16(word);
+    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
+    if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
+    return normalize(n);
+}
+
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    uvec2 seen = imageLoad(visibility, at).xy;
+    if (sees_nothing(seen.x)) seen = imageLoad(others, at).xy;
+    if (!sees_mesh(seen.x)) discard;
+    MeshInstance placed = mesh_instances[seen_mesh_instance(seen.x)];
+    Mesh mesh = meshes[placed.mesh];
+    Instance instance = instances[placed.instance];
+    Facet f = facet_at(seen.y, views[placed.instance], gl_FragCoord.xy);
+
+    // of sides near 1: the product of small ones would underflow
+    float side = max(max(dot(f.ab, f.ab), dot(f.ac, f.ac)), 1e-36);
+    vec3 n = cross(f.ab * inversesqrt(side), f.ac * inversesqrt(side));
+    if ((mesh.flags & MESH_NORMALS) != 0u) {
+        uint corner = mesh.first_normal + 3u * (seen.y - mesh.first_triangle);
+        n = octahedral(normals[corner]) * (1.0 - f.st.x - f.st.y) +
+            octahedral(normals[corner + 1u]) * f.st.x + octahedral(normals[corner + 2u]) * f.st.y;
+    }
+    n = instance.normal * n;
+    float size = length(n);
+    n = size > 0.0 ? n / size : -frame.forward;
+    if (instance.mirrored != 0u) n = -n;
+    write_surface(mesh.colour, instance, n, (mesh.flags & MESH_SOLID) != 0u, f.depth, mesh.id, f.st, NO_SURFACE);
+}
+
+#endif

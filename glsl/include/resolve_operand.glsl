@@ -1,0 +1,36 @@
+// Pass `resolve`, spline faces of operands of Boolean solids: as resolve.frag, where pass `solid_events`
+// found a fragment of one.
+#ifndef RESOLVE_OPERAND_GLSL
+#define RESOLVE_OPERAND_GLSL
+
+#include "scene.glsl"
+#include "view.glsl"
+#include "shells.glsl"
+
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
+layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
+layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
+layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
+layout(binding = 6) uniform samplerBuffer points;
+layout(scalar, binding = 7) readonly buffer Instances { Instance instances[]; };
+layout(binding = 8, rg32ui) readonly uniform uimage2D visibility;
+layout(binding = 9, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(scalar, binding = 10) readonly buffer Fragments { Fragment fragments[]; };
+
+#include "eye_ray.glsl"
+#include "patch.glsl"
+#include "resolved.glsl"
+#include "resolved_patch.glsl"
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    uvec2 seen = imageLoad(visibility, pixel).xy;
+    if (sees_nothing(seen.x)) seen = imageLoad(others, pixel).xy;
+    if (!sees_operand(seen.x)) discard;
+    Fragment f = fragments[seen_fragment(seen.x)];
+    write_patch(uvec2(f.what, f.uv), true);
+}
+
+#endif

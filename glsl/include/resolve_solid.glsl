@@ -1,0 +1,39 @@
+// Pass `resolve`, Boolean solids: normal and light of the side that pass `solid_events` found. The depth
+// there is exact already.
+#ifndef RESOLVE_SOLID_GLSL
+#define RESOLVE_SOLID_GLSL
+
+#include "scene.glsl"
+#include "view.glsl"
+#include "solids.glsl"
+#include "eye_ray.glsl"
+
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
+layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
+layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
+layout(binding = 5, rg32ui) readonly uniform uimage2D visibility;
+layout(binding = 6, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+
+#include "resolved.glsl"
+#include "visible.glsl"
+
+void main() {
+    ivec2 pixel = ivec2(gl_FragCoord.xy);
+    uvec2 seen = imageLoad(visibility, pixel).xy;
+    if (sees_nothing(seen.x)) seen = imageLoad(others, pixel).xy;
+    if (!sees_solid(seen.x)) discard;
+    LeafSurface side = leaf_surfaces[seen_side(seen.x)];
+    uint at = side.surface >> 1;
+    Leaf leaf = leaves[side.leaf];
+    float t = uintBitsToFloat(seen.y);
+    Ray ray = eye_ray(frame, gl_FragCoord.xy);
+    vec3 n = normalize(surface_gradient(surfaces[at], ray.o + t * ray.d - surface_centres[at]));
+    // the solid begins here: its outside is before
+    if (dot(n, ray.d) > 0.0) n = -n;
+    Instance nowhere = Instance(mat3(1.0), 1.0, 0u, 0u, 0u); // leaves are where they are
+    write_surface(leaf.colour, nowhere, n, true, t, leaf.id, vec2(uintBitsToFloat(0x7fc00000u)), at);
+}
+
+#endif

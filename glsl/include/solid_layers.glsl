@@ -1,0 +1,426 @@
+// Pass `solid_layers`: the pixel's ray, followed from face to face through solids that are told apart.
+//
+//      ray ──┬────────┬─────┬──────┬───┬───▶    opaque: what pass `resolve` left at the pixel ends the way
+//   glass   ─┤░░░░░░░░░░░░░░░░░░░░░│   │
+//   within  ─┼────────┤▓▓▓▓▓│──────┼───┤▓▓      each face is a layer: colour += (1 - opacity so far) * its own
+//
+// Every item has a list of switches of its own; one scan over the tile's leaves walks all of them, in front of
+// depth t and behind it. Items that change there are shaded one after another: those that are left before those
+// that are entered, then in their order. An opaque face at the same depth comes between the two. Everything is one
+// loop, so that the surfaces' equations are compiled once.
+#ifndef SOLID_LAYERS_GLSL
+#define SOLID_LAYERS_GLSL
+
+#include "scene.glsl"
+#include "solids.glsl"
+#include "shells.glsl"
+#include "tiles.glsl"
+#include "view.glsl"
+
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
+layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
+layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
+layout(scalar, binding = 5) readonly buffer LeafCentres { vec3 leaf_centres[]; };
+layout(scalar, binding = 6) readonly buffer TileStarts { uint tile_starts[]; };
+layout(scalar, binding = 7) readonly buffer TileLeaves { TileLeaf tile_leaves[]; };
+layout(scalar, binding = 8) readonly buffer FragmentStarts { uint fragment_starts[]; };
+layout(scalar, binding = 9) readonly buffer FragmentCounts { uint fragment_counts[]; };
+layout(scalar, binding = 10) readonly buffer Fragments { Fragment fragments[]; };
+layout(scalar, binding = 11) buffer CountersBuffer { Counters counters; };
+layout(binding = 12, rgba32f) readonly uniform image2D behind; // linear colour, depth; UNSEEN where nothing is
+// of operands that are spline parts
+layout(scalar, binding = 13) readonly buffer Views { View views[]; };
+layout(scalar, binding = 14) readonly buffer FaceInstances { FaceInstance face_instances[]; };
+layout(scalar, binding = 15) readonly buffer Faces { Face faces[]; };
+layout(scalar, binding = 16) readonly buffer Patches { Patch patches[]; };
+layout(scalar, binding = 17) readonly buffer Items { uint item_face_instance[]; };
+layout(binding = 18) uniform samplerBuffer points;
+layout(scalar, binding = 19) readonly buffer Instances { Instance instances[]; };
+
+layout(scalar, push_constant) uniform Marks {
+    vec4 contact;  // linear colour and opacity of pixels that meet coincident faces of two items
+    vec4 overlap;  // of those within two items at once
+};
+
+// What the way is followed for.
+const uint FOR_COLOUR = 0u;    // the pixel's colour
+const uint FOR_FIRST = 1u;     // the images of the first face that is not wholly clear
+const uint FOR_THICKNESS = 2u; // its length within solids
+layout(constant_id = 15) const uint FOLLOWED_FOR = FOR_COLOUR;
+// Whether contacts and overlaps are looked for: only for colour.
+layout(constant_id = 16) const bool MARKS = false;
+layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
+layout(constant_id = 17) const bool SOLIDS_HAVE_PATCHES = false;
+
+#include "crossing.glsl"
+#include "eye_ray.glsl"
+#include "patch.glsl"
+#include "resolved.glsl"
+#include "resolved_patch.glsl"
+
+const uint NOBODY = 0xffffffffu;
+
+// Spans kept; those of further leaves are computed in every scan that comes near their boxes.
+const uint KEPT = 12u;
+
+// Less than this of what lies behind changes no colour of eight bits: sRGB's slope of 12.92 at black, times 255.
+const float OPAQUE = 1.0 / 8192.0;
+
+// Faces of operands without equations that are nearer to an opaque face than this, relative to their depth, touch it:
+// some ten times what Newton's method leaves of a spline's depth.
+const float TOUCHES = 1.0 / 65536.0;
+
+// A box seen from the eye is rounded by less than this, relative to its depth.
+const float BOX = 1e-6;
+
+// What a scan is for.
+const uint SEARCH = 0u; // who changes at t, and the next event
+const uint OWNER = 1u;  // does leaf `asked`, taken for what it is not, change its item before or behind t?
+const uint SIDE = 2u;   // which side of leaf `asked` ends at t?
+
+// An item during a scan.
+struct Walk {
+    uint item;      // its first leaf
+    uint from;      // in the tile
+    uint at;        // behind t
+    uint at_before; // in front of it
+    uint positive;  // the first leaves that begin or end there: those that add, those that are taken away
+    uint negative;
+    uint candidates;
+    bool lives;     // something of it is still to come
+};
+
+// A face of an item.
+struct Change {
+    uint key;       // in the order of layers; 0: none
+    uint from;
+    uint end;
+    uint positive;
+    uint negative;
+    uint candidates;
+};
+
+const uint ENTERED = 0x80000000u;
+
+Change best;   // the first change after `done_key`
+uint changes; // items that change at t
+uint left;    // those of them after `done_key`
+uint within;  // items behind t
+uint live_from; // what is left of the tile's leaves: items that are behind the ray change nothing any more
+uint live_end;
+
+void close_item(Walk w, uint end, uint first, uint done_key, bool asks) {
+    if (w.item == NOBODY) return;
+    bool now = w.at == EXIT_TRUE;
+    within += now ? 1u : 0u;
+    if (now || w.lives) {
+        live_from = min(live_from, w.from);
+        live_end = end;
+    }
+    if (!asks || now == (w.at_before == EXIT_TRUE)) return;
+    ++changes;
+    uint key = (now ? ENTERED : 0u) | (w.from - first + 1u);
+    if (key <= done_key) return;
+    ++left;
+    if (best.key != 0u && key > best.key) return;
+    best = Change(key, w.from, end, w.positive, w.negative, w.candidates);
+}
+
+// A side as a layer.
+struct Layer {
+    vec4 colour;
+    vec3 n;    // unit, towards the eye
+    uint id;
+    vec2 uv;
+    uint surface; // that it lies on, or NO_SURFACE
+};
+
+Layer layer_of(uint side, float t, Ray ray) {
+    LeafSurface s = leaf_surfaces[side];
+    Leaf leaf = leaves[s.leaf];
+    uint at = s.surface >> 1;
+    vec3 n = normalize(surface_gradient(surfaces[at], ray.o + t * ray.d - surface_centres[at]));
+    vec2 uv = vec2(uintBitsToFloat(0x7fc00000u));
+    return Layer(unpackUnorm4x8(leaf.colour), dot(n, ray.d) > 0.0 ? -n : n, leaf.id, uv, at);
+}
+
+Layer layer_of_patch(Fragment f, Ray ray) {
+    uint item = seen_item(f.what);
+    FaceInstance fi = face_instances[item_face_instance[item]];
+    Face face = faces[fi.face];
+    Patch patch_ = patches[face.first_patch + item - fi.first_item];
+    Sample s = refine(patch_, views[fi.instance], unpack_uv(f.uv), gl_FragCoord.xy);
+    vec3 n = normalize(instances[fi.instance].normal * normal_of(patch_, s.jet, s.uv));
+    vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
+    vec4 colour = unpackUnorm4x8(face.colour);
+    vec2 uv = face.domain.xy + at * face.domain.zw;
+    return Layer(colour, dot(n, ray.d) > 0.0 ? -n : n, face.id, uv, NO_SURFACE);
+}
+
+float depth_written(float t) { return reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0); }
+
+void main() {
+    uvec2 tiles = tile_count(frame);
+    uvec2 tile = uvec2(gl_FragCoord.xy) / TILE;
+    uint n = tile.y * tiles.x + tile.x;
+    uint first = min(tile_starts[n], frame.tile_leaf_capacity);
+    uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
+    while (first < end && (tile_leaves[first].leaf & ~TILE_LEAF_ENTRY) < frame.followed_leaf) ++first;
+    Ray ray = eye_ray(frame, gl_FragCoord.xy);
+    uint pixel = uint(gl_FragCoord.y) * uint(frame.size.x) + uint(gl_FragCoord.x);
+    uint first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
+    uint fragment_count = SOLIDS_HAVE_SHELLS ? fragment_counts[pixel] : 0u;
+    vec4 under = FOLLOWED_FOR == FOR_THICKNESS ? vec4(0.0, 0.0, 0.0, UNSEEN) : imageLoad(behind, ivec2(gl_FragCoord.xy));
+    float stop = under.a;
+
+    vec3 sum = vec3(0.0); // of layers
+    float rest = 1.0;     // what they let through
+    float first_seen = stop;
+    float thickness = 0.0;
+    bool touches = false;
+    bool overlaps = false;
+    bool shows = true;    // layers are still drawn
+
+    Span kept[KEPT];
+    uint purpose = SEARCH;
+    uint asked = NOBODY;
+    uint after = 0u;
+    uint fallback = NOBODY;
+    bool negatives = false;
+    uint side = 0u;
+    bool of_patch = false;
+    float t = frame.near;
+    float next = NEVER;
+    uint done_key = 0u;
+    uint left_then = 0u; // of the last search
+    Change layer = Change(0u, 0u, 0u, NOBODY, NOBODY, 0u);
+    uint all_from = first; // of every item that lives
+    uint all_end = end;
+    uint scan_from = first;
+    uint scan_end = end;
+    bool begins = true; // at the near plane nothing is entered
+    bool done = first >= end;
+    uint most = 24u * (end - first) + 8u * fragment_count + 8u;
+    uint wanted = 0u;
+    uint steps = 0u;
+    uint scan = 0u;
+    for (; scan < most && !done; ++scan) {
+        best = Change(0u, 0u, 0u, NOBODY, NOBODY, 0u);
+        changes = 0u;
+        left = 0u;
+        within = 0u;
+        live_from = end;
+        live_end = first;
+        Walk w = Walk(NOBODY, 0u, EXIT_FALSE, EXIT_FALSE, NOBODY, NOBODY, 0u, false);
+        float soonest = NEVER;
+        wanted += scan_end - scan_from;
+        for (uint i = scan_from; i < scan_end; ++i) {
+            ++steps;
+            TileLeaf here = tile_leaves[i];
+            uint number = here.leaf & ~TILE_LEAF_ENTRY;
+            Leaf leaf = leaves[number];
+            if (leaf.item != w.item) {
+                close_item(w, i, first, done_key, purpose == SEARCH && !begins);
+                w = Walk(leaf.item, i, EXIT_FALSE, EXIT_FALSE, NOBODY, NOBODY, 0u, false);
+            }
+            if ((here.leaf & TILE_LEAF_ENTRY) != 0u) {
+                w.at = i;
+                w.at_before = i;
+            }
+            bool is_kept = i - first < KEPT;
+            bool shell = SOLIDS_HAVE_SHELLS && (leaf.flags & LEAF_SHELL) != 0u;
+            Crossing c;
+            if (shell) {
+                uint last;
+                c = crossing_of(leaf.first, t, first_fragment, fragment_count, last);
+                if (purpose == SIDE) {
+                    of_patch = (fragments[last].shell & FRAGMENT_PATCH) != 0u;
+                    side = of_patch ? last : fragments[last].what;
+                }
+            } else {
+                Span s = EVERYTHING;
+                float lo = -NEVER;
+                float hi = NEVER;
+                if (!is_kept && (leaf.flags & LEAF_UNBOUNDED) == 0u) {
+                    float middle = dot(frame.forward, leaf_centres[number]);
+                    float reach = dot(abs(frame.forward), leaf.half_size);
+                    float rounding = BOX * (abs(middle) + reach);
+                    lo = middle - reach - rounding;
+                    hi = middle + reach + rounding;
+                }
+                if (t < lo || t > hi) {
+                    // not yet, or no more: as if it began with its box
+                    c = Crossing(false, false, false, t < lo ? lo : NEVER);
+                } else {
+                    if (is_kept && scan > 0u && purpose != SIDE) {
+                        s = kept[i - first];
+                    } else {
+                        for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
+                            uint surface = leaf_surfaces[k].surface;
+                            Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
+                            if (purpose == SIDE && ends_at(one, t)) {
+                                side = k;
+                                of_patch = false;
+                            }
+                            if ((surface & 1u) != 0u) one = complement(one);
+                            s = both(s, one);
+                        }
+                        if (is_kept) kept[i - first] = s;
+                    }
+                    c = crossing_of(s, t);
+                }
+            }
+            bool turned = purpose == OWNER && i == asked;
+            if (i == w.at) w.at = c.inside != turned ? here.in_exit : here.out_exit;
+            if (i == w.at_before) w.at_before = c.before != turned ? here.in_exit : here.out_exit;
+            soonest = min(soonest, c.next);
+            w.lives = w.lives || c.inside || c.ends || c.next < NEVER;
+            if (c.ends && i >= after) {
+                ++w.candidates;
+                if ((leaf.flags & LEAF_NEGATIVE) != 0u) w.negative = min(w.negative, i);
+                else w.positive = min(w.positive, i);
+            }
+        }
+        close_item(w, scan_end, first, done_key, purpose == SEARCH && !begins);
+
+        if (purpose == SEARCH) {
+            begins = false;
+            next = soonest;
+            all_from = min(live_from, live_end);
+            all_end = live_end;
+            if (done_key == 0u) {
+                float to = min(next, frame.far);
+                if (within > 0u) thickness += to - t;
+                touches = touches || changes > 1u;
+                overlaps = overlaps || within > 1u;
+            }
+            layer = best;
+            left_then = left;
+            bool wants = shows && layer.key != 0u && FOLLOWED_FOR != FOR_THICKNESS;
+            if (wants) {
+                // an opaque face hides what is entered where it is, and all behind it
+                bool entered = (layer.key & ENTERED) != 0u;
+                uint number = tile_leaves[layer.from].leaf & ~TILE_LEAF_ENTRY;
+                float slack = (leaves[number].flags & LEAF_SHELL) != 0u ? TOUCHES * abs(t) : 0.0;
+                bool hidden = entered ? t + slack >= stop : t - slack > stop;
+                if (hidden) {
+                    shows = false;
+                    wants = false;
+                } else if ((leaves[number].flags & LEAF_ELSEWHERE) != 0u) {
+                    done_key = layer.key;
+                    if (left > 1u) continue;
+                    wants = false;
+                }
+            }
+            if (wants) {
+                scan_from = layer.from;
+                scan_end = layer.end;
+                asked = layer.positive != NOBODY ? layer.positive : layer.negative;
+                fallback = asked;
+                after = asked + 1u;
+                negatives = layer.positive == NOBODY;
+                purpose = layer.candidates > 1u ? OWNER : SIDE;
+                if (purpose == SIDE) {
+                    scan_from = asked;
+                    scan_end = asked + 1u;
+                }
+                continue;
+            }
+        } else if (purpose == OWNER) {
+            // the owner is the first leaf that alone changes the item, in front of the event or behind it
+            bool entered = (layer.key & ENTERED) != 0u;
+            uint other = negatives ? w.negative : w.positive;
+            if ((w.at == EXIT_TRUE) != entered || (w.at_before == EXIT_TRUE) == entered) {
+                purpose = SIDE;
+            } else if (other != NOBODY) {
+                asked = other;
+                after = other + 1u;
+            } else if (!negatives) {
+                negatives = true;
+                asked = NOBODY; // from the beginning, for subtracted leaves
+                after = layer.from;
+            } else {
+                asked = fallback;
+                purpose = SIDE;
+            }
+            if (purpose == SIDE) {
+                scan_from = asked;
+                scan_end = asked + 1u;
+            }
+            continue;
+        } else {
+            bool entered = (layer.key & ENTERED) != 0u;
+            Layer seen;
+            if (SOLIDS_HAVE_PATCHES && of_patch) seen = layer_of_patch(fragments[side], ray);
+            else seen = layer_of(side, t, ray);
+            float opacity = seen.colour.a;
+            if (opacity > 0.0) {
+                if (first_seen == stop && rest == 1.0) first_seen = t;
+                Lit lit = lit_at(seen.colour.rgb, seen.n, false, ray, t, seen.surface);
+                if (FOLLOWED_FOR == FOR_FIRST) {
+                    out_colour = vec4(0.0);
+                    out_depth = t;
+                    out_face = seen.id;
+                    out_uv = seen.uv;
+                    out_normal = vec4(entered ? seen.n : -seen.n, lit.sun);
+                    gl_FragDepth = depth_written(t);
+                    if (steps != wanted) atomicAdd(counters.clamps, 1u);
+                    return;
+                }
+                sum += rest * opacity * clamp(lit.light, 0.0, 1.0);
+                rest *= 1.0 - opacity;
+                shows = rest > OPAQUE;
+            }
+            done_key = layer.key;
+            purpose = SEARCH;
+            after = 0u;
+            scan_from = all_from;
+            scan_end = all_end;
+            // others at the same place
+            if (shows && left_then > 1u) continue;
+        }
+        purpose = SEARCH;
+        after = 0u;
+        scan_from = all_from;
+        scan_end = all_end;
+        done_key = 0u;
+        bool ends = FOLLOWED_FOR != FOR_THICKNESS && !MARKS && stop > 0.0;
+        bool goes_on = FOLLOWED_FOR == FOR_THICKNESS || MARKS || shows;
+        if (next >= frame.far || all_from >= all_end || !goes_on || ends && next > stop * (1.0 + TOUCHES)) done = true;
+        t = next;
+    }
+    // a driver that ends long loops is told of
+    if (steps != wanted || !done) atomicAdd(counters.clamps, 1u);
+    if (FOLLOWED_FOR == FOR_FIRST) discard;
+    if (FOLLOWED_FOR == FOR_THICKNESS) {
+        out_colour = vec4(thickness * length(ray.d));
+        return;
+    }
+    if (MARKS) {
+        // marks lie before everything
+        if (touches) atomicAdd(counters.contacts, 1u);
+        if (overlaps) atomicAdd(counters.overlaps, 1u);
+        vec4 on_top[2] = vec4[](overlap, contact);
+        bool on[2] = bool[](overlaps, touches);
+        for (uint k = 0u; k < 2u; ++k) {
+            if (!on[k]) continue;
+            sum = mix(sum, on_top[k].rgb, on_top[k].a);
+            rest *= 1.0 - on_top[k].a;
+        }
+    }
+    float alpha = 1.0; // of what is behind
+    bool nothing = stop >= UNSEEN;
+    if (nothing) under.rgb = frame.background.rgb;
+    if (nothing) alpha = max(frame.background.a, 0.0);
+    float opacity = 1.0 - rest * (1.0 - alpha);
+    if (opacity == 0.0 && frame.background.a < 0.0) discard;
+    vec3 colour = opacity > 0.0 ? (sum + rest * alpha * under.rgb) / opacity : under.rgb;
+    out_colour = encode(vec4(colour, opacity), frame.encode_srgb);
+    // what the host keeps is laid under
+    if (frame.background.a < 0.0) out_colour.rgb *= opacity;
+    gl_FragDepth = first_seen >= UNSEEN ? 0.0 : depth_written(first_seen);
+}
+
+#endif

@@ -1,0 +1,144 @@
+// Whether the sun reaches a point, past the opaque Boolean solids. Twin of src/abi/sun.rs; whoever includes this defines
+// SUN_BINDING, where SUN_BUFFERS buffers begin.
+//
+//        sun ◀──┤████├────┤██├───── p        the ray to the sun, from event to event as pass `solid_events` has it: in
+//               │    │    │  │              shade where it is within the solid anywhere before p
+//        ───────┴────┴────┴──┴─▶ tiles      seen from the sun, each with the leaves that it sees and their Blist
+//
+// The tiles depend on scene and sun only, and are made with the scene (src/scene/sun.rs). Points beside them are those of
+// the nearest tile: what is missing in its list does not reach beyond it.
+//
+// A point of a solid lies on a surface that is known, so the ray's first crossing of it is at 0 by rule, whatever the
+// rounding of the point. Of other surfaces the point is known within its rounding only: material between it and a height
+// above its face that is less casts no shadow on it.
+#ifndef SUN_GLSL
+#define SUN_GLSL
+
+#include "solids.glsl"
+#include "tiles.glsl"
+#include "eye_ray.glsl"
+
+struct Sun {
+    vec3 towards;  // unit, model axes
+    uint across;   // tiles; 0: nothing casts shadows
+    vec3 right;    // model units to tiles
+    uint down;
+    vec3 up;
+    vec2 eye;      // where the eye is among the tiles
+};
+
+// A tile's leaves, and where their walk begins.
+struct SunTile {
+    uint first;
+    uint end;
+    uint entry;
+};
+
+layout(scalar, binding = SUN_BINDING + 0) readonly buffer Suns { Sun sun; };
+layout(scalar, binding = SUN_BINDING + 1) readonly buffer SunTiles { SunTile sun_tiles[]; };
+layout(scalar, binding = SUN_BINDING + 2) readonly buffer SunLeaves { TileLeaf sun_leaves[]; };
+layout(scalar, binding = SUN_BINDING + 3) readonly buffer Casters { Leaf casters[]; };
+layout(scalar, binding = SUN_BINDING + 4) readonly buffer CasterSides { LeafSurface caster_sides[]; };
+layout(scalar, binding = SUN_BINDING + 5) readonly buffer CasterSurfaces { Surface caster_surfaces[]; };
+layout(scalar, binding = SUN_BINDING + 6) readonly buffer CasterCentres { vec3 caster_centres[]; };
+layout(scalar, binding = SUN_BINDING + 7) buffer SunCounters { Counters sun_counters; };
+
+// Spans kept; those of further leaves are computed in every scan.
+const uint SUN_KEPT = 12u;
+
+// Rounding of a point, relative to its depth: of a solid's side, eight ulp; of a spline face or a triangle some ten times
+// what Newton's method leaves of its depth, a sixtieth of a pixel in a picture a thousand pixels high.
+const float ROUNDED_SIDE = 1.0 / 1048576.0;
+const float ROUNDED_FACE = 1.0 / 65536.0;
+
+// The part of a ray inside of a surface from which it sets out: one end is 0, to the bit. o is the ray's origin seen
+// from the surface's centre.
+Span span_from(Surface s, vec3 o, vec3 d) {
+    vec3 ol = s.to_local * o;
+    vec3 dl = s.to_local * d;
+    if (SOLIDS_HAVE_TORI && s.kind == SURFACE_TORUS) {
+        Span t = torus_span(ol, dl, s.constant);
+        // the nearest end of its kind is the origin
+        if (dot(surface_gradient(s, o), d) > 0.0) {
+            if (abs(t.hi) < abs(t.g0)) t.hi = 0.0;
+            else t.g0 = 0.0;
+        } else {
+            if (abs(t.lo) < abs(t.g1)) t.lo = 0.0;
+            else t.g1 = 0.0;
+        }
+        return t;
+    }
+    // a t^2 + 2 b t < 0
+    float a = dot(s.squares * dl, dl);
+    float b = dot(s.squares * dl, ol) + s.linear * dl.z;
+    if (a == 0.0) return b > 0.0 ? Span(-NEVER, 0.0, NEVER, NEVER) : Span(0.0, NEVER, NEVER, NEVER);
+    float other = -2.0 * b / a;
+    float lo = min(0.0, other);
+    float hi = max(0.0, other);
+    return a > 0.0 ? Span(lo, hi, NEVER, NEVER) : Span(-NEVER, NEVER, lo, hi);
+}
+
+// The part of the ray from p, seen from the eye, towards the sun that is inside of a leaf; p lies on `surface`.
+Span caster_span(Leaf leaf, vec3 p, uint surface) {
+    // an operand without equations is as if it were not there
+    if ((leaf.flags & LEAF_SHELL) != 0u) return NOTHING;
+    Span s = EVERYTHING;
+    for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
+        uint side = caster_sides[k].surface;
+        uint at = side >> 1;
+        vec3 o = p - caster_centres[at];
+        Span one = at == surface ? span_from(caster_surfaces[at], o, sun.towards)
+                                 : surface_span(caster_surfaces[at], o, sun.towards);
+        if ((side & 1u) != 0u) one = complement(one);
+        s = both(s, one);
+    }
+    return s;
+}
+
+// Whether the sun lights the point at this depth of the pixel's ray; `n` is the face's unit normal on the side that is
+// lit, `surface` the number of the Boolean solids' surface that it lies on, or NO_SURFACE.
+bool in_sun(Ray ray, float depth, vec3 n, uint surface) {
+    float rise = dot(n, sun.towards);
+    if (!(rise > 0.0)) return false; // in its own shade
+    if (sun.across == 0u) return true;
+    vec3 p = ray.o + depth * ray.d;
+    vec2 last = vec2(sun.across, sun.down) - 1.0;
+    uvec2 at_tile = uvec2(clamp(sun.eye + vec2(dot(sun.right, p), dot(sun.up, p)), vec2(0.0), last));
+    SunTile tile = sun_tiles[at_tile.y * sun.across + at_tile.x];
+    if (tile.entry >= EXIT_FALSE) return tile.entry == EXIT_FALSE;
+    float rounding = abs(depth) * (surface == NO_SURFACE ? ROUNDED_FACE : ROUNDED_SIDE);
+    Span kept[SUN_KEPT];
+    float t = 0.0;
+    bool lit = true;
+    bool done = false;
+    // a driver that ends long loops is found by what is missing
+    uint wanted = 0u;
+    uint steps = 0u;
+    uint most = 4u * (tile.end - tile.first) + 1u; // four events a leaf
+    for (uint scan = 0u; scan < most && !done; ++scan) {
+        uint at = tile.entry;
+        float next = NEVER;
+        wanted += tile.end - tile.first;
+        for (uint i = tile.first; i < tile.end; ++i) {
+            ++steps;
+            TileLeaf here = sun_leaves[i];
+            bool is_kept = i - tile.first < SUN_KEPT;
+            Span s;
+            if (is_kept && scan > 0u) {
+                s = kept[i - tile.first];
+            } else {
+                s = caster_span(casters[here.leaf], p, surface);
+                if (is_kept) kept[i - tile.first] = s;
+            }
+            if (i == at) at = inside_span(s, t) ? here.in_exit : here.out_exit;
+            next = min(next, next_of_span(s, t));
+        }
+        lit = at != EXIT_TRUE || (scan == 0u && next * rise <= rounding);
+        done = !lit || next >= NEVER;
+        t = next;
+    }
+    if (steps != wanted || !done) atomicAdd(sun_counters.clamps, 1u);
+    return lit;
+}
+
+#endif

@@ -1,0 +1,6 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `resolve`, spline faces of operands, in a scene with a sun.
+#define SUN_BINDING 11
+#include "resolve_operand.glsl"

@@ -1,0 +1,6 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `solid_layers`, in a scene with a sun.
+#define SUN_BINDING 20
+#include "solid_layers.glsl"

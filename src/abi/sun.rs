@@ -1,0 +1,24 @@
+//! The sun: where it is, and what it sees of the Boolean solids. Twin of `glsl/include/sun.glsl`.
+
+use bytemuck::{Pod, Zeroable};
+
+/// One frame's sun.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct Sun {
+    pub towards: [f32; 3],
+    pub across: u32,
+    pub right: [f32; 3],
+    pub down: u32,
+    pub up: [f32; 3],
+    pub eye: [f32; 2],
+}
+
+/// A tile of what the sun sees.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct SunTile {
+    pub first: u32,
+    pub end: u32,
+    pub entry: u32,
+}
