@@ -28,6 +28,7 @@ mod series;
 mod session;
 mod sweep;
 mod trims;
+mod values;
 mod verdict;
 
 use args::{Cli, Command};

@@ -1,0 +1,66 @@
+//! Numbers and vectors of the command line, with what is told of bad ones.
+
+use glam::DVec3;
+
+/// `X,Y,Z`.
+pub fn vector(text: &str) -> Result<DVec3, String> {
+    let numbers: Result<Vec<f64>, _> = text.split(',').map(|n| n.trim().parse::<f64>()).collect();
+    match numbers.as_deref() {
+        Ok(&[x, y, z]) if x.is_finite() && y.is_finite() && z.is_finite() => Ok(DVec3::new(x, y, z)),
+        _ => Err("wants three finite numbers, as in 1,-2,0.5".into()),
+    }
+}
+
+/// `X,Y,Z`, not all 0.
+pub fn direction(text: &str) -> Result<DVec3, String> {
+    vector(text)?.try_normalize().ok_or_else(|| "wants a direction: not 0,0,0".into())
+}
+
+/// A tolerance that the renderer can keep: see [`selvedge::picture::FrameSettings::tolerance_px`].
+pub fn tolerance(text: &str) -> Result<f64, String> {
+    text.parse::<f64>()
+        .ok()
+        .filter(|t| t.is_finite() && *t >= 0.125)
+        .ok_or_else(|| "wants a number of pixels, at least 0.125".into())
+}
+
+/// How many times closer.
+pub fn times(text: &str) -> Result<f64, String> {
+    let times = text.parse::<f64>().ok().filter(|t| (1.0..=1e9).contains(t));
+    times.ok_or_else(|| "wants a number from 1 to 1e9".into())
+}
+
+pub fn length(text: &str) -> Result<f64, String> {
+    text.parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| "wants a length above 0".into())
+}
+
+/// A magnification.
+pub fn zoom(text: &str) -> Result<f64, String> {
+    let good = text.parse::<f64>().ok().filter(|z| (1.0..=1e6).contains(z));
+    good.ok_or_else(|| "wants a magnification from 1 to 1000000".into())
+}
+
+pub fn at_least_one(text: &str) -> Result<usize, String> {
+    text.parse().ok().filter(|&n| n > 0).ok_or_else(|| "wants a whole number above 0".into())
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn vectors() {
+        assert_eq!(vector("-1, 2.5,3e2"), Ok(DVec3::new(-1.0, 2.5, 300.0)));
+        for bad in ["1,2", "1,2,3,4", "1,2,x", "1,2,nan", ""] {
+            assert!(vector(bad).is_err(), "{bad}");
+        }
+    }
+
+    #[test]
+    fn directions() {
+        assert_eq!(direction("0,0,-2"), Ok(DVec3::NEG_Z));
+        for bad in ["0,0,0", "1,2", "1,2,inf"] {
+            assert!(direction(bad).is_err(), "{bad}");
+        }
+    }
+}
