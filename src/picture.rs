@@ -267,9 +267,9 @@ pub struct SceneSettings {
     /// for a studio's light, which travels with the camera and casts no shadows.
     ///
     /// It is parallel, and reaches a point where no opaque Boolean solid lies on the way, exactly: every face of the scene
-    /// is shaded. Shadows are cast by primitives with equations. What else the scene has casts none, and is counted in
-    /// [`FrameStats::shadowless`]: placed parts, what is seen through, and operands that are meshes or spline parts; such an
-    /// operand is left out of the solid that casts the shadow.
+    /// is shaded. Shadows are cast by primitives with equations and by meshes that are their operands. What else the scene has
+    /// casts none, and is counted in [`FrameStats::shadowless`]: placed parts, what is seen through, and operands that are
+    /// spline parts; such an operand is left out of the solid that casts the shadow.
     pub sun: Option<DVec3>,
 }
 
@@ -359,8 +359,8 @@ pub struct FrameStats {
     /// Instances with faces that would be seen through, but are not closed, or cut open by a volume: they have no inside,
     /// and are drawn opaque.
     pub open_clear: u64,
-    /// In a scene with a sun: placed parts, solids that are seen through, and operands of Boolean solids that are meshes or
-    /// spline parts. They cast no shadow.
+    /// In a scene with a sun: placed parts, solids that are seen through, and operands of Boolean solids that are spline
+    /// parts. They cast no shadow.
     pub shadowless: u64,
     /// Layers of faces that [`SolidWay::Blister`] peeled off before every pixel was decided.
     pub layers: u64,

@@ -47,7 +47,7 @@ pub struct Within {
 pub const VOLUME_BUFFERS: usize = 4;
 
 /// Storage buffers of the sun: `glsl/include/sun.glsl`; they follow all others of a pass.
-pub const SUN_BUFFERS: usize = 8;
+pub const SUN_BUFFERS: usize = 11;
 
 /// The u-intercept table.
 pub static TRIM_TABLE: TrimTest = TrimTest {

@@ -32,6 +32,15 @@ struct SunTile {
     uint first;
     uint end;
     uint entry;
+    uint first_triangle;
+    uint end_triangle;
+};
+
+// A triangle of an operand that is a mesh, across the rays: in tiles, from the operand's middle.
+struct SunTriangle {
+    vec2 corners[3];
+    uint shell;
+    uint surface; // its plane
 };
 
 layout(scalar, binding = SUN_BINDING + 0) readonly buffer Suns { Sun sun; };
@@ -41,7 +50,10 @@ layout(scalar, binding = SUN_BINDING + 3) readonly buffer Casters { Leaf casters
 layout(scalar, binding = SUN_BINDING + 4) readonly buffer CasterSides { LeafSurface caster_sides[]; };
 layout(scalar, binding = SUN_BINDING + 5) readonly buffer CasterSurfaces { Surface caster_surfaces[]; };
 layout(scalar, binding = SUN_BINDING + 6) readonly buffer CasterCentres { vec3 caster_centres[]; };
-layout(scalar, binding = SUN_BINDING + 7) buffer SunCounters { Counters sun_counters; };
+layout(scalar, binding = SUN_BINDING + 7) readonly buffer CasterMiddles { vec3 caster_middles[]; };
+layout(scalar, binding = SUN_BINDING + 8) readonly buffer SunTriangles { SunTriangle sun_triangles[]; };
+layout(scalar, binding = SUN_BINDING + 9) readonly buffer TileTriangles { uint tile_triangles[]; };
+layout(scalar, binding = SUN_BINDING + 10) buffer SunCounters { Counters sun_counters; };
 
 // Spans kept; those of further leaves are computed in every scan.
 const uint SUN_KEPT = 12u;
@@ -80,8 +92,6 @@ Span span_from(Surface s, vec3 o, vec3 d) {
 
 // The part of the ray from p, seen from the eye, towards the sun that is inside of a leaf; p lies on `surface`.
 Span caster_span(Leaf leaf, vec3 p, uint surface) {
-    // an operand without equations is as if it were not there
-    if ((leaf.flags & LEAF_SHELL) != 0u) return NOTHING;
     Span s = EVERYTHING;
     for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
         uint side = caster_sides[k].surface;
@@ -93,6 +103,54 @@ Span caster_span(Leaf leaf, vec3 p, uint surface) {
         s = both(s, one);
     }
     return s;
+}
+
+// How often the triangle goes around q, which has the corners' coordinates: 1 where the ray through q leaves by it, -1
+// where it enters. An edge counts when it passes q's height, bottom included and top excluded, on the right.
+int turns(SunTriangle triangle, vec2 q) {
+    int sum = 0;
+    for (uint k = 0u; k < 3u; ++k) {
+        vec2 from = triangle.corners[k];
+        vec2 to = triangle.corners[(k + 1u) % 3u];
+        bool up = to.y > from.y;
+        vec2 low = up ? from : to;
+        vec2 high = up ? to : from;
+        if (!(low.y <= q.y && high.y > q.y)) continue;
+        // always the same way round, so both neighbours of an edge get the same sign
+        precise float side = (high.x - low.x) * (q.y - low.y) - (high.y - low.y) * (q.x - low.x);
+        if (side > 0.0) sum += up ? 1 : -1;
+    }
+    return sum;
+}
+
+// A caster at a place of the ray.
+struct Met {
+    bool inside; // just behind it
+    float next;  // where it begins or ends next
+};
+
+// Of an operand that is a mesh, at t of the ray from p, which lies on `surface`, towards the sun. An operand of splines
+// has no triangles: it is as if it were not there.
+Met meet_mesh(uint shell, vec3 middle, SunTile tile, vec3 p, uint surface, float t, inout uint steps) {
+    Met met = Met(false, NEVER);
+    vec2 q = vec2(dot(sun.right, p - middle), dot(sun.up, p - middle));
+    int around = 0;
+    for (uint i = tile.first_triangle; i < tile.end_triangle; ++i) {
+        ++steps;
+        SunTriangle triangle = sun_triangles[tile_triangles[i]];
+        // the point's own plane is crossed at 0
+        if (triangle.shell != shell || triangle.surface == surface) continue;
+        int sum = turns(triangle, q);
+        if (sum == 0) continue;
+        vec3 o = p - caster_centres[triangle.surface];
+        Span s = surface_span(caster_surfaces[triangle.surface], o, sun.towards);
+        float at = s.lo > -NEVER ? s.lo : s.hi;
+        if (!(at > t)) continue;
+        around += sum;
+        met.next = min(met.next, at);
+    }
+    met.inside = around != 0;
+    return met;
 }
 
 // Whether the sun lights the point at this depth of the pixel's ray; `n` is the face's unit normal on the side that is
@@ -114,7 +172,8 @@ bool in_sun(Ray ray, float depth, vec3 n, uint surface) {
     // a driver that ends long loops is found by what is missing
     uint wanted = 0u;
     uint steps = 0u;
-    uint most = 4u * (tile.end - tile.first) + 1u; // four events a leaf
+    // four events a leaf, one a triangle
+    uint most = 4u * (tile.end - tile.first) + (tile.end_triangle - tile.first_triangle) + 1u;
     for (uint scan = 0u; scan < most && !done; ++scan) {
         uint at = tile.entry;
         float next = NEVER;
@@ -123,15 +182,23 @@ bool in_sun(Ray ray, float depth, vec3 n, uint surface) {
             ++steps;
             TileLeaf here = sun_leaves[i];
             bool is_kept = i - tile.first < SUN_KEPT;
-            Span s;
-            if (is_kept && scan > 0u) {
-                s = kept[i - tile.first];
+            Leaf leaf = casters[here.leaf];
+            Met met;
+            if ((leaf.flags & LEAF_SHELL) != 0u) {
+                met = meet_mesh(leaf.first, caster_middles[here.leaf], tile, p, surface, t, steps);
+                wanted += tile.end_triangle - tile.first_triangle;
             } else {
-                s = caster_span(casters[here.leaf], p, surface);
-                if (is_kept) kept[i - tile.first] = s;
+                Span s;
+                if (is_kept && scan > 0u) {
+                    s = kept[i - tile.first];
+                } else {
+                    s = caster_span(leaf, p, surface);
+                    if (is_kept) kept[i - tile.first] = s;
+                }
+                met = Met(inside_span(s, t), next_of_span(s, t));
             }
-            if (i == at) at = inside_span(s, t) ? here.in_exit : here.out_exit;
-            next = min(next, next_of_span(s, t));
+            if (i == at) at = met.inside ? here.in_exit : here.out_exit;
+            next = min(next, met.next);
         }
         lit = at != EXIT_TRUE || (scan == 0u && next * rise <= rounding);
         done = !lit || next >= NEVER;

@@ -21,4 +21,15 @@ pub struct SunTile {
     pub first: u32,
     pub end: u32,
     pub entry: u32,
+    pub first_triangle: u32,
+    pub end_triangle: u32,
+}
+
+/// A triangle of an operand, as the sun sees it.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct SunTriangle {
+    pub corners: [[f32; 2]; 3],
+    pub shell: u32,
+    pub surface: u32,
 }

@@ -10,10 +10,13 @@ impl<'a> Frame<'a> {
         let sun = self.sun?;
         // where nothing casts shadows the shader reads but the first
         let (tiles, leaves) = self.scene.sun.as_ref().map_or((sun, sun), |s| (&s.tiles, &s.leaves));
+        let triangles = self.scene.sun.as_ref().and_then(|s| s.triangles.as_ref());
+        let [triangles, listed] = triangles.map_or([sun; 2], |t| t.each_ref());
         let solids = self.scene.solids.as_ref().zip(self.centres);
-        let [casters, sides, surfaces, centres] =
-            solids.map_or([sun; 4], |(s, c)| [&s.leaves, &s.leaf_surfaces, &s.surfaces, c.surfaces]);
-        Some([sun, tiles, leaves, casters, sides, surfaces, centres, &self.buffers.counters])
+        let [casters, sides, surfaces, centres, middles] =
+            solids.map_or([sun; 5], |(s, c)| [&s.leaves, &s.leaf_surfaces, &s.surfaces, c.surfaces, c.leaves]);
+        let counters = &self.buffers.counters;
+        Some([sun, tiles, leaves, casters, sides, surfaces, centres, middles, triangles, listed, counters])
     }
 
     /// Draws with the sun, which counts the rays to it that the driver cut off.

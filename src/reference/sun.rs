@@ -38,20 +38,20 @@ const RINGS: u32 = 8;
 const PLACES: u32 = 16;
 
 impl SunTracer {
-    /// `towards` is that of [`SceneSettings::sun`](crate::picture::SceneSettings::sun), finite and not 0: operands without equations, parts and
-    /// what is seen through cast no shadow.
+    /// `towards` is that of [`SceneSettings::sun`](crate::picture::SceneSettings::sun), finite and not 0: operands that are
+    /// spline parts, placed parts and what is seen through cast no shadow.
     ///
     /// # Errors
     /// [`SolidError`] when an expression is too large.
     pub fn new(model: &Model, towards: DVec3) -> Result<Self, SolidError> {
         let opaque = model.items(false)?.opaque;
         let whole = Solid::union(&opaque)?;
-        let analytic: Vec<bool> = whole.primitives().iter().map(|p| p.shape.is_analytic()).collect();
-        let tree = whole.tree().fold(|p| (!analytic[p as usize]).then_some(false));
+        let splines = |p: &Primitive| matches!(&p.shape, Shape::Part(part) if !part.faces.is_empty());
+        let kept: Vec<bool> = whole.primitives().iter().map(|p| !splines(p)).collect();
+        let tree = whole.tree().fold(|p| (!kept[p as usize]).then_some(false));
         // nobody names what is left out, and it may be large
         let small = Shape::Sphere { radius: 1.0 };
-        let kept = whole.primitives().iter().zip(&analytic);
-        let primitives: Vec<Primitive> = kept
+        let primitives: Vec<Primitive> = (whole.primitives().iter().zip(&kept))
             .map(|(p, kept)| if *kept { p.clone() } else { Primitive { shape: small.clone(), ..p.clone() } })
             .collect();
         let casters = Solid::new(primitives, tree)?;

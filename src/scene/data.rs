@@ -88,7 +88,7 @@ impl SceneData {
         let lists = items.map_or_else(|| Lists::union(&model.solids), |items| Lists::of(items, all));
         let solids = SolidData::new(&lists, settings.solids)?;
         let sun = settings.sun.map(|towards| SunData::new(towards, &solids));
-        let shadowless = sun.as_ref().map_or(0, |_| model.instances.len() + seen_through + solids.shells_of_union());
+        let shadowless = sun.as_ref().map_or(0, |_| model.instances.len() + seen_through + solids.splines_of_union());
         let volume = model.trim.as_ref().map(|volume| SolidData::volume(volume, way)).transpose()?.flatten();
         let mut data = Self {
             is_layered: (clear || settings.highlight.is_some()) && solids.is_followed(),

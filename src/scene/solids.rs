@@ -229,14 +229,10 @@ impl SolidData {
         (self.followed as usize) < self.leaves.len()
     }
 
-    /// Operands without equations of what is drawn as one union.
-    pub(super) fn shells_of_union(&self) -> usize {
-        let union = &self.leaves[..self.followed as usize];
-        let mut shells: Vec<u32> =
-            union.iter().filter(|l| l.flags & abi::LEAF_SHELL != 0).map(|leaf| leaf.first).collect();
-        shells.sort_unstable();
-        shells.dedup();
-        shells.len()
+    /// Spline parts among the operands of what is drawn as one union.
+    pub(super) fn splines_of_union(&self) -> usize {
+        let in_union = |o: &&shell::Operand| self.shell_leaves[o.shell as usize] < self.followed;
+        self.operands.iter().filter(in_union).filter(|o| o.meshes.is_empty()).count()
     }
 
     /// The volume that trims a scene; `None` when it is everywhere.

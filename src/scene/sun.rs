@@ -4,15 +4,15 @@
 //!        ☀  rays are parallel: one picture for all frames         right ▶
 //!        │                                              ┌────┬────┬────┐ up ▲
 //!   ┌────┴────┐  boxes of leaves ──────────────────────▶│ A  │ AB │ B  │        tiles, each with the leaves whose
-//!   ▼         ▼                                         └────┴────┴────┘        boxes reach into it, and their Blist
-//! ```
+//!   ▼         ▼                                         └────┴────┴────┘        boxes reach into it, and their Blist;
+//! ```                                                                          and triangles of those that are meshes
 //!
 //! As passes `solid_rects` to `solid_fold` have it for the eye, but made once, on the CPU and in `f64`: it depends on
-//! the scene only. A point beside the picture belongs to the nearest tile, since no leaf that is missing there reaches
+//! the scene and the sun only. A point beside the picture belongs to the nearest tile, since no leaf that is missing there reaches
 //! beyond the picture.
 
 use super::solids::SolidData;
-use crate::abi::{self, EXIT_FALSE, EXIT_TRUE, LEAF_FALLS, LEAF_UNBOUNDED, Leaf, SunTile, TileLeaf};
+use crate::abi::{self, EXIT_FALSE, EXIT_TRUE, LEAF_FALLS, LEAF_UNBOUNDED, Leaf, SunTile, SunTriangle, TileLeaf};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -32,13 +32,17 @@ pub(crate) struct SunData {
     across: [u32; 2],
     pub tiles: Vec<SunTile>,
     pub leaves: Vec<TileLeaf>,
+    pub triangles: Vec<SunTriangle>,
+    /// Of each tile.
+    pub tile_triangles: Vec<u32>,
 }
 
-/// Tiles to a leaf, and at most: lists of some leaves each, where leaves lie beside each other.
-const TILES_A_LEAF: usize = 4;
-const MOST_TILES: usize = 1 << 14;
-/// Entries of all lists to a leaf, above those that few leaves may have: leaves that lie before each other get larger tiles.
-const ENTRIES_A_LEAF: u64 = 32;
+/// Tiles to a leaf or triangle, and at most: lists of some each, where they lie beside each other.
+const TILES_EACH: usize = 4;
+const MOST_TILES: usize = 1 << 16;
+/// Entries of all lists to a leaf or triangle, above those that few may have: what lies before each other gets larger
+/// tiles.
+const ENTRIES_EACH: u64 = 32;
 const FEW_ENTRIES: u64 = 1 << 16;
 /// A box reaches this far beside itself, in tiles: above the rounding of a point seen from an eye that is a thousand
 /// scenes away.
@@ -46,11 +50,27 @@ const MARGIN: f64 = 1.0 / 32.0;
 /// Of a tile, model units: single precision holds its inverse.
 const LEAST_SIDE: f64 = 1e-30;
 
-/// Tiles from first to last that a leaf reaches.
+/// A box across the rays, model units.
+#[derive(Clone, Copy)]
+struct Square {
+    low: DVec2,
+    high: DVec2,
+}
+
+/// Tiles from first to last that something reaches.
 #[derive(Clone, Copy)]
 struct Rect {
     first: [u32; 2],
     last: [u32; 2],
+}
+
+/// A triangle of an operand, across the rays, model units.
+struct Flat {
+    corners: [DVec2; 3],
+    /// Middle of the operand.
+    centre: DVec2,
+    shell: u32,
+    surface: u32,
 }
 
 impl SunData {
@@ -59,73 +79,136 @@ impl SunData {
         let towards = (towards / towards.abs().max_element()).normalize();
         let (right, up) = towards.any_orthonormal_pair();
         let casters = &solids.leaves[..solids.followed as usize];
-        let mut sun =
-            Self { towards, right, up, corner: DVec2::ZERO, side: 1.0, across: [0; 2], tiles: vec![], leaves: vec![] };
+        let mut sun = Self {
+            towards,
+            right,
+            up,
+            corner: DVec2::ZERO,
+            side: 1.0,
+            across: [0; 2],
+            tiles: Vec::new(),
+            leaves: Vec::new(),
+            triangles: Vec::new(),
+            tile_triangles: Vec::new(),
+        };
         if casters.is_empty() {
             return sun;
         }
-        let boxes: Vec<Option<(DVec2, DVec2)>> =
-            casters.iter().zip(&solids.leaf_centres).map(|(leaf, centre)| sun.box_of(leaf, *centre)).collect();
+        let leaf = |(leaf, centre): (&Leaf, &DVec3)| sun.square_of(leaf, *centre);
+        let boxes: Vec<Option<Square>> = casters.iter().zip(&solids.leaf_centres).map(leaf).collect();
+        let triangles = sun.flattened(solids);
         let ends = boxes.iter().flatten();
-        let (low, high) = ends.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), b| (lo.min(b.0), hi.max(b.1)));
+        let (low, high) =
+            ends.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), b| (lo.min(b.low), hi.max(b.high)));
         let size = if low.cmple(high).all() { high - low } else { DVec2::ZERO };
         sun.corner = if low.is_finite() { low } else { DVec2::ZERO };
-        let wanted = (TILES_A_LEAF * casters.len()).clamp(1, MOST_TILES) as f64;
+        let count = casters.len() + triangles.len();
+        let wanted = (TILES_EACH * count).clamp(1, MOST_TILES) as f64;
         // square tiles, `wanted` of them, or a row of as many
         let square = size.x.sqrt() * size.y.sqrt() / wanted.sqrt();
         sun.side = square.max(size.max_element() / wanted).max(LEAST_SIDE);
-        let most = FEW_ENTRIES + ENTRIES_A_LEAF * casters.len() as u64;
-        let rects = loop {
+        let most = FEW_ENTRIES + ENTRIES_EACH * count as u64;
+        let (of_leaves, of_triangles) = loop {
             sun.across = size.to_array().map(|s| (s / sun.side).ceil().clamp(1.0, MOST_TILES as f64) as u32);
-            let rects: Vec<Rect> = boxes.iter().map(|b| sun.rect_of(*b)).collect();
-            let entries: u64 = rects.iter().map(Rect::count).sum();
+            let of_leaves: Vec<Rect> = boxes.iter().map(|b| sun.rect_of(*b)).collect();
+            let of_triangles: Vec<Rect> = triangles.iter().map(|t| sun.rect_of(Some(t.square()))).collect();
+            let entries: u64 = of_leaves.iter().chain(&of_triangles).map(Rect::count).sum();
             if entries <= most || sun.across == [1; 2] {
-                break rects;
+                break (of_leaves, of_triangles);
             }
             sun.side *= 2.0;
         };
-        sun.list(casters, &rects);
+        sun.triangles = triangles.iter().map(|t| t.stored(sun.side)).collect();
+        sun.list(casters, &of_leaves, &of_triangles);
         sun
     }
 
-    /// Where a leaf is across the rays; `None` everywhere.
-    fn box_of(&self, leaf: &Leaf, centre: DVec3) -> Option<(DVec2, DVec2)> {
-        let half = DVec3::from_array(leaf.half_size.map(f64::from));
-        let bounded = leaf.flags & LEAF_UNBOUNDED == 0 && half.is_finite() && centre.is_finite();
-        let middle = DVec2::new(self.right.dot(centre), self.up.dot(centre));
-        let reach = DVec2::new(self.right.abs().dot(half), self.up.abs().dot(half));
-        bounded.then_some((middle - reach, middle + reach))
+    fn flat(&self, p: DVec3) -> DVec2 {
+        DVec2::new(self.right.dot(p), self.up.dot(p))
     }
 
-    fn rect_of(&self, place: Option<(DVec2, DVec2)>) -> Rect {
+    /// Where a leaf is across the rays; `None` everywhere.
+    fn square_of(&self, leaf: &Leaf, centre: DVec3) -> Option<Square> {
+        let half = DVec3::from_array(leaf.half_size.map(f64::from));
+        let bounded = leaf.flags & LEAF_UNBOUNDED == 0 && half.is_finite() && centre.is_finite();
+        let (middle, reach) = (self.flat(centre), DVec2::new(self.right.abs().dot(half), self.up.abs().dot(half)));
+        bounded.then_some(Square { low: middle - reach, high: middle + reach })
+    }
+
+    /// The triangles of the union's operands that are meshes.
+    fn flattened(&self, solids: &SolidData) -> Vec<Flat> {
+        let mut all = Vec::new();
+        for operand in solids.operands.iter().filter(|o| solids.shell_leaves[o.shell as usize] < solids.followed) {
+            let centre = self.flat(solids.leaf_centres[solids.shell_leaves[operand.shell as usize] as usize]);
+            let meshes = operand.meshes.clone();
+            for (mesh, corners) in solids.operand_meshes[meshes.clone()].iter().zip(&solids.operand_draws[meshes]) {
+                let triangles = &solids.operand_triangles[corners.start as usize / 3..corners.end as usize / 3];
+                for (k, triangle) in triangles.iter().enumerate() {
+                    let corners = triangle.map(|v| {
+                        let own = DVec3::from(solids.operand_positions[v as usize].map(f64::from)) + operand.origin;
+                        self.flat(operand.primitive.transform.transform_point3(own))
+                    });
+                    let surface = solids.leaf_surfaces[mesh.first_side as usize + k].surface >> 1;
+                    all.push(Flat { corners, centre, shell: operand.shell, surface });
+                }
+            }
+        }
+        all
+    }
+
+    fn rect_of(&self, place: Option<Square>) -> Rect {
         let last = self.across.map(|n| n - 1);
-        let Some((low, high)) = place else { return Rect { first: [0; 2], last } };
+        let Some(Square { low, high }) = place else { return Rect { first: [0; 2], last } };
         let tile = |at: f64, k: usize| at.floor().clamp(0.0, f64::from(last[k])) as u32;
         let (first, end) = ((low - self.corner) / self.side - MARGIN, (high - self.corner) / self.side + MARGIN);
         Rect { first: [tile(first.x, 0), tile(first.y, 1)], last: [tile(end.x, 0), tile(end.y, 1)] }
     }
 
-    /// The leaves of each tile, in order, and their exits.
-    fn list(&mut self, casters: &[Leaf], rects: &[Rect]) {
-        let mut lists = vec![Vec::new(); self.across[0] as usize * self.across[1] as usize];
-        for (leaf, rect) in (0u32..).zip(rects) {
-            for y in rect.first[1]..=rect.last[1] {
-                let row = (y * self.across[0]) as usize;
-                let tiles = &mut lists[row + rect.first[0] as usize..=row + rect.last[0] as usize];
-                tiles.iter_mut().for_each(|list| list.push(leaf));
-            }
-        }
-        let folded: Vec<_> = lists.par_iter().map(|list| Folded::new(casters, list)).collect();
-        for tile in folded {
-            let first = self.leaves.len() as u32;
+    /// The leaves of each tile, in order, and their exits; and the triangles.
+    fn list(&mut self, casters: &[Leaf], of_leaves: &[Rect], of_triangles: &[Rect]) {
+        let (starts, leaves) = self.by_tile(of_leaves);
+        let (triangle_starts, triangles) = self.by_tile(of_triangles);
+        self.tile_triangles = triangles;
+        let list = |ends: &[u32]| Folded::new(casters, &leaves[ends[0] as usize..ends[1] as usize]);
+        let folded: Vec<Folded> = starts.par_windows(2).map(list).collect();
+        for (n, tile) in folded.into_iter().enumerate() {
+            let first = starts[n];
             let place = |to: u32| if to >= EXIT_FALSE { to } else { first + to };
             self.leaves.extend(tile.leaves.iter().map(|l| TileLeaf {
                 leaf: l.leaf,
                 in_exit: place(l.in_exit),
                 out_exit: place(l.out_exit),
             }));
-            self.tiles.push(SunTile { first, end: self.leaves.len() as u32, entry: place(tile.entry) });
+            self.tiles.push(SunTile {
+                first,
+                end: starts[n + 1],
+                entry: place(tile.entry),
+                first_triangle: triangle_starts[n],
+                end_triangle: triangle_starts[n + 1],
+            });
         }
+    }
+
+    /// Who reaches each tile, in order, and where its list begins.
+    fn by_tile(&self, rects: &[Rect]) -> (Vec<u32>, Vec<u32>) {
+        let across = self.across[0];
+        let tiles = |r: &Rect| {
+            let Rect { first, last } = *r;
+            (first[1]..=last[1]).flat_map(move |y| (first[0]..=last[0]).map(move |x| (y * across + x) as usize))
+        };
+        let mut starts = vec![0; across as usize * self.across[1] as usize + 1];
+        rects.iter().flat_map(tiles).for_each(|n| starts[n + 1] += 1);
+        for n in 1..starts.len() {
+            starts[n] += starts[n - 1];
+        }
+        let (mut next, mut lists) = (starts.clone(), vec![0; starts[starts.len() - 1] as usize]);
+        for (number, rect) in (0u32..).zip(rects) {
+            for n in tiles(rect) {
+                lists[next[n] as usize] = number;
+                next[n] += 1;
+            }
+        }
+        (starts, lists)
     }
 
     /// For the frames of an eye.
@@ -148,7 +231,21 @@ impl SunData {
 
     /// What frames need once the GPU has the rest.
     pub(super) fn directions_only(self) -> Self {
-        Self { tiles: Vec::new(), leaves: Vec::new(), ..self }
+        let (tiles, leaves) = (Vec::new(), Vec::new());
+        Self { tiles, leaves, triangles: Vec::new(), tile_triangles: Vec::new(), ..self }
+    }
+}
+
+impl Flat {
+    fn square(&self) -> Square {
+        let [a, b, c] = self.corners;
+        Square { low: a.min(b).min(c), high: a.max(b).max(c) }
+    }
+
+    /// In tiles, from the operand's middle.
+    fn stored(&self, side: f64) -> SunTriangle {
+        let corners = self.corners.map(|p| ((p - self.centre) / side).as_vec2().to_array());
+        SunTriangle { corners, shell: self.shell, surface: self.surface }
     }
 }
 
@@ -339,7 +436,7 @@ mod tests {
         };
         let sun = |data: &SolidData| SunData::new(DVec3::Z, data);
         let many = sun(&stack(20_000, [1.0; 3]));
-        assert!(many.leaves.len() as u64 <= FEW_ENTRIES + ENTRIES_A_LEAF * 20_000 && !many.tiles.is_empty());
+        assert!(many.leaves.len() as u64 <= FEW_ENTRIES + ENTRIES_EACH * 20_000 && !many.tiles.is_empty());
         for half in [[0.0; 3], [1.0, 0.0, 0.0], [f32::MAX; 3], [1e-40; 3]] {
             let few = sun(&stack(3, half));
             assert!((1..=4 * 12).contains(&few.tiles.len()), "{half:?}: {}", few.tiles.len());

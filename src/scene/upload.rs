@@ -34,6 +34,8 @@ pub(crate) struct Scene {
 pub(crate) struct SunTiles {
     pub tiles: Buffer,
     pub leaves: Buffer,
+    /// Those of operands, and which each tile sees; only where there are some.
+    pub triangles: Option<[Buffer; 2]>,
 }
 
 /// A volume's switches, and their surfaces.
@@ -204,6 +206,14 @@ impl Scene {
                     Ok(SunTiles {
                         tiles: persistent(&mut uploads, cmd, "sun tiles", &sun.tiles)?,
                         leaves: persistent(&mut uploads, cmd, "sun leaves", leaves)?,
+                        triangles: (!sun.tile_triangles.is_empty())
+                            .then(|| {
+                                Ok([
+                                    persistent(&mut uploads, cmd, "sun triangles", &sun.triangles)?,
+                                    persistent(&mut uploads, cmd, "sun tile triangles", &sun.tile_triangles)?,
+                                ])
+                            })
+                            .transpose()?,
                     })
                 })
                 .transpose()?,

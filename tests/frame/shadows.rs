@@ -277,6 +277,39 @@ fn every_kind_of_face_is_shaded() {
     assert_silent(renderer);
 }
 
+/// Operands that are meshes cast shadows, on themselves and on a slab below: whole ones, mirrored and coincident ones,
+/// inverted and doubled ones.
+#[test]
+fn meshes_cast_shadows() {
+    let mut renderer = watched(&Model::default());
+    let mut wrong = Vec::new();
+    for (name, mut m) in operands::meshes().into_iter().chain(operands::unclean()) {
+        let bounds = m.bounds();
+        let (c, r) = (bounds.centre(), bounds.diagonal());
+        let below = DVec3::new(0.0, 0.0, bounds.min.z - c.z - 0.05 * r);
+        let slab = block(
+            (c + below - r * DVec3::new(0.8, 0.8, 0.1)).into(),
+            (c + below + r * DVec3::new(0.8, 0.8, 0.0)).into(),
+        );
+        m.solids.push(one(Primitive { id: 1000, ..slab }));
+        let camera = perspective(&m, (96, 72));
+        let (tracer, sun) = (Tracer::new(&m), SunTracer::new(&m, SUN).unwrap());
+        renderer.upload_with(&m, sunny(SUN)).unwrap();
+        match judged(&mut renderer, (&tracer, &sun), &camera) {
+            Err(fault) => wrong.push(format!("{name}: {fault}")),
+            Ok((light, picture)) => {
+                let (all, lit) = facing(&picture, &camera, SUN);
+                if lit < 200 || all - lit < 50 || picture.stats.shadowless > 0 {
+                    wrong
+                        .push(format!("{name}: {lit} of {all} lit, {} cast none, {light:?}", picture.stats.shadowless));
+                }
+            }
+        }
+    }
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+    assert_silent(renderer);
+}
+
 /// The eye within a solid, within a hole of one; the near plane through the middle: the light is not cut.
 #[test]
 fn the_eye_may_be_anywhere() {

@@ -86,7 +86,7 @@ pub fn clamps(stats: &FrameStats) {
     }
     if stats.shadowless > 0 {
         tracing::warn!(
-            "{} parts, operands without equations and solids to be seen through cast no shadow",
+            "{} parts, operands of spline faces and solids to be seen through cast no shadow",
             stats.shadowless
         );
     }
