@@ -13,7 +13,7 @@
 
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
-    Pipeline, Texels,
+    Pipeline, Resource, Texels,
 };
 use crate::shaders;
 use ash::vk;
@@ -41,22 +41,38 @@ pub(crate) const BEHIND_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// The pass: a pipeline for each kind of thing that the scene has.
 pub(crate) struct Resolve {
-    /// And the background, in every scene.
-    patches: Pipeline,
+    /// And the background, or it alone.
+    patches: Patches,
     meshes: Option<Pipeline>,
     solids: Option<Pipeline>,
     operands: Option<Pipeline>,
 }
 
+enum Patches {
+    Some(Pipeline),
+    None { background: Pipeline },
+}
+
 /// What the scene asks of the pass.
 #[derive(Clone, Copy)]
 pub(crate) struct Kinds {
+    /// Beside those that bound operands.
+    pub patches: bool,
     pub rational: bool,
     pub meshes: bool,
-    /// Boolean ones, and whether a torus is among their surfaces.
-    pub solids: Option<bool>,
+    /// Boolean ones.
+    pub solids: Option<SolidKinds>,
     /// Patches bound operands of Boolean solids.
     pub operands: bool,
+}
+
+/// What Boolean solids ask of the pass.
+#[derive(Clone, Copy)]
+pub(crate) struct SolidKinds {
+    /// A torus is among their surfaces.
+    pub tori: bool,
+    /// It is known which tiles may see them.
+    pub tiles: bool,
 }
 
 /// Formats that the host draws into.
@@ -126,6 +142,8 @@ pub(crate) struct SolidBindings<'a> {
     pub others: &'a Image,
     /// Where rays cross operands without equations.
     pub fragments: Option<&'a Buffer>,
+    /// How many tiles the picture has, and the squares of them that may see a solid; `None` where nobody asked.
+    pub tiles: Option<(u32, &'a Buffer)>,
 }
 
 impl Resolve {
@@ -144,15 +162,12 @@ impl Resolve {
         let mut bindings = [Binding::Storage; 10];
         bindings[6] = Binding::Texels;
         bindings[8..].fill(Binding::StorageImage);
-        let pipeline = |name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
+        let over = |vertex, name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
             Pipeline::graphics(
                 device,
                 &GraphicsInfo {
                     name: &format!("resolve ({name}{of_samples})"),
-                    stages: &[
-                        (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
-                        (vk::ShaderStageFlags::FRAGMENT, fragment),
-                    ],
+                    stages: &[(vk::ShaderStageFlags::VERTEX, vertex), (vk::ShaderStageFlags::FRAGMENT, fragment)],
                     bindings,
                     push_bytes: 0,
                     constants,
@@ -170,17 +185,22 @@ impl Resolve {
                 },
             )
         };
+        let pipeline = |name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
+            over(shaders::RESOLVE_VERT, name, fragment, bindings, constants)
+        };
         let aovs = (HAS_AOVS, u32::from(formats.aovs));
         let behind = (BEHIND, u32::from(matches!(into, Destination::Behind { .. })));
         let mut of_mesh = [Binding::Storage; 10];
         of_mesh[8..].fill(Binding::StorageImage);
         let mesh = |()| pipeline("mesh", shaders::RESOLVE_MESH_FRAG, &of_mesh, &[aovs, behind]);
         let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
-        let mut of_solid = [Binding::Storage; 7];
-        of_solid[5..].fill(Binding::StorageImage);
-        let solid = |tori: bool| {
-            let constants = [aovs, behind, (SOLIDS_HAVE_TORI, u32::from(tori))];
-            pipeline("solid", shaders::RESOLVE_SOLID_FRAG, &of_solid, &constants)
+        let mut of_solid = [Binding::Storage; 8];
+        of_solid[5..7].fill(Binding::StorageImage);
+        let solid = |kinds: SolidKinds| {
+            let constants = [aovs, behind, (SOLIDS_HAVE_TORI, u32::from(kinds.tori))];
+            let (vertex, bindings) =
+                if kinds.tiles { (shaders::RESOLVE_SOLID_VERT, 8) } else { (shaders::RESOLVE_VERT, 7) };
+            over(vertex, "solid", shaders::RESOLVE_SOLID_FRAG, &of_solid[..bindings], &constants)
         };
         let solids = kinds.solids.map(solid).transpose()?;
         let mut of_operand = [Binding::Storage; 11];
@@ -191,17 +211,24 @@ impl Resolve {
             pipeline("operand", shaders::RESOLVE_OPERAND_FRAG, &of_operand, &constants)
         };
         let operands = kinds.operands.then_some(()).map(operand).transpose()?;
-        let weights = if kinds.rational { "rational" } else { "polynomial" };
-        let constants = [
-            (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
-            aovs,
-            behind,
-            (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some())),
-        ];
-        Ok(Self { patches: pipeline(weights, shaders::RESOLVE_FRAG, &bindings, &constants)?, meshes, solids, operands })
+        let patches = if kinds.patches {
+            let weights = if kinds.rational { "rational" } else { "polynomial" };
+            let constants = [
+                (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
+                aovs,
+                behind,
+                (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some())),
+            ];
+            Patches::Some(pipeline(weights, shaders::RESOLVE_FRAG, &bindings, &constants)?)
+        } else {
+            let bindings = [Binding::Storage, Binding::StorageImage, Binding::StorageImage];
+            let background = pipeline("background", shaders::RESOLVE_BACKGROUND_FRAG, &bindings, &[aovs, behind])?;
+            Patches::None { background }
+        };
+        Ok(Self { patches, meshes, solids, operands })
     }
 
-    /// One triangle over the targets for each kind of thing.
+    /// One triangle over the targets for each kind of thing; for Boolean solids the tiles that may see one.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
@@ -215,8 +242,15 @@ impl Resolve {
         cmd.rendering(size, colour, depth, || {
             let buffers = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items].map(Into::into);
             let rest = [b.points.into(), b.instances.into(), b.visibility.into()];
-            let resources: Vec<_> = buffers.into_iter().chain(rest).chain([b.others.into()]).collect();
-            cmd.bind(&self.patches, &resources, &[]);
+            match &self.patches {
+                Patches::Some(pipeline) => {
+                    let resources: Vec<_> = buffers.into_iter().chain(rest).chain([b.others.into()]).collect();
+                    cmd.bind(pipeline, &resources, &[]);
+                }
+                Patches::None { background } => {
+                    cmd.bind(background, &[b.frame.into(), b.visibility.into(), b.others.into()], &[]);
+                }
+            }
             cmd.draw(3, 0, 1);
             if let (Some(pipeline), Some(m)) = (&self.meshes, meshes) {
                 let placed = [m.frame, m.views, m.instances, m.mesh_instances, m.meshes].map(Into::into);
@@ -228,9 +262,13 @@ impl Resolve {
             }
             if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
                 let solid = [s.frame, s.leaves, s.leaf_surfaces, s.surfaces, s.surface_centres].map(Into::into);
-                let resources: Vec<_> = solid.into_iter().chain([s.visibility.into(), s.others.into()]).collect();
+                let mut resources: Vec<_> = solid.into_iter().chain([s.visibility.into(), s.others.into()]).collect();
+                resources.extend(s.tiles.map(|(_, squares)| Resource::from(squares)));
                 cmd.bind(pipeline, &resources, &[]);
-                cmd.draw(3, 0, 1);
+                match s.tiles {
+                    Some((count, _)) => cmd.draw_instances(0..6, 0..count),
+                    None => cmd.draw(3, 0, 1),
+                }
                 if let (Some(pipeline), Some(fragments)) = (&self.operands, s.fragments) {
                     let resources: Vec<_> =
                         buffers.into_iter().chain(rest).chain([s.others.into(), fragments.into()]).collect();
