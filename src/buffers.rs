@@ -122,6 +122,7 @@ pub(crate) struct TileBuffers {
     pub tile_starts: Buffer,
     pub tile_leaves: Buffer,
     pub tile_entries: Buffer,
+    pub tile_squares: Buffer,
 }
 
 /// Faces peeled off by way `blister`.
@@ -235,6 +236,7 @@ impl Buffers {
                                     tile_starts: words("solid tile starts", tiles + 1)?,
                                     tile_leaves: structs("solid tile leaves", room, size_of::<TileLeaf>())?,
                                     tile_entries: words("solid tile entries", tiles)?,
+                                    tile_squares: words("solid tile squares", tiles)?,
                                 })
                             })
                             .transpose()?,

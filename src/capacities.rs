@@ -6,7 +6,7 @@
 //!                                                  └──────────────── grown ◀──────────┘
 //! ```
 
-use crate::abi::{Counters, Fragment, SubPatch, TileLeaf};
+use crate::abi::{BLOCK, Counters, Fragment, SubPatch, TILE, TileLeaf};
 use crate::passes::scan;
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
@@ -124,6 +124,8 @@ const MOST_THREADS: u32 = MOST_GROUPS * 64;
 const MOST_TRIANGLES: u32 = u32::MAX / 3;
 /// What the bits of the visibility image tell apart.
 const MOST_SEEN: u32 = 1 << 29;
+/// Of Boolean solids, to begin with.
+const LEAVES_IN_A_TILE: u32 = 16;
 /// Layers of faces recorded in any case.
 const FEWEST_LAYERS: u32 = 4;
 /// Of faces, each of which asks every primitive.
@@ -163,9 +165,20 @@ impl Capacities {
             intercepts: counted * (1 << 18).max(4 * counts.strips),
             doubts: trimmed * (1 << 14),
             block_leaves: counts.leaves.saturating_mul(4),
-            tile_leaves: if counts.leaves > 0 { counts.leaves.saturating_mul(16).max(1 << 14) } else { 0 },
+            tile_leaves: counts.leaves.saturating_mul(16),
             fragments: if counts.has_fragments() { 1 << 18 } else { 0 },
             layers: if counts.blister { FEWEST_LAYERS } else { 0 },
+        }
+    }
+
+    /// The same, with room for a few leaves in every tile of a picture of this size: most often that is enough at once.
+    pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32)) -> Self {
+        let few = counts.leaves.min(LEAVES_IN_A_TILE);
+        let within = |side| few.saturating_mul(size.0.div_ceil(side).saturating_mul(size.1.div_ceil(side)));
+        Self {
+            block_leaves: self.block_leaves.max(within(TILE * BLOCK)),
+            tile_leaves: self.tile_leaves.max(within(TILE)),
+            ..self
         }
     }
 

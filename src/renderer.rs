@@ -404,6 +404,7 @@ impl Renderer {
             (Some(had), Some(c)) if had == loaded.capacities => had.grown(&c, range)?,
             _ => loaded.capacities,
         };
+        let capacities = capacities.for_picture(loaded.counts, size);
         let fits = |b: &Buffers| b.visibility.size() == size && b.capacities.takes_as_much(capacities);
         let fits = loaded.buffers.as_ref().is_some_and(fits);
         let made = (!fits).then(|| Buffers::new(&self.device, loaded.counts, capacities, size)).transpose()?;

@@ -4,7 +4,7 @@
 //!   item, (u, v) of the triangle ──Newton──▶ (u, v) whose exact point projects to the pixel's centre
 //!   triangle of a mesh ──plane──▶   │
 //!   side of a Boolean solid ─────▶  │        a pipeline for each kind of thing: each leaves the others'
-//!   nothing ──background────────▶   │        pixels alone; in a scene with a sun each asks what lies between
+//!   nothing ──background────────▶   │        pixels alone; with a sun each asks whether it reaches the point
 //!                                   ├──▶ colour, depth into the host's targets
 //!                                   └──▶ depth, face, (u, v), normal images, when asked for
 //! ```
@@ -41,32 +41,41 @@ pub(crate) const BEHIND_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// The pass: a pipeline for each kind of thing that the scene has.
 pub(crate) struct Resolve {
-    /// And the background, in every scene.
-    patches: Pipeline,
+    /// And the background, or it alone.
+    patches: Patches,
     meshes: Option<Pipeline>,
     solids: Option<Pipeline>,
     operands: Option<Pipeline>,
 }
 
+enum Patches {
+    Some(Pipeline),
+    None { background: Pipeline },
+}
+
 /// What the scene asks of the pass.
 #[derive(Clone, Copy)]
 pub(crate) struct Kinds {
+    /// Beside those that bound operands.
+    pub patches: bool,
     pub rational: bool,
     pub meshes: bool,
-    /// Boolean ones, and whether a torus is among their surfaces.
-    pub solids: Option<bool>,
+    /// Boolean ones.
+    pub solids: Option<SolidKinds>,
     /// Patches bound operands of Boolean solids.
     pub operands: bool,
     /// The key light is a sun.
     pub sun: bool,
 }
 
-/// The shaders of one scene.
+/// The fragment shaders of a scene, one for each kind of thing.
 struct Shaders {
     patches: &'static [u32],
     meshes: &'static [u32],
     solids: &'static [u32],
     operands: &'static [u32],
+    /// In the pipelines' names.
+    light: &'static str,
 }
 
 const STUDIO: Shaders = Shaders {
@@ -74,14 +83,25 @@ const STUDIO: Shaders = Shaders {
     meshes: shaders::RESOLVE_MESH_FRAG,
     solids: shaders::RESOLVE_SOLID_FRAG,
     operands: shaders::RESOLVE_OPERAND_FRAG,
+    light: "",
 };
 
-const UNDER_SUN: Shaders = Shaders {
+const SUN: Shaders = Shaders {
     patches: shaders::RESOLVE_SUN_FRAG,
     meshes: shaders::RESOLVE_MESH_SUN_FRAG,
     solids: shaders::RESOLVE_SOLID_SUN_FRAG,
     operands: shaders::RESOLVE_OPERAND_SUN_FRAG,
+    light: ", sun",
 };
+
+/// What Boolean solids ask of the pass.
+#[derive(Clone, Copy)]
+pub(crate) struct SolidKinds {
+    /// A torus is among their surfaces.
+    pub tori: bool,
+    /// It is known which tiles may see them.
+    pub tiles: bool,
+}
 
 /// Formats that the host draws into.
 #[derive(Clone, Copy)]
@@ -150,6 +170,8 @@ pub(crate) struct SolidBindings<'a> {
     pub others: &'a Image,
     /// Where rays cross operands without equations.
     pub fragments: Option<&'a Buffer>,
+    /// How many tiles the picture has, and the squares of them that may see a solid; `None` where nobody asked.
+    pub tiles: Option<(u32, &'a Buffer)>,
 }
 
 impl Resolve {
@@ -165,29 +187,19 @@ impl Resolve {
         if formats.aovs {
             colour.extend(AOV_FORMATS.map(|format| ColourTarget { format, blend: Blend::Replace }));
         }
-        let (of, in_sun) = if kinds.sun { (UNDER_SUN, ", sun") } else { (STUDIO, "") };
-        let aovs = (HAS_AOVS, u32::from(formats.aovs));
-        let behind = (BEHIND, u32::from(matches!(into, Destination::Behind { .. })));
         let mut bindings = [Binding::Storage; 10];
         bindings[6] = Binding::Texels;
         bindings[8..].fill(Binding::StorageImage);
-        let pipeline = |name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
-            // torus or not: where a sun casts shadows, and of solids in any case
-            let tori = (SOLIDS_HAVE_TORI, u32::from(kinds.solids == Some(true)));
-            let constants: Vec<_> = constants.iter().copied().chain([aovs, behind, tori]).collect();
-            let sun = if kinds.sun { SUN_BUFFERS } else { 0 };
-            let bindings: Vec<_> = bindings.iter().copied().chain([Binding::Storage].repeat(sun)).collect();
+        let of = if kinds.sun { SUN } else { STUDIO };
+        let over = |vertex, name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
             Pipeline::graphics(
                 device,
                 &GraphicsInfo {
-                    name: &format!("resolve ({name}{of_samples}{in_sun})"),
-                    stages: &[
-                        (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
-                        (vk::ShaderStageFlags::FRAGMENT, fragment),
-                    ],
-                    bindings: &bindings,
+                    name: &format!("resolve ({name}{of_samples}{})", of.light),
+                    stages: &[(vk::ShaderStageFlags::VERTEX, vertex), (vk::ShaderStageFlags::FRAGMENT, fragment)],
+                    bindings,
                     push_bytes: 0,
-                    constants: &constants,
+                    constants,
                     topology: vk::PrimitiveTopology::TRIANGLE_LIST,
                     patch_points: 0,
                     cull: vk::CullModeFlags::NONE,
@@ -202,13 +214,29 @@ impl Resolve {
                 },
             )
         };
+        let aovs = (HAS_AOVS, u32::from(formats.aovs));
+        let behind = (BEHIND, u32::from(matches!(into, Destination::Behind { .. })));
+        let tori = (SOLIDS_HAVE_TORI, u32::from(kinds.solids.is_some_and(|s| s.tori)));
+        // what is lit: solids, and with a sun whatever they may shade
+        let lit = |vertex, name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
+            let constants = [constants, &[aovs, behind, tori]].concat();
+            let sun = if kinds.sun { &[Binding::Storage; SUN_BUFFERS][..] } else { &[] };
+            over(vertex, name, fragment, &[bindings, sun].concat(), &constants)
+        };
+        let pipeline = |name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
+            lit(shaders::RESOLVE_VERT, name, fragment, bindings, constants)
+        };
         let mut of_mesh = [Binding::Storage; 10];
         of_mesh[8..].fill(Binding::StorageImage);
         let mesh = |()| pipeline("mesh", of.meshes, &of_mesh, &[]);
         let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
-        let mut of_solid = [Binding::Storage; 7];
-        of_solid[5..].fill(Binding::StorageImage);
-        let solid = |_| pipeline("solid", of.solids, &of_solid, &[]);
+        let mut of_solid = [Binding::Storage; 8];
+        of_solid[5..7].fill(Binding::StorageImage);
+        let solid = |solid: SolidKinds| {
+            let vertex = if solid.tiles { shaders::RESOLVE_SOLID_VERT } else { shaders::RESOLVE_VERT };
+            let bindings = if solid.tiles || kinds.sun { 8 } else { 7 };
+            lit(vertex, "solid", of.solids, &of_solid[..bindings], &[])
+        };
         let solids = kinds.solids.map(solid).transpose()?;
         let mut of_operand = [Binding::Storage; 11];
         of_operand[6] = Binding::Texels;
@@ -216,12 +244,20 @@ impl Resolve {
         let rational = (SCENE_HAS_RATIONAL, u32::from(kinds.rational));
         let operand = |()| pipeline("operand", of.operands, &of_operand, &[rational]);
         let operands = kinds.operands.then_some(()).map(operand).transpose()?;
-        let weights = if kinds.rational { "rational" } else { "polynomial" };
-        let constants = [rational, (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some()))];
-        Ok(Self { patches: pipeline(weights, of.patches, &bindings, &constants)?, meshes, solids, operands })
+        let patches = if kinds.patches {
+            let weights = if kinds.rational { "rational" } else { "polynomial" };
+            let constants = [rational, (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some()))];
+            Patches::Some(pipeline(weights, of.patches, &bindings, &constants)?)
+        } else {
+            let bindings = [Binding::Storage, Binding::StorageImage, Binding::StorageImage];
+            let (vertex, fragment) = (shaders::RESOLVE_VERT, shaders::RESOLVE_BACKGROUND_FRAG);
+            Patches::None { background: over(vertex, "background", fragment, &bindings, &[aovs, behind])? }
+        };
+        Ok(Self { patches, meshes, solids, operands })
     }
 
-    /// One triangle over the targets for each kind of thing; `sun`: what [`Kinds::sun`] asks for.
+    /// One triangle over the targets for each kind of thing; for Boolean solids the tiles that may see one.
+    /// `sun`: what [`Kinds::sun`] asks for.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
@@ -235,24 +271,41 @@ impl Resolve {
         let bind = |pipeline: &Pipeline, resources: Vec<Resource<'_>>| {
             let sun = sun.into_iter().flatten().map(|buffer| (*buffer).into());
             cmd.bind(pipeline, &resources.into_iter().chain(sun).collect::<Vec<_>>(), &[]);
-            cmd.draw(3, 0, 1);
         };
         cmd.rendering(size, colour, depth, || {
             let buffers = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items].map(Into::into);
             let rest = [b.points.into(), b.instances.into(), b.visibility.into()];
-            bind(&self.patches, buffers.into_iter().chain(rest).chain([b.others.into()]).collect());
+            match &self.patches {
+                Patches::Some(pipeline) => {
+                    bind(pipeline, buffers.into_iter().chain(rest).chain([b.others.into()]).collect());
+                }
+                Patches::None { background } => {
+                    cmd.bind(background, &[b.frame.into(), b.visibility.into(), b.others.into()], &[]);
+                }
+            }
+            cmd.draw(3, 0, 1);
             if let (Some(pipeline), Some(m)) = (&self.meshes, meshes) {
                 let placed = [m.frame, m.views, m.instances, m.mesh_instances, m.meshes].map(Into::into);
                 let shape = [m.triangles, m.positions, m.normals].map(Into::into);
                 let images = [m.visibility.into(), m.others.into()];
                 bind(pipeline, placed.into_iter().chain(shape).chain(images).collect());
+                cmd.draw(3, 0, 1);
             }
             if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
                 let solid = [s.frame, s.leaves, s.leaf_surfaces, s.surfaces, s.surface_centres].map(Into::into);
-                bind(pipeline, solid.into_iter().chain([s.visibility.into(), s.others.into()]).collect());
+                let mut resources: Vec<_> = solid.into_iter().chain([s.visibility.into(), s.others.into()]).collect();
+                // the sun's come behind them in any case
+                let squares = s.tiles.map(|(_, squares)| squares).or(sun.map(|_| s.frame));
+                resources.extend(squares.map(Resource::from));
+                bind(pipeline, resources);
+                match s.tiles {
+                    Some((count, _)) => cmd.draw_instances(0..6, 0..count),
+                    None => cmd.draw(3, 0, 1),
+                }
                 if let (Some(pipeline), Some(fragments)) = (&self.operands, s.fragments) {
                     let images = [s.others.into(), fragments.into()];
                     bind(pipeline, buffers.into_iter().chain(rest).chain(images).collect());
+                    cmd.draw(3, 0, 1);
                 }
             }
         });
