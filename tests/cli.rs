@@ -236,6 +236,38 @@ fn a_model_is_cut_open() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
+/// The ball's shadow falls on the sheet away from the sun, of the scene or of the command line; that the sheet casts none is
+/// told, and the light is judged.
+#[test]
+fn the_sun_casts_shadows() {
+    let folder = std::env::temp_dir().join(format!("selvedge-sun-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let (scene, picture, camera) = (path("small.toml"), path("a.png"), path("camera.json"));
+    std::fs::write(&scene, format!("{SCENE}sun = [1, 0, 0.25]\n")).unwrap();
+    // left and right of the ball, on the sheet
+    let sides = |more: &[&str]| {
+        let draw = ["render", &scene, "-o", &picture, "--camera", "top", "--size", "96x72", "--camera-out", &camera];
+        let output = selvedge(&[&draw[..], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{more:?}: {}", text(&output.stderr));
+        assert!(text(&output.stderr).contains("cast no shadow"), "{more:?}: {}", text(&output.stderr));
+        let half: serde_json::Value = serde_json::from_slice(&std::fs::read(&camera).unwrap()).unwrap();
+        let scale = 36.0 / half["ortho"].as_f64().unwrap();
+        let bright =
+            |x: f64| pixel(&picture, (48.0 + x * scale) as u32, 36).1[..3].iter().map(|c| u32::from(*c)).sum::<u32>();
+        [-4.0, 4.0].map(bright)
+    };
+    let [left, right] = sides(&[]);
+    assert!(left + 15 < right, "{left} in shade, {right} lit");
+    let [left, right] = sides(&["--sun=-1,0,0.25"]);
+    assert!(right + 15 < left, "{right} in shade, {left} lit");
+    let check = selvedge(&["check", &scene, "--camera", "top"]);
+    let told = text(&check.stdout);
+    assert!(check.status.code() == Some(0) && told.contains("light: wrong") && told.contains("0, 0.000"), "{told}");
+    refused(&["render", &scene, "-o", &picture, "--sun", "0,0,0"], "not 0,0,0");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
 /// Width, height and a pixel of a picture.
 fn pixel(path: &str, x: u32, y: u32) -> ((u32, u32), [u8; 4]) {
     let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());

@@ -39,9 +39,10 @@ fn a_fitted_camera_sees_one_thing_or_all() {
 
 #[test]
 fn the_picture_names_a_camera() {
-    let text = "[camera.x]\nfov = 20\n[camera.y]\nfov = 30\n[picture]\nsize = [64, 48]\ncamera = \"y\"\nbackground = \"#000000\"\n";
+    let text = "[camera.x]\nfov = 20\n[camera.y]\nfov = 30\n[picture]\nsize = [64, 48]\ncamera = \"y\"\nbackground = \"#000000\"\nsun = [1, 0, 2]\n";
     let import = import(&format!("{BALLS}{text}"));
     assert_eq!(import.picture.size, Some((64, 48)));
     assert_eq!(import.cameras[import.picture.camera.unwrap()].name, "y");
     assert_eq!(import.picture.background, Some([0.0, 0.0, 0.0, 1.0]));
+    assert_eq!(import.picture.sun, Some(DVec3::new(1.0, 0.0, 2.0)));
 }
