@@ -8,6 +8,7 @@
 
 use super::args::Args;
 use super::flat::{self, Lift, Plate};
+use super::twist::Twist;
 use super::{Context, Facets, Fault, Reader, convex};
 use crate::csg::Op;
 use crate::import::solid::{Placed, Plane};
@@ -173,14 +174,14 @@ impl Reader<'_> {
         }
         let height = args.number("height", 100.0)?;
         let [scale, other] = args.vector::<2>("scale", 1.0)?;
-        if args.number("twist", 0.0)? != 0.0 {
-            return Err(args.fault("a twist has no exact solid and is not read"));
-        }
-        if scale != other || !(0.0..f64::INFINITY).contains(&scale) {
-            return Err(args.fault("a scale that differs in x and y, or is negative, is not read"));
+        if ![scale, other].iter().all(|s| (0.0..f64::INFINITY).contains(s)) {
+            return Err(args.fault("a scale that is negative, or not finite, is not read"));
         }
         let height = if self.usable(args, &[height]) { height } else { 0.0 };
         let base = if args.flag("center") { -0.5 * height } else { 0.0 };
+        if args.number("twist", 0.0)? != 0.0 || scale != other {
+            return Ok((Lift::Twisted(Twist::new(args, base, height, DVec2::new(scale, other))?), None));
+        }
         Ok((Lift::Linear { base, height, scale }, None))
     }
 

@@ -7,15 +7,19 @@
 //!   rotate_extrude() polygon:  each convex piece is the meet of round cones (edges that look outwards)
 //!                              without other cones (edges that look to the axis)
 //! ```
+//!
+//! What turns while it rises has no such form: `twist` makes the facets that OpenSCAD makes.
 
 use super::args::Args;
-use super::polygon::{self, Piece};
+use super::polygon::{self, MOST_POINTS, Piece};
+use super::twist::Twist;
 use super::{Fault, convex};
 use crate::csg::Op;
 use crate::import::solid::{Assembly, Placed, Plane};
 use crate::model::{Bounds, Shape};
 use glam::{DAffine2, DAffine3, DMat3, DVec2, DVec3};
 use std::f64::consts::TAU;
+use std::sync::Arc;
 
 /// How a plane becomes space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -24,6 +28,8 @@ pub(super) enum Lift {
     Linear { base: f64, height: f64, scale: f64 },
     /// x becomes the distance from the z axis, y becomes z; in segments where few are asked for.
     Round { segments: Option<u32> },
+    /// Along z, turned and scaled: facets, as OpenSCAD makes them.
+    Twisted(Twist),
 }
 
 /// Where 2-D shapes go.
@@ -38,6 +44,10 @@ pub(super) struct Plate<'a> {
 impl Plate<'_> {
     /// `circle(r)`.
     pub fn circle(&mut self, args: &Args<'_>, radius: f64, segments: Option<u32>) -> Result<u32, Fault> {
+        let segments = match self.lift {
+            Lift::Twisted(_) => Some(args.segments(radius).min(MOST_POINTS as f64 + 1.0) as u32),
+            Lift::Linear { .. } | Lift::Round { .. } => segments,
+        };
         if let Some(n) = segments {
             let corner = |i: u32| radius * DVec2::from_angle(TAU * f64::from(i) / f64::from(n));
             let outline: Vec<DVec2> = (0..n).map(corner).collect();
@@ -71,6 +81,7 @@ impl Plate<'_> {
                 placed.transform *= DAffine3::from_translation(DVec3::Z * centre.y);
                 Ok(self.to.add(Shape::Torus { major, minor }, &placed))
             }
+            Lift::Twisted(_) => unreachable!("its circles have segments"),
         }
     }
 
@@ -83,11 +94,14 @@ impl Plate<'_> {
         let others = 1..outlines.len();
         let holes = others.clone().all(|j| inside(0, j) && others.clone().all(|i| i == j || !inside(i, j)));
         let op = if holes { Op::Difference } else { Op::SymmetricDifference };
+        if let Lift::Twisted(twist) = self.lift {
+            self.lift = Lift::Twisted(twist.cut_for(args, &outlines)?);
+        }
         let mut all = Vec::with_capacity(outlines.len());
         for outline in &outlines {
             let piece = polygon::cut(outline).map_err(|what| args.fault(format!("{what} is not read")))?;
             all.push(match piece {
-                Some(piece) => self.piece(&piece),
+                Some(piece) => self.piece(args, &piece, false)?,
                 None => self.to.nothing(),
             });
         }
@@ -96,7 +110,7 @@ impl Plate<'_> {
 
     /// For turning: the outline on the positive side of the axis.
     fn one_side(&self, args: &Args<'_>, outline: &[DVec2]) -> Result<Vec<DVec2>, Fault> {
-        if matches!(self.lift, Lift::Linear { .. }) {
+        if !matches!(self.lift, Lift::Round { .. }) {
             return Ok(outline.to_vec());
         }
         let (low, high) = outline.iter().fold((0.0_f64, 0.0_f64), |(l, h), p| (l.min(p.x), h.max(p.x)));
@@ -109,14 +123,19 @@ impl Plate<'_> {
     }
 
     /// A convex piece without its pockets; the depth is bounded by [`polygon::cut`].
-    fn piece(&mut self, piece: &Piece) -> u32 {
+    fn piece(&mut self, args: &Args<'_>, piece: &Piece, pocket: bool) -> Result<u32, Fault> {
         let whole = match self.lift {
             Lift::Linear { base, height, scale } => self.prism(piece, base, height, scale),
             Lift::Round { segments } => self.turned(piece, segments),
+            Lift::Twisted(Twist { height: 0.0, .. }) => self.to.nothing(),
+            Lift::Twisted(twist) => {
+                let mesh = twist.mesh(args, self.placed.id, piece, pocket)?;
+                self.to.add(Shape::Mesh(Arc::new(mesh)), &self.placed)
+            }
         };
-        piece.pockets.iter().fold(whole, |rest, pocket| {
-            let pocket = self.piece(pocket);
-            self.to.nodes.pair(Op::Difference, rest, pocket)
+        piece.pockets.iter().try_fold(whole, |rest, inner| {
+            let inner = self.piece(args, inner, !pocket)?;
+            Ok(self.to.nodes.pair(Op::Difference, rest, inner))
         })
     }
 

@@ -22,6 +22,7 @@ mod lex;
 mod polygon;
 #[cfg(test)]
 mod tests;
+mod twist;
 
 use super::solid::{Assembly, Placed, linear};
 use super::{Import, ImportError, ImportReport, Place, Warnings};
