@@ -159,14 +159,12 @@ Layer layer_of_patch(Fragment f, Ray ray) {
 float depth_written(float t) { return reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0); }
 
 void main() {
-    uvec2 tiles = tile_count(frame);
-    uvec2 tile = uvec2(gl_FragCoord.xy) / TILE;
-    uint n = tile.y * tiles.x + tile.x;
+    uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first = min(tile_starts[n], frame.tile_leaf_capacity);
     uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
     while (first < end && (tile_leaves[first].leaf & ~TILE_LEAF_ENTRY) < frame.followed_leaf) ++first;
     Ray ray = eye_ray(frame, gl_FragCoord.xy);
-    uint pixel = uint(gl_FragCoord.y) * uint(frame.size.x) + uint(gl_FragCoord.x);
+    uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
     uint fragment_count = SOLIDS_HAVE_SHELLS ? fragment_counts[pixel] : 0u;
     vec4 under = FOLLOWED_FOR == FOR_THICKNESS ? vec4(0.0, 0.0, 0.0, UNSEEN) : imageLoad(behind, ivec2(gl_FragCoord.xy));

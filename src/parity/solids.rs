@@ -114,6 +114,7 @@ fn fold_on_gpu(
     // as many tiles as the picture has across, one down
     let frame = Frame {
         size: [(tiles * 16) as f32, 9.0],
+        band_height: 16,
         leaf_count: given.len() as u32,
         tile_leaf_capacity: tile_leaves.len() as u32,
         followed_leaf: followed[0],

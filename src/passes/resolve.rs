@@ -124,8 +124,8 @@ pub(crate) struct SolidBindings<'a> {
     pub visibility: &'a Image,
     /// The visibility image again where the scene has no trims.
     pub others: &'a Image,
-    /// Where rays cross operands without equations.
-    pub fragments: Option<&'a Buffer>,
+    /// (u, v) of spline faces that bound operands.
+    pub operand_uv: Option<&'a Image>,
 }
 
 impl Resolve {
@@ -185,7 +185,7 @@ impl Resolve {
         let solids = kinds.solids.map(solid).transpose()?;
         let mut of_operand = [Binding::Storage; 11];
         of_operand[6] = Binding::Texels;
-        of_operand[8..10].fill(Binding::StorageImage);
+        of_operand[8..].fill(Binding::StorageImage);
         let operand = |()| {
             let constants = [aovs, behind, (SCENE_HAS_RATIONAL, u32::from(kinds.rational))];
             pipeline("operand", shaders::RESOLVE_OPERAND_FRAG, &of_operand, &constants)
@@ -231,9 +231,9 @@ impl Resolve {
                 let resources: Vec<_> = solid.into_iter().chain([s.visibility.into(), s.others.into()]).collect();
                 cmd.bind(pipeline, &resources, &[]);
                 cmd.draw(3, 0, 1);
-                if let (Some(pipeline), Some(fragments)) = (&self.operands, s.fragments) {
+                if let (Some(pipeline), Some(uv)) = (&self.operands, s.operand_uv) {
                     let resources: Vec<_> =
-                        buffers.into_iter().chain(rest).chain([s.others.into(), fragments.into()]).collect();
+                        buffers.into_iter().chain(rest).chain([s.others.into(), uv.into()]).collect();
                     cmd.bind(pipeline, &resources, &[]);
                     cmd.draw(3, 0, 1);
                 }

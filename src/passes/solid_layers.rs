@@ -16,6 +16,7 @@ use crate::gpu::{
 };
 use crate::shaders;
 use ash::vk;
+use std::ops::Range;
 
 /// `constant_id` of `SCENE_HAS_RATIONAL`.
 const SCENE_HAS_RATIONAL: u32 = 0;
@@ -152,13 +153,14 @@ impl SolidLayers {
         Ok(Self { pipeline, marks: marks.unwrap_or_default() })
     }
 
-    /// One triangle over the targets.
+    /// One triangle over these rows of the targets.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
         colour: &[Attachment<'_>],
         depth: Option<Attachment<'_>>,
+        rows: Range<u32>,
     ) {
         let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres, b.leaf_centres];
         // the shader has these bindings in every scene, and reads them only where there are shells
@@ -174,7 +176,7 @@ impl SolidLayers {
             .chain(placed.into_iter().map(Into::into))
             .chain([b.points.into(), b.instances.into()])
             .collect();
-        cmd.rendering(b.behind.size(), colour, depth, || {
+        cmd.rendering_rows((b.behind.size(), rows), colour, depth, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&self.marks));
             cmd.draw(3, 0, 1);
         });

@@ -224,6 +224,11 @@ impl SolidData {
         }
     }
 
+    /// [`SolidWay::Events`] finds the faces: asked for, or for want of another way.
+    pub(crate) fn is_by_events(&self) -> bool {
+        !self.leaves.is_empty() && self.blister.is_none() && self.order.is_empty()
+    }
+
     /// Whether rays are followed through some of the lists.
     pub(crate) fn is_followed(&self) -> bool {
         (self.followed as usize) < self.leaves.len()

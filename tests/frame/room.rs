@@ -15,6 +15,7 @@ const BY_TABLE: SceneSettings = SceneSettings {
     samples: Samples::One,
     thickness: false,
     highlight: None,
+    solid_budget: None,
 };
 
 fn draw(renderer: &mut HeadlessRenderer, camera: &Camera, tolerance_px: f64) -> Picture {

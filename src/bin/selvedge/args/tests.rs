@@ -1,0 +1,38 @@
+use super::*;
+
+#[test]
+fn clap_accepts_the_definition() {
+    use clap::CommandFactory;
+    Cli::command().debug_assert();
+}
+
+#[test]
+fn sizes() {
+    assert_eq!("640x480".parse(), Ok(Size(640, 480)));
+    for bad in ["640", "640x", "0x480", "640x480x2", "16385x1", "-1x1"] {
+        assert!(bad.parse::<Size>().is_err(), "{bad}");
+    }
+}
+
+#[test]
+fn vectors() {
+    assert_eq!(vector("-1, 2.5,3e2"), Ok(DVec3::new(-1.0, 2.5, 300.0)));
+    for bad in ["1,2", "1,2,3,4", "1,2,x", "1,2,nan", ""] {
+        assert!(vector(bad).is_err(), "{bad}");
+    }
+}
+
+#[test]
+fn images() {
+    assert_eq!("uv=a=b.npy".parse(), Ok(Aov { image: Image::Uv, file: "a=b.npy".into() }));
+    for bad in ["uv", "uv=", "colour=a.npy"] {
+        assert!(bad.parse::<Aov>().is_err(), "{bad}");
+    }
+}
+
+#[test]
+fn a_negative_eye_is_not_an_option() {
+    let cli = Cli::try_parse_from(["selvedge", "render", "m.step", "-o", "a.png", "--eye", "-1,-2,-3"]);
+    let Command::Render(args) = cli.expect("parses").command else { panic!("render") };
+    assert_eq!(args.camera.eye, Some(DVec3::new(-1.0, -2.0, -3.0)));
+}
