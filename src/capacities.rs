@@ -37,7 +37,8 @@ pub(crate) struct Counts {
     /// Most bytes of the lists of events: [`SceneSettings::solid_budget`](crate::picture::SceneSettings::solid_budget).
     pub solid_budget: Option<u64>,
     pub triangles: u32,
-    /// Of leaves.
+    /// Of leaves with equations; with the triangles of the others.
+    pub leaf_sides: u32,
     pub sides: u32,
     pub mesh_instances: u32,
     /// How faces are trimmed, where some are.
@@ -69,7 +70,8 @@ impl Counts {
             events: data.solids.is_by_events(),
             solid_budget: data.solid_budget,
             triangles: count(data.meshes.triangles.len().max(data.meshes.positions.len() / 3)),
-            sides: count(data.solids.leaf_surfaces.len()),
+            leaf_sides: count(data.solids.leaf_surfaces.len()),
+            sides: count(data.solids.leaf_surfaces.len() + data.solids.operand_triangles.len()),
             mesh_instances: count(data.meshes.instances.len()),
             trim: data.trim_way(),
             samples: data.samples,

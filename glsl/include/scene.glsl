@@ -135,6 +135,7 @@ struct Frame {
     uint fragment_capacity;
     uint followed_leaf; // from it on lists of items that rays are followed through; before it the union that is seen
     uint layer_capacity; // of way `blister`
+    uint side_count;    // sides of leaves with equations; what is numbered from it on are triangles of operands
     uint band_top;      // the rows of pixels whose lists are made, of way `events`: the first, a multiple of TILE,
     uint band_height;   // and how many, of which the picture may end before the last
     vec3 right;         // camera axes in model space

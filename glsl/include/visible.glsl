@@ -4,7 +4,7 @@
 //   nothing        0      0   0                  0
 //   a patch        d      0   item + 1           (u, v) of the patch, two 16-bit numbers
 //   a mesh         0      1   mesh instance      triangle of the scene
-//   a solid        0      2   side of a leaf     depth along the view axis, a float
+//   a solid        0      2   side, triangle     depth along the view axis, a float
 //   an operand     0      3   item + 1           the same; of a spline face that bounds a solid's operand. Its (u, v)
 //                                                are in an image of their own, `operand_uv`
 //

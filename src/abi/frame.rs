@@ -44,6 +44,7 @@ pub struct Frame {
     pub fragment_capacity: u32,
     pub followed_leaf: u32,
     pub layer_capacity: u32,
+    pub side_count: u32,
     pub band_top: u32,
     pub band_height: u32,
     pub right: [f32; 3],

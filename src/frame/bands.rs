@@ -49,7 +49,7 @@ impl Frame<'_> {
         let lists = tiles.iter().flat_map(|t| [&t.tile_counts, &t.tile_starts, &t.tile_leaves, &t.tile_entries]);
         let mut before: Vec<_> = lists.map(|list| (list, readers(), w)).collect();
         before.push((self.constants, readers(), CLEARED));
-        for f in fragments {
+        if let Some(f) = fragments {
             before.push((&f.counts, readers() | CLEARED, CLEARED));
         }
         barrier::buffers(cmd, &before);

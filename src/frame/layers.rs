@@ -120,6 +120,7 @@ impl<'a> Frame<'a> {
             items: &s.items,
             points: &s.points,
             instances: &s.instances,
+            shells: solid.shells.as_ref().map(|m| [&m.meshes, &m.triangles, &m.positions, &m.planes]),
         };
         let (w, _) = WRITE_TO_READ;
         let rows = || band.rows.clone();

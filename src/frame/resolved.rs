@@ -12,6 +12,7 @@ pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
         rational: data.has_rational,
         meshes: data.has_meshes(),
         solids: data.solids.kinds(),
+        shells: !data.solids.shell_leaves.is_empty(),
         operands: data.has_operands,
     }
 }

@@ -297,7 +297,7 @@ impl Frame<'_> {
             meshes: &shells.meshes,
             triangles: &shells.triangles,
             positions: &shells.positions,
-            leaf_surfaces: &parts.scene.leaf_surfaces,
+            planes: &shells.planes,
             surfaces: &parts.scene.surfaces,
             surface_centres: parts.centres.surfaces,
             counts: &f.counts,
@@ -384,6 +384,14 @@ impl<'a> SolidParts<'a> {
             visibility: &b.visibility,
             others: b.others.as_ref().unwrap_or(&b.visibility),
             operand_uv: self.buffers.operand_uv.as_ref(),
+            shells: self.scene.shells.as_ref().map(|m| resolve::ShellBindings {
+                instances: &frame.scene.instances,
+                meshes: &m.meshes,
+                triangles: &m.triangles,
+                positions: &m.positions,
+                planes: &m.planes,
+                views: frame.views,
+            }),
         }
     }
 }

@@ -31,7 +31,8 @@ pub(crate) struct Bindings<'a> {
     pub meshes: &'a Buffer,
     pub triangles: &'a Buffer,
     pub positions: &'a Buffer,
-    pub leaf_surfaces: &'a Buffer,
+    /// Surfaces in whose planes triangles lie.
+    pub planes: &'a Buffer,
     pub surfaces: &'a Buffer,
     /// Model axes, seen from the eye.
     pub surface_centres: &'a Buffer,
@@ -79,7 +80,7 @@ impl OperandMesh {
         fills: bool,
     ) {
         let placed = [b.frame, b.views, b.meshes, b.triangles, b.positions];
-        let solid = [b.leaf_surfaces, b.surfaces, b.surface_centres, b.counts, b.starts, b.fragments];
+        let solid = [b.planes, b.surfaces, b.surface_centres, b.counts, b.starts, b.fragments];
         let resources: Vec<_> = placed.into_iter().chain(solid).map(Into::into).collect();
         cmd.rendering_rows((size, rows), &[], None, || {
             cmd.bind(if fills { &self.fill } else { &self.count }, &resources, &[]);

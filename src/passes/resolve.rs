@@ -33,6 +33,9 @@ const SCENE_HAS_OTHERS: u32 = 4;
 /// `constant_id` of `SOLIDS_HAVE_TORI`.
 const SOLIDS_HAVE_TORI: u32 = 5;
 
+/// `constant_id` of `SOLIDS_HAVE_SHELLS`.
+const SOLIDS_HAVE_SHELLS: u32 = 13;
+
 /// `constant_id` of `BEHIND`.
 const BEHIND: u32 = 18;
 
@@ -55,6 +58,8 @@ pub(crate) struct Kinds {
     pub meshes: bool,
     /// Boolean ones, and whether a torus is among their surfaces.
     pub solids: Option<bool>,
+    /// Some of their operands have no equations.
+    pub shells: bool,
     /// Patches bound operands of Boolean solids.
     pub operands: bool,
 }
@@ -126,6 +131,19 @@ pub(crate) struct SolidBindings<'a> {
     pub others: &'a Image,
     /// (u, v) of spline faces that bound operands.
     pub operand_uv: Option<&'a Image>,
+    /// `None` where every operand has equations.
+    pub shells: Option<ShellBindings<'a>>,
+}
+
+/// Of meshes that bound operands, in binding order.
+pub(crate) struct ShellBindings<'a> {
+    pub instances: &'a Buffer,
+    pub meshes: &'a Buffer,
+    pub triangles: &'a Buffer,
+    pub positions: &'a Buffer,
+    /// Surfaces in whose planes triangles lie.
+    pub planes: &'a Buffer,
+    pub views: &'a Buffer,
 }
 
 impl Resolve {
@@ -176,10 +194,11 @@ impl Resolve {
         of_mesh[8..].fill(Binding::StorageImage);
         let mesh = |()| pipeline("mesh", shaders::RESOLVE_MESH_FRAG, &of_mesh, &[aovs, behind]);
         let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
-        let mut of_solid = [Binding::Storage; 7];
-        of_solid[5..].fill(Binding::StorageImage);
+        let mut of_solid = [Binding::Storage; 13];
+        of_solid[5..7].fill(Binding::StorageImage);
         let solid = |tori: bool| {
-            let constants = [aovs, behind, (SOLIDS_HAVE_TORI, u32::from(tori))];
+            let shells = (SOLIDS_HAVE_SHELLS, u32::from(kinds.shells));
+            let constants = [aovs, behind, (SOLIDS_HAVE_TORI, u32::from(tori)), shells];
             pipeline("solid", shaders::RESOLVE_SOLID_FRAG, &of_solid, &constants)
         };
         let solids = kinds.solids.map(solid).transpose()?;
@@ -228,7 +247,13 @@ impl Resolve {
             }
             if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
                 let solid = [s.frame, s.leaves, s.leaf_surfaces, s.surfaces, s.surface_centres].map(Into::into);
-                let resources: Vec<_> = solid.into_iter().chain([s.visibility.into(), s.others.into()]).collect();
+                // the shader has these bindings in every scene, and reads them only where there are shells
+                let shells = s
+                    .shells
+                    .as_ref()
+                    .map_or([s.frame; 6], |m| [m.instances, m.meshes, m.triangles, m.positions, m.planes, m.views]);
+                let images = [s.visibility.into(), s.others.into()];
+                let resources: Vec<_> = solid.into_iter().chain(images).chain(shells.map(Into::into)).collect();
                 cmd.bind(pipeline, &resources, &[]);
                 cmd.draw(3, 0, 1);
                 if let (Some(pipeline), Some(uv)) = (&self.operands, s.operand_uv) {

@@ -93,6 +93,8 @@ pub(crate) struct Bindings<'a> {
     pub items: &'a Buffer,
     pub points: &'a Texels,
     pub instances: &'a Buffer,
+    /// Of meshes that bound operands: meshes, triangles, positions, planes; `None` where there are none.
+    pub shells: Option<[&'a Buffer; 4]>,
 }
 
 impl SolidLayers {
@@ -113,7 +115,7 @@ impl SolidLayers {
             }
             For::Thickness => (2, "thickness", vec![target(THICKNESS_FORMAT, Blend::Replace)]),
         };
-        let mut bindings = [Binding::Storage; 20];
+        let mut bindings = [Binding::Storage; 24];
         bindings[12] = Binding::StorageImage;
         bindings[18] = Binding::Texels;
         let marks = kinds.marks.filter(|_| number == 0);
@@ -165,6 +167,7 @@ impl SolidLayers {
         let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres, b.leaf_centres];
         // the shader has these bindings in every scene, and reads them only where there are shells
         let fragments = b.fragments.unwrap_or([b.frame; 3]);
+        let shells = b.shells.unwrap_or([b.frame; 4]);
         let placed = [b.views, b.face_instances, b.faces, b.patches, b.items];
         let resources: Vec<_> = solid
             .into_iter()
@@ -175,6 +178,7 @@ impl SolidLayers {
             .chain([b.behind.into()])
             .chain(placed.into_iter().map(Into::into))
             .chain([b.points.into(), b.instances.into()])
+            .chain(shells.into_iter().map(Into::into))
             .collect();
         cmd.rendering_rows((b.behind.size(), rows), colour, depth, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&self.marks));

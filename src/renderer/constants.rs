@@ -53,6 +53,7 @@ pub(super) fn constants(
         fragment_capacity: room.fragments,
         followed_leaf: counts.followed_leaf,
         layer_capacity: room.layers,
+        side_count: counts.leaf_sides,
         band_top: 0,
         band_height: room.band_rows.saturating_mul(abi::TILE).min(camera.size.1.next_multiple_of(abi::TILE)),
         right: right.as_vec3().to_array(),
