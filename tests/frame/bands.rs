@@ -5,6 +5,7 @@ use crate::shapes::operands::{mesh, meshes, part, splines};
 use crate::shapes::solids::{self, ball};
 use crate::shapes::{ball_mesh, cube};
 use crate::support::{assert_identical, assert_silent, perspective, watched};
+use glam::DVec3;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Camera, Model, Projection};
 use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, Samples, SceneSettings, SolidWay};
@@ -41,8 +42,11 @@ fn list_bytes(picture: &Picture) -> u64 {
 
 /// Draws with less and less room from `most` bytes on, until a row of tiles has too little.
 fn with_less_and_less(name: &str, model: &Model, settings: SceneSettings, most: f64) {
+    seen_with_less_and_less(name, (model, perspective(model, SIZE)), settings, most);
+}
+
+fn seen_with_less_and_less(name: &str, (model, camera): (&Model, Camera), settings: SceneSettings, most: f64) {
     let outputs = Outputs { thickness: settings.thickness, ..Outputs::ALL };
-    let camera = perspective(model, SIZE);
     let mut renderer = watched(&Model::default());
     renderer.upload_with(model, settings).unwrap();
     let whole = draw(&mut renderer, &camera, outputs).unwrap();
@@ -88,12 +92,14 @@ fn of_spline_parts() {
     let (name, mut model) = splines().swap_remove(6);
     model.parts = cube().parts;
     model.instances = cube().instances;
-    with_less_and_less(name, &model, SceneSettings::default(), 900_000.0);
+    with_less_and_less(name, &model, SceneSettings::default(), 1_600_000.0);
 }
 
 #[test]
 fn of_thousands_of_primitives() {
-    with_less_and_less("holes", &solids::holes(45), SceneSettings::default(), 80_000.0);
+    let model = solids::holes(45);
+    let above = Camera::framing(model.bounds(), DVec3::new(0.02, -0.01, 1.0), DVec3::Y, 0.6, SIZE);
+    seen_with_less_and_less("holes", (&model, above), SceneSettings::default(), 120_000.0);
 }
 
 #[test]

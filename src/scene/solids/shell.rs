@@ -116,3 +116,70 @@ impl SolidData {
         self.operand_draws.push(corners..3 * self.operand_triangles.len() as u32);
     }
 }
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Mesh, Solid};
+    use std::sync::Arc;
+    use crate::picture::SolidWay;
+    use crate::scene::solids::Lists;
+    use glam::DAffine3;
+
+    const TETRA: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+
+    fn of(corners: &[[f64; 3]], triangles: Vec<[u32; 3]>) -> Mesh {
+        Mesh::new(1, corners.iter().copied().map(DVec3::from).collect(), triangles, Vec::new()).unwrap()
+    }
+
+    fn tetra(width: f64) -> Mesh {
+        of(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, width]], TETRA.to_vec())
+    }
+
+    fn data(shapes: Vec<Shape>) -> SolidData {
+        let one = |shape| Primitive { id: 1, colour: [0.5; 4], shape, transform: DAffine3::IDENTITY };
+        let solids: Vec<Solid> = shapes.into_iter().map(|shape| Solid::of(one(shape)).unwrap()).collect();
+        SolidData::new(&Lists::union(&solids), SolidWay::Events).unwrap()
+    }
+
+    fn mesh(mesh: Mesh) -> Shape {
+        Shape::Mesh(Arc::new(mesh))
+    }
+
+    #[test]
+    fn triangles_by_themselves_are_their_corners() {
+        let d = data(vec![mesh(tetra(1.0))]);
+        assert_eq!((d.surfaces.len(), d.leaf_surfaces.len(), d.operand_planes.len()), (0, 0, 0));
+        assert_eq!((d.operand_meshes[0].first_plane, d.operand_meshes[0].leaf), (abi::NO_PLANE, 0));
+    }
+
+    /// The block's bottom is in the plane of the tetrahedron's, which has one triangle there.
+    #[test]
+    fn planes_that_others_share_are_surfaces() {
+        let below = || Shape::Block { min: DVec3::new(-3.0, -3.0, -1.0), max: DVec3::new(-2.0, -2.0, 0.0) };
+        for shapes in [vec![mesh(tetra(1.0)), below()], vec![below(), mesh(tetra(1.0))]] {
+            let d = data(shapes);
+            let shared: Vec<u32> = d.operand_planes.iter().copied().filter(|p| *p != abi::NO_PLANE).collect();
+            assert_eq!((d.surfaces.len(), d.leaf_surfaces.len(), shared.len()), (6, 6, 1));
+            assert_eq!(d.operand_planes[0], shared[0], "the triangle at the bottom is the first");
+            assert!(d.leaf_surfaces.iter().any(|side| side.surface >> 1 == shared[0]));
+        }
+        // of its own triangles, too: all four twice, the other way round
+        let twice = TETRA.into_iter().chain(TETRA.map(|[a, b, c]| [b, a, c])).collect();
+        let d = data(vec![mesh(of(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], twice))]);
+        assert_eq!((d.surfaces.len(), d.operand_planes), (4, vec![0, 1, 2, 3, 0, 1, 2, 3]));
+    }
+
+    /// A height of a 50,000th of the length: single precision would turn the planes.
+    #[test]
+    fn thin_triangles_keep_their_planes() {
+        let thin = || tetra(2e-5);
+        // those along the short edge; the other two are as large as any
+        let d = data(vec![mesh(thin())]);
+        assert_eq!((d.surfaces.len(), d.operand_planes.len()), (2, 4));
+        let part = Part { meshes: vec![tetra(1.0), thin()], ..Part::default() };
+        let d = data(vec![Shape::Part(Arc::new(part))]);
+        assert_eq!((d.surfaces.len(), d.operand_planes.len()), (2, 4));
+        assert_eq!([0, 1].map(|m| d.operand_meshes[m].first_plane), [abi::NO_PLANE, 0]);
+    }
+}
