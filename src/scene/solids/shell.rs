@@ -177,7 +177,7 @@ mod tests {
         // those along the short edge; the other two are as large as any
         let d = data(vec![mesh(thin())]);
         assert_eq!((d.surfaces.len(), d.operand_planes.len()), (2, 4));
-        let part = Part { meshes: vec![tetra(1.0), thin()], ..Part::default() };
+        let part = Part { meshes: vec![tetra(1.0), thin()], closed: true, ..Part::default() };
         let d = data(vec![Shape::Part(Arc::new(part))]);
         assert_eq!((d.surfaces.len(), d.operand_planes.len()), (2, 4));
         assert_eq!([0, 1].map(|m| d.operand_meshes[m].first_plane), [abi::NO_PLANE, 0]);
