@@ -16,12 +16,12 @@ layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
 layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
 layout(binding = 5, rg32ui) readonly uniform uimage2D visibility;
 layout(binding = 6, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
-layout(scalar, binding = 7) readonly buffer Instances { Instance instances[]; };
-layout(scalar, binding = 8) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
-layout(scalar, binding = 9) readonly buffer Triangles { uint triangles[]; };
-layout(scalar, binding = 10) readonly buffer Positions { vec3 positions[]; };
-layout(scalar, binding = 11) readonly buffer Planes { uint planes[]; };
-layout(scalar, binding = 12) readonly buffer Views { View views[]; };
+layout(scalar, binding = 8) readonly buffer Instances { Instance instances[]; };
+layout(scalar, binding = 9) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
+layout(scalar, binding = 10) readonly buffer Triangles { uint triangles[]; };
+layout(scalar, binding = 11) readonly buffer Positions { vec3 positions[]; };
+layout(scalar, binding = 12) readonly buffer Planes { uint planes[]; };
+layout(scalar, binding = 13) readonly buffer Views { View views[]; };
 
 #include "resolved.glsl"
 #include "sides.glsl"

@@ -18,9 +18,5 @@ void main() {
     asked = order[gl_InstanceIndex];
     Rect rect = rects[asked & LEAF_OF];
     bool seen = all(lessThanEqual(rect.first, rect.last));
-    uint corner = gl_VertexIndex < 3 ? gl_VertexIndex : 6u - gl_VertexIndex; // 0 1 2, 3 2 1
-    uvec2 tile = uvec2((corner & 1u) == 0u ? rect.first.x : rect.last.x + 1u,
-                       (corner & 2u) == 0u ? rect.first.y : rect.last.y + 1u);
-    vec2 pixel = vec2(tile * TILE);
-    gl_Position = vec4(seen ? pixel * 2.0 / frame.size - 1.0 : vec2(-2.0), 0.0, 1.0);
+    gl_Position = seen ? tile_corner(frame, rect, gl_VertexIndex) : OFF_THE_PICTURE;
 }

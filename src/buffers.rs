@@ -120,14 +120,17 @@ pub(crate) struct SolidBuffers {
 /// Which leaves each tile of a band sees, and their Blist.
 pub(crate) struct TileBuffers {
     pub blocks: u32,
+    /// In the picture.
+    pub tiles: u32,
     pub block_counts: Buffer,
     pub block_starts: Buffer,
     pub block_leaves: Buffer,
     pub tile_counts: Buffer,
     pub tile_starts: Buffer,
     pub tile_leaves: Buffer,
-    /// Of all tiles of the picture.
+    /// These two of all tiles of the picture.
     pub tile_entries: Buffer,
+    pub tile_squares: Buffer,
 }
 
 /// Faces peeled off by way `blister`.
@@ -237,6 +240,7 @@ impl Buffers {
                                 let room = capacities.tile_leaves;
                                 Ok(TileBuffers {
                                     blocks,
+                                    tiles: all_tiles,
                                     block_counts: words("solid block counts", blocks)?,
                                     block_starts: words("solid block starts", blocks + 1)?,
                                     block_leaves: words("solid block leaves", capacities.block_leaves)?,
@@ -244,6 +248,7 @@ impl Buffers {
                                     tile_starts: words("solid tile starts", tiles + 1)?,
                                     tile_leaves: structs("solid tile leaves", room, size_of::<TileLeaf>())?,
                                     tile_entries: words("solid tile entries", all_tiles)?,
+                                    tile_squares: words("solid tile squares", all_tiles)?,
                                 })
                             })
                             .transpose()?,
@@ -297,7 +302,7 @@ impl SolidBuffers {
             .as_ref()
             .map(|t| sum("blocks", &[&t.block_counts, &t.block_starts, &t.block_leaves].map(Buffer::bytes)));
         let tiles = self.tiles.as_ref().map(|t| {
-            let all = [&t.tile_counts, &t.tile_starts, &t.tile_leaves, &t.tile_entries];
+            let all = [&t.tile_counts, &t.tile_starts, &t.tile_leaves, &t.tile_entries, &t.tile_squares];
             sum("tiles", &all.map(Buffer::bytes))
         });
         let crossings =

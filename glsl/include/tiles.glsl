@@ -27,6 +27,7 @@ struct TileLeaf {
 const uint TILE_LEAF_ENTRY = 0x80000000u;
 
 uvec2 tile_count(Frame frame) { return (uvec2(frame.size) + TILE - 1u) / TILE; }
+
 // Rows of pixels in the band.
 uint band_rows(Frame frame) { return min(frame.band_height, uint(frame.size.y) - frame.band_top); }
 uvec2 band_tiles(Frame frame) { return uvec2(tile_count(frame).x, (band_rows(frame) + TILE - 1u) / TILE); }
@@ -41,6 +42,19 @@ uint tile_in_band(Frame frame, uvec2 pixel) {
 uint first_of_band(Frame frame) { return frame.band_top / TILE * tile_count(frame).x; }
 
 uvec2 block_count(Frame frame) { return (tile_count(frame) + BLOCK - 1u) / BLOCK; }
+
+// Of no pixel.
+const vec4 OFF_THE_PICTURE = vec4(-2.0, -2.0, 0.0, 1.0);
+
+// A corner, 0 to 5, of the two triangles over these tiles. Within the picture: were they clipped, a pixel on their
+// diagonal might be in neither.
+vec4 tile_corner(Frame frame, Rect rect, uint n) {
+    uint corner = n < 3u ? n : 6u - n; // 0 1 2, 3 2 1
+    uvec2 tile = uvec2((corner & 1u) == 0u ? rect.first.x : rect.last.x + 1u,
+                       (corner & 2u) == 0u ? rect.first.y : rect.last.y + 1u);
+    vec2 pixel = min(vec2(tile * TILE), frame.size);
+    return vec4(pixel * 2.0 / frame.size - 1.0, 0.0, 1.0);
+}
 
 bool meets(Rect r, uvec2 first, uvec2 last) {
     return all(lessThanEqual(r.first, last)) && all(greaterThanEqual(r.last, first)) &&

@@ -39,6 +39,12 @@ impl Frame<'_> {
             .map(move |top| Band { rows: top..(top + each).min(height), is_whole: each >= height })
     }
 
+    /// Its tiles, numbered through the picture.
+    pub(super) fn tiles_of(&self, band: &Band) -> Range<u32> {
+        let across = self.buffers.visibility.size().0.div_ceil(abi::TILE);
+        across * (band.rows.start / abi::TILE)..across * band.rows.end.div_ceil(abi::TILE)
+    }
+
     /// Tells the passes where the band is, and gives them the lists of the one before.
     pub(super) fn begin_band(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>, band: &Band) {
         if band.is_whole {

@@ -1,6 +1,6 @@
 //! The frame's last pass: what each kind of thing gives pass `resolve`.
 
-use super::Frame;
+use super::{Frame, solids};
 use crate::gpu::{Commands, Device, GpuError};
 use crate::passes::resolve;
 use crate::picture::Samples;
@@ -9,10 +9,14 @@ use crate::scene::SceneData;
 /// What the scene asks of the pass.
 pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
     resolve::Kinds {
+        patches: data.has_patches,
         rational: data.has_rational,
         meshes: data.has_meshes(),
-        solids: data.solids.kinds(),
-        shells: !data.solids.shell_leaves.is_empty(),
+        solids: data.solids.kinds().map(|tori| resolve::SolidKinds {
+            tori,
+            tiles: solids::has_tiles(data),
+            shells: !data.solids.shell_leaves.is_empty(),
+        }),
         operands: data.has_operands,
     }
 }

@@ -2,7 +2,8 @@
 //!
 //! ```text
 //!   leaves ──solid_rects──▶ rects ──solid_blocks, solid_tiles (each: count, scan, list)──▶ leaves of each tile
-//!          ──solid_fold──▶ their Blist ──solid_events──▶ visibility of what is no patch, depth
+//!          ──solid_fold──▶ their Blist ──solid_squares──▶ tiles that are drawn
+//!          ──solid_events──▶ visibility of what is no patch, depth
 //!   operands ──operand_mesh, operand_patch (each: count, scan, fill)──▶ fragments of each pixel
 //!            ──operand_sort──▶ in order ──▲
 //!
@@ -11,12 +12,11 @@
 
 use super::bands::Band;
 use super::{Frame, WRITE_TO_READ};
-use crate::abi::TILE;
 use crate::buffers::{FragmentBuffers, SolidBuffers, TileBuffers};
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, barrier};
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
 use crate::passes::{blister, resolve, solid_blocks, solid_cst, solid_events, solid_fold, solid_rects, solid_tiles};
-use crate::passes::{operand_mesh, operand_patch, operand_sort};
+use crate::passes::{operand_mesh, operand_patch, operand_sort, solid_squares};
 use crate::scene::{SceneData, Shells, Solids};
 use crate::shaders::TrimTest;
 
@@ -33,6 +33,7 @@ struct TilePasses {
     blocks: solid_blocks::SolidBlocks,
     tiles: solid_tiles::SolidTiles,
     fold: solid_fold::SolidFold,
+    squares: solid_squares::SolidSquares,
 }
 
 /// Who finds the faces.
@@ -49,6 +50,11 @@ struct ShellPasses {
     sort: operand_sort::OperandSort,
 }
 
+/// Which leaves each tile sees is asked: not where layers are peeled of meshes.
+pub(super) fn has_tiles(data: &SceneData) -> bool {
+    data.solids.blister.is_none() || data.solids.shell_leaves.is_empty()
+}
+
 impl SolidPasses {
     /// `None` when the scene has no Boolean solid.
     pub(super) fn new(device: &Device, data: &SceneData, trim: Option<&TrimTest>) -> Result<Option<Self>, GpuError> {
@@ -61,6 +67,7 @@ impl SolidPasses {
                 blocks: solid_blocks::SolidBlocks::new(device)?,
                 tiles: solid_tiles::SolidTiles::new(device)?,
                 fold: solid_fold::SolidFold::new(device)?,
+                squares: solid_squares::SolidSquares::new(device)?,
             })
         };
         let peels = data.solids.blister.is_some();
@@ -74,7 +81,7 @@ impl SolidPasses {
         };
         Ok(Some(Self {
             rects: solid_rects::SolidRects::new(device)?,
-            tiles: (!(peels && shells)).then_some(()).map(tiles).transpose()?,
+            tiles: has_tiles(data).then_some(()).map(tiles).transpose()?,
             way: if peels {
                 Way::Blister(Box::new(blister::Blister::new(device, (tori, shells), formats.0, formats.1)?))
             } else if data.solids.order.is_empty() {
@@ -201,10 +208,11 @@ impl<'a> Frame<'a> {
                         all: &f.all,
                     }),
                     counters: &b.counters,
+                    tile_squares: &tiles.tile_squares,
                 };
                 barrier::buffers(cmd, &[(&b.counters, w, Access::FRAGMENT_WRITE)]);
                 let uv = t.operand_uv.as_ref().map(|image| Attachment { image, load: Load::Discard });
-                events.record(cmd, &bindings, (colour, uv, depth), band.rows.clone());
+                events.record(cmd, &bindings, (colour, uv, depth), band.rows.clone(), self.tiles_of(band));
                 barrier::buffers(cmd, &[(&b.counters, Access::FRAGMENT_WRITE, w)]);
             }
             (Way::Cst(_), None, _) | (_, _, None) => {
@@ -240,8 +248,7 @@ impl Frame<'_> {
     /// Which leaves each tile of a band sees, and their Blist.
     fn tiles(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>, p: &TilePasses, t: &TileBuffers, band: &Band) {
         let (w, r) = WRITE_TO_READ;
-        let (across, down) = (self.buffers.visibility.size().0, band.rows.len() as u32);
-        let count = across.div_ceil(TILE) * down.div_ceil(TILE);
+        let count = self.tiles_of(band).len() as u32;
         let tiles = solid_tiles::Bindings {
             frame: self.constants,
             rects: &parts.buffers.rects,
@@ -268,9 +275,17 @@ impl Frame<'_> {
             tile_entries: &t.tile_entries,
         };
         p.fold.record(cmd, &fold, count);
+        barrier::buffers(cmd, &[(&t.tile_entries, w, r), (&t.tile_squares, Access::VERTEX_READ, w)]);
+        let squares = solid_squares::Bindings {
+            frame: self.constants,
+            tile_entries: &t.tile_entries,
+            tile_squares: &t.tile_squares,
+        };
+        p.squares.record(cmd, &squares, count);
         barrier::buffers(
             cmd,
             &[
+                (&t.tile_squares, w, Access::VERTEX_READ),
                 (&t.tile_starts, w, Access::FRAGMENT_READ),
                 (&t.tile_leaves, w, Access::FRAGMENT_READ),
                 (&t.tile_entries, w, Access::FRAGMENT_READ),
@@ -392,6 +407,7 @@ impl<'a> SolidParts<'a> {
                 planes: &m.planes,
                 views: frame.views,
             }),
+            tiles: self.buffers.tiles.as_ref().map(|t| (t.tiles, &t.tile_squares)),
         }
     }
 }

@@ -3,10 +3,10 @@
 
 use super::Random;
 use super::harness::{Gpu, Mismatch, same};
-use crate::abi::{EXIT_TRUE, Frame, Leaf, TileLeaf};
+use crate::abi::{EXIT_FALSE, EXIT_TRUE, Frame, Leaf, TileLeaf};
 use crate::csg::{Blist, Builder, Op, Tree};
 use crate::model::{Camera, Model, Primitive, Projection, Shape, Solid};
-use crate::passes::{solid_fold, solid_rects};
+use crate::passes::{solid_fold, solid_rects, solid_squares};
 use crate::picture::SceneSettings;
 use crate::scene::{SceneData, focal_and_slant};
 use crate::twin;
@@ -174,6 +174,44 @@ fn fold_parity() {
     let other = [data.followed, u32::MAX];
     let unmarked = fold_on_gpu(&gpu, &data.leaves, &data.leaves, other, &starts, &tile_leaves).unwrap_err();
     assert_eq!(unmarked.buffer, "tile leaves");
+    gpu.finish();
+}
+
+fn squares_on_gpu(
+    gpu: &Gpu,
+    tiles: [u32; 2],
+    band: std::ops::Range<u32>,
+    given: &[u32],
+    expected: &[u32],
+) -> Result<(), Mismatch> {
+    let size = [(tiles[0] * 16 - 3) as f32, (tiles[1] * 16 - 9) as f32];
+    let (band_top, band_height) = (16 * band.start, 16 * (band.end - band.start));
+    let frame = Frame { size, band_top, band_height, ..Frame::default() };
+    let (frame, entries) = (gpu.upload("frame", &[frame]), gpu.upload("tile entries", given));
+    let squares = gpu.upload("tile squares", &vec![99u32; given.len()]);
+    let pass = solid_squares::SolidSquares::new(gpu.device()).unwrap();
+    let bindings = solid_squares::Bindings { frame: &frame, tile_entries: &entries, tile_squares: &squares };
+    let (first, end) = (band.start * tiles[0], band.end * tiles[0]);
+    gpu.run(|cmd| pass.record(cmd, &bindings, end - first));
+    let mut twin = vec![99; given.len()];
+    let found = twin::solid_squares::solid_squares(tiles, band, expected);
+    twin[first as usize..end as usize].copy_from_slice(&found);
+    same("tile squares", &gpu.read(&squares, given.len()), &twin)
+}
+
+#[test]
+fn squares_parity() {
+    let gpu = Gpu::new();
+    let mut random = Random::new(11);
+    let tiles = [21, 13];
+    let sees = |random: &mut Random| if random.range(0.0, 1.0) < 0.97 { 5 } else { EXIT_FALSE };
+    let entries: Vec<u32> = (0..tiles[0] * tiles[1]).map(|_| sees(&mut random)).collect();
+    for band in [0..13, 0..5, 5..11, 11..13] {
+        squares_on_gpu(&gpu, tiles, band, &entries, &entries).unwrap();
+    }
+    let mut other = entries.clone();
+    other[40] = if other[40] == EXIT_FALSE { 5 } else { EXIT_FALSE };
+    squares_on_gpu(&gpu, tiles, 0..13, &entries, &other).unwrap_err();
     gpu.finish();
 }
 

@@ -27,6 +27,7 @@ pub(crate) mod solid_events;
 pub(crate) mod solid_fold;
 pub(crate) mod solid_layers;
 pub(crate) mod solid_rects;
+pub(crate) mod solid_squares;
 pub(crate) mod solid_tiles;
 pub(crate) mod sort;
 pub(crate) mod split;

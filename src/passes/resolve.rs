@@ -44,24 +44,40 @@ pub(crate) const BEHIND_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// The pass: a pipeline for each kind of thing that the scene has.
 pub(crate) struct Resolve {
-    /// And the background, in every scene.
-    patches: Pipeline,
+    /// And the background, or it alone.
+    patches: Patches,
     meshes: Option<Pipeline>,
     solids: Option<Pipeline>,
     operands: Option<Pipeline>,
 }
 
+enum Patches {
+    Some(Pipeline),
+    None { background: Pipeline },
+}
+
 /// What the scene asks of the pass.
 #[derive(Clone, Copy)]
 pub(crate) struct Kinds {
+    /// Beside those that bound operands.
+    pub patches: bool,
     pub rational: bool,
     pub meshes: bool,
-    /// Boolean ones, and whether a torus is among their surfaces.
-    pub solids: Option<bool>,
-    /// Some of their operands have no equations.
-    pub shells: bool,
+    /// Boolean ones.
+    pub solids: Option<SolidKinds>,
     /// Patches bound operands of Boolean solids.
     pub operands: bool,
+}
+
+/// What Boolean solids ask of the pass.
+#[derive(Clone, Copy)]
+pub(crate) struct SolidKinds {
+    /// A torus is among their surfaces.
+    pub tori: bool,
+    /// It is known which tiles may see them.
+    pub tiles: bool,
+    /// Some of their operands have no equations.
+    pub shells: bool,
 }
 
 /// Formats that the host draws into.
@@ -129,6 +145,8 @@ pub(crate) struct SolidBindings<'a> {
     pub visibility: &'a Image,
     /// The visibility image again where the scene has no trims.
     pub others: &'a Image,
+    /// How many tiles the picture has, and the squares of them that may see a solid; `None` where nobody asked.
+    pub tiles: Option<(u32, &'a Buffer)>,
     /// (u, v) of spline faces that bound operands.
     pub operand_uv: Option<&'a Image>,
     /// `None` where every operand has equations.
@@ -162,15 +180,12 @@ impl Resolve {
         let mut bindings = [Binding::Storage; 10];
         bindings[6] = Binding::Texels;
         bindings[8..].fill(Binding::StorageImage);
-        let pipeline = |name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
+        let over = |vertex, name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
             Pipeline::graphics(
                 device,
                 &GraphicsInfo {
                     name: &format!("resolve ({name}{of_samples})"),
-                    stages: &[
-                        (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
-                        (vk::ShaderStageFlags::FRAGMENT, fragment),
-                    ],
+                    stages: &[(vk::ShaderStageFlags::VERTEX, vertex), (vk::ShaderStageFlags::FRAGMENT, fragment)],
                     bindings,
                     push_bytes: 0,
                     constants,
@@ -188,18 +203,22 @@ impl Resolve {
                 },
             )
         };
+        let pipeline = |name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
+            over(shaders::RESOLVE_VERT, name, fragment, bindings, constants)
+        };
         let aovs = (HAS_AOVS, u32::from(formats.aovs));
         let behind = (BEHIND, u32::from(matches!(into, Destination::Behind { .. })));
         let mut of_mesh = [Binding::Storage; 10];
         of_mesh[8..].fill(Binding::StorageImage);
         let mesh = |()| pipeline("mesh", shaders::RESOLVE_MESH_FRAG, &of_mesh, &[aovs, behind]);
         let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
-        let mut of_solid = [Binding::Storage; 13];
+        let mut of_solid = [Binding::Storage; 14];
         of_solid[5..7].fill(Binding::StorageImage);
-        let solid = |tori: bool| {
+        let solid = |kinds: SolidKinds| {
             let shells = (SOLIDS_HAVE_SHELLS, u32::from(kinds.shells));
-            let constants = [aovs, behind, (SOLIDS_HAVE_TORI, u32::from(tori)), shells];
-            pipeline("solid", shaders::RESOLVE_SOLID_FRAG, &of_solid, &constants)
+            let constants = [aovs, behind, (SOLIDS_HAVE_TORI, u32::from(kinds.tori)), shells];
+            let vertex = if kinds.tiles { shaders::RESOLVE_SOLID_VERT } else { shaders::RESOLVE_VERT };
+            over(vertex, "solid", shaders::RESOLVE_SOLID_FRAG, &of_solid, &constants)
         };
         let solids = kinds.solids.map(solid).transpose()?;
         let mut of_operand = [Binding::Storage; 11];
@@ -210,17 +229,24 @@ impl Resolve {
             pipeline("operand", shaders::RESOLVE_OPERAND_FRAG, &of_operand, &constants)
         };
         let operands = kinds.operands.then_some(()).map(operand).transpose()?;
-        let weights = if kinds.rational { "rational" } else { "polynomial" };
-        let constants = [
-            (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
-            aovs,
-            behind,
-            (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some())),
-        ];
-        Ok(Self { patches: pipeline(weights, shaders::RESOLVE_FRAG, &bindings, &constants)?, meshes, solids, operands })
+        let patches = if kinds.patches {
+            let weights = if kinds.rational { "rational" } else { "polynomial" };
+            let constants = [
+                (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
+                aovs,
+                behind,
+                (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some())),
+            ];
+            Patches::Some(pipeline(weights, shaders::RESOLVE_FRAG, &bindings, &constants)?)
+        } else {
+            let bindings = [Binding::Storage, Binding::StorageImage, Binding::StorageImage];
+            let background = pipeline("background", shaders::RESOLVE_BACKGROUND_FRAG, &bindings, &[aovs, behind])?;
+            Patches::None { background }
+        };
+        Ok(Self { patches, meshes, solids, operands })
     }
 
-    /// One triangle over the targets for each kind of thing.
+    /// One triangle over the targets for each kind of thing; for Boolean solids the tiles that may see one.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
@@ -234,8 +260,15 @@ impl Resolve {
         cmd.rendering(size, colour, depth, || {
             let buffers = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items].map(Into::into);
             let rest = [b.points.into(), b.instances.into(), b.visibility.into()];
-            let resources: Vec<_> = buffers.into_iter().chain(rest).chain([b.others.into()]).collect();
-            cmd.bind(&self.patches, &resources, &[]);
+            match &self.patches {
+                Patches::Some(pipeline) => {
+                    let resources: Vec<_> = buffers.into_iter().chain(rest).chain([b.others.into()]).collect();
+                    cmd.bind(pipeline, &resources, &[]);
+                }
+                Patches::None { background } => {
+                    cmd.bind(background, &[b.frame.into(), b.visibility.into(), b.others.into()], &[]);
+                }
+            }
             cmd.draw(3, 0, 1);
             if let (Some(pipeline), Some(m)) = (&self.meshes, meshes) {
                 let placed = [m.frame, m.views, m.instances, m.mesh_instances, m.meshes].map(Into::into);
@@ -247,15 +280,19 @@ impl Resolve {
             }
             if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
                 let solid = [s.frame, s.leaves, s.leaf_surfaces, s.surfaces, s.surface_centres].map(Into::into);
-                // the shader has these bindings in every scene, and reads them only where there are shells
+                // the shaders have these bindings in every scene, and read them only where there are tiles, or shells
+                let squares = s.tiles.map_or(s.frame, |(_, squares)| squares);
                 let shells = s
                     .shells
                     .as_ref()
                     .map_or([s.frame; 6], |m| [m.instances, m.meshes, m.triangles, m.positions, m.planes, m.views]);
-                let images = [s.visibility.into(), s.others.into()];
+                let images = [s.visibility.into(), s.others.into(), squares.into()];
                 let resources: Vec<_> = solid.into_iter().chain(images).chain(shells.map(Into::into)).collect();
                 cmd.bind(pipeline, &resources, &[]);
-                cmd.draw(3, 0, 1);
+                match s.tiles {
+                    Some((count, _)) => cmd.draw_instances(0..6, 0..count),
+                    None => cmd.draw(3, 0, 1),
+                }
                 if let (Some(pipeline), Some(uv)) = (&self.operands, s.operand_uv) {
                     let resources: Vec<_> =
                         buffers.into_iter().chain(rest).chain([s.others.into(), uv.into()]).collect();

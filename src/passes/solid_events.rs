@@ -57,6 +57,7 @@ pub(crate) struct Bindings<'a> {
     pub fragments: Option<Fragments<'a>>,
     /// `clamps`: rays that a driver did not let come to their end.
     pub counters: &'a Buffer,
+    pub tile_squares: &'a Buffer,
 }
 
 /// Of each pixel, sorted.
@@ -81,10 +82,10 @@ impl SolidEvents {
             &GraphicsInfo {
                 name: if kinds.tori { "solid events (tori)" } else { "solid events" },
                 stages: &[
-                    (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
+                    (vk::ShaderStageFlags::VERTEX, shaders::SOLID_EVENTS_VERT),
                     (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_EVENTS_FRAG),
                 ],
-                bindings: &[Binding::Storage; 12],
+                bindings: &[Binding::Storage; 13],
                 push_bytes: 0,
                 constants: &[
                     (SOLIDS_HAVE_TORI, u32::from(kinds.tori)),
@@ -103,27 +104,33 @@ impl SolidEvents {
         Ok(Self { pipeline })
     }
 
-    /// One triangle over these rows of the picture; what is there already stays where it is nearer. `uv` where the scene
-    /// has spline operands.
+    /// The squares that begin at one of the `tiles`, in these rows of the picture; what is there already stays where it is
+    /// nearer. `uv` where the scene has spline operands.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
         (visibility, uv, depth): (Attachment<'_>, Option<Attachment<'_>>, Attachment<'_>),
         rows: Range<u32>,
+        tiles: Range<u32>,
     ) {
         let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres];
-        let tiles = [b.tile_starts, b.tile_leaves, b.tile_entries];
+        let lists = [b.tile_starts, b.tile_leaves, b.tile_entries];
         // the shader has these bindings in every scene, and reads them only where there are shells
         let none = Fragments { starts: b.frame, counts: b.frame, all: b.frame };
         let f = b.fragments.as_ref().unwrap_or(&none);
         let fragments = [f.starts, f.counts, f.all];
-        let resources: Vec<_> =
-            solid.into_iter().chain(tiles).chain(fragments).chain([b.counters]).map(Into::into).collect();
+        let resources: Vec<_> = solid
+            .into_iter()
+            .chain(lists)
+            .chain(fragments)
+            .chain([b.counters, b.tile_squares])
+            .map(Into::into)
+            .collect();
         let colour: Vec<_> = [visibility].into_iter().chain(uv).collect();
         cmd.rendering_rows((visibility.image.size(), rows), &colour, Some(depth), || {
             cmd.bind(&self.pipeline, &resources, &[]);
-            cmd.draw(3, 0, 1);
+            cmd.draw_instances(0..6, tiles);
         });
     }
 }

@@ -54,6 +54,8 @@ pub(crate) struct SceneData {
     pub solids: SolidData,
     /// The volume that trims faces and meshes, but for one that is everywhere.
     pub volume: Option<SolidData>,
+    /// Some patch is seen itself.
+    pub has_patches: bool,
     /// Some patch bounds an operand of theirs.
     pub has_operands: bool,
     /// Something is seen through, or marked.
@@ -214,6 +216,7 @@ impl SceneData {
             scene.faces.push(f.edit.take());
         }
         self.has_rational |= f.rational;
+        self.has_patches |= f.face.flags & abi::FACE_OPERAND == 0;
         self.faces.push(f.face);
         self.patches.append(&mut f.patches);
         self.points.append(&mut f.points);

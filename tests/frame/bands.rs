@@ -178,7 +178,13 @@ fn each_way_tells_what_it_takes() {
         for list in &stats.solid_bytes {
             let taken = match list.name.as_str() {
                 "blocks" => of(&["solid block counts", "solid block starts", "solid block leaves"]),
-                "tiles" => of(&["solid tile counts", "solid tile starts", "solid tile leaves", "solid tile entries"]),
+                "tiles" => of(&[
+                    "solid tile counts",
+                    "solid tile starts",
+                    "solid tile leaves",
+                    "solid tile entries",
+                    "solid tile squares",
+                ]),
                 "crossings" => of(&["operand fragment"]),
                 _ => of(&["blister layer", "blister faces", "blister depth", "blister stencil"]),
             };

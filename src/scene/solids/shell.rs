@@ -121,10 +121,10 @@ impl SolidData {
 mod tests {
     use super::*;
     use crate::model::{Mesh, Solid};
-    use std::sync::Arc;
     use crate::picture::SolidWay;
     use crate::scene::solids::Lists;
     use glam::DAffine3;
+    use std::sync::Arc;
 
     const TETRA: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
 

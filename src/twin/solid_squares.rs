@@ -1,0 +1,60 @@
+//! Twin of `glsl/solid_squares.comp`: which squares of tiles are drawn.
+
+use crate::abi::{BLOCK, EXIT_FALSE};
+use std::ops::Range;
+
+/// Of each tile of a band of rows of a picture of `tiles` across and down, whose walks begin at `entries`, the side of the
+/// square that begins there, in tiles, or 0.
+pub fn solid_squares(tiles: [u32; 2], band: Range<u32>, entries: &[u32]) -> Vec<u32> {
+    let is_last = band.end == tiles[1];
+    let entries = &entries[(band.start * tiles[0]) as usize..(band.end * tiles[0]) as usize];
+    let tiles = [tiles[0], band.end - band.start];
+    let sees = |x: u32, y: u32| entries[(y * tiles[0] + x) as usize] != EXIT_FALSE;
+    let all_see = |[x, y]: [u32; 2], side: u32| {
+        let (end_x, end_y) = ((x + side).min(tiles[0]), (y + side).min(tiles[1]));
+        (y..end_y).all(|y| (x..end_x).all(|x| sees(x, y)))
+    };
+    let square = |n: u32| {
+        let tile = [n % tiles[0], n / tiles[0]];
+        let sides = std::iter::successors(Some(BLOCK), |side| (*side > 1).then_some(side / 2));
+        let found = sides
+            .map(|side| (tile.map(|k| k / side * side), side))
+            .find(|(first, side)| (is_last || first[1] + side <= tiles[1]) && all_see(*first, *side));
+        found.filter(|(first, _)| *first == tile).map_or(0, |(_, side)| side)
+    };
+    (0..tiles[0] * tiles[1]).map(square).collect()
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Every tile that sees a solid is in one square, and no other is in any.
+    #[test]
+    fn squares_cover_what_sees_a_solid_once() {
+        let tiles = [21, 13];
+        let mut covered_by_larger = 0;
+        for seed in 0..20u32 {
+            let seen = |x: u32, y: u32| (x / 3 + y / 2 * 7 + seed).wrapping_mul(2_654_435_761) >> 29 > seed % 5;
+            let entries: Vec<_> = (0..tiles[0] * tiles[1])
+                .map(|n| if seen(n % tiles[0], n / tiles[0]) { n } else { EXIT_FALSE })
+                .collect();
+            let mut times = vec![0; entries.len()];
+            // bands, or the whole picture
+            let bands = if seed % 2 == 0 { vec![0..13] } else { vec![0..5, 5..10, 10..13] };
+            let squares = bands.into_iter().flat_map(|band| solid_squares(tiles, band, &entries));
+            for (n, side) in (0..).zip(squares) {
+                let first = [n % tiles[0], n / tiles[0]];
+                for y in first[1]..(first[1] + side).min(tiles[1]) {
+                    for x in first[0]..(first[0] + side).min(tiles[0]) {
+                        times[(y * tiles[0] + x) as usize] += 1;
+                        covered_by_larger += u32::from(side > 1);
+                    }
+                }
+            }
+            let expected: Vec<_> = entries.iter().map(|e| i32::from(*e != EXIT_FALSE)).collect();
+            assert_eq!(times, expected, "seed {seed}");
+        }
+        assert!(covered_by_larger > 100, "{covered_by_larger}");
+    }
+}
