@@ -36,3 +36,13 @@ fn a_negative_eye_is_not_an_option() {
     let Command::Render(args) = cli.expect("parses").command else { panic!("render") };
     assert_eq!(args.camera.eye, Some(DVec3::new(-1.0, -2.0, -3.0)));
 }
+
+#[test]
+fn a_budget_is_a_number_of_mebibytes() {
+    let parse = |text| Cli::try_parse_from(["selvedge", "render", "m.csg", "-o", "a.png", "--solid-budget", text]);
+    let Command::Render(args) = parse("0.5").expect("parses").command else { panic!("render") };
+    assert_eq!(args.frame.solid_budget, Some(0.5));
+    for bad in ["0", "-1", "nan", "many"] {
+        assert!(parse(bad).is_err(), "{bad}");
+    }
+}
