@@ -54,7 +54,7 @@ impl Thin {
     pub fn is(&self, [a, b, c]: [DVec3; 3]) -> bool {
         let longest = [b - a, c - b, a - c].map(DVec3::length).into_iter().fold(0.0, f64::max);
         // of no area, too
-        !((b - a).cross(c - a).length() > self.height * longest)
+        (b - a).cross(c - a).length() <= self.height * longest
     }
 }
 
