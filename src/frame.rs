@@ -57,10 +57,9 @@ pub(crate) use solids::{Centres, Near};
 /// The passes that a scene needs.
 pub(crate) struct Passes {
     reset: reset::Reset,
-    bound: bound::Bound,
-    split: split::Split,
     scan: scan::Scan,
-    emit: emit::Emit,
+    /// Of scenes with patches.
+    tessellation: Option<TessellationPasses>,
     trim: Option<TrimPasses>,
     solids: Option<SolidPasses>,
     visibility: visibility::Visibility,
@@ -69,6 +68,13 @@ pub(crate) struct Passes {
     resolve: Option<resolve::Resolve>,
     samples: Option<SamplePasses>,
     layers: Option<LayerPasses>,
+}
+
+/// Those that say how finely each patch is drawn.
+struct TessellationPasses {
+    bound: bound::Bound,
+    split: split::Split,
+    emit: emit::Emit,
 }
 
 impl Passes {
@@ -84,12 +90,17 @@ impl Passes {
             volume,
         };
         let visibility = visibility::Visibility::new(device, kinds)?;
+        let tessellation = |()| {
+            Ok(TessellationPasses {
+                bound: bound::Bound::new(device)?,
+                split: split::Split::new(device)?,
+                emit: emit::Emit::new(device)?,
+            })
+        };
         Ok(Self {
             reset: reset::Reset::new(device)?,
-            bound: bound::Bound::new(device)?,
-            split: split::Split::new(device)?,
             scan: scan::Scan::new(device)?,
-            emit: emit::Emit::new(device)?,
+            tessellation: (!data.items.is_empty()).then_some(()).map(tessellation).transpose()?,
             trim,
             solids: SolidPasses::new(device, data, test)?,
             visibility,
@@ -138,7 +149,9 @@ impl Frame<'_> {
     /// Records the whole frame.
     pub(crate) fn record(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
         self.begin(cmd);
-        times.scope(cmd, "tessellation", || self.tessellation(cmd));
+        if let Some(passes) = &self.passes.tessellation {
+            times.scope(cmd, "tessellation", || self.tessellation(cmd, passes));
+        }
         let trim = self.trim();
         if let Some(table) = trim.as_ref().and_then(TrimParts::table) {
             times.scope(cmd, "trim table", || table.record(self, cmd));
@@ -224,8 +237,8 @@ impl Frame<'_> {
         }
     }
 
-    fn tessellation(&self, cmd: &Commands<'_>) {
-        let (p, s, b) = (self.passes, self.scene, self.buffers);
+    fn tessellation(&self, cmd: &Commands<'_>, p: &TessellationPasses) {
+        let (s, b) = (self.scene, self.buffers);
         let items = b.counts.items;
         let (w, r) = WRITE_TO_READ;
         let bound = bound::Bindings {

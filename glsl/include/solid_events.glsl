@@ -9,8 +9,9 @@
 // The ray is followed from the near plane until outside becomes inside: a near plane within the solid cuts
 // it open, and the first side entered from there is seen. Nothing is stored but the spans of the tile's
 // first leaves: exits of a Blist lead forward, so one scan over the leaves answers both whether the
-// solid is behind depth t and where the next event is. Everything is one loop, so that the surfaces'
-// equations are compiled once. Where the depth of the face is found already, the walk begins there and tells whose it is.
+// solid is behind depth t and where the next event is. The surfaces' equations stand once, in a loop of their own,
+// which passes over spans that are kept: a driver that runs both sides of every branch has no need to solve them again.
+// Where the depth of the face is found already, the walk begins there and tells whose it is.
 #ifndef SOLID_EVENTS_GLSL
 #define SOLID_EVENTS_GLSL
 
@@ -68,6 +69,26 @@ struct Candidates {
     uint negative;
 };
 
+// One scan over the tile's leaves.
+struct Walk {
+    uint at;        // behind depth t
+    uint at_before; // in front of it
+    float next;     // the next depth at which something begins or ends
+    Candidates found;
+    uint candidates;
+};
+
+// Leaf i of the tile, met at t; `other` is taken for what it is not, candidates count from `after` on.
+void meet(inout Walk walk, uint i, TileLeaf here, uint flags, Crossing c, uint other, uint after) {
+    if (i == walk.at) walk.at = c.inside != (i == other) ? here.in_exit : here.out_exit;
+    if (i == walk.at_before) walk.at_before = c.before != (i == other) ? here.in_exit : here.out_exit;
+    walk.next = min(walk.next, c.next);
+    if (i < after || !c.ends) return;
+    ++walk.candidates;
+    if ((flags & LEAF_NEGATIVE) != 0u) walk.found.negative = min(walk.found.negative, i);
+    else walk.found.positive = min(walk.found.positive, i);
+}
+
 void main() {
     uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first = min(tile_starts[n], frame.tile_leaf_capacity);
@@ -106,67 +127,62 @@ void main() {
     uint wanted = 0u;
     uint steps = 0u;
     for (uint scan = 0u; scan < most && !done; ++scan) {
-        uint at = entry;
-        uint at_before = entry; // the walk in front of t
-        float next = NEVER;
-        Candidates found = Candidates(NOBODY, NOBODY);
-        uint candidates = 0u;
-        wanted += end - first;
-        for (uint i = first; i < end; ++i) {
+        // the spans of [first, known) are kept, those of [from, to) computed: all at first, then what is not kept, and
+        // the asked leaf's again to tell its side
+        bool tells = purpose == SIDE;
+        uint from = tells ? asked : scan == 0u ? first : min(first + KEPT, end);
+        uint to = !tells ? end : asked == NOBODY ? from : asked + 1u;
+        uint known = tells ? first : from;
+        Walk walk = Walk(entry, entry, NEVER, Candidates(NOBODY, NOBODY), 0u);
+        wanted += known - first + (to - from);
+        for (uint i = first; i < known; ++i) {
             ++steps;
             TileLeaf here = tile_leaves[i];
             Leaf leaf = leaves[here.leaf];
-            bool is_kept = i - first < KEPT;
-            bool shell = SOLIDS_HAVE_SHELLS && (leaf.flags & LEAF_SHELL) != 0u;
-            Span s = EVERYTHING;
-            if (shell) {
-                // asked below
-            } else if (is_kept && scan > 0u && purpose != SIDE) {
-                s = kept[i - first];
-            } else if (purpose != SIDE || i == asked) {
-                for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
-                    uint surface = leaf_surfaces[k].surface;
-                    Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
-                    if (purpose == SIDE && ends_at(one, t)) side = k;
-                    if ((surface & 1u) != 0u) one = complement(one);
-                    s = both(s, one);
-                }
-                if (is_kept) kept[i - first] = s;
-            }
             Crossing c;
-            if (shell) {
+            uint last;
+            if (SOLIDS_HAVE_SHELLS && (leaf.flags & LEAF_SHELL) != 0u) {
+                c = crossing_of(leaf.first, t, first_fragment, fragment_count, last);
+            } else {
+                c = crossing_of(kept[i - first], t);
+            }
+            meet(walk, i, here, leaf.flags, c, purpose == OWNER ? asked : NOBODY, after);
+        }
+        for (uint i = from; i < to; ++i) {
+            ++steps;
+            TileLeaf here = tile_leaves[i];
+            Leaf leaf = leaves[here.leaf];
+            Crossing c;
+            if (SOLIDS_HAVE_SHELLS && (leaf.flags & LEAF_SHELL) != 0u) {
                 uint last;
                 c = crossing_of(leaf.first, t, first_fragment, fragment_count, last);
-                if (purpose == SIDE && i == asked) {
+                if (tells) {
                     bool patch_ = (fragments[last].shell & FRAGMENT_PATCH) != 0u;
                     side = fragments[last].what;
                     word = patch_ ? SEEN_OPERAND : SEEN_SOLID;
                     operand_uv = fragments[last].uv;
                 }
             } else {
+                Span s = EVERYTHING;
+                for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
+                    uint surface = leaf_surfaces[k].surface;
+                    Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
+                    if (tells && ends_at(one, t)) side = k;
+                    if ((surface & 1u) != 0u) one = complement(one);
+                    s = both(s, one);
+                }
+                if (i - first < KEPT) kept[i - first] = s;
                 c = crossing_of(s, t);
             }
-            if (i == at) {
-                bool inside = c.inside != (purpose == OWNER && i == asked);
-                at = inside ? here.in_exit : here.out_exit;
-            }
-            if (purpose == OWNER && i == at_before) {
-                at_before = c.before != (i == asked) ? here.in_exit : here.out_exit;
-            }
-            next = min(next, c.next);
-            if (i >= after && c.ends) {
-                ++candidates;
-                if ((leaf.flags & LEAF_NEGATIVE) != 0u) found.negative = min(found.negative, i);
-                else found.positive = min(found.positive, i);
-            }
+            meet(walk, i, here, leaf.flags, c, purpose == OWNER ? asked : NOBODY, after);
         }
-        bool inside = at == EXIT_TRUE;
+        bool inside = walk.at == EXIT_TRUE;
         if (purpose == SIDE) {
             done = true;
         } else if (purpose == OWNER) {
             // the owner is the first leaf that alone changes the solid, in front of the event or behind it
-            uint other = negatives ? found.negative : found.positive;
-            if (!inside || at_before == EXIT_TRUE) {
+            uint other = negatives ? walk.found.negative : walk.found.positive;
+            if (!inside || walk.at_before == EXIT_TRUE) {
                 purpose = SIDE;
             } else if (other != NOBODY) {
                 asked = other;
@@ -180,19 +196,19 @@ void main() {
                 purpose = SIDE;
             }
         } else if (inside && !before) {
-            asked = min(found.positive, found.negative);
-            if (found.positive != NOBODY) asked = found.positive;
+            asked = min(walk.found.positive, walk.found.negative);
+            if (walk.found.positive != NOBODY) asked = walk.found.positive;
             fallback = asked;
             after = asked + 1u;
-            negatives = found.positive == NOBODY;
-            purpose = candidates > 1u ? OWNER : SIDE;
+            negatives = walk.found.positive == NOBODY;
+            purpose = walk.candidates > 1u ? OWNER : SIDE;
         } else {
-            if (next >= frame.far) {
+            if (walk.next >= frame.far) {
                 passed = true;
                 break;
             }
             before = inside;
-            t = next;
+            t = walk.next;
         }
     }
     if (steps != wanted || !(done || passed)) atomicAdd(counters.clamps, 1u);

@@ -93,6 +93,9 @@ fn only_a_scene_with_solids_has_what_they_need() {
     }
     assert!(!objects.iter().any(|name| is_of_trimming(name) || name.contains("mesh")), "{objects:?}");
     assert!(!objects.iter().any(|name| name == "visibility of others"), "{objects:?}");
+    let of_patches = ["bound", "split", "emit", "resolve (polynomial", "resolve (rational"];
+    assert!(!objects.iter().any(|o| of_patches.iter().any(|name| o.starts_with(name))), "{objects:?}");
+    assert!(objects.iter().any(|name| name == "resolve (background)"), "{objects:?}");
     assert_silent(renderer);
 }
 
