@@ -4,13 +4,19 @@
 // Pass `blister`: a triangle of an operand behind the layer before, as blister_peel.frag. The host says which way it
 // has to face.
 #include "scene.glsl"
+#include "view.glsl"
 #include "solids.glsl"
 #include "eye_ray.glsl"
+#include "shells.glsl"
 #include "blister.glsl"
 #include "visible.glsl"
 
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
-layout(scalar, binding = 5) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 2) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
+layout(scalar, binding = 3) readonly buffer Triangles { uint triangles[]; };
+layout(scalar, binding = 4) readonly buffer Positions { vec3 positions[]; };
+layout(scalar, binding = 5) readonly buffer Planes { uint planes[]; };
 layout(scalar, binding = 6) readonly buffer Surfaces { Surface surfaces[]; };
 layout(scalar, binding = 7) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
 layout(binding = 8, rg32ui) readonly uniform uimage2D before;
@@ -18,8 +24,7 @@ layout(binding = 9, rg32ui) readonly uniform uimage2D found;
 
 #include "triangle_depth.glsl"
 
-layout(location = 0) flat in uvec3 crossed;
-layout(location = 1) flat in vec2 range;
+layout(location = 0) flat in uvec2 crossed;
 layout(location = 0) out uvec2 layer;
 
 void main() {
@@ -27,10 +32,11 @@ void main() {
     uvec2 from = imageLoad(before, pixel).xy;
     if (from.x == 0u) discard;
     if ((asked & PEEL_UNLOCKS) == 0u && imageLoad(found, pixel).x != 0u) discard; // locked
-    bool leaves = gl_FrontFacing == (crossed.z != 0u);
+    OperandMesh mesh = operand_meshes[crossed.x];
+    bool leaves = gl_FrontFacing == (mesh.mirrored != 0u);
     if ((asked & (leaves ? PEEL_EXITS : PEEL_ENTRIES)) == 0u) discard;
-    float t = triangle_depth(eye_ray(frame, gl_FragCoord.xy), crossed.y, range);
+    float t = triangle_depth(mesh, crossed.y, gl_FragCoord.xy);
     if (!(t > uintBitsToFloat(from.y) && t < frame.far)) discard;
-    layer = uvec2(SEEN_SOLID | crossed.y, floatBitsToUint(t));
+    layer = uvec2(SEEN_SOLID | frame.side_count + crossed.y, floatBitsToUint(t));
     gl_FragDepth = layer_depth(frame, t);
 }

@@ -4,22 +4,28 @@
 // Pass `blister`: a triangle of an operand behind the layer's face. The stencil test turns a bit over: an odd number
 // of triangles behind a point says that it is within. Those in front of it may lie before the near plane.
 #include "scene.glsl"
+#include "view.glsl"
 #include "solids.glsl"
 #include "eye_ray.glsl"
+#include "shells.glsl"
 
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
-layout(scalar, binding = 5) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 2) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
+layout(scalar, binding = 3) readonly buffer Triangles { uint triangles[]; };
+layout(scalar, binding = 4) readonly buffer Positions { vec3 positions[]; };
+layout(scalar, binding = 5) readonly buffer Planes { uint planes[]; };
 layout(scalar, binding = 6) readonly buffer Surfaces { Surface surfaces[]; };
 layout(scalar, binding = 7) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
 layout(binding = 8, rg32ui) readonly uniform uimage2D layer;
 
 #include "triangle_depth.glsl"
 
-layout(location = 0) flat in uvec3 crossed;
-layout(location = 1) flat in vec2 range;
+layout(location = 0) flat in uvec2 crossed;
 
 void main() {
     uvec2 face = imageLoad(layer, ivec2(gl_FragCoord.xy)).xy;
     if (face.x == 0u) discard;
-    if (!(triangle_depth(eye_ray(frame, gl_FragCoord.xy), crossed.y, range) > uintBitsToFloat(face.y))) discard;
+    OperandMesh mesh = operand_meshes[crossed.x];
+    if (!(triangle_depth(mesh, crossed.y, gl_FragCoord.xy) > uintBitsToFloat(face.y))) discard;
 }

@@ -3,12 +3,17 @@
 #extension GL_GOOGLE_include_directive : require
 // Pass `operand_mesh`: a ray crosses a triangle of an operand. The depth is that of the triangle's plane.
 #include "scene.glsl"
+#include "view.glsl"
 #include "solids.glsl"
 #include "eye_ray.glsl"
 #include "shells.glsl"
 
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
-layout(scalar, binding = 5) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 2) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
+layout(scalar, binding = 3) readonly buffer Triangles { uint triangles[]; };
+layout(scalar, binding = 4) readonly buffer Positions { vec3 positions[]; };
+layout(scalar, binding = 5) readonly buffer Planes { uint planes[]; };
 layout(scalar, binding = 6) readonly buffer Surfaces { Surface surfaces[]; };
 layout(scalar, binding = 7) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
 layout(scalar, binding = 8) buffer FragmentCounts { uint fragment_counts[]; };
@@ -18,12 +23,12 @@ layout(scalar, binding = 10) writeonly buffer Fragments { Fragment fragments[]; 
 #include "put_fragment.glsl"
 #include "triangle_depth.glsl"
 
-layout(location = 0) flat in uvec3 crossed;
-layout(location = 1) flat in vec2 range;
+layout(location = 0) flat in uvec2 crossed;
 
 void main() {
+    OperandMesh mesh = operand_meshes[crossed.x];
     float depth = 0.0;
-    if (FILLS) depth = triangle_depth(eye_ray(frame, gl_FragCoord.xy), crossed.y, range);
-    bool leaves = gl_FrontFacing == (crossed.z != 0u);
-    put_fragment(Fragment(crossed.x | (leaves ? FRAGMENT_LEAVES : 0u), depth, crossed.y, 0u));
+    if (FILLS) depth = triangle_depth(mesh, crossed.y, gl_FragCoord.xy);
+    bool leaves = gl_FrontFacing == (mesh.mirrored != 0u);
+    put_fragment(Fragment(mesh.shell | (leaves ? FRAGMENT_LEAVES : 0u), depth, frame.side_count + crossed.y, 0u));
 }

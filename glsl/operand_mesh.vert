@@ -13,17 +13,11 @@ layout(scalar, binding = 2) readonly buffer OperandMeshes { OperandMesh operand_
 layout(scalar, binding = 3) readonly buffer Triangles { uint triangles[]; };
 layout(scalar, binding = 4) readonly buffer Positions { vec3 positions[]; };
 
-layout(location = 0) flat out uvec3 crossed; // shell, side, mirrored
-layout(location = 1) flat out vec2 range;    // of the corners' depths
+layout(location = 0) flat out uvec2 crossed; // mesh, triangle
 
 void main() {
-    OperandMesh mesh = operand_meshes[gl_InstanceIndex];
-    View view = views[mesh.instance];
+    View view = views[operand_meshes[gl_InstanceIndex].instance];
     uint corner = uint(gl_VertexIndex);
-    uint first = corner - corner % 3u;
-    vec3 depths;
-    for (uint k = 0u; k < 3u; ++k) depths[k] = row_times(view.depth, vec4(positions[triangles[first + k]], 1.0));
     gl_Position = to_clip_unending(frame, to_pixel(view, vec4(positions[triangles[corner]], 1.0)));
-    crossed = uvec3(mesh.shell, mesh.first_side + first / 3u - mesh.first_triangle, mesh.mirrored);
-    range = vec2(min(depths.x, min(depths.y, depths.z)), max(depths.x, max(depths.y, depths.z)));
+    crossed = uvec2(gl_InstanceIndex, corner / 3u);
 }

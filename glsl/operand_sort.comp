@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `operand_sort`: the fragments of each pixel by shell and depth, entering and leaving in turn. One
-// thread a pixel.
+// Pass `operand_sort`: the fragments of each pixel of the band by shell and depth, entering and leaving in turn.
+// One thread a pixel.
 // Twin: src/twin/operand_sort.rs.
 //
 //   mesh    E  E     L  L       how often the ray is within counts up and down; it is within where that is
@@ -20,6 +20,7 @@
 #include "scene.glsl"
 #include "solids.glsl"
 #include "shells.glsl"
+#include "tiles.glsl"
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
@@ -143,16 +144,27 @@ bool in_turn(uint from, uint end, bool within, uint start, bool writes) {
 
 void main() {
     uvec2 at = gl_GlobalInvocationID.xy;
-    uvec2 size = uvec2(frame.size);
+    uvec2 size = uvec2(uint(frame.size.x), band_rows(frame));
     if (at.x >= size.x) return;
     if (at == uvec2(0u)) {
-        counters.fragments = fragment_starts[size.x * size.y];
-        if (counters.fragments > frame.fragment_capacity) atomicOr(counters.failed, FAILED_FRAGMENTS);
+        uint wanted = fragment_starts[size.x * size.y];
+        atomicAdd(counters.fragments, wanted);
+        atomicMax(counters.band_fragments, wanted);
+        if (wanted > frame.fragment_capacity) atomicOr(counters.failed, FAILED_FRAGMENTS);
     }
     uint pixel = at.y * size.x + at.x;
     uint first = fragment_starts[pixel];
     uint end = fragment_starts[pixel + 1u];
-    if (end > frame.fragment_capacity) end = first; // the frame is recorded again
+    if (at.x == 0u && at.y % TILE == 0u) {
+        uint next_row = size.x * min(at.y + TILE, size.y);
+        atomicMax(counters.row_fragments, fragment_starts[next_row] - first);
+    }
+    if (end < first) {
+        // more than 32 bits count
+        atomicMax(counters.band_fragments, 0xffffffffu);
+        atomicOr(counters.failed, FAILED_FRAGMENTS);
+    }
+    if (end < first || end > frame.fragment_capacity) end = first; // the frame is recorded again
     sort(first, end - first);
 
     kept = first;

@@ -17,6 +17,6 @@ layout(scalar, binding = 2) writeonly buffer CountersBuffer { Counters counters;
 
 void main() {
     uint draw = gl_GlobalInvocationID.x;
-    if (draw == 0u) counters = Counters(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+    if (draw == 0u) counters = Counters(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
     if (draw < 2u * frame.draw_capacity) draws[draw] = Draw(0u, 1u, 0xffffffffu, 0u);
 }

@@ -49,12 +49,10 @@ struct Walks {
 float end_of(Span s, uint k) { return k == 0u ? s.lo : k == 1u ? s.g0 : k == 2u ? s.g1 : s.hi; }
 
 void main() {
-    uvec2 tiles = tile_count(frame);
-    uvec2 tile = uvec2(gl_FragCoord.xy) / TILE;
-    uint n = tile.y * tiles.x + tile.x;
+    uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first = min(tile_starts[n], frame.tile_leaf_capacity);
     uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
-    uint entry = tile_entries[n];
+    uint entry = tile_entries[first_of_band(frame) + n];
     if (entry >= EXIT_FALSE) discard; // the same everywhere in the tile
     uint own = asked & LEAF_OF;
     Ray ray = eye_ray(frame, gl_FragCoord.xy);

@@ -37,11 +37,11 @@ uint fold(uint to, uint from, uint end) {
 // Items that rays are followed through are lists of their own, one after another: where each begins is marked.
 void main() {
     uint n = gl_GlobalInvocationID.x;
-    uvec2 tiles = tile_count(frame);
+    uvec2 tiles = band_tiles(frame);
     if (n >= tiles.x * tiles.y) return;
     uint start = min(tile_starts[n], frame.tile_leaf_capacity);
     uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
-    tile_entries[n] = fold(0u, start, end);
+    tile_entries[first_of_band(frame) + n] = fold(0u, start, end);
     uint item = EXIT_FALSE;
     uint entry = EXIT_FALSE;
     for (uint i = start; i < end; ++i) {

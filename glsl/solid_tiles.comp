@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `solid_tiles`: which leaves each tile may see, of those of its block: counted first, then
-// listed. One thread a tile.
+// Pass `solid_tiles`: which leaves each tile of the band may see, of those of its block: counted first,
+// then listed. One thread a tile.
 // Twin: src/twin/solid_tiles.rs.
 #include "scene.glsl"
 #include "tiles.glsl"
@@ -21,9 +21,9 @@ layout(scalar, binding = 7) buffer CountersBuffer { Counters counters; };
 
 void main() {
     uint n = gl_GlobalInvocationID.x;
-    uvec2 tiles = tile_count(frame);
+    uvec2 tiles = band_tiles(frame);
     if (n >= tiles.x * tiles.y) return;
-    uvec2 tile = uvec2(n % tiles.x, n / tiles.x);
+    uvec2 tile = uvec2(n % tiles.x, frame.band_top / TILE + n / tiles.x);
     uvec2 blocks = block_count(frame);
     uint block = tile.y / BLOCK * blocks.x + tile.x / BLOCK;
     uint start = LISTS ? tile_starts[n] : 0u;
@@ -36,8 +36,15 @@ void main() {
     }
     if (n == 0u && LISTS) {
         uint wanted = tile_starts[tiles.x * tiles.y];
-        counters.tile_leaves = wanted;
+        atomicAdd(counters.tile_leaves, wanted);
+        atomicMax(counters.band_tile_leaves, wanted);
         if (wanted > frame.tile_leaf_capacity) atomicOr(counters.failed, FAILED_TILE_LEAVES);
+    }
+    if (LISTS && n % tiles.x == 0u) atomicMax(counters.row_tile_leaves, tile_starts[n + tiles.x] - start);
+    if (LISTS && tile_starts[n + 1u] < start) {
+        // more than 32 bits count
+        atomicMax(counters.band_tile_leaves, 0xffffffffu);
+        atomicOr(counters.failed, FAILED_TILE_LEAVES);
     }
     for (uint i = block_starts[block]; i < min(end, frame.block_leaf_capacity); ++i) {
         uint leaf = block_leaves[i];

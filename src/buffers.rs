@@ -3,7 +3,8 @@
 //! ```text
 //!   by the scene     taus, factors, counts and starts per item; per strip, face and curve if trimmed
 //!   by the picture   visibility, that of what is no patch where faces are trimmed, depth; per tile and block
-//!                    of tiles if there are Boolean solids; the sum of a pixel's samples where it has several;
+//!                    of tiles if there are Boolean solids, per pixel if operands are meshes or spline parts: of a
+//!                    band of rows at a time, where all of them take too much; the sum of a pixel's samples where it has several;
 //!                    what is behind layers where rays are followed through solids
 //!   by the view      sub-patches, draws, rows, intercepts, doubts, leaves in tiles: a pass that runs out says so in
 //!                    Counters.failed, and the next frame gets what it would have needed
@@ -18,8 +19,9 @@ use crate::passes::average::SUM_FORMAT;
 use crate::passes::blister::{LAYER_DEPTH_FORMAT, LAYER_FORMAT};
 use crate::passes::resolve::BEHIND_FORMAT;
 use crate::passes::scan;
+use crate::passes::solid_events::OPERAND_UV_FORMAT;
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
-use crate::picture::{Samples, TrimWay};
+use crate::picture::{PoolBytes, Samples, TrimWay};
 use ash::vk;
 
 /// Everything transient.
@@ -105,15 +107,20 @@ impl TableBuffers {
 /// Which leaves of Boolean solids each part of the picture sees.
 pub(crate) struct SolidBuffers {
     pub rects: Buffer,
+    /// Rows of tiles in a band.
+    pub band_rows: u32,
     /// `None` where [`SolidWay::Blister`](crate::picture::SolidWay::Blister) draws meshes, too.
     pub tiles: Option<TileBuffers>,
     pub fragments: Option<FragmentBuffers>,
+    /// (u, v) of spline faces that bound operands.
+    pub operand_uv: Option<Image>,
     pub layers: Option<LayerImages>,
 }
 
-/// Which leaves each tile sees, and their Blist.
+/// Which leaves each tile of a band sees, and their Blist.
 pub(crate) struct TileBuffers {
     pub blocks: u32,
+    /// In the picture.
     pub tiles: u32,
     pub block_counts: Buffer,
     pub block_starts: Buffer,
@@ -121,6 +128,7 @@ pub(crate) struct TileBuffers {
     pub tile_counts: Buffer,
     pub tile_starts: Buffer,
     pub tile_leaves: Buffer,
+    /// These two of all tiles of the picture.
     pub tile_entries: Buffer,
     pub tile_squares: Buffer,
 }
@@ -134,7 +142,7 @@ pub(crate) struct LayerImages {
     pub stencil: Image,
 }
 
-/// Where each pixel's ray crosses operands without equations.
+/// Where the ray of each pixel of a band crosses operands without equations.
 pub(crate) struct FragmentBuffers {
     pub counts: Buffer,
     pub starts: Buffer,
@@ -162,9 +170,12 @@ impl Buffers {
         let n = counts.items;
         let in_tiles = counts.leaves > 0 && !(counts.blister && counts.shells > 0);
         let across = |side: u32| (size.0.div_ceil(side) * size.1.div_ceil(side)) * u32::from(in_tiles);
-        let (tiles, blocks) = (across(TILE), across(TILE * BLOCK));
-        let pixels = if counts.has_fragments() { size.0 * size.1 } else { 0 };
-        let scanned = [2 * n, counts.strips, counts.curves, counts.face_instances, capacities.rows, tiles, pixels];
+        let (all_tiles, blocks) = (across(TILE), across(TILE * BLOCK));
+        let band_rows = capacities.band_rows.min(size.1.div_ceil(TILE));
+        let tiles = all_tiles.min(size.0.div_ceil(TILE) * band_rows);
+        let pixels = if counts.has_fragments() { size.0 * (band_rows * TILE).min(size.1) } else { 0 };
+        let scanned =
+            [2 * n, counts.strips, counts.curves, counts.face_instances, capacities.rows, tiles, blocks, pixels];
         let scanned = scanned.into_iter().max().unwrap_or(0);
         let draw_bytes = 2 * u64::from(capacities.draws) * size_of::<vk::DrawIndirectCommand>() as u64;
         let table = || {
@@ -223,22 +234,26 @@ impl Buffers {
                 .then(|| {
                     Ok(SolidBuffers {
                         rects: structs("solid rects", counts.leaves, size_of::<Rect>())?,
+                        band_rows,
                         tiles: in_tiles
                             .then(|| {
                                 let room = capacities.tile_leaves;
                                 Ok(TileBuffers {
                                     blocks,
-                                    tiles,
+                                    tiles: all_tiles,
                                     block_counts: words("solid block counts", blocks)?,
                                     block_starts: words("solid block starts", blocks + 1)?,
                                     block_leaves: words("solid block leaves", capacities.block_leaves)?,
                                     tile_counts: words("solid tile counts", tiles)?,
                                     tile_starts: words("solid tile starts", tiles + 1)?,
                                     tile_leaves: structs("solid tile leaves", room, size_of::<TileLeaf>())?,
-                                    tile_entries: words("solid tile entries", tiles)?,
-                                    tile_squares: words("solid tile squares", tiles)?,
+                                    tile_entries: words("solid tile entries", all_tiles)?,
+                                    tile_squares: words("solid tile squares", all_tiles)?,
                                 })
                             })
+                            .transpose()?,
+                        operand_uv: (counts.operand_patches && counts.has_fragments())
+                            .then(|| image("operand (u, v)", OPERAND_UV_FORMAT, drawn_and_read))
                             .transpose()?,
                         layers: counts
                             .blister
@@ -275,5 +290,27 @@ impl Buffers {
                 .transpose()?,
             behind: counts.is_followed.then(|| image("behind layers", BEHIND_FORMAT, drawn_and_read)).transpose()?,
         })
+    }
+}
+
+impl SolidBuffers {
+    /// Bytes of what the way to draw Boolean solids takes beside what every frame has.
+    pub(crate) fn bytes(&self) -> Vec<PoolBytes> {
+        let sum = |name: &str, bytes: &[u64]| PoolBytes { name: name.to_owned(), bytes: bytes.iter().sum() };
+        let blocks = self
+            .tiles
+            .as_ref()
+            .map(|t| sum("blocks", &[&t.block_counts, &t.block_starts, &t.block_leaves].map(Buffer::bytes)));
+        let tiles = self.tiles.as_ref().map(|t| {
+            let all = [&t.tile_counts, &t.tile_starts, &t.tile_leaves, &t.tile_entries, &t.tile_squares];
+            sum("tiles", &all.map(Buffer::bytes))
+        });
+        let crossings =
+            self.fragments.as_ref().map(|f| sum("crossings", &[&f.counts, &f.starts, &f.all].map(Buffer::bytes)));
+        let layers = self.layers.as_ref().map(|l| {
+            let [a, b] = &l.layers;
+            sum("layers", &[a, b, &l.found, &l.depth, &l.stencil].map(Image::bytes))
+        });
+        blocks.into_iter().chain(tiles).chain(crossings).chain(layers).collect()
     }
 }

@@ -6,12 +6,15 @@
 //!                                                  └──────────────── grown ◀──────────┘
 //! ```
 
-use crate::abi::{BLOCK, Counters, Fragment, SubPatch, TILE, TileLeaf};
-use crate::passes::scan;
+mod bands;
+
+use crate::abi::{BLOCK, Counters, SubPatch, TILE, TileLeaf};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
 use crate::picture::{Samples, TrimWay};
 use crate::scene::SceneData;
+use bands::{Entries, Lists};
+pub(crate) use bands::{Limits, WHOLE};
 
 /// What the scene has, per placed face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -25,10 +28,17 @@ pub(crate) struct Counts {
     pub leaves: u32,
     /// Operands of theirs without equations.
     pub shells: u32,
+    /// Patches bound some of those.
+    pub operand_patches: bool,
     /// [`SolidWay::Blister`](crate::picture::SolidWay::Blister) draws the solids.
     pub blister: bool,
+    /// [`SolidWay::Events`](crate::picture::SolidWay::Events) does, and where lists are too large, band by band.
+    pub events: bool,
+    /// Most bytes of the lists of events: [`SceneSettings::solid_budget`](crate::picture::SceneSettings::solid_budget).
+    pub solid_budget: Option<u64>,
     pub triangles: u32,
-    /// Of leaves.
+    /// Of leaves with equations; with the triangles of the others.
+    pub leaf_sides: u32,
     pub sides: u32,
     pub mesh_instances: u32,
     /// How faces are trimmed, where some are.
@@ -57,9 +67,13 @@ impl Counts {
             face_instances: data.face_instances.len() as u32,
             leaves: data.solids.leaves.len() as u32,
             shells: data.solids.shell_leaves.len() as u32,
+            operand_patches: data.has_operands,
             blister: data.solids.blister.is_some(),
+            events: data.solids.is_by_events(),
+            solid_budget: data.solid_budget,
             triangles: count(data.meshes.triangles.len().max(data.meshes.positions.len() / 3)),
-            sides: count(data.solids.leaf_surfaces.len()),
+            leaf_sides: count(data.solids.leaf_surfaces.len()),
+            sides: count(data.solids.leaf_surfaces.len() + data.solids.operand_triangles.len()),
             mesh_instances: count(data.meshes.instances.len()),
             trim: data.trim_way(),
             samples: data.samples,
@@ -76,13 +90,13 @@ impl Counts {
         self.shells > 0 && !self.blister
     }
 
-    /// Whether one dispatch covers a picture of this size, where its pixels are counted.
-    pub(crate) fn check_size(self, size: (u32, u32)) -> Result<(), TooMany> {
-        let count = size.0.saturating_mul(size.1);
-        if self.has_fragments() && count > scan::MAX_COUNT {
-            return Err(TooMany { what: "pixels with operands of meshes or splines", count, most: scan::MAX_COUNT });
-        }
-        Ok(())
+    /// What the lists of events may take where one storage buffer has `range` bytes.
+    pub(crate) fn limits(self, range: u32) -> Limits {
+        Limits { range, budget: self.solid_budget.unwrap_or(u64::MAX) }
+    }
+
+    fn lists(self, size: (u32, u32), range: u32) -> Lists {
+        Lists { size, has_fragments: self.has_fragments(), limits: self.limits(range) }
     }
 
     /// Whether one dispatch covers each of them, and numbers tell them apart.
@@ -144,12 +158,16 @@ pub(crate) struct Capacities {
     pub block_leaves: u32,
     pub tile_leaves: u32,
     pub fragments: u32,
+    /// Rows of tiles in a band, for whose lists these two have room; [`WHOLE`]: one band.
+    pub band_rows: u32,
     /// That way `blister` peels.
     pub layers: u32,
 }
 
 /// Bits of [`Counters::failed`], as in `scene.glsl`.
 const FAILED_DRAWS: u32 = 2;
+const FAILED_TILE_LEAVES: u32 = 64;
+const FAILED_FRAGMENTS: u32 = 128;
 const FAILED_LAYERS: u32 = 256;
 
 impl Capacities {
@@ -167,19 +185,85 @@ impl Capacities {
             block_leaves: counts.leaves.saturating_mul(4),
             tile_leaves: counts.leaves.saturating_mul(16),
             fragments: if counts.has_fragments() { 1 << 18 } else { 0 },
+            band_rows: WHOLE,
             layers: if counts.blister { FEWEST_LAYERS } else { 0 },
         }
     }
 
-    /// The same, with room for a few leaves in every tile of a picture of this size: most often that is enough at once.
-    pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32)) -> Self {
-        let few = counts.leaves.min(LEAVES_IN_A_TILE);
-        let within = |side| few.saturating_mul(size.0.div_ceil(side).saturating_mul(size.1.div_ceil(side)));
-        Self {
-            block_leaves: self.block_leaves.max(within(TILE * BLOCK)),
-            tile_leaves: self.tile_leaves.max(within(TILE)),
-            ..self
+    /// The same, with room for a few leaves in every tile of a picture of this size, where a storage buffer of `range`
+    /// bytes and the budget have it: most often that is enough at once.
+    pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), range: u32) -> Result<Self, TooMany> {
+        let lists = counts.lists(size, range);
+        let mut band_rows = self.band_rows;
+        if counts.events && !lists.hold(band_rows.min(lists.rows()), Entries::NONE) {
+            band_rows = lists.even(lists.most_rows(Entries::NONE));
+            if band_rows == 0 {
+                return Err(lists.no_room(Entries::NONE));
+            }
         }
+        let rows = band_rows.min(lists.rows());
+        let few = counts.leaves.min(LEAVES_IN_A_TILE);
+        let within = |side, down: u32| few.saturating_mul(size.0.div_ceil(side).saturating_mul(down));
+        let few = within(TILE, rows);
+        let block_leaves = self.block_leaves.max(within(TILE * BLOCK, size.1.div_ceil(TILE * BLOCK)));
+        let room = |tile_leaves: u32| {
+            Entries { tile_leaves: tile_leaves.into(), fragments: self.fragments.into() }.within(range)
+        };
+        let (wanted, had) = (room(self.tile_leaves.max(few)), room(self.tile_leaves));
+        let room = if !counts.events || lists.hold(rows, wanted) {
+            wanted
+        } else if lists.hold(rows, had) {
+            had
+        } else {
+            lists.shared(rows, wanted)
+        };
+        Ok(Self { block_leaves, band_rows, ..self }.with(room))
+    }
+
+    fn with(self, room: Entries) -> Self {
+        // what one storage buffer holds has a number of 32 bits
+        Self { tile_leaves: room.tile_leaves as u32, fragments: room.fragments as u32, ..self }
+    }
+
+    /// Rows of tiles in a band, and room for their lists, where a frame reported `c`.
+    fn banded(self, c: &Counters, lists: &Lists) -> Result<Self, TooMany> {
+        let entries =
+            |tile_leaves: u32, fragments: u32| Entries { tile_leaves: tile_leaves.into(), fragments: fragments.into() };
+        let row = entries(c.row_tile_leaves, c.row_fragments);
+        let (all, rows) = (entries(c.tile_leaves, c.fragments), lists.rows());
+        let failed = c.failed & (FAILED_TILE_LEAVES | FAILED_FRAGMENTS) != 0;
+        let counted = c.band_tile_leaves.max(c.band_fragments) < u32::MAX;
+        let is_whole = self.band_rows >= rows;
+        if !lists.hold(1, row) {
+            return Err(lists.no_room(row));
+        }
+        if is_whole && !failed {
+            return Ok(self);
+        }
+        let had = entries(self.tile_leaves, self.fragments);
+        let grown = if is_whole { had.grown(all) } else { all.with_spare() };
+        if counted && lists.hold(rows, grown) {
+            return Ok(Self { band_rows: WHOLE, ..self }.with(grown));
+        }
+        if is_whole && counted && lists.hold(rows, all) {
+            return Ok(self.with(lists.shared(rows, all.with_spare())));
+        }
+        let sure = lists.even(lists.most_rows(row));
+        let band_rows = match (is_whole, failed) {
+            (true, _) if counted => {
+                let mean = |n: &u32| lists.hold(*n, all.times(*n, rows));
+                lists.even((sure..rows).rev().find(mean).unwrap_or(sure))
+            }
+            (false, false) => self.band_rows.max(lists.even(lists.most_rows(row.with_spare()))),
+            _ => sure,
+        };
+        if band_rows == self.band_rows && !failed {
+            return Ok(self);
+        }
+        let wanted = row.times(band_rows, 1);
+        let room = lists.shared(band_rows, wanted.with_spare());
+        let room = if lists.hold(band_rows, wanted) && !room.hold(wanted) { wanted } else { room };
+        Ok(Self { band_rows, ..self }.with(room))
     }
 
     /// Buffers made for these take as much as those made for `others`.
@@ -188,14 +272,14 @@ impl Capacities {
     }
 
     /// What the frame that reported `c` would have needed, with a quarter to spare where a storage
-    /// buffer of `range` bytes has it; the same when it had enough.
-    pub(crate) fn grown(self, c: &Counters, range: u32) -> Result<Self, TooMany> {
+    /// buffer of `range` bytes has it; the same when it had enough. `size` is that of the picture.
+    pub(crate) fn grown(self, c: &Counters, counts: Counts, size: (u32, u32), range: u32) -> Result<Self, TooMany> {
         if c.wanted_rows > MOST_ROWS {
             return Err(TooMany { what: "scan lines", count: c.wanted_rows, most: MOST_ROWS });
         }
-        let most_fragments = (range / size_of::<Fragment>() as u32).min(MOST_SEEN);
-        if c.fragments > most_fragments {
-            return Err(TooMany { what: "crossings of operands", count: c.fragments, most: most_fragments });
+        let most_leaves = range / size_of::<TileLeaf>() as u32;
+        if !counts.events && c.band_tile_leaves > most_leaves {
+            return Err(TooMany { what: "primitives in tiles", count: c.band_tile_leaves, most: most_leaves });
         }
         if c.failed & FAILED_LAYERS != 0 && self.layers >= MOST_LAYERS {
             return Err(TooMany { what: "layers of faces", count: c.layers, most: MOST_LAYERS });
@@ -205,6 +289,10 @@ impl Capacities {
             if wanted > had { spare.max(wanted) } else { had }
         };
         let more_draws = if c.failed & FAILED_DRAWS != 0 { 4 } else { 1 };
+        let lists = match counts.events {
+            true => self.banded(c, &counts.lists(size, range))?,
+            false => Self { tile_leaves: room(self.tile_leaves, c.tile_leaves, most_leaves), ..self },
+        };
         Ok(Self {
             sub_patches: room(
                 self.sub_patches,
@@ -216,8 +304,9 @@ impl Capacities {
             intercepts: room(self.intercepts, c.intercepts, range / size_of::<u32>() as u32),
             doubts: room(self.doubts, c.doubts, range / size_of::<u32>() as u32),
             block_leaves: room(self.block_leaves, c.block_leaves, range / size_of::<u32>() as u32),
-            tile_leaves: room(self.tile_leaves, c.tile_leaves, range / size_of::<TileLeaf>() as u32),
-            fragments: room(self.fragments, c.fragments, most_fragments),
+            tile_leaves: lists.tile_leaves,
+            fragments: lists.fragments,
+            band_rows: lists.band_rows,
             layers: match self.layers {
                 0 => 0,
                 had if c.failed & FAILED_LAYERS != 0 => 2 * had,
@@ -247,21 +336,25 @@ mod tests {
         Capacities::first(Counts { items: 1000, strips: 8, trim: Some(TrimWay::Table), ..Default::default() })
     }
 
+    fn grown(had: Capacities, c: &Counters) -> Result<Capacities, TooMany> {
+        had.grown(c, Counts::default(), (640, 480), RANGE)
+    }
+
     #[test]
     fn what_sufficed_stays() {
         let c = Counters { plain: 900, trimmed: 100, wanted_rows: 65_536, intercepts: 262_144, ..Default::default() };
-        assert_eq!(first().grown(&c, RANGE).unwrap(), first());
+        assert_eq!(grown(first(), &c).unwrap(), first());
     }
 
     #[test]
     fn what_did_not_gets_what_it_wanted_and_a_quarter() {
         let c = Counters { plain: 2000, wanted_rows: 100_000, failed: FAILED_DRAWS | 1 | 4, ..Default::default() };
-        let grown = first().grown(&c, RANGE).unwrap();
-        assert_eq!((grown.sub_patches, grown.rows), (2500, 125_000));
-        assert_eq!((grown.draws, grown.intercepts), (4 * first().draws, first().intercepts));
+        let had = grown(first(), &c).unwrap();
+        assert_eq!((had.sub_patches, had.rows), (2500, 125_000));
+        assert_eq!((had.draws, had.intercepts), (4 * first().draws, first().intercepts));
         // no room for a quarter more in one storage buffer
         let c = Counters { intercepts: RANGE / 4 - 1, failed: 8, ..Default::default() };
-        assert_eq!(first().grown(&c, RANGE).unwrap().intercepts, RANGE / 4);
+        assert_eq!(grown(first(), &c).unwrap().intercepts, RANGE / 4);
     }
 
     /// One layer more than were needed, so that it is seen to be empty; twice as many where some were wanting.
@@ -269,7 +362,7 @@ mod tests {
     fn layers_follow_the_view() {
         let peels = Capacities::first(Counts { leaves: 3, blister: true, ..Default::default() });
         assert_eq!((first().layers, peels.layers), (0, FEWEST_LAYERS));
-        let of = |had: Capacities, c| had.grown(&c, RANGE).map(|c| c.layers);
+        let of = |had: Capacities, c| grown(had, &c).map(|c| c.layers);
         let more = Capacities { layers: 16, ..peels };
         assert_eq!(
             of(peels, Counters { layers: 5, failed: FAILED_LAYERS, ..Default::default() }),
@@ -286,7 +379,7 @@ mod tests {
     #[test]
     fn more_than_can_be_counted_is_an_error() {
         let c = Counters { wanted_rows: MOST_ROWS + 1, failed: 4, ..Default::default() };
-        assert!(matches!(first().grown(&c, RANGE), Err(TooMany { what: "scan lines", .. })));
+        assert!(matches!(grown(first(), &c), Err(TooMany { what: "scan lines", .. })));
         let counts = Counts { items: MOST_THREADS, ..Default::default() };
         assert!(counts.check().is_ok());
         assert!(matches!(Counts { curves: MOST_THREADS + 1, ..counts }.check(), Err(TooMany { .. })));

@@ -39,6 +39,7 @@ use samples::{SamplePasses, Scopes};
 use solids::SolidPasses;
 use trim::{TrimParts, TrimPasses};
 
+mod bands;
 mod blister;
 mod edit;
 mod layers;
@@ -317,7 +318,9 @@ impl Frame<'_> {
             (&b.depth, Access::DEPTH_WRITE.discarded() | Access::COMPUTE_READ.discarded(), Access::DEPTH_WRITE),
         ];
         let behind = b.behind.iter().map(|image| (image, read, Access::COLOUR_WRITE));
-        barrier::images(cmd, &fixed.into_iter().chain(others).chain(behind).collect::<Vec<_>>());
+        let operand_uv = b.solids.iter().flat_map(|s| &s.operand_uv);
+        let operand_uv = operand_uv.map(|image| (image, read, Access::COLOUR_WRITE));
+        barrier::images(cmd, &fixed.into_iter().chain(others).chain(behind).chain(operand_uv).collect::<Vec<_>>());
     }
 
     /// What tests against the volume that trims the scene read, in their order; nothing without one.

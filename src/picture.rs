@@ -271,6 +271,12 @@ pub struct SceneSettings {
     /// casts none, and is counted in [`FrameStats::shadowless`]: placed parts, what is seen through, and operands that are
     /// spline parts; such an operand is left out of the solid that casts the shadow.
     pub sun: Option<DVec3>,
+    /// Most bytes that the lists of [`SolidWay::Events`] take: which primitives each tile of 16 x 16 pixels sees, and where
+    /// each pixel's ray crosses operands that are meshes or spline parts. Where they would take more, the picture is
+    /// drawn in bands of rows of tiles, one after another, each with all geometry: the same picture, bit for bit. `None`:
+    /// as much as one storage buffer of the device holds, for each list. A row of tiles that alone wants more is
+    /// [`RenderError::TooMany`](crate::renderer::RenderError::TooMany).
+    pub solid_budget: Option<u64>,
 }
 
 /// Images wanted beside the colour.
@@ -364,6 +370,13 @@ pub struct FrameStats {
     pub shadowless: u64,
     /// Layers of faces that [`SolidWay::Blister`] peeled off before every pixel was decided.
     pub layers: u64,
+    /// Bands of rows of tiles in which the lists of [`SolidWay::Events`] were made: 1 where all of them fit, 0 where that
+    /// way draws nothing. See [`SceneSettings::solid_budget`].
+    pub bands: u32,
+    /// Bytes of what the way to draw Boolean solids takes beside what every frame has: lists of the primitives that
+    /// `blocks` of 8 x 8 tiles see, and `tiles`; lists of `crossings` with operands; images of `layers`. Those that
+    /// there are; [`SceneSettings::solid_budget`] is for `tiles` and `crossings`.
+    pub solid_bytes: Vec<PoolBytes>,
     /// Times the frame was recorded again because a buffer was too small.
     pub retries: u32,
     /// Bytes copied for edits of trim loops since the frame before.

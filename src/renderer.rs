@@ -17,7 +17,8 @@ mod constants;
 mod edit;
 mod slot;
 
-use crate::buffers::Buffers;
+use crate::abi;
+use crate::buffers::{Buffers, SolidBuffers};
 pub use crate::capacities::TooMany;
 use crate::capacities::{Capacities, Counts};
 use crate::frame::{Frame, Near, Passes, target};
@@ -134,6 +135,18 @@ struct Loaded {
     buffers: Option<Buffers>,
     /// Edits that the next frame copies.
     edits: Vec<Write>,
+}
+
+impl Loaded {
+    fn bands(&self) -> u32 {
+        let solids = self.buffers.as_ref().filter(|_| self.counts.events);
+        solids.map_or(0, |b| b.visibility.size().1.div_ceil(abi::TILE).div_ceil(self.capacities.band_rows))
+    }
+
+    fn solid_bytes(&self) -> Vec<PoolBytes> {
+        let solids = self.buffers.as_ref().and_then(|b| b.solids.as_ref());
+        solids.map_or_else(Vec::new, SolidBuffers::bytes)
+    }
 }
 
 #[allow(dead_code)] // held for their drop
@@ -374,6 +387,8 @@ impl Renderer {
             open_clear: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.open)),
             shadowless: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.shadowless)),
             layers: u64::from(c.layers),
+            bands: self.loaded.as_ref().map_or(0, Loaded::bands),
+            solid_bytes: self.loaded.as_ref().map_or_else(Vec::new, Loaded::solid_bytes),
             retries: 0,
             edit_bytes: slot.edit_bytes,
             pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),
@@ -397,14 +412,13 @@ impl Renderer {
         finished.retired.clear();
         finished.recorded = false;
         let Some(loaded) = &mut self.loaded else { return Ok(()) };
-        loaded.counts.check_size(size)?;
         let range = self.device.limits().max_storage_buffer_range;
         let capacities = match (had, report) {
             // else another slot's frame has made them larger since
-            (Some(had), Some(c)) if had == loaded.capacities => had.grown(&c, range)?,
+            (Some(had), Some(c)) if had == loaded.capacities => had.grown(&c, loaded.counts, size, range)?,
             _ => loaded.capacities,
         };
-        let capacities = capacities.for_picture(loaded.counts, size);
+        let capacities = capacities.for_picture(loaded.counts, size, range)?;
         let fits = |b: &Buffers| b.visibility.size() == size && b.capacities.takes_as_much(capacities);
         let fits = loaded.buffers.as_ref().is_some_and(fits);
         let made = (!fits).then(|| Buffers::new(&self.device, loaded.counts, capacities, size)).transpose()?;

@@ -46,6 +46,7 @@ const UNSAFE: &[&str] = &["gpu", "renderer", "headless"];
 /// of its own.
 const BARRIERS: &[&str] = &[
     "src/frame.rs",
+    "src/frame/bands.rs",
     "src/frame/blister.rs",
     "src/frame/edit.rs",
     "src/frame/layers.rs",

@@ -4,7 +4,7 @@
 //   a + s (b - a) + t (c - a),   s, t >= 0,   s + t <= 1
 //
 // The rasteriser rounds corners to a fraction of a pixel, so the ray may pass a little beside the
-// triangle: the nearest point of the triangle counts then.
+// triangle: the nearest point of the triangle counts then. In every pass the same bits.
 #ifndef FACET_GLSL
 #define FACET_GLSL
 
@@ -15,7 +15,21 @@ struct Facet {
     float depth;
 };
 
-float cross2(vec2 a, vec2 b) { return a.x * b.y - a.y * b.x; }
+float cross2(vec2 a, vec2 b) {
+    precise float area = a.x * b.y - a.y * b.x;
+    return area;
+}
+
+// Across two sides, `ab` and `ac`: of sides near 1, since the product of small ones would underflow.
+vec3 across(vec3 ab, vec3 ac) {
+    float side = max(max(dot(ab, ab), dot(ac, ac)), 1e-36);
+    return cross(ab * inversesqrt(side), ac * inversesqrt(side));
+}
+
+vec3 facet_normal(uint triangle) {
+    vec3 a = positions[triangles[3u * triangle]];
+    return across(positions[triangles[3u * triangle + 1u]] - a, positions[triangles[3u * triangle + 2u]] - a);
+}
 
 Facet facet_at(uint triangle, View view, vec2 pixel) {
     Facet f;
@@ -26,15 +40,17 @@ Facet facet_at(uint triangle, View view, vec2 pixel) {
     vec4 q = to_pixel(view, vec4(a, 1.0));
     vec4 qb = to_pixel(view, vec4(f.ab, 0.0));
     vec4 qc = to_pixel(view, vec4(f.ac, 0.0));
-    vec2 from = q.xy - pixel * q.w;
-    vec2 along_b = qb.xy - pixel * qb.w;
-    vec2 along_c = qc.xy - pixel * qc.w;
+    precise vec2 from = q.xy - pixel * q.w;
+    precise vec2 along_b = qb.xy - pixel * qb.w;
+    precise vec2 along_c = qc.xy - pixel * qc.w;
     float area = cross2(along_b, along_c);
-    vec2 st = vec2(cross2(along_c, from), cross2(from, along_b)) / area;
+    precise vec2 st = vec2(cross2(along_c, from), cross2(from, along_b)) / area;
     if (area == 0.0 || any(isnan(st)) || any(isinf(st))) st = vec2(1.0 / 3.0); // edge-on
     st = max(st, 0.0);
-    f.st = st / max(st.x + st.y, 1.0);
-    f.depth = q.z + f.st.x * qb.z + f.st.y * qc.z;
+    precise vec2 within = st / max(st.x + st.y, 1.0);
+    precise float depth = q.z + within.x * qb.z + within.y * qc.z;
+    f.st = within;
+    f.depth = depth;
     return f;
 }
 

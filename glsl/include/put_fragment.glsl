@@ -4,10 +4,12 @@
 #ifndef PUT_FRAGMENT_GLSL
 #define PUT_FRAGMENT_GLSL
 
+#include "tiles.glsl"
+
 layout(constant_id = 12) const bool FILLS = false;
 
 void put_fragment(Fragment f) {
-    uint pixel = uint(gl_FragCoord.y) * uint(frame.size.x) + uint(gl_FragCoord.x);
+    uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));
     if (!FILLS) {
         atomicAdd(fragment_counts[pixel], 1u);
         return;

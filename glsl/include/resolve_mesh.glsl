@@ -40,9 +40,7 @@ void main() {
     Instance instance = instances[placed.instance];
     Facet f = facet_at(seen.y, views[placed.instance], gl_FragCoord.xy);
 
-    // of sides near 1: the product of small ones would underflow
-    float side = max(max(dot(f.ab, f.ab), dot(f.ac, f.ac)), 1e-36);
-    vec3 n = cross(f.ab * inversesqrt(side), f.ac * inversesqrt(side));
+    vec3 n = across(f.ab, f.ac);
     if ((mesh.flags & MESH_NORMALS) != 0u) {
         uint corner = mesh.first_normal + 3u * (seen.y - mesh.first_triangle);
         n = octahedral(normals[corner]) * (1.0 - f.st.x - f.st.y) +

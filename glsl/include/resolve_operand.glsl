@@ -1,11 +1,10 @@
 // Pass `resolve`, spline faces of operands of Boolean solids: as resolve.frag, where pass `solid_events`
-// found a fragment of one.
+// found one.
 #ifndef RESOLVE_OPERAND_GLSL
 #define RESOLVE_OPERAND_GLSL
 
 #include "scene.glsl"
 #include "view.glsl"
-#include "shells.glsl"
 
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
@@ -17,7 +16,7 @@ layout(binding = 6) uniform samplerBuffer points;
 layout(scalar, binding = 7) readonly buffer Instances { Instance instances[]; };
 layout(binding = 8, rg32ui) readonly uniform uimage2D visibility;
 layout(binding = 9, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
-layout(scalar, binding = 10) readonly buffer Fragments { Fragment fragments[]; };
+layout(binding = 10, r32ui) readonly uniform uimage2D operand_uv;
 
 #include "eye_ray.glsl"
 #include "patch.glsl"
@@ -29,8 +28,7 @@ void main() {
     uvec2 seen = imageLoad(visibility, pixel).xy;
     if (sees_nothing(seen.x)) seen = imageLoad(others, pixel).xy;
     if (!sees_operand(seen.x)) discard;
-    Fragment f = fragments[seen_fragment(seen.x)];
-    write_patch(uvec2(f.what, f.uv), true);
+    write_patch(uvec2(seen.x, imageLoad(operand_uv, pixel).x), true);
 }
 
 #endif

@@ -7,6 +7,7 @@
 #include "view.glsl"
 #include "solids.glsl"
 #include "eye_ray.glsl"
+#include "shells.glsl"
 
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
@@ -15,8 +16,15 @@ layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
 layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
 layout(binding = 5, rg32ui) readonly uniform uimage2D visibility;
 layout(binding = 6, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(scalar, binding = 8) readonly buffer Instances { Instance instances[]; };
+layout(scalar, binding = 9) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
+layout(scalar, binding = 10) readonly buffer Triangles { uint triangles[]; };
+layout(scalar, binding = 11) readonly buffer Positions { vec3 positions[]; };
+layout(scalar, binding = 12) readonly buffer Planes { uint planes[]; };
+layout(scalar, binding = 13) readonly buffer Views { View views[]; };
 
 #include "resolved.glsl"
+#include "sides.glsl"
 #include "visible.glsl"
 
 void main() {
@@ -24,16 +32,15 @@ void main() {
     uvec2 seen = imageLoad(visibility, pixel).xy;
     if (sees_nothing(seen.x)) seen = imageLoad(others, pixel).xy;
     if (!sees_solid(seen.x)) discard;
-    LeafSurface side = leaf_surfaces[seen_side(seen.x)];
-    uint at = side.surface >> 1;
-    Leaf leaf = leaves[side.leaf];
     float t = uintBitsToFloat(seen.y);
     Ray ray = eye_ray(frame, gl_FragCoord.xy);
-    vec3 n = normalize(surface_gradient(surfaces[at], ray.o + t * ray.d - surface_centres[at]));
+    Side side = side_at(seen_side(seen.x), t, ray);
+    Leaf leaf = leaves[side.leaf];
+    vec3 n = normalize(side.n);
     // the solid begins here: its outside is before
     if (dot(n, ray.d) > 0.0) n = -n;
     Instance nowhere = Instance(mat3(1.0), 1.0, 0u, 0u, 0u); // leaves are where they are
-    write_surface(leaf.colour, nowhere, n, true, t, leaf.id, vec2(uintBitsToFloat(0x7fc00000u)), at);
+    write_surface(leaf.colour, nowhere, n, true, t, leaf.id, vec2(uintBitsToFloat(0x7fc00000u)), side.surface);
 }
 
 #endif

@@ -135,6 +135,9 @@ struct Frame {
     uint fragment_capacity;
     uint followed_leaf; // from it on lists of items that rays are followed through; before it the union that is seen
     uint layer_capacity; // of way `blister`
+    uint side_count;    // sides of leaves with equations; what is numbered from it on are triangles of operands
+    uint band_top;      // the rows of pixels whose lists are made, of way `events`: the first, a multiple of TILE,
+    uint band_height;   // and how many, of which the picture may end before the last
     vec3 right;         // camera axes in model space
     vec3 up;
     vec3 forward;
@@ -160,7 +163,11 @@ struct Counters {
     uint doubts;       // pixels for pass heal
     uint block_leaves; // leaves of Boolean solids in all blocks of tiles, and in all tiles
     uint tile_leaves;
-    uint fragments;    // of operands of Boolean solids
+    uint band_tile_leaves; // the most in one band, or more than can be counted; in one row of tiles
+    uint row_tile_leaves;
+    uint fragments;    // of operands of Boolean solids; the same of them
+    uint band_fragments;
+    uint row_fragments;
     uint mended;       // rays through an operand that wanted a fragment from beside a gap
     uint unpaired;     // rays that enter an operand and never leave it, or the reverse
     uint contacts;     // pixels whose rays meet coincident faces of two items, and that are within two at once

@@ -17,7 +17,7 @@ const uint FRAGMENT_SHELL = 0x0fffffffu;
 struct Fragment {
     uint shell;
     float depth;
-    uint what;   // side of a leaf; of a spline face item + 1
+    uint what;   // triangle, from Frame.side_count on; of a spline face item + 1
     uint uv;     // of the patch
 };
 
@@ -26,8 +26,12 @@ struct OperandMesh {
     uint shell;
     uint instance;
     uint first_triangle;
-    uint first_side;  // one side of a leaf for each triangle
+    uint first_plane; // in the list of shared planes, one for each triangle; NO_PLANE where no triangle has one
     uint mirrored;
+    uint leaf;        // one that shows it
 };
+
+// The triangle's plane is nobody else's: its corners tell it.
+const uint NO_PLANE = 0xffffffffu;
 
 #endif

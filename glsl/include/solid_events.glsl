@@ -51,6 +51,7 @@ layout(constant_id = 14) const bool SOLIDS_ARE_FOLLOWED = false;
 #include "crossing.glsl"
 
 layout(location = 0) out uvec2 visible;
+layout(location = 1) out uint operand_uv; // of a spline face: in scenes that have some
 
 const uint NOBODY = 0xffffffffu;
 
@@ -89,18 +90,16 @@ void meet(inout Walk walk, uint i, TileLeaf here, uint flags, Crossing c, uint o
 }
 
 void main() {
-    uvec2 tiles = tile_count(frame);
-    uvec2 tile = uvec2(gl_FragCoord.xy) / TILE;
-    uint n = tile.y * tiles.x + tile.x;
+    uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first = min(tile_starts[n], frame.tile_leaf_capacity);
     uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
     if (SOLIDS_ARE_FOLLOWED) {
         while (end > first && (tile_leaves[end - 1u].leaf & ~TILE_LEAF_ENTRY) >= frame.followed_leaf) --end;
     }
-    uint entry = tile_entries[n];
+    uint entry = tile_entries[first_of_band(frame) + n];
     if (entry == EXIT_FALSE) discard;
     Ray ray = eye_ray(frame, gl_FragCoord.xy);
-    uint pixel = uint(gl_FragCoord.y) * uint(frame.size.x) + uint(gl_FragCoord.x);
+    uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
     uint fragment_count = SOLIDS_HAVE_SHELLS ? fragment_counts[pixel] : 0u;
     Span kept[KEPT];
@@ -111,6 +110,7 @@ void main() {
     bool negatives = false; // the candidates asked are the subtracted ones
     uint side = 0u;
     uint word = SEEN_SOLID;
+    operand_uv = 0u;
     float t = frame.near;
     bool before = true; // the near plane cuts: what is inside there is not entered
 #ifdef FACE_IS_FOUND
@@ -158,8 +158,9 @@ void main() {
                 c = crossing_of(leaf.first, t, first_fragment, fragment_count, last);
                 if (tells) {
                     bool patch_ = (fragments[last].shell & FRAGMENT_PATCH) != 0u;
-                    side = patch_ ? last : fragments[last].what;
+                    side = fragments[last].what;
                     word = patch_ ? SEEN_OPERAND : SEEN_SOLID;
+                    operand_uv = fragments[last].uv;
                 }
             } else {
                 Span s = EVERYTHING;

@@ -38,6 +38,11 @@ layout(scalar, binding = 16) readonly buffer Patches { Patch patches[]; };
 layout(scalar, binding = 17) readonly buffer Items { uint item_face_instance[]; };
 layout(binding = 18) uniform samplerBuffer points;
 layout(scalar, binding = 19) readonly buffer Instances { Instance instances[]; };
+// of those that are meshes
+layout(scalar, binding = 20) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
+layout(scalar, binding = 21) readonly buffer Triangles { uint triangles[]; };
+layout(scalar, binding = 22) readonly buffer Positions { vec3 positions[]; };
+layout(scalar, binding = 23) readonly buffer Planes { uint planes[]; };
 
 layout(scalar, push_constant) uniform Marks {
     vec4 contact;  // linear colour and opacity of pixels that meet coincident faces of two items
@@ -51,7 +56,6 @@ const uint FOR_THICKNESS = 2u; // its length within solids
 layout(constant_id = 15) const uint FOLLOWED_FOR = FOR_COLOUR;
 // Whether contacts and overlaps are looked for: only for colour.
 layout(constant_id = 16) const bool MARKS = false;
-layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
 layout(constant_id = 17) const bool SOLIDS_HAVE_PATCHES = false;
 
 #include "crossing.glsl"
@@ -59,6 +63,7 @@ layout(constant_id = 17) const bool SOLIDS_HAVE_PATCHES = false;
 #include "patch.glsl"
 #include "resolved.glsl"
 #include "resolved_patch.glsl"
+#include "sides.glsl"
 
 const uint NOBODY = 0xffffffffu;
 
@@ -138,12 +143,11 @@ struct Layer {
 };
 
 Layer layer_of(uint side, float t, Ray ray) {
-    LeafSurface s = leaf_surfaces[side];
+    Side s = side_at(side, t, ray);
     Leaf leaf = leaves[s.leaf];
-    uint at = s.surface >> 1;
-    vec3 n = normalize(surface_gradient(surfaces[at], ray.o + t * ray.d - surface_centres[at]));
+    vec3 n = normalize(s.n);
     vec2 uv = vec2(uintBitsToFloat(0x7fc00000u));
-    return Layer(unpackUnorm4x8(leaf.colour), dot(n, ray.d) > 0.0 ? -n : n, leaf.id, uv, at);
+    return Layer(unpackUnorm4x8(leaf.colour), dot(n, ray.d) > 0.0 ? -n : n, leaf.id, uv, s.surface);
 }
 
 Layer layer_of_patch(Fragment f, Ray ray) {
@@ -162,14 +166,12 @@ Layer layer_of_patch(Fragment f, Ray ray) {
 float depth_written(float t) { return reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0); }
 
 void main() {
-    uvec2 tiles = tile_count(frame);
-    uvec2 tile = uvec2(gl_FragCoord.xy) / TILE;
-    uint n = tile.y * tiles.x + tile.x;
+    uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first = min(tile_starts[n], frame.tile_leaf_capacity);
     uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
     while (first < end && (tile_leaves[first].leaf & ~TILE_LEAF_ENTRY) < frame.followed_leaf) ++first;
     Ray ray = eye_ray(frame, gl_FragCoord.xy);
-    uint pixel = uint(gl_FragCoord.y) * uint(frame.size.x) + uint(gl_FragCoord.x);
+    uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
     uint fragment_count = SOLIDS_HAVE_SHELLS ? fragment_counts[pixel] : 0u;
     vec4 under = FOLLOWED_FOR == FOR_THICKNESS ? vec4(0.0, 0.0, 0.0, UNSEEN) : imageLoad(behind, ivec2(gl_FragCoord.xy));

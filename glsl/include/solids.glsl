@@ -59,6 +59,9 @@ const uint LEAF_SHELL = 8u;          // an operand without equations, number `fi
 
 const uint LEAF_ELSEWHERE = 16u;     // of an item that rays are followed through, drawn by another pass
 
+// In place of a surface's number: the plane of one triangle alone, and which.
+const uint OWN_PLANE = 0x80000000u;
+
 const float NEVER = 3.0e38;
 
 struct Span {

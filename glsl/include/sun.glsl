@@ -39,21 +39,32 @@ struct SunTile {
 // A triangle of an operand that is a mesh, across the rays: in tiles, from the operand's middle.
 struct SunTriangle {
     vec2 corners[3];
+    vec3 heights; // of the corners towards the sun, model units, from there
     uint shell;
-    uint surface; // its plane
+    uint surface; // its plane, or OWN_PLANE and its number
 };
 
 layout(scalar, binding = SUN_BINDING + 0) readonly buffer Suns { Sun sun; };
 layout(scalar, binding = SUN_BINDING + 1) readonly buffer SunTiles { SunTile sun_tiles[]; };
 layout(scalar, binding = SUN_BINDING + 2) readonly buffer SunLeaves { TileLeaf sun_leaves[]; };
-layout(scalar, binding = SUN_BINDING + 3) readonly buffer Casters { Leaf casters[]; };
-layout(scalar, binding = SUN_BINDING + 4) readonly buffer CasterSides { LeafSurface caster_sides[]; };
-layout(scalar, binding = SUN_BINDING + 5) readonly buffer CasterSurfaces { Surface caster_surfaces[]; };
-layout(scalar, binding = SUN_BINDING + 6) readonly buffer CasterCentres { vec3 caster_centres[]; };
-layout(scalar, binding = SUN_BINDING + 7) readonly buffer CasterMiddles { vec3 caster_middles[]; };
-layout(scalar, binding = SUN_BINDING + 8) readonly buffer SunTriangles { SunTriangle sun_triangles[]; };
-layout(scalar, binding = SUN_BINDING + 9) readonly buffer TileTriangles { uint tile_triangles[]; };
+layout(scalar, binding = SUN_BINDING + 3) readonly buffer SunTriangles { SunTriangle sun_triangles[]; };
+layout(scalar, binding = SUN_BINDING + 4) readonly buffer TileTriangles { uint tile_triangles[]; };
+// the scene's; a pass that has them for itself defines SUN_SEES_LEAVES: a pass has 32 bindings at most
+#ifdef SUN_SEES_LEAVES
+#define casters leaves
+#define caster_sides leaf_surfaces
+#define caster_surfaces surfaces
+#define caster_centres surface_centres
+#define caster_middles leaf_centres
+#define sun_counters counters
+#else
+layout(scalar, binding = SUN_BINDING + 5) readonly buffer Casters { Leaf casters[]; };
+layout(scalar, binding = SUN_BINDING + 6) readonly buffer CasterSides { LeafSurface caster_sides[]; };
+layout(scalar, binding = SUN_BINDING + 7) readonly buffer CasterSurfaces { Surface caster_surfaces[]; };
+layout(scalar, binding = SUN_BINDING + 8) readonly buffer CasterCentres { vec3 caster_centres[]; };
+layout(scalar, binding = SUN_BINDING + 9) readonly buffer CasterMiddles { vec3 caster_middles[]; };
 layout(scalar, binding = SUN_BINDING + 10) buffer SunCounters { Counters sun_counters; };
+#endif
 
 // Spans kept; those of further leaves are computed in every scan.
 const uint SUN_KEPT = 12u;
@@ -123,6 +134,19 @@ int turns(SunTriangle triangle, vec2 q) {
     return sum;
 }
 
+// How far above q the triangle is, from the operand's middle.
+float height_over(SunTriangle triangle, vec2 q) {
+    vec2 b = triangle.corners[1] - triangle.corners[0];
+    vec2 c = triangle.corners[2] - triangle.corners[0];
+    vec2 p = q - triangle.corners[0];
+    float area = b.x * c.y - b.y * c.x;
+    vec2 st = area == 0.0 ? vec2(0.0) : vec2(p.x * c.y - p.y * c.x, b.x * p.y - b.y * p.x) / area;
+    st = max(st, 0.0);
+    st /= max(st.x + st.y, 1.0); // rounded, q may be beside it
+    return triangle.heights.x + st.x * (triangle.heights.y - triangle.heights.x) +
+           st.y * (triangle.heights.z - triangle.heights.x);
+}
+
 // A caster at a place of the ray.
 struct Met {
     bool inside; // just behind it
@@ -134,6 +158,7 @@ struct Met {
 Met meet_mesh(uint shell, vec3 middle, SunTile tile, vec3 p, uint surface, float t, inout uint steps) {
     Met met = Met(false, NEVER);
     vec2 q = vec2(dot(sun.right, p - middle), dot(sun.up, p - middle));
+    float height = dot(sun.towards, p - middle);
     int around = 0;
     for (uint i = tile.first_triangle; i < tile.end_triangle; ++i) {
         ++steps;
@@ -142,9 +167,14 @@ Met meet_mesh(uint shell, vec3 middle, SunTile tile, vec3 p, uint surface, float
         if (triangle.shell != shell || triangle.surface == surface) continue;
         int sum = turns(triangle, q);
         if (sum == 0) continue;
-        vec3 o = p - caster_centres[triangle.surface];
-        Span s = surface_span(caster_surfaces[triangle.surface], o, sun.towards);
-        float at = s.lo > -NEVER ? s.lo : s.hi;
+        float at;
+        if ((triangle.surface & OWN_PLANE) != 0u) {
+            at = height_over(triangle, q) - height;
+        } else {
+            vec3 o = p - caster_centres[triangle.surface];
+            Span s = surface_span(caster_surfaces[triangle.surface], o, sun.towards);
+            at = s.lo > -NEVER ? s.lo : s.hi;
+        }
         if (!(at > t)) continue;
         around += sum;
         met.next = min(met.next, at);
@@ -154,7 +184,7 @@ Met meet_mesh(uint shell, vec3 middle, SunTile tile, vec3 p, uint surface, float
 }
 
 // Whether the sun lights the point at this depth of the pixel's ray; `n` is the face's unit normal on the side that is
-// lit, `surface` the number of the Boolean solids' surface that it lies on, or NO_SURFACE.
+// lit, `surface` the number of the Boolean solids' surface that it lies on, or OWN_PLANE and its triangle's, or NO_SURFACE.
 bool in_sun(Ray ray, float depth, vec3 n, uint surface) {
     float rise = dot(n, sun.towards);
     if (!(rise > 0.0)) return false; // in its own shade
@@ -164,7 +194,7 @@ bool in_sun(Ray ray, float depth, vec3 n, uint surface) {
     uvec2 at_tile = uvec2(clamp(sun.eye + vec2(dot(sun.right, p), dot(sun.up, p)), vec2(0.0), last));
     SunTile tile = sun_tiles[at_tile.y * sun.across + at_tile.x];
     if (tile.entry >= EXIT_FALSE) return tile.entry == EXIT_FALSE;
-    float rounding = abs(depth) * (surface == NO_SURFACE ? ROUNDED_FACE : ROUNDED_SIDE);
+    float rounding = abs(depth) * ((surface & OWN_PLANE) != 0u ? ROUNDED_FACE : ROUNDED_SIDE);
     Span kept[SUN_KEPT];
     float t = 0.0;
     bool lit = true;

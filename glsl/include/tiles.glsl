@@ -1,4 +1,9 @@
 // The picture in tiles of 16 x 16 pixels, and blocks of 8 x 8 tiles. Twin of src/abi/solids.rs.
+//
+//   the lists of tiles and pixels are those of one band      ┌───────────────┐
+//   of rows at a time, where all of them would take too      │ 0  1  2  3    │ band_top     tiles and pixels are
+//   much: `band_top` says which                              │ 4  5  6  7    │              numbered within the band
+//                                                            └───────────────┘
 #ifndef TILES_GLSL
 #define TILES_GLSL
 
@@ -22,6 +27,20 @@ struct TileLeaf {
 const uint TILE_LEAF_ENTRY = 0x80000000u;
 
 uvec2 tile_count(Frame frame) { return (uvec2(frame.size) + TILE - 1u) / TILE; }
+
+// Rows of pixels in the band.
+uint band_rows(Frame frame) { return min(frame.band_height, uint(frame.size.y) - frame.band_top); }
+uvec2 band_tiles(Frame frame) { return uvec2(tile_count(frame).x, (band_rows(frame) + TILE - 1u) / TILE); }
+
+// The number of a pixel of the band, and of its tile.
+uint pixel_in_band(Frame frame, uvec2 pixel) { return (pixel.y - frame.band_top) * uint(frame.size.x) + pixel.x; }
+uint tile_in_band(Frame frame, uvec2 pixel) {
+    return (pixel.y - frame.band_top) / TILE * tile_count(frame).x + pixel.x / TILE;
+}
+
+// Of all tiles of the picture, that which is the first of the band.
+uint first_of_band(Frame frame) { return frame.band_top / TILE * tile_count(frame).x; }
+
 uvec2 block_count(Frame frame) { return (tile_count(frame) + BLOCK - 1u) / BLOCK; }
 
 // Of no pixel.

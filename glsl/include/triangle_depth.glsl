@@ -1,20 +1,33 @@
-// Where a ray meets the plane of an operand's triangle, by the formula of the other solids' sides: faces that
-// coincide are met at the same depth, bit for bit. Needs solids.glsl, eye_ray.glsl, and buffers `LeafSurface
-// leaf_surfaces[]`, `Surface surfaces[]`, `vec3 surface_centres[]`.
+// Where a ray meets the plane of an operand's triangle. A plane that others lie in, too, is met by the formula of the other
+// solids' sides: faces that coincide are met at the same depth, bit for bit. Else the corners tell it: as of other
+// meshes, within the triangle. Needs scene.glsl, solids.glsl, shells.glsl, eye_ray.glsl, `frame`, and the buffers of
+// facet.glsl, `View views[]`, `uint planes[]`, `Surface surfaces[]`, `vec3 surface_centres[]`.
 #ifndef TRIANGLE_DEPTH_GLSL
 #define TRIANGLE_DEPTH_GLSL
+
+#include "facet.glsl"
 
 // A plane seen edge-on is met anywhere: not farther from the corners than they are from each other, and
 // some roundings of a depth.
 const float ROUNDING = 4e-6;
 
-// `range`: of the corners' depths.
-float triangle_depth(Ray ray, uint side, vec2 range) {
-    uint surface = leaf_surfaces[side].surface >> 1;
-    precise vec3 o = ray.o - surface_centres[surface];
-    Span s = surface_span(surfaces[surface], o, ray.d);
-    float reach = range.y - range.x + ROUNDING * range.y;
-    return clamp(s.lo > -NEVER ? s.lo : s.hi, range.x - reach, range.y + reach);
+uint plane_of(OperandMesh mesh, uint triangle) {
+    return mesh.first_plane == NO_PLANE ? NO_PLANE : planes[mesh.first_plane + triangle - mesh.first_triangle];
+}
+
+float triangle_depth(OperandMesh mesh, uint triangle, vec2 pixel) {
+    View view = views[mesh.instance];
+    uint plane = plane_of(mesh, triangle);
+    if (plane == NO_PLANE) return facet_at(triangle, view, pixel).depth;
+    vec3 depths;
+    for (uint k = 0u; k < 3u; ++k) depths[k] = row_times(view.depth, vec4(positions[triangles[3u * triangle + k]], 1.0));
+    float nearest = min(depths.x, min(depths.y, depths.z));
+    float farthest = max(depths.x, max(depths.y, depths.z));
+    Ray ray = eye_ray(frame, pixel);
+    precise vec3 o = ray.o - surface_centres[plane];
+    Span s = surface_span(surfaces[plane], o, ray.d);
+    float reach = farthest - nearest + ROUNDING * farthest;
+    return clamp(s.lo > -NEVER ? s.lo : s.hi, nearest - reach, farthest + reach);
 }
 
 #endif

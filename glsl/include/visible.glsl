@@ -4,8 +4,9 @@
 //   nothing        0      0   0                  0
 //   a patch        d      0   item + 1           (u, v) of the patch, two 16-bit numbers
 //   a mesh         0      1   mesh instance      triangle of the scene
-//   a solid        0      2   side of a leaf     depth along the view axis, a float
-//   an operand     0      3   fragment           the same; of a spline face that bounds a solid's operand
+//   a solid        0      2   side, triangle     depth along the view axis, a float
+//   an operand     0      3   item + 1           the same; of a spline face that bounds a solid's operand. Its (u, v)
+//                                                are in an image of their own, `operand_uv`
 //
 // d: doubtful, for pass `heal`. In scenes with trims, what is no
 // patch is in an image of its own, `others`, and seen where `visibility` has nothing.
@@ -29,10 +30,9 @@ bool sees_mesh(uint word) { return (word & SEEN_KIND) == SEEN_MESH; }
 bool sees_solid(uint word) { return (word & SEEN_KIND) == SEEN_SOLID; }
 bool sees_operand(uint word) { return (word & SEEN_KIND) == SEEN_OPERAND; }
 
-uint seen_item(uint word) { return (word & ~DOUBTFUL) - 1u; }
+uint seen_item(uint word) { return (word & ~(DOUBTFUL | SEEN_KIND)) - 1u; }
 uint seen_mesh_instance(uint word) { return word & ~(DOUBTFUL | SEEN_KIND); }
 uint seen_side(uint word) { return word & ~(DOUBTFUL | SEEN_KIND); }
-uint seen_fragment(uint word) { return word & ~(DOUBTFUL | SEEN_KIND); }
 
 // A border of a patch may be continued by less than its width.
 uint pack_uv(vec2 uv) { return packUnorm2x16((uv + 1.0) / 3.0); }

@@ -95,9 +95,16 @@ pub struct OperandMesh {
     pub shell: u32,
     pub instance: u32,
     pub first_triangle: u32,
-    pub first_side: u32,
+    pub first_plane: u32,
     pub mirrored: u32,
+    pub leaf: u32,
 }
+
+/// In place of a surface's number: the plane of one triangle alone, and which.
+pub const OWN_PLANE: u32 = 0x8000_0000;
+
+/// Of a triangle whose plane is nobody else's; of a mesh none of whose triangles has another one.
+pub const NO_PLANE: u32 = u32::MAX;
 
 /// [`Fragment::shell`]: the ray leaves the operand.
 pub const FRAGMENT_LEAVES: u32 = 0x8000_0000;

@@ -30,6 +30,7 @@ pub struct SunTile {
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct SunTriangle {
     pub corners: [[f32; 2]; 3],
+    pub heights: [f32; 3],
     pub shell: u32,
     pub surface: u32,
 }

@@ -94,6 +94,7 @@ impl Frame<'_> {
                 meshes: &m.meshes,
                 triangles: &m.triangles,
                 positions: &m.positions,
+                planes: &m.planes,
             }),
             tiles: t.tiles.as_ref().map(|t| [&t.tile_starts, &t.tile_leaves, &t.tile_entries]),
         };

@@ -7,6 +7,7 @@
 //!                                     ─▶ thickness
 //! ```
 
+use super::bands::Band;
 use super::{Frame, WRITE_TO_READ};
 use crate::gpu::{Access, Attachment, Commands, Device, GpuError, Load, barrier};
 use crate::passes::solid_layers::{Bindings, For, Kinds, SolidLayers, UNSEEN};
@@ -77,8 +78,26 @@ impl<'a> Frame<'a> {
         colour
     }
 
-    /// Layers over what pass `resolve` drew, and lengths within solids.
+    /// Layers over what pass `resolve` drew, and lengths within solids. Where lists are those of one band, they are made
+    /// again.
     pub(super) fn layers(&self, cmd: &Commands<'_>, passes: &LayerPasses, drawing: Drawing) {
+        let (Some(parts), Some(behind)) = (self.solids(), &self.buffers.behind) else {
+            unreachable!("made with the passes")
+        };
+        barrier::images(cmd, &[(behind, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);
+        let mut counted_again = false;
+        for band in self.bands(&parts) {
+            if !band.is_whole {
+                if !std::mem::replace(&mut counted_again, true) {
+                    self.count_bands_again(cmd);
+                }
+                self.solid_lists(cmd, &parts, &band);
+            }
+            self.layers_of(cmd, passes, drawing, &band);
+        }
+    }
+
+    fn layers_of(&self, cmd: &Commands<'_>, passes: &LayerPasses, drawing: Drawing, band: &Band) {
         let (b, s) = (self.buffers, self.scene);
         let (Some(parts), Some(behind)) = (self.solids(), &b.behind) else { unreachable!("made with the passes") };
         let (solid, solids, centres) = parts.followed();
@@ -103,9 +122,10 @@ impl<'a> Frame<'a> {
             points: &s.points,
             instances: &s.instances,
             sun: self.sun_bindings(),
+            shells: solid.shells.as_ref().map(|m| [&m.meshes, &m.triangles, &m.positions, &m.planes]),
         };
         let (w, _) = WRITE_TO_READ;
-        barrier::images(cmd, &[(behind, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);
+        let rows = || band.rows.clone();
         barrier::buffers(cmd, &[(&b.counters, w | Access::INDIRECT_READ, Access::FRAGMENT_WRITE)]);
         let kept = |a: &Attachment<'a>| Attachment { load: Load::Keep, ..*a };
         let depth = self.depth.as_ref().map(kept);
@@ -116,15 +136,16 @@ impl<'a> Frame<'a> {
                 Load::Discard => Load::ColourF32([0.0; 4]),
                 load => load,
             };
-            pass.record(cmd, &bindings, &[Attachment { load, ..self.colour[0] }], depth);
+            pass.record(cmd, &bindings, &[Attachment { load, ..self.colour[0] }], depth, rows());
         }
         if let Some(pass) = passes.first.as_ref().filter(|_| drawing != Drawing::Sample) {
             self.drawn_again(cmd);
             let all: Vec<_> = self.colour.iter().map(kept).collect();
-            pass.record(cmd, &bindings, &all, depth);
+            pass.record(cmd, &bindings, &all, depth, rows());
         }
         if let (Some(pass), Some(target)) = (&passes.thickness, self.thickness.filter(|_| drawing != Drawing::Sample)) {
-            pass.record(cmd, &bindings, &[target], None);
+            barrier::images(cmd, &[(target.image, Access::COLOUR_WRITE, Access::COLOUR_WRITE)]);
+            pass.record(cmd, &bindings, &[target], None, rows());
         }
         barrier::buffers(cmd, &[(&b.counters, Access::FRAGMENT_WRITE, w | Access::INDIRECT_READ)]);
     }

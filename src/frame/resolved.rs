@@ -12,7 +12,11 @@ pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
         patches: data.has_patches,
         rational: data.has_rational,
         meshes: data.has_meshes(),
-        solids: data.solids.kinds().map(|tori| resolve::SolidKinds { tori, tiles: solids::has_tiles(data) }),
+        solids: data.solids.kinds().map(|tori| resolve::SolidKinds {
+            tori,
+            tiles: solids::has_tiles(data),
+            shells: !data.solids.shell_leaves.is_empty(),
+        }),
         operands: data.has_operands,
         sun: data.sun.is_some(),
     }

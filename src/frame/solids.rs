@@ -6,8 +6,11 @@
 //!          ──solid_events──▶ visibility of what is no patch, depth
 //!   operands ──operand_mesh, operand_patch (each: count, scan, fill)──▶ fragments of each pixel
 //!            ──operand_sort──▶ in order ──▲
+//!
+//!   the lists of tiles and pixels, and what is drawn from them, band after band where they are large: bands.rs
 //! ```
 
+use super::bands::Band;
 use super::{Frame, WRITE_TO_READ};
 use crate::buffers::{FragmentBuffers, SolidBuffers, TileBuffers};
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, barrier};
@@ -82,7 +85,8 @@ impl SolidPasses {
             way: if peels {
                 Way::Blister(Box::new(blister::Blister::new(device, (tori, shells), formats.0, formats.1)?))
             } else if data.solids.order.is_empty() {
-                let kinds = (tori, shells, data.solids.is_followed());
+                let followed = data.solids.is_followed();
+                let kinds = solid_events::Kinds { tori, shells, patches: data.has_operands, followed };
                 Way::Events(solid_events::SolidEvents::new(device, kinds, formats.0, formats.1)?)
             } else {
                 Way::Cst(solid_cst::SolidCst::new(device, tori, formats.0, formats.1)?)
@@ -138,11 +142,33 @@ impl<'a> Frame<'a> {
         barrier::buffers(cmd, &[(&t.rects, w, r | Access::VERTEX_READ)]);
 
         if let (Some(passes), Some(tiles)) = (&p.tiles, &t.tiles) {
-            self.tiles(cmd, parts, passes, tiles);
+            self.blocks(cmd, parts, passes, tiles);
+        }
+        for band in self.bands(parts) {
+            self.solid_lists(cmd, parts, &band);
+            self.solid_band(cmd, parts, &band);
+        }
+        if let Some(uv) = &t.operand_uv {
+            barrier::images(cmd, &[(uv, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);
+        }
+    }
+
+    /// What rays through a band's pixels may meet.
+    pub(super) fn solid_lists(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>, band: &Band) {
+        let (p, s, t) = (parts.passes, parts.scene, parts.buffers);
+        self.begin_band(cmd, parts, band);
+        if let (Some(passes), Some(tiles)) = (&p.tiles, &t.tiles) {
+            self.tiles(cmd, parts, passes, tiles, band);
         }
         if let (Some(passes), Some(shells), Some(f)) = (&p.shells, &s.shells, &t.fragments) {
-            self.operands(cmd, parts, passes, shells, f);
+            self.operands(cmd, parts, (passes, shells), f, band);
         }
+    }
+
+    /// The faces that a band's pixels see.
+    fn solid_band(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>, band: &Band) {
+        let (p, s, t) = (parts.passes, parts.scene, parts.buffers);
+        let w = WRITE_TO_READ.0;
         let b = self.buffers;
         let seen = b.others.as_ref().unwrap_or(&b.visibility);
         // meshes came before
@@ -185,7 +211,8 @@ impl<'a> Frame<'a> {
                     tile_squares: &tiles.tile_squares,
                 };
                 barrier::buffers(cmd, &[(&b.counters, w, Access::FRAGMENT_WRITE)]);
-                events.record(cmd, &bindings, (colour, depth), tiles.tiles);
+                let uv = t.operand_uv.as_ref().map(|image| Attachment { image, load: Load::Discard });
+                events.record(cmd, &bindings, (colour, uv, depth), band.rows.clone(), self.tiles_of(band));
                 barrier::buffers(cmd, &[(&b.counters, Access::FRAGMENT_WRITE, w)]);
             }
             (Way::Cst(_), None, _) | (_, _, None) => {
@@ -200,13 +227,12 @@ impl<'a> Frame<'a> {
 }
 
 impl Frame<'_> {
-    /// Which leaves each tile sees, and their Blist.
-    fn tiles(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>, p: &TilePasses, t: &TileBuffers) {
+    /// Which leaves each block of tiles sees.
+    fn blocks(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>, p: &TilePasses, t: &TileBuffers) {
         let (w, r) = WRITE_TO_READ;
-        let rects = &parts.buffers.rects;
         let blocks = solid_blocks::Bindings {
             frame: self.constants,
-            rects,
+            rects: &parts.buffers.rects,
             counts: &t.block_counts,
             starts: &t.block_starts,
             leaves: &t.block_leaves,
@@ -217,10 +243,15 @@ impl Frame<'_> {
         barrier::buffers(cmd, &[(&t.block_starts, w, r), (&t.block_counts, r, w)]);
         p.blocks.list(cmd, &blocks, t.blocks);
         barrier::buffers(cmd, &[(&t.block_leaves, w, r)]);
+    }
 
+    /// Which leaves each tile of a band sees, and their Blist.
+    fn tiles(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>, p: &TilePasses, t: &TileBuffers, band: &Band) {
+        let (w, r) = WRITE_TO_READ;
+        let count = self.tiles_of(band).len() as u32;
         let tiles = solid_tiles::Bindings {
             frame: self.constants,
-            rects,
+            rects: &parts.buffers.rects,
             block_starts: &t.block_starts,
             block_leaves: &t.block_leaves,
             counts: &t.tile_counts,
@@ -229,11 +260,11 @@ impl Frame<'_> {
             counters: &self.buffers.counters,
         };
         barrier::buffers(cmd, &[(&self.buffers.counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, w)]);
-        p.tiles.count(cmd, &tiles, t.tiles);
+        p.tiles.count(cmd, &tiles, count);
         barrier::buffers(cmd, &[(&t.tile_counts, w, r), (&t.tile_starts, r, w), (&self.buffers.counters, w, w)]);
-        self.scan(cmd, &t.tile_counts, &t.tile_starts, t.tiles);
+        self.scan(cmd, &t.tile_counts, &t.tile_starts, count);
         barrier::buffers(cmd, &[(&t.tile_starts, w, r), (&t.tile_counts, r, w)]);
-        p.tiles.list(cmd, &tiles, t.tiles);
+        p.tiles.list(cmd, &tiles, count);
         barrier::buffers(cmd, &[(&t.tile_leaves, w, w), (&self.buffers.counters, w, w)]);
 
         let fold = solid_fold::Bindings {
@@ -243,14 +274,14 @@ impl Frame<'_> {
             tile_leaves: &t.tile_leaves,
             tile_entries: &t.tile_entries,
         };
-        p.fold.record(cmd, &fold, t.tiles);
+        p.fold.record(cmd, &fold, count);
         barrier::buffers(cmd, &[(&t.tile_entries, w, r), (&t.tile_squares, Access::VERTEX_READ, w)]);
         let squares = solid_squares::Bindings {
             frame: self.constants,
             tile_entries: &t.tile_entries,
             tile_squares: &t.tile_squares,
         };
-        p.squares.record(cmd, &squares, t.tiles);
+        p.squares.record(cmd, &squares, count);
         barrier::buffers(
             cmd,
             &[
@@ -262,17 +293,18 @@ impl Frame<'_> {
         );
     }
 
-    /// The fragments of operands without equations: counted, stored, put in order.
+    /// The fragments of operands without equations, in a band: counted, stored, put in order.
     fn operands(
         &self,
         cmd: &Commands<'_>,
         parts: &SolidParts<'_>,
-        passes: &ShellPasses,
-        shells: &Shells,
+        (passes, shells): (&ShellPasses, &Shells),
         f: &FragmentBuffers,
+        band: &Band,
     ) {
         let (s, b) = (self.scene, self.buffers);
         let size = b.visibility.size();
+        let rows = || band.rows.clone();
         let trim = self.trim().map_or_else(Vec::new, |parts| parts.test());
         let meshes = operand_mesh::Bindings {
             frame: self.constants,
@@ -280,7 +312,7 @@ impl Frame<'_> {
             meshes: &shells.meshes,
             triangles: &shells.triangles,
             positions: &shells.positions,
-            leaf_surfaces: &parts.scene.leaf_surfaces,
+            planes: &shells.planes,
             surfaces: &parts.scene.surfaces,
             surface_centres: parts.centres.surfaces,
             counts: &f.counts,
@@ -307,18 +339,27 @@ impl Frame<'_> {
         };
         let rastered = |fills: bool| {
             if let Some(pass) = &passes.meshes {
-                pass.record(cmd, &meshes, size, &shells.draws, fills);
+                pass.record(cmd, &meshes, (size, rows()), &shells.draws, fills);
             }
             if let Some(pass) = &passes.patches {
-                pass.record(cmd, &patches, size, b.capacities.draws, fills);
+                pass.record(cmd, &patches, (size, rows()), b.capacities.draws, fills);
             }
         };
         let (w, r) = WRITE_TO_READ;
         let drawn = Access::FRAGMENT_WRITE;
-        barrier::buffers(cmd, &[(&f.counts, Access::TRANSFER_WRITE, drawn), (&b.counters, w, Access::INDIRECT_READ)]);
+        // by the drawing before, of another band or another sample
+        let followed = Access::FRAGMENT_READ | r;
+        barrier::buffers(
+            cmd,
+            &[
+                (&f.counts, Access::TRANSFER_WRITE, drawn),
+                (&f.all, followed, drawn),
+                (&b.counters, w, Access::INDIRECT_READ),
+            ],
+        );
         rastered(false);
-        barrier::buffers(cmd, &[(&f.counts, drawn, r), (&f.starts, Access::FRAGMENT_READ, w), (&f.all, drawn, drawn)]);
-        self.scan(cmd, &f.counts, &f.starts, size.0 * size.1);
+        barrier::buffers(cmd, &[(&f.counts, drawn, r), (&f.starts, followed, w), (&f.all, drawn, drawn)]);
+        self.scan(cmd, &f.counts, &f.starts, size.0 * rows().len() as u32);
         barrier::buffers(cmd, &[(&f.counts, r, drawn), (&f.starts, w, Access::FRAGMENT_READ | r)]);
         rastered(true);
         barrier::buffers(cmd, &[(&f.counts, drawn, w), (&f.all, drawn, w), (&b.counters, Access::INDIRECT_READ, w)]);
@@ -332,7 +373,7 @@ impl Frame<'_> {
             fragments: &f.all,
             counters: &b.counters,
         };
-        passes.sort.record(cmd, &sort, size);
+        passes.sort.record(cmd, &sort, (size.0, rows().len() as u32));
         barrier::buffers(
             cmd,
             &[(&f.counts, w, Access::FRAGMENT_READ), (&f.all, w, Access::FRAGMENT_READ), (&b.counters, w, w)],
@@ -357,7 +398,15 @@ impl<'a> SolidParts<'a> {
             surface_centres: self.centres.surfaces,
             visibility: &b.visibility,
             others: b.others.as_ref().unwrap_or(&b.visibility),
-            fragments: self.buffers.fragments.as_ref().map(|f| &f.all),
+            operand_uv: self.buffers.operand_uv.as_ref(),
+            shells: self.scene.shells.as_ref().map(|m| resolve::ShellBindings {
+                instances: &frame.scene.instances,
+                meshes: &m.meshes,
+                triangles: &m.triangles,
+                positions: &m.positions,
+                planes: &m.planes,
+                views: frame.views,
+            }),
             tiles: self.buffers.tiles.as_ref().map(|t| (t.tiles, &t.tile_squares)),
         }
     }

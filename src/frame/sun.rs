@@ -16,7 +16,7 @@ impl<'a> Frame<'a> {
         let [casters, sides, surfaces, centres, middles] =
             solids.map_or([sun; 5], |(s, c)| [&s.leaves, &s.leaf_surfaces, &s.surfaces, c.surfaces, c.leaves]);
         let counters = &self.buffers.counters;
-        Some([sun, tiles, leaves, casters, sides, surfaces, centres, middles, triangles, listed, counters])
+        Some([sun, tiles, leaves, triangles, listed, casters, sides, surfaces, centres, middles, counters])
     }
 
     /// Draws with the sun, which counts the rays to it that the driver cut off.

@@ -124,6 +124,17 @@ impl<'a> Commands<'a> {
         depth: Option<Attachment<'_>>,
         record: impl FnOnce() -> R,
     ) -> R {
+        self.rendering_to((size, 0..size.1), colour, (depth, None), record)
+    }
+
+    /// As [`rendering`](Self::rendering), to these rows of pixels alone: what the attachments hold elsewhere stays.
+    pub fn rendering_rows<R>(
+        &self,
+        size: ((u32, u32), Range<u32>),
+        colour: &[Attachment<'_>],
+        depth: Option<Attachment<'_>>,
+        record: impl FnOnce() -> R,
+    ) -> R {
         self.rendering_to(size, colour, (depth, None), record)
     }
 
@@ -135,18 +146,20 @@ impl<'a> Commands<'a> {
         stencil: Attachment<'_>,
         record: impl FnOnce() -> R,
     ) -> R {
-        self.rendering_to(size, colour, (None, Some(stencil)), record)
+        self.rendering_to((size, 0..size.1), colour, (None, Some(stencil)), record)
     }
 
     fn rendering_to<R>(
         &self,
-        size: (u32, u32),
+        (size, rows): ((u32, u32), Range<u32>),
         colour: &[Attachment<'_>],
         (depth, stencil): (Option<Attachment<'_>>, Option<Attachment<'_>>),
         record: impl FnOnce() -> R,
     ) -> R {
-        let area =
-            vk::Rect2D { offset: vk::Offset2D::default(), extent: vk::Extent2D { width: size.0, height: size.1 } };
+        let area = vk::Rect2D {
+            offset: vk::Offset2D { x: 0, y: rows.start as i32 },
+            extent: vk::Extent2D { width: size.0, height: rows.len() as u32 },
+        };
         let colour: Vec<_> = colour.iter().map(|attachment| attachment.info(Access::COLOUR_WRITE)).collect();
         let depth = depth.map(|attachment| attachment.info(Access::DEPTH_WRITE));
         let stencil = stencil.map(|attachment| attachment.info(Access::DEPTH_WRITE));

@@ -111,6 +111,11 @@ impl Image {
         Self { handle, view, size, format, aspect, name, memory: None, registration: None }
     }
 
+    /// Bytes of memory that it takes; 0 of the host's.
+    pub fn bytes(&self) -> u64 {
+        self.memory.as_ref().map_or(0, Memory::bytes)
+    }
+
     /// The Vulkan image.
     pub fn handle(&self) -> vk::Image {
         self.handle

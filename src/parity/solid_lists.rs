@@ -77,7 +77,16 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &[Rect], expected: &[Rect]) -> Resul
     let found: Vec<u32> = gpu.read::<TileLeaf>(&listed, tile_leaves.len() + 1).iter().map(|t| t.leaf).collect();
     same("tile leaves", &found, &cut(&tile_leaves, frame.tile_leaf_capacity))?;
     let failed = if tile_leaves.len() as u32 > frame.tile_leaf_capacity { 64 } else { 0 };
-    let c = Counters { block_leaves: wanted, tile_leaves: tile_leaves.len() as u32, failed, ..Counters::default() };
+    let (all, across) = (tile_leaves.len() as u32, twin::solid_tiles::band_tiles(frame)[0] as usize);
+    let rows = tile_starts.iter().step_by(across).zip(tile_starts.iter().skip(across).step_by(across));
+    let c = Counters {
+        block_leaves: wanted,
+        tile_leaves: all,
+        band_tile_leaves: all,
+        row_tile_leaves: rows.map(|(start, end)| end - start).max().unwrap(),
+        failed,
+        ..Counters::default()
+    };
     same("counters", &gpu.read(&counters, 1), &[c])
 }
 
@@ -86,11 +95,17 @@ fn parity() {
     let gpu = Gpu::new();
     let mut random = Random::new(17);
     for (size, count) in [([333.0, 211.0], 300), ([16.0, 16.0], 3), ([700.0, 40.0], 1200)] {
-        let frame = Frame { size, ..Frame::default() };
+        let frame = Frame { size, band_height: 4096, ..Frame::default() };
         let rects = random_rects(&mut random, twin::solid_rects::tile_count(&frame), count);
         let frame = Frame { leaf_count: rects.len() as u32, ..frame };
         let room = Frame { block_leaf_capacity: 1 << 20, tile_leaf_capacity: 1 << 20, ..frame };
         compare(&gpu, &room, &rects, &rects).unwrap();
+        // of a band of one row of tiles, and of those that are left
+        for (band_top, band_height) in [(16, 16), (32, 512)] {
+            if (band_top as f32) < size[1] {
+                compare(&gpu, &Frame { band_top, band_height, ..room }, &rects, &rects).unwrap();
+            }
+        }
         // too little room: what fits is there, the rest is told
         let tight = Frame { block_leaf_capacity: 3, tile_leaf_capacity: 2, ..frame };
         compare(&gpu, &tight, &rects, &rects).unwrap();

@@ -114,6 +114,7 @@ fn fold_on_gpu(
     // as many tiles as the picture has across, one down
     let frame = Frame {
         size: [(tiles * 16) as f32, 9.0],
+        band_height: 16,
         leaf_count: given.len() as u32,
         tile_leaf_capacity: tile_leaves.len() as u32,
         followed_leaf: followed[0],
@@ -176,14 +177,26 @@ fn fold_parity() {
     gpu.finish();
 }
 
-fn squares_on_gpu(gpu: &Gpu, tiles: [u32; 2], given: &[u32], expected: &[u32]) -> Result<(), Mismatch> {
-    let frame = Frame { size: [(tiles[0] * 16 - 3) as f32, (tiles[1] * 16 - 9) as f32], ..Frame::default() };
+fn squares_on_gpu(
+    gpu: &Gpu,
+    tiles: [u32; 2],
+    band: std::ops::Range<u32>,
+    given: &[u32],
+    expected: &[u32],
+) -> Result<(), Mismatch> {
+    let size = [(tiles[0] * 16 - 3) as f32, (tiles[1] * 16 - 9) as f32];
+    let (band_top, band_height) = (16 * band.start, 16 * (band.end - band.start));
+    let frame = Frame { size, band_top, band_height, ..Frame::default() };
     let (frame, entries) = (gpu.upload("frame", &[frame]), gpu.upload("tile entries", given));
     let squares = gpu.upload("tile squares", &vec![99u32; given.len()]);
     let pass = solid_squares::SolidSquares::new(gpu.device()).unwrap();
     let bindings = solid_squares::Bindings { frame: &frame, tile_entries: &entries, tile_squares: &squares };
-    gpu.run(|cmd| pass.record(cmd, &bindings, given.len() as u32));
-    same("tile squares", &gpu.read(&squares, given.len()), &twin::solid_squares::solid_squares(tiles, expected))
+    let (first, end) = (band.start * tiles[0], band.end * tiles[0]);
+    gpu.run(|cmd| pass.record(cmd, &bindings, end - first));
+    let mut twin = vec![99; given.len()];
+    let found = twin::solid_squares::solid_squares(tiles, band, expected);
+    twin[first as usize..end as usize].copy_from_slice(&found);
+    same("tile squares", &gpu.read(&squares, given.len()), &twin)
 }
 
 #[test]
@@ -193,10 +206,12 @@ fn squares_parity() {
     let tiles = [21, 13];
     let sees = |random: &mut Random| if random.range(0.0, 1.0) < 0.97 { 5 } else { EXIT_FALSE };
     let entries: Vec<u32> = (0..tiles[0] * tiles[1]).map(|_| sees(&mut random)).collect();
-    squares_on_gpu(&gpu, tiles, &entries, &entries).unwrap();
+    for band in [0..13, 0..5, 5..11, 11..13] {
+        squares_on_gpu(&gpu, tiles, band, &entries, &entries).unwrap();
+    }
     let mut other = entries.clone();
     other[40] = if other[40] == EXIT_FALSE { 5 } else { EXIT_FALSE };
-    squares_on_gpu(&gpu, tiles, &entries, &other).unwrap_err();
+    squares_on_gpu(&gpu, tiles, 0..13, &entries, &other).unwrap_err();
     gpu.finish();
 }
 

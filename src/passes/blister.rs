@@ -105,6 +105,8 @@ pub(crate) struct MeshBindings<'a> {
     pub meshes: &'a Buffer,
     pub triangles: &'a Buffer,
     pub positions: &'a Buffer,
+    /// Surfaces in whose planes triangles lie.
+    pub planes: &'a Buffer,
 }
 
 /// What a layer is drawn into, and the one before.
@@ -320,7 +322,7 @@ impl Bindings<'_> {
     /// What the shaders of meshes read, but for the images.
     fn of_meshes<'b>(&'b self, m: MeshBindings<'b>) -> Vec<Resource<'b>> {
         let mesh = [m.views, m.meshes, m.triangles, m.positions];
-        let sides = [self.leaf_surfaces, self.surfaces, self.surface_centres];
+        let sides = [m.planes, self.surfaces, self.surface_centres];
         [self.frame].into_iter().chain(mesh).chain(sides).map(Into::into).collect()
     }
 }

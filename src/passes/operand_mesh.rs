@@ -31,7 +31,8 @@ pub(crate) struct Bindings<'a> {
     pub meshes: &'a Buffer,
     pub triangles: &'a Buffer,
     pub positions: &'a Buffer,
-    pub leaf_surfaces: &'a Buffer,
+    /// Surfaces in whose planes triangles lie.
+    pub planes: &'a Buffer,
     pub surfaces: &'a Buffer,
     /// Model axes, seen from the eye.
     pub surface_centres: &'a Buffer,
@@ -68,20 +69,20 @@ impl OperandMesh {
         Ok(Self { count: pipeline("operand mesh (count)", false)?, fill: pipeline("operand mesh (fill)", true)? })
     }
 
-    /// Counts the fragments of each pixel of a picture of this size, or stores them (`fills`). `draws` has the
-    /// corners of each mesh, in order.
+    /// Counts the fragments of each pixel in these rows of a picture of this size, or stores them (`fills`). `draws` has
+    /// the corners of each mesh, in order.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
-        size: (u32, u32),
+        (size, rows): ((u32, u32), Range<u32>),
         draws: &[Range<u32>],
         fills: bool,
     ) {
         let placed = [b.frame, b.views, b.meshes, b.triangles, b.positions];
-        let solid = [b.leaf_surfaces, b.surfaces, b.surface_centres, b.counts, b.starts, b.fragments];
+        let solid = [b.planes, b.surfaces, b.surface_centres, b.counts, b.starts, b.fragments];
         let resources: Vec<_> = placed.into_iter().chain(solid).map(Into::into).collect();
-        cmd.rendering(size, &[], None, || {
+        cmd.rendering_rows((size, rows), &[], None, || {
             cmd.bind(if fills { &self.fill } else { &self.count }, &resources, &[]);
             for (mesh, corners) in (0..).zip(draws) {
                 cmd.draw_instances(corners.clone(), mesh..mesh + 1);

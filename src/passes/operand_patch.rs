@@ -13,6 +13,7 @@ use crate::gpu::{Binding, Buffer, Commands, Device, GpuError, GraphicsInfo, Pipe
 use crate::shaders::{self, TrimTest};
 use ash::vk;
 use std::mem::offset_of;
+use std::ops::Range;
 
 /// `constant_id` of `SCENE_HAS_RATIONAL`.
 const SCENE_HAS_RATIONAL: u32 = 0;
@@ -108,13 +109,13 @@ impl OperandPatch {
         Ok(Self { count: kinds(false)?, fill: kinds(true)? })
     }
 
-    /// Counts the fragments of each pixel of a picture of this size, or stores them (`fills`). `draw_capacity`
-    /// draws of each kind lie in `draws`, plain first.
+    /// Counts the fragments of each pixel in these rows of a picture of this size, or stores them (`fills`).
+    /// `draw_capacity` draws of each kind lie in `draws`, plain first.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
-        size: (u32, u32),
+        (size, rows): ((u32, u32), Range<u32>),
         draw_capacity: u32,
         fills: bool,
     ) {
@@ -123,7 +124,7 @@ impl OperandPatch {
         let lists = [b.factors, b.sub_patches, b.instances, b.counts, b.starts, b.fragments];
         let shared = || scene.into_iter().map(Into::into).chain([b.points.into()]).chain(lists.map(Into::into));
         let step = if fills { &self.fill } else { &self.count };
-        cmd.rendering(size, &[], None, || {
+        cmd.rendering_rows((size, rows), &[], None, || {
             if let Some(plain) = &step.plain {
                 cmd.bind(plain, &shared().collect::<Vec<_>>(), &[]);
                 let count = offset_of!(Counters, plain_draws) as u64;

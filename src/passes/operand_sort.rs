@@ -47,7 +47,7 @@ impl OperandSort {
         Ok(Self { pipeline })
     }
 
-    /// One thread a pixel of a picture of this size.
+    /// One thread a pixel of a band of this size.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, (width, height): (u32, u32)) {
         let solid = [b.frame, b.leaves, b.leaf_centres, b.shell_leaves];
         let lists = [b.starts, b.counts, b.fragments, b.counters];

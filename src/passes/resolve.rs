@@ -33,6 +33,9 @@ const SCENE_HAS_OTHERS: u32 = 4;
 /// `constant_id` of `SOLIDS_HAVE_TORI`.
 const SOLIDS_HAVE_TORI: u32 = 5;
 
+/// `constant_id` of `SOLIDS_HAVE_SHELLS`.
+const SOLIDS_HAVE_SHELLS: u32 = 13;
+
 /// `constant_id` of `BEHIND`.
 const BEHIND: u32 = 18;
 
@@ -101,6 +104,8 @@ pub(crate) struct SolidKinds {
     pub tori: bool,
     /// It is known which tiles may see them.
     pub tiles: bool,
+    /// Some of their operands have no equations.
+    pub shells: bool,
 }
 
 /// Formats that the host draws into.
@@ -168,10 +173,23 @@ pub(crate) struct SolidBindings<'a> {
     pub visibility: &'a Image,
     /// The visibility image again where the scene has no trims.
     pub others: &'a Image,
-    /// Where rays cross operands without equations.
-    pub fragments: Option<&'a Buffer>,
     /// How many tiles the picture has, and the squares of them that may see a solid; `None` where nobody asked.
     pub tiles: Option<(u32, &'a Buffer)>,
+    /// (u, v) of spline faces that bound operands.
+    pub operand_uv: Option<&'a Image>,
+    /// `None` where every operand has equations.
+    pub shells: Option<ShellBindings<'a>>,
+}
+
+/// Of meshes that bound operands, in binding order.
+pub(crate) struct ShellBindings<'a> {
+    pub instances: &'a Buffer,
+    pub meshes: &'a Buffer,
+    pub triangles: &'a Buffer,
+    pub positions: &'a Buffer,
+    /// Surfaces in whose planes triangles lie.
+    pub planes: &'a Buffer,
+    pub views: &'a Buffer,
 }
 
 impl Resolve {
@@ -230,17 +248,16 @@ impl Resolve {
         of_mesh[8..].fill(Binding::StorageImage);
         let mesh = |()| pipeline("mesh", of.meshes, &of_mesh, &[]);
         let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
-        let mut of_solid = [Binding::Storage; 8];
+        let mut of_solid = [Binding::Storage; 14];
         of_solid[5..7].fill(Binding::StorageImage);
         let solid = |solid: SolidKinds| {
             let vertex = if solid.tiles { shaders::RESOLVE_SOLID_VERT } else { shaders::RESOLVE_VERT };
-            let bindings = if solid.tiles || kinds.sun { 8 } else { 7 };
-            lit(vertex, "solid", of.solids, &of_solid[..bindings], &[])
+            lit(vertex, "solid", of.solids, &of_solid, &[(SOLIDS_HAVE_SHELLS, u32::from(solid.shells))])
         };
         let solids = kinds.solids.map(solid).transpose()?;
         let mut of_operand = [Binding::Storage; 11];
         of_operand[6] = Binding::Texels;
-        of_operand[8..10].fill(Binding::StorageImage);
+        of_operand[8..].fill(Binding::StorageImage);
         let rational = (SCENE_HAS_RATIONAL, u32::from(kinds.rational));
         let operand = |()| pipeline("operand", of.operands, &of_operand, &[rational]);
         let operands = kinds.operands.then_some(()).map(operand).transpose()?;
@@ -293,17 +310,20 @@ impl Resolve {
             }
             if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
                 let solid = [s.frame, s.leaves, s.leaf_surfaces, s.surfaces, s.surface_centres].map(Into::into);
-                let mut resources: Vec<_> = solid.into_iter().chain([s.visibility.into(), s.others.into()]).collect();
-                // the sun's come behind them in any case
-                let squares = s.tiles.map(|(_, squares)| squares).or(sun.map(|_| s.frame));
-                resources.extend(squares.map(Resource::from));
-                bind(pipeline, resources);
+                // the shaders have these bindings in every scene, and read them only where there are tiles, or shells
+                let squares = s.tiles.map_or(s.frame, |(_, squares)| squares);
+                let shells = s
+                    .shells
+                    .as_ref()
+                    .map_or([s.frame; 6], |m| [m.instances, m.meshes, m.triangles, m.positions, m.planes, m.views]);
+                let images = [s.visibility.into(), s.others.into(), squares.into()];
+                bind(pipeline, solid.into_iter().chain(images).chain(shells.map(Into::into)).collect());
                 match s.tiles {
                     Some((count, _)) => cmd.draw_instances(0..6, 0..count),
                     None => cmd.draw(3, 0, 1),
                 }
-                if let (Some(pipeline), Some(fragments)) = (&self.operands, s.fragments) {
-                    let images = [s.others.into(), fragments.into()];
+                if let (Some(pipeline), Some(uv)) = (&self.operands, s.operand_uv) {
+                    let images = [s.others.into(), uv.into()];
                     bind(pipeline, buffers.into_iter().chain(rest).chain(images).collect());
                     cmd.draw(3, 0, 1);
                 }

@@ -5,13 +5,14 @@
 //! ```
 //!
 //! Reads: everything that `Bindings` names. Writes: the visibility image (side, depth) and depth, beside what
-//! pass `visibility` drew. Needs no storage per pixel beside the fragments of operands without equations.
+//! pass `visibility` drew; of spline faces the image of (u, v). Needs no storage per pixel beside the fragments of operands without equations.
 
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
 };
 use crate::shaders;
 use ash::vk;
+use std::ops::Range;
 
 /// `constant_id` of `SOLIDS_HAVE_TORI`.
 const SOLIDS_HAVE_TORI: u32 = 5;
@@ -19,6 +20,22 @@ const SOLIDS_HAVE_TORI: u32 = 5;
 const SOLIDS_HAVE_SHELLS: u32 = 13;
 /// `constant_id` of `SOLIDS_ARE_FOLLOWED`.
 const SOLIDS_ARE_FOLLOWED: u32 = 14;
+
+/// Of the image of (u, v) of spline faces: packed as in the visibility image.
+pub(crate) const OPERAND_UV_FORMAT: vk::Format = vk::Format::R32_UINT;
+
+/// What the scene has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kinds {
+    /// Some surface is a torus.
+    pub tori: bool,
+    /// Some operand has no equations.
+    pub shells: bool,
+    /// Some of those are spline parts.
+    pub patches: bool,
+    /// There are items that rays are followed through.
+    pub followed: bool,
+}
 
 /// The pass.
 pub(crate) struct SolidEvents {
@@ -51,18 +68,19 @@ pub(crate) struct Fragments<'a> {
 }
 
 impl SolidEvents {
-    /// For images of these formats; `tori`: whether some surface is a torus; `shells`: whether some operand has
-    /// no equations; `followed`: whether there are items that rays are followed through.
+    /// For images of these formats.
     pub(crate) fn new(
         device: &Device,
-        (tori, shells, followed): (bool, bool, bool),
+        kinds: Kinds,
         visibility: vk::Format,
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
+        let target = |format| ColourTarget { format, blend: Blend::Replace };
+        let colour = [target(visibility), target(OPERAND_UV_FORMAT)];
         let pipeline = Pipeline::graphics(
             device,
             &GraphicsInfo {
-                name: if tori { "solid events (tori)" } else { "solid events" },
+                name: if kinds.tori { "solid events (tori)" } else { "solid events" },
                 stages: &[
                     (vk::ShaderStageFlags::VERTEX, shaders::SOLID_EVENTS_VERT),
                     (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_EVENTS_FRAG),
@@ -70,15 +88,15 @@ impl SolidEvents {
                 bindings: &[Binding::Storage; 13],
                 push_bytes: 0,
                 constants: &[
-                    (SOLIDS_HAVE_TORI, u32::from(tori)),
-                    (SOLIDS_HAVE_SHELLS, u32::from(shells)),
-                    (SOLIDS_ARE_FOLLOWED, u32::from(followed)),
+                    (SOLIDS_HAVE_TORI, u32::from(kinds.tori)),
+                    (SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),
+                    (SOLIDS_ARE_FOLLOWED, u32::from(kinds.followed)),
                 ],
                 topology: vk::PrimitiveTopology::TRIANGLE_LIST,
                 patch_points: 0,
                 cull: vk::CullModeFlags::NONE,
                 front: vk::FrontFace::COUNTER_CLOCKWISE,
-                colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
+                colour: &colour[..if kinds.patches { 2 } else { 1 }],
                 depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
                 stencil: None,
             },
@@ -86,13 +104,15 @@ impl SolidEvents {
         Ok(Self { pipeline })
     }
 
-    /// The squares that begin at one of the `tiles`; what is there already stays where it is nearer.
+    /// The squares that begin at one of the `tiles`, in these rows of the picture; what is there already stays where it is
+    /// nearer. `uv` where the scene has spline operands.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
-        (visibility, depth): (Attachment<'_>, Attachment<'_>),
-        tiles: u32,
+        (visibility, uv, depth): (Attachment<'_>, Option<Attachment<'_>>, Attachment<'_>),
+        rows: Range<u32>,
+        tiles: Range<u32>,
     ) {
         let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres];
         let lists = [b.tile_starts, b.tile_leaves, b.tile_entries];
@@ -107,9 +127,10 @@ impl SolidEvents {
             .chain([b.counters, b.tile_squares])
             .map(Into::into)
             .collect();
-        cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
+        let colour: Vec<_> = [visibility].into_iter().chain(uv).collect();
+        cmd.rendering_rows((visibility.image.size(), rows), &colour, Some(depth), || {
             cmd.bind(&self.pipeline, &resources, &[]);
-            cmd.draw_instances(0..6, 0..tiles);
+            cmd.draw_instances(0..6, tiles);
         });
     }
 }

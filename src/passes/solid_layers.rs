@@ -14,8 +14,9 @@ use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
     Pipeline, Texels,
 };
-use crate::shaders::{self, SUN_BUFFERS};
+use crate::shaders::{self, SUN_BUFFERS, SUN_OWN_BUFFERS};
 use ash::vk;
+use std::ops::Range;
 
 /// `constant_id` of `SCENE_HAS_RATIONAL`.
 const SCENE_HAS_RATIONAL: u32 = 0;
@@ -97,6 +98,8 @@ pub(crate) struct Bindings<'a> {
     pub instances: &'a Buffer,
     /// What [`Kinds::sun`] asks for.
     pub sun: Option<[&'a Buffer; SUN_BUFFERS]>,
+    /// Of meshes that bound operands: meshes, triangles, positions, planes; `None` where there are none.
+    pub shells: Option<[&'a Buffer; 4]>,
 }
 
 impl SolidLayers {
@@ -119,7 +122,7 @@ impl SolidLayers {
         };
         // lengths within solids are in no light
         let sun = kinds.sun && number != 2;
-        let mut bindings = vec![Binding::Storage; 20 + if sun { SUN_BUFFERS } else { 0 }];
+        let mut bindings = vec![Binding::Storage; 24 + if sun { SUN_OWN_BUFFERS } else { 0 }];
         bindings[12] = Binding::StorageImage;
         bindings[18] = Binding::Texels;
         let marks = kinds.marks.filter(|_| number == 0);
@@ -162,17 +165,19 @@ impl SolidLayers {
         Ok(Self { pipeline, marks: marks.unwrap_or_default(), sun })
     }
 
-    /// One triangle over the targets.
+    /// One triangle over these rows of the targets.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
         colour: &[Attachment<'_>],
         depth: Option<Attachment<'_>>,
+        rows: Range<u32>,
     ) {
         let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres, b.leaf_centres];
         // the shader has these bindings in every scene, and reads them only where there are shells
         let fragments = b.fragments.unwrap_or([b.frame; 3]);
+        let shells = b.shells.unwrap_or([b.frame; 4]);
         let placed = [b.views, b.face_instances, b.faces, b.patches, b.items];
         let resources: Vec<_> = solid
             .into_iter()
@@ -183,9 +188,16 @@ impl SolidLayers {
             .chain([b.behind.into()])
             .chain(placed.into_iter().map(Into::into))
             .chain([b.points.into(), b.instances.into()])
-            .chain(b.sun.filter(|_| self.sun).into_iter().flatten().map(Into::into))
+            .chain(shells.into_iter().map(Into::into))
+            .chain(
+                b.sun
+                    .filter(|_| self.sun)
+                    .into_iter()
+                    .flat_map(|s| s.into_iter().take(SUN_OWN_BUFFERS))
+                    .map(Into::into),
+            )
             .collect();
-        cmd.rendering(b.behind.size(), colour, depth, || {
+        cmd.rendering_rows((b.behind.size(), rows), colour, depth, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&self.marks));
             cmd.draw(3, 0, 1);
         });

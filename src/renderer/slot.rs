@@ -132,6 +132,7 @@ fn read_counters(device: &Device, count: usize) -> Result<ReadBack, GpuError> {
 }
 
 pub(super) fn upload_buffer(device: &Device, name: &str, bytes: u64) -> Result<Buffer, GpuError> {
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER;
+    // constants change from band to band
+    let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
     Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })
 }

@@ -64,6 +64,8 @@ pub(crate) struct SceneData {
     /// Lengths within solids are wanted.
     pub thickness: bool,
     pub highlight: Option<Highlight>,
+    /// Most bytes of the lists of events.
+    pub solid_budget: Option<u64>,
     /// Instances that are not closed and would be seen through: drawn opaque.
     pub open: usize,
     pub sun: Option<SunData>,
@@ -96,6 +98,7 @@ impl SceneData {
             is_layered: (clear || settings.highlight.is_some()) && solids.is_followed(),
             thickness: settings.thickness,
             highlight: settings.highlight,
+            solid_budget: settings.solid_budget,
             open,
             sun,
             shadowless,

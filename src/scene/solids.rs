@@ -17,7 +17,7 @@ mod surface;
 use super::face::pack_colour;
 use crate::abi;
 use crate::csg::Blist;
-use crate::model::{Items, Solid, SolidError, SurfaceTable};
+use crate::model::{Items, Shape, Solid, SolidError, SurfaceTable};
 use crate::picture::{SolidWay, TrimWay};
 pub(crate) use blister::{Asked, Blister};
 use glam::DVec3;
@@ -44,6 +44,9 @@ pub(crate) struct SolidData {
     pub operand_meshes: Vec<abi::OperandMesh>,
     pub operand_triangles: Vec<[u32; 3]>,
     pub operand_positions: Vec<[f32; 3]>,
+    /// Of each triangle of meshes some of whose triangles lie in a plane with others, the surface, or
+    /// [`NO_PLANE`](abi::NO_PLANE).
+    pub operand_planes: Vec<u32>,
     pub operand_draws: Vec<Range<u32>>,
     /// Those that the scene has to place yet.
     pub(super) operands: Vec<shell::Operand>,
@@ -98,6 +101,8 @@ impl<'a> Lists<'a> {
 struct Shared {
     whole: Solid,
     table: SurfaceTable,
+    /// Numbers of the surfaces in the table, [`NO_PLANE`](abi::NO_PLANE) of those that triangles have to themselves.
+    surface_of: Vec<u32>,
     middle: DVec3,
     /// Numbers of the primitives that are shells.
     shells: Vec<Option<u32>>,
@@ -114,19 +119,10 @@ impl SolidData {
         let whole = Solid::union(&lists.solids)?;
         let table = SurfaceTable::new(&whole, SurfaceTable::DRAWN);
         let middle = middle_of(&lists.solids);
-        for (p, primitive) in (0..).zip(whole.primitives()) {
-            let sides = sides_of(primitive, middle);
-            // a surface is numbered when its first face is met: that face says where it is
-            for (face, placed) in table.faces(p).iter().zip(sides) {
-                if face.surface as usize == data.surfaces.len() {
-                    data.surfaces.push(placed.surface);
-                    data.surface_centres.push(placed.centre);
-                }
-            }
-        }
+        let surface_of = data.push_surfaces(&whole, &table, middle);
         let shells = vec![None; whole.primitives().len()];
         let leaf_of = vec![[None; 2]; whole.primitives().len()];
-        let mut shared = Shared { whole, table, middle, shells, leaf_of, nothing: None };
+        let mut shared = Shared { whole, table, surface_of, middle, shells, leaf_of, nothing: None };
         let union = match lists.opaque == lists.solids.len() {
             true => Blist::new(shared.whole.tree()),
             false => Blist::new(Solid::union(&lists.solids[..lists.opaque])?.tree()),
@@ -164,6 +160,40 @@ impl SolidData {
         Ok(data)
     }
 
+    /// Surfaces in the order in which their first faces are met, which say where they are; returns their numbers. A
+    /// triangle that lies in a plane by itself does without.
+    fn push_surfaces(&mut self, whole: &Solid, table: &SurfaceTable, middle: DVec3) -> Vec<u32> {
+        let mut users = vec![0u32; table.surfaces().len()];
+        let primitives = || (0..).zip(whole.primitives());
+        primitives().flat_map(|(p, _)| table.faces(p)).for_each(|face| users[face.surface as usize] += 1);
+        let mut numbers = vec![abi::NO_PLANE; users.len()];
+        for (p, primitive) in primitives() {
+            let faces = table.faces(p).iter().map(|face| face.surface as usize);
+            if let Shape::Mesh(mesh) = &primitive.shape {
+                let thin = shell::Thin::of(primitive);
+                for (t, surface) in faces.enumerate() {
+                    if numbers[surface] == abi::NO_PLANE && (users[surface] > 1 || thin.is(mesh.corners(t))) {
+                        numbers[surface] = self.push_surface(surface::of_triangle(primitive, mesh.corners(t), middle));
+                    }
+                }
+                continue;
+            }
+            for (surface, placed) in faces.zip(sides_of(primitive, middle)) {
+                if numbers[surface] == abi::NO_PLANE {
+                    numbers[surface] = self.push_surface(Some(placed));
+                }
+            }
+        }
+        numbers
+    }
+
+    fn push_surface(&mut self, placed: Option<surface::Placed>) -> u32 {
+        let Some(placed) = placed else { return abi::NO_PLANE };
+        self.surfaces.push(placed.surface);
+        self.surface_centres.push(placed.centre);
+        self.surfaces.len() as u32 - 1
+    }
+
     /// The switches of one list, whose primitives are those from `first_primitive` on.
     fn push_list(&mut self, shared: &mut Shared, list: &Blist, first_primitive: u32, all_flags: u32) {
         let item = self.leaves.len() as u32;
@@ -192,12 +222,15 @@ impl SolidData {
             let is_shell = shell::is_shell(primitive);
             let shell = is_shell.then(|| {
                 let known = &mut shared.shells[p as usize];
-                *known.get_or_insert_with(|| self.push_shell(&shared.table, p, primitive, leaf))
+                *known.get_or_insert_with(|| {
+                    let surfaces = shared.table.faces(p).iter().map(|f| shared.surface_of[f.surface as usize]);
+                    self.push_shell(surfaces, primitive, leaf)
+                })
             });
             flags |= if is_shell { abi::LEAF_SHELL } else { 0 };
             let first = self.leaf_surfaces.len() as u32;
             let faces = if is_shell { &[] } else { shared.table.faces(p) };
-            let sides = faces.iter().map(|f| f.surface << 1 | u32::from(f.flipped));
+            let sides = faces.iter().map(|f| shared.surface_of[f.surface as usize] << 1 | u32::from(f.flipped));
             self.leaf_surfaces.extend(sides.map(|surface| abi::LeafSurface { surface, leaf }));
             if faces.is_empty() && !is_shell {
                 // a primitive without volume is the inside of no point
@@ -222,6 +255,11 @@ impl SolidData {
                 ..Default::default()
             });
         }
+    }
+
+    /// [`SolidWay::Events`] finds the faces: asked for, or for want of another way.
+    pub(crate) fn is_by_events(&self) -> bool {
+        !self.leaves.is_empty() && self.blister.is_none() && self.order.is_empty()
     }
 
     /// Whether rays are followed through some of the lists.

@@ -12,7 +12,9 @@
 //! beyond the picture.
 
 use super::solids::SolidData;
-use crate::abi::{self, EXIT_FALSE, EXIT_TRUE, LEAF_FALLS, LEAF_UNBOUNDED, Leaf, SunTile, SunTriangle, TileLeaf};
+use crate::abi::{
+    self, EXIT_FALSE, EXIT_TRUE, LEAF_FALLS, LEAF_UNBOUNDED, Leaf, OWN_PLANE, SunTile, SunTriangle, TileLeaf,
+};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 
@@ -69,6 +71,8 @@ struct Flat {
     corners: [DVec2; 3],
     /// Middle of the operand.
     centre: DVec2,
+    /// Of the corners towards the sun, from there.
+    heights: [f64; 3],
     shell: u32,
     surface: u32,
 }
@@ -139,17 +143,23 @@ impl SunData {
     fn flattened(&self, solids: &SolidData) -> Vec<Flat> {
         let mut all = Vec::new();
         for operand in solids.operands.iter().filter(|o| solids.shell_leaves[o.shell as usize] < solids.followed) {
-            let centre = self.flat(solids.leaf_centres[solids.shell_leaves[operand.shell as usize] as usize]);
+            let middle = solids.leaf_centres[solids.shell_leaves[operand.shell as usize] as usize];
+            let centre = self.flat(middle);
             let meshes = operand.meshes.clone();
             for (mesh, corners) in solids.operand_meshes[meshes.clone()].iter().zip(&solids.operand_draws[meshes]) {
                 let triangles = &solids.operand_triangles[corners.start as usize / 3..corners.end as usize / 3];
-                for (k, triangle) in triangles.iter().enumerate() {
+                for (number, triangle) in (mesh.first_triangle..).zip(triangles) {
                     let corners = triangle.map(|v| {
                         let own = DVec3::from(solids.operand_positions[v as usize].map(f64::from)) + operand.origin;
-                        self.flat(operand.primitive.transform.transform_point3(own))
+                        operand.primitive.transform.transform_point3(own)
                     });
-                    let surface = solids.leaf_surfaces[mesh.first_side as usize + k].surface >> 1;
-                    all.push(Flat { corners, centre, shell: operand.shell, surface });
+                    all.push(Flat {
+                        corners: corners.map(|p| self.flat(p)),
+                        centre,
+                        heights: corners.map(|p| self.towards.dot(p - middle)),
+                        shell: operand.shell,
+                        surface: solids.plane_of(mesh, number).unwrap_or(OWN_PLANE | number),
+                    });
                 }
             }
         }
@@ -245,7 +255,7 @@ impl Flat {
     /// In tiles, from the operand's middle.
     fn stored(&self, side: f64) -> SunTriangle {
         let corners = self.corners.map(|p| ((p - self.centre) / side).as_vec2().to_array());
-        SunTriangle { corners, shell: self.shell, surface: self.surface }
+        SunTriangle { corners, heights: self.heights.map(|h| h as f32), shell: self.shell, surface: self.surface }
     }
 }
 

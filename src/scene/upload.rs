@@ -64,6 +64,8 @@ pub(crate) struct Shells {
     pub meshes: Buffer,
     pub triangles: Buffer,
     pub positions: Buffer,
+    /// Surfaces in whose planes triangles lie.
+    pub planes: Buffer,
     /// Corners of the triangles of each mesh.
     pub draws: Vec<Range<u32>>,
 }
@@ -267,6 +269,7 @@ fn shells(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SolidData) -> Result
         meshes: persistent(uploads, cmd, "operand meshes", &data.operand_meshes)?,
         triangles: persistent(uploads, cmd, "operand triangles", &data.operand_triangles)?,
         positions: persistent(uploads, cmd, "operand positions", &data.operand_positions)?,
+        planes: persistent(uploads, cmd, "operand planes", &data.operand_planes)?,
         draws: data.operand_draws.clone(),
     })
 }

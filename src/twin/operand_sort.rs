@@ -10,7 +10,9 @@
 //!                               as entered, as for a mesh
 //! ```
 
-use crate::abi::{Counters, FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_RING, FRAGMENT_WITHIN, Fragment, Frame, Leaf};
+use crate::abi::{
+    Counters, FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_RING, FRAGMENT_WITHIN, Fragment, Frame, Leaf, TILE,
+};
 
 const FLAGS: u32 = FRAGMENT_LEAVES | FRAGMENT_RING | FRAGMENT_PATCH | FRAGMENT_WITHIN;
 const FAILED_FRAGMENTS: u32 = 128;
@@ -26,7 +28,7 @@ pub struct Shells<'a> {
     pub shell_leaves: &'a [u32],
 }
 
-/// Puts the fragments of each pixel in order, and returns how many it keeps of each, first of all. Pixel `n`
+/// Puts the fragments of each pixel of a band in order, and returns how many it keeps of each, first of all. Pixel `n`
 /// has those from `starts[n]` to `starts[n + 1]`.
 pub fn operand_sort(
     frame: &Frame,
@@ -35,12 +37,22 @@ pub fn operand_sort(
     fragments: &mut [Fragment],
     counters: &mut Counters,
 ) -> Vec<u32> {
-    counters.fragments = starts[starts.len() - 1];
-    if counters.fragments > frame.fragment_capacity {
+    let wanted = starts[starts.len() - 1];
+    let counted = starts.is_sorted(); // more than 32 bits count otherwise
+    counters.fragments = counters.fragments.wrapping_add(wanted);
+    counters.band_fragments = counters.band_fragments.max(if counted { wanted } else { u32::MAX });
+    if wanted > frame.fragment_capacity || !counted {
         counters.failed |= FAILED_FRAGMENTS;
     }
+    for row in (0..starts.len() - 1).step_by(frame.size[0] as usize * TILE as usize) {
+        let next = (row + frame.size[0] as usize * TILE as usize).min(starts.len() - 1);
+        counters.row_fragments = counters.row_fragments.max(starts[next].wrapping_sub(starts[row]));
+    }
     let pixel = |ends: &[u32]| {
-        let end = if ends[1] > frame.fragment_capacity { ends[0] } else { ends[1] };
+        let end = if ends[1] < ends[0] || ends[1] > frame.fragment_capacity { ends[0] } else { ends[1] };
+        if end == ends[0] {
+            return 0;
+        }
         let here = &mut fragments[ends[0] as usize..end as usize];
         here.sort_by(|a, b| {
             let depth = a.depth.partial_cmp(&b.depth).expect("depths are numbers");

@@ -1,10 +1,14 @@
 //! Twin of `glsl/solid_squares.comp`: which squares of tiles are drawn.
 
 use crate::abi::{BLOCK, EXIT_FALSE};
+use std::ops::Range;
 
-/// Of each tile of a picture of `tiles` across and down, whose walks begin at `entries`, the side of the square that
-/// begins there, in tiles, or 0.
-pub fn solid_squares(tiles: [u32; 2], entries: &[u32]) -> Vec<u32> {
+/// Of each tile of a band of rows of a picture of `tiles` across and down, whose walks begin at `entries`, the side of the
+/// square that begins there, in tiles, or 0.
+pub fn solid_squares(tiles: [u32; 2], band: Range<u32>, entries: &[u32]) -> Vec<u32> {
+    let is_last = band.end == tiles[1];
+    let entries = &entries[(band.start * tiles[0]) as usize..(band.end * tiles[0]) as usize];
+    let tiles = [tiles[0], band.end - band.start];
     let sees = |x: u32, y: u32| entries[(y * tiles[0] + x) as usize] != EXIT_FALSE;
     let all_see = |[x, y]: [u32; 2], side: u32| {
         let (end_x, end_y) = ((x + side).min(tiles[0]), (y + side).min(tiles[1]));
@@ -13,8 +17,9 @@ pub fn solid_squares(tiles: [u32; 2], entries: &[u32]) -> Vec<u32> {
     let square = |n: u32| {
         let tile = [n % tiles[0], n / tiles[0]];
         let sides = std::iter::successors(Some(BLOCK), |side| (*side > 1).then_some(side / 2));
-        let found =
-            sides.map(|side| (tile.map(|k| k / side * side), side)).find(|(first, side)| all_see(*first, *side));
+        let found = sides
+            .map(|side| (tile.map(|k| k / side * side), side))
+            .find(|(first, side)| (is_last || first[1] + side <= tiles[1]) && all_see(*first, *side));
         found.filter(|(first, _)| *first == tile).map_or(0, |(_, side)| side)
     };
     (0..tiles[0] * tiles[1]).map(square).collect()
@@ -35,7 +40,10 @@ mod tests {
                 .map(|n| if seen(n % tiles[0], n / tiles[0]) { n } else { EXIT_FALSE })
                 .collect();
             let mut times = vec![0; entries.len()];
-            for (n, side) in (0..).zip(solid_squares(tiles, &entries)) {
+            // bands, or the whole picture
+            let ends: &[u32] = if seed % 2 == 0 { &[0, 13] } else { &[0, 5, 10, 13] };
+            let squares = ends.windows(2).flat_map(|w| solid_squares(tiles, w[0]..w[1], &entries));
+            for (n, side) in (0..).zip(squares) {
                 let first = [n % tiles[0], n / tiles[0]];
                 for y in first[1]..(first[1] + side).min(tiles[1]) {
                     for x in first[0]..(first[0] + side).min(tiles[0]) {

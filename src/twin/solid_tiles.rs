@@ -1,8 +1,14 @@
 //! Twin of `glsl/solid_tiles.comp`: which leaves each tile may see, of those of its block.
 
-use crate::abi::{BLOCK, Frame, Rect};
+use crate::abi::{BLOCK, Frame, Rect, TILE};
 use crate::twin::solid_blocks::block_count;
 use crate::twin::solid_rects::tile_count;
+
+/// Tiles of the band: across and down.
+pub fn band_tiles(frame: &Frame) -> [u32; 2] {
+    let rows = frame.band_height.min(frame.size[1] as u32 - frame.band_top);
+    [tile_count(frame)[0], rows.div_ceil(TILE)]
+}
 
 /// Whether a leaf's rectangle has a tile between `first` and `last`, both counted in.
 pub fn meets(rect: &Rect, first: [u32; 2], last: [u32; 2]) -> bool {
@@ -19,11 +25,11 @@ pub(super) fn lists_of(count: u32, list: impl Fn(u32) -> Vec<u32>) -> (Vec<u32>,
     (starts, all)
 }
 
-/// Where the list of each tile begins (and the last one ends), and all lists; those of the blocks are given.
+/// Where the list of each tile of the band begins (and the last one ends), and all lists; those of the blocks are given.
 pub fn solid_tiles(frame: &Frame, rects: &[Rect], block_starts: &[u32], block_leaves: &[u32]) -> (Vec<u32>, Vec<u32>) {
-    let [across, down] = tile_count(frame);
+    let [across, down] = band_tiles(frame);
     let list = |n: u32| {
-        let tile = [n % across, n / across];
+        let tile = [n % across, frame.band_top / TILE + n / across];
         let block = (tile[1] / BLOCK * block_count(frame)[0] + tile[0] / BLOCK) as usize;
         let here = &block_leaves[block_starts[block] as usize..block_starts[block + 1] as usize];
         here.iter().copied().filter(|leaf| meets(&rects[*leaf as usize], tile, tile)).collect()

@@ -120,3 +120,23 @@ fn equal_expressions_are_equal_pictures() {
     }
     assert_silent(renderer);
 }
+
+/// Tens of thousands of triangles in planes of their own, less three bores: by events and by layers; and each takes but
+/// its corners: 12 bytes, and half a vertex of 12.
+#[test]
+fn many_triangles() {
+    let mut ripple = shapes::tetra();
+    ripple.parts[0].meshes = vec![shapes::torus_mesh(130)];
+    let triangles = ripple.parts[0].meshes[0].triangles().len() as u64;
+    let bore = |x: f64, y: f64| solids::moved(solids::at(x, y, 0.0), solids::post(0.7, -4.0, 8.0));
+    let across = solids::moved(solids::turned(0.0, 1.5, 0.3), solids::post(0.4, -5.0, 10.0));
+    let model = solids::solid("A-(B+C+D)", vec![operands::part(ripple), bore(3.0, 0.0), bore(-1.8, -2.4), across]);
+    right_at(SIZE, vec![("many triangles", model.clone())], false);
+    let mut renderer = watched(&model);
+    render(&mut renderer, &perspective(&model, SIZE));
+    let of_scene = ["operand triangles", "operand positions", "operand planes", "solid surface", "solid sides"];
+    let objects = renderer.object_bytes().into_iter();
+    let bytes: u64 = objects.filter(|o| of_scene.iter().any(|name| o.0.starts_with(name))).map(|o| o.1).sum();
+    assert!(bytes > 12 * triangles && bytes < 19 * triangles, "{bytes} bytes of {triangles} triangles");
+    assert_silent(renderer);
+}

@@ -16,6 +16,7 @@ const BY_TABLE: SceneSettings = SceneSettings {
     thickness: false,
     highlight: None,
     sun: None,
+    solid_budget: None,
 };
 
 fn draw(renderer: &mut HeadlessRenderer, camera: &Camera, tolerance_px: f64) -> Picture {

@@ -303,6 +303,10 @@ pub struct FrameArgs {
     /// (layers of faces, classified by labels)
     #[arg(long, value_name = "WAY", default_value = "events")]
     pub solids: SolidWay,
+    /// Most memory for the lists of events, MiB; beyond it the picture is drawn in bands of rows. As much as one buffer of the
+    /// device holds for each list without it
+    #[arg(long, value_name = "MIB", value_parser = length)]
+    pub solid_budget: Option<f64>,
     /// Mark, before everything, where faces of two solids or closed parts coincide, blue, and where two overlap, red; counts
     /// of the pixels are told, and stand in the statistics
     #[arg(long)]
@@ -424,35 +428,4 @@ impl FromStr for Aov {
 }
 
 #[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn clap_accepts_the_definition() {
-        use clap::CommandFactory;
-        Cli::command().debug_assert();
-    }
-
-    #[test]
-    fn sizes() {
-        assert_eq!("640x480".parse(), Ok(Size(640, 480)));
-        for bad in ["640", "640x", "0x480", "640x480x2", "16385x1", "-1x1"] {
-            assert!(bad.parse::<Size>().is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn images() {
-        assert_eq!("uv=a=b.npy".parse(), Ok(Aov { image: Image::Uv, file: "a=b.npy".into() }));
-        for bad in ["uv", "uv=", "colour=a.npy"] {
-            assert!(bad.parse::<Aov>().is_err(), "{bad}");
-        }
-    }
-
-    #[test]
-    fn a_negative_eye_is_not_an_option() {
-        let cli = Cli::try_parse_from(["selvedge", "render", "m.step", "-o", "a.png", "--eye", "-1,-2,-3"]);
-        let Command::Render(args) = cli.expect("parses").command else { panic!("render") };
-        assert_eq!(args.camera.eye, Some(DVec3::new(-1.0, -2.0, -3.0)));
-    }
-}
+mod tests;

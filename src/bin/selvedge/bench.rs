@@ -132,10 +132,14 @@ fn gather(to: &mut Gathered, stats: &FrameStats) {
     to.push("trim rows", "", stats.trim_rows as f64);
     to.push("trim intercepts", "", stats.trim_intercepts as f64);
     to.push("layers", "", stats.layers as f64);
+    to.push("bands", "", f64::from(stats.bands));
     to.push(CLAMPS, "", stats.clamps as f64);
     to.push("retries", "", f64::from(stats.retries));
     for pool in &stats.pools {
         to.push(&format!("pool: {}", pool.name), "bytes", pool.bytes as f64);
+    }
+    for list in &stats.solid_bytes {
+        to.push(&format!("solids: {}", list.name), "bytes", list.bytes as f64);
     }
 }
 

@@ -61,7 +61,9 @@ impl Session {
         let options = HeadlessOptions { device: args.device.clone(), validation: args.validation };
         let highlight = args.highlight.then(Highlight::default);
         let sun = sun(args, import);
-        let scene = SceneSettings { trim: args.trim, solids: args.solids, highlight, sun, ..scene };
+        let (trim, solids) = (args.trim, args.solids);
+        let solid_budget = args.solid_budget.map(|mebibytes| (mebibytes * f64::from(1 << 20)) as u64);
+        let scene = SceneSettings { trim, solids, highlight, sun, solid_budget, ..scene };
         let mut renderer = during("opening the device", || HeadlessRenderer::new(&options))?;
         during("uploading the model", || renderer.upload_with(&import.model, scene))?;
         let mut settings =

@@ -31,6 +31,12 @@ pub enum Carrier {
 }
 
 impl Carrier {
+    /// The plane through three corners, outward where they turn left; any plane through them where they are in line.
+    pub(crate) fn of_triangle([a, b, c]: [DVec3; 3]) -> Self {
+        let normal = (b - a).cross(c - a).normalize_or(DVec3::Z);
+        Self::Plane { normal, offset: normal.dot((a + b + c) / 3.0) }
+    }
+
     /// Negative inside, positive outside.
     pub fn value(&self, p: DVec3) -> f64 {
         match self {
@@ -109,13 +115,7 @@ impl Shape {
             }
             Self::Torus { major, minor } => vec![Carrier::Torus { major: *major, minor: *minor }],
             Self::Quadric(q) => vec![Carrier::from(*q)],
-            Self::Mesh(mesh) => (0..mesh.triangles().len())
-                .map(|t| {
-                    let [a, b, c] = mesh.corners(t);
-                    let normal = (b - a).cross(c - a).normalize_or(DVec3::Z);
-                    plane(normal, normal.dot((a + b + c) / 3.0))
-                })
-                .collect(),
+            Self::Mesh(mesh) => (0..mesh.triangles().len()).map(|t| Carrier::of_triangle(mesh.corners(t))).collect(),
             Self::Part(_) => Vec::new(),
         }
     }

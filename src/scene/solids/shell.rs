@@ -1,16 +1,15 @@
 //! Operands without equations, *shells*: meshes as arrays, spline parts as what the scene places later.
 //!
 //! ```text
-//!   mesh   triangle ──▶ LeafSurface ──▶ Surface: its plane, shared with faces that coincide
+//!   mesh   triangle ──▶ corners: its plane; or Surface, shared with faces that coincide
 //!   part   faces ──▶ FaceData, as of a part that is drawn by itself, with the primitive's id and colour
 //! ```
 
-use super::{SolidData, SurfaceTable};
+use super::{SolidData, surface};
 use crate::abi;
 use crate::model::{Face, Mesh, Part, Primitive, Shape};
 use glam::DVec3;
 use std::ops::Range;
-use std::sync::Arc;
 
 /// A shell that still has to be placed.
 #[derive(Clone, Debug)]
@@ -38,20 +37,42 @@ pub(super) fn is_shell(primitive: &Primitive) -> bool {
     !primitive.shape.is_analytic() && !primitive.bounds().is_empty()
 }
 
+/// Which triangles are so thin that their corners, rounded to single precision, would turn their planes: by more than
+/// 0.07°, a third of a step of eight bits of light. Those keep a [`Surface`](abi::Surface), made in double precision.
+pub(super) struct Thin {
+    height: f64,
+}
+
+/// Of the box around the operand, half its diagonal: two corners are rounded by 2⁻²⁴ of that.
+const THIN: f64 = 1e-4;
+
+impl Thin {
+    pub fn of(primitive: &Primitive) -> Self {
+        Self { height: 0.5 * THIN * primitive.shape.bounds().diagonal() }
+    }
+
+    pub fn is(&self, [a, b, c]: [DVec3; 3]) -> bool {
+        let longest = [b - a, c - b, a - c].map(DVec3::length).into_iter().fold(0.0, f64::max);
+        // of no area, too
+        (b - a).cross(c - a).length() <= self.height * longest
+    }
+}
+
 impl SolidData {
-    /// Adds primitive `p` as the next shell; `leaf` is the first that shows it. Returns its number.
-    pub(super) fn push_shell(&mut self, table: &SurfaceTable, p: u32, primitive: &Primitive, leaf: u32) -> u32 {
+    /// Adds a primitive as the next shell, of a mesh with the surfaces of its triangles; `leaf` is the first that shows
+    /// it. Returns its number.
+    pub(super) fn push_shell(&mut self, surfaces: impl Iterator<Item = u32>, primitive: &Primitive, leaf: u32) -> u32 {
         let shell = self.shell_leaves.len() as u32;
         self.shell_leaves.push(leaf);
         let origin = primitive.shape.bounds().centre();
         let first = self.operand_meshes.len();
         match &primitive.shape {
             Shape::Mesh(mesh) => {
-                let sides = table.faces(p).iter().map(|f| f.surface << 1 | u32::from(f.flipped)).collect();
-                self.push_mesh(mesh, origin, shell, leaf, sides, primitive);
+                self.operand_planes.extend(surfaces);
+                self.push_mesh(mesh, origin, (shell, leaf), primitive);
             }
             // the faces bound the part, or else its meshes do
-            Shape::Part(part) if part.faces.is_empty() => self.push_meshes(part, origin, shell, leaf, primitive),
+            Shape::Part(part) if part.faces.is_empty() => self.push_meshes(part, origin, (shell, leaf), primitive),
             _ => {}
         }
         let meshes = first..self.operand_meshes.len();
@@ -60,34 +81,111 @@ impl SolidData {
     }
 
     /// Meshes of a part share no surface with other primitives.
-    fn push_meshes(&mut self, part: &Arc<Part>, origin: DVec3, shell: u32, leaf: u32, primitive: &Primitive) {
+    fn push_meshes(&mut self, part: &Part, origin: DVec3, of: (u32, u32), primitive: &Primitive) {
+        let thin = Thin::of(primitive);
         for mesh in part.meshes.iter().filter(|m| !m.triangles().is_empty()) {
-            let shape = Shape::Mesh(Arc::new(mesh.clone()));
-            let alone = Primitive { shape, ..primitive.clone() };
-            let first = self.surfaces.len() as u32;
             let near = primitive.bounds().centre();
-            for placed in super::sides_of(&alone, near) {
-                self.surfaces.push(placed.surface);
-                self.surface_centres.push(placed.centre);
+            for corners in (0..mesh.triangles().len()).map(|t| mesh.corners(t)) {
+                let placed = thin.is(corners).then(|| surface::of_triangle(primitive, corners, near)).flatten();
+                let plane = self.push_surface(placed);
+                self.operand_planes.push(plane);
             }
-            let sides = (first..self.surfaces.len() as u32).map(|s| s << 1).collect();
-            self.push_mesh(mesh, origin, shell, leaf, sides, primitive);
+            self.push_mesh(mesh, origin, of, primitive);
         }
     }
 
-    fn push_mesh(&mut self, mesh: &Mesh, origin: DVec3, shell: u32, leaf: u32, sides: Vec<u32>, of: &Primitive) {
+    /// The surface in which a triangle of the mesh lies, where others may lie in it, too.
+    pub(in crate::scene) fn plane_of(&self, mesh: &abi::OperandMesh, triangle: u32) -> Option<u32> {
+        let planes = self.operand_planes.get(mesh.first_plane as usize..)?;
+        Some(planes[(triangle - mesh.first_triangle) as usize]).filter(|plane| *plane != abi::NO_PLANE)
+    }
+
+    /// A mesh whose planes have been added.
+    fn push_mesh(&mut self, mesh: &Mesh, origin: DVec3, (shell, leaf): (u32, u32), of: &Primitive) {
+        let planes = self.operand_planes.len() - mesh.triangles().len();
+        let shares = self.operand_planes[planes..].iter().any(|plane| *plane != abi::NO_PLANE);
+        if !shares {
+            self.operand_planes.truncate(planes);
+        }
         let first = self.operand_positions.len() as u32;
         let corners = 3 * self.operand_triangles.len() as u32;
         self.operand_meshes.push(abi::OperandMesh {
             shell,
             instance: 0, // when it is placed
             first_triangle: self.operand_triangles.len() as u32,
-            first_side: self.leaf_surfaces.len() as u32,
+            first_plane: if shares { planes as u32 } else { abi::NO_PLANE },
             mirrored: u32::from(of.transform.matrix3.determinant() < 0.0),
+            leaf,
         });
-        self.leaf_surfaces.extend(sides.into_iter().map(|surface| abi::LeafSurface { surface, leaf }));
         self.operand_positions.extend(mesh.positions().iter().map(|p| (*p - origin).as_vec3().to_array()));
         self.operand_triangles.extend(mesh.triangles().iter().map(|t| t.map(|v| first + v)));
         self.operand_draws.push(corners..3 * self.operand_triangles.len() as u32);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::{Mesh, Solid};
+    use crate::picture::SolidWay;
+    use crate::scene::solids::Lists;
+    use glam::DAffine3;
+    use std::sync::Arc;
+
+    const TETRA: [[u32; 3]; 4] = [[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
+
+    fn of(corners: &[[f64; 3]], triangles: Vec<[u32; 3]>) -> Mesh {
+        Mesh::new(1, corners.iter().copied().map(DVec3::from).collect(), triangles, Vec::new()).unwrap()
+    }
+
+    fn tetra(width: f64) -> Mesh {
+        of(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, width]], TETRA.to_vec())
+    }
+
+    fn data(shapes: Vec<Shape>) -> SolidData {
+        let one = |shape| Primitive { id: 1, colour: [0.5; 4], shape, transform: DAffine3::IDENTITY };
+        let solids: Vec<Solid> = shapes.into_iter().map(|shape| Solid::of(one(shape)).unwrap()).collect();
+        SolidData::new(&Lists::union(&solids), SolidWay::Events).unwrap()
+    }
+
+    fn mesh(mesh: Mesh) -> Shape {
+        Shape::Mesh(Arc::new(mesh))
+    }
+
+    #[test]
+    fn triangles_by_themselves_are_their_corners() {
+        let d = data(vec![mesh(tetra(1.0))]);
+        assert_eq!((d.surfaces.len(), d.leaf_surfaces.len(), d.operand_planes.len()), (0, 0, 0));
+        assert_eq!((d.operand_meshes[0].first_plane, d.operand_meshes[0].leaf), (abi::NO_PLANE, 0));
+    }
+
+    /// The block's bottom is in the plane of the tetrahedron's, which has one triangle there.
+    #[test]
+    fn planes_that_others_share_are_surfaces() {
+        let below = || Shape::Block { min: DVec3::new(-3.0, -3.0, -1.0), max: DVec3::new(-2.0, -2.0, 0.0) };
+        for shapes in [vec![mesh(tetra(1.0)), below()], vec![below(), mesh(tetra(1.0))]] {
+            let d = data(shapes);
+            let shared: Vec<u32> = d.operand_planes.iter().copied().filter(|p| *p != abi::NO_PLANE).collect();
+            assert_eq!((d.surfaces.len(), d.leaf_surfaces.len(), shared.len()), (6, 6, 1));
+            assert_eq!(d.operand_planes[0], shared[0], "the triangle at the bottom is the first");
+            assert!(d.leaf_surfaces.iter().any(|side| side.surface >> 1 == shared[0]));
+        }
+        // of its own triangles, too: all four twice, the other way round
+        let twice = TETRA.into_iter().chain(TETRA.map(|[a, b, c]| [b, a, c])).collect();
+        let d = data(vec![mesh(of(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], twice))]);
+        assert_eq!((d.surfaces.len(), d.operand_planes), (4, vec![0, 1, 2, 3, 0, 1, 2, 3]));
+    }
+
+    /// A height of a 50,000th of the length: single precision would turn the planes.
+    #[test]
+    fn thin_triangles_keep_their_planes() {
+        let thin = || tetra(2e-5);
+        // those along the short edge; the other two are as large as any
+        let d = data(vec![mesh(thin())]);
+        assert_eq!((d.surfaces.len(), d.operand_planes.len()), (2, 4));
+        let part = Part { meshes: vec![tetra(1.0), thin()], closed: true, ..Part::default() };
+        let d = data(vec![Shape::Part(Arc::new(part))]);
+        assert_eq!((d.surfaces.len(), d.operand_planes.len()), (2, 4));
+        assert_eq!([0, 1].map(|m| d.operand_meshes[m].first_plane), [abi::NO_PLANE, 0]);
     }
 }

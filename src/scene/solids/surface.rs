@@ -124,6 +124,15 @@ impl Local {
     }
 }
 
+/// The plane of a triangle of a primitive, given in its own coordinates, with a point close to `near`; `None` where the
+/// primitive's transform is singular.
+pub(super) fn of_triangle(p: &Primitive, corners: [DVec3; 3], near: DVec3) -> Option<Placed> {
+    match Carrier::of_triangle(corners) {
+        Carrier::Plane { normal, offset } => Some(Placed::plane(p.to_own()?, normal, offset, near)),
+        Carrier::Quadric(_) | Carrier::Torus { .. } => unreachable!("a triangle's is a plane"),
+    }
+}
+
 /// The sides of a primitive, in the order of [`Shape::carriers`]; planes get a point close to `near`. None
 /// of a part, nor of a primitive without volume.
 pub(super) fn sides_of(p: &Primitive, near: DVec3) -> Vec<Placed> {

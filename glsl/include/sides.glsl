@@ -1,0 +1,46 @@
+// Whose a side of a Boolean solid is, and which way it faces: of a leaf with equations, or a triangle of an operand. Needs
+// scene.glsl, solids.glsl, shells.glsl, view.glsl, eye_ray.glsl, `frame`, and buffers `LeafSurface leaf_surfaces[]`,
+// `Instance instances[]`, `OperandMesh operand_meshes[]`, and those of triangle_depth.glsl.
+#ifndef SIDES_GLSL
+#define SIDES_GLSL
+
+#include "triangle_depth.glsl"
+
+// Whether some leaf is a shell: compiled in only then.
+layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
+
+struct Side {
+    uint leaf;
+    vec3 n; // across the side, model directions, not of unit length
+    uint surface; // that it lies in: its number, or OWN_PLANE and the triangle's
+};
+
+OperandMesh mesh_of(uint triangle) {
+    uint from = 0u;
+    uint end = uint(operand_meshes.length());
+    while (end - from > 1u) {
+        uint middle = (from + end) / 2u;
+        if (operand_meshes[middle].first_triangle <= triangle) from = middle;
+        else end = middle;
+    }
+    return operand_meshes[from];
+}
+
+vec3 across_surface(uint at, float t, Ray ray) {
+    return surface_gradient(surfaces[at], ray.o + t * ray.d - surface_centres[at]);
+}
+
+// A side that is met at depth t.
+Side side_at(uint side, float t, Ray ray) {
+    if (!SOLIDS_HAVE_SHELLS || side < frame.side_count) {
+        LeafSurface s = leaf_surfaces[side];
+        return Side(s.leaf, across_surface(s.surface >> 1, t, ray), s.surface >> 1);
+    }
+    uint triangle = side - frame.side_count;
+    OperandMesh mesh = mesh_of(triangle);
+    uint plane = plane_of(mesh, triangle);
+    if (plane != NO_PLANE) return Side(mesh.leaf, across_surface(plane, t, ray), plane);
+    return Side(mesh.leaf, instances[mesh.instance].normal * facet_normal(triangle), OWN_PLANE | triangle);
+}
+
+#endif
