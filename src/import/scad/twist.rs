@@ -62,10 +62,10 @@ impl Twist {
     pub fn cut_for(self, args: &Args<'_>, outlines: &[Vec<DVec2>]) -> Result<Self, Fault> {
         let corners: usize = outlines.iter().map(Vec::len).sum();
         let count = self.count(outlines.iter().flatten());
-        if !(2.0 * count * corners as f64 <= MOST_TRIANGLES) {
-            return Err(args.fault(format!("{count} slices of {corners} corners are too many")));
+        if (2.0 * count * corners as f64) <= MOST_TRIANGLES {
+            return Ok(Self { slices: Slices::As(count), ..self });
         }
-        Ok(Self { slices: Slices::As(count), ..self })
+        Err(args.fault(format!("{count} slices of {corners} corners are too many")))
     }
 
     fn count<'a>(&self, corners: impl Iterator<Item = &'a DVec2> + Clone) -> f64 {

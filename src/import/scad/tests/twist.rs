@@ -43,15 +43,15 @@ fn same(arguments: &str, shape: &str, vertices: usize, expected: f64) {
 fn slices_and_facets_are_openscads() {
     let plate = "square(size = [20, 10], center = true);";
     let fine = "height = 20, $fn = 0, $fa = 1, $fs = 5";
-    same("height = 20, twist = 90, $fn = 0, $fa = 12, $fs = 2", plate, 36, 4299.524_19);
-    same(&format!("{fine}, twist = 300"), plate, 56, 4546.588_04);
-    same(&format!("{fine}, twist = 300, scale = [0.5, 0.5]"), plate, 44, 2714.693_44);
-    same(&format!("{fine}, twist = 300, scale = [2, 2]"), plate, 44, 10858.792_64);
-    same(&format!("{fine}, twist = -300, scale = [0, 0]"), plate, 33, 1575.841_10);
-    same("height = 20, scale = [0.5, 1.5], $fn = 0, $fa = 1, $fs = 0.7", plate, 124, 3666.666_64);
-    same("height = 20, twist = 60, scale = [0.5, 1.5], $fn = 30", plate, 24, 4030.801_12);
+    same("height = 20, twist = 90, $fn = 0, $fa = 12, $fs = 2", plate, 36, 4299.52419);
+    same(&format!("{fine}, twist = 300"), plate, 56, 4546.58804);
+    same(&format!("{fine}, twist = 300, scale = [0.5, 0.5]"), plate, 44, 2714.69344);
+    same(&format!("{fine}, twist = 300, scale = [2, 2]"), plate, 44, 10858.79264);
+    same(&format!("{fine}, twist = -300, scale = [0, 0]"), plate, 33, 1575.84110);
+    same("height = 20, scale = [0.5, 1.5], $fn = 0, $fa = 1, $fs = 0.7", plate, 124, 3666.66664);
+    same("height = 20, twist = 60, scale = [0.5, 1.5], $fn = 30", plate, 24, 4030.80112);
     let circle = "multmatrix([[1, 0, 0, 3], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) { circle(r = 4); }";
-    same("height = 20, center = true, twist = -100", circle, 130, 975.889_30);
+    same("height = 20, center = true, twist = -100", circle, 130, 975.88930);
 }
 
 /// An outline that is not convex is its hull less a pocket, and the pocket's lid is an edge of the hull: the three
@@ -59,8 +59,8 @@ fn slices_and_facets_are_openscads() {
 #[test]
 fn pockets_and_holes_are_cut_from_the_same_slices() {
     let bent = "polygon(points = [[0, 0], [4, 0], [4, 4], [2, 1]], paths = undef);";
-    same("height = 9, twist = 200, slices = 12", bent, 13 * (3 + 3), 58.406_30);
+    same("height = 9, twist = 200, slices = 12", bent, 13 * (3 + 3), 58.40630);
     let frame = "polygon(points = [[-4, -4], [4, -4], [4, 4], [-4, 4], [-1, -1], [1, -1], [1, 1], [-1, 1]], \
                  paths = [[0, 1, 2, 3], [4, 5, 6, 7]]);";
-    same("height = 9, twist = 50, $fn = 0, $fa = 12, $fs = 2", frame, 48, 568.521_94);
+    same("height = 9, twist = 50, $fn = 0, $fa = 12, $fs = 2", frame, 48, 568.52194);
 }
