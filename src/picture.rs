@@ -133,10 +133,10 @@ pub enum SolidWay {
     Cst,
     /// Layers of faces, peeled off from front to back, and each asked whether it bounds the solid: by labels in a
     /// stencil image, as Hable and Rossignac have it. Its cost is that of all primitives, once a layer. Scenes in which
-    /// some operand is a spline part, or a mesh whose triangles do not all face outward and meet in pairs, or something is seen through, are drawn
-    /// by events. What a mesh that crosses itself encloses twice is outside here; of a mesh's face and another that
-    /// coincide, the face that is not the mesh's is seen; and a ray that enters and leaves a mesh within the rounding of
-    /// a depth may see either side.
+    /// some operand is a spline part, or a mesh whose triangles do not all face outward and meet in pairs, or something
+    /// is seen through, are drawn by events. What a mesh that crosses itself encloses twice is outside here; of a
+    /// mesh's face and another that coincide, the face that is not the mesh's is seen; and a ray that enters and leaves
+    /// a mesh within the rounding of a depth may see either side.
     Blister,
 }
 
@@ -263,18 +263,19 @@ pub struct SceneSettings {
     pub thickness: bool,
     /// Mark contacts and overlaps, and count their pixels: rays are followed through all solids.
     pub highlight: Option<Highlight>,
-    /// Where the key light comes from: a direction from the model towards it, in model axes, of any length but 0; `None`
-    /// for a studio's light, which travels with the camera and casts no shadows.
+    /// Where the key light comes from: a direction from the model towards it, in model axes, of any length but 0;
+    /// `None` for a studio's light, which travels with the camera and casts no shadows.
     ///
-    /// It is parallel, and reaches a point where no opaque Boolean solid lies on the way, exactly: every face of the scene
-    /// is shaded. Shadows are cast by primitives with equations and by meshes that are their operands. What else the scene has
-    /// casts none, and is counted in [`FrameStats::shadowless`]: placed parts, what is seen through, and operands that are
-    /// spline parts; such an operand is left out of the solid that casts the shadow.
+    /// It is parallel, and reaches a point where no opaque Boolean solid lies on the way, exactly: every face of the
+    /// scene is shaded. Shadows are cast by primitives with equations and by meshes that are their operands. What else
+    /// the scene has casts none, and is counted in [`FrameStats::shadowless`]: placed parts, what is seen through, and
+    /// operands that are spline parts; such an operand is left out of the solid that casts the shadow.
     pub sun: Option<DVec3>,
-    /// Most bytes that the lists of [`SolidWay::Events`] take: which primitives each tile of 16 x 16 pixels sees, and where
-    /// each pixel's ray crosses operands that are meshes or spline parts. Where they would take more, the picture is
-    /// drawn in bands of rows of tiles, one after another, each with all geometry: the same picture, bit for bit. `None`:
-    /// as much as one storage buffer of the device holds, for each list. A row of tiles that alone wants more is
+    /// Most bytes that the lists of [`SolidWay::Events`] take: which primitives each tile of 16 x 16 pixels sees, and
+    /// where each pixel's ray crosses operands that are meshes or spline parts. Where they would take more, the picture
+    /// is drawn in bands of rows of tiles, one after another, each with all geometry: the same picture, bit for bit.
+    /// `None`: as much as one storage buffer of the device holds, for each list. A row of tiles that alone wants more
+    /// is
     /// [`RenderError::TooMany`](crate::renderer::RenderError::TooMany).
     pub solid_budget: Option<u64>,
 }
@@ -297,8 +298,8 @@ impl Outputs {
 }
 
 /// A finished picture in host memory. Row 0 is on top; samples are taken at pixel centres. Images
-/// that were not asked for are empty. Depth, face, (u, v) and normal are those of the first face whose opacity is not 0,
-/// seen through or not.
+/// that were not asked for are empty. Depth, face, (u, v) and normal are those of the first face whose opacity is not
+/// 0, seen through or not.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
     /// Width and height in pixels.
@@ -314,8 +315,8 @@ pub struct Picture {
     pub uv: Vec<[f32; 2]>,
     /// Unit outward normal in model space; 0 for background.
     pub normal: Vec<[f32; 3]>,
-    /// Whether the sun reaches the point: it faces the sun, and no shadow lies on it. Asked for with the normals; empty in
-    /// scenes without [`SceneSettings::sun`]; false for background.
+    /// Whether the sun reaches the point: it faces the sun, and no shadow lies on it. Asked for with the normals; empty
+    /// in scenes without [`SceneSettings::sun`]; false for background.
     pub sunlit: Vec<bool>,
     /// Length of the pixel's ray within solids, between the near and the far plane: Boolean solids and closed parts,
     /// model units, where several overlap counted once; 0 without any.
@@ -362,16 +363,16 @@ pub struct FrameStats {
     pub contact_pixels: u64,
     /// The same of rays that are within two solids at once.
     pub overlap_pixels: u64,
-    /// Instances with faces that would be seen through, but are not closed, or cut open by a volume: they have no inside,
-    /// and are drawn opaque.
+    /// Instances with faces that would be seen through, but are not closed, or cut open by a volume: they have no
+    /// inside, and are drawn opaque.
     pub open_clear: u64,
-    /// In a scene with a sun: placed parts, solids that are seen through, and operands of Boolean solids that are spline
-    /// parts. They cast no shadow.
+    /// In a scene with a sun: placed parts, solids that are seen through, and operands of Boolean solids that are
+    /// spline parts. They cast no shadow.
     pub shadowless: u64,
     /// Layers of faces that [`SolidWay::Blister`] peeled off before every pixel was decided.
     pub layers: u64,
-    /// Bands of rows of tiles in which the lists of [`SolidWay::Events`] were made: 1 where all of them fit, 0 where that
-    /// way draws nothing. See [`SceneSettings::solid_budget`].
+    /// Bands of rows of tiles in which the lists of [`SolidWay::Events`] were made: 1 where all of them fit, 0 where
+    /// that way draws nothing. See [`SceneSettings::solid_budget`].
     pub bands: u32,
     /// Bytes of what the way to draw Boolean solids takes beside what every frame has: lists of the primitives that
     /// `blocks` of 8 x 8 tiles see, and `tiles`; lists of `crossings` with operands; images of `layers`. Those that

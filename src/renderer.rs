@@ -8,9 +8,10 @@
 //!                                      report(slot) ─▶ complete? times, counts, bytes
 //! ```
 //!
-//! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the GPU can tell (the trim
-//! table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete: false`, and
-//! the next `record` into its slot makes them larger. A view from very near is resolved by what [`CloseUp`] cuts for it.
+//! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the GPU can tell (the
+//! trim table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete:
+//! false`, and the next `record` into its slot makes them larger. A view from very near is resolved by what [`CloseUp`]
+//! cuts for it.
 
 mod centres;
 mod constants;
@@ -161,8 +162,8 @@ enum Retired {
 const LEAST_TOLERANCE_PX: f64 = 0.125;
 
 impl Renderer {
-    /// Formats of the images of depth, face, (u, v) and normal. The fourth component of a normal is 1, but 0 for background
-    /// and where [`SceneSettings::sun`] does not reach.
+    /// Formats of the images of depth, face, (u, v) and normal. The fourth component of a normal is 1, but 0 for
+    /// background and where [`SceneSettings::sun`] does not reach.
     pub const AOV_FORMATS: [vk::Format; 4] = resolve::AOV_FORMATS;
     /// Format of the image of thickness.
     pub const THICKNESS_FORMAT: vk::Format = solid_layers::THICKNESS_FORMAT;
@@ -247,8 +248,8 @@ impl Renderer {
 
     /// As [`record`](Self::record), and the length of each pixel's ray within solids, between near and far plane and in
     /// model units, into an image of [`THICKNESS_FORMAT`](Self::THICKNESS_FORMAT) of the camera's size: Boolean solids
-    /// and closed parts, where several overlap counted once; 0 where there is none. Its layouts and barriers are as those
-    /// of the colour target. The model was uploaded with [`SceneSettings::thickness`].
+    /// and closed parts, where several overlap counted once; 0 where there is none. Its layouts and barriers are as
+    /// those of the colour target. The model was uploaded with [`SceneSettings::thickness`].
     ///
     /// # Errors
     /// As [`record`](Self::record).
@@ -353,6 +354,8 @@ impl Renderer {
         frame.record(&cmd, &mut slot.times);
         slot.recorded = true;
         slot.capacities = Some(loaded.capacities);
+        slot.size = input.camera.size;
+        (slot.bands, slot.solid_bytes) = (loaded.bands(), loaded.solid_bytes());
         self.last = Some(input.slot);
         Ok(())
     }
@@ -387,8 +390,8 @@ impl Renderer {
             open_clear: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.open)),
             shadowless: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.shadowless)),
             layers: u64::from(c.layers),
-            bands: self.loaded.as_ref().map_or(0, Loaded::bands),
-            solid_bytes: self.loaded.as_ref().map_or_else(Vec::new, Loaded::solid_bytes),
+            bands: slot.bands,
+            solid_bytes: slot.solid_bytes.clone(),
             retries: 0,
             edit_bytes: slot.edit_bytes,
             pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),
@@ -407,7 +410,7 @@ impl Renderer {
     /// that frame reported and for the picture's size.
     fn make_room(&mut self, slot: usize, size: (u32, u32)) -> Result<(), RenderError> {
         let finished = &mut self.slots[slot];
-        let had = finished.capacities.take();
+        let (had, drawn) = (finished.capacities.take(), finished.size);
         let report = had.map(|_| finished.read_counters());
         finished.retired.clear();
         finished.recorded = false;
@@ -415,7 +418,12 @@ impl Renderer {
         let range = self.device.limits().max_storage_buffer_range;
         let capacities = match (had, report) {
             // else another slot's frame has made them larger since
-            (Some(had), Some(c)) if had == loaded.capacities => had.grown(&c, loaded.counts, size, range)?,
+            (Some(had), Some(c)) if had == loaded.capacities => match had.grown(&c, loaded.counts, drawn, range) {
+                Ok(grown) => grown,
+                // a picture of another size may have room
+                Err(_) if drawn != size => loaded.capacities,
+                Err(too_many) => return Err(too_many.into()),
+            },
             _ => loaded.capacities,
         };
         let capacities = capacities.for_picture(loaded.counts, size, range)?;

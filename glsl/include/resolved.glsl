@@ -6,6 +6,7 @@
 #include "shade.glsl"
 
 // Of points that lie on no surface of a Boolean solid, as far as is known.
+// With the bit of OWN_PLANE, too: such a point is known as that of a triangle is.
 const uint NO_SURFACE = 0xffffffffu;
 
 #ifdef SUN_BINDING
@@ -44,8 +45,8 @@ struct Lit {
     float sun;
 };
 
-// Of a point at a depth of the pixel's ray, with its unit outward normal `n`, in model space; `surface` is the number of
-// the Boolean solids' surface that it lies on, or NO_SURFACE.
+// Of a point at a depth of the pixel's ray, with its unit outward normal `n`, in model space; `surface` is the number
+// of the Boolean solids' surface that it lies on, or NO_SURFACE.
 Lit lit_at(vec3 colour, vec3 n, bool two_sided, Ray ray, float depth, uint surface) {
 #ifdef SUN_BINDING
     vec3 seen = two_sided && dot(n, ray.d) > 0.0 ? -n : n;

@@ -14,7 +14,8 @@ const float SHININESS = 48.0;
 
 vec3 in_view(Frame frame, vec3 v) { return vec3(dot(frame.right, v), dot(frame.up, v), -dot(frame.forward, v)); }
 
-// What the key light's cosines make of a surface with normal `v` in view space, beside the lights that are always there.
+// What the key light's cosines make of a surface with normal `v` in view space, beside the lights that are always
+// there.
 vec3 studio(vec3 colour, vec3 v, float key, float shine) {
     float fill = max(dot(v, FILL), 0.0);
     float sky = mix(FLOOR_STRENGTH, SKY_STRENGTH, 0.5 + 0.5 * v.y);

@@ -1,6 +1,6 @@
-// Whose a side of a Boolean solid is, and which way it faces: of a leaf with equations, or a triangle of an operand. Needs
-// scene.glsl, solids.glsl, shells.glsl, view.glsl, eye_ray.glsl, `frame`, and buffers `LeafSurface leaf_surfaces[]`,
-// `Instance instances[]`, `OperandMesh operand_meshes[]`, and those of triangle_depth.glsl.
+// Whose a side of a Boolean solid is, and which way it faces: of a leaf with equations, or a triangle of an operand.
+// Needs scene.glsl, solids.glsl, shells.glsl, view.glsl, eye_ray.glsl, `frame`, and buffers `LeafSurface
+// leaf_surfaces[]`, `Instance instances[]`, `OperandMesh operand_meshes[]`, and those of triangle_depth.glsl.
 #ifndef SIDES_GLSL
 #define SIDES_GLSL
 

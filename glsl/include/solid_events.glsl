@@ -1,4 +1,5 @@
-// Passes `solid_events` and, with FACE_IS_FOUND, `blister`: the first depth at which the pixel's ray enters the Boolean solid.
+// Passes `solid_events` and, with FACE_IS_FOUND, `blister`: the first depth at which the pixel's ray enters the Boolean
+// solid.
 //
 //      ray ──┬──────────┬────┬─────────┬──▶     events: where the ray crosses a side of some leaf
 //   A     ───┤██████████│████├─────────┼──

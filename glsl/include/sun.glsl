@@ -1,16 +1,16 @@
-// Whether the sun reaches a point, past the opaque Boolean solids. Twin of src/abi/sun.rs; whoever includes this defines
-// SUN_BINDING, where SUN_BUFFERS buffers begin.
+// Whether the sun reaches a point, past the opaque Boolean solids. Twin of src/abi/sun.rs; whoever includes this
+// defines SUN_BINDING, where SUN_BUFFERS buffers begin.
 //
 //        sun ◀──┤████├────┤██├───── p        the ray to the sun, from event to event as pass `solid_events` has it: in
 //               │    │    │  │              shade where it is within the solid anywhere before p
 //        ───────┴────┴────┴──┴─▶ tiles      seen from the sun, each with the leaves that it sees and their Blist
 //
-// The tiles depend on scene and sun only, and are made with the scene (src/scene/sun.rs). Points beside them are those of
-// the nearest tile: what is missing in its list does not reach beyond it.
+// The tiles depend on scene and sun only, and are made with the scene (src/scene/sun.rs). Points beside them are those
+// of the nearest tile: what is missing in its list does not reach beyond it.
 //
 // A point of a solid lies on a surface that is known, so the ray's first crossing of it is at 0 by rule, whatever the
-// rounding of the point. Of other surfaces the point is known within its rounding only: material between it and a height
-// above its face that is less casts no shadow on it.
+// rounding of the point. Of other surfaces the point is known within its rounding only: material between it and a
+// height above its face that is less casts no shadow on it.
 #ifndef SUN_GLSL
 #define SUN_GLSL
 
@@ -69,8 +69,8 @@ layout(scalar, binding = SUN_BINDING + 10) buffer SunCounters { Counters sun_cou
 // Spans kept; those of further leaves are computed in every scan.
 const uint SUN_KEPT = 12u;
 
-// Rounding of a point, relative to its depth: of a solid's side, eight ulp; of a spline face or a triangle some ten times
-// what Newton's method leaves of its depth, a sixtieth of a pixel in a picture a thousand pixels high.
+// Rounding of a point, relative to its depth: of a solid's side, eight ulp; of a spline face or a triangle some ten
+// times what Newton's method leaves of its depth, a sixtieth of a pixel in a picture a thousand pixels high.
 const float ROUNDED_SIDE = 1.0 / 1048576.0;
 const float ROUNDED_FACE = 1.0 / 65536.0;
 
@@ -184,7 +184,8 @@ Met meet_mesh(uint shell, vec3 middle, SunTile tile, vec3 p, uint surface, float
 }
 
 // Whether the sun lights the point at this depth of the pixel's ray; `n` is the face's unit normal on the side that is
-// lit, `surface` the number of the Boolean solids' surface that it lies on, or OWN_PLANE and its triangle's, or NO_SURFACE.
+// lit, `surface` the number of the Boolean solids' surface that it lies on, or OWN_PLANE and its triangle's, or
+// NO_SURFACE.
 bool in_sun(Ray ray, float depth, vec3 n, uint surface) {
     float rise = dot(n, sun.towards);
     if (!(rise > 0.0)) return false; // in its own shade

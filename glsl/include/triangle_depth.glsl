@@ -1,7 +1,7 @@
-// Where a ray meets the plane of an operand's triangle. A plane that others lie in, too, is met by the formula of the other
-// solids' sides: faces that coincide are met at the same depth, bit for bit. Else the corners tell it: as of other
-// meshes, within the triangle. Needs scene.glsl, solids.glsl, shells.glsl, eye_ray.glsl, `frame`, and the buffers of
-// facet.glsl, `View views[]`, `uint planes[]`, `Surface surfaces[]`, `vec3 surface_centres[]`.
+// Where a ray meets the plane of an operand's triangle. A plane that others lie in, too, is met by the formula of the
+// other solids' sides: faces that coincide are met at the same depth, bit for bit. Else the corners tell it: as of
+// other meshes, within the triangle. Needs scene.glsl, solids.glsl, shells.glsl, eye_ray.glsl, `frame`, and the buffers
+// of facet.glsl, `View views[]`, `uint planes[]`, `Surface surfaces[]`, `vec3 surface_centres[]`.
 #ifndef TRIANGLE_DEPTH_GLSL
 #define TRIANGLE_DEPTH_GLSL
 

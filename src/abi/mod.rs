@@ -1,5 +1,6 @@
 //! The structures that Rust and GLSL share, in scalar layout. Twins of `glsl/include/scene.glsl`,
-//! `view.glsl`, `exact.glsl`, `solids.glsl`, `tiles.glsl` and `sun.glsl`; the build asserts every offset and stride against the compiled shaders.
+//! `view.glsl`, `exact.glsl`, `solids.glsl`, `tiles.glsl` and `sun.glsl`; the build asserts every offset and stride
+//! against the compiled shaders.
 
 // Fields carry their meaning and units in the GLSL, which the build holds them against.
 #![allow(missing_docs)]

@@ -93,8 +93,8 @@ impl Lists {
         self.size.1.div_ceil(TILE)
     }
 
-    /// Bytes of what is counted for each tile and each pixel of so many rows, and of the entries and squares of all tiles: see
-    /// `TileBuffers` and `FragmentBuffers`.
+    /// Bytes of what is counted for each tile and each pixel of so many rows, and of the entries and squares of all
+    /// tiles: see `TileBuffers` and `FragmentBuffers`.
     fn counted_bytes(&self, rows: u32) -> u64 {
         let word = size_of::<u32>() as u64;
         let of_row = u64::from(self.size.0.div_ceil(TILE));
@@ -182,7 +182,8 @@ mod tests {
             let most = LISTS.most_rows(row);
             assert!(most > 0 && most < LISTS.rows(), "{most}");
             assert!(LISTS.hold(most, row.times(most, 1)) && !LISTS.hold(most + 1, row.times(most + 1, 1)));
-            // 10 tiles and 16 rows of 160 pixels, of 2 words each; a word at each list's end, and two of each of 80 tiles
+            // 10 tiles and 16 rows of 160 pixels, of 2 words each; a word at each list's end, and two of each of 80
+            // tiles
             let bytes = |rows: u64| rows * (10 * 8 + 160 * 16 * 8 + 12 * row.tile_leaves + 16 * row.fragments) + 648;
             assert!(bytes(u64::from(most)) <= 60_000 && bytes(u64::from(most) + 1) > 60_000);
         }

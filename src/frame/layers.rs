@@ -78,8 +78,8 @@ impl<'a> Frame<'a> {
         colour
     }
 
-    /// Layers over what pass `resolve` drew, and lengths within solids. Where lists are those of one band, they are made
-    /// again.
+    /// Layers over what pass `resolve` drew, and lengths within solids. Where lists are those of one band, they are
+    /// made again.
     pub(super) fn layers(&self, cmd: &Commands<'_>, passes: &LayerPasses, drawing: Drawing) {
         let (Some(parts), Some(behind)) = (self.solids(), &self.buffers.behind) else {
             unreachable!("made with the passes")

@@ -11,9 +11,9 @@
 //! ```
 //!
 //! Samples lie less than half a pixel beside the centre. That changes no depth, so tessellation and trim table are
-//! fine enough for all of them: only the stretch towards the picture's corners changes, by half a pixel's slope, less than
-//! a thousandth. Boxes are looked for a pixel beyond the picture, of which borders take half, and `spread_px` around
-//! centres.
+//! fine enough for all of them: only the stretch towards the picture's corners changes, by half a pixel's slope, less
+//! than a thousandth. Boxes are looked for a pixel beyond the picture, of which borders take half, and `spread_px`
+//! around centres.
 
 use super::{Drawing, Frame, resolved};
 use crate::abi::Counters;
@@ -117,7 +117,16 @@ impl Frame<'_> {
     fn begin_again(&self, cmd: &Commands<'_>, colour: &Image) {
         let counters = &self.buffers.counters;
         self.clear(cmd);
-        for at in [offset_of!(Counters, doubts), offset_of!(Counters, contacts), offset_of!(Counters, overlaps)] {
+        let counted = [
+            offset_of!(Counters, doubts),
+            offset_of!(Counters, contacts),
+            offset_of!(Counters, overlaps),
+            offset_of!(Counters, tile_leaves),
+            offset_of!(Counters, fragments),
+            offset_of!(Counters, mended),
+            offset_of!(Counters, unpaired),
+        ];
+        for at in counted {
             cmd.fill_word(counters, (at / size_of::<u32>()) as u64, 0);
         }
         let cleared = Access { layout: Access::COMPUTE_WRITE.layout, ..Access::TRANSFER_WRITE };

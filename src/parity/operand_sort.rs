@@ -99,7 +99,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
 fn parity() {
     let gpu = Gpu::new();
     let mut random = Random::new(23);
-    for most in [3, 12, 60] {
+    for most in [3, 12, 300] {
         let case = case(&mut random, most);
         compare(&gpu, &case, &case).unwrap();
         let less = Case { frame: Frame { fragment_capacity: case.frame.fragment_capacity / 2, ..case.frame }, ..case };

@@ -69,8 +69,8 @@ impl OperandMesh {
         Ok(Self { count: pipeline("operand mesh (count)", false)?, fill: pipeline("operand mesh (fill)", true)? })
     }
 
-    /// Counts the fragments of each pixel in these rows of a picture of this size, or stores them (`fills`). `draws` has
-    /// the corners of each mesh, in order.
+    /// Counts the fragments of each pixel in these rows of a picture of this size, or stores them (`fills`). `draws`
+    /// has the corners of each mesh, in order.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,

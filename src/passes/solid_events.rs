@@ -5,7 +5,8 @@
 //! ```
 //!
 //! Reads: everything that `Bindings` names. Writes: the visibility image (side, depth) and depth, beside what
-//! pass `visibility` drew; of spline faces the image of (u, v). Needs no storage per pixel beside the fragments of operands without equations.
+//! pass `visibility` drew; of spline faces the image of (u, v). Needs no storage per pixel beside the fragments of
+//! operands without equations.
 
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
@@ -104,8 +105,8 @@ impl SolidEvents {
         Ok(Self { pipeline })
     }
 
-    /// The squares that begin at one of the `tiles`, in these rows of the picture; what is there already stays where it is
-    /// nearer. `uv` where the scene has spline operands.
+    /// The squares that begin at one of the `tiles`, in these rows of the picture; what is there already stays where it
+    /// is nearer. `uv` where the scene has spline operands.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,

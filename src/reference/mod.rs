@@ -14,10 +14,11 @@
 //! it covers no area: surface that is seen exactly edge-on. A solid shows where the ray comes from outside
 //! to inside, at the near plane or behind it: a near plane within a solid cuts it open, and the first face
 //! entered from there is seen. Of solids that are seen through every face shows, entered or left, unless its opacity
-//! is 0: hits are those, and what is opaque. Faces and meshes of a model that a volume trims are met within it, and nearer to
-//! its boundary than [`ON`].
+//! is 0: hits are those, and what is opaque. Faces and meshes of a model that a volume trims are met within it, and
+//! nearer to its boundary than [`ON`].
 //!
-//! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`]; [`SunTracer`] and [`judge_sun`] do so for the light.
+//! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`]; [`SunTracer`] and [`judge_sun`] do so for the
+//! light.
 
 mod bvh;
 pub mod csg;

@@ -38,8 +38,8 @@ const RINGS: u32 = 8;
 const PLACES: u32 = 16;
 
 impl SunTracer {
-    /// `towards` is that of [`SceneSettings::sun`](crate::picture::SceneSettings::sun), finite and not 0: operands that are
-    /// spline parts, placed parts and what is seen through cast no shadow.
+    /// `towards` is that of [`SceneSettings::sun`](crate::picture::SceneSettings::sun), finite and not 0: operands that
+    /// are spline parts, placed parts and what is seen through cast no shadow.
     ///
     /// # Errors
     /// [`SolidError`] when an expression is too large.
@@ -101,8 +101,8 @@ pub struct SunJudgement {
     pub first_wrong: Option<[u32; 2]>,
 }
 
-/// Compares [`Picture::sunlit`], drawn with `camera`, with the truth: the pixels that `options` samples, and those beside
-/// which the light changes.
+/// Compares [`Picture::sunlit`], drawn with `camera`, with the truth: the pixels that `options` samples, and those
+/// beside which the light changes.
 ///
 /// # Panics
 /// When the picture has not the camera's size, no face image or no `sunlit`.

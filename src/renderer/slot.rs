@@ -9,6 +9,7 @@ use crate::capacities::Capacities;
 use crate::frame::SampleBuffers;
 use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Pool, ReadBack, Timestamps};
 use crate::model::Camera;
+use crate::picture::PoolBytes;
 use crate::scene::view;
 use ash::vk;
 use glam::{DMat4, DVec3};
@@ -35,6 +36,11 @@ pub(super) struct Slot {
     pub(super) edit_bytes: u64,
     /// What the frame had room for; `None` when its model has been replaced since.
     pub(super) capacities: Option<Capacities>,
+    /// Of the picture.
+    pub(super) size: (u32, u32),
+    /// What the frame reports of the lists of Boolean solids.
+    pub(super) bands: u32,
+    pub(super) solid_bytes: Vec<PoolBytes>,
 }
 
 impl Slot {
@@ -52,6 +58,9 @@ impl Slot {
             recorded: false,
             edit_bytes: 0,
             capacities: None,
+            size: (0, 0),
+            bands: 0,
+            solid_bytes: Vec::new(),
         })
     }
 

@@ -8,8 +8,8 @@
 //! ```                                                                          and triangles of those that are meshes
 //!
 //! As passes `solid_rects` to `solid_fold` have it for the eye, but made once, on the CPU and in `f64`: it depends on
-//! the scene and the sun only. A point beside the picture belongs to the nearest tile, since no leaf that is missing there reaches
-//! beyond the picture.
+//! the scene and the sun only. A point beside the picture belongs to the nearest tile, since no leaf that is missing
+//! there reaches beyond the picture.
 
 use super::solids::SolidData;
 use crate::abi::{
@@ -104,7 +104,8 @@ impl SunData {
         let ends = boxes.iter().flatten();
         let (low, high) =
             ends.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), b| (lo.min(b.low), hi.max(b.high)));
-        let size = if low.cmple(high).all() { high - low } else { DVec2::ZERO };
+        // one tile where there is nothing, or where numbers have no room for what is between
+        let size = if low.cmple(high).all() && (high - low).is_finite() { high - low } else { DVec2::ZERO };
         sun.corner = if low.is_finite() { low } else { DVec2::ZERO };
         let count = casters.len() + triangles.len();
         let wanted = (TILES_EACH * count).clamp(1, MOST_TILES) as f64;
@@ -276,8 +277,8 @@ struct Folded {
 impl Folded {
     /// `list` is ascending.
     ///
-    /// A walk that goes to a missing leaf follows its out-exits to the first that is there. These make a forest, in which
-    /// leaf `l` has numbers `pre..end`: sought is the innermost range of `list` that holds the missing leaf's.
+    /// A walk that goes to a missing leaf follows its out-exits to the first that is there. These make a forest, in
+    /// which leaf `l` has numbers `pre..end`: sought is the innermost range of `list` that holds the missing leaf's.
     fn new(casters: &[Leaf], list: &[u32]) -> Self {
         let mut order: Vec<u32> = (0..list.len() as u32).collect();
         let leaf = |place: u32| &casters[list[place as usize] as usize];
@@ -453,5 +454,9 @@ mod tests {
             assert!(few.seen_from(DVec3::ONE).right.iter().all(|x| x.is_finite()), "{half:?}");
         }
         assert!(!sun(&SolidData::default()).has_casters());
+        // as far from each other as numbers go
+        let far = [DVec3::splat(-f64::MAX), DVec3::splat(f64::MAX)];
+        let apart = sun(&SolidData { leaf_centres: far.to_vec(), ..stack(2, [1.0; 3]) });
+        assert_eq!((apart.across, apart.leaves.len()), ([1; 2], 2));
     }
 }

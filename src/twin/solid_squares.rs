@@ -3,8 +3,8 @@
 use crate::abi::{BLOCK, EXIT_FALSE};
 use std::ops::Range;
 
-/// Of each tile of a band of rows of a picture of `tiles` across and down, whose walks begin at `entries`, the side of the
-/// square that begins there, in tiles, or 0.
+/// Of each tile of a band of rows of a picture of `tiles` across and down, whose walks begin at `entries`, the side of
+/// the square that begins there, in tiles, or 0.
 pub fn solid_squares(tiles: [u32; 2], band: Range<u32>, entries: &[u32]) -> Vec<u32> {
     let is_last = band.end == tiles[1];
     let entries = &entries[(band.start * tiles[0]) as usize..(band.end * tiles[0]) as usize];

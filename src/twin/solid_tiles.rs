@@ -25,7 +25,8 @@ pub(super) fn lists_of(count: u32, list: impl Fn(u32) -> Vec<u32>) -> (Vec<u32>,
     (starts, all)
 }
 
-/// Where the list of each tile of the band begins (and the last one ends), and all lists; those of the blocks are given.
+/// Where the list of each tile of the band begins (and the last one ends), and all lists; those of the blocks are
+/// given.
 pub fn solid_tiles(frame: &Frame, rects: &[Rect], block_starts: &[u32], block_leaves: &[u32]) -> (Vec<u32>, Vec<u32>) {
     let [across, down] = band_tiles(frame);
     let list = |n: u32| {

@@ -4,7 +4,7 @@ use crate::layers::{in_glass, model, one, painted};
 use crate::shapes::operands::{mesh, meshes, part, splines};
 use crate::shapes::solids::{self, ball};
 use crate::shapes::{ball_mesh, cube};
-use crate::support::{assert_identical, assert_silent, perspective, watched};
+use crate::support::{assert_identical, assert_silent, perspective, watched, watched_with};
 use glam::DVec3;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Camera, Model, Projection};
@@ -127,6 +127,21 @@ fn of_samples() {
     let settings = SceneSettings { samples: Samples::Four, ..SceneSettings::default() };
     with_less_and_less(name, &model, settings, 900_000.0);
     with_less_and_less("glass", &in_glass(), settings, 20_000.0);
+}
+
+/// What is told of crossings is told of one drawing of the view, however many there are.
+#[test]
+fn samples_are_counted_apart() {
+    let (_, model) = meshes().swap_remove(2);
+    let fragments = |samples: Samples| {
+        let mut renderer = watched_with(&model, SceneSettings { samples, ..SceneSettings::default() });
+        let picture = draw(&mut renderer, &perspective(&model, SIZE), Outputs::ALL).unwrap();
+        assert_silent(renderer);
+        picture.stats.fragments as f64
+    };
+    let [one, four] = [Samples::One, Samples::Four].map(fragments);
+    // rays of samples lie within half a pixel of the pixel's
+    assert!(one > 1000.0 && (0.9..1.1).contains(&(four / one)), "{one}, {four}");
 }
 
 /// From a view that needs bands to one that needs none, and to one of another size.

@@ -99,8 +99,8 @@ fn only_a_scene_with_solids_has_what_they_need() {
     assert_silent(renderer);
 }
 
-/// Each way to draw solids has its own passes and none of the others'; with a mesh among the operands, layers are peeled
-/// without tiles and without a list of crossings.
+/// Each way to draw solids has its own passes and none of the others'; with a mesh among the operands, layers are
+/// peeled without tiles and without a list of crossings.
 #[test]
 fn a_way_to_draw_solids_has_its_own_passes() {
     let of = |way: SolidWay, model: &Model| {

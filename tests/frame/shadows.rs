@@ -339,7 +339,8 @@ fn the_eye_may_be_anywhere() {
     assert_silent(renderer);
 }
 
-/// Solids that are nothing, and none at all, leave everything lit that faces the sun; with no sun there is nothing of it.
+/// Solids that are nothing, and none at all, leave everything lit that faces the sun; with no sun there is nothing of
+/// it.
 #[test]
 fn only_who_casts_shadows_has_what_that_takes() {
     let nothing = solids::solid("A*B", vec![ball(0.5, 0.0), ball(0.5, 3.0)]);

@@ -2,7 +2,7 @@
 
 use crate::cut::CutArgs;
 use crate::trims::Way;
-use crate::values::{at_least_one, direction, length, times, tolerance, vector, zoom};
+use crate::values::{at_least_one, direction, length, mebibytes, times, tolerance, vector, zoom};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use selvedge::construct::subdivide::Scheme;
@@ -72,8 +72,8 @@ pub struct RenderArgs {
     #[arg(long, value_name = "N", default_value = "1")]
     pub samples: Samples,
     /// Also write an image as a NumPy array, row 0 on top: depth (f32, H x W, +inf is background), face (u32, H x W,
-    /// 0 is background), uv (f32, H x W x 2, NaN is background), normal (f32, H x W x 3, 0 is background), thickness (f32,
-    /// H x W: length of the ray within solids and closed parts, overlaps counted once)
+    /// 0 is background), uv (f32, H x W x 2, NaN is background), normal (f32, H x W x 3, 0 is background), thickness
+    /// (f32, H x W: length of the ray within solids and closed parts, overlaps counted once)
     #[arg(long, value_name = "IMAGE=FILE.npy")]
     pub aov: Vec<Aov>,
     /// Write the frame's statistics as JSON
@@ -210,9 +210,9 @@ pub struct SweepArgs {
 
 #[derive(Debug, Args)]
 pub struct TrimsArgs {
-    /// Models beside the generated face: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature
-    /// rhino. Without any: samples/panel.step, and nist_pmi_2.stp and m6_countersunk_screw.step in the folder that
-    /// SELVEDGE_MODELS names, those that are there
+    /// Models beside the generated face: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the
+    /// feature rhino. Without any: samples/panel.step, and nist_pmi_2.stp and m6_countersunk_screw.step in the folder
+    /// that SELVEDGE_MODELS names, those that are there
     pub models: Vec<PathBuf>,
     /// Holes along each side of the generated face; 0 leaves it out
     #[arg(long, value_name = "N", default_value_t = 100)]
@@ -292,8 +292,8 @@ pub struct FrameArgs {
     /// Largest distance in pixels between a drawn boundary and the true one, at least 0.125
     #[arg(long, value_name = "PX", default_value_t = 0.5, value_parser = tolerance)]
     pub tolerance: f64,
-    /// How finely patches are divided: bound, which keeps the promise, or the same level from 1 to 64 everywhere, which does
-    /// not
+    /// How finely patches are divided: bound, which keeps the promise, or the same level from 1 to 64 everywhere, which
+    /// does not
     #[arg(long, value_name = "bound|N", default_value = "bound")]
     pub factors: Factors,
     /// How to trim: table (made for each view) or exact (made once); table without it
@@ -303,16 +303,17 @@ pub struct FrameArgs {
     /// (layers of faces, classified by labels)
     #[arg(long, value_name = "WAY", default_value = "events")]
     pub solids: SolidWay,
-    /// Most memory for the lists of events, MiB; beyond it the picture is drawn in bands of rows. As much as one buffer of the
-    /// device holds for each list without it
-    #[arg(long, value_name = "MIB", value_parser = length)]
+    /// Most memory for the lists of events, MiB; beyond it the picture is drawn in bands of rows. As much as one buffer
+    /// of the device holds for each list without it
+    #[arg(long, value_name = "MIB", value_parser = mebibytes)]
     pub solid_budget: Option<f64>,
-    /// Mark, before everything, where faces of two solids or closed parts coincide, blue, and where two overlap, red; counts
-    /// of the pixels are told, and stand in the statistics
+    /// Mark, before everything, where faces of two solids or closed parts coincide, blue, and where two overlap, red;
+    /// counts of the pixels are told, and stand in the statistics
     #[arg(long)]
     pub highlight: bool,
-    /// Light from this direction, which stays where it is in the model, with the shadows that Boolean solids cast: from the
-    /// model towards the sun. Without it the light of a scene file, or one that travels with the camera and casts none
+    /// Light from this direction, which stays where it is in the model, with the shadows that Boolean solids cast: from
+    /// the model towards the sun. Without it the light of a scene file, or one that travels with the camera and casts
+    /// none
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub sun: Option<DVec3>,
     /// Part of the name of the Vulkan device to use
@@ -351,7 +352,8 @@ pub struct SubdivideArgs {
     /// Read an OBJ file's polygons as the control mesh of a smooth surface
     #[arg(long, value_enum, value_name = "SCHEME")]
     pub subdivide: Option<Smooth>,
-    /// Largest distance of the faces from that surface, in the file's units; a hundred-thousandth of the size without it
+    /// Largest distance of the faces from that surface, in the file's units; a hundred-thousandth of the size without
+    /// it
     #[arg(long, value_name = "LENGTH", requires = "subdivide", value_parser = length)]
     pub within: Option<f64>,
 }

@@ -13,7 +13,10 @@ pub fn vector(text: &str) -> Result<DVec3, String> {
 
 /// `X,Y,Z`, not all 0.
 pub fn direction(text: &str) -> Result<DVec3, String> {
-    vector(text)?.try_normalize().ok_or_else(|| "wants a direction: not 0,0,0".into())
+    let v = vector(text)?;
+    // whose square may have no number
+    let largest = v.abs().max_element();
+    if largest > 0.0 { Ok((v / largest).normalize()) } else { Err("wants a direction: not 0,0,0".into()) }
 }
 
 /// A tolerance that the renderer can keep: see [`selvedge::picture::FrameSettings::tolerance_px`].
@@ -32,6 +35,10 @@ pub fn times(text: &str) -> Result<f64, String> {
 
 pub fn length(text: &str) -> Result<f64, String> {
     text.parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| "wants a length above 0".into())
+}
+
+pub fn mebibytes(text: &str) -> Result<f64, String> {
+    text.parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| "wants a number of MiB above 0".into())
 }
 
 /// A magnification.

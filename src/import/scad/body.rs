@@ -136,7 +136,8 @@ impl Reader<'_> {
             return Ok(self.assembly.nothing());
         }
         let segments = self.segments(args, radius);
-        let plate = &mut Plate { to: &mut self.assembly, lift, plane: inside.plane, placed };
+        let triangles = &mut self.triangles;
+        let plate = &mut Plate { to: &mut self.assembly, lift, plane: inside.plane, placed, triangles };
         match args.node {
             "circle" => plate.circle(args, radius, segments),
             "square" => {

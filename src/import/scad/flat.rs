@@ -39,6 +39,8 @@ pub(super) struct Plate<'a> {
     /// 2-D coordinates to those that are lifted.
     pub plane: DAffine2,
     pub placed: Placed,
+    /// That extrusions which turn may still have.
+    pub triangles: &'a mut f64,
 }
 
 impl Plate<'_> {
@@ -95,7 +97,7 @@ impl Plate<'_> {
         let holes = others.clone().all(|j| inside(0, j) && others.clone().all(|i| i == j || !inside(i, j)));
         let op = if holes { Op::Difference } else { Op::SymmetricDifference };
         if let Lift::Twisted(twist) = self.lift {
-            self.lift = Lift::Twisted(twist.cut_for(args, &outlines)?);
+            self.lift = Lift::Twisted(twist.cut_for(args, &outlines, self.triangles)?);
         }
         let mut all = Vec::with_capacity(outlines.len());
         for outline in &outlines {

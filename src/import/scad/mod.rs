@@ -11,7 +11,8 @@
 //!
 //! Circles, balls and cylinders are round unless few segments are asked for: `0 < $fn < 13` is a choice of
 //! shape (a nut) and gives exactly those facets; [`Facets::AsWritten`] gives the facets of every one.
-//! Nodes that have no exact counterpart refuse the whole file by name and line: with one operand missing,
+//! An extrusion that turns has the facets of OpenSCAD, and so have its circles.
+//! Nodes that have no counterpart refuse the whole file by name and line: with one operand missing,
 //! a Boolean solid is another one. Nesting is bounded by memory alone.
 
 mod args;
@@ -110,6 +111,7 @@ pub(super) fn read(text: &str, name: &str, facets: Facets) -> Result<Import, Imp
         report: ImportReport { format: "OpenSCAD csg".to_owned(), ..ImportReport::default() },
         count: 0,
         root: None,
+        triangles: twist::MOST_TRIANGLES,
     };
     let failed = |fault: Fault| ImportError::Solid { file: name.to_owned(), line: fault.line, message: fault.message };
     let sum = reader.file().map_err(failed)?;
@@ -133,6 +135,8 @@ struct Reader<'a> {
     /// Nodes so far.
     count: u32,
     root: Option<u32>,
+    /// That extrusions which turn may still have.
+    triangles: f64,
 }
 
 impl<'a> Reader<'a> {

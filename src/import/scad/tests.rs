@@ -196,6 +196,10 @@ fn bad_text_is_named_with_its_line() {
         ("linear_extrude(height = 1, scale = [1, 0]) { square(); }", "t.csg:1: linear_extrude: an upper end"),
         ("linear_extrude(height = 1, scale = [-1, 2]) { square(); }", "t.csg:1: linear_extrude: a scale"),
         ("linear_extrude(twist = 1, slices = 1e9) { square(); }", "t.csg:1: square: 1000000000 slices of 4 corners"),
+        (
+            "linear_extrude(twist = 1, slices = 100000) { square(); square(); }",
+            "t.csg:1: square: 100000 slices of 4 corners are too many, with those before",
+        ),
         ("linear_extrude(twist = 1e300) { circle($fn = 1e9); }", "t.csg:1: circle: "),
         ("linear_extrude(height = 1) { polygon(points = [[0, 0], [1, 1], [1, 0], [0, 1.5]]); }", "t.csg:1: polygon: "),
         ("rotate_extrude() { square(center = true); }", "t.csg:1: square: an outline across the axis"),

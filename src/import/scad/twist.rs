@@ -32,8 +32,8 @@ enum Slices {
     By { fragments: f64, angle: f64, length: f64 },
 }
 
-/// Triangles of one outline.
-const MOST_TRIANGLES: f64 = 4e6;
+/// Triangles of all such extrusions of a file.
+pub(super) const MOST_TRIANGLES: f64 = 4e6;
 /// Relative difference of two diagonals that are as long: rounding must not choose between them.
 const AS_LONG: f64 = 1e-5;
 
@@ -58,14 +58,16 @@ impl Twist {
         Ok(Self { base, height, scale, degrees, slices })
     }
 
-    /// The same, cut for these outlines.
-    pub fn cut_for(self, args: &Args<'_>, outlines: &[Vec<DVec2>]) -> Result<Self, Fault> {
+    /// The same, cut for these outlines; takes their triangles from those that are left.
+    pub fn cut_for(self, args: &Args<'_>, outlines: &[Vec<DVec2>], left: &mut f64) -> Result<Self, Fault> {
         let corners: usize = outlines.iter().map(Vec::len).sum();
         let count = self.count(outlines.iter().flatten());
-        if (2.0 * count * corners as f64) <= MOST_TRIANGLES {
+        // a pocket shares two corners with the hull around it: three times as many at most
+        *left -= 6.0 * (count + 1.0) * corners as f64;
+        if *left >= 0.0 {
             return Ok(Self { slices: Slices::As(count), ..self });
         }
-        Err(args.fault(format!("{count} slices of {corners} corners are too many")))
+        Err(args.fault(format!("{count} slices of {corners} corners are too many, with those before")))
     }
 
     fn count<'a>(&self, corners: impl Iterator<Item = &'a DVec2> + Clone) -> f64 {

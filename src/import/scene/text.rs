@@ -159,7 +159,7 @@ impl<'a> Value<'a> {
     /// Three numbers, not all 0.
     pub fn direction(self) -> Outcome<DVec3> {
         let v = self.point()?;
-        if v.length() > 0.0 { Ok(v) } else { Err(self.fault("a direction without length")) }
+        if v.abs().max_element() > 0.0 { Ok(v) } else { Err(self.fault("a direction without length")) }
     }
 
     pub fn points(self) -> Outcome<Vec<DVec3>> {
