@@ -68,7 +68,7 @@ fn seen_with_less_and_less(name: &str, (model, camera): (&Model, Camera), settin
         assert!(list_bytes(&picture) <= budget as u64, "{what}: {:?}", picture.stats.solid_bytes);
         assert_same(&whole, &draw(&mut renderer, &camera, outputs).unwrap(), &format!("{what}, again"));
         seen.insert(picture.stats.bands);
-        budget *= if picture.stats.bands < 4 { 0.88 } else { 0.6 };
+        budget *= if picture.stats.bands < 3 { 0.94 } else { 0.7 };
     };
     let few = [1, 2].iter().all(|bands| seen.contains(bands)) && [3, 4, 5].iter().any(|bands| seen.contains(bands));
     assert!(few && seen.contains(&10), "{name}: {seen:?}");
