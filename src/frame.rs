@@ -26,6 +26,8 @@
 //!               solid_layers     scenes with something to see through: its faces, over what resolve drew
 //!
 //!  from mesh on once for each of a pixel's samples, where there are several: samples.rs
+//!  lists of solid_events and solid_layers band by band, where they are too large: bands.rs
+//!  resolve and solid_layers ask the sun's tiles, in scenes with a sun: sun.rs
 //! ```
 
 use crate::abi::Counters;

@@ -263,7 +263,7 @@ fn the_sun_casts_shadows() {
     assert!(right + 15 < left, "{right} in shade, {left} lit");
     let check = selvedge(&["check", &scene, "--camera", "top"]);
     let told = text(&check.stdout);
-    assert!(check.status.code() == Some(0) && told.contains("light: wrong") && told.contains("0, 0.000"), "{told}");
+    assert!(check.status.code() == Some(0) && told.contains("light: wrong") && told.contains(" 0, 0.000"), "{told}");
     refused(&["render", &scene, "-o", &picture, "--sun", "0,0,0"], "not 0,0,0");
     std::fs::remove_dir_all(&folder).unwrap();
 }
