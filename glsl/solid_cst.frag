@@ -27,7 +27,7 @@ layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surf
 layout(binding = 3) uniform samplerBuffer surfaces;
 layout(binding = 4) uniform samplerBuffer surface_places;
 layout(scalar, binding = 5) readonly buffer TileStarts { uint tile_starts[]; };
-layout(scalar, binding = 6) readonly buffer TileLeaves { TileLeaf tile_leaves[]; };
+layout(binding = 6) uniform usamplerBuffer tile_leaves;
 layout(scalar, binding = 7) readonly buffer TileEntries { uint tile_entries[]; };
 
 layout(location = 0) flat in uint asked;
@@ -65,6 +65,7 @@ void main() {
     Walks at = Walks(EXIT_FALSE, EXIT_FALSE, EXIT_FALSE, EXIT_FALSE);
     uint side = 0u;
     bool found = false;
+    TileLeaf itself = TileLeaf(own, EXIT_FALSE, EXIT_FALSE, leaves[own].first << LEAF_FLAG_BITS | leaves[own].flags);
     // each end walks through every leaf at most
     uint most = 4u * (end - first) + 8u;
     for (uint step_ = 0u; step_ < most && !found; ++step_) {
@@ -88,12 +89,11 @@ void main() {
                 next = entry;
             }
         }
-        TileLeaf here = TileLeaf(own, EXIT_FALSE, EXIT_FALSE);
-        if (purpose == WALK) here = tile_leaves[next];
-        Leaf leaf = leaves[here.leaf];
+        TileLeaf here = itself;
+        if (purpose == WALK) here = tile_leaf_at(tile_leaves, next);
         bool is_own = here.leaf == own;
         Span s = mine;
-        if (purpose != WALK || !is_own) s = leaf_span(leaf, ray.o, ray.d, t, side);
+        if (purpose != WALK || !is_own) s = leaf_span(here.of, ray.o, ray.d, t, side);
         if (purpose == SIDE) {
             found = true;
         } else if (purpose == OWN) {

@@ -49,6 +49,7 @@ void main() {
         Leaf leaf = leaves[at];
         tile_leaves[i].in_exit = fold(leaf.in_exit, i + 1u, end);
         tile_leaves[i].out_exit = fold(leaf.out_exit, i + 1u, end);
+        tile_leaves[i].of = leaf.first << LEAF_FLAG_BITS | leaf.flags;
         if (at < frame.followed_leaf) continue;
         if (leaf.item != item) {
             item = leaf.item;

@@ -14,7 +14,7 @@ use crate::abi::{BLOCK, Counters, Factors, Fragment, Rect, SubPatch, TILE, TileL
 #[cfg(feature = "rivals")]
 use crate::capacities::is_texture;
 use crate::capacities::{Capacities, Counts};
-use crate::gpu::{Buffer, Device, GpuError, Image, ImageInfo, Pool};
+use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Image, ImageInfo, Pool, Texels};
 use crate::passes::average::SUM_FORMAT;
 use crate::passes::blister::{LAYER_DEPTH_FORMAT, LAYER_FORMAT};
 use crate::passes::resolve::BEHIND_FORMAT;
@@ -127,7 +127,7 @@ pub(crate) struct TileBuffers {
     pub block_leaves: Buffer,
     pub tile_counts: Buffer,
     pub tile_starts: Buffer,
-    pub tile_leaves: Buffer,
+    pub tile_leaves: Texels,
     /// These two of all tiles of the picture.
     pub tile_entries: Buffer,
     pub tile_squares: Buffer,
@@ -146,7 +146,7 @@ pub(crate) struct LayerImages {
 pub(crate) struct FragmentBuffers {
     pub counts: Buffer,
     pub starts: Buffer,
-    pub all: Buffer,
+    pub all: Texels,
 }
 
 impl Buffers {
@@ -159,6 +159,15 @@ impl Buffers {
         let words = |name: &str, n: u32| Buffer::storage(device, Pool::Transient, name, 4 * u64::from(n));
         let structs = |name: &str, n: u32, bytes: usize| {
             Buffer::storage(device, Pool::Transient, name, u64::from(n) * bytes as u64)
+        };
+        // written as structs, read as texels
+        const _: () =
+            assert!(size_of::<TileLeaf>() as u64 == Texels::BYTES && size_of::<Fragment>() == size_of::<TileLeaf>());
+        let texels = |name: &str, n: u32| {
+            let (bytes, usage) =
+                (Texels::BYTES * u64::from(n), Buffer::STORAGE | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER);
+            let info = BufferInfo { name, bytes, usage, pool: Pool::Transient, home: Home::Device };
+            Texels::words(device, Buffer::new(device, &info)?)
         };
         let indirect = |name: &str, bytes: u64| Buffer::indirect(device, Pool::Transient, name, bytes);
         let image = |name: &str, format, usage| {
@@ -246,7 +255,7 @@ impl Buffers {
                                     block_leaves: words("solid block leaves", capacities.block_leaves)?,
                                     tile_counts: words("solid tile counts", tiles)?,
                                     tile_starts: words("solid tile starts", tiles + 1)?,
-                                    tile_leaves: structs("solid tile leaves", room, size_of::<TileLeaf>())?,
+                                    tile_leaves: texels("solid tile leaves", room)?,
                                     tile_entries: words("solid tile entries", all_tiles)?,
                                     tile_squares: words("solid tile squares", all_tiles)?,
                                 })
@@ -273,7 +282,7 @@ impl Buffers {
                                 Ok(FragmentBuffers {
                                     counts: words("operand fragment counts", pixels)?,
                                     starts: words("operand fragment starts", pixels + 1)?,
-                                    all: structs("operand fragments", capacities.fragments, size_of::<Fragment>())?,
+                                    all: texels("operand fragments", capacities.fragments)?,
                                 })
                             })
                             .transpose()?,
@@ -302,11 +311,13 @@ impl SolidBuffers {
             .as_ref()
             .map(|t| sum("blocks", &[&t.block_counts, &t.block_starts, &t.block_leaves].map(Buffer::bytes)));
         let tiles = self.tiles.as_ref().map(|t| {
-            let all = [&t.tile_counts, &t.tile_starts, &t.tile_leaves, &t.tile_entries, &t.tile_squares];
+            let all = [&t.tile_counts, &t.tile_starts, t.tile_leaves.buffer(), &t.tile_entries, &t.tile_squares];
             sum("tiles", &all.map(Buffer::bytes))
         });
-        let crossings =
-            self.fragments.as_ref().map(|f| sum("crossings", &[&f.counts, &f.starts, &f.all].map(Buffer::bytes)));
+        let crossings = self
+            .fragments
+            .as_ref()
+            .map(|f| sum("crossings", &[&f.counts, &f.starts, f.all.buffer()].map(Buffer::bytes)));
         let layers = self.layers.as_ref().map(|l| {
             let [a, b] = &l.layers;
             sum("layers", &[a, b, &l.found, &l.depth, &l.stencil].map(Image::bytes))

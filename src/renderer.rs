@@ -416,7 +416,10 @@ impl Renderer {
         finished.retired.clear();
         finished.recorded = false;
         let Some(loaded) = &mut self.loaded else { return Ok(()) };
-        let range = self.device.limits().max_storage_buffer_range;
+        let limits = self.device.limits();
+        // the largest lists are read as texels
+        let texels = u64::from(limits.max_texel_buffer_elements) * Texels::BYTES;
+        let range = limits.max_storage_buffer_range.min(u32::try_from(texels).unwrap_or(u32::MAX));
         let capacities = match (had, report) {
             // else another slot's frame has made them larger since
             (Some(had), Some(c)) if had == loaded.capacities => match had.grown(&c, loaded.counts, drawn, range) {

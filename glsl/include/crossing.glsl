@@ -1,5 +1,5 @@
 // How a leaf of a Boolean solid lies about a depth of the pixel's ray. Needs solids.glsl, shells.glsl and the
-// buffer `fragments`.
+// buffer `usamplerBuffer fragments`.
 #ifndef CROSSING_GLSL
 #define CROSSING_GLSL
 
@@ -19,8 +19,9 @@ Crossing crossing_of(Span s, float t) {
 Crossing crossing_of(uint shell, float t, uint first, uint count, out uint last) {
     Crossing c = Crossing(false, false, false, NEVER);
     last = 0u;
+    bool begun = false;
     for (uint i = first; i < first + count; ++i) {
-        Fragment f = fragments[i];
+        Fragment f = fragment_at(fragments, i);
         if ((f.shell & FRAGMENT_SHELL) != shell) continue;
         bool leaves_ = (f.shell & FRAGMENT_LEAVES) != 0u;
         bool passed = f.depth <= t;
@@ -28,7 +29,8 @@ Crossing crossing_of(uint shell, float t, uint first, uint count, out uint last)
         // entering and leaving follow each other: the first behind t tells, else the last before it
         if (passed) c.inside = !leaves_;
         if (f.depth < t) c.before = !leaves_;
-        if (i == first || (fragments[i - 1u].shell & FRAGMENT_SHELL) != shell) {
+        if (!begun) {
+            begun = true;
             if (!passed) c.inside = leaves_;
             if (!(f.depth < t)) c.before = leaves_;
         }

@@ -5,27 +5,29 @@
 #ifndef LEAF_SPAN_GLSL
 #define LEAF_SPAN_GLSL
 
-// The part of the ray o + t d, seen from the eye; `side` becomes the leaf's last side that begins or ends at `at`.
-Span leaf_span(Leaf leaf, vec3 o, vec3 d, float at, inout uint side) {
-    uint k = leaf.first;
-    uint end = leaf.first + leaf.count;
+// The part of the ray o + t d, seen from the eye; `own` is TileLeaf.of. `side` becomes the last of the leaf's sides that
+// begins or ends at `at`.
+Span leaf_span(uint own, vec3 o, vec3 d, float at, inout uint side) {
+    uint k = own >> LEAF_FLAG_BITS;
     float lo = -NEVER;
     float hi = NEVER;
     // most sides are planes: a loop of their own, for drivers that run both sides of every branch
-    for (; k < end && lo < hi; ++k) {
+    for (bool more = (own & LEAF_PLANES) != 0u; more && lo < hi; ++k) {
         uint word = leaf_surfaces[k].surface;
-        if (SOLIDS_HAVE != SURFACE_PLANE && (word & SIDE_PLANE) == 0u) break;
         Span one = plane_span(place_at(surface_places, word >> SIDE_SHIFT), (word & SIDE_NEGATIVE) != 0u, o, d);
         lo = max(lo, one.lo);
         hi = min(hi, one.hi);
         if (one.lo == at || one.hi == at) side = k;
+        more = (word & SIDE_MORE) != 0u;
     }
     Span s = Span(lo, hi, NEVER, NEVER);
     if (SOLIDS_HAVE != SURFACE_PLANE) {
-        for (; k < end && s.lo < s.hi; ++k) {
-            Span one = side_span(surfaces, surface_places, leaf_surfaces[k].surface, o, d);
+        for (bool more = (own & LEAF_ROUNDS) != 0u; more && s.lo < s.hi; ++k) {
+            uint word = leaf_surfaces[k].surface;
+            Span one = side_span(surfaces, surface_places, word, o, d);
             if (ends_at(one, at)) side = k;
             s = both(s, one);
+            more = (word & SIDE_MORE) != 0u;
         }
     }
     return s;

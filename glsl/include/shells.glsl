@@ -21,6 +21,12 @@ struct Fragment {
     uint uv;     // of the patch
 };
 
+// Sorted, as texels: a driver fetches one at once, but may load a struct word by word.
+Fragment fragment_at(usamplerBuffer fragments, uint i) {
+    uvec4 texel = texelFetch(fragments, int(i));
+    return Fragment(texel.x, uintBitsToFloat(texel.y), texel.z, texel.w);
+}
+
 // A mesh around a shell, placed.
 struct OperandMesh {
     uint shell;

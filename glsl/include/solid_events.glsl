@@ -30,12 +30,12 @@ layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surf
 layout(binding = 3) uniform samplerBuffer surfaces;
 layout(binding = 4) uniform samplerBuffer surface_places;
 layout(scalar, binding = 5) readonly buffer TileStarts { uint tile_starts[]; };
-layout(scalar, binding = 6) readonly buffer TileLeaves { TileLeaf tile_leaves[]; };
+layout(binding = 6) uniform usamplerBuffer tile_leaves;
 layout(scalar, binding = 7) readonly buffer TileEntries { uint tile_entries[]; };
 
 layout(scalar, binding = 8) readonly buffer FragmentStarts { uint fragment_starts[]; };
 layout(scalar, binding = 9) readonly buffer FragmentCounts { uint fragment_counts[]; };
-layout(scalar, binding = 10) readonly buffer Fragments { Fragment fragments[]; };
+layout(binding = 10) uniform usamplerBuffer fragments;
 
 layout(scalar, binding = 11) buffer CountersBuffer { Counters counters; };
 
@@ -81,13 +81,13 @@ struct Walk {
 };
 
 // Leaf i of the tile, met at t; `other` is taken for what it is not, candidates count from `after` on.
-void meet(inout Walk walk, uint i, TileLeaf here, uint flags, Crossing c, uint other, uint after) {
+void meet(inout Walk walk, uint i, TileLeaf here, Crossing c, uint other, uint after) {
     if (i == walk.at) walk.at = c.inside != (i == other) ? here.in_exit : here.out_exit;
     if (i == walk.at_before) walk.at_before = c.before != (i == other) ? here.in_exit : here.out_exit;
     walk.next = min(walk.next, c.next);
     if (i < after || !c.ends) return;
     ++walk.candidates;
-    if ((flags & LEAF_NEGATIVE) != 0u) walk.found.negative = min(walk.found.negative, i);
+    if ((here.of & LEAF_NEGATIVE) != 0u) walk.found.negative = min(walk.found.negative, i);
     else walk.found.positive = min(walk.found.positive, i);
 }
 
@@ -96,7 +96,7 @@ void main() {
     uint first = min(tile_starts[n], frame.tile_leaf_capacity);
     uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
     if (SOLIDS_ARE_FOLLOWED) {
-        while (end > first && (tile_leaves[end - 1u].leaf & ~TILE_LEAF_ENTRY) >= frame.followed_leaf) --end;
+        while (end > first && (tile_leaf_at(tile_leaves, end - 1u).leaf & ~TILE_LEAF_ENTRY) >= frame.followed_leaf) --end;
     }
     uint entry = tile_entries[first_of_band(frame) + n];
     if (entry == EXIT_FALSE) discard;
@@ -139,37 +139,35 @@ void main() {
         wanted += known - first + (to - from);
         for (uint i = first; i < known; ++i) {
             ++steps;
-            TileLeaf here = tile_leaves[i];
-            Leaf leaf = leaves[here.leaf];
+            TileLeaf here = tile_leaf_at(tile_leaves, i);
             Crossing c;
             uint last;
-            if (SOLIDS_HAVE_SHELLS && (leaf.flags & LEAF_SHELL) != 0u) {
-                c = crossing_of(leaf.first, t, first_fragment, fragment_count, last);
+            if (SOLIDS_HAVE_SHELLS && (here.of & LEAF_SHELL) != 0u) {
+                c = crossing_of(here.of >> LEAF_FLAG_BITS, t, first_fragment, fragment_count, last);
             } else {
                 c = crossing_of(kept[i - first], t);
             }
-            meet(walk, i, here, leaf.flags, c, purpose == OWNER ? asked : NOBODY, after);
+            meet(walk, i, here, c, purpose == OWNER ? asked : NOBODY, after);
         }
         for (uint i = from; i < to; ++i) {
             ++steps;
-            TileLeaf here = tile_leaves[i];
-            Leaf leaf = leaves[here.leaf];
+            TileLeaf here = tile_leaf_at(tile_leaves, i);
             Crossing c;
-            if (SOLIDS_HAVE_SHELLS && (leaf.flags & LEAF_SHELL) != 0u) {
+            if (SOLIDS_HAVE_SHELLS && (here.of & LEAF_SHELL) != 0u) {
                 uint last;
-                c = crossing_of(leaf.first, t, first_fragment, fragment_count, last);
+                c = crossing_of(here.of >> LEAF_FLAG_BITS, t, first_fragment, fragment_count, last);
                 if (tells) {
-                    bool patch_ = (fragments[last].shell & FRAGMENT_PATCH) != 0u;
-                    side = fragments[last].what;
-                    word = patch_ ? SEEN_OPERAND : SEEN_SOLID;
-                    operand_uv = fragments[last].uv;
+                    Fragment f = fragment_at(fragments, last);
+                    side = f.what;
+                    word = (f.shell & FRAGMENT_PATCH) != 0u ? SEEN_OPERAND : SEEN_SOLID;
+                    operand_uv = f.uv;
                 }
             } else {
-                Span s = leaf_span(leaf, ray.o, ray.d, t, side);
+                Span s = leaf_span(here.of, ray.o, ray.d, t, side);
                 if (i - first < KEPT) kept[i - first] = s;
                 c = crossing_of(s, t);
             }
-            meet(walk, i, here, leaf.flags, c, purpose == OWNER ? asked : NOBODY, after);
+            meet(walk, i, here, c, purpose == OWNER ? asked : NOBODY, after);
         }
         bool inside = walk.at == EXIT_TRUE;
         if (purpose == SIDE) {

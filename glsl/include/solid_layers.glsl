@@ -24,10 +24,10 @@ layout(binding = 3) uniform samplerBuffer surfaces;
 layout(binding = 4) uniform samplerBuffer surface_places;
 layout(scalar, binding = 5) readonly buffer LeafCentres { vec3 leaf_centres[]; };
 layout(scalar, binding = 6) readonly buffer TileStarts { uint tile_starts[]; };
-layout(scalar, binding = 7) readonly buffer TileLeaves { TileLeaf tile_leaves[]; };
+layout(binding = 7) uniform usamplerBuffer tile_leaves;
 layout(scalar, binding = 8) readonly buffer FragmentStarts { uint fragment_starts[]; };
 layout(scalar, binding = 9) readonly buffer FragmentCounts { uint fragment_counts[]; };
-layout(scalar, binding = 10) readonly buffer Fragments { Fragment fragments[]; };
+layout(binding = 10) uniform usamplerBuffer fragments;
 layout(scalar, binding = 11) buffer CountersBuffer { Counters counters; };
 layout(binding = 12, rgba32f) readonly uniform image2D behind; // linear colour, depth; UNSEEN where nothing is
 // of operands that are spline parts
@@ -170,7 +170,7 @@ void main() {
     uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first = min(tile_starts[n], frame.tile_leaf_capacity);
     uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
-    while (first < end && (tile_leaves[first].leaf & ~TILE_LEAF_ENTRY) < frame.followed_leaf) ++first;
+    while (first < end && (tile_leaf_at(tile_leaves, first).leaf & ~TILE_LEAF_ENTRY) < frame.followed_leaf) ++first;
     Ray ray = eye_ray(frame, gl_FragCoord.xy);
     uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
@@ -221,7 +221,7 @@ void main() {
         wanted += scan_end - scan_from;
         for (uint i = scan_from; i < scan_end; ++i) {
             ++steps;
-            TileLeaf here = tile_leaves[i];
+            TileLeaf here = tile_leaf_at(tile_leaves, i);
             uint number = here.leaf & ~TILE_LEAF_ENTRY;
             Leaf leaf = leaves[number];
             if (leaf.item != w.item) {
@@ -239,8 +239,8 @@ void main() {
                 uint last;
                 c = crossing_of(leaf.first, t, first_fragment, fragment_count, last);
                 if (purpose == SIDE) {
-                    of_patch = (fragments[last].shell & FRAGMENT_PATCH) != 0u;
-                    side = of_patch ? last : fragments[last].what;
+                    of_patch = (fragment_at(fragments, last).shell & FRAGMENT_PATCH) != 0u;
+                    side = of_patch ? last : fragment_at(fragments, last).what;
                 }
             } else {
                 Span s = EVERYTHING;
@@ -261,7 +261,7 @@ void main() {
                         s = kept[i - first];
                     } else {
                         uint ends = side;
-                        s = leaf_span(leaf, ray.o, ray.d, t, ends);
+                        s = leaf_span(here.of, ray.o, ray.d, t, ends);
                         if (purpose == SIDE) {
                             side = ends;
                             of_patch = false;
@@ -301,7 +301,7 @@ void main() {
             if (wants) {
                 // an opaque face hides what is entered where it is, and all behind it
                 bool entered = (layer.key & ENTERED) != 0u;
-                uint number = tile_leaves[layer.from].leaf & ~TILE_LEAF_ENTRY;
+                uint number = tile_leaf_at(tile_leaves, layer.from).leaf & ~TILE_LEAF_ENTRY;
                 float slack = (leaves[number].flags & LEAF_SHELL) != 0u ? TOUCHES * abs(t) : 0.0;
                 bool hidden = entered ? t + slack >= stop : t - slack > stop;
                 if (hidden) {
@@ -352,7 +352,7 @@ void main() {
         } else {
             bool entered = (layer.key & ENTERED) != 0u;
             Layer seen;
-            if (SOLIDS_HAVE_PATCHES && of_patch) seen = layer_of_patch(fragments[side], ray);
+            if (SOLIDS_HAVE_PATCHES && of_patch) seen = layer_of_patch(fragment_at(fragments, side), ray);
             else seen = layer_of(side, t, ray);
             float opacity = seen.colour.a;
             if (opacity > 0.0) {

@@ -113,10 +113,12 @@ Span span_from(uint side, vec3 p, vec3 d) {
 }
 
 // The part of the ray from p, seen from the eye, towards the sun that is inside of a leaf; p lies on `surface`.
-Span caster_span(Leaf leaf, vec3 p, uint surface) {
+Span caster_span(uint own, vec3 p, uint surface) {
     Span s = EVERYTHING;
-    for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
+    bool more = true;
+    for (uint k = own >> LEAF_FLAG_BITS; more && s.lo < s.hi; ++k) {
         uint side = caster_sides[k].surface;
+        more = (side & SIDE_MORE) != 0u || (side & SIDE_PLANE) != 0u && (own & LEAF_ROUNDS) != 0u;
         bool is_here = side >> SIDE_SHIFT == surface;
         s = both(s, is_here ? span_from(side, p, sun.towards)
                             : side_span(caster_surfaces, caster_places, side, p, sun.towards));
@@ -219,17 +221,16 @@ bool in_sun(Ray ray, float depth, vec3 n, uint surface) {
             ++steps;
             TileLeaf here = sun_leaves[i];
             bool is_kept = i - tile.first < SUN_KEPT;
-            Leaf leaf = casters[here.leaf];
             Met met;
-            if ((leaf.flags & LEAF_SHELL) != 0u) {
-                met = meet_mesh(leaf.first, caster_middles[here.leaf], tile, p, surface, t, steps);
+            if ((here.of & LEAF_SHELL) != 0u) {
+                met = meet_mesh(here.of >> LEAF_FLAG_BITS, caster_middles[here.leaf], tile, p, surface, t, steps);
                 wanted += tile.end_triangle - tile.first_triangle;
             } else {
                 Span s;
                 if (is_kept && scan > 0u) {
                     s = kept[i - tile.first];
                 } else {
-                    s = caster_span(leaf, p, surface);
+                    s = caster_span(here.of, p, surface);
                     if (is_kept) kept[i - tile.first] = s;
                 }
                 met = Met(inside_span(s, t), next_of_span(s, t));

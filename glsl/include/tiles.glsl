@@ -21,10 +21,17 @@ struct TileLeaf {
     uint leaf;      // and TILE_LEAF_ENTRY
     uint in_exit;
     uint out_exit;
+    uint of;        // the leaf's own: first << LEAF_FLAG_BITS | flags
 };
 
 // The walk of an item that rays are followed through begins here.
 const uint TILE_LEAF_ENTRY = 0x80000000u;
+
+// Of the lists as texels: a driver fetches one at once, but may load a struct word by word.
+TileLeaf tile_leaf_at(usamplerBuffer tile_leaves, uint i) {
+    uvec4 texel = texelFetch(tile_leaves, int(i));
+    return TileLeaf(texel.x, texel.y, texel.z, texel.w);
+}
 
 uvec2 tile_count(Frame frame) { return (uvec2(frame.size) + TILE - 1u) / TILE; }
 

@@ -19,11 +19,13 @@ pub(crate) fn surface_kind(most: u32) -> &'static str {
 }
 
 /// Bits below the surface's number in [`LeafSurface::surface`].
-pub const SIDE_SHIFT: u32 = 2;
+pub const SIDE_SHIFT: u32 = 3;
 /// [`LeafSurface::surface`]: the leaf is where the surface's function is positive.
 pub const SIDE_NEGATIVE: u32 = 1;
 /// [`LeafSurface::surface`]: a plane; the first sides of a leaf are.
 pub const SIDE_PLANE: u32 = 2;
+/// [`LeafSurface::surface`]: the leaf's next side is a plane, too, or none, too.
+pub const SIDE_MORE: u32 = 4;
 
 /// The walk ends outside of the solid.
 pub const EXIT_FALSE: u32 = 0xffff_fffe;
@@ -42,6 +44,12 @@ pub const LEAF_SHELL: u32 = 8;
 
 /// Of an item that rays are followed through, and that is drawn by another pass.
 pub const LEAF_ELSEWHERE: u32 = 16;
+/// Of its sides the first are planes.
+pub const LEAF_PLANES: u32 = 32;
+/// The last are none.
+pub const LEAF_ROUNDS: u32 = 64;
+/// Bits of [`Leaf::flags`].
+pub const LEAF_FLAG_BITS: u32 = 7;
 
 /// [`TileLeaf::leaf`]: the walk of an item that rays are followed through begins here.
 pub const TILE_LEAF_ENTRY: u32 = 0x8000_0000;
@@ -76,6 +84,13 @@ pub struct Leaf {
     pub item: u32,
 }
 
+impl Leaf {
+    /// Its first side, or its shell's number, and its flags, in one word.
+    pub fn own(&self) -> u32 {
+        self.first << LEAF_FLAG_BITS | self.flags
+    }
+}
+
 /// Tiles from first to last.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
@@ -91,6 +106,8 @@ pub struct TileLeaf {
     pub leaf: u32,
     pub in_exit: u32,
     pub out_exit: u32,
+    /// [`Leaf::own`].
+    pub of: u32,
 }
 
 /// A mesh that bounds an operand.

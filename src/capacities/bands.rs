@@ -213,7 +213,8 @@ mod tests {
         let [leaves, fragments] = shared.bytes();
         let left = 60_000 - LISTS.counted_bytes(2);
         assert!(leaves + fragments <= left && leaves + fragments + 40 > left, "{shared:?}");
-        assert!((leaves * 32).abs_diff(fragments * 12) < 1000, "{shared:?}");
+        let [one, other] = wanted.bytes();
+        assert!((leaves * other).abs_diff(fragments * one) < 40 * other, "{shared:?}");
     }
 
     const RANGE: u32 = 1 << 20;

@@ -93,7 +93,7 @@ impl Frame<'_> {
                 positions: &m.positions,
                 planes: &m.planes,
             }),
-            tiles: t.tiles.as_ref().map(|t| [&t.tile_starts, &t.tile_leaves, &t.tile_entries]),
+            tiles: t.tiles.as_ref().map(|t| (&t.tile_starts, &t.tile_leaves, &t.tile_entries)),
         };
         Some(Parts { pass, scene, bindings, images: t.layers.as_ref()?, shells })
     }

@@ -108,7 +108,7 @@ impl<'a> Frame<'a> {
             leaf_centres: centres.leaves,
             tile_starts: &tiles.tile_starts,
             tile_leaves: &tiles.tile_leaves,
-            fragments: solids.fragments.as_ref().map(|f| [&f.starts, &f.counts, &f.all]),
+            fragments: solids.fragments.as_ref().map(|f| (&f.starts, &f.counts, &f.all)),
             counters: &b.counters,
             behind,
             views: self.views,

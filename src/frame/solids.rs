@@ -250,7 +250,7 @@ impl Frame<'_> {
             block_leaves: &t.block_leaves,
             counts: &t.tile_counts,
             starts: &t.tile_starts,
-            leaves: &t.tile_leaves,
+            leaves: t.tile_leaves.buffer(),
             counters: &self.buffers.counters,
         };
         barrier::buffers(cmd, &[(&self.buffers.counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, w)]);
@@ -259,13 +259,13 @@ impl Frame<'_> {
         self.scan(cmd, &t.tile_counts, &t.tile_starts, count);
         barrier::buffers(cmd, &[(&t.tile_starts, w, r), (&t.tile_counts, r, w)]);
         p.tiles.list(cmd, &tiles, count);
-        barrier::buffers(cmd, &[(&t.tile_leaves, w, w), (&self.buffers.counters, w, w)]);
+        barrier::buffers(cmd, &[(t.tile_leaves.buffer(), w, w), (&self.buffers.counters, w, w)]);
 
         let fold = solid_fold::Bindings {
             frame: self.constants,
             leaves: &parts.scene.leaves,
             tile_starts: &t.tile_starts,
-            tile_leaves: &t.tile_leaves,
+            tile_leaves: t.tile_leaves.buffer(),
             tile_entries: &t.tile_entries,
         };
         p.fold.record(cmd, &fold, count);
@@ -281,7 +281,7 @@ impl Frame<'_> {
             &[
                 (&t.tile_squares, w, Access::VERTEX_READ),
                 (&t.tile_starts, w, Access::FRAGMENT_READ),
-                (&t.tile_leaves, w, Access::FRAGMENT_READ),
+                (t.tile_leaves.buffer(), w, Access::FRAGMENT_READ),
                 (&t.tile_entries, w, Access::FRAGMENT_READ),
             ],
         );
@@ -311,7 +311,7 @@ impl Frame<'_> {
             surface_places: parts.centres.surfaces,
             counts: &f.counts,
             starts: &f.starts,
-            fragments: &f.all,
+            fragments: f.all.buffer(),
         };
         let patches = operand_patch::Bindings {
             frame: self.constants,
@@ -326,7 +326,7 @@ impl Frame<'_> {
             instances: &s.instances,
             counts: &f.counts,
             starts: &f.starts,
-            fragments: &f.all,
+            fragments: f.all.buffer(),
             trim: &trim,
             draws: &b.draws,
             counters: &b.counters,
@@ -347,16 +347,19 @@ impl Frame<'_> {
             cmd,
             &[
                 (&f.counts, Access::TRANSFER_WRITE, drawn),
-                (&f.all, followed, drawn),
+                (f.all.buffer(), followed, drawn),
                 (&b.counters, w, Access::INDIRECT_READ),
             ],
         );
         rastered(false);
-        barrier::buffers(cmd, &[(&f.counts, drawn, r), (&f.starts, followed, w), (&f.all, drawn, drawn)]);
+        barrier::buffers(cmd, &[(&f.counts, drawn, r), (&f.starts, followed, w), (f.all.buffer(), drawn, drawn)]);
         self.scan(cmd, &f.counts, &f.starts, size.0 * rows().len() as u32);
         barrier::buffers(cmd, &[(&f.counts, r, drawn), (&f.starts, w, Access::FRAGMENT_READ | r)]);
         rastered(true);
-        barrier::buffers(cmd, &[(&f.counts, drawn, w), (&f.all, drawn, w), (&b.counters, Access::INDIRECT_READ, w)]);
+        barrier::buffers(
+            cmd,
+            &[(&f.counts, drawn, w), (f.all.buffer(), drawn, w), (&b.counters, Access::INDIRECT_READ, w)],
+        );
         let sort = operand_sort::Bindings {
             frame: self.constants,
             leaves: &parts.scene.leaves,
@@ -364,13 +367,13 @@ impl Frame<'_> {
             shell_leaves: &shells.leaves,
             starts: &f.starts,
             counts: &f.counts,
-            fragments: &f.all,
+            fragments: f.all.buffer(),
             counters: &b.counters,
         };
         passes.sort.record(cmd, &sort, (size.0, rows().len() as u32));
         barrier::buffers(
             cmd,
-            &[(&f.counts, w, Access::FRAGMENT_READ), (&f.all, w, Access::FRAGMENT_READ), (&b.counters, w, w)],
+            &[(&f.counts, w, Access::FRAGMENT_READ), (f.all.buffer(), w, Access::FRAGMENT_READ), (&b.counters, w, w)],
         );
     }
 }

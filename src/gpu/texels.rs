@@ -17,21 +17,28 @@ pub struct Texels {
 }
 
 impl Texels {
-    /// Views `buffer` as four floats a texel.
-    ///
-    /// # Errors
-    /// See [`Texels::new`].
-    pub fn floats(device: &Device, buffer: Buffer) -> Result<Self, GpuError> {
-        Self::new(device, buffer, vk::Format::R32G32B32A32_SFLOAT, size_of::<[f32; 4]>() as u64)
-    }
+    /// Of a texel.
+    pub const BYTES: u64 = 16;
 
-    /// Views `buffer` as texels of `format`.
+    /// Views `buffer` as four floats a texel: `samplerBuffer`.
     ///
     /// # Errors
     /// [`GpuError::TooLarge`] when the buffer has more texels than the device can address,
     /// [`GpuError::Vulkan`].
-    pub fn new(device: &Device, buffer: Buffer, format: vk::Format, texel_bytes: u64) -> Result<Self, GpuError> {
-        let limit = u64::from(device.limits().max_texel_buffer_elements) * texel_bytes;
+    pub fn floats(device: &Device, buffer: Buffer) -> Result<Self, GpuError> {
+        Self::new(device, buffer, vk::Format::R32G32B32A32_SFLOAT)
+    }
+
+    /// Views `buffer` as four words a texel: `usamplerBuffer`.
+    ///
+    /// # Errors
+    /// As [`Texels::floats`].
+    pub fn words(device: &Device, buffer: Buffer) -> Result<Self, GpuError> {
+        Self::new(device, buffer, vk::Format::R32G32B32A32_UINT)
+    }
+
+    fn new(device: &Device, buffer: Buffer, format: vk::Format) -> Result<Self, GpuError> {
+        let limit = u64::from(device.limits().max_texel_buffer_elements) * Self::BYTES;
         if buffer.bytes() > limit {
             return Err(GpuError::TooLarge { resource: buffer.name().to_owned(), bytes: buffer.bytes(), limit });
         }

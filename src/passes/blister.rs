@@ -20,7 +20,7 @@
 use crate::bindings::{Primitives, with_primitives};
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
-    Pipeline, Resource, StencilTest,
+    Pipeline, Resource, StencilTest, Texels,
 };
 use crate::shaders;
 use ash::vk;
@@ -92,7 +92,7 @@ pub(crate) struct Bindings<'a> {
     /// `None` without meshes.
     pub meshes: Option<MeshBindings<'a>>,
     /// Starts, leaves and entries of tiles; `None` with meshes, whose faces show as they are found.
-    pub tiles: Option<[&'a Buffer; 3]>,
+    pub tiles: Option<(&'a Buffer, &'a Texels, &'a Buffer)>,
 }
 
 /// Those of meshes.
@@ -185,6 +185,7 @@ impl Blister {
         let of_lock = GraphicsInfo { bindings: &bindings(0, 1), colour: &layer, ..replaces };
         let of_show = bindings(1, 1);
         let mut of_owner = with_primitives::<13>(1);
+        (of_owner[6], of_owner[10]) = (Binding::Texels, Binding::Texels);
         of_owner[12] = Binding::StorageImage;
         Ok(Self {
             peel: peel("peel", leaf, shaders::BLISTER_PEEL_FRAG, &of_peel)?,
@@ -302,10 +303,12 @@ impl Blister {
         (visibility, depth): (Attachment<'_>, Attachment<'_>),
     ) {
         let (pipeline, resources): (_, Vec<Resource<'_>>) = match (&self.show, b.tiles) {
-            (Show::Owned(pipeline), Some(tiles)) => {
+            (Show::Owned(pipeline), Some((starts, leaves, entries))) => {
                 // fragments, of which there are none
-                let lists = tiles.into_iter().chain([b.frame; 3]).chain([b.counters]).map(Resource::from);
-                (pipeline, b.of_leaves().chain(lists).chain([found.into()]).collect())
+                let lists: [Resource<'_>; 3] = [starts.into(), leaves.into(), entries.into()];
+                let fragments = [b.frame.into(), b.frame.into(), leaves.into()];
+                let rest = [b.counters.into(), found.into()];
+                (pipeline, b.of_leaves().chain(lists).chain(fragments).chain(rest).collect())
             }
             (Show::Found(pipeline), _) => (pipeline, vec![b.frame.into(), found.into()]),
             (Show::Owned(_), None) => unreachable!("tiles are made where there is no mesh"),

@@ -11,7 +11,8 @@
 use crate::abi;
 use crate::bindings::{Primitives, with_primitives};
 use crate::gpu::{
-    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline, Resource,
+    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
+    Resource, Texels,
 };
 use crate::shaders;
 use ash::vk;
@@ -29,7 +30,7 @@ pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub primitives: Primitives<'a>,
     pub tile_starts: &'a Buffer,
-    pub tile_leaves: &'a Buffer,
+    pub tile_leaves: &'a Texels,
     pub tile_entries: &'a Buffer,
     pub rects: &'a Buffer,
     /// Which leaf an instance draws, as `trimmed_leaf.glsl` says.
@@ -44,6 +45,8 @@ impl SolidCst {
         visibility: vk::Format,
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
+        let mut bindings = with_primitives::<10>(1);
+        bindings[6] = Binding::Texels;
         let pipeline = Pipeline::graphics(
             device,
             &GraphicsInfo {
@@ -52,7 +55,7 @@ impl SolidCst {
                     (vk::ShaderStageFlags::VERTEX, shaders::SOLID_CST_VERT),
                     (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_CST_FRAG),
                 ],
-                bindings: &with_primitives::<10>(1),
+                bindings: &bindings,
                 push_bytes: 0,
                 constants: &[(SOLIDS_HAVE, surfaces)],
                 topology: vk::PrimitiveTopology::TRIANGLE_LIST,
@@ -75,8 +78,10 @@ impl SolidCst {
         (visibility, depth): (Attachment<'_>, Attachment<'_>),
         drawn: u32,
     ) {
-        let tiles = [b.tile_starts, b.tile_leaves, b.tile_entries, b.rects, b.order].map(Resource::from);
-        let resources: Vec<_> = [b.frame.into()].into_iter().chain(b.primitives.resources()).chain(tiles).collect();
+        let lists: [Resource<'_>; 2] = [b.tile_starts.into(), b.tile_leaves.into()];
+        let rest = [b.tile_entries, b.rects, b.order].map(Resource::from);
+        let resources: Vec<_> =
+            [b.frame.into()].into_iter().chain(b.primitives.resources()).chain(lists).chain(rest).collect();
         cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
             cmd.bind(&self.pipeline, &resources, &[]);
             cmd.draw_instances(0..6, 0..drawn);

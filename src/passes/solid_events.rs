@@ -11,7 +11,8 @@
 use crate::abi;
 use crate::bindings::{Primitives, with_primitives};
 use crate::gpu::{
-    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline, Resource,
+    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
+    Resource, Texels,
 };
 use crate::shaders;
 use ash::vk;
@@ -50,7 +51,7 @@ pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub primitives: Primitives<'a>,
     pub tile_starts: &'a Buffer,
-    pub tile_leaves: &'a Buffer,
+    pub tile_leaves: &'a Texels,
     pub tile_entries: &'a Buffer,
     /// Where rays cross operands without equations; `None` where there are none.
     pub fragments: Option<Fragments<'a>>,
@@ -63,7 +64,7 @@ pub(crate) struct Bindings<'a> {
 pub(crate) struct Fragments<'a> {
     pub starts: &'a Buffer,
     pub counts: &'a Buffer,
-    pub all: &'a Buffer,
+    pub all: &'a Texels,
 }
 
 impl SolidEvents {
@@ -74,6 +75,8 @@ impl SolidEvents {
         visibility: vk::Format,
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
+        let mut bindings = with_primitives::<13>(1);
+        (bindings[6], bindings[10]) = (Binding::Texels, Binding::Texels);
         let target = |format| ColourTarget { format, blend: Blend::Replace };
         let colour = [target(visibility), target(OPERAND_UV_FORMAT)];
         let pipeline = Pipeline::graphics(
@@ -84,7 +87,7 @@ impl SolidEvents {
                     (vk::ShaderStageFlags::VERTEX, shaders::SOLID_EVENTS_VERT),
                     (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_EVENTS_FRAG),
                 ],
-                bindings: &with_primitives::<13>(1),
+                bindings: &bindings,
                 push_bytes: 0,
                 constants: &[
                     (SOLIDS_HAVE, kinds.surfaces),
@@ -113,13 +116,19 @@ impl SolidEvents {
         rows: Range<u32>,
         tiles: Range<u32>,
     ) {
-        let lists = [b.tile_starts, b.tile_leaves, b.tile_entries];
         // the shader has these bindings in every scene, and reads them only where there are shells
-        let none = Fragments { starts: b.frame, counts: b.frame, all: b.frame };
+        let none = Fragments { starts: b.frame, counts: b.frame, all: b.tile_leaves };
         let f = b.fragments.as_ref().unwrap_or(&none);
-        let fragments = [f.starts, f.counts, f.all];
-        let rest = lists.into_iter().chain(fragments).chain([b.counters, b.tile_squares]).map(Resource::from);
-        let resources: Vec<_> = [b.frame.into()].into_iter().chain(b.primitives.resources()).chain(rest).collect();
+        let lists: [Resource<'_>; 3] = [b.tile_starts.into(), b.tile_leaves.into(), b.tile_entries.into()];
+        let fragments: [Resource<'_>; 3] = [f.starts.into(), f.counts.into(), f.all.into()];
+        let rest = [b.counters, b.tile_squares].map(Resource::from);
+        let resources: Vec<_> = [b.frame.into()]
+            .into_iter()
+            .chain(b.primitives.resources())
+            .chain(lists)
+            .chain(fragments)
+            .chain(rest)
+            .collect();
         let colour: Vec<_> = [visibility].into_iter().chain(uv).collect();
         cmd.rendering_rows((visibility.image.size(), rows), &colour, Some(depth), || {
             cmd.bind(&self.pipeline, &resources, &[]);

@@ -82,9 +82,9 @@ pub(crate) struct Bindings<'a> {
     /// Model axes, seen from the eye.
     pub leaf_centres: &'a Buffer,
     pub tile_starts: &'a Buffer,
-    pub tile_leaves: &'a Buffer,
+    pub tile_leaves: &'a Texels,
     /// Where rays cross operands without equations: starts, counts, all; `None` where there are none.
-    pub fragments: Option<[&'a Buffer; 3]>,
+    pub fragments: Option<(&'a Buffer, &'a Buffer, &'a Texels)>,
     pub counters: &'a Buffer,
     pub behind: &'a Image,
     pub views: &'a Buffer,
@@ -121,6 +121,7 @@ impl SolidLayers {
         // lengths within solids are in no light
         let sun = kinds.sun && number != 2;
         let mut bindings = with_primitives::<24>(1).to_vec();
+        (bindings[7], bindings[10]) = (Binding::Texels, Binding::Texels);
         bindings[12] = Binding::StorageImage;
         bindings[18] = Binding::Texels;
         bindings.extend(SUN_BINDINGS.iter().take(if sun { SUN_OWN } else { 0 }));
@@ -174,16 +175,18 @@ impl SolidLayers {
         rows: Range<u32>,
     ) {
         // the shader has these bindings in every scene, and reads them only where there are shells
-        let fragments = b.fragments.unwrap_or([b.frame; 3]);
+        let (starts, counts, fragments) = b.fragments.unwrap_or((b.frame, b.frame, b.tile_leaves));
         let shells = b.shells.unwrap_or([b.frame; 4]);
         let placed = [b.views, b.face_instances, b.faces, b.patches, b.items];
-        let lists = [b.leaf_centres, b.tile_starts, b.tile_leaves].into_iter().chain(fragments).chain([b.counters]);
+        let tiles: [Resource<'_>; 3] = [b.leaf_centres.into(), b.tile_starts.into(), b.tile_leaves.into()];
+        let fragments: [Resource<'_>; 3] = [starts.into(), counts.into(), fragments.into()];
         let sun = b.sun.filter(|_| self.sun);
         let resources: Vec<_> = [b.frame.into()]
             .into_iter()
             .chain(b.primitives.resources())
-            .chain(lists.map(Into::into))
-            .chain([b.behind.into()])
+            .chain(tiles)
+            .chain(fragments)
+            .chain([b.counters.into(), b.behind.into()])
             .chain(placed.into_iter().map(Into::into))
             .chain([b.points.into(), b.instances.into()])
             .chain(shells.into_iter().map(Into::into))

@@ -140,6 +140,9 @@ impl SolidData {
             }
             first += solid.primitives().len() as u32;
         }
+        if data.leaf_surfaces.len() >> (u32::BITS - abi::LEAF_FLAG_BITS) != 0 {
+            return Err(SolidError::TooMany.into());
+        }
         number_exits(&mut data.leaves);
         data.put_planes_last();
         for item in data.followed as usize..data.leaves.len() {
@@ -217,6 +220,11 @@ impl SolidData {
         }
         for sides in self.leaf_surfaces.chunk_by_mut(|a, b| a.leaf == b.leaf) {
             sides.sort_by_key(|side| side.surface & abi::SIDE_PLANE == 0);
+            let flags = &mut self.leaves[sides[0].leaf as usize].flags;
+            for kind in sides.chunk_by_mut(|a, b| (a.surface ^ b.surface) & abi::SIDE_PLANE == 0) {
+                *flags |= if kind[0].surface & abi::SIDE_PLANE != 0 { abi::LEAF_PLANES } else { abi::LEAF_ROUNDS };
+                kind.iter_mut().rev().skip(1).for_each(|side| side.surface |= abi::SIDE_MORE);
+            }
         }
     }
 
@@ -320,10 +328,10 @@ impl SolidData {
     fn push_nothing(&mut self) {
         let nothing = self.push_surface(Some(surface::nowhere(DVec3::ZERO)));
         self.leaf_surfaces.push(abi::LeafSurface { surface: nothing << abi::SIDE_SHIFT, leaf: 0 });
-        self.put_planes_last();
         let (in_exit, out_exit) = (abi::EXIT_TRUE, abi::EXIT_FALSE);
         self.leaf_centres.push(DVec3::ZERO);
         self.leaves.push(abi::Leaf { count: 1, in_exit, out_exit, ..Default::default() });
+        self.put_planes_last();
     }
 
     /// `None` without leaves, else the most general kind of surface: `SURFACE_*`.

@@ -189,6 +189,7 @@ impl SunData {
                 leaf: l.leaf,
                 in_exit: place(l.in_exit),
                 out_exit: place(l.out_exit),
+                of: l.of,
             }));
             self.tiles.push(SunTile {
                 first,
@@ -308,7 +309,7 @@ impl Folded {
         };
         let exits = |l: &u32| {
             let leaf = &casters[*l as usize];
-            TileLeaf { leaf: *l, in_exit: fold(leaf.in_exit), out_exit: fold(leaf.out_exit) }
+            TileLeaf { leaf: *l, in_exit: fold(leaf.in_exit), out_exit: fold(leaf.out_exit), of: leaf.own() }
         };
         Self { leaves: list.iter().map(exits).collect(), entry: fold(0) }
     }

@@ -25,7 +25,7 @@ pub fn solid_fold(leaves: &[Leaf], followed: u32, tile_starts: &[u32], tile_leav
                 entry = fold(leaves, tile_leaves, leaf.item, i, end);
             }
             let mark = if at >= followed && i == entry { TILE_LEAF_ENTRY } else { 0 };
-            tile_leaves[i as usize] = TileLeaf { leaf: at | mark, in_exit, out_exit };
+            tile_leaves[i as usize] = TileLeaf { leaf: at | mark, in_exit, out_exit, of: leaf.own() };
         }
         union
     };

@@ -189,7 +189,8 @@ fn a_scene_that_a_volume_trims_has_what_that_needs() {
     model.trim_by(&shapes::solids::solid("A", vec![shapes::solids::ball(1.0, 0.0)]).solids[0]).unwrap();
     let (renderer, objects) = objects(&model, Outputs::default());
     let of_volume = |o: &&String| o.contains("volume");
-    let buffers = ["volume leaves", "volume sides", "volume surfaces", "volume centres", "mesh (within a volume)"];
+    let buffers =
+        ["volume leaves", "volume sides", "volume surfaces", "volume surface places", "mesh (within a volume)"];
     for name in buffers {
         assert!(objects.iter().any(|o| o == name), "{name}: {objects:?}");
     }

@@ -11,12 +11,15 @@
 //! needs exact equality, which no tolerance on ray parameters gives (gaps would close).
 //!
 //! Two carriers are one when each passes within the tolerance of points on the other that reach as far as
-//! the face does. The carrier met first represents the rest. Candidates are found by one number a
-//! carrier, a fixed combination of its coefficients that nearly coincident carriers nearly share.
+//! the face does. The carrier met first represents the rest. Candidates of a large face are found by one number a
+//! carrier, a fixed combination of its coefficients that nearly coincident carriers nearly share. A small face may
+//! lean, and that number with it: its candidates are the surfaces of the faces that it may touch, and those whose
+//! number is the same. (What lies apart is never met at one depth; it may share a surface, but need not.)
 
-use super::Solid;
 use super::carrier::Carrier;
+use super::nearby::Nearby;
 use super::shape::{Quadric, Shape};
+use super::{Primitive, Solid};
 use crate::model::Bounds;
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::BTreeMap;
@@ -72,24 +75,22 @@ impl SurfaceTable {
     /// bounded primitives' boxes. Empty primitives (see [`Primitive::to_own`](super::Primitive::to_own))
     /// have no faces here.
     ///
-    /// Cost: `O(n log n)` for `n` carriers, unless many nearly coincide.
+    /// Cost: `O(n log n)` for `n` carriers, unless many nearly coincide, or touch.
     pub fn new(solid: &Solid, tolerance: f64) -> Self {
         let boxes = solid.primitives().iter().map(super::Primitive::bounds);
         let whole = boxes.filter(|b| !b.is_empty() && b.diagonal().is_finite()).fold(Bounds::EMPTY, Bounds::union);
         let (centre, size) = if whole.is_empty() { (DVec3::ZERO, 1.0) } else { (whole.centre(), whole.diagonal()) };
-        let mut finder = Finder { centre, size, distance: tolerance * size, by_key: BTreeMap::new(), kept: Vec::new() };
+        let distance = tolerance * size;
+        let each = || (0..).zip(solid.primitives());
+        let candidates = |(index, p)| Candidate::of(index, p, (centre, size));
+        let boxes = each().flat_map(candidates).map(|c| c.near(distance)).collect();
+        let nearby = Nearby::new(boxes, distance);
+        let mut finder = Finder { centre, size, distance, nearby, ..Finder::default() };
         let mut table = Self { surfaces: Vec::new(), faces: Vec::new(), starts: vec![0] };
-        for (index, primitive) in (0..).zip(solid.primitives()) {
-            if let Some(to_own) = primitive.to_own().filter(|_| !primitive.shape.bounds().is_empty()) {
-                // unbounded shapes are compared all over the model
-                let reach = 0.5 * size * to_own.matrix3.to_cols_array().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
-                let samples = primitive.shape.samples(to_own.transform_point3(centre), reach);
-                for (carrier, own) in primitive.shape.carriers().into_iter().zip(samples) {
-                    let samples: Vec<DVec3> = own.iter().map(|p| primitive.transform.transform_point3(*p)).collect();
-                    let size = samples.iter().copied().fold(Bounds::EMPTY, Bounds::with).diagonal();
-                    let surface = Surface { carrier, to_own, primitive: index };
-                    table.faces.push(finder.find(Candidate { surface, samples, size }));
-                }
+        for primitive in each() {
+            for candidate in candidates(primitive) {
+                let face = finder.find(candidate, &table.faces);
+                table.faces.push(face);
             }
             table.starts.push(table.faces.len() as u32);
         }
@@ -108,6 +109,35 @@ impl SurfaceTable {
         let p = primitive as usize;
         &self.faces[self.starts[p] as usize..self.starts[p + 1] as usize]
     }
+}
+
+impl Candidate {
+    /// The faces of a primitive, none of an empty one; `whole` is the middle and the size of the model.
+    fn of(index: u32, primitive: &Primitive, whole: (DVec3, f64)) -> impl Iterator<Item = Self> + '_ {
+        let to_own = primitive.to_own().filter(|_| !primitive.shape.bounds().is_empty());
+        to_own.into_iter().flat_map(move |to_own| {
+            let (centre, size) = whole;
+            // unbounded shapes are compared all over the model
+            let reach = 0.5 * size * to_own.matrix3.to_cols_array().iter().fold(0.0, |m: f64, x| m.max(x.abs()));
+            let samples = primitive.shape.samples(to_own.transform_point3(centre), reach);
+            primitive.shape.carriers().into_iter().zip(samples).map(move |(carrier, own)| {
+                let samples: Vec<DVec3> = own.iter().map(|p| primitive.transform.transform_point3(*p)).collect();
+                let size = bounds_of(&samples).diagonal();
+                Self { surface: Surface { carrier, to_own, primitive: index }, samples, size }
+            })
+        })
+    }
+
+    /// A box around all of the face: circles are sampled at seven points and more, so they reach less than half their
+    /// size beyond these.
+    fn near(&self, distance: f64) -> Bounds {
+        let (b, beyond) = (bounds_of(&self.samples), DVec3::splat(0.5 * self.size + distance));
+        Bounds { min: b.min - beyond, max: b.max + beyond }
+    }
+}
+
+fn bounds_of(points: &[DVec3]) -> Bounds {
+    points.iter().copied().fold(Bounds::EMPTY, Bounds::with)
 }
 
 impl Surface {
@@ -157,26 +187,40 @@ const SENSITIVITY: f64 = 80.0;
 /// Rounding of a key.
 const ROUNDING: f64 = 1e-10;
 
+/// Faces whose keys move by more are small.
+const NARROW: f64 = 4e-3;
+
 /// The surfaces found so far.
+#[derive(Default)]
 struct Finder {
     centre: DVec3,
     size: f64,
     /// The tolerance.
     distance: f64,
+    /// The faces.
+    nearby: Nearby,
     /// Surfaces by the bits of their keys, which are not negative and sort as numbers do.
     by_key: BTreeMap<u64, Vec<u32>>,
     kept: Vec<Candidate>,
 }
 
 impl Finder {
-    fn find(&mut self, new: Candidate) -> CarriedFace {
+    /// Of the next face; `faces` are those before.
+    fn find(&mut self, new: Candidate, faces: &[CarriedFace]) -> CarriedFace {
         let coefficients = new.surface.coefficients(self.centre, self.size);
         let key = coefficients.iter().zip(WEIGHTS).map(|(c, w)| c * w).sum::<f64>().abs();
         // a small face may lean more than a large one within the same distance
         let width = ROUNDING * (1.0 + key) + SENSITIVITY * self.distance / new.size.max(self.distance);
-        let range = (key - width).max(0.0).to_bits()..=(key + width).to_bits();
-        let near = self.by_key.range(range).flat_map(|(_, list)| list).copied();
-        let found = near.filter_map(|k| Some((k, self.same(&self.kept[k as usize], &new)?))).min();
+        let wide = width > NARROW;
+        let within = if wide { ROUNDING * (1.0 + key) } else { width };
+        let range = (key - within).max(0.0).to_bits()..=(key + within).to_bits();
+        let mut near: Vec<u32> = self.by_key.range(range).flat_map(|(_, list)| list).copied().collect();
+        if wide {
+            self.nearby.before(faces.len() as u32, |face| near.push(faces[face as usize].surface));
+        }
+        near.sort_unstable();
+        near.dedup();
+        let found = near.into_iter().find_map(|k| Some((k, self.same(&self.kept[k as usize], &new)?)));
         if let Some((surface, flipped)) = found {
             return CarriedFace { surface, flipped };
         }
