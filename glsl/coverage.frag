@@ -3,11 +3,12 @@
 #extension GL_GOOGLE_include_directive : require
 // Pass `coverage`: pixels that a trimmed face covers in part get the colours of what else they see.
 //
-//     ┌─────────┐   the face of a neighbour, in front of what is seen here:   its share, of the neighbour's colour
-//     │  ╱ own  │   the face that is seen here:                               its share
-//     │ ╱   ·   │   what neither of them covers:                              the colour of the pixel beyond the border
-//     │╱ beyond │
-//     └─────────┘   Two faces that meet here both know the border, and each covers what the other leaves.
+//     ┌─────────┐   the face of a neighbour, in front of what is seen here:  its share, of the neighbour's colour
+//     │  ╱ own  │   the face that is seen here:                              its share
+//     │ ╱   ·   │
+//     │╱ beyond │   the face of a neighbour, behind it, that begins where it ends:  its share
+//     └─────────┘   what none of them covers:                                the colour of the pixel beyond the border
+// Two faces that meet here both know the border, and each covers what the other leaves.
 //
 // A face covers what its trim curves say: the exact area of the pixel inside them (coverage.glsl). Only pixels beside
 // another face, or another thing, are looked at; what ends without a trim curve (silhouettes of curved faces, meshes,
@@ -96,13 +97,17 @@ vec4 mixed(ivec2 at, uvec2 own, uint own_face) {
     if (own_face != 0u) here = covering(own, pixel);
     vec4 sum = vec4(0.0);
     float rest = 1.0;
+    vec4 next = vec4(0.0); // of faces behind this one
+    float next_share = 0.0;
+    ivec2 other = at; // sees something else
     uint met[MOST_FACES];
     uint met_count = 0u;
-    for (uint k = 0u; k < RING_POINTS && met_count < MOST_FACES; ++k) {
+    for (uint k = 0u; k < RING_POINTS; ++k) {
         ivec2 beside = at + ivec2(sign(RING[k]));
         if (!is_in_picture(beside)) continue;
         uvec2 seen = imageLoad(visibility, beside).xy;
         uint face = placed_face(seen);
+        if (face != own_face) other = beside;
         bool known = face == 0u || (face == own_face && !here.cover.cut);
         if (face == own_face && here.cover.cut) {
             uint item = seen_item(seen.x);
@@ -111,12 +116,18 @@ vec4 mixed(ivec2 at, uvec2 own, uint own_face) {
             known = length(here.along * (face_uv(patch_, unpack_uv(seen.y)) - here.uv)) < SAME_SHEET_PX;
         }
         for (uint i = 0u; i < met_count; ++i) known = known || met[i] == face;
-        if (known) continue;
+        if (known || met_count == MOST_FACES) continue;
         met[met_count++] = face;
         Covering there = covering(seen, pixel);
         // one that covers all of it is hidden here, or was not drawn: by a volume that trims the scene
         if (!there.known || !there.cover.cut) continue;
-        if (face != own_face && !(there.depth < depth * (1.0 + TOUCHES))) continue;
+        if (face != own_face && !(there.depth < depth * (1.0 + TOUCHES))) {
+            // it begins where the face that is seen here ends
+            if (!here.cover.cut || dot(there.cover.outward, here.cover.outward) >= 0.0) continue;
+            next += there.cover.share * colour_at(beside);
+            next_share += there.cover.share;
+            continue;
+        }
         float share = min(there.cover.share, rest);
         sum += share * colour_at(beside);
         rest -= share;
@@ -124,11 +135,18 @@ vec4 mixed(ivec2 at, uvec2 own, uint own_face) {
     float share = here.cover.cut ? min(here.cover.share, rest) : rest;
     sum += share * colour_at(at);
     rest -= share;
+    if (next_share > 0.0) {
+        share = min(next_share, rest);
+        sum += share / next_share * next;
+        rest -= share;
+    }
     if (rest > 0.0) {
         vec2 outward = here.cover.outward;
         float size = max(abs(outward.x), abs(outward.y));
         ivec2 beyond = at + (size > 0.0 ? ivec2(roundEven(outward / size)) : ivec2(0));
-        sum += rest * colour_at(is_in_picture(beyond) ? beyond : at);
+        // a border may leave the picture, and a slit be narrower than a pixel
+        if (!is_in_picture(beyond) || placed_face(imageLoad(visibility, beyond).xy) == own_face) beyond = other;
+        sum += rest * colour_at(beyond);
     }
     return sum;
 }

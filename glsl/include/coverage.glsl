@@ -11,10 +11,8 @@ struct Cover {
 
 const uint MOST_CELLS = 64u;     // that a pixel is asked in
 const uint CHORDS = 8u;          // of a bent arc, in one cell
-const uint ROOT_STEPS = 24u;     // every second one halves
+const uint ROOT_STEPS = 40u;     // every second one halves
 const float ROOT_PX = 1e-3;      // where an arc enters a cell, in the pixel's box
-const float BESIDE = 0.2;        // a chord that sweeps less ends before it comes near the centre
-const float ON_CENTRE_PX = 0.02; // a chord this near to the centre may pass it on the other side than its arc does
 
 // Area of the pixel that a ray from its centre sweeps, from (1, 0) to `d`.
 float swept(vec2 d) {
@@ -31,7 +29,7 @@ float swept_along(vec2 a, vec2 b) {
     return turn;
 }
 
-// Whether a point near an arc lies left of it, as it runs from its lower end to its higher one.
+// Whether a point on an arc counts as left of it, as it runs from its lower end to its higher one.
 bool left_of(ExactArc arc, vec2 uv) {
     if (arc.low.y < uv.y && uv.y <= arc.high.y) return arc_right(arc, uv);
     return (uv.y > arc.high.y) == (arc.high.x > arc.low.x);
@@ -61,29 +59,29 @@ bool clip_to_pixel(inout vec2 a, inout vec2 b) {
     return true;
 }
 
-// Parameter at which a coordinate of an arc, relative to its lower end, becomes `x`, within `slack`; 0 or 1 beyond
-// its ends.
-float arc_reach(ExactArc arc, uint axis, float x, float slack) {
-    precise float chord = arc.high[axis] - arc.low[axis];
-    float way = chord < 0.0 ? -1.0 : 1.0;
-    float to = way * x;
-    float a = 0.0;
-    float b = way * chord;
-    if (!(to > a)) return 0.0;
-    if (!(to < b)) return 1.0;
-    precise float straight = to / b;
+// Parameter at which a coordinate of an arc, relative to its lower end, becomes `x`, where both are within `slack`;
+// 0 or 1 beyond its ends.
+float arc_reach(ExactArc arc, uint axis, float x, vec2 slack) {
+    precise vec2 chord = arc.high - arc.low;
+    vec2 way = vec2(chord.x < 0.0 ? -1.0 : 1.0, chord.y < 0.0 ? -1.0 : 1.0);
+    float to = way[axis] * x;
+    vec2 a = vec2(0.0);
+    vec2 b = way * chord;
+    if (!(to > a[axis])) return 0.0;
+    if (!(to < b[axis])) return 1.0;
+    precise float straight = to / b[axis];
     if ((arc.shape & ARC_DEGREE) <= 1u) return straight;
     float ta = 0.0;
     float tb = 1.0;
-    for (uint step_ = 0u; step_ < ROOT_STEPS && b - a > slack; ++step_) {
-        precise float share = (step_ & 1u) == 0u ? (to - a) / (b - a) : 0.5;
+    for (uint step_ = 0u; step_ < ROOT_STEPS && any(greaterThan(b - a, slack)); ++step_) {
+        precise float share = (step_ & 1u) == 0u ? (to - a[axis]) / (b[axis] - a[axis]) : 0.5;
         precise float t = ta + (tb - ta) * share;
         if (!(t > ta && t < tb)) {
             t = 0.5 * (ta + tb);
             if (!(t > ta && t < tb)) break;
         }
-        float q = clamp(way * arc_point(arc, t)[axis], a, b);
-        if (q >= to) {
+        vec2 q = clamp(way * arc_point(arc, t), a, b);
+        if (q[axis] >= to) {
             tb = t;
             b = q;
         } else {
@@ -91,8 +89,8 @@ float arc_reach(ExactArc arc, uint axis, float x, float slack) {
             a = q;
         }
     }
-    precise float last = ta + (tb - ta) * ((to - a) / (b - a));
-    return b > a ? last : tb;
+    precise float last = ta + (tb - ta) * ((to - a[axis]) / (b[axis] - a[axis]));
+    return b[axis] > a[axis] ? last : tb;
 }
 
 // Parameters between which an arc is in a box, whose corners are relative to its lower end.
@@ -104,8 +102,8 @@ vec2 arc_within(ExactArc arc, vec2 lo, vec2 hi, vec2 slack) {
             continue;
         }
         bool falls = arc.high[axis] < arc.low[axis];
-        range.x = max(range.x, arc_reach(arc, axis, falls ? hi[axis] : lo[axis], slack[axis]));
-        range.y = min(range.y, arc_reach(arc, axis, falls ? lo[axis] : hi[axis], slack[axis]));
+        range.x = max(range.x, arc_reach(arc, axis, falls ? hi[axis] : lo[axis], slack));
+        range.y = min(range.y, arc_reach(arc, axis, falls ? lo[axis] : hi[axis], slack));
     }
     return range;
 }
@@ -148,15 +146,15 @@ Cover exact_cover(uint face, vec2 uv, mat2 along) {
                 if (!(range.x < range.y)) continue;
                 float way = (arc.shape & ARC_UP) != 0u ? 1.0 : -1.0;
                 uint chords = (arc.shape & ARC_DEGREE) <= 1u ? 1u : CHORDS;
-                float turn = 0.0;
-                float triangles = 0.0;
-                bool central = false;
+                bool in_row = arc.low.y < uv.y && uv.y <= arc.high.y;
                 precise vec2 base = arc.low - uv;
                 precise vec2 p = base + arc_at(arc, range.x);
                 precise vec2 a = along[0] * p.x + along[1] * p.y;
                 for (uint k = 1u; k <= chords; ++k) {
                     precise float t = range.x + (range.y - range.x) * (float(k) / float(chords));
+                    bool crosses = in_row && p.y < 0.0;
                     p = base + arc_at(arc, k == chords ? range.y : t);
+                    crosses = crosses && p.y >= 0.0;
                     precise vec2 b = along[0] * p.x + along[1] * p.y;
                     vec2 begin = a;
                     vec2 end_ = b;
@@ -164,23 +162,20 @@ Cover exact_cover(uint face, vec2 uv, mat2 along) {
                     if (!clip_to_pixel(begin, end_)) continue;
                     precise vec2 d = end_ - begin;
                     precise float off = begin.x * end_.y - begin.y * end_.x;
-                    precise float length_ = sqrt(d.x * d.x + d.y * d.y);
                     float sweep = swept_along(begin, end_);
-                    central = central || (abs(off) < ON_CENTRE_PX * length_ && abs(sweep) > BESIDE);
-                    precise float turns = turn + sweep;
-                    precise float areas = triangles + 0.5 * off;
-                    turn = turns;
-                    triangles = areas;
+                    bool left_ = (sweep > 0.0) == (det > 0.0);
+                    if (abs(sweep) == 0.5) {
+                        // the centre is on it: as the exact test has it
+                        left_ = left_of(arc, uv);
+                        sweep = left_ == (det > 0.0) ? 0.5 : -0.5;
+                    } else if (crosses && left_ != arc_right(arc, uv)) {
+                        winding += int(left_ ? way : -way); // the centre is between the chord and its arc
+                    }
+                    precise float sum = hidden + way * (sweep - 0.5 * off);
+                    hidden = sum;
                     cover.outward += way * vec2(d.y, -d.x);
                     cover.cut = true;
                 }
-                // on the other side of the centre than its arc
-                if (central && abs(turn) > BESIDE) {
-                    bool left_ = left_of(arc, uv) == (det > 0.0);
-                    if (left_ != (turn > 0.0)) turn += left_ ? 1.0 : -1.0;
-                }
-                precise float sum = hidden + way * (turn - triangles);
-                hidden = sum;
             }
         }
     }

@@ -5,6 +5,7 @@ use super::exact::{random_loop, twin};
 use super::{Random, hard};
 use crate::model::TrimLoop;
 use crate::scene::ExactData;
+use crate::spline::Bezier;
 use crate::trim::{ExactTrim, LoopIndex};
 use crate::twin::coverage::{Along, Cover, MOST_CELLS};
 use glam::{DMat2, DVec2};
@@ -12,7 +13,7 @@ use glam::{DMat2, DVec2};
 #[allow(dead_code)]
 #[path = "../../tests/trim/shapes.rs"]
 mod loops;
-use loops::{circle, polygon};
+use loops::{circle, closed, curve, polygon};
 
 /// Points to a pixel's side, of which the reference counts those inside.
 const FINE: u32 = 48;
@@ -115,7 +116,7 @@ fn a_straight_border_covers_what_its_half_plane_does() {
     assert!(cut > 2000 && worst > 0.0);
 }
 
-/// Discs and stars from half a pixel to many, holes, corners and slits: against 48 x 48 points. Those count a border
+/// Discs and stars from half a pixel to many, holes, corners and slits, borders that waver by roundings: against 48 x 48 points. Those count a border
 /// along a row of them by half a row, 0.010, and are off by less elsewhere; arcs of half a pixel's radius bulge over their
 /// chords by an area of 0.007.
 #[test]
@@ -134,14 +135,26 @@ fn shapes_cover_what_points_in_them_say() {
             polygon(&(0..n).map(|i| (corner(i).x, corner(i).y)).collect::<Vec<_>>())
         };
         let square = polygon(&[(0.01, 0.01), (0.99, 0.01), (0.99, 0.99), (0.01, 0.99)]);
-        let shape = match random.integer(0, 3) {
+        let wave = |random: &mut Random, n: i32| {
+            let at = |i: i32| DVec2::new(0.1 + 0.8 * f64::from(i) / f64::from(3 * n), centre.y);
+            let height = 10f64.powf(random.range(-8.0, -6.0));
+            let points: Vec<_> = (0..=3 * n).map(|i| at(i) + DVec2::Y * random.range(-height, height)).collect();
+            let cubic = |i: usize| curve(&points[i..i + 4].iter().map(|p| (p.x, p.y)).collect::<Vec<_>>());
+            let corners = [points[points.len() - 1], DVec2::new(0.9, 0.95), DVec2::new(0.1, 0.95), points[0]];
+            let sides = corners.windows(2).map(|pair| Bezier::line(pair[0], pair[1]));
+            closed((0..points.len() - 1).step_by(3).map(cubic).chain(sides).collect())
+        };
+        let shape = match random.integer(0, 4) {
             0 => vec![circle(centre, radius)],
             1 => vec![square, circle(centre, radius).reversed()],
+            4 => vec![wave(&mut random, 4)],
             2 => vec![star(4, random.range(0.02, 1.0))],
             _ => vec![star(10, 0.5).reversed()],
         };
         let way = DVec2::from_angle(random.range(0.0, std::f64::consts::TAU));
-        let uv = centre + way * radius * random.range(0.4, 1.1);
+        let is_wave = shape.len() == 1 && shape[0].curves().count() == 7;
+        let far = if is_wave { size } else { radius };
+        let uv = centre + way * far * random.range(0.4, 1.1) * if is_wave { random.range(0.0, 1.0) } else { 1.0 };
         let pixel = Pixel::random(&mut random, uv, size);
         let found = cover(&data(std::slice::from_ref(&shape)), 0, &pixel);
         let windings = windings(&LoopIndex::new(&shape), &pixel);

@@ -9,8 +9,8 @@
 //!
 //! `swept(d)` is the area of the unit square that a ray from its centre sweeps from `(1, 0)` to `d`: 1/8 of the ray's
 //! slope in each of the eight octants. So the area is exact for straight borders, corners, slits and holes
-//! alike, however many arcs run through the pixel. Where a chord passes within [`ON_CENTRE_PX`] of the centre, the exact
-//! test says on which side of the centre its arc does, and the sweep goes that way around.
+//! alike, however many arcs run through the pixel. Where the centre is between a chord and its arc, which the exact test
+//! tells, `w` is changed to what the chords make of it.
 //!
 //! Bent arcs count as [`CHORDS`] chords of equal steps between where they enter a cell (or the pixel's box) and leave it:
 //! an arc of radius `r` px bulges by less than `2 / (8 CHORDS² r)` px over each. The pixel's square is mapped to the
@@ -25,12 +25,8 @@ use crate::abi::{ARC_UP, ExactArc};
 pub const MOST_CELLS: u32 = 64;
 /// Chords of a bent arc in one cell.
 pub const CHORDS: u32 = 8;
-const ROOT_STEPS: u32 = 24;
+const ROOT_STEPS: u32 = 40;
 const ROOT_PX: f32 = 1e-3;
-/// A chord that sweeps less ends before it comes near the centre.
-const BESIDE: f32 = 0.2;
-/// More than chords bulge, of arcs of half a pixel's radius.
-pub const ON_CENTRE_PX: f32 = 0.02;
 
 /// What a face covers of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -65,7 +61,7 @@ impl Exact<'_> {
         if bands.len() < 2 || !is_box {
             return whole;
         }
-        let mut sum = Sum { along, hidden: 0.0, outward: [0.0; 2], cut: false };
+        let mut sum = Sum { along, winding, hidden: 0.0, outward: [0.0; 2], cut: false };
         let mut asked = 0;
         let first_band = 1 + bands[1..].partition_point(|band| band.top < lo[1]);
         for pair in bands[first_band - 1..].windows(2) {
@@ -94,20 +90,13 @@ impl Exact<'_> {
             }
         }
         let turned = if det < 0.0 { -1.0 } else { 1.0 };
-        let mean = winding as f32 - turned * sum.hidden;
+        let mean = sum.winding as f32 - turned * sum.hidden;
         let way = if mean < 0.0 { -turned } else { turned };
         Cover { share: mean.abs().min(1.0), outward: sum.outward.map(|x| x * way), cut: sum.cut }
     }
 
     /// The part of an arc that is in a box.
-    fn add_arc(
-        &self,
-        sum: &mut Sum,
-        arc: &ExactArc,
-        uv: [f32; 2],
-        (from, to): ([f32; 2], [f32; 2]),
-        slack: [f32; 2],
-    ) {
+    fn add_arc(&self, sum: &mut Sum, arc: &ExactArc, uv: [f32; 2], (from, to): ([f32; 2], [f32; 2]), slack: [f32; 2]) {
         let relative = |p: [f32; 2]| [p[0] - arc.low[0], p[1] - arc.low[1]];
         let (begin, end) = self.within(arc, relative(from), relative(to), slack);
         if begin >= end {
@@ -120,27 +109,39 @@ impl Exact<'_> {
             let q = self.at(arc, t);
             let p = [base[0] + q[0], base[1] + q[1]];
             let [pu, pv] = sum.along;
-            [pu[0] * p[0] + pv[0] * p[1], pu[1] * p[0] + pv[1] * p[1]]
+            ([pu[0] * p[0] + pv[0] * p[1], pu[1] * p[0] + pv[1] * p[1]], p[1])
         };
-        let mut corners = [[0.0; 2]; CHORDS as usize + 1];
+        // in the pixel, and v from its centre
+        let mut corners = [([0.0; 2], 0.0); CHORDS as usize + 1];
         corners[0] = pixel(begin);
         for k in 1..=chords {
             let t = begin + (end - begin) * (k as f32 / chords as f32);
             corners[k as usize] = pixel(if k == chords { end } else { t });
         }
-        let mut seen = Seen { turn: 0.0, triangles: 0.0, central: false };
-        corners[..=chords as usize].windows(2).for_each(|pair| sum.add_chord(&mut seen, pair[0], pair[1], way));
         let [pu, pv] = sum.along;
-        if seen.central && seen.turn.abs() > BESIDE {
-            let left = self.is_left_of(arc, uv) == (pu[0] * pv[1] - pu[1] * pv[0] > 0.0);
-            if left != (seen.turn > 0.0) {
-                seen.turn += if left { 1.0 } else { -1.0 };
+        let det = pu[0] * pv[1] - pu[1] * pv[0];
+        let in_row = arc.low[1] < uv[1] && uv[1] <= arc.high[1];
+        for pair in corners[..=chords as usize].windows(2) {
+            let ((a, a_v), (b, b_v)) = (pair[0], pair[1]);
+            let Some((a, b)) = clipped_to_pixel(a, b) else { continue };
+            let mut sweep = swept_along(a, b);
+            let mut left = (sweep > 0.0) == (det > 0.0);
+            if sweep.abs() == 0.5 {
+                // the centre is on it: as the exact test has it
+                left = self.is_left_of(arc, uv);
+                sweep = if left == (det > 0.0) { 0.5 } else { -0.5 };
+            } else if in_row && a_v < 0.0 && b_v >= 0.0 && left != self.lies_right(arc, uv) {
+                // the centre is between the chord and its arc
+                sum.winding += (if left { way } else { -way }) as i32;
             }
+            sum.hidden += way * (sweep - 0.5 * (a[0] * b[1] - a[1] * b[0]));
+            let d = [b[0] - a[0], b[1] - a[1]];
+            sum.outward = [sum.outward[0] + way * d[1], sum.outward[1] + way * -d[0]];
+            sum.cut = true;
         }
-        sum.hidden += way * (seen.turn - seen.triangles);
     }
 
-    /// Whether a point near an arc lies left of it, as it runs from its lower end to its higher one.
+    /// Whether a point on an arc lies left of it, as it runs from its lower end to its higher one.
     fn is_left_of(&self, arc: &ExactArc, uv: [f32; 2]) -> bool {
         if arc.low[1] < uv[1] && uv[1] <= arc.high[1] {
             self.lies_right(arc, uv)
@@ -160,33 +161,33 @@ impl Exact<'_> {
                 continue;
             }
             let (enter, leave) = if arc.high[i] < arc.low[i] { (hi[i], lo[i]) } else { (lo[i], hi[i]) };
-            begin = begin.max(self.reached(arc, i, enter, slack[i]));
-            end = end.min(self.reached(arc, i, leave, slack[i]));
+            begin = begin.max(self.reached(arc, i, enter, slack));
+            end = end.min(self.reached(arc, i, leave, slack));
         }
         (begin, end)
     }
 
-    /// Parameter at which a coordinate of an arc, relative to its lower end, becomes `x`, within `slack`; 0 or 1
-    /// beyond its ends.
-    fn reached(&self, arc: &ExactArc, axis: usize, x: f32, slack: f32) -> f32 {
-        let chord = arc.high[axis] - arc.low[axis];
-        let way = if chord < 0.0 { -1.0 } else { 1.0 };
-        let (to, mut a, mut b) = (way * x, 0.0f32, way * chord);
-        if to.is_nan() || to <= a {
+    /// Parameter at which a coordinate of an arc, relative to its lower end, becomes `x`, where both are within `slack`;
+    /// 0 or 1 beyond its ends.
+    fn reached(&self, arc: &ExactArc, axis: usize, x: f32, slack: [f32; 2]) -> f32 {
+        let chord = [arc.high[0] - arc.low[0], arc.high[1] - arc.low[1]];
+        let way = chord.map(|x| if x < 0.0 { -1.0 } else { 1.0 });
+        let (to, mut a, mut b) = (way[axis] * x, [0.0f32; 2], [way[0] * chord[0], way[1] * chord[1]]);
+        if to.is_nan() || to <= a[axis] {
             return 0.0;
         }
-        if to >= b {
+        if to >= b[axis] {
             return 1.0;
         }
         if degree(arc) <= 1 {
-            return to / b;
+            return to / b[axis];
         }
         let (mut ta, mut tb) = (0.0f32, 1.0f32);
         for step in 0..ROOT_STEPS {
-            if b - a <= slack {
+            if (0..2).all(|i| b[i] - a[i] <= slack[i]) {
                 break;
             }
-            let share = if step & 1 == 0 { (to - a) / (b - a) } else { 0.5 };
+            let share = if step & 1 == 0 { (to - a[axis]) / (b[axis] - a[axis]) } else { 0.5 };
             let within = |t: f32| t > ta && t < tb;
             let mut t = ta + (tb - ta) * share;
             if !within(t) {
@@ -195,14 +196,15 @@ impl Exact<'_> {
                     break;
                 }
             }
-            let q = (way * self.point(arc.first as usize, degree(arc), t)[axis]).clamp(a, b);
-            if q >= to {
+            let q = self.point(arc.first as usize, degree(arc), t);
+            let q: [f32; 2] = std::array::from_fn(|i| (way[i] * q[i]).clamp(a[i], b[i]));
+            if q[axis] >= to {
                 (tb, b) = (t, q);
             } else {
                 (ta, a) = (t, q);
             }
         }
-        if b > a { ta + (tb - ta) * ((to - a) / (b - a)) } else { tb }
+        if b[axis] > a[axis] { ta + (tb - ta) * ((to - a[axis]) / (b[axis] - a[axis])) } else { tb }
     }
 
     fn at(&self, arc: &ExactArc, t: f32) -> [f32; 2] {
@@ -224,32 +226,11 @@ fn degree(arc: &ExactArc) -> u32 {
 /// What chords add up to.
 struct Sum {
     along: Along,
+    /// At the centre, as the chords have it.
+    winding: i32,
     hidden: f32,
     outward: [f32; 2],
     cut: bool,
-}
-
-/// What the centre sees of one arc.
-struct Seen {
-    turn: f32,
-    triangles: f32,
-    /// A chord may pass the centre on the other side than its arc does.
-    central: bool,
-}
-
-impl Sum {
-    fn add_chord(&mut self, seen: &mut Seen, a: [f32; 2], b: [f32; 2], way: f32) {
-        let Some((a, b)) = clipped_to_pixel(a, b) else { return };
-        let d = [b[0] - a[0], b[1] - a[1]];
-        let off = a[0] * b[1] - a[1] * b[0];
-        let length = (d[0] * d[0] + d[1] * d[1]).sqrt();
-        let sweep = swept_along(a, b);
-        seen.central |= off.abs() < ON_CENTRE_PX * length && sweep.abs() > BESIDE;
-        seen.turn += sweep;
-        seen.triangles += 0.5 * off;
-        self.outward = [self.outward[0] + way * d[1], self.outward[1] + way * -d[0]];
-        self.cut = true;
-    }
 }
 
 /// Area of the unit square that a ray from its centre sweeps, from `(1, 0)` to `d`.

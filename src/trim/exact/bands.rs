@@ -59,7 +59,10 @@ pub(super) fn sorted_into(chains: Chains, flats: Flats) -> ExactTrim {
         }
         parts.clear();
         parts.extend(
-            active.iter().filter(|&&i| reaches(&chains.arcs[i], lo, hi) || touches(i, lo, hi)).map(|&i| part(&chains.arcs, i, lo, hi)),
+            active
+                .iter()
+                .filter(|&&i| reaches(&chains.arcs[i], lo, hi) || touches(i, lo, hi))
+                .map(|&i| part(&chains.arcs, i, lo, hi)),
         );
         finder.add_cells(&mut out, &parts, lo, hi);
         out.bands.push(Band { top: hi, end: out.cells.len() as u32 });
