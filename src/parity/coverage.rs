@@ -1,19 +1,18 @@
 //! The covered share of a pixel: its twin against closed forms and against the loops in `f64`, and parity of
 //! `coverage.glsl` with its twin.
 
+use super::Random;
 use super::exact::{random_loop, twin};
-use super::{Random, hard};
+use super::hard::{
+    self,
+    loops::{circle, closed, curve, polygon},
+};
 use crate::model::TrimLoop;
 use crate::scene::ExactData;
 use crate::spline::Bezier;
 use crate::trim::{ExactTrim, LoopIndex};
 use crate::twin::coverage::{Along, Cover, MOST_CELLS};
 use glam::{DMat2, DVec2};
-
-#[allow(dead_code)]
-#[path = "../../tests/trim/shapes.rs"]
-mod loops;
-use loops::{circle, closed, curve, polygon};
 
 /// Points to a pixel's side, of which the reference counts those inside.
 const FINE: u32 = 48;
@@ -129,7 +128,7 @@ fn shapes_cover_what_points_in_them_say() {
         let radius = size * 10f64.powf(random.range(-0.3, 1.5));
         let star = |n: u32, spread: f64| {
             let corner = |i: u32| {
-                let far = if i % 2 == 0 { radius } else { radius * spread };
+                let far = if i.is_multiple_of(2) { radius } else { radius * spread };
                 centre + DVec2::from_angle(f64::from(i) / f64::from(n) * std::f64::consts::TAU) * far
             };
             polygon(&(0..n).map(|i| (corner(i).x, corner(i).y)).collect::<Vec<_>>())
