@@ -5,7 +5,7 @@
 //!   by the picture   visibility, that of what is no patch where faces are trimmed, depth; per tile and block
 //!                    of tiles if there are Boolean solids, per pixel if operands are meshes or spline parts: of a
 //!                    band of rows at a time, where all of them take too much; the sum of a pixel's samples where it has several;
-//!                    what is behind layers where rays are followed through solids
+//!                    what is behind layers where rays are followed through solids; linear colour where trims are smooth
 //!   by the view      sub-patches, draws, rows, intercepts, doubts, leaves in tiles: a pass that runs out says so in
 //!                    Counters.failed, and the next frame gets what it would have needed
 //! ```
@@ -48,6 +48,8 @@ pub(crate) struct Buffers {
     pub sum: Option<Image>,
     /// What is seen behind layers.
     pub behind: Option<Image>,
+    /// What pass `coverage` mixes.
+    pub resolved: Option<Image>,
 }
 
 /// What trimmed patches need, whatever the way to trim.
@@ -298,6 +300,7 @@ impl Buffers {
                 .then(|| image("sum of samples", SUM_FORMAT, drawn_and_read))
                 .transpose()?,
             behind: counts.is_followed.then(|| image("behind layers", BEHIND_FORMAT, drawn_and_read)).transpose()?,
+            resolved: counts.smooths_trims.then(|| image("resolved", BEHIND_FORMAT, drawn_and_read)).transpose()?,
         })
     }
 }

@@ -24,6 +24,7 @@
 //!                  resolve       exact point and normal per pixel, light ──▶ the host's targets
 //!                      ▼
 //!               solid_layers     scenes with something to see through: its faces, over what resolve drew
+//!                 coverage       scenes with smooth trims: pixels at borders, mixed of what resolve drew
 //!
 //!  from mesh on once for each of a pixel's samples, where there are several: samples.rs
 //!  lists of solid_events and solid_layers band by band, where they are too large: bands.rs
@@ -36,6 +37,7 @@ use crate::buffers::{Buffers, TableBuffers};
 use crate::gpu::{
     Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Texels, Timestamps, barrier,
 };
+use crate::passes::coverage::Coverage;
 use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::passes::{bound, emit, heal, mesh, reset, resolve, scan, split, visibility};
 use crate::scene::{MeshBuffers, Scene, SceneData, SolidData};
@@ -46,6 +48,7 @@ use trim::{TrimParts, TrimPasses};
 
 mod bands;
 mod blister;
+mod coverage;
 mod edit;
 mod layers;
 mod resolved;
@@ -74,6 +77,8 @@ pub(crate) struct Passes {
     resolve: Option<resolve::Resolve>,
     samples: Option<SamplePasses>,
     layers: Option<LayerPasses>,
+    /// Of scenes whose trims are smoothed.
+    coverage: Option<Coverage>,
 }
 
 /// Those that say how finely each patch is drawn.
@@ -117,6 +122,7 @@ impl Passes {
             resolve: resolved::targets(device, data, formats)?,
             samples: SamplePasses::new(device, data, formats)?,
             layers: LayerPasses::new(device, data, formats)?,
+            coverage: coverage::new(device, data, formats)?,
         })
     }
 }
@@ -202,6 +208,9 @@ impl Frame<'_> {
         barrier::images(cmd, &[(&self.buffers.visibility, drawn, Access::FRAGMENT_READ)]);
         if let Some(pass) = resolve {
             times.scope(cmd, "resolve", || self.resolve(cmd, pass));
+        }
+        if let Some(pass) = &self.passes.coverage {
+            times.scope(cmd, "coverage", || self.coverage(cmd, pass, &test));
         }
         if let Some(passes) = &self.passes.layers {
             times.scope(cmd, "layers", || self.layers(cmd, passes, drawing));
@@ -322,7 +331,7 @@ impl Frame<'_> {
             (&b.visibility, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE),
             (&b.depth, Access::DEPTH_WRITE.discarded() | Access::COMPUTE_READ.discarded(), Access::DEPTH_WRITE),
         ];
-        let behind = b.behind.iter().map(|image| (image, read, Access::COLOUR_WRITE));
+        let behind = b.behind.iter().chain(&b.resolved).map(|image| (image, read, Access::COLOUR_WRITE));
         let operand_uv = b.solids.iter().flat_map(|s| &s.operand_uv);
         let operand_uv = operand_uv.map(|image| (image, read, Access::COLOUR_WRITE));
         barrier::images(cmd, &fixed.into_iter().chain(others).chain(behind).chain(operand_uv).collect::<Vec<_>>());

@@ -259,6 +259,13 @@ pub struct SceneSettings {
     pub editable: bool,
     /// Samples of each pixel's colour: edges are smoothed where there are more than one.
     pub samples: Samples,
+    /// The borders of trimmed faces are smooth: each pixel there is mixed, in linear colour, from what it sees, by the
+    /// area that the exact trim curves cut from it. Costs far less than [`samples`](Self::samples), of which there must
+    /// be one, and smooths nothing else: silhouettes of curved faces, meshes and Boolean solids stay as they are. All
+    /// images but the colour stay as they are, bit for bit, and so do pixels away from borders. Faces are trimmed by
+    /// [`TrimWay::Exact`]. What may not be asked for beside it is
+    /// [`RenderError::SmoothTrims`](crate::renderer::RenderError::SmoothTrims).
+    pub smooth_trims: bool,
     /// The length of rays within solids will be asked for: rays are followed through all of them.
     pub thickness: bool,
     /// Mark contacts and overlaps, and count their pixels: rays are followed through all solids.

@@ -26,7 +26,7 @@ use crate::frame::{Frame, Near, Passes, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Texels, Uploads};
 use crate::model::{Camera, CameraError, Model};
 use crate::passes::{resolve, solid_layers};
-use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, SceneSettings};
+use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, Samples, SceneSettings, TrimWay};
 pub use crate::scene::{CloseUp, EditError, UndrawnSolid};
 use crate::scene::{Scene, SceneData, Write};
 use ash::vk;
@@ -95,6 +95,9 @@ pub enum RenderError {
     /// [`SceneSettings::sun`] has no length, or no numbers.
     #[error("the direction towards the sun must be finite and not 0, not {0}")]
     Sun(glam::DVec3),
+    /// [`SceneSettings::smooth_trims`] beside something that it does not go with.
+    #[error("smooth trims do not go with {0}")]
+    SmoothTrims(&'static str),
     /// A target of another size than the camera's.
     #[error("the target `{name}` is {width} x {height}, the camera's picture another size")]
     TargetSize {
@@ -159,6 +162,17 @@ enum Retired {
     Texels(Texels),
 }
 
+/// Nothing is asked for that smooth trims do not go with.
+fn check_smooth_trims(data: &SceneData, settings: SceneSettings) -> Result<(), RenderError> {
+    let refused = match settings.trim {
+        _ if settings.samples != Samples::One => Some("several samples a pixel, which smooth them, too"),
+        _ if data.is_layered => Some("something to see through, or to mark"),
+        None | Some(TrimWay::Exact) => None,
+        Some(_) => Some("another way to trim than `exact`"),
+    };
+    refused.map_or(Ok(()), |what| Err(RenderError::SmoothTrims(what)))
+}
+
 /// Tolerances below this ask for more than single precision gives at full zoom.
 const LEAST_TOLERANCE_PX: f64 = 0.125;
 
@@ -207,6 +221,9 @@ impl Renderer {
             return Err(RenderError::Sun(towards));
         }
         let data = SceneData::new(model, settings)?;
+        if settings.smooth_trims {
+            check_smooth_trims(&data, settings)?;
+        }
         let counts = Counts::of(&data);
         counts.check()?;
         let formats =

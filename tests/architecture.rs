@@ -49,6 +49,7 @@ const BARRIERS: &[&str] = &[
     "src/frame.rs",
     "src/frame/bands.rs",
     "src/frame/blister.rs",
+    "src/frame/coverage.rs",
     "src/frame/edit.rs",
     "src/frame/layers.rs",
     "src/frame/rival.rs",

@@ -48,6 +48,26 @@ const uint ARC_DEGREE = 31u;
 const uint ARC_UP = 32u;
 const uint MAX_STEPS = 40u;  // every second one halves: 2^-20 of the arc, in parameter, at the least
 
+// Point of a bent arc, relative to its lower end: Horner's scheme in the Bernstein basis.
+vec2 arc_point(ExactArc arc, float t) {
+    uint degree = arc.shape & ARC_DEGREE;
+    precise float s = 1.0 - t;
+    precise float f = 1.0;
+    precise float c = 1.0;
+    uint at = arc.first;
+    precise vec3 sum = vec3(exact_points[at], exact_points[at + 1u], exact_points[at + 2u]) * s;
+    for (uint k = 1u; k < degree; ++k) {
+        at += 3u;
+        f = f * t;
+        c = c * (float(degree - k + 1u) / float(k));
+        sum = (sum + vec3(exact_points[at], exact_points[at + 1u], exact_points[at + 2u]) * (f * c)) * s;
+    }
+    at += 3u;
+    sum = sum + vec3(exact_points[at], exact_points[at + 1u], exact_points[at + 2u]) * (f * t);
+    precise vec2 point = sum.xy / sum.z;
+    return point;
+}
+
 // Sign of the crossing's place: the arc passes uv.y, low.y < uv.y <= high.y, at some u > uv.x.
 bool arc_right(ExactArc arc, vec2 uv) {
     if (uv.x < min(arc.low.x, arc.high.x)) return true;
@@ -70,21 +90,7 @@ bool arc_right(ExactArc arc, vec2 uv) {
             t = 0.5 * (ta + tb);
             if (!(t > ta && t < tb)) break;
         }
-        precise float s = 1.0 - t;
-        precise float f = 1.0;
-        precise float c = 1.0;
-        uint at = arc.first;
-        precise vec3 sum = vec3(exact_points[at], exact_points[at + 1u], exact_points[at + 2u]) * s;
-        for (uint k = 1u; k < degree; ++k) {
-            at += 3u;
-            f = f * t;
-            c = c * (float(degree - k + 1u) / float(k));
-            sum = (sum + vec3(exact_points[at], exact_points[at + 1u], exact_points[at + 2u]) * (f * c)) * s;
-        }
-        at += 3u;
-        sum = sum + vec3(exact_points[at], exact_points[at + 1u], exact_points[at + 2u]) * (f * t);
-        precise vec2 q = sum.xy / sum.z;
-        q = clamp(q, min(a, b), max(a, b));
+        precise vec2 q = clamp(arc_point(arc, t), min(a, b), max(a, b));
         if (q.y >= p.y) {
             tb = t;
             b = q;

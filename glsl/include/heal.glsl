@@ -176,11 +176,9 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
         if (inside && answer.miss <= RING_SLACK * frame.ring_px) answer.kind = HELPER;
         return answer;
     }
-    vec4 qu = to_pixel(view, vec4(s.jet.du, 0.0));
-    vec4 qv = to_pixel(view, vec4(s.jet.dv, 0.0));
-    vec2 p = s.q.xy / s.q.w;
-    vec2 pu = (qu.xy - p * qu.w) / s.q.w;
-    vec2 pv = (qv.xy - p * qv.w) / s.q.w;
+    mat2 along = pixels_along(s, view);
+    vec2 pu = along[0];
+    vec2 pv = along[1];
     float det = pu.x * pv.y - pu.y * pv.x;
     answer.away = looks_away(det, face, instances[fi.instance]);
     if (inside) answer.kind = WITNESS;

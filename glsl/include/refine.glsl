@@ -25,16 +25,22 @@ Sample sample_at(Patch patch_, View view, vec2 uv, vec2 pixel) {
     return s;
 }
 
+// How far the pixel moves with u, and with v: the columns of J.
+mat2 pixels_along(Sample s, View view) {
+    vec4 qu = to_pixel(view, vec4(s.jet.du, 0.0));
+    vec4 qv = to_pixel(view, vec4(s.jet.dv, 0.0));
+    vec2 p = s.q.xy / s.q.w;
+    return mat2((qu.xy - p * qu.w) / s.q.w, (qv.xy - p * qv.w) / s.q.w);
+}
+
 Sample refine(Patch patch_, View view, vec2 uv, vec2 pixel) {
     Sample best = sample_at(patch_, view, uv, pixel);
     for (uint i = 0u; i < NEWTON_STEPS; ++i) {
         float error = dot(best.miss, best.miss);
         if (error < CLOSE_ENOUGH * CLOSE_ENOUGH) break;
-        vec4 qu = to_pixel(view, vec4(best.jet.du, 0.0));
-        vec4 qv = to_pixel(view, vec4(best.jet.dv, 0.0));
-        vec2 p = best.q.xy / best.q.w;
-        vec2 pu = (qu.xy - p * qu.w) / best.q.w;
-        vec2 pv = (qv.xy - p * qv.w) / best.q.w;
+        mat2 along = pixels_along(best, view);
+        vec2 pu = along[0];
+        vec2 pv = along[1];
         float det = pu.x * pv.y - pu.y * pv.x;
         if (abs(det) < 1e-12) break;
         vec2 step_ = vec2(best.miss.x * pv.y - best.miss.y * pv.x, pu.x * best.miss.y - pu.y * best.miss.x) / det;

@@ -17,8 +17,6 @@ layout(constant_id = 3) const bool HAS_AOVS = false;
 
 // What pass `solid_layers` looks through to: the colour is linear and has the depth beside it.
 layout(constant_id = 18) const bool BEHIND = false;
-// Depth of nothing.
-const float UNSEEN = 3.0e38;
 
 layout(location = 0) out vec4 out_colour;
 layout(location = 1) out float out_depth;

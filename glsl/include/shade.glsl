@@ -12,6 +12,9 @@ const float FLOOR_STRENGTH = 0.12;
 const float GLOSS = 0.10;      // strength of the highlight
 const float SHININESS = 48.0;
 
+// Depth of nothing, beside linear colour.
+const float UNSEEN = 3.0e38;
+
 vec3 in_view(Frame frame, vec3 v) { return vec3(dot(frame.right, v), dot(frame.up, v), -dot(frame.forward, v)); }
 
 // What the key light's cosines make of a surface with normal `v` in view space, beside the lights that are always

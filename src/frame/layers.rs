@@ -72,8 +72,9 @@ impl<'a> Frame<'a> {
     pub(super) fn resolved_into(&self) -> Vec<Attachment<'a>> {
         let mut colour = self.colour.to_vec();
         let layered = self.passes.layers.as_ref().is_some_and(LayerPasses::is_layered);
-        if let Some(behind) = self.buffers.behind.as_ref().filter(|_| layered) {
-            colour[0] = Attachment { image: behind, load: Load::ColourF32([0.0, 0.0, 0.0, UNSEEN]) };
+        let behind = self.buffers.behind.as_ref().filter(|_| layered);
+        if let Some(image) = behind.or(self.buffers.resolved.as_ref()) {
+            colour[0] = Attachment { image, load: Load::ColourF32([0.0, 0.0, 0.0, UNSEEN]) };
         }
         colour
     }

@@ -29,6 +29,7 @@ pub(super) fn targets(
     formats: resolve::Formats,
 ) -> Result<Option<resolve::Resolve>, GpuError> {
     let into = match data.samples {
+        Samples::One if data.smooths_trims() => resolve::Destination::Unmixed,
         Samples::One if data.is_layered => resolve::Destination::Behind { writes_depth: true },
         Samples::Four | Samples::Eight
             if data.is_layered && (formats.aovs || formats.depth.is_some() || data.thickness) =>

@@ -14,7 +14,7 @@ use glam::{DVec2, DVec3};
 /// That of the curve's own evaluation is far smaller: it is relative to the arc, and met near its ends only.
 const TOLERANCE: f64 = 4.0 / 16_777_216.0;
 
-fn twin(data: &ExactData) -> Exact<'_> {
+pub(super) fn twin(data: &ExactData) -> Exact<'_> {
     Exact {
         faces: &data.faces,
         bands: &data.bands,
@@ -35,7 +35,7 @@ fn data(faces: &[Vec<TrimLoop>]) -> ExactData {
 
 /// A closed chain of one to five curves of degree 1 to 9; some control points repeat, some joints share
 /// a coordinate, so that degenerate forms come up.
-fn random_loop(random: &mut Random) -> TrimLoop {
+pub(super) fn random_loop(random: &mut Random) -> TrimLoop {
     let grid = random.integer(0, 3) == 0;
     let coordinate = |random: &mut Random| {
         let x = random.range(0.05, 0.95);

@@ -8,7 +8,7 @@ use glam::{DVec2, DVec3};
 #[path = "../../tests/shapes/trims.rs"]
 mod trims;
 
-pub(super) use trims::all;
+pub(super) use trims::{all, loops};
 
 /// Every control point moved by so many units in the last place of single precision.
 pub(super) fn moved(trim_loop: &TrimLoop, (du, dv): (i32, i32)) -> TrimLoop {

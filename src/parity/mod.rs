@@ -12,6 +12,7 @@
 //! number and asks that the comparison names the place.
 
 mod chain;
+mod coverage;
 mod exact;
 mod hard;
 mod shapes;

@@ -41,7 +41,7 @@ const SOLIDS_HAVE_SHELLS: u32 = 13;
 /// `constant_id` of `BEHIND`.
 const BEHIND: u32 = 18;
 
-/// Format of what is behind layers: linear colour and depth.
+/// Format of what is behind layers, and of what pass `coverage` mixes: linear colour and depth.
 pub(crate) const BEHIND_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
 /// The pass: a pipeline for each kind of thing that the scene has.
@@ -132,6 +132,8 @@ pub(crate) enum Destination {
         /// Of the host's target.
         writes_depth: bool,
     },
+    /// What pass `coverage` mixes, in the colour's place: as what is behind layers.
+    Unmixed,
 }
 
 /// Buffers and images for patches, in binding order.
@@ -198,6 +200,7 @@ impl Resolve {
             Destination::AllButColour => (formats.colour, Blend::Leave, ", beside samples"),
             Destination::Behind { writes_depth: true } => (BEHIND_FORMAT, Blend::Replace, ", behind layers"),
             Destination::Behind { writes_depth: false } => (BEHIND_FORMAT, Blend::Replace, ", behind layers, samples"),
+            Destination::Unmixed => (BEHIND_FORMAT, Blend::Replace, ", smooth trims"),
         };
         let mut colour = vec![ColourTarget { format, blend }];
         if formats.aovs {
@@ -231,7 +234,7 @@ impl Resolve {
             )
         };
         let aovs = (HAS_AOVS, u32::from(formats.aovs));
-        let behind = (BEHIND, u32::from(matches!(into, Destination::Behind { .. })));
+        let behind = (BEHIND, u32::from(matches!(into, Destination::Behind { .. } | Destination::Unmixed)));
         let surfaces = (SOLIDS_HAVE, kinds.solids.map_or(abi::SURFACE_PLANE, |s| s.surfaces));
         // what is lit: solids, and with a sun whatever they may shade
         let lit = |vertex, name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {

@@ -2,7 +2,7 @@
 
 use super::edit::EditScene;
 use super::exact::ExactData;
-use super::face::{FaceData, pack_colour};
+use super::face::{FaceData, Trimming, pack_colour};
 use super::mesh::Meshes;
 use super::solids::{Lists, SolidData, UndrawnSolid};
 use super::sun::SunData;
@@ -49,6 +49,8 @@ pub(crate) struct SceneData {
     way: Option<TrimWay>,
     /// Of each pixel.
     pub samples: Samples,
+    /// The borders of trimmed faces are wanted smooth.
+    smooth_trims: bool,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
     /// Boolean solids.
@@ -75,7 +77,9 @@ pub(crate) struct SceneData {
 
 impl SceneData {
     pub(crate) fn new(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        let way = settings.trim.unwrap_or(TrimWay::Table);
+        let usual = if settings.smooth_trims { TrimWay::Exact } else { TrimWay::Table };
+        let way = settings.trim.unwrap_or(usual);
+        let trim = Trimming { way, smooth: settings.smooth_trims };
         let edits = settings.editable && matches!(way, TrimWay::Table | TrimWay::Exact);
         let edit = edits.then(EditScene::default);
         let all = settings.thickness || settings.highlight.is_some();
@@ -106,6 +110,7 @@ impl SceneData {
             volume,
             way: Some(way),
             samples: settings.samples,
+            smooth_trims: settings.smooth_trims,
             edit,
             ..Self::default()
         };
@@ -124,7 +129,7 @@ impl SceneData {
                 let faces: Vec<FaceData> = part
                     .faces
                     .par_iter()
-                    .map(|f| FaceData::new(f, origin, part.closed && !open, way, settings.editable))
+                    .map(|f| FaceData::new(f, origin, part.closed && !open, trim, settings.editable))
                     .collect();
                 faces.into_iter().for_each(|f| data.push_face(f));
                 #[cfg(feature = "rivals")]
@@ -142,13 +147,18 @@ impl SceneData {
             edit.first_faces = first_faces;
         }
         data.meshes = Meshes::new(model, &origins, open);
-        data.push_operands(way);
+        data.push_operands(trim);
         Ok(data)
     }
 
     /// How faces are trimmed; `None` when no patch is.
     pub(crate) fn trim_way(&self) -> Option<TrimWay> {
         self.way.filter(|_| self.has_trimmed)
+    }
+
+    /// Pass `coverage` mixes pixels at the borders of trimmed faces: there are some that are seen themselves.
+    pub(crate) fn smooths_trims(&self) -> bool {
+        self.smooth_trims && self.has_patches && self.trim_way() == Some(TrimWay::Exact)
     }
 
     /// Some mesh is placed.
@@ -167,11 +177,11 @@ impl SceneData {
     }
 
     /// Operands of Boolean solids without equations are placed as parts are, after them.
-    fn push_operands(&mut self, way: TrimWay) {
+    fn push_operands(&mut self, trim: Trimming) {
         for operand in std::mem::take(&mut self.solids.operands) {
             let first = self.faces.len();
             for face in operand.faces() {
-                let mut f = FaceData::new(face, operand.origin, true, way, false);
+                let mut f = FaceData::new(face, operand.origin, true, trim, false);
                 f.face.flags |= abi::FACE_OPERAND;
                 f.face.id = operand.primitive.id;
                 if face.colour.is_none() {

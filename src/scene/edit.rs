@@ -16,11 +16,11 @@
 //! each loop has an index of its own, and only the edited one's is made anew.
 
 use super::SceneData;
-use super::exact::{ExactData, ExactPlace};
+use super::exact::{ExactData, ExactPlace, exact_trim};
 use super::face::{Domain, loop_curves};
 use crate::abi::{self, Side};
 use crate::model::{FaceError, LoopAt, TrimLoop};
-use crate::trim::{ExactTrim, LoopIndex, RectSide};
+use crate::trim::{LoopIndex, RectSide};
 use bytemuck::Pod;
 use glam::DVec2;
 
@@ -61,6 +61,8 @@ pub(crate) struct EditScene {
 #[derive(Clone, Debug)]
 pub(crate) struct EditFace {
     pub domain: Domain,
+    /// Pass `coverage` measures its borders.
+    pub smooth: bool,
     pub loops: Vec<EditLoop>,
     pub patches: Vec<EditPatch>,
     pub first_patch: u32,
@@ -162,7 +164,7 @@ impl EditFace {
             Some((place, old)) => {
                 let mut loops: Vec<TrimLoop> = self.loops.iter().map(|l| l.shape.clone()).collect();
                 loops[edited] = new.clone();
-                let exact = ExactData::of(&ExactTrim::new(&loops, self.domain.origin, self.domain.size), place);
+                let exact = ExactData::of(&exact_trim(&loops, &self.domain, self.smooth), place);
                 let writes = place.writes(old, &exact).ok_or(EditError::NoRoom(at))?;
                 self.exact = Some((*place, exact));
                 writes

@@ -1,9 +1,17 @@
 //! The exact way's arrays: those of every face behind each other.
 
 use super::edit::{EditTarget, Write};
+use super::face::Domain;
 use crate::abi;
+use crate::model::TrimLoop;
 use crate::trim::ExactTrim;
 use bytemuck::Pod;
+
+/// One face's loops; where trims are smoothed, with what pass `coverage` needs.
+pub(super) fn exact_trim(loops: &[TrimLoop], domain: &Domain, smooth: bool) -> ExactTrim {
+    let make = if smooth { ExactTrim::with_flats } else { ExactTrim::new };
+    make(loops, domain.origin, domain.size)
+}
 
 /// See [`ExactTrim`]; numbers count from the beginning of the scene's arrays.
 #[derive(Clone, Debug, Default)]

@@ -1,6 +1,7 @@
 //! One face: patches, cells and trim curves, with indices relative to the face.
 
 use super::edit::{EditFace, EditLoop, EditPatch};
+use super::exact::exact_trim;
 use super::flatten::flattened;
 use crate::abi;
 use crate::abi::Side;
@@ -46,8 +47,17 @@ impl Domain {
     }
 }
 
+/// How the faces of a scene are trimmed.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Trimming {
+    pub way: TrimWay,
+    /// Pass `coverage` measures their borders.
+    pub smooth: bool,
+}
+
 impl FaceData {
-    pub(super) fn new(face: &Face, origin: DVec3, solid: bool, way: TrimWay, editable: bool) -> Self {
+    pub(super) fn new(face: &Face, origin: DVec3, solid: bool, trim: Trimming, editable: bool) -> Self {
+        let Trimming { way, smooth } = trim;
         let grid = flattened(face.surface.patches());
         let ((u0, u1), (v0, v1)) = face.surface.domain();
         let domain = Domain { origin: DVec2::new(u0, v0), size: DVec2::new(u1 - u0, v1 - v0) };
@@ -71,7 +81,7 @@ impl FaceData {
             curves: Vec::new(),
             curve_points: Vec::new(),
             exact: match way {
-                TrimWay::Exact if trimmed => ExactTrim::new(&face.loops, domain.origin, domain.size),
+                TrimWay::Exact if trimmed => exact_trim(&face.loops, &domain, smooth),
                 _ => ExactTrim::default(),
             },
             edit: None,
@@ -84,7 +94,7 @@ impl FaceData {
         for (n, (patch, side)) in grid.patches.iter().zip(&sides).enumerate() {
             data.push_patch(&grid, n, patch, (*side, editable), origin, &domain);
         }
-        data.edit = editable.then(|| data.edit_face(&grid, domain));
+        data.edit = editable.then(|| data.edit_face(&grid, domain, smooth));
         if let Some(edit) = data.edit.as_mut().filter(|_| !table) {
             edit.loops.extend(face.loops.iter().map(|l| EditLoop::new(l, 0, 0)));
         }
@@ -155,14 +165,23 @@ impl FaceData {
     }
 
     /// What edits need to know of the patches.
-    fn edit_face(&self, grid: &PatchGrid, domain: Domain) -> EditFace {
+    fn edit_face(&self, grid: &PatchGrid, domain: Domain, smooth: bool) -> EditFace {
         let rect = |p: &SurfacePatch| (DVec2::new(p.u.0, p.v.0), DVec2::new(p.u.1, p.v.1));
         let patch = |(p, word): (&SurfacePatch, &abi::Patch)| {
             let (lo, hi) = rect(p);
             EditPatch { lo, hi, shape: word.shape }
         };
         let patches = grid.patches.iter().zip(&self.patches).map(patch).collect();
-        EditFace { domain, loops: Vec::new(), patches, first_patch: 0, first_cell: 0, cells: Vec::new(), exact: None }
+        EditFace {
+            domain,
+            smooth,
+            loops: Vec::new(),
+            patches,
+            first_patch: 0,
+            first_cell: 0,
+            cells: Vec::new(),
+            exact: None,
+        }
     }
 
     /// One cell for each v-strip that the patch reaches.

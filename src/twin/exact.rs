@@ -93,7 +93,7 @@ impl Exact<'_> {
     }
 
     /// The arc passes `v`, which is above its lower end and not above its higher one, at some larger `u`.
-    fn lies_right(&self, arc: &ExactArc, [u, v]: [f32; 2]) -> bool {
+    pub(super) fn lies_right(&self, arc: &ExactArc, [u, v]: [f32; 2]) -> bool {
         if u < arc.low[0].min(arc.high[0]) {
             return true;
         }
@@ -142,7 +142,7 @@ impl Exact<'_> {
     }
 
     /// Point of a bent arc, relative to its lower end, by Horner's scheme in the Bernstein basis.
-    fn point(&self, first: usize, degree: u32, t: f32) -> [f32; 2] {
+    pub(super) fn point(&self, first: usize, degree: u32, t: f32) -> [f32; 2] {
         let control = |k: u32| -> [f32; 3] { std::array::from_fn(|i| self.points[first + 3 * k as usize + i]) };
         let s = 1.0 - t;
         let (mut f, mut c) = (1.0f32, 1.0f32);

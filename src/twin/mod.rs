@@ -12,6 +12,7 @@
 //! a quotient and 3 for a root, so there a `ceil` may come out one higher or lower.
 
 pub mod bound;
+pub mod coverage;
 pub mod cross;
 pub mod curve;
 pub mod density;

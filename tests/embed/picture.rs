@@ -147,3 +147,31 @@ fn a_background_is_encoded_once() {
         assert_eq!(host.shutdown(), [""; 0]);
     }
 }
+
+/// Smooth borders let the host's picture through: where it is of one colour, and blended in linear light by the
+/// target's format, the picture is that before a background of this colour, but for the rounding of eight bits, twice.
+#[test]
+fn smooth_trims_blend_with_what_the_host_drew() {
+    let host = Host::new();
+    let format = vk::Format::R8G8B8A8_SRGB;
+    let mut renderer = renderer(&host, &shapes::plate(), format);
+    let smooth = SceneSettings { smooth_trims: true, ..Default::default() };
+    renderer.upload_with(&shapes::plate(), smooth).unwrap();
+    let targets = Targets::new(&host, SIZE, format);
+    let camera = Camera { eye: DVec3::new(1.0, -2.0, 10.0), up: DVec3::Y, ..camera() };
+    let [kept, before_blue] = [None, Some(HOST_BLUE)].map(|background| {
+        draw(&host, &mut renderer, &targets, &camera, background);
+        targets.values().0
+    });
+    let mut mixed = 0;
+    // the host's boxes begin at a third
+    for i in (0..kept.len()).filter(|i| (*i as u32 % SIZE.0) < SIZE.0 / 3) {
+        let (a, b) = (kept[i], before_blue[i]);
+        assert!((0..4).all(|k| a[k].abs_diff(b[k]) <= 2), "pixel {i}: {a:?}, not {b:?}");
+        mixed += usize::from(a != BLUE && a[2] > a[0].saturating_add(20));
+    }
+    assert!(mixed > 10, "{mixed} pixels are mixed");
+    targets.destroy(&host);
+    drop(renderer);
+    assert_eq!(host.shutdown(), [""; 0]);
+}

@@ -8,6 +8,7 @@ mod accuracy;
 mod bands;
 mod cuts;
 mod distance;
+mod edges;
 mod errors;
 mod every_shape;
 mod hard;
@@ -26,6 +27,7 @@ mod shadows;
 #[path = "../shapes/mod.rs"]
 mod shapes;
 mod smooth;
+mod smooth_trims;
 mod solids;
 mod stair;
 mod support;

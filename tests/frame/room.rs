@@ -13,6 +13,7 @@ const BY_TABLE: SceneSettings = SceneSettings {
     solids: SolidWay::Events,
     editable: false,
     samples: Samples::One,
+    smooth_trims: false,
     thickness: false,
     highlight: None,
     sun: None,

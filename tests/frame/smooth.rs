@@ -6,6 +6,7 @@
 //! eighth of the tolerance too large ([`GROWTH_PX`]). The two together are the bound, and [`MORE`] what is granted
 //! beyond.
 
+use crate::edges::{blocks, contrast_errors, coverage_errors, covered, root_mean_square};
 use crate::shapes::{self, solids};
 use crate::support::{assert_identical, assert_silent, perspective, watched};
 use glam::{DVec2, DVec3};
@@ -15,15 +16,11 @@ use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings}
 use selvedge::reference::Tracer;
 
 const SIZE: (u32, u32) = (64, 48);
-/// Rays, and smaller pixels, to a pixel's side.
-const FINE: u32 = 16;
 /// By how much the faces of solids grow over their borders: a quarter of the ring, which is half the tolerance.
 const GROWTH_PX: f64 = 0.5 * 0.5 * 0.25;
 /// Granted beyond the expected error: corners and curves within a pixel, eight bits of colour, and that the edges of
 /// one picture are a few hundred, in few directions.
 const MORE: f64 = 1.15;
-/// Linear contrast in a pixel from which its error is compared.
-const CONTRAST: f64 = 0.1;
 const ALL: [Samples; 3] = [Samples::One, Samples::Four, Samples::Eight];
 
 /// Vulkan's standard sample locations, sixteenths of a pixel from its centre.
@@ -82,19 +79,6 @@ fn draw(renderer: &mut HeadlessRenderer, camera: &Camera, outputs: Outputs) -> P
     renderer.render(camera, &FrameSettings::default(), outputs).unwrap()
 }
 
-/// Linear, of an sRGB picture.
-fn linear(colour: [u8; 4]) -> DVec3 {
-    let one = |c: u8| {
-        let c = f64::from(c) / 255.0;
-        if c <= 0.040_45 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
-    };
-    DVec3::new(one(colour[0]), one(colour[1]), one(colour[2]))
-}
-
-fn root_mean_square(errors: &[f64]) -> f64 {
-    (errors.iter().map(|e| e * e).sum::<f64>() / errors.len() as f64).sqrt()
-}
-
 /// A plate of one colour with a round hole, trimmed: how much of a pixel it covers is seen in its colour, and known
 /// from 16 x 16 exact rays.
 #[test]
@@ -103,30 +87,13 @@ fn coverage_is_as_right_as_so_many_samples_can_be() {
     let tracer = Tracer::new(&model);
     let mut camera = perspective(&model, SIZE);
     camera.eye += DVec3::new(0.2, -0.4, 2.5);
-    let pixels = || (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| DVec2::new(f64::from(x), f64::from(y))));
-    let truth: Vec<f64> = pixels()
-        .map(|corner| {
-            let hit = |i: u32, n: u32| {
-                let at = DVec2::new(f64::from(i % n), f64::from(i / n)) + 0.5;
-                usize::from(tracer.first(&camera, corner + at / f64::from(n)).is_some())
-            };
-            let few = (0..16).map(|i| hit(i, 4)).sum::<usize>();
-            match few {
-                0 | 16 => few as f64 / 16.0,
-                _ => (0..FINE * FINE).map(|i| hit(i, FINE)).sum::<usize>() as f64 / f64::from(FINE * FINE),
-            }
-        })
-        .collect();
+    let truth = covered(&tracer, &camera);
     assert!(truth.iter().filter(|t| **t == 1.0).count() > 100);
     let errors = ALL.map(|samples| {
         let mut renderer = renderer(&model, samples);
         let picture = draw(&mut renderer, &camera, Outputs::default());
         assert_silent(renderer);
-        let plate = truth.iter().position(|t| *t == 1.0).unwrap();
-        let ink = 1.0 - linear(picture.colour[plate]).x;
-        let covered = |i: usize| (1.0 - linear(picture.colour[i]).x) / ink;
-        let edges: Vec<f64> =
-            (0..truth.len()).filter(|&i| truth[i] > 0.0 && truth[i] < 1.0).map(|i| covered(i) - truth[i]).collect();
+        let edges = coverage_errors(&picture, &truth);
         assert!(edges.len() > 100);
         let error = root_mean_square(&edges);
         println!("{samples:?}: {error:.4} of {:.4}, {} pixels", bound(samples), edges.len());
@@ -144,29 +111,14 @@ fn as_the_frame_sixteen_times_as_large() {
     let models = [shapes::cube(), shapes::cylinder(), shapes::beside(), ball];
     for model in models {
         let camera = perspective(&model, SIZE);
-        let large = Camera { size: (FINE * SIZE.0, FINE * SIZE.1), ..camera };
         let mut fine = renderer(&model, Samples::One);
-        let picture = draw(&mut fine, &large, Outputs::default());
+        let blocks = blocks(&mut fine, &camera);
         assert_silent(fine);
-        // mean and range of each pixel
-        let blocks: Vec<(DVec3, DVec3)> = (0..SIZE.0 * SIZE.1)
-            .map(|i| {
-                let (x, y) = (i % SIZE.0 * FINE, i / SIZE.0 * FINE);
-                let at = |k: u32| ((y + k / FINE) * large.size.0 + x + k % FINE) as usize;
-                let all: Vec<DVec3> = (0..FINE * FINE).map(|k| linear(picture.colour[at(k)])).collect();
-                let low = all.iter().fold(DVec3::INFINITY, |a, b| a.min(*b));
-                let high = all.iter().fold(DVec3::ZERO, |a, b| a.max(*b));
-                (all.iter().sum::<DVec3>() / all.len() as f64, high - low)
-            })
-            .collect();
         for samples in ALL {
             let mut renderer = renderer(&model, samples);
             let picture = draw(&mut renderer, &camera, Outputs::default());
             assert_silent(renderer);
-            let errors: Vec<f64> = (blocks.iter().zip(&picture.colour))
-                .filter(|((_, range), _)| range.max_element() > CONTRAST)
-                .map(|((mean, range), colour)| (linear(*colour) - *mean).length() / range.length())
-                .collect();
+            let errors = contrast_errors(&picture, &blocks);
             assert!(errors.len() > 50, "{}: {} pixels", model.name, errors.len());
             let (error, bound) = (root_mean_square(&errors), bound(samples));
             println!("{}, {samples:?}: {error:.4} of {bound:.4}, {} pixels", model.name, errors.len());

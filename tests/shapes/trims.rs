@@ -11,7 +11,7 @@ use selvedge::spline::{BSpline, Bezier, Control};
 
 #[allow(dead_code)]
 #[path = "../trim/shapes.rs"]
-mod loops;
+pub mod loops;
 use loops::{at, circle, closed, curve, polygon, rational, rectangle};
 
 /// Loops with answers.

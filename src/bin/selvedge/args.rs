@@ -53,6 +53,17 @@ pub enum Command {
     Convert(ConvertArgs),
 }
 
+/// How smooth edges are.
+#[derive(Debug, Args)]
+pub struct EdgeArgs {
+    /// Samples of each pixel's colour, 1, 4 or 8: smooth edges, at about as many times the cost
+    #[arg(long, value_name = "N", default_value = "1")]
+    pub samples: Samples,
+    /// Smooth the borders of trimmed faces, and nothing else, by the area that they cover of a pixel; trims exactly
+    #[arg(long)]
+    pub smooth_trims: bool,
+}
+
 #[derive(Debug, Args)]
 pub struct RenderArgs {
     /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
@@ -68,9 +79,8 @@ pub struct RenderArgs {
     pub camera: CameraArgs,
     #[command(flatten)]
     pub frame: FrameArgs,
-    /// Samples of each pixel's colour, 1, 4 or 8: smooth edges, at about as many times the cost
-    #[arg(long, value_name = "N", default_value = "1")]
-    pub samples: Samples,
+    #[command(flatten)]
+    pub edges: EdgeArgs,
     /// Also write an image as a NumPy array, row 0 on top: depth (f32, H x W, +inf is background), face (u32, H x W,
     /// 0 is background), uv (f32, H x W x 2, NaN is background), normal (f32, H x W x 3, 0 is background), thickness
     /// (f32, H x W: length of the ray within solids and closed parts, overlaps counted once)
@@ -157,9 +167,8 @@ pub struct BenchArgs {
     pub size: Size,
     #[command(flatten)]
     pub frame: FrameArgs,
-    /// Samples of each pixel's colour, 1, 4 or 8: smooth edges, at about as many times the cost
-    #[arg(long, value_name = "N", default_value = "1")]
-    pub samples: Samples,
+    #[command(flatten)]
+    pub edges: EdgeArgs,
     #[command(flatten)]
     pub cut: CutArgs,
     /// Drag a loop of the face with the most loops, once a frame, instead of moving the camera: latency, bytes sent,

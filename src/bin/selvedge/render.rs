@@ -15,7 +15,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     if let Some(path) = &args.camera_out {
         output::json(path, &CameraFile::from(&camera))?;
     }
-    let mut session = Session::sampled(&args.frame, &import, args.samples)?;
+    let mut session = Session::smooth(&args.frame, &import, &args.edges)?;
     let picture = session.render(&camera, wanted(&args.aov))?;
     output::png(&args.output, picture.size, &picture.colour)?;
     for aov in &args.aov {

@@ -1,6 +1,6 @@
 //! A model read and a renderer opened, with everything worth knowing told on standard error.
 
-use crate::args::{FrameArgs, SubdivideArgs};
+use crate::args::{EdgeArgs, FrameArgs, SubdivideArgs};
 use crate::output;
 use crate::progress::{during, importing};
 use anyhow::Result;
@@ -8,7 +8,7 @@ use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::import::{self, Import};
 use selvedge::model::{Camera, LoopAt, TrimLoop};
-use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, Samples, SceneSettings};
+use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, SceneSettings};
 use std::path::Path;
 use std::time::Instant;
 
@@ -47,9 +47,10 @@ impl Session {
         Self::with(args, import, SceneSettings::default())
     }
 
-    /// The same with several samples of each pixel's colour.
-    pub fn sampled(args: &FrameArgs, import: &Import, samples: Samples) -> Result<Self> {
-        Self::with(args, import, SceneSettings { samples, ..SceneSettings::default() })
+    /// The same with smooth edges.
+    pub fn smooth(args: &FrameArgs, import: &Import, edges: &EdgeArgs) -> Result<Self> {
+        let EdgeArgs { samples, smooth_trims } = *edges;
+        Self::with(args, import, SceneSettings { samples, smooth_trims, ..SceneSettings::default() })
     }
 
     /// The same with a model whose loops may be edited.

@@ -23,7 +23,17 @@ struct Part {
     right: f32,
 }
 
-pub(super) fn sorted_into(chains: Chains) -> ExactTrim {
+/// What becomes of arcs along a scan line where no chain leaves a cell by them.
+#[derive(Clone, Copy, PartialEq, Eq)]
+pub(super) enum Flats {
+    /// They are in no cell.
+    Left,
+    /// They are in the cells that touch them, of one band: the one whose top they are, or that they are within; of the
+    /// lowest scan line, the first.
+    Kept,
+}
+
+pub(super) fn sorted_into(chains: Chains, flats: Flats) -> ExactTrim {
     let borders = band_borders(&chains.arcs);
     let mut out = ExactTrim::default();
     let mut by_low: Vec<usize> = (0..chains.arcs.len()).collect();
@@ -31,19 +41,28 @@ pub(super) fn sorted_into(chains: Chains) -> ExactTrim {
     let mut coming = by_low.into_iter().peekable();
     let mut active: Vec<usize> = Vec::new();
     let mut parts = Vec::new();
-    let mut finder = CellFinder { chains: &chains, part_of: vec![usize::MAX; chains.arcs.len()] };
-    if let Some(&lowest) = borders.first() {
+    let lowest = borders.first().copied();
+    let touches = |i: usize, lo: f32, hi: f32| {
+        let v = chains.arcs[i].low[1];
+        let flat = chains.arcs[i].high[1] == v;
+        flats == Flats::Kept && flat && (v > lo || lowest == Some(v)) && v <= hi
+    };
+    let mut finder = CellFinder { chains: &chains, part_of: vec![usize::MAX; chains.arcs.len()], flats };
+    if let Some(lowest) = lowest {
         out.bands.push(Band { top: lowest, end: 0 });
     }
     for pair in borders.windows(2) {
         let (lo, hi) = (pair[0], pair[1]);
         active.retain(|&i| chains.arcs[i].high[1] > lo);
-        while let Some(i) = coming.next_if(|&i| chains.arcs[i].low[1] < hi) {
+        while let Some(i) = coming.next_if(|&i| chains.arcs[i].low[1] <= hi) {
             active.push(i);
         }
         parts.clear();
         parts.extend(
-            active.iter().filter(|&&i| reaches(&chains.arcs[i], lo, hi)).map(|&i| part(&chains.arcs, i, lo, hi)),
+            active
+                .iter()
+                .filter(|&&i| reaches(&chains.arcs[i], lo, hi) || touches(i, lo, hi))
+                .map(|&i| part(&chains.arcs, i, lo, hi)),
         );
         finder.add_cells(&mut out, &parts, lo, hi);
         out.bands.push(Band { top: hi, end: out.cells.len() as u32 });
@@ -114,6 +133,7 @@ struct CellFinder<'a> {
     chains: &'a Chains,
     /// Of each arc its part of the band, or `usize::MAX`.
     part_of: Vec<usize>,
+    flats: Flats,
 }
 
 impl CellFinder<'_> {
@@ -171,7 +191,7 @@ impl CellFinder<'_> {
                 cell.winding -= if high { sign(arc) } else { -sign(arc) };
             }
         }
-        if flags != 0 || arc.low[1] < arc.high[1] {
+        if flags != 0 || arc.low[1] < arc.high[1] || self.flats == Flats::Kept {
             out.entries.push((p.arc as u32) << 2 | flags);
             cell.count += 1;
         }

@@ -108,8 +108,13 @@ pub struct ExactTrim {
 impl ExactTrim {
     /// Prepares `loops`, whose coordinates `p` become `(p - origin) / size`; `O(n log n)`.
     pub fn new(loops: &[TrimLoop], origin: DVec2, size: DVec2) -> Self {
-        let chains = arcs::chains(loops, origin, size);
-        bands::sorted_into(chains)
+        bands::sorted_into(arcs::chains(loops, origin, size), bands::Flats::Left)
+    }
+
+    /// As [`new`](Self::new), with arcs along scan lines in the cells beside them: they cross no scan line, so no winding
+    /// number asks for them, but they are part of the border that pass `coverage` measures.
+    pub fn with_flats(loops: &[TrimLoop], origin: DVec2, size: DVec2) -> Self {
+        bands::sorted_into(arcs::chains(loops, origin, size), bands::Flats::Kept)
     }
 
     /// Bound of the distance between an arc of this degree as the shader evaluates it and the true one,

@@ -1,0 +1,301 @@
+//! The covered share of a pixel: its twin against closed forms and against the loops in `f64`, and parity of
+//! `coverage.glsl` with its twin.
+
+use super::Random;
+use super::exact::{random_loop, twin};
+use super::hard::{
+    self,
+    loops::{circle, closed, curve, polygon},
+};
+use crate::model::TrimLoop;
+use crate::scene::ExactData;
+use crate::spline::Bezier;
+use crate::trim::{ExactTrim, LoopIndex};
+use crate::twin::coverage::{Along, Cover, MOST_CELLS};
+use glam::{DMat2, DVec2};
+
+/// Points to a pixel's side, of which the reference counts those inside.
+const FINE: u32 = 48;
+
+fn data(faces: &[Vec<TrimLoop>]) -> ExactData {
+    let mut data = ExactData::default();
+    for loops in faces {
+        data.push(&ExactTrim::with_flats(loops, DVec2::ZERO, DVec2::ONE), false);
+    }
+    data
+}
+
+/// A pixel somewhere in the domain.
+#[derive(Clone, Copy, Debug)]
+struct Pixel {
+    uv: [f32; 2],
+    along: Along,
+}
+
+impl Pixel {
+    /// Around `uv`, some `size` of the domain wide: turned, skewed, and seen from either side.
+    fn random(random: &mut Random, uv: DVec2, size: f64) -> Self {
+        let first = DVec2::from_angle(random.range(0.0, std::f64::consts::TAU));
+        let turn = random.range(0.3, 2.8) * if random.integer(0, 1) == 0 { 1.0 } else { -1.0 };
+        let second = DVec2::from_angle(turn).rotate(first) * 2f64.powf(random.range(-1.5, 1.5));
+        let grid = random.integer(0, 3) == 0;
+        let (first, second) = if grid { (DVec2::X, DVec2::NEG_Y) } else { (first, second) };
+        let along = [first, second].map(|d| (d / size).as_vec2().to_array());
+        Self { uv: uv.as_vec2().to_array(), along }
+    }
+
+    /// From pixels to the domain.
+    fn to_domain(self) -> impl Fn(DVec2) -> DVec2 {
+        let [u, v] = self.along.map(|d| DVec2::from(d.map(f64::from)));
+        let inverse = DMat2::from_cols(u, v).inverse();
+        let centre = DVec2::from(self.uv.map(f64::from));
+        move |p| centre + inverse * p
+    }
+}
+
+fn cover(data: &ExactData, face: usize, pixel: &Pixel) -> Cover {
+    twin(data).cover(face, pixel.uv, pixel.along)
+}
+
+/// Winding numbers of points of the pixel, evenly spread.
+fn windings(index: &LoopIndex, pixel: &Pixel) -> Vec<i32> {
+    let to_domain = pixel.to_domain();
+    let at = |i: u32| (f64::from(i) + 0.5) / f64::from(FINE) - 0.5;
+    let points = (0..FINE * FINE).map(|i| DVec2::new(at(i % FINE), at(i / FINE)));
+    points.map(|p| index.winding(to_domain(p))).collect()
+}
+
+/// Of the unit square around the origin, what lies within `offset` along the unit vector `normal`.
+fn half_plane(normal: DVec2, offset: f64) -> f64 {
+    let (small, large) = (normal.abs().min_element(), normal.abs().max_element());
+    let from_corner = 0.5 * (small + large) - offset.abs();
+    let cut = match from_corner {
+        x if x <= 0.0 => 0.0,
+        x if x < small => x * x / (2.0 * small * large),
+        x => (x - 0.5 * small) / large,
+    };
+    if offset < 0.0 { cut } else { 1.0 - cut }
+}
+
+/// A square whose one side runs through the pixel: the closed form of a half plane, within the rounding of `f32`:
+/// pixels are some 1e-3 of the domain, so 2⁻²⁴ of the domain is 6e-5 of a pixel, met by the border's length.
+#[test]
+fn a_straight_border_covers_what_its_half_plane_does() {
+    let mut random = Random::new(21);
+    let (mut cut, mut worst) = (0, 0.0f64);
+    for _ in 0..4000 {
+        let inward = DVec2::from_angle(random.range(0.0, std::f64::consts::TAU));
+        let inward = if random.integer(0, 4) == 0 { DVec2::Y } else { inward };
+        let base = DVec2::splat(0.5);
+        let side = 0.2 * inward.perp();
+        let corners = [base - side, base - side + 0.3 * inward, base + side + 0.3 * inward, base + side];
+        let square = polygon(&corners.map(|p| (p.x, p.y)));
+        let square = if random.integer(0, 1) == 0 { square } else { square.reversed() };
+        let pixel = Pixel::random(&mut random, base, 1e-3);
+        let to_domain = pixel.to_domain();
+        let uv = base + (to_domain(DVec2::X) - base) * random.range(-0.8, 0.8);
+        let pixel = Pixel { uv: uv.as_vec2().to_array(), ..pixel };
+        // the border in pixels: points p with inward · (centre + M p - base) = 0
+        let centre = DVec2::from(pixel.uv.map(f64::from));
+        let slope = |d: DVec2| inward.dot(pixel.to_domain()(d) - centre);
+        let gradient = DVec2::new(slope(DVec2::X), slope(DVec2::Y));
+        let offset = -inward.dot(centre - base) / gradient.length();
+        let expected = 1.0 - half_plane(gradient.normalize(), offset);
+        let found = cover(&data(&[vec![square]]), 0, &pixel);
+        let off = (f64::from(found.share) - expected).abs();
+        assert!(off < 4e-4, "{found:?}, not {expected}, at {pixel:?}, inward {inward}");
+        cut += usize::from(found.cut);
+        worst = worst.max(off);
+        if found.cut && expected > 0.01 && expected < 0.99 {
+            let outward = DVec2::from(found.outward.map(f64::from)).normalize();
+            assert!(outward.dot(-gradient.normalize()) > 0.99, "{outward}, not {}", -gradient.normalize());
+        }
+    }
+    println!("{cut} pixels cut, worst {worst:e}");
+    assert!(cut > 2000 && worst > 0.0);
+}
+
+/// Discs and stars from half a pixel to many, holes, corners and slits, borders that waver by roundings: against 48 x 48 points. Those count a border
+/// along a row of them by half a row, 0.010, and are off by less elsewhere; arcs of half a pixel's radius bulge over their
+/// chords by an area of 0.007.
+#[test]
+fn shapes_cover_what_points_in_them_say() {
+    let mut random = Random::new(22);
+    let (mut cut, mut worst, mut sum) = (0, 0.0f64, 0.0);
+    for _ in 0..3000 {
+        let centre = DVec2::new(random.range(0.3, 0.7), random.range(0.3, 0.7));
+        let size = 10f64.powf(random.range(-4.0, -1.5));
+        let radius = size * 10f64.powf(random.range(-0.3, 1.5));
+        let star = |n: u32, spread: f64| {
+            let corner = |i: u32| {
+                let far = if i.is_multiple_of(2) { radius } else { radius * spread };
+                centre + DVec2::from_angle(f64::from(i) / f64::from(n) * std::f64::consts::TAU) * far
+            };
+            polygon(&(0..n).map(|i| (corner(i).x, corner(i).y)).collect::<Vec<_>>())
+        };
+        let square = polygon(&[(0.01, 0.01), (0.99, 0.01), (0.99, 0.99), (0.01, 0.99)]);
+        let wave = |random: &mut Random, n: i32| {
+            let at = |i: i32| DVec2::new(0.1 + 0.8 * f64::from(i) / f64::from(3 * n), centre.y);
+            let height = 10f64.powf(random.range(-8.0, -6.0));
+            let points: Vec<_> = (0..=3 * n).map(|i| at(i) + DVec2::Y * random.range(-height, height)).collect();
+            let cubic = |i: usize| curve(&points[i..i + 4].iter().map(|p| (p.x, p.y)).collect::<Vec<_>>());
+            let corners = [points[points.len() - 1], DVec2::new(0.9, 0.95), DVec2::new(0.1, 0.95), points[0]];
+            let sides = corners.windows(2).map(|pair| Bezier::line(pair[0], pair[1]));
+            closed((0..points.len() - 1).step_by(3).map(cubic).chain(sides).collect())
+        };
+        let shape = match random.integer(0, 4) {
+            0 => vec![circle(centre, radius)],
+            1 => vec![square, circle(centre, radius).reversed()],
+            4 => vec![wave(&mut random, 4)],
+            2 => vec![star(4, random.range(0.02, 1.0))],
+            _ => vec![star(10, 0.5).reversed()],
+        };
+        let way = DVec2::from_angle(random.range(0.0, std::f64::consts::TAU));
+        let is_wave = shape.len() == 1 && shape[0].curves().count() == 7;
+        let far = if is_wave { size } else { radius };
+        let uv = centre + way * far * random.range(0.4, 1.1) * if is_wave { random.range(0.0, 1.0) } else { 1.0 };
+        let pixel = Pixel::random(&mut random, uv, size);
+        let found = cover(&data(std::slice::from_ref(&shape)), 0, &pixel);
+        let windings = windings(&LoopIndex::new(&shape), &pixel);
+        let expected = windings.iter().filter(|w| **w != 0).count() as f64 / windings.len() as f64;
+        let off = (f64::from(found.share) - expected).abs();
+        assert!(off < 0.02, "{found:?}, not {expected}, at {pixel:?} of {shape:?}");
+        if found.cut {
+            (cut, worst, sum) = (cut + 1, worst.max(off), sum + off * off);
+        }
+    }
+    println!("{cut} pixels cut, worst {worst:.4}, root mean square {:.5}", (sum / f64::from(cut)).sqrt());
+    assert!(cut > 1000 && (sum / f64::from(cut)).sqrt() < 0.003);
+}
+
+/// Every hard case of trimming, loops that turn back, touch, or run along scan lines, at pixels beside its rows
+/// and in its focus; where no point of a pixel is within two loops.
+#[test]
+fn hard_cases() {
+    let mut random = Random::new(23);
+    let (mut cut, mut asked) = (0, 0);
+    let mut left_whole = Vec::new();
+    for case in hard::all() {
+        let (index, data) = (LoopIndex::new(&case.loops), data(std::slice::from_ref(&case.loops)));
+        let rows = case.rows.iter().map(|&(u, v, _)| (u, v)).chain([case.focus; 8]);
+        for (u, v) in rows.take(40) {
+            let size = 10f64.powf(random.range(-3.5, -1.5));
+            let mut near = |reach: f64| random.range(-reach, reach) * size;
+            let uv = DVec2::new(u + near(0.7), v + near(0.7));
+            let pixel = Pixel::random(&mut random, uv, size);
+            let windings = windings(&index, &pixel);
+            if windings.iter().any(|w| w.abs() > 1) || (windings.contains(&1) && windings.contains(&-1)) {
+                continue;
+            }
+            let found = cover(&data, 0, &pixel);
+            let expected = windings.iter().filter(|w| **w != 0).count() as f64 / windings.len() as f64;
+            let off = (f64::from(found.share) - expected).abs();
+            if off > 0.025 && !found.cut {
+                left_whole.push(case.name);
+                continue;
+            }
+            assert!(off < 0.025, "{}: {found:?}, not {expected}, at {pixel:?}", case.name);
+            cut += usize::from(found.cut);
+            asked += 1;
+        }
+    }
+    println!("{cut} of {asked} pixels cut; left whole, more than {MOST_CELLS} cells: {left_whole:?}");
+    assert!(left_whole.iter().all(|name| ["7 comb", "7 holes"].contains(name)));
+    assert!(cut > 100 && asked > 2 * hard::all().len());
+}
+
+/// Of `tests/gpu/glsl/coverage.comp`, which wraps the include.
+#[cfg(feature = "headless")]
+mod parity {
+    use super::super::harness::{Gpu, Mismatch, same};
+    use super::*;
+    use crate::gpu::{Binding, ComputeInfo, Pipeline};
+
+    fn spirv() -> Vec<u32> {
+        let bytes = include_bytes!("../../tests/gpu/spirv/coverage.comp.spv");
+        bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
+    }
+
+    /// Pixels of each face on the GPU, with the data of `given`, against the twin with `expected`; bits of numbers.
+    fn compare(gpu: &Gpu, given: &ExactData, expected: &ExactData, pixels: &[Vec<Pixel>]) -> Result<(), Mismatch> {
+        let buffers = [
+            gpu.upload("faces", &given.faces),
+            gpu.upload("bands", &given.bands),
+            gpu.upload("cells", &given.cells),
+            gpu.upload("entries", &given.entries),
+            gpu.upload("arcs", &given.arcs),
+            gpu.upload("points", &given.points),
+        ];
+        let (spirv, bindings) = (spirv(), [Binding::Storage; 8]);
+        let info = ComputeInfo { name: "coverage", spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
+        let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
+        for (face, pixels) in pixels.iter().enumerate() {
+            let words: Vec<[[f32; 2]; 3]> = pixels.iter().map(|p| [p.uv, p.along[0], p.along[1]]).collect();
+            let asked = gpu.upload("asked", &words);
+            let answers = gpu.upload("answers", &vec![[99u32; 4]; pixels.len()]);
+            gpu.run(|cmd| {
+                let resources: Vec<_> = buffers.iter().chain([&asked, &answers]).map(Into::into).collect();
+                cmd.bind(&pipeline, &resources, bytemuck::bytes_of(&[face as u32, pixels.len() as u32]));
+                cmd.dispatch(pixels.len().div_ceil(64) as u32);
+            });
+            let twin: Vec<_> = pixels.iter().map(|pixel| words_of(cover(expected, face, pixel))).collect();
+            // 0 and -0 are the same border
+            let unsigned = |word: u32| if word == (-0.0f32).to_bits() { 0 } else { word };
+            let answers: Vec<[u32; 4]> = gpu.read(&answers, pixels.len());
+            let answers: Vec<_> = answers.into_iter().map(|a| a.map(unsigned)).collect();
+            same("answers", &answers, &twin)?;
+        }
+        Ok(())
+    }
+
+    /// As in `coverage.comp`.
+    fn words_of(c: Cover) -> [u32; 4] {
+        let [x, y] = c.outward.map(|x| (x + 0.0).to_bits());
+        [c.share.to_bits(), x, y, u32::from(c.cut)]
+    }
+
+    fn faces() -> (Vec<Vec<TrimLoop>>, Vec<Vec<Pixel>>) {
+        let mut random = Random::new(24);
+        let mut faces: Vec<Vec<TrimLoop>> = hard::all().into_iter().map(|case| case.loops).collect();
+        faces.extend((0..30).map(|_| vec![random_loop(&mut random), random_loop(&mut random)]));
+        let pixels = faces.iter().map(|loops| {
+            let curves: Vec<_> = loops.iter().flat_map(TrimLoop::curves).collect();
+            let mut pixels: Vec<Pixel> = (0..120)
+                .map(|_| {
+                    let curve = &curves[random.integer(0, curves.len() as u32 - 1) as usize];
+                    let size = 10f64.powf(random.range(-4.0, -1.0));
+                    let off = DVec2::new(random.range(-0.6, 0.6), random.range(-0.6, 0.6)) * size;
+                    let uv = curve.point(random.range(0.0, 1.0)) + off;
+                    Pixel::random(&mut random, uv, size)
+                })
+                .collect();
+            let along = pixels[0].along;
+            pixels.push(Pixel { uv: [f32::NAN, 0.5], along });
+            pixels.push(Pixel { uv: [0.5; 2], along: [[0.0; 2]; 2] });
+            pixels
+        });
+        let pixels = pixels.collect();
+        (faces, pixels)
+    }
+
+    #[test]
+    fn parity() {
+        let gpu = Gpu::new();
+        let (faces, pixels) = faces();
+        let data = data(&faces);
+        compare(&gpu, &data, &data, &pixels).unwrap();
+        gpu.finish();
+    }
+
+    #[test]
+    fn a_difference_is_seen() {
+        let gpu = Gpu::new();
+        let (faces, pixels) = faces();
+        let data = data(&faces);
+        let mut other = data.clone();
+        let arc = other.arcs.iter().position(|arc| arc.shape & 31 == 2).unwrap();
+        other.arcs[arc].shape ^= crate::abi::ARC_UP;
+        assert!(compare(&gpu, &other, &data, &pixels).is_err());
+        gpu.finish();
+    }
+}

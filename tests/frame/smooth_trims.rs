@@ -1,0 +1,215 @@
+//! Smooth trims: coverage of pixels at trim curves, against exact rays and against the same frame sixteen times as large.
+//!
+//! The share is exact but for what [`selvedge::twin::coverage`] says, so what is left is the colours' eight bits, the
+//! reference's own 16 x 16 points, and pixels in which more meets than one border of what a centre sees.
+
+use crate::edges::{blocks, contrast_errors, coverage_errors, covered, linear, root_mean_square};
+use crate::shapes;
+use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched_with};
+use glam::{DVec2, DVec3};
+use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
+use selvedge::model::{Camera, LoopAt, Model, Projection, TrimLoop};
+use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, Samples, SceneSettings, TrimWay};
+use selvedge::reference::Tracer;
+use selvedge::renderer::RenderError;
+use selvedge::spline::{Bezier, Control};
+
+const SIZE: (u32, u32) = (64, 48);
+
+const SMOOTH: SceneSettings = SceneSettings { smooth_trims: true, ..plain() };
+
+const fn plain() -> SceneSettings {
+    SceneSettings {
+        trim: Some(TrimWay::Exact),
+        solids: selvedge::picture::SolidWay::Events,
+        editable: false,
+        samples: Samples::One,
+        smooth_trims: false,
+        thickness: false,
+        highlight: None,
+        sun: None,
+        solid_budget: None,
+    }
+}
+
+fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
+    let mut renderer = watched_with(model, settings);
+    let picture = render(&mut renderer, camera);
+    assert_silent(renderer);
+    picture
+}
+
+/// The plate's outline, and round holes: centre and radius.
+fn holes(holes: &[(DVec2, f64)]) -> Model {
+    let mut model = shapes::plate();
+    let loops = &mut model.parts[0].faces[0].loops;
+    let (lo, hi) = loops[1].bounds();
+    let (centre, radius) = (0.5 * (lo + hi), 0.5 * (hi.x - lo.x));
+    let hole = loops.remove(1);
+    loops.extend(holes.iter().map(|&(at, size)| {
+        let moved = |p: &DVec3| DVec3::from_point(at + (p.point() - centre) * (size / radius), p.z);
+        let curves = hole.curves().map(|c| Bezier { points: c.points.iter().map(moved).collect() });
+        TrimLoop::new(curves.collect(), DVec2::splat(1e-12)).unwrap()
+    }));
+    model
+}
+
+/// From above, from the side, from near, and in a parallel view.
+fn views(model: &Model) -> Vec<(&'static str, Camera)> {
+    let above = perspective(model, SIZE);
+    let moved = |by: DVec3| Camera { eye: above.eye + by, ..above };
+    let near = Camera { projection: Projection::Perspective { fov_y: 0.3 }, ..above };
+    vec![
+        ("above", moved(DVec3::new(0.2, -0.4, 2.5))),
+        ("beside", moved(DVec3::new(0.7, 0.3, -0.9))),
+        ("near", near),
+        ("parallel", orthographic(model, SIZE)),
+    ]
+}
+
+/// A plate with a round hole, straight and bent borders: of samples, eight are off by 0.06 (`smooth.rs`).
+#[test]
+fn a_plates_borders_cover_what_exact_rays_say() {
+    let model = shapes::plate();
+    let tracer = Tracer::new(&model);
+    for (name, camera) in views(&model) {
+        let truth = covered(&tracer, &camera);
+        let error = |settings| {
+            let errors = coverage_errors(&draw(&model, settings, &camera), &truth);
+            (root_mean_square(&errors), errors.iter().fold(0.0f64, |a, e| a.max(e.abs())), errors.len())
+        };
+        let (rough, (smooth, worst, pixels)) = (error(plain()).0, error(SMOOTH));
+        println!("{name}: {rough:.4}, smooth {smooth:.4}, worst {worst:.3}, {pixels} pixels");
+        assert!(pixels > 60 && rough > 0.2, "{name}: {rough}, {pixels}");
+        assert!(smooth <= 0.02, "{name}: {smooth}");
+    }
+}
+
+/// Faces of a solid that meet at an edge, each of a colour of its own; what has no trim curve at its border stays as it is.
+#[test]
+fn solids_are_as_the_frame_sixteen_times_as_large() {
+    let mut cube = shapes::cube();
+    for (i, face) in cube.parts[0].faces.iter_mut().enumerate() {
+        let on = |bit: usize| if (i + 1) & bit != 0 { 0.9 } else { 0.1 };
+        face.colour = Some([on(1), on(2), on(4), 1.0]);
+    }
+    for (model, bound) in [(cube, 0.1), (shapes::cylinder(), 0.8), (shapes::beside(), 0.95)] {
+        for camera in [perspective(&model, SIZE), orthographic(&model, SIZE)] {
+            let mut fine = watched_with(&model, plain());
+            let blocks = blocks(&mut fine, &camera);
+            assert_silent(fine);
+            let errors = |settings| contrast_errors(&draw(&model, settings, &camera), &blocks);
+            let (rough, smooth) = (errors(plain()), errors(SMOOTH));
+            let worse = rough.iter().zip(&smooth).fold(0.0f64, |a, (r, s)| a.max(s - r));
+            let pixels = rough.len();
+            let (rough, smooth) = (root_mean_square(&rough), root_mean_square(&smooth));
+            println!("{}: {rough:.4}, smooth {smooth:.4}, {pixels} pixels, worse by {worse:.3}", model.name);
+            assert!(pixels > 50 && smooth <= bound * rough, "{}: {smooth} of {rough}", model.name);
+            assert!(worse < 0.1, "{}: a pixel is worse by {worse}", model.name);
+        }
+    }
+}
+
+/// Holes of half a pixel to one and a half, 5 x 5 of each: those that no centre sees through are not seen at all.
+#[test]
+fn small_holes() {
+    for (radius, bound) in [(0.5, 0.15), (1.0, 0.08), (1.5, 0.08)] {
+        let camera =
+            |model: &Model| Camera::framing(model.bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, (160, 120));
+        let model = shapes::plate();
+        let px = {
+            let camera = camera(&model);
+            let pixel = |p: DVec3| camera.project(p).expect("in front of the eye").0;
+            pixel(DVec3::X * 0.01).distance(pixel(DVec3::ZERO)) / 0.01
+        };
+        let at = |i: i32| DVec2::new(f64::from(i % 5 - 2) * 1.137, f64::from(i / 5 - 2) * 1.129);
+        let model = holes(&(0..25).map(|i| (at(i), radius / px)).collect::<Vec<_>>());
+        let camera = camera(&model);
+        let truth = covered(&Tracer::new(&model), &camera);
+        let error = |settings| root_mean_square(&coverage_errors(&draw(&model, settings, &camera), &truth));
+        let (rough, smooth) = (error(plain()), error(SMOOTH));
+        println!("radius {radius} px ({px:.1} px a unit): {rough:.4}, smooth {smooth:.4}");
+        assert!(smooth <= bound && smooth <= rough, "{radius}: {smooth} of {rough}");
+    }
+}
+
+/// Images but the colour are as without, bit for bit, and so is the colour of pixels farther than 1.5 px from what another
+/// pixel sees: those whose eight neighbours see the same face.
+#[test]
+fn nothing_else_changes() {
+    for shape in shapes::all() {
+        let cameras = [perspective(&shape.model, SIZE), orthographic(&shape.model, SIZE)];
+        let [before, after] = [plain(), SMOOTH].map(|settings| {
+            let mut renderer = watched_with(&shape.model, settings);
+            let pictures = cameras.map(|camera| render(&mut renderer, &camera));
+            assert_silent(renderer);
+            pictures
+        });
+        for (before, after) in before.into_iter().zip(after) {
+            let same_colour = Picture { colour: before.colour.clone(), stats: before.stats.clone(), ..after.clone() };
+            assert_identical(&before, &same_colour, shape.name);
+            let (width, height) = (SIZE.0 as i32, SIZE.1 as i32);
+            let mut changed = 0;
+            for (i, face) in before.face.iter().enumerate() {
+                let (x, y) = (i as i32 % width, i as i32 / width);
+                let beside = (0..9).map(|k| (x + k % 3 - 1, y + k / 3 - 1));
+                let mut beside = beside.filter(|(x, y)| (0..width).contains(x) && (0..height).contains(y));
+                let alone = beside.all(|(x, y)| before.face[(y * width + x) as usize] == *face);
+                // several placed copies have one face's number
+                let copies = shape.model.instances.len() > 1;
+                assert!(!alone || copies || before.colour[i] == after.colour[i], "{}: pixel {x} {y}", shape.name);
+                changed += usize::from(before.colour[i] != after.colour[i]);
+            }
+            if !shape.trimmed {
+                assert_eq!(changed, 0, "{}", shape.name);
+            }
+        }
+    }
+}
+
+/// Image, pass and pipeline exist where trims are smoothed, and there are some.
+#[test]
+fn only_smooth_trims_have_what_they_need() {
+    let camera = |model: &Model| perspective(model, SIZE);
+    for (model, settings, has) in
+        [(shapes::plate(), SMOOTH, true), (shapes::plate(), plain(), false), (shapes::wave(), SMOOTH, false)]
+    {
+        let mut renderer = watched_with(&model, settings);
+        renderer.render(&camera(&model), &FrameSettings::default(), Outputs::default()).unwrap();
+        let objects = renderer.objects();
+        let of_coverage: Vec<_> =
+            objects.iter().filter(|o| *o == "coverage" || *o == "resolved" || o.contains("smooth trims")).collect();
+        assert_eq!(of_coverage.len(), if has { 3 } else { 0 }, "{}: {of_coverage:?}", model.name);
+        assert_silent(renderer);
+    }
+}
+
+#[test]
+fn a_loop_that_is_edited_is_smooth_at_once() {
+    let model = holes(&[(DVec2::new(0.3, 0.6), 0.9)]);
+    let edited = holes(&[(DVec2::new(-0.6, 0.3), 1.2)]);
+    let camera = perspective(&model, SIZE);
+    let mut renderer = watched_with(&model, SceneSettings { editable: true, ..SMOOTH });
+    renderer.render(&camera, &FrameSettings::default(), Outputs::default()).unwrap();
+    let at = LoopAt { part: 0, face: 0, trim_loop: 1 };
+    renderer.edit_loop(at, &edited.parts[0].faces[0].loops[1]).unwrap();
+    let after = renderer.render(&camera, &FrameSettings::default(), Outputs::ALL).unwrap();
+    assert_silent(renderer);
+    assert_identical(&draw(&edited, SMOOTH, &camera), &after, "after the edit");
+    assert!(after.colour.iter().any(|c| (0.3..0.9).contains(&linear(*c).x)));
+}
+
+#[test]
+fn what_does_not_go_with_it_is_refused() {
+    let mut renderer = HeadlessRenderer::new(&HeadlessOptions { device: None, validation: false }).unwrap();
+    let mut refused = |settings: SceneSettings| match renderer.upload_with(&shapes::beside(), settings) {
+        Err(HeadlessError::Render(RenderError::SmoothTrims(what))) => what.to_owned(),
+        other => panic!("{other:?}"),
+    };
+    assert!(refused(SceneSettings { samples: Samples::Four, ..SMOOTH }).contains("samples"));
+    assert!(refused(SceneSettings { trim: Some(TrimWay::Table), ..SMOOTH }).contains("exact"));
+    let marked = SceneSettings { highlight: Some(Highlight::default()), ..SMOOTH };
+    let refused = renderer.upload_with(&shapes::solids::holes(2), marked);
+    assert!(matches!(refused, Err(HeadlessError::Render(RenderError::SmoothTrims(what))) if what.contains("mark")));
+    renderer.upload_with(&shapes::beside(), SceneSettings { trim: None, ..SMOOTH }).unwrap();
+}
