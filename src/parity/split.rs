@@ -15,7 +15,8 @@ fn compare(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<()
     let factors = gpu.upload("factors", &vec![UNTOUCHED; n * size_of::<Factors>() / 4]);
     let sub_patch_counts = gpu.upload("sub-patch counts", &vec![UNTOUCHED; 2 * n]);
     let vertex_counts = gpu.upload("vertex counts", &vec![UNTOUCHED; 2 * n]);
-    let pass = Split::new(gpu.device()).unwrap();
+    let links = (!case.data.links.is_empty()).then(|| gpu.upload("links", &case.data.links));
+    let pass = Split::new(gpu.device(), links.is_some()).unwrap();
     let bindings = Bindings {
         frame: &s.frame,
         face_instances: &s.face_instances,
@@ -26,6 +27,7 @@ fn compare(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<()
         factors: &factors,
         sub_patch_counts: &sub_patch_counts,
         vertex_counts: &vertex_counts,
+        links: links.as_ref(),
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
     let twin = twin::split::split(&case.frame, &case.scene(), expected);

@@ -2,7 +2,8 @@
 
 use super::edit::EditScene;
 use super::exact::ExactData;
-use super::face::{FaceData, pack_colour};
+use super::face::{Cuts, FaceData, pack_colour};
+use super::link::link;
 use super::mesh::Meshes;
 use super::solids::{Lists, SolidData, UndrawnSolid};
 use super::sun::SunData;
@@ -21,6 +22,8 @@ use std::ops::Range;
 pub(crate) struct SceneData {
     pub patches: Vec<abi::Patch>,
     pub points: Vec<[f32; 4]>,
+    /// Four a patch; none where no faces without trims share a side.
+    pub links: Vec<abi::Link>,
     pub faces: Vec<abi::Face>,
     pub face_instances: Vec<abi::FaceInstance>,
     pub instances: Vec<abi::Instance>,
@@ -121,12 +124,15 @@ impl SceneData {
             let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
             origins.push(origin);
             if used {
+                let cuts = Cuts::of(&part.faces);
                 let faces: Vec<FaceData> = part
                     .faces
                     .par_iter()
-                    .map(|f| FaceData::new(f, origin, part.closed && !open, way, settings.editable))
+                    .map(|f| FaceData::new(f, origin, part.closed && !open, (way, settings.editable), cuts))
                     .collect();
+                let first = data.faces.len();
                 faces.into_iter().for_each(|f| data.push_face(f));
+                data.link(first);
                 #[cfg(feature = "rivals")]
                 if let TrimWay::Rival(Rival::Bisect { steps, sorted }) = way {
                     part.faces.iter().for_each(|f| data.bisect.push(f, steps, sorted));
@@ -143,7 +149,15 @@ impl SceneData {
         }
         data.meshes = Meshes::new(model, &origins, open);
         data.push_operands(way);
+        if !data.links.is_empty() {
+            data.links.resize(4 * data.patches.len(), abi::Link::default());
+        }
         Ok(data)
+    }
+
+    /// The faces from this one on meet along sides, where they do.
+    fn link(&mut self, first_face: usize) {
+        link(&self.faces, first_face..self.faces.len(), &self.patches, &mut self.points, &mut self.links);
     }
 
     /// How faces are trimmed; `None` when no patch is.
@@ -170,8 +184,9 @@ impl SceneData {
     fn push_operands(&mut self, way: TrimWay) {
         for operand in std::mem::take(&mut self.solids.operands) {
             let first = self.faces.len();
+            let cuts = Cuts::of(operand.faces());
             for face in operand.faces() {
-                let mut f = FaceData::new(face, operand.origin, true, way, false);
+                let mut f = FaceData::new(face, operand.origin, true, (way, false), cuts);
                 f.face.flags |= abi::FACE_OPERAND;
                 f.face.id = operand.primitive.id;
                 if face.colour.is_none() {
@@ -179,6 +194,7 @@ impl SceneData {
                 }
                 self.push_face(f);
             }
+            self.link(first);
             let faces = first..self.faces.len();
             self.has_operands |= !faces.is_empty();
             let transform = operand.primitive.transform;

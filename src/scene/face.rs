@@ -1,6 +1,7 @@
 //! One face: patches, cells and trim curves, with indices relative to the face.
 
 use super::edit::{EditFace, EditLoop, EditPatch};
+pub(super) use super::flatten::Cuts;
 use super::flatten::flattened;
 use crate::abi;
 use crate::abi::Side;
@@ -47,8 +48,15 @@ impl Domain {
 }
 
 impl FaceData {
-    pub(super) fn new(face: &Face, origin: DVec3, solid: bool, way: TrimWay, editable: bool) -> Self {
-        let grid = flattened(face.surface.patches());
+    pub(super) fn new(
+        face: &Face,
+        origin: DVec3,
+        solid: bool,
+        (way, editable): (TrimWay, bool),
+        cuts: Cuts,
+    ) -> Self {
+        let cuts = if face.loops.is_empty() { cuts } else { Cuts::Any };
+        let grid = flattened(face.surface.patches(), cuts);
         let ((u0, u1), (v0, v1)) = face.surface.domain();
         let domain = Domain { origin: DVec2::new(u0, v0), size: DVec2::new(u1 - u0, v1 - v0) };
         let sides = sides(&grid, &face.loops);

@@ -14,6 +14,8 @@ pub(crate) struct Scene {
     pub patches: Buffer,
     /// Homogeneous control points.
     pub points: Texels,
+    /// Sides that faces share; `None` where they share none.
+    pub links: Option<Buffer>,
     pub faces: Buffer,
     pub face_instances: Buffer,
     pub instances: Buffer,
@@ -136,6 +138,9 @@ impl Scene {
                 let buffer = uploads.buffer(cmd, Pool::Persistent, "points", usage, &data.points)?;
                 Texels::new(cmd.device(), buffer, vk::Format::R32G32B32A32_SFLOAT, size_of::<[f32; 4]>() as u64)?
             },
+            links: (!data.links.is_empty())
+                .then(|| persistent(&mut uploads, cmd, "patch links", &data.links))
+                .transpose()?,
             faces: persistent(&mut uploads, cmd, "faces", &data.faces)?,
             face_instances: persistent(&mut uploads, cmd, "face instances", &data.face_instances)?,
             instances: persistent(&mut uploads, cmd, "instances", &data.instances)?,

@@ -1,7 +1,7 @@
 //! What [`split`](super) promises, over random faces.
 
 use super::*;
-use crate::abi::{FaceInstance, Patch};
+use crate::abi::{Face, FaceInstance, Patch};
 use crate::parity::Random;
 
 /// A face of random factors, some patches unseen, and what `split` makes of it.
