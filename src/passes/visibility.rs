@@ -93,11 +93,12 @@ impl Visibility {
                 (true, true) => shaders::VISIBILITY_LINKED_VOLUME_TESE,
             };
             let within = if within { ", within a volume" } else { "" };
+            let shared = if linked { ", linked" } else { "" };
             let weights = if kinds.rational { "rational" } else { "polynomial" };
             Pipeline::graphics(
                 device,
                 &GraphicsInfo {
-                    name: &format!("visibility ({kind}, {weights}{within})"),
+                    name: &format!("visibility ({kind}, {weights}{shared}{within})"),
                     stages: &[
                         (vk::ShaderStageFlags::VERTEX, shaders::VISIBILITY_VERT),
                         (vk::ShaderStageFlags::TESSELLATION_CONTROL, shaders::VISIBILITY_TESC),
@@ -162,7 +163,8 @@ impl Visibility {
 /// reads links.
 fn bindings(of_test: Option<usize>, volume: bool, linked: bool) -> Vec<Binding> {
     let of_volume = if volume { VOLUME_BUFFERS } else { 0 };
-    let mut bindings = vec![Binding::Storage; 10 + of_test.map_or(0, |buffers| 1 + buffers) + of_volume + usize::from(linked)];
+    let mut bindings =
+        vec![Binding::Storage; 10 + of_test.map_or(0, |buffers| 1 + buffers) + of_volume + usize::from(linked)];
     bindings[6] = Binding::Texels;
     bindings
 }

@@ -48,13 +48,7 @@ impl Domain {
 }
 
 impl FaceData {
-    pub(super) fn new(
-        face: &Face,
-        origin: DVec3,
-        solid: bool,
-        (way, editable): (TrimWay, bool),
-        cuts: Cuts,
-    ) -> Self {
+    pub(super) fn new(face: &Face, origin: DVec3, solid: bool, (way, editable): (TrimWay, bool), cuts: Cuts) -> Self {
         let cuts = if face.loops.is_empty() { cuts } else { Cuts::Any };
         let grid = flattened(face.surface.patches(), cuts);
         let ((u0, u1), (v0, v1)) = face.surface.domain();
