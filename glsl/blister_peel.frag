@@ -16,8 +16,8 @@
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
 layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
-layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
-layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
+layout(binding = 3) uniform samplerBuffer surfaces;
+layout(binding = 4) uniform samplerBuffer surface_places;
 layout(binding = 5, rg32ui) readonly uniform uimage2D before;
 layout(binding = 6, rg32ui) readonly uniform uimage2D found;
 
@@ -49,10 +49,8 @@ void main() {
             if (!(s.lo < s.hi) || !(t < frame.far)) break;
         }
         uint k = leaf.first + i % leaf.count;
-        uint surface = leaf_surfaces[k].surface;
-        Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
+        Span one = side_span(surfaces, surface_places, leaf_surfaces[k].surface, ray.o, ray.d);
         if (i >= leaf.count && ends_at(one, t)) side = k;
-        if ((surface & 1u) != 0u) one = complement(one);
         if (i < leaf.count) s = both(s, one);
     }
     if (!(s.lo < s.hi) || !(t < frame.far)) discard;

@@ -10,8 +10,8 @@
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
 layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
-layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
-layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
+layout(binding = 3) uniform samplerBuffer surfaces;
+layout(binding = 4) uniform samplerBuffer surface_places;
 layout(binding = 5, rg32ui) readonly uniform uimage2D layer;
 
 layout(location = 0) flat in uint own;
@@ -25,9 +25,7 @@ void main() {
     bool inside = true;
     for (uint k = leaf.first; k < leaf.first + leaf.count && inside; ++k) {
         uint surface = leaf_surfaces[k].surface;
-        Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
-        if ((surface & 1u) != 0u) one = complement(one);
-        inside = inside_span(one, t);
+        inside = inside_span(side_span(surfaces, surface_places, surface, ray.o, ray.d), t);
     }
     if (!inside) discard;
 }

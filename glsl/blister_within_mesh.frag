@@ -15,8 +15,8 @@ layout(scalar, binding = 2) readonly buffer OperandMeshes { OperandMesh operand_
 layout(scalar, binding = 3) readonly buffer Triangles { uint triangles[]; };
 layout(scalar, binding = 4) readonly buffer Positions { vec3 positions[]; };
 layout(scalar, binding = 5) readonly buffer Planes { uint planes[]; };
-layout(scalar, binding = 6) readonly buffer Surfaces { Surface surfaces[]; };
-layout(scalar, binding = 7) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
+layout(binding = 6) uniform samplerBuffer surfaces;
+layout(binding = 7) uniform samplerBuffer surface_places;
 layout(binding = 8, rg32ui) readonly uniform uimage2D layer;
 
 #include "triangle_depth.glsl"

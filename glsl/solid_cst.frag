@@ -24,13 +24,15 @@
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
 layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
-layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
-layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
+layout(binding = 3) uniform samplerBuffer surfaces;
+layout(binding = 4) uniform samplerBuffer surface_places;
 layout(scalar, binding = 5) readonly buffer TileStarts { uint tile_starts[]; };
 layout(scalar, binding = 6) readonly buffer TileLeaves { TileLeaf tile_leaves[]; };
 layout(scalar, binding = 7) readonly buffer TileEntries { uint tile_entries[]; };
 
 layout(location = 0) flat in uint asked;
+#include "leaf_span.glsl"
+
 layout(location = 0) out uvec2 visible;
 
 // What a step of the loop is for.
@@ -90,16 +92,8 @@ void main() {
         if (purpose == WALK) here = tile_leaves[next];
         Leaf leaf = leaves[here.leaf];
         bool is_own = here.leaf == own;
-        Span s = is_own && purpose == WALK ? mine : EVERYTHING;
-        if (purpose != WALK || !is_own) {
-            for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
-                uint surface = leaf_surfaces[k].surface;
-                Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
-                if (purpose == SIDE && ends_at(one, t)) side = k;
-                if ((surface & 1u) != 0u) one = complement(one);
-                s = both(s, one);
-            }
-        }
+        Span s = mine;
+        if (purpose != WALK || !is_own) s = leaf_span(leaf, ray.o, ray.d, t, side);
         if (purpose == SIDE) {
             found = true;
         } else if (purpose == OWN) {

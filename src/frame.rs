@@ -31,8 +31,11 @@
 //! ```
 
 use crate::abi::Counters;
+use crate::bindings::Primitives;
 use crate::buffers::{Buffers, TableBuffers};
-use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Timestamps, barrier};
+use crate::gpu::{
+    Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Texels, Timestamps, barrier,
+};
 use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::passes::{bound, emit, heal, mesh, reset, resolve, scan, split, visibility};
 use crate::scene::{MeshBuffers, Scene, SceneData, SolidData};
@@ -135,7 +138,7 @@ pub(crate) struct Frame<'a> {
     /// That way `blister` peels.
     pub layers: u32,
     /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.
-    pub volume_centres: Option<&'a Buffer>,
+    pub volume_centres: Option<&'a Texels>,
     /// Where the sun is, in a scene that has one.
     pub sun: Option<&'a Buffer>,
     pub counters: &'a ReadBack,
@@ -327,10 +330,10 @@ impl Frame<'_> {
         barrier::images(cmd, &fixed.into_iter().chain(others).chain(behind).chain(operand_uv).collect::<Vec<_>>());
     }
 
-    /// What tests against the volume that trims the scene read, in their order; nothing without one.
-    fn volume(&self) -> Vec<&Buffer> {
+    /// What tests against the volume that trims the scene read, `None` without one.
+    fn volume(&self) -> Option<Primitives<'_>> {
         let volume = self.scene.volume.as_ref().zip(self.volume_centres);
-        volume.map_or_else(Vec::new, |(v, centres)| vec![&v.leaves, &v.sides, &v.surfaces, centres])
+        volume.map(|(v, centres)| v.primitives(centres))
     }
 
     /// Meshes first: what hides them may be in doubt.
@@ -342,7 +345,7 @@ impl Frame<'_> {
             mesh_instances: &m.instances,
             triangles: &m.triangles,
             positions: &m.positions,
-            volume: &self.volume(),
+            volume: self.volume(),
         };
         let seen = b.others.as_ref().unwrap_or(&b.visibility);
         pass.record(cmd, &bindings, (seen, &b.depth), m.draws.iter());
@@ -371,7 +374,7 @@ impl Frame<'_> {
             instances: &s.instances,
             rings: b.trim.as_ref().map(|t| &t.rings),
             trim: test,
-            volume: &self.volume(),
+            volume: self.volume(),
             links: s.links.as_ref(),
             draws: &b.draws,
             counters: &b.counters,
@@ -434,7 +437,7 @@ impl Frame<'_> {
                 }),
             }),
             trim: test,
-            volume: &self.volume(),
+            volume: self.volume(),
             dispatch: &t.heal_dispatch,
         };
         p.heal.record(cmd, &heal);

@@ -11,6 +11,7 @@ pub use {ash, gpu_allocator};
 extern crate self as selvedge;
 
 pub mod abi;
+mod bindings;
 pub mod brep;
 mod budget;
 mod buffers;

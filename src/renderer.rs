@@ -23,7 +23,7 @@ use crate::buffers::{Buffers, SolidBuffers};
 pub use crate::capacities::TooMany;
 use crate::capacities::{Capacities, Counts};
 use crate::frame::{Frame, Near, Passes, target};
-use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Uploads};
+use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Texels, Uploads};
 use crate::model::{Camera, CameraError, Model};
 use crate::passes::{resolve, solid_layers};
 use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, SceneSettings};
@@ -156,6 +156,7 @@ enum Retired {
     Loaded(Box<Loaded>),
     Uploads(Uploads),
     Buffer(Buffer),
+    Texels(Texels),
 }
 
 /// Tolerances below this ask for more than single precision gives at full zoom.

@@ -43,14 +43,6 @@ pub struct Within {
     pub heal: &'static [u32],
 }
 
-/// Storage buffers of the volume; they follow all others of a pass.
-pub const VOLUME_BUFFERS: usize = 4;
-
-/// Storage buffers of the sun: `glsl/include/sun.glsl`; they follow all others of a pass.
-pub const SUN_BUFFERS: usize = 11;
-/// The first of them, which a pass needs that has the scene's leaves for itself.
-pub const SUN_OWN_BUFFERS: usize = 5;
-
 /// The u-intercept table.
 pub static TRIM_TABLE: TrimTest = TrimTest {
     way: "table",

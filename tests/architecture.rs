@@ -26,12 +26,13 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // GPU: no geometry
     ("gpu", &[]),
     ("shaders", &[]),
-    ("passes", &["abi", "gpu", "shaders"]),
+    ("bindings", &["gpu"]),
+    ("passes", &["abi", "bindings", "gpu", "shaders"]),
     // where both meet
-    ("scene", &["abi", "csg", "gpu", "math", "spline", "trim", "model", "picture", "rivals"]),
+    ("scene", &["abi", "bindings", "csg", "gpu", "math", "spline", "trim", "model", "picture", "rivals"]),
     ("capacities", &["abi", "passes", "picture", "scene"]),
     ("buffers", &["abi", "capacities", "gpu", "passes", "picture"]),
-    ("frame", &["abi", "buffers", "gpu", "passes", "picture", "scene", "shaders"]),
+    ("frame", &["abi", "bindings", "buffers", "gpu", "passes", "picture", "scene", "shaders"]),
     ("renderer", &["abi", "budget", "buffers", "capacities", "frame", "gpu", "model", "passes", "picture", "scene"]),
     ("headless", &["gpu", "model", "picture", "renderer"]),
     // for benchmarks and tests

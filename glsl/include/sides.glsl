@@ -26,20 +26,23 @@ OperandMesh mesh_of(uint triangle) {
     return operand_meshes[from];
 }
 
-vec3 across_surface(uint at, float t, Ray ray) {
-    return surface_gradient(surfaces[at], ray.o + t * ray.d - surface_centres[at]);
+vec3 across_side(uint side, float t, Ray ray) {
+    uint i = side >> SIDE_SHIFT;
+    vec4 place = place_at(surface_places, i);
+    if ((side & SIDE_PLANE) != 0u || SOLIDS_HAVE == SURFACE_PLANE) return place.xyz;
+    return surface_gradient(surface_at(surfaces, i), ray.o + t * ray.d - place.xyz);
 }
 
 // A side that is met at depth t.
 Side side_at(uint side, float t, Ray ray) {
     if (!SOLIDS_HAVE_SHELLS || side < frame.side_count) {
         LeafSurface s = leaf_surfaces[side];
-        return Side(s.leaf, across_surface(s.surface >> 1, t, ray), s.surface >> 1);
+        return Side(s.leaf, across_side(s.surface, t, ray), s.surface >> SIDE_SHIFT);
     }
     uint triangle = side - frame.side_count;
     OperandMesh mesh = mesh_of(triangle);
     uint plane = plane_of(mesh, triangle);
-    if (plane != NO_PLANE) return Side(mesh.leaf, across_surface(plane, t, ray), plane);
+    if (plane != NO_PLANE) return Side(mesh.leaf, place_at(surface_places, plane).xyz, plane);
     return Side(mesh.leaf, instances[mesh.instance].normal * facet_normal(triangle), OWN_PLANE | triangle);
 }
 

@@ -27,8 +27,8 @@
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
 layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
-layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
-layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
+layout(binding = 3) uniform samplerBuffer surfaces;
+layout(binding = 4) uniform samplerBuffer surface_places;
 layout(scalar, binding = 5) readonly buffer TileStarts { uint tile_starts[]; };
 layout(scalar, binding = 6) readonly buffer TileLeaves { TileLeaf tile_leaves[]; };
 layout(scalar, binding = 7) readonly buffer TileEntries { uint tile_entries[]; };
@@ -50,6 +50,7 @@ layout(constant_id = 13) const bool SOLIDS_HAVE_SHELLS = true;
 layout(constant_id = 14) const bool SOLIDS_ARE_FOLLOWED = false;
 
 #include "crossing.glsl"
+#include "leaf_span.glsl"
 
 layout(location = 0) out uvec2 visible;
 layout(location = 1) out uint operand_uv; // of a spline face: in scenes that have some
@@ -164,14 +165,7 @@ void main() {
                     operand_uv = fragments[last].uv;
                 }
             } else {
-                Span s = EVERYTHING;
-                for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
-                    uint surface = leaf_surfaces[k].surface;
-                    Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
-                    if (tells && ends_at(one, t)) side = k;
-                    if ((surface & 1u) != 0u) one = complement(one);
-                    s = both(s, one);
-                }
+                Span s = leaf_span(leaf, ray.o, ray.d, t, side);
                 if (i - first < KEPT) kept[i - first] = s;
                 c = crossing_of(s, t);
             }

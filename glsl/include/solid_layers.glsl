@@ -20,8 +20,8 @@
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
 layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
-layout(scalar, binding = 3) readonly buffer Surfaces { Surface surfaces[]; };
-layout(scalar, binding = 4) readonly buffer SurfaceCentres { vec3 surface_centres[]; };
+layout(binding = 3) uniform samplerBuffer surfaces;
+layout(binding = 4) uniform samplerBuffer surface_places;
 layout(scalar, binding = 5) readonly buffer LeafCentres { vec3 leaf_centres[]; };
 layout(scalar, binding = 6) readonly buffer TileStarts { uint tile_starts[]; };
 layout(scalar, binding = 7) readonly buffer TileLeaves { TileLeaf tile_leaves[]; };
@@ -59,6 +59,7 @@ layout(constant_id = 16) const bool MARKS = false;
 layout(constant_id = 17) const bool SOLIDS_HAVE_PATCHES = false;
 
 #include "crossing.glsl"
+#include "leaf_span.glsl"
 #include "eye_ray.glsl"
 #include "patch.glsl"
 #include "resolved.glsl"
@@ -259,15 +260,11 @@ void main() {
                     if (is_kept && scan > 0u && purpose != SIDE) {
                         s = kept[i - first];
                     } else {
-                        for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
-                            uint surface = leaf_surfaces[k].surface;
-                            Span one = surface_span(surfaces[surface >> 1], ray.o - surface_centres[surface >> 1], ray.d);
-                            if (purpose == SIDE && ends_at(one, t)) {
-                                side = k;
-                                of_patch = false;
-                            }
-                            if ((surface & 1u) != 0u) one = complement(one);
-                            s = both(s, one);
+                        uint ends = side;
+                        s = leaf_span(leaf, ray.o, ray.d, t, ends);
+                        if (purpose == SIDE) {
+                            side = ends;
+                            of_patch = false;
                         }
                         if (is_kept) kept[i - first] = s;
                     }

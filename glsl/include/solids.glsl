@@ -1,39 +1,58 @@
 // Boolean solids: leaves, their surfaces, and the part of a pixel's ray that is inside a leaf.
 // Twin of src/abi/solids.rs; formulas: src/twin/solids.rs.
 //
-//   leaf ──▶ LeafSurface[count] ──▶ Surface     a leaf is the intersection of its surfaces' insides;
-//                                               leaves whose faces coincide share the Surface, so they
-//                                               get the same depth, bit for bit
+//   leaf ──▶ LeafSurface[count] ──▶ a surface's place, and its shape if it is no plane: a leaf is the intersection of
+//                                  its surfaces' insides; leaves whose faces coincide share the surface, so they get
+//                                  the same depth, bit for bit
 //
-//   Surface, in its own coordinates (p = to_local (x - centre), about the size of 1):
-//     quadric   s.x p.x^2 + s.y p.y^2 + s.z p.z^2 + 2 linear p.z + constant < 0   inside
-//     torus     |p|^2 + 1 - r^2 - 2 sqrt(p.x^2 + p.y^2) < 0                       inside, r = constant
+//     plane     n . p - w < 0                                                       inside; place (n, w)
+//   and in a surface's own coordinates, p = to_local (x - centre), about the size of 1; place (centre, 0)
+//     quadric   s.x p.x^2 + s.y p.y^2 + s.z p.z^2 + 2 linear p.z + constant < 0     inside
+//     torus     |p|^2 + 1 - r^2 - 2 sqrt(p.x^2 + p.y^2) < 0                         inside, r = constant
+//
+//   Surfaces are texels: a driver fetches one at once, but may load a struct word by word. Those with a shape come
+//   first, four texels each; a place is one, and changes with the eye:
+//     x of to_local, kind │ y of to_local, linear │ z of to_local, constant │ squares, 0
 //
 //        ───▶ ray     ├────────┤gap├───────┤      Span: inside from lo to hi but for the gap; the gap
 //                     lo      g0   g1     hi      is empty when g0 >= g1
 #ifndef SOLIDS_GLSL
 #define SOLIDS_GLSL
 
-const uint SURFACE_PLANE = 0u;   // a quadric without squares
+// The most general kind of surface that the scene has: what is beyond is not compiled in.
+const uint SURFACE_PLANE = 0u;
 const uint SURFACE_QUADRIC = 1u;
 const uint SURFACE_TORUS = 2u;
+layout(constant_id = 5) const uint SOLIDS_HAVE = SURFACE_TORUS;
 
-// Whether some surface is a torus: compiled in only then.
-layout(constant_id = 5) const bool SOLIDS_HAVE_TORI = true;
-
+// The shape of a surface that is no plane.
 struct Surface {
     mat3 to_local;   // model directions to the surface's own coordinates (columns)
-    uint kind;
+    bool is_torus;
     vec3 squares;
     float linear;
     float constant;
 };
 
+Surface surface_at(samplerBuffer surfaces, uint i) {
+    int first = int(4u * i);
+    vec4 x = texelFetch(surfaces, first);
+    vec4 y = texelFetch(surfaces, first + 1);
+    vec4 z = texelFetch(surfaces, first + 2);
+    return Surface(mat3(x.xyz, y.xyz, z.xyz), x.w == float(SURFACE_TORUS), texelFetch(surfaces, first + 3).xyz, y.w, z.w);
+}
+
+// Where a surface is, seen from the eye.
+vec4 place_at(samplerBuffer places, uint i) { return texelFetch(places, int(i)); }
+
 // A side of a leaf.
 struct LeafSurface {
-    uint surface;   // index << 1 | 1 when the leaf is where the surface's function is positive
+    uint surface;   // index << SIDE_SHIFT | SIDE_*
     uint leaf;
 };
+const uint SIDE_SHIFT = 2u;
+const uint SIDE_NEGATIVE = 1u; // the leaf is where the surface's function is positive
+const uint SIDE_PLANE = 2u;    // the first sides of a leaf
 
 // One switch of the Blist: a primitive, placed.
 struct Leaf {
@@ -249,7 +268,7 @@ Span torus_span(vec3 o, vec3 d, float r) {
 Span surface_span(Surface s, vec3 o, vec3 d) {
     precise vec3 ol = s.to_local * o;
     precise vec3 dl = s.to_local * d;
-    if (SOLIDS_HAVE_TORI && s.kind == SURFACE_TORUS) return torus_span(ol, dl, s.constant);
+    if (SOLIDS_HAVE == SURFACE_TORUS && s.is_torus) return torus_span(ol, dl, s.constant);
     // begin where the ray is nearest to the middle: nothing cancels
     vec3 size = abs(s.squares);
     float dd = dot(size * dl, dl);
@@ -261,10 +280,37 @@ Span surface_span(Surface s, vec3 o, vec3 d) {
     return below_zero(a, b, c, shift);
 }
 
+// Where the ray meets the plane.
+float plane_depth(vec4 plane, vec3 o, vec3 d) {
+    precise float along = dot(plane.xyz, o) - plane.w;
+    precise float speed = dot(plane.xyz, d);
+    precise float t = -along / speed;
+    return t;
+}
+
+// The part of the ray o + t d, seen from the eye, on the leaf's side of a plane. Rays within the plane are outside of
+// what is below it.
+Span plane_span(vec4 plane, bool negative, vec3 o, vec3 d) {
+    float speed = dot(plane.xyz, d);
+    if (speed == 0.0) return (dot(plane.xyz, o) - plane.w < 0.0) != negative ? EVERYTHING : NOTHING;
+    float t = plane_depth(plane, o, d);
+    return (speed > 0.0) != negative ? Span(-NEVER, t, NEVER, NEVER) : Span(t, NEVER, NEVER, NEVER);
+}
+
+// The part of the ray inside of a leaf's side.
+Span side_span(samplerBuffer surfaces, samplerBuffer places, uint side, vec3 o, vec3 d) {
+    uint i = side >> SIDE_SHIFT;
+    bool negative = (side & SIDE_NEGATIVE) != 0u;
+    vec4 place = place_at(places, i);
+    if ((side & SIDE_PLANE) != 0u || SOLIDS_HAVE == SURFACE_PLANE) return plane_span(place, negative, o, d);
+    Span s = surface_span(surface_at(surfaces, i), o - place.xyz, d);
+    return negative ? complement(s) : s;
+}
+
 // The surface's function at p, which is seen from its centre.
 float surface_value(Surface s, vec3 p) {
     vec3 q = s.to_local * p;
-    if (SOLIDS_HAVE_TORI && s.kind == SURFACE_TORUS) {
+    if (SOLIDS_HAVE == SURFACE_TORUS && s.is_torus) {
         return dot(q, q) + (1.0 - s.constant) * (1.0 + s.constant) - 2.0 * length(q.xy);
     }
     return dot(s.squares * q, q) + 2.0 * s.linear * q.z + s.constant;
@@ -274,7 +320,7 @@ float surface_value(Surface s, vec3 p) {
 vec3 surface_gradient(Surface s, vec3 p) {
     vec3 q = s.to_local * p;
     vec3 g;
-    if (SOLIDS_HAVE_TORI && s.kind == SURFACE_TORUS) {
+    if (SOLIDS_HAVE == SURFACE_TORUS && s.is_torus) {
         float rho = max(length(q.xy), 1e-20);
         g = vec3(q.xy * (1.0 - 1.0 / rho), q.z);
     } else {

@@ -54,14 +54,14 @@ layout(scalar, binding = SUN_BINDING + 4) readonly buffer TileTriangles { uint t
 #define casters leaves
 #define caster_sides leaf_surfaces
 #define caster_surfaces surfaces
-#define caster_centres surface_centres
+#define caster_places surface_places
 #define caster_middles leaf_centres
 #define sun_counters counters
 #else
 layout(scalar, binding = SUN_BINDING + 5) readonly buffer Casters { Leaf casters[]; };
 layout(scalar, binding = SUN_BINDING + 6) readonly buffer CasterSides { LeafSurface caster_sides[]; };
-layout(scalar, binding = SUN_BINDING + 7) readonly buffer CasterSurfaces { Surface caster_surfaces[]; };
-layout(scalar, binding = SUN_BINDING + 8) readonly buffer CasterCentres { vec3 caster_centres[]; };
+layout(binding = SUN_BINDING + 7) uniform samplerBuffer caster_surfaces;
+layout(binding = SUN_BINDING + 8) uniform samplerBuffer caster_places;
 layout(scalar, binding = SUN_BINDING + 9) readonly buffer CasterMiddles { vec3 caster_middles[]; };
 layout(scalar, binding = SUN_BINDING + 10) buffer SunCounters { Counters sun_counters; };
 #endif
@@ -74,12 +74,12 @@ const uint SUN_KEPT = 12u;
 const float ROUNDED_SIDE = 1.0 / 1048576.0;
 const float ROUNDED_FACE = 1.0 / 65536.0;
 
-// The part of a ray inside of a surface from which it sets out: one end is 0, to the bit. o is the ray's origin seen
-// from the surface's centre.
-Span span_from(Surface s, vec3 o, vec3 d) {
+// The part of a ray inside of a surface that is no plane, from which it sets out: one end is 0, to the bit. o is the
+// ray's origin seen from the surface's centre.
+Span round_from(Surface s, vec3 o, vec3 d) {
     vec3 ol = s.to_local * o;
     vec3 dl = s.to_local * d;
-    if (SOLIDS_HAVE_TORI && s.kind == SURFACE_TORUS) {
+    if (SOLIDS_HAVE == SURFACE_TORUS && s.is_torus) {
         Span t = torus_span(ol, dl, s.constant);
         // the nearest end of its kind is the origin
         if (dot(surface_gradient(s, o), d) > 0.0) {
@@ -101,17 +101,25 @@ Span span_from(Surface s, vec3 o, vec3 d) {
     return a > 0.0 ? Span(lo, hi, NEVER, NEVER) : Span(-NEVER, NEVER, lo, hi);
 }
 
+// The same of a leaf's side; p is seen from the eye.
+Span span_from(uint side, vec3 p, vec3 d) {
+    vec4 place = place_at(caster_places, side >> SIDE_SHIFT);
+    bool negative = (side & SIDE_NEGATIVE) != 0u;
+    if ((side & SIDE_PLANE) != 0u || SOLIDS_HAVE == SURFACE_PLANE) {
+        return (dot(place.xyz, d) > 0.0) != negative ? Span(-NEVER, 0.0, NEVER, NEVER) : Span(0.0, NEVER, NEVER, NEVER);
+    }
+    Span s = round_from(surface_at(caster_surfaces, side >> SIDE_SHIFT), p - place.xyz, d);
+    return negative ? complement(s) : s;
+}
+
 // The part of the ray from p, seen from the eye, towards the sun that is inside of a leaf; p lies on `surface`.
 Span caster_span(Leaf leaf, vec3 p, uint surface) {
     Span s = EVERYTHING;
     for (uint k = leaf.first; k < leaf.first + leaf.count && s.lo < s.hi; ++k) {
         uint side = caster_sides[k].surface;
-        uint at = side >> 1;
-        vec3 o = p - caster_centres[at];
-        Span one = at == surface ? span_from(caster_surfaces[at], o, sun.towards)
-                                 : surface_span(caster_surfaces[at], o, sun.towards);
-        if ((side & 1u) != 0u) one = complement(one);
-        s = both(s, one);
+        bool is_here = side >> SIDE_SHIFT == surface;
+        s = both(s, is_here ? span_from(side, p, sun.towards)
+                            : side_span(caster_surfaces, caster_places, side, p, sun.towards));
     }
     return s;
 }
@@ -171,9 +179,7 @@ Met meet_mesh(uint shell, vec3 middle, SunTile tile, vec3 p, uint surface, float
         if ((triangle.surface & OWN_PLANE) != 0u) {
             at = height_over(triangle, q) - height;
         } else {
-            vec3 o = p - caster_centres[triangle.surface];
-            Span s = surface_span(caster_surfaces[triangle.surface], o, sun.towards);
-            at = s.lo > -NEVER ? s.lo : s.hi;
+            at = plane_depth(place_at(caster_places, triangle.surface), p, sun.towards);
         }
         if (!(at > t)) continue;
         around += sum;

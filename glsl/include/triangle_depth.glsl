@@ -1,7 +1,7 @@
 // Where a ray meets the plane of an operand's triangle. A plane that others lie in, too, is met by the formula of the
 // other solids' sides: faces that coincide are met at the same depth, bit for bit. Else the corners tell it: as of
 // other meshes, within the triangle. Needs scene.glsl, solids.glsl, shells.glsl, eye_ray.glsl, `frame`, and the buffers
-// of facet.glsl, `View views[]`, `uint planes[]`, `Surface surfaces[]`, `vec3 surface_centres[]`.
+// of facet.glsl, `View views[]`, `uint planes[]`, `samplerBuffer surfaces`, `samplerBuffer surface_places`.
 #ifndef TRIANGLE_DEPTH_GLSL
 #define TRIANGLE_DEPTH_GLSL
 
@@ -24,10 +24,10 @@ float triangle_depth(OperandMesh mesh, uint triangle, vec2 pixel) {
     float nearest = min(depths.x, min(depths.y, depths.z));
     float farthest = max(depths.x, max(depths.y, depths.z));
     Ray ray = eye_ray(frame, pixel);
-    precise vec3 o = ray.o - surface_centres[plane];
-    Span s = surface_span(surfaces[plane], o, ray.d);
+    float t = plane_depth(place_at(surface_places, plane), ray.o, ray.d);
     float reach = farthest - nearest + ROUNDING * farthest;
-    return clamp(s.lo > -NEVER ? s.lo : s.hi, nearest - reach, farthest + reach);
+    // a ray within the plane meets it nowhere
+    return isnan(t) ? farthest + reach : clamp(t, nearest - reach, farthest + reach);
 }
 
 #endif

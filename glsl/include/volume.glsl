@@ -13,8 +13,8 @@
 
 layout(scalar, binding = VOLUME_BINDING + 0) readonly buffer VolumeLeaves { Leaf volume_leaves[]; };
 layout(scalar, binding = VOLUME_BINDING + 1) readonly buffer VolumeSides { LeafSurface volume_sides[]; };
-layout(scalar, binding = VOLUME_BINDING + 2) readonly buffer VolumeSurfaces { Surface volume_surfaces[]; };
-layout(scalar, binding = VOLUME_BINDING + 3) readonly buffer VolumeCentres { vec3 volume_centres[]; };
+layout(binding = VOLUME_BINDING + 2) uniform samplerBuffer volume_surfaces;
+layout(binding = VOLUME_BINDING + 3) uniform samplerBuffer volume_places;
 
 // What counts as on the boundary: pixels, far below any tolerance, and a share of the depth, above the rounding
 // of a point seen from the eye.
@@ -26,12 +26,15 @@ bool in_leaf(Leaf leaf, vec3 p, float slack) {
     bool inside = true;
     for (uint k = leaf.first; k < leaf.first + leaf.count && inside; ++k) {
         uint word = volume_sides[k].surface;
-        Surface s = volume_surfaces[word >> 1];
-        vec3 at = p - volume_centres[word >> 1];
-        float value = surface_value(s, at);
-        // the value grows by twice this a unit of length
-        float slope = 2.0 * length(surface_gradient(s, at));
-        inside = ((word & 1u) != 0u ? -value : value) <= slack * slope;
+        vec4 place = place_at(volume_places, word >> SIDE_SHIFT);
+        float value = dot(place.xyz, p) - place.w;
+        float slope = 1.0; // how much it grows a unit of length
+        if ((word & SIDE_PLANE) == 0u && SOLIDS_HAVE != SURFACE_PLANE) {
+            Surface s = surface_at(volume_surfaces, word >> SIDE_SHIFT);
+            value = surface_value(s, p - place.xyz);
+            slope = 2.0 * length(surface_gradient(s, p - place.xyz));
+        }
+        inside = ((word & SIDE_NEGATIVE) != 0u ? -value : value) <= slack * slope;
     }
     return inside;
 }

@@ -2,12 +2,28 @@
 
 use bytemuck::{Pod, Zeroable};
 
-/// [`Surface::kind`]: a quadric without squares.
+/// The most general surface of a scene is a plane.
 pub const SURFACE_PLANE: u32 = 0;
-/// [`Surface::kind`]: any other quadric.
+/// It is another quadric.
 pub const SURFACE_QUADRIC: u32 = 1;
-/// [`Surface::kind`]: a torus of major radius 1.
+/// It is a torus; which, of major radius 1, is marked so.
 pub const SURFACE_TORUS: u32 = 2;
+
+/// What to call scenes of this most general kind.
+pub(crate) fn surface_kind(most: u32) -> &'static str {
+    match most {
+        SURFACE_PLANE => "planes",
+        SURFACE_QUADRIC => "quadrics",
+        _ => "tori",
+    }
+}
+
+/// Bits below the surface's number in [`LeafSurface::surface`].
+pub const SIDE_SHIFT: u32 = 2;
+/// [`LeafSurface::surface`]: the leaf is where the surface's function is positive.
+pub const SIDE_NEGATIVE: u32 = 1;
+/// [`LeafSurface::surface`]: a plane; the first sides of a leaf are.
+pub const SIDE_PLANE: u32 = 2;
 
 /// The walk ends outside of the solid.
 pub const EXIT_FALSE: u32 = 0xffff_fffe;
@@ -34,17 +50,6 @@ pub const TILE_LEAF_ENTRY: u32 = 0x8000_0000;
 pub const TILE: u32 = 16;
 /// Tiles along a block's side.
 pub const BLOCK: u32 = 8;
-
-/// A surface that one or more sides of leaves share.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
-pub struct Surface {
-    pub to_local: [[f32; 3]; 3],
-    pub kind: u32,
-    pub squares: [f32; 3],
-    pub linear: f32,
-    pub constant: f32,
-}
 
 /// A side of a leaf.
 #[repr(C)]

@@ -82,10 +82,7 @@ impl Frame<'_> {
         }
         let bindings = Bindings {
             frame: self.constants,
-            leaves: &s.leaves,
-            leaf_surfaces: &s.leaf_surfaces,
-            surfaces: &s.surfaces,
-            surface_centres: solids.centres.surfaces,
+            primitives: s.primitives(solids.centres.surfaces),
             rects: &t.rects,
             order,
             counters: &self.buffers.counters,

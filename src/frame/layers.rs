@@ -37,9 +37,9 @@ pub(super) enum Drawing {
 impl LayerPasses {
     /// `None` when nothing is followed.
     pub(super) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<Self>, GpuError> {
-        let Some(tori) = data.solids.kinds().filter(|_| data.solids.is_followed()) else { return Ok(None) };
+        let Some(surfaces) = data.solids.kinds().filter(|_| data.solids.is_followed()) else { return Ok(None) };
         let kinds = Kinds {
-            tori,
+            surfaces,
             shells: !data.solids.shell_leaves.is_empty(),
             patches: data.has_operands,
             rational: data.has_rational,
@@ -104,10 +104,7 @@ impl<'a> Frame<'a> {
         let Some(tiles) = &solids.tiles else { unreachable!("made with the passes") };
         let bindings = Bindings {
             frame: self.constants,
-            leaves: &solid.leaves,
-            leaf_surfaces: &solid.leaf_surfaces,
-            surfaces: &solid.surfaces,
-            surface_centres: centres.surfaces,
+            primitives: solid.primitives(centres.surfaces),
             leaf_centres: centres.leaves,
             tile_starts: &tiles.tile_starts,
             tile_leaves: &tiles.tile_leaves,

@@ -12,8 +12,8 @@ pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
         patches: data.has_patches,
         rational: data.has_rational,
         meshes: data.has_meshes(),
-        solids: data.solids.kinds().map(|tori| resolve::SolidKinds {
-            tori,
+        solids: data.solids.kinds().map(|surfaces| resolve::SolidKinds {
+            surfaces,
             tiles: solids::has_tiles(data),
             shells: !data.solids.shell_leaves.is_empty(),
         }),

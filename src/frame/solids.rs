@@ -13,7 +13,7 @@
 use super::bands::Band;
 use super::{Frame, WRITE_TO_READ};
 use crate::buffers::{FragmentBuffers, SolidBuffers, TileBuffers};
-use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, barrier};
+use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, Texels, barrier};
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
 use crate::passes::{blister, resolve, solid_blocks, solid_cst, solid_events, solid_fold, solid_rects, solid_tiles};
 use crate::passes::{operand_mesh, operand_patch, operand_sort, solid_squares};
@@ -58,7 +58,7 @@ pub(super) fn has_tiles(data: &SceneData) -> bool {
 impl SolidPasses {
     /// `None` when the scene has no Boolean solid.
     pub(super) fn new(device: &Device, data: &SceneData, trim: Option<&TrimTest>) -> Result<Option<Self>, GpuError> {
-        let Some(tori) = data.solids.kinds() else { return Ok(None) };
+        let Some(surfaces) = data.solids.kinds() else { return Ok(None) };
         let shells = !data.solids.shell_leaves.is_empty();
         let meshes = !data.solids.operand_draws.is_empty();
         let plain = (data.has_plain, !data.links.is_empty());
@@ -84,13 +84,13 @@ impl SolidPasses {
             rects: solid_rects::SolidRects::new(device)?,
             tiles: has_tiles(data).then_some(()).map(tiles).transpose()?,
             way: if peels {
-                Way::Blister(Box::new(blister::Blister::new(device, (tori, shells), formats.0, formats.1)?))
+                Way::Blister(Box::new(blister::Blister::new(device, (surfaces, shells), formats.0, formats.1)?))
             } else if data.solids.order.is_empty() {
                 let followed = data.solids.is_followed();
-                let kinds = solid_events::Kinds { tori, shells, patches: data.has_operands, followed };
+                let kinds = solid_events::Kinds { surfaces, shells, patches: data.has_operands, followed };
                 Way::Events(solid_events::SolidEvents::new(device, kinds, formats.0, formats.1)?)
             } else {
-                Way::Cst(solid_cst::SolidCst::new(device, tori, formats.0, formats.1)?)
+                Way::Cst(solid_cst::SolidCst::new(device, surfaces, formats.0, formats.1)?)
             },
             shells: (shells && !peels).then_some(()).map(shell_passes).transpose()?,
         }))
@@ -101,7 +101,7 @@ impl SolidPasses {
 #[derive(Clone, Copy)]
 pub(crate) struct Centres<'a> {
     pub leaves: &'a Buffer,
-    pub surfaces: &'a Buffer,
+    pub surfaces: &'a Texels,
 }
 
 /// The plane at which rays begin.
@@ -181,10 +181,7 @@ impl<'a> Frame<'a> {
             (Way::Cst(cst), Some((order, drawn)), Some(t)) => {
                 let cst_bindings = solid_cst::Bindings {
                     frame: self.constants,
-                    leaves: &s.leaves,
-                    leaf_surfaces: &s.leaf_surfaces,
-                    surfaces: &s.surfaces,
-                    surface_centres: parts.centres.surfaces,
+                    primitives: s.primitives(parts.centres.surfaces),
                     tile_starts: &t.tile_starts,
                     tile_leaves: &t.tile_leaves,
                     tile_entries: &t.tile_entries,
@@ -196,10 +193,7 @@ impl<'a> Frame<'a> {
             (Way::Events(events), _, Some(tiles)) => {
                 let bindings = solid_events::Bindings {
                     frame: self.constants,
-                    leaves: &s.leaves,
-                    leaf_surfaces: &s.leaf_surfaces,
-                    surfaces: &s.surfaces,
-                    surface_centres: parts.centres.surfaces,
+                    primitives: s.primitives(parts.centres.surfaces),
                     tile_starts: &tiles.tile_starts,
                     tile_leaves: &tiles.tile_leaves,
                     tile_entries: &tiles.tile_entries,
@@ -315,7 +309,7 @@ impl Frame<'_> {
             positions: &shells.positions,
             planes: &shells.planes,
             surfaces: &parts.scene.surfaces,
-            surface_centres: parts.centres.surfaces,
+            surface_places: parts.centres.surfaces,
             counts: &f.counts,
             starts: &f.starts,
             fragments: &f.all,
@@ -394,10 +388,7 @@ impl<'a> SolidParts<'a> {
         let b = frame.buffers;
         resolve::SolidBindings {
             frame: frame.constants,
-            leaves: &self.scene.leaves,
-            leaf_surfaces: &self.scene.leaf_surfaces,
-            surfaces: &self.scene.surfaces,
-            surface_centres: self.centres.surfaces,
+            primitives: self.scene.primitives(self.centres.surfaces),
             visibility: &b.visibility,
             others: b.others.as_ref().unwrap_or(&b.visibility),
             operand_uv: self.buffers.operand_uv.as_ref(),

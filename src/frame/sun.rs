@@ -1,26 +1,30 @@
 //! The frame's part for the sun: what passes that light points read of it.
 
 use super::{Frame, WRITE_TO_READ};
-use crate::gpu::{Access, Buffer, Commands, barrier};
-use crate::shaders::SUN_BUFFERS;
+use crate::bindings::{Primitives, SUN_BINDINGS};
+use crate::gpu::{Access, Commands, Resource, barrier};
 
 impl<'a> Frame<'a> {
     /// The sun's buffers, in their order; `None` in a scene without one.
-    pub(super) fn sun_bindings(&self) -> Option<[&'a Buffer; SUN_BUFFERS]> {
+    pub(super) fn sun_bindings(&self) -> Option<[Resource<'a>; SUN_BINDINGS.len()]> {
         let sun = self.sun?;
         // where nothing casts shadows the shader reads but the first
         let (tiles, leaves) = self.scene.sun.as_ref().map_or((sun, sun), |s| (&s.tiles, &s.leaves));
         let triangles = self.scene.sun.as_ref().and_then(|s| s.triangles.as_ref());
         let [triangles, listed] = triangles.map_or([sun; 2], |t| t.each_ref());
+        let points = &self.scene.points;
+        let nobody = Primitives { leaves: sun, leaf_surfaces: sun, surfaces: points, surface_places: points };
         let solids = self.scene.solids.as_ref().zip(self.centres);
-        let [casters, sides, surfaces, centres, middles] =
-            solids.map_or([sun; 5], |(s, c)| [&s.leaves, &s.leaf_surfaces, &s.surfaces, c.surfaces, c.leaves]);
-        let counters = &self.buffers.counters;
-        Some([sun, tiles, leaves, triangles, listed, casters, sides, surfaces, centres, middles, counters])
+        let (casters, middles) =
+            solids.map_or((nobody, sun), |(s, centres)| (s.primitives(centres.surfaces), centres.leaves));
+        let own = [sun, tiles, leaves, triangles, listed].map(Resource::from);
+        let last = [middles, &self.buffers.counters].map(Resource::from);
+        let mut all = own.into_iter().chain(casters.resources()).chain(last);
+        Some(std::array::from_fn(|_| all.next().expect("as many as SUN_BINDINGS")))
     }
 
     /// Draws with the sun, which counts the rays to it that the driver cut off.
-    pub(super) fn under_sun(&self, cmd: &Commands<'_>, draw: impl FnOnce(Option<&[&Buffer; SUN_BUFFERS]>)) {
+    pub(super) fn under_sun(&self, cmd: &Commands<'_>, draw: impl FnOnce(Option<&[Resource<'_>; SUN_BINDINGS.len()]>)) {
         let bindings = self.sun_bindings();
         let counted = WRITE_TO_READ.0 | Access::INDIRECT_READ;
         let counters = &self.buffers.counters;

@@ -17,6 +17,14 @@ pub struct Texels {
 }
 
 impl Texels {
+    /// Views `buffer` as four floats a texel.
+    ///
+    /// # Errors
+    /// See [`Texels::new`].
+    pub fn floats(device: &Device, buffer: Buffer) -> Result<Self, GpuError> {
+        Self::new(device, buffer, vk::Format::R32G32B32A32_SFLOAT, size_of::<[f32; 4]>() as u64)
+    }
+
     /// Views `buffer` as texels of `format`.
     ///
     /// # Errors
@@ -37,6 +45,11 @@ impl Texels {
     /// The buffer.
     pub fn buffer(&self) -> &Buffer {
         &self.buffer
+    }
+
+    /// See [`Buffer::write`].
+    pub(crate) fn write<T: bytemuck::Pod>(&mut self, offset: u64, data: &[T]) {
+        self.buffer.write(offset, data);
     }
 
     pub(crate) fn view(&self) -> &vk::BufferView {

@@ -17,6 +17,7 @@
 //! SIGGRAPH 2005. Departures: depths that are equal are equal to the bit, so no face is tested against its own
 //! primitive's rounding; whose a face is that several share is told as the other ways tell it.
 
+use crate::bindings::{Primitives, with_primitives};
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
     Pipeline, Resource, StencilTest,
@@ -30,8 +31,8 @@ pub(crate) const LAYER_FORMAT: vk::Format = vk::Format::R32G32_UINT;
 /// Of the depth test among the faces of a layer.
 pub(crate) const LAYER_DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 
-/// `constant_id` of `SOLIDS_HAVE_TORI`, and of `SOLIDS_HAVE_SHELLS`.
-const SOLIDS_HAVE_TORI: u32 = 5;
+/// `constant_id` of `SOLIDS_HAVE`, and of `SOLIDS_HAVE_SHELLS`.
+const SOLIDS_HAVE: u32 = 5;
 const SOLIDS_HAVE_SHELLS: u32 = 13;
 
 const PARITY: u32 = 0x80;
@@ -83,11 +84,7 @@ enum Show {
 /// Its buffers.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub leaves: &'a Buffer,
-    pub leaf_surfaces: &'a Buffer,
-    pub surfaces: &'a Buffer,
-    /// Model axes, seen from the eye.
-    pub surface_centres: &'a Buffer,
+    pub primitives: Primitives<'a>,
     pub rects: &'a Buffer,
     /// Which leaf an instance draws.
     pub order: &'a Buffer,
@@ -118,15 +115,15 @@ pub(crate) struct Layer<'a> {
 }
 
 impl Blister {
-    /// `tori`: whether some surface is a torus; `meshes`: whether some operand is a mesh. `visibility` and `depth` are
+    /// `surfaces`: the most general kind, `abi::SURFACE_*`; `meshes`: whether some operand is a mesh. `visibility` and `depth` are
     /// the formats of what the result is shown in.
     pub(crate) fn new(
         device: &Device,
-        (tori, meshes): (bool, bool),
+        (surfaces, meshes): (u32, bool),
         visibility: vk::Format,
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
-        let constants = [(SOLIDS_HAVE_TORI, u32::from(tori)), (SOLIDS_HAVE_SHELLS, 0)];
+        let constants = [(SOLIDS_HAVE, surfaces), (SOLIDS_HAVE_SHELLS, 0)];
         let layer = [ColourTarget { format: LAYER_FORMAT, blend: Blend::Replace }];
         let nearest = DepthTest { format: LAYER_DEPTH_FORMAT, compare: vk::CompareOp::LESS, write: true };
         let marks = |pass| Some(StencilTest { format: device.stencil_format(), pass });
@@ -156,10 +153,15 @@ impl Blister {
         };
         let (leaf, triangle, everywhere) = (shaders::SOLID_CST_VERT, shaders::OPERAND_MESH_VERT, shaders::RESOLVE_VERT);
         // a leaf's last bindings are the vertex shader's: where it is, and which one
-        let mut of_peel = bindings(5, 2);
-        of_peel.extend([Binding::Storage; 3]);
-        let mut of_within = of_peel.clone();
+        let mut of_peel = with_primitives::<10>(1);
+        of_peel[5..7].fill(Binding::StorageImage);
+        let mut of_within = of_peel;
         of_within[6] = Binding::Storage;
+        let of_meshes = |images: usize| {
+            let mut all = bindings(8, images);
+            all[6..8].fill(Binding::Texels);
+            all
+        };
         let peels = GraphicsInfo { push_bytes: 4, colour: &layer, depth: Some(nearest), ..info };
         let replaces = GraphicsInfo { stencil: marks(vk::StencilOp::REPLACE), ..info };
         let inverts = GraphicsInfo { stencil: marks(vk::StencilOp::INVERT), ..info };
@@ -172,16 +174,18 @@ impl Blister {
             make(name, vertex, Some(fragment), GraphicsInfo { bindings, ..peels })
         };
         let mesh_pipelines = |()| {
-            let of_within = GraphicsInfo { bindings: &bindings(8, 1), ..inverts };
+            let of_within = GraphicsInfo { bindings: &of_meshes(1), ..inverts };
             Ok(Meshes {
-                peel: peel("peel (meshes)", triangle, shaders::BLISTER_PEEL_MESH_FRAG, &bindings(8, 2))?,
+                peel: peel("peel (meshes)", triangle, shaders::BLISTER_PEEL_MESH_FRAG, &of_meshes(2))?,
                 within: make("within (meshes)", triangle, Some(shaders::BLISTER_WITHIN_MESH_FRAG), of_within)?,
             })
         };
         let of_within = GraphicsInfo { bindings: &of_within, ..replaces };
         let of_wait = GraphicsInfo { bindings: &bindings(2, 1), push_bytes: 4, ..replaces };
         let of_lock = GraphicsInfo { bindings: &bindings(0, 1), colour: &layer, ..replaces };
-        let (of_show, of_owner) = (bindings(1, 1), bindings(12, 1));
+        let of_show = bindings(1, 1);
+        let mut of_owner = with_primitives::<13>(1);
+        of_owner[12] = Binding::StorageImage;
         Ok(Self {
             peel: peel("peel", leaf, shaders::BLISTER_PEEL_FRAG, &of_peel)?,
             within: make("within", leaf, Some(shaders::BLISTER_WITHIN_FRAG), of_within)?,
@@ -210,7 +214,7 @@ impl Blister {
     ) {
         cmd.rendering(image.image.size(), &[image], Some(depth), || {
             if !leaves.is_empty() {
-                let mut resources: Vec<Resource<'_>> = b.of_leaves().map(Into::into).to_vec();
+                let mut resources: Vec<Resource<'_>> = b.of_leaves().collect();
                 resources.extend([Resource::from(layer.before), layer.found.into()]);
                 resources.extend([b.frame, b.rects, b.order].map(Resource::from));
                 cmd.bind(&self.peel, &resources, &peel.bits());
@@ -241,7 +245,7 @@ impl Blister {
 
     /// Pixels at label `name` whose point is within the leaf at `place` of the order get parity 1.
     pub(crate) fn within(&self, cmd: &Commands<'_>, b: &Bindings<'_>, layer: &Image, place: u32, name: u32) {
-        let mut resources: Vec<Resource<'_>> = b.of_leaves().map(Into::into).to_vec();
+        let mut resources: Vec<Resource<'_>> = b.of_leaves().collect();
         resources.push(layer.into());
         resources.extend([b.frame, b.frame, b.rects, b.order].map(Resource::from));
         cmd.bind(&self.within, &resources, &[]);
@@ -300,8 +304,8 @@ impl Blister {
         let (pipeline, resources): (_, Vec<Resource<'_>>) = match (&self.show, b.tiles) {
             (Show::Owned(pipeline), Some(tiles)) => {
                 // fragments, of which there are none
-                let buffers = b.of_leaves().into_iter().chain(tiles).chain([b.frame; 3]).chain([b.counters]);
-                (pipeline, buffers.map(Resource::from).chain([found.into()]).collect())
+                let lists = tiles.into_iter().chain([b.frame; 3]).chain([b.counters]).map(Resource::from);
+                (pipeline, b.of_leaves().chain(lists).chain([found.into()]).collect())
             }
             (Show::Found(pipeline), _) => (pipeline, vec![b.frame.into(), found.into()]),
             (Show::Owned(_), None) => unreachable!("tiles are made where there is no mesh"),
@@ -315,14 +319,15 @@ impl Blister {
 
 impl Bindings<'_> {
     /// What the shaders of leaves read first.
-    fn of_leaves(&self) -> [&Buffer; 5] {
-        [self.frame, self.leaves, self.leaf_surfaces, self.surfaces, self.surface_centres]
+    fn of_leaves(&self) -> impl Iterator<Item = Resource<'_>> {
+        [self.frame.into()].into_iter().chain(self.primitives.resources())
     }
 
     /// What the shaders of meshes read, but for the images.
     fn of_meshes<'b>(&'b self, m: MeshBindings<'b>) -> Vec<Resource<'b>> {
         let mesh = [m.views, m.meshes, m.triangles, m.positions];
-        let sides = [m.planes, self.surfaces, self.surface_centres];
-        [self.frame].into_iter().chain(mesh).chain(sides).map(Into::into).collect()
+        let sides = [self.primitives.surfaces, self.primitives.surface_places];
+        let buffers = [self.frame].into_iter().chain(mesh).chain([m.planes]).map(Resource::from);
+        buffers.chain(sides.map(Resource::from)).collect()
     }
 }

@@ -13,10 +13,11 @@
 //! Reads: everything that the bindings name but what it writes. Writes: `find`: `doubts`, `dispatch`,
 //! `counters`, and the mark in the visibility image; `record`: the visibility image. Both at doubtful pixels only.
 
+use crate::bindings::{PRIMITIVES, Primitives};
 use crate::gpu::{
     Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Resource, Sampler, Texels,
 };
-use crate::shaders::{self, TrimTest, VOLUME_BUFFERS};
+use crate::shaders::{self, TrimTest};
 use ash::vk;
 
 /// Threads of a workgroup of the first step.
@@ -27,8 +28,8 @@ const SCENE_HAS_RATIONAL: u32 = 0;
 /// `constant_id` of `SCENE_HAS_OTHERS`.
 const SCENE_HAS_OTHERS: u32 = 4;
 
-/// `constant_id` of `SOLIDS_HAVE_TORI`.
-const SOLIDS_HAVE_TORI: u32 = 5;
+/// `constant_id` of `SOLIDS_HAVE`.
+const SOLIDS_HAVE: u32 = 5;
 
 /// The pass, in its two steps.
 pub(crate) struct Heal {
@@ -66,8 +67,8 @@ pub(crate) struct Bindings<'a> {
     pub others: Option<Others<'a>>,
     /// What the trim test reads, in its order.
     pub trim: &'a [&'a Buffer],
-    /// The volume that trims the scene; none where there is none.
-    pub volume: &'a [&'a Buffer],
+    /// The volume that trims the scene; `None` where there is none.
+    pub volume: Option<Primitives<'a>>,
     pub dispatch: &'a Buffer,
 }
 
@@ -87,17 +88,18 @@ pub(crate) struct Meshes<'a> {
 
 impl Heal {
     /// `test`: how faces are trimmed; `others`: the scene has things that are no patches; `volume`: one trims the
-    /// scene, and whether some surface of it is a torus.
+    /// scene, and its most general kind of surface.
     pub(crate) fn new(
         device: &Device,
         test: &TrimTest,
         (rational, others): (bool, bool),
-        volume: Option<bool>,
+        volume: Option<u32>,
     ) -> Result<Self, GpuError> {
         let mut find = [Binding::Storage; 7];
         find[1] = Binding::StorageImage;
         find[5] = Binding::Sampled;
-        let mut heal = vec![Binding::Storage; 15 + test.buffers + volume.map_or(0, |_| VOLUME_BUFFERS)];
+        let mut heal = vec![Binding::Storage; 15 + test.buffers];
+        heal.extend(PRIMITIVES.iter().filter(|_| volume.is_some()));
         heal[6] = Binding::Texels;
         heal[7] = Binding::StorageImage;
         heal[11] = Binding::StorageImage;
@@ -106,7 +108,7 @@ impl Heal {
             let constants = &[
                 (SCENE_HAS_RATIONAL, u32::from(rational)),
                 (SCENE_HAS_OTHERS, u32::from(others)),
-                (SOLIDS_HAVE_TORI, u32::from(volume == Some(true))),
+                (SOLIDS_HAVE, volume.unwrap_or_default()),
             ];
             Pipeline::compute(device, &ComputeInfo { name, spirv, bindings, push_bytes: 0, constants })
         };
@@ -161,8 +163,9 @@ impl Heal {
             meshes.triangles.into(),
             meshes.positions.into(),
         ];
-        let resources: Vec<_> =
-            resources.into_iter().chain(b.trim.iter().chain(b.volume).map(|&buffer| buffer.into())).collect();
+        let trim = b.trim.iter().map(|&buffer| buffer.into());
+        let volume = b.volume.iter().flat_map(Primitives::resources);
+        let resources: Vec<_> = resources.into_iter().chain(trim).chain(volume).collect();
         cmd.bind(&self.heal, &resources, &[]);
         cmd.dispatch_indirect(b.dispatch, 0);
     }

@@ -11,16 +11,17 @@
 //! Reads: everything that `Bindings` names. Writes: depth and, in scenes without trims, the visibility
 //! image; else the image `others`, which pass `heal` looks through. Both begin cleared.
 
+use crate::bindings::{PRIMITIVES, Primitives};
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image, Load,
-    Pipeline,
+    Pipeline, Resource,
 };
-use crate::shaders::{self, VOLUME_BUFFERS};
+use crate::shaders;
 use ash::vk;
 use std::ops::Range;
 
-/// `constant_id` of `SOLIDS_HAVE_TORI`.
-const SOLIDS_HAVE_TORI: u32 = 5;
+/// `constant_id` of `SOLIDS_HAVE`.
+const SOLIDS_HAVE: u32 = 5;
 
 /// The pass.
 pub(crate) struct Mesh {
@@ -34,16 +35,16 @@ pub(crate) struct Bindings<'a> {
     pub mesh_instances: &'a Buffer,
     pub triangles: &'a Buffer,
     pub positions: &'a Buffer,
-    /// The volume that trims the scene; none where there is none.
-    pub volume: &'a [&'a Buffer],
+    /// The volume that trims the scene; `None` where there is none.
+    pub volume: Option<Primitives<'a>>,
 }
 
 impl Mesh {
-    /// For images of these formats; `volume`: one trims the scene, and whether some surface of it is a torus.
+    /// For images of these formats; `volume`: one trims the scene, and its most general kind of surface.
     pub(crate) fn new(
         device: &Device,
         (visibility, depth): (vk::Format, vk::Format),
-        volume: Option<bool>,
+        volume: Option<u32>,
     ) -> Result<Self, GpuError> {
         let (name, fragment) = match volume {
             None => ("mesh", shaders::MESH_FRAG),
@@ -57,9 +58,9 @@ impl Mesh {
                     (vk::ShaderStageFlags::VERTEX, shaders::MESH_VERT),
                     (vk::ShaderStageFlags::FRAGMENT, fragment),
                 ],
-                bindings: &vec![Binding::Storage; 5 + volume.map_or(0, |_| VOLUME_BUFFERS)],
+                bindings: &[&[Binding::Storage; 5][..], volume.map_or(&[], |_| &PRIMITIVES)].concat(),
                 push_bytes: 0,
-                constants: &[(SOLIDS_HAVE_TORI, u32::from(volume == Some(true)))],
+                constants: &[(SOLIDS_HAVE, volume.unwrap_or_default())],
                 topology: vk::PrimitiveTopology::TRIANGLE_LIST,
                 patch_points: 0,
                 cull: vk::CullModeFlags::NONE,
@@ -84,8 +85,9 @@ impl Mesh {
         let colour = [Attachment { image: seen, load: Load::ColourU32([0; 4]) }];
         let depth = Attachment { image: depth, load: Load::Depth(0.0) };
         cmd.rendering(seen.size(), &colour, Some(depth), || {
-            let own = [b.frame, b.views, b.mesh_instances, b.triangles, b.positions];
-            let resources: Vec<_> = own.iter().chain(b.volume).map(|&buffer| buffer.into()).collect();
+            let own = [b.frame, b.views, b.mesh_instances, b.triangles, b.positions].map(Resource::from);
+            let volume = b.volume.iter().flat_map(Primitives::resources);
+            let resources: Vec<_> = own.into_iter().chain(volume).collect();
             cmd.bind(&self.pipeline, &resources, &[]);
             for (corners, instances) in draws {
                 cmd.draw_instances(corners.clone(), instances.clone());

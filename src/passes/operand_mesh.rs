@@ -8,13 +8,13 @@
 //! Reads: everything that `Bindings` names but what it writes. Writes: `counts`; the second time `counts`,
 //! which go down to 0 again, and `fragments`.
 
-use crate::gpu::{Binding, Buffer, Commands, Device, GpuError, GraphicsInfo, Pipeline};
+use crate::gpu::{Binding, Buffer, Commands, Device, GpuError, GraphicsInfo, Pipeline, Resource, Texels};
 use crate::shaders;
 use ash::vk;
 use std::ops::Range;
 
-/// `constant_id` of `SOLIDS_HAVE_TORI`.
-const SOLIDS_HAVE_TORI: u32 = 5;
+/// `constant_id` of `SOLIDS_HAVE`.
+const SOLIDS_HAVE: u32 = 5;
 /// `constant_id` of `FILLS`.
 const FILLS: u32 = 12;
 
@@ -33,9 +33,9 @@ pub(crate) struct Bindings<'a> {
     pub positions: &'a Buffer,
     /// Surfaces in whose planes triangles lie.
     pub planes: &'a Buffer,
-    pub surfaces: &'a Buffer,
+    pub surfaces: &'a Texels,
     /// Model axes, seen from the eye.
-    pub surface_centres: &'a Buffer,
+    pub surface_places: &'a Texels,
     pub counts: &'a Buffer,
     pub starts: &'a Buffer,
     pub fragments: &'a Buffer,
@@ -43,6 +43,8 @@ pub(crate) struct Bindings<'a> {
 
 impl OperandMesh {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let mut bindings = [Binding::Storage; 11];
+        bindings[6..8].fill(Binding::Texels);
         let pipeline = |name, fills: bool| {
             Pipeline::graphics(
                 device,
@@ -52,10 +54,10 @@ impl OperandMesh {
                         (vk::ShaderStageFlags::VERTEX, shaders::OPERAND_MESH_VERT),
                         (vk::ShaderStageFlags::FRAGMENT, shaders::OPERAND_MESH_FRAG),
                     ],
-                    bindings: &[Binding::Storage; 11],
+                    bindings: &bindings,
                     push_bytes: 0,
                     // triangles are planes
-                    constants: &[(SOLIDS_HAVE_TORI, 0), (FILLS, u32::from(fills))],
+                    constants: &[(SOLIDS_HAVE, 0), (FILLS, u32::from(fills))],
                     topology: vk::PrimitiveTopology::TRIANGLE_LIST,
                     patch_points: 0,
                     cull: vk::CullModeFlags::NONE,
@@ -80,8 +82,9 @@ impl OperandMesh {
         fills: bool,
     ) {
         let placed = [b.frame, b.views, b.meshes, b.triangles, b.positions];
-        let solid = [b.planes, b.surfaces, b.surface_centres, b.counts, b.starts, b.fragments];
-        let resources: Vec<_> = placed.into_iter().chain(solid).map(Into::into).collect();
+        let lists = [b.counts, b.starts, b.fragments].map(Resource::from);
+        let planes = [b.planes.into(), b.surfaces.into(), b.surface_places.into()];
+        let resources: Vec<_> = placed.map(Resource::from).into_iter().chain(planes).chain(lists).collect();
         cmd.rendering_rows((size, rows), &[], None, || {
             cmd.bind(if fills { &self.fill } else { &self.count }, &resources, &[]);
             for (mesh, corners) in (0..).zip(draws) {

@@ -11,11 +11,13 @@
 //!
 //! Reads: everything that `Bindings` names. Writes: the targets.
 
+use crate::abi;
+use crate::bindings::{Primitives, SUN_BINDINGS, with_primitives};
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
     Pipeline, Resource, Texels,
 };
-use crate::shaders::{self, SUN_BUFFERS};
+use crate::shaders;
 use ash::vk;
 
 /// Formats of the images of depth, face, (u, v) and normal.
@@ -30,8 +32,8 @@ const HAS_AOVS: u32 = 3;
 /// `constant_id` of `SCENE_HAS_OTHERS`.
 const SCENE_HAS_OTHERS: u32 = 4;
 
-/// `constant_id` of `SOLIDS_HAVE_TORI`.
-const SOLIDS_HAVE_TORI: u32 = 5;
+/// `constant_id` of `SOLIDS_HAVE`.
+const SOLIDS_HAVE: u32 = 5;
 
 /// `constant_id` of `SOLIDS_HAVE_SHELLS`.
 const SOLIDS_HAVE_SHELLS: u32 = 13;
@@ -100,8 +102,8 @@ const SUN: Shaders = Shaders {
 /// What Boolean solids ask of the pass.
 #[derive(Clone, Copy)]
 pub(crate) struct SolidKinds {
-    /// A torus is among their surfaces.
-    pub tori: bool,
+    /// The most general kind of their surfaces: `abi::SURFACE_*`.
+    pub surfaces: u32,
     /// It is known which tiles may see them.
     pub tiles: bool,
     /// Some of their operands have no equations.
@@ -165,11 +167,7 @@ pub(crate) struct MeshBindings<'a> {
 /// Buffers and image for Boolean solids, in binding order.
 pub(crate) struct SolidBindings<'a> {
     pub frame: &'a Buffer,
-    pub leaves: &'a Buffer,
-    pub leaf_surfaces: &'a Buffer,
-    pub surfaces: &'a Buffer,
-    /// Model axes, seen from the eye.
-    pub surface_centres: &'a Buffer,
+    pub primitives: Primitives<'a>,
     pub visibility: &'a Image,
     /// The visibility image again where the scene has no trims.
     pub others: &'a Image,
@@ -234,11 +232,11 @@ impl Resolve {
         };
         let aovs = (HAS_AOVS, u32::from(formats.aovs));
         let behind = (BEHIND, u32::from(matches!(into, Destination::Behind { .. })));
-        let tori = (SOLIDS_HAVE_TORI, u32::from(kinds.solids.is_some_and(|s| s.tori)));
+        let surfaces = (SOLIDS_HAVE, kinds.solids.map_or(abi::SURFACE_PLANE, |s| s.surfaces));
         // what is lit: solids, and with a sun whatever they may shade
         let lit = |vertex, name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
-            let constants = [constants, &[aovs, behind, tori]].concat();
-            let sun = if kinds.sun { &[Binding::Storage; SUN_BUFFERS][..] } else { &[] };
+            let constants = [constants, &[aovs, behind, surfaces]].concat();
+            let sun: &[_] = if kinds.sun { &SUN_BINDINGS } else { &[] };
             over(vertex, name, fragment, &[bindings, sun].concat(), &constants)
         };
         let pipeline = |name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
@@ -248,7 +246,7 @@ impl Resolve {
         of_mesh[8..].fill(Binding::StorageImage);
         let mesh = |()| pipeline("mesh", of.meshes, &of_mesh, &[]);
         let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
-        let mut of_solid = [Binding::Storage; 14];
+        let mut of_solid = with_primitives::<14>(1);
         of_solid[5..7].fill(Binding::StorageImage);
         let solid = |solid: SolidKinds| {
             let vertex = if solid.tiles { shaders::RESOLVE_SOLID_VERT } else { shaders::RESOLVE_VERT };
@@ -280,13 +278,13 @@ impl Resolve {
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
         (meshes, solids): (Option<&MeshBindings<'_>>, Option<&SolidBindings<'_>>),
-        sun: Option<&[&Buffer; SUN_BUFFERS]>,
+        sun: Option<&[Resource<'_>; SUN_BINDINGS.len()]>,
         colour: &[Attachment<'_>],
         depth: Option<Attachment<'_>>,
     ) {
         let size = b.visibility.size();
         let bind = |pipeline: &Pipeline, resources: Vec<Resource<'_>>| {
-            let sun = sun.into_iter().flatten().map(|buffer| (*buffer).into());
+            let sun = sun.into_iter().flatten().copied();
             cmd.bind(pipeline, &resources.into_iter().chain(sun).collect::<Vec<_>>(), &[]);
         };
         cmd.rendering(size, colour, depth, || {
@@ -309,7 +307,6 @@ impl Resolve {
                 cmd.draw(3, 0, 1);
             }
             if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
-                let solid = [s.frame, s.leaves, s.leaf_surfaces, s.surfaces, s.surface_centres].map(Into::into);
                 // the shaders have these bindings in every scene, and read them only where there are tiles, or shells
                 let squares = s.tiles.map_or(s.frame, |(_, squares)| squares);
                 let shells = s
@@ -317,7 +314,8 @@ impl Resolve {
                     .as_ref()
                     .map_or([s.frame; 6], |m| [m.instances, m.meshes, m.triangles, m.positions, m.planes, m.views]);
                 let images = [s.visibility.into(), s.others.into(), squares.into()];
-                bind(pipeline, solid.into_iter().chain(images).chain(shells.map(Into::into)).collect());
+                let primitives = [s.frame.into()].into_iter().chain(s.primitives.resources());
+                bind(pipeline, primitives.chain(images).chain(shells.map(Into::into)).collect());
                 match s.tiles {
                     Some((count, _)) => cmd.draw_instances(0..6, 0..count),
                     None => cmd.draw(3, 0, 1),

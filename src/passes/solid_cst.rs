@@ -8,14 +8,16 @@
 //! Reads: everything that `Bindings` names. Writes: the visibility image (side, depth) and depth. Needs no
 //! storage per pixel. Source: J. Hable, J. Rossignac, *CST: constructive solid trimming*, 2007.
 
+use crate::abi;
+use crate::bindings::{Primitives, with_primitives};
 use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline, Resource,
 };
 use crate::shaders;
 use ash::vk;
 
-/// `constant_id` of `SOLIDS_HAVE_TORI`.
-const SOLIDS_HAVE_TORI: u32 = 5;
+/// `constant_id` of `SOLIDS_HAVE`.
+const SOLIDS_HAVE: u32 = 5;
 
 /// The pass.
 pub(crate) struct SolidCst {
@@ -25,11 +27,7 @@ pub(crate) struct SolidCst {
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub leaves: &'a Buffer,
-    pub leaf_surfaces: &'a Buffer,
-    pub surfaces: &'a Buffer,
-    /// Model axes, seen from the eye.
-    pub surface_centres: &'a Buffer,
+    pub primitives: Primitives<'a>,
     pub tile_starts: &'a Buffer,
     pub tile_leaves: &'a Buffer,
     pub tile_entries: &'a Buffer,
@@ -39,24 +37,24 @@ pub(crate) struct Bindings<'a> {
 }
 
 impl SolidCst {
-    /// For images of these formats; `tori`: whether some surface is a torus.
+    /// For images of these formats; `surfaces`: the most general kind, `abi::SURFACE_*`.
     pub(crate) fn new(
         device: &Device,
-        tori: bool,
+        surfaces: u32,
         visibility: vk::Format,
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
         let pipeline = Pipeline::graphics(
             device,
             &GraphicsInfo {
-                name: if tori { "solid cst (tori)" } else { "solid cst" },
+                name: &format!("solid cst ({})", abi::surface_kind(surfaces)),
                 stages: &[
                     (vk::ShaderStageFlags::VERTEX, shaders::SOLID_CST_VERT),
                     (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_CST_FRAG),
                 ],
-                bindings: &[Binding::Storage; 10],
+                bindings: &with_primitives::<10>(1),
                 push_bytes: 0,
-                constants: &[(SOLIDS_HAVE_TORI, u32::from(tori))],
+                constants: &[(SOLIDS_HAVE, surfaces)],
                 topology: vk::PrimitiveTopology::TRIANGLE_LIST,
                 patch_points: 0,
                 cull: vk::CullModeFlags::NONE,
@@ -77,9 +75,8 @@ impl SolidCst {
         (visibility, depth): (Attachment<'_>, Attachment<'_>),
         drawn: u32,
     ) {
-        let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres];
-        let tiles = [b.tile_starts, b.tile_leaves, b.tile_entries, b.rects, b.order];
-        let resources: Vec<_> = solid.into_iter().chain(tiles).map(Into::into).collect();
+        let tiles = [b.tile_starts, b.tile_leaves, b.tile_entries, b.rects, b.order].map(Resource::from);
+        let resources: Vec<_> = [b.frame.into()].into_iter().chain(b.primitives.resources()).chain(tiles).collect();
         cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
             cmd.bind(&self.pipeline, &resources, &[]);
             cmd.draw_instances(0..6, 0..drawn);

@@ -8,15 +8,17 @@
 //! pass `visibility` drew; of spline faces the image of (u, v). Needs no storage per pixel beside the fragments of
 //! operands without equations.
 
+use crate::abi;
+use crate::bindings::{Primitives, with_primitives};
 use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline, Resource,
 };
 use crate::shaders;
 use ash::vk;
 use std::ops::Range;
 
-/// `constant_id` of `SOLIDS_HAVE_TORI`.
-const SOLIDS_HAVE_TORI: u32 = 5;
+/// `constant_id` of `SOLIDS_HAVE`.
+const SOLIDS_HAVE: u32 = 5;
 /// `constant_id` of `SOLIDS_HAVE_SHELLS`.
 const SOLIDS_HAVE_SHELLS: u32 = 13;
 /// `constant_id` of `SOLIDS_ARE_FOLLOWED`.
@@ -28,8 +30,8 @@ pub(crate) const OPERAND_UV_FORMAT: vk::Format = vk::Format::R32_UINT;
 /// What the scene has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Kinds {
-    /// Some surface is a torus.
-    pub tori: bool,
+    /// The most general kind of surface: `abi::SURFACE_*`.
+    pub surfaces: u32,
     /// Some operand has no equations.
     pub shells: bool,
     /// Some of those are spline parts.
@@ -46,11 +48,7 @@ pub(crate) struct SolidEvents {
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub leaves: &'a Buffer,
-    pub leaf_surfaces: &'a Buffer,
-    pub surfaces: &'a Buffer,
-    /// Model axes, seen from the eye.
-    pub surface_centres: &'a Buffer,
+    pub primitives: Primitives<'a>,
     pub tile_starts: &'a Buffer,
     pub tile_leaves: &'a Buffer,
     pub tile_entries: &'a Buffer,
@@ -81,15 +79,15 @@ impl SolidEvents {
         let pipeline = Pipeline::graphics(
             device,
             &GraphicsInfo {
-                name: if kinds.tori { "solid events (tori)" } else { "solid events" },
+                name: &format!("solid events ({})", abi::surface_kind(kinds.surfaces)),
                 stages: &[
                     (vk::ShaderStageFlags::VERTEX, shaders::SOLID_EVENTS_VERT),
                     (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_EVENTS_FRAG),
                 ],
-                bindings: &[Binding::Storage; 13],
+                bindings: &with_primitives::<13>(1),
                 push_bytes: 0,
                 constants: &[
-                    (SOLIDS_HAVE_TORI, u32::from(kinds.tori)),
+                    (SOLIDS_HAVE, kinds.surfaces),
                     (SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),
                     (SOLIDS_ARE_FOLLOWED, u32::from(kinds.followed)),
                 ],
@@ -115,19 +113,13 @@ impl SolidEvents {
         rows: Range<u32>,
         tiles: Range<u32>,
     ) {
-        let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres];
         let lists = [b.tile_starts, b.tile_leaves, b.tile_entries];
         // the shader has these bindings in every scene, and reads them only where there are shells
         let none = Fragments { starts: b.frame, counts: b.frame, all: b.frame };
         let f = b.fragments.as_ref().unwrap_or(&none);
         let fragments = [f.starts, f.counts, f.all];
-        let resources: Vec<_> = solid
-            .into_iter()
-            .chain(lists)
-            .chain(fragments)
-            .chain([b.counters, b.tile_squares])
-            .map(Into::into)
-            .collect();
+        let rest = lists.into_iter().chain(fragments).chain([b.counters, b.tile_squares]).map(Resource::from);
+        let resources: Vec<_> = [b.frame.into()].into_iter().chain(b.primitives.resources()).chain(rest).collect();
         let colour: Vec<_> = [visibility].into_iter().chain(uv).collect();
         cmd.rendering_rows((visibility.image.size(), rows), &colour, Some(depth), || {
             cmd.bind(&self.pipeline, &resources, &[]);

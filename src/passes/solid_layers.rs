@@ -10,11 +10,12 @@
 //! Reads: everything that `Bindings` names. Writes: the targets; of the counters `clamps`, `contacts` and `overlaps`.
 //! Needs no storage per pixel beside `behind` and the fragments of operands without equations.
 
+use crate::bindings::{Primitives, SUN_BINDINGS, SUN_OWN, with_primitives};
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
-    Pipeline, Texels,
+    Pipeline, Resource, Texels,
 };
-use crate::shaders::{self, SUN_BUFFERS, SUN_OWN_BUFFERS};
+use crate::shaders;
 use ash::vk;
 use std::ops::Range;
 
@@ -22,8 +23,8 @@ use std::ops::Range;
 const SCENE_HAS_RATIONAL: u32 = 0;
 /// `constant_id` of `HAS_AOVS`.
 const HAS_AOVS: u32 = 3;
-/// `constant_id` of `SOLIDS_HAVE_TORI`.
-const SOLIDS_HAVE_TORI: u32 = 5;
+/// `constant_id` of `SOLIDS_HAVE`.
+const SOLIDS_HAVE: u32 = 5;
 /// `constant_id` of `SOLIDS_HAVE_SHELLS`.
 const SOLIDS_HAVE_SHELLS: u32 = 13;
 /// `constant_id` of `FOLLOWED_FOR`.
@@ -54,8 +55,8 @@ pub(crate) enum For {
 /// What the scene has.
 #[derive(Clone, Copy, Debug)]
 pub(crate) struct Kinds {
-    /// Some surface is a torus.
-    pub tori: bool,
+    /// The most general kind of surface: `abi::SURFACE_*`.
+    pub surfaces: u32,
     /// Some operand has no equations.
     pub shells: bool,
     /// Some of those are spline parts, some with unequal weights.
@@ -77,11 +78,8 @@ pub(crate) struct SolidLayers {
 /// Its buffers and image, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub leaves: &'a Buffer,
-    pub leaf_surfaces: &'a Buffer,
-    pub surfaces: &'a Buffer,
-    /// Model axes, seen from the eye; those of leaves, too.
-    pub surface_centres: &'a Buffer,
+    pub primitives: Primitives<'a>,
+    /// Model axes, seen from the eye.
     pub leaf_centres: &'a Buffer,
     pub tile_starts: &'a Buffer,
     pub tile_leaves: &'a Buffer,
@@ -97,7 +95,7 @@ pub(crate) struct Bindings<'a> {
     pub points: &'a Texels,
     pub instances: &'a Buffer,
     /// What [`Kinds::sun`] asks for.
-    pub sun: Option<[&'a Buffer; SUN_BUFFERS]>,
+    pub sun: Option<[Resource<'a>; SUN_BINDINGS.len()]>,
     /// Of meshes that bound operands: meshes, triangles, positions, planes; `None` where there are none.
     pub shells: Option<[&'a Buffer; 4]>,
 }
@@ -122,9 +120,10 @@ impl SolidLayers {
         };
         // lengths within solids are in no light
         let sun = kinds.sun && number != 2;
-        let mut bindings = vec![Binding::Storage; 24 + if sun { SUN_OWN_BUFFERS } else { 0 }];
+        let mut bindings = with_primitives::<24>(1).to_vec();
         bindings[12] = Binding::StorageImage;
         bindings[18] = Binding::Texels;
+        bindings.extend(SUN_BINDINGS.iter().take(if sun { SUN_OWN } else { 0 }));
         let marks = kinds.marks.filter(|_| number == 0);
         let writes = matches!(purpose, For::First { .. });
         let pipeline = Pipeline::graphics(
@@ -143,7 +142,7 @@ impl SolidLayers {
                 constants: &[
                     (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
                     (HAS_AOVS, u32::from(writes)),
-                    (SOLIDS_HAVE_TORI, u32::from(kinds.tori)),
+                    (SOLIDS_HAVE, kinds.surfaces),
                     (SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),
                     (FOLLOWED_FOR, number),
                     (MARKS, u32::from(marks.is_some())),
@@ -174,28 +173,21 @@ impl SolidLayers {
         depth: Option<Attachment<'_>>,
         rows: Range<u32>,
     ) {
-        let solid = [b.frame, b.leaves, b.leaf_surfaces, b.surfaces, b.surface_centres, b.leaf_centres];
         // the shader has these bindings in every scene, and reads them only where there are shells
         let fragments = b.fragments.unwrap_or([b.frame; 3]);
         let shells = b.shells.unwrap_or([b.frame; 4]);
         let placed = [b.views, b.face_instances, b.faces, b.patches, b.items];
-        let resources: Vec<_> = solid
+        let lists = [b.leaf_centres, b.tile_starts, b.tile_leaves].into_iter().chain(fragments).chain([b.counters]);
+        let sun = b.sun.filter(|_| self.sun);
+        let resources: Vec<_> = [b.frame.into()]
             .into_iter()
-            .chain([b.tile_starts, b.tile_leaves])
-            .chain(fragments)
-            .chain([b.counters])
-            .map(Into::into)
+            .chain(b.primitives.resources())
+            .chain(lists.map(Into::into))
             .chain([b.behind.into()])
             .chain(placed.into_iter().map(Into::into))
             .chain([b.points.into(), b.instances.into()])
             .chain(shells.into_iter().map(Into::into))
-            .chain(
-                b.sun
-                    .filter(|_| self.sun)
-                    .into_iter()
-                    .flat_map(|s| s.into_iter().take(SUN_OWN_BUFFERS))
-                    .map(Into::into),
-            )
+            .chain(sun.into_iter().flat_map(|s| s.into_iter().take(SUN_OWN)))
             .collect();
         cmd.rendering_rows((b.behind.size(), rows), colour, depth, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&self.marks));

@@ -10,11 +10,12 @@
 //! (reversed: 1 at the near plane), which begin cleared or with what is no patch; `rings`, cleared before.
 
 use crate::abi::Counters;
+use crate::bindings::{PRIMITIVES, Primitives};
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
     Texels,
 };
-use crate::shaders::{self, TrimTest, VOLUME_BUFFERS};
+use crate::shaders::{self, TrimTest};
 use ash::vk;
 use std::mem::offset_of;
 
@@ -27,8 +28,8 @@ pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
 const SCENE_HAS_RATIONAL: u32 = 0;
 /// `constant_id` of `TRIMMED`.
 const TRIMMED: u32 = 2;
-/// `constant_id` of `SOLIDS_HAVE_TORI`.
-const SOLIDS_HAVE_TORI: u32 = 5;
+/// `constant_id` of `SOLIDS_HAVE`.
+const SOLIDS_HAVE: u32 = 5;
 /// `constant_id` of `SCENE_HAS_OPERANDS`.
 const SCENE_HAS_OPERANDS: u32 = 10;
 
@@ -49,8 +50,8 @@ pub(crate) struct Kinds<'a> {
     pub trimmed: Option<&'a TrimTest>,
     /// Some patches bound operands of Boolean solids: they are not drawn here.
     pub operands: bool,
-    /// A volume trims the scene; whether some surface of it is a torus.
-    pub volume: Option<bool>,
+    /// A volume trims the scene; its most general kind of surface.
+    pub volume: Option<u32>,
 }
 
 /// Its buffers, in binding order.
@@ -69,8 +70,8 @@ pub(crate) struct Bindings<'a> {
     pub rings: Option<&'a Buffer>,
     /// What the trim test reads, in its order.
     pub trim: &'a [&'a Buffer],
-    /// The volume that trims the scene; none where there is none.
-    pub volume: &'a [&'a Buffer],
+    /// The volume that trims the scene; `None` where there is none.
+    pub volume: Option<Primitives<'a>>,
     /// Sides that faces share; in scenes where they do.
     pub links: Option<&'a Buffer>,
     pub draws: &'a Buffer,
@@ -111,7 +112,7 @@ impl Visibility {
                         (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
                         (TRIMMED, u32::from(trimmed.is_some())),
                         (SCENE_HAS_OPERANDS, u32::from(kinds.operands)),
-                        (SOLIDS_HAVE_TORI, u32::from(kinds.volume == Some(true))),
+                        (SOLIDS_HAVE, kinds.volume.unwrap_or_default()),
                     ],
                     topology: vk::PrimitiveTopology::PATCH_LIST,
                     patch_points: 1,
@@ -140,16 +141,17 @@ impl Visibility {
         let bytes = u64::from(draw_capacity) * size_of::<vk::DrawIndirectCommand>() as u64;
         let shared = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items];
         let lists = [b.factors, b.sub_patches, b.instances];
+        let volume = || b.volume.iter().flat_map(Primitives::resources);
         let shared = || shared.into_iter().map(Into::into).chain([b.points.into()]).chain(lists.map(Into::into));
         cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
             if let Some(plain) = &self.plain {
-                let last = b.volume.iter().copied().chain(b.links).map(Into::into);
+                let last = volume().chain(b.links.map(Into::into));
                 cmd.bind(plain, &shared().chain(last).collect::<Vec<_>>(), &[]);
                 let count = offset_of!(Counters, plain_draws) as u64;
                 cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
             }
             if let (Some(trimmed), Some(rings)) = (&self.trimmed, b.rings) {
-                let test = b.trim.iter().chain(b.volume).map(|&buffer| buffer.into());
+                let test = b.trim.iter().map(|&buffer| buffer.into()).chain(volume());
                 let resources: Vec<_> = shared().chain([rings.into()]).chain(test).collect();
                 cmd.bind(trimmed, &resources, &[]);
                 let count = offset_of!(Counters, trimmed_draws) as u64;
@@ -162,9 +164,9 @@ impl Visibility {
 /// Bindings of a pipeline whose trim test reads so many buffers beside the rings; `None`: without one. `linked`: it
 /// reads links.
 fn bindings(of_test: Option<usize>, volume: bool, linked: bool) -> Vec<Binding> {
-    let of_volume = if volume { VOLUME_BUFFERS } else { 0 };
-    let mut bindings =
-        vec![Binding::Storage; 10 + of_test.map_or(0, |buffers| 1 + buffers) + of_volume + usize::from(linked)];
+    let mut bindings = vec![Binding::Storage; 10 + of_test.map_or(0, |buffers| 1 + buffers)];
     bindings[6] = Binding::Texels;
+    bindings.extend(PRIMITIVES.iter().filter(|_| volume));
+    bindings.extend(linked.then_some(Binding::Storage));
     bindings
 }

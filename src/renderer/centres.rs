@@ -1,56 +1,63 @@
 //! Where surfaces of solids are, seen from a frame's eye: what changes with the camera and stays in `f64`.
 
-use super::slot::upload_buffer;
+use super::Retired;
+use super::slot::{upload_buffer, upload_texels};
 use crate::abi;
 use crate::frame::Centres;
-use crate::gpu::{Buffer, Device, GpuError};
+use crate::gpu::{Buffer, Device, GpuError, Texels};
 use crate::model::Camera;
 use crate::scene::SceneData;
-use glam::DVec3;
 
 /// Buffers of one frame slot; `None` where the scene has nothing of the kind.
 #[derive(Default)]
 pub(super) struct SlotCentres {
     leaves: Option<Buffer>,
-    surfaces: Option<Buffer>,
+    surfaces: Option<Texels>,
     /// Surfaces of the volume that trims the scene.
-    volume: Option<Buffer>,
+    volume: Option<Texels>,
     /// The sun, and where its picture has the eye.
     sun: Option<Buffer>,
 }
 
 impl SlotCentres {
-    /// Writes them for a camera; returns the buffers that were too small or are not needed any more.
+    /// Writes them for a camera; what was too small or is not needed any more goes to `retired`.
     pub(super) fn write(
         &mut self,
         device: &Device,
         data: &SceneData,
         camera: &Camera,
-    ) -> Result<impl Iterator<Item = Buffer>, GpuError> {
-        let none = Vec::new();
-        let volume = data.volume.as_ref().map_or(&none, |v| &v.surface_centres);
+        retired: &mut Vec<Retired>,
+    ) -> Result<(), GpuError> {
         let solids = &data.solids;
-        let any = !solids.leaf_centres.is_empty(); // of which none need have a surface with an equation
-        let lists: [(&mut Option<Buffer>, &str, &[DVec3], bool); 3] = [
-            (&mut self.leaves, "solid leaf centres", &solids.leaf_centres, any),
-            (&mut self.surfaces, "solid surface centres", &solids.surface_centres, any),
-            (&mut self.volume, "volume centres", volume, !volume.is_empty()),
+        // of the leaves none need have a surface with an equation
+        let any = !solids.leaf_centres.is_empty();
+        let leaves: Vec<_> = solids.leaf_centres.iter().map(|c| (c - camera.eye).as_vec3().to_array()).collect();
+        let bytes = size_of_val(leaves.as_slice()) as u64;
+        if !any || self.leaves.as_ref().is_some_and(|b| b.bytes() < bytes) {
+            retired.extend(self.leaves.take().map(Retired::Buffer));
+        }
+        if any && self.leaves.is_none() {
+            self.leaves = Some(upload_buffer(device, "solid leaf centres", bytes)?);
+        }
+        self.leaves.iter_mut().for_each(|buffer| buffer.write(0, &leaves));
+        let volume = data.volume.as_ref().map(|v| v.places.as_slice());
+        let lists = [
+            (&mut self.surfaces, "solid surface places", any.then_some(solids.places.as_slice())),
+            (&mut self.volume, "volume surface places", volume),
         ];
-        let mut gone = Vec::new();
-        for (place, name, list, wanted) in lists {
-            let bytes = (list.len() * size_of::<[f32; 3]>()) as u64;
-            if !wanted {
-                gone.extend(place.take());
-                continue;
+        for (place, name, list) in lists {
+            let texels: Vec<_> = list.into_iter().flatten().map(|p| p.seen_from(camera.eye)).collect();
+            let bytes = size_of_val(texels.as_slice()) as u64;
+            if list.is_none() || place.as_ref().is_some_and(|t| t.buffer().bytes() < bytes) {
+                retired.extend(place.take().map(Retired::Texels));
             }
-            if place.as_ref().is_none_or(|b| b.bytes() < bytes) {
-                gone.extend(place.replace(upload_buffer(device, name, bytes)?));
+            if list.is_some() && place.is_none() {
+                *place = Some(upload_texels(device, name, bytes)?);
             }
-            let seen: Vec<[f32; 3]> = list.iter().map(|c| (*c - camera.eye).as_vec3().to_array()).collect();
-            place.iter_mut().for_each(|buffer| buffer.write(0, &seen));
+            place.iter_mut().for_each(|kept| kept.write(0, &texels));
         }
         match &data.sun {
-            None => gone.extend(self.sun.take()),
+            None => retired.extend(self.sun.take().map(Retired::Buffer)),
             Some(sun) => {
                 if self.sun.is_none() {
                     self.sun = Some(upload_buffer(device, "sun", size_of::<abi::Sun>() as u64)?);
@@ -58,7 +65,7 @@ impl SlotCentres {
                 self.sun.iter_mut().for_each(|buffer| buffer.write(0, &[sun.seen_from(camera.eye)]));
             }
         }
-        Ok(gone.into_iter())
+        Ok(())
     }
 
     /// Of Boolean solids.
@@ -71,7 +78,7 @@ impl SlotCentres {
         self.sun.as_ref()
     }
 
-    pub(super) fn volume(&self) -> Option<&Buffer> {
+    pub(super) fn volume(&self) -> Option<&Texels> {
         self.volume.as_ref()
     }
 }

@@ -7,7 +7,7 @@ use crate::abi;
 use crate::abi::Counters;
 use crate::capacities::Capacities;
 use crate::frame::SampleBuffers;
-use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Pool, ReadBack, Timestamps};
+use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Pool, ReadBack, Texels, Timestamps};
 use crate::model::Camera;
 use crate::picture::PoolBytes;
 use crate::scene::view;
@@ -87,7 +87,7 @@ impl Slot {
         if let Some(buffer) = &mut self.views {
             buffer.write(0, &views);
         }
-        self.retired.extend(self.centres.write(device, &loaded.data, input.camera)?.map(Retired::Buffer));
+        self.centres.write(device, &loaded.data, input.camera, &mut self.retired)?;
         let centre = constants(device, loaded, input, formats);
         self.constants.write(0, &[centre]);
         self.write_samples(device, loaded, input.camera, centre)?;
@@ -144,4 +144,13 @@ pub(super) fn upload_buffer(device: &Device, name: &str, bytes: u64) -> Result<B
     // constants change from band to band
     let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
     Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })
+}
+
+/// Of four floats each.
+pub(super) fn upload_texels(device: &Device, name: &str, bytes: u64) -> Result<Texels, GpuError> {
+    let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
+    Texels::floats(
+        device,
+        Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })?,
+    )
 }

@@ -23,7 +23,8 @@ pub(crate) use blister::{Asked, Blister};
 use glam::DVec3;
 use std::borrow::Cow;
 use std::ops::Range;
-use surface::sides_of;
+pub(super) use surface::Surface;
+use surface::{Placed, sides_of};
 
 /// The arrays that the GPU gets, and the centres that change with the eye.
 #[derive(Clone, Debug, Default)]
@@ -32,11 +33,12 @@ pub(crate) struct SolidData {
     /// From this one on they are lists of items that rays are followed through; before it, of the union that is seen.
     pub followed: u32,
     pub leaf_surfaces: Vec<abi::LeafSurface>,
-    pub surfaces: Vec<abi::Surface>,
+    /// Of those that are no planes, which come first.
+    pub surfaces: Vec<Surface>,
     /// Middle of each leaf's box, model coordinates.
     pub leaf_centres: Vec<DVec3>,
-    /// Origin of each surface's own coordinates, in model coordinates.
-    pub surface_centres: Vec<DVec3>,
+    /// Where each surface is.
+    pub places: Vec<Placed>,
     /// Of each operand without equations, a leaf that shows it.
     pub shell_leaves: Vec<u32>,
     /// The meshes around them: triangles, vertices relative to the middle of the operand's box, and corners to
@@ -139,6 +141,7 @@ impl SolidData {
             first += solid.primitives().len() as u32;
         }
         number_exits(&mut data.leaves);
+        data.put_planes_last();
         for item in data.followed as usize..data.leaves.len() {
             // an item that holds all that is far away is there in every tile
             let leaf = &mut data.leaves[item];
@@ -147,8 +150,10 @@ impl SolidData {
             }
         }
         if way == SolidWay::Cst && data.shell_leaves.is_empty() && !data.is_followed() {
-            let mut used = vec![false; data.surfaces.len()];
-            let again = |side: &abi::LeafSurface| std::mem::replace(&mut used[side.surface as usize >> 1], true);
+            let mut used = vec![false; data.places.len()];
+            let again = |side: &abi::LeafSurface| {
+                std::mem::replace(&mut used[(side.surface >> abi::SIDE_SHIFT) as usize], true)
+            };
             data.order = order::order(&data.leaves, data.leaf_surfaces.iter().any(again));
         }
         let splines = data.operands.iter().any(|operand| !operand.faces().is_empty());
@@ -189,9 +194,30 @@ impl SolidData {
 
     fn push_surface(&mut self, placed: Option<surface::Placed>) -> u32 {
         let Some(placed) = placed else { return abi::NO_PLANE };
-        self.surfaces.push(placed.surface);
-        self.surface_centres.push(placed.centre);
-        self.surfaces.len() as u32 - 1
+        self.places.push(placed);
+        self.places.len() as u32 - 1
+    }
+
+    /// Surfaces get their numbers, and sides their order: so that planes need no shape, and are told by their sides.
+    fn put_planes_last(&mut self) {
+        let is_plane = |p: &Placed| p.surface().is_none();
+        let mut order: Vec<usize> = (0..self.places.len()).collect();
+        order.sort_by_key(|&i| is_plane(&self.places[i]));
+        let mut number = vec![0; order.len()];
+        (0..).zip(&order).for_each(|(new, &old)| number[old] = new);
+        self.places = order.iter().map(|&old| self.places[old]).collect();
+        self.surfaces = self.places.iter().map_while(Placed::surface).collect();
+        for plane in self.operand_planes.iter_mut().filter(|plane| **plane != abi::NO_PLANE) {
+            *plane = number[*plane as usize];
+        }
+        for side in &mut self.leaf_surfaces {
+            let new = number[(side.surface >> abi::SIDE_SHIFT) as usize];
+            let plane = if is_plane(&self.places[new as usize]) { abi::SIDE_PLANE } else { 0 };
+            side.surface = new << abi::SIDE_SHIFT | plane | side.surface & abi::SIDE_NEGATIVE;
+        }
+        for sides in self.leaf_surfaces.chunk_by_mut(|a, b| a.leaf == b.leaf) {
+            sides.sort_by_key(|side| side.surface & abi::SIDE_PLANE == 0);
+        }
     }
 
     /// The switches of one list, whose primitives are those from `first_primitive` on.
@@ -230,16 +256,14 @@ impl SolidData {
             flags |= if is_shell { abi::LEAF_SHELL } else { 0 };
             let first = self.leaf_surfaces.len() as u32;
             let faces = if is_shell { &[] } else { shared.table.faces(p) };
-            let sides = faces.iter().map(|f| shared.surface_of[f.surface as usize] << 1 | u32::from(f.flipped));
+            let sides =
+                faces.iter().map(|f| shared.surface_of[f.surface as usize] << abi::SIDE_SHIFT | u32::from(f.flipped));
             self.leaf_surfaces.extend(sides.map(|surface| abi::LeafSurface { surface, leaf }));
             if faces.is_empty() && !is_shell {
                 // a primitive without volume is the inside of no point
-                let nothing = *shared.nothing.get_or_insert_with(|| {
-                    self.surfaces.push(surface::nowhere());
-                    self.surface_centres.push(shared.middle);
-                    self.surfaces.len() as u32 - 1
-                });
-                self.leaf_surfaces.push(abi::LeafSurface { surface: nothing << 1, leaf });
+                let nowhere = || self.push_surface(Some(surface::nowhere(shared.middle)));
+                let nothing = *shared.nothing.get_or_insert_with(nowhere);
+                self.leaf_surfaces.push(abi::LeafSurface { surface: nothing << abi::SIDE_SHIFT, leaf });
             }
             self.leaf_centres.push(centre);
             self.leaves.push(abi::Leaf {
@@ -294,23 +318,27 @@ impl SolidData {
 
     /// A leaf that no point is in.
     fn push_nothing(&mut self) {
-        self.surfaces.push(surface::nowhere());
-        self.surface_centres.push(DVec3::ZERO);
-        self.leaf_surfaces.push(abi::LeafSurface { surface: (self.surfaces.len() as u32 - 1) << 1, leaf: 0 });
+        let nothing = self.push_surface(Some(surface::nowhere(DVec3::ZERO)));
+        self.leaf_surfaces.push(abi::LeafSurface { surface: nothing << abi::SIDE_SHIFT, leaf: 0 });
+        self.put_planes_last();
         let (in_exit, out_exit) = (abi::EXIT_TRUE, abi::EXIT_FALSE);
         self.leaf_centres.push(DVec3::ZERO);
         self.leaves.push(abi::Leaf { count: 1, in_exit, out_exit, ..Default::default() });
     }
 
-    /// `None` without leaves, else whether some surface is a torus.
-    pub(crate) fn kinds(&self) -> Option<bool> {
-        (!self.leaves.is_empty()).then(|| self.surfaces.iter().any(|s| s.kind == abi::SURFACE_TORUS))
+    /// `None` without leaves, else the most general kind of surface: `SURFACE_*`.
+    pub(crate) fn kinds(&self) -> Option<u32> {
+        (!self.leaves.is_empty()).then(|| match self.surfaces.as_slice() {
+            [] => abi::SURFACE_PLANE,
+            some if some.iter().any(|s| s.is_torus) => abi::SURFACE_TORUS,
+            _ => abi::SURFACE_QUADRIC,
+        })
     }
 
     /// What frames need once the GPU has the rest.
     pub(crate) fn centres_only(self) -> Self {
-        let Self { leaf_centres, surface_centres, .. } = self;
-        Self { leaf_centres, surface_centres, ..Self::default() }
+        let Self { leaf_centres, places, .. } = self;
+        Self { leaf_centres, places, ..Self::default() }
     }
 }
 

@@ -1,6 +1,8 @@
 //! The scene's persistent buffers: only those that its model needs.
 
+use super::solids::Surface;
 use super::{Blister, SceneData, SolidData};
+use crate::bindings::Primitives;
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texels, Uploads};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
@@ -43,15 +45,15 @@ pub(crate) struct SunTiles {
 /// A volume's switches, and their surfaces.
 pub(crate) struct Volume {
     pub leaves: Buffer,
-    pub sides: Buffer,
-    pub surfaces: Buffer,
+    pub leaf_surfaces: Buffer,
+    pub surfaces: Texels,
 }
 
 /// The switches of the Blist, and their surfaces.
 pub(crate) struct Solids {
     pub leaves: Buffer,
     pub leaf_surfaces: Buffer,
-    pub surfaces: Buffer,
+    pub surfaces: Texels,
     /// The leaves as they are drawn, and how many; only where each is drawn by itself.
     pub order: Option<(Buffer, u32)>,
     /// For way `blister`: the walk, and its order.
@@ -127,17 +129,29 @@ pub(crate) struct TableScene {
     pub curve_items: Buffer,
 }
 
+impl Solids {
+    /// With the centres as one frame's eye sees them.
+    pub(crate) fn primitives<'a>(&'a self, surface_places: &'a Texels) -> Primitives<'a> {
+        let Self { leaves, leaf_surfaces, surfaces, .. } = self;
+        Primitives { leaves, leaf_surfaces, surfaces, surface_places }
+    }
+}
+
+impl Volume {
+    /// With the centres as one frame's eye sees them.
+    pub(crate) fn primitives<'a>(&'a self, surface_places: &'a Texels) -> Primitives<'a> {
+        let Self { leaves, leaf_surfaces, surfaces } = self;
+        Primitives { leaves, leaf_surfaces, surfaces, surface_places }
+    }
+}
+
 impl Scene {
     /// Records the copies; the returned [`Uploads`] must live until the GPU has made them.
     pub(crate) fn record(cmd: &Commands<'_>, data: &SceneData) -> Result<(Self, Uploads), GpuError> {
         let mut uploads = Uploads::new();
         let scene = Self {
             patches: persistent(&mut uploads, cmd, "patches", &data.patches)?,
-            points: {
-                let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
-                let buffer = uploads.buffer(cmd, Pool::Persistent, "points", usage, &data.points)?;
-                Texels::new(cmd.device(), buffer, vk::Format::R32G32B32A32_SFLOAT, size_of::<[f32; 4]>() as u64)?
-            },
+            points: texels(&mut uploads, cmd, "points", &data.points)?,
             links: (!data.links.is_empty())
                 .then(|| persistent(&mut uploads, cmd, "patch links", &data.links))
                 .transpose()?,
@@ -164,7 +178,7 @@ impl Scene {
                     Ok(Solids {
                         leaves: persistent(&mut uploads, cmd, "solid leaves", &data.solids.leaves)?,
                         leaf_surfaces: persistent(&mut uploads, cmd, "solid sides", &data.solids.leaf_surfaces)?,
-                        surfaces: persistent(&mut uploads, cmd, "solid surfaces", &data.solids.surfaces)?,
+                        surfaces: surfaces(&mut uploads, cmd, "solid surfaces", &data.solids)?,
                         shells: (!data.solids.shell_leaves.is_empty())
                             .then(|| shells(&mut uploads, cmd, &data.solids))
                             .transpose()?,
@@ -201,8 +215,8 @@ impl Scene {
                 .map(|v| {
                     Ok(Volume {
                         leaves: persistent(&mut uploads, cmd, "volume leaves", &v.leaves)?,
-                        sides: persistent(&mut uploads, cmd, "volume sides", &v.leaf_surfaces)?,
-                        surfaces: persistent(&mut uploads, cmd, "volume surfaces", &v.surfaces)?,
+                        leaf_surfaces: persistent(&mut uploads, cmd, "volume sides", &v.leaf_surfaces)?,
+                        surfaces: surfaces(&mut uploads, cmd, "volume surfaces", v)?,
                     })
                 })
                 .transpose()?,
@@ -277,6 +291,17 @@ fn shells(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SolidData) -> Result
         planes: persistent(uploads, cmd, "operand planes", &data.operand_planes)?,
         draws: data.operand_draws.clone(),
     })
+}
+
+fn surfaces(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &SolidData) -> Result<Texels, GpuError> {
+    texels(uploads, cmd, name, &data.surfaces.iter().map(Surface::texels).collect::<Vec<_>>())
+}
+
+/// Of four floats each.
+fn texels<T: Pod>(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &[T]) -> Result<Texels, GpuError> {
+    let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
+    let buffer = uploads.buffer(cmd, Pool::Persistent, name, usage, data)?;
+    Texels::floats(cmd.device(), buffer)
 }
 
 fn persistent<T: Pod>(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &[T]) -> Result<Buffer, GpuError> {

@@ -38,7 +38,7 @@ pub(super) fn is_shell(primitive: &Primitive) -> bool {
 }
 
 /// Which triangles are so thin that their corners, rounded to single precision, would turn their planes: by more than
-/// 0.07°, a third of a step of eight bits of light. Those keep a [`Surface`](abi::Surface), made in double precision.
+/// 0.07°, a third of a step of eight bits of light. Those keep a [`Surface`](super::Surface), made in double precision.
 pub(super) struct Thin {
     height: f64,
 }
@@ -155,7 +155,7 @@ mod tests {
     #[test]
     fn triangles_by_themselves_are_their_corners() {
         let d = data(vec![mesh(tetra(1.0))]);
-        assert_eq!((d.surfaces.len(), d.leaf_surfaces.len(), d.operand_planes.len()), (0, 0, 0));
+        assert_eq!((d.places.len(), d.leaf_surfaces.len(), d.operand_planes.len()), (0, 0, 0));
         assert_eq!((d.operand_meshes[0].first_plane, d.operand_meshes[0].leaf), (abi::NO_PLANE, 0));
     }
 
@@ -166,14 +166,14 @@ mod tests {
         for shapes in [vec![mesh(tetra(1.0)), below()], vec![below(), mesh(tetra(1.0))]] {
             let d = data(shapes);
             let shared: Vec<u32> = d.operand_planes.iter().copied().filter(|p| *p != abi::NO_PLANE).collect();
-            assert_eq!((d.surfaces.len(), d.leaf_surfaces.len(), shared.len()), (6, 6, 1));
+            assert_eq!((d.places.len(), d.leaf_surfaces.len(), shared.len()), (6, 6, 1));
             assert_eq!(d.operand_planes[0], shared[0], "the triangle at the bottom is the first");
-            assert!(d.leaf_surfaces.iter().any(|side| side.surface >> 1 == shared[0]));
+            assert!(d.leaf_surfaces.iter().any(|side| side.surface >> abi::SIDE_SHIFT == shared[0]));
         }
         // of its own triangles, too: all four twice, the other way round
         let twice = TETRA.into_iter().chain(TETRA.map(|[a, b, c]| [b, a, c])).collect();
         let d = data(vec![mesh(of(&[[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]], twice))]);
-        assert_eq!((d.surfaces.len(), d.operand_planes), (4, vec![0, 1, 2, 3, 0, 1, 2, 3]));
+        assert_eq!((d.places.len(), d.operand_planes), (4, vec![0, 1, 2, 3, 0, 1, 2, 3]));
     }
 
     /// A height of a 50,000th of the length: single precision would turn the planes.
@@ -182,10 +182,10 @@ mod tests {
         let thin = || tetra(2e-5);
         // those along the short edge; the other two are as large as any
         let d = data(vec![mesh(thin())]);
-        assert_eq!((d.surfaces.len(), d.operand_planes.len()), (2, 4));
+        assert_eq!((d.places.len(), d.operand_planes.len()), (2, 4));
         let part = Part { meshes: vec![tetra(1.0), thin()], closed: true, ..Part::default() };
         let d = data(vec![Shape::Part(Arc::new(part))]);
-        assert_eq!((d.surfaces.len(), d.operand_planes.len()), (2, 4));
+        assert_eq!((d.places.len(), d.operand_planes.len()), (2, 4));
         assert_eq!([0, 1].map(|m| d.operand_meshes[m].first_plane), [abi::NO_PLANE, 0]);
     }
 }

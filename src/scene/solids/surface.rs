@@ -10,58 +10,91 @@ use crate::math::eigen;
 use crate::model::{Carrier, Primitive, Quadric, Shape};
 use glam::{DAffine3, DMat3, DVec3};
 
-/// A surface where it is.
-#[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct Placed {
-    pub surface: abi::Surface,
-    /// Origin of its own coordinates, in model coordinates.
-    pub centre: DVec3,
+/// The shape of a surface that is no plane, in coordinates of its own.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub(crate) struct Surface {
+    /// Columns of the map from model directions.
+    pub to_local: [[f32; 3]; 3],
+    pub is_torus: bool,
+    pub squares: [f32; 3],
+    pub linear: f32,
+    pub constant: f32,
+}
+
+impl Surface {
+    /// As shaders read it: `surface_at` of `glsl/include/solids.glsl`.
+    pub(crate) fn texels(&self) -> [[f32; 4]; 4] {
+        let with = |[x, y, z]: [f32; 3], w| [x, y, z, w];
+        let [x, y, z] = self.to_local;
+        let kind = if self.is_torus { abi::SURFACE_TORUS } else { abi::SURFACE_QUADRIC };
+        [with(x, kind as f32), with(y, self.linear), with(z, self.constant), with(self.squares, 0.0)]
+    }
+
+    fn placed(self, to_local: DMat3) -> Self {
+        Self { to_local: to_local.to_cols_array_2d().map(|c| c.map(|x| x as f32)), ..self }
+    }
+}
+
+/// A surface that one or more sides of leaves share.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum Placed {
+    Plane {
+        /// Of length 1.
+        normal: DVec3,
+        /// A point of it.
+        at: DVec3,
+    },
+    Round {
+        surface: Surface,
+        /// Origin of its own coordinates, in model coordinates.
+        centre: DVec3,
+    },
 }
 
 impl Placed {
+    /// Where it is, seen from the eye, as shaders read it: of a plane its normal, and how far along it is.
+    pub(crate) fn seen_from(&self, eye: DVec3) -> [f32; 4] {
+        match *self {
+            Self::Plane { normal, at } => {
+                let n = normal.as_vec3();
+                // of the rounded normal: the plane stays where it is
+                n.extend(n.as_dvec3().dot(at - eye) as f32).to_array()
+            }
+            Self::Round { centre, .. } => (centre - eye).as_vec3().extend(0.0).to_array(),
+        }
+    }
+
+    pub(super) fn surface(&self) -> Option<Surface> {
+        match *self {
+            Self::Plane { .. } => None,
+            Self::Round { surface, .. } => Some(surface),
+        }
+    }
+
     /// The plane `own · x = offset` of a primitive, given in its own coordinates; `own` points out.
     fn plane(to_own: DAffine3, own: DVec3, offset: f64, near: DVec3) -> Self {
         let gradient = to_own.matrix3.transpose() * own;
         let normal = gradient.normalize();
         let distance = (own.dot(to_own.transform_point3(near)) - offset) / gradient.length();
-        let to_local = DMat3::from_cols(DVec3::Z * normal.x, DVec3::Z * normal.y, DVec3::Z * normal.z);
-        let surface = abi::Surface {
-            to_local: columns(to_local),
-            kind: abi::SURFACE_PLANE,
-            squares: [0.0; 3],
-            linear: 0.5,
-            constant: 0.0,
-        };
-        Self { surface, centre: near - distance * normal }
+        Self::Plane { normal, at: near - distance * normal }
     }
 
     /// A surface about `centre` in the primitive's own coordinates, which are shrunk by `size`.
-    fn round(p: &Primitive, to_own: DAffine3, centre: DVec3, size: f64, surface: abi::Surface) -> Self {
+    fn round(p: &Primitive, to_own: DAffine3, centre: DVec3, size: f64, surface: Surface) -> Self {
         let to_local = to_own.matrix3 * (1.0 / size);
-        Self {
-            surface: abi::Surface { to_local: columns(to_local), ..surface },
-            centre: p.transform.transform_point3(centre),
-        }
+        Self::Round { surface: surface.placed(to_local), centre: p.transform.transform_point3(centre) }
     }
 
     /// A quadric with at least one term of second order, or with no terms but the constant.
     fn quadric(p: &Primitive, to_own: DAffine3, q: &Quadric, near: DVec3) -> Self {
         let Local { axes, centre, size, surface } = Local::new(q, to_own.transform_point3(near));
         let to_local = axes.transpose() * to_own.matrix3 * (1.0 / size);
-        Self {
-            surface: abi::Surface { to_local: columns(to_local), ..surface },
-            centre: p.transform.transform_point3(centre),
-        }
+        Self::Round { surface: surface.placed(to_local), centre: p.transform.transform_point3(centre) }
     }
 }
 
-fn columns(m: DMat3) -> [[f32; 3]; 3] {
-    m.to_cols_array_2d().map(|c| c.map(|x| x as f32))
-}
-
-fn quadric(squares: [f64; 3], linear: f64, constant: f64) -> abi::Surface {
-    abi::Surface {
-        kind: abi::SURFACE_QUADRIC,
+fn quadric(squares: [f64; 3], linear: f64, constant: f64) -> Surface {
+    Surface {
         squares: squares.map(|x| x as f32),
         linear: linear as f32,
         constant: constant as f32,
@@ -70,8 +103,8 @@ fn quadric(squares: [f64; 3], linear: f64, constant: f64) -> abi::Surface {
 }
 
 /// The inside of no point.
-pub(super) fn nowhere() -> abi::Surface {
-    quadric([0.0; 3], 0.0, 1.0)
+pub(super) fn nowhere(centre: DVec3) -> Placed {
+    Placed::Round { surface: quadric([0.0; 3], 0.0, 1.0), centre }
 }
 
 /// Below this, relative to the largest, a coefficient of second order is the rounding of 0: the middle that
@@ -86,7 +119,7 @@ struct Local {
     axes: DMat3,
     centre: DVec3,
     size: f64,
-    surface: abi::Surface,
+    surface: Surface,
 }
 
 impl Local {
@@ -153,8 +186,7 @@ pub(super) fn sides_of(p: &Primitive, near: DVec3) -> Vec<Placed> {
             between(round(DVec3::Z * (height * 0.5), size, surface), *height)
         }
         Shape::Torus { major, minor } if *major > 0.0 => {
-            let surface =
-                abi::Surface { kind: abi::SURFACE_TORUS, constant: (minor / major) as f32, ..Default::default() };
+            let surface = Surface { is_torus: true, constant: (minor / major) as f32, ..Default::default() };
             vec![round(DVec3::ZERO, *major, surface)]
         }
         // without a circle to run around, the tube is a ball

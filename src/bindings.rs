@@ -1,0 +1,46 @@
+//! Bindings that several passes have in common.
+//!
+//! ```text
+//!   PRIMITIVES     leaves, their sides, surfaces, surfaces' places         glsl/include/solids.glsl, volume.glsl
+//!   SUN_BINDINGS   sun, its tiles, …, PRIMITIVES, leaves' centres, counts  glsl/include/sun.glsl
+//! ```
+
+use crate::gpu::{Binding, Buffer, Resource, Texels};
+
+/// Of the primitives of Boolean solids, one after another.
+pub(crate) const PRIMITIVES: [Binding; 4] = [Binding::Storage, Binding::Storage, Binding::Texels, Binding::Texels];
+
+/// The bindings of the sun, after all others of a pass: `glsl/include/sun.glsl`. Those that cast shadows are among them.
+pub(crate) const SUN_BINDINGS: [Binding; 11] = with_primitives(SUN_OWN);
+/// The first of them, which a pass needs that has the scene's primitives for itself.
+pub(crate) const SUN_OWN: usize = 5;
+
+/// What stands at [`PRIMITIVES`].
+#[derive(Clone, Copy)]
+pub(crate) struct Primitives<'a> {
+    pub leaves: &'a Buffer,
+    pub leaf_surfaces: &'a Buffer,
+    pub surfaces: &'a Texels,
+    /// Where surfaces are, model axes, seen from the eye.
+    pub surface_places: &'a Texels,
+}
+
+impl<'a> Primitives<'a> {
+    /// In binding order.
+    pub(crate) fn resources(&self) -> [Resource<'a>; 4] {
+        let [leaves, sides] = [self.leaves, self.leaf_surfaces].map(Resource::from);
+        let [surfaces, centres] = [self.surfaces, self.surface_places].map(Resource::from);
+        [leaves, sides, surfaces, centres]
+    }
+}
+
+/// Storage buffers, but for [`PRIMITIVES`] from `first` on.
+pub(crate) const fn with_primitives<const COUNT: usize>(first: usize) -> [Binding; COUNT] {
+    let mut bindings = [Binding::Storage; COUNT];
+    let mut i = 0;
+    while i < PRIMITIVES.len() {
+        bindings[first + i] = PRIMITIVES[i];
+        i += 1;
+    }
+    bindings
+}
