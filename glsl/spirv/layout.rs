@@ -196,12 +196,6 @@ const _: () = assert!(core::mem::offset_of!(crate::abi::SunTriangle, heights) ==
 const _: () = assert!(core::mem::offset_of!(crate::abi::SunTriangle, shell) == 36);
 const _: () = assert!(core::mem::offset_of!(crate::abi::SunTriangle, surface) == 40);
 const _: () = assert!(core::mem::size_of::<crate::abi::SunTriangle>() == 44);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Surface, to_local) == 0);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Surface, kind) == 36);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Surface, squares) == 40);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Surface, linear) == 52);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Surface, constant) == 56);
-const _: () = assert!(core::mem::size_of::<crate::abi::Surface>() == 60);
 const _: () = assert!(core::mem::offset_of!(crate::abi::TileLeaf, leaf) == 0);
 const _: () = assert!(core::mem::offset_of!(crate::abi::TileLeaf, in_exit) == 4);
 const _: () = assert!(core::mem::offset_of!(crate::abi::TileLeaf, out_exit) == 8);
