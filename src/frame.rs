@@ -96,6 +96,7 @@ impl Passes {
         let kinds = Kinds {
             rational: data.has_rational,
             plain: data.has_plain,
+            linked: !data.links.is_empty(),
             trimmed: test,
             operands: data.has_operands,
             volume,
@@ -104,7 +105,7 @@ impl Passes {
         let tessellation = |()| {
             Ok(TessellationPasses {
                 bound: bound::Bound::new(device)?,
-                split: split::Split::new(device)?,
+                split: split::Split::new(device, !data.links.is_empty())?,
                 emit: emit::Emit::new(device)?,
             })
         };
@@ -282,6 +283,7 @@ impl Frame<'_> {
             factors: &b.factors,
             sub_patch_counts: &b.sub_patch_counts,
             vertex_counts: &b.vertex_counts,
+            links: s.links.as_ref(),
         };
         p.split.record(cmd, &split, items);
         barrier::buffers(cmd, &[(&b.sub_patch_counts, w, r), (&b.vertex_counts, w, r)]);
@@ -382,6 +384,7 @@ impl Frame<'_> {
             rings: b.trim.as_ref().map(|t| &t.rings),
             trim: test,
             volume: self.volume(),
+            links: s.links.as_ref(),
             draws: &b.draws,
             counters: &b.counters,
         };

@@ -8,6 +8,8 @@
 //                    ├── first_curve  + local curve  = curve item
 //                    └── first_strip  + local strip  = strip item
 //
+//   Patch, side ──▶ Link ──▶ the next side that lies on the same curve: patches of one part, whose items are as far apart
+//
 //   Instance ◀── MeshInstance ──▶ Mesh ──▶ triangles (three indices each) ──▶ positions
 //                                   └────▶ normals, one a corner of its triangles, or none
 //
@@ -33,6 +35,23 @@ struct Patch {
     vec3 bend;       // largest |S_uu|, |S_uv|, |S_vv| over the unit square, part units
     uint face;
 };
+
+// A side of a patch that is shared with other faces': one of a ring. `place` is 0 where a side is not.
+// place: start | halvings << 13 | reversed << 17 | owner << 18 | shared << 19
+// The ring's sides lie on one curve, this one from start / 2^halvings, 1 / 2^halvings long; each piece of the
+// curve is that of its owner's control points.
+struct Link {
+    uint next; // 4 * patch + side, of u = 0, v = 0, u = 1, v = 1
+    uint place;
+};
+
+const uint LINK_MOST_SIDES = 32u;
+
+uint link_start(Link link) { return link.place & 0x1fffu; }
+uint link_halvings(Link link) { return (link.place >> 13) & 15u; }
+bool link_reversed(Link link) { return ((link.place >> 17) & 1u) != 0u; }
+bool link_owner(Link link) { return ((link.place >> 18) & 1u) != 0u; }
+bool link_shared(Link link) { return ((link.place >> 19) & 1u) != 0u; }
 
 const uint FACE_CLOSED_U = 1u;   // the sides u = 0 and u = 1 coincide
 const uint FACE_CLOSED_V = 2u;

@@ -65,6 +65,16 @@ impl Patch {
         (shape & !(3 << 9)) | (side as u32) << 9
     }
 
+    /// The borders stored in [`Patch::shape`].
+    pub fn borders(&self) -> u32 {
+        self.shape >> 11 & 15
+    }
+
+    /// The degrees stored in [`Patch::shape`].
+    pub fn degrees(&self) -> (usize, usize) {
+        ((self.shape & 15) as usize, (self.shape >> 4 & 15) as usize)
+    }
+
     /// The side stored in [`Patch::shape`].
     pub fn side(&self) -> Side {
         match self.shape >> 9 & 3 {
@@ -72,6 +82,43 @@ impl Patch {
             1 => Side::Inside,
             _ => Side::Boundary,
         }
+    }
+}
+
+/// A side of a patch that is shared with other faces': one of a ring. `place` is 0 where a side is not.
+///
+/// ```text
+///   place   bits 0-12 start | 13-16 halvings | 17 reversed | 18 owner | 19 shared
+/// ```
+///
+/// The ring's sides lie on one curve, this one from `start / 2^halvings`, `1 / 2^halvings` long; each piece of the curve is
+/// that of its *owner*'s control points.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct Link {
+    /// The next side of the ring: four times its patch, and which of `u = 0`, `v = 0`, `u = 1`, `v = 1`.
+    pub next: u32,
+    pub place: u32,
+}
+
+impl Link {
+    /// Most sides of a ring.
+    pub const MOST_SIDES: u32 = 32;
+
+    /// A side that is shared.
+    pub fn new(next: u32, (start, halvings): (u32, u32), reversed: bool, owner: bool) -> Self {
+        let place = start | halvings << 13 | u32::from(reversed) << 17 | u32::from(owner) << 18 | 1 << 19;
+        Self { next, place }
+    }
+
+    /// How often the ring's curve was halved to make this side.
+    pub fn halvings(&self) -> u32 {
+        self.place >> 13 & 15
+    }
+
+    /// Other sides lie on the same curve.
+    pub fn is_shared(&self) -> bool {
+        self.place >> 19 & 1 != 0
     }
 }
 

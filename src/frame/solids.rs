@@ -61,7 +61,8 @@ impl SolidPasses {
         let Some(surfaces) = data.solids.kinds() else { return Ok(None) };
         let shells = !data.solids.shell_leaves.is_empty();
         let meshes = !data.solids.operand_draws.is_empty();
-        let patches = |()| operand_patch::OperandPatch::new(device, data.has_rational, data.has_plain, trim);
+        let plain = (data.has_plain, !data.links.is_empty());
+        let patches = |()| operand_patch::OperandPatch::new(device, data.has_rational, plain, trim);
         let tiles = |()| {
             Ok(TilePasses {
                 blocks: solid_blocks::SolidBlocks::new(device)?,
@@ -328,6 +329,7 @@ impl Frame<'_> {
             starts: &f.starts,
             fragments: f.all.buffer(),
             trim: &trim,
+            links: s.links.as_ref(),
             draws: &b.draws,
             counters: &b.counters,
         };

@@ -11,6 +11,8 @@
 //! [`frame`] then holds whole frames against the chain. Every file also feeds the GPU one changed
 //! number and asks that the comparison names the place.
 
+#[path = "../../tests/shapes/cages.rs"]
+pub(crate) mod cages;
 mod chain;
 mod coverage;
 mod exact;

@@ -3,10 +3,12 @@
 use super::chain::{Chain, UNTOUCHED};
 use super::harness::{Gpu, Mismatch, SceneBuffers, same};
 use super::shapes::cases;
-use super::{Case, Random};
+use super::{Case, Random, cages};
 use crate::abi::Factors;
+use crate::model::Camera;
 use crate::passes::split::{Bindings, Split};
 use crate::twin;
+use glam::DVec3;
 
 fn compare(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<(), Mismatch> {
     let n = given.len();
@@ -15,7 +17,8 @@ fn compare(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<()
     let factors = gpu.upload("factors", &vec![UNTOUCHED; n * size_of::<Factors>() / 4]);
     let sub_patch_counts = gpu.upload("sub-patch counts", &vec![UNTOUCHED; 2 * n]);
     let vertex_counts = gpu.upload("vertex counts", &vec![UNTOUCHED; 2 * n]);
-    let pass = Split::new(gpu.device()).unwrap();
+    let links = (!case.data.links.is_empty()).then(|| gpu.upload("links", &case.data.links));
+    let pass = Split::new(gpu.device(), links.is_some()).unwrap();
     let bindings = Bindings {
         frame: &s.frame,
         face_instances: &s.face_instances,
@@ -26,6 +29,7 @@ fn compare(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<()
         factors: &factors,
         sub_patch_counts: &sub_patch_counts,
         vertex_counts: &vertex_counts,
+        links: links.as_ref(),
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
     let twin = twin::split::split(&case.frame, &case.scene(), expected);
@@ -48,6 +52,31 @@ fn parity() {
         let mut taus: Vec<u32> = case.data.items.iter().map(|_| tau() | tau() << 16).collect();
         taus.iter_mut().step_by(5).for_each(|t| *t = 0);
         compare(&gpu, case, &taus, &taus).unwrap();
+    }
+    gpu.finish();
+}
+
+/// Faces that share sides, whole and in parts.
+#[test]
+fn parity_of_shared_sides() {
+    let gpu = Gpu::new();
+    let (model, mut random) = (cages::a_box().model, Random::new(3));
+    let camera = Camera::framing(model.bounds(), DVec3::new(1.0, -2.0, 1.5), DVec3::Z, 0.6, (480, 360));
+    let case = Case::new(&model, &camera, 0.5);
+    assert!(case.data.links.iter().any(|link| link.halvings() > 0));
+    let taus = Chain::new(&case).taus;
+    assert!(taus.iter().any(|t| *t != 0));
+    compare(&gpu, &case, &taus, &taus).unwrap();
+    for largest in [1, 3, 20, 64, 300, 4096] {
+        let mut tau = || random.integer(1, largest);
+        let mut taus: Vec<u32> = case.data.items.iter().map(|_| tau() | tau() << 16).collect();
+        taus.iter_mut().step_by(5).for_each(|t| *t = 0);
+        compare(&gpu, &case, &taus, &taus).unwrap();
+        // whoever is changed, others at its sides see it
+        let mut other = taus.clone();
+        let at = case.data.links.iter().position(|link| link.halvings() > 0).unwrap() / 4;
+        other[at] = 4096 | 4096 << 16;
+        assert_eq!(compare(&gpu, &case, &other, &taus).unwrap_err().buffer, "factors");
     }
     gpu.finish();
 }

@@ -54,16 +54,18 @@ pub(crate) struct Bindings<'a> {
     pub fragments: &'a Buffer,
     /// What the trim test reads, in its order.
     pub trim: &'a [&'a Buffer],
+    /// Sides that faces share; in scenes where they do.
+    pub links: Option<&'a Buffer>,
     pub draws: &'a Buffer,
     pub counters: &'a Buffer,
 }
 
 impl OperandPatch {
-    /// `plain`: the scene has patches without a trim test; `trimmed`: how the others are trimmed, if there are any.
+    /// `plain`: the scene has patches without a trim test; `linked`: faces share sides; `trimmed`: how the others are trimmed, if there are any.
     pub(crate) fn new(
         device: &Device,
         rational: bool,
-        plain: bool,
+        (plain, linked): (bool, bool),
         trimmed: Option<&TrimTest>,
     ) -> Result<Self, GpuError> {
         let pipeline = |fills: bool, trimmed: Option<&TrimTest>| {
@@ -75,7 +77,10 @@ impl OperandPatch {
                 (DRAWS_OPERANDS, 1),
                 (FILLS, u32::from(fills)),
             ];
-            let mut bindings = vec![Binding::Storage; 13 + trimmed.map_or(0, |test| test.buffers)];
+            let linked = linked && trimmed.is_none();
+            let surface = if linked { shaders::OPERAND_LINKED_TESE } else { shaders::VISIBILITY_TESE };
+            let of_stages = trimmed.map_or(usize::from(linked), |test| test.buffers);
+            let mut bindings = vec![Binding::Storage; 13 + of_stages];
             bindings[6] = Binding::Texels;
             Pipeline::graphics(
                 device,
@@ -84,7 +89,7 @@ impl OperandPatch {
                     stages: &[
                         (vk::ShaderStageFlags::VERTEX, shaders::VISIBILITY_VERT),
                         (vk::ShaderStageFlags::TESSELLATION_CONTROL, shaders::VISIBILITY_TESC),
-                        (vk::ShaderStageFlags::TESSELLATION_EVALUATION, shaders::VISIBILITY_TESE),
+                        (vk::ShaderStageFlags::TESSELLATION_EVALUATION, surface),
                         (vk::ShaderStageFlags::FRAGMENT, fragment),
                     ],
                     bindings: &bindings,
@@ -126,7 +131,7 @@ impl OperandPatch {
         let step = if fills { &self.fill } else { &self.count };
         cmd.rendering_rows((size, rows), &[], None, || {
             if let Some(plain) = &step.plain {
-                cmd.bind(plain, &shared().collect::<Vec<_>>(), &[]);
+                cmd.bind(plain, &shared().chain(b.links.map(Into::into)).collect::<Vec<_>>(), &[]);
                 let count = offset_of!(Counters, plain_draws) as u64;
                 cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
             }

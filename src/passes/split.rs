@@ -10,7 +10,7 @@
 //!    └───────────┴───────────┘
 //! ```
 //!
-//! Reads: `frame`, `face_instances`, `faces`, `patches`, `items`, `taus`. Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
+//! Reads: `frame`, `face_instances`, `faces`, `patches`, `items`, `taus`, `links`. Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
 //! Twin: `src/twin/split.rs`.
 
 use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
@@ -38,16 +38,19 @@ pub(crate) struct Bindings<'a> {
     pub sub_patch_counts: &'a Buffer,
     /// Likewise.
     pub vertex_counts: &'a Buffer,
+    /// Sides that faces share; in scenes where they do.
+    pub links: Option<&'a Buffer>,
 }
 
 impl Split {
-    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+    /// `linked`: faces share sides.
+    pub(crate) fn new(device: &Device, linked: bool) -> Result<Self, GpuError> {
         let pipeline = Pipeline::compute(
             device,
             &ComputeInfo {
-                name: "split",
-                spirv: shaders::SPLIT_COMP,
-                bindings: &[Binding::Storage; 9],
+                name: if linked { "split (linked)" } else { "split" },
+                spirv: if linked { shaders::SPLIT_LINKED_COMP } else { shaders::SPLIT_COMP },
+                bindings: &[Binding::Storage; 10][..if linked { 10 } else { 9 }],
                 push_bytes: 0,
                 constants: &[],
             },
@@ -67,8 +70,8 @@ impl Split {
             b.factors,
             b.sub_patch_counts,
             b.vertex_counts,
-        ]
-        .map(Into::into);
+        ];
+        let resources: Vec<_> = resources.into_iter().chain(b.links).map(Into::into).collect();
         cmd.bind(&self.pipeline, &resources, &[]);
         cmd.dispatch(items.div_ceil(GROUP));
     }

@@ -44,6 +44,8 @@ pub(crate) struct Visibility {
 pub(crate) struct Kinds<'a> {
     pub rational: bool,
     pub plain: bool,
+    /// Faces share sides.
+    pub linked: bool,
     /// How faces are trimmed, where some are.
     pub trimmed: Option<&'a TrimTest>,
     /// Some patches bound operands of Boolean solids: they are not drawn here.
@@ -70,6 +72,8 @@ pub(crate) struct Bindings<'a> {
     pub trim: &'a [&'a Buffer],
     /// The volume that trims the scene; `None` where there is none.
     pub volume: Option<Primitives<'a>>,
+    /// Sides that faces share; in scenes where they do.
+    pub links: Option<&'a Buffer>,
     pub draws: &'a Buffer,
     pub counters: &'a Buffer,
 }
@@ -83,19 +87,26 @@ impl Visibility {
                 None => (shaders::VISIBILITY_FRAG, "plain"),
                 Some(t) => (t.within.filter(|_| within).map_or(t.visibility, |w| w.visibility), t.way),
             };
+            let linked = kinds.linked && trimmed.is_none();
+            let surface = match (linked, within) {
+                (false, _) => shaders::VISIBILITY_TESE,
+                (true, false) => shaders::VISIBILITY_LINKED_TESE,
+                (true, true) => shaders::VISIBILITY_LINKED_VOLUME_TESE,
+            };
             let within = if within { ", within a volume" } else { "" };
+            let shared = if linked { ", linked" } else { "" };
             let weights = if kinds.rational { "rational" } else { "polynomial" };
             Pipeline::graphics(
                 device,
                 &GraphicsInfo {
-                    name: &format!("visibility ({kind}, {weights}{within})"),
+                    name: &format!("visibility ({kind}, {weights}{shared}{within})"),
                     stages: &[
                         (vk::ShaderStageFlags::VERTEX, shaders::VISIBILITY_VERT),
                         (vk::ShaderStageFlags::TESSELLATION_CONTROL, shaders::VISIBILITY_TESC),
-                        (vk::ShaderStageFlags::TESSELLATION_EVALUATION, shaders::VISIBILITY_TESE),
+                        (vk::ShaderStageFlags::TESSELLATION_EVALUATION, surface),
                         (vk::ShaderStageFlags::FRAGMENT, fragment),
                     ],
-                    bindings: &bindings(trimmed.map(|test| test.buffers), kinds.volume.is_some()),
+                    bindings: &bindings(trimmed.map(|test| test.buffers), kinds.volume.is_some(), linked),
                     push_bytes: 0,
                     constants: &[
                         (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
@@ -134,7 +145,8 @@ impl Visibility {
         let shared = || shared.into_iter().map(Into::into).chain([b.points.into()]).chain(lists.map(Into::into));
         cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
             if let Some(plain) = &self.plain {
-                cmd.bind(plain, &shared().chain(volume()).collect::<Vec<_>>(), &[]);
+                let last = volume().chain(b.links.map(Into::into));
+                cmd.bind(plain, &shared().chain(last).collect::<Vec<_>>(), &[]);
                 let count = offset_of!(Counters, plain_draws) as u64;
                 cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
             }
@@ -149,10 +161,12 @@ impl Visibility {
     }
 }
 
-/// Bindings of a pipeline whose trim test reads so many buffers beside the rings; `None`: without one.
-fn bindings(of_test: Option<usize>, volume: bool) -> Vec<Binding> {
+/// Bindings of a pipeline whose trim test reads so many buffers beside the rings; `None`: without one. `linked`: it
+/// reads links.
+fn bindings(of_test: Option<usize>, volume: bool, linked: bool) -> Vec<Binding> {
     let mut bindings = vec![Binding::Storage; 10 + of_test.map_or(0, |buffers| 1 + buffers)];
     bindings[6] = Binding::Texels;
     bindings.extend(PRIMITIVES.iter().filter(|_| volume));
+    bindings.extend(linked.then_some(Binding::Storage));
     bindings
 }

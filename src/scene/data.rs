@@ -2,7 +2,8 @@
 
 use super::edit::EditScene;
 use super::exact::ExactData;
-use super::face::{FaceData, Trimming, pack_colour};
+use super::face::{Cuts, FaceData, Trimming, pack_colour};
+use super::link::link;
 use super::mesh::Meshes;
 use super::solids::{Lists, SolidData, UndrawnSolid};
 use super::sun::SunData;
@@ -21,6 +22,8 @@ use std::ops::Range;
 pub(crate) struct SceneData {
     pub patches: Vec<abi::Patch>,
     pub points: Vec<[f32; 4]>,
+    /// Four a patch; none where no faces without trims share a side.
+    pub links: Vec<abi::Link>,
     pub faces: Vec<abi::Face>,
     pub face_instances: Vec<abi::FaceInstance>,
     pub instances: Vec<abi::Instance>,
@@ -79,7 +82,7 @@ impl SceneData {
     pub(crate) fn new(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
         let usual = if settings.smooth_trims { TrimWay::Exact } else { TrimWay::Table };
         let way = settings.trim.unwrap_or(usual);
-        let trim = Trimming { way, smooth: settings.smooth_trims };
+        let trim = Trimming { way, smooth: settings.smooth_trims, editable: settings.editable };
         let edits = settings.editable && matches!(way, TrimWay::Table | TrimWay::Exact);
         let edit = edits.then(EditScene::default);
         let all = settings.thickness || settings.highlight.is_some();
@@ -126,12 +129,12 @@ impl SceneData {
             let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
             origins.push(origin);
             if used {
-                let faces: Vec<FaceData> = part
-                    .faces
-                    .par_iter()
-                    .map(|f| FaceData::new(f, origin, part.closed && !open, trim, settings.editable))
-                    .collect();
+                let cuts = Cuts::of(&part.faces);
+                let faces: Vec<FaceData> =
+                    part.faces.par_iter().map(|f| FaceData::new(f, origin, part.closed && !open, trim, cuts)).collect();
+                let first = data.faces.len();
                 faces.into_iter().for_each(|f| data.push_face(f));
+                data.link(first);
                 #[cfg(feature = "rivals")]
                 if let TrimWay::Rival(Rival::Bisect { steps, sorted }) = way {
                     part.faces.iter().for_each(|f| data.bisect.push(f, steps, sorted));
@@ -148,7 +151,15 @@ impl SceneData {
         }
         data.meshes = Meshes::new(model, &origins, open);
         data.push_operands(trim);
+        if !data.links.is_empty() {
+            data.links.resize(4 * data.patches.len(), abi::Link::default());
+        }
         Ok(data)
+    }
+
+    /// The faces from this one on meet along sides, where they do.
+    fn link(&mut self, first_face: usize) {
+        link(&self.faces, first_face..self.faces.len(), &self.patches, &mut self.points, &mut self.links);
     }
 
     /// How faces are trimmed; `None` when no patch is.
@@ -180,8 +191,9 @@ impl SceneData {
     fn push_operands(&mut self, trim: Trimming) {
         for operand in std::mem::take(&mut self.solids.operands) {
             let first = self.faces.len();
+            let cuts = Cuts::of(operand.faces());
             for face in operand.faces() {
-                let mut f = FaceData::new(face, operand.origin, true, trim, false);
+                let mut f = FaceData::new(face, operand.origin, true, Trimming { editable: false, ..trim }, cuts);
                 f.face.flags |= abi::FACE_OPERAND;
                 f.face.id = operand.primitive.id;
                 if face.colour.is_none() {
@@ -189,6 +201,7 @@ impl SceneData {
                 }
                 self.push_face(f);
             }
+            self.link(first);
             let faces = first..self.faces.len();
             self.has_operands |= !faces.is_empty();
             let transform = operand.primitive.transform;

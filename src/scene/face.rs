@@ -2,6 +2,7 @@
 
 use super::edit::{EditFace, EditLoop, EditPatch};
 use super::exact::exact_trim;
+pub(super) use super::flatten::Cuts;
 use super::flatten::flattened;
 use crate::abi;
 use crate::abi::Side;
@@ -53,12 +54,15 @@ pub(super) struct Trimming {
     pub way: TrimWay,
     /// Pass `coverage` measures their borders.
     pub smooth: bool,
+    /// They may be edited.
+    pub editable: bool,
 }
 
 impl FaceData {
-    pub(super) fn new(face: &Face, origin: DVec3, solid: bool, trim: Trimming, editable: bool) -> Self {
-        let Trimming { way, smooth } = trim;
-        let grid = flattened(face.surface.patches());
+    pub(super) fn new(face: &Face, origin: DVec3, solid: bool, trim: Trimming, cuts: Cuts) -> Self {
+        let Trimming { way, smooth, editable } = trim;
+        let cuts = if face.loops.is_empty() { cuts } else { Cuts::Any };
+        let grid = flattened(face.surface.patches(), cuts);
         let ((u0, u1), (v0, v1)) = face.surface.domain();
         let domain = Domain { origin: DVec2::new(u0, v0), size: DVec2::new(u1 - u0, v1 - v0) };
         let sides = sides(&grid, &face.loops);

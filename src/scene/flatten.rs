@@ -8,6 +8,7 @@
 //!   └───────────────┘
 //! ```
 
+use crate::model::Face;
 use crate::spline::{PatchGrid, SurfacePatch};
 
 /// A patch is cut where its border curves bulge by more than this share of their length: its box then
@@ -17,11 +18,28 @@ const MOST_BULGE: f64 = 0.02;
 /// Pieces along each parameter, at most: each costs a patch of 64 bytes and its control points.
 const MOST_PIECES: usize = 4;
 
+/// Into how many pieces patches may be cut.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Cuts {
+    /// Any number.
+    Any,
+    /// One, two or four: those of faces that meet along a side meet in halves of it, as [`link`](super::link) wants.
+    Halves,
+}
+
+impl Cuts {
+    /// For faces that may meet along their sides: several without trims.
+    pub(super) fn of<'a>(faces: impl IntoIterator<Item = &'a Face>) -> Self {
+        if faces.into_iter().filter(|f| f.loops.is_empty()).nth(1).is_some() { Self::Halves } else { Self::Any }
+    }
+}
+
 /// The grid with all its patches cut alike into flatter ones.
-pub(crate) fn flattened(grid: PatchGrid) -> PatchGrid {
+pub(crate) fn flattened(grid: PatchGrid, cuts: Cuts) -> PatchGrid {
     let pieces = |bend: f64, speed: f64| {
         let bulge = bend / 8.0 / speed.max(f64::MIN_POSITIVE);
-        ((bulge / MOST_BULGE).sqrt().ceil() as usize).clamp(1, MOST_PIECES)
+        let pieces = ((bulge / MOST_BULGE).sqrt().ceil() as usize).clamp(1, MOST_PIECES);
+        if cuts == Cuts::Halves { pieces.next_power_of_two() } else { pieces }
     };
     let (ku, kv) = grid.patches.iter().fold((1, 1), |(ku, kv), p| {
         let b = p.patch.derivative_bound();
@@ -88,7 +106,7 @@ mod tests {
     #[test]
     fn pieces_tile_the_domain_and_share_their_sides_bit_for_bit() {
         let surface = bent();
-        let grid = flattened(surface.patches());
+        let grid = flattened(surface.patches(), Cuts::Any);
         let ((u0, u1), (v0, v1)) = surface.domain();
         assert!(grid.count_u > 2 && grid.count_v > 1, "{} x {}", grid.count_u, grid.count_v);
         for (n, p) in grid.patches.iter().enumerate() {
@@ -116,6 +134,6 @@ mod tests {
         let corner = |x: f64, y: f64| DVec4::new(x, y, 0.0, 1.0);
         let net = vec![corner(0.0, 0.0), corner(2.0, 0.0), corner(0.0, 3.0), corner(2.0, 3.0)];
         let plane = Surface::new((1, 1), vec![0.0, 0.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0], net).unwrap();
-        assert_eq!(flattened(plane.patches()), plane.patches());
+        assert_eq!(flattened(plane.patches(), Cuts::Any), plane.patches());
     }
 }

@@ -5,7 +5,7 @@
 //!     │  face: knots inserted ──▶ Patch + points (f32, relative to the part's centre)
 //!     │        loops          ──▶ Side of each patch; Curve + curve_points; Cell per patch and strip
 //!     │  mesh: positions (f32, relative to the part's centre), indices, packed normals
-//!     │  part: shared by its instances
+//!     │  part: shared by its instances; sides at which its faces without trims meet ──▶ Link
 //!     ▼
 //!   SceneData (plain arrays)  ──upload──▶  Scene (persistent pool)
 //! ```
@@ -20,6 +20,7 @@ mod edit;
 mod exact;
 mod face;
 mod flatten;
+mod link;
 mod mesh;
 mod solids;
 mod sun;
@@ -32,7 +33,7 @@ pub(crate) use edit::{EditTarget, Write};
 #[cfg(test)]
 pub(crate) use exact::ExactData;
 #[cfg(any(test, feature = "rivals"))]
-pub(crate) use flatten::flattened;
+pub(crate) use flatten::{Cuts, flattened};
 pub use solids::UndrawnSolid;
 pub(crate) use solids::{Asked, Blister, SolidData};
 #[cfg(feature = "rivals")]

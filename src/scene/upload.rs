@@ -16,6 +16,8 @@ pub(crate) struct Scene {
     pub patches: Buffer,
     /// Homogeneous control points.
     pub points: Texels,
+    /// Sides that faces share; `None` where they share none.
+    pub links: Option<Buffer>,
     pub faces: Buffer,
     pub face_instances: Buffer,
     pub instances: Buffer,
@@ -150,6 +152,9 @@ impl Scene {
         let scene = Self {
             patches: persistent(&mut uploads, cmd, "patches", &data.patches)?,
             points: texels(&mut uploads, cmd, "points", &data.points)?,
+            links: (!data.links.is_empty())
+                .then(|| persistent(&mut uploads, cmd, "patch links", &data.links))
+                .transpose()?,
             faces: persistent(&mut uploads, cmd, "faces", &data.faces)?,
             face_instances: persistent(&mut uploads, cmd, "face instances", &data.face_instances)?,
             instances: persistent(&mut uploads, cmd, "instances", &data.instances)?,

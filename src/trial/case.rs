@@ -59,6 +59,7 @@ impl Case {
             face_instances: &d.face_instances,
             faces: &d.faces,
             patches: &d.patches,
+            links: &d.links,
             items: &d.items,
             cells: &d.cells,
             cell_items: &d.cell_items,

@@ -12,7 +12,7 @@ use super::{Case, Random};
 use crate::abi;
 use crate::abi::Counters;
 use crate::model::{Camera, Face, Instance, Model, Part, Projection, SurfaceKind};
-use crate::scene::flattened;
+use crate::scene::{Cuts, flattened};
 use crate::spline::{Bezier, Control, Patch, Surface};
 use crate::twin::MOST_SEGMENTS;
 use crate::twin::bound::bound;
@@ -96,7 +96,7 @@ impl Trial {
         let faces = model.instances.iter().flat_map(|i| model.parts[i.part].faces.iter().map(move |f| (i, f)));
         let mut all = Vec::new();
         for (instance, face) in faces {
-            for piece in flattened(face.surface.patches()).patches {
+            for piece in flattened(face.surface.patches(), Cuts::Any).patches {
                 let tau = taus.next().expect("one an item");
                 let tau = [tau & 0xffff, tau >> 16].map(|t| t as usize);
                 let to_pixels = camera.pixel_matrix() * DMat4::from(instance.transform);

@@ -35,7 +35,7 @@ pub mod split;
 pub mod table;
 pub mod view;
 
-use crate::abi::{Cell, Curve, Face, FaceInstance, Instance, Patch, View};
+use crate::abi::{Cell, Curve, Face, FaceInstance, Instance, Link, Patch, View};
 
 /// The hardware's tessellation factor.
 pub const MAX_FACTOR: u32 = 64;
@@ -65,6 +65,8 @@ pub struct Scene<'a> {
     pub faces: &'a [Face],
     /// Patches of all faces.
     pub patches: &'a [Patch],
+    /// Sides that faces share, four a patch; none where they share none.
+    pub links: &'a [Link],
     /// Face instance of each item.
     pub items: &'a [u32],
     /// Parts of patches in v-strips.

@@ -11,6 +11,11 @@
 //!    side v = 0:  low.u segments
 //! ```
 //!
+//! Where faces share sides ([`Link`](crate::abi::Link)), all that lie on one curve get numbers of segments of the whole
+//! curve: a side that is a quarter of it gets a quarter. A patch at a side of which others are far shorter may have to be
+//! cut finer than 64 sub-patches would do; then its side gets what they allow, and a crack narrower than the deviation may
+//! stay.
+//!
 //! Both patches at a side see the same four factors around it, so they agree without talking; splits
 //! are powers of two, so the larger is a multiple of the smaller; 64 splits is a multiple of every
 //! split count, so rounding up never exceeds 64 segments in a sub-patch.
@@ -23,7 +28,7 @@
 //! patch without neighbours along it nothing.
 
 use super::{MAX_FACTOR, MAX_SPLIT, Scene};
-use crate::abi::{FACE_CLOSED_U, FACE_CLOSED_V, Face, Factors, Frame, Side};
+use crate::abi::{FACE_CLOSED_U, FACE_CLOSED_V, Factors, Frame, Side};
 
 /// What the pass writes.
 #[derive(Clone, Debug, Default, PartialEq, Eq)]
@@ -36,16 +41,16 @@ pub struct Split {
     pub vertex_counts: Vec<u32>,
 }
 
-/// Decides the segments of each item's sides from the factors of all patches of its face.
+/// Decides the segments of each item's sides from the factors of all patches of its part.
 pub fn split(frame: &Frame, scene: &Scene<'_>, taus: &[u32]) -> Split {
     let n = frame.item_count as usize;
     let mut out =
         Split { factors: Vec::with_capacity(n), sub_patch_counts: vec![0; 2 * n], vertex_counts: vec![0; 2 * n] };
     for item in 0..n {
         let (placed, face, patch) = scene.item(item);
-        let first = placed.first_item as usize;
-        let patches = (face.count_u * face.count_v) as usize;
-        let (factors, sub_patches, vertices) = patch_factors(&face, &taus[first..first + patches], item - first);
+        let part = Part { scene, taus, first_item: placed.first_item, first_patch: face.first_patch };
+        let (factors, sub_patches, vertices) =
+            part.patch_factors(face.first_patch + item as u32 - placed.first_item, taus[item] != 0);
         out.factors.push(factors);
         let slot = if patch.side() == Side::Inside { item } else { n + item };
         out.sub_patch_counts[slot] = sub_patches;
@@ -54,49 +59,111 @@ pub fn split(frame: &Frame, scene: &Scene<'_>, taus: &[u32]) -> Split {
     out
 }
 
-/// Factors, sub-patches and vertices of patch `n` of a face whose patches ask for `taus`.
-fn patch_factors(face: &Face, taus: &[u32], n: usize) -> (Factors, u32, u32) {
-    let count = [face.count_u as usize, face.count_v as usize];
-    let closed = [face.flags & FACE_CLOSED_U != 0, face.flags & FACE_CLOSED_V != 0];
-    let place = [n % count[0], n / count[0]];
-    // tau along `axis` of the patch `steps` away across that axis; 0 beyond the border
-    let tau_at = |axis: usize, steps: i32| {
-        let across = 1 - axis;
-        let (mut at, n) = (place[across] as i32 + steps, count[across] as i32);
-        if at < 0 || at >= n {
-            if !closed[across] {
-                return 0;
-            }
-            at = at.rem_euclid(n);
-        }
-        let mut place = place;
-        place[across] = at as usize;
-        taus[place[1] * count[0] + place[0]] >> (16 * axis) & 0xffff
-    };
-    let (mut splits, mut inner, mut low, mut high) = ([0; 2], [0; 2], [0; 2], [0; 2]);
-    for axis in 0..2 {
-        let t: [u32; 5] = std::array::from_fn(|k| tau_at(axis, k as i32 - 2));
-        let [before, own, after] = std::array::from_fn(|k| splits_for(t[k].max(t[k + 1]).max(t[k + 2])));
-        splits[axis] = own;
-        let asked = t[2].max(1);
-        let met = t[1] != 0 || t[3] != 0;
-        inner[axis] = if met { asked.next_power_of_two() } else { asked }.next_multiple_of(own);
-        let side = |other: u32, splits: u32| match other {
-            0 => inner[axis],
-            tau => tau.max(asked).next_power_of_two().max(splits.max(own)),
-        };
-        (low[axis], high[axis]) = (side(t[1], before), side(t[3], after));
+/// A placed part: its items are numbered as its patches.
+struct Part<'a> {
+    scene: &'a Scene<'a>,
+    taus: &'a [u32],
+    /// Of one of its faces.
+    first_item: u32,
+    first_patch: u32,
+}
+
+impl Part<'_> {
+    fn tau(&self, patch: u32, axis: u32) -> u32 {
+        self.taus[(self.first_item + patch - self.first_patch) as usize] >> (16 * axis) & 0xffff
     }
-    let most: [u32; 2] = std::array::from_fn(|a| inner[a].max(low[a]).max(high[a]) / splits[a]);
-    let sub_patches = if taus[n] != 0 { splits[0] * splits[1] } else { 0 };
-    let pack = |[a, b]: [u32; 2]| a | b << 16;
-    let factors = Factors {
-        inner: pack(inner),
-        edge_u: pack([low[0], high[0]]),
-        edge_v: pack([low[1], high[1]]),
-        splits: pack(splits),
-    };
-    (factors, sub_patches, sub_patches * (most[0] + 1) * (most[1] + 1))
+
+    /// The patch of the same face beyond a side: 0 to 3 for `u = 0`, `v = 0`, `u = 1`, `v = 1`.
+    fn beyond(&self, patch: u32, side: u32) -> Option<u32> {
+        let face = &self.scene.faces[self.scene.patches[patch as usize].face as usize];
+        let (count, across) = ([face.count_u, face.count_v], (side & 1) as usize);
+        let n = patch - face.first_patch;
+        let mut place = [n % count[0], n / count[0]];
+        let closed = face.flags & [FACE_CLOSED_U, FACE_CLOSED_V][across] != 0;
+        let border = if side < 2 { place[across] == 0 } else { place[across] + 1 == count[across] };
+        place[across] = (place[across] + if side < 2 { count[across] - 1 } else { 1 }) % count[across];
+        (!border || closed).then(|| face.first_patch + place[1] * count[0] + place[0])
+    }
+
+    /// The other sides that share this one, and how much shorter than the ring's curve they are; and this one itself.
+    fn ring(&self, patch: u32, side: u32) -> (Vec<(u32, u32, u32)>, u32) {
+        let name = 4 * patch + side;
+        let link = |name: u32| self.scene.links.get(name as usize).copied().unwrap_or_default();
+        let own = link(name);
+        let mut others = Vec::new();
+        let mut at = own.next;
+        while own.is_shared() && at != name {
+            others.push((at / 4, at % 4, link(at).halvings()));
+            at = link(at).next;
+        }
+        (others, own.halvings())
+    }
+
+    /// The most that others have along a side, of `value`, which a side of half the length has half of; `least` where
+    /// nobody else is.
+    fn most_beyond(&self, patch: u32, side: u32, least: u32, value: impl Fn(u32, u32) -> u32) -> u32 {
+        match self.beyond(patch, side) {
+            Some(beyond) => value(beyond, axis_of(side)),
+            None => {
+                let (others, halvings) = self.ring(patch, side);
+                let of_ring = others.iter().map(|&(patch, side, halvings)| value(patch, axis_of(side)) << halvings);
+                of_ring.fold(least, u32::max).div_ceil(1 << halvings)
+            }
+        }
+    }
+
+    /// The largest tau that others ask for along a side; 0 where nobody else is drawn.
+    fn asked_beyond(&self, patch: u32, side: u32) -> u32 {
+        self.most_beyond(patch, side, 0, |patch, axis| self.tau(patch, axis))
+    }
+
+    fn splits(&self, patch: u32, axis: u32) -> u32 {
+        let [low, high] = sides_of(axis).map(|side| self.asked_beyond(patch, side));
+        splits_for(self.tau(patch, axis).max(low).max(high))
+    }
+
+    /// Factors, sub-patches and vertices.
+    fn patch_factors(&self, patch: u32, drawn: bool) -> (Factors, u32, u32) {
+        let (mut splits, mut inner, mut low, mut high) = ([0; 2], [0; 2], [0; 2], [0; 2]);
+        for axis in 0..2 {
+            let (a, tau) = (axis as usize, self.tau(patch, axis));
+            let others = sides_of(axis).map(|side| self.asked_beyond(patch, side));
+            splits[a] = splits_for(tau.max(others[0]).max(others[1]));
+            let asked = tau.max(1);
+            inner[a] = if others == [0, 0] { asked } else { asked.next_power_of_two() }.next_multiple_of(splits[a]);
+            let side = |side: u32, other: u32| match other {
+                0 => inner[a],
+                tau => {
+                    let of_drawn = |p, axis| if self.tau(p, axis) == 0 { 0 } else { self.splits(p, axis) };
+                    let others_splits = self.most_beyond(patch, side, 1, of_drawn);
+                    let n = tau.max(asked).next_power_of_two().max(others_splits.max(splits[a]));
+                    n.min(MAX_FACTOR * splits[a])
+                }
+            };
+            let [at_low, at_high] = sides_of(axis);
+            (low[a], high[a]) = (side(at_low, others[0]), side(at_high, others[1]));
+        }
+        let most: [u32; 2] = std::array::from_fn(|a| inner[a].max(low[a]).max(high[a]) / splits[a]);
+        let sub_patches = if drawn { splits[0] * splits[1] } else { 0 };
+        let pack = |[a, b]: [u32; 2]| a | b << 16;
+        let factors = Factors {
+            inner: pack(inner),
+            edge_u: pack([low[0], high[0]]),
+            edge_v: pack([low[1], high[1]]),
+            splits: pack(splits),
+        };
+        (factors, sub_patches, sub_patches * (most[0] + 1) * (most[1] + 1))
+    }
+}
+
+/// The axis along which a side runs.
+fn axis_of(side: u32) -> u32 {
+    1 - (side & 1)
+}
+
+/// The sides along an axis.
+fn sides_of(axis: u32) -> [u32; 2] {
+    [1 - axis, 3 - axis]
 }
 
 /// Sub-patches that keep `most` segments within [`MAX_FACTOR`] each.

@@ -6,6 +6,9 @@
 
 mod accuracy;
 mod bands;
+#[path = "../shapes/cages.rs"]
+mod cages;
+mod closed;
 mod cuts;
 mod distance;
 mod edges;

@@ -1,7 +1,7 @@
 //! A scene makes only the buffers, images and pipelines that it needs.
 
-use crate::shapes;
 use crate::support::{assert_silent, perspective, watched_with};
+use crate::{cages, shapes};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::Model;
 use selvedge::picture::{FrameSettings, Outputs, SceneSettings, SolidWay, TrimWay};
@@ -75,6 +75,26 @@ fn only_a_scene_with_meshes_has_what_they_need() {
         assert_eq!(objects.iter().any(|o| o.contains("mesh")), has, "{}: {objects:?}", shape.name);
         assert_silent(renderer);
     }
+}
+
+/// Links and what reads them exist only where faces share sides.
+#[test]
+fn only_faces_that_share_sides_have_links() {
+    let is_of_links = |o: &&String| o.contains("link") && !o.starts_with("staging");
+    let of_links = |objects: &[String]| objects.iter().filter(is_of_links).cloned().collect::<Vec<_>>();
+    for shape in shapes::all() {
+        let (renderer, objects) = objects(&shape.model, Outputs::default());
+        let may = shape.model.parts.iter().any(|p| p.faces.len() > 1);
+        assert!(may || of_links(&objects).is_empty(), "{}: {objects:?}", shape.name);
+        assert_silent(renderer);
+    }
+    let (renderer, objects) = objects(&cages::a_box().model, Outputs::default());
+    let found = of_links(&objects);
+    for name in ["patch links", "split (linked)", "visibility (plain, polynomial, linked)"] {
+        assert!(found.iter().any(|o| o == name), "{name}: {found:?}");
+    }
+    assert_eq!(found.len(), 3, "{found:?}");
+    assert_silent(renderer);
 }
 
 /// Pipelines and buffers of Boolean solids exist for those only, and nothing of patches, trims or meshes for a

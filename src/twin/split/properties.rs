@@ -1,8 +1,10 @@
 //! What [`split`](super) promises, over random faces.
 
 use super::*;
-use crate::abi::{FaceInstance, Patch};
-use crate::parity::Random;
+use crate::abi::{Face, FaceInstance, Patch};
+use crate::model::Camera;
+use crate::parity::{Case, Random, cages};
+use glam::DVec3;
 
 /// A face of random factors, some patches unseen, and what `split` makes of it.
 struct Grid {
@@ -117,5 +119,48 @@ fn sub_patches_are_within_the_hardware_s_factor() {
             assert_eq!(total(&g.out.sub_patch_counts), drawn);
             assert_eq!(total(&g.out.vertex_counts), drawn * (most[0] + 1) * (most[1] + 1));
         }
+    }
+}
+
+/// Sides of faces that lie on one curve get the same number of segments of it, each at least as many as it asks for;
+/// but where that would be more than a patch's sub-patches can have.
+#[test]
+fn sides_that_faces_share_agree() {
+    let model = cages::a_box().model;
+    let camera = Camera::framing(model.bounds(), DVec3::ONE, DVec3::Z, 0.6, (64, 64));
+    let case = Case::new(&model, &camera, 0.5);
+    let (scene, mut random) = (case.scene(), Random::new(7));
+    for (largest, unseen) in [(1, 0), (1, 5), (3, 3), (20, 0), (64, 3), (300, 1), (4096, 1)] {
+        let taus: Vec<u32> = (0..scene.items.len())
+            .map(|_| {
+                let tau = random.integer(1, largest) | random.integer(1, largest) << 16;
+                if random.integer(0, 9) < unseen { 0 } else { tau }
+            })
+            .collect();
+        let out = split(&case.frame, &scene, &taus);
+        let (mut shared, mut short) = (0, 0);
+        for side in (0..scene.links.len() as u32).filter(|side| scene.links[*side as usize].is_shared()) {
+            // segments of the whole curve, for a drawn side that others may agree with
+            let of_curve = |side: u32| {
+                let (item, axis) = ((side / 4) as usize, axis_of(side % 4) as usize);
+                let f = out.factors[item];
+                let n = unpack([f.edge_u, f.edge_v][axis])[(side % 4 / 2) as usize];
+                let splits = unpack(f.splits)[axis];
+                if taus[item] != 0 {
+                    assert!(n >= taus[item] >> (16 * axis) & 0xffff && n % splits == 0 && n / splits <= MAX_FACTOR);
+                }
+                let full = n == MAX_FACTOR * splits;
+                (taus[item] != 0).then_some((n << scene.links[side as usize].halvings(), full))
+            };
+            let next = scene.links[side as usize].next;
+            let (Some((a, a_full)), Some((b, b_full))) = (of_curve(side), of_curve(next)) else { continue };
+            shared += 1;
+            if a != b {
+                assert!(a_full || b_full, "sides {side}, {next}: {a} and {b} segments");
+                short += 1;
+            }
+        }
+        assert!(shared > 100, "{shared} sides");
+        assert!(short == 0 || largest > 20, "{short} of {shared} with factors up to {largest}");
     }
 }

@@ -1,0 +1,63 @@
+// Pass `split`: what it reads and writes, and the segments along one axis of a patch. The entry point finds out
+// what those ask for that share its sides.
+//
+// Where a drawn neighbour may ask for another number, all numbers are powers of two: the tessellator
+// joins a side to the interior within one cell's width then, else across several cells.
+#include "scene.glsl"
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer FaceInstances { FaceInstance face_instances[]; };
+layout(scalar, binding = 2) readonly buffer Faces { Face faces[]; };
+layout(scalar, binding = 3) readonly buffer Patches { Patch patches[]; };
+layout(scalar, binding = 4) readonly buffer Items { uint item_face_instance[]; };
+layout(scalar, binding = 5) readonly buffer Taus { uint taus[]; };
+layout(scalar, binding = 6) writeonly buffer FactorsBuffer { Factors factors[]; };
+// sub-patches and tessellated vertices of each item: first all items as plain, then all as trimmed
+layout(scalar, binding = 7) writeonly buffer SubPatchCounts { uint sub_patch_counts[]; };
+layout(scalar, binding = 8) writeonly buffer VertexCounts { uint vertex_counts[]; };
+
+uint tau_along(uint tau, uint axis) { return axis == 0u ? tau & 0xffffu : tau >> 16; }
+
+uint power_of_two(uint x) { return x <= 1u ? 1u : 1u << (findMSB(x - 1u) + 1); }
+
+// Sub-patches along the axis for a patch with these neighbours: enough that no shared side needs
+// more than MAX_FACTOR segments in one sub-patch.
+uint splits_for(uint before, uint own, uint after) {
+    uint most = max(own, max(before, after));
+    return min(power_of_two((most + MAX_FACTOR - 1u) / MAX_FACTOR), MAX_SPLIT);
+}
+
+uint round_up(uint x, uint step) { return (x + step - 1u) / step * step; }
+
+uvec2 splits, inner, low, high;
+
+// Of a side at which others ask for so many segments and have so many sub-patches; 0: nobody does.
+uint side_segments(uint own, uint others, uint others_splits, uint axis) {
+    if (others == 0u) return inner[axis];
+    uint n = max(power_of_two(max(others, own)), max(others_splits, splits[axis]));
+    return min(n, MAX_FACTOR * splits[axis]);
+}
+
+// Of a patch along one axis, from what it asks for and what others do at its low and high side.
+void decide(uint axis, uint own, uvec2 others, uvec2 others_splits) {
+    splits[axis] = splits_for(others.x, own, others.y);
+    own = max(own, 1u);
+    inner[axis] = round_up(others != uvec2(0u) ? power_of_two(own) : own, splits[axis]);
+    low[axis] = side_segments(own, others.x, others_splits.x, axis);
+    high[axis] = side_segments(own, others.y, others_splits.y, axis);
+}
+
+void write(uint item, uint patch_) {
+    bool drawn = taus[item] != 0u;
+    factors[item] = Factors(inner.x | inner.y << 16, low.x | high.x << 16, low.y | high.y << 16,
+                            splits.x | splits.y << 16);
+    uvec2 most = max(inner, max(low, high)) / splits;
+    uint sub_patches = drawn ? splits.x * splits.y : 0u;
+    uint vertices = sub_patches * (most.x + 1u) * (most.y + 1u);
+    uint plain = side_of(patches[patch_].shape) == SIDE_INSIDE ? 1u : 0u;
+    sub_patch_counts[item] = sub_patches * plain;
+    sub_patch_counts[frame.item_count + item] = sub_patches * (1u - plain);
+    vertex_counts[item] = vertices * plain;
+    vertex_counts[frame.item_count + item] = vertices * (1u - plain);
+}

@@ -1,0 +1,99 @@
+// Pass `visibility`: the exact surface at the vertices of one sub-patch. Where faces share sides, the entry point
+// defines LINK_BINDING: the plain patches' vertices there are those of the curve that all of them share.
+//
+// Two sub-patches that share a side compute its vertices from the same integers (segment k of n),
+// so they agree bit for bit. On the border of a trimmed face the outermost vertices are pushed
+// ring_px beyond it: the surface continues, and the trim test finds material on both sides of an
+// edge even where rounding or chords leave a gap.
+#include "scene.glsl"
+#include "view.glsl"
+
+layout(constant_id = 2) const bool TRIMMED = false;
+layout(constant_id = 11) const bool DRAWS_OPERANDS = false;
+
+layout(quads, equal_spacing, ccw) in;
+layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
+layout(binding = 6) uniform samplerBuffer points;
+
+#include "patch.glsl"
+#ifdef LINK_BINDING
+#include "link.glsl"
+#endif
+
+layout(location = 0) patch in uint in_item;
+layout(location = 1) patch in uint in_instance;
+layout(location = 2) patch in uint in_patch;
+layout(location = 3) patch in uvec2 in_place;
+layout(location = 4) patch in uvec2 in_splits;
+layout(location = 5) patch in uvec4 in_edges;
+layout(location = 0) out vec2 out_uv; // of the patch
+layout(location = 1) flat out uint out_item;
+
+// Most of a patch's width that its border may be pushed outwards.
+const float MAX_PUSH = 0.5;
+
+float along_side(float x, uint place, uint splits, uint edge) {
+    uint n = edge / splits;
+    return float(place * n + uint(x * float(n) + 0.5)) / float(edge);
+}
+
+void main() {
+    vec2 t = gl_TessCoord.xy;
+    vec2 uv = (vec2(in_place) + t) / vec2(in_splits);
+    // sides of the whole patch: canonical positions
+    bool left = t.x == 0.0 && in_place.x == 0u;
+    bool right = t.x == 1.0 && in_place.x + 1u == in_splits.x;
+    bool bottom = t.y == 0.0 && in_place.y == 0u;
+    bool top = t.y == 1.0 && in_place.y + 1u == in_splits.y;
+    if (left || right) {
+        uv.x = left ? 0.0 : 1.0;
+        if (!(bottom || top)) uv.y = along_side(t.y, in_place.y, in_splits.y, left ? in_edges.x : in_edges.z);
+    }
+    if (bottom || top) {
+        uv.y = bottom ? 0.0 : 1.0;
+        if (!(left || right)) uv.x = along_side(t.x, in_place.x, in_splits.x, bottom ? in_edges.y : in_edges.w);
+    }
+    Patch patch_ = patches[in_patch];
+    View view = views[in_instance];
+    Jet jet = patch_jet(patch_.first, patch_.shape, uv);
+#ifdef LINK_BINDING
+    // corners are control points, the same for all that meet there
+    if ((left || right) != (bottom || top)) {
+        uint side = left ? 0u : bottom ? 1u : right ? 2u : 3u;
+        jet.point = linked_point(in_patch, side, left || right ? uv.y : uv.x, jet.point);
+    }
+#endif
+    if (TRIMMED) {
+        uint borders = borders_of(patch_.shape);
+        left = left && (borders & BORDER_U0) != 0u;
+        right = right && (borders & BORDER_U1) != 0u;
+        bottom = bottom && (borders & BORDER_V0) != 0u;
+        top = top && (borders & BORDER_V1) != 0u;
+        if (left || right || bottom || top) {
+            vec4 q = to_pixel(view, vec4(jet.point, 1.0));
+            vec4 qu = to_pixel(view, vec4(jet.du, 0.0));
+            vec4 qv = to_pixel(view, vec4(jet.dv, 0.0));
+            float w = frame.perspective != 0u ? max(q.w, frame.near) : 1.0;
+            vec2 pu = (qu.xy - q.xy / w * qu.w) / w; // pixels per unit u
+            vec2 pv = (qv.xy - q.xy / w * qv.w) / w;
+            float area = abs(pu.x * pv.y - pu.y * pv.x);
+            // a step du moves the border by du * area / |pv| pixels across itself
+            vec2 push = 2.0 * frame.ring_px * vec2(length(pv), length(pu)) / max(area, 1e-12);
+            // where a shared side meets the border, both its patches must push alike, bit for bit: along it
+            bool shared_u = (uv.x == 0.0 || uv.x == 1.0) && !(left || right);
+            bool shared_v = (uv.y == 0.0 || uv.y == 1.0) && !(bottom || top);
+            if (shared_u) push.y = 2.0 * frame.ring_px / max(length(pv), 1e-12);
+            if (shared_v) push.x = 2.0 * frame.ring_px / max(length(pu), 1e-12);
+            push = min(vec2(MAX_PUSH), push);
+            uv.x += right ? push.x : left ? -push.x : 0.0;
+            uv.y += top ? push.y : bottom ? -push.y : 0.0;
+            jet.point = patch_jet(patch_.first, patch_.shape, uv).point;
+        }
+    }
+    vec4 q = to_pixel(view, vec4(jet.point, 1.0));
+    gl_Position = DRAWS_OPERANDS ? to_clip_unending(frame, q) : to_clip(frame, q);
+    out_uv = uv;
+    out_item = in_item;
+}

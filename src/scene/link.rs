@@ -1,0 +1,348 @@
+//! Sides of faces without trims that meet: linked, so that both are drawn with the same vertices.
+//!
+//! ```text
+//!    one to one                one to several: halves of it, and their halves
+//!    ┌─────┐┌─────┐            ┌─────────┐┌──┐      the curve of a link is cut at all ends of sides on it; each
+//!    │     ││     │            │         │├──┤      piece belongs to one side, its *owner*, and every side that
+//!    │     ││     │            │         │├──┤      lies there takes its vertices from the owner's control points
+//!    └─────┘└─────┘            └─────────┘└──┘
+//! ```
+//!
+//! Sides are the same whose control points, as they are uploaded, are the same within a few of their roundings, forwards
+//! or reversed, weights and degrees included. The corners of patches at borders are made the same bit for bit first, so
+//! whatever meets in a corner, by a side or by the corner alone, has one number for it. A side that coincides with
+//! no other is halved by de Casteljau's algorithm, [`MOST_HALVINGS`] times at most, and linked where every piece is the
+//! side of another patch. More than two sides that coincide are linked all together. Not linked are
+//! sides with other parametrisations or degrees, and such that meet in other parts than halves.
+//!
+//! Cost: linear in the sides at borders.
+
+use crate::abi::{BORDER_U0, BORDER_U1, BORDER_V0, BORDER_V1};
+use crate::abi::{FACE_CLOSED_U, FACE_CLOSED_V, FACE_TRIMMED, Face, Link, Patch, Side};
+use std::collections::HashMap;
+use std::ops::Range;
+
+/// Control points are the same when no coordinate differs by more than this share of the part's largest, weights
+/// likewise: four roundings to single precision.
+const SAME: f64 = 1.0 / (1 << 21) as f64;
+/// Cells in which corners are looked for, in units of the distance at which they are the same: wide enough that
+/// most lie in one cell alone.
+const CELL: f64 = 16.0;
+/// Sides have at most 4096 segments.
+const MOST_HALVINGS: u32 = 12;
+/// Most sides in one link: those of a curve that is halved towards both its ends, twice over.
+const MOST_SIDES: usize = Link::MOST_SIDES as usize;
+
+type Point = [f64; 4];
+
+/// One side of a patch at a border: `u = 0`, `v = 0`, `u = 1`, `v = 1`.
+#[derive(Clone, Debug)]
+struct PatchSide {
+    /// Number of the patch times four, and the side.
+    name: u32,
+    /// From its lower parameter up.
+    net: Vec<Point>,
+    corners: (u32, u32),
+}
+
+/// Where a side lies on the curve of its link: from `start / 2^halvings`, `1 / 2^halvings` long.
+#[derive(Clone, Copy, Debug, Default)]
+struct Place {
+    start: u32,
+    halvings: u32,
+    reversed: bool,
+}
+
+/// Sides that coincide as wholes; the first is the owner.
+struct Group {
+    /// Whether each runs against the first.
+    sides: Vec<(usize, bool)>,
+    /// It is a piece of another side.
+    piece: bool,
+    /// The pieces of its one side, where that is cut.
+    pieces: Vec<(usize, Place)>,
+}
+
+/// The links of these faces, at `links[4 * patch + side]`; grows `links` to hold them where there are some.
+/// Corners that are nearly the same become the same.
+pub(super) fn link(
+    faces: &[Face],
+    range: Range<usize>,
+    patches: &[Patch],
+    points: &mut [[f32; 4]],
+    links: &mut Vec<Link>,
+) {
+    let borders: Vec<Border> = borders(faces, range, patches).collect();
+    let Some(mut corners) = Corners::new(&borders, patches, points) else { return };
+    for border in &borders {
+        corners.weld(border, &patches[border.patch], points);
+    }
+    let sides: Vec<PatchSide> = borders
+        .iter()
+        .flat_map(|b| b.sides().filter_map(|side| b.side(side, &patches[b.patch], points, &corners)))
+        .collect();
+    let mut groups = Groups::new(&sides, &corners);
+    groups.cut();
+    for ring in groups.rings() {
+        if links.len() < 4 * patches.len() {
+            links.resize(4 * patches.len(), Link::default());
+        }
+        for (k, &(name, place, owner)) in ring.iter().enumerate() {
+            let next = ring[(k + 1) % ring.len()].0;
+            links[name as usize] = Link::new(next, (place.start, place.halvings), place.reversed, owner);
+        }
+    }
+}
+
+/// A patch that has open borders of its face.
+struct Border {
+    patch: usize,
+    /// Bits of the borders.
+    open: u32,
+}
+
+/// Patches at open borders of faces without trims.
+fn borders<'a>(faces: &'a [Face], range: Range<usize>, patches: &'a [Patch]) -> impl Iterator<Item = Border> + 'a {
+    faces[range].iter().flat_map(move |face| {
+        let first = face.first_patch as usize;
+        let of_face = &patches[first..first + (face.count_u * face.count_v) as usize];
+        let whole = face.flags & FACE_TRIMMED == 0 && of_face.iter().all(|p| p.side() == Side::Inside);
+        let closed = |flag: u32, bits: u32| if face.flags & flag != 0 { bits } else { 0 };
+        let closed = closed(FACE_CLOSED_U, BORDER_U0 | BORDER_U1) | closed(FACE_CLOSED_V, BORDER_V0 | BORDER_V1);
+        let of_face = if whole { of_face } else { &[] };
+        of_face.iter().enumerate().filter_map(move |(n, p)| {
+            let open = p.borders() & !closed;
+            (open != 0).then_some(Border { patch: first + n, open })
+        })
+    })
+}
+
+impl Border {
+    /// Bits in the order of sides.
+    const BITS: [u32; 4] = [BORDER_U0, BORDER_V0, BORDER_U1, BORDER_V1];
+
+    fn sides(&self) -> impl Iterator<Item = usize> {
+        let open = self.open;
+        (0..4).filter(move |side| open & Self::BITS[*side] != 0)
+    }
+
+    /// Indices of a side's control points.
+    fn net(side: usize, patch: &Patch) -> impl Iterator<Item = usize> {
+        let (n, k) = patch.degrees();
+        let (from, step, degree) = [(0, n + 1, k), (0, 1, n), (n, n + 1, k), (k * (n + 1), 1, n)][side];
+        (0..=degree).map(move |i| patch.first as usize + from + i * step)
+    }
+
+    /// `None` where it is but a point.
+    fn side(&self, side: usize, patch: &Patch, points: &[[f32; 4]], corners: &Corners) -> Option<PatchSide> {
+        let net: Vec<Point> = Self::net(side, patch).map(|at| points[at].map(f64::from)).collect();
+        let at = |p: &Point| [p[0] / p[3], p[1] / p[3], p[2] / p[3]];
+        let first = at(&net[0]);
+        if net.iter().map(at).all(|p| (0..3).all(|k| (p[k] - first[k]).abs() <= corners.same)) {
+            return None;
+        }
+        let ends = (corners.find(&net[0])?, corners.find(&net[net.len() - 1])?);
+        (ends.0 != ends.1).then_some(PatchSide { name: (4 * self.patch + side) as u32, net, corners: ends })
+    }
+}
+
+/// Corners of patches at borders, each once.
+struct Corners {
+    same: f64,
+    same_weight: f64,
+    /// The first corner of each cell that has one, and after each the next in its cell.
+    cells: HashMap<[i32; 3], u32>,
+    all: Vec<(Point, Option<u32>)>,
+}
+
+impl Corners {
+    /// `None` where nothing could meet.
+    fn new(borders: &[Border], patches: &[Patch], points: &[[f32; 4]]) -> Option<Self> {
+        let nets = borders.iter().flat_map(|b| b.sides().flat_map(|side| Border::net(side, &patches[b.patch])));
+        let (mut size, mut weight) = (0.0f32, 0.0f32);
+        for p in nets.map(|at| points[at]) {
+            size = p[..3].iter().fold(size, |m, x| m.max(x.abs()));
+            weight = weight.max(p[3].abs());
+        }
+        let same = SAME * f64::from(size);
+        (size > 0.0 && size.is_finite() && weight.is_finite()).then(|| Self {
+            same,
+            same_weight: SAME * f64::from(weight),
+            cells: HashMap::new(),
+            all: Vec::new(),
+        })
+    }
+
+    fn same(&self, a: &Point, b: &Point) -> bool {
+        let apart = |k: usize| (a[k] - b[k]).abs();
+        (0..3).all(|k| apart(k) <= self.same) && apart(3) <= self.same_weight
+    }
+
+    fn cell(&self, x: f64) -> i32 {
+        (x / (CELL * self.same)).floor() as i32
+    }
+
+    fn find(&self, p: &Point) -> Option<u32> {
+        let range = |k: usize| self.cell(p[k] - self.same)..=self.cell(p[k] + self.same);
+        for x in range(0) {
+            for y in range(1) {
+                for z in range(2) {
+                    let mut at = self.cells.get(&[x, y, z]).copied();
+                    while let Some(n) = at {
+                        let (corner, next) = &self.all[n as usize];
+                        if self.same(corner, p) {
+                            return Some(n);
+                        }
+                        at = *next;
+                    }
+                }
+            }
+        }
+        None
+    }
+
+    /// Makes a patch's corners at open borders the same bit for bit as the first that was nearly the same.
+    fn weld(&mut self, border: &Border, patch: &Patch, points: &mut [[f32; 4]]) {
+        for side in border.sides() {
+            let mut net = Border::net(side, patch);
+            let (Some(first), Some(last)) = (net.next(), net.last()) else { continue };
+            for at in [first, last] {
+                let p = points[at].map(f64::from);
+                match self.find(&p) {
+                    Some(n) => points[at] = self.all[n as usize].0.map(|x| x as f32),
+                    None => {
+                        let cell = [p[0], p[1], p[2]].map(|x| self.cell(x));
+                        let next = self.cells.insert(cell, self.all.len() as u32);
+                        self.all.push((p, next));
+                    }
+                }
+            }
+        }
+    }
+}
+
+/// Sides that coincide, found by their corners.
+struct Groups<'a> {
+    sides: &'a [PatchSide],
+    corners: &'a Corners,
+    all: Vec<Group>,
+    /// The last group between two corners, the lower one first, and before each the one before.
+    between: HashMap<(u32, u32), usize>,
+    before: Vec<Option<usize>>,
+}
+
+impl<'a> Groups<'a> {
+    fn new(sides: &'a [PatchSide], corners: &'a Corners) -> Self {
+        let mut groups =
+            Self { sides, corners, all: Vec::new(), between: HashMap::with_capacity(sides.len()), before: Vec::new() };
+        for (n, side) in sides.iter().enumerate() {
+            match groups.find(&side.net, side.corners) {
+                Some((group, reversed)) if groups.all[group].sides.len() < MOST_SIDES => {
+                    groups.all[group].sides.push((n, reversed));
+                }
+                Some(_) => {}
+                None => {
+                    groups.before.push(groups.between.insert(ordered(side.corners), groups.all.len()));
+                    groups.all.push(Group { sides: vec![(n, false)], piece: false, pieces: Vec::new() });
+                }
+            }
+        }
+        groups
+    }
+
+    /// The group whose first side has this net, and whether the net runs against it.
+    fn find(&self, net: &[Point], corners: (u32, u32)) -> Option<(usize, bool)> {
+        let mut at = self.between.get(&ordered(corners)).copied();
+        while let Some(group) = at {
+            let first = &self.sides[self.all[group].sides[0].0];
+            let reversed = first.corners.0 != corners.0;
+            let same = |(n, p): (usize, &Point)| {
+                let n = if reversed { net.len() - 1 - n } else { n };
+                self.corners.same(p, &first.net[n])
+            };
+            if first.net.len() == net.len() && net.iter().enumerate().all(same) {
+                return Some((group, reversed));
+            }
+            at = self.before[group];
+        }
+        None
+    }
+
+    /// Looks for the pieces of sides that are alone.
+    fn cut(&mut self) {
+        for group in 0..self.all.len() {
+            let alone = |g: &Group| g.sides.len() == 1 && !g.piece;
+            if alone(&self.all[group])
+                && let Some(pieces) = self.pieces(group)
+            {
+                pieces.iter().for_each(|(piece, _)| self.all[*piece].piece = true);
+                self.all[group].pieces = pieces;
+            }
+        }
+    }
+
+    /// The groups that the one side of this one consists of.
+    fn pieces(&self, group: usize) -> Option<Vec<(usize, Place)>> {
+        let side = &self.sides[self.all[group].sides[0].0];
+        let mut rest = vec![(side.net.clone(), side.corners, Place::default())];
+        let mut pieces = Vec::new();
+        let mut sides = 1;
+        while let Some((net, ends, place)) = rest.pop() {
+            let found = self.find(&net, ends).filter(|(found, _)| *found != group);
+            if let Some((found, reversed)) = found {
+                let piece = &self.all[found];
+                sides += piece.sides.len();
+                if piece.piece || !piece.pieces.is_empty() || sides > MOST_SIDES {
+                    return None;
+                }
+                pieces.push((found, Place { reversed, ..place }));
+                continue;
+            }
+            if place.halvings == MOST_HALVINGS {
+                return None;
+            }
+            let [low, high] = halves(&net);
+            let middle = self.corners.find(&high[0]).filter(|m| *m != ends.0 && *m != ends.1)?;
+            let half = |n: u32| Place { start: 2 * place.start + n, halvings: place.halvings + 1, ..place };
+            rest.push((low, (ends.0, middle), half(0)));
+            rest.push((high, (middle, ends.1), half(1)));
+        }
+        Some(pieces)
+    }
+
+    /// The sides of each link: name, place, and whether it is the owner of its piece.
+    fn rings(&self) -> impl Iterator<Item = Vec<(u32, Place, bool)>> {
+        self.all.iter().filter(|g| !g.piece && g.sides.len() + g.pieces.len() > 1).map(|group| {
+            let sides = |group: &Group, place: Place, owned: bool| {
+                let side = |(n, (side, against)): (usize, &(usize, bool))| {
+                    let place = Place { reversed: place.reversed != *against, ..place };
+                    (self.sides[*side].name, place, owned && n == 0)
+                };
+                group.sides.iter().enumerate().map(side).collect::<Vec<_>>()
+            };
+            let mut ring = sides(group, Place::default(), group.pieces.is_empty());
+            ring.extend(group.pieces.iter().flat_map(|(piece, place)| sides(&self.all[*piece], *place, true)));
+            ring
+        })
+    }
+}
+
+fn ordered((a, b): (u32, u32)) -> (u32, u32) {
+    (a.min(b), a.max(b))
+}
+
+/// Halves of a curve by de Casteljau's algorithm.
+fn halves(net: &[Point]) -> [Vec<Point>; 2] {
+    let mut rest = net.to_vec();
+    let (mut low, mut high) = (Vec::with_capacity(net.len()), Vec::with_capacity(net.len()));
+    while let (Some(first), Some(last)) = (rest.first(), rest.last()) {
+        low.push(*first);
+        high.push(*last);
+        rest = rest.windows(2).map(|w| std::array::from_fn(|k| (w[0][k] + w[1][k]) * 0.5)).collect();
+    }
+    high.reverse();
+    [low, high]
+}
+
+#[cfg(test)]
+mod tests;

@@ -1,0 +1,86 @@
+//! Closed surfaces without trims from many sides: nothing behind them shows through where their patches and faces
+//! meet. What is there is the reference's to say: a judgement of every pixel would do, but this way the views can be many.
+
+use crate::support::{assert_silent, render, watched};
+use crate::{cages, shapes};
+use glam::{DVec2, DVec3};
+use selvedge::model::{Camera, Model};
+use selvedge::picture::Picture;
+use selvedge::reference::Tracer;
+
+const SIZE: (u32, u32) = (160, 120);
+
+/// Views of each surface: `SELVEDGE_VIEWS`, else 24.
+fn views() -> u32 {
+    std::env::var("SELVEDGE_VIEWS").map_or(24, |n| n.parse().expect("SELVEDGE_VIEWS is a number"))
+}
+
+/// The `k`th of `n` views, spread over the sphere on a spiral.
+fn view(model: &Model, k: u32, n: u32) -> Camera {
+    let (a, b) = (f64::from(k) * 2.399_963, (f64::from(k) + 0.5) * 2.0 / f64::from(n) - 1.0);
+    let from = DVec3::new(a.cos() * (1.0 - b * b).sqrt(), a.sin() * (1.0 - b * b).sqrt(), b);
+    Camera { up: DVec3::new(0.3, 0.5, 0.7), ..Camera::framing(model.bounds(), from, DVec3::Z, 0.6, SIZE) }
+}
+
+/// Pixels that may look through the surface: what they show is the background, or lies behind what is shown on both
+/// sides of them.
+fn suspects(picture: &Picture, slack: f32) -> Vec<(u32, u32)> {
+    let depth = |x: u32, y: u32| picture.depth[(y * SIZE.0 + x) as usize];
+    let behind = |x: u32, y: u32| {
+        let (inner_x, inner_y) = ((1..SIZE.0 - 1).contains(&x), (1..SIZE.1 - 1).contains(&y));
+        let here = depth(x, y) - slack;
+        inner_x && here > depth(x - 1, y).max(depth(x + 1, y)) || inner_y && here > depth(x, y - 1).max(depth(x, y + 1))
+    };
+    let all = (0..SIZE.1).flat_map(|y| (0..SIZE.0).map(move |x| (x, y)));
+    all.filter(|&(x, y)| depth(x, y).is_infinite() || behind(x, y)).collect()
+}
+
+/// Every view of the model; pixels that show what lies behind its surface, and how many show it.
+fn cracks(name: &str, model: &Model) -> (Vec<String>, usize) {
+    let tracer = Tracer::new(model);
+    let mut renderer = watched(model);
+    let (mut wrong, mut covered) = (Vec::new(), 0);
+    let slack = 0.01 * model.bounds().diagonal();
+    for k in 0..views() {
+        let camera = view(model, k, views());
+        let picture = render(&mut renderer, &camera);
+        for (x, y) in suspects(&picture, slack as f32) {
+            let shown = f64::from(picture.depth[(y * SIZE.0 + x) as usize]);
+            let (x, y) = (f64::from(x), f64::from(y));
+            let nearer = |(dx, dy): (f64, f64)| {
+                tracer.first(&camera, DVec2::new(x + dx, y + dy)).is_some_and(|hit| hit.depth < shown - slack)
+            };
+            // corners and centre: within half a pixel of the outline anything is right
+            if [(0.0, 0.0), (1.0, 0.0), (0.0, 1.0), (1.0, 1.0), (0.5, 0.5)].into_iter().all(nearer) {
+                wrong.push(format!("{name}, view {k}: pixel {x}, {y} shows what is {shown} away"));
+            }
+        }
+        covered += picture.face.iter().filter(|id| **id != 0).count();
+    }
+    assert_silent(renderer);
+    (wrong, covered)
+}
+
+fn nothing_shows_through<'a>(surfaces: impl IntoIterator<Item = (&'a str, &'a Model)>) {
+    let mut all = Vec::new();
+    for (name, model) in surfaces {
+        let (wrong, covered) = cracks(name, model);
+        assert!(covered > 1500 * views() as usize, "{name}: {covered} pixels");
+        all.extend(wrong);
+    }
+    assert!(all.is_empty(), "{} pixels:\n{}", all.len(), all.join("\n"));
+}
+
+/// Between the patches of one face.
+#[test]
+fn nothing_shows_through_one_face() {
+    let (sphere, torus) = (shapes::sphere(), shapes::torus());
+    nothing_shows_through([("sphere", &sphere), ("torus", &torus)]);
+}
+
+/// Between faces that share their sides, one to one and in halves.
+#[test]
+fn nothing_shows_through_faces_that_share_sides() {
+    let closed = cages::all();
+    nothing_shows_through(closed.iter().map(|c| (c.name, &c.model)));
+}
