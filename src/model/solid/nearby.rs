@@ -101,7 +101,7 @@ mod tests {
             |i: u32, k: u32| f64::from((i * 7919 + k * 104_729).wrapping_mul(2_654_435_761) >> 8) / f64::from(1 << 24);
         let random = |i: u32| {
             let size = 10f64.powf(-6.0 * share(i, 0));
-            let min = DVec3::new(share(i, 1), share(i, 2), share(i, 3)) * if i % 7 == 0 { 1e9 } else { 1.0 };
+            let min = DVec3::new(share(i, 1), share(i, 2), share(i, 3)) * if i.is_multiple_of(7) { 1e9 } else { 1.0 };
             Bounds { min, max: min + size * DVec3::new(share(i, 4), 1.0, share(i, 5)) }
         };
         let mut boxes: Vec<Bounds> = (0..600).map(random).collect();

@@ -147,7 +147,9 @@ fn sides_that_faces_share_agree() {
                 let n = unpack([f.edge_u, f.edge_v][axis])[(side % 4 / 2) as usize];
                 let splits = unpack(f.splits)[axis];
                 if taus[item] != 0 {
-                    assert!(n >= taus[item] >> (16 * axis) & 0xffff && n % splits == 0 && n / splits <= MAX_FACTOR);
+                    assert!(
+                        n >= taus[item] >> (16 * axis) & 0xffff && n.is_multiple_of(splits) && n / splits <= MAX_FACTOR
+                    );
                 }
                 let full = n == MAX_FACTOR * splits;
                 (taus[item] != 0).then_some((n << scene.links[side as usize].halvings(), full))
