@@ -1,7 +1,8 @@
 // The part of a ray inside of a leaf with equations. Needs solids.glsl, and the buffers `LeafSurface leaf_surfaces[]`,
 // `samplerBuffer surfaces`, `samplerBuffer surface_places`.
 //
-//   planes: the later of what they begin, the earlier of what they end ──▶ other sides: spans, one after another
+//   sides that are no planes: spans, one after another ──▶ planes: the later of what they begin, the earlier of what
+//                                                                   they end
 #ifndef LEAF_SPAN_GLSL
 #define LEAF_SPAN_GLSL
 
@@ -9,26 +10,34 @@
 // begins or ends at `at`.
 Span leaf_span(uint own, vec3 o, vec3 d, float at, inout uint side) {
     uint k = own >> LEAF_FLAG_BITS;
-    float lo = -NEVER;
-    float hi = NEVER;
-    // most sides are planes: a loop of their own, for drivers that run both sides of every branch
-    for (bool more = (own & LEAF_PLANES) != 0u; more && lo < hi; ++k) {
-        uint word = leaf_surfaces[k].surface;
-        Span one = plane_span(place_at(surface_places, word >> SIDE_SHIFT), (word & SIDE_NEGATIVE) != 0u, o, d);
-        lo = max(lo, one.lo);
-        hi = min(hi, one.hi);
-        if (one.lo == at || one.hi == at) side = k;
-        more = (word & SIDE_MORE) != 0u;
-    }
-    Span s = Span(lo, hi, NEVER, NEVER);
-    if (SOLIDS_HAVE != SURFACE_PLANE) {
-        for (bool more = (own & LEAF_ROUNDS) != 0u; more && s.lo < s.hi; ++k) {
+    Span s = EVERYTHING;
+    // loops are asked at their end, for drivers that count how often they are gone through, and end them
+    if (SOLIDS_HAVE != SURFACE_PLANE && (own & LEAF_ROUNDS) != 0u) {
+        bool more;
+        do {
             uint word = leaf_surfaces[k].surface;
             Span one = side_span(surfaces, surface_places, word, o, d);
             if (ends_at(one, at)) side = k;
             s = both(s, one);
-            more = (word & SIDE_MORE) != 0u;
-        }
+            more = (word & SIDE_MORE) != 0u && s.lo < s.hi;
+            ++k;
+        } while (more);
+    }
+    // most sides are planes: a loop of their own, for drivers that run both sides of every branch
+    if ((own & LEAF_PLANES) != 0u && s.lo < s.hi) {
+        float lo = -NEVER;
+        float hi = NEVER;
+        bool more;
+        do {
+            uint word = leaf_surfaces[k].surface;
+            Span one = plane_span(place_at(surface_places, word >> SIDE_SHIFT), (word & SIDE_NEGATIVE) != 0u, o, d);
+            lo = max(lo, one.lo);
+            hi = min(hi, one.hi);
+            if (one.lo == at || one.hi == at) side = k;
+            more = (word & SIDE_MORE) != 0u && lo < hi;
+            ++k;
+        } while (more);
+        s = both(s, Span(lo, hi, NEVER, NEVER));
     }
     return s;
 }

@@ -52,7 +52,7 @@ struct LeafSurface {
 };
 const uint SIDE_SHIFT = 3u;
 const uint SIDE_NEGATIVE = 1u; // the leaf is where the surface's function is positive
-const uint SIDE_PLANE = 2u;    // the first sides of a leaf
+const uint SIDE_PLANE = 2u;    // the last sides of a leaf
 const uint SIDE_MORE = 4u;     // the leaf's next side is a plane, too, or none, too
 
 // One switch of the Blist: a primitive, placed.
@@ -78,8 +78,8 @@ const uint LEAF_FALLS = 4u;          // its chain of out-exits ends at EXIT_FALS
 const uint LEAF_SHELL = 8u;          // an operand without equations, number `first`: see shells.glsl
 
 const uint LEAF_ELSEWHERE = 16u;     // of an item that rays are followed through, drawn by another pass
-const uint LEAF_PLANES = 32u;        // of its sides the first are planes
-const uint LEAF_ROUNDS = 64u;        // the last are none
+const uint LEAF_PLANES = 32u;        // of its sides the last are planes
+const uint LEAF_ROUNDS = 64u;        // the first are none
 const uint LEAF_FLAG_BITS = 7u;
 
 // In place of a surface's number: the plane of one triangle alone, and which.

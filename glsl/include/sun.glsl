@@ -118,7 +118,7 @@ Span caster_span(uint own, vec3 p, uint surface) {
     bool more = true;
     for (uint k = own >> LEAF_FLAG_BITS; more && s.lo < s.hi; ++k) {
         uint side = caster_sides[k].surface;
-        more = (side & SIDE_MORE) != 0u || (side & SIDE_PLANE) != 0u && (own & LEAF_ROUNDS) != 0u;
+        more = (side & SIDE_MORE) != 0u || (side & SIDE_PLANE) == 0u && (own & LEAF_PLANES) != 0u;
         bool is_here = side >> SIDE_SHIFT == surface;
         s = both(s, is_here ? span_from(side, p, sun.towards)
                             : side_span(caster_surfaces, caster_places, side, p, sun.towards));

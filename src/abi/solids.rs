@@ -22,7 +22,7 @@ pub(crate) fn surface_kind(most: u32) -> &'static str {
 pub const SIDE_SHIFT: u32 = 3;
 /// [`LeafSurface::surface`]: the leaf is where the surface's function is positive.
 pub const SIDE_NEGATIVE: u32 = 1;
-/// [`LeafSurface::surface`]: a plane; the first sides of a leaf are.
+/// [`LeafSurface::surface`]: a plane; the last sides of a leaf are.
 pub const SIDE_PLANE: u32 = 2;
 /// [`LeafSurface::surface`]: the leaf's next side is a plane, too, or none, too.
 pub const SIDE_MORE: u32 = 4;
@@ -44,9 +44,9 @@ pub const LEAF_SHELL: u32 = 8;
 
 /// Of an item that rays are followed through, and that is drawn by another pass.
 pub const LEAF_ELSEWHERE: u32 = 16;
-/// Of its sides the first are planes.
+/// Of its sides the last are planes.
 pub const LEAF_PLANES: u32 = 32;
-/// The last are none.
+/// The first are none.
 pub const LEAF_ROUNDS: u32 = 64;
 /// Bits of [`Leaf::flags`].
 pub const LEAF_FLAG_BITS: u32 = 7;

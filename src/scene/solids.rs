@@ -219,7 +219,7 @@ impl SolidData {
             side.surface = new << abi::SIDE_SHIFT | plane | side.surface & abi::SIDE_NEGATIVE;
         }
         for sides in self.leaf_surfaces.chunk_by_mut(|a, b| a.leaf == b.leaf) {
-            sides.sort_by_key(|side| side.surface & abi::SIDE_PLANE == 0);
+            sides.sort_by_key(|side| side.surface & abi::SIDE_PLANE);
             let flags = &mut self.leaves[sides[0].leaf as usize].flags;
             for kind in sides.chunk_by_mut(|a, b| (a.surface ^ b.surface) & abi::SIDE_PLANE == 0) {
                 *flags |= if kind[0].surface & abi::SIDE_PLANE != 0 { abi::LEAF_PLANES } else { abi::LEAF_ROUNDS };
