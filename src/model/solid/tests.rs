@@ -71,15 +71,15 @@ fn near_surfaces_stay_apart() {
     }
 }
 
-/// A grid of 10^4 posts on one plate: caps are two planes, walls their own, in time for a test.
+/// A grid of 10^5 posts on one plate: caps are two planes, walls their own, in time for a test.
 #[test]
-fn ten_thousand_posts() {
+fn a_hundred_thousand_posts() {
     let post = |i: u32| {
-        let at = DVec3::new(f64::from(i % 100), f64::from(i / 100), 0.0);
+        let at = DVec3::new(f64::from(i % 1000), f64::from(i / 1000), 0.0);
         (Shape::Cylinder { radius: 0.3, height: 1.0 }, DAffine3::from_translation(at))
     };
-    let t = table((0..10_000).map(post).collect(), SurfaceTable::ROUNDED);
-    assert_eq!(t.surfaces().len(), 10_002);
+    let t = table((0..100_000).map(post).collect(), SurfaceTable::ROUNDED);
+    assert_eq!(t.surfaces().len(), 100_002);
 }
 
 #[test]
