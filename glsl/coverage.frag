@@ -121,7 +121,9 @@ vec4 mixed(ivec2 at, uvec2 own, uint own_face) {
         Covering there = covering(seen, pixel);
         // one that covers all of it is hidden here, or was not drawn: by a volume that trims the scene
         if (!there.known || !there.cover.cut) continue;
-        if (face != own_face && !(there.depth < depth * (1.0 + TOUCHES))) {
+        // at a seam the own face goes on; another sheet of it is as another face
+        bool goes_on = face == own_face && abs(there.depth - depth) <= TOUCHES * depth;
+        if (!goes_on && !(there.depth < depth * (1.0 + TOUCHES))) {
             // it begins where the face that is seen here ends
             if (!here.cover.cut || dot(there.cover.outward, here.cover.outward) >= 0.0) continue;
             next += there.cover.share * colour_at(beside);
@@ -155,6 +157,8 @@ void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
     uvec2 own = imageLoad(visibility, at).xy;
     uint own_face = placed_face(own);
+    // what the host drew hides it
+    if (frame.background.a < 0.0 && own_face != 0u && imageLoad(resolved, at).a >= UNSEEN) discard;
     bool alone = true;
     for (uint k = 0u; k < RING_POINTS; ++k) {
         ivec2 beside = at + ivec2(sign(RING[k]));

@@ -29,8 +29,8 @@ impl<'a> Primitives<'a> {
     /// In binding order.
     pub(crate) fn resources(&self) -> [Resource<'a>; 4] {
         let [leaves, sides] = [self.leaves, self.leaf_surfaces].map(Resource::from);
-        let [surfaces, centres] = [self.surfaces, self.surface_places].map(Resource::from);
-        [leaves, sides, surfaces, centres]
+        let [surfaces, places] = [self.surfaces, self.surface_places].map(Resource::from);
+        [leaves, sides, surfaces, places]
     }
 }
 

@@ -23,8 +23,8 @@
 //!                      ▼
 //!                  resolve       exact point and normal per pixel, light ──▶ the host's targets
 //!                      ▼
-//!               solid_layers     scenes with something to see through: its faces, over what resolve drew
 //!                 coverage       scenes with smooth trims: pixels at borders, mixed of what resolve drew
+//!               solid_layers     scenes with something to see through: its faces, over what resolve drew
 //!
 //!  from mesh on once for each of a pixel's samples, where there are several: samples.rs
 //!  lists of solid_events and solid_layers band by band, where they are too large: bands.rs
@@ -144,7 +144,7 @@ pub(crate) struct Frame<'a> {
     /// That way `blister` peels.
     pub layers: u32,
     /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.
-    pub volume_centres: Option<&'a Texels>,
+    pub volume_places: Option<&'a Texels>,
     /// Where the sun is, in a scene that has one.
     pub sun: Option<&'a Buffer>,
     pub counters: &'a ReadBack,
@@ -341,8 +341,8 @@ impl Frame<'_> {
 
     /// What tests against the volume that trims the scene read, `None` without one.
     fn volume(&self) -> Option<Primitives<'_>> {
-        let volume = self.scene.volume.as_ref().zip(self.volume_centres);
-        volume.map(|(v, centres)| v.primitives(centres))
+        let volume = self.scene.volume.as_ref().zip(self.volume_places);
+        volume.map(|(v, places)| v.primitives(places))
     }
 
     /// Meshes first: what hides them may be in doubt.

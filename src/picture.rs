@@ -262,7 +262,8 @@ pub struct SceneSettings {
     /// The borders of trimmed faces are smooth: each pixel there is mixed, in linear colour, from what it sees, by the
     /// area that the exact trim curves cut from it. Costs far less than [`samples`](Self::samples), of which there must
     /// be one, and smooths nothing else: silhouettes of curved faces, meshes and Boolean solids stay as they are. All
-    /// images but the colour stay as they are, bit for bit, and so do pixels away from borders. Faces are trimmed by
+    /// images but the colour stay as they are, bit for bit, and so do pixels away from borders, but that colours above
+    /// 1 are cut off there, too. Faces are trimmed by
     /// [`TrimWay::Exact`]. What may not be asked for beside it is
     /// [`RenderError::SmoothTrims`](crate::renderer::RenderError::SmoothTrims).
     pub smooth_trims: bool,

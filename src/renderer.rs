@@ -361,7 +361,7 @@ impl Renderer {
             centres: slot.centres.solids(),
             near,
             layers: loaded.capacities.layers,
-            volume_centres: slot.centres.volume(),
+            volume_places: slot.centres.volume(),
             sun: slot.centres.sun(),
             counters: &slot.counters,
             colour: &colour,

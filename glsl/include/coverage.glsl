@@ -136,7 +136,7 @@ Cover exact_cover(uint face, vec2 uv, mat2 along) {
         for (uint cell = exact_cell(first, last, lo.x); cell < last; ++cell) {
             float left = cell > first ? exact_cells[cell - 1u].right : lo.x;
             if (!(left <= hi.x)) break;
-            if (++asked > MOST_CELLS) return Cover(winding != 0 ? 1.0 : 0.0, vec2(0.0), false);
+            if (++asked > MOST_CELLS) return Cover(cover.share, vec2(0.0), false);
             ExactCell c = exact_cells[cell];
             vec2 from = max(lo, vec2(left, bottom));
             vec2 to = min(hi, vec2(c.right, exact_bands[band].top));

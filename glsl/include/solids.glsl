@@ -1,5 +1,5 @@
 // Boolean solids: leaves, their surfaces, and the part of a pixel's ray that is inside a leaf.
-// Twin of src/abi/solids.rs; formulas: src/twin/solids.rs.
+// Twin of src/abi/solids.rs, filled by src/scene/solids; what is drawn with it is judged by src/reference.
 //
 //   leaf ──▶ LeafSurface[count] ──▶ a surface's place, and its shape if it is no plane: a leaf is the intersection of
 //                                  its surfaces' insides; leaves whose faces coincide share the surface, so they get
@@ -284,21 +284,27 @@ Span surface_span(Surface s, vec3 o, vec3 d) {
     return below_zero(a, b, c, shift);
 }
 
+// How far along the plane's normal the ray begins, from the plane, and how fast it goes.
+vec2 over_plane(vec4 plane, vec3 o, vec3 d) {
+    precise float height = dot(plane.xyz, o) - plane.w;
+    precise float speed = dot(plane.xyz, d);
+    return vec2(height, speed);
+}
+
 // Where the ray meets the plane.
 float plane_depth(vec4 plane, vec3 o, vec3 d) {
-    precise float along = dot(plane.xyz, o) - plane.w;
-    precise float speed = dot(plane.xyz, d);
-    precise float t = -along / speed;
+    vec2 ray = over_plane(plane, o, d);
+    precise float t = -ray.x / ray.y;
     return t;
 }
 
 // The part of the ray o + t d, seen from the eye, on the leaf's side of a plane. Rays within the plane are outside of
 // what is below it.
 Span plane_span(vec4 plane, bool negative, vec3 o, vec3 d) {
-    float speed = dot(plane.xyz, d);
-    if (speed == 0.0) return (dot(plane.xyz, o) - plane.w < 0.0) != negative ? EVERYTHING : NOTHING;
+    vec2 ray = over_plane(plane, o, d);
+    if (ray.y == 0.0) return (ray.x < 0.0) != negative ? EVERYTHING : NOTHING;
     float t = plane_depth(plane, o, d);
-    return (speed > 0.0) != negative ? Span(-NEVER, t, NEVER, NEVER) : Span(t, NEVER, NEVER, NEVER);
+    return (ray.y > 0.0) != negative ? Span(-NEVER, t, NEVER, NEVER) : Span(t, NEVER, NEVER, NEVER);
 }
 
 // The part of the ray inside of a leaf's side.

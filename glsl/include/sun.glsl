@@ -1,5 +1,5 @@
 // Whether the sun reaches a point, past the opaque Boolean solids. Twin of src/abi/sun.rs; whoever includes this
-// defines SUN_BINDING, where SUN_BUFFERS buffers begin.
+// defines SUN_BINDING, where SUN_BINDINGS of src/bindings.rs begin.
 //
 //        sun ◀──┤████├────┤██├───── p        the ray to the sun, from event to event as pass `solid_events` has it: in
 //               │    │    │  │              shade where it is within the solid anywhere before p

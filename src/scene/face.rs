@@ -61,8 +61,7 @@ pub(super) struct Trimming {
 impl FaceData {
     pub(super) fn new(face: &Face, origin: DVec3, solid: bool, trim: Trimming, cuts: Cuts) -> Self {
         let Trimming { way, smooth, editable } = trim;
-        let cuts = if face.loops.is_empty() { cuts } else { Cuts::Any };
-        let grid = flattened(face.surface.patches(), cuts);
+        let grid = flattened(face.surface.patches(), cuts.in_face(face));
         let ((u0, u1), (v0, v1)) = face.surface.domain();
         let domain = Domain { origin: DVec2::new(u0, v0), size: DVec2::new(u1 - u0, v1 - v0) };
         let sides = sides(&grid, &face.loops);

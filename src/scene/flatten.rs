@@ -29,8 +29,13 @@ pub(crate) enum Cuts {
 
 impl Cuts {
     /// For faces that may meet along their sides: several without trims.
-    pub(super) fn of<'a>(faces: impl IntoIterator<Item = &'a Face>) -> Self {
+    pub(crate) fn of<'a>(faces: impl IntoIterator<Item = &'a Face>) -> Self {
         if faces.into_iter().filter(|f| f.loops.is_empty()).nth(1).is_some() { Self::Halves } else { Self::Any }
+    }
+
+    /// For one of them.
+    pub(crate) fn in_face(self, face: &Face) -> Self {
+        if face.loops.is_empty() { self } else { Self::Any }
     }
 }
 

@@ -74,6 +74,10 @@ pub(super) fn link(
 ) {
     let borders: Vec<Border> = borders(faces, range, patches).collect();
     let Some(mut corners) = Corners::new(&borders, patches, points) else { return };
+    // all that stay first: so what becomes of a corner depends on nothing but itself
+    for border in &borders {
+        corners.keep(border, &patches[border.patch], points);
+    }
     for border in &borders {
         corners.weld(border, &patches[border.patch], points);
     }
@@ -131,6 +135,15 @@ impl Border {
         let (n, k) = patch.degrees();
         let (from, step, degree) = [(0, n + 1, k), (0, 1, n), (n, n + 1, k), (k * (n + 1), 1, n)][side];
         (0..=degree).map(move |i| patch.first as usize + from + i * step)
+    }
+
+    /// Indices of the ends of its sides.
+    fn corners(&self, patch: &Patch) -> impl Iterator<Item = usize> {
+        let ends = |side| {
+            let mut net = Self::net(side, patch);
+            [net.next(), net.last()]
+        };
+        self.sides().flat_map(ends).flatten()
     }
 
     /// `None` where it is but a point.
@@ -201,21 +214,23 @@ impl Corners {
         None
     }
 
-    /// Makes a patch's corners at open borders the same bit for bit as the first that was nearly the same.
-    fn weld(&mut self, border: &Border, patch: &Patch, points: &mut [[f32; 4]]) {
-        for side in border.sides() {
-            let mut net = Border::net(side, patch);
-            let (Some(first), Some(last)) = (net.next(), net.last()) else { continue };
-            for at in [first, last] {
-                let p = points[at].map(f64::from);
-                match self.find(&p) {
-                    Some(n) => points[at] = self.all[n as usize].0.map(|x| x as f32),
-                    None => {
-                        let cell = [p[0], p[1], p[2]].map(|x| self.cell(x));
-                        let next = self.cells.insert(cell, self.all.len() as u32);
-                        self.all.push((p, next));
-                    }
-                }
+    /// Remembers a patch's corners at open borders that are not nearly the same as one that it remembers.
+    fn keep(&mut self, border: &Border, patch: &Patch, points: &[[f32; 4]]) {
+        for at in border.corners(patch) {
+            let p = points[at].map(f64::from);
+            if self.find(&p).is_none() {
+                let cell = [p[0], p[1], p[2]].map(|x| self.cell(x));
+                let next = self.cells.insert(cell, self.all.len() as u32);
+                self.all.push((p, next));
+            }
+        }
+    }
+
+    /// Makes a patch's corners at open borders the same bit for bit as one that is remembered.
+    fn weld(&self, border: &Border, patch: &Patch, points: &mut [[f32; 4]]) {
+        for at in border.corners(patch) {
+            if let Some(n) = self.find(&points[at].map(f64::from)) {
+                points[at] = self.all[n as usize].0.map(|x| x as f32);
             }
         }
     }

@@ -65,6 +65,9 @@ pub enum UndrawnSolid {
     /// There are too many primitives, or their expression is too large.
     #[error(transparent)]
     Union(#[from] SolidError),
+    /// Primitives have more sides, or there are more operands without equations, than an entry of a tile's list can name.
+    #[error("more than {} sides of primitives, or operands without equations", 1u32 << (u32::BITS - abi::LEAF_FLAG_BITS))]
+    Sides,
     /// A volume that trims a model is not made of what has equations.
     #[error("a volume that trims a model has a mesh or a part among its primitives; it needs equations")]
     Volume,
@@ -140,8 +143,8 @@ impl SolidData {
             }
             first += solid.primitives().len() as u32;
         }
-        if data.leaf_surfaces.len() >> (u32::BITS - abi::LEAF_FLAG_BITS) != 0 {
-            return Err(SolidError::TooMany.into());
+        if data.leaf_surfaces.len().max(data.shell_leaves.len()) >> (u32::BITS - abi::LEAF_FLAG_BITS) != 0 {
+            return Err(UndrawnSolid::Sides);
         }
         number_exits(&mut data.leaves);
         data.put_planes_last();

@@ -130,7 +130,7 @@ pub(crate) struct TableScene {
 }
 
 impl Solids {
-    /// With the centres as one frame's eye sees them.
+    /// With the places of surfaces as one frame's eye sees them.
     pub(crate) fn primitives<'a>(&'a self, surface_places: &'a Texels) -> Primitives<'a> {
         let Self { leaves, leaf_surfaces, surfaces, .. } = self;
         Primitives { leaves, leaf_surfaces, surfaces, surface_places }
@@ -138,7 +138,7 @@ impl Solids {
 }
 
 impl Volume {
-    /// With the centres as one frame's eye sees them.
+    /// With the places of surfaces as one frame's eye sees them.
     pub(crate) fn primitives<'a>(&'a self, surface_places: &'a Texels) -> Primitives<'a> {
         let Self { leaves, leaf_surfaces, surfaces } = self;
         Primitives { leaves, leaf_surfaces, surfaces, surface_places }

@@ -93,16 +93,21 @@ impl Trial {
     pub(crate) fn of_model(model: &Model, camera: &Camera, tolerance_px: f64) -> Vec<Self> {
         let case = Case::new(model, camera, tolerance_px);
         let mut taus = bound(&case.frame, &case.scene(), &mut Counters::default()).into_iter();
-        let faces = model.instances.iter().flat_map(|i| model.parts[i.part].faces.iter().map(move |f| (i, f)));
+        let faces = model.instances.iter().flat_map(|i| {
+            let faces = &model.parts[i.part].faces;
+            let cuts = Cuts::of(faces);
+            faces.iter().map(move |f| (i, f, cuts.in_face(f)))
+        });
         let mut all = Vec::new();
-        for (instance, face) in faces {
-            for piece in flattened(face.surface.patches(), Cuts::Any).patches {
+        for (instance, face, cuts) in faces {
+            for piece in flattened(face.surface.patches(), cuts).patches {
                 let tau = taus.next().expect("one an item");
                 let tau = [tau & 0xffff, tau >> 16].map(|t| t as usize);
                 let to_pixels = camera.pixel_matrix() * DMat4::from(instance.transform);
                 all.push(Self { patch: piece.patch, frame: case.frame, to_pixels, tau });
             }
         }
+        assert!(taus.next().is_none(), "one an item");
         all
     }
 

@@ -59,6 +59,8 @@ struct Candidate {
     samples: Vec<DVec3>,
     /// Diameter of the samples.
     size: f64,
+    /// The samples do not say how far the face reaches.
+    anywhere: bool,
 }
 
 impl SurfaceTable {
@@ -123,7 +125,8 @@ impl Candidate {
             primitive.shape.carriers().into_iter().zip(samples).map(move |(carrier, own)| {
                 let samples: Vec<DVec3> = own.iter().map(|p| primitive.transform.transform_point3(*p)).collect();
                 let size = bounds_of(&samples).diagonal();
-                Self { surface: Surface { carrier, to_own, primitive: index }, samples, size }
+                let anywhere = matches!(primitive.shape, Shape::Quadric(_));
+                Self { surface: Surface { carrier, to_own, primitive: index }, samples, size, anywhere }
             })
         })
     }
@@ -131,6 +134,9 @@ impl Candidate {
     /// A box around all of the face: circles are sampled at seven points and more, so they reach less than half their
     /// size beyond these.
     fn near(&self, distance: f64) -> Bounds {
+        if self.anywhere {
+            return Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
+        }
         let (b, beyond) = (bounds_of(&self.samples), DVec3::splat(0.5 * self.size + distance));
         Bounds { min: b.min - beyond, max: b.max + beyond }
     }

@@ -82,6 +82,22 @@ fn a_hundred_thousand_posts() {
     assert_eq!(t.surfaces().len(), 100_002);
 }
 
+/// A small ball in a large model, told as a quadric, of which few lines through the model meet any point.
+#[test]
+fn small_quadrics_are_met() {
+    let at = DVec3::new(31.0, 12.0, -7.0);
+    let ball =
+        Quadric { squares: DVec3::ONE, linear: -2.0 * at, constant: at.length_squared() - 0.25, ..Quadric::default() };
+    let beside = DAffine3::from_translation(at + DVec3::X * 1e-5);
+    let shapes = vec![
+        block([-50.0; 3], [50.0; 3]),
+        (Shape::Quadric(ball), DAffine3::IDENTITY),
+        (Shape::Sphere { radius: 0.5 }, beside),
+    ];
+    let t = table(shapes, SurfaceTable::ROUNDED);
+    assert_eq!((t.surfaces().len(), t.faces(2)[0].surface), (7, t.faces(1)[0].surface));
+}
+
 #[test]
 fn empty_primitives_have_no_faces() {
     let flat = (Shape::Sphere { radius: 1.0 }, DAffine3::from_scale(DVec3::new(1.0, 1.0, 0.0)));

@@ -68,7 +68,10 @@ impl SolidData {
         let first = self.operand_meshes.len();
         match &primitive.shape {
             Shape::Mesh(mesh) => {
-                self.operand_planes.extend(surfaces);
+                // a triangle may lie in what is nearly a plane, and is told by its corners then
+                let is_plane = |number: &u32| self.places.get(*number as usize).is_some_and(|p| p.surface().is_none());
+                let planes: Vec<u32> = surfaces.map(|s| if is_plane(&s) { s } else { abi::NO_PLANE }).collect();
+                self.operand_planes.extend(planes);
                 self.push_mesh(mesh, origin, (shell, leaf), primitive);
             }
             // the faces bound the part, or else its meshes do
