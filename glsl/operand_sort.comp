@@ -2,7 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `operand_sort`: the fragments of each pixel of the band by shell and depth, entering and leaving in turn.
-// One thread a pixel.
+// One thread a pixel of a part of the band; the others have none.
 // Twin: src/twin/operand_sort.rs.
 //
 //   mesh    E  E     L  L       how often the ray is within counts up and down; it is within where that is
@@ -31,6 +31,7 @@ layout(scalar, binding = 4) readonly buffer FragmentStarts { uint fragment_start
 layout(scalar, binding = 5) buffer FragmentCounts { uint fragment_counts[]; };
 layout(scalar, binding = 6) buffer Fragments { Fragment fragments[]; };
 layout(scalar, binding = 7) buffer CountersBuffer { Counters counters; };
+layout(scalar, push_constant) uniform Part { uvec2 part_first; }; // column, and row of the band: a tile's first
 
 // A total order: two that are equal are the same.
 bool before(Fragment a, Fragment b) {
@@ -145,10 +146,10 @@ bool in_turn(uint from, uint end, bool within, uint start, bool writes) {
 }
 
 void main() {
-    uvec2 at = gl_GlobalInvocationID.xy;
+    uvec2 at = part_first + gl_GlobalInvocationID.xy;
     uvec2 size = uvec2(uint(frame.size.x), band_rows(frame));
     if (at.x >= size.x) return;
-    if (at == uvec2(0u)) {
+    if (at == part_first) {
         uint wanted = fragment_starts[size.x * size.y];
         atomicAdd(counters.fragments, wanted);
         atomicMax(counters.band_fragments, wanted);
@@ -157,9 +158,9 @@ void main() {
     uint pixel = at.y * size.x + at.x;
     uint first = fragment_starts[pixel];
     uint end = fragment_starts[pixel + 1u];
-    if (at.x == 0u && at.y % TILE == 0u) {
+    if (at.x == part_first.x && at.y % TILE == 0u) {
         uint next_row = size.x * min(at.y + TILE, size.y);
-        atomicMax(counters.row_fragments, fragment_starts[next_row] - first);
+        atomicMax(counters.row_fragments, fragment_starts[next_row] - fragment_starts[size.x * at.y]);
     }
     if (end < first) {
         // more than 32 bits count

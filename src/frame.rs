@@ -44,6 +44,7 @@ use crate::scene::{MeshBuffers, Scene, SceneData, SolidData};
 use layers::{Drawing, LayerPasses};
 use samples::{SamplePasses, Scopes};
 use solids::SolidPasses;
+use std::ops::Range;
 use trim::{TrimParts, TrimPasses};
 
 mod bands;
@@ -141,6 +142,8 @@ pub(crate) struct Frame<'a> {
     pub samples: &'a [SampleBuffers],
     pub centres: Option<Centres<'a>>,
     pub near: Near,
+    /// Columns and rows of the pixels that operands without equations may be in.
+    pub shell_pixels: &'a [Range<u32>; 2],
     /// That way `blister` peels.
     pub layers: u32,
     /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.

@@ -351,6 +351,7 @@ impl Renderer {
             depth: input.camera.depth_range.0 as f32,
             may_cut: solids.is_some_and(|(walk, _)| walk.may_be_cut(input.camera)),
         };
+        let shell_pixels = loaded.data.solids.shell_pixels(input.camera);
         let frame = Frame {
             passes: &loaded.passes,
             scene,
@@ -360,6 +361,7 @@ impl Renderer {
             samples: &slot.samples,
             centres: slot.centres.solids(),
             near,
+            shell_pixels: &shell_pixels,
             layers: loaded.capacities.layers,
             volume_places: slot.centres.volume(),
             sun: slot.centres.sun(),

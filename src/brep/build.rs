@@ -13,6 +13,7 @@ use super::support::Support;
 use super::{Boundary, BuildError, Edge, FaceGeometry};
 use crate::model::{Bounds, Face, TrimLoop};
 use crate::spline::{Bezier, Control};
+use crate::trim::{Crossing, crossing};
 use glam::{DVec2, DVec3};
 use std::rc::Rc;
 
@@ -129,6 +130,7 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
     if trims.is_empty() {
         return Err(BuildError::NoArea { face: face.id });
     }
+    notes.extend(crossing_note(&trims).map(|note| format!("face #{}: {note}", face.id)));
     let face = Face {
         id: face.id,
         kind: support.kind(),
@@ -138,6 +140,16 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         colour: None,
     };
     Ok(BuiltFace { face, notes, deviation, gap })
+}
+
+/// What is told of loops that cross: points within two of them, or within a hole and nothing else, follow the non-zero
+/// rule.
+pub fn crossing_note(loops: &[TrimLoop]) -> Option<String> {
+    match crossing(loops) {
+        Crossing::No => None,
+        Crossing::At(p) => Some(format!("trim loops cross near ({:e}, {:e}) in (u, v)", p.x, p.y)),
+        Crossing::Unknown => Some("too many trim curves lie beside each other to tell whether they cross".into()),
+    }
 }
 
 /// The edges of each bound in the direction of the bound; those without length are left out.

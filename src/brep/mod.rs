@@ -48,7 +48,7 @@ mod trace;
 #[cfg(test)]
 mod tests;
 
-pub use build::{BuiltFace, build_face};
+pub use build::{BuiltFace, build_face, crossing_note};
 pub use derived::{curve_on_surface, offset_curve, offset_surface};
 pub use error::BuildError;
 pub use map::SurfaceMap;

@@ -12,6 +12,7 @@
 
 use super::bands::Band;
 use super::{Frame, WRITE_TO_READ};
+use crate::abi::TILE;
 use crate::buffers::{FragmentBuffers, SolidBuffers, TileBuffers};
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, Texels, barrier};
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
@@ -372,7 +373,10 @@ impl Frame<'_> {
             fragments: f.all.buffer(),
             counters: &b.counters,
         };
-        passes.sort.record(cmd, &sort, (size.0, rows().len() as u32));
+        let [columns, seen] = self.shell_pixels.clone();
+        let first = (seen.start / TILE * TILE).max(band.rows.start);
+        let part = first - band.rows.start..seen.end.min(band.rows.end).max(first) - band.rows.start;
+        passes.sort.record(cmd, &sort, columns, part);
         barrier::buffers(
             cmd,
             &[(&f.counts, w, Access::FRAGMENT_READ), (f.all.buffer(), w, Access::FRAGMENT_READ), (&b.counters, w, w)],

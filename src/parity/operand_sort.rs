@@ -83,7 +83,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
         fragments: &fragments,
         counters: &counters,
     };
-    gpu.run(|cmd| pass.record(cmd, &bindings, (WIDTH, HEIGHT)));
+    gpu.run(|cmd| pass.record(cmd, &bindings, 0..WIDTH, 0..HEIGHT));
     let c = expected;
     let shells = Shells { leaves: &c.leaves, centres: &c.centres, shell_leaves: &c.shell_leaves };
     let (mut twin, mut twin_counters) = (c.fragments.clone(), Counters::default());

@@ -9,6 +9,7 @@
 
 use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
+use std::ops::Range;
 
 /// Threads of a workgroup, as in the shader.
 const GROUP: u32 = 64;
@@ -40,19 +41,23 @@ impl OperandSort {
                 name: "operand sort",
                 spirv: shaders::OPERAND_SORT_COMP,
                 bindings: &[Binding::Storage; 8],
-                push_bytes: 0,
+                push_bytes: 8,
                 constants: &[],
             },
         )?;
         Ok(Self { pipeline })
     }
 
-    /// One thread a pixel of a band of this size.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, (width, height): (u32, u32)) {
+    /// One thread a pixel of these columns of the picture, and rows of the band: where there may be fragments. The first
+    /// row is that of a tile.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, columns: Range<u32>, rows: Range<u32>) {
+        if columns.is_empty() || rows.is_empty() {
+            return;
+        }
         let solid = [b.frame, b.leaves, b.leaf_centres, b.shell_leaves];
         let lists = [b.starts, b.counts, b.fragments, b.counters];
         let resources: Vec<_> = solid.into_iter().chain(lists).map(Into::into).collect();
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch_grid([width.div_ceil(GROUP), height, 1]);
+        cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&[columns.start, rows.start]));
+        cmd.dispatch_grid([(columns.end - columns.start).div_ceil(GROUP), rows.end - rows.start, 1]);
     }
 }

@@ -10,8 +10,8 @@
 //! where it is stays in `f64` and is given relative to the eye every frame.
 
 mod blister;
-mod expected;
 mod order;
+mod seen;
 mod shell;
 mod surface;
 
@@ -42,6 +42,8 @@ pub(crate) struct SolidData {
     pub places: Vec<Placed>,
     /// Of each operand without equations, a leaf that shows it.
     pub shell_leaves: Vec<u32>,
+    /// And the box around it.
+    pub(super) shell_boxes: Vec<Bounds>,
     /// The meshes around them: triangles, vertices relative to the middle of the operand's box, and corners to
     /// draw of each.
     pub operand_meshes: Vec<abi::OperandMesh>,
@@ -359,8 +361,8 @@ impl SolidData {
 
     /// What frames need once the GPU has the rest.
     pub(crate) fn centres_only(self) -> Self {
-        let Self { leaf_centres, places, .. } = self;
-        Self { leaf_centres, places, ..Self::default() }
+        let Self { leaf_centres, places, shell_boxes, .. } = self;
+        Self { leaf_centres, places, shell_boxes, ..Self::default() }
     }
 }
 

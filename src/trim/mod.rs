@@ -22,6 +22,7 @@
 //! | [`LoopIndex`] | winding number, rectangle class, distance: exact curves | `O(log n)` |
 //! | [`TrimTable`] | in or out, by scan line, the way the GPU does | one binary search |
 //! | [`ExactTrim`] | winding number in single precision, as the GPU does without a table | `O(log n)` |
+//! | [`crossing`] | whether loops cross | nearly linear |
 //! | [`chord_bend, segment_count`] | how many chords stay within a tolerance | closed form |
 //!
 //! Sources: R. Wu, J. Peters, *Correct resolution rendering of trimmed spline surfaces*, 2014 (the
@@ -29,6 +30,7 @@
 //! surfaces on the GPU*, 2009 (bi-monotone pieces).
 
 mod classify;
+mod crossing;
 mod distance;
 mod exact;
 mod flatten;
@@ -37,6 +39,7 @@ mod table;
 mod winding;
 
 pub use classify::RectSide;
+pub use crossing::{Crossing, crossing};
 pub use exact::{AT_HIGH, AT_LOW, ExactTrim};
 pub use flatten::{chord_bend, polyline, segment_count};
 pub use piece::{MonotonePiece, monotone_pieces};

@@ -142,6 +142,20 @@ fn faults_are_healed_and_named() {
     assert_eq!(slit.unwrap_err(), BuildError::NoArea { face: 7 });
 }
 
+/// A hole across the border: what it takes is taken, and it is told. A hole that touches the border is none.
+#[test]
+fn loops_that_cross_are_told() {
+    let f = odd_frame();
+    for (x, told) in [(5.0, true), (4.2, false)] {
+        let mut edges = Vec::new();
+        let outer = Boundary::Edges(rectangle(&mut edges, f, 10.0, 6.0));
+        let hole = Boundary::Edges(vec![(full_circle(&mut edges, moved(f, [x, 0.0, 0.0]), 0.8), true)]);
+        let built = build(SurfaceGeometry::Plane { frame: f }, vec![outer, hole], &edges);
+        let notes: Vec<&String> = built.notes.iter().filter(|n| n.contains("trim loops cross near")).collect();
+        assert_eq!(notes.len(), usize::from(told), "{:?}", built.notes);
+    }
+}
+
 #[test]
 fn an_edge_off_its_plane_is_measured() {
     let f = odd_frame();

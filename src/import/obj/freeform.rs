@@ -15,6 +15,7 @@
 //! surfaces".
 
 use super::axis::{Axis, Basis};
+use crate::brep::crossing_note;
 use crate::import::chain::{ROUNDING, chain};
 use crate::model::{Face, SurfaceKind, TrimLoop};
 use crate::spline::{BSpline, Bezier, Control, Surface};
@@ -114,6 +115,7 @@ impl Element {
             let sides = (0..4).map(|i| Bezier::line(corners[i], corners[(i + 1) % 4])).collect();
             loops.insert(0, TrimLoop::new(sides, DVec2::ZERO).map_err(|e| e.to_string())?);
         }
+        notes.extend(crossing_note(&loops));
         let face = Face { id, kind: SurfaceKind::BSpline, surface, loops, same_sense: true, colour: None };
         Ok((face, notes))
     }

@@ -6,6 +6,7 @@
 //!                           └─▶ edge ─▶ curve in space: distance of the p-curve's image from it
 //! ```
 
+use crate::brep::crossing_note;
 use crate::import::chain::chain;
 use crate::model::{Face, SurfaceKind, TrimLoop};
 use crate::spline::{BSpline, Bezier, Control, PatchGrid, Surface};
@@ -89,6 +90,7 @@ impl<'i> Tables<'i> {
                 }
             }
         }
+        notes.extend(crossing_note(&loops));
         let same_sense = matches!(face.sense, Sense::Forward) != flipped;
         let colour = face.color.map(super::linear);
         Ok(Built { face: Face { id, kind, surface, loops, same_sense, colour }, notes, gap })

@@ -15,6 +15,7 @@ use super::items::Scene;
 use super::place;
 use super::surface::Made;
 use super::text::{Fault, Outcome, Table, Value};
+use crate::brep::crossing_note;
 use crate::construct::{Chain, project, trim_loops};
 use crate::spline::arc::assemble;
 use crate::spline::{BSpline, Bezier, Span, Surface};
@@ -125,6 +126,7 @@ pub(super) fn trim<'a>(scene: &mut Scene<'a>, table: &mut Table<'a>, made: &mut 
         chains.push(vec![rectangle(&made.surface).map_err(|e| value.fault(e))?]);
     }
     made.loops = trim_loops(&chains).map_err(|e| value.fault(e))?;
+    made.notes.extend(crossing_note(&made.loops));
     if projected > 0.0 {
         made.notes.push(format!("outlines cast within {projected:.1e}"));
         made.deviation = made.deviation.max(projected);

@@ -64,6 +64,7 @@ impl SolidData {
     pub(super) fn push_shell(&mut self, surfaces: impl Iterator<Item = u32>, primitive: &Primitive, leaf: u32) -> u32 {
         let shell = self.shell_leaves.len() as u32;
         self.shell_leaves.push(leaf);
+        self.shell_boxes.push(primitive.bounds());
         let origin = primitive.shape.bounds().centre();
         let first = self.operand_meshes.len();
         match &primitive.shape {

@@ -1,22 +1,44 @@
-//! How many crossings of operands without equations a view is likely to have, so that its first frame has room.
+//! What a view sees of operands without equations: in which pixels, and how many crossings its first frame is likely to
+//! have to store.
 //!
 //! ```text
-//!   mesh    each triangle's area in pixels, of the part of its box that is in the picture
-//!   part    front and back of its box
+//!   crossings    mesh    each triangle's area in pixels, of the part of its box that is in the picture
+//!                part    front and back of its box
 //! ```
 
 use super::SolidData;
 use crate::model::Camera;
 use glam::{DMat4, DVec2, DVec3};
 use rayon::prelude::*;
+use std::ops::Range;
 
-/// Nearer than this share of the depth range counts as there: what reaches behind the eye covers the picture.
+/// Along the view axis, model units. What is nearer to the eye, or behind it, counts as there.
 const LEAST_DEPTH: f64 = 1e-6;
 
+/// Operands cross the rays of pixels beside their boxes, too: of samples half a pixel off, and of what is drawn beyond
+/// a border. Far more than either.
+const BESIDE_PX: f64 = 8.0;
+
 impl SolidData {
+    /// Columns and rows of the pixels whose rays may cross operands.
+    pub(crate) fn shell_pixels(&self, camera: &Camera) -> [Range<u32>; 2] {
+        let view = View::new(camera);
+        let corners = || self.shell_boxes.iter().flat_map(|b| b.corners());
+        if corners().any(|p| !view.is_before(p)) {
+            return [0..camera.size.0, 0..camera.size.1];
+        }
+        let (lo, hi) = view.ends(corners());
+        let range = |lo: f64, hi: f64, size: u32| {
+            // numbers beyond the picture, and those of nothing, become its ends
+            let [first, end] = [lo - BESIDE_PX, hi + BESIDE_PX + 1.0].map(|x| x.clamp(0.0, size.into()) as u32);
+            first..end.max(first)
+        };
+        [range(lo.x, hi.x, camera.size.0), range(lo.y, hi.y, camera.size.1)]
+    }
+
     /// About how many; data that [`centres_only`](Self::centres_only) are has none.
     pub(crate) fn expected_crossings(&self, camera: &Camera) -> u64 {
-        let view = View { matrix: camera.pixel_matrix(), size: DVec2::new(camera.size.0.into(), camera.size.1.into()) };
+        let view = View::new(camera);
         let all = self.operands.iter().map(|operand| {
             if operand.meshes.is_empty() {
                 return 2.0 * view.box_of(operand.primitive.bounds().corners().into_iter()).1;
@@ -40,15 +62,29 @@ struct View {
 }
 
 impl View {
+    fn new(camera: &Camera) -> Self {
+        Self { matrix: camera.pixel_matrix(), size: DVec2::new(camera.size.0.into(), camera.size.1.into()) }
+    }
+
+    /// A point that has a place in the picture's plane.
+    fn is_before(&self, p: DVec3) -> bool {
+        (self.matrix * p.extend(1.0)).w > LEAST_DEPTH
+    }
+
     fn at(&self, p: DVec3) -> DVec2 {
         let q = self.matrix * p.extend(1.0);
         DVec2::new(q.x, q.y) / q.w.max(LEAST_DEPTH)
     }
 
+    /// Smallest and largest coordinates of points, pixels.
+    fn ends(&self, points: impl Iterator<Item = DVec3>) -> (DVec2, DVec2) {
+        let empty = (DVec2::INFINITY, DVec2::NEG_INFINITY);
+        points.map(|p| self.at(p)).fold(empty, |(lo, hi), p| (lo.min(p), hi.max(p)))
+    }
+
     /// Area of the box around points, and of its part in the picture, square pixels.
     fn box_of(&self, points: impl Iterator<Item = DVec3>) -> (f64, f64) {
-        let empty = (DVec2::INFINITY, DVec2::NEG_INFINITY);
-        let (lo, hi) = points.map(|p| self.at(p)).fold(empty, |(lo, hi), p| (lo.min(p), hi.max(p)));
+        let (lo, hi) = self.ends(points);
         let area = |lo: DVec2, hi: DVec2| (hi - lo).max(DVec2::ZERO).element_product();
         (area(lo, hi), area(lo.max(DVec2::ZERO), hi.min(self.size)))
     }
@@ -71,7 +107,7 @@ mod tests {
     use std::sync::Arc;
 
     /// A tetrahedron of height 4 over a triangle of legs 30 and 20, seen from above with one pixel a unit.
-    fn crossings(at: DVec3) -> u64 {
+    fn seen(at: DVec3) -> (u64, [Range<u32>; 2]) {
         let corners = [DVec3::ZERO, DVec3::X * 30.0, DVec3::Y * 20.0, DVec3::new(5.0, 5.0, 4.0)];
         let triangles = vec![[0, 2, 1], [0, 1, 3], [0, 3, 2], [1, 2, 3]];
         let mesh = Mesh::new(1, corners.to_vec(), triangles, Vec::new()).unwrap();
@@ -87,16 +123,22 @@ mod tests {
             depth_range: (1.0, 200.0),
             size: (160, 100),
         };
-        data.expected_crossings(&camera)
+        let pixels = data.shell_pixels(&camera);
+        assert_eq!(data.clone().centres_only().shell_pixels(&camera), pixels);
+        (data.expected_crossings(&camera), pixels)
     }
 
     /// 300 square pixels from below, and as many from above, where all of it is seen.
     #[test]
     fn front_and_back_are_counted() {
-        assert!((599..=600).contains(&crossings(DVec3::ZERO)), "{}", crossings(DVec3::ZERO));
+        let (crossings, pixels) = seen(DVec3::ZERO);
+        assert!((599..=600).contains(&crossings), "{crossings}");
+        assert_eq!(pixels, [72..119, 22..59]);
         // the picture ends at 80
-        let part = crossings(DVec3::X * 65.0);
-        assert!((200..500).contains(&part), "{part}");
-        assert_eq!(crossings(DVec3::X * 200.0), 0);
+        let (crossings, pixels) = seen(DVec3::X * 65.0);
+        assert!((200..500).contains(&crossings), "{crossings}");
+        assert_eq!(pixels, [137..160, 22..59]);
+        let (crossings, [columns, _]) = seen(DVec3::X * 200.0);
+        assert!(crossings == 0 && columns.is_empty());
     }
 }

@@ -1,0 +1,282 @@
+//! Whether loops cross themselves or each other: then points lie within more loops than they should, or fewer.
+//!
+//! ```text
+//!        ╲   ╱            two chains that run one way along an axis change sides: on one scan line A is left of B, on
+//!   v ────●─╳─●────       another right of it, each time by more than a margin
+//!     ───● ╱ ╲ ●───
+//!        B╱   ╲A          what only touches, or runs along, does not count
+//! ```
+
+use super::piece::{Piece, append_pieces};
+use crate::model::TrimLoop;
+use crate::spline::{Bezier, Control};
+use glam::{DVec2, DVec3};
+
+/// By which chains must change sides, as a share of the smaller loop's box: files keep joints less exactly than their
+/// digits say, and loops that touch should.
+const MARGIN: f64 = 1e-3;
+/// Bisections for a piece's place on a scan line: far below the margin.
+const BISECTIONS: u32 = 40;
+/// Pairs of boxes that are looked at: more take longer than reading the face.
+const MOST_PAIRS: usize = 1 << 22;
+
+/// What was found.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Crossing {
+    /// None.
+    No,
+    /// Near this point in `(u, v)`.
+    At(DVec2),
+    /// Too many curves lie beside each other to say.
+    Unknown,
+}
+
+/// A place found where `loops` cross themselves or each other by more than a thousandth of the smaller loop. Nearly
+/// linear where few boxes of curves overlap.
+pub fn crossing(loops: &[TrimLoop]) -> Crossing {
+    let boxes: Vec<Hull> = loops.iter().flat_map(TrimLoop::curves).map(|c| Hull::new(&c)).collect();
+    if boxes.iter().all(|b| !b.turns_back) {
+        match pairs(boxes, |hull| (hull.lo, hull.hi), |a, b| a.meets(b).then_some(DVec2::ZERO)) {
+            Crossing::At(_) => {}
+            other => return other,
+        }
+    }
+    let chains = loops.iter().enumerate().flat_map(|(of, trim_loop)| chains(of, trim_loop)).collect();
+    let margins: Vec<DVec2> = loops.iter().map(TrimLoop::bounds).map(|(lo, hi)| MARGIN * (hi - lo)).collect();
+    pairs(chains, |chain: &Chain| (chain.lo, chain.hi), |a, b| change_sides(a, b, margins[a.of].min(margins[b.of])))
+}
+
+/// The first answer of `ask` about two whose boxes meet.
+fn pairs<T>(mut all: Vec<T>, bounds: impl Fn(&T) -> (DVec2, DVec2), ask: impl Fn(&T, &T) -> Option<DVec2>) -> Crossing {
+    all.sort_by(|a, b| bounds(a).0.y.total_cmp(&bounds(b).0.y));
+    let mut asked = 0;
+    for (i, a) in all.iter().enumerate() {
+        let (lo, hi) = bounds(a);
+        for b in all[i + 1..].iter().take_while(|b| bounds(b).0.y <= hi.y) {
+            asked += 1;
+            if asked > MOST_PAIRS {
+                return Crossing::Unknown;
+            }
+            let (b_lo, b_hi) = bounds(b);
+            let meet = lo.x.max(b_lo.x) <= hi.x.min(b_hi.x);
+            if let Some(at) = meet.then(|| ask(a, b)).flatten() {
+                return Crossing::At(at);
+            }
+        }
+    }
+    Crossing::No
+}
+
+/// The box of a curve's control points, which holds it.
+struct Hull {
+    ends: [DVec2; 2],
+    lo: DVec2,
+    hi: DVec2,
+    /// Some leg of the control polygon runs against the chord: else no line across it is met twice.
+    turns_back: bool,
+}
+
+impl Hull {
+    fn new(curve: &Bezier<DVec3>) -> Self {
+        let points: Vec<DVec2> = curve.points.iter().map(|p| p.point()).collect();
+        let (start, end) = (points[0], points[points.len() - 1]);
+        let (lo, hi) = points.iter().fold((start, start), |(lo, hi), p| (lo.min(*p), hi.max(*p)));
+        let turns_back = points.len() > 3 && points.windows(2).any(|leg| (leg[1] - leg[0]).dot(end - start) <= 0.0);
+        Self { ends: [start, end], lo, hi, turns_back }
+    }
+
+    /// In more than a corner where the one ends and the other begins.
+    fn meets(&self, other: &Self) -> bool {
+        let (lo, hi) = (self.lo.max(other.lo), self.hi.min(other.hi));
+        !(lo == hi && self.ends.contains(&lo) && other.ends.contains(&lo))
+    }
+}
+
+/// Pieces of a loop that follow each other and run one way along an axis; those across the axis left out.
+struct Chain {
+    of: usize,
+    axis: usize,
+    lo: DVec2,
+    hi: DVec2,
+    /// From low to high along the axis.
+    pieces: Vec<(Piece, Bezier<DVec3>)>,
+}
+
+/// Of both axes.
+fn chains(of: usize, trim_loop: &TrimLoop) -> Vec<Chain> {
+    let mut pieces: Vec<(Piece, Bezier<DVec3>)> = Vec::new();
+    for curve in trim_loop.curves() {
+        let mut own = Vec::new();
+        append_pieces(&mut own, 0, &curve, curve.points[0].point());
+        pieces.extend(own.into_iter().map(|piece| (piece, curve.clone())));
+    }
+    [0, 1].into_iter().flat_map(|axis| along(of, axis, &pieces)).collect()
+}
+
+fn along(of: usize, axis: usize, pieces: &[(Piece, Bezier<DVec3>)]) -> Vec<Chain> {
+    let rises = |p: &Piece| p.end[axis] - p.start[axis];
+    let mut moving: Vec<_> = pieces.iter().filter(|(p, _)| rises(p) != 0.0).cloned().collect();
+    // begin where a chain does
+    let turn = |a: &Piece, b: &Piece| rises(a) * rises(b) < 0.0;
+    let first = (1..moving.len()).find(|&i| turn(&moving[i - 1].0, &moving[i].0)).unwrap_or(0);
+    moving.rotate_left(first);
+    let mut chains = Vec::new();
+    for part in moving.chunk_by(|a, b| !turn(&a.0, &b.0)) {
+        let mut pieces = part.to_vec();
+        if rises(&pieces[0].0) < 0.0 {
+            pieces.reverse();
+        }
+        let bounds = pieces.iter().map(|(p, _)| p.bounds());
+        let (lo, hi) = bounds.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), (a, b)| (lo.min(a), hi.max(b)));
+        chains.push(Chain { of, axis, lo, hi, pieces });
+    }
+    chains
+}
+
+impl Chain {
+    /// The other coordinate where that along the axis has a value between those of its ends.
+    fn place(&self, value: f64) -> f64 {
+        let top = |p: &Piece| p.start[self.axis].max(p.end[self.axis]);
+        let at = self.pieces.partition_point(|(p, _)| top(p) < value).min(self.pieces.len() - 1);
+        let (piece, curve) = &self.pieces[at];
+        let rises = piece.start[self.axis] < piece.end[self.axis];
+        let (mut from, mut to) = piece.t;
+        for _ in 0..BISECTIONS {
+            let t = 0.5 * (from + to);
+            if (curve.point(t)[self.axis] < value) == rises { from = t } else { to = t }
+        }
+        curve.point(0.5 * (from + to))[1 - self.axis]
+    }
+
+    /// A chain along an axis through one straight across it.
+    fn passes(&self, other: &Self, margin: DVec2) -> Option<DVec2> {
+        let (axis, across) = (self.axis, other.axis);
+        let value = other.lo[axis];
+        let beyond = |lo: f64, hi: f64, x: f64, by: f64| lo + by < x && x < hi - by;
+        if other.hi[axis] > value || !beyond(self.lo[axis], self.hi[axis], value, margin[axis]) {
+            return None;
+        }
+        let place = self.place(value);
+        let at = if axis == 0 { DVec2::new(value, place) } else { DVec2::new(place, value) };
+        beyond(other.lo[across], other.hi[across], place, margin[across]).then_some(at)
+    }
+}
+
+fn change_sides(a: &Chain, b: &Chain, margin: DVec2) -> Option<DVec2> {
+    if a.axis != b.axis {
+        return a.passes(b, margin).or_else(|| b.passes(a, margin));
+    }
+    let axis = a.axis;
+    let (lo, hi) = (a.lo.max(b.lo)[axis], a.hi.min(b.hi)[axis]);
+    // between the ends of pieces, where either may jump
+    let ends = [a, b].into_iter().flat_map(|c| &c.pieces).flat_map(|(p, _)| [p.start[axis], p.end[axis]]);
+    let mut ends: Vec<f64> = ends.filter(|x| (lo..=hi).contains(x)).collect();
+    ends.sort_by(f64::total_cmp);
+    let (mut before, mut last) = (0.0, lo);
+    for pair in ends.windows(2) {
+        for share in [0.02, 0.25, 0.5, 0.75, 0.98] {
+            let line = pair[0] + share * (pair[1] - pair[0]);
+            let apart = a.place(line) - b.place(line);
+            if apart.abs() <= margin[1 - axis] {
+                continue;
+            }
+            if apart * before < 0.0 {
+                return Some(meeting(a, b, (last, line), apart));
+            }
+            (before, last) = (apart, line);
+        }
+    }
+    None
+}
+
+/// Where two chains meet between scan lines; on the second they are `apart`.
+fn meeting(a: &Chain, b: &Chain, (mut from, mut to): (f64, f64), apart: f64) -> DVec2 {
+    for _ in 0..BISECTIONS {
+        let line = 0.5 * (from + to);
+        if (a.place(line) - b.place(line)) * apart > 0.0 { to = line } else { from = line }
+    }
+    // where one of them jumps across the other, along a piece across the axis, the other one knows the place
+    let jump = |c: &Chain| (c.place(to) - c.place(from)).abs();
+    let (line, place) = (to, if jump(a) <= jump(b) { a.place(to) } else { b.place(to) });
+    if a.axis == 0 { DVec2::new(line, place) } else { DVec2::new(place, line) }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn polygon(points: &[(f64, f64)]) -> TrimLoop {
+        let next = points.iter().cycle().skip(1);
+        let lines = points.iter().zip(next).map(|(&a, &b)| Bezier::line(a.into(), b.into()));
+        TrimLoop::new(lines.collect(), DVec2::ZERO).unwrap()
+    }
+
+    fn cubics(curves: &[[(f64, f64); 4]]) -> TrimLoop {
+        let curve = |c: &[(f64, f64); 4]| Bezier { points: c.iter().map(|&(u, v)| DVec3::new(u, v, 1.0)).collect() };
+        TrimLoop::new(curves.iter().map(curve).collect(), DVec2::ZERO).unwrap()
+    }
+
+    fn square(at: f64, side: f64) -> TrimLoop {
+        polygon(&[(at, at), (at + side, at), (at + side, at + side), (at, at + side)])
+    }
+
+    fn near(loops: &[TrimLoop], p: (f64, f64), off: f64) {
+        let found = crossing(loops);
+        assert!(matches!(found, Crossing::At(q) if q.distance(p.into()) <= off), "{found:?}");
+    }
+
+    #[test]
+    fn loops_that_cross_themselves() {
+        near(&[polygon(&[(0.0, 0.0), (1.0, 1.0), (1.0, 0.0), (0.0, 1.0)])], (0.5, 0.5), 1e-9);
+        // in a corner of both
+        let bow = [(-1.0, -1.0), (0.0, 0.0), (1.0, 1.0), (1.0, -1.0), (0.0, 0.0), (-1.0, 1.0)];
+        near(&[polygon(&bow)], (0.0, 0.0), 1e-9);
+        // along the axes alone
+        near(&[polygon(&[(0.0, 0.0), (2.0, 0.0), (2.0, 2.0), (1.0, 2.0), (1.0, -1.0), (0.0, -1.0)])], (1.0, 0.0), 1e-9);
+        // a curve with a loop in it, and its chord
+        let knot = [(0.0, 0.0), (3.0, 2.0), (-2.0, 2.0), (1.0, 0.0)];
+        let back = [(1.0, 0.0), (1.0, -1.0), (0.0, -1.0), (0.0, 0.0)];
+        near(&[cubics(&[knot, back])], (0.5, 0.75), 0.5);
+        // two bows
+        let over = [(0.0, 0.0), (0.0, 2.0), (1.0, -1.0), (1.0, 1.0)];
+        let under = [(1.0, 1.0), (0.8, 1.0), (0.2, 0.0), (0.0, 0.0)];
+        near(&[cubics(&[over, under])], (0.5, 0.5), 0.5);
+    }
+
+    #[test]
+    fn loops_that_cross_each_other() {
+        near(&[square(0.0, 2.0), square(1.0, 2.0)], (1.5, 1.5), 0.8); // in one of two corners
+        near(&[square(0.0, 2.0), polygon(&[(0.9, 1.5), (1.1, 1.5), (1.0, 2.5)])], (1.0, 2.0), 0.1);
+        // where two sides of the one meet
+        near(&[square(0.0, 2.0), polygon(&[(1.0, 1.5), (1.5, 2.0), (1.0, 2.5), (0.5, 2.0)])], (1.0, 2.0), 0.6);
+    }
+
+    /// Holes inside, loops that touch in a point or along a side, thin ones, and curves that follow each other.
+    #[test]
+    fn loops_that_do_not() {
+        let arc = |k: f64| [(0.0, 0.0), (k, 0.2), (k, 0.8), (0.0, 1.0)];
+        let back = |k: f64| [(0.0, 1.0), (k, 0.8), (k, 0.2), (0.0, 0.0)];
+        let wave = [(0.0, 0.0), (1.0, 3.0), (2.0, -3.0), (3.0, 0.0)];
+        for loops in [
+            vec![],
+            vec![square(0.0, 2.0), square(0.5, 1.0), square(0.75, 0.5)],
+            vec![square(0.0, 1.0), square(1.0, 1.0)],
+            vec![square(0.0, 2.0), polygon(&[(0.0, 0.5), (0.0, 1.5), (1.0, 1.0)])],
+            vec![polygon(&[(0.0, 0.0), (1.0, 1e-5), (2.0, 0.0), (1.0, 1e-5 + 1e-9)])],
+            vec![cubics(&[arc(-0.5), back(0.5)])],
+            vec![cubics(&[arc(0.4), back(0.6)])],
+            vec![cubics(&[wave, [(3.0, 0.0), (3.0, 3.0), (0.0, 3.0), (0.0, 0.0)]])],
+        ] {
+            assert_eq!(crossing(&loops), Crossing::No, "{loops:?}");
+        }
+    }
+
+    /// A comb of 3000 tall teeth: each box is beside all others.
+    #[test]
+    fn too_many_are_told() {
+        let teeth = (0..3000).flat_map(|k| [(f64::from(2 * k), 0.0), (f64::from(2 * k + 1), 1.0)]);
+        let comb: Vec<(f64, f64)> = teeth.chain([(6000.0, -1.0), (0.0, -1.0)]).collect();
+        assert_eq!(crossing(&[polygon(&comb)]), Crossing::Unknown);
+        assert_eq!(crossing(&[polygon(&comb[4000..])]), Crossing::No);
+    }
+}
