@@ -183,24 +183,6 @@ mod tests {
         }
     }
 
-    /// An arc whose middle weight is 1000: the point runs to the middle within a thousandth of the parameter, and back.
-    #[test]
-    fn uneven_weights_are_halved() {
-        let arc = [(1.0, 0.0, 1.0), (1.0, 1.0, 1e3), (0.0, 1.0, 1.0)];
-        let net = [0.0, 1.0].iter().flat_map(|&z| arc.map(|(x, y, w)| DVec4::new(x * w, y * w, z * w, w))).collect();
-        let knots = (vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0]);
-        let grid = flattened(Surface::new((2, 1), knots.0, knots.1, net).unwrap().patches(), Cuts::Halves);
-        assert_eq!(grid.count_v, 1);
-        // halved towards both ends, a factor of two or so a piece: 2 log2(1000 / 8) of them and few more
-        assert!((12..=24).contains(&grid.count_u), "{}", grid.count_u);
-        let most = grid.patches.iter().map(|p| weights_along_u(&p.patch)).fold(0.0, f64::max);
-        assert!(most <= MOST_WEIGHTS && most > 2.0, "{most}");
-        let uu = |grid: &PatchGrid| grid.patches.iter().map(|p| p.patch.derivative_bound().uu).fold(0.0, f64::max);
-        assert!(uu(&grid) < 10.0, "{}", uu(&grid));
-        let halves = |t: f64| (t * 4096.0).fract() == 0.0;
-        assert!(grid.patches.iter().all(|p| halves(p.u.0) && halves(p.u.1)));
-    }
-
     #[test]
     fn a_flat_patch_stays_whole() {
         let corner = |x: f64, y: f64| DVec4::new(x, y, 0.0, 1.0);
