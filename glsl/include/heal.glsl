@@ -22,7 +22,8 @@
 //     what is no patch behind the pixel            nothing, so that it is seen
 //   a ring before what is seen, which is asked like a neighbour:
 //     helpers of two faces before every witness    the nearest: an edge runs here
-//     a witness                                    the nearest: behind a silhouette, or no border at all
+//     a witness                                    the nearest: behind a silhouette, or no border at all; not the
+//                                                  face itself where it ends and two others meet, as near as they lean
 //     nothing is seen                              nothing
 //     a helper                                     the nearest
 //   and where a volume cuts the scene open (WITHIN_VOLUME), before a face from behind:
@@ -71,8 +72,6 @@ const uint WITNESS = 2u;
 
 // A surface counts at the pixel when its point projects this close to the centre.
 const float ON_PIXEL_PX = 0.05;
-// A point of the ring may project a little farther away than its radius: the step was linear.
-const float RING_SLACK = 1.25;
 // Relative depth within which a face touches the doubtful one, and is as hidden as that.
 const float SAME_DEPTH = 1e-6;
 
@@ -94,6 +93,7 @@ struct Answer {
     float depth;
     float miss; // pixels
     bool away;  // looks away from the viewer
+    float lean; // how much its depth changes within the ring
     uvec2 word;
 };
 
@@ -164,7 +164,7 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     View view = views[fi.instance];
     Sample s = refine_across(fi, face, view, item, unpack_uv(seen.y), pixel);
     Patch patch_ = patches[face.first_patch + item - fi.first_item];
-    Answer answer = Answer(NO, s.q.z, length(s.miss), true, uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)))));
+    Answer answer = Answer(NO, s.q.z, length(s.miss), true, 0.0, uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)))));
 #ifdef WITHIN_VOLUME
     if (!in_volume(s.q, RING_SLACK * frame.ring_px)) return answer;
     bool inside = in_volume(s.q, ON_PX) && is_there(fi, face, item, patch_, s.uv);
@@ -182,8 +182,11 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     float det = pu.x * pv.y - pu.y * pv.x;
     answer.away = looks_away(det, face, instances[fi.instance]);
     if (inside) answer.kind = WITNESS;
-    if (inside != real) return answer;
     if (abs(det) < 1e-12) return answer;
+    float zu = row_times(view.depth, vec4(s.jet.du, 0.0));
+    float zv = row_times(view.depth, vec4(s.jet.dv, 0.0));
+    answer.lean = RING_SLACK * frame.ring_px * length(zu * pv.yx - zv * pu.yx) / abs(det);
+    if (inside != real) return answer;
     for (uint k = 0u; k < RING_POINTS; ++k) {
         vec2 step_ = frame.ring_px * RING[k];
         vec2 duv = vec2(step_.x * pv.y - step_.y * pv.x, pu.x * step_.y - pu.y * step_.x) / det;
@@ -217,9 +220,11 @@ void main() {
     uvec2 own = imageLoad(visibility, at).xy;
     uvec2 other = SCENE_HAS_OTHERS ? imageLoad(others, at).xy : uvec2(0u);
     bool nothing = sees_nothing(own.x);
-    Answer none = Answer(NO, 3.0e38, 3.0e38, false, uvec2(0u));
+    Answer none = Answer(NO, 3.0e38, 3.0e38, false, 0.0, uvec2(0u));
     Answer self = none;
-    if (!nothing) self = ask(own, pixel, !ringed);
+    uint own_face = nothing ? 0u : face_instances[item_face_instance[seen_item(own.x)]].face + 1u;
+    if (!nothing) self = ask(own, pixel, true);
+    bool there = self.kind == WITNESS || self.kind == HELPER && self.miss <= ON_PIXEL_PX;
     bool real = !ringed && self.kind == WITNESS;
     float limit = real ? self.depth * (1.0 - SAME_DEPTH) : 3.0e38;
     Answer witness = none;
@@ -228,9 +233,10 @@ void main() {
     bool closest_before = false;
     uint helping_face = 0u; // index + 1; helpers of two faces meet in an edge here
     bool two_help = false;
+    uint meeting_face = 0u; // index + 1; two faces that meet the doubtful one here, where it ends
+    bool two_meet = false;
     if (ringed) {
-        if (nothing && other.x != 0u) witness = Answer(WITNESS, other_depth(other, pixel), 0.0, false, uvec2(0u));
-        if (self.kind == WITNESS) witness = self; // its border tells nothing: the face may be hidden but for that
+        if (nothing && other.x != 0u) witness = Answer(WITNESS, other_depth(other, pixel), 0.0, false, 0.0, uvec2(0u));
     }
     // a curved face can show its front at the same pixel, narrower than the tessellation's error:
     // look for it across the fold
@@ -272,18 +278,28 @@ void main() {
             closest_before = before;
         }
         if (!before) continue;
+        uint face = face_instances[item_face_instance[seen_item(seen.x)]].face + 1u;
         if (answer.kind == WITNESS && answer.depth < witness.depth) witness = answer;
         if (answer.kind == HELPER) {
             if (answer.depth < helper.depth) helper = answer;
-            FaceInstance fi = face_instances[item_face_instance[seen_item(seen.x)]];
-            two_help = two_help || (helping_face != 0u && helping_face != fi.face + 1u);
-            helping_face = fi.face + 1u;
+            two_help = two_help || (helping_face != 0u && helping_face != face);
+            helping_face = face;
         }
+        if (answer.kind != NO && face != own_face && answer.depth - answer.lean - self.lean <= self.depth) {
+            two_meet = two_meet || (meeting_face != 0u && meeting_face != face);
+            meeting_face = face;
+        }
+    }
+    // its border tells nothing: the face may be hidden but for that. Unless it ends here, where two others meet: it may
+    // be the third, which they hide
+    if (ringed && there && self.depth < witness.depth && !(self.kind == HELPER && two_meet)) {
+        witness = self;
+        witness.kind = WITNESS;
     }
     // where an end of the patches is near, what is no patch behind them is known at the very pixel
     if (!ringed && !real && other.x != 0u && (beside_nothing || beside_behind || witness.kind == WITNESS)) {
         float depth = other_depth(other, pixel);
-        if (depth < witness.depth) witness = Answer(WITNESS, depth, 0.0, false, uvec2(0u));
+        if (depth < witness.depth) witness = Answer(WITNESS, depth, 0.0, false, 0.0, uvec2(0u));
     }
     uvec2 healed = own;
     bool has_witness = witness.kind == WITNESS;
@@ -291,7 +307,7 @@ void main() {
     bool edge = two_help && helper.depth < witness.depth;
 #ifdef WITHIN_VOLUME
     // the inside of what the volume cuts open, and before it the border of one face: the part's outline
-    if (ringed && self.kind == WITNESS && self.away) edge = edge || has_helper && helper.depth < self.depth;
+    if (ringed && there && self.away) edge = edge || has_helper && helper.depth < self.depth;
 #endif
     if (real) {
         if (has_witness && !(has_helper && helper.depth < witness.depth)) healed = witness.word;

@@ -31,12 +31,27 @@ layout(location = 5) patch in uvec4 in_edges;
 layout(location = 0) out vec2 out_uv; // of the patch
 layout(location = 1) flat out uint out_item;
 
-// Most of a patch's width that its border may be pushed outwards.
+// Most of a patch's width that its border may be pushed outwards; and no farther than a segment, nor so far that the
+// surface leaves its tangent by more than this share of deviation_px: beside a silhouette even a step of many pixels
+// does not take the border across itself, and triangles as long as it would be off by pixels. So those at the border
+// are off by (1 + sqrt(MAX_BEND) / 2)^2 deviation_px at most along the step.
 const float MAX_PUSH = 0.5;
+const float MAX_BEND = 0.25;
 
 float along_side(float x, uint place, uint splits, uint edge) {
     uint n = edge / splits;
     return float(place * n + uint(x * float(n) + 0.5)) / float(edge);
+}
+
+// Segments along u and v where the border's vertex `uv` is: those of a side that ends there, the same for both
+// patches at it.
+vec2 segments_across(vec2 uv) {
+    uvec2 n = uvec2(gl_TessLevelInner[0], gl_TessLevelInner[1]) * in_splits;
+    if (uv.y == 0.0) n.x = in_edges.y;
+    if (uv.y == 1.0) n.x = in_edges.w;
+    if (uv.x == 0.0) n.y = in_edges.x;
+    if (uv.x == 1.0) n.y = in_edges.z;
+    return vec2(max(n, uvec2(1u)));
 }
 
 void main() {
@@ -86,10 +101,22 @@ void main() {
             bool shared_v = (uv.y == 0.0 || uv.y == 1.0) && !(bottom || top);
             if (shared_u) push.y = 2.0 * frame.ring_px / max(length(pv), 1e-12);
             if (shared_v) push.x = 2.0 * frame.ring_px / max(length(pu), 1e-12);
-            push = min(vec2(MAX_PUSH), push);
-            uv.x += right ? push.x : left ? -push.x : 0.0;
-            uv.y += top ? push.y : bottom ? -push.y : 0.0;
-            jet.point = patch_jet(patch_.first, patch_.shape, uv).point;
+            push = min(min(vec2(MAX_PUSH), 1.0 / segments_across(uv)), push);
+            vec2 step_ = vec2(right ? push.x : left ? -push.x : 0.0, top ? push.y : bottom ? -push.y : 0.0);
+            vec3 there = patch_jet(patch_.first, patch_.shape, uv + step_).point;
+            vec4 straight = q + step_.x * qu + step_.y * qv;
+            vec4 bent = to_pixel(view, vec4(there, 1.0));
+            float near = frame.perspective != 0u ? frame.near : 0.0;
+            if (min(straight.w, bent.w) > near) {
+                float bend = distance(straight.xy / straight.w, bent.xy / bent.w);
+                float most = MAX_BEND * frame.deviation_px;
+                if (bend > most) {
+                    step_ *= sqrt(most / bend);
+                    there = patch_jet(patch_.first, patch_.shape, uv + step_).point;
+                }
+            }
+            uv += step_;
+            jet.point = there;
         }
     }
     vec4 q = to_pixel(view, vec4(jet.point, 1.0));

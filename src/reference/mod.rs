@@ -32,7 +32,10 @@ mod sun;
 #[cfg(test)]
 mod tests;
 
-pub use judge::{Bin, Class, DepthErrors, Errors, Folds, GRAZING_COSINE, JudgeOptions, Judgement, Mismatch, judge};
+pub use judge::{
+    Bin, Class, DepthErrors, EXACT_DEPTH_PX, EXACT_NORMAL_DEG, Errors, Exactness, Folds, GRAZING_COSINE, JudgeOptions,
+    Judgement, Mismatch, SMOOTH_PX, TURN, judge,
+};
 pub use probe::Probe;
 pub use sun::{SunJudgement, SunTracer, judge_sun};
 

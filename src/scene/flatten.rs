@@ -1,4 +1,4 @@
-//! Surfaces cut into patches flat enough for their boxes to mean something.
+//! Surfaces cut into patches flat enough for their boxes to mean something, and even enough for equal segments.
 //!
 //! ```text
 //!   quarter circle, one patch        three patches
@@ -9,14 +9,21 @@
 //! ```
 
 use crate::model::Face;
-use crate::spline::{PatchGrid, SurfacePatch};
+use crate::spline::{Patch, PatchGrid, SurfacePatch};
+use glam::DVec4;
 
 /// A patch is cut where its border curves bulge by more than this share of their length: its box then
 /// hugs it, and tells what is seen, how near it comes, and whether a trim curve meets it. At 1/50 a
 /// quarter circle falls into three.
 const MOST_BULGE: f64 = 0.02;
-/// Pieces along each parameter, at most: each costs a patch of 64 bytes and its control points.
+/// Pieces along each parameter for that, at most: each costs a patch of 64 bytes and its control points.
 const MOST_PIECES: usize = 4;
+/// Pieces within which weights differ by more than this factor along a parameter are halved. Where they do, a point
+/// runs through most of the patch within a small part of its parameters, and equal segments as fine as are wanted there
+/// are too many: weights of 1000:1 on a patch of 100 pixels would need 17,000. A turn by 120 degrees has 2:1.
+const MOST_WEIGHTS: f64 = 8.0;
+/// Halvings for that: weights of 2^20:1 are met by less.
+const MOST_HALVINGS: u32 = 20;
 
 /// Into how many pieces patches may be cut.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -50,17 +57,31 @@ pub(crate) fn flattened(grid: PatchGrid, cuts: Cuts) -> PatchGrid {
         let b = p.patch.derivative_bound();
         (ku.max(pieces(b.uu, b.u)), kv.max(pieces(b.vv, b.v)))
     });
-    if (ku, kv) == (1, 1) {
+    let uneven = |p: &&SurfacePatch| !p.patch.is_polynomial();
+    let column = |i: usize| {
+        let column = grid.patches[i..].iter().step_by(grid.count_u).filter(uneven);
+        column.map(|p| p.patch.clone()).collect::<Vec<_>>()
+    };
+    let row = |j: usize| {
+        let row = grid.patches[j * grid.count_u..(j + 1) * grid.count_u].iter().filter(uneven);
+        row.map(|p| p.patch.transposed()).collect::<Vec<_>>()
+    };
+    let across: Vec<_> = (0..grid.count_u).map(|i| ends(ku, &column(i))).collect();
+    let up: Vec<_> = (0..grid.count_v).map(|j| ends(kv, &row(j))).collect();
+    let pieces = |ends: &[Vec<f64>]| -> Vec<(usize, (f64, f64))> {
+        let of = |(i, ends): (usize, &Vec<f64>)| ends.windows(2).map(|w| (i, (w[0], w[1]))).collect::<Vec<_>>();
+        ends.iter().enumerate().flat_map(of).collect()
+    };
+    let (across, up) = (pieces(&across), pieces(&up));
+    let (count_u, count_v) = (across.len(), up.len());
+    if (count_u, count_v) == (grid.count_u, grid.count_v) {
         return grid;
     }
-    let (count_u, count_v) = (grid.count_u * ku, grid.count_v * kv);
-    let range = |i: usize, n: usize| (i as f64 / n as f64, (i + 1) as f64 / n as f64);
     let at = |(a, b): (f64, f64), t: f64| if t >= 1.0 { b } else { a + (b - a) * t };
     let mut patches = Vec::with_capacity(count_u * count_v);
-    for j in 0..count_v {
-        for i in 0..count_u {
-            let p = &grid.patches[j / kv * grid.count_u + i / ku];
-            let (u, v) = (range(i % ku, ku), range(j % kv, kv));
+    for &(j, v) in &up {
+        for &(i, u) in &across {
+            let p = &grid.patches[j * grid.count_u + i];
             patches.push(SurfacePatch {
                 u: (at(p.u, u.0), at(p.u, u.1)),
                 v: (at(p.v, v.0), at(p.v, v.1)),
@@ -70,6 +91,35 @@ pub(crate) fn flattened(grid: PatchGrid, cuts: Cuts) -> PatchGrid {
     }
     weld(&mut patches, count_u, count_v);
     PatchGrid::new(count_u, patches)
+}
+
+/// Where the pieces along u of these patches, one knot span, begin and end: as many equal ones, halved where weights
+/// differ by too much.
+fn ends(equal: usize, patches: &[Patch]) -> Vec<f64> {
+    let mut ends = vec![0.0];
+    for k in 0..equal {
+        // of each part: its end, and how often it was halved; the first on top
+        let mut parts = vec![((k + 1) as f64 / equal as f64, 0)];
+        while let Some((end, halvings)) = parts.pop() {
+            let start = ends[ends.len() - 1];
+            let uneven = |p: &Patch| weights_along_u(&p.rectangle((start, end), (0.0, 1.0))) > MOST_WEIGHTS;
+            if halvings < MOST_HALVINGS && patches.iter().any(uneven) {
+                parts.extend([(end, halvings + 1), (start + (end - start) / 2.0, halvings + 1)]);
+            } else {
+                ends.push(end);
+            }
+        }
+    }
+    ends
+}
+
+/// The largest weight of a row's control points over the smallest, of all rows the most.
+fn weights_along_u(patch: &Patch) -> f64 {
+    let ratio = |row: &[DVec4]| {
+        let (lo, hi) = row.iter().fold((f64::INFINITY, 0.0f64), |(lo, hi), p| (lo.min(p.w), hi.max(p.w)));
+        hi / lo
+    };
+    (0..=patch.degree_v).map(|j| ratio(patch.row(j))).fold(1.0, f64::max)
 }
 
 /// Two pieces compute the side that they share from different ends, and round apart. Each takes the
@@ -96,7 +146,6 @@ fn weld(patches: &mut [SurfacePatch], count_u: usize, count_v: usize) {
 mod tests {
     use super::*;
     use crate::spline::Surface;
-    use glam::DVec4;
 
     /// Two quarter arcs with a wavy generator: both directions are cut.
     fn bent() -> Surface {

@@ -45,7 +45,8 @@
 //! In a parallel view `focal` is pixels per unit and `slant = W = 1`. Where the box crosses the near plane,
 //! `W_min` is cut to `near`: the drawn `T` has `T_z ≥ near`, and `S_z ≥ near - |e|` costs a factor of at most
 //! `1 / (1 - deviation_px / focal)`, one part in 5000 for half a pixel at the usual lenses. A trimmed
-//! face's ring, which reaches beyond `[0, 1]²`, is not covered.
+//! face's ring reaches beyond `[0, 1]²`: `visibility_surface.glsl` pushes no vertex so far that the surface leaves its
+//! tangent by more than a quarter of the budget, so across the border it is off by 25/16 of it at most.
 //!
 //! **The choice.** With `a`, `b`, `c` the derivatives over the budget and `r = tau_u / tau_v`, the quads are
 //!

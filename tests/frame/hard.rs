@@ -30,15 +30,9 @@ fn view(eye: DVec3, target: DVec3, near: f64) -> Camera {
 
 /// Every pixel right, every number one, nothing clamped; the picture.
 fn draw(model: &Model, camera: &Camera) -> Picture {
-    let picture = right(model, camera);
-    assert_eq!(picture.stats.clamps, 0);
-    picture
-}
-
-/// Every pixel right, every number one; the picture.
-fn right(model: &Model, camera: &Camera) -> Picture {
     let mut renderer = watched(model);
     let picture = render(&mut renderer, camera);
+    assert_eq!(picture.stats.clamps, 0);
     let j = judge(&Tracer::new(model), camera, &picture, &JudgeOptions::default());
     assert_eq!((j.wrong, j.given_up), (0, 0), "{:?}", j.mismatches);
     for i in (0..picture.face.len()).filter(|&i| picture.face[i] != 0) {
@@ -132,21 +126,18 @@ fn the_eye_inside_the_hull() {
     assert_eq!(covered(&inside), (SIZE.0 * SIZE.1) as usize, "nothing but the sphere around the eye");
 }
 
-/// The bound asks for more than the largest split: the promise is void and said to be, though the pixels are right.
+/// The point runs through most of the patch within a thousandth of its parameters: equal segments would be too many.
 #[test]
 fn weights_of_a_thousand_to_one() {
-    let mut clamps = 0;
     for weights in [[1.0, 1e3, 1.0], [1.0, 1e-3, 1.0]] {
         let point = |i: usize, j: usize| {
             let p = DVec3::new(i as f64 * 1.5, j as f64 * 1.5, ((i * 7 + j * 5) % 4) as f64 * 0.5);
             DVec4::from_point(p, weights[i] * if j == 1 { 0.5 } else { 1.0 })
         };
         let picture =
-            right(&face(bezier(2, 2, point)), &view(DVec3::new(1.0, -3.0, 4.0), DVec3::new(1.5, 1.5, 0.5), 0.1));
+            draw(&face(bezier(2, 2, point)), &view(DVec3::new(1.0, -3.0, 4.0), DVec3::new(1.5, 1.5, 0.5), 0.1));
         assert!(covered(&picture) > 1000);
-        clamps += picture.stats.clamps;
     }
-    assert!(clamps > 0);
 }
 
 #[test]

@@ -6,6 +6,7 @@
 
 mod accuracy;
 mod bands;
+mod borders;
 #[path = "../shapes/cages.rs"]
 mod cages;
 mod closed;
@@ -24,6 +25,8 @@ mod light;
 mod meshes;
 mod objects;
 mod operands;
+mod real_solids;
+mod regular;
 mod room;
 mod samples;
 mod shadows;

@@ -58,7 +58,7 @@ fn keeps_the_promise(model: &Model, times: f64) {
         }
     }
     assert!(seen > 3 * 160 * 120, "only {seen} pixels show a face");
-    // known: a million times closer to where face 0 begins, the frame says of one patch that it may be too coarse
+    // known: a million times closer to where face 0 begins, one strip of its trim table wants more lines than there are
     assert!(clamps <= u64::from(times > 1e5), "{clamps} clamps");
     assert_silent(renderer);
 }

@@ -20,6 +20,7 @@
 
 #![allow(dead_code)] // each test binary takes what it needs
 
+pub mod borders;
 mod meshes;
 pub mod operands;
 pub mod solids;

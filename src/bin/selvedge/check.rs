@@ -8,7 +8,7 @@ use crate::{Outcome, output, verdict};
 use anyhow::Result;
 use glam::DAffine3;
 use selvedge::picture::{FrameStats, Outputs};
-use selvedge::reference::{Judgement, SunJudgement, SunTracer, Tracer};
+use selvedge::reference::{EXACT_DEPTH_PX, EXACT_NORMAL_DEG, Judgement, SunJudgement, SunTracer, Tracer};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -51,7 +51,7 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
         }
         let sun = sun.as_ref().map(|sun| verdict::of_sun(&tracer, sun, camera, &picture, args.samples, tolerance_px));
         let wrong = verdict::wrong(&judgement) + sun.map_or(0, |sun| sun.wrong);
-        let kept = wrong == 0 && picture.stats.clamps == 0;
+        let kept = wrong == 0 && picture.stats.clamps == 0 && judgement.exact.beyond == 0;
         let camera = camera.into();
         verdicts.push(Verdict { view: name.clone(), camera, tolerance_px, kept, judgement, sun, stats: picture.stats });
     }
@@ -70,17 +70,21 @@ fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
     let wrong = format!("wrong > {tolerance_px} px");
     let lit = verdicts.iter().any(|v| v.sun.is_some());
     let light = lit.then_some("light: wrong, worst shift, px");
-    let shape = ["view", "judged", &wrong, "worst shift, px", "depth error, mm: worst, mean", "normal, deg: worst"];
-    let mut table = output::table(shape.into_iter().chain(light).chain(["clamps", "promise"]));
+    let beyond = format!("> {EXACT_DEPTH_PX} px, {EXACT_NORMAL_DEG} deg");
+    let regular = ["regular: depth, px: worst, mean", "normal, deg: worst", &beyond, "not regular"];
+    let shape = ["view", "judged", &wrong, "worst shift, px"].into_iter().chain(regular);
+    let mut table = output::table(shape.chain(light).chain(["clamps", "promise"]));
     for Verdict { view, judgement, sun, stats, kept, .. } in verdicts {
-        let depth = judgement.depth_regular.model;
+        let exact = &judgement.exact;
         let shape = [
             view.clone(),
             judgement.sampled.to_string(),
             verdict::wrong(judgement).to_string(),
             format!("{:.3}", verdict::worst_shift_px(judgement)),
-            format!("{:.2e}, {:.2e}", depth.worst, depth.mean),
-            format!("{:.3}", judgement.normal_deg.worst),
+            format!("{:.4}, {:.1e}", exact.depth_px.worst, exact.depth_px.mean),
+            format!("{:.4}", exact.normal_deg.worst),
+            exact.beyond.to_string(),
+            exact.irregular.to_string(),
         ];
         let light = sun.map(|sun| format!("{}, {:.3}", sun.wrong, sun.worst_shift_px));
         let end = [stats.clamps.to_string(), if *kept { "kept" } else { "BROKEN" }.to_string()];

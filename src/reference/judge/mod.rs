@@ -15,11 +15,17 @@
 //!   shift is ten of depth. They count in `all`, not in `regular`.
 //! - *folds*, where a face hides itself and a shifted silhouette shows its other sheet. A depth error
 //!   of more than the slope explains starts the same search as a wrong id, for the drawn depth.
+//!
+//! `exact` says more, of *regular* surface: what is seen up to [`SMOOTH_PX`] around the centre is one sheet of one
+//! face, nowhere grazing, and turns by [`TURN`] at most. Elsewhere a shift within the limit may show another sheet, or
+//! the normal changes by more within the arithmetic's last digits of a pixel; those are counted only. Whether a pixel
+//! is regular is asked of the exact surface alone, and only where the drawn one is off by more than [`EXACT_DEPTH_PX`]
+//! or [`EXACT_NORMAL_DEG`]: all others are taken as regular.
 
 mod report;
 mod search;
 
-pub use report::{Bin, Class, DepthErrors, Errors, Folds, Judgement, Mismatch};
+pub use report::{Bin, Class, DepthErrors, Errors, Exactness, Folds, Judgement, Mismatch};
 
 use super::{Hit, Probe, Tracer};
 use crate::model::{Camera, Projection};
@@ -32,6 +38,15 @@ use std::f64::consts::FRAC_PI_4;
 
 /// Below this cosine between normal and ray a pixel is grazing: 84.3°, a slope of 10.
 pub const GRAZING_COSINE: f64 = 0.1;
+/// What depth may be off by where the surface is regular, sides of a pixel.
+pub const EXACT_DEPTH_PX: f64 = 0.1;
+/// What a normal may be off by there, degrees.
+pub const EXACT_NORMAL_DEG: f64 = 0.01;
+/// How far around a pixel's centre regular surface must be one smooth sheet, pixels: beyond any shift within the limit.
+pub const SMOOTH_PX: f64 = 1.0;
+/// By how much its normal may turn within that, radians: a radius of curvature of ten pixels. A pixel's centre is known
+/// to a thousandth of a pixel, which then is 0.006 degrees.
+pub const TURN: f64 = 0.1;
 /// Normals of one mesh jump between triangles. A drawn normal off by more than this, radians, is compared
 /// with what is seen beside the pixel's centre, too.
 const SMOOTH: f64 = 1e-3;
@@ -176,12 +191,14 @@ impl Bench<'_> {
         let cosine = hit.normal.dot(direction).abs();
         let regular = cosine >= GRAZING_COSINE;
         let mut suspect = None;
+        let mut off = [None; 2]; // depth in pixels, normal in degrees
         if let Some(&depth) = self.picture.depth.get(index) {
             let depth = f64::from(depth);
             let error = (depth - hit.depth).abs();
             let pixel = pixel_size(self.camera, hit.depth);
             let fold = error.is_nan() || error > fold_depth(self.camera, &hit, direction);
             tally.depth(index, error, pixel, regular && !fold);
+            off[0] = Some(error / pixel);
             let wanted = Wanted { face: drawn_id, depth: Some(depth) };
             suspect = fold.then_some(Suspect { index, truth, wanted, searched: true });
         }
@@ -203,8 +220,36 @@ impl Bench<'_> {
                 angle = ring.map(|h| angle_between(drawn, h.normal)).fold(angle, f64::min);
             }
             tally.normal.add(index, angle.to_degrees());
+            off[1] = Some(angle.to_degrees());
+        }
+        if let [Some(depth_px), Some(normal_deg)] = off {
+            let within = depth_px <= EXACT_DEPTH_PX && normal_deg <= EXACT_NORMAL_DEG;
+            if within || self.is_smooth(probe, centre, &hit) {
+                tally.exact(index, depth_px, normal_deg, within);
+            } else {
+                tally.irregular += 1;
+            }
+        } else {
+            tally.irregular += u64::from(!regular || suspect.is_some());
         }
         suspect
+    }
+
+    /// What is seen around `centre` is the sheet of `hit`, and turns little.
+    fn is_smooth(&self, probe: &mut Probe, centre: DVec2, hit: &Hit) -> bool {
+        beside(centre, SMOOTH_PX).all(|pixel| {
+            let (origin, direction) = self.camera.ray(pixel);
+            probe.first(pixel).is_some_and(|h| {
+                let cosine = h.normal.dot(direction).abs();
+                // where the ray meets the plane that touches the sheet, along the ray
+                let flat = hit.normal.dot(hit.point - origin) / hit.normal.dot(direction);
+                let apart = (flat - (h.point - origin).dot(direction)).abs();
+                (h.face, h.instance) == (hit.face, hit.instance)
+                    && cosine >= GRAZING_COSINE
+                    && angle_between(h.normal, hit.normal) <= TURN
+                    && apart <= fold_depth(self.camera, hit, direction)
+            })
+        })
     }
 }
 

@@ -67,6 +67,20 @@ pub struct Folds {
     pub worst_shift_px: f64,
 }
 
+/// What is drawn against the exact surface, where that is regular ([`judge`](super::judge)).
+#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize)]
+pub struct Exactness {
+    /// Depth, sides of a pixel at that depth.
+    pub depth_px: Errors,
+    /// Angle between the normals, degrees; as many pixels.
+    pub normal_deg: Errors,
+    /// Of these, pixels off by more than [`EXACT_DEPTH_PX`](super::EXACT_DEPTH_PX) or
+    /// [`EXACT_NORMAL_DEG`](super::EXACT_NORMAL_DEG).
+    pub beyond: u64,
+    /// Pixels that see the right face where it is not regular: nothing is said of them here.
+    pub irregular: u64,
+}
+
 /// One bar of the shift histogram.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize)]
 pub struct Bin {
@@ -122,6 +136,8 @@ pub struct Judgement {
     /// Angle between drawn and true normal in degrees, where `depth_regular` counts. On a spline part that is an
     /// operand, whose faces share one id, the nearest of the normals that the part shows within the limit is the true one.
     pub normal_deg: Errors,
+    /// Depth and normal where the surface is regular.
+    pub exact: Exactness,
     /// Faces that hide themselves.
     pub folds: Folds,
     /// [`Tracer::given_up`](crate::reference::Tracer::given_up): 0, or the truth itself is in doubt.
@@ -168,6 +184,10 @@ pub(super) struct Tally {
     pub normal: Sum,
     /// Regular model units and pixels, then all.
     depth: [Sum; 4],
+    /// Depth in pixels and normal in degrees, of regular surface.
+    exact: [Sum; 2],
+    beyond: u64,
+    pub irregular: u64,
 }
 
 impl Tally {
@@ -181,8 +201,19 @@ impl Tally {
         d.add(index, error / pixel);
     }
 
+    /// A pixel of regular surface.
+    pub fn exact(&mut self, index: usize, depth_px: f64, normal_deg: f64, within: bool) {
+        let [a, b] = &mut self.exact;
+        a.add(index, depth_px);
+        b.add(index, normal_deg);
+        self.beyond += u64::from(!within);
+    }
+
     pub fn merge(&mut self, other: &Self) {
         self.agree += other.agree;
+        self.beyond += other.beyond;
+        self.irregular += other.irregular;
+        self.exact.iter_mut().zip(&other.exact).for_each(|(a, b)| a.merge(b));
         self.normal.merge(&other.normal);
         self.depth.iter_mut().zip(&other.depth).for_each(|(a, b)| a.merge(b));
     }
@@ -209,6 +240,7 @@ impl Judgement {
             depth_regular: DepthErrors::default(),
             depth_all: DepthErrors::default(),
             normal_deg: Errors::default(),
+            exact: Exactness::default(),
             folds: Folds::default(),
             given_up: 0,
             classes: Vec::new(),
@@ -275,6 +307,8 @@ impl Judgement {
         let [a, b, c, d] = tally.depth.map(|s| s.errors(width));
         self.depth_regular = DepthErrors { model: a, px: b };
         self.depth_all = DepthErrors { model: c, px: d };
+        let [depth_px, normal_deg] = tally.exact.map(|s| s.errors(width));
+        self.exact = Exactness { depth_px, normal_deg, beyond: tally.beyond, irregular: tally.irregular };
         let severity = |m: &Mismatch| if m.gross { f64::INFINITY } else { m.shift_px.unwrap_or(0.0) };
         self.mismatches.sort_by(|a, b| severity(b).total_cmp(&severity(a)));
         self.mismatches.truncate(listed);

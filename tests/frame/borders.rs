@@ -1,0 +1,54 @@
+//! Faces that end where their surfaces end, from many sides.
+//!
+//! ```text
+//!     ╭──╮   drum: a silhouette meets the border, where no step across      ─────┬─────   abutting: two tops in one
+//!     │  │   the border is short on the screen                              left │ right  plane, walls that coincide
+//!     ╰──╯                                                                       │        below their edge
+//! ```
+
+use crate::shapes::borders;
+use crate::support::{assert_silent, render, watched};
+use glam::DVec3;
+use selvedge::model::{Camera, Model};
+use selvedge::reference::{JudgeOptions, Tracer, judge};
+use std::ops::Range;
+
+const SIZE: (u32, u32) = (160, 120);
+
+/// Views that are spread over the sphere on a spiral.
+const VIEWS: u32 = 100;
+
+fn view(model: &Model, k: u32) -> Camera {
+    let (a, b) = (f64::from(k) * 2.399_963, (f64::from(k) + 0.5) * 2.0 / f64::from(VIEWS) - 1.0);
+    let from = DVec3::new(a.cos() * (1.0 - b * b).sqrt(), a.sin() * (1.0 - b * b).sqrt(), b);
+    Camera::framing(model.bounds(), from, DVec3::Z, 35f64.to_radians(), SIZE)
+}
+
+/// Each pixel of these views is within the tolerance of what it should be.
+fn keeps_the_promise(model: &Model, views: Range<u32>) {
+    let tracer = Tracer::new(model);
+    let mut renderer = watched(model);
+    let mut faults = Vec::new();
+    for k in views {
+        let camera = view(model, k);
+        let picture = render(&mut renderer, &camera);
+        let j = judge(&tracer, &camera, &picture, &JudgeOptions::default());
+        assert_eq!((picture.stats.clamps, j.given_up), (0, 0), "view {k}");
+        if j.wrong + j.folds.beyond + j.folds.wrong_depth + j.exact.beyond > 0 {
+            faults.push(format!("view {k}: {:?} {:?} {:?}", j.mismatches, j.folds, j.exact));
+        }
+    }
+    assert_silent(renderer);
+    assert!(faults.is_empty(), "{}", faults.join("\n"));
+}
+
+/// With borders pushed out by as much as takes them across themselves, view 25 has a pixel 0.8 px off.
+#[test]
+fn a_silhouette_that_meets_a_border_is_not_drawn_beyond_it() {
+    keeps_the_promise(&borders::drum(1.5, 4.0), 15..45);
+}
+
+#[test]
+fn a_wall_that_two_tops_hide_is_not_seen_between_them() {
+    keeps_the_promise(&borders::abutting(), 50..70);
+}
