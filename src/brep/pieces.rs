@@ -74,6 +74,20 @@ impl Pieces {
 
     /// The pieces over `[a, b]`; on a closed curve the range may leave the domain by whole periods.
     pub fn between(&self, a: f64, b: f64) -> Vec<Span<Bezier<DVec4>>> {
+        let cut = |(start, end, from, to): (f64, f64, f64, f64), piece: &Bezier<DVec4>| {
+            let length = end - start;
+            Span { start: from, end: to, piece: piece.segment((from - start) / length, (to - start) / length) }
+        };
+        let mut out: Vec<_> = self.ranges(a, b).into_iter().map(|(range, piece)| cut(range, piece)).collect();
+        if out.is_empty() {
+            let ends = [a, b].map(|t| DVec4::from_point(self.jet(t).0, 1.0));
+            out.push(Span { start: a, end: b, piece: Bezier { points: ends.to_vec() } });
+        }
+        out
+    }
+
+    /// The pieces that reach into `[a, b]`, as in [`Pieces::between`]: where each starts and ends, and what lies inside.
+    fn ranges(&self, a: f64, b: f64) -> Vec<((f64, f64, f64, f64), &Bezier<DVec4>)> {
         let (lo, hi) = self.domain();
         let period = hi - lo;
         let turns = if self.closed { ((a - lo) / period).floor()..=((b - lo) / period).floor() } else { 0.0..=0.0 };
@@ -85,18 +99,31 @@ impl Pieces {
                 let (from, to) = (a.max(start), b.min(end));
                 // slivers of rounding at the ends are not pieces
                 if to - from > 1e-13 * period {
-                    let length = end - start;
-                    let piece = s.piece.segment((from - start) / length, (to - start) / length);
-                    out.push(Span { start: from, end: to, piece });
+                    out.push(((start, end, from, to), &s.piece));
                 }
             }
             turn += 1.0;
         }
-        if out.is_empty() {
-            let ends = [a, b].map(|t| DVec4::from_point(self.jet(t).0, 1.0));
-            out.push(Span { start: a, end: b, piece: Bezier { points: ends.to_vec() } });
-        }
         out
+    }
+
+    /// Increasing parameters from `a` to `b`: long splines have short spans, and fewer samples in each.
+    pub fn nodes(&self, a: f64, b: f64) -> Vec<f64> {
+        let mut spans: Vec<_> =
+            self.ranges(a, b).into_iter().map(|((_, _, from, to), piece)| (from, to, piece.degree())).collect();
+        if spans.is_empty() {
+            spans.push((a, b, 1));
+        }
+        let each = |degree: usize| match spans.len() {
+            0..=4 => 2 * degree + 4,
+            5..=32 => degree + 2,
+            _ => 3,
+        };
+        let inside = |&(from, to, degree): &(f64, f64, usize)| {
+            let n = each(degree);
+            (0..n).map(move |i| from + (to - from) * (i as f64 / n as f64))
+        };
+        spans.iter().flat_map(inside).chain([b]).collect()
     }
 
     /// Parameters at which to look first: enough that no piece of the curve hides between two.
