@@ -48,7 +48,9 @@ bool before(Fragment a, Fragment b) {
 const uint GAPS[11] = uint[](9881u, 4391u, 1750u, 701u, 301u, 132u, 57u, 23u, 10u, 4u, 1u);
 
 void sort(uint first, uint count) {
-    for (uint g = 0u; g < 11u; ++g) {
+    uint g = 0u; // the first step that has something to do
+    while (g < 10u && GAPS[g] >= count) ++g;
+    for (; g < 11u; ++g) {
         uint gap = GAPS[g];
         for (uint i = gap; i < count; ++i) {
             Fragment f = fragments[first + i];

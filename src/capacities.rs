@@ -143,6 +143,8 @@ const MOST_TRIANGLES: u32 = u32::MAX / 3;
 const MOST_SEEN: u32 = 1 << 29;
 /// Of Boolean solids, to begin with.
 const LEAVES_IN_A_TILE: u32 = 16;
+/// Crossings of operands, in any case.
+const FEWEST_FRAGMENTS: u32 = 1 << 14;
 /// Layers of faces recorded in any case.
 const FEWEST_LAYERS: u32 = 4;
 /// Of faces, each of which asks every primitive.
@@ -187,10 +189,16 @@ impl Capacities {
             doubts: trimmed * (1 << 14),
             block_leaves: counts.leaves.saturating_mul(4),
             tile_leaves: counts.leaves.saturating_mul(16),
-            fragments: if counts.has_fragments() { 1 << 18 } else { 0 },
+            fragments: if counts.has_fragments() { FEWEST_FRAGMENTS } else { 0 },
             band_rows: WHOLE,
             layers: if counts.blister { FEWEST_LAYERS } else { 0 },
         }
+    }
+
+    /// The same, with room for so many crossings of operands, and for a quarter more.
+    pub(crate) fn expecting(self, crossings: u64, counts: Counts) -> Self {
+        let wanted = u32::try_from(crossings + crossings / 4).unwrap_or(u32::MAX);
+        Self { fragments: if counts.has_fragments() { self.fragments.max(wanted) } else { 0 }, ..self }
     }
 
     /// The same, with room for a few leaves in every tile of a picture of this size, where a storage buffer of `range`

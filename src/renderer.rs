@@ -317,7 +317,7 @@ impl Renderer {
             targets.depth.is_some() == self.formats.depth.is_some(),
             "the targets are those of TargetFormats::depth"
         );
-        self.make_room(input.slot, input.camera.size)?;
+        self.make_room(input.slot, input.camera)?;
         // SAFETY: the caller's promise.
         let cmd = unsafe { Commands::new(&self.device, cmd) };
         let Some(loaded) = &mut self.loaded else { panic!("upload a model before recording") };
@@ -425,8 +425,9 @@ impl Renderer {
     }
 
     /// Frees what the slot kept for the frame before, and makes the buffers large enough for what
-    /// that frame reported and for the picture's size.
-    fn make_room(&mut self, slot: usize, size: (u32, u32)) -> Result<(), RenderError> {
+    /// that frame reported, or a first one is expected to, and for the picture's size.
+    fn make_room(&mut self, slot: usize, camera: &Camera) -> Result<(), RenderError> {
+        let size = camera.size;
         let finished = &mut self.slots[slot];
         let (had, drawn) = (finished.capacities.take(), finished.size);
         let report = had.map(|_| finished.read_counters());
@@ -445,6 +446,9 @@ impl Renderer {
                 Err(_) if drawn != size => loaded.capacities,
                 Err(too_many) => return Err(too_many.into()),
             },
+            _ if loaded.scene.is_none() => {
+                loaded.capacities.expecting(loaded.data.solids.expected_crossings(camera), loaded.counts)
+            }
             _ => loaded.capacities,
         };
         let capacities = capacities.for_picture(loaded.counts, size, range)?;

@@ -189,7 +189,8 @@ impl SceneData {
 
     /// Operands of Boolean solids without equations are placed as parts are, after them.
     fn push_operands(&mut self, trim: Trimming) {
-        for operand in std::mem::take(&mut self.solids.operands) {
+        let operands = std::mem::take(&mut self.solids.operands);
+        for operand in &operands {
             let first = self.faces.len();
             let cuts = Cuts::of(operand.faces());
             for face in operand.faces() {
@@ -208,10 +209,11 @@ impl SceneData {
             let instance = Instance { part: 0, transform, colour: None, name: String::new() };
             let number = self.instances.len() as u32;
             self.push_instance(&instance, operand.origin, faces, operand.shell);
-            for mesh in operand.meshes {
+            for mesh in operand.meshes.clone() {
                 self.solids.operand_meshes[mesh].instance = number;
             }
         }
+        self.solids.operands = operands;
     }
 
     fn push_face(&mut self, mut f: FaceData) {

@@ -10,6 +10,7 @@
 //! where it is stays in `f64` and is given relative to the eye every frame.
 
 mod blister;
+mod expected;
 mod order;
 mod shell;
 mod surface;
@@ -17,7 +18,7 @@ mod surface;
 use super::face::pack_colour;
 use crate::abi;
 use crate::csg::Blist;
-use crate::model::{Items, Shape, Solid, SolidError, SurfaceTable};
+use crate::model::{Bounds, Items, Primitive, Shape, Solid, SolidError, SurfaceTable};
 use crate::picture::{SolidWay, TrimWay};
 pub(crate) use blister::{Asked, Blister};
 use glam::DVec3;
@@ -50,7 +51,7 @@ pub(crate) struct SolidData {
     /// [`NO_PLANE`](abi::NO_PLANE).
     pub operand_planes: Vec<u32>,
     pub operand_draws: Vec<Range<u32>>,
-    /// Those that the scene has to place yet.
+    /// Those, until the GPU has what is made of them.
     pub(super) operands: Vec<shell::Operand>,
     /// For [`SolidWay::Cst`]: the leaves as they are drawn.
     pub order: Vec<u32>,
@@ -128,18 +129,20 @@ impl SolidData {
         let shells = vec![None; whole.primitives().len()];
         let leaf_of = vec![[None; 2]; whole.primitives().len()];
         let mut shared = Shared { whole, table, surface_of, middle, shells, leaf_of, nothing: None };
-        let union = match lists.opaque == lists.solids.len() {
-            true => Blist::new(shared.whole.tree()),
-            false => Blist::new(Solid::union(&lists.solids[..lists.opaque])?.tree()),
-        };
-        data.push_list(&mut shared, &union.map_err(SolidError::from)?, 0, 0);
+        let some = (lists.opaque < lists.solids.len()).then(|| Solid::union(&lists.solids[..lists.opaque]));
+        let some = some.transpose()?;
+        let seen = some.as_ref().unwrap_or(&shared.whole);
+        let (union, reaches) = (Blist::new(seen.tree()).map_err(SolidError::from)?, seen.reaches());
+        data.push_list(&mut shared, &union, 0, 0, &reaches);
         data.followed = data.leaves.len() as u32;
         let mut first = 0;
+        // what is followed tells of solids beyond what their unions show
+        let boxes: Vec<Bounds> = shared.whole.primitives().iter().map(Primitive::bounds).collect();
         for (k, solid) in lists.solids.iter().enumerate() {
             if k >= lists.followed {
                 let list = Blist::new(solid.tree()).map_err(SolidError::from)?;
                 let flags = if k < lists.clear { abi::LEAF_ELSEWHERE } else { 0 };
-                data.push_list(&mut shared, &list, first, flags);
+                data.push_list(&mut shared, &list, first, flags, &boxes[first as usize..]);
             }
             first += solid.primitives().len() as u32;
         }
@@ -231,8 +234,15 @@ impl SolidData {
         }
     }
 
-    /// The switches of one list, whose primitives are those from `first_primitive` on.
-    fn push_list(&mut self, shared: &mut Shared, list: &Blist, first_primitive: u32, all_flags: u32) {
+    /// The switches of one list, whose primitives are those from `first_primitive` on and matter within `reaches`.
+    fn push_list(
+        &mut self,
+        shared: &mut Shared,
+        list: &Blist,
+        first_primitive: u32,
+        all_flags: u32,
+        reaches: &[Bounds],
+    ) {
         let item = self.leaves.len() as u32;
         for (i, entry) in (0..).zip(list.entries()) {
             let (t, f) = entry.exits(i);
@@ -244,11 +254,13 @@ impl SolidData {
             };
             let p = first_primitive + entry.primitive();
             let primitive = &shared.whole.primitives()[p as usize];
-            let bounds = primitive.bounds();
-            let bounded = bounds.min.is_finite() && bounds.max.is_finite();
+            // places within shells are told from their boxes
+            let is_shell = shell::is_shell(primitive);
+            let bounds = if is_shell { primitive.bounds() } else { reaches[entry.primitive() as usize] };
+            let bounded = bounds.is_empty() || bounds.min.is_finite() && bounds.max.is_finite();
             let (centre, half) = match bounded {
-                true if !bounds.is_empty() => (bounds.centre(), (bounds.max - bounds.min) * 0.5),
-                true => (shared.middle, DVec3::ZERO),
+                true if bounds.is_empty() => (shared.middle, DVec3::ZERO), // somewhere, a point
+                true => (bounds.centre(), (bounds.max - bounds.min) * 0.5),
                 false => (shared.middle, DVec3::INFINITY),
             };
             let mut flags = all_flags;
@@ -256,7 +268,6 @@ impl SolidData {
             flags |= if entry.negative() { abi::LEAF_NEGATIVE } else { 0 };
             let leaf = self.leaves.len() as u32;
             shared.leaf_of[p as usize][usize::from(entry.negative())].get_or_insert(leaf);
-            let is_shell = shell::is_shell(primitive);
             let shell = is_shell.then(|| {
                 let known = &mut shared.shells[p as usize];
                 *known.get_or_insert_with(|| {

@@ -2,6 +2,7 @@
 
 mod carrier;
 mod nearby;
+mod reach;
 mod shape;
 mod surface;
 #[cfg(test)]
@@ -13,7 +14,6 @@ pub use surface::{CarriedFace, Surface, SurfaceTable};
 
 use super::Bounds;
 use crate::csg::{Builder, Entry, Node, Op, Tree, TreeError};
-use glam::DVec3;
 use serde::{Deserialize, Serialize};
 
 /// Primitives and a Boolean expression over them. Valid by construction: see [`Solid::new`].
@@ -143,35 +143,13 @@ impl Solid {
     /// A box around the solid: boxes of the primitives under the same operations. Infinite where the
     /// solid may be unbounded.
     pub fn bounds(&self) -> Bounds {
-        let all = Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
-        let meet = |a: Bounds, b: Bounds| {
-            let both = Bounds { min: a.min.max(b.min), max: a.max.min(b.max) };
-            if both.is_empty() { Bounds::EMPTY } else { both }
-        };
-        // boxes around a node and around its complement
-        let mut boxes: Vec<(Bounds, Bounds)> = Vec::with_capacity(self.tree.nodes().len());
-        for node in self.tree.nodes() {
-            use crate::csg::Op::{Difference, Intersection, SymmetricDifference, Union};
-            let of = |i: u32| boxes[i as usize];
-            boxes.push(match *node {
-                Node::Constant(value) => {
-                    if value {
-                        (all, Bounds::EMPTY)
-                    } else {
-                        (Bounds::EMPTY, all)
-                    }
-                }
-                Node::Leaf(p) => (self.primitives[p as usize].bounds(), all),
-                Node::Complement(a) => (of(a).1, of(a).0),
-                Node::Pair(Union, a, b) => (of(a).0.union(of(b).0), meet(of(a).1, of(b).1)),
-                Node::Pair(Intersection, a, b) => (meet(of(a).0, of(b).0), of(a).1.union(of(b).1)),
-                Node::Pair(Difference, a, b) => (meet(of(a).0, of(b).1), of(a).1.union(of(b).0)),
-                Node::Pair(SymmetricDifference, a, b) => {
-                    let (l, r) = (of(a), of(b));
-                    (meet(l.0, r.1).union(meet(l.1, r.0)), meet(l.0, r.0).union(meet(l.1, r.1)))
-                }
-            });
-        }
-        boxes[boxes.len() - 1].0
+        reach::boxes(self).last().expect("a tree has a root").of
+    }
+
+    /// Of each primitive, the box outside which nothing changes where it is taken for the outside, alone or with
+    /// others beyond their own: within [`Primitive::bounds`] and within what all that it is cut with leaves.
+    /// Empty where it never matters, infinite where it may matter everywhere.
+    pub fn reaches(&self) -> Vec<Bounds> {
+        reach::reaches(self)
     }
 }

@@ -1,7 +1,8 @@
 //! Coincident surfaces: what is one, what is not, and which way round.
 
-use crate::csg::{Builder, Op};
-use crate::model::{Model, Primitive, Quadric, Shape, Solid, SurfaceTable};
+use crate::csg::{Builder, Node, Op, Tree};
+use crate::model::{Bounds, Model, Primitive, Quadric, Shape, Solid, SurfaceTable};
+use crate::parity::Random;
 use glam::{DAffine3, DQuat, DVec3};
 
 fn table(shapes: Vec<(Shape, DAffine3)>, tolerance: f64) -> SurfaceTable {
@@ -128,4 +129,95 @@ fn solids_are_written_and_read() {
         let error = serde_json::from_str::<Model>(&text.replace(old, new)).unwrap_err();
         assert!(error.to_string().contains(message), "{error}");
     }
+}
+
+/// Whether a point is in a box, rims included.
+fn holds(b: Bounds, p: DVec3) -> bool {
+    p.cmpge(b.min).all() && p.cmple(b.max).all()
+}
+
+/// Neighbours joined at random until one is left, some of them complemented.
+fn expression(random: &mut Random, leaves: u32, primitives: u32) -> Tree {
+    let ops = [Op::Union, Op::Intersection, Op::Difference, Op::SymmetricDifference];
+    let mut b = Builder::new();
+    let mut parts: Vec<u32> = (0..leaves).map(|_| b.leaf(random.integer(0, primitives - 1))).collect();
+    while parts.len() > 1 {
+        let at = random.integer(0, parts.len() as u32 - 2) as usize;
+        if random.integer(0, 4) == 0 {
+            parts[at] = b.push(Node::Complement(parts[at]));
+        }
+        parts[at] = b.push(Node::Pair(random.pick(&ops), parts[at], parts[at + 1]));
+        parts.remove(at + 1);
+    }
+    b.finish(parts[0]).unwrap()
+}
+
+/// Any primitives whose reach does not hold a point may be taken for their outsides there. Boxes of whole numbers and
+/// points between them, so that nothing is rounded; half-spaces among them reach as far as what they are cut with.
+#[test]
+fn beyond_their_reach_primitives_do_not_matter() {
+    let mut random = Random::new(71);
+    let (mut left_out, mut smaller) = (0, 0);
+    for _ in 0..3000 {
+        let count = random.integer(1, 9);
+        let repeated = random.integer(0, 1) == 1;
+        let primitives = if repeated { count.div_ceil(2) } else { count };
+        let tree = expression(&mut random, count, primitives);
+        let whole = |random: &mut Random, lo, hi| f64::from(random.integer(lo, hi));
+        let shapes = (0..primitives).map(|_| {
+            let min = DVec3::from_array(std::array::from_fn(|_| whole(&mut random, 0, 6)));
+            let size = DVec3::from_array(std::array::from_fn(|_| whole(&mut random, 1, 4)));
+            match random.integer(0, 5) {
+                0 => Shape::HalfSpace { normal: DVec3::X, offset: min.x },
+                1 => Shape::Torus { major: 1.0, minor: 0.0 }, // nothing
+                _ => Shape::Block { min, max: min + size },
+            }
+        });
+        let place = |shape| Primitive { shape, transform: DAffine3::IDENTITY, colour: [1.0; 4], id: 1 };
+        let solid = Solid::new(shapes.map(place).collect(), tree).unwrap();
+        let reaches = solid.reaches();
+        for (reach, primitive) in reaches.iter().zip(solid.primitives()) {
+            let all = primitive.bounds();
+            assert!(reach.is_empty() || holds(all, reach.min) && holds(all, reach.max), "{reach:?} {all:?}");
+            smaller += u32::from(*reach != all);
+        }
+        for _ in 0..40 {
+            let p = DVec3::from_array(std::array::from_fn(|_| whole(&mut random, 0, 12) - 0.5));
+            let inside: Vec<bool> = solid
+                .primitives()
+                .iter()
+                .map(|q| match q.shape {
+                    Shape::HalfSpace { normal, offset } => p.dot(normal) <= offset,
+                    _ => holds(q.bounds(), p),
+                })
+                .collect();
+            let kept: Vec<bool> = reaches.iter().map(|r| holds(*r, p) || random.integer(0, 2) == 0).collect();
+            left_out += inside.iter().zip(&kept).filter(|(inside, kept)| **inside && !**kept).count();
+            let value = solid.tree().contains(|q| inside[q as usize]);
+            let without = solid.tree().contains(|q| inside[q as usize] && kept[q as usize]);
+            assert_eq!(value, without, "{p} in {:?}", solid.tree());
+            assert!(!value || holds(solid.bounds(), p), "{p} beyond {:?}", solid.bounds());
+        }
+    }
+    assert!(left_out > 5000 && smaller > 3000, "{left_out} {smaller}");
+}
+
+/// What is cut with a block, or taken from one, reaches no farther; added to it, it does.
+#[test]
+fn reach_of_what_is_cut() {
+    let sphere =
+        Primitive { shape: Shape::Sphere { radius: 2.0 }, transform: DAffine3::IDENTITY, colour: [1.0; 4], id: 1 };
+    let half = Primitive { shape: Shape::HalfSpace { normal: DVec3::Z, offset: 0.0 }, ..sphere.clone() };
+    let reach = |op: Op| {
+        let mut b = Builder::new();
+        let (s, h) = (b.leaf(0), b.leaf(1));
+        let root = b.push(Node::Pair(op, s, h));
+        Solid::new(vec![sphere.clone(), half.clone()], b.finish(root).unwrap()).unwrap().reaches()
+    };
+    let ball = Bounds { min: DVec3::splat(-2.0), max: DVec3::splat(2.0) };
+    let all = Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
+    assert_eq!(reach(Op::Intersection), [ball, ball]);
+    assert_eq!(reach(Op::Difference), [ball, ball]);
+    assert_eq!(reach(Op::Union), [ball, all]);
+    assert_eq!(reach(Op::SymmetricDifference), [ball, all]);
 }

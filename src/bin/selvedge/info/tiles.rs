@@ -8,7 +8,7 @@
 use glam::DVec3;
 use selvedge::abi::{Frame, LEAF_UNBOUNDED, Leaf};
 use selvedge::csg::Blist;
-use selvedge::model::{Camera, Model, Primitive, Projection, Solid};
+use selvedge::model::{Bounds, Camera, Model, Projection, Solid};
 use selvedge::twin::solid_rects::{solid_rects, tile_count};
 use serde::Serialize;
 
@@ -34,8 +34,14 @@ impl Tiles {
     pub fn new(model: &Model, camera: &Camera) -> Option<Self> {
         let whole = Solid::union(&model.solids).ok()?;
         let list = Blist::new(whole.tree()).ok()?;
+        let mut reaches = whole.reaches();
+        for (reach, primitive) in reaches.iter_mut().zip(whole.primitives()) {
+            if !primitive.shape.is_analytic() {
+                *reach = primitive.bounds(); // frames keep the boxes of what has no equations
+            }
+        }
         let (leaves, centres): (Vec<Leaf>, Vec<[f32; 3]>) =
-            list.entries().iter().map(|e| leaf(&whole.primitives()[e.primitive() as usize], camera)).unzip();
+            list.entries().iter().map(|e| leaf(reaches[e.primitive() as usize], camera)).unzip();
         let frame = frame(camera);
         let [across, down] = tile_count(&frame).map(|n| n as usize);
         // each rectangle as its corners' differences: sums along both axes count the leaves of each tile
@@ -83,9 +89,8 @@ impl Tiles {
     }
 }
 
-/// What the frame's shaders read of a primitive to find its tiles; its centre from the eye.
-fn leaf(primitive: &Primitive, camera: &Camera) -> (Leaf, [f32; 3]) {
-    let bounds = primitive.bounds();
+/// What the frame's shaders read of a box to find its tiles; its centre from the eye.
+fn leaf(bounds: Bounds, camera: &Camera) -> (Leaf, [f32; 3]) {
     let bounded = bounds.min.is_finite() && bounds.max.is_finite();
     let empty = bounds.is_empty();
     // an empty one is a point
@@ -121,7 +126,7 @@ mod tests {
     use super::*;
     use glam::DAffine3;
     use selvedge::csg::parse;
-    use selvedge::model::Shape;
+    use selvedge::model::{Primitive, Shape};
 
     /// Seen from above at one pixel a millimetre: 10 by 6 tiles.
     fn view() -> Camera {
@@ -149,11 +154,14 @@ mod tests {
 
     #[test]
     fn leaves_are_counted_where_they_are() {
-        // within the tiles 5 to 6 by 1 to 2 (from the top), and 6 to 8 by 2 to 2: one in common
+        // within the tiles 5 to 6 by 1 to 2 (from the top), and what the second takes of it is in 6 by 2
         let boxes = [(2.0, 2.0, 28.0, 28.0), (18.0, 2.0, 44.0, 12.0)];
         let tiles = Tiles::new(&model("A-B", &boxes), &view()).unwrap();
-        let expected = Tiles { size: [160, 96], tiles: 60, used: 6, leaves: 2, mean: 7.0 / 6.0, most: 2 };
+        let expected = Tiles { size: [160, 96], tiles: 60, used: 4, leaves: 2, mean: 5.0 / 4.0, most: 2 };
         assert_eq!(tiles, expected);
+        // of a union nothing is left out: the second lies within the tiles 6 to 8 by 2 to 2
+        let tiles = Tiles::new(&model("A+B", &boxes), &view()).unwrap();
+        assert_eq!((tiles.used, tiles.mean, tiles.most), (6, 7.0 / 6.0, 2));
         // a symmetric difference has each operand twice; one that nobody sees is in no tile
         let away = [boxes[0], (500.0, 2.0, 9.0, 9.0)];
         let tiles = Tiles::new(&model("A^B", &away), &view()).unwrap();
@@ -163,7 +171,7 @@ mod tests {
 
     #[test]
     fn what_has_no_end_is_everywhere() {
-        let mut whole = model("A-B", &[(2.0, 2.0, 28.0, 28.0), (0.0, 0.0, 1.0, 1.0)]);
+        let mut whole = model("A+B", &[(2.0, 2.0, 28.0, 28.0), (0.0, 0.0, 1.0, 1.0)]);
         let half = Primitive {
             shape: Shape::HalfSpace { normal: DVec3::X, offset: 9.0 },
             ..whole.solids[0].primitives()[1].clone()
@@ -172,5 +180,10 @@ mod tests {
         whole.solids[0] = Solid::new(all, whole.solids[0].tree().clone()).unwrap();
         let tiles = Tiles::new(&whole, &view()).unwrap();
         assert_eq!((tiles.used, tiles.most), (60, 2));
+        // taken away it matters where there is something to take it from
+        let taken = parse("A-B").unwrap().tree;
+        whole.solids[0] = Solid::new(whole.solids[0].primitives().to_vec(), taken).unwrap();
+        let tiles = Tiles::new(&whole, &view()).unwrap();
+        assert_eq!((tiles.used, tiles.mean, tiles.most), (4, 2.0, 2));
     }
 }
