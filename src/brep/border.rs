@@ -51,9 +51,9 @@ impl Border {
                     let ends = if turned { (along.1, along.0) } else { along };
                     let mut gap: f64 = 0.0;
                     let same = curve.spans.iter().enumerate().all(|(i, span)| {
-                        let (range, points) = &border[if turned { border.len() - 1 - i } else { i }];
-                        let start = if turned { range.1 } else { range.0 };
-                        gap = gap.max(apart(&span.piece, points, turned));
+                        let other = &border[if turned { border.len() - 1 - i } else { i }];
+                        let start = if turned { other.end } else { other.start };
+                        gap = gap.max(apart(&span.piece, &other.piece, turned));
                         gap <= reach && (share(span.start, domain) - share(start, ends)).abs() <= SAME
                     });
                     if same {

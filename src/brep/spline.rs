@@ -77,13 +77,7 @@ impl SplineForm {
 
     /// The pieces of the side where `axis` has the value of one of its ends: the range of the other coordinate, and
     /// the control points. `None` unless there are `count` of them, of that degree.
-    pub fn border(
-        &self,
-        axis: usize,
-        value: f64,
-        count: usize,
-        degree: usize,
-    ) -> Option<Vec<((f64, f64), Vec<DVec4>)>> {
+    pub fn border(&self, axis: usize, value: f64, count: usize, degree: usize) -> Option<Vec<Span<Vec<DVec4>>>> {
         let (degrees, counts) = (self.surface.degrees(), [self.grid.count_u, self.grid.count_v]);
         let degrees = [degrees.0, degrees.1];
         if counts[1 - axis] != count || degrees[1 - axis] != degree {
@@ -98,7 +92,8 @@ impl SplineForm {
                 let at = [fixed(degrees[axis]), k];
                 p.patch.points[at[1 - axis] * (degrees[0] + 1) + at[axis]]
             };
-            (if axis == 0 { p.v } else { p.u }, (0..=degree).map(point).collect())
+            let (start, end) = if axis == 0 { p.v } else { p.u };
+            Span { start, end, piece: (0..=degree).map(point).collect() }
         };
         Some((0..count).map(piece).collect())
     }

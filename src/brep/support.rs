@@ -36,7 +36,7 @@ pub(super) enum Form {
     Torus { major: f64, minor: f64 },
     Revolution { profile: Curve },
     Extrusion { profile: Curve, direction: DVec3 },
-    Spline(SplineForm),
+    Spline(Box<SplineForm>),
 }
 
 /// A line of the domain that is a single point in space.
@@ -155,7 +155,7 @@ impl Support {
                 let (lo, hi) = surface.bounds();
                 let form = SplineForm::new(surface, eps.max(1e-7 * lo.distance(hi)));
                 let natural = form.domain.map(Some);
-                Self::with(Form::Spline(form), Frame::WORLD, natural, eps)
+                Self::with(Form::Spline(Box::new(form)), Frame::WORLD, natural, eps)
             }
         };
         if !this.frame.is_orthonormal() {
