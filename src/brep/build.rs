@@ -50,12 +50,7 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
     let tolerance = if tolerance > 0.0 && tolerance.is_finite() { tolerance } else { 1e-6 };
     let mut notes = Vec::new();
     let mut uses = edge_uses(face, edges)?;
-    let size = uses
-        .iter()
-        .flatten()
-        .flat_map(|e| e.nodes().into_iter().map(|s| e.point(s)))
-        .fold(Bounds::EMPTY, Bounds::with)
-        .diagonal();
+    let size = uses.iter().flatten().fold(Bounds::EMPTY, |all, e| all.union(e.bounds)).diagonal();
     let eps = if size > 0.0 { tolerance.clamp(1e-9 * size, 1e-5 * size) } else { tolerance };
     let named = |reason| BuildError::Surface { face: face.id, reason };
     let mut support = Support::new(&face.surface, eps).map_err(named)?;
@@ -63,7 +58,8 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         support.target = (1e-2 * tolerance).clamp(1e-9 * size, 1e-7 * size);
         support.noise = 1e-7 * size;
     }
-    uses.iter_mut().for_each(|bound| bound.retain(|e| e.length() > support.target));
+    uses.iter_mut().for_each(|bound| bound.retain(|e| e.length > support.target));
+    support.allow(uses.iter().flatten().map(|e| e.node_count).sum());
     let limits = Limits { face: face.id, size };
 
     let vertices: Vec<usize> = face
@@ -131,6 +127,9 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         return Err(BuildError::NoArea { face: face.id });
     }
     notes.extend(crossing_note(&trims).map(|note| format!("face #{}: {note}", face.id)));
+    if support.exhausted() {
+        notes.push(format!("face #{}: its edges are followed loosely, so far are they from its surface", face.id));
+    }
     let face = Face {
         id: face.id,
         kind: support.kind(),

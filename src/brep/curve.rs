@@ -162,6 +162,18 @@ impl Curve {
         }
     }
 
+    /// [`Curve::closest`], or the end of an open curve that is within `eps`, mm, of `p`.
+    pub fn at_vertex(&self, p: DVec3, eps: f64) -> f64 {
+        let end = match self {
+            Self::Pieces(c) if !c.closed => {
+                let (a, b) = c.domain();
+                [a, b].into_iter().find(|t| c.jet(*t).0.distance(p) <= eps)
+            }
+            _ => None,
+        };
+        end.unwrap_or_else(|| self.closest(p))
+    }
+
     /// Gauss-Newton on `(C(t) - p) · C'(t) = 0`, kept inside the domain.
     fn polish(&self, t: f64, p: DVec3) -> f64 {
         let clamp = |t: f64| match self {
@@ -220,20 +232,7 @@ impl Curve {
             // an eighth of a quarter turn: sagitta 0.5 % of the radius
             Self::Ellipse { .. } => even(((b - a) / (TURN / 32.0)).ceil().max(6.0) as usize),
             Self::Hyperbola { .. } | Self::Parabola { .. } => even(16),
-            Self::Pieces(p) => {
-                let spans = p.between(a, b);
-                // long splines have short spans: fewer samples each
-                let each = |s: &Span<Bezier<DVec4>>| match spans.len() {
-                    0..=4 => 2 * s.piece.degree() + 4,
-                    5..=32 => s.piece.degree() + 2,
-                    _ => 3,
-                };
-                let inside = |s: &Span<Bezier<DVec4>>| {
-                    let (n, start, length) = (each(s), s.start, s.end - s.start);
-                    (0..n).map(move |i| start + length * (i as f64 / n as f64))
-                };
-                spans.iter().flat_map(inside).chain([b]).collect()
-            }
+            Self::Pieces(p) => p.nodes(a, b),
         }
     }
 

@@ -2,6 +2,7 @@
 
 use super::curve::Curve;
 use super::{BuildError, Edge};
+use crate::model::Bounds;
 use glam::DVec3;
 
 /// A curve over `[t0, t1]`, `t0 < t1`, in the direction in which the loop runs it.
@@ -19,6 +20,12 @@ pub(super) struct EdgeCurve {
     pub vertices: [DVec3; 2],
     /// The stated sense contradicted the order of the vertices on the curve.
     pub turned: bool,
+    /// Length of the polygon through the nodes, mm.
+    pub length: f64,
+    /// Box of the nodes.
+    pub bounds: Bounds,
+    /// How many nodes there are.
+    pub node_count: usize,
 }
 
 impl EdgeCurve {
@@ -36,7 +43,9 @@ impl EdgeCurve {
         let curve = if edge.same_sense == forward { stated } else { stated.reversed() };
         let vertices = if forward { [edge.start, edge.end] } else { [edge.end, edge.start] };
         let closed = edge.start.distance(edge.end) <= 1e-3 * eps;
-        let mut this = Self { id: edge.id, curve, t0: 0.0, t1: 0.0, vertices, turned: false };
+        let (length, bounds, node_count) = (0.0, Bounds::EMPTY, 0);
+        let mut this =
+            Self { id: edge.id, curve, t0: 0.0, t1: 0.0, vertices, turned: false, length, bounds, node_count };
         if !this.set_range(closed, eps) {
             // an open curve met in the opposite order: the sense flag is wrong, the vertices are not
             this.curve = this.curve.reversed();
@@ -45,14 +54,18 @@ impl EdgeCurve {
                 return Ok(None);
             }
         }
-        Ok((this.length() > eps).then_some(this))
+        let points: Vec<DVec3> = this.nodes().iter().map(|s| this.point(*s)).collect();
+        this.node_count = points.len();
+        this.length = points.windows(2).map(|w| w[0].distance(w[1])).sum();
+        this.bounds = points.into_iter().fold(Bounds::EMPTY, Bounds::with);
+        Ok((this.length > eps).then_some(this))
     }
 
     /// Finds `t0 < t1`; false when the vertices come in the wrong order or coincide.
     fn set_range(&mut self, closed: bool, eps: f64) -> bool {
         let [start, end] = self.vertices;
-        self.t0 = self.curve.closest(start);
-        self.t1 = self.curve.closest(end);
+        self.t0 = self.curve.at_vertex(start, eps);
+        self.t1 = self.curve.at_vertex(end, eps);
         let Some(period) = self.curve.period() else {
             // one vertex, and a curve whose ends miss each other by more than eps: all of it
             if let (true, Some((a, b))) = (closed, self.curve.domain()) {
@@ -76,14 +89,8 @@ impl EdgeCurve {
         ahead > 0.0 && !short
     }
 
-    /// Length of the polygon through the nodes, mm.
-    pub fn length(&self) -> f64 {
-        let points: Vec<DVec3> = self.nodes().iter().map(|s| self.point(*s)).collect();
-        points.windows(2).map(|w| w[0].distance(w[1])).sum()
-    }
-
     /// Curve parameter at the fraction `s` of the range.
-    fn parameter(&self, s: f64) -> f64 {
+    pub fn parameter(&self, s: f64) -> f64 {
         if s == 1.0 { self.t1 } else { self.t0 + (self.t1 - self.t0) * s }
     }
 

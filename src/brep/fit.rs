@@ -31,6 +31,9 @@ const MAX_CURVES: usize = 2048;
 /// peak is at most this many times what is found at 0.3 and 0.7 of the way.
 pub(super) const PEAK: f64 = 1.25;
 
+/// Share of a parameter, or of the length of a line, by which a point is off it for no other reason than rounding.
+const ROUNDING: f64 = 1e-15;
+
 /// Trim curves of one strand.
 #[derive(Clone, Debug)]
 pub(super) struct Fitted {
@@ -79,10 +82,14 @@ impl Fitter<'_> {
             usize::from((along * self.support.speed(start)).abs().x < (along * self.support.speed(start)).abs().y);
         let mut deviation: f64 = 0.0;
         for s in strand.nodes() {
-            let Some(traced) = strand.traced_point(self.support, s) else { break };
+            let Some(raw) = strand.raw(self.support, s) else { break };
             let p = strand.at(self.support, s);
             let f = if along[axis] == 0.0 { 0.0 } else { ((p[axis] - start[axis]) / along[axis]).clamp(0.0, 1.0) };
-            deviation = deviation.max(self.support.point(start.lerp(end, f)).distance(traced));
+            let off = start.lerp(end, f);
+            // most points are on the line but for rounding
+            if (off - raw).abs().cmpgt(ROUNDING * raw.abs().max(along.abs())).any() {
+                deviation = deviation.max(self.support.point(off).distance(self.support.point(raw)));
+            }
         }
         let curve = Bezier::line(self.to_carrier(start), self.to_carrier(end));
         Fitted { curves: vec![curve], deviation }
@@ -164,7 +171,8 @@ impl Fitter<'_> {
     fn fit(&self, strand: &Strand, a: (f64, DVec2), b: (f64, DVec2), depth: u32, most: usize, out: &mut Fitted) {
         let at = |x: f64| self.to_carrier(strand.at(self.support, a.0 + (b.0 - a.0) * x));
         let middle = 0.5 * (a.0 + b.0);
-        let last = depth == 0 || out.curves.len() >= most || middle <= a.0 || middle >= b.0;
+        let stop = out.curves.len() >= most || self.support.exhausted();
+        let last = depth == 0 || stop || middle <= a.0 || middle >= b.0;
         let target = self.support.target_of(strand.part.as_ref().map_or(0.0, |p| p.trace.gap));
         let mut best: Option<(f64, f64, Bezier<DVec3>)> = None;
         for degree in [3, 5] {

@@ -21,6 +21,22 @@ impl Support {
         hint.map_or(found, |h| self.unwrap(found, h))
     }
 
+    /// [`Support::invert`], and the distance of that point from `p`.
+    pub fn nearest(&self, p: DVec3, hint: Option<DVec2>, accept: f64) -> (DVec2, f64) {
+        let Form::Spline(s) = &self.form else {
+            let found = self.invert(p, hint, accept);
+            return (found, self.point(found).distance(p));
+        };
+        let (distance, found) = s.invert(p, hint, self.enough(accept));
+        self.spend(s.take_work());
+        (hint.map_or(found, |h| self.unwrap(found, h)), distance)
+    }
+
+    /// The distance at which the first answer is taken.
+    fn enough(&self, accept: f64) -> f64 {
+        if self.exhausted() { f64::INFINITY } else { accept }
+    }
+
     fn principal(&self, p: DVec3, hint: Option<DVec2>, accept: f64) -> DVec2 {
         let l = self.frame.local(p);
         let rho = l.x.hypot(l.y);
@@ -57,6 +73,7 @@ impl Support {
             }
             Form::Revolution { profile } => {
                 let meridian = |t: f64| {
+                    self.spend(1);
                     let (q, d) = profile.jet(t);
                     let (q, d) = (self.frame.local(q), self.frame.local_direction(d));
                     let r = q.x.hypot(q.y);
@@ -75,7 +92,8 @@ impl Support {
                     };
                     (DVec3::new(r - rho, q.z - l.z, 0.0), DVec3::new(dr, d.z, 0.0))
                 };
-                let t = foot(profile, &self.turned_seeds(profile, l), hint.map(|h| h.y), accept, meridian);
+                let t =
+                    foot(profile, || self.turned_seeds(profile, l), hint.map(|h| h.y), self.enough(accept), meridian);
                 let q = self.frame.local(profile.point(t));
                 let on_axis = q.x.hypot(q.y) <= 1e-12 * (q.z.abs() + self.eps);
                 let u = if on_axis { hint.map_or(0.0, |h| h.x) } else { angle - q.y.atan2(q.x) };
@@ -85,13 +103,18 @@ impl Support {
                 let unit = direction.normalize();
                 let across = |v: DVec3| v - unit * v.dot(unit);
                 let shadow = |t: f64| {
+                    self.spend(1);
                     let (q, d) = profile.jet(t);
                     (across(q - p), across(d))
                 };
-                let t = foot(profile, &seeds(profile), hint.map(|h| h.x), accept, shadow);
+                let t = foot(profile, || seeds(profile), hint.map(|h| h.x), self.enough(accept), shadow);
                 DVec2::new(t, (p - profile.point(t)).dot(unit) / direction.length())
             }
-            Form::Spline(s) => s.invert(p, hint, accept),
+            Form::Spline(s) => {
+                let found = s.invert(p, hint, self.enough(accept)).1;
+                self.spend(s.take_work());
+                found
+            }
         }
     }
 
@@ -127,7 +150,13 @@ fn seeds(curve: &Curve) -> Vec<f64> {
 /// The parameter that makes `g(t) = (residual, its derivative)` smallest: Gauss-Newton, steps that
 /// overshoot halved, from the hint if that ends within `accept` mm, else from the best seeds, the one
 /// nearest to the hint among equals.
-fn foot(curve: &Curve, seeds: &[f64], hint: Option<f64>, accept: f64, g: impl Fn(f64) -> (DVec3, DVec3)) -> f64 {
+fn foot(
+    curve: &Curve,
+    seeds: impl FnOnce() -> Vec<f64>,
+    hint: Option<f64>,
+    accept: f64,
+    g: impl Fn(f64) -> (DVec3, DVec3),
+) -> f64 {
     let wrap = |t: f64| match curve {
         Curve::Pieces(p) => p.wrap(t),
         _ => t,
@@ -167,7 +196,8 @@ fn foot(curve: &Curve, seeds: &[f64], hint: Option<f64>, accept: f64, g: impl Fn
     {
         return t;
     }
-    let mut starts = best_seeds(seeds, |t| g(t).0.length_squared());
+    let seeds = seeds();
+    let mut starts = best_seeds(&seeds, |t| g(t).0.length_squared());
     if let Curve::Pieces(p) = curve
         && !p.creases.is_empty()
     {

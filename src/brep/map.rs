@@ -3,7 +3,7 @@
 use super::SurfaceGeometry;
 use super::support::Support;
 use crate::spline::Jet;
-use glam::DVec2;
+use glam::{DVec2, DVec3};
 
 /// A surface as a function of its parameters in ISO 10303-42.
 #[derive(Clone, Debug)]
@@ -22,6 +22,11 @@ impl SurfaceMap {
     /// clamped where it ends.
     pub fn jet(&self, uv: DVec2) -> Jet {
         self.0.jet(uv)
+    }
+
+    /// Distance of `p` from the surface near `uv`, mm: a foot that Newton's method finds from there.
+    pub fn distance(&self, p: DVec3, uv: DVec2) -> f64 {
+        self.0.nearest(p, Some(uv), f64::INFINITY).1
     }
 
     /// The whole range of each parameter, where it has one.

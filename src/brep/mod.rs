@@ -17,11 +17,12 @@
 //! |---|---|
 //! | curves and surfaces made ready | `curve`, `pieces`, `edge`; `support`, `invert`, `spline` |
 //! | those defined by others | `derived`, `approximate` |
-//! | edge → pre-image in the standard's own `(u, v)` | `order`; `trace`, `preimage`, `strand` |
+//! | edge → pre-image in the standard's own `(u, v)` | `order`; `trace`, `border`, `preimage`, `strand` |
 //! | strands → loops without seams, oriented | `loops`; `rims`, `cut`; `nest` |
 //! | the standard's `(u, v)` → a spline's | `law`, `carrier`, `fit` |
 
 mod approximate;
+mod border;
 mod build;
 mod carrier;
 mod curve;

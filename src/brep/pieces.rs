@@ -15,6 +15,17 @@ pub(super) struct Pieces {
     pub closed: bool,
 }
 
+/// A piece that reaches into a range of parameters.
+struct Reach<'a> {
+    /// Where the piece starts and ends.
+    start: f64,
+    end: f64,
+    /// What of that lies inside.
+    from: f64,
+    to: f64,
+    piece: &'a Bezier<DVec4>,
+}
+
 impl Pieces {
     /// The pieces of a B-spline. `closed` is set when its ends are within `eps`, mm, or
     /// `1e-7` of its size.
@@ -74,6 +85,21 @@ impl Pieces {
 
     /// The pieces over `[a, b]`; on a closed curve the range may leave the domain by whole periods.
     pub fn between(&self, a: f64, b: f64) -> Vec<Span<Bezier<DVec4>>> {
+        let cut = |r: Reach<'_>| {
+            let length = r.end - r.start;
+            let piece = r.piece.segment((r.from - r.start) / length, (r.to - r.start) / length);
+            Span { start: r.from, end: r.to, piece }
+        };
+        let mut out: Vec<_> = self.ranges(a, b).into_iter().map(cut).collect();
+        if out.is_empty() {
+            let ends = [a, b].map(|t| DVec4::from_point(self.jet(t).0, 1.0));
+            out.push(Span { start: a, end: b, piece: Bezier { points: ends.to_vec() } });
+        }
+        out
+    }
+
+    /// The pieces that reach into `[a, b]`, as in [`Pieces::between`].
+    fn ranges(&self, a: f64, b: f64) -> Vec<Reach<'_>> {
         let (lo, hi) = self.domain();
         let period = hi - lo;
         let turns = if self.closed { ((a - lo) / period).floor()..=((b - lo) / period).floor() } else { 0.0..=0.0 };
@@ -85,18 +111,30 @@ impl Pieces {
                 let (from, to) = (a.max(start), b.min(end));
                 // slivers of rounding at the ends are not pieces
                 if to - from > 1e-13 * period {
-                    let length = end - start;
-                    let piece = s.piece.segment((from - start) / length, (to - start) / length);
-                    out.push(Span { start: from, end: to, piece });
+                    out.push(Reach { start, end, from, to, piece: &s.piece });
                 }
             }
             turn += 1.0;
         }
-        if out.is_empty() {
-            let ends = [a, b].map(|t| DVec4::from_point(self.jet(t).0, 1.0));
-            out.push(Span { start: a, end: b, piece: Bezier { points: ends.to_vec() } });
-        }
         out
+    }
+
+    /// Increasing parameters from `a` to `b`: long splines have short spans, and fewer samples in each.
+    pub fn nodes(&self, a: f64, b: f64) -> Vec<f64> {
+        let mut spans: Vec<_> = self.ranges(a, b).iter().map(|r| (r.from, r.to, r.piece.degree())).collect();
+        if spans.is_empty() {
+            spans.push((a, b, 1));
+        }
+        let each = |degree: usize| match spans.len() {
+            0..=4 => 2 * degree + 4,
+            5..=32 => degree + 2,
+            _ => 3,
+        };
+        let inside = |&(from, to, degree): &(f64, f64, usize)| {
+            let n = each(degree);
+            (0..n).map(move |i| from + (to - from) * (i as f64 / n as f64))
+        };
+        spans.iter().flat_map(inside).chain([b]).collect()
     }
 
     /// Parameters at which to look first: enough that no piece of the curve hides between two.

@@ -2,9 +2,11 @@
 //!
 //! ```text
 //!   plane              affine image of the curve, exact
+//!   border of a spline the line of constant parameter that it is
 //!   curved surface     cut at poles; traced; a line of constant parameter where it is one
 //! ```
 
+use super::border::Border;
 use super::curve::Curve;
 use super::edge::EdgeCurve;
 use super::law::nearest;
@@ -25,6 +27,12 @@ impl Strand {
             return vec![Self::in_plane(support, edge)];
         }
         let stops = pole_stops(support, edge);
+        if let (Form::Spline(s), [(_, None), (_, None)]) = (&support.form, &stops[..])
+            && let Some(border) = Border::of(s, edge, support.target)
+        {
+            let trace = Rc::new(Trace::along(support, edge, &border));
+            return vec![Self::of_trace(support, trace, Some((border.axis, border.value)))];
+        }
         let mut out = Vec::new();
         let mut hint = hint;
         for w in stops.windows(2) {
@@ -33,7 +41,8 @@ impl Strand {
                 continue;
             }
             let trace = Trace::new(support, edge, (from, to), [pole0, pole1], hint);
-            let strand = Self::of_trace(support, Rc::new(trace), lines);
+            let line = constant_line(support, &trace, lines);
+            let strand = Self::of_trace(support, Rc::new(trace), line);
             hint = Some(strand.end);
             out.push(Self { poles: [pole0, pole1], ..strand });
         }
@@ -71,7 +80,8 @@ impl Strand {
         }
     }
 
-    fn of_trace(support: &Support, trace: Rc<Trace>, lines: &mut Lines) -> Self {
+    /// `line`: the coordinate that is constant along the trace, if one is, and its value.
+    fn of_trace(support: &Support, trace: Rc<Trace>, line: Option<(usize, f64)>) -> Self {
         let (first, last) = (trace.samples[0], trace.samples[trace.samples.len() - 1]);
         let mut strand = Self {
             start: first.1,
@@ -86,7 +96,7 @@ impl Strand {
             }),
             part: None,
         };
-        if let Some((axis, value)) = constant_line(support, &trace, lines) {
+        if let Some((axis, value)) = line {
             strand.start[axis] = value;
             strand.end[axis] = value;
             strand.locked[axis] = true;

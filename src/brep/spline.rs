@@ -5,7 +5,7 @@ use super::support::Pole;
 use crate::spline::arc::assemble;
 use crate::spline::{BSpline, Control, Jet, PatchGrid, Span, SplineError, Surface, SurfacePatch};
 use glam::{DVec2, DVec3, DVec4};
-use std::cell::OnceCell;
+use std::cell::{Cell, OnceCell};
 
 /// A surface with what its inversion needs.
 #[derive(Clone, Debug)]
@@ -25,7 +25,14 @@ pub(super) struct SplineForm {
     size: f64,
     /// Knots of low continuity, in `u` and in `v`; the seam of a closed direction is one.
     pub creases: [Vec<f64>; 2],
+    /// Evaluations since they were last asked for.
+    work: Cell<u64>,
+    /// The patch that was evaluated last.
+    near: Cell<usize>,
 }
+
+/// Boxes that take as long to look at and to put in order as one evaluation.
+const BOXES: u64 = 4;
 
 impl SplineForm {
     /// `eps`: distance in mm at which two sides are the same.
@@ -46,6 +53,8 @@ impl SplineForm {
             domain: [u, v],
             closed: [false; 2],
             creases: [creases(du, ku), creases(dv, kv)],
+            work: Cell::new(0),
+            near: Cell::new(0),
         };
         this.closed = [0, 1].map(|axis| {
             let (a, b) = this.domain[axis];
@@ -64,6 +73,29 @@ impl SplineForm {
             }
         }
         this
+    }
+
+    /// The pieces of the side where `axis` has the value of one of its ends: the range of the other coordinate, and
+    /// the control points. `None` unless there are `count` of them, of that degree.
+    pub fn border(&self, axis: usize, value: f64, count: usize, degree: usize) -> Option<Vec<Span<Vec<DVec4>>>> {
+        let (degrees, counts) = (self.surface.degrees(), [self.grid.count_u, self.grid.count_v]);
+        let degrees = [degrees.0, degrees.1];
+        if counts[1 - axis] != count || degrees[1 - axis] != degree {
+            return None;
+        }
+        let last = value == self.domain[axis].1;
+        let fixed = |n: usize| if last { n } else { 0 };
+        let piece = |i: usize| {
+            let along = [fixed(counts[axis] - 1), i];
+            let p = &self.grid.patches[along[1 - axis] * counts[0] + along[axis]];
+            let point = |k: usize| {
+                let at = [fixed(degrees[axis]), k];
+                p.patch.points[at[1 - axis] * (degrees[0] + 1) + at[axis]]
+            };
+            let (start, end) = if axis == 0 { p.v } else { p.u };
+            Span { start, end, piece: (0..=degree).map(point).collect() }
+        };
+        Some((0..count).map(piece).collect())
     }
 
     /// Points along the side where `axis` has the given value.
@@ -106,25 +138,44 @@ impl SplineForm {
     /// Point and derivatives; parameters wrap or clamp.
     pub fn jet(&self, p: DVec2) -> Jet {
         let p = self.wrap(p);
-        self.grid.jet(p.x, p.y)
+        // mostly that of the point before; a patch holds its first sides, not its last ones
+        let holds = |q: &SurfacePatch| q.u.0 <= p.x && p.x < q.u.1 && q.v.0 <= p.y && p.y < q.v.1;
+        if !holds(&self.grid.patches[self.near.get()]) {
+            self.near.set(self.grid.index(p.x, p.y));
+        }
+        self.grid.patches[self.near.get()].jet(p.x, p.y)
     }
 
-    /// Parameters of the point of the surface nearest to `p`.
+    /// Distance of `p` from the nearest point of the surface, and the parameters of that.
     ///
     /// From `hint` if Newton's method ends within `accept` mm of `p`; else from the best patches.
-    pub fn invert(&self, p: DVec3, hint: Option<DVec2>, accept: f64) -> DVec2 {
+    pub fn invert(&self, p: DVec3, hint: Option<DVec2>, accept: f64) -> (f64, DVec2) {
         let near = hint.map(|h| self.polish(p, h));
-        if let Some((distance, uv)) = near
-            && distance <= accept
+        if let Some(near) = near
+            && near.0 <= accept
         {
-            return uv;
+            return near;
         }
         let far = self.search(p);
         match near {
             // equally good: stay where the curve was
-            Some(near) if near.0 <= 1.5 * far.0 => near.1,
-            _ => far.1,
+            Some(near) if near.0 <= 1.5 * far.0 => near,
+            _ => far,
         }
+    }
+
+    /// Bézier patches.
+    pub fn patch_count(&self) -> usize {
+        self.grid.patches.len()
+    }
+
+    /// Evaluations that inversion took since this was asked last.
+    pub fn take_work(&self) -> u64 {
+        self.work.take()
+    }
+
+    fn worked(&self, evaluations: u64) {
+        self.work.set(self.work.get() + evaluations);
     }
 
     /// Global search: patches in order of the distance to their boxes, polished from the best of a
@@ -133,6 +184,7 @@ impl SplineForm {
         let gap = |(lo, hi): &(DVec3, DVec3)| p.distance(p.clamp(*lo, *hi));
         let mut order: Vec<(f64, usize)> = self.boxes.iter().map(gap).zip(0..).collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
+        self.worked(order.len() as u64 / BOXES);
         let mut best = (f64::INFINITY, DVec2::new(self.domain[0].0, self.domain[1].0));
         for (gap, i) in order {
             // boxes touch at their borders: the point on a border need not be found twice
@@ -142,6 +194,7 @@ impl SplineForm {
             let patch = &self.grid.patches[i];
             let (n, k) = seed_counts(patch);
             let points = self.seeds[i].get_or_init(|| seeds(patch));
+            self.worked(points.len() as u64 / BOXES);
             let mut seed = (f64::INFINITY, DVec2::ZERO);
             for (index, point) in points.iter().enumerate() {
                 let d = point.distance(p);
@@ -171,6 +224,7 @@ impl SplineForm {
         let range = DVec2::new(self.domain[0].1 - self.domain[0].0, self.domain[1].1 - self.domain[1].0);
         let mut at = clamp(start);
         let mut jet = self.jet(at);
+        self.worked(1);
         let mut distance = jet.point.distance(p);
         let mut before = 0.0;
         for _ in 0..STEPS {
@@ -208,6 +262,7 @@ impl SplineForm {
             while factor > 1e-3 {
                 let next = clamp(at + (step * factor).clamp(-0.5 * range, 0.5 * range));
                 let next_jet = self.jet(next);
+                self.worked(1);
                 let next_distance = next_jet.point.distance(p);
                 if next_distance < distance {
                     (at, jet, distance, moved) = (next, next_jet, next_distance, true);

@@ -127,9 +127,9 @@ impl Strand {
         (self.pulled(part, s, raw), Some(raw))
     }
 
-    /// The point of the surface nearest to the edge at `s`, wherever the strand's ends were pulled.
-    pub fn traced_point(&self, support: &Support, s: f64) -> Option<DVec3> {
-        self.part.as_ref().map(|part| support.point(part.at(support, s)))
+    /// The pre-image of the edge at `s`, wherever the strand's ends were pulled.
+    pub fn raw(&self, support: &Support, s: f64) -> Option<DVec2> {
+        self.part.as_ref().map(|part| part.at(support, s))
     }
 
     /// Fractions at which the trace was sampled, from 0 to 1.

@@ -22,6 +22,7 @@ use crate::model::SurfaceKind;
 use crate::spline::Jet;
 use crate::spline::arc::sin_cos;
 use glam::{DVec2, DVec3};
+use std::cell::Cell;
 use std::f64::consts::FRAC_PI_2;
 
 /// The kinds of surface, with the numbers that their formulas need.
@@ -35,7 +36,7 @@ pub(super) enum Form {
     Torus { major: f64, minor: f64 },
     Revolution { profile: Curve },
     Extrusion { profile: Curve, direction: DVec3 },
-    Spline(SplineForm),
+    Spline(Box<SplineForm>),
 }
 
 /// A line of the domain that is a single point in space.
@@ -70,7 +71,16 @@ pub(super) struct Support {
     pub target: f64,
     /// The largest that `target` may grow to for an edge that does not lie on the surface: [`Support::target_of`].
     pub noise: f64,
+    /// Evaluations that may still be spent on inversion.
+    left: Cell<u64>,
 }
+
+/// Evaluations that inversion may take for any face; real faces take some thousands.
+const FREE_WORK: u64 = 1 << 18;
+
+/// Evaluations that inversion may take for each patch of the surface and each node of an edge; real ones take some
+/// hundreds. Edges that have nothing to do with their surface would take as many as the fits may halve.
+const WORK: u64 = 4096;
 
 impl Support {
     /// `eps`: distance in mm below which two points are the same; trim curves aim at a hundredth.
@@ -145,7 +155,7 @@ impl Support {
                 let (lo, hi) = surface.bounds();
                 let form = SplineForm::new(surface, eps.max(1e-7 * lo.distance(hi)));
                 let natural = form.domain.map(Some);
-                Self::with(Form::Spline(form), Frame::WORLD, natural, eps)
+                Self::with(Form::Spline(Box::new(form)), Frame::WORLD, natural, eps)
             }
         };
         if !this.frame.is_orthonormal() {
@@ -173,7 +183,36 @@ impl Support {
             eps,
             target: 1e-2 * eps,
             noise: 0.0,
+            left: Cell::new(u64::MAX),
         }
+    }
+
+    /// Bounds the work of inversion by what there is to do: `nodes` of all edges.
+    pub fn allow(&self, nodes: usize) {
+        let pieces = match &self.form {
+            Form::Spline(s) => s.patch_count(),
+            Form::Revolution { profile } | Form::Extrusion { profile, .. } => match profile {
+                Curve::Pieces(p) => p.spans.len(),
+                _ => 1,
+            },
+            _ => 1,
+        };
+        self.left.set(FREE_WORK + WORK * (pieces + nodes) as u64);
+    }
+
+    /// Inversion is a search, not a formula.
+    pub fn is_iterative(&self) -> bool {
+        matches!(self.form, Form::Revolution { .. } | Form::Extrusion { .. } | Form::Spline(_))
+    }
+
+    /// Takes evaluations from what is left.
+    pub fn spend(&self, evaluations: u64) {
+        self.left.set(self.left.get().saturating_sub(evaluations));
+    }
+
+    /// Nothing is left: inversion takes the first answer from now on, and fits are not refined.
+    pub fn exhausted(&self) -> bool {
+        self.left.get() == 0
     }
 
     fn find_periods(&self) -> [Option<f64>; 2] {

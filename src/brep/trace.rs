@@ -1,6 +1,7 @@
 //! The pre-image of an edge on its support: points of the curve inverted in order, unwrapped, and
 //! able to answer for any parameter in between.
 
+use super::border::Border;
 use super::edge::EdgeCurve;
 use super::support::Support;
 use glam::DVec2;
@@ -53,7 +54,11 @@ impl Trace {
         this.accept = 1e-2 * support.eps;
         let mut hint = hint;
         for s in nodes {
-            let p = this.look(support, s, hint);
+            let ahead = this.ahead(s).filter(|_| support.is_iterative());
+            let mut p = this.look(support, s, ahead.or(hint));
+            if let (Some(_), Some(near)) = (ahead, hint) {
+                p = support.unwrap(p, near);
+            }
             this.step(support, s, p, 24);
             hint = Some(p);
         }
@@ -66,15 +71,40 @@ impl Trace {
         Self { edge: edge.clone(), samples, at_pole: [false; 2], gap, accept: gap }
     }
 
+    /// The trace of an edge that is a border of its surface.
+    pub fn along(support: &Support, edge: &Rc<EdgeCurve>, border: &Border) -> Self {
+        // few: between them the pre-image is linear
+        const STEPS: u32 = 8;
+        let steps = (0..=STEPS).map(|i| f64::from(i) / f64::from(STEPS));
+        let samples = steps.map(|s| (s, border.at(edge.parameter(s)))).collect();
+        // the distance to the border bounds that to the surface: twice it is no reason to look elsewhere
+        let accept = (1e-2 * support.eps).max(2.0 * border.gap);
+        Self { accept, ..Self::of_samples(edge, samples, border.gap) }
+    }
+
     /// Inverts the point at `s`, which becomes a sample; learns how far from the support the edge may be.
     fn look(&mut self, support: &Support, s: f64, hint: Option<DVec2>) -> DVec2 {
         let point = self.edge.point(s);
-        let p = support.invert(point, hint, self.accept);
         // a residual above `accept` means that the search was made, and is the truth
-        let distance = support.point(p).distance(point);
+        let (p, distance) = support.nearest(point, hint, self.accept);
         self.accept = self.accept.max(1.5 * distance);
         self.gap = self.gap.max(distance);
         p
+    }
+
+    /// Where the parabola through the last three samples is at `s`: from there Newton's method has less to do than
+    /// from the last one. The line through two where the parabola goes far from it; `None` before there are two, and
+    /// where the step is much longer than the last one, as behind a pole.
+    fn ahead(&self, s: f64) -> Option<DVec2> {
+        let [.., (s0, p0), (s1, p1)] = self.samples[..] else { return None };
+        if s - s1 > 4.0 * (s1 - s0) {
+            return None;
+        }
+        let slope = (p1 - p0) / (s1 - s0);
+        let by = slope * (s - s1);
+        let Some(&(s2, p2)) = self.samples.len().checked_sub(3).map(|i| &self.samples[i]) else { return Some(p1 + by) };
+        let bend = (slope - (p0 - p2) / (s0 - s2)) / (s1 - s2) * ((s - s1) * (s - s0));
+        Some(p1 + if bend.abs().cmple(by.abs()).all() { by + bend } else { by })
     }
 
     /// Appends a sample; halves the step while the parameters turn by more than an eighth of a
@@ -85,7 +115,7 @@ impl Trace {
             return;
         };
         let far = (0..2).any(|i| support.periods[i].is_some_and(|period| (p[i] - q[i]).abs() > 0.125 * period));
-        let p = if far && depth > 0 {
+        let p = if far && depth > 0 && !support.exhausted() {
             let middle = 0.5 * (before + s);
             let m = self.look(support, middle, Some(q));
             self.step(support, middle, m, depth - 1);

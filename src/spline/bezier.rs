@@ -55,7 +55,9 @@ impl<P: Control> Bezier<P> {
 
     /// The piece over `[a, b]`, re-parametrised to `[0, 1]`.
     pub fn segment(&self, a: f64, b: f64) -> Self {
-        if a < 1.0 {
+        if a == 0.0 && b == 1.0 {
+            self.clone()
+        } else if a < 1.0 {
             let (_, right) = self.split(a);
             let (left, _) = right.split((b - a) / (1.0 - a));
             left

@@ -250,47 +250,109 @@ fn de_boor<P: Control>(degree: usize, knots: &[f64], k: usize, t: f64, points: &
     d[degree]
 }
 
-/// The Bézier pieces of one knot vector applied to one row of control points.
+/// The Bézier pieces of one knot vector applied to one row of control points: see [`Cuts`].
+fn to_beziers<P: Control>(degree: usize, knots: &[f64], points: &[P]) -> Vec<Span<Vec<P>>> {
+    let cuts = Cuts::new(degree, knots, points.len());
+    let mut flat = Vec::new();
+    cuts.apply(points, &mut flat);
+    let pieces = flat.chunks_exact(degree + 1).map(<[P]>::to_vec);
+    cuts.ranges().zip(pieces).map(|((start, end), piece)| Span { start, end, piece }).collect()
+}
+
+/// The spans of one knot vector, made ready to cut rows of control points into Bézier pieces.
 ///
 /// Each piece is found by *blossoming*: control point `i` of the piece over `[a, b]` is the polar
 /// value at `degree - i` copies of `a` and `i` copies of `b`. Neighbouring pieces share their end
-/// control point bit for bit: the later piece takes the earlier one's.
-pub(super) fn to_beziers<P: Control>(degree: usize, knots: &[f64], points: &[P]) -> Vec<Span<Vec<P>>> {
-    let mut spans: Vec<Span<Vec<P>>> = Vec::new();
-    for k in degree..points.len() {
-        let (a, b) = (knots[k], knots[k + 1]);
-        if a >= b {
-            continue;
-        }
-        let local = &points[k - degree..=k];
-        let mut piece: Vec<P> = (0..=degree).map(|i| blossom(degree, knots, k, local, a, b, i)).collect();
-        if let Some(before) = spans.last() {
-            piece[0] = *before.piece.last().expect("a piece has points");
-        }
-        spans.push(Span { start: a, end: b, piece });
-    }
-    spans
+/// control point bit for bit: the later piece takes the earlier one's. What neighbours are mixed in depends on
+/// the knots alone, and what the copies of `a` give serves all points of a piece.
+#[derive(Clone, Debug)]
+pub(super) struct Cuts {
+    degree: usize,
+    spans: Vec<Cut>,
 }
 
-/// Polar value at `degree - late` copies of `a` and `late` copies of `b`, on span `k`.
-fn blossom<P: Control>(degree: usize, knots: &[f64], k: usize, points: &[P], a: f64, b: f64, late: usize) -> P {
-    let mut d = [P::ZERO; MAX_DEGREE + 1];
-    let d = &mut d[..=degree];
-    d.copy_from_slice(points);
-    for r in 1..=degree {
-        let t = if r <= degree - late { a } else { b };
-        for j in (r..=degree).rev() {
-            let lo = knots[j + k - degree];
-            let hi = knots[j + 1 + k - r];
-            let f = (t - lo) / (hi - lo);
-            d[j] = if f == 0.0 {
-                d[j - 1]
-            } else if f == 1.0 {
-                d[j]
-            } else {
-                d[j - 1] * (1.0 - f) + d[j] * f
+/// A span that is not empty.
+#[derive(Clone, Debug)]
+struct Cut {
+    /// Knot at its start.
+    knot: usize,
+    range: (f64, f64),
+    /// The part of the later of two neighbours at the start and at the end of the span: round by round, the last
+    /// pair first.
+    parts: Vec<[f64; 2]>,
+}
+
+impl Cuts {
+    /// `points`: how many control points a row has.
+    pub fn new(degree: usize, knots: &[f64], points: usize) -> Self {
+        let cut = |knot: usize| {
+            let range @ (a, b) = (knots[knot], knots[knot + 1]);
+            let part = |round: usize, j: usize| {
+                let (lo, hi) = (knots[j + knot - degree], knots[j + 1 + knot - round]);
+                [(a - lo) / (hi - lo), (b - lo) / (hi - lo)]
             };
+            let rounds = (1..=degree).flat_map(|r| (r..=degree).rev().map(move |j| part(r, j)));
+            Cut { knot, range, parts: rounds.collect() }
+        };
+        Self { degree, spans: (degree..points).filter(|&k| knots[k] < knots[k + 1]).map(cut).collect() }
+    }
+
+    /// The parameter ranges of the pieces.
+    pub fn ranges(&self) -> impl Iterator<Item = (f64, f64)> {
+        self.spans.iter().map(|s| s.range)
+    }
+
+    /// Number of pieces.
+    pub fn count(&self) -> usize {
+        self.spans.len()
+    }
+
+    /// Appends `degree + 1` points a piece.
+    pub fn apply<P: Control>(&self, points: &[P], out: &mut Vec<P>) {
+        let degree = self.degree;
+        let first = out.len();
+        for cut in &self.spans {
+            let from = out.len();
+            out.resize(from + degree + 1, P::ZERO);
+            let piece = &mut out[from..];
+            // rounds with the start so far
+            let mut early = [P::ZERO; MAX_DEGREE + 1];
+            let early = &mut early[..=degree];
+            early.copy_from_slice(&points[cut.knot - degree..=cut.knot]);
+            let mut parts = &cut.parts[..];
+            for round in 1..=degree + 1 {
+                // this point and the later ones of the piece have no more than these
+                let mut late = [P::ZERO; MAX_DEGREE + 1];
+                let late = &mut late[..=degree];
+                late.copy_from_slice(early);
+                let mut rest = parts;
+                for r in round..=degree {
+                    rest = mix(late, r, rest, 1);
+                }
+                piece[degree + 1 - round] = late[degree];
+                if round <= degree {
+                    parts = mix(early, round, parts, 0);
+                }
+            }
+            if from > first {
+                out[from] = out[from - 1];
+            }
         }
     }
-    d[degree]
+}
+
+/// One round of a blossom; returns the parts of the rounds after it.
+fn mix<'a, P: Control>(d: &mut [P], round: usize, parts: &'a [[f64; 2]], end: usize) -> &'a [[f64; 2]] {
+    let (own, rest) = parts.split_at(d.len() - round);
+    for (j, part) in (round..d.len()).rev().zip(own) {
+        let f = part[end];
+        d[j] = if f == 0.0 {
+            d[j - 1]
+        } else if f == 1.0 {
+            d[j]
+        } else {
+            d[j - 1] * (1.0 - f) + d[j] * f
+        };
+    }
+    rest
 }

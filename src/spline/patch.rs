@@ -41,7 +41,9 @@ impl Patch {
             1 => self.jet_of::<2>(u, v),
             2 => self.jet_of::<3>(u, v),
             3 => self.jet_of::<4>(u, v),
+            4 => self.jet_of::<5>(u, v),
             5 => self.jet_of::<6>(u, v),
+            6 => self.jet_of::<7>(u, v),
             _ => self.jet_any(u, v),
         }
     }
@@ -52,7 +54,9 @@ impl Patch {
             1 => self.jet_at::<N, 2>(u, v),
             2 => self.jet_at::<N, 3>(u, v),
             3 => self.jet_at::<N, 4>(u, v),
+            4 => self.jet_at::<N, 5>(u, v),
             5 => self.jet_at::<N, 6>(u, v),
+            6 => self.jet_at::<N, 7>(u, v),
             _ => self.jet_any(u, v),
         }
     }

@@ -1,6 +1,6 @@
 //! Rational tensor-product B-spline surfaces and their cut into Bézier patches.
 
-use super::bspline::{SplineError, check_knots, check_points, to_beziers};
+use super::bspline::{Cuts, SplineError, check_knots, check_points};
 use super::spare::{spare, without};
 use super::{Jet, Patch};
 use glam::{DVec3, DVec4};
@@ -141,29 +141,30 @@ impl Surface {
     /// bit for bit.
     pub fn patches(&self) -> PatchGrid {
         let (nu, nv) = self.counts();
+        let cuts = [Cuts::new(self.degree_u, &self.knots_u, nu), Cuts::new(self.degree_v, &self.knots_v, nv)];
+        let [count_u, count_v] = [cuts[0].count(), cuts[1].count()];
+        let (ku, kv) = (self.degree_u + 1, self.degree_v + 1);
         // rows first: each row of control points becomes a row of Bézier pieces along u
-        let rows: Vec<_> =
-            (0..nv).map(|j| to_beziers(self.degree_u, &self.knots_u, &self.points[j * nu..(j + 1) * nu])).collect();
-        let count_u = rows[0].len();
-        let ku = self.degree_u + 1;
-        let mut columns = Vec::new(); // columns[i * ku + c]: pieces along v of column c of strip i
-        for i in 0..count_u {
-            for c in 0..ku {
-                let column: Vec<DVec4> = rows.iter().map(|r| r[i].piece[c]).collect();
-                columns.push(to_beziers(self.degree_v, &self.knots_v, &column));
-            }
+        let width = count_u * ku;
+        let mut rows = Vec::with_capacity(nv * width);
+        self.points.chunks_exact(nu).for_each(|row| cuts[0].apply(row, &mut rows));
+        // columns[c * height..][..height]: pieces along v of column c of those
+        let height = count_v * kv;
+        let mut columns = Vec::with_capacity(width * height);
+        let mut column = Vec::with_capacity(nv);
+        for c in 0..width {
+            column.clear();
+            column.extend(rows[c..].iter().step_by(width));
+            cuts[1].apply(&column, &mut columns);
         }
-        let count_v = columns[0].len();
         let mut patches = Vec::with_capacity(count_u * count_v);
-        for j in 0..count_v {
-            for i in 0..count_u {
-                let strip = &columns[i * ku..(i + 1) * ku];
-                let points = (0..=self.degree_v).flat_map(|r| strip.iter().map(move |s| s[j].piece[r])).collect();
-                patches.push(SurfacePatch {
-                    u: (rows[0][i].start, rows[0][i].end),
-                    v: (strip[0][j].start, strip[0][j].end),
-                    patch: Patch { degree_u: self.degree_u, degree_v: self.degree_v, points },
-                });
+        for (j, v) in cuts[1].ranges().enumerate() {
+            for (i, u) in cuts[0].ranges().enumerate() {
+                let strip = &columns[i * ku * height..(i + 1) * ku * height];
+                let point = |r: usize, c: usize| strip[c * height + j * kv + r];
+                let points = (0..kv).flat_map(|r| (0..ku).map(move |c| point(r, c))).collect();
+                let patch = Patch { degree_u: self.degree_u, degree_v: self.degree_v, points };
+                patches.push(SurfacePatch { u, v, patch });
             }
         }
         PatchGrid::new(count_u, patches)
@@ -191,6 +192,21 @@ impl Surface {
         use super::Control;
         let first = self.points[0].point();
         self.points.iter().map(|p| p.point()).fold((first, first), |(lo, hi), p| (lo.min(p), hi.max(p)))
+    }
+}
+
+impl SurfacePatch {
+    /// Parameters of the patch, clamped to it.
+    fn local(&self, u: f64, v: f64) -> (f64, f64) {
+        let share = |x: f64, (a, b): (f64, f64)| ((x - a) / (b - a)).clamp(0.0, 1.0);
+        (share(u, self.u), share(v, self.v))
+    }
+
+    /// Point and first derivatives with respect to the surface's own `(u, v)`, clamped to the patch.
+    pub(crate) fn jet(&self, u: f64, v: f64) -> Jet {
+        let (s, t) = self.local(u, v);
+        let jet = self.patch.jet(s, t);
+        Jet { point: jet.point, du: jet.du / (self.u.1 - self.u.0), dv: jet.dv / (self.v.1 - self.v.0) }
     }
 }
 
@@ -240,20 +256,21 @@ impl PatchGrid {
 
     /// The patch that holds `(u, v)`, clamped to the domain, and the local parameters.
     pub fn locate(&self, u: f64, v: f64) -> (&SurfacePatch, f64, f64) {
+        let p = &self.patches[self.index(u, v)];
+        let (s, t) = p.local(u, v);
+        (p, s, t)
+    }
+
+    /// The number of the patch that holds `(u, v)`, clamped to the domain.
+    pub(crate) fn index(&self, u: f64, v: f64) -> usize {
         let last = |starts: &[f64], x: f64| starts.partition_point(|start| *start <= x).max(1) - 1;
         let (along_u, along_v) = self.starts.split_at(self.count_u);
-        let (i, j) = (last(along_u, u), last(along_v, v));
-        let p = &self.patches[j * self.count_u + i];
-        let s = ((u - p.u.0) / (p.u.1 - p.u.0)).clamp(0.0, 1.0);
-        let t = ((v - p.v.0) / (p.v.1 - p.v.0)).clamp(0.0, 1.0);
-        (p, s, t)
+        last(along_v, v) * self.count_u + last(along_u, u)
     }
 
     /// Point and first derivatives with respect to the surface's own `(u, v)`.
     pub fn jet(&self, u: f64, v: f64) -> Jet {
-        let (p, s, t) = self.locate(u, v);
-        let jet = p.patch.jet(s, t);
-        Jet { point: jet.point, du: jet.du / (p.u.1 - p.u.0), dv: jet.dv / (p.v.1 - p.v.0) }
+        self.patches[self.index(u, v)].jet(u, v)
     }
 
     /// Point at `(u, v)`, clamped to the domain.

@@ -1,5 +1,6 @@
 //! Faces small enough to know by heart: areas and distances against closed forms.
 
+mod borders;
 mod carriers;
 mod curved;
 mod damage;

@@ -41,7 +41,9 @@ pub(super) struct Entry {
     pub label: String,
     /// Line of its first card.
     pub line: u32,
-    /// Its parameters in the arena.
+    /// Which arena holds its parameters.
+    pub arena: u32,
+    /// Its parameters in that.
     pub values: (u32, u32),
 }
 
@@ -110,6 +112,7 @@ fn entry(id: u32, (first, second): (&[u8], &[u8]), line: u32) -> Result<Entry, S
         colour: integer(second, 2, "colour")?,
         label: if label.is_empty() || number.is_empty() || number == "0" { label } else { format!("{label}:{number}") },
         line,
+        arena: 0,
         values: (0, 0),
     })
 }

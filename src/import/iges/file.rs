@@ -3,7 +3,7 @@
 //! ```text
 //!   lines ──▶ cards by section ──▶ global section ─▶ delimiters, units
 //!                              ──▶ directory      ─▶ entries, ordered by number
-//!                              ──▶ parameters     ─▶ one text, one arena; entry.values is a range of it
+//!                              ──▶ parameters     ─▶ one text, few arenas; entry.values is a range of entry.arena
 //! ```
 //!
 //! Entries that claim one another's parameter cards could make the arena larger than any multiple of
@@ -14,6 +14,7 @@ use super::directory::{self, Entry};
 use super::global::Global;
 use super::value::{Value, record};
 use crate::import::{ImportError, Place, Warnings};
+use rayon::prelude::*;
 
 /// The file.
 #[derive(Debug)]
@@ -23,8 +24,31 @@ pub(super) struct File {
     /// In increasing order of their numbers.
     pub entries: Vec<Entry>,
     text: Vec<u8>,
-    values: Vec<Value>,
+    /// The values of the entries: each arena those that one thread has read.
+    arenas: Vec<Vec<Value>>,
+    value_count: usize,
 }
+
+/// Where the parameters of an entry stand.
+#[derive(Debug)]
+struct Span {
+    /// Of the entry.
+    index: usize,
+    /// Of its first parameter card.
+    line: u32,
+    /// In the text.
+    range: (usize, usize),
+    /// In its arena.
+    values: (usize, usize),
+    /// Where the record ended.
+    stop: Option<usize>,
+}
+
+/// Records that one thread reads at a time.
+const RECORDS: usize = 64;
+
+/// Bytes of an average parameter, at least: what an arena makes room for.
+const BYTES: usize = 6;
 
 /// How often the parameter section may be read on average.
 const SHARING: usize = 4;
@@ -38,6 +62,7 @@ impl File {
     pub fn parse(bytes: &[u8], name: &str, warnings: &mut Warnings) -> Result<Self, ImportError> {
         let (mut global, mut entries, mut parameters) = (Vec::new(), Vec::new(), Vec::new());
         let (mut terminate, mut bad, mut seen, mut global_line, mut last_line) = (None, 0, 0, 1, 1);
+        parameters.reserve(bytes.len() / 80);
         for (line, number) in lines(bytes).zip(1u32..) {
             if line.iter().all(u8::is_ascii_whitespace) {
                 continue;
@@ -73,7 +98,7 @@ impl File {
         check_counts(terminate, (entries.len(), parameters.len()), last_line, warnings);
         let global = Global::read(&global, global_line as usize, warnings);
         let entries = directory::read(&entries, warnings);
-        let mut file = Self { global, entries, text: Vec::new(), values: Vec::new() };
+        let mut file = Self { global, entries, text: Vec::new(), arenas: Vec::new(), value_count: 0 };
         file.read_parameters(&parameters, warnings);
         Ok(file)
     }
@@ -93,14 +118,35 @@ impl File {
             warnings.push("parameter cards renumbered", || Place::Line(line), || "their numbers do not rise".into());
             starts.iter_mut().zip(1..).for_each(|(s, n)| s.0 = n);
         }
-        let mut left = SHARING * self.text.len();
-        for index in 0..self.entries.len() {
-            let entry = &self.entries[index];
-            let (id, line) = (entry.id, entry.line as usize);
-            let place = |line: usize| move || Place::Entity { id, line };
+        let mut spans = self.spans(cards, &starts, warnings);
+        // in order and side by side: what a record holds depends on nothing but its cards
+        let (text, delimiters) = (&self.text, self.global.delimiters);
+        let read = |spans: &mut [Span]| {
+            let bytes: usize = spans.iter().map(|s| s.range.1 - s.range.0).sum();
+            let mut values = Vec::with_capacity(bytes / BYTES);
+            for span in spans {
+                span.values.0 = values.len();
+                span.stop = record(text, span.range, delimiters, &mut values);
+                span.values.1 = values.len();
+            }
+            values
+        };
+        let chunks: Vec<Vec<Value>> = spans.par_chunks_mut(RECORDS).map(read).collect();
+        for (arena, (spans, values)) in spans.chunks(RECORDS).zip(&chunks).enumerate() {
+            for span in spans {
+                self.take(span, (arena, &values[span.values.0..span.values.1]), warnings);
+            }
+        }
+        self.arenas = chunks;
+    }
+
+    /// Where each entry's parameters stand: no more in all than [`SHARING`] allows.
+    fn spans(&self, cards: &[(Card<'_>, u32)], starts: &[(u32, usize)], warnings: &mut Warnings) -> Vec<Span> {
+        let mut spans = Vec::with_capacity(self.entries.len());
+        for (index, entry) in self.entries.iter().enumerate() {
             let Ok(card) = starts.binary_search_by_key(&entry.first, |s| s.0) else {
-                let first = entry.first;
-                warnings.push("entity without parameters", place(line), || format!("card P{first} does not exist"));
+                let (first, place) = (entry.first, || Place::Entity { id: entry.id, line: entry.line as usize });
+                warnings.push("entity without parameters", place, || format!("card P{first} does not exist"));
                 continue;
             };
             let start = starts[card].1;
@@ -108,34 +154,53 @@ impl File {
                 0 => self.text.len(),
                 n => starts.get(card.saturating_add(n)).map_or(self.text.len(), |s| s.1),
             };
-            let line = cards[card].1 as usize;
+            spans.push(Span { index, line: cards[card].1, range: (start, end), values: (0, 0), stop: None });
+        }
+        let claimed = spans.iter().fold(0usize, |sum, s| sum.saturating_add(s.range.1 - s.range.0));
+        if claimed <= SHARING * self.text.len() {
+            return spans;
+        }
+        // some claim more than is theirs: what counts is where their records end
+        let (mut left, mut values) = (SHARING * self.text.len(), Vec::new());
+        spans.retain_mut(|span| {
             if left == 0 {
-                warnings.push("entity without parameters", place(line), || "cards are shared too often".into());
-                continue;
+                let place = || Place::Entity { id: self.entries[span.index].id, line: span.line as usize };
+                warnings.push("entity without parameters", place, || "cards are shared too often".into());
+                return false;
             }
-            let end = end.min(start.saturating_add(left));
-            let from = self.values.len();
-            let stop = record(&self.text, (start, end), self.global.delimiters, &mut self.values);
-            if stop.is_none() {
-                warnings.push("record without end", place(line), || "no record delimiter on its cards".into());
+            let (start, end) = span.range;
+            span.range.1 = end.min(start.saturating_add(left));
+            values.clear();
+            let stop = record(&self.text, span.range, self.global.delimiters, &mut values);
+            left -= stop.unwrap_or(span.range.1) - start;
+            true
+        });
+        spans
+    }
+
+    /// Gives an entry the values of its record, which an arena holds.
+    fn take(&mut self, span: &Span, (arena, own): (usize, &[Value]), warnings: &mut Warnings) {
+        let entry = &mut self.entries[span.index];
+        let (id, line) = (entry.id, span.line as usize);
+        let place = || Place::Entity { id, line };
+        if span.stop.is_none() {
+            warnings.push("record without end", place, || "no record delimiter on its cards".into());
+        }
+        match own.first() {
+            Some(Value::Number(kind)) if *kind == f64::from(entry.kind) => {
+                self.value_count += own.len();
+                entry.arena = arena as u32;
+                entry.values = (span.values.0 as u32, span.values.1 as u32);
+                entry.line = span.line;
             }
-            left -= stop.unwrap_or(end) - start;
-            let own = &self.values[from..];
-            match own.first() {
-                Some(Value::Number(kind)) if *kind == f64::from(entry.kind) => {
-                    self.entries[index].values = (from as u32, self.values.len() as u32);
-                    self.entries[index].line = line as u32;
-                }
-                other => {
-                    let (other, kind) = (other.copied(), entry.kind);
-                    let found = match other {
-                        Some(Value::Number(x)) => format!("type {x}"),
-                        _ => "no type".into(),
-                    };
-                    let message = move || format!("its parameters are of {found}, not of type {kind}");
-                    warnings.push("entity without parameters", place(line), message);
-                    self.values.truncate(from);
-                }
+            other => {
+                let (other, kind) = (other.copied(), entry.kind);
+                let found = match other {
+                    Some(Value::Number(x)) => format!("type {x}"),
+                    _ => "no type".into(),
+                };
+                let message = move || format!("its parameters are of {found}, not of type {kind}");
+                warnings.push("entity without parameters", place, message);
             }
         }
     }
@@ -147,7 +212,7 @@ impl File {
 
     /// The parameters of an entry, its type first.
     pub fn values(&self, entry: &Entry) -> &[Value] {
-        &self.values[entry.values.0 as usize..entry.values.1 as usize]
+        self.arenas.get(entry.arena as usize).map_or(&[], |a| &a[entry.values.0 as usize..entry.values.1 as usize])
     }
 
     /// The bytes of a string.
@@ -160,7 +225,7 @@ impl File {
 
     /// All parameter values.
     pub fn value_count(&self) -> usize {
-        self.values.len()
+        self.value_count
     }
 }
 

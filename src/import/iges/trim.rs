@@ -149,16 +149,21 @@ impl<'a> Geometry<'a> {
 }
 
 impl Trim {
-    /// Largest distance in mm between ends of pieces of the two curves, `|S(B) - C|`; 0 where the pieces do
-    /// not correspond.
+    /// Largest distance in mm between ends of pieces of the two curves, `|S(B) - C|`, and of C from the surface in
+    /// between; 0 where the pieces do not correspond.
     fn apart(&self, map: &SurfaceMap, to_native: &DAffine2) -> f64 {
         if self.model.len() != self.parameter.len() {
             return 0.0;
         }
         let lifted = |p: DVec3| map.jet(to_native.transform_point2(p.truncate())).point;
-        let pairs = self.model.iter().zip(&self.parameter);
-        let ends = pairs.map(|(c, b)| (c.ends(), b.ends()));
-        ends.map(|(c, b)| lifted(b.0).distance(c.0).max(lifted(b.1).distance(c.1))).fold(0.0, f64::max)
+        let apart = |(c, b): (&Segment, &Segment)| {
+            let (p, q) = (c.ends(), b.ends());
+            let ends = lifted(q.0).distance(p.0).max(lifted(q.1).distance(p.1));
+            let at = |s: &Segment, f: f64| s.point(s.start + (s.end - s.start) * f);
+            let off = |f: f64| map.distance(at(c, f), to_native.transform_point2(at(b, f).truncate()));
+            [0.25, 0.5, 0.75].map(off).into_iter().fold(ends, f64::max)
+        };
+        self.model.iter().zip(&self.parameter).map(apart).fold(0.0, f64::max)
     }
 }
 
@@ -178,23 +183,27 @@ impl Sheet {
         let size = points.fold(Bounds::EMPTY, Bounds::with).diagonal();
         let prefers = self.loops.iter().any(|l| l.prefers_parameter);
         let limit = if prefers { tolerance.max(1e-7 * size) } else { FAR * size };
-        let apart = self.loops.iter().map(|l| l.apart(&map, &to_native)).fold(0.0, f64::max);
-        if prefers && apart > limit {
+        let id = self.id;
+        let replaced = |mut face: BuiltFace, by: f64| {
+            face.notes.push(format!("face #{id}: curves in space lie {by:.3e} mm off, those in (u, v) are used"));
+            face
+        };
+        if prefers {
             // known without a trial
-            return self.attempt(&map, tolerance, true).or_else(|_| self.attempt(&map, tolerance, false));
+            let by = self.loops.iter().map(|l| l.apart(&map, &to_native)).fold(0.0, f64::max);
+            if by > limit {
+                let first = self.attempt(&map, tolerance, true).map(|face| replaced(face, by));
+                return first.or_else(|_| self.attempt(&map, tolerance, false));
+            }
         }
         let first = self.attempt(&map, tolerance, false);
-        let deviation = first.as_ref().map_or(f64::INFINITY, |f| f.deviation);
-        if deviation <= limit {
+        // a file that prefers B means the surface's points, from which C may be as far as from a fitted curve
+        let off = |f: &BuiltFace| if prefers { f.deviation.max(f.gap) } else { f.deviation };
+        if first.as_ref().is_ok_and(|f| off(f) <= limit) {
             return first;
         }
-        let id = self.id;
         match (first, self.attempt(&map, tolerance, true)) {
-            (Ok(first), Ok(mut second)) if second.deviation < first.deviation => {
-                let by = first.deviation;
-                second.notes.push(format!("face #{id}: curves in space lie {by:.3e} mm off, those in (u, v) are used"));
-                Ok(second)
-            }
+            (Ok(first), Ok(second)) if off(&second) < off(&first) => Ok(replaced(second, off(&first))),
             (Err(error), Ok(mut second)) => {
                 second.notes.push(format!("face #{id}: curves in (u, v) are used, for with those in space: {error}"));
                 Ok(second)

@@ -166,6 +166,25 @@ fn a_hole_in_space_in_parameters_or_in_both() {
 }
 
 #[test]
+fn a_preferred_curve_counts_where_the_other_leaves_the_surface() {
+    // a micrometre above the plane: projected on it, it would be the same circle
+    let circle = "100,7.001,5.,5.,8.,5.,8.,5.;";
+    let ellipse = "104,4.,0.,1.,-20.,-10.,41.,0.,4.,5.,4.,5.;";
+    for (both, parameters) in [("142,0,1,5,3,1;", true), ("142,0,1,5,3,2;", false)] {
+        let i = import(&[
+            e(PLANE),
+            Entity { status: "00010000", ..e(circle) },
+            Entity { form: 1, status: "00010000", ..e(ellipse) },
+            e(both),
+            e("144,1,0,1,0,7;"),
+        ]);
+        let record = &i.report.face_records[0];
+        assert_eq!(record.gap < 1e-9, parameters, "{both}: {record:?}");
+        assert_eq!(record.notes.iter().any(|n| n.contains("those in (u, v) are used")), parameters, "{record:?}");
+    }
+}
+
+#[test]
 fn a_bounded_surface() {
     // 141 in space, a triangle whose last side is stated backwards
     let sides = ["110,1.,1.,7.,9.,1.,7.;", "110,9.,1.,7.,9.,9.,7.;", "110,1.,1.,7.,9.,9.,7.;"];
