@@ -31,7 +31,7 @@ pub fn abutting() -> Model {
 fn block(id: u32, low: DVec3, high: DVec3) -> Vec<Face> {
     let (centre, half) = ((low + high) * 0.5, (high - low) * 0.5);
     let side = |k: usize| {
-        let (axis, sign) = (k / 2, if k % 2 == 0 { 1.0 } else { -1.0 });
+        let (axis, sign) = (k / 2, if k.is_multiple_of(2) { 1.0 } else { -1.0 });
         let (x, y) = (DVec3::AXES[(axis + 1) % 3] * half, DVec3::AXES[(axis + 2) % 3] * half);
         let surface = plane(centre + DVec3::AXES[axis] * half * sign, x, y, 1.0);
         let whole: TrimLoop = rectangle(DVec2::NEG_ONE, DVec2::ONE);
