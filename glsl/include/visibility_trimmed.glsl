@@ -28,9 +28,9 @@ layout(scalar, binding = 10) buffer Rings { uint rings[]; }; // depth's bits for
 
 #define TRIM_BINDING 11
 #include "trim.glsl"
-#include "exact_point.glsl"
 #ifdef WITHIN_VOLUME
 #define VOLUME_BINDING (TRIM_BINDING + TRIM_BUFFERS)
+#include "exact_point.glsl"
 #include "volume.glsl"
 #endif
 #include "facing.glsl"
@@ -43,7 +43,7 @@ layout(location = 0) out uvec2 visible;
 layout(depth_less) out float gl_FragDepth;
 
 // The faces of a solid that look at the viewer grow by this share of the ring: most gaps close at once. They grow
-// only where their exact surface is as near: a triangle that is seen edge-on goes on where the surface does not.
+// only where their surface follows the triangle as far: one that is seen edge-on goes on where the surface does not.
 const float GROWTH = 0.25;
 // Where two solids touch, the back of one must win over the front of the other. Each is drawn up to
 // deviation_px off, so the front stands back by twice that in space, and at least by the rounding of
@@ -67,16 +67,18 @@ void main() {
     if (area == TRIM_OUT) discard;
     bool inside = area == TRIM_IN || trim_inside(fi, face, at);
     float border_depth = -1.0; // nearest to the viewer among the ring's points inside the face
-    for (uint k = 0u; !inside && k < RING_POINTS; ++k) {
+    bool grows = true;
+    if (solid && !away) {
+        vec2 far = around / patch_.domain.zw; // (u, v) of the patch that the ring spans
+        float bend = 0.5 * dot(patch_.bend, vec3(far.x * far.x, 2.0 * far.x * far.y, far.y * far.y));
+        float px = frame.focal * (frame.perspective != 0u ? gl_FragCoord.w : 1.0) * instances[fi.instance].scale;
+        grows = bend * px <= (RING_SLACK - 1.0) * reach + 2.0 * frame.deviation_px;
+    }
+    for (uint k = 0u; !inside && grows && k < RING_POINTS; ++k) {
         vec2 step_ = reach * RING[k];
-        vec2 beside = at + step_.x * dx + step_.y * dy;
-        if (!trim_inside(fi, face, beside)) continue;
-        if (solid && !away) {
-            vec4 q = exact_point(patch_, views[fi.instance], (beside - patch_.domain.xy) / patch_.domain.zw);
-            float far = RING_SLACK * reach + 2.0 * frame.deviation_px;
-            if (!(distance(q.xy, gl_FragCoord.xy * q.w) <= far * q.w)) continue;
+        if (trim_inside(fi, face, at + step_.x * dx + step_.y * dy)) {
+            border_depth = max(border_depth, gl_FragCoord.z + dot(step_, slope));
         }
-        border_depth = max(border_depth, gl_FragCoord.z + dot(step_, slope));
     }
     if (!inside && border_depth < 0.0) discard;
 #ifdef WITHIN_VOLUME
