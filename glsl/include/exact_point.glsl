@@ -1,4 +1,5 @@
-// The exact point of a fragment. Its pixel is as near to the fragment's as the tessellation is fine.
+// The exact point of a fragment, for the volume that trims the scene. Its pixel is as near to the fragment's as
+// the tessellation is fine. The includer defines VOLUME_BINDING and declares `frame`.
 #ifndef EXACT_POINT_GLSL
 #define EXACT_POINT_GLSL
 
@@ -8,6 +9,7 @@ layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(binding = 6) uniform samplerBuffer points;
 
 #include "patch.glsl"
+#include "volume.glsl"
 
 vec4 exact_point(Patch patch_, View view, vec2 uv) {
     return to_pixel(view, vec4(patch_jet(patch_.first, patch_.shape, uv).point, 1.0));

@@ -15,7 +15,6 @@ layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
 #define VOLUME_BINDING 10
 #include "exact_point.glsl"
-#include "volume.glsl"
 #endif
 
 layout(location = 0) in vec2 uv;

@@ -31,7 +31,6 @@ layout(scalar, binding = 10) buffer Rings { uint rings[]; }; // depth's bits for
 #ifdef WITHIN_VOLUME
 #define VOLUME_BINDING (TRIM_BINDING + TRIM_BUFFERS)
 #include "exact_point.glsl"
-#include "volume.glsl"
 #endif
 #include "facing.glsl"
 #include "ring.glsl"
