@@ -102,7 +102,6 @@ impl Passes {
             operands: data.has_operands,
             volume,
         };
-        let visibility = visibility::Visibility::new(device, kinds)?;
         let tessellation = |()| {
             Ok(TessellationPasses {
                 bound: bound::Bound::new(device)?,
@@ -110,21 +109,34 @@ impl Passes {
                 emit: emit::Emit::new(device)?,
             })
         };
+        let mesh = || mesh::Mesh::new(device, (VISIBILITY_FORMAT, DEPTH_FORMAT), volume);
+        // a driver takes milliseconds for each pipeline, and as many threads as ask it
+        let (solids, (faces, pictures)) = rayon::join(
+            || SolidPasses::new(device, data, test),
+            || {
+                rayon::join(
+                    || {
+                        let tessellation = (!data.items.is_empty()).then_some(()).map(tessellation).transpose()?;
+                        let mesh = data.has_meshes().then(mesh).transpose()?;
+                        Ok((tessellation, visibility::Visibility::new(device, kinds)?, mesh))
+                    },
+                    || Ok((resolved::targets(device, data, formats)?, SamplePasses::new(device, data, formats)?)),
+                )
+            },
+        );
+        let ((tessellation, visibility, mesh), (resolve, samples)) = (faces?, pictures?);
         Ok(Self {
             reset: reset::Reset::new(device)?,
             scan: scan::Scan::new(device)?,
-            tessellation: (!data.items.is_empty()).then_some(()).map(tessellation).transpose()?,
-            trim,
-            solids: SolidPasses::new(device, data, test)?,
+            tessellation,
+            solids: solids?,
             visibility,
-            mesh: data
-                .has_meshes()
-                .then(|| mesh::Mesh::new(device, (VISIBILITY_FORMAT, DEPTH_FORMAT), volume))
-                .transpose()?,
-            resolve: resolved::targets(device, data, formats)?,
-            samples: SamplePasses::new(device, data, formats)?,
+            mesh,
+            resolve,
+            samples,
             layers: LayerPasses::new(device, data, formats)?,
             coverage: coverage::new(device, data, formats)?,
+            trim,
         })
     }
 }
