@@ -109,7 +109,9 @@ impl Passes {
                 emit: emit::Emit::new(device)?,
             })
         };
-        let mesh = || mesh::Mesh::new(device, (VISIBILITY_FORMAT, DEPTH_FORMAT), volume);
+        let outward = data.meshes.draws.len() - data.meshes.outward;
+        let meshes = mesh::Kinds { both: data.meshes.outward > 0, outward: outward > 0, volume };
+        let mesh = || mesh::Mesh::new(device, (VISIBILITY_FORMAT, DEPTH_FORMAT), meshes);
         // a driver takes milliseconds for each pipeline, and as many threads as ask it
         let (solids, (faces, pictures)) = rayon::join(
             || SolidPasses::new(device, data, test),
@@ -372,7 +374,7 @@ impl Frame<'_> {
             volume: self.volume(),
         };
         let seen = b.others.as_ref().unwrap_or(&b.visibility);
-        pass.record(cmd, &bindings, (seen, &b.depth), m.draws.iter());
+        pass.record(cmd, &bindings, (seen, &b.depth), (&m.draws, m.outward));
         barrier::images(
             cmd,
             &[(seen, Access::COLOUR_WRITE, Access::COLOUR_WRITE), (&b.depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],
