@@ -122,14 +122,18 @@ impl Passes {
                         let mesh = data.has_meshes().then(mesh).transpose()?;
                         Ok((tessellation, visibility::Visibility::new(device, kinds)?, mesh))
                     },
-                    || Ok((resolved::targets(device, data, formats)?, SamplePasses::new(device, data, formats)?)),
+                    || {
+                        let resolve = resolved::targets(device, data, formats)?;
+                        let samples = SamplePasses::new(device, data, formats)?;
+                        Ok((resolve, samples, reset::Reset::new(device)?, scan::Scan::new(device)?))
+                    },
                 )
             },
         );
-        let ((tessellation, visibility, mesh), (resolve, samples)) = (faces?, pictures?);
+        let ((tessellation, visibility, mesh), (resolve, samples, reset, scan)) = (faces?, pictures?);
         Ok(Self {
-            reset: reset::Reset::new(device)?,
-            scan: scan::Scan::new(device)?,
+            reset,
+            scan,
             tessellation,
             solids: solids?,
             visibility,
