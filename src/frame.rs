@@ -21,6 +21,7 @@
 //!                      ▼
 //!                    heal        pixels that look through a gap between trimmed faces
 //!                      ▼
+//!               seen_squares     tiles that see a patch or a mesh
 //!                  resolve       exact point and normal per pixel, light ──▶ the host's targets
 //!                      ▼
 //!                 coverage       scenes with smooth trims: pixels at borders, mixed of what resolve drew
@@ -38,6 +39,7 @@ use crate::gpu::{
     Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Texels, Timestamps, barrier,
 };
 use crate::passes::coverage::Coverage;
+use crate::passes::seen_squares::SeenSquares;
 use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::passes::{bound, emit, heal, mesh, reset, resolve, scan, split, visibility};
 use crate::scene::{MeshBuffers, Scene, SceneData, SolidData};
@@ -74,6 +76,8 @@ pub(crate) struct Passes {
     solids: Option<SolidPasses>,
     visibility: visibility::Visibility,
     mesh: Option<mesh::Mesh>,
+    /// Of scenes with patches or meshes.
+    squares: Option<SeenSquares>,
     /// Into the host's targets; `None` where they are but a colour, made of samples.
     resolve: Option<resolve::Resolve>,
     samples: Option<SamplePasses>,
@@ -125,12 +129,13 @@ impl Passes {
                     || {
                         let resolve = resolved::targets(device, data, formats)?;
                         let samples = SamplePasses::new(device, data, formats)?;
-                        Ok((resolve, samples, reset::Reset::new(device)?, scan::Scan::new(device)?))
+                        let squares = data.has_surfaces().then(|| SeenSquares::new(device)).transpose()?;
+                        Ok((resolve, samples, squares, reset::Reset::new(device)?, scan::Scan::new(device)?))
                     },
                 )
             },
         );
-        let ((tessellation, visibility, mesh), (resolve, samples, reset, scan)) = (faces?, pictures?);
+        let ((tessellation, visibility, mesh), (resolve, samples, squares, reset, scan)) = (faces?, pictures?);
         Ok(Self {
             reset,
             scan,
@@ -138,6 +143,7 @@ impl Passes {
             solids: solids?,
             visibility,
             mesh,
+            squares,
             resolve,
             samples,
             layers: LayerPasses::new(device, data, formats)?,
@@ -227,9 +233,13 @@ impl Frame<'_> {
             times.scope(cmd, "heal", || self.heal(cmd, parts, &test));
             drawn = Access::COMPUTE_WRITE;
         }
-        barrier::images(cmd, &[(&self.buffers.visibility, drawn, Access::FRAGMENT_READ)]);
+        let read = Access::COMPUTE_READ | Access::FRAGMENT_READ;
+        barrier::images(cmd, &[(&self.buffers.visibility, drawn, read)]);
         if let Some(pass) = resolve {
-            times.scope(cmd, "resolve", || self.resolve(cmd, pass));
+            times.scope(cmd, "resolve", || {
+                self.seen_squares(cmd);
+                self.resolve(cmd, pass);
+            });
         }
         if let Some(pass) = &self.passes.coverage {
             times.scope(cmd, "coverage", || self.coverage(cmd, pass, &test));
@@ -351,7 +361,7 @@ impl Frame<'_> {
         let read = (Access::COMPUTE_READ | Access::FRAGMENT_READ).discarded();
         let others = b.others.iter().map(|image| (image, read, Access::COLOUR_WRITE));
         let fixed = [
-            (&b.visibility, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE),
+            (&b.visibility, read, Access::COLOUR_WRITE),
             (&b.depth, Access::DEPTH_WRITE.discarded() | Access::COMPUTE_READ.discarded(), Access::DEPTH_WRITE),
         ];
         let behind = b.behind.iter().chain(&b.resolved).map(|image| (image, read, Access::COLOUR_WRITE));

@@ -187,6 +187,11 @@ impl SceneData {
         !self.meshes.draws.is_empty()
     }
 
+    /// Patches or meshes are seen themselves.
+    pub(crate) fn has_surfaces(&self) -> bool {
+        self.has_patches || self.has_meshes()
+    }
+
     /// Frees the arrays that the GPU has; the placements and centres stay.
     pub(crate) fn drop_uploaded(&mut self) {
         let placements = std::mem::take(&mut self.placements);
