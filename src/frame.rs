@@ -388,7 +388,7 @@ impl Frame<'_> {
             volume: self.volume(),
         };
         let seen = b.others.as_ref().unwrap_or(&b.visibility);
-        pass.record(cmd, &bindings, (seen, &b.depth), (&m.draws, m.outward));
+        pass.record(cmd, &bindings, (seen, &b.depth), &m.draws, m.outward);
         barrier::images(
             cmd,
             &[(seen, Access::COLOUR_WRITE, Access::COLOUR_WRITE), (&b.depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],

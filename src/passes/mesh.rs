@@ -60,15 +60,15 @@ impl Mesh {
         kinds: Kinds,
     ) -> Result<Self, GpuError> {
         let volume = kinds.volume;
-        let (within, fragment) = match volume {
-            None => ("", shaders::MESH_FRAG),
-            Some(_) => (", within a volume", shaders::MESH_VOLUME_FRAG),
+        let (name, fragment) = match volume {
+            None => ("mesh", shaders::MESH_FRAG),
+            Some(_) => ("mesh (within a volume)", shaders::MESH_VOLUME_FRAG),
         };
-        let pipeline = |sides: &str, cull: vk::CullModeFlags| {
+        let pipeline = |name: &str, cull: vk::CullModeFlags| {
             Pipeline::graphics(
                 device,
                 &GraphicsInfo {
-                    name: &format!("mesh ({sides}{within})"),
+                    name,
                     stages: &[
                         (vk::ShaderStageFlags::VERTEX, shaders::MESH_VERT),
                         (vk::ShaderStageFlags::FRAGMENT, fragment),
@@ -87,8 +87,8 @@ impl Mesh {
             )
         };
         Ok(Self {
-            both: kinds.both.then(|| pipeline("both sides", vk::CullModeFlags::NONE)).transpose()?,
-            outward: kinds.outward.then(|| pipeline("outside", vk::CullModeFlags::BACK)).transpose()?,
+            both: kinds.both.then(|| pipeline(name, vk::CullModeFlags::NONE)).transpose()?,
+            outward: kinds.outward.then(|| pipeline("mesh (outside)", vk::CullModeFlags::BACK)).transpose()?,
         })
     }
 
@@ -99,7 +99,8 @@ impl Mesh {
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
         (seen, depth): (&Image, &Image),
-        (draws, outward): (&[(Range<u32>, Range<u32>)], usize),
+        draws: &[(Range<u32>, Range<u32>)],
+        outward: usize,
     ) {
         let colour = [Attachment { image: seen, load: Load::ColourU32([0; 4]) }];
         let depth = Attachment { image: depth, load: Load::Depth(0.0) };
