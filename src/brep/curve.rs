@@ -128,12 +128,12 @@ impl Curve {
 
     /// The same points in the opposite order.
     pub fn reversed(&self) -> Self {
-        match self.clone() {
+        match *self {
             Self::Line { origin, direction } => Self::Line { origin, direction: -direction },
             Self::Ellipse { centre, x, y } => Self::Ellipse { centre, x, y: -y },
             Self::Hyperbola { centre, x, y } => Self::Hyperbola { centre, x, y: -y },
             Self::Parabola { apex, x, y } => Self::Parabola { apex, x, y: -y },
-            Self::Pieces(p) => Self::Pieces(p.reversed()),
+            Self::Pieces(ref p) => Self::Pieces(p.reversed()),
         }
     }
 

@@ -269,6 +269,9 @@ fn to_beziers<P: Control>(degree: usize, knots: &[f64], points: &[P]) -> Vec<Spa
 pub(super) struct Cuts {
     degree: usize,
     spans: Vec<Cut>,
+    /// The part of the later of two neighbours at the start and at the end of each span: round by round, the last
+    /// pair first.
+    parts: Vec<[f64; 2]>,
 }
 
 /// A span that is not empty.
@@ -277,24 +280,23 @@ struct Cut {
     /// Knot at its start.
     knot: usize,
     range: (f64, f64),
-    /// The part of the later of two neighbours at the start and at the end of the span: round by round, the last
-    /// pair first.
-    parts: Vec<[f64; 2]>,
 }
 
 impl Cuts {
     /// `points`: how many control points a row has.
     pub fn new(degree: usize, knots: &[f64], points: usize) -> Self {
-        let cut = |knot: usize| {
-            let range @ (a, b) = (knots[knot], knots[knot + 1]);
-            let part = |round: usize, j: usize| {
-                let (lo, hi) = (knots[j + knot - degree], knots[j + 1 + knot - round]);
-                [(a - lo) / (hi - lo), (b - lo) / (hi - lo)]
-            };
-            let rounds = (1..=degree).flat_map(|r| (r..=degree).rev().map(move |j| part(r, j)));
-            Cut { knot, range, parts: rounds.collect() }
-        };
-        Self { degree, spans: (degree..points).filter(|&k| knots[k] < knots[k + 1]).map(cut).collect() }
+        let filled = (degree..points).filter(|&k| knots[k] < knots[k + 1]);
+        let spans: Vec<Cut> = filled.map(|knot| Cut { knot, range: (knots[knot], knots[knot + 1]) }).collect();
+        let mut parts = Vec::with_capacity(spans.len() * pairs(degree));
+        for Cut { knot, range: (a, b) } in &spans {
+            for round in 1..=degree {
+                for j in (round..=degree).rev() {
+                    let (lo, hi) = (knots[j + knot - degree], knots[j + 1 + knot - round]);
+                    parts.push([(a - lo) / (hi - lo), (b - lo) / (hi - lo)]);
+                }
+            }
+        }
+        Self { degree, spans, parts }
     }
 
     /// The parameter ranges of the pieces.
@@ -311,19 +313,17 @@ impl Cuts {
     pub fn apply<P: Control>(&self, points: &[P], out: &mut Vec<P>) {
         let degree = self.degree;
         let first = out.len();
-        for cut in &self.spans {
+        out.reserve(self.spans.len() * (degree + 1));
+        let (mut early, mut late) = ([P::ZERO; MAX_DEGREE + 1], [P::ZERO; MAX_DEGREE + 1]);
+        // rounds with the start so far; what a point and the later ones of the piece have no more than
+        let (early, late) = (&mut early[..=degree], &mut late[..=degree]);
+        for (cut, own) in self.spans.iter().zip(self.parts.chunks_exact(pairs(degree))) {
             let from = out.len();
             out.resize(from + degree + 1, P::ZERO);
             let piece = &mut out[from..];
-            // rounds with the start so far
-            let mut early = [P::ZERO; MAX_DEGREE + 1];
-            let early = &mut early[..=degree];
             early.copy_from_slice(&points[cut.knot - degree..=cut.knot]);
-            let mut parts = &cut.parts[..];
+            let mut parts = own;
             for round in 1..=degree + 1 {
-                // this point and the later ones of the piece have no more than these
-                let mut late = [P::ZERO; MAX_DEGREE + 1];
-                let late = &mut late[..=degree];
                 late.copy_from_slice(early);
                 let mut rest = parts;
                 for r in round..=degree {
@@ -339,6 +339,11 @@ impl Cuts {
             }
         }
     }
+}
+
+/// Neighbours mixed in all rounds of a span.
+fn pairs(degree: usize) -> usize {
+    degree * (degree + 1) / 2
 }
 
 /// One round of a blossom; returns the parts of the rounds after it.

@@ -40,6 +40,9 @@ pub(super) enum Form {
     Binary,
 }
 
+/// Columns of a card.
+const WIDTH: usize = 80;
+
 /// Columns of a card's text.
 pub(super) const TEXT: usize = 72;
 
@@ -61,18 +64,22 @@ pub(super) fn recognise(bytes: &[u8]) -> Option<Form> {
 
 /// The lines, without their ends; pieces of 80 bytes in a file that has none.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let ended = bytes[..bytes.len().min(400)].iter().any(|b| matches!(b, b'\n' | b'\r'));
+    let ends = |b: u8| b == b'\n' || b == b'\r';
+    let ended = bytes[..bytes.len().min(400)].iter().any(|b| ends(*b));
     let mut rest = bytes;
     std::iter::from_fn(move || {
         if rest.is_empty() {
             return None;
         }
         if !ended {
-            let (line, after) = rest.split_at(rest.len().min(80));
+            let (line, after) = rest.split_at(rest.len().min(WIDTH));
             rest = after;
             return Some(line);
         }
-        let end = rest.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(rest.len());
+        let end = match rest.get(..=WIDTH) {
+            Some(line) if ends(line[WIDTH]) && !line[..WIDTH].iter().fold(false, |any, b| any | ends(*b)) => WIDTH,
+            _ => rest.iter().position(|b| ends(*b)).unwrap_or(rest.len()),
+        };
         let line = &rest[..end];
         let skip = match rest[end..] {
             [b'\r', b'\n', ..] => 2,
@@ -118,14 +125,20 @@ fn columns(line: &[u8]) -> Option<(&[u8], u8, &[u8])> {
 
 /// Byte offset of a column, UTF-8 continuation bytes not counted.
 fn column(line: &[u8], column: usize) -> usize {
+    if line.get(..column).is_some_and(<[u8]>::is_ascii) {
+        return column;
+    }
     let mut starts = (0..line.len()).filter(|&i| line[i] & 0xc0 != 0x80);
     starts.nth(column).unwrap_or(line.len())
 }
 
 /// A right or left justified number of at most ten digits.
 pub(super) fn number(field: &[u8]) -> Option<u32> {
-    let text = std::str::from_utf8(field).ok()?.trim();
-    if text.len() > 10 || !text.bytes().all(|b| b.is_ascii_digit()) { None } else { text.parse().ok() }
+    let digits = field.trim_ascii();
+    if digits.is_empty() || digits.len() > 10 || !digits.iter().all(u8::is_ascii_digit) {
+        return None;
+    }
+    u32::try_from(digits.iter().fold(0, |sum, b| 10 * sum + u64::from(b - b'0'))).ok()
 }
 
 #[cfg(test)]
