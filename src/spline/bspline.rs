@@ -311,27 +311,39 @@ impl Cuts {
 
     /// Appends `degree + 1` points a piece.
     pub fn apply<P: Control>(&self, points: &[P], out: &mut Vec<P>) {
-        let degree = self.degree;
+        // the same for every degree; where that is known beforehand, points stay in registers
+        match self.degree {
+            1 => self.apply_known::<P, 2>(points, out),
+            2 => self.apply_known::<P, 3>(points, out),
+            3 => self.apply_known::<P, 4>(points, out),
+            4 => self.apply_known::<P, 5>(points, out),
+            5 => self.apply_known::<P, 6>(points, out),
+            _ => self.apply_known::<P, { MAX_DEGREE + 1 }>(points, out),
+        }
+    }
+
+    /// `N`: at least the number of points of a piece.
+    fn apply_known<P: Control, const N: usize>(&self, points: &[P], out: &mut Vec<P>) {
+        let count = if N <= MAX_DEGREE { N } else { self.degree + 1 };
+        let degree = count - 1;
         let first = out.len();
-        out.reserve(self.spans.len() * (degree + 1));
-        let (mut early, mut late) = ([P::ZERO; MAX_DEGREE + 1], [P::ZERO; MAX_DEGREE + 1]);
-        // rounds with the start so far; what a point and the later ones of the piece have no more than
-        let (early, late) = (&mut early[..=degree], &mut late[..=degree]);
+        out.reserve(self.spans.len() * count);
+        let mut early = [P::ZERO; N]; // rounds with the start so far
         for (cut, own) in self.spans.iter().zip(self.parts.chunks_exact(pairs(degree))) {
             let from = out.len();
-            out.resize(from + degree + 1, P::ZERO);
-            let piece = &mut out[from..];
-            early.copy_from_slice(&points[cut.knot - degree..=cut.knot]);
+            out.resize(from + count, P::ZERO);
+            let piece = &mut out[from..from + count];
+            early[..count].copy_from_slice(&points[cut.knot - degree..=cut.knot]);
             let mut parts = own;
-            for round in 1..=degree + 1 {
-                late.copy_from_slice(early);
+            for round in 1..=count {
+                let mut late = early; // this point and the later ones of the piece have no more than these
                 let mut rest = parts;
-                for r in round..=degree {
-                    rest = mix(late, r, rest, 1);
+                for r in round..count {
+                    rest = mix(&mut late[..count], r, rest, 1);
                 }
-                piece[degree + 1 - round] = late[degree];
-                if round <= degree {
-                    parts = mix(early, round, parts, 0);
+                piece[count - round] = late[degree];
+                if round < count {
+                    parts = mix(&mut early[..count], round, parts, 0);
                 }
             }
             if from > first {
@@ -347,6 +359,7 @@ fn pairs(degree: usize) -> usize {
 }
 
 /// One round of a blossom; returns the parts of the rounds after it.
+#[inline(always)]
 fn mix<'a, P: Control>(d: &mut [P], round: usize, parts: &'a [[f64; 2]], end: usize) -> &'a [[f64; 2]] {
     let (own, rest) = parts.split_at(d.len() - round);
     for (j, part) in (round..d.len()).rev().zip(own) {

@@ -11,6 +11,8 @@
 //! Lines may end in LF, CR LF or CR, may be longer than 80 columns, and need not end at all: then every
 //! 80 bytes are a card. Characters outside ASCII count as one column each where that finds the letter.
 
+use rayon::prelude::*;
+
 /// What the letter in column 73 says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Section {
@@ -43,6 +45,9 @@ pub(super) enum Form {
 /// Columns of a card.
 const WIDTH: usize = 80;
 
+/// Bytes that one thread reads at a time: a multiple of a card's.
+const PART: usize = 80 << 12;
+
 /// Columns of a card's text.
 pub(super) const TEXT: usize = 72;
 
@@ -62,10 +67,21 @@ pub(super) fn recognise(bytes: &[u8]) -> Option<Form> {
     }
 }
 
+/// Whether the lines have ends; else pieces of 80 bytes are lines.
+fn have_ends(bytes: &[u8]) -> bool {
+    bytes[..bytes.len().min(400)].iter().any(|b| is_end(*b))
+}
+
+fn is_end(b: u8) -> bool {
+    b == b'\n' || b == b'\r'
+}
+
 /// The lines, without their ends; pieces of 80 bytes in a file that has none.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let ends = |b: u8| b == b'\n' || b == b'\r';
-    let ended = bytes[..bytes.len().min(400)].iter().any(|b| ends(*b));
+    lines_of(bytes, have_ends(bytes))
+}
+
+fn lines_of(bytes: &[u8], ended: bool) -> impl Iterator<Item = &[u8]> {
     let mut rest = bytes;
     std::iter::from_fn(move || {
         if rest.is_empty() {
@@ -77,8 +93,8 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
             return Some(line);
         }
         let end = match rest.get(..=WIDTH) {
-            Some(line) if ends(line[WIDTH]) && !line[..WIDTH].iter().fold(false, |any, b| any | ends(*b)) => WIDTH,
-            _ => rest.iter().position(|b| ends(*b)).unwrap_or(rest.len()),
+            Some(line) if is_end(line[WIDTH]) && !line[..WIDTH].iter().fold(false, |any, b| any | is_end(*b)) => WIDTH,
+            _ => rest.iter().position(|b| is_end(*b)).unwrap_or(rest.len()),
         };
         let line = &rest[..end];
         let skip = match rest[end..] {
@@ -89,6 +105,64 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
         rest = &rest[end + skip..];
         Some(line)
     })
+}
+
+/// What one thread finds in its part of a file. Lines are counted from the part's first, which is 1.
+#[derive(Debug, Default)]
+pub(super) struct Part<'a> {
+    /// Cards of the directory and of the parameters, with their lines.
+    pub directory: Vec<(Card<'a>, u32)>,
+    pub parameters: Vec<(Card<'a>, u32)>,
+    /// Those of the sections global and terminate.
+    pub others: Vec<(Card<'a>, u32)>,
+    /// Lines that are no cards, with how many lines that are not blank there were up to them.
+    pub bad: Vec<(u32, usize)>,
+    /// Lines that are not blank.
+    pub seen: usize,
+    /// The last of them.
+    pub last: u32,
+    /// All lines.
+    pub lines: u32,
+}
+
+/// The parts of a file, in order, each read by itself.
+pub(super) fn parts(bytes: &[u8]) -> Vec<Part<'_>> {
+    let ended = have_ends(bytes);
+    let mut pieces = Vec::with_capacity(bytes.len() / PART + 1);
+    let mut rest = bytes;
+    while rest.len() > PART {
+        let between = |at: usize| is_end(rest[at - 1]) && !(rest[at - 1] == b'\r' && rest[at] == b'\n');
+        let at = if ended { (PART..rest.len()).find(|at| between(*at)) } else { Some(PART) };
+        let (piece, after) = rest.split_at(at.unwrap_or(rest.len()));
+        pieces.push(piece);
+        rest = after;
+    }
+    pieces.push(rest);
+    pieces.into_par_iter().map(|piece| Part::read(piece, ended)).collect()
+}
+
+impl<'a> Part<'a> {
+    fn read(bytes: &'a [u8], ended: bool) -> Self {
+        let mut part = Self::default();
+        for line in lines_of(bytes, ended) {
+            part.lines += 1;
+            if line.iter().all(u8::is_ascii_whitespace) {
+                continue;
+            }
+            (part.seen, part.last) = (part.seen + 1, part.lines);
+            let Some(card) = Card::of_line(line) else {
+                part.bad.push((part.lines, part.seen));
+                continue;
+            };
+            match card.section {
+                Section::Start => {}
+                Section::Directory => part.directory.push((card, part.lines)),
+                Section::Parameter => part.parameters.push((card, part.lines)),
+                Section::Global | Section::Terminate => part.others.push((card, part.lines)),
+            }
+        }
+        part
+    }
 }
 
 impl<'a> Card<'a> {
