@@ -16,8 +16,11 @@ use crate::model::{Bounds, Face, SurfaceKind, TrimLoop};
 use crate::spline::{Bezier, Control, Surface};
 use glam::{DVec2, DVec3};
 
-/// Share of a domain by which control points may leave it: rounding. They are put back.
-const OUTSIDE: f64 = 1e-7;
+/// Share of the face's diagonal by which control points may leave the surface: sloppiness. They are put back.
+const OUTSIDE: f64 = 1e-5;
+
+/// Share of a domain that a curve may be moved by to meet the one before it.
+const NEAR: f64 = 1e-7;
 
 /// Share of a domain within which points are the same: what weights divided out again leave.
 const ROUNDING: f64 = 1e-13;
@@ -28,18 +31,22 @@ const AROUND: f64 = 0.25;
 /// Share of the face's diagonal by which a loop may be open, as for loops of edges.
 const OPEN: f64 = 0.05;
 
-/// A loop, and what its joints cost.
+/// A loop.
 struct Joined {
     curves: Vec<Bezier<DVec3>>,
-    deviation: f64,
+    /// By how much, mm, a control point left the surface.
+    outside: f64,
+    /// By how much, mm, a curve was moved to meet the one before it.
+    moved: f64,
 }
 
 /// The face of a spline whose loops are curves in its own `(u, v)`, in any order and direction; `map` is the
 /// spline's, `tolerance` in mm.
 ///
 /// Curves keep their image and their parametrisation. [`BuiltFace::deviation`] tells how far a curve was moved to
-/// meet the one before it, or into the domain: by no more than the tolerance, or `1e-7` of the domain. Wider gaps,
-/// up to a twentieth of the face, are closed by straight pieces and told.
+/// meet the one before it: by no more than the tolerance. Wider gaps, up to a twentieth of the face, are closed by
+/// straight pieces and told. [`BuiltFace::gap`] tells how far control points were off the surface, beyond its border:
+/// `1e-5` of the face's diagonal at most. They are put there, so no curve moves farther.
 ///
 /// # Errors
 /// [`BuildError`] where curves leave the domain, run around a closed surface, or bound nothing: then their images in
@@ -51,17 +58,20 @@ pub fn face_in_parameters(
     tolerance: f64,
 ) -> Result<BuiltFace, BuildError> {
     let tolerance = if tolerance > 0.0 && tolerance.is_finite() { tolerance } else { 1e-6 };
-    let (mut notes, mut deviation, mut trims) = (Vec::new(), 0.0_f64, Vec::new());
+    let (mut notes, mut trims, mut deviation, mut gap) = (Vec::new(), Vec::new(), 0.0_f64, 0.0_f64);
     let range = range(surface);
     let all: Vec<Joined> = loops.iter().map(|l| inside(id, (surface, map), l)).collect::<Result<_, _>>()?;
     let corners = all.iter().flat_map(|l| &l.curves).map(|c| map.jet(c.points[0].point()).point);
     let size = corners.fold(Bounds::EMPTY, Bounds::with).diagonal();
     for mut joined in all {
-        let gap = joined.close((id, size), map, (range, tolerance))?;
-        if gap > 50.0 * tolerance.clamp(1e-9 * size, 1e-5 * size) {
-            notes.push(format!("face #{id}: a gap of {gap:.3e} mm between edges was closed"));
+        if joined.outside > OUTSIDE * size {
+            return Err(BuildError::Surface { face: id, reason: "a curve in (u, v) leaves the surface" });
         }
-        deviation = joined.deviation.max(deviation);
+        let open = joined.close((id, size), map, (range, tolerance))?;
+        if open > 50.0 * tolerance.clamp(1e-9 * size, 1e-5 * size) {
+            notes.push(format!("face #{id}: a gap of {open:.3e} mm between edges was closed"));
+        }
+        (deviation, gap) = (deviation.max(joined.moved), gap.max(joined.outside));
         let trim =
             TrimLoop::new(joined.curves, ROUNDING * range).map_err(|source| BuildError::Loop { face: id, source })?;
         if trim.signed_area().abs() <= 1e-12 * range.x * range.y {
@@ -78,7 +88,7 @@ pub fn face_in_parameters(
     notes.extend(crossing_note(&loops).map(|note| format!("face #{id}: {note}")));
     let (kind, surface) = (SurfaceKind::BSpline, surface.clone());
     let face = Face { id, kind, surface, loops, same_sense: true, colour: None };
-    Ok(BuiltFace { face, notes, deviation, gap: 0.0 })
+    Ok(BuiltFace { face, notes, deviation, gap })
 }
 
 fn range(surface: &Surface) -> DVec2 {
@@ -90,19 +100,15 @@ fn range(surface: &Surface) -> DVec2 {
 fn inside(id: u32, (surface, map): (&Surface, &SurfaceMap), curves: &[CurveGeometry]) -> Result<Joined, BuildError> {
     let (u, v) = surface.domain();
     let (lo, hi) = (DVec2::new(u.0, v.0), DVec2::new(u.1, v.1));
-    let mut out = Joined { curves: Vec::new(), deviation: 0.0 };
+    let mut out = Joined { curves: Vec::new(), outside: 0.0, moved: 0.0 };
     for curve in curves {
         for piece in segment(curve, 0.0).map_err(|reason| BuildError::Surface { face: id, reason })? {
             let mut points: Vec<DVec3> = piece.points.iter().map(|p| DVec3::new(p.x, p.y, p.w)).collect();
             for p in &mut points {
                 let (at, kept) = (p.point(), p.point().clamp(lo, hi));
-                let by = (at - kept).abs();
-                if !by.cmple(OUTSIDE * (hi - lo)).all() {
-                    let reason = "a curve in (u, v) leaves the surface";
-                    return Err(BuildError::Surface { face: id, reason });
-                }
-                if by != DVec2::ZERO {
-                    out.deviation = out.deviation.max(length(map, kept, by));
+                if at != kept {
+                    let off = length(map, kept, at - kept);
+                    out.outside = if off.is_nan() { f64::INFINITY } else { out.outside.max(off) };
                     *p = DVec3::from_point(kept, p.z);
                 }
             }
@@ -145,8 +151,8 @@ impl Joined {
                 return Err(BuildError::OpenRim { face });
             }
             let (short, apart) = (length(map, from, step), map.jet(from).point.distance(map.jet(to).point));
-            if short <= tolerance && (step.abs().cmple(OUTSIDE * range)).all() {
-                self.deviation = self.deviation.max(short);
+            if short <= tolerance && step.abs().cmple(NEAR * range).all() {
+                self.moved = self.moved.max(short);
                 let next = &mut self.curves[(k + 1) % count].points[0];
                 *next = DVec3::from_point(from, next.z);
                 if k + 1 == count {

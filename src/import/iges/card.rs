@@ -144,6 +144,7 @@ pub(super) fn parts(bytes: &[u8]) -> Vec<Part<'_>> {
 impl<'a> Part<'a> {
     fn read(bytes: &'a [u8], ended: bool) -> Self {
         let mut part = Self::default();
+        part.parameters.reserve(bytes.len() / WIDTH);
         for line in lines_of(bytes, ended) {
             part.lines += 1;
             if line.iter().all(u8::is_ascii_whitespace) {

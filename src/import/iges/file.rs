@@ -45,7 +45,7 @@ struct Span {
 }
 
 /// Records that one thread reads at a time.
-const RECORDS: usize = 64;
+const RECORDS: usize = 16;
 
 /// Bytes of an average parameter, at least: what an arena makes room for.
 const BYTES: usize = 6;
@@ -65,7 +65,7 @@ impl File {
         let parts = parts(bytes);
         parameters.reserve(parts.iter().map(|p| p.parameters.len()).sum());
         let mut before = 0;
-        for part in parts {
+        for mut part in parts {
             for (line, seen_there) in part.bad {
                 let (line, seen) = ((before + line) as usize, seen + seen_there);
                 bad += 1;
@@ -87,7 +87,8 @@ impl File {
                 global.resize(global.len() + TEXT.saturating_sub(card.text.len()), b' ');
             }
             entries.extend(part.directory.into_iter().map(|(card, line)| (card, before + line)));
-            parameters.extend(part.parameters.into_iter().map(|(card, line)| (card, before + line)));
+            part.parameters.iter_mut().for_each(|card| card.1 += before);
+            parameters.append(&mut part.parameters);
             if part.seen > 0 {
                 last_line = before + part.last;
             }
