@@ -127,6 +127,7 @@ const TENS: [f64; 23] = [
 ///
 /// Source: W. D. Clinger, *How to read floating point numbers accurately*, PLDI 1990.
 fn short(token: &[u8]) -> Option<f64> {
+    const MOST: usize = 19; // digits that do not overflow
     let (negative, rest) = match token {
         [b'-', rest @ ..] => (true, rest),
         [b'+', rest @ ..] => (false, rest),
@@ -136,6 +137,7 @@ fn short(token: &[u8]) -> Option<f64> {
     let mut at = 0;
     while let Some(&b) = rest.get(at) {
         match b {
+            b'0'..=b'9' if count == MOST => return None,
             b'0'..=b'9' => {
                 digits = 10 * digits + u64::from(b - b'0');
                 count += 1;
@@ -160,8 +162,7 @@ fn short(token: &[u8]) -> Option<f64> {
         }
         _ => return None,
     };
-    // 19 digits do not overflow
-    if !(1..=19).contains(&count) || digits > 1 << 53 {
+    if count == 0 || digits > 1 << 53 {
         return None;
     }
     let power = power - behind;
