@@ -232,6 +232,42 @@ mod tests {
         assert_eq!(all(&cards), [80, 80]);
     }
 
+    /// What is read in parts is what one thread would read, wherever the parts end.
+    #[test]
+    fn parts_make_the_whole() {
+        let cards = (1..=2 * PART / 80).map(|n| match n % 9 {
+            0 => "no card".to_owned(),
+            1 => " ".repeat(80),
+            2 => card("12, 0", &format!("D{n:>7}")),
+            3 => card("", &format!("G{n:>7}")),
+            _ => card("116,1.,2.,3.;", &format!("P{n:>7}")),
+        });
+        let cards: Vec<String> = cards.collect();
+        let whole: String = cards.iter().map(|c| format!("{c:<80}")).collect();
+        for (text, ended) in
+            [(cards.join("\n"), true), (cards.join("\r\n"), true), (cards.join("\r"), true), (whole, false)]
+        {
+            let (all, one) = (parts(text.as_bytes()), Part::read(text.as_bytes(), ended));
+            assert!(all.len() > 1);
+            let before = |i: usize| all[..i].iter().map(|p| p.lines).sum::<u32>();
+            let joined = |list: fn(&Part<'_>) -> Vec<(Vec<u8>, u32)>| {
+                let own =
+                    |(i, p)| list(p).into_iter().map(move |(text, line)| (text, line + before(i))).collect::<Vec<_>>();
+                all.iter().enumerate().flat_map(own).collect::<Vec<_>>()
+            };
+            for list in [
+                |p: &Part<'_>| p.directory.iter().map(|(c, line)| (c.text.to_vec(), *line)).collect::<Vec<_>>(),
+                |p: &Part<'_>| p.parameters.iter().map(|(c, line)| (c.text.to_vec(), *line)).collect(),
+                |p: &Part<'_>| p.others.iter().map(|(c, line)| (c.text.to_vec(), *line)).collect(),
+                |p: &Part<'_>| p.bad.iter().map(|(line, _)| (Vec::new(), *line)).collect(),
+            ] {
+                assert!(list(&one).len() > 100 && joined(list) == list(&one));
+            }
+            assert_eq!(all.iter().map(|p| p.seen).sum::<usize>(), one.seen);
+            assert_eq!(before(all.len()), one.lines);
+        }
+    }
+
     #[test]
     fn characters_outside_ascii_are_one_column() {
         let line = card("Stück, größer", "S      7");
