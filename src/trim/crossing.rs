@@ -271,6 +271,13 @@ mod tests {
         let knot = [(0.0, 0.0), (3.0, 2.0), (-2.0, 2.0), (1.0, 0.0)];
         let back = [(1.0, 0.0), (1.0, -1.0), (0.0, -1.0), (0.0, 0.0)];
         near(&[cubics(&[knot, back])], (0.5, 0.75), 0.5);
+        // one whose box the other curves touch in corners only
+        let knot = [(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0), (0.0, 0.0), (3.0, 3.0)];
+        let curve = Bezier { points: knot.iter().map(|&(u, v)| DVec3::new(u, v, 1.0)).collect() };
+        let around = [(3.0, 3.0), (3.0, 4.0), (-1.0, 4.0), (-1.0, 0.0), (0.0, 0.0)];
+        let lines = around.windows(2).map(|w| Bezier::line(w[0].into(), w[1].into()));
+        let whole = TrimLoop::new([curve].into_iter().chain(lines).collect(), DVec2::ZERO).unwrap();
+        near(&[whole], (1.634, 1.920), 0.5);
         // two bows
         let over = [(0.0, 0.0), (0.0, 2.0), (1.0, -1.0), (1.0, 1.0)];
         let under = [(1.0, 1.0), (0.8, 1.0), (0.2, 0.0), (0.0, 0.0)];

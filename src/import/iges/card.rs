@@ -228,6 +228,8 @@ mod tests {
     fn line_ends_of_every_kind() {
         let all = |text: &str| lines(text.as_bytes()).map(<[u8]>::len).collect::<Vec<_>>();
         assert_eq!(all("ab\r\nc\n\rde"), [2, 1, 0, 2]);
+        // two lines that are as long as a card together
+        assert_eq!(all(&format!("{}\n{}\n", "a".repeat(39), "b".repeat(40))), [39, 40]);
         let cards = format!("{}{}", card("a", "S      1"), card("b", "G      1"));
         assert_eq!(all(&cards), [80, 80]);
     }
