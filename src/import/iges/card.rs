@@ -234,6 +234,9 @@ mod tests {
         assert_eq!(all(&cards), [80, 80]);
     }
 
+    /// Texts of cards, with their lines.
+    type Texts = Vec<(Vec<u8>, u32)>;
+
     /// What is read in parts is what one thread would read, wherever the parts end.
     #[test]
     fn parts_make_the_whole() {
@@ -252,7 +255,7 @@ mod tests {
             let (all, one) = (parts(text.as_bytes()), Part::read(text.as_bytes(), ended));
             assert!(all.len() > 1);
             let before = |i: usize| all[..i].iter().map(|p| p.lines).sum::<u32>();
-            let joined = |list: fn(&Part<'_>) -> Vec<(Vec<u8>, u32)>| {
+            let joined = |list: fn(&Part<'_>) -> Texts| {
                 let own =
                     |(i, p)| list(p).into_iter().map(move |(text, line)| (text, line + before(i))).collect::<Vec<_>>();
                 all.iter().enumerate().flat_map(own).collect::<Vec<_>>()
