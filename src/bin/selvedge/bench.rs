@@ -80,7 +80,7 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
     let bounds = import.model.bounds();
     let Size(width, height) = args.size;
     let camera = |index| path::camera(bounds, (width, height), index, args.frames);
-    let mut session = Session::smooth(&args.frame, &import, &args.edges)?;
+    let mut session = Session::smooth(session::opened(&args.frame)?, &args.frame, &import, &args.edges)?;
     let mut stats = FrameStats::default();
     let mut gathered = Gathered::default();
     during(&format!("{}: {} frames", model.display(), args.frames), || -> Result<()> {

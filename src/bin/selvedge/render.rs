@@ -9,13 +9,14 @@ use selvedge::picture::{Outputs, Picture};
 
 /// Draws the picture and writes every file asked for.
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
-    let mut import = session::open(&args.model, &args.subdivide)?;
+    let (import, device) = rayon::join(|| session::open(&args.model, &args.subdivide), || session::device(&args.frame));
+    let mut import = import?;
     args.cut.apply(&mut import.model)?;
     let camera = args.camera.of(&import)?;
     if let Some(path) = &args.camera_out {
         output::json(path, &CameraFile::from(&camera))?;
     }
-    let mut session = Session::smooth(&args.frame, &import, &args.edges)?;
+    let mut session = Session::smooth(device?, &args.frame, &import, &args.edges)?;
     let picture = session.render(&camera, wanted(&args.aov))?;
     if args.frame.highlight {
         let stats = &picture.stats;

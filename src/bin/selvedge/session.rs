@@ -41,31 +41,39 @@ pub struct Session {
     settings: FrameSettings,
 }
 
+/// Opens the device that is asked for.
+pub fn opened(args: &FrameArgs) -> Result<HeadlessRenderer> {
+    during("opening the device", || device(args))
+}
+
+/// The same without a word, beside something else.
+pub fn device(args: &FrameArgs) -> Result<HeadlessRenderer> {
+    Ok(HeadlessRenderer::new(&HeadlessOptions { device: args.device.clone(), validation: args.validation })?)
+}
+
 impl Session {
     /// Opens the device and hands it the model.
     pub fn new(args: &FrameArgs, import: &Import) -> Result<Self> {
-        Self::with(args, import, SceneSettings::default())
+        Self::with(opened(args)?, args, import, SceneSettings::default())
     }
 
-    /// The same with smooth edges.
-    pub fn smooth(args: &FrameArgs, import: &Import, edges: &EdgeArgs) -> Result<Self> {
+    /// The same with smooth edges, on a device that is open.
+    pub fn smooth(on: HeadlessRenderer, args: &FrameArgs, import: &Import, edges: &EdgeArgs) -> Result<Self> {
         let EdgeArgs { samples, smooth_trims } = *edges;
-        Self::with(args, import, SceneSettings { samples, smooth_trims, ..SceneSettings::default() })
+        Self::with(on, args, import, SceneSettings { samples, smooth_trims, ..SceneSettings::default() })
     }
 
     /// The same with a model whose loops may be edited.
     pub fn editable(args: &FrameArgs, import: &Import) -> Result<Self> {
-        Self::with(args, import, SceneSettings { editable: true, ..SceneSettings::default() })
+        Self::with(opened(args)?, args, import, SceneSettings { editable: true, ..SceneSettings::default() })
     }
 
-    fn with(args: &FrameArgs, import: &Import, scene: SceneSettings) -> Result<Self> {
-        let options = HeadlessOptions { device: args.device.clone(), validation: args.validation };
+    fn with(mut renderer: HeadlessRenderer, args: &FrameArgs, import: &Import, scene: SceneSettings) -> Result<Self> {
         let highlight = args.highlight.then(Highlight::default);
         let sun = sun(args, import);
         let (trim, solids) = (args.trim, args.solids);
         let solid_budget = args.solid_budget.map(|mebibytes| (mebibytes * f64::from(1 << 20)) as u64);
         let scene = SceneSettings { trim, solids, highlight, sun, solid_budget, ..scene };
-        let mut renderer = during("opening the device", || HeadlessRenderer::new(&options))?;
         during("uploading the model", || renderer.upload_with(&import.model, scene))?;
         let mut settings =
             FrameSettings { tolerance_px: args.tolerance, levels: args.factors.0, ..FrameSettings::default() };
