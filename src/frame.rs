@@ -42,6 +42,7 @@ use crate::passes::coverage::Coverage;
 use crate::passes::seen_squares::SeenSquares;
 use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::passes::{bound, emit, heal, mesh, reset, resolve, scan, split, visibility};
+use crate::picture::TrimWay;
 use crate::scene::{MeshBuffers, Scene, SceneData, SolidData};
 use layers::{Drawing, LayerPasses};
 use samples::{SamplePasses, Scopes};
@@ -130,7 +131,8 @@ impl Passes {
                         let resolve = resolved::targets(device, data, formats)?;
                         let samples = SamplePasses::new(device, data, formats)?;
                         let squares = data.has_surfaces().then(|| SeenSquares::new(device)).transpose()?;
-                        Ok((resolve, samples, squares, reset::Reset::new(device)?, scan::Scan::new(device)?))
+                        let scan = scan::Scan::new(device, data.trim_way() == Some(TrimWay::Table))?;
+                        Ok((resolve, samples, squares, reset::Reset::new(device)?, scan))
                     },
                 )
             },

@@ -74,7 +74,7 @@ pub struct Bindings<'a> {
 #[derive(Debug)]
 pub struct Scan {
     by_host: Steps,
-    by_gpu: Steps,
+    by_gpu: Option<Steps>,
 }
 
 #[derive(Debug)]
@@ -98,33 +98,41 @@ impl Steps {
                 },
             )
         };
+        let [blocks, sums, add] = match count_on_gpu {
+            false => ["scan blocks", "scan sums", "scan add"],
+            true => ["scan blocks (counted)", "scan sums (counted)", "scan add (counted)"],
+        };
         Ok(Self {
-            blocks: step("scan blocks", shaders::SCAN_BLOCKS_COMP)?,
-            sums: step("scan sums", shaders::SCAN_SUMS_COMP)?,
-            add: step("scan add", shaders::SCAN_ADD_COMP)?,
+            blocks: step(blocks, shaders::SCAN_BLOCKS_COMP)?,
+            sums: step(sums, shaders::SCAN_SUMS_COMP)?,
+            add: step(add, shaders::SCAN_ADD_COMP)?,
         })
     }
 }
 
 impl Scan {
-    /// Makes the pipelines.
+    /// Makes the pipelines; those of [`Count::Gpu`] where `counts_on_gpu`.
     ///
     /// # Errors
     /// [`GpuError::Vulkan`].
-    pub fn new(device: &Device) -> Result<Self, GpuError> {
-        Ok(Self { by_host: Steps::new(device, false)?, by_gpu: Steps::new(device, true)? })
+    pub fn new(device: &Device, counts_on_gpu: bool) -> Result<Self, GpuError> {
+        let by_gpu = counts_on_gpu.then(|| Steps::new(device, true)).transpose()?;
+        Ok(Self { by_host: Steps::new(device, false)?, by_gpu })
     }
 
     /// Records one prefix sum. Any number may follow each other with buffers of their own.
     ///
     /// # Panics
-    /// When a buffer has no room for its elements, or there may be more than [`MAX_COUNT`].
+    /// When a buffer has no room for its elements, there may be more than [`MAX_COUNT`], or [`Count::Gpu`] was not
+    /// announced to [`Scan::new`].
     pub fn record(&self, cmd: &Commands<'_>, count: Count<'_>, bindings: &Bindings<'_>) {
         let Bindings { values, offsets, sums, total, total_index } = *bindings;
         let (steps, most, counts, count_index) = match count {
             // Binding 4 must hold some buffer; this variant of the shaders does not read it.
             Count::Host(count) => (&self.by_host, count, values, 0),
-            Count::Gpu { counts, index, capacity, .. } => (&self.by_gpu, capacity, counts, index),
+            Count::Gpu { counts, index, capacity, .. } => {
+                (self.by_gpu.as_ref().expect("pipelines for counts of the GPU"), capacity, counts, index)
+            }
         };
         assert!(most <= MAX_COUNT, "a scan of {most} elements where {MAX_COUNT} are the most");
         for (buffer, words) in [(values, most), (offsets, most), (sums, block_count(most)), (total, total_index + 1)] {

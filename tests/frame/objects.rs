@@ -7,7 +7,7 @@ use selvedge::model::Model;
 use selvedge::picture::{FrameSettings, Outputs, SceneSettings, SolidWay, TrimWay};
 
 /// Pipelines of the trim table.
-const TRIM_PASSES: [&str; 6] = ["density", "lines", "segments", "sizes", "cross", "sort"];
+const TRIM_PASSES: [&str; 7] = ["density", "lines", "segments", "sizes", "cross", "sort", "scan add (counted)"];
 
 /// Names of what exists after one frame.
 fn objects(model: &Model, outputs: Outputs) -> (HeadlessRenderer, Vec<String>) {
@@ -34,13 +34,22 @@ fn only_a_trimmed_scene_has_what_its_way_to_trim_needs() {
     // the table's buffers, the scene's curves, and a pipeline for each pass
     has_what_it_needs(
         TrimWay::Table,
-        &["trim intercepts", "trim curves", "cross (count)", "visibility (table", "heal (table"],
+        &["trim intercepts", "trim curves", "cross (count)", "scan add (counted)", "visibility (table", "heal (table"],
         &["trim arcs", "visibility (exact", "heal (exact"],
     );
     has_what_it_needs(
         TrimWay::Exact,
         &["trim arcs", "visibility (exact", "heal (exact"],
-        &["trim intercepts", "trim curves", "cross", "sort", "density", "visibility (table", "heal (table"],
+        &[
+            "trim intercepts",
+            "trim curves",
+            "cross",
+            "scan add (c",
+            "sort",
+            "density",
+            "visibility (table",
+            "heal (table",
+        ],
     );
 }
 

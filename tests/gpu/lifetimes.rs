@@ -11,7 +11,7 @@ fn live_objects_are_listed_until_they_go() {
     let device = watched();
     assert_eq!(device.device().objects(), [""; 0]);
     let table = Buffer::storage(device.device(), Pool::Persistent, "trim table", 100).unwrap();
-    let scan = Scan::new(device.device()).unwrap();
+    let scan = Scan::new(device.device(), true).unwrap();
     let objects = device.device().objects();
     assert_eq!(objects[0], "trim table");
     assert!(objects.iter().any(|name| name == "scan blocks"), "{objects:?}");

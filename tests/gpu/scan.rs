@@ -52,7 +52,7 @@ fn assert_parity(device: &HeadlessDevice, scan: &Scan, count: u32) {
 #[test]
 fn parity_around_lanes_and_blocks() {
     let device = watched();
-    let scan = Scan::new(device.device()).unwrap();
+    let scan = Scan::new(device.device(), true).unwrap();
     for count in [0, 1, 255, 256, 257, 1023, 1024, 1025, 100_000, 1_000_003] {
         assert_parity(&device, &scan, count);
     }
@@ -64,7 +64,7 @@ fn parity_around_lanes_and_blocks() {
 #[test]
 fn parity_where_the_sums_are_many() {
     let device = watched();
-    let scan = Scan::new(device.device()).unwrap();
+    let scan = Scan::new(device.device(), true).unwrap();
     for count in [MAX_COUNT, BLOCK * BLOCK, BLOCK * BLOCK + 1, 3 * BLOCK * BLOCK + 7] {
         assert_parity(&device, &scan, count);
     }
@@ -76,7 +76,7 @@ fn parity_where_the_sums_are_many() {
 #[test]
 fn several_in_a_frame_and_in_place() {
     let device = watched();
-    let scan = Scan::new(device.device()).unwrap();
+    let scan = Scan::new(device.device(), true).unwrap();
     let (first, second) = (values(5000), values(3000));
     let gpu_first = upload(&device, "first", &first);
     let mut with_total = second.clone();
@@ -105,7 +105,7 @@ fn several_in_a_frame_and_in_place() {
 #[test]
 fn counted_by_the_gpu() {
     let device = watched();
-    let scan = Scan::new(device.device()).unwrap();
+    let scan = Scan::new(device.device(), true).unwrap();
     let capacity = 10_000;
     let all = values(capacity);
     let gpu_values = upload(&device, "values", &all);
@@ -136,7 +136,7 @@ fn counted_by_the_gpu() {
 #[should_panic(expected = "a scan of 16777217 elements")]
 fn too_many_elements_are_refused() {
     let device = watched();
-    let scan = Scan::new(device.device()).unwrap();
+    let scan = Scan::new(device.device(), true).unwrap();
     let scratch = Scratch::new(&device, 1);
     let _ = device.submit(|cmd| {
         scan.record(cmd, Count::Host(MAX_COUNT + 1), &scratch.bindings(&scratch.offsets));

@@ -11,7 +11,7 @@ fn fill_then_scan(with_barrier: bool) -> Vec<Message> {
     let buffer = |name| Buffer::storage(device.device(), Pool::Transient, name, 4096).unwrap();
     let [values, offsets, sums, total] = ["values", "offsets", "sums", "total"].map(buffer);
     let bindings = Bindings { values: &values, offsets: &offsets, sums: &sums, total: &total, total_index: 0 };
-    let scan = Scan::new(device.device()).unwrap();
+    let scan = Scan::new(device.device(), true).unwrap();
     device
         .submit(|cmd| {
             cmd.fill(&values, 1);
