@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `resolve`, the background alone: of scenes without patches, but for those that bound operands.
+// Pass `resolve`, the background: where nothing is seen. Samples are added up, so it may not lie below what is.
 #include "scene.glsl"
 #include "view.glsl"
 
@@ -14,6 +14,6 @@ layout(binding = 2, rg32ui) readonly uniform uimage2D others; // in scenes witho
 
 void main() {
     ivec2 pixel = ivec2(gl_FragCoord.xy);
-    if (!sees_nothing(imageLoad(visibility, pixel).x) || imageLoad(others, pixel).x != 0u) discard;
+    if (!sees_nothing(imageLoad(visibility, pixel).x) || !sees_nothing(imageLoad(others, pixel).x)) discard;
     write_nothing();
 }

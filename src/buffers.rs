@@ -40,6 +40,8 @@ pub(crate) struct Buffers {
     pub counters: Buffer,
     pub trim: Option<TrimBuffers>,
     pub solids: Option<SolidBuffers>,
+    /// Of tiles that see a patch or a mesh; in scenes with either.
+    pub seen_squares: Option<Buffer>,
     pub visibility: Image,
     /// What is no patch, where pass `heal` needs it apart.
     pub others: Option<Image>,
@@ -180,8 +182,8 @@ impl Buffers {
         let depth_usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | sampled;
         let n = counts.items;
         let in_tiles = counts.leaves > 0 && !(counts.blister && counts.shells > 0);
-        let across = |side: u32| (size.0.div_ceil(side) * size.1.div_ceil(side)) * u32::from(in_tiles);
-        let (all_tiles, blocks) = (across(TILE), across(TILE * BLOCK));
+        let across = |side: u32| size.0.div_ceil(side) * size.1.div_ceil(side);
+        let [all_tiles, blocks] = [across(TILE), across(TILE * BLOCK)].map(|count| count * u32::from(in_tiles));
         let band_rows = capacities.band_rows.min(size.1.div_ceil(TILE));
         let tiles = all_tiles.min(size.0.div_ceil(TILE) * band_rows);
         let pixels = if counts.has_fragments() { size.0 * (band_rows * TILE).min(size.1) } else { 0 };
@@ -291,6 +293,7 @@ impl Buffers {
                     })
                 })
                 .transpose()?,
+            seen_squares: counts.has_surfaces.then(|| words("seen squares", across(TILE))).transpose()?,
             visibility: image("visibility", VISIBILITY_FORMAT, drawn_and_read)?,
             others: (counts.trim.is_some() && (counts.mesh_instances > 0 || counts.leaves > 0))
                 .then(|| image("visibility of others", VISIBILITY_FORMAT, drawn_and_read))

@@ -21,6 +21,7 @@
 //!                      ▼
 //!                    heal        pixels that look through a gap between trimmed faces
 //!                      ▼
+//!               seen_squares     tiles that see a patch or a mesh
 //!                  resolve       exact point and normal per pixel, light ──▶ the host's targets
 //!                      ▼
 //!                 coverage       scenes with smooth trims: pixels at borders, mixed of what resolve drew
@@ -38,6 +39,7 @@ use crate::gpu::{
     Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Texels, Timestamps, barrier,
 };
 use crate::passes::coverage::Coverage;
+use crate::passes::seen_squares::SeenSquares;
 use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::passes::{bound, emit, heal, mesh, reset, resolve, scan, split, visibility};
 use crate::scene::{MeshBuffers, Scene, SceneData, SolidData};
@@ -74,6 +76,8 @@ pub(crate) struct Passes {
     solids: Option<SolidPasses>,
     visibility: visibility::Visibility,
     mesh: Option<mesh::Mesh>,
+    /// Of scenes with patches or meshes.
+    squares: Option<SeenSquares>,
     /// Into the host's targets; `None` where they are but a colour, made of samples.
     resolve: Option<resolve::Resolve>,
     samples: Option<SamplePasses>,
@@ -102,7 +106,6 @@ impl Passes {
             operands: data.has_operands,
             volume,
         };
-        let visibility = visibility::Visibility::new(device, kinds)?;
         let tessellation = |()| {
             Ok(TessellationPasses {
                 bound: bound::Bound::new(device)?,
@@ -110,21 +113,42 @@ impl Passes {
                 emit: emit::Emit::new(device)?,
             })
         };
+        let outward = data.meshes.draws.len() - data.meshes.outward;
+        let meshes = mesh::Kinds { both: data.meshes.outward > 0, outward: outward > 0, volume };
+        let mesh = || mesh::Mesh::new(device, (VISIBILITY_FORMAT, DEPTH_FORMAT), meshes);
+        // a driver takes milliseconds for each pipeline, and as many threads as ask it
+        let (solids, (faces, pictures)) = rayon::join(
+            || SolidPasses::new(device, data, test),
+            || {
+                rayon::join(
+                    || {
+                        let tessellation = (!data.items.is_empty()).then_some(()).map(tessellation).transpose()?;
+                        let mesh = data.has_meshes().then(mesh).transpose()?;
+                        Ok((tessellation, visibility::Visibility::new(device, kinds)?, mesh))
+                    },
+                    || {
+                        let resolve = resolved::targets(device, data, formats)?;
+                        let samples = SamplePasses::new(device, data, formats)?;
+                        let squares = data.has_surfaces().then(|| SeenSquares::new(device)).transpose()?;
+                        Ok((resolve, samples, squares, reset::Reset::new(device)?, scan::Scan::new(device)?))
+                    },
+                )
+            },
+        );
+        let ((tessellation, visibility, mesh), (resolve, samples, squares, reset, scan)) = (faces?, pictures?);
         Ok(Self {
-            reset: reset::Reset::new(device)?,
-            scan: scan::Scan::new(device)?,
-            tessellation: (!data.items.is_empty()).then_some(()).map(tessellation).transpose()?,
-            trim,
-            solids: SolidPasses::new(device, data, test)?,
+            reset,
+            scan,
+            tessellation,
+            solids: solids?,
             visibility,
-            mesh: data
-                .has_meshes()
-                .then(|| mesh::Mesh::new(device, (VISIBILITY_FORMAT, DEPTH_FORMAT), volume))
-                .transpose()?,
-            resolve: resolved::targets(device, data, formats)?,
-            samples: SamplePasses::new(device, data, formats)?,
+            mesh,
+            squares,
+            resolve,
+            samples,
             layers: LayerPasses::new(device, data, formats)?,
             coverage: coverage::new(device, data, formats)?,
+            trim,
         })
     }
 }
@@ -209,9 +233,13 @@ impl Frame<'_> {
             times.scope(cmd, "heal", || self.heal(cmd, parts, &test));
             drawn = Access::COMPUTE_WRITE;
         }
-        barrier::images(cmd, &[(&self.buffers.visibility, drawn, Access::FRAGMENT_READ)]);
+        let read = Access::COMPUTE_READ | Access::FRAGMENT_READ;
+        barrier::images(cmd, &[(&self.buffers.visibility, drawn, read)]);
         if let Some(pass) = resolve {
-            times.scope(cmd, "resolve", || self.resolve(cmd, pass));
+            times.scope(cmd, "resolve", || {
+                self.seen_squares(cmd);
+                self.resolve(cmd, pass);
+            });
         }
         if let Some(pass) = &self.passes.coverage {
             times.scope(cmd, "coverage", || self.coverage(cmd, pass, &test));
@@ -333,7 +361,7 @@ impl Frame<'_> {
         let read = (Access::COMPUTE_READ | Access::FRAGMENT_READ).discarded();
         let others = b.others.iter().map(|image| (image, read, Access::COLOUR_WRITE));
         let fixed = [
-            (&b.visibility, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE),
+            (&b.visibility, read, Access::COLOUR_WRITE),
             (&b.depth, Access::DEPTH_WRITE.discarded() | Access::COMPUTE_READ.discarded(), Access::DEPTH_WRITE),
         ];
         let behind = b.behind.iter().chain(&b.resolved).map(|image| (image, read, Access::COLOUR_WRITE));
@@ -360,7 +388,7 @@ impl Frame<'_> {
             volume: self.volume(),
         };
         let seen = b.others.as_ref().unwrap_or(&b.visibility);
-        pass.record(cmd, &bindings, (seen, &b.depth), m.draws.iter());
+        pass.record(cmd, &bindings, (seen, &b.depth), &m.draws, m.outward);
         barrier::images(
             cmd,
             &[(seen, Access::COLOUR_WRITE, Access::COLOUR_WRITE), (&b.depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],

@@ -52,6 +52,7 @@ const BARRIERS: &[&str] = &[
     "src/frame/coverage.rs",
     "src/frame/edit.rs",
     "src/frame/layers.rs",
+    "src/frame/resolved.rs",
     "src/frame/rival.rs",
     "src/frame/samples.rs",
     "src/frame/solids.rs",

@@ -17,6 +17,7 @@ import json, math, os, pathlib, sys
 import numpy as np
 
 sys.path.insert(0, os.environ['ORACLE'])
+import judge_iges
 import oracle as K
 from OCP.BRep import BRep_Tool
 from OCP.BRepClass import BRepClass_FaceClassifier
@@ -85,6 +86,7 @@ class Surface:
 def main():
     model, folder, limit = sys.argv[1], pathlib.Path(sys.argv[2]), int(sys.argv[3])
     K.quiet()
+    judge_iges.install()
     _, faces, _ = K.load(model)
     camera, drawn = json.loads((folder / 'camera.json').read_text()), np.load(folder / 'face.npy')
     height, width = drawn.shape

@@ -1,4 +1,4 @@
-// Pass `resolve`, patches and the background: the exact surface at the pixel's centre, then light.
+// Pass `resolve`, patches: the exact surface at the pixel's centre, then light.
 //
 // The visibility image holds (u, v) of the *tessellation* under the pixel; refine.glsl moves it to
 // the point of the exact surface that projects to the pixel's centre.
@@ -17,7 +17,6 @@ layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; }
 layout(binding = 6) uniform samplerBuffer points;
 layout(scalar, binding = 7) readonly buffer Instances { Instance instances[]; };
 layout(binding = 8, rg32ui) readonly uniform uimage2D visibility;
-layout(binding = 9, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
 
 #include "eye_ray.glsl"
 #include "patch.glsl"
@@ -26,13 +25,7 @@ layout(binding = 9, rg32ui) readonly uniform uimage2D others; // in scenes witho
 
 void main() {
     uvec2 seen = imageLoad(visibility, ivec2(gl_FragCoord.xy)).xy;
-    if (sees_other(seen.x)) discard;
-    if (sees_nothing(seen.x)) {
-        // samples are added up: nothing may be written below what is no patch
-        if (SCENE_HAS_OTHERS && imageLoad(others, ivec2(gl_FragCoord.xy)).x != 0u) discard;
-        write_nothing();
-        return;
-    }
+    if (sees_nothing(seen.x) || sees_other(seen.x)) discard;
     write_patch(seen, false);
 }
 

@@ -1,5 +1,5 @@
-// Two triangles over each square of tiles that pass `solid_squares` found, one instance a tile. The pass that draws
-// them defines SQUARES, the binding.
+// Two triangles over each square of tiles that pass `solid_squares` or `seen_squares` found, one instance a tile. The
+// pass that draws them defines SQUARES, the binding.
 #ifndef SQUARES_GLSL
 #define SQUARES_GLSL
 

@@ -32,6 +32,9 @@ pub struct BuiltFace {
     pub gap: f64,
 }
 
+/// Share of the tolerance that a fit may take, and a joint: each counts up to 1.25 times, the second along both axes.
+const SHARE: f64 = 0.25;
+
 /// Turns of a helical strip that a carrier may cover; only nonsense has more.
 const MAX_TURNS: f64 = 1e4;
 
@@ -39,10 +42,11 @@ const MAX_TURNS: f64 = 1e4;
 ///
 /// `tolerance` is the source's length tolerance in mm. Vertices and poles within it (kept between
 /// `1e-9` and `1e-5` of the face's diagonal) are the same. Trim curves, fitted or replaced by lines of
-/// constant parameter, follow the pre-image of their edge to a hundredth of it, kept between `1e-9`
-/// and `1e-7` of the diagonal: at `1e-7` a face 4000 pixels wide is right to half a pixel when enlarged
-/// a thousand times, and tighter fits would only repeat the noise of most files. For an edge that does not
-/// lie on the surface, its distance from it stands for the tolerance where that is larger.
+/// constant parameter, follow the pre-image of their edge to a hundredth of it, kept between `1e-9` (or a
+/// quarter of the tolerance, where that is less) and `1e-7` of the diagonal: at `1e-7` a face 4000 pixels wide
+/// is right to half a pixel when enlarged a thousand times, and tighter fits would only repeat the noise of
+/// most files. For an edge that does not lie on the surface, its distance from it stands for the tolerance
+/// where that is larger.
 ///
 /// # Errors
 /// [`BuildError`] names the face or edge and the reason.
@@ -55,7 +59,10 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
     let named = |reason| BuildError::Surface { face: face.id, reason };
     let mut support = Support::new(&face.surface, eps).map_err(named)?;
     if size > 0.0 {
-        support.target = (1e-2 * tolerance).clamp(1e-9 * size, 1e-7 * size);
+        // what is fitted and what is moved together stay within the tolerance, where rounding lets them
+        let share = (SHARE * tolerance).max(1e-12 * size);
+        support.target = (1e-2 * tolerance).clamp(share.min(1e-9 * size), 1e-7 * size);
+        support.pull = (10.0 * support.target).min(share);
         support.noise = 1e-7 * size;
     }
     uses.iter_mut().for_each(|bound| bound.retain(|e| e.length > support.target));

@@ -128,12 +128,12 @@ impl Curve {
 
     /// The same points in the opposite order.
     pub fn reversed(&self) -> Self {
-        match self.clone() {
+        match *self {
             Self::Line { origin, direction } => Self::Line { origin, direction: -direction },
             Self::Ellipse { centre, x, y } => Self::Ellipse { centre, x, y: -y },
             Self::Hyperbola { centre, x, y } => Self::Hyperbola { centre, x, y: -y },
             Self::Parabola { apex, x, y } => Self::Parabola { apex, x, y: -y },
-            Self::Pieces(p) => Self::Pieces(p.reversed()),
+            Self::Pieces(ref p) => Self::Pieces(p.reversed()),
         }
     }
 
@@ -276,7 +276,7 @@ pub(super) fn best_seeds(seeds: &[f64], distance: impl Fn(f64) -> f64) -> Vec<f6
 }
 
 /// One segment of a composite curve as Bézier pieces in its own direction.
-fn segment(geometry: &CurveGeometry, eps: f64) -> Result<Vec<Bezier<DVec4>>, &'static str> {
+pub(super) fn segment(geometry: &CurveGeometry, eps: f64) -> Result<Vec<Bezier<DVec4>>, &'static str> {
     let whole = |curve: Curve, (a, b): (f64, f64)| curve.beziers(a, b).into_iter().map(|s| s.piece).collect();
     match geometry {
         CurveGeometry::Trimmed { basis, start, end, forward } => {

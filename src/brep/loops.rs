@@ -252,7 +252,7 @@ fn side_along_pole(support: &Support, before: &Strand, here: &Strand, pole: usiz
 }
 
 /// Whether an end of a strand may move to the joint, and the strand with it: along its own line, or
-/// by no more than ten times the target. Farther, the strand stays true to its edge, which another
+/// by no more than ten times the target and a quarter of the tolerance. Farther, the strand stays true to its edge, which another
 /// face shares, and a straight piece leads to the vertex.
 fn may_pull(support: &Support, strand: &Strand, from: DVec2, to: DVec2) -> bool {
     let speed = support.speed(from);
@@ -261,7 +261,7 @@ fn may_pull(support: &Support, strand: &Strand, from: DVec2, to: DVec2) -> bool 
         let along = ((strand.end - strand.start) * speed).normalize_or_zero();
         step -= along * step.dot(along);
     }
-    step.length() <= 10.0 * support.target
+    step.length() <= support.pull
 }
 
 /// The shared point of two strands: the pre-image of their vertex, on the lines that they follow.

@@ -34,6 +34,11 @@ impl SurfaceMap {
         self.0.natural
     }
 
+    /// After how much a parameter repeats; axis 0 is `u`.
+    pub fn natural_period(&self, axis: usize) -> Option<f64> {
+        self.0.periods[axis]
+    }
+
     /// Parameters strictly inside `(a, b)` across which the surface may crease; axis 0 is `u`.
     pub fn creases(&self, axis: usize, a: f64, b: f64) -> Vec<f64> {
         self.0.creases(axis, a, b)

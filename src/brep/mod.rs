@@ -20,6 +20,7 @@
 //! | edge → pre-image in the standard's own `(u, v)` | `order`; `trace`, `border`, `preimage`, `strand` |
 //! | strands → loops without seams, oriented | `loops`; `rims`, `cut`; `nest` |
 //! | the standard's `(u, v)` → a spline's | `law`, `carrier`, `fit` |
+//! | loops stated in a spline's own `(u, v)` | `given` |
 
 mod approximate;
 mod border;
@@ -32,6 +33,7 @@ mod edge;
 mod error;
 mod fit;
 mod frame;
+mod given;
 mod invert;
 mod law;
 mod loops;
@@ -52,6 +54,7 @@ mod tests;
 pub use build::{BuiltFace, build_face, crossing_note};
 pub use derived::{curve_on_surface, offset_curve, offset_surface};
 pub use error::BuildError;
+pub use given::face_in_parameters;
 pub use map::SurfaceMap;
 
 use crate::spline::{BSpline, Surface};

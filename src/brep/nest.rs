@@ -87,7 +87,7 @@ fn orient(support: &Support, loops: &mut [Loop]) {
 }
 
 /// How many other loops hold loop `i`.
-fn depth(polygons: &[Vec<DVec2>], i: usize) -> usize {
+pub(super) fn depth(polygons: &[Vec<DVec2>], i: usize) -> usize {
     (0..polygons.len()).filter(|j| *j != i && contains(&polygons[*j], &polygons[i])).count()
 }
 

@@ -13,10 +13,8 @@ pub(super) struct SplineForm {
     /// As the source states it.
     pub surface: Surface,
     grid: PatchGrid,
-    /// Box of each patch's control points.
-    boxes: Vec<(DVec3, DVec3)>,
-    /// Points of each patch from which a search begins, once it was searched.
-    seeds: Vec<OnceCell<Vec<DVec3>>>,
+    /// What each patch tells of where to search, once something was searched for.
+    places: OnceCell<Vec<PatchPlace>>,
     /// Parameter ranges.
     pub domain: [(f64, f64); 2],
     /// First and last side coincide, in `u` and in `v`.
@@ -31,6 +29,15 @@ pub(super) struct SplineForm {
     near: Cell<usize>,
 }
 
+/// Where a patch lies.
+#[derive(Clone, Debug)]
+struct PatchPlace {
+    /// Box of its control points.
+    bounds: (DVec3, DVec3),
+    /// Its points from which a search begins, once it was searched.
+    seeds: OnceCell<Vec<DVec3>>,
+}
+
 /// Boxes that take as long to look at and to put in order as one evaluation.
 const BOXES: u64 = 4;
 
@@ -39,17 +46,14 @@ impl SplineForm {
     pub fn new(surface: &Surface, eps: f64) -> Self {
         let (u, v) = surface.domain();
         let grid = surface.patches();
-        let boxes = grid.patches.iter().map(|p| p.patch.bounds()).collect();
         let (ku, kv) = surface.knots();
         let (du, dv) = surface.degrees();
         let (lo, hi) = surface.bounds();
-        let seeds = vec![OnceCell::new(); grid.patches.len()];
         let mut this = Self {
             size: lo.distance(hi),
             surface: surface.clone(),
             grid,
-            boxes,
-            seeds,
+            places: OnceCell::new(),
             domain: [u, v],
             closed: [false; 2],
             creases: [creases(du, ku), creases(dv, kv)],
@@ -58,11 +62,10 @@ impl SplineForm {
         };
         this.closed = [0, 1].map(|axis| {
             let (a, b) = this.domain[axis];
-            let sides = this.side(axis, a).into_iter().zip(this.side(axis, b));
             let mut spread = (DVec3::INFINITY, DVec3::NEG_INFINITY);
-            let meet = sides.fold(true, |meet, (p, q)| {
+            let meet = this.side(axis, a).zip(this.side(axis, b)).all(|(p, q)| {
                 spread = (spread.0.min(p), spread.1.max(p));
-                meet && p.distance(q) <= eps
+                p.distance(q) <= eps
             });
             // two sides collapsed to one point do not make a tube
             meet && (spread.1 - spread.0).length() > eps
@@ -99,16 +102,14 @@ impl SplineForm {
     }
 
     /// Points along the side where `axis` has the given value.
-    fn side(&self, axis: usize, value: f64) -> Vec<DVec3> {
+    fn side(&self, axis: usize, value: f64) -> impl Iterator<Item = DVec3> {
         const SAMPLES: usize = 24;
         let (a, b) = self.domain[1 - axis];
-        (0..=SAMPLES)
-            .map(|i| {
-                let t = a + (b - a) * i as f64 / SAMPLES as f64;
-                let p = if axis == 0 { DVec2::new(value, t) } else { DVec2::new(t, value) };
-                self.grid.point(p.x, p.y)
-            })
-            .collect()
+        (0..=SAMPLES).map(move |i| {
+            let t = a + (b - a) * i as f64 / SAMPLES as f64;
+            let p = if axis == 0 { DVec2::new(value, t) } else { DVec2::new(t, value) };
+            self.grid.point(p.x, p.y)
+        })
     }
 
     /// Sides that are one point.
@@ -116,9 +117,11 @@ impl SplineForm {
         let mut poles = Vec::new();
         for axis in (0..2).filter(|a| !self.closed[*a]) {
             for value in [self.domain[axis].0, self.domain[axis].1] {
-                let side = self.side(axis, value);
-                if side.iter().all(|p| p.distance(side[0]) <= eps) {
-                    poles.push(Pole { axis, value, point: side[0] });
+                let mut side = self.side(axis, value);
+                if let Some(point) = side.next()
+                    && side.all(|p| p.distance(point) <= eps)
+                {
+                    poles.push(Pole { axis, value, point });
                 }
             }
         }
@@ -181,8 +184,10 @@ impl SplineForm {
     /// Global search: patches in order of the distance to their boxes, polished from the best of a
     /// grid of samples, until no box can hold a nearer point.
     fn search(&self, p: DVec3) -> (f64, DVec2) {
-        let gap = |(lo, hi): &(DVec3, DVec3)| p.distance(p.clamp(*lo, *hi));
-        let mut order: Vec<(f64, usize)> = self.boxes.iter().map(gap).zip(0..).collect();
+        let place = |q: &SurfacePatch| PatchPlace { bounds: q.patch.bounds(), seeds: OnceCell::new() };
+        let places = self.places.get_or_init(|| self.grid.patches.iter().map(place).collect());
+        let gap = |place: &PatchPlace| p.distance(p.clamp(place.bounds.0, place.bounds.1));
+        let mut order: Vec<(f64, usize)> = places.iter().map(gap).zip(0..).collect();
         order.sort_by(|a, b| a.0.total_cmp(&b.0));
         self.worked(order.len() as u64 / BOXES);
         let mut best = (f64::INFINITY, DVec2::new(self.domain[0].0, self.domain[1].0));
@@ -193,7 +198,7 @@ impl SplineForm {
             }
             let patch = &self.grid.patches[i];
             let (n, k) = seed_counts(patch);
-            let points = self.seeds[i].get_or_init(|| seeds(patch));
+            let points = places[i].seeds.get_or_init(|| seeds(patch));
             self.worked(points.len() as u64 / BOXES);
             let mut seed = (f64::INFINITY, DVec2::ZERO);
             for (index, point) in points.iter().enumerate() {

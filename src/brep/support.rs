@@ -69,6 +69,8 @@ pub(super) struct Support {
     pub eps: f64,
     /// Distance in mm by which a trim curve may leave the pre-image of its edge.
     pub target: f64,
+    /// Distance in mm by which the end of a strand may be moved to meet the next one.
+    pub pull: f64,
     /// The largest that `target` may grow to for an edge that does not lie on the surface: [`Support::target_of`].
     pub noise: f64,
     /// Evaluations that may still be spent on inversion.
@@ -182,6 +184,7 @@ impl Support {
             window: None,
             eps,
             target: 1e-2 * eps,
+            pull: 1e-1 * eps,
             noise: 0.0,
             left: Cell::new(u64::MAX),
         }

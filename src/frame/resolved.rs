@@ -1,8 +1,9 @@
-//! The frame's last pass: what each kind of thing gives pass `resolve`.
+//! The frame's last pass: where each kind of thing is seen, and what it gives pass `resolve`.
 
-use super::{Frame, solids};
-use crate::gpu::{Commands, Device, GpuError};
-use crate::passes::resolve;
+use super::{Frame, WRITE_TO_READ, solids};
+use crate::abi::TILE;
+use crate::gpu::{Access, Commands, Device, GpuError, barrier};
+use crate::passes::{resolve, seen_squares};
 use crate::picture::Samples;
 use crate::scene::SceneData;
 
@@ -46,6 +47,16 @@ pub(super) fn targets(
 }
 
 impl Frame<'_> {
+    /// Where pass `resolve` looks for patches and meshes.
+    pub(super) fn seen_squares(&self, cmd: &Commands<'_>) {
+        let b = self.buffers;
+        let (Some(pass), Some(squares)) = (&self.passes.squares, &b.seen_squares) else { return };
+        let (frame, visibility) = (self.constants, &b.visibility);
+        let others = b.others.as_ref().unwrap_or(visibility);
+        pass.record(cmd, &seen_squares::Bindings { frame, visibility, others, squares });
+        barrier::buffers(cmd, &[(squares, WRITE_TO_READ.0, Access::VERTEX_READ)]);
+    }
+
     pub(super) fn resolve(&self, cmd: &Commands<'_>, pass: &resolve::Resolve) {
         let (s, b) = (self.scene, self.buffers);
         let bindings = resolve::Bindings {
@@ -59,6 +70,10 @@ impl Frame<'_> {
             instances: &s.instances,
             visibility: &b.visibility,
             others: b.others.as_ref().unwrap_or(&b.visibility),
+            squares: b.seen_squares.as_ref().map(|squares| {
+                let (width, height) = b.visibility.size();
+                (width.div_ceil(TILE) * height.div_ceil(TILE), squares)
+            }),
         };
         let meshes = s.meshes.as_ref().map(|m| resolve::MeshBindings {
             frame: self.constants,

@@ -81,10 +81,8 @@ impl SolidPasses {
                 sort: operand_sort::OperandSort::new(device)?,
             })
         };
-        Ok(Some(Self {
-            rects: solid_rects::SolidRects::new(device)?,
-            tiles: has_tiles(data).then_some(()).map(tiles).transpose()?,
-            way: if peels {
+        let way = || {
+            Ok(if peels {
                 Way::Blister(Box::new(blister::Blister::new(device, (surfaces, shells), formats.0, formats.1)?))
             } else if data.solids.order.is_empty() {
                 let followed = data.solids.is_followed();
@@ -92,9 +90,16 @@ impl SolidPasses {
                 Way::Events(solid_events::SolidEvents::new(device, kinds, formats.0, formats.1)?)
             } else {
                 Way::Cst(solid_cst::SolidCst::new(device, surfaces, formats.0, formats.1)?)
-            },
-            shells: (shells && !peels).then_some(()).map(shell_passes).transpose()?,
-        }))
+            })
+        };
+        let lists = || {
+            let shells = (shells && !peels).then_some(()).map(shell_passes).transpose()?;
+            let tiles = has_tiles(data).then_some(()).map(tiles).transpose()?;
+            Ok((solid_rects::SolidRects::new(device)?, tiles, shells))
+        };
+        let (way, lists) = rayon::join(way, lists);
+        let (rects, tiles, shells) = lists?;
+        Ok(Some(Self { rects, tiles, way: way?, shells }))
     }
 }
 

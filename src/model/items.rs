@@ -9,8 +9,8 @@
 //!
 //! Clear solids are objects of their own: none swallows what is within it, another clear solid or an opaque one.
 
+use super::solid::Operands;
 use super::{Colour, Instance, Model, Part, Primitive, Shape, Solid, SolidError};
-use crate::csg::{Builder, Node, Op};
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
@@ -61,26 +61,11 @@ impl Solid {
     /// The solid taken apart by what is seen through: operands of unions at the root that are opaque together make
     /// the first, those of one colour one each, others one each. Their union is the solid.
     fn apart(&self) -> Result<Vec<Self>, SolidError> {
-        let nodes = self.tree().nodes();
-        // subtrees are ranges that end with their root
+        let operands = Operands::of(self);
         let mut groups: Vec<(bool, Vec<u32>)> = vec![(true, Vec::new())];
         let mut by_colour: BTreeMap<[u32; 4], usize> = BTreeMap::new();
-        let mut open = vec![self.tree().root()];
-        let mut starts: Vec<u32> = Vec::with_capacity(nodes.len());
-        for (i, node) in (0..).zip(nodes) {
-            starts.push(match *node {
-                Node::Pair(_, a, _) | Node::Complement(a) => starts[a as usize],
-                Node::Leaf(_) | Node::Constant(_) => i,
-            });
-        }
-        while let Some(root) = open.pop() {
-            if let Node::Pair(Op::Union, a, b) = nodes[root as usize] {
-                open.extend([b, a]);
-                continue;
-            }
-            let below = &nodes[starts[root as usize] as usize..=root as usize];
-            let leaves = below.iter().filter_map(|n| if let Node::Leaf(p) = n { Some(*p) } else { None });
-            let primitives: Vec<&Primitive> = leaves.map(|p| &self.primitives()[p as usize]).collect();
+        for &root in operands.roots() {
+            let primitives: Vec<&Primitive> = operands.primitives(root).collect();
             if primitives.iter().all(|p| p.is_opaque()) {
                 groups[0].1.push(root);
                 continue;
@@ -94,38 +79,7 @@ impl Solid {
                 _ => groups.push((false, vec![root])),
             }
         }
-        groups.iter().filter(|(_, roots)| !roots.is_empty()).map(|(_, roots)| self.of_roots(roots, &starts)).collect()
-    }
-
-    /// The union of subtrees, with the primitives that they name and no others.
-    fn of_roots(&self, roots: &[u32], starts: &[u32]) -> Result<Self, SolidError> {
-        let mut place: BTreeMap<u32, u32> = BTreeMap::new();
-        let mut primitives = Vec::new();
-        let mut builder = Builder::new();
-        let mut tops = Vec::with_capacity(roots.len());
-        for &root in roots {
-            let first = starts[root as usize];
-            let mut map: Vec<u32> = Vec::new();
-            for node in &self.tree().nodes()[first as usize..=root as usize] {
-                let of = |child: u32, map: &[u32]| map[(child - first) as usize];
-                let new = match *node {
-                    Node::Constant(_) => builder.push(*node),
-                    Node::Leaf(p) => {
-                        let to = *place.entry(p).or_insert_with(|| {
-                            primitives.push(self.primitives()[p as usize].clone());
-                            primitives.len() as u32 - 1
-                        });
-                        builder.leaf(to)
-                    }
-                    Node::Complement(a) => builder.complement(of(a, &map)),
-                    Node::Pair(op, a, b) => builder.pair(op, of(a, &map), of(b, &map)),
-                };
-                map.push(new);
-            }
-            tops.extend(map.last());
-        }
-        let root = builder.fold(Op::Union, tops);
-        Self::new(primitives, builder.finish(root)?)
+        groups.iter().filter(|(_, roots)| !roots.is_empty()).map(|(_, roots)| operands.union(roots)).collect()
     }
 }
 

@@ -52,4 +52,6 @@ mod solids;
 mod sort;
 #[cfg(feature = "headless")]
 mod split;
+#[cfg(feature = "headless")]
+mod squares;
 mod table;

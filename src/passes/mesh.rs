@@ -25,7 +25,20 @@ const SOLIDS_HAVE: u32 = 5;
 
 /// The pass.
 pub(crate) struct Mesh {
-    pipeline: Pipeline,
+    /// Of meshes that are seen from both sides, and of those that are seen from outside.
+    both: Option<Pipeline>,
+    outward: Option<Pipeline>,
+}
+
+/// What the scene has, and its volume.
+#[derive(Clone, Copy)]
+pub(crate) struct Kinds {
+    /// Meshes that are seen from both sides.
+    pub both: bool,
+    /// Meshes that are seen from outside only.
+    pub outward: bool,
+    /// The most general kind of surface of the volume that trims the scene, where one does.
+    pub volume: Option<u32>,
 }
 
 /// Its buffers, in binding order.
@@ -40,47 +53,54 @@ pub(crate) struct Bindings<'a> {
 }
 
 impl Mesh {
-    /// For images of these formats; `volume`: one trims the scene, and its most general kind of surface.
+    /// For images of these formats.
     pub(crate) fn new(
         device: &Device,
         (visibility, depth): (vk::Format, vk::Format),
-        volume: Option<u32>,
+        kinds: Kinds,
     ) -> Result<Self, GpuError> {
+        let volume = kinds.volume;
         let (name, fragment) = match volume {
             None => ("mesh", shaders::MESH_FRAG),
             Some(_) => ("mesh (within a volume)", shaders::MESH_VOLUME_FRAG),
         };
-        let pipeline = Pipeline::graphics(
-            device,
-            &GraphicsInfo {
-                name,
-                stages: &[
-                    (vk::ShaderStageFlags::VERTEX, shaders::MESH_VERT),
-                    (vk::ShaderStageFlags::FRAGMENT, fragment),
-                ],
-                bindings: &[&[Binding::Storage; 5][..], volume.map_or(&[], |_| &PRIMITIVES)].concat(),
-                push_bytes: 0,
-                constants: &[(SOLIDS_HAVE, volume.unwrap_or_default())],
-                topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-                patch_points: 0,
-                cull: vk::CullModeFlags::NONE,
-                front: vk::FrontFace::COUNTER_CLOCKWISE,
-                colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
-                depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
-                stencil: None,
-            },
-        )?;
-        Ok(Self { pipeline })
+        let pipeline = |name: &str, cull: vk::CullModeFlags| {
+            Pipeline::graphics(
+                device,
+                &GraphicsInfo {
+                    name,
+                    stages: &[
+                        (vk::ShaderStageFlags::VERTEX, shaders::MESH_VERT),
+                        (vk::ShaderStageFlags::FRAGMENT, fragment),
+                    ],
+                    bindings: &[&[Binding::Storage; 5][..], volume.map_or(&[], |_| &PRIMITIVES)].concat(),
+                    push_bytes: 0,
+                    constants: &[(SOLIDS_HAVE, volume.unwrap_or_default())],
+                    topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+                    patch_points: 0,
+                    cull,
+                    front: vk::FrontFace::COUNTER_CLOCKWISE,
+                    colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
+                    depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
+                    stencil: None,
+                },
+            )
+        };
+        Ok(Self {
+            both: kinds.both.then(|| pipeline(name, vk::CullModeFlags::NONE)).transpose()?,
+            outward: kinds.outward.then(|| pipeline("mesh (outside)", vk::CullModeFlags::BACK)).transpose()?,
+        })
     }
 
     /// One draw for each of `draws`: a range of corners of the scene's triangles, and the mesh instances
-    /// that show them.
-    pub(crate) fn record<'d>(
+    /// that show them. Those from `outward` on are seen from outside only.
+    pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
         (seen, depth): (&Image, &Image),
-        draws: impl Iterator<Item = &'d (Range<u32>, Range<u32>)>,
+        draws: &[(Range<u32>, Range<u32>)],
+        outward: usize,
     ) {
         let colour = [Attachment { image: seen, load: Load::ColourU32([0; 4]) }];
         let depth = Attachment { image: depth, load: Load::Depth(0.0) };
@@ -88,9 +108,13 @@ impl Mesh {
             let own = [b.frame, b.views, b.mesh_instances, b.triangles, b.positions].map(Resource::from);
             let volume = b.volume.iter().flat_map(Primitives::resources);
             let resources: Vec<_> = own.into_iter().chain(volume).collect();
-            cmd.bind(&self.pipeline, &resources, &[]);
-            for (corners, instances) in draws {
-                cmd.draw_instances(corners.clone(), instances.clone());
+            let (both, outward) = draws.split_at(outward);
+            for (pipeline, draws) in [(&self.both, both), (&self.outward, outward)] {
+                let Some(pipeline) = pipeline else { continue };
+                cmd.bind(pipeline, &resources, &[]);
+                for (corners, instances) in draws {
+                    cmd.draw_instances(corners.clone(), instances.clone());
+                }
             }
         });
     }

@@ -20,6 +20,7 @@ pub(crate) mod resolve;
 #[cfg(feature = "rivals")]
 pub(crate) mod rival_texture;
 pub mod scan;
+pub(crate) mod seen_squares;
 pub(crate) mod segments;
 pub(crate) mod sizes;
 pub(crate) mod solid_blocks;

@@ -4,7 +4,8 @@
 //!   item, (u, v) of the triangle ──Newton──▶ (u, v) whose exact point projects to the pixel's centre
 //!   triangle of a mesh ──plane──▶   │
 //!   side of a Boolean solid ─────▶  │        a pipeline for each kind of thing: each leaves the others'
-//!   nothing ──background────────▶   │        pixels alone; with a sun each asks whether it reaches the point
+//!   nothing ──background────────▶   │        pixels alone; with a sun each asks whether it reaches the point.
+//!                                   │        Drawn over the tiles that may see it, the background over all
 //!                                   ├──▶ colour, depth into the host's targets
 //!                                   └──▶ depth, face, (u, v), normal images, when asked for
 //! ```
@@ -44,18 +45,13 @@ const BEHIND: u32 = 18;
 /// Format of what is behind layers, and of what pass `coverage` mixes: linear colour and depth.
 pub(crate) const BEHIND_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// The pass: a pipeline for each kind of thing that the scene has.
+/// The pass: a pipeline for each kind of thing that the scene has, and the background.
 pub(crate) struct Resolve {
-    /// And the background, or it alone.
-    patches: Patches,
+    background: Pipeline,
+    patches: Option<Pipeline>,
     meshes: Option<Pipeline>,
     solids: Option<Pipeline>,
     operands: Option<Pipeline>,
-}
-
-enum Patches {
-    Some(Pipeline),
-    None { background: Pipeline },
 }
 
 /// What the scene asks of the pass.
@@ -149,9 +145,11 @@ pub(crate) struct Bindings<'a> {
     pub visibility: &'a Image,
     /// The visibility image again where the scene has no trims, or nothing but patches.
     pub others: &'a Image,
+    /// How many tiles the picture has, and the squares of them that see a patch or a mesh; `None` in scenes without.
+    pub squares: Option<(u32, &'a Buffer)>,
 }
 
-/// Buffers and images for meshes, in binding order.
+/// Buffers and images for meshes, in binding order; `squares` of [`Bindings`] follow.
 pub(crate) struct MeshBindings<'a> {
     pub frame: &'a Buffer,
     pub views: &'a Buffer,
@@ -208,7 +206,7 @@ impl Resolve {
         }
         let mut bindings = [Binding::Storage; 10];
         bindings[6] = Binding::Texels;
-        bindings[8..].fill(Binding::StorageImage);
+        bindings[8] = Binding::StorageImage;
         let of = if kinds.sun { SUN } else { STUDIO };
         let over = |vertex, name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
             Pipeline::graphics(
@@ -242,12 +240,9 @@ impl Resolve {
             let sun: &[_] = if kinds.sun { &SUN_BINDINGS } else { &[] };
             over(vertex, name, fragment, &[bindings, sun].concat(), &constants)
         };
-        let pipeline = |name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
-            lit(shaders::RESOLVE_VERT, name, fragment, bindings, constants)
-        };
-        let mut of_mesh = [Binding::Storage; 10];
-        of_mesh[8..].fill(Binding::StorageImage);
-        let mesh = |()| pipeline("mesh", of.meshes, &of_mesh, &[]);
+        let mut of_mesh = [Binding::Storage; 11];
+        of_mesh[8..10].fill(Binding::StorageImage);
+        let mesh = |()| lit(shaders::RESOLVE_SEEN_MESH_VERT, "mesh", of.meshes, &of_mesh, &[]);
         let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
         let mut of_solid = with_primitives::<14>(1);
         of_solid[5..7].fill(Binding::StorageImage);
@@ -260,21 +255,22 @@ impl Resolve {
         of_operand[6] = Binding::Texels;
         of_operand[8..].fill(Binding::StorageImage);
         let rational = (SCENE_HAS_RATIONAL, u32::from(kinds.rational));
-        let operand = |()| pipeline("operand", of.operands, &of_operand, &[rational]);
+        let operand = |()| lit(shaders::RESOLVE_VERT, "operand", of.operands, &of_operand, &[rational]);
         let operands = kinds.operands.then_some(()).map(operand).transpose()?;
-        let patches = if kinds.patches {
+        let patch = |()| {
             let weights = if kinds.rational { "rational" } else { "polynomial" };
             let constants = [rational, (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some()))];
-            Patches::Some(pipeline(weights, of.patches, &bindings, &constants)?)
-        } else {
-            let bindings = [Binding::Storage, Binding::StorageImage, Binding::StorageImage];
-            let (vertex, fragment) = (shaders::RESOLVE_VERT, shaders::RESOLVE_BACKGROUND_FRAG);
-            Patches::None { background: over(vertex, "background", fragment, &bindings, &[aovs, behind])? }
+            lit(shaders::RESOLVE_SEEN_VERT, weights, of.patches, &bindings, &constants)
         };
-        Ok(Self { patches, meshes, solids, operands })
+        let patches = kinds.patches.then_some(()).map(patch).transpose()?;
+        let of_background = [Binding::Storage, Binding::StorageImage, Binding::StorageImage];
+        let (vertex, fragment) = (shaders::RESOLVE_VERT, shaders::RESOLVE_BACKGROUND_FRAG);
+        let background = over(vertex, "background", fragment, &of_background, &[aovs, behind])?;
+        Ok(Self { background, patches, meshes, solids, operands })
     }
 
-    /// One triangle over the targets for each kind of thing; for Boolean solids the tiles that may see one.
+    /// One triangle over the targets for the background, and the tiles that see a patch or a mesh, or may see a Boolean
+    /// solid, for those.
     /// `sun`: what [`Kinds::sun`] asks for.
     pub(crate) fn record(
         &self,
@@ -293,21 +289,18 @@ impl Resolve {
         cmd.rendering(size, colour, depth, || {
             let buffers = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items].map(Into::into);
             let rest = [b.points.into(), b.instances.into(), b.visibility.into()];
-            match &self.patches {
-                Patches::Some(pipeline) => {
-                    bind(pipeline, buffers.into_iter().chain(rest).chain([b.others.into()]).collect());
-                }
-                Patches::None { background } => {
-                    cmd.bind(background, &[b.frame.into(), b.visibility.into(), b.others.into()], &[]);
-                }
-            }
+            cmd.bind(&self.background, &[b.frame.into(), b.visibility.into(), b.others.into()], &[]);
             cmd.draw(3, 0, 1);
-            if let (Some(pipeline), Some(m)) = (&self.meshes, meshes) {
+            if let (Some(pipeline), Some((count, squares))) = (&self.patches, b.squares) {
+                bind(pipeline, buffers.into_iter().chain(rest).chain([squares.into()]).collect());
+                cmd.draw_instances(0..6, 0..count);
+            }
+            if let (Some(pipeline), Some(m), Some((count, squares))) = (&self.meshes, meshes, b.squares) {
                 let placed = [m.frame, m.views, m.instances, m.mesh_instances, m.meshes].map(Into::into);
                 let shape = [m.triangles, m.positions, m.normals].map(Into::into);
-                let images = [m.visibility.into(), m.others.into()];
+                let images = [m.visibility.into(), m.others.into(), squares.into()];
                 bind(pipeline, placed.into_iter().chain(shape).chain(images).collect());
-                cmd.draw(3, 0, 1);
+                cmd.draw_instances(0..6, 0..count);
             }
             if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
                 // the shaders have these bindings in every scene, and read them only where there are tiles, or shells

@@ -1,6 +1,6 @@
 //! Pass `solid_squares`: which squares of tiles are drawn where Boolean solids may be seen.
 //!
-//! Reads: `frame`, `tile_entries`. Writes: `tile_squares`. Twin: `src/twin/solid_squares.rs`.
+//! Reads: `frame`, `tile_entries`. Writes: `tile_squares`. Twin: `src/twin/squares.rs`.
 
 use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;

@@ -8,7 +8,7 @@ use super::mesh::Meshes;
 use super::solids::{Lists, SolidData, UndrawnSolid};
 use super::sun::SunData;
 use crate::abi;
-use crate::model::{Camera, Instance, Model, Projection};
+use crate::model::{Camera, Instance, Lone, Model, Projection};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
 use crate::picture::{Highlight, Samples, SceneSettings, TrimWay};
@@ -96,7 +96,11 @@ impl SceneData {
         let open = items.as_ref().map_or(0, |items| items.open);
         let clear = items.as_ref().is_some_and(|items| !items.clear.is_empty());
         let seen_through = items.as_ref().map_or(0, |items| items.clear.len());
-        let lists = items.map_or_else(|| Lists::union(&model.solids), |items| Lists::of(items, all));
+        // whatever asks for more than the nearest face asks for all of the solids
+        let nearest = items.is_none() && settings.sun.is_none() && model.trim.is_none();
+        let lone = nearest.then(|| Lone::of(&model.solids)).transpose()?.flatten();
+        let union = lone.as_ref().map_or(&model.solids, |lone| &lone.rest);
+        let lists = items.map_or_else(|| Lists::union(union), |items| Lists::of(items, all));
         let solids = SolidData::new(&lists, settings.solids)?;
         let sun = settings.sun.map(|towards| SunData::new(towards, &solids));
         let shadowless = sun.as_ref().map_or(0, |_| model.instances.len() + seen_through + solids.splines_of_union());
@@ -150,6 +154,12 @@ impl SceneData {
             edit.first_faces = first_faces;
         }
         data.meshes = Meshes::new(model, &origins, open);
+        for mesh in lone.iter().flat_map(|lone| &lone.meshes) {
+            let origin = mesh.bounds().centre();
+            let instance = Instance { part: 0, transform: DAffine3::IDENTITY, colour: None, name: String::new() };
+            data.push_instance(&instance, origin, 0..0, 0);
+            data.meshes.push_outward(mesh, origin, data.instances.len() as u32 - 1);
+        }
         data.push_operands(trim);
         if !data.links.is_empty() {
             data.links.resize(4 * data.patches.len(), abi::Link::default());
@@ -175,6 +185,11 @@ impl SceneData {
     /// Some mesh is placed.
     pub(crate) fn has_meshes(&self) -> bool {
         !self.meshes.draws.is_empty()
+    }
+
+    /// Patches or meshes are seen themselves.
+    pub(crate) fn has_surfaces(&self) -> bool {
+        self.has_patches || self.has_meshes()
     }
 
     /// Frees the arrays that the GPU has; the placements and centres stay.

@@ -25,6 +25,8 @@ pub(crate) struct Meshes {
     pub normals: Vec<u32>,
     /// Corners of the triangles of one mesh, and its range of `instances`.
     pub draws: Vec<(Range<u32>, Range<u32>)>,
+    /// From this draw on only the triangles that face the eye are seen: Boolean solids.
+    pub outward: usize,
 }
 
 impl Meshes {
@@ -38,7 +40,13 @@ impl Meshes {
                 all.push(mesh, origin, part.closed && !open, placed);
             }
         }
+        all.outward = all.draws.len();
         all
+    }
+
+    /// One of the meshes that are seen from outside alone.
+    pub(super) fn push_outward(&mut self, mesh: &Mesh, origin: DVec3, instance: u32) {
+        self.push(mesh, origin, true, &[instance]);
     }
 
     fn push(&mut self, mesh: &Mesh, origin: DVec3, solid: bool, placed: &[u32]) {

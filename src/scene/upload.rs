@@ -83,6 +83,8 @@ pub(crate) struct MeshBuffers {
     pub normals: Buffer,
     /// Corners of triangles, and mesh instances.
     pub draws: Vec<(Range<u32>, Range<u32>)>,
+    /// From this draw on seen from outside only.
+    pub outward: usize,
 }
 
 /// What the scene's way to trim needs.
@@ -206,6 +208,7 @@ impl Scene {
                         triangles: persistent(&mut uploads, cmd, "mesh triangles", &m.triangles)?,
                         normals: persistent(&mut uploads, cmd, "mesh normals", &m.normals)?,
                         draws: m.draws.clone(),
+                        outward: m.outward,
                     })
                 })
                 .transpose()?,

@@ -269,6 +269,9 @@ fn to_beziers<P: Control>(degree: usize, knots: &[f64], points: &[P]) -> Vec<Spa
 pub(super) struct Cuts {
     degree: usize,
     spans: Vec<Cut>,
+    /// The part of the later of two neighbours at the start and at the end of each span: round by round, the last
+    /// pair first.
+    parts: Vec<[f64; 2]>,
 }
 
 /// A span that is not empty.
@@ -277,24 +280,23 @@ struct Cut {
     /// Knot at its start.
     knot: usize,
     range: (f64, f64),
-    /// The part of the later of two neighbours at the start and at the end of the span: round by round, the last
-    /// pair first.
-    parts: Vec<[f64; 2]>,
 }
 
 impl Cuts {
     /// `points`: how many control points a row has.
     pub fn new(degree: usize, knots: &[f64], points: usize) -> Self {
-        let cut = |knot: usize| {
-            let range @ (a, b) = (knots[knot], knots[knot + 1]);
-            let part = |round: usize, j: usize| {
-                let (lo, hi) = (knots[j + knot - degree], knots[j + 1 + knot - round]);
-                [(a - lo) / (hi - lo), (b - lo) / (hi - lo)]
-            };
-            let rounds = (1..=degree).flat_map(|r| (r..=degree).rev().map(move |j| part(r, j)));
-            Cut { knot, range, parts: rounds.collect() }
-        };
-        Self { degree, spans: (degree..points).filter(|&k| knots[k] < knots[k + 1]).map(cut).collect() }
+        let filled = (degree..points).filter(|&k| knots[k] < knots[k + 1]);
+        let spans: Vec<Cut> = filled.map(|knot| Cut { knot, range: (knots[knot], knots[knot + 1]) }).collect();
+        let mut parts = Vec::with_capacity(spans.len() * pairs(degree));
+        for Cut { knot, range: (a, b) } in &spans {
+            for round in 1..=degree {
+                for j in (round..=degree).rev() {
+                    let (lo, hi) = (knots[j + knot - degree], knots[j + 1 + knot - round]);
+                    parts.push([(a - lo) / (hi - lo), (b - lo) / (hi - lo)]);
+                }
+            }
+        }
+        Self { degree, spans, parts }
     }
 
     /// The parameter ranges of the pieces.
@@ -309,29 +311,39 @@ impl Cuts {
 
     /// Appends `degree + 1` points a piece.
     pub fn apply<P: Control>(&self, points: &[P], out: &mut Vec<P>) {
-        let degree = self.degree;
+        // the same for every degree; where that is known beforehand, points stay in registers
+        match self.degree {
+            1 => self.apply_known::<P, 2>(points, out),
+            2 => self.apply_known::<P, 3>(points, out),
+            3 => self.apply_known::<P, 4>(points, out),
+            4 => self.apply_known::<P, 5>(points, out),
+            5 => self.apply_known::<P, 6>(points, out),
+            _ => self.apply_known::<P, { MAX_DEGREE + 1 }>(points, out),
+        }
+    }
+
+    /// `N`: at least the number of points of a piece.
+    fn apply_known<P: Control, const N: usize>(&self, points: &[P], out: &mut Vec<P>) {
+        let count = if N <= MAX_DEGREE { N } else { self.degree + 1 };
+        let degree = count - 1;
         let first = out.len();
-        for cut in &self.spans {
+        out.reserve(self.spans.len() * count);
+        let mut early = [P::ZERO; N]; // rounds with the start so far
+        for (cut, own) in self.spans.iter().zip(self.parts.chunks_exact(pairs(degree))) {
             let from = out.len();
-            out.resize(from + degree + 1, P::ZERO);
-            let piece = &mut out[from..];
-            // rounds with the start so far
-            let mut early = [P::ZERO; MAX_DEGREE + 1];
-            let early = &mut early[..=degree];
-            early.copy_from_slice(&points[cut.knot - degree..=cut.knot]);
-            let mut parts = &cut.parts[..];
-            for round in 1..=degree + 1 {
-                // this point and the later ones of the piece have no more than these
-                let mut late = [P::ZERO; MAX_DEGREE + 1];
-                let late = &mut late[..=degree];
-                late.copy_from_slice(early);
+            out.resize(from + count, P::ZERO);
+            let piece = &mut out[from..from + count];
+            early[..count].copy_from_slice(&points[cut.knot - degree..=cut.knot]);
+            let mut parts = own;
+            for round in 1..=count {
+                let mut late = early; // this point and the later ones of the piece have no more than these
                 let mut rest = parts;
-                for r in round..=degree {
-                    rest = mix(late, r, rest, 1);
+                for r in round..count {
+                    rest = mix(&mut late[..count], r, rest, 1);
                 }
-                piece[degree + 1 - round] = late[degree];
-                if round <= degree {
-                    parts = mix(early, round, parts, 0);
+                piece[count - round] = late[degree];
+                if round < count {
+                    parts = mix(&mut early[..count], round, parts, 0);
                 }
             }
             if from > first {
@@ -341,7 +353,13 @@ impl Cuts {
     }
 }
 
+/// Neighbours mixed in all rounds of a span.
+fn pairs(degree: usize) -> usize {
+    degree * (degree + 1) / 2
+}
+
 /// One round of a blossom; returns the parts of the rounds after it.
+#[inline(always)]
 fn mix<'a, P: Control>(d: &mut [P], round: usize, parts: &'a [[f64; 2]], end: usize) -> &'a [[f64; 2]] {
     let (own, rest) = parts.split_at(d.len() - round);
     for (j, part) in (round..d.len()).rev().zip(own) {

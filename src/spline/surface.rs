@@ -150,7 +150,7 @@ impl Surface {
         self.points.chunks_exact(nu).for_each(|row| cuts[0].apply(row, &mut rows));
         // columns[c * height..][..height]: pieces along v of column c of those
         let height = count_v * kv;
-        let mut columns = Vec::with_capacity(width * height);
+        let mut columns: Vec<DVec4> = Vec::with_capacity(width * height);
         let mut column = Vec::with_capacity(nv);
         for c in 0..width {
             column.clear();
@@ -161,8 +161,10 @@ impl Surface {
         for (j, v) in cuts[1].ranges().enumerate() {
             for (i, u) in cuts[0].ranges().enumerate() {
                 let strip = &columns[i * ku * height..(i + 1) * ku * height];
-                let point = |r: usize, c: usize| strip[c * height + j * kv + r];
-                let points = (0..kv).flat_map(|r| (0..ku).map(move |c| point(r, c))).collect();
+                let mut points = Vec::with_capacity(ku * kv);
+                for r in 0..kv {
+                    points.extend((0..ku).map(|c| strip[c * height + j * kv + r]));
+                }
                 let patch = Patch { degree_u: self.degree_u, degree_v: self.degree_v, points };
                 patches.push(SurfacePatch { u, v, patch });
             }

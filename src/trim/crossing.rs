@@ -8,6 +8,7 @@
 //! ```
 
 use super::piece::{Piece, append_pieces};
+use crate::math::root::bracketed;
 use crate::model::TrimLoop;
 use crate::spline::{Bezier, Control};
 use glam::{DVec2, DVec3};
@@ -15,7 +16,11 @@ use glam::{DVec2, DVec3};
 /// By which chains must change sides, as a share of the smaller loop's box: files keep joints less exactly than their
 /// digits say, and loops that touch should.
 const MARGIN: f64 = 1e-3;
-/// Bisections for a piece's place on a scan line: far below the margin.
+/// Share of a piece's parameters to which its place on a scan line is found: far below the margin.
+const PLACE: f64 = 1e-12;
+/// Where chains are asked for their sides between two ends of pieces: also just behind the one and before the other.
+const SHARES: [f64; 5] = [0.02, 0.25, 0.5, 0.75, 0.98];
+/// Bisections to the place where two chains meet: it is only told.
 const BISECTIONS: u32 = 40;
 /// Pairs of boxes that are looked at: more take longer than reading the face.
 const MOST_PAIRS: usize = 1 << 22;
@@ -34,16 +39,17 @@ pub enum Crossing {
 /// A place found where `loops` cross themselves or each other by more than a thousandth of the smaller loop. Nearly
 /// linear where few boxes of curves overlap.
 pub fn crossing(loops: &[TrimLoop]) -> Crossing {
-    let boxes: Vec<Hull> = loops.iter().flat_map(TrimLoop::curves).map(|c| Hull::new(&c)).collect();
+    let curves: Vec<Vec<Bezier<DVec3>>> = loops.iter().map(|l| l.curves().collect()).collect();
+    let boxes: Vec<Hull> = curves.iter().flatten().map(Hull::new).collect();
     if boxes.iter().all(|b| !b.turns_back) {
         match pairs(boxes, |hull| (hull.lo, hull.hi), |a, b| a.meets(b).then_some(DVec2::ZERO)) {
             Crossing::At(_) => {}
             other => return other,
         }
     }
-    let chains = loops.iter().enumerate().flat_map(|(of, trim_loop)| chains(of, trim_loop)).collect();
+    let chains = curves.iter().enumerate().flat_map(|(of, curves)| chains(of, curves)).collect();
     let margins: Vec<DVec2> = loops.iter().map(TrimLoop::bounds).map(|(lo, hi)| MARGIN * (hi - lo)).collect();
-    pairs(chains, |chain: &Chain| (chain.lo, chain.hi), |a, b| change_sides(a, b, margins[a.of].min(margins[b.of])))
+    pairs(chains, |chain: &Chain<'_>| (chain.lo, chain.hi), |a, b| change_sides(a, b, margins[a.of].min(margins[b.of])))
 }
 
 /// The first answer of `ask` about two whose boxes meet.
@@ -93,59 +99,78 @@ impl Hull {
 }
 
 /// Pieces of a loop that follow each other and run one way along an axis; those across the axis left out.
-struct Chain {
+struct Chain<'c> {
     of: usize,
     axis: usize,
     lo: DVec2,
     hi: DVec2,
-    /// From low to high along the axis.
-    pieces: Vec<(Piece, Bezier<DVec3>)>,
+    /// From low to high along the axis, with the curves of the loop, which they number.
+    pieces: Vec<Piece>,
+    curves: &'c [Bezier<DVec3>],
 }
 
 /// Of both axes.
-fn chains(of: usize, trim_loop: &TrimLoop) -> Vec<Chain> {
-    let mut pieces: Vec<(Piece, Bezier<DVec3>)> = Vec::new();
-    for curve in trim_loop.curves() {
-        let mut own = Vec::new();
-        append_pieces(&mut own, 0, &curve, curve.points[0].point());
-        pieces.extend(own.into_iter().map(|piece| (piece, curve.clone())));
+fn chains(of: usize, curves: &[Bezier<DVec3>]) -> Vec<Chain<'_>> {
+    let mut pieces: Vec<Piece> = Vec::new();
+    for (index, curve) in curves.iter().enumerate() {
+        append_pieces(&mut pieces, index as u32, curve, curve.points[0].point());
     }
-    [0, 1].into_iter().flat_map(|axis| along(of, axis, &pieces)).collect()
+    [0, 1].into_iter().flat_map(|axis| along((of, curves), axis, &pieces)).collect()
 }
 
-fn along(of: usize, axis: usize, pieces: &[(Piece, Bezier<DVec3>)]) -> Vec<Chain> {
+fn along<'c>((of, curves): (usize, &'c [Bezier<DVec3>]), axis: usize, pieces: &[Piece]) -> Vec<Chain<'c>> {
     let rises = |p: &Piece| p.end[axis] - p.start[axis];
-    let mut moving: Vec<_> = pieces.iter().filter(|(p, _)| rises(p) != 0.0).cloned().collect();
+    let mut moving: Vec<Piece> = pieces.iter().filter(|p| rises(p) != 0.0).cloned().collect();
     // begin where a chain does
     let turn = |a: &Piece, b: &Piece| rises(a) * rises(b) < 0.0;
-    let first = (1..moving.len()).find(|&i| turn(&moving[i - 1].0, &moving[i].0)).unwrap_or(0);
+    let first = (1..moving.len()).find(|&i| turn(&moving[i - 1], &moving[i])).unwrap_or(0);
     moving.rotate_left(first);
     let mut chains = Vec::new();
-    for part in moving.chunk_by(|a, b| !turn(&a.0, &b.0)) {
+    for part in moving.chunk_by(|a, b| !turn(a, b)) {
         let mut pieces = part.to_vec();
-        if rises(&pieces[0].0) < 0.0 {
+        if rises(&pieces[0]) < 0.0 {
             pieces.reverse();
         }
-        let bounds = pieces.iter().map(|(p, _)| p.bounds());
+        let bounds = pieces.iter().map(Piece::bounds);
         let (lo, hi) = bounds.fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(lo, hi), (a, b)| (lo.min(a), hi.max(b)));
-        chains.push(Chain { of, axis, lo, hi, pieces });
+        chains.push(Chain { of, axis, lo, hi, pieces, curves });
     }
     chains
 }
 
-impl Chain {
+impl Chain<'_> {
+    /// The number of the first piece that ends at or above a value along the axis, else of the last.
+    fn index(&self, value: f64) -> usize {
+        let top = |p: &Piece| p.start[self.axis].max(p.end[self.axis]);
+        self.pieces.partition_point(|p| top(p) < value).min(self.pieces.len() - 1)
+    }
+
+    /// Ends of pieces along the axis, from `lo` to `hi`.
+    fn ends(&self, lo: f64, hi: f64) -> impl Iterator<Item = f64> {
+        let within = &self.pieces[self.index(lo)..=self.index(hi)];
+        let ends = within.iter().flat_map(|p| [p.start[self.axis], p.end[self.axis]]);
+        ends.filter(move |x| (lo..=hi).contains(x))
+    }
+
+    /// What the other coordinate cannot leave where that along the axis has a value.
+    fn range(&self, value: f64) -> (f64, f64) {
+        let (lo, hi) = self.pieces[self.index(value)].bounds();
+        (lo[1 - self.axis], hi[1 - self.axis])
+    }
+
     /// The other coordinate where that along the axis has a value between those of its ends.
     fn place(&self, value: f64) -> f64 {
-        let top = |p: &Piece| p.start[self.axis].max(p.end[self.axis]);
-        let at = self.pieces.partition_point(|(p, _)| top(p) < value).min(self.pieces.len() - 1);
-        let (piece, curve) = &self.pieces[at];
-        let rises = piece.start[self.axis] < piece.end[self.axis];
-        let (mut from, mut to) = piece.t;
-        for _ in 0..BISECTIONS {
-            let t = 0.5 * (from + to);
-            if (curve.point(t)[self.axis] < value) == rises { from = t } else { to = t }
+        let (axis, across) = (self.axis, 1 - self.axis);
+        let piece = &self.pieces[self.index(value)];
+        let (start, end) = (piece.start, piece.end);
+        if piece.straight {
+            let share = (value - start[axis]) / (end[axis] - start[axis]);
+            return start[across] + (end[across] - start[across]) * share.clamp(0.0, 1.0);
         }
-        curve.point(0.5 * (from + to))[1 - self.axis]
+        let curve = &self.curves[piece.curve as usize];
+        let (from, to) = piece.t;
+        let t = bracketed(|t| curve.point(t)[axis] - value, from, to, PLACE * (to - from));
+        curve.point(t)[across]
     }
 
     /// A chain along an axis through one straight across it.
@@ -162,21 +187,30 @@ impl Chain {
     }
 }
 
-fn change_sides(a: &Chain, b: &Chain, margin: DVec2) -> Option<DVec2> {
+fn change_sides(a: &Chain<'_>, b: &Chain<'_>, margin: DVec2) -> Option<DVec2> {
     if a.axis != b.axis {
         return a.passes(b, margin).or_else(|| b.passes(a, margin));
     }
     let axis = a.axis;
     let (lo, hi) = (a.lo.max(b.lo)[axis], a.hi.min(b.hi)[axis]);
     // between the ends of pieces, where either may jump
-    let ends = [a, b].into_iter().flat_map(|c| &c.pieces).flat_map(|(p, _)| [p.start[axis], p.end[axis]]);
-    let mut ends: Vec<f64> = ends.filter(|x| (lo..=hi).contains(x)).collect();
+    let mut ends: Vec<f64> = a.ends(lo, hi).chain(b.ends(lo, hi)).collect();
     ends.sort_by(f64::total_cmp);
+    ends.dedup();
     let (mut before, mut last) = (0.0, lo);
     for pair in ends.windows(2) {
-        for share in [0.02, 0.25, 0.5, 0.75, 0.98] {
-            let line = pair[0] + share * (pair[1] - pair[0]);
-            let apart = a.place(line) - b.place(line);
+        let line = |share: f64| pair[0] + share * (pair[1] - pair[0]);
+        // one piece of either: mostly their boxes lie apart
+        let ((a_lo, a_hi), (b_lo, b_hi)) = (a.range(line(0.5)), b.range(line(0.5)));
+        let sides = (a_lo - b_hi, b_lo - a_hi);
+        let shares: &[f64] = if sides.0.max(sides.1) > margin[1 - axis] { &[0.5] } else { &SHARES };
+        for &share in shares {
+            let line = line(share);
+            let apart = match sides {
+                (above, _) if above > margin[1 - axis] => above,
+                (_, below) if below > margin[1 - axis] => -below,
+                _ => a.place(line) - b.place(line),
+            };
             if apart.abs() <= margin[1 - axis] {
                 continue;
             }
@@ -190,13 +224,13 @@ fn change_sides(a: &Chain, b: &Chain, margin: DVec2) -> Option<DVec2> {
 }
 
 /// Where two chains meet between scan lines; on the second they are `apart`.
-fn meeting(a: &Chain, b: &Chain, (mut from, mut to): (f64, f64), apart: f64) -> DVec2 {
+fn meeting(a: &Chain<'_>, b: &Chain<'_>, (mut from, mut to): (f64, f64), apart: f64) -> DVec2 {
     for _ in 0..BISECTIONS {
         let line = 0.5 * (from + to);
         if (a.place(line) - b.place(line)) * apart > 0.0 { to = line } else { from = line }
     }
     // where one of them jumps across the other, along a piece across the axis, the other one knows the place
-    let jump = |c: &Chain| (c.place(to) - c.place(from)).abs();
+    let jump = |c: &Chain<'_>| (c.place(to) - c.place(from)).abs();
     let (line, place) = (to, if jump(a) <= jump(b) { a.place(to) } else { b.place(to) });
     if a.axis == 0 { DVec2::new(line, place) } else { DVec2::new(place, line) }
 }
@@ -237,6 +271,13 @@ mod tests {
         let knot = [(0.0, 0.0), (3.0, 2.0), (-2.0, 2.0), (1.0, 0.0)];
         let back = [(1.0, 0.0), (1.0, -1.0), (0.0, -1.0), (0.0, 0.0)];
         near(&[cubics(&[knot, back])], (0.5, 0.75), 0.5);
+        // one whose box the other curves touch in corners only
+        let knot = [(0.0, 0.0), (3.0, 0.0), (3.0, 3.0), (0.0, 3.0), (0.0, 0.0), (3.0, 3.0)];
+        let curve = Bezier { points: knot.iter().map(|&(u, v)| DVec3::new(u, v, 1.0)).collect() };
+        let around = [(3.0, 3.0), (3.0, 4.0), (-1.0, 4.0), (-1.0, 0.0), (0.0, 0.0)];
+        let lines = around.windows(2).map(|w| Bezier::line(w[0].into(), w[1].into()));
+        let whole = TrimLoop::new([curve].into_iter().chain(lines).collect(), DVec2::ZERO).unwrap();
+        near(&[whole], (1.634, 1.920), 0.5);
         // two bows
         let over = [(0.0, 0.0), (0.0, 2.0), (1.0, -1.0), (1.0, 1.0)];
         let under = [(1.0, 1.0), (0.8, 1.0), (0.2, 0.0), (0.0, 0.0)];

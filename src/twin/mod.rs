@@ -28,10 +28,10 @@ pub mod sizes;
 pub mod solid_blocks;
 pub mod solid_fold;
 pub mod solid_rects;
-pub mod solid_squares;
 pub mod solid_tiles;
 pub mod sort;
 pub mod split;
+pub mod squares;
 pub mod table;
 pub mod view;
 

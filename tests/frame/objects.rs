@@ -68,6 +68,8 @@ fn only_a_scene_with_meshes_has_what_they_need() {
     for shape in shapes::all() {
         let has = shape.model.parts.iter().any(|p| !p.meshes.is_empty());
         let (renderer, objects) = objects(&shape.model, Outputs::default());
+        let any = has || shape.model.parts.iter().any(|p| !p.faces.is_empty());
+        assert_eq!(objects.iter().any(|o| o == "seen squares"), any, "{}: {objects:?}", shape.name);
         for name in needed {
             assert_eq!(objects.iter().any(|o| o == name), has, "{name} in {}: {objects:?}", shape.name);
         }
@@ -113,7 +115,7 @@ fn only_a_scene_with_solids_has_what_they_need() {
     }
     assert!(!objects.iter().any(|name| is_of_trimming(name) || name.contains("mesh")), "{objects:?}");
     assert!(!objects.iter().any(|name| name == "visibility of others"), "{objects:?}");
-    let of_patches = ["bound", "split", "emit", "resolve (polynomial", "resolve (rational"];
+    let of_patches = ["bound", "split", "emit", "seen squares", "resolve (polynomial", "resolve (rational"];
     assert!(!objects.iter().any(|o| of_patches.iter().any(|name| o.starts_with(name))), "{objects:?}");
     assert!(objects.iter().any(|name| name == "resolve (background)"), "{objects:?}");
     assert_silent(renderer);

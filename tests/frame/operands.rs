@@ -3,7 +3,7 @@
 use crate::shapes::{self, operands, solids};
 use crate::solids::right_at;
 use crate::support::{assert_identical, assert_silent, perspective, render, watched};
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use selvedge::model::{Camera, Model, Projection};
 use selvedge::reference::{JudgeOptions, Tracer, judge};
 
@@ -41,7 +41,7 @@ fn unclean_meshes() {
 #[test]
 fn open_meshes_are_counted() {
     let open = operands::open_mesh();
-    let whole = solids::solid("A", vec![operands::mesh(shapes::ball_mesh(2))]);
+    let whole = solids::solid("A-B", vec![operands::mesh(shapes::ball_mesh(2)), solids::ball(0.1, 0.0)]);
     let mut renderer = watched(&open);
     let camera = Camera { eye: DVec3::new(0.0, -9.0, 0.1), ..perspective(&open, SIZE) };
     let counted = render(&mut renderer, &camera).stats;
@@ -77,6 +77,45 @@ fn the_camera_stands_within_operands() {
     }
     assert_silent(renderer);
     assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
+/// Meshes that nothing touches need no lists: seen from outside and from within, mirrored, beside what stays a solid.
+#[test]
+fn lone_meshes() {
+    let rock = || operands::mesh(shapes::torus_mesh(24));
+    let mirror = DAffine3::from_scale(DVec3::new(-1.0, 0.7, 1.2));
+    let model = solids::solid(
+        "A+B+(C-D)",
+        vec![
+            rock(),
+            solids::moved(solids::at(9.0, 0.0, 1.0) * mirror, rock()),
+            solids::moved(solids::at(4.0, 9.0, 0.0), operands::mesh(shapes::ball_mesh(2))),
+            solids::moved(solids::at(4.0, 8.5, 0.0), solids::ball(0.7, 0.5)),
+        ],
+    );
+    let tracer = Tracer::new(&model);
+    let mut renderer = watched(&model);
+    let (up, projection) = (DVec3::Z, Projection::Perspective { fov_y: 1.0 });
+    let within = |eye: DVec3| Camera {
+        eye,
+        target: DVec3::new(4.0, 4.0, 0.0),
+        up,
+        projection,
+        depth_range: (0.01, 50.0),
+        size: SIZE,
+    };
+    let cameras = [perspective(&model, SIZE), within(DVec3::new(-3.0, 0.1, 0.1)), within(DVec3::new(6.0, 0.1, 1.0))];
+    for (camera, sees) in cameras.iter().zip([3, 1, 1]) {
+        let picture = render(&mut renderer, camera);
+        let j = judge(&tracer, camera, &picture, &JudgeOptions::default());
+        assert_eq!((j.wrong, picture.stats.unpaired), (0, 0), "{}: {:?}", camera.eye, j.mismatches.first());
+        let seen: std::collections::BTreeSet<u32> = picture.face.iter().copied().filter(|f| *f != 0).collect();
+        assert!(seen.len() >= sees, "{seen:?}");
+    }
+    let crossings = render(&mut renderer, &cameras[0]).stats.fragments;
+    // the ball is cut; of 6144 pixels the rocks cover most that are not background
+    assert!((1..1000).contains(&crossings), "{crossings}");
+    assert_silent(renderer);
 }
 
 /// More than 255 layers of one mesh behind a pixel; all of them are taken from a block, and then repeat.

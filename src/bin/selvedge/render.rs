@@ -17,20 +17,24 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     }
     let mut session = Session::smooth(&args.frame, &import, &args.edges)?;
     let picture = session.render(&camera, wanted(&args.aov))?;
-    output::png(&args.output, picture.size, &picture.colour)?;
-    for aov in &args.aov {
-        write(aov, &picture)?;
-    }
     if args.frame.highlight {
         let stats = &picture.stats;
         tracing::warn!("{} pixels show contact, {} overlap", stats.contact_pixels, stats.overlap_pixels);
     }
-    if let Some(path) = &args.stats {
-        output::json(path, &picture.stats)?;
-    }
     let gpu_ms: f64 = picture.stats.passes.iter().map(|p| p.gpu_ms).sum();
     tracing::info!("{gpu_ms:.1} ms in {} passes on {}", picture.stats.passes.len(), picture.stats.device);
-    Ok(if session.complaints() { Outcome::Broken } else { Outcome::Good })
+    // to close a device takes about as long as to write a picture
+    let (written, complained) = rayon::join(|| write_all(args, &picture), || session.close());
+    written?;
+    Ok(if complained { Outcome::Broken } else { Outcome::Good })
+}
+
+fn write_all(args: &RenderArgs, picture: &Picture) -> Result<()> {
+    output::png(&args.output, picture.size, &picture.colour)?;
+    for aov in &args.aov {
+        write(aov, picture)?;
+    }
+    args.stats.iter().try_for_each(|path| output::json(path, &picture.stats))
 }
 
 fn wanted(aovs: &[Aov]) -> Outputs {

@@ -89,7 +89,15 @@ impl Session {
     ///
     /// True when it said anything.
     pub fn complaints(&self) -> bool {
-        let messages = self.renderer.messages();
+        Self::tell(&self.renderer.messages())
+    }
+
+    /// Frees the device; the same of all that the layer said, of what was left over, too.
+    pub fn close(self) -> bool {
+        Self::tell(&self.renderer.shutdown())
+    }
+
+    fn tell(messages: &[String]) -> bool {
         messages.iter().for_each(|message| tracing::error!("validation: {message}"));
         !messages.is_empty()
     }

@@ -1,5 +1,8 @@
 //! Edges that are borders of their surface, and edges that have nothing to do with it.
 
+use super::super::border::Border;
+use super::super::edge::EdgeCurve;
+use super::super::spline::SplineForm;
 use super::super::support::Support;
 use super::*;
 use crate::spline::{BSpline, Surface};
@@ -72,6 +75,39 @@ fn a_border_farther_off_is_measured() {
     let built = build(SurfaceGeometry::BSpline(s), vec![Boundary::Edges(bound)], &edges);
     // no inner control point moves the curve by all of its way
     assert!(built.gap > 2e-4 && built.gap < 1e-3, "{:e}", built.gap);
+}
+
+/// The border `v = 0` of the sheet, with its control points, its weights and its knots changed.
+fn lower(s: &Surface, change: impl Fn(usize, &mut DVec4), knots: impl Fn(f64) -> f64) -> Option<Border> {
+    let nu = s.counts().0;
+    let mut points = s.points()[..nu].to_vec();
+    points.iter_mut().enumerate().for_each(|(i, p)| change(i, p));
+    let ends = [points[0].point(), points[nu - 1].point()];
+    let curve = BSpline::new(s.degrees().0, s.knots().0.iter().map(|k| knots(*k)).collect(), points).unwrap();
+    let mut list = Vec::new();
+    edge(&mut list, CurveGeometry::BSpline(curve), ends[0], ends[1]);
+    let edge = EdgeCurve::new(&list[0], true, TOLERANCE).unwrap().unwrap();
+    Border::of(&SplineForm::new(s, TOLERANCE), &edge, TOLERANCE)
+}
+
+#[test]
+fn other_weights_and_other_knots_are_no_border() {
+    let s = sheet();
+    let linear = |k: f64| 7.0 - 2.0 * (3.0 - k);
+    let found = lower(&s, |_, p| *p *= 0.25, linear).unwrap();
+    assert_eq!((found.axis, found.value), (1, 0.0));
+    assert!(found.at(linear(1.0)).distance(DVec2::new(1.0, 0.0)) < 1e-15);
+    // an inner point stays where it is and draws harder; one span, so that the pieces have the same points
+    let points = (0..6).map(|k| DVec4::new(f64::from(k % 3), f64::from(k / 3), f64::from(k % 2), 1.0)).collect();
+    let arch = Surface::new((2, 1), vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0], points).unwrap();
+    assert!(lower(&arch, |_, _| {}, |k| k).is_some());
+    assert_eq!(lower(&arch, |i, p| *p *= if i == 1 { 1.001 } else { 1.0 }, |k| k), None);
+    // three straight pieces: the same image, passed at another pace
+    let points = (0..8).map(|k| DVec4::new(f64::from(k % 4), f64::from(k / 4), 0.0, 1.0)).collect();
+    let knots = (vec![0.0, 0.0, 1.0, 2.0, 3.0, 3.0], vec![0.0, 0.0, 1.0, 1.0]);
+    let straight = Surface::new((1, 1), knots.0, knots.1, points).unwrap();
+    assert!(lower(&straight, |_, _| {}, |k| k).is_some());
+    assert_eq!(lower(&straight, |_, _| {}, |k| if k == 1.0 { 1.1 } else { k }), None);
 }
 
 /// A trough, open at the top: beside one wall the other one is a foot too, for who begins there.

@@ -7,6 +7,7 @@ mod damage;
 mod derived;
 mod details;
 mod flat;
+mod given;
 mod splines;
 
 use super::*;

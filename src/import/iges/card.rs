@@ -11,6 +11,8 @@
 //! Lines may end in LF, CR LF or CR, may be longer than 80 columns, and need not end at all: then every
 //! 80 bytes are a card. Characters outside ASCII count as one column each where that finds the letter.
 
+use rayon::prelude::*;
+
 /// What the letter in column 73 says.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(super) enum Section {
@@ -40,6 +42,12 @@ pub(super) enum Form {
     Binary,
 }
 
+/// Columns of a card.
+const WIDTH: usize = 80;
+
+/// Bytes that one thread reads at a time: a multiple of a card's.
+const PART: usize = 80 << 12;
+
 /// Columns of a card's text.
 pub(super) const TEXT: usize = 72;
 
@@ -59,20 +67,35 @@ pub(super) fn recognise(bytes: &[u8]) -> Option<Form> {
     }
 }
 
+/// Whether the lines have ends; else pieces of 80 bytes are lines.
+fn have_ends(bytes: &[u8]) -> bool {
+    bytes[..bytes.len().min(400)].iter().any(|b| is_end(*b))
+}
+
+fn is_end(b: u8) -> bool {
+    b == b'\n' || b == b'\r'
+}
+
 /// The lines, without their ends; pieces of 80 bytes in a file that has none.
 pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
-    let ended = bytes[..bytes.len().min(400)].iter().any(|b| matches!(b, b'\n' | b'\r'));
+    lines_of(bytes, have_ends(bytes))
+}
+
+fn lines_of(bytes: &[u8], ended: bool) -> impl Iterator<Item = &[u8]> {
     let mut rest = bytes;
     std::iter::from_fn(move || {
         if rest.is_empty() {
             return None;
         }
         if !ended {
-            let (line, after) = rest.split_at(rest.len().min(80));
+            let (line, after) = rest.split_at(rest.len().min(WIDTH));
             rest = after;
             return Some(line);
         }
-        let end = rest.iter().position(|b| matches!(b, b'\n' | b'\r')).unwrap_or(rest.len());
+        let end = match rest.get(..=WIDTH) {
+            Some(line) if is_end(line[WIDTH]) && !line[..WIDTH].iter().fold(false, |any, b| any | is_end(*b)) => WIDTH,
+            _ => rest.iter().position(|b| is_end(*b)).unwrap_or(rest.len()),
+        };
         let line = &rest[..end];
         let skip = match rest[end..] {
             [b'\r', b'\n', ..] => 2,
@@ -82,6 +105,65 @@ pub(super) fn lines(bytes: &[u8]) -> impl Iterator<Item = &[u8]> {
         rest = &rest[end + skip..];
         Some(line)
     })
+}
+
+/// What one thread finds in its part of a file. Lines are counted from the part's first, which is 1.
+#[derive(Debug, Default)]
+pub(super) struct Part<'a> {
+    /// Cards of the directory and of the parameters, with their lines.
+    pub directory: Vec<(Card<'a>, u32)>,
+    pub parameters: Vec<(Card<'a>, u32)>,
+    /// Those of the sections global and terminate.
+    pub others: Vec<(Card<'a>, u32)>,
+    /// Lines that are no cards, with how many lines that are not blank there were up to them.
+    pub bad: Vec<(u32, usize)>,
+    /// Lines that are not blank.
+    pub seen: usize,
+    /// The last of them.
+    pub last: u32,
+    /// All lines.
+    pub lines: u32,
+}
+
+/// The parts of a file, in order, each read by itself.
+pub(super) fn parts(bytes: &[u8]) -> Vec<Part<'_>> {
+    let ended = have_ends(bytes);
+    let mut pieces = Vec::with_capacity(bytes.len() / PART + 1);
+    let mut rest = bytes;
+    while rest.len() > PART {
+        let between = |at: usize| is_end(rest[at - 1]) && !(rest[at - 1] == b'\r' && rest[at] == b'\n');
+        let at = if ended { (PART..rest.len()).find(|at| between(*at)) } else { Some(PART) };
+        let (piece, after) = rest.split_at(at.unwrap_or(rest.len()));
+        pieces.push(piece);
+        rest = after;
+    }
+    pieces.push(rest);
+    pieces.into_par_iter().map(|piece| Part::read(piece, ended)).collect()
+}
+
+impl<'a> Part<'a> {
+    fn read(bytes: &'a [u8], ended: bool) -> Self {
+        let mut part = Self::default();
+        part.parameters.reserve(bytes.len() / WIDTH);
+        for line in lines_of(bytes, ended) {
+            part.lines += 1;
+            if line.iter().all(u8::is_ascii_whitespace) {
+                continue;
+            }
+            (part.seen, part.last) = (part.seen + 1, part.lines);
+            let Some(card) = Card::of_line(line) else {
+                part.bad.push((part.lines, part.seen));
+                continue;
+            };
+            match card.section {
+                Section::Start => {}
+                Section::Directory => part.directory.push((card, part.lines)),
+                Section::Parameter => part.parameters.push((card, part.lines)),
+                Section::Global | Section::Terminate => part.others.push((card, part.lines)),
+            }
+        }
+        part
+    }
 }
 
 impl<'a> Card<'a> {
@@ -118,14 +200,20 @@ fn columns(line: &[u8]) -> Option<(&[u8], u8, &[u8])> {
 
 /// Byte offset of a column, UTF-8 continuation bytes not counted.
 fn column(line: &[u8], column: usize) -> usize {
+    if line.get(..column).is_some_and(<[u8]>::is_ascii) {
+        return column;
+    }
     let mut starts = (0..line.len()).filter(|&i| line[i] & 0xc0 != 0x80);
     starts.nth(column).unwrap_or(line.len())
 }
 
 /// A right or left justified number of at most ten digits.
 pub(super) fn number(field: &[u8]) -> Option<u32> {
-    let text = std::str::from_utf8(field).ok()?.trim();
-    if text.len() > 10 || !text.bytes().all(|b| b.is_ascii_digit()) { None } else { text.parse().ok() }
+    let digits = field.trim_ascii();
+    if digits.is_empty() || digits.len() > 10 || !digits.iter().all(u8::is_ascii_digit) {
+        return None;
+    }
+    u32::try_from(digits.iter().fold(0, |sum, b| 10 * sum + u64::from(b - b'0'))).ok()
 }
 
 #[cfg(test)]
@@ -140,8 +228,49 @@ mod tests {
     fn line_ends_of_every_kind() {
         let all = |text: &str| lines(text.as_bytes()).map(<[u8]>::len).collect::<Vec<_>>();
         assert_eq!(all("ab\r\nc\n\rde"), [2, 1, 0, 2]);
+        // two lines that are as long as a card together
+        assert_eq!(all(&format!("{}\n{}\n", "a".repeat(39), "b".repeat(40))), [39, 40]);
         let cards = format!("{}{}", card("a", "S      1"), card("b", "G      1"));
         assert_eq!(all(&cards), [80, 80]);
+    }
+
+    /// Texts of cards, with their lines.
+    type Texts = Vec<(Vec<u8>, u32)>;
+
+    /// What is read in parts is what one thread would read, wherever the parts end.
+    #[test]
+    fn parts_make_the_whole() {
+        let cards = (1..=2 * PART / 80).map(|n| match n % 9 {
+            0 => "no card".to_owned(),
+            1 => " ".repeat(80),
+            2 => card("12, 0", &format!("D{n:>7}")),
+            3 => card("", &format!("G{n:>7}")),
+            _ => card("116,1.,2.,3.;", &format!("P{n:>7}")),
+        });
+        let cards: Vec<String> = cards.collect();
+        let whole: String = cards.iter().map(|c| format!("{c:<80}")).collect();
+        for (text, ended) in
+            [(cards.join("\n"), true), (cards.join("\r\n"), true), (cards.join("\r"), true), (whole, false)]
+        {
+            let (all, one) = (parts(text.as_bytes()), Part::read(text.as_bytes(), ended));
+            assert!(all.len() > 1);
+            let before = |i: usize| all[..i].iter().map(|p| p.lines).sum::<u32>();
+            let joined = |list: fn(&Part<'_>) -> Texts| {
+                let own =
+                    |(i, p)| list(p).into_iter().map(move |(text, line)| (text, line + before(i))).collect::<Vec<_>>();
+                all.iter().enumerate().flat_map(own).collect::<Vec<_>>()
+            };
+            for list in [
+                |p: &Part<'_>| p.directory.iter().map(|(c, line)| (c.text.to_vec(), *line)).collect::<Vec<_>>(),
+                |p: &Part<'_>| p.parameters.iter().map(|(c, line)| (c.text.to_vec(), *line)).collect(),
+                |p: &Part<'_>| p.others.iter().map(|(c, line)| (c.text.to_vec(), *line)).collect(),
+                |p: &Part<'_>| p.bad.iter().map(|(line, _)| (Vec::new(), *line)).collect(),
+            ] {
+                assert!(list(&one).len() > 100 && joined(list) == list(&one));
+            }
+            assert_eq!(all.iter().map(|p| p.seen).sum::<usize>(), one.seen);
+            assert_eq!(before(all.len()), one.lines);
+        }
     }
 
     #[test]

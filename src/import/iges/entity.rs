@@ -110,7 +110,12 @@ impl<'a> Entity<'a> {
         if index.saturating_add(count) > self.len() + 1 {
             return Err(self.wrong(self.len() + 1, "there, the record is too short"));
         }
-        (index..index + count).map(|i| self.real(i)).collect()
+        let values = self.file.values(self.entry).get(index..index + count).unwrap_or_default();
+        let finite = |(i, value): (usize, &Value)| match value {
+            Value::Number(x) if x.is_finite() => Ok(*x),
+            _ => self.real(i),
+        };
+        (index..).zip(values).map(finite).collect()
     }
 
     /// A number above 0.

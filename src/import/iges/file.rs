@@ -9,7 +9,7 @@
 //! Entries that claim one another's parameter cards could make the arena larger than any multiple of
 //! the file: reading stops at four times the text.
 
-use super::card::{Card, DATA, Section, TEXT, lines};
+use super::card::{Card, DATA, Section, TEXT, parts};
 use super::directory::{self, Entry};
 use super::global::Global;
 use super::value::{Value, record};
@@ -45,7 +45,7 @@ struct Span {
 }
 
 /// Records that one thread reads at a time.
-const RECORDS: usize = 64;
+const RECORDS: usize = 16;
 
 /// Bytes of an average parameter, at least: what an arena makes room for.
 const BYTES: usize = 6;
@@ -62,35 +62,38 @@ impl File {
     pub fn parse(bytes: &[u8], name: &str, warnings: &mut Warnings) -> Result<Self, ImportError> {
         let (mut global, mut entries, mut parameters) = (Vec::new(), Vec::new(), Vec::new());
         let (mut terminate, mut bad, mut seen, mut global_line, mut last_line) = (None, 0, 0, 1, 1);
-        parameters.reserve(bytes.len() / 80);
-        for (line, number) in lines(bytes).zip(1u32..) {
-            if line.iter().all(u8::is_ascii_whitespace) {
-                continue;
-            }
-            (seen, last_line) = (seen + 1, number);
-            let Some(card) = Card::of_line(line) else {
+        let parts = parts(bytes);
+        parameters.reserve(parts.iter().map(|p| p.parameters.len()).sum());
+        let mut before = 0;
+        for mut part in parts {
+            for (line, seen_there) in part.bad {
+                let (line, seen) = ((before + line) as usize, seen + seen_there);
                 bad += 1;
-                let place = || Place::Line(number as usize);
-                warnings.push("card skipped", place, || "no section letter in column 73".into());
+                warnings.push("card skipped", || Place::Line(line), || "no section letter in column 73".into());
                 if bad >= 1000 && 2 * bad > seen {
-                    let line = number as usize;
                     return Err(ImportError::Nonsense { file: name.to_owned(), line, bad, seen });
                 }
-                continue;
-            };
-            match card.section {
-                Section::Start => {}
-                Section::Global => {
-                    if global.is_empty() {
-                        global_line = number;
-                    }
-                    global.extend_from_slice(card.text);
-                    global.resize(global.len() + TEXT.saturating_sub(card.text.len()), b' ');
-                }
-                Section::Directory => entries.push((card, number)),
-                Section::Parameter => parameters.push((card, number)),
-                Section::Terminate => terminate = Some((card.text, number)),
             }
+            for (card, line) in part.others {
+                let number = before + line;
+                if card.section == Section::Terminate {
+                    terminate = Some((card.text, number));
+                    continue;
+                }
+                if global.is_empty() {
+                    global_line = number;
+                }
+                global.extend_from_slice(card.text);
+                global.resize(global.len() + TEXT.saturating_sub(card.text.len()), b' ');
+            }
+            entries.extend(part.directory.into_iter().map(|(card, line)| (card, before + line)));
+            part.parameters.iter_mut().for_each(|card| card.1 += before);
+            parameters.append(&mut part.parameters);
+            if part.seen > 0 {
+                last_line = before + part.last;
+            }
+            seen += part.seen;
+            before += part.lines;
         }
         if entries.is_empty() {
             return Err(ImportError::NoDirectory { file: name.to_owned(), line: last_line as usize });
@@ -105,13 +108,15 @@ impl File {
 
     fn read_parameters(&mut self, cards: &[(Card<'_>, u32)], warnings: &mut Warnings) {
         // number and start of each card; the end of the text behind the last
-        let mut starts: Vec<(u32, usize)> = Vec::with_capacity(cards.len() + 1);
-        self.text.reserve(cards.len() * DATA);
+        let (mut starts, mut end): (Vec<(u32, usize)>, _) = (Vec::with_capacity(cards.len()), 0);
         for (card, _) in cards {
             let number = card.sequence.unwrap_or(starts.last().map_or(1, |s| s.0 + 1));
-            starts.push((number, self.text.len()));
-            self.text.extend_from_slice(card.text);
-            self.text.resize(self.text.len() + DATA.saturating_sub(card.text.len()), b' ');
+            starts.push((number, end));
+            end += card.text.len().max(DATA);
+        }
+        self.text = vec![b' '; end];
+        for ((card, _), (_, start)) in cards.iter().zip(&starts) {
+            self.text[*start..*start + card.text.len()].copy_from_slice(card.text);
         }
         if !starts.is_sorted_by(|a, b| a.0 < b.0) {
             let line = cards.first().map_or(0, |c| c.1 as usize);

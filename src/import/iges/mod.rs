@@ -88,6 +88,8 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     report.dropped = dropped;
     let (list, counts) = warnings.finish();
     report.warnings = counts;
+    // most of what was read is needed no more, and is given back while the model is used
+    rayon::spawn(move || drop((file, bodies)));
     Ok(Import { model, warnings: list, report, ..Import::default() })
 }
 

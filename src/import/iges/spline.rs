@@ -119,10 +119,10 @@ fn joined(breaks: &[f64]) -> Vec<f64> {
 
 /// Weights, then points; homogeneous and placed.
 fn control_points(entity: Entity<'_>, at: usize, count: usize, map: &DAffine3) -> Result<Vec<DVec4>, Fault> {
-    let weights = entity.reals(at, count)?;
-    let points = entity.reals(at.saturating_add(count), count.saturating_mul(3))?;
+    let numbers = entity.reals(at, count.saturating_mul(4))?;
+    let (weights, points) = numbers.split_at(count);
     let placed = points.chunks_exact(3).map(|p| map.transform_point3(DVec3::new(p[0], p[1], p[2])));
-    Ok(placed.zip(weights).map(|(p, w)| (p * w).extend(w)).collect())
+    Ok(placed.zip(weights).map(|(p, w)| (p * *w).extend(*w)).collect())
 }
 
 /// The stated range, inside the domain; the whole domain when it is missing.

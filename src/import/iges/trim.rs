@@ -16,7 +16,8 @@ use super::entity::{Entity, Fault};
 use super::fit::fit;
 use super::geometry::Geometry;
 use super::surface::Carrier;
-use crate::brep::{Boundary, BuildError, BuiltFace, CurveGeometry, Edge, FaceGeometry, SurfaceMap, build_face};
+use crate::brep::{Boundary, BuildError, BuiltFace, CurveGeometry, Edge, FaceGeometry, SurfaceGeometry, SurfaceMap};
+use crate::brep::{build_face, face_in_parameters};
 use crate::model::Bounds;
 use glam::{DAffine2, DAffine3, DVec2, DVec3};
 
@@ -214,6 +215,9 @@ impl Sheet {
 
     /// The face along the curves in space, or in the parameters where those are there.
     fn attempt(&self, map: &SurfaceMap, tolerance: f64, in_parameters: bool) -> Result<BuiltFace, BuildError> {
+        if let Some(face) = self.given(map, tolerance, in_parameters) {
+            return Ok(face);
+        }
         let mut edges = Vec::new();
         let mut bounds = Vec::new();
         for trim in &self.loops {
@@ -249,6 +253,18 @@ impl Sheet {
         build_face(&face, &edges, tolerance)
     }
 
+    /// The face along the curves in the parameters, where those are its spline's own and bound it as they stand.
+    fn given(&self, map: &SurfaceMap, tolerance: f64, in_parameters: bool) -> Option<BuiltFace> {
+        let SurfaceGeometry::BSpline(surface) = &self.carrier.surface else { return None };
+        let own = self.carrier.to_native == Some(DAffine2::IDENTITY) && !self.natural && !map.is_closed();
+        let taken = |l: &Trim| !l.parameter.is_empty() && (in_parameters || l.model.is_empty());
+        if !own || self.loops.is_empty() || !self.loops.iter().all(taken) {
+            return None;
+        }
+        let loops = self.loops.iter().map(|l| l.parameter.iter().map(Segment::trimmed).collect()).collect::<Vec<_>>();
+        face_in_parameters(self.id, (surface, map), &loops, tolerance).ok()
+    }
+
     /// The border of the surface; `None` where it is a whole spline or closed anyway.
     fn border(&self, map: &SurfaceMap, edges: &mut Vec<Edge>) -> Result<Option<Boundary>, BuildError> {
         let [(u0, u1), (v0, v1)] = match self.carrier.natural {
@@ -260,7 +276,7 @@ impl Sheet {
             whole.is_some_and(|(lo, hi)| (b - a) >= (hi - lo) * (1.0 - 1e-9))
         };
         let [u, v] = map.natural();
-        let spline = matches!(self.carrier.surface, crate::brep::SurfaceGeometry::BSpline(_));
+        let spline = matches!(self.carrier.surface, SurfaceGeometry::BSpline(_));
         if covers((u0, u1), u) && covers((v0, v1), v) && (map.is_closed() || (spline && self.loops.is_empty())) {
             return Ok(None);
         }

@@ -50,13 +50,13 @@ pub(super) fn record(
             at += 1;
         }
         let first = at;
-        let string = hollerith(text, at, end, delimiters);
+        let ends = |b: u8| b == delimiters.parameter || b == delimiters.record;
+        let behind = |at: usize| text[at..end].iter().position(|b| ends(*b)).map_or(end, |i| at + i);
+        at = behind(at);
+        let string = if text[first..at].contains(&b'H') { hollerith(text, first, end, delimiters) } else { None };
         if let Some((from, to)) = string {
-            at = to;
+            at = behind(to);
             out.push(Value::Text(from as u32, to as u32));
-        }
-        while at < end && text[at] != delimiters.parameter && text[at] != delimiters.record {
-            at += 1;
         }
         if string.is_none() {
             let last = text[first..at].iter().rposition(|b| *b != b' ').map_or(first, |i| first + i + 1);
@@ -102,6 +102,9 @@ fn hollerith(text: &[u8], at: usize, end: usize, delimiters: Delimiters) -> Opti
 
 /// A number as FORTRAN writes it: `1`, `1.`, `.5`, `-1.5E-3`, `2.D0`.
 pub(super) fn number(token: &[u8]) -> Option<f64> {
+    if let Some(short) = short(token) {
+        return Some(short);
+    }
     if token.len() > LONGEST || !token.iter().all(|b| b.is_ascii_digit() || b"+-.EeDd".contains(b)) {
         return None;
     }
@@ -111,6 +114,61 @@ pub(super) fn number(token: &[u8]) -> Option<f64> {
         *to = if matches!(from, b'D' | b'd') { b'E' } else { *from };
     }
     std::str::from_utf8(buffer).ok()?.parse().ok()
+}
+
+/// Powers of ten that are exact.
+const TENS: [f64; 23] = [
+    1e0, 1e1, 1e2, 1e3, 1e4, 1e5, 1e6, 1e7, 1e8, 1e9, 1e10, 1e11, 1e12, 1e13, 1e14, 1e15, 1e16, 1e17, 1e18, 1e19, 1e20,
+    1e21, 1e22,
+];
+
+/// A number whose digits and power of ten are both exact in `f64`: one operation then rounds right. `None` for others,
+/// and for what is no number.
+///
+/// Source: W. D. Clinger, *How to read floating point numbers accurately*, PLDI 1990.
+fn short(token: &[u8]) -> Option<f64> {
+    const MOST: usize = 19; // digits that do not overflow
+    let (negative, rest) = match token {
+        [b'-', rest @ ..] => (true, rest),
+        [b'+', rest @ ..] => (false, rest),
+        rest => (false, rest),
+    };
+    let (mut digits, mut count, mut behind, mut point) = (0u64, 0, 0i32, false);
+    let mut at = 0;
+    while let Some(&b) = rest.get(at) {
+        match b {
+            b'0'..=b'9' if count == MOST => return None,
+            b'0'..=b'9' => {
+                digits = 10 * digits + u64::from(b - b'0');
+                count += 1;
+                behind += i32::from(point);
+            }
+            b'.' if !point => point = true,
+            _ => break,
+        }
+        at += 1;
+    }
+    let power = match &rest[at..] {
+        [] => 0,
+        [b'E' | b'e' | b'D' | b'd', exponent @ ..] => {
+            let (sign, figures) = match exponent {
+                [b'-', figures @ ..] => (-1, figures),
+                [b'+', figures @ ..] | figures => (1, figures),
+            };
+            if !(1..=3).contains(&figures.len()) || !figures.iter().all(u8::is_ascii_digit) {
+                return None;
+            }
+            sign * figures.iter().fold(0, |sum, b| 10 * sum + i32::from(b - b'0'))
+        }
+        _ => return None,
+    };
+    if count == 0 || digits > 1 << 53 {
+        return None;
+    }
+    let power = power - behind;
+    let tens = *TENS.get(power.unsigned_abs() as usize)?;
+    let value = if power < 0 { digits as f64 / tens } else { digits as f64 * tens };
+    Some(if negative { -value } else { value })
 }
 
 #[cfg(test)]
@@ -144,6 +202,20 @@ mod tests {
     #[test]
     fn a_string_counted_in_characters() {
         assert_eq!(read("1,4Hgrün,2;").0[1..], [Value::Text(4, 9), Value::Number(2.0)]);
+    }
+
+    /// Bit for bit as the standard library reads them, on either side of what one operation can do.
+    #[test]
+    fn numbers_are_rounded_right() {
+        for text in ["0.1", "-0.", "9007199254740992", "9007199254740993", "9007199254740993.", "0.30000000000000004"] {
+            for power in ["", "E22", "e-22", "E23", "E-23", "E+5", "E-300"] {
+                let text = format!("{text}{power}");
+                let (found, wanted) = (number(text.as_bytes()).unwrap(), text.parse::<f64>().unwrap());
+                assert_eq!(found.to_bits(), wanted.to_bits(), "{text}");
+            }
+        }
+        let long = "123456789012345678901234567890.5";
+        assert_eq!(number(long.as_bytes()), long.parse().ok());
     }
 
     #[test]

@@ -1,7 +1,9 @@
 //! A solid: primitives and the expression over them.
 
 mod carrier;
+mod lone;
 mod nearby;
+mod operands;
 mod reach;
 mod shape;
 mod surface;
@@ -9,6 +11,8 @@ mod surface;
 mod tests;
 
 pub use carrier::Carrier;
+pub(crate) use lone::Lone;
+pub(super) use operands::Operands;
 pub use shape::{Primitive, Quadric, Shape, ShapeError};
 pub use surface::{CarriedFace, Surface, SurfaceTable};
 

@@ -2,7 +2,7 @@
 
 use super::structure::CYLINDER;
 use super::{Entity, GLOBAL, e, file, import};
-use crate::import::iges;
+use crate::import::{ImportError, iges};
 use proptest::prelude::*;
 
 /// Every warning of the cylinder's file after a change of its text.
@@ -93,6 +93,27 @@ fn damage_of_the_syntax() {
     says("D      3", "D      1", "t.igs:6: directory entry left out: #1 has one card instead of two");
     says("P      1", "Q      1", "t.igs:8: card skipped: no section letter in column 73");
     says("D      2", "\u{fc}      2", "t.igs:5: card skipped: no section letter in column 73");
+}
+
+#[test]
+fn a_file_that_is_mostly_no_cards_is_nonsense() {
+    let good = file(GLOBAL, &[e("116,0.,0.,0.;")]);
+    let cards = good.lines().count();
+    let error = |bad: usize| iges((good.clone() + &"no card\n".repeat(bad)).as_bytes(), "t.igs").map(|i| i.warnings);
+    assert!(error(999).is_ok());
+    let wanted = ImportError::Nonsense { file: "t.igs".into(), line: cards + 1000, bad: 1000, seen: cards + 1000 };
+    assert_eq!(error(3000).unwrap_err().to_string(), wanted.to_string());
+}
+
+/// Sixty entries, each of which claims the cards of all later ones and has no end of its own.
+#[test]
+fn claims_to_cards_are_bounded() {
+    let all: Vec<Entity> = (0..60).map(|_| e("116,0.,0.,0. ")).collect();
+    let text = file(GLOBAL, &all).replace("     116       0       0       1", "     116       0       0      60");
+    let import = iges(text.as_bytes(), "t.igs").unwrap();
+    let lost = import.warnings.iter().filter(|w| w.message.contains("cards are shared too often"));
+    // four times the sixty cards: the first four entries have 60 + 59 + 58 + 57 of them, the fifth has the rest
+    assert_eq!(lost.map(|w| w.count).sum::<usize>(), 55);
 }
 
 /// 2^40 squares from a few lines, and a subfigure that holds itself.

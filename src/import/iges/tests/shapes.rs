@@ -62,6 +62,9 @@ fn a_hyperbola_and_a_parabola() {
 fn polylines_and_composites() {
     let f = face(&above("106,1,3,1.,0.,0.,4.,0.,4.,3.;", 11, v(0.0, 0.0, 1.0)));
     [v(4.0, 0.0, 1.0), v(4.0, 3.0, 3.0)].into_iter().for_each(|p| reaches(&f, p));
+    // form 63 goes back to where it began
+    let f = face(&above("106,1,3,1.,0.,0.,4.,0.,4.,3.;", 63, v(0.0, 0.0, 1.0)));
+    assert!(points(&f).iter().any(|p| p.x > 1.0 && p.x < 3.0 && (p.y - 0.75 * p.x).abs() < 1e-9));
     let members = [e("110,0.,0.,0.,1.,0.,0.;"), e("100,0.,1.,1.,1.,0.,2.,1.;"), e("102,2,1,3;"), e("122,5,0.,0.,3.;")];
     let f = face(&members);
     [v(2.0, 1.0, 3.0), v(1.0, 0.0, 0.0)].into_iter().for_each(|p| reaches(&f, p));
@@ -97,6 +100,13 @@ fn surfaces_of_revolution() {
     let f = face(&cone.map(e));
     lies_on(&f, |p| p.x.hypot(p.y) - 1.0 - p.z / 2.0);
     [v(1.0, 0.0, 0.0), v(0.0, 3.0, 4.0)].into_iter().for_each(|p| reaches(&f, p));
+    // mirrored, it turns the other way: from -x to y
+    let mut all = Vec::from(cone.map(e));
+    all[2].matrix = 7;
+    all.push(e("124,-1.,0.,0.,0.,0.,1.,0.,0.,0.,0.,1.,0.;"));
+    let f = face(&all);
+    [v(-1.0, 0.0, 0.0), v(0.0, 3.0, 4.0)].into_iter().for_each(|p| reaches(&f, p));
+    assert!(points(&f).iter().all(|p| p.x < 1e-9 && p.y > -1e-9));
     // half a circle about its diameter: a whole sphere, no loop
     let arc = "100,0.,0.,0.,2.,0.,-2.,0.;";
     let f = face(&[e("110,0.,0.,0.,1.,0.,0.;"), e(arc), e(&format!("120,1,3,0.,{TAU};"))]);
@@ -150,9 +160,16 @@ fn a_hole_in_space_in_parameters_or_in_both() {
         // the area is that of sixteen chords a curve, four curves or more to the circle
         assert!((area(&f) - wanted).abs() < 2e-2, "{both}: {}", area(&f));
     }
-    // a curve in space that lies 0.5 mm off: the preferred one counts
-    let off = "100,7.5,5.,5.,7.,5.,7.,5.;";
-    for (both, wanted) in [("142,0,1,5,3,1;", wanted), ("142,0,1,0,3,1;", 100.0 - 4.0 * PI)] {
+    // a curve in space that lies 0.5 mm above, or on the plane but elsewhere: the preferred one counts
+    let (off, aside) = ("100,7.5,5.,5.,7.,5.,7.,5.;", "100,7.,5.5,5.,7.5,5.,7.5,5.;");
+    let other = 100.0 - 4.0 * PI;
+    let cases = [
+        (off, "142,0,1,5,3,1;", wanted),
+        (off, "142,0,1,0,3,1;", other),
+        (aside, "142,0,1,5,3,1;", wanted),
+        (aside, "142,0,1,5,3,2;", other),
+    ];
+    for (off, both, wanted) in cases {
         let i = import(&[
             e(PLANE),
             e(off),
@@ -182,6 +199,21 @@ fn a_preferred_curve_counts_where_the_other_leaves_the_surface() {
         assert_eq!(record.gap < 1e-9, parameters, "{both}: {record:?}");
         assert_eq!(record.notes.iter().any(|n| n.contains("those in (u, v) are used")), parameters, "{record:?}");
     }
+}
+
+/// The spline's own parameters: nothing is fitted. A conic in them is four rational arcs.
+#[test]
+fn loops_in_parameters_are_exact() {
+    let ellipse = "104,4.,0.,1.,-20.,-10.,41.,0.,4.,5.,4.,5.;";
+    let i = import(&[
+        e(PLANE),
+        Entity { form: 1, status: "00010000", ..e(ellipse) },
+        e("142,0,1,3,0,1;"),
+        e("144,1,1,0,5;"),
+    ]);
+    let (f, record) = (&i.model.parts[0].faces[0], &i.report.face_records[0]);
+    assert_eq!((record.deviation, f.loops.len(), f.loops[0].curves().len()), (0.0, 1, 4), "{record:?}");
+    assert!(record.gap < 1e-14 && f.loops[0].curves().all(|c| c.degree() == 2), "{record:?}");
 }
 
 #[test]

@@ -105,6 +105,15 @@ fn subfigures() {
 }
 
 #[test]
+fn subfigures_stand_in_the_files_unit() {
+    let global = GLOBAL.replace("1.,2,2HMM", "1.,1,4HINCH");
+    let all = [e(SQUARE), Entity { status: "00000200", ..e("308,0,4Htile,1,1;") }, e("408,3,1.,2.,3.,1.;")];
+    let i = iges(file(&global, &all).as_bytes(), "t.igs").unwrap();
+    let corner = i.model.instances[0].transform.transform_point3(DVec3::new(25.4, 0.0, 0.0));
+    assert!(corner.distance(25.4 * DVec3::new(2.0, 2.0, 3.0)) < 1e-12, "{corner}");
+}
+
+#[test]
 fn groups_levels_colours_and_names() {
     let square = |colour: i32, level: i32| Entity { colour, level, ..e(SQUARE) };
     let name = Entity { form: 15, ..e("406,1,4HRoof;") };

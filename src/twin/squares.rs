@@ -1,7 +1,19 @@
-//! Twin of `glsl/solid_squares.comp`: which squares of tiles are drawn.
+//! Twin of `glsl/solid_squares.comp` and `glsl/seen_squares.comp`: which squares of tiles are drawn.
 
-use crate::abi::{BLOCK, EXIT_FALSE};
+use crate::abi::{BLOCK, EXIT_FALSE, TILE};
 use std::ops::Range;
+
+/// The same of a picture of `size` pixels, some of which see what is to be drawn.
+pub fn seen_squares(size: [u32; 2], sees: impl Fn([u32; 2]) -> bool) -> Vec<u32> {
+    let tiles = size.map(|pixels| pixels.div_ceil(TILE));
+    let pixels = |tile: u32, axis: usize| tile * TILE..(tile * TILE + TILE).min(size[axis]);
+    let any = |n: u32| {
+        let (tile_x, tile_y) = (n % tiles[0], n / tiles[0]);
+        pixels(tile_y, 1).any(|y| pixels(tile_x, 0).any(|x| sees([x, y])))
+    };
+    let entries: Vec<u32> = (0..tiles[0] * tiles[1]).map(|n| if any(n) { n } else { EXIT_FALSE }).collect();
+    solid_squares(tiles, 0..tiles[1], &entries)
+}
 
 /// Of each tile of a band of rows of a picture of `tiles` across and down, whose walks begin at `entries`, the side of
 /// the square that begins there, in tiles, or 0.
