@@ -20,6 +20,10 @@ const LEAST_STRIPS: usize = 8;
 /// The paper's benchmark used 128 strips for every surface; nothing asked for more.
 const MOST_STRIPS: usize = 128;
 
+/// A side whose control points are as near to each other, relative to the patch, is a point: some roundings of single
+/// precision.
+const POINT: f64 = 1e-6;
+
 /// What one face contributes to the scene's arrays.
 pub(super) struct FaceData {
     pub face: abi::Face,
@@ -137,6 +141,9 @@ impl FaceData {
             | border(i + 1 == grid.count_u, abi::BORDER_U1)
             | border(j == 0, abi::BORDER_V0)
             | border(j + 1 == grid.count_v, abi::BORDER_V1);
+        // beyond a pole the surface turns over: a trimmed face is not continued there
+        let poles = if self.face.flags & abi::FACE_TRIMMED != 0 { poles(&p.patch) } else { 0 };
+        let borders = borders & !poles;
         let bend = p.patch.derivative_bound();
         let (lo, hi) = outward_box(&p.patch, origin);
         let corner = domain.unit(DVec2::new(p.u.0, p.v.0));
@@ -337,6 +344,21 @@ fn sides(grid: &PatchGrid, loops: &[TrimLoop]) -> Vec<Side> {
             RectSide::Boundary => Side::Boundary,
         })
         .collect()
+}
+
+/// Bits of the sides that are points, within [`POINT`] of the patch's size.
+fn poles(patch: &Patch) -> u32 {
+    let (lo, hi) = patch.bounds();
+    let near = POINT * (hi - lo).length();
+    let (n, k) = (patch.degree_u, patch.degree_v);
+    let column = |i: usize| (0..=k).map(move |j| j * (n + 1) + i);
+    let row = |j: usize| (0..=n).map(move |i| j * (n + 1) + i);
+    let at = |i: usize| patch.points[i].point();
+    let bit = |is_point: bool, bit: u32| if is_point { bit } else { 0 };
+    bit(column(0).all(|i| at(i).distance(at(0)) <= near), abi::BORDER_U0)
+        | bit(column(n).all(|i| at(i).distance(at(n)) <= near), abi::BORDER_U1)
+        | bit(row(0).all(|i| at(i).distance(at(0)) <= near), abi::BORDER_V0)
+        | bit(row(k).all(|i| at(i).distance(at(k * (n + 1))) <= near), abi::BORDER_V1)
 }
 
 /// The box of the control points relative to `origin`, rounded outwards.

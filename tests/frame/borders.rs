@@ -9,7 +9,7 @@
 use crate::shapes::borders;
 use crate::support::{assert_silent, render, watched};
 use glam::DVec3;
-use selvedge::model::{Camera, Model};
+use selvedge::model::{Camera, Model, Projection};
 use selvedge::reference::{JudgeOptions, Tracer, judge};
 use std::ops::Range;
 
@@ -51,4 +51,23 @@ fn a_silhouette_that_meets_a_border_is_not_drawn_beyond_it() {
 #[test]
 fn a_wall_that_two_tops_hide_is_not_seen_between_them() {
     keeps_the_promise(&borders::abutting(), 50..70);
+}
+
+/// Continued beyond the pole, the face turned over: pixels there were taken for its back, and shown another face's.
+#[test]
+fn a_pole_is_not_taken_for_the_face_s_back() {
+    let model = borders::seamed_ball();
+    let mut renderer = watched(&model);
+    let mut seen = 0;
+    for k in 0..12 {
+        let tilt = DVec3::new(0.05 * f64::from(k), 0.02 * f64::from(k % 5), 1.0);
+        let mut camera = Camera::framing(model.bounds(), tilt, DVec3::Y, 35f64.to_radians(), SIZE);
+        // nearer, so that the picture holds no outline
+        camera.projection = Projection::Perspective { fov_y: 12f64.to_radians() };
+        let picture = render(&mut renderer, &camera);
+        assert_eq!(picture.stats.doubtful_pixels, 0, "view {k}");
+        seen += picture.face.iter().filter(|&&face| face == 1).count();
+    }
+    assert_eq!(seen, 12 * (SIZE.0 * SIZE.1) as usize);
+    assert_silent(renderer);
 }

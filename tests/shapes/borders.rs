@@ -1,9 +1,9 @@
 //! Solids whose faces end where their surfaces end, with loops along their sides, as CAD files have them.
 
-use super::{circle, face, one, placed, plane, rectangle, revolved};
+use super::{circle, face, one, placed, plane, rectangle, revolved, sphere_surface};
 use glam::{DAffine3, DVec2, DVec3};
 use selvedge::model::{Face, Instance, Model, Part, SurfaceKind, TrimLoop};
-use std::f64::consts::TAU;
+use std::f64::consts::{FRAC_PI_2, TAU};
 
 /// A closed drum of this radius, face 1, from z = 0 up to the height, faces 2 and 3.
 pub fn drum(radius: f64, height: f64) -> Model {
@@ -16,6 +16,13 @@ pub fn drum(radius: f64, height: f64) -> Model {
     };
     let mantle = Face { loops: vec![seam], ..face(1, SurfaceKind::Cylinder, mantle) };
     one("drum", true, vec![mantle, end(2, height), end(3, 0.0)])
+}
+
+/// A closed ball of radius 1 whose one face has a loop along its seam and its poles.
+pub fn seamed_ball() -> Model {
+    let seam = rectangle(DVec2::new(0.0, -FRAC_PI_2), DVec2::new(TAU, FRAC_PI_2));
+    let ball = face(1, SurfaceKind::Sphere, sphere_surface(1.0, DVec3::ZERO));
+    one("seamed ball", true, vec![Face { loops: vec![seam], ..ball }])
 }
 
 /// Two solid blocks, faces 1 to 6 and 11 to 16, that share a wall, with their tops in one plane.
