@@ -9,7 +9,8 @@
 //!
 //! *A ray enters the union first where it enters a lone mesh first, or the union of the rest.* A surface that is closed
 //! and turned outwards is entered where triangles face the eye, so the nearest of those is what a list of all crossings
-//! would tell. Two faces of one mesh that lie back to back bound nothing: such a mesh does not count as lone.
+//! would tell. Two faces of one mesh that lie back to back bound nothing: such a mesh does not count as lone. A surface
+//! that crosses itself so that a part of it is inside out shows that part's far wall, where a list would tell the near one.
 
 use super::operands::Operands;
 use super::{Primitive, Shape, Solid, SolidError, SurfaceTable, nearby::Nearby, reach};
