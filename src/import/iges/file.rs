@@ -47,6 +47,9 @@ struct Span {
 /// Records that one thread reads at a time.
 const RECORDS: usize = 16;
 
+/// Cards whose text one thread copies at a time.
+const SHARE: usize = 4096;
+
 /// Bytes of an average parameter, at least: what an arena makes room for.
 const BYTES: usize = 6;
 
@@ -114,10 +117,23 @@ impl File {
             starts.push((number, end));
             end += card.text.len().max(DATA);
         }
-        self.text = vec![b' '; end];
-        for ((card, _), (_, start)) in cards.iter().zip(&starts) {
-            self.text[*start..*start + card.text.len()].copy_from_slice(card.text);
-        }
+        self.text = vec![0; end];
+        let mut rest = &mut self.text[..];
+        let own = |cards: &[(Card<'_>, u32)]| cards.iter().map(|(card, _)| card.text.len().max(DATA)).sum();
+        let shares = cards.chunks(SHARE).map(|cards| {
+            let (text, behind) = std::mem::take(&mut rest).split_at_mut(own(cards));
+            rest = behind;
+            (cards, text)
+        });
+        shares.collect::<Vec<_>>().into_par_iter().for_each(|(cards, mut text)| {
+            for (card, _) in cards {
+                let (columns, behind) = std::mem::take(&mut text).split_at_mut(card.text.len().max(DATA));
+                let (written, blank) = columns.split_at_mut(card.text.len());
+                written.copy_from_slice(card.text);
+                blank.fill(b' ');
+                text = behind;
+            }
+        });
         if !starts.is_sorted_by(|a, b| a.0 < b.0) {
             let line = cards.first().map_or(0, |c| c.1 as usize);
             warnings.push("parameter cards renumbered", || Place::Line(line), || "their numbers do not rise".into());
