@@ -3,7 +3,8 @@
 use crate::abi::{BLOCK, EXIT_FALSE, TILE};
 use std::ops::Range;
 
-/// The same of a picture of `size` pixels, some of which see what is to be drawn.
+/// Of each tile of a picture of `size` pixels, in which `sees` tells what is to be drawn, the side of the square that begins
+/// there, in tiles, or 0.
 pub fn seen_squares(size: [u32; 2], sees: impl Fn([u32; 2]) -> bool) -> Vec<u32> {
     let tiles = size.map(|pixels| pixels.div_ceil(TILE));
     let pixels = |tile: u32, axis: usize| tile * TILE..(tile * TILE + TILE).min(size[axis]);
