@@ -10,6 +10,9 @@
 #include "scene.glsl"
 #include "view.glsl"
 
+// Patches may lie behind others: faces none of whose patches is drawn get no scan line either.
+layout(constant_id = 1) const bool SCENE_HIDES = false;
+
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
@@ -20,11 +23,13 @@ layout(scalar, binding = 5) readonly buffer Cells { Cell cells[]; };
 layout(scalar, binding = 6) readonly buffer CellItems { uint cell_face_instance[]; };
 layout(scalar, binding = 7) buffer StripHeights { uint strip_heights[]; }; // float bits, pixels
 layout(scalar, binding = 8) buffer FaceSpeeds { uint face_speeds[]; };     // float bits, pixels per unit u, v
+layout(scalar, binding = 9) readonly buffer DrawnFaces { uint drawn_faces[]; }; // where SCENE_HIDES
 
 void main() {
     uint item = gl_GlobalInvocationID.x;
     if (item >= frame.cell_count) return;
     uint placed = cell_face_instance[item];
+    if (SCENE_HIDES && drawn_faces[placed] == 0u) return;
     FaceInstance fi = face_instances[placed];
     Face face = faces[fi.face];
     Cell cell = cells[face.first_cell + item - fi.first_cell];

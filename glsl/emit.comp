@@ -30,8 +30,8 @@ void main() {
     uint item = gl_GlobalInvocationID.x;
     if (item >= n) return;
     if (item == 0u) {
-        counters.plain = sub_patch_starts[n];
-        counters.trimmed = sub_patch_starts[2u * n] - sub_patch_starts[n];
+        counters.plain += sub_patch_starts[n];
+        counters.trimmed += sub_patch_starts[2u * n] - sub_patch_starts[n];
         if (sub_patch_starts[2u * n] > frame.sub_patch_capacity) atomicOr(counters.failed, FAILED_SUB_PATCHES);
     }
     uint slot = item;

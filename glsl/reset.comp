@@ -1,8 +1,11 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `reset`: empty draws and zero counters. One thread a draw.
+// Pass `reset`: empty draws and zero counters. One thread a draw. Before patches are drawn a second time (DRAWS_ONLY)
+// the other counters stay.
 #include "scene.glsl"
+
+layout(constant_id = 1) const bool DRAWS_ONLY = false;
 
 layout(local_size_x = 64) in;
 struct Draw {
@@ -13,10 +16,15 @@ struct Draw {
 };
 layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) writeonly buffer Draws { Draw draws[]; };
-layout(scalar, binding = 2) writeonly buffer CountersBuffer { Counters counters; };
+layout(scalar, binding = 2) buffer CountersBuffer { Counters counters; };
 
 void main() {
     uint draw = gl_GlobalInvocationID.x;
-    if (draw == 0u) counters = Counters(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
+    if (draw == 0u && DRAWS_ONLY) {
+        counters.plain_draws = 0u;
+        counters.trimmed_draws = 0u;
+        counters.table_clamps = 0u; // the table is made again
+    }
+    if (draw == 0u && !DRAWS_ONLY) counters = Counters(0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u, 0u);
     if (draw < 2u * frame.draw_capacity) draws[draw] = Draw(0u, 1u, 0xffffffffu, 0u);
 }

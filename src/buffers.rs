@@ -38,6 +38,8 @@ pub(crate) struct Buffers {
     pub sub_patches: Buffer,
     pub draws: Buffer,
     pub counters: Buffer,
+    /// In scenes where patches may lie behind others.
+    pub hidden: Option<HiddenBuffers>,
     pub trim: Option<TrimBuffers>,
     pub solids: Option<SolidBuffers>,
     /// Of tiles that see a patch or a mesh; in scenes with either.
@@ -52,6 +54,16 @@ pub(crate) struct Buffers {
     pub behind: Option<Image>,
     /// What pass `coverage` mixes.
     pub resolved: Option<Image>,
+}
+
+/// What is known of patches that lie behind others.
+pub(crate) struct HiddenBuffers {
+    /// A word an item; from frame to frame.
+    pub hidden: Buffer,
+    /// A word a placed face.
+    pub drawn_faces: Buffer,
+    /// A float a tile, then one a block of tiles.
+    pub farthest: Buffer,
 }
 
 /// What trimmed patches need, whatever the way to trim.
@@ -178,7 +190,7 @@ impl Buffers {
             Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })
         };
         let drawn_and_read = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE;
-        let sampled = if counts.trim.is_some() { vk::ImageUsageFlags::SAMPLED } else { vk::ImageUsageFlags::empty() };
+        let sampled = if counts.trim.is_some() || counts.hides { vk::ImageUsageFlags::SAMPLED } else { vk::ImageUsageFlags::empty() };
         let depth_usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | sampled;
         let n = counts.items;
         let in_tiles = counts.leaves > 0 && !(counts.blister && counts.shells > 0);
@@ -230,6 +242,16 @@ impl Buffers {
             sub_patches: structs("sub-patches", capacities.sub_patches, size_of::<SubPatch>())?,
             draws: indirect("draws", draw_bytes)?,
             counters: indirect("counters", size_of::<Counters>() as u64)?,
+            hidden: counts
+                .hides
+                .then(|| {
+                    Ok::<_, GpuError>(HiddenBuffers {
+                        hidden: words("hidden patches", n)?,
+                        drawn_faces: words("drawn faces", counts.face_instances)?,
+                        farthest: words("farthest depths", across(TILE) + across(TILE * BLOCK))?,
+                    })
+                })
+                .transpose()?,
             trim: counts
                 .trim
                 .map(|way| {

@@ -24,6 +24,8 @@ pub(crate) struct Counts {
     pub strips: u32,
     pub curves: u32,
     pub face_instances: u32,
+    /// Patches may lie behind others.
+    pub hides: bool,
     /// Patches or meshes are seen themselves.
     pub has_surfaces: bool,
     /// Leaves of Boolean solids.
@@ -69,6 +71,7 @@ impl Counts {
             strips: data.strip_count,
             curves: data.curve_items.len() as u32,
             face_instances: data.face_instances.len() as u32,
+            hides: data.hides(),
             has_surfaces: data.has_surfaces(),
             leaves: data.solids.leaves.len() as u32,
             shells: data.solids.shell_leaves.len() as u32,

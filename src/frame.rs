@@ -44,16 +44,19 @@ use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::passes::{bound, emit, heal, mesh, reset, resolve, scan, split, visibility};
 use crate::picture::TrimWay;
 use crate::scene::{MeshBuffers, Scene, SceneData, SolidData};
+use hidden::HiddenPasses;
 use layers::{Drawing, LayerPasses};
 use samples::{SamplePasses, Scopes};
 use solids::SolidPasses;
 use std::ops::Range;
+use table::TableParts;
 use trim::{TrimParts, TrimPasses};
 
 mod bands;
 mod blister;
 mod coverage;
 mod edit;
+mod hidden;
 mod layers;
 mod resolved;
 #[cfg(feature = "rivals")]
@@ -64,6 +67,7 @@ mod sun;
 mod table;
 mod trim;
 
+pub(crate) use hidden::Hiding;
 pub(crate) use samples::SampleBuffers;
 pub(crate) use solids::{Centres, Near};
 
@@ -73,6 +77,8 @@ pub(crate) struct Passes {
     scan: scan::Scan,
     /// Of scenes with patches.
     tessellation: Option<TessellationPasses>,
+    /// Of scenes in which patches may lie behind others.
+    hidden: Option<HiddenPasses>,
     trim: Option<TrimPasses>,
     solids: Option<SolidPasses>,
     visibility: visibility::Visibility,
@@ -125,23 +131,25 @@ impl Passes {
                     || {
                         let tessellation = (!data.items.is_empty()).then_some(()).map(tessellation).transpose()?;
                         let mesh = data.has_meshes().then(mesh).transpose()?;
-                        Ok((tessellation, visibility::Visibility::new(device, kinds)?, mesh))
+                        let hidden = HiddenPasses::new(device, data)?;
+                        Ok((tessellation, hidden, visibility::Visibility::new(device, kinds)?, mesh))
                     },
                     || {
                         let resolve = resolved::targets(device, data, formats)?;
                         let samples = SamplePasses::new(device, data, formats)?;
                         let squares = data.has_surfaces().then(|| SeenSquares::new(device)).transpose()?;
                         let scan = scan::Scan::new(device, data.trim_way() == Some(TrimWay::Table))?;
-                        Ok((resolve, samples, squares, reset::Reset::new(device)?, scan))
+                        Ok((resolve, samples, squares, reset::Reset::new(device, false)?, scan))
                     },
                 )
             },
         );
-        let ((tessellation, visibility, mesh), (resolve, samples, squares, reset, scan)) = (faces?, pictures?);
+        let ((tessellation, hidden, visibility, mesh), (resolve, samples, squares, reset, scan)) = (faces?, pictures?);
         Ok(Self {
             reset,
             scan,
             tessellation,
+            hidden,
             solids: solids?,
             visibility,
             mesh,
@@ -168,6 +176,7 @@ pub(crate) struct Frame<'a> {
     pub samples: &'a [SampleBuffers],
     pub centres: Option<Centres<'a>>,
     pub near: Near,
+    pub hiding: Hiding,
     /// Columns and rows of the pixels that operands without equations may be in.
     pub shell_pixels: &'a [Range<u32>; 2],
     /// That way `blister` peels.
@@ -229,7 +238,11 @@ impl Frame<'_> {
             times.scope(cmd, "solids", || self.solid_faces(cmd, &parts));
         }
         let test = trim.as_ref().map_or(Vec::new(), TrimParts::test);
-        times.drawing(cmd, "visibility", || self.visibility(cmd, &test));
+        times.drawing(cmd, "visibility", || self.visibility(cmd, &test, false));
+        if let (Some(parts), Some(tessellation)) = (self.reveals(), &self.passes.tessellation) {
+            let table = trim.as_ref().and_then(TrimParts::table);
+            times.drawing(cmd, "reveal", || parts.reveal(self, cmd, tessellation, table, &test));
+        }
         let mut drawn = Access::COLOUR_WRITE;
         if let Some(parts) = &trim {
             times.scope(cmd, "heal", || self.heal(cmd, parts, &test));
@@ -264,6 +277,9 @@ impl Frame<'_> {
         #[cfg(feature = "rivals")]
         for counted in b.trim.iter().flat_map(|t| &t.texture).flat_map(crate::buffers::TextureBuffers::cleared) {
             cmd.fill(counted, 0);
+        }
+        if let Some(parts) = self.hidden() {
+            parts.begin(cmd, self.hiding);
         }
         let r = reset::Bindings { frame: self.constants, draws: &b.draws, counters: &b.counters };
         self.passes.reset.record(cmd, &r, 2 * b.capacities.draws);
@@ -304,8 +320,18 @@ impl Frame<'_> {
             counters: &b.counters,
         };
         p.bound.record(cmd, &bound, items);
+        if let Some(parts) = self.hidden() {
+            parts.hide(self, cmd);
+        }
         barrier::buffers(cmd, &[(&b.taus, w, r)]);
+        self.divide(cmd, p);
+    }
 
+    /// Patches into sub-patches, and what draws those that are to be drawn.
+    fn divide(&self, cmd: &Commands<'_>, p: &TessellationPasses) {
+        let (s, b) = (self.scene, self.buffers);
+        let items = b.counts.items;
+        let (w, r) = WRITE_TO_READ;
         let split = split::Bindings {
             frame: self.constants,
             face_instances: &s.face_instances,
@@ -397,11 +423,13 @@ impl Frame<'_> {
         );
     }
 
-    fn visibility(&self, cmd: &Commands<'_>, test: &[&Buffer]) {
+    /// `again`: over what it drew before.
+    fn visibility(&self, cmd: &Commands<'_>, test: &[&Buffer], again: bool) {
         let (s, b) = (self.scene, self.buffers);
         barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE, Access::INDIRECT_READ)]);
         if let Some(t) = &b.trim {
-            barrier::buffers(cmd, &[(&t.rings, Access::TRANSFER_WRITE, Access::FRAGMENT_WRITE)]);
+            let before = if again { Access::FRAGMENT_WRITE } else { Access::TRANSFER_WRITE };
+            barrier::buffers(cmd, &[(&t.rings, before, Access::FRAGMENT_WRITE)]);
         }
         let bindings = visibility::Bindings {
             frame: self.constants,
@@ -421,8 +449,8 @@ impl Frame<'_> {
             draws: &b.draws,
             counters: &b.counters,
         };
-        let drawn = s.meshes.is_some() || s.solids.is_some();
-        let colour = if drawn && b.others.is_none() { Load::Keep } else { Load::ColourU32([0; 4]) };
+        let drawn = again || s.meshes.is_some() || s.solids.is_some();
+        let colour = if again || drawn && b.others.is_none() { Load::Keep } else { Load::ColourU32([0; 4]) };
         let visibility = Attachment { image: &b.visibility, load: colour };
         let depth = Attachment { image: &b.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
         self.passes.visibility.record(cmd, &bindings, (visibility, depth), b.capacities.draws);

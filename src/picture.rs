@@ -358,6 +358,8 @@ pub struct FrameStats {
     /// solids that need more steps than the driver lets a shader make: the promise is not kept there. 0 in a
     /// good frame.
     pub clamps: u64,
+    /// Patches that were left out because they lie behind others; 0 in the first frames of a scene, which find out.
+    pub hidden_patches: u64,
     /// Crossings of rays with operands of Boolean solids that are meshes or spline parts.
     pub fragments: u64,
     /// Of those rays, how many slip between two faces of an operand and were given the face that is nearest

@@ -16,6 +16,7 @@
 mod centres;
 mod constants;
 mod edit;
+mod known;
 mod slot;
 
 use crate::abi;
@@ -30,6 +31,7 @@ use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, Samples, Sc
 pub use crate::scene::{CloseUp, EditError, UndrawnSolid};
 use crate::scene::{Scene, SceneData, Write};
 use ash::vk;
+use known::Known;
 use slot::Slot;
 
 /// Formats of the images that the host will pass to [`Renderer::record`].
@@ -139,6 +141,8 @@ struct Loaded {
     buffers: Option<Buffers>,
     /// Edits that the next frame copies.
     edits: Vec<Write>,
+    /// What the frame before knew of patches that lie behind others; `None`: its buffers are gone.
+    known: Option<Known>,
 }
 
 impl Loaded {
@@ -237,6 +241,7 @@ impl Renderer {
             scene: None,
             buffers: None,
             edits: Vec::new(),
+            known: None,
         };
         if let Some(old) = self.loaded.replace(loaded) {
             self.retire(Retired::Loaded(Box::new(old)));
@@ -329,6 +334,8 @@ impl Renderer {
             loaded.scene = Some(scene);
             loaded.data.drop_uploaded();
         }
+        let known = Known::after(loaded.known, (*input.camera, input.settings), !loaded.edits.is_empty());
+        loaded.known = Some(known);
         slot.edit_bytes = 0;
         if let Some(scene) = loaded.scene.as_ref().filter(|_| !loaded.edits.is_empty()) {
             let uploads = Frame::edit(&cmd, scene, &loaded.edits)?;
@@ -361,6 +368,7 @@ impl Renderer {
             samples: &slot.samples,
             centres: slot.centres.solids(),
             near,
+            hiding: known.hiding,
             shell_pixels: &shell_pixels,
             layers: loaded.capacities.layers,
             volume_places: slot.centres.volume(),
@@ -401,7 +409,8 @@ impl Renderer {
             trim_segments: u64::from(c.segments),
             trim_intercepts: u64::from(c.intercepts),
             doubtful_pixels: u64::from(c.doubts),
-            clamps: u64::from(c.clamps),
+            clamps: u64::from(c.clamps) + u64::from(c.table_clamps),
+            hidden_patches: u64::from(c.hidden),
             fragments: u64::from(c.fragments),
             mended: u64::from(c.mended),
             unpaired: u64::from(c.unpaired),
@@ -459,6 +468,9 @@ impl Renderer {
         let made = (!fits).then(|| Buffers::new(&self.device, loaded.counts, capacities, size)).transpose()?;
         // only now: a view that needs more than there is must not spoil the next one
         loaded.capacities = capacities;
+        if made.is_some() {
+            loaded.known = None;
+        }
         if let Some(old) = made.and_then(|made| loaded.buffers.replace(made)) {
             self.retire(Retired::Buffers(Box::new(old)));
         }

@@ -124,6 +124,12 @@ struct Curve {
     vec2 range_v;   // lowest and highest v of the control polygon
 };
 
+// What a patch asks for: tau_u | TAU_HIDDEN | tau_v << 16, or 0 where it is not seen.
+const uint TAU_HIDDEN = 0x8000u; // it is not drawn now: it lies behind others, or is drawn already
+
+uint tau_along(uint tau, uint axis) { return axis == 0u ? tau & 0x7fffu : tau >> 16; }
+bool is_drawn(uint tau) { return tau != 0u && (tau & TAU_HIDDEN) == 0u; }
+
 // One frame's view.
 struct Frame {
     vec2 size;          // pixels
@@ -192,7 +198,9 @@ struct Counters {
     uint contacts;     // pixels whose rays meet coincident faces of two items, and that are within two at once
     uint overlaps;
     uint layers;       // peeled by way `blister`
-    uint clamps;       // factors or densities above their hard limits
+    uint hidden;       // patches left out because they lie behind others
+    uint clamps;       // factors and lists above their hard limits, but for the table's
+    uint table_clamps; // densities and segments of the trim table
     uint failed;       // one bit a buffer that was too small
 };
 

@@ -17,8 +17,6 @@ layout(scalar, binding = 6) writeonly buffer FactorsBuffer { Factors factors[]; 
 layout(scalar, binding = 7) writeonly buffer SubPatchCounts { uint sub_patch_counts[]; };
 layout(scalar, binding = 8) writeonly buffer VertexCounts { uint vertex_counts[]; };
 
-uint tau_along(uint tau, uint axis) { return axis == 0u ? tau & 0xffffu : tau >> 16; }
-
 uint power_of_two(uint x) { return x <= 1u ? 1u : 1u << (findMSB(x - 1u) + 1); }
 
 // Sub-patches along the axis for a patch with these neighbours: enough that no shared side needs
@@ -49,7 +47,7 @@ void decide(uint axis, uint own, uvec2 others, uvec2 others_splits) {
 }
 
 void write(uint item, uint patch_) {
-    bool drawn = taus[item] != 0u;
+    bool drawn = is_drawn(taus[item]);
     factors[item] = Factors(inner.x | inner.y << 16, low.x | high.x << 16, low.y | high.y << 16,
                             splits.x | splits.y << 16);
     uvec2 most = max(inner, max(low, high)) / splits;

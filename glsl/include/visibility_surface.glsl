@@ -18,6 +18,7 @@ layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
 layout(binding = 6) uniform samplerBuffer points;
 
 #include "patch.glsl"
+#include "push.glsl"
 #ifdef LINK_BINDING
 #include "link.glsl"
 #endif
@@ -31,11 +32,10 @@ layout(location = 5) patch in uvec4 in_edges;
 layout(location = 0) out vec2 out_uv; // of the patch
 layout(location = 1) flat out uint out_item;
 
-// Most of a patch's width that its border may be pushed outwards; and no farther than a segment, nor so far that the
+// Borders are pushed outwards no farther than MAX_PUSH of a patch's width, than a segment, nor so far that the
 // surface leaves its tangent by more than this share of deviation_px: beside a silhouette even a step of many pixels
 // does not take the border across itself, and triangles as long as it would be off by pixels. So those at the border
 // are off by (1 + sqrt(MAX_BEND) / 2)^2 deviation_px at most along the step.
-const float MAX_PUSH = 0.5;
 const float MAX_BEND = 0.25;
 
 float along_side(float x, uint place, uint splits, uint edge) {
@@ -90,12 +90,9 @@ void main() {
             vec4 q = to_pixel(view, vec4(jet.point, 1.0));
             vec4 qu = to_pixel(view, vec4(jet.du, 0.0));
             vec4 qv = to_pixel(view, vec4(jet.dv, 0.0));
-            float w = frame.perspective != 0u ? max(q.w, frame.near) : 1.0;
-            vec2 pu = (qu.xy - q.xy / w * qu.w) / w; // pixels per unit u
-            vec2 pv = (qv.xy - q.xy / w * qv.w) / w;
-            float area = abs(pu.x * pv.y - pu.y * pv.x);
-            // a step du moves the border by du * area / |pv| pixels across itself
-            vec2 push = 2.0 * frame.ring_px * vec2(length(pv), length(pu)) / max(area, 1e-12);
+            vec2 pu, pv;
+            pixel_speeds(frame, q, qu, qv, pu, pv);
+            vec2 push = border_push(frame, pu, pv);
             // where a shared side meets the border, both its patches must push alike, bit for bit: along it
             bool shared_u = (uv.x == 0.0 || uv.x == 1.0) && !(left || right);
             bool shared_v = (uv.y == 0.0 || uv.y == 1.0) && !(bottom || top);

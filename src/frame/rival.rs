@@ -32,7 +32,7 @@ impl RivalPasses {
             Rival::Untrimmed => Self::Untrimmed,
             Rival::Bisect { .. } => Self::Bisect,
             Rival::Texture { .. } => Self::Texture(Box::new(TexturePasses {
-                density: density::Density::new(device)?,
+                density: density::Density::new(device, false)?,
                 texture: rival_texture::RivalTexture::new(device)?,
             })),
         })
@@ -101,6 +101,7 @@ impl TextureParts<'_> {
             cell_items: &self.scene.cell_items,
             strip_heights: &t.strip_heights,
             face_speeds: &t.face_speeds,
+            drawn_faces: None,
         };
         self.passes.density.record(cmd, &density, b.counts.cells);
         barrier::buffers(cmd, &[(&t.face_speeds, w, r), (&b.counters, w1, w2)]);

@@ -25,9 +25,10 @@ pub(super) struct TablePasses {
 }
 
 impl TablePasses {
-    pub(super) fn new(device: &Device) -> Result<Self, GpuError> {
+    /// `hides`: patches may lie behind others.
+    pub(super) fn new(device: &Device, hides: bool) -> Result<Self, GpuError> {
         Ok(Self {
-            density: density::Density::new(device)?,
+            density: density::Density::new(device, hides)?,
             lines: lines::Lines::new(device)?,
             segments: segments::Segments::new(device)?,
             sizes: sizes::Sizes::new(device)?,
@@ -50,6 +51,17 @@ impl<'a> TableParts<'a> {
     pub(super) fn test(self) -> Vec<&'a Buffer> {
         let t = self.buffers;
         vec![&t.line_starts, &t.row_starts, &t.row_counts, &t.intercepts]
+    }
+
+    /// Once more, for faces that were left out before as well.
+    pub(super) fn record_again(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        let before = Access::FRAGMENT_READ | Access::COMPUTE_READ | Access::COMPUTE_WRITE | Access::INDIRECT_READ;
+        let clear = Access { layout: before.layout, ..Access::TRANSFER_WRITE };
+        barrier::memory(cmd, before, Access::COMPUTE_WRITE | clear);
+        for counted in self.buffers.cleared() {
+            cmd.fill(counted, 0);
+        }
+        self.record(frame, cmd);
     }
 
     /// Records the passes; what the trim test reads is then ready for it.
@@ -76,6 +88,7 @@ impl<'a> TableParts<'a> {
             cell_items: &trims.cell_items,
             strip_heights: &t.strip_heights,
             face_speeds: &t.face_speeds,
+            drawn_faces: frame.hidden().map(|parts| parts.drawn_faces()),
         };
         p.density.record(cmd, &density, b.counts.cells);
         barrier::buffers(cmd, &[(&t.strip_heights, w, r), (&t.face_speeds, w, r)]);

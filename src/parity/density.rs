@@ -11,7 +11,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
     let s = SceneBuffers::new(gpu, given);
     let strip_heights = gpu.upload("strip heights", &vec![0.0f32; strips]);
     let face_speeds = gpu.upload("face speeds", &vec![0.0f32; 2 * faces]);
-    let pass = Density::new(gpu.device()).unwrap();
+    let pass = Density::new(gpu.device(), false).unwrap();
     let bindings = Bindings {
         frame: &s.frame,
         views: &s.views,
@@ -22,6 +22,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
         cell_items: &s.cell_items,
         strip_heights: &strip_heights,
         face_speeds: &face_speeds,
+        drawn_faces: None,
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, given.data.cell_items.len() as u32));
     let twin = twin::density::density(&expected.frame, &expected.scene());

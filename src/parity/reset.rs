@@ -13,7 +13,7 @@ fn compare(gpu: &Gpu, given: &Frame, expected: &Frame) -> Result<(), Mismatch> {
     let old = [Draw { vertex_count: UNTOUCHED, ..Default::default() }].repeat(count);
     let (frame, draws) = (gpu.upload("frame", &[*given]), gpu.upload("draws", &old));
     let counters = gpu.upload("counters", &[UNTOUCHED; size_of::<Counters>() / 4]);
-    let pass = Reset::new(gpu.device()).unwrap();
+    let pass = Reset::new(gpu.device(), false).unwrap();
     let bindings = Bindings { frame: &frame, draws: &draws, counters: &counters };
     gpu.run(|cmd| pass.record(cmd, &bindings, count as u32));
     let (empty, zero) = twin::reset::reset(expected);

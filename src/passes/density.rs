@@ -14,6 +14,9 @@ use crate::shaders;
 /// Threads of a workgroup, as in the shader.
 const GROUP: u32 = 64;
 
+/// `constant_id` of `SCENE_HIDES`.
+const SCENE_HIDES: u32 = 1;
+
 /// The pass.
 pub(crate) struct Density {
     pipeline: Pipeline,
@@ -33,18 +36,21 @@ pub(crate) struct Bindings<'a> {
     pub strip_heights: &'a Buffer,
     /// Float bits of pixels per unit u, v; zero before.
     pub face_speeds: &'a Buffer,
+    /// Whether patches of each placed face are drawn, in scenes where they may lie behind others.
+    pub drawn_faces: Option<&'a Buffer>,
 }
 
 impl Density {
-    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+    /// `hides`: patches may lie behind others.
+    pub(crate) fn new(device: &Device, hides: bool) -> Result<Self, GpuError> {
         let pipeline = Pipeline::compute(
             device,
             &ComputeInfo {
                 name: "density",
                 spirv: shaders::DENSITY_COMP,
-                bindings: &[Binding::Storage; 9],
+                bindings: &[Binding::Storage; 10],
                 push_bytes: 0,
-                constants: &[],
+                constants: &[(SCENE_HIDES, u32::from(hides))],
             },
         )?;
         Ok(Self { pipeline })
@@ -62,6 +68,8 @@ impl Density {
             b.cell_items,
             b.strip_heights,
             b.face_speeds,
+            // not read then
+            b.drawn_faces.unwrap_or(b.frame),
         ]
         .map(Into::into);
         cmd.bind(&self.pipeline, &resources, &[]);

@@ -9,7 +9,9 @@ pub(crate) mod coverage;
 pub(crate) mod cross;
 pub(crate) mod density;
 pub(crate) mod emit;
+pub(crate) mod farthest;
 pub(crate) mod heal;
+pub(crate) mod hide;
 pub(crate) mod lines;
 pub(crate) mod mesh;
 pub(crate) mod operand_mesh;
@@ -17,6 +19,7 @@ pub(crate) mod operand_patch;
 pub(crate) mod operand_sort;
 pub(crate) mod reset;
 pub(crate) mod resolve;
+pub(crate) mod reveal;
 #[cfg(feature = "rivals")]
 pub(crate) mod rival_texture;
 pub mod scan;

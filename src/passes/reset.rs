@@ -5,6 +5,8 @@
 //!    counters  all 0
 //! ```
 //!
+//! Where patches are drawn a second time, only the draws and how many there are.
+//!
 //! Reads: `frame`. Writes: `draws`, `counters`.
 //! Twin: `src/twin/reset.rs`.
 
@@ -13,6 +15,9 @@ use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
 const GROUP: u32 = 64;
+
+/// `constant_id` of `DRAWS_ONLY`.
+const DRAWS_ONLY: u32 = 1;
 
 /// The pass.
 pub(crate) struct Reset {
@@ -30,15 +35,16 @@ pub(crate) struct Bindings<'a> {
 }
 
 impl Reset {
-    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+    /// `draws_only`: the other counters stay.
+    pub(crate) fn new(device: &Device, draws_only: bool) -> Result<Self, GpuError> {
         let pipeline = Pipeline::compute(
             device,
             &ComputeInfo {
-                name: "reset",
+                name: if draws_only { "reset (draws)" } else { "reset" },
                 spirv: shaders::RESET_COMP,
                 bindings: &[Binding::Storage; 3],
                 push_bytes: 0,
-                constants: &[],
+                constants: &[(DRAWS_ONLY, u32::from(draws_only))],
             },
         )?;
         Ok(Self { pipeline })

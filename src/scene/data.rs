@@ -17,6 +17,9 @@ use rayon::prelude::*;
 use std::borrow::Cow;
 use std::ops::Range;
 
+/// Patches below which it is not worth while to ask which of them lie behind others.
+const FEWEST_HIDDEN: usize = 64;
+
 /// The arrays that the GPU gets; see `glsl/include/scene.glsl` for how they refer to each other.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SceneData {
@@ -180,6 +183,17 @@ impl SceneData {
     /// Pass `coverage` mixes pixels at the borders of trimmed faces: there are some that are seen themselves.
     pub(crate) fn smooths_trims(&self) -> bool {
         self.smooth_trims && self.has_patches && self.trim_way() == Some(TrimWay::Exact)
+    }
+
+    /// Patches may lie behind others, and enough of them to ask. Those of operands are crossed whatever lies before them,
+    /// and each sample sees others.
+    pub(crate) fn hides(&self) -> bool {
+        let is_ours = match self.trim_way() {
+            None | Some(TrimWay::Table | TrimWay::Exact) => true,
+            #[cfg(feature = "rivals")]
+            Some(TrimWay::Rival(_)) => false,
+        };
+        is_ours && self.items.len() >= FEWEST_HIDDEN && !self.has_operands && self.samples == Samples::One
     }
 
     /// Some mesh is placed.

@@ -38,8 +38,8 @@ pub fn emit(
     counters: &mut Counters,
 ) {
     let n = frame.item_count as usize;
-    counters.plain = sub_patch_starts[n];
-    counters.trimmed = sub_patch_starts[2 * n] - sub_patch_starts[n];
+    counters.plain += sub_patch_starts[n];
+    counters.trimmed += sub_patch_starts[2 * n] - sub_patch_starts[n];
     if sub_patch_starts[2 * n] > frame.sub_patch_capacity {
         counters.failed |= FAILED_SUB_PATCHES;
     }

@@ -19,6 +19,7 @@ pub mod density;
 pub mod emit;
 pub mod exact;
 pub mod factor;
+pub mod hidden;
 pub mod lines;
 pub mod operand_sort;
 pub mod reset;

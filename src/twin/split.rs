@@ -27,6 +27,7 @@
 //! times, with up to 25 times the deviation. It costs a third more segments along the axis on average, a
 //! patch without neighbours along it nothing.
 
+use super::hidden::is_drawn;
 use super::{MAX_FACTOR, MAX_SPLIT, Scene};
 use crate::abi::{FACE_CLOSED_U, FACE_CLOSED_V, Factors, Frame, Side};
 
@@ -50,7 +51,7 @@ pub fn split(frame: &Frame, scene: &Scene<'_>, taus: &[u32]) -> Split {
         let (placed, face, patch) = scene.item(item);
         let part = Part { scene, taus, first_item: placed.first_item, first_patch: face.first_patch };
         let (factors, sub_patches, vertices) =
-            part.patch_factors(face.first_patch + item as u32 - placed.first_item, taus[item] != 0);
+            part.patch_factors(face.first_patch + item as u32 - placed.first_item, is_drawn(taus[item]));
         out.factors.push(factors);
         let slot = if patch.side() == Side::Inside { item } else { n + item };
         out.sub_patch_counts[slot] = sub_patches;
@@ -70,7 +71,7 @@ struct Part<'a> {
 
 impl Part<'_> {
     fn tau(&self, patch: u32, axis: u32) -> u32 {
-        self.taus[(self.first_item + patch - self.first_patch) as usize] >> (16 * axis) & 0xffff
+        self.taus[(self.first_item + patch - self.first_patch) as usize] >> (16 * axis) & 0x7fff
     }
 
     /// The patch of the same face beyond a side: 0 to 3 for `u = 0`, `v = 0`, `u = 1`, `v = 1`.

@@ -1,0 +1,188 @@
+//! The frame's part for patches that lie behind others: they are drawn only where that may show.
+//!
+//! ```text
+//!   bound ──taus──▶ hide: what lay behind others a frame ago ─▶ not drawn ─▶ … visibility
+//!                                                                                │ depth
+//!         farthest: of each tile ◀───────────────────────────────────────────────┘
+//!         reveal: of each patch: wherever it could be seen, is there something nearer?
+//!           yes ─▶ left out of the next frame          no, and it was not drawn ─▶ drawn now:
+//!                                                      split, scan, emit, trim table, visibility once more
+//! ```
+//!
+//! So a view is right whatever was known before, and the picture the same bit for bit as with every patch drawn: what is
+//! left out would have lost the depth test at each pixel, and its rings lie behind what is seen there. The derivation
+//! stands in `twin::hidden`. A view that is the same as that which told draws once, and asks nothing.
+
+use super::{Frame, TableParts, TessellationPasses, WRITE_TO_READ, WRITE_TO_WRITE};
+use crate::buffers::HiddenBuffers;
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
+use crate::passes::{farthest, hide, reset, reveal};
+use crate::scene::SceneData;
+
+/// What a frame knows of patches that lie behind others.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Hiding {
+    /// Nothing, and it asks nothing: the next frame may never come.
+    First,
+    /// Nothing, but it asks.
+    Asks,
+    /// What the frame before told of another view.
+    Moved,
+    /// What a frame told of this view.
+    Same,
+}
+
+/// The passes of scenes in which patches may lie behind others.
+pub(super) struct HiddenPasses {
+    hide: hide::Hide,
+    farthest: farthest::Farthest,
+    reveal: reveal::Reveal,
+    reset: reset::Reset,
+}
+
+impl HiddenPasses {
+    /// `None` where too few may.
+    pub(super) fn new(device: &Device, data: &SceneData) -> Result<Option<Self>, GpuError> {
+        if !data.hides() {
+            return Ok(None);
+        }
+        Ok(Some(Self {
+            hide: hide::Hide::new(device)?,
+            farthest: farthest::Farthest::new(device)?,
+            reveal: reveal::Reveal::new(device, data.has_rational)?,
+            reset: reset::Reset::new(device, true)?,
+        }))
+    }
+}
+
+/// What they work on.
+#[derive(Clone, Copy)]
+pub(super) struct HiddenParts<'a> {
+    passes: &'a HiddenPasses,
+    buffers: &'a HiddenBuffers,
+}
+
+impl<'a> Frame<'a> {
+    /// `None` where too few patches may lie behind others.
+    pub(super) fn hidden(&self) -> Option<HiddenParts<'a>> {
+        let (passes, buffers) = self.passes.hidden.as_ref().zip(self.buffers.hidden.as_ref())?;
+        Some(HiddenParts { passes, buffers })
+    }
+
+    /// The same in a frame that asks.
+    pub(super) fn reveals(&self) -> Option<HiddenParts<'a>> {
+        self.hidden().filter(|_| matches!(self.hiding, Hiding::Asks | Hiding::Moved))
+    }
+}
+
+impl<'a> HiddenParts<'a> {
+    /// Whether patches of each placed face are drawn.
+    pub(super) fn drawn_faces(&self) -> &'a Buffer {
+        &self.buffers.drawn_faces
+    }
+
+    /// Clears what `hide` writes, and in a first frame what it reads.
+    pub(super) fn begin(&self, cmd: &Commands<'_>, hiding: Hiding) {
+        cmd.fill(&self.buffers.drawn_faces, 0);
+        if hiding == Hiding::First {
+            cmd.fill(&self.buffers.hidden, 0);
+        }
+    }
+
+    /// After `bound`: takes out what lay behind others.
+    pub(super) fn hide(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        let (b, h) = (frame.buffers, self.buffers);
+        let (w, r) = WRITE_TO_READ;
+        let cleared = Access { layout: w.layout, ..Access::TRANSFER_WRITE };
+        barrier::buffers(
+            cmd,
+            &[(&b.taus, w, w), (&h.drawn_faces, cleared, w), (&h.hidden, cleared | w, r), (&b.counters, w, w)],
+        );
+        let bindings = hide::Bindings {
+            frame: frame.constants,
+            items: &frame.scene.items,
+            hidden: &h.hidden,
+            taus: &b.taus,
+            drawn_faces: &h.drawn_faces,
+            counters: &b.counters,
+        };
+        self.passes.hide.record(cmd, &bindings, b.counts.items);
+        barrier::buffers(cmd, &[(&h.drawn_faces, w, r), (&b.counters, w, w)]);
+    }
+
+    /// After `visibility`: what lies behind what it drew; and where something had been left out that does not, that as
+    /// well.
+    pub(super) fn reveal(
+        &self,
+        frame: &Frame<'_>,
+        cmd: &Commands<'_>,
+        tessellation: &TessellationPasses,
+        table: Option<TableParts<'_>>,
+        test: &[&Buffer],
+    ) {
+        let (s, b, h) = (frame.scene, frame.buffers, self.buffers);
+        let (w, r) = WRITE_TO_READ;
+        barrier::images(cmd, &[(&b.depth, Access::DEPTH_WRITE, r)]);
+        barrier::buffers(cmd, &[(&h.farthest, r, w)]);
+        self.passes.farthest.record(
+            cmd,
+            &farthest::Bindings { frame: frame.constants, depth: &b.depth, farthest: &h.farthest },
+        );
+        barrier::buffers(
+            cmd,
+            &[
+                (&h.farthest, w, r),
+                (&b.taus, r, w),
+                (&h.hidden, r, w),
+                (&h.drawn_faces, r, w),
+                (&b.counters, Access::INDIRECT_READ, w),
+            ],
+        );
+        let bindings = reveal::Bindings {
+            frame: frame.constants,
+            views: frame.views,
+            instances: &s.instances,
+            face_instances: &s.face_instances,
+            faces: &s.faces,
+            patches: &s.patches,
+            points: &s.points,
+            items: &s.items,
+            farthest: &h.farthest,
+            taus: &b.taus,
+            hidden: &h.hidden,
+            drawn_faces: &h.drawn_faces,
+            counters: &b.counters,
+        };
+        self.passes.reveal.record(cmd, &bindings, b.counts.items);
+        barrier::images(cmd, &[(&b.depth, r, Access::DEPTH_WRITE)]);
+        if frame.hiding != Hiding::Moved {
+            barrier::buffers(cmd, &[(&b.counters, w, Access::INDIRECT_READ)]);
+            return;
+        }
+        barrier::images(cmd, &[(&b.visibility, Access::COLOUR_WRITE, Access::COLOUR_WRITE)]);
+        let (w1, w2) = WRITE_TO_WRITE;
+        barrier::buffers(cmd, &[(&b.draws, Access::INDIRECT_READ, w), (&b.counters, w1, w2)]);
+        let r_draws = reset::Bindings { frame: frame.constants, draws: &b.draws, counters: &b.counters };
+        self.passes.reset.record(cmd, &r_draws, 2 * b.capacities.draws);
+        barrier::buffers(
+            cmd,
+            &[
+                (&b.draws, w1, w2),
+                (&b.counters, w1, w2),
+                (&b.taus, w, r),
+                (&h.drawn_faces, w, r),
+                (&b.factors, Access::VERTEX_READ | r, w),
+                (&b.sub_patches, Access::VERTEX_READ, w),
+                (&b.sub_patch_counts, r, w),
+                (&b.vertex_counts, r, w),
+                (&b.sub_patch_starts, r, w),
+                (&b.vertex_starts, r, w),
+            ],
+        );
+        frame.divide(cmd, tessellation);
+        if let Some(table) = table {
+            table.record_again(frame, cmd);
+        }
+        frame.visibility(cmd, test, true);
+    }
+}

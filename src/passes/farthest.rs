@@ -1,0 +1,48 @@
+//! Pass `farthest`: the farthest depth that is seen in each tile, and in each block of tiles.
+//!
+//! Reads: `frame`, the depth image. Writes: `farthest`. Twin: `src/twin/hidden.rs`.
+
+use crate::abi::{BLOCK, TILE};
+use crate::gpu::{
+    Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Resource, Sampler,
+};
+use crate::shaders;
+use ash::vk;
+
+/// The pass.
+pub(crate) struct Farthest {
+    pipeline: Pipeline,
+    nearest: Sampler,
+}
+
+/// Its buffers and images, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub depth: &'a Image,
+    /// A float a tile, row by row, then one a block.
+    pub farthest: &'a Buffer,
+}
+
+impl Farthest {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let pipeline = Pipeline::compute(
+            device,
+            &ComputeInfo {
+                name: "farthest",
+                spirv: shaders::FARTHEST_COMP,
+                bindings: &[Binding::Storage, Binding::Sampled, Binding::Storage],
+                push_bytes: 0,
+                constants: &[],
+            },
+        )?;
+        Ok(Self { pipeline, nearest: Sampler::new(device, vk::Filter::NEAREST)? })
+    }
+
+    /// One workgroup for each block of tiles.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
+        let (width, height) = b.depth.size();
+        let blocks = |pixels: u32| pixels.div_ceil(TILE * BLOCK);
+        cmd.bind(&self.pipeline, &[b.frame.into(), Resource::Sampled(b.depth, &self.nearest), b.farthest.into()], &[]);
+        cmd.dispatch_grid([blocks(width), blocks(height), 1]);
+    }
+}

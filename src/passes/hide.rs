@@ -1,0 +1,52 @@
+//! Pass `hide`: patches that lay behind others in the frame before are not drawn, unless pass
+//! [`reveal`](super::reveal) finds that they may be seen.
+//!
+//! Reads: `frame`, `items`, `hidden`. Writes: `taus`, `drawn_faces`, `counters`. Twin: `src/twin/hidden.rs`.
+
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::shaders;
+
+/// Threads of a workgroup, as in the shader.
+const GROUP: u32 = 64;
+
+/// The pass.
+pub(crate) struct Hide {
+    pipeline: Pipeline,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    /// Face instance of each item.
+    pub items: &'a Buffer,
+    /// Of each item: whether it lay behind others.
+    pub hidden: &'a Buffer,
+    pub taus: &'a Buffer,
+    /// Of each placed face: whether patches of it are drawn; zero before.
+    pub drawn_faces: &'a Buffer,
+    /// `hidden`.
+    pub counters: &'a Buffer,
+}
+
+impl Hide {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let pipeline = Pipeline::compute(
+            device,
+            &ComputeInfo {
+                name: "hide",
+                spirv: shaders::HIDE_COMP,
+                bindings: &[Binding::Storage; 6],
+                push_bytes: 0,
+                constants: &[],
+            },
+        )?;
+        Ok(Self { pipeline })
+    }
+
+    /// One thread for each of `items`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+        let resources = [b.frame, b.items, b.hidden, b.taus, b.drawn_faces, b.counters].map(Into::into);
+        cmd.bind(&self.pipeline, &resources, &[]);
+        cmd.dispatch(items.div_ceil(GROUP));
+    }
+}

@@ -1,0 +1,82 @@
+//! Pass `reveal`: which patches lie behind what has been drawn, wherever they could be seen.
+//!
+//! ```text
+//!              lies behind                       does not
+//!   drawn      left out of the next frame        stays
+//!   hidden     stays hidden                      drawn now
+//! ```
+//!
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `points`, `items`, `farthest`. Writes: `taus`,
+//! `hidden`, `drawn_faces`, `counters`. Twin: `src/twin/hidden.rs`.
+
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
+use crate::shaders;
+
+/// Threads of a workgroup, as in the shader.
+const GROUP: u32 = 64;
+/// `constant_id` of `SCENE_HAS_RATIONAL`.
+const SCENE_HAS_RATIONAL: u32 = 0;
+
+/// The pass.
+pub(crate) struct Reveal {
+    pipeline: Pipeline,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub views: &'a Buffer,
+    pub instances: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub patches: &'a Buffer,
+    pub points: &'a Texels,
+    /// Face instance of each item.
+    pub items: &'a Buffer,
+    /// Of tiles, then of blocks.
+    pub farthest: &'a Buffer,
+    pub taus: &'a Buffer,
+    pub hidden: &'a Buffer,
+    pub drawn_faces: &'a Buffer,
+    /// `hidden`.
+    pub counters: &'a Buffer,
+}
+
+impl Reveal {
+    pub(crate) fn new(device: &Device, rational: bool) -> Result<Self, GpuError> {
+        let mut bindings = [Binding::Storage; 13];
+        bindings[6] = Binding::Texels;
+        let pipeline = Pipeline::compute(
+            device,
+            &ComputeInfo {
+                name: "reveal",
+                spirv: shaders::REVEAL_COMP,
+                bindings: &bindings,
+                push_bytes: 0,
+                constants: &[(SCENE_HAS_RATIONAL, u32::from(rational))],
+            },
+        )?;
+        Ok(Self { pipeline })
+    }
+
+    /// One thread for each of `items`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+        let resources = [
+            b.frame.into(),
+            b.views.into(),
+            b.instances.into(),
+            b.face_instances.into(),
+            b.faces.into(),
+            b.patches.into(),
+            b.points.into(),
+            b.items.into(),
+            b.farthest.into(),
+            b.taus.into(),
+            b.hidden.into(),
+            b.drawn_faces.into(),
+            b.counters.into(),
+        ];
+        cmd.bind(&self.pipeline, &resources, &[]);
+        cmd.dispatch(items.div_ceil(GROUP));
+    }
+}
