@@ -248,7 +248,7 @@ impl Buffers {
                     Ok::<_, GpuError>(HiddenBuffers {
                         hidden: words("hidden patches", n)?,
                         drawn_faces: words("drawn faces", counts.face_instances)?,
-                        farthest: words("farthest depths", across(TILE) + across(TILE * BLOCK))?,
+                        farthest: words("farthest depths", across(4) + across(TILE) + across(TILE * BLOCK))?,
                     })
                 })
                 .transpose()?,

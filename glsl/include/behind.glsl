@@ -8,11 +8,13 @@
 #ifndef BEHIND_GLSL
 #define BEHIND_GLSL
 
+#include "farthest.glsl"
+#include "farthest.glsl"
 #include "push.glsl"
 
-const float CELL_PX = 64.0;
-const uint MOST_CELLS = 8u;  // along each parameter
-const uint MOST_TILES = 8u;  // that a cell asks along each axis; else it asks blocks
+const float CELL_PX = 32.0;
+const uint MOST_CELLS = 16u; // along each parameter
+const uint MOST_SQUARES = 10u; // that a cell asks along each axis; else it asks larger ones
 const float DEPTH_ROUNDING = 1e-5; // of depths that the rasteriser interpolates: above STAND_BACK and its own
 const float PUSH_SLACK = 2.0; // what is pushed at a cell's corners is up to so much more between them
 
@@ -35,9 +37,10 @@ void cover(inout Cover c, vec4 q) {
     c.depth = min(c.depth, q.z);
 }
 
-// All that is seen from tile or block `first` to `last`, `across` of them in a row and from `base` on in `farthest`, is
-// nearer than `z`.
-bool all_nearer(uvec2 first, uvec2 last, uint base, uint across, float z) {
+// All that is seen from the first to the last square of that side is nearer than `z`.
+bool all_nearer(uvec2 first, uvec2 last, uint side, float z) {
+    uint base = first_square(frame, side);
+    uint across = square_count(frame, side).x;
     for (uint y = first.y; y <= last.y; ++y) {
         for (uint x = first.x; x <= last.x; ++x) {
             if (!(farthest[base + y * across + x] > z)) return false;
@@ -53,11 +56,10 @@ bool is_covered(Cover c, float reach) {
     if (any(greaterThan(low, high))) return true; // beside the picture
     float z = reversed_depth(frame, c.depth) / (frame.perspective != 0u ? c.depth : 1.0);
     z += DEPTH_ROUNDING * z;
-    uvec2 first = uvec2(low) / TILE;
-    uvec2 last = uvec2(high) / TILE;
-    uvec2 tiles = tile_count(frame);
-    if (all(lessThan(last - first, uvec2(MOST_TILES)))) return all_nearer(first, last, 0u, tiles.x, z);
-    return all_nearer(first / BLOCK, last / BLOCK, tiles.x * tiles.y, block_count(frame).x, z);
+    uint side = TILE * BLOCK;
+    if (all(lessThan(uvec2(high) / TILE - uvec2(low) / TILE, uvec2(MOST_SQUARES)))) side = TILE;
+    if (all(lessThan(uvec2(high) / SQUARE - uvec2(low) / SQUARE, uvec2(MOST_SQUARES)))) side = SQUARE;
+    return all_nearer(uvec2(low) / side, uvec2(high) / side, side, z);
 }
 
 // What a cell of `n` x `n` covers, triangles of these segments' size and what is pushed beyond borders among it, and how
