@@ -10,7 +10,7 @@ layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Items { uint item_face_instance[]; };
 layout(scalar, binding = 2) readonly buffer Hidden { uint hidden[]; };
 layout(scalar, binding = 3) buffer Taus { uint taus[]; };
-layout(scalar, binding = 4) writeonly buffer DrawnFaces { uint drawn_faces[]; }; // zero before
+layout(scalar, binding = 4) writeonly buffer DrawnFaces { uint drawn_faces[]; }; // zero before, or all of them 1
 layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
 
 void main() {

@@ -15,6 +15,6 @@ void main() {
     uint strip = gl_GlobalInvocationID.x;
     if (strip >= frame.strip_count) return;
     float lines = ceil(uintBitsToFloat(strip_heights[strip]) / frame.row_px);
-    if (lines > float(MAX_ROWS)) atomicAdd(counters.table_clamps, 1u);
+    if (lines > float(MAX_ROWS)) atomicAdd(counters.clamps, 1u);
     line_counts[strip] = uint(min(lines, float(MAX_ROWS)));
 }

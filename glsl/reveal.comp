@@ -20,7 +20,7 @@ layout(scalar, binding = 7) readonly buffer Items { uint item_face_instance[]; }
 layout(scalar, binding = 8) readonly buffer Farthest { float farthest[]; };
 layout(scalar, binding = 9) buffer Taus { uint taus[]; };
 layout(scalar, binding = 10) writeonly buffer Hidden { uint hidden[]; };
-layout(scalar, binding = 11) writeonly buffer DrawnFaces { uint drawn_faces[]; };
+layout(scalar, binding = 11) readonly buffer Outside { uvec2 outside[]; }; // of each patch, behind.glsl
 layout(scalar, binding = 12) buffer CountersBuffer { Counters counters; };
 
 #include "patch.glsl"
@@ -34,15 +34,11 @@ void main() {
         hidden[item] = 0u;
         return;
     }
-    uint placed = item_face_instance[item];
-    FaceInstance fi = face_instances[placed];
-    Patch patch_ = patches[faces[fi.face].first_patch + item - fi.first_item];
-    bool is_hidden = lies_behind(patch_, views[fi.instance], instances[fi.instance].scale, tau);
+    FaceInstance fi = face_instances[item_face_instance[item]];
+    uint index = faces[fi.face].first_patch + item - fi.first_item;
+    bool is_hidden = lies_behind(patches[index], views[fi.instance], instances[fi.instance].scale, tau, outside[index]);
     hidden[item] = is_hidden ? 1u : 0u;
     bool appears = (tau & TAU_HIDDEN) != 0u && !is_hidden;
     taus[item] = appears ? tau & ~TAU_HIDDEN : tau | TAU_HIDDEN;
-    if (appears) {
-        drawn_faces[placed] = 1u;
-        atomicAdd(counters.hidden, 0xffffffffu);
-    }
+    if (appears) atomicAdd(counters.hidden, 0xffffffffu);
 }

@@ -22,7 +22,7 @@ void main() {
     if (rows > frame.row_capacity) counters.failed |= FAILED_ROWS;
     rows = min(rows, frame.row_capacity);
     if (segments > MAX_GROUPS * GROUP) {
-        counters.table_clamps += 1u;
+        counters.clamps += 1u;
         segments = MAX_GROUPS * GROUP;
     }
     counters.rows = rows;

@@ -1,7 +1,8 @@
 //! The transient buffers and images of a frame, sized by scene, picture and view.
 //!
 //! ```text
-//!   by the scene     taus, factors, counts and starts per item; per strip, face and curve if trimmed
+//!   by the scene     taus, factors, counts and starts per item; per strip, face and curve if trimmed; what is known of
+//!                    patches behind others, where there are enough
 //!   by the picture   visibility, that of what is no patch where faces are trimmed, depth; per tile and block
 //!                    of tiles if there are Boolean solids, per pixel if operands are meshes or spline parts: of a
 //!                    band of rows at a time, where all of them take too much; the sum of a pixel's samples where it has several;
@@ -10,7 +11,7 @@
 //!                    Counters.failed, and the next frame gets what it would have needed
 //! ```
 
-use crate::abi::{BLOCK, Counters, Factors, Fragment, Rect, SubPatch, TILE, TileLeaf};
+use crate::abi::{BLOCK, Counters, Factors, Fragment, Rect, SQUARE, SubPatch, TILE, TileLeaf};
 #[cfg(feature = "rivals")]
 use crate::capacities::is_texture;
 use crate::capacities::{Capacities, Counts};
@@ -62,7 +63,7 @@ pub(crate) struct HiddenBuffers {
     pub hidden: Buffer,
     /// A word a placed face.
     pub drawn_faces: Buffer,
-    /// A float a tile, then one a block of tiles.
+    /// A float a square of pixels, then a tile, then a block of tiles.
     pub farthest: Buffer,
 }
 
@@ -190,7 +191,11 @@ impl Buffers {
             Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })
         };
         let drawn_and_read = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::STORAGE;
-        let sampled = if counts.trim.is_some() || counts.hides { vk::ImageUsageFlags::SAMPLED } else { vk::ImageUsageFlags::empty() };
+        let sampled = if counts.trim.is_some() || counts.hides {
+            vk::ImageUsageFlags::SAMPLED
+        } else {
+            vk::ImageUsageFlags::empty()
+        };
         let depth_usage = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | sampled;
         let n = counts.items;
         let in_tiles = counts.leaves > 0 && !(counts.blister && counts.shells > 0);
@@ -248,7 +253,7 @@ impl Buffers {
                     Ok::<_, GpuError>(HiddenBuffers {
                         hidden: words("hidden patches", n)?,
                         drawn_faces: words("drawn faces", counts.face_instances)?,
-                        farthest: words("farthest depths", across(4) + across(TILE) + across(TILE * BLOCK))?,
+                        farthest: words("farthest depths", across(SQUARE) + across(TILE) + across(TILE * BLOCK))?,
                     })
                 })
                 .transpose()?,

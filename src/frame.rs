@@ -18,6 +18,7 @@
 //!                solid_events    where rays enter Boolean solids; solid_rects to solid_fold came before
 //!                      ▼
 //!                 visibility     tessellate, trim: item and (u, v) per pixel
+//!                      │         patches that lie behind others left out, and asked for: hidden.rs
 //!                      ▼
 //!                    heal        pixels that look through a gap between trimmed faces
 //!                      ▼
@@ -41,7 +42,7 @@ use crate::gpu::{
 use crate::passes::coverage::Coverage;
 use crate::passes::seen_squares::SeenSquares;
 use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
-use crate::passes::{bound, emit, heal, mesh, reset, resolve, scan, split, visibility};
+use crate::passes::{bound, emit, mesh, reset, resolve, scan, split, visibility};
 use crate::picture::TrimWay;
 use crate::scene::{MeshBuffers, Scene, SceneData, SolidData};
 use hidden::HiddenPasses;
@@ -49,13 +50,13 @@ use layers::{Drawing, LayerPasses};
 use samples::{SamplePasses, Scopes};
 use solids::SolidPasses;
 use std::ops::Range;
-use table::TableParts;
 use trim::{TrimParts, TrimPasses};
 
 mod bands;
 mod blister;
 mod coverage;
 mod edit;
+mod heal;
 mod hidden;
 mod layers;
 mod resolved;
@@ -240,8 +241,7 @@ impl Frame<'_> {
         let test = trim.as_ref().map_or(Vec::new(), TrimParts::test);
         times.drawing(cmd, "visibility", || self.visibility(cmd, &test, false));
         if let (Some(parts), Some(tessellation)) = (self.reveals(), &self.passes.tessellation) {
-            let table = trim.as_ref().and_then(TrimParts::table);
-            times.drawing(cmd, "reveal", || parts.reveal(self, cmd, tessellation, table, &test));
+            times.drawing(cmd, "reveal", || parts.reveal(self, cmd, tessellation, &test));
         }
         let mut drawn = Access::COLOUR_WRITE;
         if let Some(parts) = &trim {
@@ -454,63 +454,6 @@ impl Frame<'_> {
         let visibility = Attachment { image: &b.visibility, load: colour };
         let depth = Attachment { image: &b.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
         self.passes.visibility.record(cmd, &bindings, (visibility, depth), b.capacities.draws);
-    }
-
-    /// Pixels that look through a gap between faces get the face that belongs there.
-    fn heal(&self, cmd: &Commands<'_>, parts: &TrimParts<'_>, test: &[&Buffer]) {
-        let (s, b) = (self.scene, self.buffers);
-        let (p, t) = (parts.passes, parts.buffers);
-        let (w, r) = WRITE_TO_READ;
-        barrier::images(cmd, &[(&b.visibility, Access::COLOUR_WRITE, w), (&b.depth, Access::DEPTH_WRITE, r)]);
-        if let Some(others) = &b.others {
-            barrier::images(cmd, &[(others, Access::COLOUR_WRITE, Access::COMPUTE_READ | Access::FRAGMENT_READ)]);
-        }
-        let cleared = Access { layout: w.layout, ..Access::TRANSFER_WRITE };
-        barrier::buffers(
-            cmd,
-            &[
-                (&t.rings, Access::FRAGMENT_WRITE, r),
-                (&b.counters, Access::INDIRECT_READ, w),
-                (&t.heal_dispatch, cleared, w),
-            ],
-        );
-        let doubts = heal::DoubtBindings {
-            frame: self.constants,
-            visibility: &b.visibility,
-            doubts: &t.doubts,
-            dispatch: &t.heal_dispatch,
-            counters: &b.counters,
-            depth: &b.depth,
-            rings: &t.rings,
-        };
-        p.heal.find(cmd, &doubts);
-        barrier::images(cmd, &[(&b.visibility, w, w)]);
-        barrier::buffers(cmd, &[(&t.doubts, w, r), (&b.counters, w, r), (&t.heal_dispatch, w, Access::INDIRECT_READ)]);
-        let heal = heal::Bindings {
-            frame: self.constants,
-            views: self.views,
-            face_instances: &s.face_instances,
-            faces: &s.faces,
-            patches: &s.patches,
-            items: &s.items,
-            points: &s.points,
-            visibility: &b.visibility,
-            doubts: &t.doubts,
-            counters: &b.counters,
-            instances: &s.instances,
-            others: b.others.as_ref().map(|seen| heal::Others {
-                seen,
-                meshes: s.meshes.as_ref().map(|m| heal::Meshes {
-                    instances: &m.instances,
-                    triangles: &m.triangles,
-                    positions: &m.positions,
-                }),
-            }),
-            trim: test,
-            volume: self.volume(),
-            dispatch: &t.heal_dispatch,
-        };
-        p.heal.record(cmd, &heal);
     }
 }
 

@@ -409,7 +409,7 @@ impl Renderer {
             trim_segments: u64::from(c.segments),
             trim_intercepts: u64::from(c.intercepts),
             doubtful_pixels: u64::from(c.doubts),
-            clamps: u64::from(c.clamps) + u64::from(c.table_clamps),
+            clamps: u64::from(c.clamps),
             hidden_patches: u64::from(c.hidden),
             fragments: u64::from(c.fragments),
             mended: u64::from(c.mended),

@@ -13,7 +13,8 @@
 #include "push.glsl"
 
 const float CELL_PX = 32.0;
-const uint MOST_CELLS = 16u; // along each parameter
+const uint OUTSIDE_CELLS = 8u;
+const uint MOST_CELLS = 8u; // along each parameter
 const uint MOST_SQUARES = 10u; // that a cell asks along each axis; else it asks larger ones
 const float DEPTH_ROUNDING = 1e-5; // of depths that the rasteriser interpolates: above STAND_BACK and its own
 const float PUSH_SLACK = 2.0; // what is pushed at a cell's corners is up to so much more between them
@@ -21,6 +22,19 @@ const float PUSH_SLACK = 2.0; // what is pushed at a cell's corners is up to so 
 // By how much the surface may leave its tangent within such a step.
 float bend_over(Patch patch_, vec2 step_) {
     return dot(patch_.bend, vec3(step_.x * step_.x, 2.0 * step_.x * step_.y, step_.y * step_.y));
+}
+
+// Whether nothing of the face is in a cell of `n` x `n`. `outside`: a bit for each of OUTSIDE_CELLS x OUTSIDE_CELLS, rows
+// of them from the lowest bit on.
+bool is_outside(uvec2 outside, uvec2 cell, uint n) {
+    uvec2 first = cell * OUTSIDE_CELLS / n;
+    uvec2 end = max((cell + 1u) * OUTSIDE_CELLS / n, first + 1u);
+    uint row = (1u << end.x) - (1u << first.x);
+    for (uint y = first.y; y < end.y; ++y) {
+        uint here = ((y < 4u ? outside.x : outside.y) >> (y % 4u * OUTSIDE_CELLS)) & 0xffu;
+        if ((here & row) != row) return false;
+    }
+    return true;
 }
 
 // What a cell covers: pixels, and how near it comes.
@@ -37,16 +51,20 @@ void cover(inout Cover c, vec4 q) {
     c.depth = min(c.depth, q.z);
 }
 
-// All that is seen from the first to the last square of that side is nearer than `z`.
+// All that is seen from the first to the last square of that side is nearer than `z`. What has not been asked is not
+// known: llvmpipe ends the loops of a shader that make too many steps.
 bool all_nearer(uvec2 first, uvec2 last, uint side, float z) {
     uint base = first_square(frame, side);
     uint across = square_count(frame, side).x;
+    uint asked = 0u;
     for (uint y = first.y; y <= last.y; ++y) {
         for (uint x = first.x; x <= last.x; ++x) {
+            ++asked;
             if (!(farthest[base + y * across + x] > z)) return false;
         }
     }
-    return true;
+    uvec2 all_ = last - first + 1u;
+    return asked == all_.x * all_.y;
 }
 
 // No pixel shows anything of what covers this, and `reach` pixels around it.
@@ -62,9 +80,11 @@ bool is_covered(Cover c, float reach) {
     return all_nearer(uvec2(low) / side, uvec2(high) / side, side, z);
 }
 
-// What a cell of `n` x `n` covers, triangles of these segments' size and what is pushed beyond borders among it, and how
-// far beside its pixels that may be. False where it comes before the near plane.
-bool cover_cell(Patch patch_, View view, float scale, vec2 segment, uvec2 cell, uint n, out Cover c, out float beside) {
+// What a cell of `n` x `n` covers, triangles of these segments' size and what is pushed beyond borders among it (with
+// `all_sides` beyond the sides of the cell), and how far beside its pixels that may be. False where it comes before the
+// near plane.
+bool cover_cell(Patch patch_, View view, float scale, vec2 segment, uvec2 cell, uint n, bool all_sides, out Cover c,
+                out float beside) {
     vec2 size = vec2(1.0 / float(n));
     // of triangles from the surface, of the surface from what is bilinear, part units
     float chord = bend_over(patch_, segment) / 8.0;
@@ -78,11 +98,13 @@ bool cover_cell(Patch patch_, View view, float scale, vec2 segment, uvec2 cell, 
         vec4 q = to_pixel(view, vec4(jet.point, 1.0));
         if (q.z < near) return false;
         cover(c, q);
+        // at borders; and rings of what ends beside cells without anything of the face reach into those
+        uvec2 far = uvec2(k & 1u, k >> 1);
+        bvec2 at_end = equal(cell + far, uvec2(far.x * n, far.y * n));
+        uvec2 border = uvec2(far.x == 0u ? BORDER_U0 : BORDER_U1, far.y == 0u ? BORDER_V0 : BORDER_V1);
         vec2 outwards = vec2(0.0);
-        if (uv.x == 0.0 && (borders & BORDER_U0) != 0u) outwards.x = -1.0;
-        if (uv.x == 1.0 && (borders & BORDER_U1) != 0u) outwards.x = 1.0;
-        if (uv.y == 0.0 && (borders & BORDER_V0) != 0u) outwards.y = -1.0;
-        if (uv.y == 1.0 && (borders & BORDER_V1) != 0u) outwards.y = 1.0;
+        if (at_end.x ? (borders & border.x) != 0u : all_sides) outwards.x = far.x == 0u ? -1.0 : 1.0;
+        if (at_end.y ? (borders & border.y) != 0u : all_sides) outwards.y = far.y == 0u ? -1.0 : 1.0;
         if (outwards == vec2(0.0)) continue;
         vec4 qu = to_pixel(view, vec4(jet.du, 0.0));
         vec4 qv = to_pixel(view, vec4(jet.dv, 0.0));
@@ -100,21 +122,26 @@ bool cover_cell(Patch patch_, View view, float scale, vec2 segment, uvec2 cell, 
     return true;
 }
 
-bool lies_behind(Patch patch_, View view, float scale, uint tau) {
+bool lies_behind(Patch patch_, View view, float scale, uint tau, uvec2 outside) {
     vec2 segment = 1.0 / vec2(tau_along(tau, 0u), tau_along(tau, 1u));
     Cover c;
     float beside;
-    if (!cover_cell(patch_, view, scale, segment, uvec2(0u), 1u, c, beside)) return false;
+    if (!cover_cell(patch_, view, scale, segment, uvec2(0u), 1u, false, c, beside)) return false;
     vec2 span = c.high - c.low + 2.0 * beside;
-    uint n = uint(clamp(ceil(max(span.x, span.y) / CELL_PX), 1.0, float(MOST_CELLS)));
+    uint n = 1u;
+    while (n < MOST_CELLS && max(span.x, span.y) > CELL_PX * float(n)) n *= 2u;
+    bool some_outside = outside != uvec2(0u);
     if (n == 1u) return is_covered(c, beside + 1.0);
+    uint asked = 0u;
     for (uint j = 0u; j < n; ++j) {
         for (uint i = 0u; i < n; ++i) {
-            if (!cover_cell(patch_, view, scale, segment, uvec2(i, j), n, c, beside)) return false;
+            ++asked;
+            if (is_outside(outside, uvec2(i, j), n)) continue;
+            if (!cover_cell(patch_, view, scale, segment, uvec2(i, j), n, some_outside, c, beside)) return false;
             if (!is_covered(c, beside + 1.0)) return false;
         }
     }
-    return true;
+    return asked == n * n;
 }
 
 #endif

@@ -199,8 +199,7 @@ struct Counters {
     uint overlaps;
     uint layers;       // peeled by way `blister`
     uint hidden;       // patches left out because they lie behind others
-    uint clamps;       // factors and lists above their hard limits, but for the table's
-    uint table_clamps; // densities and segments of the trim table
+    uint clamps;       // factors or densities above their hard limits
     uint failed;       // one bit a buffer that was too small
 };
 

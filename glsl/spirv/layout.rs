@@ -26,9 +26,10 @@ const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, unpaired) == 6
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, contacts) == 72);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, overlaps) == 76);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, layers) == 80);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, clamps) == 84);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, failed) == 88);
-const _: () = assert!(core::mem::size_of::<crate::abi::Counters>() == 92);
+const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, hidden) == 84);
+const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, clamps) == 88);
+const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, failed) == 92);
+const _: () = assert!(core::mem::size_of::<crate::abi::Counters>() == 96);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Curve, start) == 0);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Curve, end) == 8);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Curve, first) == 16);

@@ -99,7 +99,6 @@ pub struct Counters {
     pub layers: u32,
     pub hidden: u32,
     pub clamps: u32,
-    pub table_clamps: u32,
     pub failed: u32,
 }
 

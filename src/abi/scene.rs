@@ -196,6 +196,11 @@ pub struct Cell {
     pub strip: u32,
 }
 
+/// Pixels along a side of the smallest squares whose farthest depth is kept.
+pub const SQUARE: u32 = 4;
+/// Cells of a patch along u and along v that tell where nothing of its face is.
+pub const OUTSIDE_CELLS: u32 = 8;
+
 /// One trim curve.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]

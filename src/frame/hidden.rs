@@ -6,14 +6,15 @@
 //!         farthest: of each tile ◀───────────────────────────────────────────────┘
 //!         reveal: of each patch: wherever it could be seen, is there something nearer?
 //!           yes ─▶ left out of the next frame          no, and it was not drawn ─▶ drawn now:
-//!                                                      split, scan, emit, trim table, visibility once more
+//!                                                      split, scan, emit, visibility once more
 //! ```
 //!
 //! So a view is right whatever was known before, and the picture the same bit for bit as with every patch drawn: what is
 //! left out would have lost the depth test at each pixel, and its rings lie behind what is seen there. The derivation
-//! stands in `twin::hidden`. A view that is the same as that which told draws once, and asks nothing.
+//! stands in `twin::hidden`. A view that is the same as that which told draws once, and asks nothing; the trim table leaves
+//! out what is not drawn then, too.
 
-use super::{Frame, TableParts, TessellationPasses, WRITE_TO_READ, WRITE_TO_WRITE};
+use super::{Frame, TessellationPasses, WRITE_TO_READ, WRITE_TO_WRITE};
 use crate::buffers::HiddenBuffers;
 use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
 use crate::passes::{farthest, hide, reset, reveal};
@@ -81,9 +82,9 @@ impl<'a> HiddenParts<'a> {
         &self.buffers.drawn_faces
     }
 
-    /// Clears what `hide` writes, and in a first frame what it reads.
+    /// Clears what `hide` writes, and in a first frame what it reads. What moves may want any face.
     pub(super) fn begin(&self, cmd: &Commands<'_>, hiding: Hiding) {
-        cmd.fill(&self.buffers.drawn_faces, 0);
+        cmd.fill(&self.buffers.drawn_faces, u32::from(hiding == Hiding::Moved));
         if hiding == Hiding::First {
             cmd.fill(&self.buffers.hidden, 0);
         }
@@ -117,26 +118,19 @@ impl<'a> HiddenParts<'a> {
         frame: &Frame<'_>,
         cmd: &Commands<'_>,
         tessellation: &TessellationPasses,
-        table: Option<TableParts<'_>>,
         test: &[&Buffer],
     ) {
         let (s, b, h) = (frame.scene, frame.buffers, self.buffers);
+        let Some(outside) = &s.outside else { unreachable!("made with the passes") };
         let (w, r) = WRITE_TO_READ;
         barrier::images(cmd, &[(&b.depth, Access::DEPTH_WRITE, r)]);
         barrier::buffers(cmd, &[(&h.farthest, r, w)]);
-        self.passes.farthest.record(
-            cmd,
-            &farthest::Bindings { frame: frame.constants, depth: &b.depth, farthest: &h.farthest },
-        );
+        self.passes
+            .farthest
+            .record(cmd, &farthest::Bindings { frame: frame.constants, depth: &b.depth, farthest: &h.farthest });
         barrier::buffers(
             cmd,
-            &[
-                (&h.farthest, w, r),
-                (&b.taus, r, w),
-                (&h.hidden, r, w),
-                (&h.drawn_faces, r, w),
-                (&b.counters, Access::INDIRECT_READ, w),
-            ],
+            &[(&h.farthest, w, r), (&b.taus, r, w), (&h.hidden, r, w), (&b.counters, Access::INDIRECT_READ, w)],
         );
         let bindings = reveal::Bindings {
             frame: frame.constants,
@@ -150,7 +144,7 @@ impl<'a> HiddenParts<'a> {
             farthest: &h.farthest,
             taus: &b.taus,
             hidden: &h.hidden,
-            drawn_faces: &h.drawn_faces,
+            outside,
             counters: &b.counters,
         };
         self.passes.reveal.record(cmd, &bindings, b.counts.items);
@@ -170,7 +164,6 @@ impl<'a> HiddenParts<'a> {
                 (&b.draws, w1, w2),
                 (&b.counters, w1, w2),
                 (&b.taus, w, r),
-                (&h.drawn_faces, w, r),
                 (&b.factors, Access::VERTEX_READ | r, w),
                 (&b.sub_patches, Access::VERTEX_READ, w),
                 (&b.sub_patch_counts, r, w),
@@ -180,9 +173,6 @@ impl<'a> HiddenParts<'a> {
             ],
         );
         frame.divide(cmd, tessellation);
-        if let Some(table) = table {
-            table.record_again(frame, cmd);
-        }
         frame.visibility(cmd, test, true);
     }
 }

@@ -53,17 +53,6 @@ impl<'a> TableParts<'a> {
         vec![&t.line_starts, &t.row_starts, &t.row_counts, &t.intercepts]
     }
 
-    /// Once more, for faces that were left out before as well.
-    pub(super) fn record_again(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
-        let before = Access::FRAGMENT_READ | Access::COMPUTE_READ | Access::COMPUTE_WRITE | Access::INDIRECT_READ;
-        let clear = Access { layout: before.layout, ..Access::TRANSFER_WRITE };
-        barrier::memory(cmd, before, Access::COMPUTE_WRITE | clear);
-        for counted in self.buffers.cleared() {
-            cmd.fill(counted, 0);
-        }
-        self.record(frame, cmd);
-    }
-
     /// Records the passes; what the trim test reads is then ready for it.
     pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let (s, b) = (frame.scene, frame.buffers);

@@ -35,6 +35,8 @@ mod frame;
 #[cfg(feature = "headless")]
 mod harness;
 #[cfg(feature = "headless")]
+mod hidden;
+#[cfg(feature = "headless")]
 mod lines;
 #[cfg(feature = "headless")]
 mod operand_sort;

@@ -8,26 +8,30 @@ use crate::passes::reset::{Bindings, Reset};
 use crate::twin;
 use crate::twin::emit::Draw;
 
-fn compare(gpu: &Gpu, given: &Frame, expected: &Frame) -> Result<(), Mismatch> {
+fn compare(gpu: &Gpu, draws_only: bool, given: &Frame, expected: &Frame) -> Result<(), Mismatch> {
     let count = 2 * expected.draw_capacity as usize;
     let old = [Draw { vertex_count: UNTOUCHED, ..Default::default() }].repeat(count);
+    let old_counters: Counters = bytemuck::cast([UNTOUCHED; size_of::<Counters>() / 4]);
     let (frame, draws) = (gpu.upload("frame", &[*given]), gpu.upload("draws", &old));
-    let counters = gpu.upload("counters", &[UNTOUCHED; size_of::<Counters>() / 4]);
-    let pass = Reset::new(gpu.device(), false).unwrap();
+    let counters = gpu.upload("counters", &[old_counters]);
+    let pass = Reset::new(gpu.device(), draws_only).unwrap();
     let bindings = Bindings { frame: &frame, draws: &draws, counters: &counters };
     gpu.run(|cmd| pass.record(cmd, &bindings, count as u32));
     let (empty, zero) = twin::reset::reset(expected);
+    let left = if draws_only { Counters { plain_draws: 0, trimmed_draws: 0, ..old_counters } } else { zero };
     same("draws", &gpu.read(&draws, count), &empty)?;
-    same("counters", &gpu.read(&counters, 1), &[zero])
+    same("counters", &gpu.read(&counters, 1), &[left])
 }
 
 #[test]
 fn parity_is_exact_and_sees_a_difference() {
     let gpu = Gpu::new();
     let frame = cases()[0].frame;
-    compare(&gpu, &frame, &frame).unwrap();
-    let fewer = Frame { draw_capacity: frame.draw_capacity - 1, ..frame };
-    let mismatch = compare(&gpu, &fewer, &frame).unwrap_err();
-    assert_eq!((mismatch.buffer, mismatch.index), ("draws", 2 * fewer.draw_capacity as usize));
+    for draws_only in [false, true] {
+        compare(&gpu, draws_only, &frame, &frame).unwrap();
+        let fewer = Frame { draw_capacity: frame.draw_capacity - 1, ..frame };
+        let mismatch = compare(&gpu, draws_only, &fewer, &frame).unwrap_err();
+        assert_eq!((mismatch.buffer, mismatch.index), ("draws", 2 * fewer.draw_capacity as usize));
+    }
     gpu.finish();
 }

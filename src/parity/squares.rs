@@ -37,8 +37,16 @@ fn filled(gpu: &Gpu, word: u32, size: (u32, u32)) -> Image {
     image
 }
 
-/// An image that sees `count` triangles of each placed face, of a hundredth to the whole of a patch, and its first words.
-fn drawn(gpu: &Gpu, case: &Case, random: &mut Random, count: u32, size: (u32, u32)) -> (Image, Vec<u32>) {
+/// What is seen of triangles, and its first words; reversed depths.
+pub(super) struct Drawn {
+    pub seen: Image,
+    pub words: Vec<u32>,
+    pub depth: Image,
+    pub depths: Vec<f32>,
+}
+
+/// `count` triangles of each placed face, of a hundredth to the whole of a patch.
+pub(super) fn drawn(gpu: &Gpu, case: &Case, random: &mut Random, count: u32, size: (u32, u32)) -> Drawn {
     let d = &case.data;
     let (mut positions, mut draws, mut mesh_instances) = (Vec::new(), Vec::new(), Vec::new());
     for (k, placed) in (0..).zip(&d.face_instances) {
@@ -59,7 +67,8 @@ fn drawn(gpu: &Gpu, case: &Case, random: &mut Random, count: u32, size: (u32, u3
     }
     let triangles: Vec<u32> = (0..positions.len() as u32).collect();
     let seen = visibility(gpu, "drawn", size);
-    let depth = image(gpu, "depth", DEPTH_FORMAT, vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT, size);
+    let tested = vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | vk::ImageUsageFlags::SAMPLED;
+    let depth = image(gpu, "depth", DEPTH_FORMAT, tested, size);
     let kinds = mesh::Kinds { both: true, outward: false, volume: None };
     let pass = Mesh::new(gpu.device(), (VISIBILITY_FORMAT, DEPTH_FORMAT), kinds).unwrap();
     let bindings = mesh::Bindings {
@@ -72,6 +81,7 @@ fn drawn(gpu: &Gpu, case: &Case, random: &mut Random, count: u32, size: (u32, u3
     };
     let pixels = (size.0 * size.1) as usize;
     let back = ReadBack::new(gpu.device(), "seen", 8 * pixels as u64).unwrap();
+    let depths = ReadBack::new(gpu.device(), "depths", 4 * pixels as u64).unwrap();
     gpu.run(|cmd| {
         barrier::images(
             cmd,
@@ -81,11 +91,20 @@ fn drawn(gpu: &Gpu, case: &Case, random: &mut Random, count: u32, size: (u32, u3
             ],
         );
         pass.record(cmd, &bindings, (&seen, &depth), &draws, draws.len());
-        barrier::images(cmd, &[(&seen, Access::COLOUR_WRITE, Access::TRANSFER_READ)]);
+        barrier::images(
+            cmd,
+            &[
+                (&seen, Access::COLOUR_WRITE, Access::TRANSFER_READ),
+                (&depth, Access::DEPTH_WRITE, Access::TRANSFER_READ),
+            ],
+        );
         back.record_image(cmd, &seen, vk::ImageAspectFlags::COLOR);
-        barrier::images(cmd, &[(&seen, Access::TRANSFER_READ, Access::COMPUTE_READ)]);
+        depths.record_image(cmd, &depth, vk::ImageAspectFlags::DEPTH);
+        let read = Access::COMPUTE_READ;
+        barrier::images(cmd, &[(&seen, Access::TRANSFER_READ, read), (&depth, Access::TRANSFER_READ, read)]);
     });
-    (seen, back.values::<[u32; 2]>(pixels).into_iter().map(|[word, _]| word).collect())
+    let words = back.values::<[u32; 2]>(pixels).into_iter().map(|[word, _]| word).collect();
+    Drawn { seen, words, depth, depths: depths.values(pixels) }
 }
 
 /// The pass over two images, against the twin of what is said to be seen.
@@ -116,23 +135,23 @@ fn parity_is_exact_and_sees_a_difference() {
         "some tiles are cut off by the picture's end: {size:?}"
     );
     let mut random = Random::new(5);
-    let (few, few_words) = drawn(&gpu, case, &mut random, 2, size);
-    let (many, many_words) = drawn(&gpu, case, &mut random, 40, size);
-    let squares = compare(&gpu, case, (&few, &few), |n| few_words[n] != 0).unwrap();
+    let few = drawn(&gpu, case, &mut random, 2, size);
+    let many = drawn(&gpu, case, &mut random, 40, size);
+    let squares = compare(&gpu, case, (&few.seen, &few.seen), |n| few.words[n] != 0).unwrap();
     let sides = |side: u32| squares.iter().filter(|s| **s == side).count();
     assert!(sides(0) > 0 && sides(1) > 0, "{} and {}", sides(0), sides(1));
-    let squares = compare(&gpu, case, (&few, &many), |n| few_words[n] != 0 || many_words[n] != 0).unwrap();
+    let squares = compare(&gpu, case, (&few.seen, &many.seen), |n| few.words[n] != 0 || many.words[n] != 0).unwrap();
     assert!(squares.iter().any(|side| *side > 1), "nothing but single tiles");
-    compare(&gpu, case, (&few, &many), |n| few_words[n] != 0).unwrap_err();
+    compare(&gpu, case, (&few.seen, &many.seen), |n| few.words[n] != 0).unwrap_err();
     // a patch, a mesh, both doubtful or not; what is neither; and the other image behind nothing, though it is in doubt
     for (word, is_seen) in [(7, true), (SEEN_MESH | 7, true), (DOUBTFUL | 7, true)] {
-        compare(&gpu, case, (&filled(&gpu, word, size), &few), |_| is_seen).unwrap();
+        compare(&gpu, case, (&filled(&gpu, word, size), &few.seen), |_| is_seen).unwrap();
     }
     for word in [SEEN_SOLID | 7, SEEN_OPERAND | 7] {
-        compare(&gpu, case, (&filled(&gpu, word, size), &few), |_| false).unwrap();
+        compare(&gpu, case, (&filled(&gpu, word, size), &few.seen), |_| false).unwrap();
     }
     for word in [0, DOUBTFUL] {
-        compare(&gpu, case, (&filled(&gpu, word, size), &few), |n| few_words[n] != 0).unwrap();
+        compare(&gpu, case, (&filled(&gpu, word, size), &few.seen), |n| few.words[n] != 0).unwrap();
     }
     drop((few, many));
     gpu.finish();

@@ -1,11 +1,10 @@
-//! Pass `farthest`: the farthest depth that is seen in each tile, and in each block of tiles.
+//! Pass `farthest`: the farthest depth that is seen in each square of 4 x 4 pixels, in each tile, and in each block of
+//! tiles.
 //!
 //! Reads: `frame`, the depth image. Writes: `farthest`. Twin: `src/twin/hidden.rs`.
 
 use crate::abi::{BLOCK, TILE};
-use crate::gpu::{
-    Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Resource, Sampler,
-};
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Resource, Sampler};
 use crate::shaders;
 use ash::vk;
 
@@ -19,7 +18,7 @@ pub(crate) struct Farthest {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub depth: &'a Image,
-    /// A float a tile, row by row, then one a block.
+    /// A float a square, row by row, then a tile, then a block.
     pub farthest: &'a Buffer,
 }
 

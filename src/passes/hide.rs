@@ -22,7 +22,7 @@ pub(crate) struct Bindings<'a> {
     /// Of each item: whether it lay behind others.
     pub hidden: &'a Buffer,
     pub taus: &'a Buffer,
-    /// Of each placed face: whether patches of it are drawn; zero before.
+    /// Of each placed face: whether patches of it are drawn; zero before, or all of them 1.
     pub drawn_faces: &'a Buffer,
     /// `hidden`.
     pub counters: &'a Buffer,

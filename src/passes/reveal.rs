@@ -6,8 +6,8 @@
 //!   hidden     stays hidden                      drawn now
 //! ```
 //!
-//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `points`, `items`, `farthest`. Writes: `taus`,
-//! `hidden`, `drawn_faces`, `counters`. Twin: `src/twin/hidden.rs`.
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `points`, `items`, `farthest`, `outside`.
+//! Writes: `taus`, `hidden`, `counters`. Twin: `src/twin/hidden.rs`.
 
 use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
 use crate::shaders;
@@ -33,11 +33,12 @@ pub(crate) struct Bindings<'a> {
     pub points: &'a Texels,
     /// Face instance of each item.
     pub items: &'a Buffer,
-    /// Of tiles, then of blocks.
+    /// Of squares, then of tiles, then of blocks.
     pub farthest: &'a Buffer,
     pub taus: &'a Buffer,
     pub hidden: &'a Buffer,
-    pub drawn_faces: &'a Buffer,
+    /// Of each patch: where nothing of its face is.
+    pub outside: &'a Buffer,
     /// `hidden`.
     pub counters: &'a Buffer,
 }
@@ -73,7 +74,7 @@ impl Reveal {
             b.farthest.into(),
             b.taus.into(),
             b.hidden.into(),
-            b.drawn_faces.into(),
+            b.outside.into(),
             b.counters.into(),
         ];
         cmd.bind(&self.pipeline, &resources, &[]);

@@ -24,6 +24,8 @@ const FEWEST_HIDDEN: usize = 64;
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SceneData {
     pub patches: Vec<abi::Patch>,
+    /// Of each patch: where nothing of its face is. In scenes whose patches may lie behind others.
+    pub outside: Vec<[u32; 2]>,
     pub points: Vec<[f32; 4]>,
     /// Four a patch; none where no faces without trims share a side.
     pub links: Vec<abi::Link>,
@@ -167,6 +169,9 @@ impl SceneData {
         if !data.links.is_empty() {
             data.links.resize(4 * data.patches.len(), abi::Link::default());
         }
+        if !data.hides() {
+            data.outside = Vec::new();
+        }
         Ok(data)
     }
 
@@ -283,6 +288,7 @@ impl SceneData {
         self.has_patches |= f.face.flags & abi::FACE_OPERAND == 0;
         self.faces.push(f.face);
         self.patches.append(&mut f.patches);
+        self.outside.append(&mut f.outside);
         self.points.append(&mut f.points);
         self.cells.append(&mut f.cells);
         self.curves.append(&mut f.curves);

@@ -28,6 +28,8 @@ const POINT: f64 = 1e-6;
 pub(super) struct FaceData {
     pub face: abi::Face,
     pub patches: Vec<abi::Patch>,
+    /// Of each patch: where nothing of the face is.
+    pub outside: Vec<[u32; 2]>,
     pub points: Vec<[f32; 4]>,
     pub cells: Vec<abi::Cell>,
     pub curves: Vec<abi::Curve>,
@@ -68,7 +70,8 @@ impl FaceData {
         let grid = flattened(face.surface.patches(), cuts.in_face(face));
         let ((u0, u1), (v0, v1)) = face.surface.domain();
         let domain = Domain { origin: DVec2::new(u0, v0), size: DVec2::new(u1 - u0, v1 - v0) };
-        let sides = sides(&grid, &face.loops);
+        let index = (!face.loops.is_empty()).then(|| LoopIndex::new(&face.loops));
+        let sides = sides(&grid, index.as_ref());
         let trimmed = sides.contains(&Side::Boundary);
         let table = trimmed && needs_curves(way);
         let editable = editable && trimmed && matches!(way, TrimWay::Table | TrimWay::Exact);
@@ -83,6 +86,8 @@ impl FaceData {
                 ..Default::default()
             },
             patches: Vec::new(),
+            // edits would change it
+            outside: if editable { vec![[0; 2]; sides.len()] } else { outside(&grid, &sides, index.as_ref()) },
             points: Vec::new(),
             cells: Vec::new(),
             curves: Vec::new(),
@@ -331,19 +336,49 @@ fn strip_count(rows: usize) -> u32 {
 }
 
 /// Each patch against the loops; a face without loops is inside everywhere.
-fn sides(grid: &PatchGrid, loops: &[TrimLoop]) -> Vec<Side> {
-    if loops.is_empty() {
-        return vec![Side::Inside; grid.patches.len()];
-    }
-    let index = LoopIndex::new(loops);
-    grid.patches
-        .iter()
-        .map(|p| match index.classify(DVec2::new(p.u.0, p.v.0), DVec2::new(p.u.1, p.v.1)) {
-            RectSide::Inside => Side::Inside,
-            RectSide::Outside => Side::Outside,
-            RectSide::Boundary => Side::Boundary,
-        })
-        .collect()
+fn sides(grid: &PatchGrid, loops: Option<&LoopIndex>) -> Vec<Side> {
+    let Some(index) = loops else { return vec![Side::Inside; grid.patches.len()] };
+    let side = |p: &SurfacePatch| match index.classify(DVec2::new(p.u.0, p.v.0), DVec2::new(p.u.1, p.v.1)) {
+        RectSide::Inside => Side::Inside,
+        RectSide::Outside => Side::Outside,
+        RectSide::Boundary => Side::Boundary,
+    };
+    grid.patches.iter().map(side).collect()
+}
+
+/// Of each patch at the loops, a bit for each of [`abi::OUTSIDE_CELLS`] cells along u and along v, rows of them from the
+/// lowest bit on: nothing of the face is in it.
+fn outside(grid: &PatchGrid, sides: &[Side], loops: Option<&LoopIndex>) -> Vec<[u32; 2]> {
+    let cells = |p: &SurfacePatch| {
+        let Some(index) = loops else { return [0; 2] };
+        let (corner, end) = (DVec2::new(p.u.0, p.v.0), DVec2::new(p.u.1, p.v.1));
+        let mut bits = 0u64;
+        // squares of half the side within those that tell nothing, the last ones a cell each
+        let mut left = vec![(0, 0, abi::OUTSIDE_CELLS)];
+        while let Some((i, j, side)) = left.pop() {
+            let at = |i: u32, j: u32| {
+                corner + (end - corner) * DVec2::new(f64::from(i), f64::from(j)) / f64::from(abi::OUTSIDE_CELLS)
+            };
+            match index.classify(at(i, j), at(i + side, j + side)) {
+                RectSide::Inside => {}
+                RectSide::Outside => {
+                    for row in j..j + side {
+                        bits |= ((1 << side) - 1) << (row * abi::OUTSIDE_CELLS + i);
+                    }
+                }
+                RectSide::Boundary if side > 1 => {
+                    let half = side / 2;
+                    left.extend(
+                        [(i, j), (i + half, j), (i, j + half), (i + half, j + half)].map(|(i, j)| (i, j, half)),
+                    );
+                }
+                RectSide::Boundary => {}
+            }
+        }
+        [bits as u32, (bits >> 32) as u32]
+    };
+    let of = |(p, side): (&SurfacePatch, &Side)| if *side == Side::Boundary { cells(p) } else { [0; 2] };
+    grid.patches.iter().zip(sides).map(of).collect()
 }
 
 /// Bits of the sides that are points, within [`POINT`] of the patch's size.

@@ -14,6 +14,8 @@ use std::ops::Range;
 /// A scene in GPU memory.
 pub(crate) struct Scene {
     pub patches: Buffer,
+    /// Where nothing of their faces is; `None` where they are not asked whether they lie behind others.
+    pub outside: Option<Buffer>,
     /// Homogeneous control points.
     pub points: Texels,
     /// Sides that faces share; `None` where they share none.
@@ -153,6 +155,9 @@ impl Scene {
         let mut uploads = Uploads::new();
         let scene = Self {
             patches: persistent(&mut uploads, cmd, "patches", &data.patches)?,
+            outside: (!data.outside.is_empty())
+                .then(|| persistent(&mut uploads, cmd, "patches outside", &data.outside))
+                .transpose()?,
             points: texels(&mut uploads, cmd, "points", &data.points)?,
             links: (!data.links.is_empty())
                 .then(|| persistent(&mut uploads, cmd, "patch links", &data.links))

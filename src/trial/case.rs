@@ -59,6 +59,8 @@ impl Case {
             face_instances: &d.face_instances,
             faces: &d.faces,
             patches: &d.patches,
+            points: &d.points,
+            outside: &d.outside,
             links: &d.links,
             items: &d.items,
             cells: &d.cells,

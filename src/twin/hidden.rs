@@ -1,9 +1,283 @@
-//! Twin of the passes [`hide`, `farthest` and `reveal`](crate::passes).
+//! Twin of the passes [`hide`, `farthest` and `reveal`](crate::passes), and of `glsl/include/behind.glsl`: which patches
+//! lie behind what has been drawn.
+//!
+//! ```text
+//!        eye
+//!         │      a cell's triangles lie within `off` of what is bilinear through its corners, so within
+//!     ▁▁▁▁▼▁▁▁▁  the corners' pixels and `off` more, and no nearer than the nearest corner less `off`:
+//!       front    there, all of the front is nearer: nothing of the cell passes the depth test
+//!     ┌───────┐
+//!     │ cell  │
+//!     └───────┘
+//! ```
+//!
+//! **Triangles.** A triangle's point at `(u, v)` is within `E(1 / τ)` of the surface there, and the surface of a cell of
+//! sides `s` within `E(s)` of what is bilinear through its corners, with `E(s) = (|S_uu| s_u² + 2 |S_uv| s_u s_v +
+//! |S_vv| s_v²) / 8` ([`factor`](super::factor)). A bilinear point is a mean of the corners: its depth lies between
+//! theirs, and its pixel within theirs, which are quotients of linear functions.
+//!
+//! **Borders.** What pass `visibility` pushes outwards, it pushes along the tangent by at most a segment, and by as much
+//! as takes it twice the ring across the border: `s + p` is within `4 E(p)` of `s + p S_u`, and the tangent turns by at
+//! most `|S_uv|` along the border. How many units of u that is hangs on the place; here it is asked at the cell's
+//! corners and doubled. Of faces with cells that are left out ([`is_outside`]) all sides of a cell count as borders.
+//!
+//! **What does not pass the depth test changes nothing.** Neither visibility nor depth, and a ring counts only before
+//! what is seen. Fronts stand back from where they are, so they are never nearer than this bound.
+//!
+//! Whatever rounds does so within a pixel, which is added on each side, and [`DEPTH_ROUNDING`] of the depth.
+
+use super::{MAX_PUSH, Scene};
+use crate::abi::{self, BLOCK, Frame, OUTSIDE_CELLS, SQUARE, Side, TILE};
+use crate::spline::Patch;
+use glam::{DVec2, DVec3, DVec4};
+use std::ops::RangeInclusive;
 
 /// Bit of a patch's taus: it is not drawn now.
 pub const TAU_HIDDEN: u32 = 0x8000;
+/// Pixels that a cell has along each parameter, some.
+const CELL_PX: f64 = 32.0;
+/// Cells along each parameter.
+const MOST_CELLS: u32 = 8;
+/// Squares that a cell asks along each axis; else it asks larger ones.
+const MOST_SQUARES: u32 = 10;
+/// Of depths that the rasteriser interpolates.
+const DEPTH_ROUNDING: f64 = 1e-5;
+/// What is pushed at a cell's corners is up to so much more between them.
+const PUSH_SLACK: f64 = 2.0;
 
 /// Whether a patch with these taus is drawn now.
 pub fn is_drawn(tau: u32) -> bool {
     tau != 0 && tau & TAU_HIDDEN == 0
+}
+
+/// Marks patches that were `hidden`, and of which faces patches are drawn; how many are marked.
+pub fn hide(items: &[u32], hidden: &[u32], taus: &mut [u32], drawn_faces: &mut [u32]) -> u32 {
+    let mut marked = 0;
+    for ((tau, &was_hidden), &placed) in taus.iter_mut().zip(hidden).zip(items).filter(|((tau, _), _)| **tau != 0) {
+        if was_hidden == 0 {
+            drawn_faces[placed as usize] = 1;
+        } else {
+            *tau |= TAU_HIDDEN;
+            marked += 1;
+        }
+    }
+    marked
+}
+
+/// What pass `reveal` leaves of a patch's taus and of whether it is hidden; and whether it appears.
+pub fn reveal(tau: u32, lies_behind: bool) -> (u32, u32, bool) {
+    let appears = tau & TAU_HIDDEN != 0 && !lies_behind;
+    let marked = if appears { tau & !TAU_HIDDEN } else { tau | TAU_HIDDEN };
+    if tau == 0 { (0, 0, false) } else { (marked, u32::from(lies_behind), appears) }
+}
+
+/// The farthest depths of a picture, reversed.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Farthest {
+    size: [u32; 2],
+    /// Of squares of [`SQUARE`] pixels row by row, then of tiles, then of blocks of tiles.
+    pub depths: Vec<f32>,
+}
+
+impl Farthest {
+    /// Of a picture of that size, row by row.
+    pub fn new(size: [u32; 2], depth: &[f32]) -> Self {
+        let least = |x: u32, y: u32, side: u32| {
+            let columns = x * side..((x + 1) * side).min(size[0]);
+            let rows = y * side..((y + 1) * side).min(size[1]);
+            let pixels = rows.flat_map(|y| columns.clone().map(move |x| (y * size[0] + x) as usize));
+            pixels.map(|i| depth[i]).fold(1.0, f32::min)
+        };
+        let of = |side: u32| {
+            let [across, down] = size.map(|pixels| pixels.div_ceil(side));
+            (0..down).flat_map(move |y| (0..across).map(move |x| (x, y))).map(move |(x, y)| least(x, y, side))
+        };
+        Self { size, depths: of(SQUARE).chain(of(TILE)).chain(of(TILE * BLOCK)).collect() }
+    }
+
+    /// Everything in these squares of that side is nearer than `z`.
+    fn all_nearer(&self, columns: RangeInclusive<u32>, rows: RangeInclusive<u32>, side: u32, z: f64) -> bool {
+        let count = |side: u32| self.size.map(|pixels| pixels.div_ceil(side));
+        let smaller = [SQUARE, TILE].into_iter().filter(|s| *s < side);
+        let first: u32 = smaller.map(|s| count(s)[0] * count(s)[1]).sum();
+        let depth = |x: u32, y: u32| f64::from(self.depths[(first + y * count(side)[0] + x) as usize]);
+        rows.into_iter().all(|y| columns.clone().all(|x| depth(x, y) > z))
+    }
+}
+
+/// Whether nothing of the face is in a cell of `n` by `n`, by the bits of [`OUTSIDE_CELLS`] by as many.
+pub fn is_outside(outside: [u32; 2], cell: [u32; 2], n: u32) -> bool {
+    let range = |k: u32| k * OUTSIDE_CELLS / n..((k + 1) * OUTSIDE_CELLS / n).max(k * OUTSIDE_CELLS / n + 1);
+    let bits = u64::from(outside[0]) | u64::from(outside[1]) << 32;
+    range(cell[1]).all(|y| range(cell[0]).all(|x| bits >> (y * OUTSIDE_CELLS + x) & 1 != 0))
+}
+
+/// A patch as the eye sees it.
+struct Seen<'a> {
+    frame: &'a Frame,
+    view: &'a abi::View,
+    abi: &'a abi::Patch,
+    patch: Patch,
+    scale: f64,
+    segment: DVec2,
+}
+
+/// What a cell covers: pixels, and how near it comes.
+struct Cover {
+    low: DVec2,
+    high: DVec2,
+    depth: f64,
+    /// How far beside the pixels it may be.
+    beside: f64,
+}
+
+/// Whether an item with these taus lies behind everything that `farthest` tells, in double precision. Pixels are widened by
+/// `slack`, of a pixel, and depths by a thousandth of it: single precision says the same where a little more slack and a
+/// little less do.
+pub fn lies_behind(frame: &Frame, scene: &Scene<'_>, item: usize, tau: u32, farthest: &Farthest, slack: f64) -> bool {
+    let (placed, face, patch) = scene.item(item);
+    let index = (face.first_patch + item as u32 - placed.first_item) as usize;
+    let (degree_u, degree_v) = patch.degrees();
+    let points = &scene.points[patch.first as usize..][..(degree_u + 1) * (degree_v + 1)];
+    let homogeneous = |p: &[f32; 4]| {
+        let [x, y, z, w] = p.map(f64::from);
+        DVec4::new(x, y, z, w)
+    };
+    let seen = Seen {
+        frame,
+        view: &scene.views[placed.instance as usize],
+        abi: &patch,
+        patch: Patch { degree_u, degree_v, points: points.iter().map(homogeneous).collect() },
+        scale: f64::from(scene.instances[placed.instance as usize].scale),
+        segment: DVec2::new(f64::from(tau & 0x7fff), f64::from(tau >> 16)).recip(),
+    };
+    seen.lies_behind(scene.outside[index], farthest, slack)
+}
+
+impl Seen<'_> {
+    fn lies_behind(&self, outside: [u32; 2], farthest: &Farthest, slack: f64) -> bool {
+        let Some(whole) = self.cover([0, 0], 1, false) else { return false };
+        let span = (whole.high - whole.low).max_element() + 2.0 * whole.beside;
+        let mut n = 1;
+        while n < MOST_CELLS && span > CELL_PX * f64::from(n) {
+            n *= 2;
+        }
+        if n == 1 {
+            return self.is_covered(&whole, farthest, slack);
+        }
+        let cells = (0..n).flat_map(|j| (0..n).map(move |i| [i, j]));
+        let mut left = cells.filter(|cell| !is_outside(outside, *cell, n));
+        left.all(|cell| {
+            self.cover(cell, n, outside != [0; 2]).is_some_and(|cover| self.is_covered(&cover, farthest, slack))
+        })
+    }
+
+    /// By how much the surface may leave its tangent within such a step, twice.
+    fn bend(&self, step: DVec2) -> f64 {
+        let [uu, uv, vv] = self.abi.bend.map(f64::from);
+        uu * step.x * step.x + 2.0 * uv * step.x * step.y + vv * step.y * step.y
+    }
+
+    fn to_pixel(&self, p: DVec3, w: f64) -> [f64; 4] {
+        let rows = [self.view.x, self.view.y, self.view.depth, self.view.w];
+        rows.map(|row| DVec4::from_array(row.map(f64::from)).dot(p.extend(w)))
+    }
+
+    /// What a cell of `n` by `n` covers, and what is pushed beyond borders, with `all_sides` beyond its sides; `None` where it
+    /// comes before the near plane.
+    fn cover(&self, cell: [u32; 2], n: u32, all_sides: bool) -> Option<Cover> {
+        let size = DVec2::splat(1.0 / f64::from(n));
+        let chord = self.bend(self.segment) / 8.0;
+        let mut off = chord + self.bend(size) / 8.0;
+        let borders = if self.abi.side() == Side::Boundary { self.abi.borders() } else { 0 };
+        let near = f64::from(self.frame.near) * (1.0 + DEPTH_ROUNDING);
+        let (mut low, mut high, mut depth) = (DVec2::INFINITY, DVec2::NEG_INFINITY, f64::INFINITY);
+        let mut add = |q: [f64; 4]| {
+            let pixel = DVec2::new(q[0], q[1]) / q[3];
+            (low, high, depth) = (low.min(pixel), high.max(pixel), depth.min(q[2]));
+            (q[2] >= near).then_some(())
+        };
+        for far in [[0, 0], [1, 0], [0, 1], [1, 1]] {
+            let at: [f64; 2] = std::array::from_fn(|a| f64::from(cell[a] + far[a]) / f64::from(n));
+            let jet = self.patch.jet(at[0], at[1]);
+            let q = self.to_pixel(jet.point, 1.0);
+            add(q)?;
+            let border = [[abi::BORDER_U0, abi::BORDER_U1], [abi::BORDER_V0, abi::BORDER_V1]];
+            let outwards: [f64; 2] = std::array::from_fn(|a| {
+                let at_end = cell[a] + far[a] == far[a] * n;
+                let counts = if at_end { borders & border[a][far[a] as usize] != 0 } else { all_sides };
+                if counts { 2.0 * f64::from(far[a]) - 1.0 } else { 0.0 }
+            });
+            if outwards == [0.0; 2] {
+                continue;
+            }
+            let (qu, qv) = (self.to_pixel(jet.du, 0.0), self.to_pixel(jet.dv, 0.0));
+            let push = (PUSH_SLACK * self.push(q, qu, qv)).min(DVec2::splat(f64::from(MAX_PUSH)).min(self.segment));
+            add(std::array::from_fn(|k| q[k] + outwards[0] * push.x * qu[k] + outwards[1] * push.y * qv[k]))?;
+            let turned = f64::from(self.abi.bend[1]) * (push.x * size.y + push.y * size.x) / 2.0;
+            off = off.max(chord + self.bend(push) / 2.0 + turned);
+        }
+        let depth = depth - off * self.scale;
+        let perspective = self.frame.perspective != 0;
+        let pixels = self.scale * f64::from(self.frame.focal) * f64::from(self.frame.slant);
+        let beside = off * pixels / if perspective { depth } else { 1.0 };
+        (depth >= near).then_some(Cover { low, high, depth, beside })
+    }
+
+    /// Units of u and v that take a border twice the ring across itself.
+    fn push(&self, q: [f64; 4], qu: [f64; 4], qv: [f64; 4]) -> DVec2 {
+        let w = if self.frame.perspective != 0 { q[3].max(f64::from(self.frame.near)) } else { 1.0 };
+        let at = DVec2::new(q[0], q[1]) / w;
+        let speed = |d: [f64; 4]| (DVec2::new(d[0], d[1]) - at * d[3]) / w;
+        let (pu, pv) = (speed(qu), speed(qv));
+        2.0 * f64::from(self.frame.ring_px) * DVec2::new(pv.length(), pu.length()) / pu.perp_dot(pv).abs().max(1e-12)
+    }
+
+    fn is_covered(&self, cover: &Cover, farthest: &Farthest, slack: f64) -> bool {
+        let reach = cover.beside + 1.0 + slack;
+        let size = DVec2::new(f64::from(self.frame.size[0]), f64::from(self.frame.size[1]));
+        let low = (cover.low - reach).floor().max(DVec2::ZERO);
+        let high = (cover.high + reach).ceil().min(size - 1.0);
+        if low.cmpgt(high).any() {
+            return true;
+        }
+        let [near, far] = [self.frame.near, self.frame.far].map(f64::from);
+        let scale = if self.frame.perspective != 0 { near / cover.depth } else { 1.0 };
+        let z = (far - cover.depth) / (far - near) * scale * (1.0 + DEPTH_ROUNDING + 1e-3 * slack);
+        let pixels: [RangeInclusive<u32>; 2] = [low.x as u32..=high.x as u32, low.y as u32..=high.y as u32];
+        let squares = |side: u32| pixels.clone().map(|p| p.start() / side..=p.end() / side);
+        let few = |side: &u32| squares(*side).iter().all(|range| range.end() - range.start() < MOST_SQUARES);
+        let side = [SQUARE, TILE].into_iter().find(few).unwrap_or(TILE * BLOCK);
+        let [columns, rows] = squares(side);
+        farthest.all_nearer(columns, rows, side, z)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_square_has_the_farthest_of_its_pixels() {
+        let size = [37, 21];
+        let mut depth = vec![0.5; (size[0] * size[1]) as usize];
+        depth[(20 * size[0] + 36) as usize] = 0.25;
+        let farthest = Farthest::new(size, &depth);
+        let squares = 10 * 6;
+        assert_eq!(farthest.depths.len(), squares + 3 * 2 + 1);
+        let low: Vec<usize> = farthest.depths.iter().enumerate().filter(|(_, d)| **d == 0.25).map(|(i, _)| i).collect();
+        assert_eq!(low, [squares - 1, squares + 5, squares + 6], "the last square, tile and block");
+        assert!(farthest.all_nearer(0..=8, 0..=5, SQUARE, 0.4));
+        assert!(!farthest.all_nearer(0..=9, 0..=5, SQUARE, 0.4) && !farthest.all_nearer(0..=0, 0..=0, SQUARE, 0.5));
+        assert!(farthest.all_nearer(0..=2, 0..=0, TILE, 0.4) && !farthest.all_nearer(2..=2, 1..=1, TILE, 0.4));
+    }
+
+    #[test]
+    fn cells_are_outside_where_all_their_bits_are() {
+        let bits = 0x0f0f_0f0f_u64; // columns 0 to 3 of rows 0 to 3
+        let outside = [bits as u32, (bits >> 32) as u32];
+        assert!(is_outside(outside, [0, 0], 2) && !is_outside(outside, [1, 0], 2) && !is_outside(outside, [0, 1], 2));
+        assert!(is_outside(outside, [3, 3], 8) && !is_outside(outside, [4, 3], 8) && !is_outside(outside, [3, 4], 8));
+        assert!(is_outside(outside, [7, 7], 16) && !is_outside(outside, [8, 7], 16) && !is_outside(outside, [0, 0], 1));
+    }
 }

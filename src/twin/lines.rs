@@ -11,7 +11,7 @@ pub fn lines(frame: &Frame, strip_heights: &[f32], counters: &mut Counters) -> V
         .iter()
         .map(|height| {
             let lines = (height / frame.row_px).ceil();
-            counters.table_clamps += u32::from(lines > MAX_ROWS as f32);
+            counters.clamps += u32::from(lines > MAX_ROWS as f32);
             lines.min(MAX_ROWS as f32) as u32
         })
         .collect()

@@ -42,6 +42,8 @@ use crate::abi::{Cell, Curve, Face, FaceInstance, Instance, Link, Patch, View};
 pub const MAX_FACTOR: u32 = 64;
 /// Most sub-patches along one side of a patch.
 pub const MAX_SPLIT: u32 = 64;
+/// Most of a patch's width that its border is pushed outwards.
+pub const MAX_PUSH: f32 = 0.5;
 /// Most segments along one side of a patch.
 pub const MOST_SEGMENTS: u32 = MAX_FACTOR * MAX_SPLIT;
 /// Bits of [`Counters::failed`](crate::abi::Counters::failed): the buffer that was too small.
@@ -66,6 +68,10 @@ pub struct Scene<'a> {
     pub faces: &'a [Face],
     /// Patches of all faces.
     pub patches: &'a [Patch],
+    /// Their control points, homogeneous.
+    pub points: &'a [[f32; 4]],
+    /// Of each patch where nothing of its face is, in scenes where they may lie behind others.
+    pub outside: &'a [[u32; 2]],
     /// Sides that faces share, four a patch; none where they share none.
     pub links: &'a [Link],
     /// Face instance of each item.

@@ -21,7 +21,7 @@ pub fn sizes(frame: &Frame, line_starts: &[u32], segment_starts: &[u32], counter
     if wanted > frame.row_capacity {
         counters.failed |= FAILED_ROWS;
     }
-    counters.table_clamps += u32::from(segments > MOST_SEGMENTS);
+    counters.clamps += u32::from(segments > MOST_SEGMENTS);
     counters.rows = wanted.min(frame.row_capacity);
     counters.wanted_rows = wanted;
     counters.segments = segments.min(MOST_SEGMENTS);

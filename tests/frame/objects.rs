@@ -4,7 +4,7 @@ use crate::support::{assert_silent, perspective, watched_with};
 use crate::{cages, shapes};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::Model;
-use selvedge::picture::{FrameSettings, Outputs, SceneSettings, SolidWay, TrimWay};
+use selvedge::picture::{FrameSettings, Outputs, Samples, SceneSettings, SolidWay, TrimWay};
 
 /// Pipelines of the trim table.
 const TRIM_PASSES: [&str; 7] = ["density", "lines", "segments", "sizes", "cross", "sort", "scan add (counted)"];
@@ -89,6 +89,24 @@ fn only_a_scene_with_meshes_has_what_they_need() {
 }
 
 /// Links and what reads them exist only where faces share sides.
+#[test]
+fn only_a_scene_of_many_patches_knows_which_lie_behind_others() {
+    let of_hiding = ["hidden patches", "drawn faces", "farthest depths", "patches outside"];
+    let passes = ["hide", "farthest", "reveal", "reset (draws)"];
+    let is_of_hiding = |name: &str| of_hiding.contains(&name) || passes.contains(&name);
+    // four treads have 24 patches, all of the stair 144
+    let (mut few, many) = (shapes::stair(), shapes::stair());
+    few.instances.truncate(4);
+    let default = SceneSettings::default();
+    let samples = SceneSettings { samples: Samples::Four, ..default };
+    for (model, settings, is_asked) in [(&few, default, false), (&many, default, true), (&many, samples, false)] {
+        let (renderer, objects) = objects_with(model, settings, Outputs::default());
+        let count = objects.iter().filter(|name| is_of_hiding(name)).count();
+        assert_eq!(count, if is_asked { of_hiding.len() + passes.len() } else { 0 }, "{objects:?}");
+        assert_silent(renderer);
+    }
+}
+
 #[test]
 fn only_faces_that_share_sides_have_links() {
     let is_of_links = |o: &&String| o.contains("link") && !o.starts_with("staging");

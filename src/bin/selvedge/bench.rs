@@ -129,6 +129,7 @@ fn gather(to: &mut Gathered, stats: &FrameStats) {
     to.push("all passes", "ms", stats.passes.iter().map(|p| p.gpu_ms).sum());
     to.push("triangles", "", stats.triangles as f64);
     to.push("sub-patches", "", stats.sub_patches as f64);
+    to.push("hidden patches", "", stats.hidden_patches as f64);
     to.push("trim rows", "", stats.trim_rows as f64);
     to.push("trim intercepts", "", stats.trim_intercepts as f64);
     to.push("layers", "", stats.layers as f64);
