@@ -51,6 +51,8 @@ const BARRIERS: &[&str] = &[
     "src/frame/blister.rs",
     "src/frame/coverage.rs",
     "src/frame/edit.rs",
+    "src/frame/heal.rs",
+    "src/frame/hidden.rs",
     "src/frame/layers.rs",
     "src/frame/resolved.rs",
     "src/frame/rival.rs",
