@@ -140,8 +140,14 @@ impl Fitter<'_> {
             for line in lines.chain(knots.iter().copied().filter(|k| *k > lo && *k < hi)) {
                 for w in nodes.windows(2) {
                     if (w[0].1[axis] < line) != (w[1].1[axis] < line) {
-                        let s = strand.solve(self.support, axis, line, (w[0].0, w[1].0));
-                        let mut p = strand.at(self.support, s);
+                        let (s, mut p) = if self.support.exhausted() {
+                            let ((s0, p0), (s1, p1)) = (w[0], w[1]);
+                            let f = (line - p0[axis]) / (p1[axis] - p0[axis]);
+                            (s0 + (s1 - s0) * f, p0.lerp(p1, f))
+                        } else {
+                            let s = strand.solve(self.support, axis, line, (w[0].0, w[1].0));
+                            (s, strand.at(self.support, s))
+                        };
                         p[axis] = line;
                         cuts.push((s, p));
                     }

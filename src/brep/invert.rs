@@ -6,8 +6,12 @@
 use super::Frame;
 use super::curve::{Curve, best_seeds};
 use super::law::nearest;
+use super::spline::SplineForm;
 use super::support::{Form, Support};
 use glam::{DVec2, DVec3};
+
+/// Steps of Newton's method on a profile.
+const STEPS: usize = 30;
 
 impl Support {
     /// Native parameters of the point of the surface nearest to `p`.
@@ -27,7 +31,7 @@ impl Support {
             let found = self.invert(p, hint, accept);
             return (found, self.point(found).distance(p));
         };
-        let (distance, found) = s.invert(p, hint, self.enough(accept));
+        let (distance, found) = s.invert(p, hint, self.enough(accept), self.steps(SplineForm::STEPS));
         self.spend(s.take_work());
         (hint.map_or(found, |h| self.unwrap(found, h)), distance)
     }
@@ -92,8 +96,9 @@ impl Support {
                     };
                     (DVec3::new(r - rho, q.z - l.z, 0.0), DVec3::new(dr, d.z, 0.0))
                 };
-                let t =
-                    foot(profile, || self.turned_seeds(profile, l), hint.map(|h| h.y), self.enough(accept), meridian);
+                let seeds = || self.turned_seeds(profile, l);
+                let limits = (self.enough(accept), self.steps(STEPS));
+                let t = foot(profile, seeds, hint.map(|h| h.y), limits, meridian);
                 let q = self.frame.local(profile.point(t));
                 let on_axis = q.x.hypot(q.y) <= 1e-12 * (q.z.abs() + self.eps);
                 let u = if on_axis { hint.map_or(0.0, |h| h.x) } else { angle - q.y.atan2(q.x) };
@@ -107,11 +112,12 @@ impl Support {
                     let (q, d) = profile.jet(t);
                     (across(q - p), across(d))
                 };
-                let t = foot(profile, || seeds(profile), hint.map(|h| h.x), self.enough(accept), shadow);
+                let limits = (self.enough(accept), self.steps(STEPS));
+                let t = foot(profile, || seeds(profile), hint.map(|h| h.x), limits, shadow);
                 DVec2::new(t, (p - profile.point(t)).dot(unit) / direction.length())
             }
             Form::Spline(s) => {
-                let found = s.invert(p, hint, self.enough(accept)).1;
+                let found = s.invert(p, hint, self.enough(accept), self.steps(SplineForm::STEPS)).1;
                 self.spend(s.take_work());
                 found
             }
@@ -148,13 +154,13 @@ fn seeds(curve: &Curve) -> Vec<f64> {
 }
 
 /// The parameter that makes `g(t) = (residual, its derivative)` smallest: Gauss-Newton, steps that
-/// overshoot halved, from the hint if that ends within `accept` mm, else from the best seeds, the one
-/// nearest to the hint among equals.
+/// overshoot halved, at most `steps` of them, from the hint if that ends within `accept` mm, else from the
+/// best seeds, the one nearest to the hint among equals.
 fn foot(
     curve: &Curve,
     seeds: impl FnOnce() -> Vec<f64>,
     hint: Option<f64>,
-    accept: f64,
+    (accept, steps): (f64, usize),
     g: impl Fn(f64) -> (DVec3, DVec3),
 ) -> f64 {
     let wrap = |t: f64| match curve {
@@ -165,7 +171,7 @@ fn foot(
         let mut t = wrap(start);
         let mut distance = g(t).0.length();
         let mut best = (distance, t);
-        for _ in 0..30 {
+        for _ in 0..steps {
             let (r, d) = g(t);
             let mut by = -r.dot(d) / d.length_squared().max(f64::MIN_POSITIVE);
             let mut next = wrap(t + by);

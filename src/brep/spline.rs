@@ -42,6 +42,9 @@ struct PatchPlace {
 const BOXES: u64 = 4;
 
 impl SplineForm {
+    /// Steps of Newton's method from one start, where nothing calls for fewer.
+    pub const STEPS: usize = 40;
+
     /// `eps`: distance in mm at which two sides are the same.
     pub fn new(surface: &Surface, eps: f64) -> Self {
         let (u, v) = surface.domain();
@@ -151,15 +154,16 @@ impl SplineForm {
 
     /// Distance of `p` from the nearest point of the surface, and the parameters of that.
     ///
-    /// From `hint` if Newton's method ends within `accept` mm of `p`; else from the best patches.
-    pub fn invert(&self, p: DVec3, hint: Option<DVec2>, accept: f64) -> (f64, DVec2) {
-        let near = hint.map(|h| self.polish(p, h));
+    /// From `hint` if Newton's method ends within `accept` mm of `p`; else from the best patches. It takes at most
+    /// `steps` each time.
+    pub fn invert(&self, p: DVec3, hint: Option<DVec2>, accept: f64, steps: usize) -> (f64, DVec2) {
+        let near = hint.map(|h| self.polish(p, h, steps));
         if let Some(near) = near
             && near.0 <= accept
         {
             return near;
         }
-        let far = self.search(p);
+        let far = self.search(p, steps);
         match near {
             // equally good: stay where the curve was
             Some(near) if near.0 <= 1.5 * far.0 => near,
@@ -183,7 +187,7 @@ impl SplineForm {
 
     /// Global search: patches in order of the distance to their boxes, polished from the best of a
     /// grid of samples, until no box can hold a nearer point.
-    fn search(&self, p: DVec3) -> (f64, DVec2) {
+    fn search(&self, p: DVec3, steps: usize) -> (f64, DVec2) {
         let place = |q: &SurfacePatch| PatchPlace { bounds: q.patch.bounds(), seeds: OnceCell::new() };
         let places = self.places.get_or_init(|| self.grid.patches.iter().map(place).collect());
         let gap = |place: &PatchPlace| p.distance(p.clamp(place.bounds.0, place.bounds.1));
@@ -209,7 +213,7 @@ impl SplineForm {
                     seed = (d, DVec2::new(at(patch.u, s), at(patch.v, t)));
                 }
             }
-            let found = self.polish(p, seed.1);
+            let found = self.polish(p, seed.1, steps);
             if found.0 < best.0 {
                 best = found;
             }
@@ -219,8 +223,7 @@ impl SplineForm {
 
     /// Gauss-Newton on the distance to `p` with halved steps where it does not fall; a coordinate on
     /// the border that pushes outward stays there. Returns the distance and unwrapped parameters.
-    fn polish(&self, p: DVec3, start: DVec2) -> (f64, DVec2) {
-        const STEPS: usize = 40;
+    fn polish(&self, p: DVec3, start: DVec2, steps: usize) -> (f64, DVec2) {
         let fine = 1e-12 * self.size;
         let clamp = |q: DVec2| {
             let one = |i: usize| if self.closed[i] { q[i] } else { q[i].clamp(self.domain[i].0, self.domain[i].1) };
@@ -232,7 +235,7 @@ impl SplineForm {
         self.worked(1);
         let mut distance = jet.point.distance(p);
         let mut before = 0.0;
-        for _ in 0..STEPS {
+        for _ in 0..steps {
             let r = p - jet.point;
             let mut g = DVec2::new(jet.du.dot(r), jet.dv.dot(r));
             let (mut a, mut b, mut c) = (jet.du.length_squared(), jet.du.dot(jet.dv), jet.dv.length_squared());

@@ -73,16 +73,22 @@ pub(super) struct Support {
     pub pull: f64,
     /// The largest that `target` may grow to for an edge that does not lie on the surface: [`Support::target_of`].
     pub noise: f64,
-    /// Evaluations that may still be spent on inversion.
-    left: Cell<u64>,
+    /// Evaluations spent on inversion.
+    pub spent: Cell<u64>,
+    /// Evaluations after which edges are followed loosely: [`Support::allow`].
+    allowed: Cell<u64>,
 }
 
-/// Evaluations that inversion may take for any face; real faces take some thousands.
+/// Evaluations that inversion may take for any face; real faces take some thousands, 31 426 at most so far.
 const FREE_WORK: u64 = 1 << 18;
 
-/// Evaluations that inversion may take for each patch of the surface and each node of an edge; real ones take some
-/// hundreds. Edges that have nothing to do with their surface would take as many as the fits may halve.
-const WORK: u64 = 4096;
+/// Evaluations that inversion may take beyond that for each patch of the surface and each node of an edge; real faces
+/// take some tens in all, 248 at most so far. Edges that have nothing to do with their surface would take as many as
+/// the fits may halve: a hundred for each sample, where Newton's method creeps.
+const WORK: u64 = 256;
+
+/// Steps of Newton's method once that is spent: enough where the edge is near its surface.
+const LOOSE_STEPS: usize = 8;
 
 impl Support {
     /// `eps`: distance in mm below which two points are the same; trim curves aim at a hundredth.
@@ -186,7 +192,8 @@ impl Support {
             target: 1e-2 * eps,
             pull: 1e-1 * eps,
             noise: 0.0,
-            left: Cell::new(u64::MAX),
+            spent: Cell::new(0),
+            allowed: Cell::new(u64::MAX),
         }
     }
 
@@ -200,7 +207,7 @@ impl Support {
             },
             _ => 1,
         };
-        self.left.set(FREE_WORK + WORK * (pieces + nodes) as u64);
+        self.allowed.set(self.spent.get() + FREE_WORK + WORK * (pieces + nodes) as u64);
     }
 
     /// Inversion is a search, not a formula.
@@ -208,14 +215,20 @@ impl Support {
         matches!(self.form, Form::Revolution { .. } | Form::Extrusion { .. } | Form::Spline(_))
     }
 
-    /// Takes evaluations from what is left.
+    /// Counts evaluations.
     pub fn spend(&self, evaluations: u64) {
-        self.left.set(self.left.get().saturating_sub(evaluations));
+        self.spent.set(self.spent.get().saturating_add(evaluations));
     }
 
-    /// Nothing is left: inversion takes the first answer from now on, and fits are not refined.
+    /// All that is allowed is spent: from now on inversion takes the first answer and few steps to it, traces are
+    /// straight between their samples where a crease is looked for, and fits are not refined.
     pub fn exhausted(&self) -> bool {
-        self.left.get() == 0
+        self.spent.get() >= self.allowed.get()
+    }
+
+    /// How many of `most` steps of Newton's method an inversion may take.
+    pub fn steps(&self, most: usize) -> usize {
+        if self.exhausted() { most.min(LOOSE_STEPS) } else { most }
     }
 
     fn find_periods(&self) -> [Option<f64>; 2] {

@@ -2,11 +2,14 @@
 
 use super::super::border::Border;
 use super::super::edge::EdgeCurve;
+use super::super::fit::Fitter;
 use super::super::spline::SplineForm;
+use super::super::strand::Strand;
 use super::super::support::Support;
 use super::*;
 use crate::spline::{BSpline, Surface};
 use glam::DVec4;
+use std::rc::Rc;
 
 /// A cubic by quadratic sheet of 3 x 2 spans over `[0, 3] x [0, 2]`, weights from 1 to 2.
 fn sheet() -> Surface {
@@ -129,4 +132,35 @@ fn inversion_takes_bounded_work() {
     // some ten evaluations each
     assert!((1 << 10..1 << 17).contains(&searches), "{searches}");
     assert_eq!(support.invert(p, Some(hint), 0.0), near, "the first answer is taken");
+}
+
+/// Found by fuzzing: a long spline far off its surface that wanders without aim. Its pre-image is no curve, Newton's
+/// method creeps to each point of it, and every fit would be halved to the end.
+#[test]
+fn an_edge_far_off_its_surface_takes_bounded_work() {
+    let support = Support::new(&SurfaceGeometry::BSpline(sheet()), TOLERANCE).unwrap();
+    let mut state = 1u64;
+    let mut random = || {
+        // the top bits of Knuth's linear congruence
+        state = state.wrapping_mul(6_364_136_223_846_793_005).wrapping_add(1_442_695_040_888_963_407);
+        1e3 * ((state >> 40) as f64 / (1u64 << 24) as f64 - 0.5)
+    };
+    let points: Vec<DVec4> = (0..6003).map(|_| DVec3::new(random(), random(), random()).extend(1.0)).collect();
+    let ends = [points[0].truncate(), points[6002].truncate()];
+    let knots = (0..6007).map(|i| f64::from(i - 3).clamp(0.0, 6000.0)).collect();
+    let mut list = Vec::new();
+    edge(&mut list, CurveGeometry::BSpline(BSpline::new(3, knots, points).unwrap()), ends[0], ends[1]);
+    let edge = EdgeCurve::new(&list[0], true, TOLERANCE).unwrap().unwrap();
+    let nodes = edge.node_count as u64;
+    assert_eq!(nodes, 3 * 6000 + 1);
+    support.allow(edge.node_count);
+    let strands = Strand::of_edge(&support, &Rc::new(edge), None, &mut Vec::new());
+    let carrier = support.carrier([(0.0, 3.0), (0.0, 2.0)]).unwrap();
+    let fitter = Fitter { support: &support, carrier: &carrier };
+    let curves: usize = strands.iter().map(|s| fitter.curves(s).curves.len()).sum();
+    assert!(support.exhausted());
+    // what a node and a patch may take, what any face may, and a quarter more for what follows that loosely
+    let allowed = (1 << 18) + 256 * (nodes + 6);
+    assert!(support.spent.get() < allowed + allowed / 4, "{} of {allowed}", support.spent.get());
+    assert!(curves > 1);
 }
