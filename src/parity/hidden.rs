@@ -147,13 +147,9 @@ fn compare_reveal(gpu: &Gpu, case: &Case, given: &Farthest, expected: &Farthest)
     let twin = |item: usize, slack: f64| {
         old[item] != 0 && lies_behind(&case.frame, &case.scene(), item, old[item], expected, slack)
     };
-    for item in 0..n {
-        let behind = on_gpu[item] == 1;
-        let is_wrong = if behind { !twin(item, -SLACK) } else { twin(item, SLACK) };
-        if is_wrong {
-            let values = format!("GPU {behind}");
-            return Err(Mismatch { buffer: "hidden", index: item, values });
-        }
+    let is_wrong = |(item, &behind): (usize, &u32)| if behind == 1 { !twin(item, -SLACK) } else { twin(item, SLACK) };
+    if let Some((index, behind)) = on_gpu.iter().enumerate().find(|found| is_wrong(*found)) {
+        return Err(Mismatch { buffer: "hidden", index, values: format!("GPU {behind}") });
     }
     let told: Vec<_> = old.iter().zip(&on_gpu).map(|(tau, behind)| twin::hidden::reveal(*tau, *behind == 1)).collect();
     same("hidden", &on_gpu, &told.iter().map(|t| t.1).collect::<Vec<_>>())?;

@@ -24,7 +24,7 @@
 //! **What does not pass the depth test changes nothing.** Neither visibility nor depth, and a ring counts only before
 //! what is seen. Fronts stand back from where they are, so they are never nearer than this bound.
 //!
-//! Whatever rounds does so within a pixel, which is added on each side, and [`DEPTH_ROUNDING`] of the depth.
+//! Whatever rounds does so within a pixel, which is added on each side, and `DEPTH_ROUNDING` of the depth.
 
 use super::{MAX_PUSH, Scene};
 use crate::abi::{self, BLOCK, Frame, OUTSIDE_CELLS, SQUARE, Side, TILE};

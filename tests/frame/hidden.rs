@@ -10,16 +10,19 @@ use selvedge::picture::{Picture, SceneSettings, TrimWay};
 
 const SIZE: (u32, u32) = (200, 150);
 
-/// Plates with a hole, cubes, cylinders beside a plate, waves and balls, in rows one behind the other.
+/// So far that none meets another: where two are at the same depth to the bit, the one that is drawn first is seen.
+const APART: f64 = 7.0;
+
+/// Plates with a hole, cubes, cylinders beside a plate, waves and ripples, in rows one behind the other.
 fn crowd() -> Model {
-    let shapes = [shapes::plate(), shapes::cube(), shapes::mirrored(), shapes::wave(), shapes::sphere()];
+    let shapes = [shapes::plate(), shapes::cube(), shapes::mirrored(), shapes::wave(), shapes::ripple()];
     let mut model = Model::default();
     for (part, shape) in shapes.into_iter().enumerate() {
         let centre = shape.bounds().centre();
         model.parts.extend(shape.parts);
         for k in 0..18 {
-            let place = 5.0 * (k + 18 * part) as f64;
-            let place = DVec3::new(place % 25.0, (place / 25.0).floor() % 6.0 * 5.0, (place / 150.0).floor() * 5.0);
+            let nth = k + 18 * part;
+            let place = APART * DVec3::new((nth % 5) as f64, (nth / 5 % 6) as f64, (nth / 30) as f64);
             let turned = DAffine3::from_rotation_y(0.3 * (k % 5) as f64);
             let transform = DAffine3::from_translation(place) * turned * DAffine3::from_translation(-centre);
             model.instances.push(Instance { part, transform, colour: None, name: String::new() });
@@ -66,13 +69,13 @@ fn nothing_shows_that_patches_are_left_out() {
     // around the rows, in small steps and in leaps; in parallel; and from among them
     let turned = |angle: f64| DVec3::new(angle.sin(), -angle.cos(), 0.25);
     let mut views: Vec<Camera> = [0.0, 0.05, 1.6, 3.0, 3.05].map(|angle| from(&model, turned(angle))).to_vec();
-    let parallel = Camera { projection: Projection::Orthographic { height: 22.0 }, ..views[0] };
+    let parallel = Camera { projection: Projection::Orthographic { height: 30.0 }, ..views[0] };
     views.extend([parallel, Camera { eye: parallel.eye + DVec3::X, target: parallel.target + DVec3::X, ..parallel }]);
-    let within = Camera { eye: DVec3::new(2.0, 7.5, 5.5), depth_range: (0.05, 100.0), ..views[0] };
+    let within = Camera { eye: DVec3::new(3.0, 10.5, 8.0), depth_range: (0.05, 100.0), ..views[0] };
     views.extend([within, Camera { eye: within.eye + DVec3::new(1.0, 4.0, 0.5), ..within }]);
     for &trim in TrimWay::ALL {
         let [moved, same] = same_as_alone(&model, trim, &views);
-        assert!(moved > 100 && same > 100, "{trim:?}: {moved} and {same} patches at most were left out");
+        assert!(moved > 20 && same > 100, "{trim:?}: {moved} and {same} patches at most were left out");
     }
 }
 
