@@ -2,13 +2,12 @@
 //
 //   ┌────┬────┬────┐   a patch is cut in cells of some CELL_PX; every triangle of a cell lies within `off` of what is
 //   │    │    │    │   bilinear through its corners. So it is seen within the corners' pixels, and a few more, and
-//   ├────┼────┼────┤   nowhere nearer than they are, and a little. If all tiles there see something nearer, nothing
+//   ├────┼────┼────┤   nowhere nearer than they are, and a little. If all squares there see something nearer, nothing
 //   │    │    │    │   of it changes the picture
 //   └────┴────┴────┘
 #ifndef BEHIND_GLSL
 #define BEHIND_GLSL
 
-#include "farthest.glsl"
 #include "farthest.glsl"
 #include "push.glsl"
 
