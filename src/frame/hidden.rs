@@ -11,8 +11,9 @@
 //!
 //! So a view is right whatever was known before, and the picture the same bit for bit as with every patch drawn: what is
 //! left out would have lost the depth test at each pixel, and its rings lie behind what is seen there. The derivation
-//! stands in `twin::hidden`. Only of faces that have the same depth to the bit another may be drawn first, and seen. A view that is the same as that which told draws once, and asks nothing; the trim table leaves
-//! out what is not drawn then, too.
+//! stands in `twin::hidden`. Only of faces that have the same depth to the bit another may be drawn first, and seen. A
+//! view that is the same as that which told draws once, and asks nothing; the trim table leaves out what is not drawn
+//! then, too.
 
 use super::{Frame, TessellationPasses, WRITE_TO_READ, WRITE_TO_WRITE};
 use crate::buffers::HiddenBuffers;
