@@ -149,9 +149,12 @@ Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec
         vec2 from = (here.domain.xy + s.uv * here.domain.zw - there.domain.xy) / there.domain.zw;
         Sample t = refine(there, view, clamp(from, 0.0, 1.0), pixel);
         // beside a silhouette it may not come as near: then the first patch's continuation is better
-        if (length(t.miss) > max(length(s.miss), ON_PIXEL_PX)) break;
-        item = fi.first_item + uint(next.y * count.x + next.x);
-        s = t;
+        bool on = length(t.miss) <= max(length(s.miss), ON_PIXEL_PX);
+        if (on) {
+            item = fi.first_item + uint(next.y * count.x + next.x);
+            s = t;
+        }
+        if (!on) break; // only now: see refine.glsl
     }
     return s;
 }

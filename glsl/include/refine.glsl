@@ -2,6 +2,10 @@
 //
 // Newton's method on F(u, v) = projection(S(u, v)) - pixel:  step = -J^-1 F, kept only while the
 // distance to the pixel shrinks (at a silhouette there may be no such point).
+//
+// The better point is taken before the loop is left, not after. Written the other way round (`if (!nearer) break;
+// best = next;`) Mesa 22.3's llvmpipe now and then gave a lane that had left the loop the step it had refused, where
+// other lanes of its group went on: which, the order of the threads decided.
 #ifndef REFINE_GLSL
 #define REFINE_GLSL
 
@@ -47,8 +51,9 @@ Sample refine(Patch patch_, View view, vec2 uv, vec2 pixel) {
         float largest = max(abs(step_.x), abs(step_.y));
         if (largest > MAX_STEP) step_ *= MAX_STEP / largest;
         Sample next = sample_at(patch_, view, best.uv - step_, pixel);
-        if (!(dot(next.miss, next.miss) < error)) break;
-        best = next;
+        bool nearer = dot(next.miss, next.miss) < error;
+        if (nearer) best = next;
+        if (!nearer) break;
     }
     return best;
 }

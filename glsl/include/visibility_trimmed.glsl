@@ -46,8 +46,17 @@ layout(depth_less) out float gl_FragDepth;
 const float GROWTH = 0.25;
 // Where two solids touch, the back of one must win over the front of the other. Each is drawn up to
 // deviation_px off, so the front stands back by twice that in space, and at least by the rounding of
-// interpolated depth.
+// interpolated depth. A wall seen nearly edge-on would then stand behind what it hides: where it goes on towards the
+// viewer beyond what its border may be off by, and bends less, it stands back by no more than that and by the grid of
+// SNAP_PX that devices put vertices on. Where the face has grown it is no nearer than its border.
 const float STAND_BACK = 2e-6;
+const float SNAP_PX = 1.0 / 256.0;
+const float STEEP = 4.0; // pixels of depth a pixel
+
+// How far the surface may leave its tangent plane within such a step in (u, v) of the patch, in the model's units.
+float bend_within(Patch patch_, vec2 far) {
+    return 0.5 * dot(patch_.bend, vec3(far.x * far.x, 2.0 * far.x * far.y, far.y * far.y));
+}
 
 void main() {
     FaceInstance fi = face_instances[item_face_instance[item]];
@@ -67,11 +76,10 @@ void main() {
     bool inside = area == TRIM_IN || trim_inside(fi, face, at);
     float border_depth = -1.0; // nearest to the viewer among the ring's points inside the face
     bool grows = true;
+    float px = frame.focal * (frame.perspective != 0u ? gl_FragCoord.w : 1.0) * instances[fi.instance].scale;
     if (solid && !away) {
         vec2 far = around / patch_.domain.zw; // (u, v) of the patch that the ring spans
-        float bend = 0.5 * dot(patch_.bend, vec3(far.x * far.x, 2.0 * far.x * far.y, far.y * far.y));
-        float px = frame.focal * (frame.perspective != 0u ? gl_FragCoord.w : 1.0) * instances[fi.instance].scale;
-        grows = bend * px <= (RING_SLACK - 1.0) * reach + 2.0 * frame.deviation_px;
+        grows = bend_within(patch_, far) * px <= (RING_SLACK - 1.0) * reach + 2.0 * frame.deviation_px;
     }
     for (uint k = 0u; !inside && grows && k < RING_POINTS; ++k) {
         vec2 step_ = reach * RING[k];
@@ -85,19 +93,24 @@ void main() {
     if (!in_volume(exact_point(patch_, views[fi.instance], uv), inside ? ON_PX : frame.ring_px)) discard;
 #endif
     float z = gl_FragCoord.z;
+    if (!inside && !doubtful) z = min(z, border_depth);
     float stand_back = 0.0;
     if (solid && !away) {
-        float px = 2.0 * frame.deviation_px;
         // depth per unit along the view axis, times the size of a pixel there
         float range = frame.far - frame.near;
         float unit = frame.perspective != 0u ? frame.near * frame.far * gl_FragCoord.w / range : 1.0 / range;
-        stand_back = px * (abs(slope.x) + abs(slope.y) + unit / frame.focal) + STAND_BACK * z;
+        float off = 2.0 * frame.deviation_px;
+        if (inside && length(slope) > STEEP * unit / frame.focal) {
+            vec2 nearer = off * normalize(slope);
+            bool goes_on = area == TRIM_IN || trim_inside(fi, face, at + nearer.x * dx + nearer.y * dy);
+            if (goes_on) off = min(off, 2.0 * (bend_within(patch_, vec2(1.0)) * px + SNAP_PX));
+        }
+        stand_back = off * (abs(slope.x) + abs(slope.y) + unit / frame.focal) + STAND_BACK * z;
     }
     if (!inside && (doubtful || !solid)) {
-        float nearest = (solid ? z : min(z, border_depth)) - stand_back;
         uvec2 pixel = uvec2(gl_FragCoord.xy);
         // depths are not negative, so they order like their bits
-        atomicMax(rings[pixel.y * uint(frame.size.x) + pixel.x], floatBitsToUint(max(nearest, 0.0)));
+        atomicMax(rings[pixel.y * uint(frame.size.x) + pixel.x], floatBitsToUint(max(z - stand_back, 0.0)));
         discard;
     }
     visible = uvec2(item + 1u | (doubtful ? DOUBTFUL : 0u), pack_uv(uv));
