@@ -29,6 +29,7 @@
 //!               solid_layers     scenes with something to see through: its faces, over what resolve drew
 //!
 //!  from mesh on once for each of a pixel's samples, where there are several: samples.rs
+//!  above mesh nothing is recorded where the frame before had the same view: kept.rs
 //!  lists of solid_events and solid_layers band by band, where they are too large: bands.rs
 //!  resolve and solid_layers ask the sun's tiles, in scenes with a sun: sun.rs
 //! ```
@@ -58,6 +59,7 @@ mod coverage;
 mod edit;
 mod heal;
 mod hidden;
+mod kept;
 mod layers;
 mod resolved;
 #[cfg(feature = "rivals")]
@@ -178,6 +180,8 @@ pub(crate) struct Frame<'a> {
     pub centres: Option<Centres<'a>>,
     pub near: Near,
     pub hiding: Hiding,
+    /// The frame before made what this one is drawn from.
+    pub keeps: bool,
     /// Columns and rows of the pixels that operands without equations may be in.
     pub shell_pixels: &'a [Range<u32>; 2],
     /// That way `blister` peels.
@@ -202,6 +206,16 @@ const COPIED: Access = Access { layout: Access::COMPUTE_READ.layout, ..Access::T
 impl Frame<'_> {
     /// Records the whole frame.
     pub(crate) fn record(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
+        self.prepare(cmd, times);
+        match &self.passes.samples {
+            Some(passes) => self.record_samples(cmd, times, passes),
+            None => self.draw(cmd, &mut Scopes::of(times), (self.passes.resolve.as_ref(), Drawing::Whole), 0),
+        }
+        self.no_thickness(cmd);
+    }
+
+    /// What is drawn from: patches divided, and the trim table.
+    fn make(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
         self.begin(cmd);
         if let Some(passes) = &self.passes.tessellation {
             times.scope(cmd, "tessellation", || self.tessellation(cmd, passes));
@@ -214,11 +228,6 @@ impl Frame<'_> {
         if let Some(texture) = trim.as_ref().and_then(TrimParts::rival).and_then(|parts| parts.texture()) {
             times.scope(cmd, "trim texture", || texture.record(self, cmd));
         }
-        match &self.passes.samples {
-            Some(passes) => self.record_samples(cmd, times, passes),
-            None => self.draw(cmd, &mut Scopes::of(times), (self.passes.resolve.as_ref(), Drawing::Whole), 0),
-        }
-        self.no_thickness(cmd);
     }
 
     /// What is seen, from the patches and the trim table, resolved into `self.colour` and `self.depth`; the `nth` time
@@ -267,10 +276,9 @@ impl Frame<'_> {
         self.counters.record_nth(cmd, &b.counters, size_of::<Counters>() as u64, nth);
     }
 
-    /// The transient buffers may still be read by the frame before: wait, then clear what counts.
+    /// Clears what the passes count that make what is drawn from.
     fn begin(&self, cmd: &Commands<'_>) {
         let b = self.buffers;
-        self.clear(cmd);
         for counted in b.trim.iter().flat_map(|t| &t.table).flat_map(TableBuffers::cleared) {
             cmd.fill(counted, 0);
         }
@@ -287,7 +295,8 @@ impl Frame<'_> {
         barrier::buffers(cmd, &[(&b.draws, w, w2), (&b.counters, w, w2)]);
     }
 
-    /// Waits for what was drawn before, and clears what each drawing counts.
+    /// The transient buffers may still be read by what was drawn before: waits for it, then clears what each drawing
+    /// counts.
     fn clear(&self, cmd: &Commands<'_>) {
         let b = self.buffers;
         let before = [Access::COMPUTE_WRITE, Access::VERTEX_READ, Access::FRAGMENT_READ, Access::INDIRECT_READ];

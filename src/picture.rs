@@ -14,6 +14,10 @@ pub struct FrameSettings {
     pub background: Option<Colour>,
     /// How finely patches are divided.
     pub levels: Levels,
+    /// Every pass is recorded in every frame. Else a frame of the same view as the one before, with the same settings and
+    /// no edit between them, keeps the patches as they were divided and the trim table: the same picture, bit for bit,
+    /// sooner. For measurements; asking for it or not makes no other view.
+    pub all_passes: bool,
 }
 
 /// How the number of segments along a patch's sides is chosen.
@@ -28,7 +32,7 @@ pub enum Levels {
 
 impl Default for FrameSettings {
     fn default() -> Self {
-        Self { tolerance_px: 0.5, background: Some([1.0, 1.0, 1.0, 1.0]), levels: Levels::Bound }
+        Self { tolerance_px: 0.5, background: Some([1.0, 1.0, 1.0, 1.0]), levels: Levels::Bound, all_passes: false }
     }
 }
 
@@ -339,6 +343,9 @@ pub struct FrameStats {
     /// Name and GPU time in milliseconds of each pass, in order. Where pixels have several samples, passes are those of
     /// the first one; the others are `more samples`, and what is no colour is `centre sample`.
     pub passes: Vec<PassTime>,
+    /// Patches as they were divided and the trim table are those of the frame before, which had the same view: `passes`
+    /// has none of theirs, and their counts are those of that frame. Never with [`FrameSettings::all_passes`].
+    pub kept: bool,
     /// Patches of the loaded model, those of each instance counted; of a view from very near, those near it.
     pub patches: u64,
     /// Triangles that the tessellator made, and those of meshes; for one sample.

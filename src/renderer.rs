@@ -141,7 +141,7 @@ struct Loaded {
     buffers: Option<Buffers>,
     /// Edits that the next frame copies.
     edits: Vec<Write>,
-    /// What the frame before knew of patches that lie behind others; `None`: its buffers are gone.
+    /// What the frame before left; `None`: its buffers are gone.
     known: Option<Known>,
 }
 
@@ -334,8 +334,8 @@ impl Renderer {
             loaded.scene = Some(scene);
             loaded.data.drop_uploaded();
         }
-        let known = Known::after(loaded.known, (*input.camera, input.settings), !loaded.edits.is_empty());
-        loaded.known = Some(known);
+        let view = (*input.camera, input.settings);
+        let known = Known::after(loaded.known, view, !loaded.edits.is_empty(), loaded.counts);
         slot.edit_bytes = 0;
         if let Some(scene) = loaded.scene.as_ref().filter(|_| !loaded.edits.is_empty()) {
             let uploads = Frame::edit(&cmd, scene, &loaded.edits)?;
@@ -369,6 +369,7 @@ impl Renderer {
             centres: slot.centres.solids(),
             near,
             hiding: known.hiding,
+            keeps: known.keeps,
             shell_pixels: &shell_pixels,
             layers: loaded.capacities.layers,
             volume_places: slot.centres.volume(),
@@ -380,7 +381,9 @@ impl Renderer {
         };
         slot.times.reset(&cmd);
         frame.record(&cmd, &mut slot.times);
-        slot.recorded = true;
+        // only now: a frame that was not recorded left nothing
+        loaded.known = Some(known);
+        (slot.recorded, slot.kept) = (true, known.keeps);
         slot.capacities = Some(loaded.capacities);
         slot.size = input.camera.size;
         (slot.bands, slot.solid_bytes) = (loaded.bands(), loaded.solid_bytes());
@@ -402,6 +405,7 @@ impl Renderer {
         let scopes = slot.times.read()?;
         let stats = FrameStats {
             passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
+            kept: slot.kept,
             patches: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.items)),
             triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
             sub_patches: u64::from(c.plain) + u64::from(c.trimmed),

@@ -53,6 +53,7 @@ const BARRIERS: &[&str] = &[
     "src/frame/edit.rs",
     "src/frame/heal.rs",
     "src/frame/hidden.rs",
+    "src/frame/kept.rs",
     "src/frame/layers.rs",
     "src/frame/resolved.rs",
     "src/frame/rival.rs",

@@ -1,5 +1,15 @@
-//! What is known of patches that lie behind others, from frame to frame.
+//! What stays from frame to frame: what is known of patches that lie behind others, and what is drawn from.
+//!
+//! ```text
+//!   scenes that hide     First ─▶ Asks ─▶ Same ─▶ Same, keeps ─▶ Same, keeps ─ … ─▶ Moved ─▶ Same ─▶ Same, keeps
+//!   others               made ──▶ keeps ─▶ …                                        made ──▶ keeps
+//!                        └──────── one view ────────────────────────────────────┘   └──── another, or an edit ───
+//! ```
+//!
+//! A frame that hides asks after it has made what it draws from: what it is told changes what the next one makes, and
+//! the one after that nothing. All begins anew with new buffers: another scene, another size of the picture, more room.
 
+use crate::capacities::Counts;
 use crate::frame::Hiding;
 use crate::model::Camera;
 use crate::picture::FrameSettings;
@@ -8,18 +18,25 @@ use crate::picture::FrameSettings;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known {
     pub(super) hiding: Hiding,
+    /// What the frame is drawn from is that of the frame before.
+    pub(super) keeps: bool,
     view: (Camera, FrameSettings),
 }
 
 impl Known {
     /// Of the frame that follows one; `edited`: some trim changes between them.
-    pub(super) fn after(before: Option<Self>, view: (Camera, FrameSettings), edited: bool) -> Self {
+    pub(super) fn after(before: Option<Self>, view: (Camera, FrameSettings), edited: bool, scene: Counts) -> Self {
+        let (camera, settings) = view;
+        // which passes are recorded is no part of the view
+        let view = (camera, FrameSettings { all_passes: false, ..settings });
+        let is_same = |before: &Self| before.view == view && !edited;
         let hiding = match before {
             None => Hiding::First,
             Some(before) if before.hiding == Hiding::First => Hiding::Asks,
-            Some(before) if before.view == view && !edited => Hiding::Same,
+            Some(before) if is_same(&before) => Hiding::Same,
             Some(_) => Hiding::Moved,
         };
-        Self { hiding, view }
+        let made = before.filter(is_same).is_some_and(|before| !scene.hides || before.hiding == Hiding::Same);
+        Self { hiding, keeps: made && scene.items > 0 && !settings.all_passes, view }
     }
 }

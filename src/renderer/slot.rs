@@ -32,6 +32,8 @@ pub(super) struct Slot {
     /// Freed when the slot comes round again.
     pub(super) retired: Vec<Retired>,
     pub(super) recorded: bool,
+    /// The frame was drawn from what the frame before had made.
+    pub(super) kept: bool,
     /// Copied for edits at the beginning of the frame.
     pub(super) edit_bytes: u64,
     /// What the frame had room for; `None` when its model has been replaced since.
@@ -56,6 +58,7 @@ impl Slot {
             times: Timestamps::new(device, SCOPES)?,
             retired: Vec::new(),
             recorded: false,
+            kept: false,
             edit_bytes: 0,
             capacities: None,
             size: (0, 0),

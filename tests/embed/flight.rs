@@ -101,26 +101,41 @@ fn sizes_and_models_change_in_flight() {
 /// is in flight meanwhile, and the next frame into the slot is whole.
 #[test]
 fn a_frame_without_room_says_so_and_the_next_is_whole() {
+    without_room(16);
+}
+
+/// The frame that keeps such a table says so as well.
+#[test]
+fn a_frame_that_keeps_what_had_no_room_says_so() {
+    without_room(7);
+}
+
+/// `across` by as many plates: so many, and patches may lie behind others.
+fn without_room(across: u32) {
     let host = Host::new();
     let mut model = shapes::plate();
-    let place = |i: u32| DVec3::new(f64::from(i % 16), f64::from(i / 16), 0.0) * 7.0;
-    model.instances = (0..256).map(|i| shapes::placed(DAffine3::from_translation(place(i)), Some(RED))).collect();
+    let place = |i: u32| DVec3::new(f64::from(i % across), f64::from(i / across), 0.0) * 7.0;
+    let placed = |i| shapes::placed(DAffine3::from_translation(place(i)), Some(RED));
+    model.instances = (0..across * across).map(placed).collect();
     let size = (560, 420);
     let camera = Camera::framing(model.bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, size);
     let mut renderer = renderer(&host, &model, FORMAT);
     let targets = [(); SLOTS].map(|()| Targets::new(&host, size, FORMAT));
     assert_eq!(renderer.report(0).unwrap(), None, "no frame has been recorded");
 
-    let mut complete = Vec::new();
+    let (mut complete, mut kept) = (Vec::new(), Vec::new());
     for frame in 0..8 {
         let slot = frame % SLOTS;
         host.wait(slot);
-        complete.extend(renderer.report(slot).unwrap().map(|report| report.complete));
+        let report = renderer.report(slot).unwrap();
+        kept.extend(report.iter().map(|report| report.stats.kept));
+        complete.extend(report.map(|report| report.complete));
         record(&host, &mut renderer, slot, &targets[slot], &camera, 0.125);
     }
     // the first two were recorded before either could report; rows, then intercepts, may run short
     assert_eq!(complete[..2], [false, false], "{complete:?}");
     assert!(complete.last().unwrap(), "{complete:?}");
+    assert_eq!((kept[0], kept[1]), (false, across * across < 64), "{kept:?}");
     (0..SLOTS).for_each(|slot| host.wait(slot));
     let [a, b] = targets.each_ref().map(Targets::values);
     assert!(a == b, "two whole frames of one view differ");

@@ -14,7 +14,7 @@ const SIZE: (u32, u32) = (200, 150);
 const APART: f64 = 7.0;
 
 /// Plates with a hole, cubes, cylinders beside a plate, waves and ripples, in rows one behind the other.
-fn crowd() -> Model {
+pub fn crowd() -> Model {
     let shapes = [shapes::plate(), shapes::cube(), shapes::mirrored(), shapes::wave(), shapes::ripple()];
     let mut model = Model::default();
     for (part, shape) in shapes.into_iter().enumerate() {

@@ -19,6 +19,7 @@ mod hard;
 mod hard_solids;
 mod hard_trims;
 mod hidden;
+mod kept;
 mod layers;
 mod ledges;
 mod lengths;

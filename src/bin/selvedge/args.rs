@@ -175,6 +175,12 @@ pub struct BenchArgs {
     /// and whether pictures equal those of a fresh upload
     #[arg(long, conflicts_with_all = ["section", "trim_by"])]
     pub edit: bool,
+    /// How the camera moves from frame to frame
+    #[arg(long, value_enum, default_value_t = Motion::Path, conflicts_with = "edit")]
+    pub motion: Motion,
+    /// Frames judged against the exact model, spread evenly; 0 judges none
+    #[arg(long, value_name = "N", default_value_t = 4)]
+    pub judged: usize,
     /// Folder for bench.json and bench.csv
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
@@ -383,6 +389,18 @@ impl Smooth {
             Self::Loop => Scheme::Loop,
         }
     }
+}
+
+/// How the camera of `bench` moves.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Motion {
+    /// Once around the model, nearer and back twice
+    Path,
+    /// By three degrees a frame, all of the model in view
+    Turn,
+    /// Not at all. Each frame twice: with every pass recorded, and as a viewer draws it, which keeps the patches and the
+    /// trim table of the frame before
+    Still,
 }
 
 /// Built-in views of `check`.

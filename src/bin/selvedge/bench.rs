@@ -2,14 +2,19 @@
 //!
 //! Speed without its error says little: some frames of the path are judged against the exact model,
 //! and both stand in the same table.
+//!
+//! Every pass is recorded in every frame, though the path's first stands where the warm-up stood. A view that stands
+//! (`--motion still`) is drawn in turn so and as a viewer draws it, from what the frame before made: those rows begin
+//! with `kept:`.
 
-use crate::args::{BenchArgs, Size};
+use crate::args::{BenchArgs, Motion, Size};
 use crate::progress::during;
 use crate::series::{Gathered, Row};
 use crate::session::{self, Session};
 use crate::{Outcome, edit, output, path, verdict};
 use anyhow::{Context, Result};
 use comfy_table::CellAlignment;
+use selvedge::model::Camera;
 use selvedge::picture::{FrameStats, Outputs};
 use selvedge::reference::{Judgement, Tracer};
 use serde::Serialize;
@@ -18,8 +23,6 @@ use std::time::Instant;
 
 /// Frames before the first measured one: buffers have grown, the driver's pipelines are compiled.
 const WARM_UP_FRAMES: usize = 3;
-/// Judged frames, spread over the path; each takes much longer than it takes to draw.
-const JUDGED_FRAMES: usize = 4;
 /// Pixels judged in each of them, beside those at which the face changes.
 const JUDGED_SAMPLES: usize = 2_000;
 
@@ -79,30 +82,38 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
     args.cut.apply(&mut import.model)?;
     let bounds = import.model.bounds();
     let Size(width, height) = args.size;
-    let camera = |index| path::camera(bounds, (width, height), index, args.frames);
+    let size = (width, height);
+    let camera = |index| match args.motion {
+        Motion::Path => path::camera(bounds, size, index, args.frames),
+        Motion::Turn => path::turned(bounds, size, index),
+        Motion::Still => path::turned(bounds, size, 0),
+    };
     let mut session = Session::smooth(session::opened(&args.frame)?, &args.frame, &import, &args.edges)?;
     let mut stats = FrameStats::default();
     let mut gathered = Gathered::default();
+    session.record_all(true);
     during(&format!("{}: {} frames", model.display(), args.frames), || -> Result<()> {
         for _ in 0..WARM_UP_FRAMES {
             session.render(&camera(0), Outputs::default())?;
         }
         for index in 0..args.frames {
-            let start = Instant::now();
-            let picture = session.render(&camera(index), Outputs::default())?;
-            gathered.push("wall clock, with read-back", "ms", start.elapsed().as_secs_f64() * 1e3);
-            gather(&mut gathered, &picture.stats);
-            stats = picture.stats;
+            stats = timed(&mut session, &camera(index), &mut gathered)?;
+            if args.motion == Motion::Still {
+                session.record_all(false);
+                timed(&mut session, &camera(index), &mut gathered)?;
+                session.record_all(true);
+            }
         }
         Ok(())
     })?;
-    let tracer = during("preparing the exact model", || Tracer::new(&import.model));
     let mut error = Error::default();
-    for index in judged(args.frames) {
+    let mut tracer = None;
+    for index in judged(args.frames, args.judged) {
+        let tracer = tracer.get_or_insert_with(|| during("preparing the exact model", || Tracer::new(&import.model)));
         let camera = camera(index);
         let picture = session.render(&camera, Outputs::ALL)?;
         let what = format!("frame {index}");
-        error.add(&verdict::of(&tracer, &camera, &picture, JUDGED_SAMPLES, args.frame.tolerance, 1.0, &what));
+        error.add(&verdict::of(tracer, &camera, &picture, JUDGED_SAMPLES, args.frame.tolerance, 1.0, &what));
     }
     let report = Report {
         model: model.display().to_string(),
@@ -119,14 +130,27 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
     Ok((report, session.complaints()))
 }
 
+/// One frame, and what it cost.
+fn timed(session: &mut Session, camera: &Camera, gathered: &mut Gathered) -> Result<FrameStats> {
+    let start = Instant::now();
+    let stats = session.render(camera, Outputs::default())?.stats;
+    let took = start.elapsed().as_secs_f64() * 1e3;
+    let row = |name: &str| if stats.kept { format!("kept: {name}") } else { name.to_owned() };
+    gathered.push(&row("wall clock, with read-back"), "ms", took);
+    for pass in &stats.passes {
+        gathered.push(&row(&format!("pass: {}", pass.name)), "ms", pass.gpu_ms);
+    }
+    gathered.push(&row("all passes"), "ms", stats.passes.iter().map(|p| p.gpu_ms).sum());
+    if !stats.kept {
+        gather(gathered, &stats);
+    }
+    Ok(stats)
+}
+
 const CLAMPS: &str = "clamps";
 
-/// Everything in the statistics of a frame.
+/// The counts of a frame.
 fn gather(to: &mut Gathered, stats: &FrameStats) {
-    for pass in &stats.passes {
-        to.push(&format!("pass: {}", pass.name), "ms", pass.gpu_ms);
-    }
-    to.push("all passes", "ms", stats.passes.iter().map(|p| p.gpu_ms).sum());
     to.push("triangles", "", stats.triangles as f64);
     to.push("sub-patches", "", stats.sub_patches as f64);
     to.push("hidden patches", "", stats.hidden_patches as f64);
@@ -144,9 +168,9 @@ fn gather(to: &mut Gathered, stats: &FrameStats) {
     }
 }
 
-/// Indices of the frames to judge, spread evenly.
-fn judged(frames: usize) -> impl Iterator<Item = usize> {
-    let count = JUDGED_FRAMES.min(frames);
+/// Indices of the frames to judge, spread evenly; each takes much longer than it takes to draw.
+fn judged(frames: usize, most: usize) -> impl Iterator<Item = usize> {
+    let count = most.min(frames);
     (0..count).map(move |i| i * frames / count)
 }
 
@@ -209,8 +233,9 @@ mod tests {
     #[test]
     fn judged_frames_are_distinct_and_within_the_path() {
         for frames in [1, 2, 3, 5, 24] {
-            let indices: Vec<usize> = judged(frames).collect();
-            assert_eq!(indices.len(), frames.min(JUDGED_FRAMES));
+            assert_eq!(judged(frames, 0).count(), 0);
+            let indices: Vec<usize> = judged(frames, 4).collect();
+            assert_eq!(indices.len(), frames.min(4));
             assert!(indices.windows(2).all(|w| w[0] < w[1]) && indices.iter().all(|&i| i < frames));
         }
     }

@@ -31,6 +31,14 @@ pub fn camera(bounds: Bounds, size: (u32, u32), index: usize, count: usize) -> C
     camera
 }
 
+/// Camera of frame `index` of a turn by three degrees a frame, 30 degrees above the ground: all of the model.
+pub fn turned(bounds: Bounds, size: (u32, u32), index: usize) -> Camera {
+    let azimuth = (3.0 * index as f64).to_radians();
+    let elevation = 30f64.to_radians();
+    let from = DVec3::new(azimuth.sin() * elevation.cos(), -azimuth.cos() * elevation.cos(), elevation.sin());
+    Camera::framing(bounds, from, DVec3::Z, FOV_DEG.to_radians(), size)
+}
+
 #[cfg(test)]
 mod tests {
     use super::*;

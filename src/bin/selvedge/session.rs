@@ -88,6 +88,11 @@ impl Session {
         Ok(picture)
     }
 
+    /// From now on every pass is recorded in every frame, or what a standing view keeps is not.
+    pub fn record_all(&mut self, all_passes: bool) {
+        self.settings.all_passes = all_passes;
+    }
+
     /// Replaces a loop; the next frame shows it.
     pub fn edit(&mut self, at: LoopAt, new: &TrimLoop) -> Result<()> {
         Ok(self.renderer.edit_loop(at, new)?)

@@ -136,6 +136,7 @@ impl Group<'_> {
         let settings = |(factors, tolerance_px): (Factors, f64)| FrameSettings {
             tolerance_px,
             levels: factors.0,
+            all_passes: true,
             ..FrameSettings::default()
         };
         let mut frames: Vec<Vec<FrameStats>> = vec![Vec::new(); ways.len()];

@@ -156,7 +156,8 @@ impl<'a> Bench<'a> {
         if let Contender::Texture { eighths } = contender {
             row.trim_bytes = texture::wanted_bytes(self.model, camera, eighths)?;
         }
-        let settings = FrameSettings { tolerance_px: contender.tolerance_px(), ..FrameSettings::default() };
+        let settings =
+            FrameSettings { tolerance_px: contender.tolerance_px(), all_passes: true, ..FrameSettings::default() };
         let frames = self.args.frames;
         let Some(stats) = during(&what, || quickest(&mut entered.timed, camera, &settings, frames))? else {
             return Ok(row);
@@ -185,7 +186,8 @@ impl<'a> Bench<'a> {
             self.untrimmed = Some(self.renderer(self.model, Some(TrimWay::Rival(Rival::Untrimmed)))?);
         }
         let Some(renderer) = &mut self.untrimmed else { unreachable!("made above") };
-        let stats = quickest(renderer, camera, &FrameSettings::default(), self.args.frames)?;
+        let settings = FrameSettings { all_passes: true, ..FrameSettings::default() };
+        let stats = quickest(renderer, camera, &settings, self.args.frames)?;
         let ms = stats.map_or(0.0, |stats| time(&stats, "visibility"));
         self.without.push((*camera, ms));
         Ok(ms)
