@@ -39,8 +39,8 @@ pub(crate) struct Buffers {
     pub sub_patches: Buffer,
     pub draws: Buffer,
     pub counters: Buffer,
-    /// What they were before anything was drawn; in scenes with patches, from frame to frame.
-    pub kept_counters: Option<Buffer>,
+    /// What they were when all that a still camera keeps was there; from frame to frame.
+    pub kept_counters: Buffer,
     /// In scenes where patches may lie behind others.
     pub hidden: Option<HiddenBuffers>,
     pub trim: Option<TrimBuffers>,
@@ -249,7 +249,7 @@ impl Buffers {
             sub_patches: structs("sub-patches", capacities.sub_patches, size_of::<SubPatch>())?,
             draws: indirect("draws", draw_bytes)?,
             counters: indirect("counters", size_of::<Counters>() as u64)?,
-            kept_counters: (n > 0).then(|| structs("kept counters", 1, size_of::<Counters>())).transpose()?,
+            kept_counters: structs("kept counters", 1, size_of::<Counters>())?,
             hidden: counts
                 .hides
                 .then(|| {

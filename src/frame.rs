@@ -29,7 +29,7 @@
 //!               solid_layers     scenes with something to see through: its faces, over what resolve drew
 //!
 //!  from mesh on once for each of a pixel's samples, where there are several: samples.rs
-//!  above mesh nothing is recorded where the frame before had the same view: kept.rs
+//!  nothing above seen_squares, or mesh where there are several samples, where the frame before had this view: kept.rs
 //!  lists of solid_events and solid_layers band by band, where they are too large: bands.rs
 //!  resolve and solid_layers ask the sun's tiles, in scenes with a sun: sun.rs
 //! ```
@@ -180,7 +180,7 @@ pub(crate) struct Frame<'a> {
     pub centres: Option<Centres<'a>>,
     pub near: Near,
     pub hiding: Hiding,
-    /// The frame before made what this one is drawn from.
+    /// What is seen, or what samples are drawn from, is that of the frame before.
     pub keeps: bool,
     /// Columns and rows of the pixels that operands without equations may be in.
     pub shell_pixels: &'a [Range<u32>; 2],
@@ -206,10 +206,19 @@ const COPIED: Access = Access { layout: Access::COMPUTE_READ.layout, ..Access::T
 impl Frame<'_> {
     /// Records the whole frame.
     pub(crate) fn record(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
-        self.prepare(cmd, times);
+        self.wait(cmd);
         match &self.passes.samples {
-            Some(passes) => self.record_samples(cmd, times, passes),
-            None => self.draw(cmd, &mut Scopes::of(times), (self.passes.resolve.as_ref(), Drawing::Whole), 0),
+            Some(passes) => {
+                self.unless_kept(cmd, || self.make(cmd, times));
+                self.record_samples(cmd, times, passes);
+            }
+            None => {
+                self.unless_kept(cmd, || {
+                    self.make(cmd, times);
+                    self.see(cmd, &mut Scopes::of(times));
+                });
+                self.show(cmd, &mut Scopes::of(times), (self.passes.resolve.as_ref(), Drawing::Whole), 0);
+            }
         }
         self.no_thickness(cmd);
     }
@@ -230,16 +239,10 @@ impl Frame<'_> {
         }
     }
 
-    /// What is seen, from the patches and the trim table, resolved into `self.colour` and `self.depth`; the `nth` time
-    /// in this frame.
-    fn draw(
-        &self,
-        cmd: &Commands<'_>,
-        times: &mut Scopes<'_>,
-        (resolve, drawing): (Option<&resolve::Resolve>, Drawing),
-        nth: u64,
-    ) {
+    /// What each pixel sees, from the patches and the trim table.
+    fn see(&self, cmd: &Commands<'_>, times: &mut Scopes<'_>) {
         let trim = self.trim();
+        self.clear(cmd);
         self.begin_images(cmd);
         if let (Some(pass), Some(meshes)) = (&self.passes.mesh, &self.scene.meshes) {
             times.drawing(cmd, "mesh", || self.mesh(cmd, pass, meshes));
@@ -259,6 +262,20 @@ impl Frame<'_> {
         }
         let read = Access::COMPUTE_READ | Access::FRAGMENT_READ;
         barrier::images(cmd, &[(&self.buffers.visibility, drawn, read)]);
+    }
+
+    /// What is seen, resolved into `self.colour` and `self.depth`; the `nth` time in this frame.
+    fn show(
+        &self,
+        cmd: &Commands<'_>,
+        times: &mut Scopes<'_>,
+        (resolve, drawing): (Option<&resolve::Resolve>, Drawing),
+        nth: u64,
+    ) {
+        let b = self.buffers;
+        for image in b.behind.iter().chain(&b.resolved) {
+            barrier::images(cmd, &[(image, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE)]);
+        }
         if let Some(pass) = resolve {
             times.scope(cmd, "resolve", || {
                 self.seen_squares(cmd);
@@ -266,12 +283,12 @@ impl Frame<'_> {
             });
         }
         if let Some(pass) = &self.passes.coverage {
+            let test = self.trim().as_ref().map_or(Vec::new(), TrimParts::test);
             times.scope(cmd, "coverage", || self.coverage(cmd, pass, &test));
         }
         if let Some(passes) = &self.passes.layers {
             times.scope(cmd, "layers", || self.layers(cmd, passes, drawing));
         }
-        let b = self.buffers;
         barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, COPIED)]);
         self.counters.record_nth(cmd, &b.counters, size_of::<Counters>() as u64, nth);
     }
@@ -295,15 +312,18 @@ impl Frame<'_> {
         barrier::buffers(cmd, &[(&b.draws, w, w2), (&b.counters, w, w2)]);
     }
 
-    /// The transient buffers may still be read by what was drawn before: waits for it, then clears what each drawing
-    /// counts.
-    fn clear(&self, cmd: &Commands<'_>) {
-        let b = self.buffers;
+    /// The transient buffers may still be read by what was drawn before.
+    fn wait(&self, cmd: &Commands<'_>) {
         let before = [Access::COMPUTE_WRITE, Access::VERTEX_READ, Access::FRAGMENT_READ, Access::INDIRECT_READ];
         let before = before.into_iter().fold(Access::COMPUTE_READ, |all, one| all | one);
         let transfer = Access { layout: before.layout, ..Access::TRANSFER_READ };
         let clear = Access { layout: before.layout, ..Access::TRANSFER_WRITE };
         barrier::memory(cmd, before | transfer, Access::COMPUTE_WRITE | clear);
+    }
+
+    /// Clears what each drawing counts.
+    fn clear(&self, cmd: &Commands<'_>) {
+        let b = self.buffers;
         if let Some(t) = &b.trim {
             cmd.fill(&t.heal_dispatch, 0);
             cmd.fill(&t.rings, 0);
@@ -401,10 +421,9 @@ impl Frame<'_> {
             (&b.visibility, read, Access::COLOUR_WRITE),
             (&b.depth, Access::DEPTH_WRITE.discarded() | Access::COMPUTE_READ.discarded(), Access::DEPTH_WRITE),
         ];
-        let behind = b.behind.iter().chain(&b.resolved).map(|image| (image, read, Access::COLOUR_WRITE));
         let operand_uv = b.solids.iter().flat_map(|s| &s.operand_uv);
         let operand_uv = operand_uv.map(|image| (image, read, Access::COLOUR_WRITE));
-        barrier::images(cmd, &fixed.into_iter().chain(others).chain(behind).chain(operand_uv).collect::<Vec<_>>());
+        barrier::images(cmd, &fixed.into_iter().chain(others).chain(operand_uv).collect::<Vec<_>>());
     }
 
     /// What tests against the volume that trims the scene read, `None` without one.

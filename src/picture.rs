@@ -15,7 +15,7 @@ pub struct FrameSettings {
     /// How finely patches are divided.
     pub levels: Levels,
     /// Every pass is recorded in every frame. Else a frame of the same view as the one before, with the same settings and
-    /// no edit between them, keeps the patches as they were divided and the trim table: the same picture, bit for bit,
+    /// no edit between them, keeps what each pixel sees, and draws that into its targets: the same picture, bit for bit,
     /// sooner. For measurements; asking for it or not makes no other view.
     pub all_passes: bool,
 }
@@ -343,12 +343,13 @@ pub struct FrameStats {
     /// Name and GPU time in milliseconds of each pass, in order. Where pixels have several samples, passes are those of
     /// the first one; the others are `more samples`, and what is no colour is `centre sample`.
     pub passes: Vec<PassTime>,
-    /// Patches as they were divided and the trim table are those of the frame before, which had the same view: `passes`
-    /// has none of theirs, and their counts are those of that frame. Never with [`FrameSettings::all_passes`].
+    /// What each pixel sees is what it saw in the frame before, which had the same view; where pixels have several samples,
+    /// patches as they were divided and the trim table are that frame's. `passes` has none of what made them, and the
+    /// counts are that frame's. Never with [`FrameSettings::all_passes`].
     pub kept: bool,
     /// Patches of the loaded model, those of each instance counted; of a view from very near, those near it.
     pub patches: u64,
-    /// Triangles that the tessellator made, and those of meshes; for one sample.
+    /// Triangles that the tessellator made, and those of meshes; for one sample. 0 where they were not drawn: `kept`.
     pub triangles: u64,
     /// Sub-patches drawn.
     pub sub_patches: u64,

@@ -335,7 +335,7 @@ impl Renderer {
             loaded.data.drop_uploaded();
         }
         let view = (*input.camera, input.settings);
-        let known = Known::after(loaded.known, view, !loaded.edits.is_empty(), loaded.counts);
+        let known = Known::after(loaded.known, view, !loaded.edits.is_empty(), loaded.counts.hides);
         slot.edit_bytes = 0;
         if let Some(scene) = loaded.scene.as_ref().filter(|_| !loaded.edits.is_empty()) {
             let uploads = Frame::edit(&cmd, scene, &loaded.edits)?;
@@ -470,11 +470,12 @@ impl Renderer {
         let fits = |b: &Buffers| b.visibility.size() == size && b.capacities.takes_as_much(capacities);
         let fits = loaded.buffers.as_ref().is_some_and(fits);
         let made = (!fits).then(|| Buffers::new(&self.device, loaded.counts, capacities, size)).transpose()?;
-        // only now: a view that needs more than there is must not spoil the next one
-        loaded.capacities = capacities;
-        if made.is_some() {
+        // layers of faces are recorded, not stored: more of them may be seen in the same buffers
+        if made.is_some() || loaded.capacities != capacities {
             loaded.known = None;
         }
+        // only now: a view that needs more than there is must not spoil the next one
+        loaded.capacities = capacities;
         if let Some(old) = made.and_then(|made| loaded.buffers.replace(made)) {
             self.retire(Retired::Buffers(Box::new(old)));
         }

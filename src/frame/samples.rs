@@ -112,11 +112,23 @@ impl Frame<'_> {
         }
     }
 
+    /// What is seen, from the patches and the trim table, and resolved.
+    fn draw(
+        &self,
+        cmd: &Commands<'_>,
+        times: &mut Scopes<'_>,
+        (resolve, drawing): (Option<&resolve::Resolve>, Drawing),
+        nth: u64,
+    ) {
+        self.see(cmd, times);
+        self.show(cmd, times, (resolve, drawing), nth);
+    }
+
     /// Before the view is drawn once more, into `colour` again: what one drawing counts is cleared, what the patches
     /// and the trim table are stays.
     fn begin_again(&self, cmd: &Commands<'_>, colour: &Image) {
         let counters = &self.buffers.counters;
-        self.clear(cmd);
+        self.wait(cmd);
         let counted = [
             offset_of!(Counters, doubts),
             offset_of!(Counters, contacts),

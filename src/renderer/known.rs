@@ -1,4 +1,4 @@
-//! What stays from frame to frame: what is known of patches that lie behind others, and what is drawn from.
+//! What stays from frame to frame: what is known of patches that lie behind others, and what is seen.
 //!
 //! ```text
 //!   scenes that hide     First ─▶ Asks ─▶ Same ─▶ Same, keeps ─▶ Same, keeps ─ … ─▶ Moved ─▶ Same ─▶ Same, keeps
@@ -6,10 +6,10 @@
 //!                        └──────── one view ────────────────────────────────────┘   └──── another, or an edit ───
 //! ```
 //!
-//! A frame that hides asks after it has made what it draws from: what it is told changes what the next one makes, and
-//! the one after that nothing. All begins anew with new buffers: another scene, another size of the picture, more room.
+//! A frame that hides asks once it has drawn: what it is told changes what the next one draws, though not what is seen,
+//! and the one after that nothing. All begins anew with new buffers: another scene, another size of the picture, more
+//! room.
 
-use crate::capacities::Counts;
 use crate::frame::Hiding;
 use crate::model::Camera;
 use crate::picture::FrameSettings;
@@ -18,14 +18,14 @@ use crate::picture::FrameSettings;
 #[derive(Clone, Copy, Debug)]
 pub(super) struct Known {
     pub(super) hiding: Hiding,
-    /// What the frame is drawn from is that of the frame before.
+    /// What is seen is what the frame before saw.
     pub(super) keeps: bool,
     view: (Camera, FrameSettings),
 }
 
 impl Known {
-    /// Of the frame that follows one; `edited`: some trim changes between them.
-    pub(super) fn after(before: Option<Self>, view: (Camera, FrameSettings), edited: bool, scene: Counts) -> Self {
+    /// Of the frame that follows one; `edited`: some trim changes between them. `hides`: patches may lie behind others.
+    pub(super) fn after(before: Option<Self>, view: (Camera, FrameSettings), edited: bool, hides: bool) -> Self {
         let (camera, settings) = view;
         // which passes are recorded is no part of the view
         let view = (camera, FrameSettings { all_passes: false, ..settings });
@@ -36,7 +36,7 @@ impl Known {
             Some(before) if is_same(&before) => Hiding::Same,
             Some(_) => Hiding::Moved,
         };
-        let made = before.filter(is_same).is_some_and(|before| !scene.hides || before.hiding == Hiding::Same);
-        Self { hiding, keeps: made && scene.items > 0 && !settings.all_passes, view }
+        let made = before.filter(is_same).is_some_and(|before| !hides || before.hiding == Hiding::Same);
+        Self { hiding, keeps: made && !settings.all_passes, view }
     }
 }

@@ -32,7 +32,7 @@ pub(super) struct Slot {
     /// Freed when the slot comes round again.
     pub(super) retired: Vec<Retired>,
     pub(super) recorded: bool,
-    /// The frame was drawn from what the frame before had made.
+    /// The frame kept what the frame before had seen.
     pub(super) kept: bool,
     /// Copied for edits at the beginning of the frame.
     pub(super) edit_bytes: u64,

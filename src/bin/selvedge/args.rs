@@ -398,8 +398,7 @@ pub enum Motion {
     Path,
     /// By three degrees a frame, all of the model in view
     Turn,
-    /// Not at all. Each frame twice: with every pass recorded, and as a viewer draws it, which keeps the patches and the
-    /// trim table of the frame before
+    /// Not at all. Each frame twice: with every pass recorded, and as a viewer draws it, which keeps what each pixel sees
     Still,
 }
 

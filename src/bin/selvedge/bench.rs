@@ -4,8 +4,8 @@
 //! and both stand in the same table.
 //!
 //! Every pass is recorded in every frame, though the path's first stands where the warm-up stood. A view that stands
-//! (`--motion still`) is drawn in turn so and as a viewer draws it, from what the frame before made: those rows begin
-//! with `kept:`.
+//! (`--motion still`) is drawn in turn so and as a viewer draws it, which keeps what the frame before saw: those rows
+//! begin with `kept:`.
 
 use crate::args::{BenchArgs, Motion, Size};
 use crate::progress::during;
