@@ -101,23 +101,22 @@ fn sizes_and_models_change_in_flight() {
 /// is in flight meanwhile, and the next frame into the slot is whole.
 #[test]
 fn a_frame_without_room_says_so_and_the_next_is_whole() {
-    without_room(16);
+    without_room(16, (560, 420));
 }
 
 /// The frame that keeps such a table says so as well.
 #[test]
 fn a_frame_that_keeps_what_had_no_room_says_so() {
-    without_room(7);
+    without_room(7, (960, 720));
 }
 
 /// `across` by as many plates: so many, and patches may lie behind others.
-fn without_room(across: u32) {
+fn without_room(across: u32, size: (u32, u32)) {
     let host = Host::new();
     let mut model = shapes::plate();
     let place = |i: u32| DVec3::new(f64::from(i % across), f64::from(i / across), 0.0) * 7.0;
     let placed = |i| shapes::placed(DAffine3::from_translation(place(i)), Some(RED));
     model.instances = (0..across * across).map(placed).collect();
-    let size = (560, 420);
     let camera = Camera::framing(model.bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, size);
     let mut renderer = renderer(&host, &model, FORMAT);
     let targets = [(); SLOTS].map(|()| Targets::new(&host, size, FORMAT));
