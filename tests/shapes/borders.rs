@@ -29,7 +29,7 @@ pub fn seamed_ball() -> Model {
 /// turned so that no patch ends at a silhouette.
 pub fn drums_in_line(overlap: f64) -> Model {
     let mut model = drum(1.0, 4.0);
-    let turned = DAffine3::from_rotation_z(0.3);
+    let turned = DAffine3::from_rotation_z(0.5);
     let beside = |x: f64, y: f64| DAffine3::from_translation(DVec3::new(x, y, 0.0)) * turned;
     let x = 1.0 - overlap * 0.5;
     model.instances = vec![placed(beside(-x, 0.0), None), placed(beside(x, 4.0), None)];
