@@ -109,8 +109,8 @@ struct Answer {
 // How much its depth changes within the ring.
 float lean(Answer answer) { return RING_SLACK * frame.ring_px * length(answer.slope); }
 
-// In all of the ring.
-bool before(Answer a, Answer b) { return a.depth + lean(a) + lean(b) < b.depth; }
+// In all of the ring: surfaces that meet in it are not.
+bool wholly_before(Answer a, Answer b) { return a.depth + lean(a) + lean(b) < b.depth; }
 
 // Column and row of the `n`th patch of a face.
 ivec2 place_of(Face face, int n) {
@@ -319,7 +319,7 @@ void main() {
     // be the third, which they hide
     bool stays = false; // it has grown to the pixel, and is what is there
     if (ringed && on && self.depth < witness.depth && !(self.kind == HELPER && two_meet)) {
-        stays = !self.inside && before(self, witness) && !before(helper, self);
+        stays = !self.inside && wholly_before(self, witness) && !wholly_before(helper, self);
         if (self.inside || stays) {
             witness = self;
             witness.kind = WITNESS;

@@ -16,7 +16,7 @@
 const uint DOUBTFUL = 0x80000000u;
 // In the list of doubtful pixels, whose columns and rows have 15 bits: what is seen there is not doubtful itself.
 const uint RINGED = 0x80000000u;
-// Then: nothing is seen there, between patches.
+// Beside RINGED: no ring, but nothing is seen there, and patches are on both sides.
 const uint LONE = 0x8000u;
 const uint SEEN_KIND = 0x60000000u;
 const uint SEEN_MESH = 0x20000000u;
