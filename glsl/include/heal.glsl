@@ -24,8 +24,11 @@
 //     helpers of two faces before every witness    the nearest: an edge runs here
 //     a witness                                    the nearest: behind a silhouette, or no border at all; not the
 //                                                  face itself where it ends and two others meet, as near as they lean
+//     the face itself, which has grown to here     it stays, before witnesses and behind no helper, in all of the ring
 //     nothing is seen                              nothing
 //     a helper                                     the nearest
+//   nothing, between patches on both sides:
+//     a witness                                    the nearest: silhouettes meet, drawn inside of what they are
 //   and where a volume cuts the scene open (WITHIN_VOLUME), before a face from behind:
 //     helpers of one face                          the nearest: the outline of the part runs here
 //
@@ -66,6 +69,11 @@ layout(scalar, binding = 14) readonly buffer Positions { vec3 positions[]; };
 #include "ring.glsl"
 #include "visible.glsl"
 
+// Who is asked for the ring around the point: those that are inside their trims there, whether all of it is; those that
+// are not, whether some of it is.
+const uint RING_INSIDE = 1u;
+const uint RING_OUTSIDE = 2u;
+
 const uint NO = 0u;
 const uint HELPER = 1u;
 const uint WITNESS = 2u;
@@ -90,12 +98,19 @@ const float ACROSS = 0.2;
 
 struct Answer {
     uint kind;
+    bool inside; // its trims, there
     float depth;
     float miss; // pixels
     bool away;  // looks away from the viewer
-    float lean; // how much its depth changes within the ring
+    vec2 slope; // of its depth, a pixel
     uvec2 word;
 };
+
+// How much its depth changes within the ring.
+float lean(Answer answer) { return RING_SLACK * frame.ring_px * length(answer.slope); }
+
+// In all of the ring: surfaces that meet in it are not.
+bool wholly_before(Answer a, Answer b) { return a.depth + lean(a) + lean(b) < b.depth; }
 
 // Column and row of the `n`th patch of a face.
 ivec2 place_of(Face face, int n) {
@@ -159,21 +174,23 @@ Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec
     return s;
 }
 
-// Who is asked about being `real` must have the whole ring inside.
-Answer ask(uvec2 seen, vec2 pixel, bool real) {
+// Who is not inside its trims helps only where it is before `behind`.
+Answer ask(uvec2 seen, vec2 pixel, uint ring, Answer behind) {
     uint item = seen_item(seen.x);
     FaceInstance fi = face_instances[item_face_instance[item]];
     Face face = faces[fi.face];
     View view = views[fi.instance];
     Sample s = refine_across(fi, face, view, item, unpack_uv(seen.y), pixel);
     Patch patch_ = patches[face.first_patch + item - fi.first_item];
-    Answer answer = Answer(NO, s.q.z, length(s.miss), true, 0.0, uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)))));
+    uvec2 word = uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0))));
+    Answer answer = Answer(NO, false, s.q.z, length(s.miss), true, vec2(0.0), word);
 #ifdef WITHIN_VOLUME
     if (!in_volume(s.q, RING_SLACK * frame.ring_px)) return answer;
     bool inside = in_volume(s.q, ON_PX) && is_there(fi, face, item, patch_, s.uv);
 #else
     bool inside = is_there(fi, face, item, patch_, s.uv);
 #endif
+    answer.inside = inside;
     if (answer.miss > ON_PIXEL_PX) {
         // a silhouette beside the pixel
         if (inside && answer.miss <= RING_SLACK * frame.ring_px) answer.kind = HELPER;
@@ -188,8 +205,8 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
     if (abs(det) < 1e-12) return answer;
     float zu = row_times(view.depth, vec4(s.jet.du, 0.0));
     float zv = row_times(view.depth, vec4(s.jet.dv, 0.0));
-    answer.lean = RING_SLACK * frame.ring_px * length(zu * pv.yx - zv * pu.yx) / abs(det);
-    if (inside != real) return answer;
+    answer.slope = vec2(zu * pv.y - zv * pu.y, zv * pu.x - zu * pv.x) / det;
+    if ((ring & (inside ? RING_INSIDE : RING_OUTSIDE)) == 0u) return answer;
     for (uint k = 0u; k < RING_POINTS; ++k) {
         vec2 step_ = frame.ring_px * RING[k];
         vec2 duv = vec2(step_.x * pv.y - step_.y * pv.x, pu.x * step_.y - pu.y * step_.x) / det;
@@ -200,7 +217,8 @@ Answer ask(uvec2 seen, vec2 pixel, bool real) {
         }
         if (inside || !there) continue;
         vec4 q = to_pixel(view, vec4(patch_jet(patch_.first, patch_.shape, s.uv + duv).point, 1.0));
-        if (distance(q.xy / q.w, pixel) <= RING_SLACK * frame.ring_px) {
+        vec2 off = q.xy / q.w - pixel;
+        if (q.z <= behind.depth + dot(behind.slope, off) && length(off) <= RING_SLACK * frame.ring_px) {
             answer.kind = HELPER;
             break;
         }
@@ -218,16 +236,18 @@ void main() {
     uint n = gl_GlobalInvocationID.x;
     if (n >= min(counters.doubts, frame.doubt_capacity)) return;
     bool ringed = (doubts[n] & RINGED) != 0u;
-    ivec2 at = ivec2(doubts[n] & 0xffffu, (doubts[n] & ~RINGED) >> 16);
+    bool lone = (doubts[n] & LONE) != 0u;
+    ivec2 at = ivec2(doubts[n] & 0x7fffu, (doubts[n] & ~RINGED) >> 16);
     vec2 pixel = vec2(at) + 0.5;
     uvec2 own = imageLoad(visibility, at).xy;
     uvec2 other = SCENE_HAS_OTHERS ? imageLoad(others, at).xy : uvec2(0u);
     bool nothing = sees_nothing(own.x);
-    Answer none = Answer(NO, 3.0e38, 3.0e38, false, 0.0, uvec2(0u));
+    Answer none = Answer(NO, false, 3.0e38, 3.0e38, false, vec2(0.0), uvec2(0u));
     Answer self = none;
     uint own_face = nothing ? 0u : face_instances[item_face_instance[seen_item(own.x)]].face + 1u;
-    if (!nothing) self = ask(own, pixel, true);
-    bool there = self.kind == WITNESS || self.kind == HELPER && self.miss <= ON_PIXEL_PX;
+    if (!nothing) self = ask(own, pixel, ringed ? RING_INSIDE | RING_OUTSIDE : RING_INSIDE, none);
+    bool on = self.kind != NO && self.miss <= ON_PIXEL_PX;
+    bool there = on && self.inside;
     bool real = !ringed && self.kind == WITNESS;
     float limit = real ? self.depth * (1.0 - SAME_DEPTH) : 3.0e38;
     Answer witness = none;
@@ -238,17 +258,19 @@ void main() {
     bool two_help = false;
     uint meeting_face = 0u; // index + 1; two faces that meet the doubtful one here, where it ends
     bool two_meet = false;
-    if (ringed) {
-        if (nothing && other.x != 0u) witness = Answer(WITNESS, other_depth(other, pixel), 0.0, false, 0.0, uvec2(0u));
+    if (ringed && nothing && other.x != 0u) {
+        witness = Answer(WITNESS, true, other_depth(other, pixel), 0.0, false, vec2(0.0), uvec2(0u));
     }
     // a curved face can show its front at the same pixel, narrower than the tessellation's error:
     // look for it across the fold
     for (uint k = 0u; k < RING_POINTS && !ringed; ++k) {
         uvec2 seen = uvec2(own.x, pack_uv(unpack_uv(own.y) + ACROSS * RING[k]));
-        Answer answer = ask(seen, pixel, false);
+        Answer answer = ask(seen, pixel, RING_OUTSIDE, none);
         bool front = answer.kind == WITNESS && !answer.away && answer.depth < limit;
         if (front && answer.depth < witness.depth) witness = answer;
     }
+    Answer behind = none;
+    if (ringed && there) behind = self; // a border that it hides is none
     bool beside_nothing = false;
     bool beside_behind = false; // something else that is behind the doubtful face
     for (uint k = 0u; k < RING_POINTS; ++k) {
@@ -272,7 +294,7 @@ void main() {
             else if (other_depth(there, vec2(beside) + 0.5) > self.depth) beside_behind = true;
             continue;
         }
-        Answer answer = ask(seen, pixel, false);
+        Answer answer = ask(seen, pixel, RING_OUTSIDE, behind);
         // who is farther away must be there, and look here: its border tells nothing
         if (steps > 1u && (answer.kind != WITNESS || answer.away)) continue;
         bool before = answer.depth <= limit;
@@ -288,26 +310,30 @@ void main() {
             two_help = two_help || (helping_face != 0u && helping_face != face);
             helping_face = face;
         }
-        if (answer.kind != NO && face != own_face && answer.depth - answer.lean - self.lean <= self.depth) {
+        if (answer.kind != NO && face != own_face && answer.depth - lean(answer) - lean(self) <= self.depth) {
             two_meet = two_meet || (meeting_face != 0u && meeting_face != face);
             meeting_face = face;
         }
     }
     // its border tells nothing: the face may be hidden but for that. Unless it ends here, where two others meet: it may
     // be the third, which they hide
-    if (ringed && there && self.depth < witness.depth && !(self.kind == HELPER && two_meet)) {
-        witness = self;
-        witness.kind = WITNESS;
+    bool stays = false; // it has grown to the pixel, and is what is there
+    if (ringed && on && self.depth < witness.depth && !(self.kind == HELPER && two_meet)) {
+        stays = !self.inside && wholly_before(self, witness) && !wholly_before(helper, self);
+        if (self.inside || stays) {
+            witness = self;
+            witness.kind = WITNESS;
+        }
     }
     // where an end of the patches is near, what is no patch behind them is known at the very pixel
     if (!ringed && !real && other.x != 0u && (beside_nothing || beside_behind || witness.kind == WITNESS)) {
         float depth = other_depth(other, pixel);
-        if (depth < witness.depth) witness = Answer(WITNESS, depth, 0.0, false, 0.0, uvec2(0u));
+        if (depth < witness.depth) witness = Answer(WITNESS, true, depth, 0.0, false, vec2(0.0), uvec2(0u));
     }
     uvec2 healed = own;
     bool has_witness = witness.kind == WITNESS;
     bool has_helper = helper.kind == HELPER;
-    bool edge = two_help && helper.depth < witness.depth;
+    bool edge = two_help && helper.depth < witness.depth && !stays && !lone;
 #ifdef WITHIN_VOLUME
     // the inside of what the volume cuts open, and before it the border of one face: the part's outline
     if (ringed && there && self.away) edge = edge || has_helper && helper.depth < self.depth;

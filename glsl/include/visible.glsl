@@ -14,8 +14,10 @@
 #define VISIBLE_GLSL
 
 const uint DOUBTFUL = 0x80000000u;
-// In the list of doubtful pixels, whose rows have 15 bits: what is seen there is not doubtful itself.
+// In the list of doubtful pixels, whose columns and rows have 15 bits: what is seen there is not doubtful itself.
 const uint RINGED = 0x80000000u;
+// Beside RINGED: no ring, but nothing is seen there, and patches are on both sides.
+const uint LONE = 0x8000u;
 const uint SEEN_KIND = 0x60000000u;
 const uint SEEN_MESH = 0x20000000u;
 const uint SEEN_SOLID = 0x40000000u; // Boolean

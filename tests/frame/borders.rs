@@ -53,6 +53,27 @@ fn a_wall_that_two_tops_hide_is_not_seen_between_them() {
     keeps_the_promise(&borders::abutting(), 50..70);
 }
 
+/// Both silhouettes are drawn inside of what they are, by less than the tolerance, and pixels' centres lie where they
+/// meet: no crack, but the background shows.
+#[test]
+fn no_background_where_two_silhouettes_meet() {
+    let size = (161, 121); // its middle column's centre is at x = 0
+    let height = 3.0;
+    let model = borders::drums_in_line(0.002 * height / f64::from(size.1));
+    let mut renderer = watched(&model);
+    let mut camera = Camera::framing(model.bounds(), DVec3::NEG_Y, DVec3::Z, 35f64.to_radians(), size);
+    camera.projection = Projection::Orthographic { height };
+    camera.target = DVec3::new(0.0, 0.0, 2.0);
+    camera.eye = camera.target - DVec3::Y * 10.0;
+    camera.fit_depth(model.bounds());
+    let picture = render(&mut renderer, &camera);
+    let column = picture.face.iter().skip(size.0 as usize / 2).step_by(size.0 as usize);
+    assert_eq!(column.filter(|&&face| face == 0).count(), 0);
+    let j = judge(&Tracer::new(&model), &camera, &picture, &JudgeOptions::default());
+    assert_eq!((j.wrong, j.given_up), (0, 0), "{:?}", j.mismatches);
+    assert_silent(renderer);
+}
+
 /// Continued beyond the pole, the face turned over: pixels there were taken for its back, and shown another face's.
 #[test]
 fn a_pole_is_not_taken_for_the_face_s_back() {

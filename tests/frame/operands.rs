@@ -37,6 +37,27 @@ fn unclean_meshes() {
     right_at(SIZE, operands::unclean(), false);
 }
 
+/// A part that is inside out shows its near walls, though nothing touches the mesh.
+#[test]
+fn meshes_that_are_partly_inside_out() {
+    let mut renderer = watched(&Model::default());
+    let mut wrong = Vec::new();
+    for (name, model) in operands::partly_inside_out() {
+        renderer.upload(&model).unwrap();
+        let tracer = Tracer::new(&model);
+        let whole = perspective(&model, SIZE);
+        // the near plane cuts the mesh
+        let cutting = Camera { depth_range: (whole.eye.distance(whole.target), 50.0), ..whole };
+        for camera in [whole, cutting] {
+            let j = judge(&tracer, &camera, &render(&mut renderer, &camera), &JudgeOptions::default());
+            let fault = j.wrong != 0 || j.normal_deg.count == 0;
+            wrong.extend(fault.then(|| format!("{name}: {} wrong, {:?}", j.wrong, j.mismatches.first())));
+        }
+    }
+    assert_silent(renderer);
+    assert!(wrong.is_empty(), "{}", wrong.join("\n"));
+}
+
 /// What is not closed is told of, and the rest of the picture stands.
 #[test]
 fn open_meshes_are_counted() {

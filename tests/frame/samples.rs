@@ -61,6 +61,22 @@ fn zoo() {
     keeps_the_promise("zoo.step", 1);
 }
 
+/// Along the axes, as CAD users look most: walls lie in the line of sight, and faces that have grown before their
+/// borders are right.
+#[test]
+fn walls_seen_edge_on() {
+    let model = sample("assembly.step");
+    let tracer = Tracer::new(&model);
+    let mut renderer = watched(&model);
+    for (from, up) in [(DVec3::X, DVec3::Z), (DVec3::Z, DVec3::Y)] {
+        let camera = Camera::framing(model.bounds(), from, up, 35f64.to_radians(), (480, 270));
+        let picture = render(&mut renderer, &camera);
+        let j = judged(&tracer, &camera, &picture);
+        assert_eq!((j.wrong, j.given_up), (0, 0), "from {from}: {:?}", j.mismatches);
+    }
+    assert_silent(renderer);
+}
+
 #[test]
 fn a_picture_one_pixel_off_is_seen() {
     let model = sample("bracket.step");

@@ -25,6 +25,17 @@ pub fn seamed_ball() -> Model {
     one("seamed ball", true, vec![Face { loops: vec![seam], ..ball }])
 }
 
+/// Two drums of radius 1, one behind the other, whose sides overlap by this much at x = 0 as seen along y. They are
+/// turned so that no patch ends at a silhouette.
+pub fn drums_in_line(overlap: f64) -> Model {
+    let mut model = drum(1.0, 4.0);
+    let turned = DAffine3::from_rotation_z(0.5);
+    let beside = |x: f64, y: f64| DAffine3::from_translation(DVec3::new(x, y, 0.0)) * turned;
+    let x = 1.0 - overlap * 0.5;
+    model.instances = vec![placed(beside(-x, 0.0), None), placed(beside(x, 4.0), None)];
+    model
+}
+
 /// Two solid blocks, faces 1 to 6 and 11 to 16, that share a wall, with their tops in one plane.
 pub fn abutting() -> Model {
     let mut model = one("left", true, block(0, DVec3::new(-3.0, -2.0, 0.0), DVec3::new(0.0, 2.0, 1.0)));

@@ -124,6 +124,26 @@ pub fn unclean() -> Vec<Named> {
     ]
 }
 
+/// Meshes that are closed and turned outwards but for a part of them, with nothing else nearby: one whose smaller end is
+/// drawn through itself, and one with a smaller box beside it.
+pub fn partly_inside_out() -> Vec<Named> {
+    let whole = block_mesh(DVec3::new(-2.0, -1.0, -1.0), DVec3::new(2.0, 1.0, 1.0), 1);
+    let drawn = |p: &DVec3| {
+        let y = if p.x > 0.0 { -0.6 * p.y } else { p.y };
+        DVec3::new(p.x + 0.2 * y * p.z, y, p.z + 0.1 * p.x * p.y)
+    };
+    let crossed = Mesh::new(1, whole.positions().iter().map(drawn).collect(), whole.triangles().to_vec(), vec![]);
+    let other = block_mesh(DVec3::new(3.0, -0.5, -0.4), DVec3::new(4.0, 0.6, 0.5), 1);
+    let corners = whole.positions().iter().chain(other.positions()).copied().collect();
+    let turned = other.triangles().iter().map(|&[a, b, c]| [8 + a, 8 + c, 8 + b]);
+    let beside = Mesh::new(1, corners, whole.triangles().iter().copied().chain(turned).collect(), vec![]);
+    let far = || moved(at(0.0, 5.0, 0.0), ball(0.5, 0.0));
+    vec![
+        ("crossed", solid("A+B", vec![mesh(crossed.unwrap()), far()])),
+        ("beside", solid("A+B", vec![mesh(beside.unwrap()), far()])),
+    ]
+}
+
 /// A ball of triangles without some of them.
 pub fn open_mesh() -> Model {
     let round = ball_mesh(2);

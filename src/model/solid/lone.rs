@@ -7,11 +7,13 @@
 //!                      └───────┘
 //! ```
 //!
-//! *A ray enters the union first where it enters a lone mesh first, or the union of the rest.* A surface that is closed
-//! and turned outwards is entered where triangles face the eye, so the nearest of those is what a list of all crossings
-//! would tell. Two faces of one mesh that lie back to back bound nothing: such a mesh does not count as lone. A surface
-//! that crosses itself so that a part of it is inside out shows that part's far wall, where a list would tell the near one.
+//! *A ray enters the union first where it enters a lone mesh first, or the union of the rest.* A surface that is closed,
+//! turned outwards and crosses itself nowhere is entered where triangles face the eye, so the nearest of those is what a
+//! list of all crossings would tell. Not so within a part that is inside out, or that lies in the mesh twice: a mesh whose
+//! triangles cross or touch, or that has one shell too many around another, does not count as lone (`embedded.rs`). Nor
+//! does one with two faces that lie back to back, which bound nothing.
 
+use super::embedded::is_embedded;
 use super::operands::Operands;
 use super::{Primitive, Shape, Solid, SolidError, SurfaceTable, nearby::Nearby, reach};
 use crate::csg::Node;
@@ -102,11 +104,11 @@ fn apart<'a>(solids: &'a [Solid], operands: &[Operands<'_>]) -> Vec<(usize, u32,
     lone.map(|((solid, root, primitive, _), _)| (solid, root, primitive)).collect()
 }
 
-/// The primitive's mesh in its solid's coordinates; `None` where it is not closed, not turned outwards, or lies back to
-/// back with itself.
+/// The primitive's mesh in its solid's coordinates; `None` where it is not closed, not turned outwards, crosses itself, or
+/// lies back to back with itself.
 fn outward(primitive: &Primitive) -> Option<Mesh> {
     let Shape::Mesh(mesh) = &primitive.shape else { return None };
-    if !is_closed(mesh) || six_volumes(mesh) <= 0.0 || is_back_to_back(primitive) {
+    if !is_closed(mesh) || six_volumes(mesh) <= 0.0 || is_back_to_back(primitive) || !is_embedded(mesh) {
         return None;
     }
     let turn =

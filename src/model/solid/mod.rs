@@ -1,6 +1,7 @@
 //! A solid: primitives and the expression over them.
 
 mod carrier;
+mod embedded;
 mod lone;
 mod nearby;
 mod operands;
