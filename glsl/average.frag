@@ -5,7 +5,7 @@
 // nothing let it through.
 #include "scene.glsl"
 
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, rgba16f) readonly uniform image2D sum; // linear; of opacities in alpha
 
 #include "mean.glsl"

@@ -5,7 +5,7 @@
 #include "scene.glsl"
 #include "view.glsl"
 
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, rg32ui) readonly uniform uimage2D found;
 layout(location = 0) out uvec2 visible;
 

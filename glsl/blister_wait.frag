@@ -6,7 +6,7 @@
 #include "scene.glsl"
 #include "blister.glsl"
 
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) buffer CountersBuffer { Counters counters; };
 layout(binding = 2, rg32ui) readonly uniform uimage2D layer;
 

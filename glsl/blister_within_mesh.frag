@@ -9,7 +9,7 @@
 #include "eye_ray.glsl"
 #include "shells.glsl"
 
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 2) readonly buffer OperandMeshes { OperandMesh operand_meshes[]; };
 layout(scalar, binding = 3) readonly buffer Triangles { uint triangles[]; };

@@ -7,7 +7,7 @@
 #include "visible.glsl"
 
 layout(local_size_x = 64) in;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, rg32ui) uniform uimage2D visibility;
 layout(scalar, binding = 2) writeonly buffer Doubts { uint doubts[]; }; // column | row << 16 | RINGED | LONE
 layout(scalar, binding = 3) buffer Dispatch { uvec3 dispatch; }; // of the second step; zero before

@@ -11,7 +11,7 @@
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer FactorsBuffer { Factors factors[]; };
 layout(scalar, binding = 2) readonly buffer SubPatchStarts { uint sub_patch_starts[]; };
 layout(scalar, binding = 3) readonly buffer VertexStarts { uint vertex_starts[]; };

@@ -8,7 +8,7 @@
 #include "farthest.glsl"
 
 layout(local_size_x = 64) in; // BLOCK x BLOCK
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1) uniform sampler2D depth; // reversed
 layout(scalar, binding = 2) writeonly buffer Farthest { float farthest[]; }; // farthest.glsl
 

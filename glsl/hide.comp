@@ -6,7 +6,7 @@
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Items { uint item_face_instance[]; };
 layout(scalar, binding = 2) readonly buffer Hidden { uint hidden[]; };
 layout(scalar, binding = 3) buffer Taus { uint taus[]; };

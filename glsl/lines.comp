@@ -6,7 +6,7 @@
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer StripHeights { uint strip_heights[]; };
 layout(scalar, binding = 2) writeonly buffer LineCounts { uint line_counts[]; };
 layout(scalar, binding = 3) buffer CountersBuffer { Counters counters; };

@@ -4,7 +4,7 @@
 // Pass `mesh`, within a volume: which triangle is seen, where its point is within it.
 #include "scene.glsl"
 
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 
 #define VOLUME_BINDING 5
 #include "volume.glsl"

@@ -14,7 +14,7 @@ struct Draw {
     uint first_vertex;
     uint first_instance;
 };
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) writeonly buffer Draws { Draw draws[]; };
 layout(scalar, binding = 2) buffer CountersBuffer { Counters counters; };
 

@@ -9,7 +9,7 @@
 #include "tiles.glsl"
 
 layout(local_size_x = 64) in;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
 layout(scalar, binding = 3) readonly buffer FaceInstances { FaceInstance face_instances[]; };

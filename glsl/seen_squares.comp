@@ -8,7 +8,7 @@
 #include "visible.glsl"
 
 layout(local_size_x = 64) in; // BLOCK x BLOCK
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, rg32ui) readonly uniform uimage2D visibility;
 layout(binding = 2, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
 layout(scalar, binding = 3) writeonly buffer SeenSquares { uint seen_squares[]; };

@@ -6,7 +6,7 @@
 #include "scene.glsl"
 
 layout(local_size_x = 1) in;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer LineStarts { uint line_starts[]; };
 layout(scalar, binding = 2) readonly buffer SegmentStarts { uint segment_starts[]; };
 layout(scalar, binding = 3) writeonly buffer Dispatches { uvec3 dispatches[]; }; // cross, sort, scan of the rows

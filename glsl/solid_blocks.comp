@@ -10,7 +10,7 @@
 layout(constant_id = 6) const bool LISTS = false;
 
 layout(local_size_x = 64) in;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Rects { Rect rects[]; };
 layout(scalar, binding = 2) buffer BlockCounts { uint block_counts[]; };
 layout(scalar, binding = 3) readonly buffer BlockStarts { uint block_starts[]; };

@@ -8,7 +8,7 @@
 #include "tiles.glsl"
 #include "trimmed_leaf.glsl"
 
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 8) readonly buffer Rects { Rect rects[]; };
 layout(scalar, binding = 9) readonly buffer Order { uint order[]; };
 

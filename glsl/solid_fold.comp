@@ -16,7 +16,7 @@
 #include "tiles.glsl"
 
 layout(local_size_x = 64) in;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
 layout(scalar, binding = 2) readonly buffer TileStarts { uint tile_starts[]; };
 layout(scalar, binding = 3) buffer TileLeaves { TileLeaf tile_leaves[]; };

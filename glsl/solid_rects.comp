@@ -8,7 +8,7 @@
 #include "tiles.glsl"
 
 layout(local_size_x = 64) in;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
 layout(scalar, binding = 2) readonly buffer LeafCentres { vec3 leaf_centres[]; };
 layout(scalar, binding = 3) writeonly buffer Rects { Rect rects[]; };

@@ -8,7 +8,7 @@
 #include "tiles.glsl"
 
 layout(local_size_x = 64) in;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer TileEntries { uint tile_entries[]; };
 layout(scalar, binding = 2) writeonly buffer TileSquares { uint tile_squares[]; };
 

@@ -11,7 +11,7 @@
 #include "scene.glsl"
 
 layout(local_size_x = 128) in;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer RowStarts { uint row_starts[]; };
 layout(scalar, binding = 2) readonly buffer RowTotal { uint row_total; };
 layout(scalar, binding = 3) writeonly buffer RowCounts { uint row_counts[]; };

@@ -10,7 +10,7 @@ layout(constant_id = 10) const bool SCENE_HAS_OPERANDS = false;
 layout(constant_id = 11) const bool DRAWS_OPERANDS = false;
 
 layout(vertices = 1) out;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };

@@ -1,6 +1,8 @@
 //! Bindings that several passes have in common.
 //!
 //! ```text
+//!   constants      of the frame, or the sun, in a uniform block: a driver fetches its words once for many invocations,
+//!                  where it gathers those of a storage buffer for each
 //!   PRIMITIVES     leaves, their sides, surfaces, surfaces' places         glsl/include/solids.glsl, volume.glsl
 //!   SUN_BINDINGS   sun, its tiles, …, PRIMITIVES, leaves' centres, counts  glsl/include/sun.glsl
 //! ```
@@ -34,9 +36,17 @@ impl<'a> Primitives<'a> {
     }
 }
 
-/// Storage buffers, but for [`PRIMITIVES`] from `first` on.
+/// Constants, and storage buffers after them: `count` in all.
+pub(crate) fn with_constants(count: usize) -> Vec<Binding> {
+    let mut bindings = vec![Binding::Storage; count];
+    bindings[0] = Binding::Uniform;
+    bindings
+}
+
+/// The same, but for [`PRIMITIVES`] from `first` on.
 pub(crate) const fn with_primitives<const COUNT: usize>(first: usize) -> [Binding; COUNT] {
     let mut bindings = [Binding::Storage; COUNT];
+    bindings[0] = Binding::Uniform;
     let mut i = 0;
     while i < PRIMITIVES.len() {
         bindings[first + i] = PRIMITIVES[i];

@@ -192,6 +192,8 @@ pub(crate) struct Frame<'a> {
     pub sun: Option<&'a Buffer>,
     pub counters: &'a ReadBack,
     pub colour: &'a [Attachment<'a>],
+    /// As the colour target holds it, unless that is kept.
+    pub background: [f32; 4],
     pub depth: Option<Attachment<'a>>,
     /// Length of the pixel's ray within solids; cleared to 0 when it is drawn into.
     pub thickness: Option<Attachment<'a>>,
@@ -485,8 +487,8 @@ impl Frame<'_> {
     }
 }
 
-/// The host's image as an attachment of the resolve pass: every pixel is written when there is a
-/// background, else what the pass leaves alone stays.
+/// The host's image as an attachment: every pixel is written when there is a background, else what nothing is drawn into
+/// stays.
 pub(crate) fn target<'a>(image: &'a Image, keep: bool) -> Attachment<'a> {
     Attachment { image, load: if keep { Load::Keep } else { Load::Discard } }
 }

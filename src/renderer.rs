@@ -376,6 +376,7 @@ impl Renderer {
             sun: slot.centres.sun(),
             counters: &slot.counters,
             colour: &colour,
+            background: constants::background(input, &self.formats),
             depth,
             thickness: thickness.map(|image| Attachment { image, load: Load::ColourF32([0.0; 4]) }),
         };

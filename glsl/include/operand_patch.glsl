@@ -8,7 +8,7 @@
 #include "view.glsl"
 #include "shells.glsl"
 
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };

@@ -24,19 +24,6 @@ layout(location = 2) out uint out_face;
 layout(location = 3) out vec2 out_uv;
 layout(location = 4) out vec4 out_normal;
 
-// The background, unless the host keeps its picture.
-void write_nothing() {
-    if (frame.background.a < 0.0) discard;
-    out_colour = BEHIND ? vec4(0.0, 0.0, 0.0, UNSEEN) : encode(frame.background, frame.encode_srgb);
-    if (HAS_AOVS) {
-        out_depth = uintBitsToFloat(0x7f800000u);
-        out_face = 0u;
-        out_uv = vec2(uintBitsToFloat(0x7fc00000u));
-        out_normal = vec4(0.0);
-    }
-    gl_FragDepth = 0.0;
-}
-
 // The light of a point, and whether the sun is part of it.
 struct Lit {
     vec3 light;

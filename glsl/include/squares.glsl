@@ -6,7 +6,7 @@
 #include "scene.glsl"
 #include "tiles.glsl"
 
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = SQUARES) readonly buffer TileSquares { uint tile_squares[]; };
 
 void main() {

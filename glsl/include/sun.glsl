@@ -44,7 +44,7 @@ struct SunTriangle {
     uint surface; // its plane, or OWN_PLANE and its number
 };
 
-layout(scalar, binding = SUN_BINDING + 0) readonly buffer Suns { Sun sun; };
+layout(scalar, binding = SUN_BINDING + 0) uniform Suns { Sun sun; };
 layout(scalar, binding = SUN_BINDING + 1) readonly buffer SunTiles { SunTile sun_tiles[]; };
 layout(scalar, binding = SUN_BINDING + 2) readonly buffer SunLeaves { TileLeaf sun_leaves[]; };
 layout(scalar, binding = SUN_BINDING + 3) readonly buffer SunTriangles { SunTriangle sun_triangles[]; };

@@ -11,7 +11,7 @@ layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; }
 layout(scalar, binding = 9) readonly buffer Instances { Instance instances[]; };
 
 #ifdef WITHIN_VOLUME
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
 #define VOLUME_BINDING 10
 #include "exact_point.glsl"

@@ -12,7 +12,7 @@ layout(constant_id = 2) const bool TRIMMED = false;
 layout(constant_id = 11) const bool DRAWS_OPERANDS = false;
 
 layout(quads, equal_spacing, ccw) in;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
 layout(binding = 6) uniform samplerBuffer points;

@@ -18,7 +18,7 @@
 // that it continues: a floor seen from a low angle must not flow over what stands before its edge.
 #include "scene.glsl"
 
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };

@@ -7,8 +7,8 @@
 #include "rivals/texture.glsl"
 
 layout(local_size_x = 1, local_size_y = 64) in;
-layout(scalar, binding = 0) readonly buffer Knob { float texels_per_px; uint placed_count; };
-layout(scalar, binding = 1) readonly buffer Frames { Frame frame; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Knob { float texels_per_px; uint placed_count; };
 layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
 layout(scalar, binding = 4) readonly buffer Curves { Curve curves[]; };

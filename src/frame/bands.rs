@@ -21,7 +21,7 @@ pub(super) struct Band {
     pub is_whole: bool,
 }
 
-/// Who reads constants and lists.
+/// Who reads lists.
 fn readers() -> Access {
     Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ
 }
@@ -55,7 +55,7 @@ impl Frame<'_> {
         let lists =
             tiles.iter().flat_map(|t| [&t.tile_counts, &t.tile_starts, t.tile_leaves.buffer(), &t.tile_entries]);
         let mut before: Vec<_> = lists.map(|list| (list, readers(), w)).collect();
-        before.push((self.constants, readers(), CLEARED));
+        before.push((self.constants, Access::UNIFORM_READ, CLEARED));
         if let Some(f) = fragments {
             before.push((&f.counts, readers() | CLEARED, CLEARED));
         }
@@ -64,7 +64,7 @@ impl Frame<'_> {
         if let Some(f) = fragments {
             cmd.fill(&f.counts, 0);
         }
-        barrier::buffers(cmd, &[(self.constants, CLEARED, readers())]);
+        barrier::buffers(cmd, &[(self.constants, CLEARED, Access::UNIFORM_READ)]);
     }
 
     /// Before the lists of all bands are made once more: what they count begins again.

@@ -10,7 +10,7 @@
 use super::bands::Band;
 use super::{Frame, WRITE_TO_READ};
 use crate::gpu::{Access, Attachment, Commands, Device, GpuError, Load, barrier};
-use crate::passes::solid_layers::{Bindings, For, Kinds, SolidLayers, UNSEEN};
+use crate::passes::solid_layers::{Bindings, For, Kinds, SolidLayers};
 use crate::passes::{average, resolve};
 use crate::picture::Samples;
 use crate::scene::SceneData;
@@ -68,17 +68,6 @@ impl LayerPasses {
 }
 
 impl<'a> Frame<'a> {
-    /// What pass `resolve` draws into.
-    pub(super) fn resolved_into(&self) -> Vec<Attachment<'a>> {
-        let mut colour = self.colour.to_vec();
-        let layered = self.passes.layers.as_ref().is_some_and(LayerPasses::is_layered);
-        let behind = self.buffers.behind.as_ref().filter(|_| layered);
-        if let Some(image) = behind.or(self.buffers.resolved.as_ref()) {
-            colour[0] = Attachment { image, load: Load::ColourF32([0.0, 0.0, 0.0, UNSEEN]) };
-        }
-        colour
-    }
-
     /// Layers over what pass `resolve` drew, and lengths within solids. Where lists are those of one band, they are
     /// made again.
     pub(super) fn layers(&self, cmd: &Commands<'_>, passes: &LayerPasses, drawing: Drawing) {

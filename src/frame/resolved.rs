@@ -1,8 +1,10 @@
 //! The frame's last pass: where each kind of thing is seen, and what it gives pass `resolve`.
 
+use super::layers::LayerPasses;
 use super::{Frame, WRITE_TO_READ, solids};
 use crate::abi::TILE;
-use crate::gpu::{Access, Commands, Device, GpuError, barrier};
+use crate::gpu::{Access, Attachment, Commands, Device, GpuError, Load, barrier};
+use crate::passes::solid_layers::UNSEEN;
 use crate::passes::{resolve, seen_squares};
 use crate::picture::Samples;
 use crate::scene::SceneData;
@@ -44,6 +46,32 @@ pub(super) fn targets(
         Samples::Four | Samples::Eight => return Ok(None),
     };
     resolve::Resolve::new(device, into, formats, kinds(data)).map(Some)
+}
+
+/// Depth, face, (u, v) and normal where nothing is seen.
+const NOWHERE: [Load; 4] = [
+    Load::ColourF32([f32::INFINITY; 4]),
+    Load::ColourU32([0; 4]),
+    Load::ColourF32([f32::NAN; 4]),
+    Load::ColourF32([0.0; 4]),
+];
+
+impl<'a> Frame<'a> {
+    /// What pass `resolve` draws into, cleared to what is where nothing is seen, unless the host keeps its picture.
+    fn resolved_into(&self) -> Vec<Attachment<'a>> {
+        let nowhere = [Load::ColourF32(self.background)].into_iter().chain(NOWHERE);
+        let cleared = |(attachment, nowhere): (&Attachment<'a>, Load)| match attachment.load {
+            Load::Discard => Attachment { load: nowhere, ..*attachment },
+            _ => *attachment,
+        };
+        let mut into: Vec<_> = self.colour.iter().zip(nowhere).map(cleared).collect();
+        let layered = self.passes.layers.as_ref().is_some_and(LayerPasses::is_layered);
+        let behind = self.buffers.behind.as_ref().filter(|_| layered);
+        if let Some(image) = behind.or(self.buffers.resolved.as_ref()) {
+            into[0] = Attachment { image, load: Load::ColourF32([0.0, 0.0, 0.0, UNSEEN]) };
+        }
+        into
+    }
 }
 
 impl Frame<'_> {

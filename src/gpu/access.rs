@@ -32,8 +32,12 @@ impl Access {
     pub const COMPUTE_READ: Self = Self::new(S::COMPUTE_SHADER, SHADER_READ, L::GENERAL);
     /// A compute shader writes, or reads and writes, a storage buffer or image; atomics too.
     pub const COMPUTE_WRITE: Self = Self::new(S::COMPUTE_SHADER, SHADER_WRITE, L::GENERAL);
-    /// A compute shader reads a uniform buffer.
-    pub const COMPUTE_UNIFORM: Self = Self::new(S::COMPUTE_SHADER, A::UNIFORM_READ, L::GENERAL);
+    /// A shader of any kind reads a uniform buffer.
+    pub const UNIFORM_READ: Self = Self::new(
+        S::from_raw(S::COMPUTE_SHADER.as_raw() | GEOMETRY.as_raw() | S::FRAGMENT_SHADER.as_raw()),
+        A::UNIFORM_READ,
+        L::GENERAL,
+    );
     /// Arguments or the count of an indirect dispatch or draw.
     pub const INDIRECT_READ: Self = Self::new(S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ, L::GENERAL);
     /// A vertex or tessellation shader reads a storage buffer or samples an image.

@@ -93,8 +93,3 @@ pub(super) fn around(points: impl IntoIterator<Item = DVec3>) -> Bounds {
     let margin = DVec3::splat(0.1 * tight.diagonal());
     Bounds { min: tight.min - margin, max: tight.max + margin }
 }
-
-/// sRGB to linear light (IEC 61966-2-1).
-pub(super) fn linear(c: f64) -> f32 {
-    (if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }) as f32
-}

@@ -23,6 +23,7 @@ mod mesh;
 pub mod native;
 mod section;
 mod solid;
+pub(crate) mod srgb;
 mod stored;
 mod xray;
 

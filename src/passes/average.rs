@@ -37,7 +37,7 @@ impl Average {
                     (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
                     (vk::ShaderStageFlags::FRAGMENT, shaders::AVERAGE_FRAG),
                 ],
-                bindings: &[Binding::Storage, Binding::StorageImage],
+                bindings: &[Binding::Uniform, Binding::StorageImage],
                 push_bytes: 0,
                 constants: &[],
                 topology: vk::PrimitiveTopology::TRIANGLE_LIST,

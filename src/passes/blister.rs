@@ -17,7 +17,7 @@
 //! SIGGRAPH 2005. Departures: depths that are equal are equal to the bit, so no face is tested against its own
 //! primitive's rounding; whose a face is that several share is told as the other ways tell it.
 
-use crate::bindings::{Primitives, with_primitives};
+use crate::bindings::{Primitives, with_constants, with_primitives};
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
     Pipeline, Resource, StencilTest, Texels,
@@ -128,8 +128,8 @@ impl Blister {
         let nearest = DepthTest { format: LAYER_DEPTH_FORMAT, compare: vk::CompareOp::LESS, write: true };
         let marks = |pass| Some(StencilTest { format: device.stencil_format(), pass });
         let bindings = |storage: usize, images: usize| {
-            let mut all = vec![Binding::Storage; storage + images];
-            all[storage..].fill(Binding::StorageImage);
+            let mut all = with_constants(storage);
+            all.extend(vec![Binding::StorageImage; images]);
             all
         };
         let info = GraphicsInfo {
@@ -182,7 +182,7 @@ impl Blister {
         };
         let of_within = GraphicsInfo { bindings: &of_within, ..replaces };
         let of_wait = GraphicsInfo { bindings: &bindings(2, 1), push_bytes: 4, ..replaces };
-        let of_lock = GraphicsInfo { bindings: &bindings(0, 1), colour: &layer, ..replaces };
+        let of_lock = GraphicsInfo { bindings: &[Binding::StorageImage], colour: &layer, ..replaces };
         let of_show = bindings(1, 1);
         let mut of_owner = with_primitives::<13>(1);
         (of_owner[6], of_owner[10]) = (Binding::Texels, Binding::Texels);

@@ -12,7 +12,8 @@
 //! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `items`. Writes: `taus`, `counters`.
 //! Twin: `src/twin/bound.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -48,7 +49,7 @@ impl Bound {
             &ComputeInfo {
                 name: "bound",
                 spirv: shaders::BOUND_COMP,
-                bindings: &[Binding::Storage; 9],
+                bindings: &with_constants(9),
                 push_bytes: 0,
                 constants: &[],
             },

@@ -9,6 +9,7 @@
 //! straight trim curves, and for bent ones within what `twin::coverage` says; pixels away from borders come out as
 //! pass `resolve` drew them.
 
+use crate::bindings::with_constants;
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, Device, GpuError, GraphicsInfo, Image, Pipeline, Texels,
 };
@@ -41,7 +42,7 @@ pub(crate) struct Bindings<'a> {
 
 impl Coverage {
     pub(crate) fn new(device: &Device, colour: vk::Format, rational: bool) -> Result<Self, GpuError> {
-        let mut bindings = vec![Binding::Storage; 9 + TRIM_EXACT.buffers];
+        let mut bindings = with_constants(9 + TRIM_EXACT.buffers);
         bindings[6] = Binding::Texels;
         bindings[7..9].fill(Binding::StorageImage);
         let pipeline = Pipeline::graphics(

@@ -11,7 +11,8 @@
 //! counting and again after inserting),
 //! `intercepts`. Twin: `src/twin/cross.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// `constant_id` of `INSERT`.
@@ -48,7 +49,7 @@ impl Cross {
                 &ComputeInfo {
                     name,
                     spirv: shaders::CROSS_COMP,
-                    bindings: &[Binding::Storage; 11],
+                    bindings: &with_constants(11),
                     push_bytes: 0,
                     constants: &[(INSERT, u32::from(insert))],
                 },

@@ -8,7 +8,8 @@
 //! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `cells`, `cell_items`. Writes: `strip_heights`, `face_speeds`.
 //! Twin: `src/twin/density.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -48,7 +49,7 @@ impl Density {
             &ComputeInfo {
                 name: "density",
                 spirv: shaders::DENSITY_COMP,
-                bindings: &[Binding::Storage; 10],
+                bindings: &with_constants(10),
                 push_bytes: 0,
                 constants: &[(SCENE_HIDES, u32::from(hides))],
             },

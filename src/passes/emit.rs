@@ -8,7 +8,8 @@
 //! Reads: `frame`, `factors`, `sub_patch_starts`, `vertex_starts`. Writes: `sub_patches`, `draws`, `counters`.
 //! Twin: `src/twin/emit.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -40,7 +41,7 @@ impl Emit {
             &ComputeInfo {
                 name: "emit",
                 spirv: shaders::EMIT_COMP,
-                bindings: &[Binding::Storage; 7],
+                bindings: &with_constants(7),
                 push_bytes: 0,
                 constants: &[],
             },

@@ -29,7 +29,7 @@ impl Farthest {
             &ComputeInfo {
                 name: "farthest",
                 spirv: shaders::FARTHEST_COMP,
-                bindings: &[Binding::Storage, Binding::Sampled, Binding::Storage],
+                bindings: &[Binding::Uniform, Binding::Sampled, Binding::Storage],
                 push_bytes: 0,
                 constants: &[],
             },

@@ -13,7 +13,7 @@
 //! Reads: everything that the bindings name but what it writes. Writes: `find`: `doubts`, `dispatch`,
 //! `counters`, and the mark in the visibility image; `record`: the visibility image. Both at doubtful pixels only.
 
-use crate::bindings::{PRIMITIVES, Primitives};
+use crate::bindings::{PRIMITIVES, Primitives, with_constants};
 use crate::gpu::{
     Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Resource, Sampler, Texels,
 };
@@ -95,10 +95,10 @@ impl Heal {
         (rational, others): (bool, bool),
         volume: Option<u32>,
     ) -> Result<Self, GpuError> {
-        let mut find = [Binding::Storage; 7];
+        let mut find = with_constants(7);
         find[1] = Binding::StorageImage;
         find[5] = Binding::Sampled;
-        let mut heal = vec![Binding::Storage; 15 + test.buffers];
+        let mut heal = with_constants(15 + test.buffers);
         heal.extend(PRIMITIVES.iter().filter(|_| volume.is_some()));
         heal[6] = Binding::Texels;
         heal[7] = Binding::StorageImage;

@@ -3,7 +3,8 @@
 //!
 //! Reads: `frame`, `items`, `hidden`. Writes: `taus`, `drawn_faces`, `counters`. Twin: `src/twin/hidden.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -35,7 +36,7 @@ impl Hide {
             &ComputeInfo {
                 name: "hide",
                 spirv: shaders::HIDE_COMP,
-                bindings: &[Binding::Storage; 6],
+                bindings: &with_constants(6),
                 push_bytes: 0,
                 constants: &[],
             },

@@ -3,7 +3,8 @@
 //! Reads: `frame`, `strip_heights`. Writes: `line_counts`, `counters`.
 //! Twin: `src/twin/lines.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -30,7 +31,7 @@ impl Lines {
             &ComputeInfo {
                 name: "lines",
                 spirv: shaders::LINES_COMP,
-                bindings: &[Binding::Storage; 4],
+                bindings: &with_constants(4),
                 push_bytes: 0,
                 constants: &[],
             },

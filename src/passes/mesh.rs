@@ -11,9 +11,9 @@
 //! Reads: everything that `Bindings` names. Writes: depth and, in scenes without trims, the visibility
 //! image; else the image `others`, which pass `heal` looks through. Both begin cleared.
 
-use crate::bindings::{PRIMITIVES, Primitives};
+use crate::bindings::{PRIMITIVES, Primitives, with_constants};
 use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image, Load,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image, Load,
     Pipeline, Resource,
 };
 use crate::shaders;
@@ -73,7 +73,7 @@ impl Mesh {
                         (vk::ShaderStageFlags::VERTEX, shaders::MESH_VERT),
                         (vk::ShaderStageFlags::FRAGMENT, fragment),
                     ],
-                    bindings: &[&[Binding::Storage; 5][..], volume.map_or(&[], |_| &PRIMITIVES)].concat(),
+                    bindings: &[&with_constants(5)[..], volume.map_or(&[], |_| &PRIMITIVES)].concat(),
                     push_bytes: 0,
                     constants: &[(SOLIDS_HAVE, volume.unwrap_or_default())],
                     topology: vk::PrimitiveTopology::TRIANGLE_LIST,

@@ -8,6 +8,7 @@
 //! Reads: everything that `Bindings` names but what it writes. Writes: `counts`; the second time `counts`,
 //! which go down to 0 again, and `fragments`.
 
+use crate::bindings::with_constants;
 use crate::gpu::{Binding, Buffer, Commands, Device, GpuError, GraphicsInfo, Pipeline, Resource, Texels};
 use crate::shaders;
 use ash::vk;
@@ -43,7 +44,7 @@ pub(crate) struct Bindings<'a> {
 
 impl OperandMesh {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let mut bindings = [Binding::Storage; 11];
+        let mut bindings = with_constants(11);
         bindings[6..8].fill(Binding::Texels);
         let pipeline = |name, fills: bool| {
             Pipeline::graphics(

@@ -9,6 +9,7 @@
 //! which go down to 0 again, and `fragments`.
 
 use crate::abi::Counters;
+use crate::bindings::with_constants;
 use crate::gpu::{Binding, Buffer, Commands, Device, GpuError, GraphicsInfo, Pipeline, Texels};
 use crate::shaders::{self, TrimTest};
 use ash::vk;
@@ -80,7 +81,7 @@ impl OperandPatch {
             let linked = linked && trimmed.is_none();
             let surface = if linked { shaders::OPERAND_LINKED_TESE } else { shaders::VISIBILITY_TESE };
             let of_stages = trimmed.map_or(usize::from(linked), |test| test.buffers);
-            let mut bindings = vec![Binding::Storage; 13 + of_stages];
+            let mut bindings = with_constants(13 + of_stages);
             bindings[6] = Binding::Texels;
             Pipeline::graphics(
                 device,

@@ -7,7 +7,8 @@
 //! Reads: everything that `Bindings` names but what it writes. Writes: `counts`, `fragments`, `counters`.
 //! Twin: `src/twin/operand_sort.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 use std::ops::Range;
 
@@ -40,7 +41,7 @@ impl OperandSort {
             &ComputeInfo {
                 name: "operand sort",
                 spirv: shaders::OPERAND_SORT_COMP,
-                bindings: &[Binding::Storage; 8],
+                bindings: &with_constants(8),
                 push_bytes: 8,
                 constants: &[],
             },

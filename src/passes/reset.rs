@@ -10,7 +10,8 @@
 //! Reads: `frame`. Writes: `draws`, `counters`.
 //! Twin: `src/twin/reset.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -42,7 +43,7 @@ impl Reset {
             &ComputeInfo {
                 name: if draws_only { "reset (draws)" } else { "reset" },
                 spirv: shaders::RESET_COMP,
-                bindings: &[Binding::Storage; 3],
+                bindings: &with_constants(3),
                 push_bytes: 0,
                 constants: &[(DRAWS_ONLY, u32::from(draws_only))],
             },

@@ -4,8 +4,8 @@
 //!   item, (u, v) of the triangle ──Newton──▶ (u, v) whose exact point projects to the pixel's centre
 //!   triangle of a mesh ──plane──▶   │
 //!   side of a Boolean solid ─────▶  │        a pipeline for each kind of thing: each leaves the others'
-//!   nothing ──background────────▶   │        pixels alone; with a sun each asks whether it reaches the point.
-//!                                   │        Drawn over the tiles that may see it, the background over all
+//!   nothing ──clear─────────────▶   │        pixels alone; with a sun each asks whether it reaches the point.
+//!                                   │        Drawn over the tiles that may see it
 //!                                   ├──▶ colour, depth into the host's targets
 //!                                   └──▶ depth, face, (u, v), normal images, when asked for
 //! ```
@@ -13,7 +13,7 @@
 //! Reads: everything that `Bindings` names. Writes: the targets.
 
 use crate::abi;
-use crate::bindings::{Primitives, SUN_BINDINGS, with_primitives};
+use crate::bindings::{Primitives, SUN_BINDINGS, with_constants, with_primitives};
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
     Pipeline, Resource, Texels,
@@ -45,9 +45,10 @@ const BEHIND: u32 = 18;
 /// Format of what is behind layers, and of what pass `coverage` mixes: linear colour and depth.
 pub(crate) const BEHIND_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
-/// The pass: a pipeline for each kind of thing that the scene has, and the background.
+/// The pass: a pipeline for each kind of thing that the scene has.
 pub(crate) struct Resolve {
-    background: Pipeline,
+    /// Samples that see nothing, where those of a pixel are added up: one cleared to it would have it under what it sees.
+    background: Option<Pipeline>,
     patches: Option<Pipeline>,
     meshes: Option<Pipeline>,
     solids: Option<Pipeline>,
@@ -204,7 +205,7 @@ impl Resolve {
         if formats.aovs {
             colour.extend(AOV_FORMATS.map(|format| ColourTarget { format, blend: Blend::Replace }));
         }
-        let mut bindings = [Binding::Storage; 10];
+        let mut bindings = with_constants(10);
         bindings[6] = Binding::Texels;
         bindings[8] = Binding::StorageImage;
         let of = if kinds.sun { SUN } else { STUDIO };
@@ -240,7 +241,7 @@ impl Resolve {
             let sun: &[_] = if kinds.sun { &SUN_BINDINGS } else { &[] };
             over(vertex, name, fragment, &[bindings, sun].concat(), &constants)
         };
-        let mut of_mesh = [Binding::Storage; 11];
+        let mut of_mesh = with_constants(11);
         of_mesh[8..10].fill(Binding::StorageImage);
         let mesh = |()| lit(shaders::RESOLVE_SEEN_MESH_VERT, "mesh", of.meshes, &of_mesh, &[]);
         let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
@@ -251,7 +252,7 @@ impl Resolve {
             lit(vertex, "solid", of.solids, &of_solid, &[(SOLIDS_HAVE_SHELLS, u32::from(solid.shells))])
         };
         let solids = kinds.solids.map(solid).transpose()?;
-        let mut of_operand = [Binding::Storage; 11];
+        let mut of_operand = with_constants(11);
         of_operand[6] = Binding::Texels;
         of_operand[8..].fill(Binding::StorageImage);
         let rational = (SCENE_HAS_RATIONAL, u32::from(kinds.rational));
@@ -263,15 +264,15 @@ impl Resolve {
             lit(shaders::RESOLVE_SEEN_VERT, weights, of.patches, &bindings, &constants)
         };
         let patches = kinds.patches.then_some(()).map(patch).transpose()?;
-        let of_background = [Binding::Storage, Binding::StorageImage, Binding::StorageImage];
-        let (vertex, fragment) = (shaders::RESOLVE_VERT, shaders::RESOLVE_BACKGROUND_FRAG);
-        let background = over(vertex, "background", fragment, &of_background, &[aovs, behind])?;
+        let of_background = [Binding::Uniform, Binding::StorageImage, Binding::StorageImage];
+        let unseen =
+            |()| over(shaders::RESOLVE_VERT, "background", shaders::RESOLVE_BACKGROUND_FRAG, &of_background, &[]);
+        let background = (into == Destination::Sum).then_some(()).map(unseen).transpose()?;
         Ok(Self { background, patches, meshes, solids, operands })
     }
 
-    /// One triangle over the targets for the background, and the tiles that see a patch or a mesh, or may see a Boolean
-    /// solid, for those.
-    /// `sun`: what [`Kinds::sun`] asks for.
+    /// Over the tiles that see a patch or a mesh, or may see a Boolean solid, for those; into what `colour` and `depth`
+    /// are cleared to, or keep. `sun`: what [`Kinds::sun`] asks for.
     pub(crate) fn record(
         &self,
         cmd: &Commands<'_>,
@@ -289,8 +290,10 @@ impl Resolve {
         cmd.rendering(size, colour, depth, || {
             let buffers = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items].map(Into::into);
             let rest = [b.points.into(), b.instances.into(), b.visibility.into()];
-            cmd.bind(&self.background, &[b.frame.into(), b.visibility.into(), b.others.into()], &[]);
-            cmd.draw(3, 0, 1);
+            if let Some(pipeline) = &self.background {
+                cmd.bind(pipeline, &[b.frame.into(), b.visibility.into(), b.others.into()], &[]);
+                cmd.draw(3, 0, 1);
+            }
             if let (Some(pipeline), Some((count, squares))) = (&self.patches, b.squares) {
                 bind(pipeline, buffers.into_iter().chain(rest).chain([squares.into()]).collect());
                 cmd.draw_instances(0..6, 0..count);

@@ -9,6 +9,7 @@
 //! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `points`, `items`, `farthest`, `outside`.
 //! Writes: `taus`, `hidden`, `counters`. Twin: `src/twin/hidden.rs`.
 
+use crate::bindings::with_constants;
 use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
 use crate::shaders;
 
@@ -45,7 +46,7 @@ pub(crate) struct Bindings<'a> {
 
 impl Reveal {
     pub(crate) fn new(device: &Device, rational: bool) -> Result<Self, GpuError> {
-        let mut bindings = [Binding::Storage; 13];
+        let mut bindings = with_constants(13);
         bindings[6] = Binding::Texels;
         let pipeline = Pipeline::compute(
             device,

@@ -8,6 +8,7 @@
 //! Writes: `sizes`: `words`, `counters`; `flip`: `texels`, `counters`; `fill`: `texels`, `places`. Barriers
 //! between the steps are the caller's. What the method is: `src/rivals/texture.rs`.
 
+use crate::bindings::with_constants;
 use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
@@ -42,14 +43,13 @@ pub(crate) struct Bindings<'a> {
 
 impl RivalTexture {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let pipeline = |name, spirv, bindings: usize| {
-            let bindings = &vec![Binding::Storage; bindings];
+        let pipeline = |name, spirv, bindings: &[Binding]| {
             Pipeline::compute(device, &ComputeInfo { name, spirv, bindings, push_bytes: 0, constants: &[] })
         };
         Ok(Self {
-            sizes: pipeline("rival texture (sizes)", shaders::RIVAL_TEXTURE_SIZES_COMP, 4)?,
-            flip: pipeline("rival texture (flip)", shaders::RIVAL_TEXTURE_FLIP_COMP, 11)?,
-            fill: pipeline("rival texture (fill)", shaders::RIVAL_TEXTURE_FILL_COMP, 8)?,
+            sizes: pipeline("rival texture (sizes)", shaders::RIVAL_TEXTURE_SIZES_COMP, &[Binding::Storage; 4])?,
+            flip: pipeline("rival texture (flip)", shaders::RIVAL_TEXTURE_FLIP_COMP, &with_constants(11))?,
+            fill: pipeline("rival texture (fill)", shaders::RIVAL_TEXTURE_FILL_COMP, &[Binding::Storage; 8])?,
         })
     }
 
@@ -62,8 +62,8 @@ impl RivalTexture {
     /// Flips along each of `curves`.
     pub(crate) fn flip(&self, cmd: &Commands<'_>, b: &Bindings<'_>, curves: u32) {
         let resources = [
-            b.knob,
             b.frame,
+            b.knob,
             b.face_instances,
             b.faces,
             b.curves,

@@ -23,7 +23,7 @@ pub(crate) struct Bindings<'a> {
 
 impl SeenSquares {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let bindings = [Binding::Storage, Binding::StorageImage, Binding::StorageImage, Binding::Storage];
+        let bindings = [Binding::Uniform, Binding::StorageImage, Binding::StorageImage, Binding::Storage];
         let pipeline = Pipeline::compute(
             device,
             &ComputeInfo {

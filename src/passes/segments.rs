@@ -8,7 +8,8 @@
 //! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_items`, `face_speeds`, `line_starts`. Writes: `segment_counts`.
 //! Twin: `src/twin/segments.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -38,7 +39,7 @@ impl Segments {
             &ComputeInfo {
                 name: "segments",
                 spirv: shaders::SEGMENTS_COMP,
-                bindings: &[Binding::Storage; 8],
+                bindings: &with_constants(8),
                 push_bytes: 0,
                 constants: &[],
             },

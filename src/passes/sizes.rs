@@ -3,7 +3,8 @@
 //! Reads: `frame`, `line_starts`, `segment_starts`. Writes: `dispatches`, `counters`.
 //! Twin: `src/twin/sizes.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -31,7 +32,7 @@ impl Sizes {
             &ComputeInfo {
                 name: "sizes",
                 spirv: shaders::SIZES_COMP,
-                bindings: &[Binding::Storage; 5],
+                bindings: &with_constants(5),
                 push_bytes: 0,
                 constants: &[],
             },

@@ -2,7 +2,8 @@
 //!
 //! Reads: `frame`, `rects`, `starts`. Writes: `counts`, then `leaves`, in Blist order.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -32,7 +33,7 @@ impl SolidBlocks {
             let info = ComputeInfo {
                 name,
                 spirv: shaders::SOLID_BLOCKS_COMP,
-                bindings: &[Binding::Storage; 5],
+                bindings: &with_constants(5),
                 push_bytes: 0,
                 constants: &[(LISTS, lists)],
             };

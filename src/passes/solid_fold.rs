@@ -3,7 +3,8 @@
 //! Reads: `frame`, `leaves`, `tile_starts`. Writes: exits of `tile_leaves`, `tile_entries`.
 //! Twin: `src/twin/solid_fold.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -31,7 +32,7 @@ impl SolidFold {
             &ComputeInfo {
                 name: "solid fold",
                 spirv: shaders::SOLID_FOLD_COMP,
-                bindings: &[Binding::Storage; 5],
+                bindings: &with_constants(5),
                 push_bytes: 0,
                 constants: &[],
             },

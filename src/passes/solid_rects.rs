@@ -2,7 +2,8 @@
 //!
 //! Reads: `frame`, `leaves`, `centres`. Writes: `rects`. Twin: `src/twin/solid_rects.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -29,7 +30,7 @@ impl SolidRects {
             &ComputeInfo {
                 name: "solid rects",
                 spirv: shaders::SOLID_RECTS_COMP,
-                bindings: &[Binding::Storage; 4],
+                bindings: &with_constants(4),
                 push_bytes: 0,
                 constants: &[],
             },

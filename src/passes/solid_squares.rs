@@ -2,7 +2,8 @@
 //!
 //! Reads: `frame`, `tile_entries`. Writes: `tile_squares`. Twin: `src/twin/squares.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -29,7 +30,7 @@ impl SolidSquares {
             &ComputeInfo {
                 name: "solid squares",
                 spirv: shaders::SOLID_SQUARES_COMP,
-                bindings: &[Binding::Storage; 3],
+                bindings: &with_constants(3),
                 push_bytes: 0,
                 constants: &[],
             },

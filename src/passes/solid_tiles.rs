@@ -3,7 +3,8 @@
 //! Reads: `frame`, `rects`, `block_starts`, `block_leaves`, `starts`. Writes: `counts`, then `leaves`, in
 //! Blist order; `counters`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -37,7 +38,7 @@ impl SolidTiles {
             let info = ComputeInfo {
                 name,
                 spirv: shaders::SOLID_TILES_COMP,
-                bindings: &[Binding::Storage; 8],
+                bindings: &with_constants(8),
                 push_bytes: 0,
                 constants: &[(LISTS, lists)],
             };

@@ -8,7 +8,8 @@
 //! Reads: `frame`, `row_starts`, `row_total`, `dispatches`. Writes: `row_counts` (now the number of flips),
 //! `intercepts`, `counters`. Twin: `src/twin/sort.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// The pass.
@@ -36,7 +37,7 @@ impl Sort {
             &ComputeInfo {
                 name: "sort",
                 spirv: shaders::SORT_COMP,
-                bindings: &[Binding::Storage; 6],
+                bindings: &with_constants(6),
                 push_bytes: 0,
                 constants: &[],
             },

@@ -13,7 +13,8 @@
 //! Reads: `frame`, `face_instances`, `faces`, `patches`, `items`, `taus`, `links`. Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
 //! Twin: `src/twin/split.rs`.
 
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_constants;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -50,7 +51,7 @@ impl Split {
             &ComputeInfo {
                 name: if linked { "split (linked)" } else { "split" },
                 spirv: if linked { shaders::SPLIT_LINKED_COMP } else { shaders::SPLIT_COMP },
-                bindings: &[Binding::Storage; 10][..if linked { 10 } else { 9 }],
+                bindings: &with_constants(10)[..if linked { 10 } else { 9 }],
                 push_bytes: 0,
                 constants: &[],
             },

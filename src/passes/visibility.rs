@@ -10,7 +10,7 @@
 //! (reversed: 1 at the near plane), which begin cleared or with what is no patch; `rings`, cleared before.
 
 use crate::abi::Counters;
-use crate::bindings::{PRIMITIVES, Primitives};
+use crate::bindings::{PRIMITIVES, Primitives, with_constants};
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
     Texels,
@@ -164,7 +164,7 @@ impl Visibility {
 /// Bindings of a pipeline whose trim test reads so many buffers beside the rings; `None`: without one. `linked`: it
 /// reads links.
 fn bindings(of_test: Option<usize>, volume: bool, linked: bool) -> Vec<Binding> {
-    let mut bindings = vec![Binding::Storage; 10 + of_test.map_or(0, |buffers| 1 + buffers)];
+    let mut bindings = with_constants(10 + of_test.map_or(0, |buffers| 1 + buffers));
     bindings[6] = Binding::Texels;
     bindings.extend(PRIMITIVES.iter().filter(|_| volume));
     bindings.extend(linked.then_some(Binding::Storage));

@@ -4,9 +4,25 @@ use super::{FrameInput, Loaded, TargetFormats};
 use crate::abi;
 use crate::budget::Budget;
 use crate::gpu::Device;
-use crate::model::Projection;
+use crate::model::{Projection, srgb};
 use crate::scene::focal_and_slant;
 use ash::vk;
+
+/// The colour target's format encodes linear light by itself.
+fn encodes(formats: &TargetFormats) -> bool {
+    matches!(formats.colour, vk::Format::R8G8B8A8_SRGB | vk::Format::B8G8R8A8_SRGB | vk::Format::A8B8G8R8_SRGB_PACK32)
+}
+
+/// The background as the colour target is cleared to it; nothing where the host keeps its picture. Twin of `encode` in
+/// shade.glsl.
+pub(super) fn background(input: &FrameInput<'_>, formats: &TargetFormats) -> [f32; 4] {
+    let [r, g, b, opacity] = input.settings.background.unwrap_or_default();
+    if encodes(formats) {
+        return [r, g, b, opacity];
+    }
+    let encoded = |c: f32| srgb::encoded(f64::from(c.clamp(0.0, 1.0))) as f32;
+    [encoded(r), encoded(g), encoded(b), opacity]
+}
 
 /// What every shader of the frame reads.
 pub(super) fn constants(
@@ -20,10 +36,6 @@ pub(super) fn constants(
     let (focal, slant) = focal_and_slant(camera);
     let (right, up, forward) = camera.axes();
     let (counts, room) = (loaded.counts, loaded.capacities);
-    let encodes = matches!(
-        formats.colour,
-        vk::Format::R8G8B8A8_SRGB | vk::Format::B8G8R8A8_SRGB | vk::Format::A8B8G8R8_SRGB_PACK32
-    );
     abi::Frame {
         size: [camera.size.0 as f32, camera.size.1 as f32],
         focal: focal as f32,
@@ -41,7 +53,7 @@ pub(super) fn constants(
         strip_count: counts.strips,
         curve_count: counts.curves,
         draw_vertices: device.quirks().max_tessellated_vertices_per_draw.saturating_sub(MOST_VERTICES).max(1),
-        encode_srgb: u32::from(!encodes),
+        encode_srgb: u32::from(!encodes(formats)),
         sub_patch_capacity: room.sub_patches,
         draw_capacity: room.draws,
         row_capacity: room.rows,

@@ -144,8 +144,9 @@ fn read_counters(device: &Device, count: usize) -> Result<ReadBack, GpuError> {
 }
 
 pub(super) fn upload_buffer(device: &Device, name: &str, bytes: u64) -> Result<Buffer, GpuError> {
-    // constants change from band to band
-    let usage = vk::BufferUsageFlags::STORAGE_BUFFER | vk::BufferUsageFlags::TRANSFER_DST;
+    use vk::BufferUsageFlags as Usage;
+    // constants are uniform, and change from band to band
+    let usage = Usage::UNIFORM_BUFFER | Usage::STORAGE_BUFFER | Usage::TRANSFER_DST;
     Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })
 }
 

@@ -103,6 +103,8 @@ fn only_a_scene_of_many_patches_knows_which_lie_behind_others() {
         let (renderer, objects) = objects_with(model, settings, Outputs::default());
         let count = objects.iter().filter(|name| is_of_hiding(name)).count();
         assert_eq!(count, if is_asked { of_hiding.len() + passes.len() } else { 0 }, "{objects:?}");
+        let adds_up = objects.iter().any(|name| name == "resolve (background, samples)");
+        assert_eq!(adds_up, settings == samples, "{objects:?}");
         assert_silent(renderer);
     }
 }
@@ -144,7 +146,7 @@ fn only_a_scene_with_solids_has_what_they_need() {
     assert!(!objects.iter().any(|name| name == "visibility of others"), "{objects:?}");
     let of_patches = ["bound", "split", "emit", "seen squares", "resolve (polynomial", "resolve (rational"];
     assert!(!objects.iter().any(|o| of_patches.iter().any(|name| o.starts_with(name))), "{objects:?}");
-    assert!(objects.iter().any(|name| name == "resolve (background)"), "{objects:?}");
+    assert!(!objects.iter().any(|o| o.starts_with("resolve (background")), "{objects:?}");
     assert_silent(renderer);
 }
 

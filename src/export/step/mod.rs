@@ -21,7 +21,7 @@ mod text;
 use super::operand::{RIGID, faces};
 use super::{ExportError, ExportWarning, Item, baked};
 use crate::csg::{Node, Tree};
-use crate::model::{Colour, Instance, Model, Part, Primitive, Solid};
+use crate::model::{Colour, Instance, Model, Part, Primitive, Solid, srgb};
 use glam::{DAffine3, DMat3, DVec3};
 use std::collections::HashMap;
 use std::io::{self, Write};
@@ -295,7 +295,7 @@ fn style<W: Write>(text: &mut Text<W>, colours: &mut Colours, item: Id, colour: 
 
 fn surface_style<W: Write>(text: &mut Text<W>, colour: Colour) -> io::Result<Id> {
     let [r, g, b, opacity] = colour.map(f64::from);
-    let rgb = reals([r, g, b].map(encoded));
+    let rgb = reals([r, g, b].map(srgb::encoded));
     let rgb = text.add(format_args!("COLOUR_RGB('',{})", rgb.trim_matches(['(', ')'])))?;
     let fill = text.add(format_args!("FILL_AREA_STYLE_COLOUR('',{rgb})"))?;
     let fill = text.add(format_args!("FILL_AREA_STYLE('',({fill}))"))?;
@@ -308,9 +308,4 @@ fn surface_style<W: Write>(text: &mut Text<W>, colour: Colour) -> io::Result<Id>
     let side = text.add(format_args!("SURFACE_SIDE_STYLE('',{})", List(&sides)))?;
     let usage = text.add(format_args!("SURFACE_STYLE_USAGE(.BOTH.,{side})"))?;
     text.add(format_args!("PRESENTATION_STYLE_ASSIGNMENT(({usage}))"))
-}
-
-/// Linear light to sRGB (IEC 61966-2-1).
-fn encoded(c: f64) -> f64 {
-    if c <= 0.003_130_8 { 12.92 * c } else { 1.055 * c.powf(1.0 / 2.4) - 0.055 }
 }

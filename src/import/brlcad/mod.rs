@@ -16,7 +16,8 @@ mod tests;
 mod tree;
 mod words;
 
-use super::solid::{Assembly, Placed, linear};
+use super::colour::linear;
+use super::solid::{Assembly, Placed};
 use super::{Import, ImportError, ImportReport, Warnings};
 use crate::csg::Op;
 use crate::model::{Colour, Model};
@@ -160,9 +161,8 @@ fn objects<'a>(text: &'a str, report: &mut ImportReport) -> Result<BTreeMap<&'a 
 fn colour(value: &str) -> Option<Colour> {
     let parts: Vec<f64> =
         value.split(['/', ' ']).filter(|w| !w.is_empty()).map(|w| w.parse().ok()).collect::<Option<_>>()?;
-    let [r, g, b] = parts[..].try_into().ok()?;
-    let light = |c: f64| linear((c / 255.0).clamp(0.0, 1.0));
-    Some([light(r), light(g), light(b), 1.0])
+    let rgb: [f64; 3] = parts[..].try_into().ok()?;
+    Some(linear(rgb.map(|c| c / 255.0), 1.0))
 }
 
 /// A combination in the middle of being worked out.

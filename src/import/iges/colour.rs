@@ -1,10 +1,11 @@
 //! Colours: eight standard numbers, or the red, green and blue percent of a 314.
 //!
 //! The standard names no colour space; what writers store is what their screen shows, sRGB. The model
-//! wants linear light: `c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055)^2.4` (IEC 61966-2-1).
+//! wants linear light.
 
 use super::entity::Entity;
 use super::geometry::Geometry;
+use crate::import::colour::linear;
 use crate::model::Colour;
 
 /// Black, red, green, blue, yellow, magenta, cyan, white: numbers 1 to 8.
@@ -30,16 +31,11 @@ impl<'a> Geometry<'a> {
                 let read = || {
                     let definition = Entity::find(self.file, definition.unsigned_abs())?;
                     let definition = definition.of_kind(314, "314, a colour")?;
-                    Ok::<_, super::entity::Fault>(definition.triple(1)?.to_array().map(|c| (c / 100.0).clamp(0.0, 1.0)))
+                    Ok::<_, super::entity::Fault>(definition.triple(1)?.to_array().map(|c| c / 100.0))
                 };
                 read().map_err(|fault| self.note("colour ignored", entity.id(), fault.to_string())).ok()?
             }
         };
-        let [r, g, b] = rgb.map(|c| linear(c) as f32);
-        Some([r, g, b, 1.0])
+        Some(linear(rgb, 1.0))
     }
-}
-
-fn linear(c: f64) -> f64 {
-    if c <= 0.04045 { c / 12.92 } else { ((c + 0.055) / 1.055).powf(2.4) }
 }

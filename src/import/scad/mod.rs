@@ -25,7 +25,8 @@ mod polygon;
 mod tests;
 mod twist;
 
-use super::solid::{Assembly, Placed, linear};
+use super::colour::linear;
+use super::solid::{Assembly, Placed};
 use super::{Import, ImportError, ImportReport, Place, Warnings};
 use crate::csg::Op;
 use crate::model::{Colour, Model};
@@ -283,7 +284,5 @@ fn matrix(args: &Args<'_>) -> Result<DAffine3, Fault> {
 /// Linear light; none for OpenSCAD's "no colour", which is negative.
 fn colour(args: &Args<'_>) -> Option<Colour> {
     let [r, g, b, a] = args.first().or_else(|| args.get("c"))?.vector::<4>()?;
-    let light = |c: f64| linear(c.clamp(0.0, 1.0));
-    let valid = [r, g, b, a].iter().all(|c| *c >= 0.0);
-    valid.then(|| [light(r), light(g), light(b), a.min(1.0) as f32])
+    [r, g, b, a].iter().all(|c| *c >= 0.0).then(|| linear([r, g, b], a))
 }

@@ -12,7 +12,7 @@
 //! given for the context of one occurrence, is that instance's.
 //!
 //! The standard names no colour space; every known writer stores what its screen shows, sRGB. The model
-//! wants linear light: `c <= 0.04045 ? c / 12.92 : ((c + 0.055) / 1.055)^2.4` (IEC 61966-2-1).
+//! wants linear light.
 //!
 //! Source: ISO 10303-46, 6.4 to 6.7.
 
