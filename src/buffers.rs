@@ -15,7 +15,7 @@ use crate::abi::{BLOCK, Counters, Factors, Fragment, Rect, SQUARE, SubPatch, TIL
 #[cfg(feature = "rivals")]
 use crate::capacities::is_texture;
 use crate::capacities::{Capacities, Counts};
-use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Image, ImageInfo, Pool, Texels};
+use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Image, ImageInfo, Pool, Texel, Texels};
 use crate::passes::average::SUM_FORMAT;
 use crate::passes::blister::{LAYER_DEPTH_FORMAT, LAYER_FORMAT};
 use crate::passes::resolve::BEHIND_FORMAT;
@@ -88,9 +88,9 @@ pub(crate) struct TextureBuffers {
     pub face_speeds: Buffer,
     pub words: Buffer,
     pub starts: Buffer,
-    pub places: Buffer,
+    pub places: Texels,
     /// As large as the capacity of intercepts.
-    pub texels: Buffer,
+    pub texels: Texels,
 }
 
 #[cfg(feature = "rivals")]
@@ -106,14 +106,14 @@ pub(crate) struct TableBuffers {
     pub strip_heights: Buffer,
     pub face_speeds: Buffer,
     pub line_counts: Buffer,
-    pub line_starts: Buffer,
+    pub line_starts: Texels,
     pub segment_counts: Buffer,
     pub segment_starts: Buffer,
     pub dispatches: Buffer,
-    pub row_counts: Buffer,
-    pub row_starts: Buffer,
+    pub row_counts: Texels,
+    pub row_starts: Texels,
     pub row_total: Buffer,
-    pub intercepts: Buffer,
+    pub intercepts: Texels,
 }
 
 impl TableBuffers {
@@ -179,15 +179,13 @@ impl Buffers {
         let structs = |name: &str, n: u32, bytes: usize| {
             Buffer::storage(device, Pool::Transient, name, u64::from(n) * bytes as u64)
         };
-        // written as structs, read as texels
-        const _: () =
-            assert!(size_of::<TileLeaf>() as u64 == Texels::BYTES && size_of::<Fragment>() == size_of::<TileLeaf>());
-        let texels = |name: &str, n: u32| {
-            let (bytes, usage) =
-                (Texels::BYTES * u64::from(n), Buffer::STORAGE | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER);
+        // written as structs or words, read as texels
+        let texels = |name: &str, bytes: u64, texel: Texel| {
+            let usage = Buffer::STORAGE | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
             let info = BufferInfo { name, bytes, usage, pool: Pool::Transient, home: Home::Device };
-            Texels::words(device, Buffer::new(device, &info)?)
+            Texels::new(device, Buffer::new(device, &info)?, texel)
         };
+        let numbers = |name: &str, n: u32, texel: Texel| texels(name, 4 * u64::from(n), texel);
         let indirect = |name: &str, bytes: u64| Buffer::indirect(device, Pool::Transient, name, bytes);
         let image = |name: &str, format, usage| {
             Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })
@@ -215,14 +213,14 @@ impl Buffers {
                 strip_heights: words("trim strip heights", counts.strips)?,
                 face_speeds: words("trim face speeds", 2 * counts.face_instances)?,
                 line_counts: words("trim line counts", counts.strips)?,
-                line_starts: words("trim line starts", counts.strips + 1)?,
+                line_starts: numbers("trim line starts", counts.strips + 1, Texel::U32)?,
                 segment_counts: words("trim segment counts", counts.curves)?,
                 segment_starts: words("trim segment starts", counts.curves + 1)?,
                 dispatches: indirect("trim dispatches", 3 * size_of::<[u32; 3]>() as u64)?,
-                row_counts: words("trim row counts", capacities.rows)?,
-                row_starts: words("trim row starts", capacities.rows)?,
+                row_counts: numbers("trim row counts", capacities.rows, Texel::U32)?,
+                row_starts: numbers("trim row starts", capacities.rows, Texel::U32)?,
                 row_total: words("trim row total", 1)?,
-                intercepts: words("trim intercepts", capacities.intercepts)?,
+                intercepts: numbers("trim intercepts", capacities.intercepts, Texel::F32)?,
             })
         };
         #[cfg(feature = "rivals")]
@@ -232,8 +230,12 @@ impl Buffers {
                 face_speeds: words("trim face speeds", 2 * counts.face_instances)?,
                 words: words("trim texture sizes", counts.face_instances)?,
                 starts: words("trim texture starts", counts.face_instances + 1)?,
-                places: structs("trim texture places", counts.strips, size_of::<[u32; 4]>())?,
-                texels: words("trim texels", capacities.intercepts)?,
+                places: texels(
+                    "trim texture places",
+                    u64::from(counts.strips) * size_of::<[u32; 4]>() as u64,
+                    Texel::U32x4,
+                )?,
+                texels: numbers("trim texels", capacities.intercepts, Texel::U32)?,
             })
         };
         Ok(Self {
@@ -289,7 +291,11 @@ impl Buffers {
                                     block_leaves: words("solid block leaves", capacities.block_leaves)?,
                                     tile_counts: words("solid tile counts", tiles)?,
                                     tile_starts: words("solid tile starts", tiles + 1)?,
-                                    tile_leaves: texels("solid tile leaves", room)?,
+                                    tile_leaves: texels(
+                                        "solid tile leaves",
+                                        u64::from(room) * size_of::<TileLeaf>() as u64,
+                                        Texel::U32x4,
+                                    )?,
                                     tile_entries: words("solid tile entries", all_tiles)?,
                                     tile_squares: words("solid tile squares", all_tiles)?,
                                 })
@@ -316,7 +322,11 @@ impl Buffers {
                                 Ok(FragmentBuffers {
                                     counts: words("operand fragment counts", pixels)?,
                                     starts: words("operand fragment starts", pixels + 1)?,
-                                    all: texels("operand fragments", capacities.fragments)?,
+                                    all: texels(
+                                        "operand fragments",
+                                        u64::from(capacities.fragments) * size_of::<Fragment>() as u64,
+                                        Texel::U32x4,
+                                    )?,
                                 })
                             })
                             .transpose()?,
@@ -347,13 +357,11 @@ impl SolidBuffers {
             .as_ref()
             .map(|t| sum("blocks", &[&t.block_counts, &t.block_starts, &t.block_leaves].map(Buffer::bytes)));
         let tiles = self.tiles.as_ref().map(|t| {
-            let all = [&t.tile_counts, &t.tile_starts, t.tile_leaves.buffer(), &t.tile_entries, &t.tile_squares];
+            let all = [&t.tile_counts, &t.tile_starts, &t.tile_leaves, &t.tile_entries, &t.tile_squares];
             sum("tiles", &all.map(Buffer::bytes))
         });
-        let crossings = self
-            .fragments
-            .as_ref()
-            .map(|f| sum("crossings", &[&f.counts, &f.starts, f.all.buffer()].map(Buffer::bytes)));
+        let crossings =
+            self.fragments.as_ref().map(|f| sum("crossings", &[&f.counts, &f.starts, &f.all].map(Buffer::bytes)));
         let layers = self.layers.as_ref().map(|l| {
             let [a, b] = &l.layers;
             sum("layers", &[a, b, &l.found, &l.depth, &l.stencil].map(Image::bytes))

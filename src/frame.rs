@@ -38,7 +38,8 @@ use crate::abi::Counters;
 use crate::bindings::Primitives;
 use crate::buffers::{Buffers, TableBuffers};
 use crate::gpu::{
-    Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Texels, Timestamps, barrier,
+    Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Resource, Texels, Timestamps,
+    barrier,
 };
 use crate::passes::coverage::Coverage;
 use crate::passes::seen_squares::SeenSquares;
@@ -454,7 +455,7 @@ impl Frame<'_> {
     }
 
     /// `again`: over what it drew before.
-    fn visibility(&self, cmd: &Commands<'_>, test: &[&Buffer], again: bool) {
+    fn visibility(&self, cmd: &Commands<'_>, test: &[Resource<'_>], again: bool) {
         let (s, b) = (self.scene, self.buffers);
         barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE, Access::INDIRECT_READ)]);
         if let Some(t) = &b.trim {

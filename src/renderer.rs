@@ -452,7 +452,7 @@ impl Renderer {
         let Some(loaded) = &mut self.loaded else { return Ok(()) };
         let limits = self.device.limits();
         // the largest lists are read as texels
-        let texels = u64::from(limits.max_texel_buffer_elements) * Texels::BYTES;
+        let texels = u64::from(limits.max_texel_buffer_elements) * Texels::LEAST_BYTES;
         let range = limits.max_storage_buffer_range.min(u32::try_from(texels).unwrap_or(u32::MAX));
         let capacities = match (had, report) {
             // else another slot's frame has made them larger since

@@ -2,6 +2,8 @@
 //!
 //! Compiled by `build.rs`, or committed in `glsl/spirv/`; see there.
 
+use crate::gpu::Binding;
+
 /// Little-endian words, for Vulkan's alignment.
 const fn words<const COUNT: usize>(bytes: &[u8]) -> [u32; COUNT] {
     let (chunks, []) = bytes.as_chunks::<4>() else { panic!("SPIR-V is made of 4-byte words") };
@@ -30,8 +32,8 @@ pub struct TrimTest {
     pub heal: &'static [u32],
     /// Both again, within a volume that trims the scene; `None`: the way draws no such scene.
     pub within: Option<Within>,
-    /// Storage buffers of the test; they follow the bindings of the pass.
-    pub buffers: usize,
+    /// Of the test; they follow those of the pass.
+    pub bindings: &'static [Binding],
 }
 
 /// Shaders of scenes that a volume trims: `glsl/include/volume.glsl`.
@@ -50,7 +52,7 @@ pub static TRIM_TABLE: TrimTest = TrimTest {
     operand_patch: OPERAND_PATCH_TABLE_FRAG,
     heal: HEAL_TABLE_COMP,
     within: Some(Within { visibility: VISIBILITY_TABLE_VOLUME_FRAG, heal: HEAL_TABLE_VOLUME_COMP }),
-    buffers: 4,
+    bindings: &[Binding::Texels; 4],
 };
 /// Arcs in bands and cells.
 pub static TRIM_EXACT: TrimTest = TrimTest {
@@ -59,7 +61,7 @@ pub static TRIM_EXACT: TrimTest = TrimTest {
     operand_patch: OPERAND_PATCH_EXACT_FRAG,
     heal: HEAL_EXACT_COMP,
     within: Some(Within { visibility: VISIBILITY_EXACT_VOLUME_FRAG, heal: HEAL_EXACT_VOLUME_COMP }),
-    buffers: 6,
+    bindings: &[Binding::Texels; 6],
 };
 
 /// No test at all.
@@ -70,7 +72,7 @@ pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
     operand_patch: RIVAL_OPERAND_PATCH_UNTRIMMED_FRAG,
     heal: RIVAL_HEAL_UNTRIMMED_COMP,
     within: None,
-    buffers: 0,
+    bindings: &[],
 };
 
 /// Bisection of monotone pieces.
@@ -81,7 +83,7 @@ pub static TRIM_BISECT: TrimTest = TrimTest {
     operand_patch: RIVAL_OPERAND_PATCH_BISECT_FRAG,
     heal: RIVAL_HEAL_BISECT_COMP,
     within: None,
-    buffers: 6,
+    bindings: &[Binding::Texels; 6],
 };
 
 /// Trim textures.
@@ -92,7 +94,7 @@ pub static TRIM_TEXTURE: TrimTest = TrimTest {
     operand_patch: RIVAL_OPERAND_PATCH_TEXTURE_FRAG,
     heal: RIVAL_HEAL_TEXTURE_COMP,
     within: None,
-    buffers: 2,
+    bindings: &[Binding::Texels; 2],
 };
 
 #[cfg(test)]

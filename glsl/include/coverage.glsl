@@ -123,25 +123,25 @@ Cover exact_cover(uint face, vec2 uv, mat2 along) {
     precise vec2 reach = vec2(abs(along[1].y) + abs(along[1].x), abs(along[0].y) + abs(along[0].x)) * (0.5 / abs(det));
     vec2 lo = uv - reach;
     vec2 hi = uv + reach;
-    ExactFace f = exact_faces[face];
+    ExactFace f = exact_face_at(face);
     uint end = f.first_band + f.band_count;
     if (f.band_count < 2u || !(lo.x <= hi.x && lo.y <= hi.y)) return cover;
     float hidden = 0.0;
     uint asked = 0u;
     for (uint band = exact_band(f, lo.y); band < end; ++band) {
-        float bottom = exact_bands[band - 1u].top;
+        float bottom = exact_band_at(band - 1u).top;
         if (!(bottom <= hi.y)) break;
-        uint first = exact_bands[band - 1u].end;
-        uint last = exact_bands[band].end;
+        uint first = exact_band_at(band - 1u).end;
+        uint last = exact_band_at(band).end;
         for (uint cell = exact_cell(first, last, lo.x); cell < last; ++cell) {
-            float left = cell > first ? exact_cells[cell - 1u].right : lo.x;
+            float left = cell > first ? exact_cell_at(cell - 1u).right : lo.x;
             if (!(left <= hi.x)) break;
             if (++asked > MOST_CELLS) return Cover(cover.share, vec2(0.0), false);
-            ExactCell c = exact_cells[cell];
+            ExactCell c = exact_cell_at(cell);
             vec2 from = max(lo, vec2(left, bottom));
-            vec2 to = min(hi, vec2(c.right, exact_bands[band].top));
+            vec2 to = min(hi, vec2(c.right, exact_band_at(band).top));
             for (uint i = 0u; i < c.count; ++i) {
-                ExactArc arc = exact_arcs[exact_entries[c.first + i] >> 2u];
+                ExactArc arc = exact_arc_at(exact_entry_at(c.first + i));
                 vec2 range = arc_within(arc, from - arc.low, to - arc.low, ROOT_PX * reach);
                 if (!(range.x < range.y)) continue;
                 float way = (arc.shape & ARC_UP) != 0u ? 1.0 : -1.0;

@@ -32,12 +32,44 @@ struct ExactArc {
     uint shape; // degree, 1 for a straight arc; ARC_UP: the loop runs from low to high
 };
 
-layout(scalar, binding = EXACT_BINDING + 0) readonly buffer ExactFaces { ExactFace exact_faces[]; };
-layout(scalar, binding = EXACT_BINDING + 1) readonly buffer ExactBands { ExactBand exact_bands[]; };
-layout(scalar, binding = EXACT_BINDING + 2) readonly buffer ExactCells { ExactCell exact_cells[]; };
-layout(scalar, binding = EXACT_BINDING + 3) readonly buffer ExactEntries { uint exact_entries[]; };
-layout(scalar, binding = EXACT_BINDING + 4) readonly buffer ExactArcs { ExactArc exact_arcs[]; };
-layout(scalar, binding = EXACT_BINDING + 5) readonly buffer ExactPoints { float exact_points[]; };
+// texels, which a driver fetches at once where it gathers words of storage buffers one by one
+layout(binding = EXACT_BINDING + 0) uniform usamplerBuffer exact_faces;   // one a face
+layout(binding = EXACT_BINDING + 1) uniform usamplerBuffer exact_bands;   // one a band
+layout(binding = EXACT_BINDING + 2) uniform usamplerBuffer exact_cells;   // one a cell
+layout(binding = EXACT_BINDING + 3) uniform usamplerBuffer exact_entries; // one an entry
+layout(binding = EXACT_BINDING + 4) uniform usamplerBuffer exact_arcs;    // two an arc
+layout(binding = EXACT_BINDING + 5) uniform samplerBuffer exact_points;   // three a control point
+
+ExactFace exact_face_at(uint i) {
+    uvec2 face = texelFetch(exact_faces, int(i)).xy;
+    return ExactFace(face.x, face.y);
+}
+
+ExactBand exact_band_at(uint i) {
+    uvec2 band = texelFetch(exact_bands, int(i)).xy;
+    return ExactBand(uintBitsToFloat(band.x), band.y);
+}
+
+ExactCell exact_cell_at(uint i) {
+    uvec4 cell = texelFetch(exact_cells, int(i));
+    return ExactCell(uintBitsToFloat(cell.x), int(cell.y), cell.z, cell.w);
+}
+
+// Of an entry.
+ExactArc exact_arc_at(uint entry) {
+    int at = int(entry >> 2u) * 2;
+    uvec4 ends = texelFetch(exact_arcs, at);
+    uvec4 rest = texelFetch(exact_arcs, at + 1);
+    vec4 low_high = uintBitsToFloat(ends);
+    return ExactArc(low_high.xy, low_high.zw, uintBitsToFloat(rest.xy), rest.z, rest.w);
+}
+
+uint exact_entry_at(uint i) { return texelFetch(exact_entries, int(i)).x; }
+
+vec3 exact_point_at(uint i) {
+    int at = int(i);
+    return vec3(texelFetch(exact_points, at).x, texelFetch(exact_points, at + 1).x, texelFetch(exact_points, at + 2).x);
+}
 
 const uint AT_LOW = 1u;  // flags of an entry: a chain leaves the cell from this end of the arc
 const uint AT_HIGH = 2u;
@@ -55,15 +87,15 @@ vec2 arc_point(ExactArc arc, float t) {
     precise float f = 1.0;
     precise float c = 1.0;
     uint at = arc.first;
-    precise vec3 sum = vec3(exact_points[at], exact_points[at + 1u], exact_points[at + 2u]) * s;
+    precise vec3 sum = exact_point_at(at) * s;
     for (uint k = 1u; k < degree; ++k) {
         at += 3u;
         f = f * t;
         c = c * (float(degree - k + 1u) / float(k));
-        sum = (sum + vec3(exact_points[at], exact_points[at + 1u], exact_points[at + 2u]) * (f * c)) * s;
+        sum = (sum + exact_point_at(at) * (f * c)) * s;
     }
     at += 3u;
-    sum = sum + vec3(exact_points[at], exact_points[at + 1u], exact_points[at + 2u]) * (f * t);
+    sum = sum + exact_point_at(at) * (f * t);
     precise vec2 point = sum.xy / sum.z;
     return point;
 }
@@ -111,7 +143,7 @@ uint exact_band(ExactFace f, float v) {
     uint hi = f.first_band + f.band_count;
     while (lo < hi) {
         uint mid = (lo + hi) / 2u;
-        if (exact_bands[mid].top < v) lo = mid + 1u;
+        if (exact_band_at(mid).top < v) lo = mid + 1u;
         else hi = mid;
     }
     return lo;
@@ -121,7 +153,7 @@ uint exact_band(ExactFace f, float v) {
 uint exact_cell(uint first, uint end, float u) {
     while (first < end) {
         uint mid = (first + end) / 2u;
-        if (exact_cells[mid].right < u) first = mid + 1u;
+        if (exact_cell_at(mid).right < u) first = mid + 1u;
         else end = mid;
     }
     return first;
@@ -129,18 +161,18 @@ uint exact_cell(uint first, uint end, float u) {
 
 // Winding number of the face's loops around uv.
 int exact_winding(uint face, vec2 uv) {
-    ExactFace f = exact_faces[face];
-    if (f.band_count < 2u || !(uv.y > exact_bands[f.first_band].top)) return 0;
+    ExactFace f = exact_face_at(face);
+    if (f.band_count < 2u || !(uv.y > exact_band_at(f.first_band).top)) return 0;
     uint band = exact_band(f, uv.y);
     if (band >= f.first_band + f.band_count) return 0;
-    uint last = exact_bands[band].end;
-    uint cell = exact_cell(exact_bands[band - 1u].end, last, uv.x);
+    uint last = exact_band_at(band).end;
+    uint cell = exact_cell(exact_band_at(band - 1u).end, last, uv.x);
     if (cell >= last) return 0;
-    ExactCell c = exact_cells[cell];
+    ExactCell c = exact_cell_at(cell);
     int winding = c.winding;
     for (uint i = 0u; i < c.count; ++i) {
-        uint entry = exact_entries[c.first + i];
-        ExactArc arc = exact_arcs[entry >> 2u];
+        uint entry = exact_entry_at(c.first + i);
+        ExactArc arc = exact_arc_at(entry);
         int direction = (arc.shape & ARC_UP) != 0u ? 1 : -1;
         if ((entry & AT_LOW) != 0u && arc.low.y < uv.y) winding -= direction;
         if ((entry & AT_HIGH) != 0u && arc.high.y < uv.y) winding += direction;
@@ -152,17 +184,17 @@ int exact_winding(uint face, vec2 uv) {
 // Whether all of a box is inside the face, all of it outside, or neither is told by the one cell that holds it. Cells
 // with arcs are not asked: a wide machine would do it beside the point by point test, not in its place.
 uint exact_area(uint face, vec2 lo, vec2 hi) {
-    ExactFace f = exact_faces[face];
-    if (f.band_count < 2u || !(hi.y > exact_bands[f.first_band].top)) return AREA_OUT;
+    ExactFace f = exact_face_at(face);
+    if (f.band_count < 2u || !(hi.y > exact_band_at(f.first_band).top)) return AREA_OUT;
     uint band = exact_band(f, hi.y);
-    if (!(exact_bands[band - 1u].top < lo.y)) return AREA_MIXED;
+    if (!(exact_band_at(band - 1u).top < lo.y)) return AREA_MIXED;
     if (band >= f.first_band + f.band_count) return AREA_OUT;
-    uint first = exact_bands[band - 1u].end;
-    uint last = exact_bands[band].end;
+    uint first = exact_band_at(band - 1u).end;
+    uint last = exact_band_at(band).end;
     uint cell = exact_cell(first, last, hi.x);
-    if (cell > first && !(exact_cells[cell - 1u].right < lo.x)) return AREA_MIXED;
+    if (cell > first && !(exact_cell_at(cell - 1u).right < lo.x)) return AREA_MIXED;
     if (cell >= last) return AREA_OUT;
-    ExactCell c = exact_cells[cell];
+    ExactCell c = exact_cell_at(cell);
     if (c.count > 0u) return AREA_MIXED;
     return c.winding != 0 ? AREA_IN : AREA_OUT;
 }

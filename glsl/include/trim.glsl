@@ -15,10 +15,7 @@ const uint TRIM_MIXED = 2u;
 
 #ifdef TRIM_BY_TABLE
 #define TRIM_BUFFERS 4
-layout(scalar, binding = TRIM_BINDING + 0) readonly buffer LineStarts { uint line_starts[]; };
-layout(scalar, binding = TRIM_BINDING + 1) readonly buffer RowStarts { uint row_starts[]; };
-layout(scalar, binding = TRIM_BINDING + 2) readonly buffer RowCounts { uint row_counts[]; };
-layout(scalar, binding = TRIM_BINDING + 3) readonly buffer Flips { float flips[]; };
+#define TABLE_BINDING TRIM_BINDING
 #include "table.glsl"
 
 bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
@@ -57,16 +54,17 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 
 #ifdef TRIM_BY_TEXTURE
 #include "rivals/texture.glsl"
-layout(scalar, binding = TRIM_BINDING + 0) readonly buffer TexturePlaces { TexturePlace texture_places[]; };
-layout(scalar, binding = TRIM_BINDING + 1) readonly buffer Texels { uint texels[]; };
+layout(binding = TRIM_BINDING + 0) uniform usamplerBuffer texture_places;
+layout(binding = TRIM_BINDING + 1) uniform usamplerBuffer texels;
 
 bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
     if (any(lessThan(uv, vec2(0.0))) || any(greaterThanEqual(uv, vec2(1.0)))) return false;
-    TexturePlace place = texture_places[fi.first_strip];
+    uvec4 words = texelFetch(texture_places, int(fi.first_strip));
+    TexturePlace place = TexturePlace(TextureSize(words.x, words.y, words.z), words.w);
     if (place.size.words == 0u) return false;
     uint column = min(uint(uv.x * float(place.size.columns)), place.size.columns - 1u);
     uint row = min(uint(uv.y * float(place.size.rows)), place.size.rows - 1u);
-    return (texels[place.start + row * place.size.words + column / 32u] >> (column & 31u) & 1u) != 0u;
+    return (texelFetch(texels, int(place.start + row * place.size.words + column / 32u)).x >> (column & 31u) & 1u) != 0u;
 }
 #endif
 

@@ -1,4 +1,4 @@
-//! The exact way to trim: twin of `glsl/include/exact.glsl`.
+//! The exact way to trim: twin of `glsl/include/exact.glsl`, which reads these structs as texels.
 
 use bytemuck::{Pod, Zeroable};
 

@@ -52,8 +52,7 @@ impl Frame<'_> {
         }
         let w = WRITE_TO_READ.0;
         let (tiles, fragments) = (&parts.buffers.tiles, &parts.buffers.fragments);
-        let lists =
-            tiles.iter().flat_map(|t| [&t.tile_counts, &t.tile_starts, t.tile_leaves.buffer(), &t.tile_entries]);
+        let lists = tiles.iter().flat_map(|t| [&t.tile_counts, &t.tile_starts, &t.tile_leaves, &t.tile_entries]);
         let mut before: Vec<_> = lists.map(|list| (list, readers(), w)).collect();
         before.push((self.constants, Access::UNIFORM_READ, CLEARED));
         if let Some(f) = fragments {

@@ -6,7 +6,7 @@
 //! ```
 
 use super::Frame;
-use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, barrier};
+use crate::gpu::{Access, Attachment, Commands, Device, GpuError, Load, Resource, barrier};
 use crate::passes::{coverage, resolve};
 use crate::scene::SceneData;
 
@@ -22,7 +22,7 @@ pub(super) fn new(
 
 impl Frame<'_> {
     /// Pixels at the borders of trimmed faces are mixed from what pass `resolve` drew; all go to the host's colour.
-    pub(super) fn coverage(&self, cmd: &Commands<'_>, pass: &coverage::Coverage, test: &[&Buffer]) {
+    pub(super) fn coverage(&self, cmd: &Commands<'_>, pass: &coverage::Coverage, test: &[Resource<'_>]) {
         let (s, b) = (self.scene, self.buffers);
         let Some(resolved) = &b.resolved else { unreachable!("made with the pass") };
         barrier::images(cmd, &[(resolved, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);

@@ -2,12 +2,12 @@
 
 use super::trim::TrimParts;
 use super::{Frame, WRITE_TO_READ};
-use crate::gpu::{Access, Buffer, Commands, barrier};
+use crate::gpu::{Access, Commands, Resource, barrier};
 use crate::passes::heal;
 
 impl Frame<'_> {
     /// Pixels that look through a gap between faces get the face that belongs there.
-    pub(super) fn heal(&self, cmd: &Commands<'_>, parts: &TrimParts<'_>, test: &[&Buffer]) {
+    pub(super) fn heal(&self, cmd: &Commands<'_>, parts: &TrimParts<'_>, test: &[Resource<'_>]) {
         let (s, b) = (self.scene, self.buffers);
         let (p, t) = (parts.passes, parts.buffers);
         let (w, r) = WRITE_TO_READ;

@@ -17,7 +17,7 @@
 
 use super::{Frame, TessellationPasses, WRITE_TO_READ, WRITE_TO_WRITE};
 use crate::buffers::HiddenBuffers;
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, barrier};
 use crate::passes::{farthest, hide, reset, reveal};
 use crate::scene::SceneData;
 
@@ -119,7 +119,7 @@ impl<'a> HiddenParts<'a> {
         frame: &Frame<'_>,
         cmd: &Commands<'_>,
         tessellation: &TessellationPasses,
-        test: &[&Buffer],
+        test: &[Resource<'_>],
     ) {
         let (s, b, h) = (frame.scene, frame.buffers, self.buffers);
         let Some(outside) = &s.outside else { unreachable!("made with the passes") };

@@ -7,7 +7,7 @@
 
 use super::{Frame, WRITE_TO_READ, WRITE_TO_WRITE};
 use crate::buffers::TextureBuffers;
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, barrier};
 use crate::passes::{density, rival_texture};
 use crate::picture::Rival;
 use crate::scene::{RivalScene, TableScene};
@@ -65,10 +65,10 @@ pub(super) struct TextureParts<'a> {
 
 impl<'a> RivalParts<'a> {
     /// What the test reads, in its order.
-    pub(super) fn test(&self) -> Vec<&'a Buffer> {
+    pub(super) fn test(&self) -> Vec<Resource<'a>> {
         match (self.scene, self.buffers) {
-            (RivalScene::Bisect(buffers), _) => buffers.iter().collect(),
-            (RivalScene::Texture(..), Some(b)) => vec![&b.places, &b.texels],
+            (RivalScene::Bisect(buffers), _) => buffers.iter().map(Resource::from).collect(),
+            (RivalScene::Texture(..), Some(b)) => vec![Resource::from(&b.places), Resource::from(&b.texels)],
             _ => Vec::new(),
         }
     }

@@ -257,7 +257,7 @@ impl Frame<'_> {
             block_leaves: &t.block_leaves,
             counts: &t.tile_counts,
             starts: &t.tile_starts,
-            leaves: t.tile_leaves.buffer(),
+            leaves: &t.tile_leaves,
             counters: &self.buffers.counters,
         };
         barrier::buffers(cmd, &[(&self.buffers.counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, w)]);
@@ -266,13 +266,13 @@ impl Frame<'_> {
         self.scan(cmd, &t.tile_counts, &t.tile_starts, count);
         barrier::buffers(cmd, &[(&t.tile_starts, w, r), (&t.tile_counts, r, w)]);
         p.tiles.list(cmd, &tiles, count);
-        barrier::buffers(cmd, &[(t.tile_leaves.buffer(), w, w), (&self.buffers.counters, w, w)]);
+        barrier::buffers(cmd, &[(&t.tile_leaves, w, w), (&self.buffers.counters, w, w)]);
 
         let fold = solid_fold::Bindings {
             frame: self.constants,
             leaves: &parts.scene.leaves,
             tile_starts: &t.tile_starts,
-            tile_leaves: t.tile_leaves.buffer(),
+            tile_leaves: &t.tile_leaves,
             tile_entries: &t.tile_entries,
         };
         p.fold.record(cmd, &fold, count);
@@ -288,7 +288,7 @@ impl Frame<'_> {
             &[
                 (&t.tile_squares, w, Access::VERTEX_READ),
                 (&t.tile_starts, w, Access::FRAGMENT_READ),
-                (t.tile_leaves.buffer(), w, Access::FRAGMENT_READ),
+                (&t.tile_leaves, w, Access::FRAGMENT_READ),
                 (&t.tile_entries, w, Access::FRAGMENT_READ),
             ],
         );
@@ -318,7 +318,7 @@ impl Frame<'_> {
             surface_places: parts.centres.surfaces,
             counts: &f.counts,
             starts: &f.starts,
-            fragments: f.all.buffer(),
+            fragments: &f.all,
         };
         let patches = operand_patch::Bindings {
             frame: self.constants,
@@ -333,7 +333,7 @@ impl Frame<'_> {
             instances: &s.instances,
             counts: &f.counts,
             starts: &f.starts,
-            fragments: f.all.buffer(),
+            fragments: &f.all,
             trim: &trim,
             links: s.links.as_ref(),
             draws: &b.draws,
@@ -355,19 +355,16 @@ impl Frame<'_> {
             cmd,
             &[
                 (&f.counts, Access::TRANSFER_WRITE, drawn),
-                (f.all.buffer(), followed, drawn),
+                (&f.all, followed, drawn),
                 (&b.counters, w, Access::INDIRECT_READ),
             ],
         );
         rastered(false);
-        barrier::buffers(cmd, &[(&f.counts, drawn, r), (&f.starts, followed, w), (f.all.buffer(), drawn, drawn)]);
+        barrier::buffers(cmd, &[(&f.counts, drawn, r), (&f.starts, followed, w), (&f.all, drawn, drawn)]);
         self.scan(cmd, &f.counts, &f.starts, size.0 * rows().len() as u32);
         barrier::buffers(cmd, &[(&f.counts, r, drawn), (&f.starts, w, Access::FRAGMENT_READ | r)]);
         rastered(true);
-        barrier::buffers(
-            cmd,
-            &[(&f.counts, drawn, w), (f.all.buffer(), drawn, w), (&b.counters, Access::INDIRECT_READ, w)],
-        );
+        barrier::buffers(cmd, &[(&f.counts, drawn, w), (&f.all, drawn, w), (&b.counters, Access::INDIRECT_READ, w)]);
         let sort = operand_sort::Bindings {
             frame: self.constants,
             leaves: &parts.scene.leaves,
@@ -375,7 +372,7 @@ impl Frame<'_> {
             shell_leaves: &shells.leaves,
             starts: &f.starts,
             counts: &f.counts,
-            fragments: f.all.buffer(),
+            fragments: &f.all,
             counters: &b.counters,
         };
         let [columns, seen] = self.shell_pixels.clone();
@@ -384,7 +381,7 @@ impl Frame<'_> {
         passes.sort.record(cmd, &sort, columns, part);
         barrier::buffers(
             cmd,
-            &[(&f.counts, w, Access::FRAGMENT_READ), (f.all.buffer(), w, Access::FRAGMENT_READ), (&b.counters, w, w)],
+            &[(&f.counts, w, Access::FRAGMENT_READ), (&f.all, w, Access::FRAGMENT_READ), (&b.counters, w, w)],
         );
     }
 }

@@ -9,7 +9,7 @@
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::Counters;
 use crate::buffers::TableBuffers;
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
+use crate::gpu::{Access, Commands, Device, GpuError, Resource, barrier};
 use crate::passes::{cross, density, lines, scan, segments, sizes, sort};
 use crate::scene::TableScene;
 use std::mem::offset_of;
@@ -48,9 +48,9 @@ pub(super) struct TableParts<'a> {
 
 impl<'a> TableParts<'a> {
     /// What the look-up reads, in the order of `glsl/include/trim.glsl`.
-    pub(super) fn test(self) -> Vec<&'a Buffer> {
+    pub(super) fn test(self) -> Vec<Resource<'a>> {
         let t = self.buffers;
-        vec![&t.line_starts, &t.row_starts, &t.row_counts, &t.intercepts]
+        [&t.line_starts, &t.row_starts, &t.row_counts, &t.intercepts].map(Resource::from).to_vec()
     }
 
     /// Records the passes; what the trim test reads is then ready for it.

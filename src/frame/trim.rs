@@ -14,7 +14,7 @@ use super::Frame;
 use super::rival::{RivalParts, RivalPasses};
 use super::table::{TableParts, TablePasses};
 use crate::buffers::TrimBuffers;
-use crate::gpu::{Buffer, Device, GpuError};
+use crate::gpu::{Device, GpuError, Resource};
 use crate::passes::heal;
 use crate::picture::TrimWay;
 use crate::scene::{ExactScene, SceneData, SolidData, Trims};
@@ -120,10 +120,10 @@ impl<'a> TrimParts<'a> {
     }
 
     /// What the trim test reads, in its order.
-    pub(super) fn test(&self) -> Vec<&'a Buffer> {
+    pub(super) fn test(&self) -> Vec<Resource<'a>> {
         match self.way {
             Parts::Table(parts) => parts.test(),
-            Parts::Exact(s) => s.all().to_vec(),
+            Parts::Exact(s) => s.all().map(Resource::from).to_vec(),
             #[cfg(feature = "rivals")]
             Parts::Rival(parts) => parts.test(),
         }

@@ -52,7 +52,7 @@ pub use quirks::Quirks;
 pub use read_back::ReadBack;
 pub use rendering::{Attachment, Load};
 pub use requirements::Requirements;
-pub use texels::Texels;
+pub use texels::{Texel, Texels};
 pub use timestamps::{ScopeTime, Statistics, Timestamps};
 pub use upload::Uploads;
 

@@ -6,8 +6,45 @@
 
 use super::{Buffer, Device, GpuError, Named};
 use ash::vk;
+use std::ops::Deref;
 
-/// A buffer of usage `UNIFORM_TEXEL_BUFFER` with a view of all of it; frees the view on drop.
+/// What a fetch returns.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Texel {
+    /// `usamplerBuffer`, x.
+    U32,
+    /// `usamplerBuffer`, x and y.
+    U32x2,
+    /// `usamplerBuffer`.
+    U32x4,
+    /// `samplerBuffer`, x.
+    F32,
+    /// `samplerBuffer`.
+    F32x4,
+}
+
+impl Texel {
+    fn format(self) -> vk::Format {
+        match self {
+            Self::U32 => vk::Format::R32_UINT,
+            Self::U32x2 => vk::Format::R32G32_UINT,
+            Self::U32x4 => vk::Format::R32G32B32A32_UINT,
+            Self::F32 => vk::Format::R32_SFLOAT,
+            Self::F32x4 => vk::Format::R32G32B32A32_SFLOAT,
+        }
+    }
+
+    fn bytes(self) -> u64 {
+        match self {
+            Self::U32 | Self::F32 => 4,
+            Self::U32x2 => 8,
+            Self::U32x4 | Self::F32x4 => 16,
+        }
+    }
+}
+
+/// A buffer of usage `UNIFORM_TEXEL_BUFFER` with a view of all of it; frees the view on drop. Passes that write it, or
+/// read it as structs, take it as the buffer that it is.
 #[derive(Debug)]
 pub struct Texels {
     view: vk::BufferView,
@@ -17,28 +54,17 @@ pub struct Texels {
 }
 
 impl Texels {
-    /// Of a texel.
-    pub const BYTES: u64 = 16;
+    /// Of the smallest texel.
+    pub const LEAST_BYTES: u64 = 4;
 
-    /// Views `buffer` as four floats a texel: `samplerBuffer`.
+    /// Views `buffer`.
     ///
     /// # Errors
     /// [`GpuError::TooLarge`] when the buffer has more texels than the device can address,
     /// [`GpuError::Vulkan`].
-    pub fn floats(device: &Device, buffer: Buffer) -> Result<Self, GpuError> {
-        Self::new(device, buffer, vk::Format::R32G32B32A32_SFLOAT)
-    }
-
-    /// Views `buffer` as four words a texel: `usamplerBuffer`.
-    ///
-    /// # Errors
-    /// As [`Texels::floats`].
-    pub fn words(device: &Device, buffer: Buffer) -> Result<Self, GpuError> {
-        Self::new(device, buffer, vk::Format::R32G32B32A32_UINT)
-    }
-
-    fn new(device: &Device, buffer: Buffer, format: vk::Format) -> Result<Self, GpuError> {
-        let limit = u64::from(device.limits().max_texel_buffer_elements) * Self::BYTES;
+    pub fn new(device: &Device, buffer: Buffer, texel: Texel) -> Result<Self, GpuError> {
+        let (format, bytes) = (texel.format(), texel.bytes());
+        let limit = u64::from(device.limits().max_texel_buffer_elements) * bytes;
         if buffer.bytes() > limit {
             return Err(GpuError::TooLarge { resource: buffer.name().to_owned(), bytes: buffer.bytes(), limit });
         }
@@ -49,11 +75,6 @@ impl Texels {
         Ok(Self { view, buffer, device: device.clone() })
     }
 
-    /// The buffer.
-    pub fn buffer(&self) -> &Buffer {
-        &self.buffer
-    }
-
     /// See [`Buffer::write`].
     pub(crate) fn write<T: bytemuck::Pod>(&mut self, offset: u64, data: &[T]) {
         self.buffer.write(offset, data);
@@ -61,6 +82,14 @@ impl Texels {
 
     pub(crate) fn view(&self) -> &vk::BufferView {
         &self.view
+    }
+}
+
+impl Deref for Texels {
+    type Target = Buffer;
+
+    fn deref(&self) -> &Buffer {
+        &self.buffer
     }
 }
 

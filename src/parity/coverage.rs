@@ -209,7 +209,8 @@ fn hard_cases() {
 mod parity {
     use super::super::harness::{Gpu, Mismatch, same};
     use super::*;
-    use crate::gpu::{Binding, ComputeInfo, Pipeline};
+    use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource, Texel};
+    use crate::shaders::TRIM_EXACT;
 
     fn spirv() -> Vec<u32> {
         let bytes = include_bytes!("../../tests/gpu/spirv/coverage.comp.spv");
@@ -218,15 +219,15 @@ mod parity {
 
     /// Pixels of each face on the GPU, with the data of `given`, against the twin with `expected`; bits of numbers.
     fn compare(gpu: &Gpu, given: &ExactData, expected: &ExactData, pixels: &[Vec<Pixel>]) -> Result<(), Mismatch> {
-        let buffers = [
-            gpu.upload("faces", &given.faces),
-            gpu.upload("bands", &given.bands),
-            gpu.upload("cells", &given.cells),
-            gpu.upload("entries", &given.entries),
-            gpu.upload("arcs", &given.arcs),
-            gpu.upload("points", &given.points),
+        let texels = [
+            gpu.upload_texels("faces", &given.faces, Texel::U32x2),
+            gpu.upload_texels("bands", &given.bands, Texel::U32x2),
+            gpu.upload_texels("cells", &given.cells, Texel::U32x4),
+            gpu.upload_texels("entries", &given.entries, Texel::U32),
+            gpu.upload_texels("arcs", &given.arcs, Texel::U32x4),
+            gpu.upload_texels("points", &given.points, Texel::F32),
         ];
-        let (spirv, bindings) = (spirv(), [Binding::Storage; 8]);
+        let (spirv, bindings) = (spirv(), [TRIM_EXACT.bindings, &[Binding::Storage; 2]].concat());
         let info = ComputeInfo { name: "coverage", spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
         let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
         for (face, pixels) in pixels.iter().enumerate() {
@@ -234,7 +235,8 @@ mod parity {
             let asked = gpu.upload("asked", &words);
             let answers = gpu.upload("answers", &vec![[99u32; 4]; pixels.len()]);
             gpu.run(|cmd| {
-                let resources: Vec<_> = buffers.iter().chain([&asked, &answers]).map(Into::into).collect();
+                let asks = [&asked, &answers].map(Resource::from);
+                let resources: Vec<_> = texels.iter().map(Resource::from).chain(asks).collect();
                 cmd.bind(&pipeline, &resources, bytemuck::bytes_of(&[face as u32, pixels.len() as u32]));
                 cmd.dispatch(pixels.len().div_ceil(64) as u32);
             });

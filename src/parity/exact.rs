@@ -196,7 +196,8 @@ fn memory_is_linear_in_arcs() {
 mod parity {
     use super::super::harness::{Gpu, Mismatch, same};
     use super::*;
-    use crate::gpu::{Binding, ComputeInfo, Pipeline};
+    use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource, Texel};
+    use crate::shaders::TRIM_EXACT;
 
     fn spirv() -> Vec<u32> {
         let bytes = include_bytes!("../../tests/gpu/spirv/exact.comp.spv");
@@ -205,22 +206,23 @@ mod parity {
 
     /// Points of each face on the GPU, with the data of `given`, against the twin with `expected`.
     fn compare(gpu: &Gpu, given: &ExactData, expected: &ExactData, points: &[Vec<[f32; 2]>]) -> Result<(), Mismatch> {
-        let buffers = [
-            gpu.upload("faces", &given.faces),
-            gpu.upload("bands", &given.bands),
-            gpu.upload("cells", &given.cells),
-            gpu.upload("entries", &given.entries),
-            gpu.upload("arcs", &given.arcs),
-            gpu.upload("points", &given.points),
+        let texels = [
+            gpu.upload_texels("faces", &given.faces, Texel::U32x2),
+            gpu.upload_texels("bands", &given.bands, Texel::U32x2),
+            gpu.upload_texels("cells", &given.cells, Texel::U32x4),
+            gpu.upload_texels("entries", &given.entries, Texel::U32),
+            gpu.upload_texels("arcs", &given.arcs, Texel::U32x4),
+            gpu.upload_texels("points", &given.points, Texel::F32),
         ];
-        let (spirv, bindings) = (spirv(), [Binding::Storage; 8]);
+        let (spirv, bindings) = (spirv(), [TRIM_EXACT.bindings, &[Binding::Storage; 2]].concat());
         let info = ComputeInfo { name: "exact", spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
         let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
         for (face, points) in points.iter().enumerate() {
             let asked = gpu.upload("asked", points);
             let answers = gpu.upload("answers", &vec![[99i32; 2]; points.len()]);
             gpu.run(|cmd| {
-                let resources: Vec<_> = buffers.iter().chain([&asked, &answers]).map(Into::into).collect();
+                let asks = [&asked, &answers].map(Resource::from);
+                let resources: Vec<_> = texels.iter().map(Resource::from).chain(asks).collect();
                 cmd.bind(&pipeline, &resources, bytemuck::bytes_of(&[face as u32, points.len() as u32]));
                 cmd.dispatch(points.len().div_ceil(64) as u32);
             });

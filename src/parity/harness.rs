@@ -1,8 +1,9 @@
 //! A watched device, the way to and from it, and comparisons that name the place.
 
 use super::Case;
-use crate::gpu::{Access, Buffer, Commands, Device, Pool, ReadBack, Uploads, barrier};
+use crate::gpu::{Access, Buffer, Commands, Device, Pool, ReadBack, Texel, Texels, Uploads, barrier};
 use crate::headless::{HeadlessDevice, HeadlessOptions};
+use ash::vk;
 use bytemuck::Pod;
 use std::fmt::Debug;
 
@@ -46,13 +47,26 @@ impl Gpu {
         }
     }
 
-    /// A buffer of `data` for shaders and indirect commands.
+    /// A buffer of `data` for shaders, as constants too, and indirect commands.
     pub(super) fn upload<T: Pod>(&self, name: &str, data: &[T]) -> Buffer {
         let record = |cmd: &Commands<'_>| {
             let mut uploads = Uploads::new();
-            let buffer = uploads.buffer(cmd, Pool::Transient, name, Buffer::INDIRECT, data).unwrap();
-            uploads.finish(cmd, Access::COMPUTE_WRITE | Access::INDIRECT_READ);
+            let usage = Buffer::INDIRECT | vk::BufferUsageFlags::UNIFORM_BUFFER;
+            let buffer = uploads.buffer(cmd, Pool::Transient, name, usage, data).unwrap();
+            uploads.finish(cmd, Access::COMPUTE_WRITE | Access::INDIRECT_READ | Access::UNIFORM_READ);
             (buffer, uploads)
+        };
+        self.0.submit(record).unwrap().0
+    }
+
+    /// The same, for shaders that fetch texels.
+    pub(super) fn upload_texels<T: Pod>(&self, name: &str, data: &[T], texel: Texel) -> Texels {
+        let record = |cmd: &Commands<'_>| {
+            let mut uploads = Uploads::new();
+            let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
+            let buffer = uploads.buffer(cmd, Pool::Transient, name, usage, data).unwrap();
+            uploads.finish(cmd, Access::COMPUTE_READ);
+            (Texels::new(cmd.device(), buffer, texel).unwrap(), uploads)
         };
         self.0.submit(record).unwrap().0
     }

@@ -6,7 +6,7 @@ use super::shapes::model_and_cameras;
 use super::squares::drawn;
 use super::{Case, Random};
 use crate::abi::{Counters, SQUARE};
-use crate::gpu::{Access, Pool, Texels, Uploads};
+use crate::gpu::{Access, Pool, Texel, Texels, Uploads};
 use crate::model::Camera;
 use crate::passes::{farthest, hide, reveal};
 use crate::twin;
@@ -120,7 +120,7 @@ fn compare_reveal(gpu: &Gpu, case: &Case, given: &Farthest, expected: &Farthest)
         let usage = ash::vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
         let buffer = uploads.buffer(cmd, Pool::Transient, "points", usage, &case.data.points).unwrap();
         uploads.finish(cmd, Access::COMPUTE_READ);
-        points = Some(Texels::floats(gpu.device(), buffer).unwrap());
+        points = Some(Texels::new(gpu.device(), buffer, Texel::F32x4).unwrap());
     });
     let farthest = gpu.upload("farthest", &given.depths);
     let (taus, hidden) = (gpu.upload("taus", &old), gpu.upload("hidden", &vec![7u32; n]));

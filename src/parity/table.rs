@@ -71,7 +71,8 @@ mod parity {
     use super::super::harness::{Gpu, Mismatch, same};
     use super::super::shapes::cases;
     use super::*;
-    use crate::gpu::{Binding, ComputeInfo, Pipeline};
+    use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource, Texel};
+    use crate::shaders::TRIM_TABLE;
 
     /// Words of the module; `include_bytes` aligns to bytes only.
     fn spirv() -> Vec<u32> {
@@ -83,23 +84,25 @@ mod parity {
         let placed = case.data.face_instances[SHEET];
         let (strips, points) = (case.data.faces[SHEET].strip_count as f32, points(4096));
         let frame = gpu.upload("frame", &[case.frame]);
-        let line_starts = gpu.upload("line starts", &given.line_starts);
-        let row_starts = gpu.upload("row starts", &given.row_starts);
-        let row_counts = gpu.upload("row counts", &given.flip_counts);
-        let flips = gpu.upload("flips", &given.flips);
+        let line_starts = gpu.upload_texels("line starts", &given.line_starts, Texel::U32);
+        let row_starts = gpu.upload_texels("row starts", &given.row_starts, Texel::U32);
+        let row_counts = gpu.upload_texels("row counts", &given.flip_counts, Texel::U32);
+        let flips = gpu.upload_texels("flips", &given.flips, Texel::F32);
         let uvs = gpu.upload("points", &points);
         let inside = gpu.upload("inside", &vec![7u32; points.len()]);
         let info = ComputeInfo {
             name: "table",
             spirv: &spirv(),
-            bindings: &[Binding::Storage; 7],
+            bindings: &[&[Binding::Uniform], TRIM_TABLE.bindings, &[Binding::Storage; 2]].concat(),
             push_bytes: 8,
             constants: &[],
         };
         let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
         let push = [placed.first_strip, strips.to_bits()];
         gpu.run(|cmd| {
-            let resources = [&frame, &line_starts, &row_starts, &row_counts, &flips, &uvs, &inside].map(Into::into);
+            let texels = [&line_starts, &row_starts, &row_counts, &flips].map(Resource::from);
+            let answers = [&uvs, &inside].map(Resource::from);
+            let resources: Vec<_> = [Resource::from(&frame)].into_iter().chain(texels).chain(answers).collect();
             cmd.bind(&pipeline, &resources, bytemuck::bytes_of(&push));
             cmd.dispatch(points.len() as u32 / 64);
         });

@@ -11,7 +11,8 @@
 
 use crate::bindings::with_constants;
 use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, Device, GpuError, GraphicsInfo, Image, Pipeline, Texels,
+    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, Device, GpuError, GraphicsInfo, Image, Pipeline,
+    Resource, Texels,
 };
 use crate::shaders::{self, TRIM_EXACT};
 use ash::vk;
@@ -37,14 +38,15 @@ pub(crate) struct Bindings<'a> {
     /// Linear colour and depth.
     pub resolved: &'a Image,
     /// Of the exact way to trim.
-    pub trim: &'a [&'a Buffer],
+    pub trim: &'a [Resource<'a>],
 }
 
 impl Coverage {
     pub(crate) fn new(device: &Device, colour: vk::Format, rational: bool) -> Result<Self, GpuError> {
-        let mut bindings = with_constants(9 + TRIM_EXACT.buffers);
+        let mut bindings = with_constants(9);
         bindings[6] = Binding::Texels;
         bindings[7..9].fill(Binding::StorageImage);
+        bindings.extend(TRIM_EXACT.bindings);
         let pipeline = Pipeline::graphics(
             device,
             &GraphicsInfo {
@@ -72,7 +74,7 @@ impl Coverage {
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, colour: Attachment<'_>) {
         let buffers = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items].map(Into::into);
         let images = [b.points.into(), b.visibility.into(), b.resolved.into()];
-        let trim = b.trim.iter().map(|buffer| (*buffer).into());
+        let trim = b.trim.iter().copied();
         let resources: Vec<_> = buffers.into_iter().chain(images).chain(trim).collect();
         cmd.rendering(b.visibility.size(), &[colour], None, || {
             cmd.bind(&self.pipeline, &resources, &[]);

@@ -66,7 +66,7 @@ pub(crate) struct Bindings<'a> {
     /// What is no patch; `None` where the scene has nothing else.
     pub others: Option<Others<'a>>,
     /// What the trim test reads, in its order.
-    pub trim: &'a [&'a Buffer],
+    pub trim: &'a [Resource<'a>],
     /// The volume that trims the scene; `None` where there is none.
     pub volume: Option<Primitives<'a>>,
     pub dispatch: &'a Buffer,
@@ -98,7 +98,8 @@ impl Heal {
         let mut find = with_constants(7);
         find[1] = Binding::StorageImage;
         find[5] = Binding::Sampled;
-        let mut heal = with_constants(15 + test.buffers);
+        let mut heal = with_constants(15);
+        heal.extend(test.bindings);
         heal.extend(PRIMITIVES.iter().filter(|_| volume.is_some()));
         heal[6] = Binding::Texels;
         heal[7] = Binding::StorageImage;
@@ -163,7 +164,7 @@ impl Heal {
             meshes.triangles.into(),
             meshes.positions.into(),
         ];
-        let trim = b.trim.iter().map(|&buffer| buffer.into());
+        let trim = b.trim.iter().copied();
         let volume = b.volume.iter().flat_map(Primitives::resources);
         let resources: Vec<_> = resources.into_iter().chain(trim).chain(volume).collect();
         cmd.bind(&self.heal, &resources, &[]);

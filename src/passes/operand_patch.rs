@@ -10,7 +10,7 @@
 
 use crate::abi::Counters;
 use crate::bindings::with_constants;
-use crate::gpu::{Binding, Buffer, Commands, Device, GpuError, GraphicsInfo, Pipeline, Texels};
+use crate::gpu::{Binding, Buffer, Commands, Device, GpuError, GraphicsInfo, Pipeline, Resource, Texels};
 use crate::shaders::{self, TrimTest};
 use ash::vk;
 use std::mem::offset_of;
@@ -54,7 +54,7 @@ pub(crate) struct Bindings<'a> {
     pub starts: &'a Buffer,
     pub fragments: &'a Buffer,
     /// What the trim test reads, in its order.
-    pub trim: &'a [&'a Buffer],
+    pub trim: &'a [Resource<'a>],
     /// Sides that faces share; in scenes where they do.
     pub links: Option<&'a Buffer>,
     pub draws: &'a Buffer,
@@ -80,9 +80,10 @@ impl OperandPatch {
             ];
             let linked = linked && trimmed.is_none();
             let surface = if linked { shaders::OPERAND_LINKED_TESE } else { shaders::VISIBILITY_TESE };
-            let of_stages = trimmed.map_or(usize::from(linked), |test| test.buffers);
-            let mut bindings = with_constants(13 + of_stages);
+            let mut bindings = with_constants(13);
             bindings[6] = Binding::Texels;
+            bindings.extend(linked.then_some(Binding::Storage));
+            bindings.extend(trimmed.map_or(&[][..], |test| test.bindings));
             Pipeline::graphics(
                 device,
                 &GraphicsInfo {
@@ -137,7 +138,7 @@ impl OperandPatch {
                 cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
             }
             if let Some(trimmed) = &step.trimmed {
-                let resources: Vec<_> = shared().chain(b.trim.iter().map(|&buffer| buffer.into())).collect();
+                let resources: Vec<_> = shared().chain(b.trim.iter().copied()).collect();
                 cmd.bind(trimmed, &resources, &[]);
                 let count = offset_of!(Counters, trimmed_draws) as u64;
                 cmd.draw_indirect_count(b.draws, bytes, b.counters, count, draw_capacity);

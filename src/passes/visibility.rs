@@ -13,7 +13,7 @@ use crate::abi::Counters;
 use crate::bindings::{PRIMITIVES, Primitives, with_constants};
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
-    Texels,
+    Resource, Texels,
 };
 use crate::shaders::{self, TrimTest};
 use ash::vk;
@@ -69,7 +69,7 @@ pub(crate) struct Bindings<'a> {
     /// Where rings are found; in scenes with trims only.
     pub rings: Option<&'a Buffer>,
     /// What the trim test reads, in its order.
-    pub trim: &'a [&'a Buffer],
+    pub trim: &'a [Resource<'a>],
     /// The volume that trims the scene; `None` where there is none.
     pub volume: Option<Primitives<'a>>,
     /// Sides that faces share; in scenes where they do.
@@ -106,7 +106,7 @@ impl Visibility {
                         (vk::ShaderStageFlags::TESSELLATION_EVALUATION, surface),
                         (vk::ShaderStageFlags::FRAGMENT, fragment),
                     ],
-                    bindings: &bindings(trimmed.map(|test| test.buffers), kinds.volume.is_some(), linked),
+                    bindings: &bindings(trimmed.map(|test| test.bindings), kinds.volume.is_some(), linked),
                     push_bytes: 0,
                     constants: &[
                         (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
@@ -151,7 +151,7 @@ impl Visibility {
                 cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
             }
             if let (Some(trimmed), Some(rings)) = (&self.trimmed, b.rings) {
-                let test = b.trim.iter().map(|&buffer| buffer.into()).chain(volume());
+                let test = b.trim.iter().copied().chain(volume());
                 let resources: Vec<_> = shared().chain([rings.into()]).chain(test).collect();
                 cmd.bind(trimmed, &resources, &[]);
                 let count = offset_of!(Counters, trimmed_draws) as u64;
@@ -161,11 +161,14 @@ impl Visibility {
     }
 }
 
-/// Bindings of a pipeline whose trim test reads so many buffers beside the rings; `None`: without one. `linked`: it
-/// reads links.
-fn bindings(of_test: Option<usize>, volume: bool, linked: bool) -> Vec<Binding> {
-    let mut bindings = with_constants(10 + of_test.map_or(0, |buffers| 1 + buffers));
+/// Bindings of a pipeline whose trim test has these beside the rings; `None`: without one. `linked`: it reads links.
+fn bindings(of_test: Option<&[Binding]>, volume: bool, linked: bool) -> Vec<Binding> {
+    let mut bindings = with_constants(10);
     bindings[6] = Binding::Texels;
+    if let Some(test) = of_test {
+        bindings.push(Binding::Storage);
+        bindings.extend(test);
+    }
     bindings.extend(PRIMITIVES.iter().filter(|_| volume));
     bindings.extend(linked.then_some(Binding::Storage));
     bindings

@@ -48,7 +48,7 @@ impl SlotCentres {
         for (place, name, list) in lists {
             let texels: Vec<_> = list.into_iter().flatten().map(|p| p.seen_from(camera.eye)).collect();
             let bytes = size_of_val(texels.as_slice()) as u64;
-            if list.is_none() || place.as_ref().is_some_and(|t| t.buffer().bytes() < bytes) {
+            if list.is_none() || place.as_ref().is_some_and(|t| t.bytes() < bytes) {
                 retired.extend(place.take().map(Retired::Texels));
             }
             if list.is_some() && place.is_none() {

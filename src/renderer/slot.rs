@@ -7,7 +7,7 @@ use crate::abi;
 use crate::abi::Counters;
 use crate::capacities::Capacities;
 use crate::frame::SampleBuffers;
-use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Pool, ReadBack, Texels, Timestamps};
+use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Pool, ReadBack, Texel, Texels, Timestamps};
 use crate::model::Camera;
 use crate::picture::PoolBytes;
 use crate::scene::view;
@@ -153,8 +153,6 @@ pub(super) fn upload_buffer(device: &Device, name: &str, bytes: u64) -> Result<B
 /// Of four floats each.
 pub(super) fn upload_texels(device: &Device, name: &str, bytes: u64) -> Result<Texels, GpuError> {
     let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
-    Texels::floats(
-        device,
-        Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })?,
-    )
+    let buffer = Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })?;
+    Texels::new(device, buffer, Texel::F32x4)
 }

@@ -3,7 +3,7 @@
 use super::solids::Surface;
 use super::{Blister, SceneData, SolidData};
 use crate::bindings::Primitives;
-use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texels, Uploads};
+use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texel, Texels, Uploads};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
 use crate::picture::TrimWay;
@@ -102,24 +102,24 @@ pub(crate) enum Trims {
 pub(crate) enum RivalScene {
     Untrimmed,
     /// Faces, bands, cells, lists, pieces, points.
-    Bisect([Buffer; 6]),
+    Bisect([Texels; 6]),
     /// Curves and cells; texels to a pixel and the number of placed faces.
     Texture(TableScene, Buffer),
 }
 
 /// Arcs in bands and cells; see `glsl/include/exact.glsl`.
 pub(crate) struct ExactScene {
-    pub faces: Buffer,
-    pub bands: Buffer,
-    pub cells: Buffer,
-    pub entries: Buffer,
-    pub arcs: Buffer,
-    pub points: Buffer,
+    pub faces: Texels,
+    pub bands: Texels,
+    pub cells: Texels,
+    pub entries: Texels,
+    pub arcs: Texels,
+    pub points: Texels,
 }
 
 impl ExactScene {
     /// As the trim test reads them.
-    pub(crate) fn all(&self) -> [&Buffer; 6] {
+    pub(crate) fn all(&self) -> [&Texels; 6] {
         [&self.faces, &self.bands, &self.cells, &self.entries, &self.arcs, &self.points]
     }
 }
@@ -158,7 +158,7 @@ impl Scene {
             outside: (!data.outside.is_empty())
                 .then(|| persistent(&mut uploads, cmd, "patches outside", &data.outside))
                 .transpose()?,
-            points: texels(&mut uploads, cmd, "points", &data.points)?,
+            points: texels(&mut uploads, cmd, "points", &data.points, Texel::F32x4)?,
             links: (!data.links.is_empty())
                 .then(|| persistent(&mut uploads, cmd, "patch links", &data.links))
                 .transpose()?,
@@ -172,12 +172,12 @@ impl Scene {
                 #[cfg(feature = "rivals")]
                 Some(TrimWay::Rival(rival)) => Some(Trims::Rival(rival_scene(&mut uploads, cmd, data, rival)?)),
                 Some(TrimWay::Exact) => Some(Trims::Exact(ExactScene {
-                    faces: persistent(&mut uploads, cmd, "trim faces", &data.exact.faces)?,
-                    bands: persistent(&mut uploads, cmd, "trim bands", &data.exact.bands)?,
-                    cells: persistent(&mut uploads, cmd, "trim band cells", &data.exact.cells)?,
-                    entries: persistent(&mut uploads, cmd, "trim entries", &data.exact.entries)?,
-                    arcs: persistent(&mut uploads, cmd, "trim arcs", &data.exact.arcs)?,
-                    points: persistent(&mut uploads, cmd, "trim arc points", &data.exact.points)?,
+                    faces: texels(&mut uploads, cmd, "trim faces", &data.exact.faces, Texel::U32x2)?,
+                    bands: texels(&mut uploads, cmd, "trim bands", &data.exact.bands, Texel::U32x2)?,
+                    cells: texels(&mut uploads, cmd, "trim band cells", &data.exact.cells, Texel::U32x4)?,
+                    entries: texels(&mut uploads, cmd, "trim entries", &data.exact.entries, Texel::U32)?,
+                    arcs: texels(&mut uploads, cmd, "trim arcs", &data.exact.arcs, Texel::U32x4)?,
+                    points: texels(&mut uploads, cmd, "trim arc points", &data.exact.points, Texel::F32)?,
                 })),
             },
             solids: (!data.solids.leaves.is_empty())
@@ -274,12 +274,12 @@ fn rival_scene(
         Rival::Bisect { .. } => {
             let b = &data.bisect;
             RivalScene::Bisect([
-                persistent(uploads, cmd, "trim bisect faces", &b.faces)?,
-                persistent(uploads, cmd, "trim bisect bands", &b.bands)?,
-                persistent(uploads, cmd, "trim bisect cells", &b.cells)?,
-                persistent(uploads, cmd, "trim bisect lists", &b.lists)?,
-                persistent(uploads, cmd, "trim bisect pieces", &b.pieces)?,
-                persistent(uploads, cmd, "trim bisect points", &b.points)?,
+                texels(uploads, cmd, "trim bisect faces", &b.faces, Texel::U32)?,
+                texels(uploads, cmd, "trim bisect bands", &b.bands, Texel::U32x2)?,
+                texels(uploads, cmd, "trim bisect cells", &b.cells, Texel::U32x4)?,
+                texels(uploads, cmd, "trim bisect lists", &b.lists, Texel::U32)?,
+                texels(uploads, cmd, "trim bisect pieces", &b.pieces, Texel::U32x2)?,
+                texels(uploads, cmd, "trim bisect points", &b.points, Texel::F32)?,
             ])
         }
         Rival::Texture { eighths } => {
@@ -302,14 +302,19 @@ fn shells(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SolidData) -> Result
 }
 
 fn surfaces(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &SolidData) -> Result<Texels, GpuError> {
-    texels(uploads, cmd, name, &data.surfaces.iter().map(Surface::texels).collect::<Vec<_>>())
+    texels(uploads, cmd, name, &data.surfaces.iter().map(Surface::texels).collect::<Vec<_>>(), Texel::F32x4)
 }
 
-/// Of four floats each.
-fn texels<T: Pod>(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &[T]) -> Result<Texels, GpuError> {
+fn texels<T: Pod>(
+    uploads: &mut Uploads,
+    cmd: &Commands<'_>,
+    name: &str,
+    data: &[T],
+    texel: Texel,
+) -> Result<Texels, GpuError> {
     let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
     let buffer = uploads.buffer(cmd, Pool::Persistent, name, usage, data)?;
-    Texels::floats(cmd.device(), buffer)
+    Texels::new(cmd.device(), buffer, texel)
 }
 
 fn persistent<T: Pod>(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &[T]) -> Result<Buffer, GpuError> {

@@ -28,24 +28,55 @@ struct BisectPiece {
     uint degree;
 };
 
-layout(scalar, binding = TRIM_BINDING + 0) readonly buffer BisectFaces { BisectFace bisect_faces[]; };
-layout(scalar, binding = TRIM_BINDING + 1) readonly buffer BisectBands { BisectBand bisect_bands[]; };
-layout(scalar, binding = TRIM_BINDING + 2) readonly buffer BisectCells { BisectCell bisect_cells[]; };
-layout(scalar, binding = TRIM_BINDING + 3) readonly buffer BisectLists { uint bisect_lists[]; };
-layout(scalar, binding = TRIM_BINDING + 4) readonly buffer BisectPieces { BisectPiece bisect_pieces[]; };
-layout(scalar, binding = TRIM_BINDING + 5) readonly buffer BisectPoints { vec3 bisect_points[]; };
+// texels, as those of exact.glsl
+layout(binding = TRIM_BINDING + 0) uniform usamplerBuffer bisect_faces;  // three a face
+layout(binding = TRIM_BINDING + 1) uniform usamplerBuffer bisect_bands;  // one a band
+layout(binding = TRIM_BINDING + 2) uniform usamplerBuffer bisect_cells;  // one a cell
+layout(binding = TRIM_BINDING + 3) uniform usamplerBuffer bisect_lists;  // one an entry
+layout(binding = TRIM_BINDING + 4) uniform usamplerBuffer bisect_pieces; // three a piece
+layout(binding = TRIM_BINDING + 5) uniform samplerBuffer bisect_points;  // three a control point
+
+BisectFace bisect_face_at(uint i) {
+    int at = int(i) * 3;
+    return BisectFace(
+        texelFetch(bisect_faces, at).x, texelFetch(bisect_faces, at + 1).x, texelFetch(bisect_faces, at + 2).x
+    );
+}
+
+BisectBand bisect_band_at(uint i) {
+    uvec2 band = texelFetch(bisect_bands, int(i)).xy;
+    return BisectBand(uintBitsToFloat(band.x), band.y);
+}
+
+BisectCell bisect_cell_at(uint i) {
+    uvec4 cell = texelFetch(bisect_cells, int(i));
+    return BisectCell(uintBitsToFloat(cell.x), uintBitsToFloat(cell.y), cell.z, cell.w);
+}
+
+BisectPiece bisect_piece_at(uint i) {
+    int at = int(texelFetch(bisect_lists, int(i)).x) * 3;
+    uvec2 start = texelFetch(bisect_pieces, at).xy;
+    uvec2 end = texelFetch(bisect_pieces, at + 1).xy;
+    uvec2 rest = texelFetch(bisect_pieces, at + 2).xy;
+    return BisectPiece(uintBitsToFloat(start), uintBitsToFloat(end), rest.x, rest.y);
+}
+
+vec3 bisect_point_at(uint i) {
+    int at = int(i) * 3;
+    return vec3(texelFetch(bisect_points, at).x, texelFetch(bisect_points, at + 1).x, texelFetch(bisect_points, at + 2).x);
+}
 
 vec2 bisect_point(BisectPiece piece, float t) {
     float s = 1.0 - t;
     float f = 1.0;
     float c = 1.0;
-    vec3 sum = bisect_points[piece.first] * s;
+    vec3 sum = bisect_point_at(piece.first) * s;
     for (uint k = 1u; k < piece.degree; ++k) {
         f *= t;
         c *= float(piece.degree - k + 1u) / float(k);
-        sum = (sum + bisect_points[piece.first + k] * (f * c)) * s;
+        sum = (sum + bisect_point_at(piece.first + k) * (f * c)) * s;
     }
-    sum += bisect_points[piece.first + piece.degree] * (f * t);
+    sum += bisect_point_at(piece.first + piece.degree) * (f * t);
     return sum.xy / sum.z;
 }
 
@@ -81,18 +112,18 @@ bool bisect_cell(BisectFace own, vec2 uv, out uint band, out uint cell) {
     uint ends = hi;
     while (lo < hi) {
         uint mid = (lo + hi) / 2u;
-        if (bisect_bands[own.first_band + mid].v < uv.y) lo = mid + 1u;
+        if (bisect_band_at(own.first_band + mid).v < uv.y) lo = mid + 1u;
         else hi = mid;
     }
     band = own.first_band + lo - 1u;
     cell = 0u;
     if (lo == 0u || lo == ends) return false;
-    uint first = bisect_bands[band].first_cell;
+    uint first = bisect_band_at(band).first_cell;
     lo = first;
-    hi = bisect_bands[band + 1u].first_cell;
+    hi = bisect_band_at(band + 1u).first_cell;
     while (lo < hi) {
         uint mid = (lo + hi) / 2u;
-        if (bisect_cells[mid].u_lo <= uv.x) lo = mid + 1u;
+        if (bisect_cell_at(mid).u_lo <= uv.x) lo = mid + 1u;
         else hi = mid;
     }
     cell = lo - 1u;
@@ -101,29 +132,29 @@ bool bisect_cell(BisectFace own, vec2 uv, out uint band, out uint cell) {
 
 // Of a box within a band: it lies between two cells or beyond all.
 uint trim_area(FaceInstance fi, vec2 lo, vec2 hi) {
-    BisectFace own = bisect_faces[fi.face];
+    BisectFace own = bisect_face_at(fi.face);
     uint band;
     uint cell;
-    if (own.band_count == 0u || hi.y <= bisect_bands[own.first_band].v) return TRIM_OUT;
-    if (lo.y > bisect_bands[own.first_band + own.band_count].v) return TRIM_OUT;
+    if (own.band_count == 0u || hi.y <= bisect_band_at(own.first_band).v) return TRIM_OUT;
+    if (lo.y > bisect_band_at(own.first_band + own.band_count).v) return TRIM_OUT;
     bool right = bisect_cell(own, hi, band, cell);
-    if (band >= own.first_band + own.band_count || bisect_bands[band].v >= lo.y) return TRIM_MIXED;
+    if (band >= own.first_band + own.band_count || bisect_band_at(band).v >= lo.y) return TRIM_MIXED;
     if (!right) return TRIM_OUT;
-    if (lo.x <= bisect_cells[cell].u_hi) return TRIM_MIXED;
-    return (bisect_cells[cell].count >> 31) != 0u ? TRIM_IN : TRIM_OUT;
+    if (lo.x <= bisect_cell_at(cell).u_hi) return TRIM_MIXED;
+    return (bisect_cell_at(cell).count >> 31) != 0u ? TRIM_IN : TRIM_OUT;
 }
 
 bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
-    BisectFace own = bisect_faces[fi.face];
+    BisectFace own = bisect_face_at(fi.face);
     uint band;
     uint at;
     if (!bisect_cell(own, uv, band, at)) return false;
-    BisectCell cell = bisect_cells[at];
+    BisectCell cell = bisect_cell_at(at);
     if (uv.x > cell.u_hi) return (cell.count >> 31) != 0u;
     uint count = cell.count & 0x3fffffffu;
     bool inside = ((cell.count >> 30) & 1u) != 0u;
     for (uint k = 0u; k < count; ++k) {
-        BisectPiece piece = bisect_pieces[bisect_lists[cell.first + k]];
+        BisectPiece piece = bisect_piece_at(cell.first + k);
         inside = inside != bisect_left(piece, uv, own.steps);
     }
     return inside;

@@ -5,15 +5,12 @@
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
-layout(scalar, binding = 0) readonly buffer Frames { Frame frame; };
-layout(scalar, binding = 1) readonly buffer LineStarts { uint line_starts[]; };
-layout(scalar, binding = 2) readonly buffer RowStarts { uint row_starts[]; };
-layout(scalar, binding = 3) readonly buffer RowCounts { uint row_counts[]; };
-layout(scalar, binding = 4) readonly buffer Flips { float flips[]; };
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 5) readonly buffer Points { vec2 points[]; };
 layout(scalar, binding = 6) writeonly buffer Inside { uint inside[]; };
 layout(push_constant) uniform Push { uint first_strip; float strips; };
 
+#define TABLE_BINDING 1
 #include "table.glsl"
 
 void main() {
