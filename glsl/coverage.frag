@@ -17,12 +17,6 @@
 #include "view.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 1) readonly buffer Views { View views[]; };
-layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
-layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
-layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
-layout(binding = 6) uniform samplerBuffer points;
 layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
 layout(binding = 8, rgba32f) readonly uniform image2D resolved; // linear colour, depth; UNSEEN where nothing is
 
@@ -30,6 +24,7 @@ layout(binding = 8, rgba32f) readonly uniform image2D resolved; // linear colour
 #include "exact.glsl"
 #include "coverage.glsl"
 #include "mean.glsl"
+#include "placed.glsl"
 #include "patch.glsl"
 #include "refine.glsl"
 #include "ring.glsl"
@@ -55,7 +50,7 @@ struct Covering {
 
 // Placed face + 1 of a pixel that sees a patch, else 0.
 uint placed_face(uvec2 seen) {
-    return sees_nothing(seen.x) ? 0u : item_face_instance[seen_item(seen.x)] + 1u;
+    return sees_nothing(seen.x) ? 0u : face_instance_of(seen_item(seen.x)) + 1u;
 }
 
 vec2 face_uv(Patch patch_, vec2 uv) { return patch_.domain.xy + uv * patch_.domain.zw; }
@@ -63,12 +58,12 @@ vec2 face_uv(Patch patch_, vec2 uv) { return patch_.domain.xy + uv * patch_.doma
 // The face that is seen somewhere, at a pixel near that.
 Covering covering(uvec2 seen, vec2 pixel) {
     uint item = seen_item(seen.x);
-    FaceInstance fi = face_instances[item_face_instance[item]];
-    Face face = faces[fi.face];
+    FaceInstance fi = face_instance_at(face_instance_of(item));
+    Face face = face_at(fi.face);
     Covering c = Covering(false, UNSEEN, vec2(0.0), mat2(1.0), Cover(1.0, vec2(0.0), false));
     if ((face.flags & FACE_TRIMMED) == 0u) return c;
-    Patch patch_ = patches[face.first_patch + item - fi.first_item];
-    View view = views[fi.instance];
+    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    View view = view_at(fi.instance);
     Sample s = refine(patch_, view, unpack_uv(seen.y), pixel);
     mat2 along = pixels_along(s, view);
     c.along = mat2(along[0] / patch_.domain.z, along[1] / patch_.domain.w);
@@ -111,8 +106,8 @@ vec4 mixed(ivec2 at, uvec2 own, uint own_face) {
         bool known = face == 0u || (face == own_face && !here.cover.cut);
         if (face == own_face && here.cover.cut) {
             uint item = seen_item(seen.x);
-            FaceInstance fi = face_instances[item_face_instance[item]];
-            Patch patch_ = patches[faces[fi.face].first_patch + item - fi.first_item];
+            FaceInstance fi = face_instance_at(face_instance_of(item));
+            Patch patch_ = patch_at(face_at(fi.face).first_patch + item - fi.first_item);
             known = length(here.along * (face_uv(patch_, unpack_uv(seen.y)) - here.uv)) < SAME_SHEET_PX;
         }
         for (uint i = 0u; i < met_count; ++i) known = known || met[i] == face;

@@ -11,15 +11,10 @@ layout(constant_id = 11) const bool DRAWS_OPERANDS = false;
 
 layout(vertices = 1) out;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 1) readonly buffer Views { View views[]; };
-layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
-layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
-layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
-layout(binding = 6) uniform samplerBuffer points;
 layout(scalar, binding = 7) readonly buffer FactorsBuffer { Factors factors[]; };
 layout(scalar, binding = 8) readonly buffer SubPatches { SubPatch sub_patches[]; };
 
+#include "placed.glsl"
 #include "patch.glsl"
 
 layout(location = 0) flat in uint sub_patch[];
@@ -47,8 +42,8 @@ bool seen(Patch patch_, View view, vec2 lo, vec2 hi, float far) {
 
 void main() {
     SubPatch sub = sub_patches[sub_patch[0]];
-    FaceInstance fi = face_instances[item_face_instance[sub.item]];
-    uint index = faces[fi.face].first_patch + sub.item - fi.first_item;
+    FaceInstance fi = face_instance_at(face_instance_of(sub.item));
+    uint index = face_at(fi.face).first_patch + sub.item - fi.first_item;
     Factors f = factors[sub.item];
     uvec2 splits = uvec2(f.splits & 0xffffu, f.splits >> 16);
     uvec2 place = uvec2(sub.place & 0xffu, sub.place >> 8);
@@ -66,12 +61,12 @@ void main() {
     outer.z = place.x + 1u == splits.x ? edges.z / splits.y : inner.y;
     outer.w = place.y + 1u == splits.y ? edges.w / splits.x : inner.x;
     // faces of operands are among the others
-    bool operand = (faces[fi.face].flags & FACE_OPERAND) != 0u;
+    bool operand = (face_at(fi.face).flags & FACE_OPERAND) != 0u;
     if (SCENE_HAS_OPERANDS && operand != DRAWS_OPERANDS) outer = uvec4(0u);
     if (splits != uvec2(1u)) {
         vec2 lo = vec2(place) / vec2(splits);
         vec2 hi = vec2(place + 1u) / vec2(splits);
-        if (!seen(patches[index], views[fi.instance], lo, hi, far_of(faces[fi.face], frame))) outer = uvec4(0u);
+        if (!seen(patch_at(index), view_at(fi.instance), lo, hi, far_of(face_at(fi.face), frame))) outer = uvec4(0u);
     }
     gl_TessLevelOuter[0] = float(outer.x);
     gl_TessLevelOuter[1] = float(outer.y);

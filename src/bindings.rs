@@ -3,6 +3,7 @@
 //! ```text
 //!   constants      of the frame, or the sun, in a uniform block: a driver fetches its words once for many invocations,
 //!                  where it gathers those of a storage buffer for each
+//!   placed patches views, faces' places, faces, patches, items, points           glsl/include/placed.glsl
 //!   PRIMITIVES     leaves, their sides, surfaces, surfaces' places         glsl/include/solids.glsl, volume.glsl
 //!   SUN_BINDINGS   sun, its tiles, …, PRIMITIVES, leaves' centres, counts  glsl/include/sun.glsl
 //! ```
@@ -16,6 +17,24 @@ pub(crate) const PRIMITIVES: [Binding; 4] = [Binding::Storage, Binding::Storage,
 pub(crate) const SUN_BINDINGS: [Binding; 11] = with_primitives(SUN_OWN);
 /// The first of them, which a pass needs that has the scene's primitives for itself.
 pub(crate) const SUN_OWN: usize = 5;
+
+/// Patches as they are placed, after the constants.
+#[derive(Clone, Copy)]
+pub(crate) struct Placed<'a> {
+    pub views: &'a Texels,
+    pub face_instances: &'a Texels,
+    pub faces: &'a Texels,
+    pub patches: &'a Texels,
+    pub items: &'a Texels,
+    pub points: &'a Texels,
+}
+
+impl<'a> Placed<'a> {
+    /// In binding order.
+    pub(crate) fn resources(&self) -> [Resource<'a>; 6] {
+        [self.views, self.face_instances, self.faces, self.patches, self.items, self.points].map(Resource::from)
+    }
+}
 
 /// What stands at [`PRIMITIVES`].
 #[derive(Clone, Copy)]
@@ -43,7 +62,14 @@ pub(crate) fn with_constants(count: usize) -> Vec<Binding> {
     bindings
 }
 
-/// The same, but for [`PRIMITIVES`] from `first` on.
+/// Constants, [`Placed`], and storage buffers after them: `count` in all.
+pub(crate) fn with_placed(count: usize) -> Vec<Binding> {
+    let mut bindings = with_constants(count);
+    bindings[1..7].fill(Binding::Texels);
+    bindings
+}
+
+/// Constants, and storage buffers, but for [`PRIMITIVES`] from `first` on.
 pub(crate) const fn with_primitives<const COUNT: usize>(first: usize) -> [Binding; COUNT] {
     let mut bindings = [Binding::Storage; COUNT];
     bindings[0] = Binding::Uniform;

@@ -175,7 +175,7 @@ pub(crate) struct Frame<'a> {
     pub buffers: &'a Buffers,
     /// This slot's constants and transforms, written by the host.
     pub constants: &'a Buffer,
-    pub views: &'a Buffer,
+    pub views: &'a Texels,
     /// The same for each of a pixel's samples, where there are several.
     pub samples: &'a [SampleBuffers],
     pub centres: Option<Centres<'a>>,
@@ -464,12 +464,7 @@ impl Frame<'_> {
         }
         let bindings = visibility::Bindings {
             frame: self.constants,
-            views: self.views,
-            face_instances: &s.face_instances,
-            faces: &s.faces,
-            patches: &s.patches,
-            items: &s.items,
-            points: &s.points,
+            placed: s.placed(self.views),
             factors: &b.factors,
             sub_patches: &b.sub_patches,
             instances: &s.instances,

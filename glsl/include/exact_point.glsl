@@ -5,8 +5,6 @@
 
 #include "view.glsl"
 
-layout(scalar, binding = 1) readonly buffer Views { View views[]; };
-layout(binding = 6) uniform samplerBuffer points;
 
 #include "patch.glsl"
 #include "volume.glsl"

@@ -41,16 +41,9 @@
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 1) readonly buffer Views { View views[]; };
-layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
-layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
-layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
-layout(binding = 6) uniform samplerBuffer points;
 layout(binding = 7, rg32ui) uniform uimage2D visibility;
 layout(scalar, binding = 8) readonly buffer Doubts { uint doubts[]; };
 layout(scalar, binding = 9) readonly buffer CountersBuffer { Counters counters; };
-layout(scalar, binding = 10) readonly buffer Instances { Instance instances[]; };
 layout(binding = 11, rg32ui) readonly uniform uimage2D others;
 layout(scalar, binding = 12) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
 layout(scalar, binding = 13) readonly buffer Triangles { uint triangles[]; };
@@ -64,6 +57,8 @@ layout(scalar, binding = 14) readonly buffer Positions { vec3 positions[]; };
 #endif
 #include "facet.glsl"
 #include "facing.glsl"
+#define INSTANCES_BINDING 10
+#include "placed.glsl"
 #include "patch.glsl"
 #include "refine.glsl"
 #include "ring.glsl"
@@ -129,7 +124,7 @@ bool in_whole_patch(FaceInstance fi, Face face, uint item, vec2 uv) {
     ivec2 count = ivec2(face.count_u, face.count_v);
     ivec2 place = place_of(face, int(item - fi.first_item)) + way_beyond(uv, ROUNDED);
     if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, count))) return false;
-    return side_of(patches[face.first_patch + uint(place.y * count.x + place.x)].shape) != SIDE_OUTSIDE;
+    return side_of(patch_at(face.first_patch + uint(place.y * count.x + place.x)).shape) != SIDE_OUTSIDE;
 }
 
 // Whether the face is there at (u, v) of the item's patch. The table has rows only where its border runs: not
@@ -152,15 +147,15 @@ bool is_there(FaceInstance fi, Face face, uint item, Patch patch_, vec2 uv) {
 // one in which it ended.
 Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec2 uv, vec2 pixel) {
     ivec2 count = ivec2(face.count_u, face.count_v);
-    Sample s = refine(patches[face.first_patch + item - fi.first_item], view, uv, pixel);
+    Sample s = refine(patch_at(face.first_patch + item - fi.first_item), view, uv, pixel);
     for (uint hop = 0u; hop < MAX_HOPS; ++hop) {
         int n = int(item - fi.first_item);
         ivec2 place = place_of(face, n);
         ivec2 next = clamp(place + way_beyond(s.uv, BEYOND), ivec2(0), count - 1);
         if (next == place) break;
-        Patch there = patches[face.first_patch + uint(next.y * count.x + next.x)];
+        Patch there = patch_at(face.first_patch + uint(next.y * count.x + next.x));
         if (side_of(there.shape) == SIDE_OUTSIDE) break; // it has no control points
-        Patch here = patches[face.first_patch + uint(n)];
+        Patch here = patch_at(face.first_patch + uint(n));
         vec2 from = (here.domain.xy + s.uv * here.domain.zw - there.domain.xy) / there.domain.zw;
         Sample t = refine(there, view, clamp(from, 0.0, 1.0), pixel);
         // beside a silhouette it may not come as near: then the first patch's continuation is better
@@ -177,11 +172,11 @@ Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec
 // Who is not inside its trims helps only where it is before `behind`.
 Answer ask(uvec2 seen, vec2 pixel, uint ring, Answer behind) {
     uint item = seen_item(seen.x);
-    FaceInstance fi = face_instances[item_face_instance[item]];
-    Face face = faces[fi.face];
-    View view = views[fi.instance];
+    FaceInstance fi = face_instance_at(face_instance_of(item));
+    Face face = face_at(fi.face);
+    View view = view_at(fi.instance);
     Sample s = refine_across(fi, face, view, item, unpack_uv(seen.y), pixel);
-    Patch patch_ = patches[face.first_patch + item - fi.first_item];
+    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
     uvec2 word = uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0))));
     Answer answer = Answer(NO, false, s.q.z, length(s.miss), true, vec2(0.0), word);
 #ifdef WITHIN_VOLUME
@@ -200,7 +195,7 @@ Answer ask(uvec2 seen, vec2 pixel, uint ring, Answer behind) {
     vec2 pu = along[0];
     vec2 pv = along[1];
     float det = pu.x * pv.y - pu.y * pv.x;
-    answer.away = looks_away(det, face, instances[fi.instance]);
+    answer.away = looks_away(det, face, instance_at(fi.instance));
     if (inside) answer.kind = WITNESS;
     if (abs(det) < 1e-12) return answer;
     float zu = row_times(view.depth, vec4(s.jet.du, 0.0));
@@ -229,7 +224,7 @@ Answer ask(uvec2 seen, vec2 pixel, uint ring, Answer behind) {
 // Of what is no patch, seen at a pixel.
 float other_depth(uvec2 seen, vec2 pixel) {
     if (!sees_mesh(seen.x)) return uintBitsToFloat(seen.y);
-    return facet_at(seen.y, views[mesh_instances[seen_mesh_instance(seen.x)].instance], pixel).depth;
+    return facet_at(seen.y, view_at(mesh_instances[seen_mesh_instance(seen.x)].instance), pixel).depth;
 }
 
 void main() {
@@ -244,7 +239,7 @@ void main() {
     bool nothing = sees_nothing(own.x);
     Answer none = Answer(NO, false, 3.0e38, 3.0e38, false, vec2(0.0), uvec2(0u));
     Answer self = none;
-    uint own_face = nothing ? 0u : face_instances[item_face_instance[seen_item(own.x)]].face + 1u;
+    uint own_face = nothing ? 0u : face_instance_at(face_instance_of(seen_item(own.x))).face + 1u;
     if (!nothing) self = ask(own, pixel, ringed ? RING_INSIDE | RING_OUTSIDE : RING_INSIDE, none);
     bool on = self.kind != NO && self.miss <= ON_PIXEL_PX;
     bool there = on && self.inside;
@@ -303,7 +298,7 @@ void main() {
             closest_before = before;
         }
         if (!before) continue;
-        uint face = face_instances[item_face_instance[seen_item(seen.x)]].face + 1u;
+        uint face = face_instance_at(face_instance_of(seen_item(seen.x))).face + 1u;
         if (answer.kind == WITNESS && answer.depth < witness.depth) witness = answer;
         if (answer.kind == HELPER) {
             if (answer.depth < helper.depth) helper = answer;

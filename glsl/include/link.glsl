@@ -1,6 +1,5 @@
 // The point of a side that faces share: whoever asks, it is evaluated from the control points of its piece's owner, at
-// the same parameter, and so the same bit for bit. Needs scene.glsl, patch.glsl, `points` and buffer `Patch patches[]`;
-// the includer defines LINK_BINDING.
+// the same parameter, and so the same bit for bit. Needs placed.glsl and patch.glsl; the includer defines LINK_BINDING.
 #ifndef LINK_GLSL
 #define LINK_GLSL
 
@@ -8,7 +7,7 @@ layout(scalar, binding = LINK_BINDING) readonly buffer Links { Link links[]; };
 
 // Exact at both ends: the control point there.
 vec3 side_point(uint side, float x) {
-    Patch owner = patches[side >> 2];
+    Patch owner = patch_at(side >> 2);
     int n = int(degree_u(owner.shape));
     int k = int(degree_v(owner.shape));
     bool along_v = (side & 1u) == 0u;

@@ -9,13 +9,6 @@
 #include "shells.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 1) readonly buffer Views { View views[]; };
-layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
-layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
-layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
-layout(binding = 6) uniform samplerBuffer points;
-layout(scalar, binding = 9) readonly buffer Instances { Instance instances[]; };
 layout(scalar, binding = 10) buffer FragmentCounts { uint fragment_counts[]; };
 layout(scalar, binding = 11) readonly buffer FragmentStarts { uint fragment_starts[]; };
 layout(scalar, binding = 12) writeonly buffer Fragments { Fragment fragments[]; };
@@ -25,6 +18,8 @@ layout(scalar, binding = 12) writeonly buffer Fragments { Fragment fragments[]; 
 #include "trim.glsl"
 #endif
 #include "facing.glsl"
+#define INSTANCES_BINDING 9
+#include "placed.glsl"
 #include "patch.glsl"
 #include "put_fragment.glsl"
 #include "refine.glsl"
@@ -35,10 +30,10 @@ layout(location = 0) in vec2 uv;
 layout(location = 1) flat in uint item;
 
 void main() {
-    FaceInstance fi = face_instances[item_face_instance[item]];
-    Face face = faces[fi.face];
-    Patch patch_ = patches[face.first_patch + item - fi.first_item];
-    Instance instance = instances[fi.instance];
+    FaceInstance fi = face_instance_at(face_instance_of(item));
+    Face face = face_at(fi.face);
+    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    Instance instance = instance_at(fi.instance);
     vec2 dx = dFdx(uv) * patch_.domain.zw;
     vec2 dy = dFdy(uv) * patch_.domain.zw;
     uint shell = instance.shell | FRAGMENT_PATCH;
@@ -59,7 +54,7 @@ void main() {
 #endif
     Fragment f = Fragment(shell, 0.0, item + 1u, 0u);
     if (FILLS) {
-        Sample s = refine(patch_, views[fi.instance], uv, gl_FragCoord.xy);
+        Sample s = refine(patch_, view_at(fi.instance), uv, gl_FragCoord.xy);
         f.depth = s.q.z;
         f.uv = pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0)));
     }

@@ -9,16 +9,11 @@
 #include "view.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 1) readonly buffer Views { View views[]; };
-layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
-layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
-layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
-layout(binding = 6) uniform samplerBuffer points;
-layout(scalar, binding = 7) readonly buffer Instances { Instance instances[]; };
 layout(binding = 8, rg32ui) readonly uniform uimage2D visibility;
 
 #include "eye_ray.glsl"
+#define INSTANCES_BINDING 7
+#include "placed.glsl"
 #include "patch.glsl"
 #include "resolved.glsl"
 #include "resolved_patch.glsl"

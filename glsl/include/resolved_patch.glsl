@@ -1,31 +1,21 @@
-// The exact surface under a pixel that sees a patch, then light. Needs the scene's buffers, patch.glsl,
+// The exact surface under a pixel that sees a patch, then light. Needs placed.glsl, patch.glsl,
 // view.glsl and resolved.glsl.
 #ifndef RESOLVED_PATCH_GLSL
 #define RESOLVED_PATCH_GLSL
 
+#include "patch_normal.glsl"
 #include "refine.glsl"
 #include "visible.glsl"
-
-// S_u x S_v, or where it vanishes (pole, collapsed side) its limit from the patch's inside.
-vec3 normal_of(Patch patch_, Jet jet, vec2 uv) {
-    vec3 n = cross(jet.du, jet.dv);
-    float size = dot(jet.du, jet.du) + dot(jet.dv, jet.dv);
-    for (float step_ = 1e-3; step_ < 0.3 && dot(n, n) < 1e-10 * size * size; step_ *= 4.0) {
-        Jet inner = patch_jet(patch_.first, patch_.shape, mix(uv, vec2(0.5), step_));
-        n = cross(inner.du, inner.dv);
-    }
-    return n;
-}
 
 // `seen` are item + 1 and packed (u, v). The other side of an operand's face may be seen, and is a front
 // of the solid.
 void write_patch(uvec2 seen, bool operand) {
     uint item = seen_item(seen.x);
-    FaceInstance fi = face_instances[item_face_instance[item]];
-    Face face = faces[fi.face];
-    Patch patch_ = patches[face.first_patch + item - fi.first_item];
-    Instance instance = instances[fi.instance];
-    View view = views[fi.instance];
+    FaceInstance fi = face_instance_at(face_instance_of(item));
+    Face face = face_at(fi.face);
+    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    Instance instance = instance_at(fi.instance);
+    View view = view_at(fi.instance);
     Sample s = refine(patch_, view, unpack_uv(seen.y), gl_FragCoord.xy);
     vec3 n = normalize(instance.normal * normal_of(patch_, s.jet, s.uv));
     bool flip = ((face.flags & FACE_SAME_SENSE) == 0u) != (instance.mirrored != 0u);

@@ -63,7 +63,9 @@ layout(constant_id = 17) const bool SOLIDS_HAVE_PATCHES = false;
 #include "eye_ray.glsl"
 #include "patch.glsl"
 #include "resolved.glsl"
-#include "resolved_patch.glsl"
+#include "patch_normal.glsl"
+#include "refine.glsl"
+#include "visible.glsl"
 #include "sides.glsl"
 
 const uint NOBODY = 0xffffffffu;

@@ -2,17 +2,14 @@
 // solid that is seen from behind is doubtful, as in visibility_trimmed.glsl. Where a volume
 // trims the scene (WITHIN_VOLUME), the exact point at (u, v) must be within it.
 #include "scene.glsl"
+#include "view.glsl"
+#define INSTANCES_BINDING 9
+#include "placed.glsl"
 #include "facing.glsl"
 #include "visible.glsl"
 
-layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
-layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
-layout(scalar, binding = 9) readonly buffer Instances { Instance instances[]; };
-
 #ifdef WITHIN_VOLUME
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
 #define VOLUME_BINDING 10
 #include "exact_point.glsl"
 #endif
@@ -22,13 +19,13 @@ layout(location = 1) flat in uint item;
 layout(location = 0) out uvec2 visible;
 
 void main() {
-    FaceInstance fi = face_instances[item_face_instance[item]];
-    Face face = faces[fi.face];
+    FaceInstance fi = face_instance_at(face_instance_of(item));
+    Face face = face_at(fi.face);
     bool solid = (face.flags & FACE_SOLID) != 0u;
-    bool doubtful = solid && looks_away(dFdx(uv), dFdy(uv), face, instances[fi.instance]);
+    bool doubtful = solid && looks_away(dFdx(uv), dFdy(uv), face, instance_at(fi.instance));
 #ifdef WITHIN_VOLUME
-    Patch patch_ = patches[face.first_patch + item - fi.first_item];
-    if (!in_volume(exact_point(patch_, views[fi.instance], uv), ON_PX)) discard;
+    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    if (!in_volume(exact_point(patch_, view_at(fi.instance), uv), ON_PX)) discard;
 #endif
     visible = uvec2(item + 1u | (doubtful ? DOUBTFUL : 0u), pack_uv(uv));
 }

@@ -13,10 +13,8 @@ layout(constant_id = 11) const bool DRAWS_OPERANDS = false;
 
 layout(quads, equal_spacing, ccw) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 1) readonly buffer Views { View views[]; };
-layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
-layout(binding = 6) uniform samplerBuffer points;
 
+#include "placed.glsl"
 #include "patch.glsl"
 #include "push.glsl"
 #ifdef LINK_BINDING
@@ -70,8 +68,8 @@ void main() {
         uv.y = bottom ? 0.0 : 1.0;
         if (!(left || right)) uv.x = along_side(t.x, in_place.x, in_splits.x, bottom ? in_edges.y : in_edges.w);
     }
-    Patch patch_ = patches[in_patch];
-    View view = views[in_instance];
+    Patch patch_ = patch_at(in_patch);
+    View view = view_at(in_instance);
     Jet jet = patch_jet(patch_.first, patch_.shape, uv);
 #ifdef LINK_BINDING
     // corners are control points, the same for all that meet there

@@ -17,13 +17,11 @@
 // The ring of an open shell continues the surface, but never nearer to the viewer than the border
 // that it continues: a floor seen from a low angle must not flow over what stands before its edge.
 #include "scene.glsl"
+#include "view.glsl"
+#define INSTANCES_BINDING 9
+#include "placed.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
-layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 4) readonly buffer Patches { Patch patches[]; };
-layout(scalar, binding = 5) readonly buffer Items { uint item_face_instance[]; };
-layout(scalar, binding = 9) readonly buffer Instances { Instance instances[]; };
 layout(scalar, binding = 10) buffer Rings { uint rings[]; }; // depth's bits for each pixel, 0 without a ring
 
 #define TRIM_BINDING 11
@@ -59,14 +57,14 @@ float bend_within(Patch patch_, vec2 far) {
 }
 
 void main() {
-    FaceInstance fi = face_instances[item_face_instance[item]];
-    Face face = faces[fi.face];
-    Patch patch_ = patches[face.first_patch + item - fi.first_item];
+    FaceInstance fi = face_instance_at(face_instance_of(item));
+    Face face = face_at(fi.face);
+    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
     vec2 dx = dFdx(uv) * patch_.domain.zw;
     vec2 dy = dFdy(uv) * patch_.domain.zw;
     vec2 slope = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z));
-    bool away = looks_away(dx, dy, face, instances[fi.instance]);
+    bool away = looks_away(dx, dy, face, instance_at(fi.instance));
     bool solid = (face.flags & FACE_SOLID) != 0u;
     bool doubtful = solid && away;
     float reach = solid && !away ? GROWTH * frame.ring_px : frame.ring_px;
@@ -76,7 +74,7 @@ void main() {
     bool inside = area == TRIM_IN || trim_inside(fi, face, at);
     float border_depth = -1.0; // nearest to the viewer among the ring's points inside the face
     bool grows = true;
-    float px = frame.focal * (frame.perspective != 0u ? gl_FragCoord.w : 1.0) * instances[fi.instance].scale;
+    float px = frame.focal * (frame.perspective != 0u ? gl_FragCoord.w : 1.0) * instance_at(fi.instance).scale;
     if (solid && !away) {
         vec2 far = around / patch_.domain.zw; // (u, v) of the patch that the ring spans
         grows = bend_within(patch_, far) * px <= (RING_SLACK - 1.0) * reach + 2.0 * frame.deviation_px;
@@ -90,7 +88,7 @@ void main() {
     if (!inside && border_depth < 0.0) discard;
 #ifdef WITHIN_VOLUME
     // a gap between faces may run along the volume's boundary: rings reach beyond it
-    if (!in_volume(exact_point(patch_, views[fi.instance], uv), inside ? ON_PX : frame.ring_px)) discard;
+    if (!in_volume(exact_point(patch_, view_at(fi.instance), uv), inside ? ON_PX : frame.ring_px)) discard;
 #endif
     float z = gl_FragCoord.z;
     if (!inside && !doubtful) z = min(z, border_depth);

@@ -28,12 +28,7 @@ impl Frame<'_> {
         barrier::images(cmd, &[(resolved, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);
         let bindings = coverage::Bindings {
             frame: self.constants,
-            views: self.views,
-            face_instances: &s.face_instances,
-            faces: &s.faces,
-            patches: &s.patches,
-            items: &s.items,
-            points: &s.points,
+            placed: s.placed(self.views),
             visibility: &b.visibility,
             resolved,
             trim: test,

@@ -38,12 +38,7 @@ impl Frame<'_> {
         barrier::buffers(cmd, &[(&t.doubts, w, r), (&b.counters, w, r), (&t.heal_dispatch, w, Access::INDIRECT_READ)]);
         let heal = heal::Bindings {
             frame: self.constants,
-            views: self.views,
-            face_instances: &s.face_instances,
-            faces: &s.faces,
-            patches: &s.patches,
-            items: &s.items,
-            points: &s.points,
+            placed: s.placed(self.views),
             visibility: &b.visibility,
             doubts: &t.doubts,
             counters: &b.counters,

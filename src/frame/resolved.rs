@@ -89,12 +89,7 @@ impl Frame<'_> {
         let (s, b) = (self.scene, self.buffers);
         let bindings = resolve::Bindings {
             frame: self.constants,
-            views: self.views,
-            face_instances: &s.face_instances,
-            faces: &s.faces,
-            patches: &s.patches,
-            items: &s.items,
-            points: &s.points,
+            placed: s.placed(self.views),
             instances: &s.instances,
             visibility: &b.visibility,
             others: b.others.as_ref().unwrap_or(&b.visibility),

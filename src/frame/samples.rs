@@ -17,7 +17,7 @@
 
 use super::{Drawing, Frame, resolved};
 use crate::abi::Counters;
-use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, Timestamps, barrier};
+use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, Texels, Timestamps, barrier};
 use crate::passes::{average, resolve};
 use crate::picture::Samples;
 use crate::scene::SceneData;
@@ -48,7 +48,7 @@ impl SamplePasses {
 /// One sample's view, written by the host.
 pub(crate) struct SampleBuffers {
     pub constants: Buffer,
-    pub views: Buffer,
+    pub views: Texels,
 }
 
 /// Timed scopes, or none: each sample costs what the first one does.

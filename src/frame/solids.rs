@@ -322,12 +322,7 @@ impl Frame<'_> {
         };
         let patches = operand_patch::Bindings {
             frame: self.constants,
-            views: self.views,
-            face_instances: &s.face_instances,
-            faces: &s.faces,
-            patches: &s.patches,
-            items: &s.items,
-            points: &s.points,
+            placed: s.placed(self.views),
             factors: &b.factors,
             sub_patches: &b.sub_patches,
             instances: &s.instances,

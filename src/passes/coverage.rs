@@ -9,10 +9,10 @@
 //! straight trim curves, and for bent ones within what `twin::coverage` says; pixels away from borders come out as
 //! pass `resolve` drew them.
 
-use crate::bindings::with_constants;
+use crate::bindings::{Placed, with_placed};
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, Device, GpuError, GraphicsInfo, Image, Pipeline,
-    Resource, Texels,
+    Resource,
 };
 use crate::shaders::{self, TRIM_EXACT};
 use ash::vk;
@@ -28,12 +28,7 @@ pub(crate) struct Coverage {
 /// Its buffers and images, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub views: &'a Buffer,
-    pub face_instances: &'a Buffer,
-    pub faces: &'a Buffer,
-    pub patches: &'a Buffer,
-    pub items: &'a Buffer,
-    pub points: &'a Texels,
+    pub placed: Placed<'a>,
     pub visibility: &'a Image,
     /// Linear colour and depth.
     pub resolved: &'a Image,
@@ -43,8 +38,7 @@ pub(crate) struct Bindings<'a> {
 
 impl Coverage {
     pub(crate) fn new(device: &Device, colour: vk::Format, rational: bool) -> Result<Self, GpuError> {
-        let mut bindings = with_constants(9);
-        bindings[6] = Binding::Texels;
+        let mut bindings = with_placed(9);
         bindings[7..9].fill(Binding::StorageImage);
         bindings.extend(TRIM_EXACT.bindings);
         let pipeline = Pipeline::graphics(
@@ -72,10 +66,9 @@ impl Coverage {
 
     /// One triangle over the target, which is kept or zero before.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, colour: Attachment<'_>) {
-        let buffers = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items].map(Into::into);
-        let images = [b.points.into(), b.visibility.into(), b.resolved.into()];
-        let trim = b.trim.iter().copied();
-        let resources: Vec<_> = buffers.into_iter().chain(images).chain(trim).collect();
+        let images = [b.visibility.into(), b.resolved.into()];
+        let placed = [b.frame.into()].into_iter().chain(b.placed.resources());
+        let resources: Vec<_> = placed.chain(images).chain(b.trim.iter().copied()).collect();
         cmd.rendering(b.visibility.size(), &[colour], None, || {
             cmd.bind(&self.pipeline, &resources, &[]);
             cmd.draw(3, 0, 1);

@@ -13,7 +13,7 @@
 //! Reads: everything that the bindings name but what it writes. Writes: `find`: `doubts`, `dispatch`,
 //! `counters`, and the mark in the visibility image; `record`: the visibility image. Both at doubtful pixels only.
 
-use crate::bindings::{PRIMITIVES, Primitives, with_constants};
+use crate::bindings::{PRIMITIVES, Placed, Primitives, with_constants, with_placed};
 use crate::gpu::{
     Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Resource, Sampler, Texels,
 };
@@ -53,16 +53,11 @@ pub(crate) struct DoubtBindings<'a> {
 /// Of the second step, in binding order, and its dispatch.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub views: &'a Buffer,
-    pub face_instances: &'a Buffer,
-    pub faces: &'a Buffer,
-    pub patches: &'a Buffer,
-    pub items: &'a Buffer,
-    pub points: &'a Texels,
+    pub placed: Placed<'a>,
     pub visibility: &'a Image,
     pub doubts: &'a Buffer,
     pub counters: &'a Buffer,
-    pub instances: &'a Buffer,
+    pub instances: &'a Texels,
     /// What is no patch; `None` where the scene has nothing else.
     pub others: Option<Others<'a>>,
     /// What the trim test reads, in its order.
@@ -98,11 +93,11 @@ impl Heal {
         let mut find = with_constants(7);
         find[1] = Binding::StorageImage;
         find[5] = Binding::Sampled;
-        let mut heal = with_constants(15);
+        let mut heal = with_placed(15);
         heal.extend(test.bindings);
         heal.extend(PRIMITIVES.iter().filter(|_| volume.is_some()));
-        heal[6] = Binding::Texels;
         heal[7] = Binding::StorageImage;
+        heal[10] = Binding::Texels;
         heal[11] = Binding::StorageImage;
         let weights = if rational { "rational" } else { "polynomial" };
         let pipeline = |name: &str, spirv, bindings: &[Binding]| {
@@ -148,13 +143,6 @@ impl Heal {
         let none = Meshes { instances: b.frame, triangles: b.frame, positions: b.frame };
         let meshes = b.others.as_ref().and_then(|o| o.meshes.as_ref()).unwrap_or(&none);
         let resources = [
-            b.frame.into(),
-            b.views.into(),
-            b.face_instances.into(),
-            b.faces.into(),
-            b.patches.into(),
-            b.items.into(),
-            b.points.into(),
             b.visibility.into(),
             b.doubts.into(),
             b.counters.into(),
@@ -166,7 +154,13 @@ impl Heal {
         ];
         let trim = b.trim.iter().copied();
         let volume = b.volume.iter().flat_map(Primitives::resources);
-        let resources: Vec<_> = resources.into_iter().chain(trim).chain(volume).collect();
+        let resources: Vec<_> = [b.frame.into()]
+            .into_iter()
+            .chain(b.placed.resources())
+            .chain(resources)
+            .chain(trim)
+            .chain(volume)
+            .collect();
         cmd.bind(&self.heal, &resources, &[]);
         cmd.dispatch_indirect(b.dispatch, 0);
     }

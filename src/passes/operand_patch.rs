@@ -9,7 +9,7 @@
 //! which go down to 0 again, and `fragments`.
 
 use crate::abi::Counters;
-use crate::bindings::with_constants;
+use crate::bindings::{Placed, with_placed};
 use crate::gpu::{Binding, Buffer, Commands, Device, GpuError, GraphicsInfo, Pipeline, Resource, Texels};
 use crate::shaders::{self, TrimTest};
 use ash::vk;
@@ -41,15 +41,10 @@ struct Kinds {
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub views: &'a Buffer,
-    pub face_instances: &'a Buffer,
-    pub faces: &'a Buffer,
-    pub patches: &'a Buffer,
-    pub items: &'a Buffer,
-    pub points: &'a Texels,
+    pub placed: Placed<'a>,
     pub factors: &'a Buffer,
     pub sub_patches: &'a Buffer,
-    pub instances: &'a Buffer,
+    pub instances: &'a Texels,
     pub counts: &'a Buffer,
     pub starts: &'a Buffer,
     pub fragments: &'a Buffer,
@@ -80,8 +75,8 @@ impl OperandPatch {
             ];
             let linked = linked && trimmed.is_none();
             let surface = if linked { shaders::OPERAND_LINKED_TESE } else { shaders::VISIBILITY_TESE };
-            let mut bindings = with_constants(13);
-            bindings[6] = Binding::Texels;
+            let mut bindings = with_placed(13);
+            bindings[9] = Binding::Texels;
             bindings.extend(linked.then_some(Binding::Storage));
             bindings.extend(trimmed.map_or(&[][..], |test| test.bindings));
             Pipeline::graphics(
@@ -127,9 +122,9 @@ impl OperandPatch {
         fills: bool,
     ) {
         let bytes = u64::from(draw_capacity) * size_of::<vk::DrawIndirectCommand>() as u64;
-        let scene = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items];
-        let lists = [b.factors, b.sub_patches, b.instances, b.counts, b.starts, b.fragments];
-        let shared = || scene.into_iter().map(Into::into).chain([b.points.into()]).chain(lists.map(Into::into));
+        let lists = [b.factors.into(), b.sub_patches.into(), b.instances.into()];
+        let fragments = [b.counts, b.starts, b.fragments].map(Into::into);
+        let shared = || [b.frame.into()].into_iter().chain(b.placed.resources()).chain(lists).chain(fragments);
         let step = if fills { &self.fill } else { &self.count };
         cmd.rendering_rows((size, rows), &[], None, || {
             if let Some(plain) = &step.plain {

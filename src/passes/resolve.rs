@@ -13,7 +13,7 @@
 //! Reads: everything that `Bindings` names. Writes: the targets.
 
 use crate::abi;
-use crate::bindings::{Primitives, SUN_BINDINGS, with_constants, with_primitives};
+use crate::bindings::{Placed, Primitives, SUN_BINDINGS, with_constants, with_placed, with_primitives};
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
     Pipeline, Resource, Texels,
@@ -136,13 +136,8 @@ pub(crate) enum Destination {
 /// Buffers and images for patches, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub views: &'a Buffer,
-    pub face_instances: &'a Buffer,
-    pub faces: &'a Buffer,
-    pub patches: &'a Buffer,
-    pub items: &'a Buffer,
-    pub points: &'a Texels,
-    pub instances: &'a Buffer,
+    pub placed: Placed<'a>,
+    pub instances: &'a Texels,
     pub visibility: &'a Image,
     /// The visibility image again where the scene has no trims, or nothing but patches.
     pub others: &'a Image,
@@ -205,8 +200,8 @@ impl Resolve {
         if formats.aovs {
             colour.extend(AOV_FORMATS.map(|format| ColourTarget { format, blend: Blend::Replace }));
         }
-        let mut bindings = with_constants(10);
-        bindings[6] = Binding::Texels;
+        let mut bindings = with_placed(10);
+        bindings[7] = Binding::Texels;
         bindings[8] = Binding::StorageImage;
         let of = if kinds.sun { SUN } else { STUDIO };
         let over = |vertex, name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
@@ -252,8 +247,8 @@ impl Resolve {
             lit(vertex, "solid", of.solids, &of_solid, &[(SOLIDS_HAVE_SHELLS, u32::from(solid.shells))])
         };
         let solids = kinds.solids.map(solid).transpose()?;
-        let mut of_operand = with_constants(11);
-        of_operand[6] = Binding::Texels;
+        let mut of_operand = with_placed(11);
+        of_operand[7] = Binding::Texels;
         of_operand[8..].fill(Binding::StorageImage);
         let rational = (SCENE_HAS_RATIONAL, u32::from(kinds.rational));
         let operand = |()| lit(shaders::RESOLVE_VERT, "operand", of.operands, &of_operand, &[rational]);
@@ -288,14 +283,14 @@ impl Resolve {
             cmd.bind(pipeline, &resources.into_iter().chain(sun).collect::<Vec<_>>(), &[]);
         };
         cmd.rendering(size, colour, depth, || {
-            let buffers = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items].map(Into::into);
-            let rest = [b.points.into(), b.instances.into(), b.visibility.into()];
+            let patches = || [b.frame.into()].into_iter().chain(b.placed.resources());
+            let rest = [b.instances.into(), b.visibility.into()];
             if let Some(pipeline) = &self.background {
                 cmd.bind(pipeline, &[b.frame.into(), b.visibility.into(), b.others.into()], &[]);
                 cmd.draw(3, 0, 1);
             }
             if let (Some(pipeline), Some((count, squares))) = (&self.patches, b.squares) {
-                bind(pipeline, buffers.into_iter().chain(rest).chain([squares.into()]).collect());
+                bind(pipeline, patches().chain(rest).chain([squares.into()]).collect());
                 cmd.draw_instances(0..6, 0..count);
             }
             if let (Some(pipeline), Some(m), Some((count, squares))) = (&self.meshes, meshes, b.squares) {
@@ -321,7 +316,7 @@ impl Resolve {
                 }
                 if let (Some(pipeline), Some(uv)) = (&self.operands, s.operand_uv) {
                     let images = [s.others.into(), uv.into()];
-                    bind(pipeline, buffers.into_iter().chain(rest).chain(images).collect());
+                    bind(pipeline, patches().chain(rest).chain(images).collect());
                     cmd.draw(3, 0, 1);
                 }
             }

@@ -10,7 +10,7 @@
 //! (reversed: 1 at the near plane), which begin cleared or with what is no patch; `rings`, cleared before.
 
 use crate::abi::Counters;
-use crate::bindings::{PRIMITIVES, Primitives, with_constants};
+use crate::bindings::{PRIMITIVES, Placed, Primitives, with_placed};
 use crate::gpu::{
     Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
     Resource, Texels,
@@ -57,15 +57,10 @@ pub(crate) struct Kinds<'a> {
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub views: &'a Buffer,
-    pub face_instances: &'a Buffer,
-    pub faces: &'a Buffer,
-    pub patches: &'a Buffer,
-    pub items: &'a Buffer,
-    pub points: &'a Texels,
+    pub placed: Placed<'a>,
     pub factors: &'a Buffer,
     pub sub_patches: &'a Buffer,
-    pub instances: &'a Buffer,
+    pub instances: &'a Texels,
     /// Where rings are found; in scenes with trims only.
     pub rings: Option<&'a Buffer>,
     /// What the trim test reads, in its order.
@@ -139,10 +134,9 @@ impl Visibility {
         draw_capacity: u32,
     ) {
         let bytes = u64::from(draw_capacity) * size_of::<vk::DrawIndirectCommand>() as u64;
-        let shared = [b.frame, b.views, b.face_instances, b.faces, b.patches, b.items];
-        let lists = [b.factors, b.sub_patches, b.instances];
+        let lists = [b.factors.into(), b.sub_patches.into(), b.instances.into()];
         let volume = || b.volume.iter().flat_map(Primitives::resources);
-        let shared = || shared.into_iter().map(Into::into).chain([b.points.into()]).chain(lists.map(Into::into));
+        let shared = || [b.frame.into()].into_iter().chain(b.placed.resources()).chain(lists);
         cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
             if let Some(plain) = &self.plain {
                 let last = volume().chain(b.links.map(Into::into));
@@ -163,8 +157,8 @@ impl Visibility {
 
 /// Bindings of a pipeline whose trim test has these beside the rings; `None`: without one. `linked`: it reads links.
 fn bindings(of_test: Option<&[Binding]>, volume: bool, linked: bool) -> Vec<Binding> {
-    let mut bindings = with_constants(10);
-    bindings[6] = Binding::Texels;
+    let mut bindings = with_placed(10);
+    bindings[9] = Binding::Texels;
     if let Some(test) = of_test {
         bindings.push(Binding::Storage);
         bindings.extend(test);

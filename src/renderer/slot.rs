@@ -20,7 +20,7 @@ const SCOPES: u32 = 14;
 /// What one frame in flight owns.
 pub(super) struct Slot {
     pub(super) constants: Buffer,
-    pub(super) views: Option<Buffer>,
+    pub(super) views: Option<Texels>,
     /// The same for each of a pixel's samples, where there are several.
     pub(super) samples: Vec<SampleBuffers>,
     pub(super) centres: SlotCentres,
@@ -84,8 +84,8 @@ impl Slot {
         let views: Vec<abi::View> = loaded.data.placements.iter().map(|p| view(pixels, *p)).collect();
         let bytes = size_of_val(views.as_slice()) as u64;
         if self.views.as_ref().is_none_or(|b| b.bytes() < bytes) {
-            let made = upload_buffer(device, "views", bytes)?;
-            self.retired.extend(self.views.replace(made).map(Retired::Buffer));
+            let made = upload_views(device, "views", bytes)?;
+            self.retired.extend(self.views.replace(made).map(Retired::Texels));
         }
         if let Some(buffer) = &mut self.views {
             buffer.write(0, &views);
@@ -116,11 +116,13 @@ impl Slot {
         let placements = &loaded.data.placements;
         let bytes = (placements.len() * size_of::<abi::View>()) as u64;
         if self.samples.len() != offsets.len() || self.samples.iter().any(|s| s.views.bytes() < bytes) {
-            let gone = std::mem::take(&mut self.samples).into_iter().flat_map(|s| [s.constants, s.views]);
-            self.retired.extend(gone.map(Retired::Buffer));
+            let gone = std::mem::take(&mut self.samples)
+                .into_iter()
+                .flat_map(|s| [Retired::Buffer(s.constants), Retired::Texels(s.views)]);
+            self.retired.extend(gone);
             for _ in offsets {
                 let constants = upload_buffer(device, "sample constants", size_of::<abi::Frame>() as u64)?;
-                self.samples.push(SampleBuffers { constants, views: upload_buffer(device, "sample views", bytes)? });
+                self.samples.push(SampleBuffers { constants, views: upload_views(device, "sample views", bytes)? });
             }
         }
         for (sample, &offset) in self.samples.iter_mut().zip(offsets) {
@@ -152,7 +154,16 @@ pub(super) fn upload_buffer(device: &Device, name: &str, bytes: u64) -> Result<B
 
 /// Of four floats each.
 pub(super) fn upload_texels(device: &Device, name: &str, bytes: u64) -> Result<Texels, GpuError> {
-    let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
+    texels(device, name, bytes, vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER)
+}
+
+/// The same, which some passes read as structs.
+fn upload_views(device: &Device, name: &str, bytes: u64) -> Result<Texels, GpuError> {
+    use vk::BufferUsageFlags as Usage;
+    texels(device, name, bytes, Usage::UNIFORM_TEXEL_BUFFER | Usage::STORAGE_BUFFER)
+}
+
+fn texels(device: &Device, name: &str, bytes: u64, usage: vk::BufferUsageFlags) -> Result<Texels, GpuError> {
     let buffer = Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })?;
     Texels::new(device, buffer, Texel::F32x4)
 }

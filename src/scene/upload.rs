@@ -2,7 +2,7 @@
 
 use super::solids::Surface;
 use super::{Blister, SceneData, SolidData};
-use crate::bindings::Primitives;
+use crate::bindings::{Placed, Primitives};
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texel, Texels, Uploads};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
@@ -13,17 +13,17 @@ use std::ops::Range;
 
 /// A scene in GPU memory.
 pub(crate) struct Scene {
-    pub patches: Buffer,
+    pub patches: Texels,
     /// Where nothing of their faces is; `None` where they are not asked whether they lie behind others.
     pub outside: Option<Buffer>,
     /// Homogeneous control points.
     pub points: Texels,
     /// Sides that faces share; `None` where they share none.
     pub links: Option<Buffer>,
-    pub faces: Buffer,
-    pub face_instances: Buffer,
-    pub instances: Buffer,
-    pub items: Buffer,
+    pub faces: Texels,
+    pub face_instances: Texels,
+    pub instances: Texels,
+    pub items: Texels,
     /// What trimming needs; `None` when no patch is trimmed.
     pub trims: Option<Trims>,
     /// Boolean solids; `None` when there are none.
@@ -150,11 +150,23 @@ impl Volume {
 }
 
 impl Scene {
+    /// Its patches, seen so.
+    pub(crate) fn placed<'a>(&'a self, views: &'a Texels) -> Placed<'a> {
+        Placed {
+            views,
+            face_instances: &self.face_instances,
+            faces: &self.faces,
+            patches: &self.patches,
+            items: &self.items,
+            points: &self.points,
+        }
+    }
+
     /// Records the copies; the returned [`Uploads`] must live until the GPU has made them.
     pub(crate) fn record(cmd: &Commands<'_>, data: &SceneData) -> Result<(Self, Uploads), GpuError> {
         let mut uploads = Uploads::new();
         let scene = Self {
-            patches: persistent(&mut uploads, cmd, "patches", &data.patches)?,
+            patches: read_both(&mut uploads, cmd, "patches", &data.patches, Texel::U32x4)?,
             outside: (!data.outside.is_empty())
                 .then(|| persistent(&mut uploads, cmd, "patches outside", &data.outside))
                 .transpose()?,
@@ -162,10 +174,10 @@ impl Scene {
             links: (!data.links.is_empty())
                 .then(|| persistent(&mut uploads, cmd, "patch links", &data.links))
                 .transpose()?,
-            faces: persistent(&mut uploads, cmd, "faces", &data.faces)?,
-            face_instances: persistent(&mut uploads, cmd, "face instances", &data.face_instances)?,
-            instances: persistent(&mut uploads, cmd, "instances", &data.instances)?,
-            items: persistent(&mut uploads, cmd, "items", &data.items)?,
+            faces: read_both(&mut uploads, cmd, "faces", &data.faces, Texel::U32)?,
+            face_instances: read_both(&mut uploads, cmd, "face instances", &data.face_instances, Texel::U32x2)?,
+            instances: read_both(&mut uploads, cmd, "instances", &data.instances, Texel::U32)?,
+            items: read_both(&mut uploads, cmd, "items", &data.items, Texel::U32)?,
             trims: match data.trim_way() {
                 None => None,
                 Some(TrimWay::Table) => Some(Trims::Table(table_scene(&mut uploads, cmd, data)?)),
@@ -303,6 +315,18 @@ fn shells(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SolidData) -> Result
 
 fn surfaces(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &SolidData) -> Result<Texels, GpuError> {
     texels(uploads, cmd, name, &data.surfaces.iter().map(Surface::texels).collect::<Vec<_>>(), Texel::F32x4)
+}
+
+/// For passes that read structs, and those that fetch texels.
+fn read_both<T: Pod>(
+    uploads: &mut Uploads,
+    cmd: &Commands<'_>,
+    name: &str,
+    data: &[T],
+    texel: Texel,
+) -> Result<Texels, GpuError> {
+    let usage = Buffer::STORAGE | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
+    Texels::new(cmd.device(), uploads.buffer(cmd, Pool::Persistent, name, usage, data)?, texel)
 }
 
 fn texels<T: Pod>(

@@ -1,0 +1,70 @@
+// Patches as they are placed, for the passes that ask for one in every pixel: the buffers of scene.glsl as texels, which
+// a driver fetches at once where it gathers words of storage buffers one by one. Structs are put together from those
+// members that are asked for. Needs scene.glsl and view.glsl; whoever needs `instance_at` defines INSTANCES_BINDING.
+#ifndef PLACED_GLSL
+#define PLACED_GLSL
+
+layout(binding = 1) uniform samplerBuffer views;           // four a placed part
+layout(binding = 2) uniform usamplerBuffer face_instances; // three a placed face
+layout(binding = 3) uniform usamplerBuffer faces;          // 13 a face
+layout(binding = 4) uniform usamplerBuffer patches;        // four a patch
+layout(binding = 5) uniform usamplerBuffer items;          // one a placed patch
+layout(binding = 6) uniform samplerBuffer points;          // one a control point
+
+View view_at(uint i) {
+    int at = int(i) * 4;
+    return View(texelFetch(views, at), texelFetch(views, at + 1), texelFetch(views, at + 2), texelFetch(views, at + 3));
+}
+
+uint face_instance_of(uint item) { return texelFetch(items, int(item)).x; }
+
+FaceInstance face_instance_at(uint i) {
+    int at = int(i) * 3;
+    uvec2 a = texelFetch(face_instances, at).xy;
+    uvec2 b = texelFetch(face_instances, at + 1).xy;
+    uvec2 c = texelFetch(face_instances, at + 2).xy;
+    return FaceInstance(a.x, a.y, b.x, b.y, c.x, c.y);
+}
+
+uint face_word(int at) { return texelFetch(faces, at).x; }
+
+Face face_at(uint i) {
+    int at = int(i) * 13;
+    uvec4 domain = uvec4(face_word(at), face_word(at + 1), face_word(at + 2), face_word(at + 3));
+    return Face(
+        uintBitsToFloat(domain), face_word(at + 4), face_word(at + 5), face_word(at + 6), face_word(at + 7),
+        face_word(at + 8), face_word(at + 9), face_word(at + 10), face_word(at + 11), face_word(at + 12)
+    );
+}
+
+Patch patch_at(uint i) {
+    int at = int(i) * 4;
+    uvec4 low = texelFetch(patches, at);
+    uvec4 high = texelFetch(patches, at + 1);
+    uvec4 domain = texelFetch(patches, at + 2);
+    uvec4 bend = texelFetch(patches, at + 3);
+    return Patch(
+        uintBitsToFloat(low.xyz), low.w, uintBitsToFloat(high.xyz), high.w,
+        uintBitsToFloat(domain), uintBitsToFloat(bend.xyz), bend.w
+    );
+}
+
+#ifdef INSTANCES_BINDING
+layout(binding = INSTANCES_BINDING) uniform usamplerBuffer instances; // 13 a placed part
+
+uint instance_word(int at) { return texelFetch(instances, at).x; }
+
+vec3 instance_column(int at) {
+    return uintBitsToFloat(uvec3(instance_word(at), instance_word(at + 1), instance_word(at + 2)));
+}
+
+Instance instance_at(uint i) {
+    int at = int(i) * 13;
+    mat3 normal = mat3(instance_column(at), instance_column(at + 3), instance_column(at + 6));
+    return Instance(
+        normal, uintBitsToFloat(instance_word(at + 9)), instance_word(at + 10), instance_word(at + 11), instance_word(at + 12)
+    );
+}
+#endif
+
+#endif
