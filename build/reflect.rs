@@ -38,8 +38,9 @@ struct Layout {
     bytes: u32,
 }
 
-/// Structs of `src/abi` that shaders put together from texels: parity tests hold them to their layout.
-const OF_TEXELS: [&str; 4] = ["ExactArc", "ExactBand", "ExactCell", "ExactFace"];
+/// Structs of `src/abi` that shaders put together from texels alone: nothing but what is drawn with them tells that they
+/// are laid out so.
+const OF_TEXELS: [&str; 5] = ["ExactArc", "ExactBand", "ExactCell", "ExactFace", "LeafSurface"];
 
 /// The layouts found so far.
 pub struct Layouts {

@@ -15,7 +15,7 @@
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
-layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(binding = 2) uniform usamplerBuffer leaf_surfaces;
 layout(binding = 3) uniform samplerBuffer surfaces;
 layout(binding = 4) uniform samplerBuffer surface_places;
 layout(binding = 5, rg32ui) readonly uniform uimage2D before;
@@ -49,7 +49,7 @@ void main() {
             if (!(s.lo < s.hi) || !(t < frame.far)) break;
         }
         uint k = leaf.first + i % leaf.count;
-        Span one = side_span(surfaces, surface_places, leaf_surfaces[k].surface, ray.o, ray.d);
+        Span one = side_span(surfaces, surface_places, side_word(leaf_surfaces, k), ray.o, ray.d);
         if (i >= leaf.count && ends_at(one, t)) side = k;
         if (i < leaf.count) s = both(s, one);
     }

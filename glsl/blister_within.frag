@@ -9,7 +9,7 @@
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
-layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(binding = 2) uniform usamplerBuffer leaf_surfaces;
 layout(binding = 3) uniform samplerBuffer surfaces;
 layout(binding = 4) uniform samplerBuffer surface_places;
 layout(binding = 5, rg32ui) readonly uniform uimage2D layer;
@@ -24,7 +24,7 @@ void main() {
     Ray ray = eye_ray(frame, gl_FragCoord.xy);
     bool inside = true;
     for (uint k = leaf.first; k < leaf.first + leaf.count && inside; ++k) {
-        uint surface = leaf_surfaces[k].surface;
+        uint surface = side_word(leaf_surfaces, k);
         inside = inside_span(side_span(surfaces, surface_places, surface, ray.o, ray.d), t);
     }
     if (!inside) discard;

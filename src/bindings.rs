@@ -11,7 +11,7 @@
 use crate::gpu::{Binding, Buffer, Resource, Texels};
 
 /// Of the primitives of Boolean solids, one after another.
-pub(crate) const PRIMITIVES: [Binding; 4] = [Binding::Storage, Binding::Storage, Binding::Texels, Binding::Texels];
+pub(crate) const PRIMITIVES: [Binding; 4] = [Binding::Storage, Binding::Texels, Binding::Texels, Binding::Texels];
 
 /// The bindings of the sun, after all others of a pass: `glsl/include/sun.glsl`. Those that cast shadows are among them.
 pub(crate) const SUN_BINDINGS: [Binding; 11] = with_primitives(SUN_OWN);
@@ -40,7 +40,7 @@ impl<'a> Placed<'a> {
 #[derive(Clone, Copy)]
 pub(crate) struct Primitives<'a> {
     pub leaves: &'a Buffer,
-    pub leaf_surfaces: &'a Buffer,
+    pub leaf_surfaces: &'a Texels,
     pub surfaces: &'a Texels,
     /// Where surfaces are, model axes, seen from the eye.
     pub surface_places: &'a Texels,
@@ -49,9 +49,8 @@ pub(crate) struct Primitives<'a> {
 impl<'a> Primitives<'a> {
     /// In binding order.
     pub(crate) fn resources(&self) -> [Resource<'a>; 4] {
-        let [leaves, sides] = [self.leaves, self.leaf_surfaces].map(Resource::from);
-        let [surfaces, places] = [self.surfaces, self.surface_places].map(Resource::from);
-        [leaves, sides, surfaces, places]
+        let [sides, surfaces, places] = [self.leaf_surfaces, self.surfaces, self.surface_places].map(Resource::from);
+        [self.leaves.into(), sides, surfaces, places]
     }
 }
 

@@ -145,10 +145,10 @@ pub(crate) struct TileBuffers {
     pub block_starts: Buffer,
     pub block_leaves: Buffer,
     pub tile_counts: Buffer,
-    pub tile_starts: Buffer,
+    pub tile_starts: Texels,
     pub tile_leaves: Texels,
     /// These two of all tiles of the picture.
-    pub tile_entries: Buffer,
+    pub tile_entries: Texels,
     pub tile_squares: Buffer,
 }
 
@@ -290,13 +290,13 @@ impl Buffers {
                                     block_starts: words("solid block starts", blocks + 1)?,
                                     block_leaves: words("solid block leaves", capacities.block_leaves)?,
                                     tile_counts: words("solid tile counts", tiles)?,
-                                    tile_starts: words("solid tile starts", tiles + 1)?,
+                                    tile_starts: numbers("solid tile starts", tiles + 1, Texel::U32)?,
                                     tile_leaves: texels(
                                         "solid tile leaves",
                                         u64::from(room) * size_of::<TileLeaf>() as u64,
                                         Texel::U32x4,
                                     )?,
-                                    tile_entries: words("solid tile entries", all_tiles)?,
+                                    tile_entries: numbers("solid tile entries", all_tiles, Texel::U32)?,
                                     tile_squares: words("solid tile squares", all_tiles)?,
                                 })
                             })

@@ -1,4 +1,4 @@
-// The part of a ray inside of a leaf with equations. Needs solids.glsl, and the buffers `LeafSurface leaf_surfaces[]`,
+// The part of a ray inside of a leaf with equations. Needs solids.glsl, `usamplerBuffer leaf_surfaces`,
 // `samplerBuffer surfaces`, `samplerBuffer surface_places`.
 //
 //   sides that are no planes: spans, one after another ──▶ planes: the later of what they begin, the earlier of what
@@ -15,7 +15,7 @@ Span leaf_span(uint own, vec3 o, vec3 d, float at, inout uint side) {
     if (SOLIDS_HAVE != SURFACE_PLANE && (own & LEAF_ROUNDS) != 0u) {
         bool more;
         do {
-            uint word = leaf_surfaces[k].surface;
+            uint word = side_word(leaf_surfaces, k);
             Span one = side_span(surfaces, surface_places, word, o, d);
             if (ends_at(one, at)) side = k;
             s = both(s, one);
@@ -29,7 +29,7 @@ Span leaf_span(uint own, vec3 o, vec3 d, float at, inout uint side) {
         float hi = NEVER;
         bool more;
         do {
-            uint word = leaf_surfaces[k].surface;
+            uint word = side_word(leaf_surfaces, k);
             Span one = plane_span(place_at(surface_places, word >> SIDE_SHIFT), (word & SIDE_NEGATIVE) != 0u, o, d);
             lo = max(lo, one.lo);
             hi = min(hi, one.hi);

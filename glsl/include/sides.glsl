@@ -1,6 +1,6 @@
 // Whose a side of a Boolean solid is, and which way it faces: of a leaf with equations, or a triangle of an operand.
-// Needs scene.glsl, solids.glsl, shells.glsl, view.glsl, eye_ray.glsl, `frame`, and buffers `LeafSurface
-// leaf_surfaces[]`, `Instance instances[]`, `OperandMesh operand_meshes[]`, and those of triangle_depth.glsl.
+// Needs scene.glsl, solids.glsl, shells.glsl, view.glsl, eye_ray.glsl, `frame`, `usamplerBuffer
+// leaf_surfaces`, and buffers `Instance instances[]`, `OperandMesh operand_meshes[]`, and those of triangle_depth.glsl.
 #ifndef SIDES_GLSL
 #define SIDES_GLSL
 
@@ -36,7 +36,7 @@ vec3 across_side(uint side, float t, Ray ray) {
 // A side that is met at depth t.
 Side side_at(uint side, float t, Ray ray) {
     if (!SOLIDS_HAVE_SHELLS || side < frame.side_count) {
-        LeafSurface s = leaf_surfaces[side];
+        LeafSurface s = leaf_surface_at(leaf_surfaces, side);
         return Side(s.leaf, across_side(s.surface, t, ray), s.surface >> SIDE_SHIFT);
     }
     uint triangle = side - frame.side_count;

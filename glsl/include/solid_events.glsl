@@ -26,12 +26,12 @@
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
-layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(binding = 2) uniform usamplerBuffer leaf_surfaces;
 layout(binding = 3) uniform samplerBuffer surfaces;
 layout(binding = 4) uniform samplerBuffer surface_places;
-layout(scalar, binding = 5) readonly buffer TileStarts { uint tile_starts[]; };
+layout(binding = 5) uniform usamplerBuffer tile_starts;
 layout(binding = 6) uniform usamplerBuffer tile_leaves;
-layout(scalar, binding = 7) readonly buffer TileEntries { uint tile_entries[]; };
+layout(binding = 7) uniform usamplerBuffer tile_entries;
 
 layout(scalar, binding = 8) readonly buffer FragmentStarts { uint fragment_starts[]; };
 layout(scalar, binding = 9) readonly buffer FragmentCounts { uint fragment_counts[]; };
@@ -93,12 +93,12 @@ void meet(inout Walk walk, uint i, TileLeaf here, Crossing c, uint other, uint a
 
 void main() {
     uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
-    uint first = min(tile_starts[n], frame.tile_leaf_capacity);
-    uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
+    uint first = min(texelFetch(tile_starts, int(n)).x, frame.tile_leaf_capacity);
+    uint end = min(texelFetch(tile_starts, int(n) + 1).x, frame.tile_leaf_capacity);
     if (SOLIDS_ARE_FOLLOWED) {
         while (end > first && (tile_leaf_at(tile_leaves, end - 1u).leaf & ~TILE_LEAF_ENTRY) >= frame.followed_leaf) --end;
     }
-    uint entry = tile_entries[first_of_band(frame) + n];
+    uint entry = texelFetch(tile_entries, int(first_of_band(frame) + n)).x;
     if (entry == EXIT_FALSE) discard;
     Ray ray = eye_ray(frame, gl_FragCoord.xy);
     uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));

@@ -19,7 +19,7 @@
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
-layout(scalar, binding = 2) readonly buffer LeafSurfaces { LeafSurface leaf_surfaces[]; };
+layout(binding = 2) uniform usamplerBuffer leaf_surfaces;
 layout(binding = 3) uniform samplerBuffer surfaces;
 layout(binding = 4) uniform samplerBuffer surface_places;
 layout(scalar, binding = 5) readonly buffer LeafCentres { vec3 leaf_centres[]; };

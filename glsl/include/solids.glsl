@@ -50,6 +50,13 @@ struct LeafSurface {
     uint surface;   // index << SIDE_SHIFT | SIDE_*
     uint leaf;
 };
+LeafSurface leaf_surface_at(usamplerBuffer sides, uint k) {
+    uvec2 side = texelFetch(sides, int(k)).xy;
+    return LeafSurface(side.x, side.y);
+}
+
+uint side_word(usamplerBuffer sides, uint k) { return texelFetch(sides, int(k)).x; }
+
 const uint SIDE_SHIFT = 3u;
 const uint SIDE_NEGATIVE = 1u; // the leaf is where the surface's function is positive
 const uint SIDE_PLANE = 2u;    // the last sides of a leaf

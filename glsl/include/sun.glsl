@@ -59,7 +59,7 @@ layout(scalar, binding = SUN_BINDING + 4) readonly buffer TileTriangles { uint t
 #define sun_counters counters
 #else
 layout(scalar, binding = SUN_BINDING + 5) readonly buffer Casters { Leaf casters[]; };
-layout(scalar, binding = SUN_BINDING + 6) readonly buffer CasterSides { LeafSurface caster_sides[]; };
+layout(binding = SUN_BINDING + 6) uniform usamplerBuffer caster_sides;
 layout(binding = SUN_BINDING + 7) uniform samplerBuffer caster_surfaces;
 layout(binding = SUN_BINDING + 8) uniform samplerBuffer caster_places;
 layout(scalar, binding = SUN_BINDING + 9) readonly buffer CasterMiddles { vec3 caster_middles[]; };
@@ -117,7 +117,7 @@ Span caster_span(uint own, vec3 p, uint surface) {
     Span s = EVERYTHING;
     bool more = true;
     for (uint k = own >> LEAF_FLAG_BITS; more && s.lo < s.hi; ++k) {
-        uint side = caster_sides[k].surface;
+        uint side = side_word(caster_sides, k);
         more = (side & SIDE_MORE) != 0u || (side & SIDE_PLANE) == 0u && (own & LEAF_PLANES) != 0u;
         bool is_here = side >> SIDE_SHIFT == surface;
         s = both(s, is_here ? span_from(side, p, sun.towards)

@@ -12,7 +12,7 @@
 #include "eye_ray.glsl"
 
 layout(scalar, binding = VOLUME_BINDING + 0) readonly buffer VolumeLeaves { Leaf volume_leaves[]; };
-layout(scalar, binding = VOLUME_BINDING + 1) readonly buffer VolumeSides { LeafSurface volume_sides[]; };
+layout(binding = VOLUME_BINDING + 1) uniform usamplerBuffer volume_sides;
 layout(binding = VOLUME_BINDING + 2) uniform samplerBuffer volume_surfaces;
 layout(binding = VOLUME_BINDING + 3) uniform samplerBuffer volume_places;
 
@@ -25,7 +25,7 @@ const float ON_DEPTH = 2e-6;
 bool in_leaf(Leaf leaf, vec3 p, float slack) {
     bool inside = true;
     for (uint k = leaf.first; k < leaf.first + leaf.count && inside; ++k) {
-        uint word = volume_sides[k].surface;
+        uint word = side_word(volume_sides, k);
         vec4 place = place_at(volume_places, word >> SIDE_SHIFT);
         float value = dot(place.xyz, p) - place.w;
         float slope = 1.0; // how much it grows a unit of length

@@ -12,8 +12,8 @@ impl<'a> Frame<'a> {
         let (tiles, leaves) = self.scene.sun.as_ref().map_or((sun, sun), |s| (&s.tiles, &s.leaves));
         let triangles = self.scene.sun.as_ref().and_then(|s| s.triangles.as_ref());
         let [triangles, listed] = triangles.map_or([sun; 2], |t| t.each_ref());
-        let points = &self.scene.points;
-        let nobody = Primitives { leaves: sun, leaf_surfaces: sun, surfaces: points, surface_places: points };
+        let (points, words) = (&self.scene.points, &self.scene.items);
+        let nobody = Primitives { leaves: sun, leaf_surfaces: words, surfaces: points, surface_places: points };
         let solids = self.scene.solids.as_ref().zip(self.centres);
         let (casters, middles) =
             solids.map_or((nobody, sun), |(s, centres)| (s.primitives(centres.surfaces), centres.leaves));

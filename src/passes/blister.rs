@@ -92,7 +92,7 @@ pub(crate) struct Bindings<'a> {
     /// `None` without meshes.
     pub meshes: Option<MeshBindings<'a>>,
     /// Starts, leaves and entries of tiles; `None` with meshes, whose faces show as they are found.
-    pub tiles: Option<(&'a Buffer, &'a Texels, &'a Buffer)>,
+    pub tiles: Option<(&'a Texels, &'a Texels, &'a Texels)>,
 }
 
 /// Those of meshes.
@@ -185,7 +185,8 @@ impl Blister {
         let of_lock = GraphicsInfo { bindings: &[Binding::StorageImage], colour: &layer, ..replaces };
         let of_show = bindings(1, 1);
         let mut of_owner = with_primitives::<13>(1);
-        (of_owner[6], of_owner[10]) = (Binding::Texels, Binding::Texels);
+        of_owner[5..8].fill(Binding::Texels);
+        of_owner[10] = Binding::Texels;
         of_owner[12] = Binding::StorageImage;
         Ok(Self {
             peel: peel("peel", leaf, shaders::BLISTER_PEEL_FRAG, &of_peel)?,

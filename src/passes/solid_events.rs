@@ -50,9 +50,9 @@ pub(crate) struct SolidEvents {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub primitives: Primitives<'a>,
-    pub tile_starts: &'a Buffer,
+    pub tile_starts: &'a Texels,
     pub tile_leaves: &'a Texels,
-    pub tile_entries: &'a Buffer,
+    pub tile_entries: &'a Texels,
     /// Where rays cross operands without equations; `None` where there are none.
     pub fragments: Option<Fragments<'a>>,
     /// `clamps`: rays that a driver did not let come to their end.
@@ -76,7 +76,8 @@ impl SolidEvents {
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
         let mut bindings = with_primitives::<13>(1);
-        (bindings[6], bindings[10]) = (Binding::Texels, Binding::Texels);
+        bindings[5..8].fill(Binding::Texels);
+        bindings[10] = Binding::Texels;
         let target = |format| ColourTarget { format, blend: Blend::Replace };
         let colour = [target(visibility), target(OPERAND_UV_FORMAT)];
         let pipeline = Pipeline::graphics(

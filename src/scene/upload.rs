@@ -47,14 +47,14 @@ pub(crate) struct SunTiles {
 /// A volume's switches, and their surfaces.
 pub(crate) struct Volume {
     pub leaves: Buffer,
-    pub leaf_surfaces: Buffer,
+    pub leaf_surfaces: Texels,
     pub surfaces: Texels,
 }
 
 /// The switches of the Blist, and their surfaces.
 pub(crate) struct Solids {
     pub leaves: Buffer,
-    pub leaf_surfaces: Buffer,
+    pub leaf_surfaces: Texels,
     pub surfaces: Texels,
     /// The leaves as they are drawn, and how many; only where each is drawn by itself.
     pub order: Option<(Buffer, u32)>,
@@ -196,7 +196,13 @@ impl Scene {
                 .then(|| {
                     Ok(Solids {
                         leaves: persistent(&mut uploads, cmd, "solid leaves", &data.solids.leaves)?,
-                        leaf_surfaces: persistent(&mut uploads, cmd, "solid sides", &data.solids.leaf_surfaces)?,
+                        leaf_surfaces: texels(
+                            &mut uploads,
+                            cmd,
+                            "solid sides",
+                            &data.solids.leaf_surfaces,
+                            Texel::U32x2,
+                        )?,
                         surfaces: surfaces(&mut uploads, cmd, "solid surfaces", &data.solids)?,
                         shells: (!data.solids.shell_leaves.is_empty())
                             .then(|| shells(&mut uploads, cmd, &data.solids))
@@ -235,7 +241,7 @@ impl Scene {
                 .map(|v| {
                     Ok(Volume {
                         leaves: persistent(&mut uploads, cmd, "volume leaves", &v.leaves)?,
-                        leaf_surfaces: persistent(&mut uploads, cmd, "volume sides", &v.leaf_surfaces)?,
+                        leaf_surfaces: texels(&mut uploads, cmd, "volume sides", &v.leaf_surfaces, Texel::U32x2)?,
                         surfaces: surfaces(&mut uploads, cmd, "volume surfaces", v)?,
                     })
                 })
