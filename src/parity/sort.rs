@@ -82,7 +82,7 @@ fn parity_of_long_rows() {
     let gpu = Gpu::new();
     let mut random = Random::new(3);
     let mut rows = Rows { starts: Vec::new(), total: 0, counters: Counters::default(), intercepts: Vec::new() };
-    for length in [0, 1, 2, 3, 7, 64, 0, 1000, 4097] {
+    for length in [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 64, 0, 1000, 8, 4097] {
         rows.starts.push(rows.intercepts.len() as u32);
         rows.intercepts.extend((0..length).map(|_| {
             let u = (random.range(-0.5, 1.5) * 100.0).round() as f32 / 100.0;

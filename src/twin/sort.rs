@@ -6,7 +6,7 @@
 //!   flips        |              |        inside    0 1 1 1 1 1 0
 //! ```
 //!
-//! The shader sorts by heap, in place; a sorted list of integers is the same by whatever method. At
+//! The shader sorts few by a network and many by heap, in place; a sorted list of integers is the same by whatever method. At
 //! equal `u`, where loops touch or coincide, several flips may stand side by side; a look-up passes
 //! all of them or none.
 
