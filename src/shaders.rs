@@ -2,8 +2,6 @@
 //!
 //! Compiled by `build.rs`, or committed in `glsl/spirv/`; see there.
 
-use crate::gpu::Binding;
-
 /// Little-endian words, for Vulkan's alignment.
 const fn words<const COUNT: usize>(bytes: &[u8]) -> [u32; COUNT] {
     let (chunks, []) = bytes.as_chunks::<4>() else { panic!("SPIR-V is made of 4-byte words") };
@@ -32,8 +30,8 @@ pub struct TrimTest {
     pub heal: &'static [u32],
     /// Both again, within a volume that trims the scene; `None`: the way draws no such scene.
     pub within: Option<Within>,
-    /// Of the test; they follow those of the pass.
-    pub bindings: &'static [Binding],
+    /// Buffers of the test, read as texels; they follow the bindings of the pass.
+    pub texels: usize,
 }
 
 /// Shaders of scenes that a volume trims: `glsl/include/volume.glsl`.
@@ -52,7 +50,7 @@ pub static TRIM_TABLE: TrimTest = TrimTest {
     operand_patch: OPERAND_PATCH_TABLE_FRAG,
     heal: HEAL_TABLE_COMP,
     within: Some(Within { visibility: VISIBILITY_TABLE_VOLUME_FRAG, heal: HEAL_TABLE_VOLUME_COMP }),
-    bindings: &[Binding::Texels; 4],
+    texels: 4,
 };
 /// Arcs in bands and cells.
 pub static TRIM_EXACT: TrimTest = TrimTest {
@@ -61,7 +59,7 @@ pub static TRIM_EXACT: TrimTest = TrimTest {
     operand_patch: OPERAND_PATCH_EXACT_FRAG,
     heal: HEAL_EXACT_COMP,
     within: Some(Within { visibility: VISIBILITY_EXACT_VOLUME_FRAG, heal: HEAL_EXACT_VOLUME_COMP }),
-    bindings: &[Binding::Texels; 6],
+    texels: 6,
 };
 
 /// No test at all.
@@ -72,7 +70,7 @@ pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
     operand_patch: RIVAL_OPERAND_PATCH_UNTRIMMED_FRAG,
     heal: RIVAL_HEAL_UNTRIMMED_COMP,
     within: None,
-    bindings: &[],
+    texels: 0,
 };
 
 /// Bisection of monotone pieces.
@@ -83,7 +81,7 @@ pub static TRIM_BISECT: TrimTest = TrimTest {
     operand_patch: RIVAL_OPERAND_PATCH_BISECT_FRAG,
     heal: RIVAL_HEAL_BISECT_COMP,
     within: None,
-    bindings: &[Binding::Texels; 6],
+    texels: 6,
 };
 
 /// Trim textures.
@@ -94,7 +92,7 @@ pub static TRIM_TEXTURE: TrimTest = TrimTest {
     operand_patch: RIVAL_OPERAND_PATCH_TEXTURE_FRAG,
     heal: RIVAL_HEAL_TEXTURE_COMP,
     within: None,
-    bindings: &[Binding::Texels; 2],
+    texels: 2,
 };
 
 #[cfg(test)]

@@ -214,7 +214,8 @@ mod parity {
             gpu.upload_texels("arcs", &given.arcs, Texel::U32x4),
             gpu.upload_texels("points", &given.points, Texel::F32),
         ];
-        let (spirv, bindings) = (spirv(), [TRIM_EXACT.bindings, &[Binding::Storage; 2]].concat());
+        let (spirv, bindings) =
+            (spirv(), [vec![Binding::Texels; TRIM_EXACT.texels], vec![Binding::Storage; 2]].concat());
         let info = ComputeInfo { name: "exact", spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
         let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
         for (face, points) in points.iter().enumerate() {

@@ -93,7 +93,8 @@ mod parity {
         let info = ComputeInfo {
             name: "table",
             spirv: &spirv(),
-            bindings: &[&[Binding::Uniform], TRIM_TABLE.bindings, &[Binding::Storage; 2]].concat(),
+            bindings: &[vec![Binding::Uniform], vec![Binding::Texels; TRIM_TABLE.texels], vec![Binding::Storage; 2]]
+                .concat(),
             push_bytes: 8,
             constants: &[],
         };

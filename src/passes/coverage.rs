@@ -40,7 +40,7 @@ impl Coverage {
     pub(crate) fn new(device: &Device, colour: vk::Format, rational: bool) -> Result<Self, GpuError> {
         let mut bindings = with_placed(9);
         bindings[7..9].fill(Binding::StorageImage);
-        bindings.extend(TRIM_EXACT.bindings);
+        bindings.extend(vec![Binding::Texels; TRIM_EXACT.texels]);
         let pipeline = Pipeline::graphics(
             device,
             &GraphicsInfo {

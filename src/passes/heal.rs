@@ -94,7 +94,7 @@ impl Heal {
         find[1] = Binding::StorageImage;
         find[5] = Binding::Sampled;
         let mut heal = with_placed(15);
-        heal.extend(test.bindings);
+        heal.extend(vec![Binding::Texels; test.texels]);
         heal.extend(PRIMITIVES.iter().filter(|_| volume.is_some()));
         heal[7] = Binding::StorageImage;
         heal[10] = Binding::Texels;

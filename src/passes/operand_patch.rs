@@ -78,7 +78,7 @@ impl OperandPatch {
             let mut bindings = with_placed(13);
             bindings[9] = Binding::Texels;
             bindings.extend(linked.then_some(Binding::Storage));
-            bindings.extend(trimmed.map_or(&[][..], |test| test.bindings));
+            bindings.extend(vec![Binding::Texels; trimmed.map_or(0, |test| test.texels)]);
             Pipeline::graphics(
                 device,
                 &GraphicsInfo {

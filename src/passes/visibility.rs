@@ -101,7 +101,7 @@ impl Visibility {
                         (vk::ShaderStageFlags::TESSELLATION_EVALUATION, surface),
                         (vk::ShaderStageFlags::FRAGMENT, fragment),
                     ],
-                    bindings: &bindings(trimmed.map(|test| test.bindings), kinds.volume.is_some(), linked),
+                    bindings: &bindings(trimmed.map(|test| test.texels), kinds.volume.is_some(), linked),
                     push_bytes: 0,
                     constants: &[
                         (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
@@ -155,13 +155,14 @@ impl Visibility {
     }
 }
 
-/// Bindings of a pipeline whose trim test has these beside the rings; `None`: without one. `linked`: it reads links.
-fn bindings(of_test: Option<&[Binding]>, volume: bool, linked: bool) -> Vec<Binding> {
+/// Bindings of a pipeline whose trim test has so many texel buffers beside the rings; `None`: without one. `linked`: it
+/// reads links.
+fn bindings(of_test: Option<usize>, volume: bool, linked: bool) -> Vec<Binding> {
     let mut bindings = with_placed(10);
     bindings[9] = Binding::Texels;
-    if let Some(test) = of_test {
+    if let Some(texels) = of_test {
         bindings.push(Binding::Storage);
-        bindings.extend(test);
+        bindings.extend(vec![Binding::Texels; texels]);
     }
     bindings.extend(PRIMITIVES.iter().filter(|_| volume));
     bindings.extend(linked.then_some(Binding::Storage));
