@@ -26,6 +26,11 @@ fn readers() -> Access {
     Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ
 }
 
+/// Who reads constants, which also stand in for lists that a scene has not: nobody reads those, but they are bound.
+fn of_constants() -> Access {
+    Access::UNIFORM_READ | readers()
+}
+
 /// A clearing, among buffer accesses, which have no layout of their own.
 const CLEARED: Access = Access { layout: Access::COMPUTE_READ.layout, ..Access::TRANSFER_WRITE };
 
@@ -54,7 +59,7 @@ impl Frame<'_> {
         let (tiles, fragments) = (&parts.buffers.tiles, &parts.buffers.fragments);
         let lists = tiles.iter().flat_map(|t| [&t.tile_counts, &t.tile_starts, &t.tile_leaves, &t.tile_entries]);
         let mut before: Vec<_> = lists.map(|list| (list, readers(), w)).collect();
-        before.push((self.constants, Access::UNIFORM_READ, CLEARED));
+        before.push((self.constants, of_constants(), CLEARED));
         if let Some(f) = fragments {
             before.push((&f.counts, readers() | CLEARED, CLEARED));
         }
@@ -63,7 +68,7 @@ impl Frame<'_> {
         if let Some(f) = fragments {
             cmd.fill(&f.counts, 0);
         }
-        barrier::buffers(cmd, &[(self.constants, CLEARED, Access::UNIFORM_READ)]);
+        barrier::buffers(cmd, &[(self.constants, CLEARED, of_constants())]);
     }
 
     /// Before the lists of all bands are made once more: what they count begins again.
