@@ -32,7 +32,7 @@ fn target(scene: &Scene, to: EditTarget) -> Option<&Buffer> {
         (EditTarget::Cells, Trims::Table(trims)) => Some(&trims.cells),
         (EditTarget::Curves, Trims::Table(trims)) => Some(&trims.curves),
         (EditTarget::CurvePoints, Trims::Table(trims)) => Some(&trims.curve_points),
-        (EditTarget::Exact(array), Trims::Exact(trims)) => trims.all().get(array).map(|texels| &***texels),
+        (EditTarget::Exact(array), Trims::Exact(trims)) => Some(*trims.all().get(array)?),
         _ => None,
     }
 }

@@ -91,10 +91,10 @@ pub(crate) struct MeshBuffers {
 
 /// What the scene's way to trim needs.
 pub(crate) enum Trims {
-    Table(TableScene),
-    Exact(ExactScene),
+    Table(Box<TableScene>),
+    Exact(Box<ExactScene>),
     #[cfg(feature = "rivals")]
-    Rival(RivalScene),
+    Rival(Box<RivalScene>),
 }
 
 /// What a way to compare with needs.
@@ -180,17 +180,19 @@ impl Scene {
             items: read_both(&mut uploads, cmd, "items", &data.items, Texel::U32)?,
             trims: match data.trim_way() {
                 None => None,
-                Some(TrimWay::Table) => Some(Trims::Table(table_scene(&mut uploads, cmd, data)?)),
+                Some(TrimWay::Table) => Some(Trims::Table(Box::new(table_scene(&mut uploads, cmd, data)?))),
                 #[cfg(feature = "rivals")]
-                Some(TrimWay::Rival(rival)) => Some(Trims::Rival(rival_scene(&mut uploads, cmd, data, rival)?)),
-                Some(TrimWay::Exact) => Some(Trims::Exact(ExactScene {
+                Some(TrimWay::Rival(rival)) => {
+                    Some(Trims::Rival(Box::new(rival_scene(&mut uploads, cmd, data, rival)?)))
+                }
+                Some(TrimWay::Exact) => Some(Trims::Exact(Box::new(ExactScene {
                     faces: texels(&mut uploads, cmd, "trim faces", &data.exact.faces, Texel::U32x2)?,
                     bands: texels(&mut uploads, cmd, "trim bands", &data.exact.bands, Texel::U32x2)?,
                     cells: texels(&mut uploads, cmd, "trim band cells", &data.exact.cells, Texel::U32x4)?,
                     entries: texels(&mut uploads, cmd, "trim entries", &data.exact.entries, Texel::U32)?,
                     arcs: texels(&mut uploads, cmd, "trim arcs", &data.exact.arcs, Texel::U32x4)?,
                     points: texels(&mut uploads, cmd, "trim arc points", &data.exact.points, Texel::F32)?,
-                })),
+                }))),
             },
             solids: (!data.solids.leaves.is_empty())
                 .then(|| {
