@@ -209,7 +209,7 @@ fn hard_cases() {
 mod parity {
     use super::super::harness::{Gpu, Mismatch, same};
     use super::*;
-    use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource, Texel};
+    use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource};
     use crate::shaders::TRIM_EXACT;
 
     fn spirv() -> Vec<u32> {
@@ -219,14 +219,7 @@ mod parity {
 
     /// Pixels of each face on the GPU, with the data of `given`, against the twin with `expected`; bits of numbers.
     fn compare(gpu: &Gpu, given: &ExactData, expected: &ExactData, pixels: &[Vec<Pixel>]) -> Result<(), Mismatch> {
-        let texels = [
-            gpu.upload_texels("faces", &given.faces, Texel::U32x2),
-            gpu.upload_texels("bands", &given.bands, Texel::U32x2),
-            gpu.upload_texels("cells", &given.cells, Texel::U32x4),
-            gpu.upload_texels("entries", &given.entries, Texel::U32),
-            gpu.upload_texels("arcs", &given.arcs, Texel::U32x4),
-            gpu.upload_texels("points", &given.points, Texel::F32),
-        ];
+        let texels = gpu.upload_exact(given);
         let (spirv, bindings) =
             (spirv(), [vec![Binding::Texels; TRIM_EXACT.texels], vec![Binding::Storage; 2]].concat());
         let info = ComputeInfo { name: "coverage", spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };

@@ -196,7 +196,7 @@ fn memory_is_linear_in_arcs() {
 mod parity {
     use super::super::harness::{Gpu, Mismatch, same};
     use super::*;
-    use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource, Texel};
+    use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource};
     use crate::shaders::TRIM_EXACT;
 
     fn spirv() -> Vec<u32> {
@@ -206,14 +206,7 @@ mod parity {
 
     /// Points of each face on the GPU, with the data of `given`, against the twin with `expected`.
     fn compare(gpu: &Gpu, given: &ExactData, expected: &ExactData, points: &[Vec<[f32; 2]>]) -> Result<(), Mismatch> {
-        let texels = [
-            gpu.upload_texels("faces", &given.faces, Texel::U32x2),
-            gpu.upload_texels("bands", &given.bands, Texel::U32x2),
-            gpu.upload_texels("cells", &given.cells, Texel::U32x4),
-            gpu.upload_texels("entries", &given.entries, Texel::U32),
-            gpu.upload_texels("arcs", &given.arcs, Texel::U32x4),
-            gpu.upload_texels("points", &given.points, Texel::F32),
-        ];
+        let texels = gpu.upload_exact(given);
         let (spirv, bindings) =
             (spirv(), [vec![Binding::Texels; TRIM_EXACT.texels], vec![Binding::Storage; 2]].concat());
         let info = ComputeInfo { name: "exact", spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };

@@ -3,6 +3,7 @@
 use super::Case;
 use crate::gpu::{Access, Buffer, Commands, Device, Pool, ReadBack, Texel, Texels, Uploads, barrier};
 use crate::headless::{HeadlessDevice, HeadlessOptions};
+use crate::scene::ExactData;
 use ash::vk;
 use bytemuck::Pod;
 use std::fmt::Debug;
@@ -69,6 +70,18 @@ impl Gpu {
             (Texels::new(cmd.device(), buffer, texel).unwrap(), uploads)
         };
         self.0.submit(record).unwrap().0
+    }
+
+    /// What the exact trim test reads, in its order.
+    pub(super) fn upload_exact(&self, data: &ExactData) -> [Texels; 6] {
+        [
+            self.upload_texels("faces", &data.faces, Texel::U32x2),
+            self.upload_texels("bands", &data.bands, Texel::U32x2),
+            self.upload_texels("cells", &data.cells, Texel::U32x4),
+            self.upload_texels("entries", &data.entries, Texel::U32),
+            self.upload_texels("arcs", &data.arcs, Texel::U32x4),
+            self.upload_texels("points", &data.points, Texel::F32),
+        ]
     }
 
     /// Records, submits, waits.

@@ -337,6 +337,7 @@ fn read_both<T: Pod>(
     Texels::new(cmd.device(), uploads.buffer(cmd, Pool::Persistent, name, usage, data)?, texel)
 }
 
+/// For passes that fetch texels alone: the range of a storage buffer does not bind them.
 fn texels<T: Pod>(
     uploads: &mut Uploads,
     cmd: &Commands<'_>,
