@@ -16,18 +16,23 @@ layout(constant_id = 1) const bool INSERT = false;
 
 layout(local_size_x = 128) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 1) readonly buffer FaceInstances { FaceInstance face_instances[]; };
-layout(scalar, binding = 2) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 3) readonly buffer Curves { Curve curves[]; };
-layout(scalar, binding = 4) readonly buffer CurvePoints { float curve_points[]; };
-layout(scalar, binding = 5) readonly buffer CurveItems { uint curve_face_instance[]; };
-layout(scalar, binding = 6) readonly buffer LineStarts { uint line_starts[]; };
-layout(scalar, binding = 7) readonly buffer SegmentStarts { uint segment_starts[]; };
-layout(scalar, binding = 8) buffer RowCounts { uint row_counts[]; };
-layout(scalar, binding = 9) readonly buffer RowStarts { uint row_starts[]; };
+// texels, which a driver fetches at once where it gathers words of storage buffers one by one
+layout(binding = 1) uniform usamplerBuffer face_instances;
+layout(binding = 2) uniform usamplerBuffer faces;
+layout(binding = 3) uniform usamplerBuffer curves;
+layout(binding = 4) uniform samplerBuffer curve_points;
+layout(binding = 5) uniform usamplerBuffer curve_items; // the placed face of each
+layout(binding = 6) uniform usamplerBuffer line_starts;
+layout(binding = 7) uniform usamplerBuffer segment_starts;
+layout(binding = 8) uniform usamplerBuffer row_starts;
+layout(scalar, binding = 9) buffer RowCounts { uint row_counts[]; };
 layout(scalar, binding = 10) writeonly buffer Intercepts { uint intercepts[]; };
 
 #include "curve.glsl"
+#include "curves.glsl"
+#include "faces.glsl"
+
+uint first_segment(uint item) { return texelFetch(segment_starts, int(item)).x; }
 
 // The curve item whose segments hold `segment`.
 uint curve_of(uint segment) {
@@ -35,7 +40,7 @@ uint curve_of(uint segment) {
     uint hi = frame.curve_count;
     while (hi - lo > 1u) {
         uint mid = (lo + hi) / 2u;
-        if (segment_starts[mid] <= segment) lo = mid;
+        if (first_segment(mid) <= segment) lo = mid;
         else hi = mid;
     }
     return lo;
@@ -48,14 +53,15 @@ uint ordered_bits(float u) {
 
 void main() {
     uint segment = gl_GlobalInvocationID.x;
-    uint total = segment_starts[frame.curve_count];
+    uint total = first_segment(frame.curve_count);
     if (segment >= total) return;
     uint item = curve_of(segment);
-    uint n = segment_starts[item + 1u] - segment_starts[item];
-    uint i = segment - segment_starts[item];
-    FaceInstance fi = face_instances[curve_face_instance[item]];
-    Face face = faces[fi.face];
-    Curve curve = curves[face.first_curve + item - fi.first_curve];
+    uint first_of_item = first_segment(item);
+    uint n = first_segment(item + 1u) - first_of_item;
+    uint i = segment - first_of_item;
+    FaceInstance fi = face_instance_at(texelFetch(curve_items, int(item)).x);
+    Face face = face_at(fi.face);
+    Curve curve = curve_at(face.first_curve + item - fi.first_curve);
     vec2 a = curve_point(curve, i, n);
     vec2 b = curve_point(curve, i + 1u, n);
     uint upwards = a.y < b.y ? 1u : 0u;
@@ -68,8 +74,8 @@ void main() {
     uint first = uint(clamp(floor(a.y * strips), 0.0, strips - 1.0));
     uint last = uint(clamp(floor(b.y * strips), 0.0, strips - 1.0));
     for (uint k = first; k <= last; ++k) {
-        uint base = line_starts[fi.first_strip + k];
-        uint count = line_starts[fi.first_strip + k + 1u] - base;
+        uint base = texelFetch(line_starts, int(fi.first_strip + k)).x;
+        uint count = texelFetch(line_starts, int(fi.first_strip + k + 1u)).x - base;
         if (count == 0u) continue;
         float mu = float(count);
         // one line too many on each side: the comparison below decides
@@ -90,7 +96,7 @@ void main() {
                 uint place = atomicAdd(row_counts[row], 0xffffffffu) - 1u;
                 precise float u = a.x + (v - a.y) / (b.y - a.y) * (b.x - a.x);
                 u = clamp(u, min(a.x, b.x), max(a.x, b.x));
-                uint at = row_starts[row] + place;
+                uint at = texelFetch(row_starts, int(row)).x + place;
                 if (at < frame.intercept_capacity) intercepts[at] = (ordered_bits(u) & ~1u) | upwards;
             }
         }

@@ -10,28 +10,33 @@
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 1) readonly buffer FaceInstances { FaceInstance face_instances[]; };
-layout(scalar, binding = 2) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 3) readonly buffer Curves { Curve curves[]; };
-layout(scalar, binding = 4) readonly buffer CurveItems { uint curve_face_instance[]; };
-layout(scalar, binding = 5) readonly buffer FaceSpeeds { uint face_speeds[]; };
-layout(scalar, binding = 6) readonly buffer LineStarts { uint line_starts[]; };
+layout(binding = 1) uniform usamplerBuffer face_instances;
+layout(binding = 2) uniform usamplerBuffer faces;
+layout(binding = 3) uniform usamplerBuffer curves;
+layout(binding = 4) uniform usamplerBuffer curve_items; // the placed face of each
+layout(binding = 5) uniform usamplerBuffer line_starts;
+layout(scalar, binding = 6) readonly buffer FaceSpeeds { uint face_speeds[]; };
 layout(scalar, binding = 7) writeonly buffer SegmentCounts { uint segment_counts[]; };
+
+#include "curves.glsl"
+#include "faces.glsl"
 
 const uint LINES_PER_SEGMENT = 256u;
 const float MAX_SEGMENTS = 65536.0;
 
+uint first_line(uint strip) { return texelFetch(line_starts, int(strip)).x; }
+
 void main() {
     uint item = gl_GlobalInvocationID.x;
     if (item >= frame.curve_count) return;
-    uint placed = curve_face_instance[item];
-    FaceInstance fi = face_instances[placed];
-    Face face = faces[fi.face];
-    Curve curve = curves[face.first_curve + item - fi.first_curve];
+    uint placed = texelFetch(curve_items, int(item)).x;
+    FaceInstance fi = face_instance_at(placed);
+    Face face = face_at(fi.face);
+    Curve curve = curve_at(face.first_curve + item - fi.first_curve);
     float strips = float(face.strip_count);
     uint lo = uint(clamp(floor(curve.range_v.x * strips), 0.0, strips - 1.0));
     uint hi = uint(clamp(floor(curve.range_v.y * strips), 0.0, strips - 1.0));
-    uint lines = line_starts[fi.first_strip + hi + 1u] - line_starts[fi.first_strip + lo];
+    uint lines = first_line(fi.first_strip + hi + 1u) - first_line(fi.first_strip + lo);
     if (lines == 0u) {
         segment_counts[item] = 0u;
         return;

@@ -9,6 +9,7 @@
 //! ```
 
 use crate::gpu::{Binding, Buffer, Resource, Texels};
+use std::ops::Range;
 
 /// Of the primitives of Boolean solids, one after another.
 pub(crate) const PRIMITIVES: [Binding; 4] = [Binding::Storage, Binding::Texels, Binding::Texels, Binding::Texels];
@@ -61,11 +62,16 @@ pub(crate) fn with_constants(count: usize) -> Vec<Binding> {
     bindings
 }
 
+/// Constants, texels, and storage buffers after them: `count` in all.
+pub(crate) fn with_texels(texels: Range<usize>, count: usize) -> Vec<Binding> {
+    let mut bindings = with_constants(count);
+    bindings[texels].fill(Binding::Texels);
+    bindings
+}
+
 /// Constants, [`Placed`], and storage buffers after them: `count` in all.
 pub(crate) fn with_placed(count: usize) -> Vec<Binding> {
-    let mut bindings = with_constants(count);
-    bindings[1..7].fill(Binding::Texels);
-    bindings
+    with_texels(1..7, count)
 }
 
 /// Constants, and storage buffers, but for [`PRIMITIVES`] from `first` on.

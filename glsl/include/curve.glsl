@@ -1,11 +1,13 @@
 // Trim curves in the normalised (u, v) domain. Twin of src/twin/curve.rs.
-// Needs a buffer `float curve_points[]`.
+// Needs `samplerBuffer curve_points`, three texels a control point.
 #ifndef CURVE_GLSL
 #define CURVE_GLSL
 
 vec3 curve_control(Curve curve, uint i) {
-    uint at = curve.first + 3u * i;
-    return vec3(curve_points[at], curve_points[at + 1u], curve_points[at + 2u]);
+    int at = int(curve.first + 3u * i);
+    return vec3(
+        texelFetch(curve_points, at).x, texelFetch(curve_points, at + 1).x, texelFetch(curve_points, at + 2).x
+    );
 }
 
 // Point `i` of `n` equal steps. The ends are the stored ones, so that curves of a loop share them

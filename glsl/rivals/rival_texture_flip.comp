@@ -9,17 +9,19 @@
 layout(local_size_x = 1, local_size_y = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Knob { float texels_per_px; uint placed_count; };
-layout(scalar, binding = 2) readonly buffer FaceInstances { FaceInstance face_instances[]; };
-layout(scalar, binding = 3) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 4) readonly buffer Curves { Curve curves[]; };
-layout(scalar, binding = 5) readonly buffer CurvePoints { float curve_points[]; };
-layout(scalar, binding = 6) readonly buffer CurveItems { uint curve_face_instance[]; };
+layout(binding = 2) uniform usamplerBuffer face_instances;
+layout(binding = 3) uniform usamplerBuffer faces;
+layout(binding = 4) uniform usamplerBuffer curves;
+layout(binding = 5) uniform samplerBuffer curve_points;
+layout(binding = 6) uniform usamplerBuffer curve_items; // the placed face of each
 layout(scalar, binding = 7) readonly buffer FaceSpeeds { uint face_speeds[]; };
 layout(scalar, binding = 8) readonly buffer Starts { uint starts[]; };
 layout(scalar, binding = 9) buffer Texels { uint texels[]; };
 layout(scalar, binding = 10) buffer CountersBuffer { Counters counters; };
 
 #include "curve.glsl"
+#include "curves.glsl"
+#include "faces.glsl"
 
 const uint SHARES = 64u;
 // Of a texel: what a chord may add to half a texel.
@@ -49,10 +51,10 @@ void flip(TextureSize size, uint start, vec2 a, vec2 b) {
 void main() {
     uint item = gl_GlobalInvocationID.x + gl_GlobalInvocationID.z * gl_NumWorkGroups.x;
     if (item >= frame.curve_count) return;
-    uint placed = curve_face_instance[item];
-    FaceInstance fi = face_instances[placed];
-    Face face = faces[fi.face];
-    Curve curve = curves[face.first_curve + item - fi.first_curve];
+    uint placed = texelFetch(curve_items, int(item)).x;
+    FaceInstance fi = face_instance_at(placed);
+    Face face = face_at(fi.face);
+    Curve curve = curve_at(face.first_curve + item - fi.first_curve);
     vec2 speed = texture_speed(face_speeds[2u * placed], face_speeds[2u * placed + 1u]);
     TextureSize size = texture_size(speed, texels_per_px);
     uint start = starts[placed];

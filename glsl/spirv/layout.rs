@@ -30,13 +30,6 @@ const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, hidden) == 84)
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, clamps) == 88);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, failed) == 92);
 const _: () = assert!(core::mem::size_of::<crate::abi::Counters>() == 96);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Curve, start) == 0);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Curve, end) == 8);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Curve, first) == 16);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Curve, degree) == 20);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Curve, bend) == 24);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Curve, range_v) == 32);
-const _: () = assert!(core::mem::size_of::<crate::abi::Curve>() == 40);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Face, domain) == 0);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Face, first_patch) == 16);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Face, count_u) == 20);

@@ -99,8 +99,8 @@ impl<'a> TableParts<'a> {
             faces: &s.faces,
             curves: &trims.curves,
             curve_items: &trims.curve_items,
-            face_speeds: &t.face_speeds,
             line_starts: &t.line_starts,
+            face_speeds: &t.face_speeds,
             segment_counts: &t.segment_counts,
         };
         p.segments.record(cmd, &segments, b.counts.curves);
@@ -127,8 +127,8 @@ impl<'a> TableParts<'a> {
             curve_items: &trims.curve_items,
             line_starts: &t.line_starts,
             segment_starts: &t.segment_starts,
-            row_counts: &t.row_counts,
             row_starts: &t.row_starts,
+            row_counts: &t.row_counts,
             intercepts: &t.intercepts,
             dispatches: &t.dispatches,
         };

@@ -5,7 +5,7 @@ use super::Case;
 use super::chain::{Chain, UNTOUCHED};
 use super::harness::{Gpu, Mismatch, SceneBuffers, floats, same};
 use super::shapes::cases;
-use crate::gpu::Buffer;
+use crate::gpu::Texel;
 use crate::passes::cross::{Bindings, Cross};
 use crate::twin::sort::from_ordered;
 
@@ -13,12 +13,13 @@ use crate::twin::sort::from_ordered;
 fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> (Vec<u32>, Vec<u32>) {
     let s = SceneBuffers::new(gpu, case);
     let before = if insert { chain.row_counts.clone() } else { vec![0; chain.row_counts.len()] };
-    let upload = |name: &str, words: &[u32]| -> Buffer { gpu.upload(name, words) };
+    let starts = |name: &str, words: &[u32]| gpu.upload_texels(name, words, Texel::U32);
     let (line_starts, segment_starts) =
-        (upload("line starts", &chain.line_starts), upload("segment starts", &chain.segment_starts));
-    let (row_counts, row_starts) = (upload("row counts", &before), upload("row starts", &chain.row_starts));
-    let intercepts = upload("intercepts", &vec![UNTOUCHED; chain.intercepts.len()]);
-    let dispatches = upload("dispatches", chain.dispatches.as_flattened());
+        (starts("line starts", &chain.line_starts), starts("segment starts", &chain.segment_starts));
+    let row_starts = starts("row starts", &chain.row_starts);
+    let row_counts = gpu.upload("row counts", &before);
+    let intercepts = gpu.upload("intercepts", &vec![UNTOUCHED; chain.intercepts.len()]);
+    let dispatches = gpu.upload("dispatches", chain.dispatches.as_flattened());
     let bindings = Bindings {
         frame: &s.frame,
         face_instances: &s.face_instances,
@@ -28,8 +29,8 @@ fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> (Vec<u32>, Vec
         curve_items: &s.curve_items,
         line_starts: &line_starts,
         segment_starts: &segment_starts,
-        row_counts: &row_counts,
         row_starts: &row_starts,
+        row_counts: &row_counts,
         intercepts: &intercepts,
         dispatches: &dispatches,
     };

@@ -60,11 +60,11 @@ impl Gpu {
         self.0.submit(record).unwrap().0
     }
 
-    /// The same, for shaders that fetch texels.
+    /// The same, for shaders that fetch texels, too.
     pub(super) fn upload_texels<T: Pod>(&self, name: &str, data: &[T], texel: Texel) -> Texels {
         let record = |cmd: &Commands<'_>| {
             let mut uploads = Uploads::new();
-            let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
+            let usage = Buffer::STORAGE | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
             let buffer = uploads.buffer(cmd, Pool::Transient, name, usage, data).unwrap();
             uploads.finish(cmd, Access::COMPUTE_READ);
             (Texels::new(cmd.device(), buffer, texel).unwrap(), uploads)
@@ -112,15 +112,15 @@ pub(super) struct SceneBuffers {
     pub frame: Buffer,
     pub views: Buffer,
     pub instances: Buffer,
-    pub face_instances: Buffer,
-    pub faces: Buffer,
+    pub face_instances: Texels,
+    pub faces: Texels,
     pub patches: Buffer,
     pub items: Buffer,
     pub cells: Buffer,
     pub cell_items: Buffer,
-    pub curves: Buffer,
-    pub curve_points: Buffer,
-    pub curve_items: Buffer,
+    pub curves: Texels,
+    pub curve_points: Texels,
+    pub curve_items: Texels,
 }
 
 impl SceneBuffers {
@@ -130,15 +130,15 @@ impl SceneBuffers {
             frame: gpu.upload("frame", &[case.frame]),
             views: gpu.upload("views", &case.views),
             instances: gpu.upload("instances", &d.instances),
-            face_instances: gpu.upload("face instances", &d.face_instances),
-            faces: gpu.upload("faces", &d.faces),
+            face_instances: gpu.upload_texels("face instances", &d.face_instances, Texel::U32x2),
+            faces: gpu.upload_texels("faces", &d.faces, Texel::U32),
             patches: gpu.upload("patches", &d.patches),
             items: gpu.upload("items", &d.items),
             cells: gpu.upload("cells", &d.cells),
             cell_items: gpu.upload("cell items", &d.cell_items),
-            curves: gpu.upload("curves", &d.curves),
-            curve_points: gpu.upload("curve points", &d.curve_points),
-            curve_items: gpu.upload("curve items", &d.curve_items),
+            curves: gpu.upload_texels("curves", &d.curves, Texel::U32x2),
+            curve_points: gpu.upload_texels("curve points", &d.curve_points, Texel::F32),
+            curve_items: gpu.upload_texels("curve items", &d.curve_items, Texel::U32),
         }
     }
 }

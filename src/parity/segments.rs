@@ -4,6 +4,7 @@ use super::Case;
 use super::chain::{Chain, UNTOUCHED};
 use super::harness::{Gpu, Mismatch, SceneBuffers, counts};
 use super::shapes::cases;
+use crate::gpu::Texel;
 use crate::passes::segments::{Bindings, Segments};
 use crate::twin;
 
@@ -11,7 +12,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case, chain: &Chain) -> Result<()
     let n = given.data.curve_items.len();
     let s = SceneBuffers::new(gpu, given);
     let face_speeds = gpu.upload("face speeds", &chain.density.face_speeds);
-    let line_starts = gpu.upload("line starts", &chain.line_starts);
+    let line_starts = gpu.upload_texels("line starts", &chain.line_starts, Texel::U32);
     let segment_counts = gpu.upload("segment counts", &vec![UNTOUCHED; n]);
     let pass = Segments::new(gpu.device()).unwrap();
     let bindings = Bindings {
@@ -20,8 +21,8 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case, chain: &Chain) -> Result<()
         faces: &s.faces,
         curves: &s.curves,
         curve_items: &s.curve_items,
-        face_speeds: &face_speeds,
         line_starts: &line_starts,
+        face_speeds: &face_speeds,
         segment_counts: &segment_counts,
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));

@@ -11,8 +11,8 @@
 //! counting and again after inserting),
 //! `intercepts`. Twin: `src/twin/cross.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_texels;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
 use crate::shaders;
 
 /// `constant_id` of `INSERT`.
@@ -27,15 +27,15 @@ pub(crate) struct Cross {
 /// Its buffers, in binding order, and the dispatches.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub face_instances: &'a Buffer,
-    pub faces: &'a Buffer,
-    pub curves: &'a Buffer,
-    pub curve_points: &'a Buffer,
-    pub curve_items: &'a Buffer,
-    pub line_starts: &'a Buffer,
-    pub segment_starts: &'a Buffer,
+    pub face_instances: &'a Texels,
+    pub faces: &'a Texels,
+    pub curves: &'a Texels,
+    pub curve_points: &'a Texels,
+    pub curve_items: &'a Texels,
+    pub line_starts: &'a Texels,
+    pub segment_starts: &'a Texels,
+    pub row_starts: &'a Texels,
     pub row_counts: &'a Buffer,
-    pub row_starts: &'a Buffer,
     pub intercepts: &'a Buffer,
     /// Written by pass `sizes`; this pass's is the first.
     pub dispatches: &'a Buffer,
@@ -49,7 +49,7 @@ impl Cross {
                 &ComputeInfo {
                     name,
                     spirv: shaders::CROSS_COMP,
-                    bindings: &with_constants(11),
+                    bindings: &with_texels(1..9, 11),
                     push_bytes: 0,
                     constants: &[(INSERT, u32::from(insert))],
                 },
@@ -70,19 +70,18 @@ impl Cross {
 
     fn record(cmd: &Commands<'_>, pipeline: &Pipeline, b: &Bindings<'_>) {
         let resources = [
-            b.frame,
-            b.face_instances,
-            b.faces,
-            b.curves,
-            b.curve_points,
-            b.curve_items,
-            b.line_starts,
-            b.segment_starts,
-            b.row_counts,
-            b.row_starts,
-            b.intercepts,
-        ]
-        .map(Into::into);
+            b.frame.into(),
+            b.face_instances.into(),
+            b.faces.into(),
+            b.curves.into(),
+            b.curve_points.into(),
+            b.curve_items.into(),
+            b.line_starts.into(),
+            b.segment_starts.into(),
+            b.row_starts.into(),
+            b.row_counts.into(),
+            b.intercepts.into(),
+        ];
         cmd.bind(pipeline, &resources, &[]);
         cmd.dispatch_indirect(b.dispatches, 0);
     }

@@ -8,8 +8,8 @@
 //! Writes: `sizes`: `words`, `counters`; `flip`: `texels`, `counters`; `fill`: `texels`, `places`. Barriers
 //! between the steps are the caller's. What the method is: `src/rivals/texture.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_texels;
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Resource, Texels};
 use crate::shaders;
 
 /// Threads of a workgroup of the first step.
@@ -28,11 +28,11 @@ pub(crate) struct RivalTexture {
 pub(crate) struct Bindings<'a> {
     pub knob: &'a Buffer,
     pub frame: &'a Buffer,
-    pub face_instances: &'a Buffer,
-    pub faces: &'a Buffer,
-    pub curves: &'a Buffer,
-    pub curve_points: &'a Buffer,
-    pub curve_items: &'a Buffer,
+    pub face_instances: &'a Texels,
+    pub faces: &'a Texels,
+    pub curves: &'a Texels,
+    pub curve_points: &'a Texels,
+    pub curve_items: &'a Texels,
     pub face_speeds: &'a Buffer,
     pub words: &'a Buffer,
     pub starts: &'a Buffer,
@@ -48,7 +48,7 @@ impl RivalTexture {
         };
         Ok(Self {
             sizes: pipeline("rival texture (sizes)", shaders::RIVAL_TEXTURE_SIZES_COMP, &[Binding::Storage; 4])?,
-            flip: pipeline("rival texture (flip)", shaders::RIVAL_TEXTURE_FLIP_COMP, &with_constants(11))?,
+            flip: pipeline("rival texture (flip)", shaders::RIVAL_TEXTURE_FLIP_COMP, &with_texels(2..7, 11))?,
             fill: pipeline("rival texture (fill)", shaders::RIVAL_TEXTURE_FILL_COMP, &[Binding::Storage; 8])?,
         })
     }
@@ -61,26 +61,27 @@ impl RivalTexture {
 
     /// Flips along each of `curves`.
     pub(crate) fn flip(&self, cmd: &Commands<'_>, b: &Bindings<'_>, curves: u32) {
-        let resources = [
-            b.frame,
-            b.knob,
-            b.face_instances,
-            b.faces,
-            b.curves,
-            b.curve_points,
-            b.curve_items,
-            b.face_speeds,
-            b.starts,
-            b.texels,
-            b.counters,
+        let resources: [Resource<'_>; 11] = [
+            b.frame.into(),
+            b.knob.into(),
+            b.face_instances.into(),
+            b.faces.into(),
+            b.curves.into(),
+            b.curve_points.into(),
+            b.curve_items.into(),
+            b.face_speeds.into(),
+            b.starts.into(),
+            b.texels.into(),
+            b.counters.into(),
         ];
-        cmd.bind(&self.flip, &resources.map(Into::into), &[]);
+        cmd.bind(&self.flip, &resources, &[]);
         cmd.dispatch_grid(grid(curves, 1));
     }
 
     /// Parities along the rows of each of `placed` faces.
     pub(crate) fn fill(&self, cmd: &Commands<'_>, b: &Bindings<'_>, placed: u32) {
-        let resources = [b.knob, b.face_speeds, b.starts, b.texels, b.counters, b.face_instances, b.faces, b.places];
+        let resources =
+            [b.knob, b.face_speeds, b.starts, b.texels, b.counters, &**b.face_instances, &**b.faces, b.places];
         cmd.bind(&self.fill, &resources.map(Into::into), &[]);
         cmd.dispatch_grid(grid(placed, ROW_GROUPS));
     }

@@ -5,11 +5,11 @@
 //!    n >= lines crossed / 256                 threads of equal work
 //! ```
 //!
-//! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_items`, `face_speeds`, `line_starts`. Writes: `segment_counts`.
+//! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_items`, `line_starts`, `face_speeds`. Writes: `segment_counts`.
 //! Twin: `src/twin/segments.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_texels;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
@@ -23,12 +23,12 @@ pub(crate) struct Segments {
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub face_instances: &'a Buffer,
-    pub faces: &'a Buffer,
-    pub curves: &'a Buffer,
-    pub curve_items: &'a Buffer,
+    pub face_instances: &'a Texels,
+    pub faces: &'a Texels,
+    pub curves: &'a Texels,
+    pub curve_items: &'a Texels,
+    pub line_starts: &'a Texels,
     pub face_speeds: &'a Buffer,
-    pub line_starts: &'a Buffer,
     pub segment_counts: &'a Buffer,
 }
 
@@ -39,7 +39,7 @@ impl Segments {
             &ComputeInfo {
                 name: "segments",
                 spirv: shaders::SEGMENTS_COMP,
-                bindings: &with_constants(8),
+                bindings: &with_texels(1..6, 8),
                 push_bytes: 0,
                 constants: &[],
             },
@@ -50,16 +50,15 @@ impl Segments {
     /// One thread for each of `curves`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, curves: u32) {
         let resources = [
-            b.frame,
-            b.face_instances,
-            b.faces,
-            b.curves,
-            b.curve_items,
-            b.face_speeds,
-            b.line_starts,
-            b.segment_counts,
-        ]
-        .map(Into::into);
+            b.frame.into(),
+            b.face_instances.into(),
+            b.faces.into(),
+            b.curves.into(),
+            b.curve_items.into(),
+            b.line_starts.into(),
+            b.face_speeds.into(),
+            b.segment_counts.into(),
+        ];
         cmd.bind(&self.pipeline, &resources, &[]);
         cmd.dispatch(curves.div_ceil(GROUP));
     }

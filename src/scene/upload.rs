@@ -128,9 +128,9 @@ impl ExactScene {
 pub(crate) struct TableScene {
     pub cells: Buffer,
     pub cell_items: Buffer,
-    pub curves: Buffer,
-    pub curve_points: Buffer,
-    pub curve_items: Buffer,
+    pub curves: Texels,
+    pub curve_points: Texels,
+    pub curve_items: Texels,
 }
 
 impl Solids {
@@ -276,9 +276,9 @@ fn table_scene(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SceneData) -> R
     Ok(TableScene {
         cells: persistent(uploads, cmd, "trim cells", &data.cells)?,
         cell_items: persistent(uploads, cmd, "trim cell items", &data.cell_items)?,
-        curves: persistent(uploads, cmd, "trim curves", &data.curves)?,
-        curve_points: persistent(uploads, cmd, "trim curve points", &data.curve_points)?,
-        curve_items: persistent(uploads, cmd, "trim curve items", &data.curve_items)?,
+        curves: texels(uploads, cmd, "trim curves", &data.curves, Texel::U32x2)?,
+        curve_points: texels(uploads, cmd, "trim curve points", &data.curve_points, Texel::F32)?,
+        curve_items: texels(uploads, cmd, "trim curve items", &data.curve_items, Texel::U32)?,
     })
 }
 
