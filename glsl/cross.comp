@@ -31,8 +31,9 @@ layout(scalar, binding = 10) writeonly buffer Intercepts { uint intercepts[]; };
 #include "curve.glsl"
 #include "curves.glsl"
 #include "faces.glsl"
+#include "words.glsl"
 
-uint first_segment(uint item) { return texelFetch(segment_starts, int(item)).x; }
+uint first_segment(uint item) { return word_at(segment_starts, item); }
 
 // The curve item whose segments hold `segment`.
 uint curve_of(uint segment) {
@@ -59,7 +60,7 @@ void main() {
     uint first_of_item = first_segment(item);
     uint n = first_segment(item + 1u) - first_of_item;
     uint i = segment - first_of_item;
-    FaceInstance fi = face_instance_at(texelFetch(curve_items, int(item)).x);
+    FaceInstance fi = face_instance_at(word_at(curve_items, item));
     Face face = face_at(fi.face);
     Curve curve = curve_at(face.first_curve + item - fi.first_curve);
     vec2 a = curve_point(curve, i, n);
@@ -74,8 +75,8 @@ void main() {
     uint first = uint(clamp(floor(a.y * strips), 0.0, strips - 1.0));
     uint last = uint(clamp(floor(b.y * strips), 0.0, strips - 1.0));
     for (uint k = first; k <= last; ++k) {
-        uint base = texelFetch(line_starts, int(fi.first_strip + k)).x;
-        uint count = texelFetch(line_starts, int(fi.first_strip + k + 1u)).x - base;
+        uint base = word_at(line_starts, fi.first_strip + k);
+        uint count = word_at(line_starts, fi.first_strip + k + 1u) - base;
         if (count == 0u) continue;
         float mu = float(count);
         // one line too many on each side: the comparison below decides
@@ -96,7 +97,7 @@ void main() {
                 uint place = atomicAdd(row_counts[row], 0xffffffffu) - 1u;
                 precise float u = a.x + (v - a.y) / (b.y - a.y) * (b.x - a.x);
                 u = clamp(u, min(a.x, b.x), max(a.x, b.x));
-                uint at = texelFetch(row_starts, int(row)).x + place;
+                uint at = word_at(row_starts, row) + place;
                 if (at < frame.intercept_capacity) intercepts[at] = (ordered_bits(u) & ~1u) | upwards;
             }
         }

@@ -2,9 +2,17 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `heal`, first step: the list of doubtful pixels: what is seen is doubtful itself, or a ring lies
-// before it, or nothing is seen between patches. All of them get the mark. One thread a pixel.
+// before it, or nothing is seen between patches. All of them get the mark. One thread a column of 30 pixels, whose
+// neighbours' columns it learns from the threads beside it; the first and the last of a workgroup do nothing else.
+//
+//     bit   0   row above       a column's bits of what sees a patch, and those of the columns beside it:
+//           1 ┐                 nothing is seen at x, but a and b see patches, on both sides
+//           ⋮ │ 30 rows                                  a · ·   · a ·   · · a
+//          30 ┘                                          · x ·   · x ·   · x ·   a x b
+//          31   row below                                · · b   · b ·   b · ·
 #include "scene.glsl"
 #include "visible.glsl"
+#include "words.glsl"
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
@@ -13,44 +21,67 @@ layout(scalar, binding = 2) writeonly buffer Doubts { uint doubts[]; }; // colum
 layout(scalar, binding = 3) buffer Dispatch { uvec3 dispatch; }; // of the second step; zero before
 layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
 layout(binding = 5) uniform sampler2D depth; // reversed
-layout(scalar, binding = 6) readonly buffer Rings { uint rings[]; };
+layout(binding = 6) uniform samplerBuffer rings;
 
 const uint GROUP = 64u; // threads of a workgroup of the second step
+const int LANES = 64;
+const int ROWS = 30;
 
-// Whether nothing is seen between patches on both sides. Their marks may come meanwhile: they are not asked for.
-bool lone(uint word, ivec2 pixel) {
-    if (!sees_nothing(word)) return false;
-    for (uint k = 0u; k < 4u; ++k) {
-        ivec2 step_ = ivec2[](ivec2(1, 0), ivec2(0, 1), ivec2(1, 1), ivec2(1, -1))[k];
-        ivec2 a = pixel - step_;
-        ivec2 b = pixel + step_;
-        if (any(lessThan(min(a, b), ivec2(0))) || any(greaterThanEqual(max(a, b), ivec2(frame.size)))) continue;
-        if (!sees_nothing(imageLoad(visibility, a).x) && !sees_nothing(imageLoad(visibility, b).x)) return true;
-    }
-    return false;
-}
+shared uint patches_seen[LANES];
 
 void main() {
-    uvec2 pixel = gl_GlobalInvocationID.xy;
-    if (pixel.x >= uint(frame.size.x)) return;
-    uvec2 seen = imageLoad(visibility, ivec2(pixel)).xy;
-    uint flags = 0u;
-    if ((seen.x & DOUBTFUL) == 0u) {
-        float ring = uintBitsToFloat(rings[pixel.y * uint(frame.size.x) + pixel.x]);
-        flags = RINGED;
-        if (!(ring > texelFetch(depth, ivec2(pixel), 0).x)) {
-            if (!lone(seen.x, ivec2(pixel))) return;
-            flags |= LONE;
+    int lane = int(gl_LocalInvocationID.x);
+    int column = int(gl_WorkGroupID.x) * (LANES - 2) + lane - 1;
+    int top = int(gl_WorkGroupID.y) * ROWS - 1;
+    ivec2 size = ivec2(frame.size);
+    uint doubtful = 0u;
+    uint nothing = 0u;
+    uint ringed = 0u;
+    uint patch_seen = 0u;
+    // marks of other threads may come meanwhile: they are not asked for
+    if (column >= 0 && column < size.x) {
+        int first = max(top, 0);
+        int last = min(top + ROWS + 1, size.y - 1);
+        for (int row = first; row <= last; ++row) {
+            uint word = imageLoad(visibility, ivec2(column, row)).x;
+            uint bit = 1u << uint(row - top);
+            if (sees_nothing(word)) nothing |= bit;
+            else patch_seen |= bit;
+            if ((word & DOUBTFUL) != 0u) doubtful |= bit;
+            if (number_at(rings, uint(row * size.x + column)) > texelFetch(depth, ivec2(column, row), 0).x) ringed |= bit;
         }
-        imageStore(visibility, ivec2(pixel), uvec4(seen.x | DOUBTFUL, seen.y, 0u, 0u));
     }
-    uint at = atomicAdd(counters.doubts, 1u);
-    if (at >= frame.doubt_capacity) {
-        atomicOr(counters.failed, FAILED_DOUBTS);
-        return;
+    patches_seen[lane] = patch_seen;
+    barrier();
+    if (lane == 0 || lane == LANES - 1 || column >= size.x) return;
+    uint left = patches_seen[lane - 1];
+    uint right = patches_seen[lane + 1];
+    // bit by bit, of the row above and of the row below
+    uint between = left & right;
+    between |= (patch_seen << 1) & (patch_seen >> 1);
+    between |= (left << 1) & (right >> 1);
+    between |= (left >> 1) & (right << 1);
+    ringed &= ~doubtful;
+    uint lone = nothing & between & ~(doubtful | ringed);
+    uint own = ((1u << uint(ROWS)) - 1u) << 1;
+    for (uint left_over = (doubtful | ringed | lone) & own; left_over != 0u; left_over &= left_over - 1u) {
+        uint k = uint(findLSB(left_over));
+        ivec2 pixel = ivec2(column, top + int(k));
+        uint bit = 1u << k;
+        uint flags = 0u;
+        if ((doubtful & bit) == 0u) {
+            flags = (lone & bit) != 0u ? RINGED | LONE : RINGED;
+            uvec2 seen = imageLoad(visibility, pixel).xy;
+            imageStore(visibility, pixel, uvec4(seen.x | DOUBTFUL, seen.y, 0u, 0u));
+        }
+        uint at = atomicAdd(counters.doubts, 1u);
+        if (at >= frame.doubt_capacity) {
+            atomicOr(counters.failed, FAILED_DOUBTS);
+            continue;
+        }
+        doubts[at] = uint(pixel.x) | uint(pixel.y) << 16 | flags;
+        atomicMax(dispatch.x, at / GROUP + 1u);
+        atomicMax(dispatch.y, 1u);
+        atomicMax(dispatch.z, 1u);
     }
-    doubts[at] = pixel.x | pixel.y << 16 | flags;
-    atomicMax(dispatch.x, at / GROUP + 1u);
-    atomicMax(dispatch.y, 1u);
-    atomicMax(dispatch.z, 1u);
 }

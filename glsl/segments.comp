@@ -20,16 +20,17 @@ layout(scalar, binding = 7) writeonly buffer SegmentCounts { uint segment_counts
 
 #include "curves.glsl"
 #include "faces.glsl"
+#include "words.glsl"
 
-const uint LINES_PER_SEGMENT = 256u;
+const uint LINES_PER_SEGMENT = 32u;
 const float MAX_SEGMENTS = 65536.0;
 
-uint first_line(uint strip) { return texelFetch(line_starts, int(strip)).x; }
+uint first_line(uint strip) { return word_at(line_starts, strip); }
 
 void main() {
     uint item = gl_GlobalInvocationID.x;
     if (item >= frame.curve_count) return;
-    uint placed = texelFetch(curve_items, int(item)).x;
+    uint placed = word_at(curve_items, item);
     FaceInstance fi = face_instance_at(placed);
     Face face = face_at(fi.face);
     Curve curve = curve_at(face.first_curve + item - fi.first_curve);

@@ -2,25 +2,25 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `sort`: each row in order of u, reduced to the places where inside and outside change.
-// One thread a row; sorted, so that the result does not depend on the order of insertion: most rows have few
-// intercepts, which a network in registers puts in order, the others by heap, in place.
+// One thread a row; sorted, so that the result does not depend on the order of insertion: few intercepts, as most rows
+// have, in registers, the others by heap, in place. What a row holds behind its flips is nobody's.
 //
 //   intercepts   ↑  ↑  ↓  ↑  ↓  ↓        winding   0 1 2 1 2 1 0
 //   flips        |              |        inside    0 1 1 1 1 1 0
 //
 // Twin: src/twin/sort.rs.
 #include "scene.glsl"
+#include "words.glsl"
 
 layout(local_size_x = 128) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 1) readonly buffer RowStarts { uint row_starts[]; };
+layout(binding = 1) uniform usamplerBuffer row_starts;
 layout(scalar, binding = 2) readonly buffer RowTotal { uint row_total; };
 layout(scalar, binding = 3) writeonly buffer RowCounts { uint row_counts[]; };
 layout(scalar, binding = 4) buffer Intercepts { uint intercepts[]; };
 layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
 
-const uint FEW = 8u;
-#define ORDER(i, j) { uint least = min(v[i], v[j]); v[j] = max(v[i], v[j]); v[i] = least; }
+const uint FEW = 16u;
 
 float from_ordered(uint bits) {
     return uintBitsToFloat((bits & 0x80000000u) != 0u ? bits & 0x7fffffffu : ~bits);
@@ -39,29 +39,30 @@ void sift(uint first, uint root, uint count) {
     intercepts[first + root] = value;
 }
 
-// The network for eight numbers of 19 comparisons (D. Knuth, The Art of Computer Programming 3, 5.3.4), and what has
-// changed behind each of them; how many flips there are.
+// Each number finds its place among those before it, all of which stay in registers; how many flips there are. Loops as
+// long as the row: a rasterizer in software takes as many rounds as the longest of the rows that it works on at once.
 uint sort_few(uint first, uint count) {
     uint v[FEW];
-    for (uint i = 0u; i < FEW; ++i) v[i] = i < count ? intercepts[first + i] : 0xffffffffu;
-    ORDER(0, 2) ORDER(1, 3) ORDER(4, 6) ORDER(5, 7)
-    ORDER(0, 4) ORDER(1, 5) ORDER(2, 6) ORDER(3, 7)
-    ORDER(0, 1) ORDER(2, 3) ORDER(4, 5) ORDER(6, 7)
-    ORDER(2, 4) ORDER(3, 5)
-    ORDER(1, 4) ORDER(3, 6)
-    ORDER(1, 2) ORDER(3, 4) ORDER(5, 6)
+    for (uint k = 0u; k < FEW; ++k) v[k] = 0xffffffffu;
+    for (uint i = 0u; i < count; ++i) {
+        uint moved = intercepts[first + i];
+        for (uint k = 0u; k < FEW; ++k) {
+            uint least = min(v[k], moved);
+            moved = max(v[k], moved);
+            v[k] = least;
+        }
+    }
     uint flips = 0u;
     int winding = 0;
-    for (uint i = 0u; i < FEW; ++i) {
-        int next = winding + ((v[i] & 1u) != 0u ? 1 : -1);
-        if (i < count && (winding == 0) != (next == 0)) {
-            intercepts[first + flips] = floatBitsToUint(from_ordered(v[i] & ~1u));
+    for (uint i = 0u; i < count; ++i) {
+        uint bits = v[0];
+        for (uint k = 1u; k < FEW; ++k) v[k - 1u] = v[k];
+        int next = winding + ((bits & 1u) != 0u ? 1 : -1);
+        if ((winding == 0) != (next == 0)) {
+            intercepts[first + flips] = floatBitsToUint(from_ordered(bits & ~1u));
             ++flips;
         }
         winding = next;
-    }
-    for (uint i = 0u; i < FEW; ++i) {
-        if (i >= flips && i < count) intercepts[first + i] = v[i];
     }
     return flips;
 }
@@ -74,8 +75,8 @@ void main() {
         counters.intercepts = row_total;
         if (row_total > frame.intercept_capacity) atomicOr(counters.failed, FAILED_INTERCEPTS);
     }
-    uint first = row_starts[row];
-    uint end = row + 1u < rows ? row_starts[row + 1u] : row_total;
+    uint first = word_at(row_starts, row);
+    uint end = row + 1u < rows ? word_at(row_starts, row + 1u) : row_total;
     if (end > frame.intercept_capacity) {
         row_counts[row] = 0u; // the host grows the table and records again
         return;

@@ -72,7 +72,7 @@ pub(crate) struct HiddenBuffers {
 /// What trimmed patches need, whatever the way to trim.
 pub(crate) struct TrimBuffers {
     /// How near the nearest ring comes, a word a pixel.
-    pub rings: Buffer,
+    pub rings: Texels,
     pub doubts: Buffer,
     pub heal_dispatch: Buffer,
     /// `None` where another way trims.
@@ -213,14 +213,14 @@ impl Buffers {
                 strip_heights: words("trim strip heights", counts.strips)?,
                 face_speeds: words("trim face speeds", 2 * counts.face_instances)?,
                 line_counts: words("trim line counts", counts.strips)?,
-                line_starts: numbers("trim line starts", counts.strips + 1, Texel::U32)?,
+                line_starts: numbers("trim line starts", counts.strips + 1, Texel::Words)?,
                 segment_counts: words("trim segment counts", counts.curves)?,
-                segment_starts: numbers("trim segment starts", counts.curves + 1, Texel::U32)?,
+                segment_starts: numbers("trim segment starts", counts.curves + 1, Texel::Words)?,
                 dispatches: indirect("trim dispatches", 3 * size_of::<[u32; 3]>() as u64)?,
-                row_counts: numbers("trim row counts", capacities.rows, Texel::U32)?,
-                row_starts: numbers("trim row starts", capacities.rows, Texel::U32)?,
+                row_counts: numbers("trim row counts", capacities.rows, Texel::Words)?,
+                row_starts: numbers("trim row starts", capacities.rows, Texel::Words)?,
                 row_total: words("trim row total", 1)?,
-                intercepts: numbers("trim intercepts", capacities.intercepts, Texel::F32)?,
+                intercepts: numbers("trim intercepts", capacities.intercepts, Texel::Words)?,
             })
         };
         #[cfg(feature = "rivals")]
@@ -235,7 +235,7 @@ impl Buffers {
                     u64::from(counts.strips) * size_of::<[u32; 4]>() as u64,
                     Texel::U32x4,
                 )?,
-                texels: numbers("trim texels", capacities.intercepts, Texel::U32)?,
+                texels: numbers("trim texels", capacities.intercepts, Texel::Words)?,
             })
         };
         Ok(Self {
@@ -266,7 +266,7 @@ impl Buffers {
                 .trim
                 .map(|way| {
                     Ok(TrimBuffers {
-                        rings: structs("trim rings", size.0 * size.1, size_of::<u32>())?,
+                        rings: numbers("trim rings", size.0 * size.1, Texel::Numbers)?,
                         doubts: words("trim doubts", capacities.doubts)?,
                         heal_dispatch: indirect("heal dispatch", size_of::<[u32; 3]>() as u64)?,
                         table: (way == TrimWay::Table).then(table).transpose()?,
@@ -290,13 +290,13 @@ impl Buffers {
                                     block_starts: words("solid block starts", blocks + 1)?,
                                     block_leaves: words("solid block leaves", capacities.block_leaves)?,
                                     tile_counts: words("solid tile counts", tiles)?,
-                                    tile_starts: numbers("solid tile starts", tiles + 1, Texel::U32)?,
+                                    tile_starts: numbers("solid tile starts", tiles + 1, Texel::Words)?,
                                     tile_leaves: texels(
                                         "solid tile leaves",
                                         u64::from(room) * size_of::<TileLeaf>() as u64,
                                         Texel::U32x4,
                                     )?,
-                                    tile_entries: numbers("solid tile entries", all_tiles, Texel::U32)?,
+                                    tile_entries: numbers("solid tile entries", all_tiles, Texel::Words)?,
                                     tile_squares: words("solid tile squares", all_tiles)?,
                                 })
                             })

@@ -468,7 +468,7 @@ impl Frame<'_> {
             factors: &b.factors,
             sub_patches: &b.sub_patches,
             instances: &s.instances,
-            rings: b.trim.as_ref().map(|t| &t.rings),
+            rings: b.trim.as_ref().map(|t| &*t.rings),
             trim: test,
             volume: self.volume(),
             links: s.links.as_ref(),

@@ -30,7 +30,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("passes", &["abi", "bindings", "gpu", "shaders"]),
     // where both meet
     ("scene", &["abi", "bindings", "csg", "gpu", "math", "spline", "trim", "model", "picture", "rivals"]),
-    ("capacities", &["abi", "passes", "picture", "scene"]),
+    ("capacities", &["abi", "gpu", "passes", "picture", "scene"]),
     ("buffers", &["abi", "capacities", "gpu", "passes", "picture"]),
     ("frame", &["abi", "bindings", "buffers", "gpu", "passes", "picture", "scene", "shaders"]),
     ("renderer", &["abi", "budget", "buffers", "capacities", "frame", "gpu", "model", "passes", "picture", "scene"]),

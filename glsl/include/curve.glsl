@@ -1,13 +1,12 @@
 // Trim curves in the normalised (u, v) domain. Twin of src/twin/curve.rs.
-// Needs `samplerBuffer curve_points`, three texels a control point.
+// Needs `samplerBuffer curve_points`, three numbers a control point.
 #ifndef CURVE_GLSL
 #define CURVE_GLSL
 
+#include "words.glsl"
+
 vec3 curve_control(Curve curve, uint i) {
-    int at = int(curve.first + 3u * i);
-    return vec3(
-        texelFetch(curve_points, at).x, texelFetch(curve_points, at + 1).x, texelFetch(curve_points, at + 2).x
-    );
+    return numbers_at(curve_points, curve.first + 3u * i);
 }
 
 // Point `i` of `n` equal steps. The ends are the stored ones, so that curves of a loop share them

@@ -32,6 +32,8 @@ struct ExactArc {
     uint shape; // degree, 1 for a straight arc; ARC_UP: the loop runs from low to high
 };
 
+#include "words.glsl"
+
 // texels, which a driver fetches at once where it gathers words of storage buffers one by one
 layout(binding = EXACT_BINDING + 0) uniform usamplerBuffer exact_faces;   // one a face
 layout(binding = EXACT_BINDING + 1) uniform usamplerBuffer exact_bands;   // one a band
@@ -64,11 +66,10 @@ ExactArc exact_arc_at(uint entry) {
     return ExactArc(low_high.xy, low_high.zw, uintBitsToFloat(rest.xy), rest.z, rest.w);
 }
 
-uint exact_entry_at(uint i) { return texelFetch(exact_entries, int(i)).x; }
+uint exact_entry_at(uint i) { return word_at(exact_entries, i); }
 
 vec3 exact_point_at(uint i) {
-    int at = int(i);
-    return vec3(texelFetch(exact_points, at).x, texelFetch(exact_points, at + 1).x, texelFetch(exact_points, at + 2).x);
+    return numbers_at(exact_points, i);
 }
 
 const uint AT_LOW = 1u;  // flags of an entry: a chain leaves the cell from this end of the arc

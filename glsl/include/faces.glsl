@@ -1,8 +1,10 @@
 // Faces and where they are placed, put together from texels; members that nobody asks for are not fetched.
 // Needs scene.glsl; whoever includes this has `usamplerBuffer face_instances`, three texels a placed face, and `faces`,
-// 13 a face.
+// 13 words a face.
 #ifndef FACES_GLSL
 #define FACES_GLSL
+
+#include "words.glsl"
 
 FaceInstance face_instance_at(uint i) {
     int at = int(i) * 3;
@@ -12,14 +14,14 @@ FaceInstance face_instance_at(uint i) {
     return FaceInstance(a.x, a.y, b.x, b.y, c.x, c.y);
 }
 
-uint face_word(int at) { return texelFetch(faces, at).x; }
+uint face_word(uint at) { return word_at(faces, at); }
 
 Face face_at(uint i) {
-    int at = int(i) * 13;
-    uvec4 domain = uvec4(face_word(at), face_word(at + 1), face_word(at + 2), face_word(at + 3));
+    uint at = i * 13u;
+    uvec4 domain = uvec4(face_word(at), face_word(at + 1u), face_word(at + 2u), face_word(at + 3u));
     return Face(
-        uintBitsToFloat(domain), face_word(at + 4), face_word(at + 5), face_word(at + 6), face_word(at + 7),
-        face_word(at + 8), face_word(at + 9), face_word(at + 10), face_word(at + 11), face_word(at + 12)
+        uintBitsToFloat(domain), face_word(at + 4u), face_word(at + 5u), face_word(at + 6u), face_word(at + 7u),
+        face_word(at + 8u), face_word(at + 9u), face_word(at + 10u), face_word(at + 11u), face_word(at + 12u)
     );
 }
 

@@ -15,33 +15,35 @@ struct Jet {
     vec3 dv;
 };
 
-// Value and slope of row `j`: Horner's scheme on the first n and on the last n control points.
+// Binomials times powers, one after another: w_i = (m over i) t^i.
+struct Weights {
+    float power;
+    float choose;
+};
+
+float weight_of(Weights w) { return w.power * w.choose; }
+
+// From w_i to w_(i + 1); the last is the power itself.
+void advance(inout Weights w, uint m, uint i, float t) {
+    w.power *= t;
+    w.choose = i + 1u < m ? w.choose * (float(m - i) / float(i + 1u)) : 1.0;
+}
+
+// Value and slope of row `j`: Horner's scheme on the first n and on the last n control points. One loop as long as the
+// row, here and below: a rasterizer in software runs what follows a branch, and any loop once, for nothing.
 void patch_row(uint first, uint n, uint j, float u, out vec4 value, out vec4 slope) {
     int at = int(first + j * (n + 1u));
     float s = 1.0 - u;
-    vec4 p = texelFetch(points, at);
-    vec4 q = texelFetch(points, at + 1);
-    vec4 a = p;
-    vec4 b = q;
-    if (n > 1u) {
-        uint m = n - 1u;
-        float f = 1.0;
-        float c = 1.0;
-        a *= s;
-        b *= s;
-        for (uint i = 1u; i < m; ++i) {
-            p = q;
-            q = texelFetch(points, at + int(i) + 1);
-            f *= u;
-            c *= float(m - i + 1u) / float(i);
-            a = (a + p * (f * c)) * s;
-            b = (b + q * (f * c)) * s;
-        }
-        p = q;
-        q = texelFetch(points, at + int(n));
-        f *= u;
-        a += p * f;
-        b += q * f;
+    vec4 a = vec4(0.0);
+    vec4 b = vec4(0.0);
+    Weights w = Weights(1.0, 1.0);
+    float before = 0.0;
+    for (uint i = 0u; i <= n; ++i) {
+        vec4 p = texelFetch(points, at + int(i));
+        b = b * s + p * before;
+        if (i < n) a = a * s + p * weight_of(w);
+        before = weight_of(w);
+        advance(w, n - 1u, i, u);
     }
     value = a * s + b * u;
     slope = (b - a) * float(n);
@@ -54,43 +56,22 @@ Jet patch_jet(uint first, uint shape, vec2 uv) {
     bool rational = SCENE_HAS_RATIONAL && is_rational(shape);
     float v = uv.y;
     float s = 1.0 - v;
-    vec4 p, ps, q, qs;
-    patch_row(first, n, 0u, uv.x, p, ps);
-    patch_row(first, n, 1u, uv.x, q, qs);
-    vec4 a = p;
-    vec4 b = q;
-    vec4 slope;
-    // k = 0 is read by lanes of a SIMD driver that only keep others company: k - 1 below would wrap, and
-    // llvmpipe ends every loop of the shader after 65,535 steps, the others' too
-    if (k <= 1u) {
-        slope = ps * s + qs * v;
-    } else {
-        // values: degree k - 1 twice, as along u; slopes: degree k once
-        uint m = k - 1u;
-        float f = 1.0;
-        float c = 1.0;
-        float d = 1.0;
-        a *= s;
-        b *= s;
-        slope = ps * s;
-        for (uint j = 1u; j < m; ++j) {
-            f *= v;
-            d *= float(k - j + 1u) / float(j);
-            slope = (slope + qs * (f * d)) * s;
-            p = q;
-            patch_row(first, n, j + 1u, uv.x, q, qs);
-            c *= float(m - j + 1u) / float(j);
-            a = (a + p * (f * c)) * s;
-            b = (b + q * (f * c)) * s;
-        }
-        f *= v;
-        d *= float(k - m + 1u) / float(m);
-        slope = (slope + qs * (f * d)) * s;
-        p = q;
-        patch_row(first, n, k, uv.x, q, qs);
-        a += p * f;
-        b += q * f;
-        slope += qs * (f * v);
+    // values: degree k - 1 twice, as along u; slopes: degree k once
+    vec4 a = vec4(0.0);
+    vec4 b = vec4(0.0);
+    vec4 slope = vec4(0.0);
+    Weights w = Weights(1.0, 1.0);
+    Weights wide = w;
+    float before = 0.0;
+    for (uint j = 0u; j <= k; ++j) {
+        vec4 p, along;
+        patch_row(first, n, j, uv.x, p, along);
+        b = b * s + p * before;
+        if (j < k) a = a * s + p * weight_of(w);
+        slope = slope * s + along * weight_of(wide);
+        before = weight_of(w);
+        advance(w, k - 1u, j, v);
+        advance(wide, k, j, v);
     }
     vec4 value = a * s + b * v;
     vec4 across = (b - a) * float(k);

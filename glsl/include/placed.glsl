@@ -4,11 +4,13 @@
 #ifndef PLACED_GLSL
 #define PLACED_GLSL
 
+#include "words.glsl"
+
 layout(binding = 1) uniform samplerBuffer views;           // four a placed part
 layout(binding = 2) uniform usamplerBuffer face_instances; // three a placed face
-layout(binding = 3) uniform usamplerBuffer faces;          // 13 a face
+layout(binding = 3) uniform usamplerBuffer faces;          // 13 words a face
 layout(binding = 4) uniform usamplerBuffer patches;        // four a patch
-layout(binding = 5) uniform usamplerBuffer items;          // one a placed patch
+layout(binding = 5) uniform usamplerBuffer items;          // a word a placed patch
 layout(binding = 6) uniform samplerBuffer points;          // one a control point
 
 View view_at(uint i) {
@@ -18,7 +20,7 @@ View view_at(uint i) {
 
 #include "faces.glsl"
 
-uint face_instance_of(uint item) { return texelFetch(items, int(item)).x; }
+uint face_instance_of(uint item) { return word_at(items, item); }
 
 Patch patch_at(uint i) {
     int at = int(i) * 4;
@@ -33,19 +35,19 @@ Patch patch_at(uint i) {
 }
 
 #ifdef INSTANCES_BINDING
-layout(binding = INSTANCES_BINDING) uniform usamplerBuffer instances; // 13 a placed part
+layout(binding = INSTANCES_BINDING) uniform usamplerBuffer instances; // 13 words a placed part
 
-uint instance_word(int at) { return texelFetch(instances, at).x; }
+uint instance_word(uint at) { return word_at(instances, at); }
 
-vec3 instance_column(int at) {
-    return uintBitsToFloat(uvec3(instance_word(at), instance_word(at + 1), instance_word(at + 2)));
+vec3 instance_column(uint at) {
+    return uintBitsToFloat(uvec3(instance_word(at), instance_word(at + 1u), instance_word(at + 2u)));
 }
 
 Instance instance_at(uint i) {
-    int at = int(i) * 13;
-    mat3 normal = mat3(instance_column(at), instance_column(at + 3), instance_column(at + 6));
+    uint at = i * 13u;
+    mat3 normal = mat3(instance_column(at), instance_column(at + 3u), instance_column(at + 6u));
     return Instance(
-        normal, uintBitsToFloat(instance_word(at + 9)), instance_word(at + 10), instance_word(at + 11), instance_word(at + 12)
+        normal, uintBitsToFloat(instance_word(at + 9u)), instance_word(at + 10u), instance_word(at + 11u), instance_word(at + 12u)
     );
 }
 #endif

@@ -3,8 +3,8 @@
 #ifndef RESOLVED_PATCH_GLSL
 #define RESOLVED_PATCH_GLSL
 
-#include "patch_normal.glsl"
 #include "refine.glsl"
+#include "patch_normal.glsl"
 #include "visible.glsl"
 
 // `seen` are item + 1 and packed (u, v). The other side of an operand's face may be seen, and is a front
@@ -16,8 +16,9 @@ void write_patch(uvec2 seen, bool operand) {
     Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
     Instance instance = instance_at(fi.instance);
     View view = view_at(fi.instance);
-    Sample s = refine(patch_, view, unpack_uv(seen.y), gl_FragCoord.xy);
-    vec3 n = normalize(instance.normal * normal_of(patch_, s.jet, s.uv));
+    vec3 n;
+    Sample s = refine_with_normal(patch_, view, unpack_uv(seen.y), gl_FragCoord.xy, n);
+    n = normalize(instance.normal * n);
     bool flip = ((face.flags & FACE_SAME_SENSE) == 0u) != (instance.mirrored != 0u);
     if (operand) flip = dot(n, eye_ray(frame, gl_FragCoord.xy).d) > 0.0;
     if (flip) n = -n;

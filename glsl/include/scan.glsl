@@ -2,7 +2,7 @@
 
 #include "abi/scan.glsl"
 
-layout(local_size_x = 256) in;
+layout(local_size_x = 64) in;
 layout(constant_id = 0) const bool COUNT_ON_GPU = false;
 
 layout(scalar, binding = 0) readonly buffer Values { uint values[]; };
@@ -12,8 +12,8 @@ layout(scalar, binding = 3) buffer Total { uint total[]; };
 layout(scalar, binding = 4) readonly buffer Counts { uint counts[]; };
 layout(scalar, push_constant) uniform Push { ScanParams params; };
 
-const uint LANES = 256;          // invocations of a workgroup
-const uint PER_LANE = 4;         // elements that each takes
+const uint LANES = 64;           // invocations of a workgroup
+const uint PER_LANE = 16;        // elements that each takes
 const uint BLOCK = LANES * PER_LANE;
 
 uint element_count() {

@@ -23,6 +23,7 @@
 #include "eye_ray.glsl"
 #include "view.glsl"
 #include "visible.glsl"
+#include "words.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
@@ -93,12 +94,12 @@ void meet(inout Walk walk, uint i, TileLeaf here, Crossing c, uint other, uint a
 
 void main() {
     uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
-    uint first = min(texelFetch(tile_starts, int(n)).x, frame.tile_leaf_capacity);
-    uint end = min(texelFetch(tile_starts, int(n) + 1).x, frame.tile_leaf_capacity);
+    uint first = min(word_at(tile_starts, n), frame.tile_leaf_capacity);
+    uint end = min(word_at(tile_starts, n + 1u), frame.tile_leaf_capacity);
     if (SOLIDS_ARE_FOLLOWED) {
         while (end > first && (tile_leaf_at(tile_leaves, end - 1u).leaf & ~TILE_LEAF_ENTRY) >= frame.followed_leaf) --end;
     }
-    uint entry = texelFetch(tile_entries, int(first_of_band(frame) + n)).x;
+    uint entry = word_at(tile_entries, first_of_band(frame) + n);
     if (entry == EXIT_FALSE) discard;
     Ray ray = eye_ray(frame, gl_FragCoord.xy);
     uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));

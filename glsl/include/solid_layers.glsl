@@ -63,8 +63,8 @@ layout(constant_id = 17) const bool SOLIDS_HAVE_PATCHES = false;
 #include "eye_ray.glsl"
 #include "patch.glsl"
 #include "resolved.glsl"
-#include "patch_normal.glsl"
 #include "refine.glsl"
+#include "patch_normal.glsl"
 #include "visible.glsl"
 #include "sides.glsl"
 
@@ -158,8 +158,9 @@ Layer layer_of_patch(Fragment f, Ray ray) {
     FaceInstance fi = face_instances[item_face_instance[item]];
     Face face = faces[fi.face];
     Patch patch_ = patches[face.first_patch + item - fi.first_item];
-    Sample s = refine(patch_, views[fi.instance], unpack_uv(f.uv), gl_FragCoord.xy);
-    vec3 n = normalize(instances[fi.instance].normal * normal_of(patch_, s.jet, s.uv));
+    vec3 n;
+    Sample s = refine_with_normal(patch_, views[fi.instance], unpack_uv(f.uv), gl_FragCoord.xy, n);
+    n = normalize(instances[fi.instance].normal * n);
     vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
     vec4 colour = unpackUnorm4x8(face.colour);
     vec2 uv = face.domain.xy + at * face.domain.zw;

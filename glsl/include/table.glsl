@@ -3,14 +3,39 @@
 #ifndef TABLE_GLSL
 #define TABLE_GLSL
 
-// texels, which a driver fetches at once where it gathers words of storage buffers one by one
+#include "words.glsl"
+
+// as texels, which a driver fetches at once where it gathers words of storage buffers one by one
 layout(binding = TABLE_BINDING + 0) uniform usamplerBuffer line_starts;
 layout(binding = TABLE_BINDING + 1) uniform usamplerBuffer row_starts;
 layout(binding = TABLE_BINDING + 2) uniform usamplerBuffer row_counts;
-layout(binding = TABLE_BINDING + 3) uniform samplerBuffer flips;
+layout(binding = TABLE_BINDING + 3) uniform usamplerBuffer flips; // u, in order in each row
 
 // First row of a strip; of the one behind the last, where it ends.
-uint first_row(uint strip) { return texelFetch(line_starts, int(strip)).x; }
+uint first_row(uint strip) { return word_at(line_starts, strip); }
+
+// How many of the flips [first, end) are at u or before it: a binary search among texels of four.
+//
+//     texel        mid - 1    │     mid      │    mid + 1
+//     flips     ·  ·  f0  f1  │ f2 f3 f4 f5  │ f6  ·  ·  ·      all four passed: behind it; none: before it; else found
+uint flips_passed(uint first, uint end, float u) {
+    uint lo = first / 4u;
+    uint hi = (end + 3u) / 4u;
+    uint passed = 4u * lo;
+    while (lo < hi) {
+        uint mid = (lo + hi) / 2u;
+        uvec4 at = 4u * mid + uvec4(0u, 1u, 2u, 3u);
+        vec4 flip = uintBitsToFloat(texelFetch(flips, int(mid)));
+        // what lies before the row counts as passed, what lies behind it does not
+        uvec4 is_passed = uvec4(lessThan(at, uvec4(first))) | uvec4(lessThan(at, uvec4(end))) & uvec4(lessThanEqual(flip, vec4(u)));
+        uint count = is_passed.x + is_passed.y + is_passed.z + is_passed.w;
+        passed = 4u * mid + count;
+        if (count == 4u) lo = mid + 1u;
+        else if (count == 0u) hi = mid;
+        else lo = hi;
+    }
+    return max(passed, first) - first;
+}
 
 bool table_inside(uint first_strip, float strips, vec2 uv) {
     float s = uv.y * strips;
@@ -21,15 +46,8 @@ bool table_inside(uint first_strip, float strips, vec2 uv) {
     if (count == 0u) return false;
     uint row = base + min(uint(fract(s) * float(count)), count - 1u);
     if (row >= frame.row_capacity) return true; // the host grows the table and records again
-    uint lo = texelFetch(row_starts, int(row)).x;
-    uint first = lo;
-    uint hi = lo + texelFetch(row_counts, int(row)).x;
-    while (lo < hi) {
-        uint mid = (lo + hi) / 2u;
-        if (texelFetch(flips, int(mid)).x <= uv.x) lo = mid + 1u;
-        else hi = mid;
-    }
-    return ((lo - first) & 1u) != 0u;
+    uint first = word_at(row_starts, row);
+    return (flips_passed(first, first + word_at(row_counts, row), uv.x) & 1u) != 0u;
 }
 
 #endif

@@ -54,6 +54,7 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 
 #ifdef TRIM_BY_TEXTURE
 #include "rivals/texture.glsl"
+#include "words.glsl"
 layout(binding = TRIM_BINDING + 0) uniform usamplerBuffer texture_places;
 layout(binding = TRIM_BINDING + 1) uniform usamplerBuffer texels;
 
@@ -64,7 +65,7 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
     if (place.size.words == 0u) return false;
     uint column = min(uint(uv.x * float(place.size.columns)), place.size.columns - 1u);
     uint row = min(uint(uv.y * float(place.size.rows)), place.size.rows - 1u);
-    return (texelFetch(texels, int(place.start + row * place.size.words + column / 32u)).x >> (column & 31u) & 1u) != 0u;
+    return (word_at(texels, place.start + row * place.size.words + column / 32u) >> (column & 31u) & 1u) != 0u;
 }
 #endif
 

@@ -22,6 +22,7 @@ layout(scalar, binding = 10) buffer CountersBuffer { Counters counters; };
 #include "curve.glsl"
 #include "curves.glsl"
 #include "faces.glsl"
+#include "words.glsl"
 
 const uint SHARES = 64u;
 // Of a texel: what a chord may add to half a texel.
@@ -51,7 +52,7 @@ void flip(TextureSize size, uint start, vec2 a, vec2 b) {
 void main() {
     uint item = gl_GlobalInvocationID.x + gl_GlobalInvocationID.z * gl_NumWorkGroups.x;
     if (item >= frame.curve_count) return;
-    uint placed = texelFetch(curve_items, int(item)).x;
+    uint placed = word_at(curve_items, item);
     FaceInstance fi = face_instance_at(placed);
     Face face = face_at(fi.face);
     Curve curve = curve_at(face.first_curve + item - fi.first_curve);

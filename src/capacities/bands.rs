@@ -14,6 +14,7 @@
 
 use super::TooMany;
 use crate::abi::{Fragment, TILE, TileLeaf};
+use crate::gpu::Buffer;
 use crate::passes::scan;
 
 /// Rows of tiles in the only band.
@@ -96,10 +97,12 @@ impl Lists {
     /// Bytes of what is counted for each tile and each pixel of so many rows, and of the entries and squares of all
     /// tiles: see `TileBuffers` and `FragmentBuffers`.
     fn counted_bytes(&self, rows: u32) -> u64 {
-        let word = size_of::<u32>() as u64;
+        let words = |n: u64| (n * size_of::<u32>() as u64).next_multiple_of(Buffer::LEAST_BYTES);
         let of_row = u64::from(self.size.0.div_ceil(TILE));
-        let tiles = word * of_row * 2 * u64::from(rows.min(self.rows()) + self.rows()) + word;
-        tiles + if self.has_fragments { 2 * word * self.pixels(rows) + word } else { 0 }
+        let tiles = of_row * u64::from(rows.min(self.rows()));
+        let pixels = self.pixels(rows);
+        let of_pixels = if self.has_fragments { words(pixels) + words(pixels + 1) } else { 0 };
+        words(tiles) + words(tiles + 1) + 2 * words(of_row * u64::from(self.rows())) + of_pixels
     }
 
     fn pixels(&self, rows: u32) -> u64 {
@@ -183,13 +186,17 @@ mod tests {
             assert!(most > 0 && most < LISTS.rows(), "{most}");
             assert!(LISTS.hold(most, row.times(most, 1)) && !LISTS.hold(most + 1, row.times(most + 1, 1)));
             // 10 tiles and 16 rows of 160 pixels, of 2 words each; a word at each list's end, and two of each of 80
-            // tiles
-            let bytes = |rows: u64| rows * (10 * 8 + 160 * 16 * 8 + 12 * row.tile_leaves + 16 * row.fragments) + 648;
+            // tiles; each list of words whole texels of four
+            let words = |n: u64| n.div_ceil(4) * 16;
+            let bytes = |rows: u64| {
+                let counted = [10 * rows, 10 * rows + 1, 80, 80, 2560 * rows, 2560 * rows + 1].map(words);
+                counted.iter().sum::<u64>() + rows * 16 * (row.tile_leaves + row.fragments)
+            };
             assert!(bytes(u64::from(most)) <= 60_000 && bytes(u64::from(most) + 1) > 60_000);
         }
         assert_eq!(LISTS.most_rows(Entries { tile_leaves: 0, fragments: 2470 }), 0);
         let no_room = LISTS.no_room(Entries { tile_leaves: 0, fragments: 2470 });
-        assert_eq!((no_room.count, no_room.most), (60_728, 60_000));
+        assert_eq!((no_room.count, no_room.most), (60_752, 60_000));
     }
 
     #[test]

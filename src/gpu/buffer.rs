@@ -11,7 +11,7 @@ use bytemuck::Pod;
 pub struct BufferInfo<'a> {
     /// Name in errors, validation messages and [`Device::objects`].
     pub name: &'a str,
-    /// Size. A buffer of 0 bytes is given [`Buffer::LEAST_BYTES`], so that it can be bound.
+    /// Size; rounded up to a multiple of [`Buffer::LEAST_BYTES`].
     pub bytes: u64,
     /// What it is used for.
     pub usage: vk::BufferUsageFlags,
@@ -33,7 +33,7 @@ pub struct Buffer {
 }
 
 impl Buffer {
-    /// Vulkan has no empty buffers; an empty one is this large.
+    /// Every size is a multiple of this: Vulkan has no empty buffers, and the last texel of four words is whole.
     pub const LEAST_BYTES: u64 = 16;
 
     /// Usage of a buffer that passes fill, read, copy and take arguments from.
@@ -53,7 +53,7 @@ impl Buffer {
     /// [`GpuError::TooLarge`] for a storage buffer above the device's range, [`GpuError::Allocation`]
     /// without memory, [`GpuError::Vulkan`].
     pub fn new(device: &Device, info: &BufferInfo<'_>) -> Result<Self, GpuError> {
-        let bytes = info.bytes.max(Self::LEAST_BYTES);
+        let bytes = info.bytes.max(1).next_multiple_of(Self::LEAST_BYTES);
         let limit = u64::from(device.limits().max_storage_buffer_range);
         if info.usage.contains(vk::BufferUsageFlags::STORAGE_BUFFER) && bytes > limit {
             return Err(GpuError::TooLarge { resource: info.name.to_owned(), bytes, limit });
@@ -99,7 +99,7 @@ impl Buffer {
         self.handle
     }
 
-    /// Size in bytes, at least [`LEAST_BYTES`](Self::LEAST_BYTES).
+    /// Size in bytes, a multiple of [`LEAST_BYTES`](Self::LEAST_BYTES).
     pub fn bytes(&self) -> u64 {
         self.bytes
     }

@@ -11,14 +11,14 @@ use std::ops::Deref;
 /// What a fetch returns.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Texel {
-    /// `usamplerBuffer`, x.
-    U32,
+    /// `usamplerBuffer`, words, four in a texel: `word_at` of `glsl/include/words.glsl`.
+    Words,
     /// `usamplerBuffer`, x and y.
     U32x2,
     /// `usamplerBuffer`.
     U32x4,
-    /// `samplerBuffer`, x.
-    F32,
+    /// `samplerBuffer`, floats, four in a texel: `number_at`, `numbers_at`.
+    Numbers,
     /// `samplerBuffer`.
     F32x4,
 }
@@ -26,19 +26,16 @@ pub enum Texel {
 impl Texel {
     fn format(self) -> vk::Format {
         match self {
-            Self::U32 => vk::Format::R32_UINT,
             Self::U32x2 => vk::Format::R32G32_UINT,
-            Self::U32x4 => vk::Format::R32G32B32A32_UINT,
-            Self::F32 => vk::Format::R32_SFLOAT,
-            Self::F32x4 => vk::Format::R32G32B32A32_SFLOAT,
+            Self::Words | Self::U32x4 => vk::Format::R32G32B32A32_UINT,
+            Self::Numbers | Self::F32x4 => vk::Format::R32G32B32A32_SFLOAT,
         }
     }
 
     fn bytes(self) -> u64 {
         match self {
-            Self::U32 | Self::F32 => 4,
             Self::U32x2 => 8,
-            Self::U32x4 | Self::F32x4 => 16,
+            Self::Words | Self::Numbers | Self::U32x4 | Self::F32x4 => 16,
         }
     }
 }
@@ -55,7 +52,7 @@ pub struct Texels {
 
 impl Texels {
     /// Of the smallest texel.
-    pub const LEAST_BYTES: u64 = 4;
+    pub const LEAST_BYTES: u64 = 8;
 
     /// Views `buffer`.
     ///

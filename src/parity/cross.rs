@@ -13,7 +13,7 @@ use crate::twin::sort::from_ordered;
 fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> (Vec<u32>, Vec<u32>) {
     let s = SceneBuffers::new(gpu, case);
     let before = if insert { chain.row_counts.clone() } else { vec![0; chain.row_counts.len()] };
-    let starts = |name: &str, words: &[u32]| gpu.upload_texels(name, words, Texel::U32);
+    let starts = |name: &str, words: &[u32]| gpu.upload_texels(name, words, Texel::Words);
     let (line_starts, segment_starts) =
         (starts("line starts", &chain.line_starts), starts("segment starts", &chain.segment_starts));
     let row_starts = starts("row starts", &chain.row_starts);

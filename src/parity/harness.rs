@@ -78,9 +78,9 @@ impl Gpu {
             self.upload_texels("faces", &data.faces, Texel::U32x2),
             self.upload_texels("bands", &data.bands, Texel::U32x2),
             self.upload_texels("cells", &data.cells, Texel::U32x4),
-            self.upload_texels("entries", &data.entries, Texel::U32),
+            self.upload_texels("entries", &data.entries, Texel::Words),
             self.upload_texels("arcs", &data.arcs, Texel::U32x4),
-            self.upload_texels("points", &data.points, Texel::F32),
+            self.upload_texels("points", &data.points, Texel::Numbers),
         ]
     }
 
@@ -131,14 +131,14 @@ impl SceneBuffers {
             views: gpu.upload("views", &case.views),
             instances: gpu.upload("instances", &d.instances),
             face_instances: gpu.upload_texels("face instances", &d.face_instances, Texel::U32x2),
-            faces: gpu.upload_texels("faces", &d.faces, Texel::U32),
+            faces: gpu.upload_texels("faces", &d.faces, Texel::Words),
             patches: gpu.upload("patches", &d.patches),
             items: gpu.upload("items", &d.items),
             cells: gpu.upload("cells", &d.cells),
             cell_items: gpu.upload("cell items", &d.cell_items),
             curves: gpu.upload_texels("curves", &d.curves, Texel::U32x2),
-            curve_points: gpu.upload_texels("curve points", &d.curve_points, Texel::F32),
-            curve_items: gpu.upload_texels("curve items", &d.curve_items, Texel::U32),
+            curve_points: gpu.upload_texels("curve points", &d.curve_points, Texel::Numbers),
+            curve_items: gpu.upload_texels("curve items", &d.curve_items, Texel::Words),
         }
     }
 }

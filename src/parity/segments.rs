@@ -12,7 +12,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case, chain: &Chain) -> Result<()
     let n = given.data.curve_items.len();
     let s = SceneBuffers::new(gpu, given);
     let face_speeds = gpu.upload("face speeds", &chain.density.face_speeds);
-    let line_starts = gpu.upload_texels("line starts", &chain.line_starts, Texel::U32);
+    let line_starts = gpu.upload_texels("line starts", &chain.line_starts, Texel::Words);
     let segment_counts = gpu.upload("segment counts", &vec![UNTOUCHED; n]);
     let pass = Segments::new(gpu.device()).unwrap();
     let bindings = Bindings {

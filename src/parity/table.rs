@@ -84,10 +84,10 @@ mod parity {
         let placed = case.data.face_instances[SHEET];
         let (strips, points) = (case.data.faces[SHEET].strip_count as f32, points(4096));
         let frame = gpu.upload("frame", &[case.frame]);
-        let line_starts = gpu.upload_texels("line starts", &given.line_starts, Texel::U32);
-        let row_starts = gpu.upload_texels("row starts", &given.row_starts, Texel::U32);
-        let row_counts = gpu.upload_texels("row counts", &given.flip_counts, Texel::U32);
-        let flips = gpu.upload_texels("flips", &given.flips, Texel::F32);
+        let line_starts = gpu.upload_texels("line starts", &given.line_starts, Texel::Words);
+        let row_starts = gpu.upload_texels("row starts", &given.row_starts, Texel::Words);
+        let row_counts = gpu.upload_texels("row counts", &given.flip_counts, Texel::Words);
+        let flips = gpu.upload_texels("flips", &given.flips, Texel::Words);
         let uvs = gpu.upload("points", &points);
         let inside = gpu.upload("inside", &vec![7u32; points.len()]);
         let info = ComputeInfo {

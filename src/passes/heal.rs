@@ -20,8 +20,8 @@ use crate::gpu::{
 use crate::shaders::{self, TrimTest};
 use ash::vk;
 
-/// Threads of a workgroup of the first step.
-const GROUP: u32 = 64;
+/// Columns and rows of the picture that a workgroup of the first step looks for doubtful pixels in.
+const PART: [u32; 2] = [62, 30];
 /// `constant_id` of `SCENE_HAS_RATIONAL`.
 const SCENE_HAS_RATIONAL: u32 = 0;
 
@@ -47,7 +47,7 @@ pub(crate) struct DoubtBindings<'a> {
     pub dispatch: &'a Buffer,
     pub counters: &'a Buffer,
     pub depth: &'a Image,
-    pub rings: &'a Buffer,
+    pub rings: &'a Texels,
 }
 
 /// Of the second step, in binding order, and its dispatch.
@@ -93,6 +93,7 @@ impl Heal {
         let mut find = with_constants(7);
         find[1] = Binding::StorageImage;
         find[5] = Binding::Sampled;
+        find[6] = Binding::Texels;
         let mut heal = with_placed(15);
         heal.extend(vec![Binding::Texels; test.texels]);
         heal.extend(PRIMITIVES.iter().filter(|_| volume.is_some()));
@@ -119,8 +120,7 @@ impl Heal {
         })
     }
 
-    /// Lists the doubtful pixels: one thread a pixel, whole workgroups for each row of the picture, so
-    /// that no picture needs more of them than every device has.
+    /// Lists the doubtful pixels.
     pub(crate) fn find(&self, cmd: &Commands<'_>, b: &DoubtBindings<'_>) {
         let (width, height) = b.visibility.size();
         let resources = [
@@ -133,7 +133,7 @@ impl Heal {
             b.rings.into(),
         ];
         cmd.bind(&self.find, &resources, &[]);
-        cmd.dispatch_grid([width.div_ceil(GROUP), height, 1]);
+        cmd.dispatch_grid([width.div_ceil(PART[0]), height.div_ceil(PART[1]), 1]);
     }
 
     /// One thread a doubtful pixel.

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!    n >= sqrt(bend . speed / chord_px)       chords within chord_px of the curve
-//!    n >= lines crossed / 256                 threads of equal work
+//!    n >= lines crossed / 32                  threads of equal work
 //! ```
 //!
 //! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_items`, `line_starts`, `face_speeds`. Writes: `segment_counts`.

@@ -8,8 +8,8 @@
 //! Reads: `frame`, `row_starts`, `row_total`, `dispatches`. Writes: `row_counts` (now the number of flips),
 //! `intercepts`, `counters`. Twin: `src/twin/sort.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::bindings::with_texels;
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
 use crate::shaders;
 
 /// The pass.
@@ -20,7 +20,7 @@ pub(crate) struct Sort {
 /// Its buffers, in binding order, and the dispatches.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub row_starts: &'a Buffer,
+    pub row_starts: &'a Texels,
     /// Intercepts of all rows.
     pub row_total: &'a Buffer,
     pub row_counts: &'a Buffer,
@@ -37,7 +37,7 @@ impl Sort {
             &ComputeInfo {
                 name: "sort",
                 spirv: shaders::SORT_COMP,
-                bindings: &with_constants(6),
+                bindings: &with_texels(1..2, 6),
                 push_bytes: 0,
                 constants: &[],
             },
@@ -47,7 +47,14 @@ impl Sort {
 
     /// One thread a row.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
-        let resources = [b.frame, b.row_starts, b.row_total, b.row_counts, b.intercepts, b.counters].map(Into::into);
+        let resources = [
+            b.frame.into(),
+            b.row_starts.into(),
+            b.row_total.into(),
+            b.row_counts.into(),
+            b.intercepts.into(),
+            b.counters.into(),
+        ];
         cmd.bind(&self.pipeline, &resources, &[]);
         cmd.dispatch_indirect(b.dispatches, size_of::<[u32; 3]>() as u64);
     }

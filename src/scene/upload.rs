@@ -174,10 +174,10 @@ impl Scene {
             links: (!data.links.is_empty())
                 .then(|| persistent(&mut uploads, cmd, "patch links", &data.links))
                 .transpose()?,
-            faces: read_both(&mut uploads, cmd, "faces", &data.faces, Texel::U32)?,
+            faces: read_both(&mut uploads, cmd, "faces", &data.faces, Texel::Words)?,
             face_instances: read_both(&mut uploads, cmd, "face instances", &data.face_instances, Texel::U32x2)?,
-            instances: read_both(&mut uploads, cmd, "instances", &data.instances, Texel::U32)?,
-            items: read_both(&mut uploads, cmd, "items", &data.items, Texel::U32)?,
+            instances: read_both(&mut uploads, cmd, "instances", &data.instances, Texel::Words)?,
+            items: read_both(&mut uploads, cmd, "items", &data.items, Texel::Words)?,
             trims: match data.trim_way() {
                 None => None,
                 Some(TrimWay::Table) => Some(Trims::Table(Box::new(table_scene(&mut uploads, cmd, data)?))),
@@ -189,9 +189,9 @@ impl Scene {
                     faces: texels(&mut uploads, cmd, "trim faces", &data.exact.faces, Texel::U32x2)?,
                     bands: texels(&mut uploads, cmd, "trim bands", &data.exact.bands, Texel::U32x2)?,
                     cells: texels(&mut uploads, cmd, "trim band cells", &data.exact.cells, Texel::U32x4)?,
-                    entries: texels(&mut uploads, cmd, "trim entries", &data.exact.entries, Texel::U32)?,
+                    entries: texels(&mut uploads, cmd, "trim entries", &data.exact.entries, Texel::Words)?,
                     arcs: texels(&mut uploads, cmd, "trim arcs", &data.exact.arcs, Texel::U32x4)?,
-                    points: texels(&mut uploads, cmd, "trim arc points", &data.exact.points, Texel::F32)?,
+                    points: texels(&mut uploads, cmd, "trim arc points", &data.exact.points, Texel::Numbers)?,
                 }))),
             },
             solids: (!data.solids.leaves.is_empty())
@@ -277,8 +277,8 @@ fn table_scene(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SceneData) -> R
         cells: persistent(uploads, cmd, "trim cells", &data.cells)?,
         cell_items: persistent(uploads, cmd, "trim cell items", &data.cell_items)?,
         curves: texels(uploads, cmd, "trim curves", &data.curves, Texel::U32x2)?,
-        curve_points: texels(uploads, cmd, "trim curve points", &data.curve_points, Texel::F32)?,
-        curve_items: texels(uploads, cmd, "trim curve items", &data.curve_items, Texel::U32)?,
+        curve_points: texels(uploads, cmd, "trim curve points", &data.curve_points, Texel::Numbers)?,
+        curve_items: texels(uploads, cmd, "trim curve items", &data.curve_items, Texel::Words)?,
     })
 }
 
@@ -294,12 +294,12 @@ fn rival_scene(
         Rival::Bisect { .. } => {
             let b = &data.bisect;
             RivalScene::Bisect([
-                texels(uploads, cmd, "trim bisect faces", &b.faces, Texel::U32)?,
+                texels(uploads, cmd, "trim bisect faces", &b.faces, Texel::Words)?,
                 texels(uploads, cmd, "trim bisect bands", &b.bands, Texel::U32x2)?,
                 texels(uploads, cmd, "trim bisect cells", &b.cells, Texel::U32x4)?,
-                texels(uploads, cmd, "trim bisect lists", &b.lists, Texel::U32)?,
+                texels(uploads, cmd, "trim bisect lists", &b.lists, Texel::Words)?,
                 texels(uploads, cmd, "trim bisect pieces", &b.pieces, Texel::U32x2)?,
-                texels(uploads, cmd, "trim bisect points", &b.points, Texel::F32)?,
+                texels(uploads, cmd, "trim bisect points", &b.points, Texel::Numbers)?,
             ])
         }
         Rival::Texture { eighths } => {

@@ -2,14 +2,14 @@
 //!
 //! ```text
 //!   n >= sqrt(bend . speed / chord_px)        chords within chord_px of the curve on the screen
-//!   n >= lines that it may cross / 256        threads of equal work in pass `cross`
+//!   n >= lines that it may cross / 32         threads of equal work in pass `cross`
 //!   n  = 0                                    no scan line where the curve is: nobody sees it
 //! ```
 
 use super::{Scene, strips_of};
 use crate::abi::Frame;
 
-const LINES_PER_SEGMENT: u32 = 256;
+const LINES_PER_SEGMENT: u32 = 32;
 const MAX_SEGMENTS: f32 = 65536.0;
 
 /// Segments of each curve item; `line_starts` holds the rows before each strip, and the total.

@@ -6,9 +6,9 @@
 //!   flips        |              |        inside    0 1 1 1 1 1 0
 //! ```
 //!
-//! The shader sorts few by a network and many by heap, in place; a sorted list of integers is the same by whatever method. At
-//! equal `u`, where loops touch or coincide, several flips may stand side by side; a look-up passes
-//! all of them or none.
+//! The shader sorts few in registers and many by heap; a sorted list of integers is the same by whatever method. At equal
+//! `u`, where loops touch or coincide, several flips may stand side by side; a look-up passes all of them or none. What a
+//! row holds behind its flips is nobody's.
 
 use super::FAILED_INTERCEPTS;
 use crate::abi::{Counters, Frame};

@@ -28,6 +28,8 @@ struct BisectPiece {
     uint degree;
 };
 
+#include "words.glsl"
+
 // texels, as those of exact.glsl
 layout(binding = TRIM_BINDING + 0) uniform usamplerBuffer bisect_faces;  // three a face
 layout(binding = TRIM_BINDING + 1) uniform usamplerBuffer bisect_bands;  // one a band
@@ -37,10 +39,8 @@ layout(binding = TRIM_BINDING + 4) uniform usamplerBuffer bisect_pieces; // thre
 layout(binding = TRIM_BINDING + 5) uniform samplerBuffer bisect_points;  // three a control point
 
 BisectFace bisect_face_at(uint i) {
-    int at = int(i) * 3;
-    return BisectFace(
-        texelFetch(bisect_faces, at).x, texelFetch(bisect_faces, at + 1).x, texelFetch(bisect_faces, at + 2).x
-    );
+    uint at = i * 3u;
+    return BisectFace(word_at(bisect_faces, at), word_at(bisect_faces, at + 1u), word_at(bisect_faces, at + 2u));
 }
 
 BisectBand bisect_band_at(uint i) {
@@ -54,7 +54,7 @@ BisectCell bisect_cell_at(uint i) {
 }
 
 BisectPiece bisect_piece_at(uint i) {
-    int at = int(texelFetch(bisect_lists, int(i)).x) * 3;
+    int at = int(word_at(bisect_lists, i)) * 3;
     uvec2 start = texelFetch(bisect_pieces, at).xy;
     uvec2 end = texelFetch(bisect_pieces, at + 1).xy;
     uvec2 rest = texelFetch(bisect_pieces, at + 2).xy;
@@ -62,8 +62,7 @@ BisectPiece bisect_piece_at(uint i) {
 }
 
 vec3 bisect_point_at(uint i) {
-    int at = int(i) * 3;
-    return vec3(texelFetch(bisect_points, at).x, texelFetch(bisect_points, at + 1).x, texelFetch(bisect_points, at + 2).x);
+    return numbers_at(bisect_points, i * 3u);
 }
 
 vec2 bisect_point(BisectPiece piece, float t) {
