@@ -27,7 +27,9 @@ layout(binding = 7) uniform usamplerBuffer segment_starts;
 layout(binding = 8) uniform usamplerBuffer row_starts;
 layout(scalar, binding = 9) buffer RowCounts { uint row_counts[]; };
 layout(scalar, binding = 10) writeonly buffer Intercepts { uint intercepts[]; };
+layout(scalar, binding = 11) buffer BorderCells { uint border_cells[]; }; // four words a band
 
+#include "border_cells.glsl"
 #include "curve.glsl"
 #include "curves.glsl"
 #include "faces.glsl"
@@ -45,6 +47,19 @@ uint curve_of(uint segment) {
         else hi = mid;
     }
     return lo;
+}
+
+// Marks the bands of a strip from `lo` to `hi`, 0 to 1, as far as it has them.
+void mark(uint strip, float lo, float hi, uvec4 columns) {
+    float last_band = float(BORDER_BANDS - 1u);
+    uint first = uint(clamp(floor(lo * float(BORDER_BANDS)), 0.0, last_band));
+    uint last = uint(clamp(floor(hi * float(BORDER_BANDS)), 0.0, last_band));
+    for (uint band = first; band <= last; ++band) {
+        uint at = 4u * (strip * BORDER_BANDS + band);
+        for (uint word = 0u; word < 4u; ++word) {
+            if (columns[word] != 0u) atomicOr(border_cells[at + word], columns[word]);
+        }
+    }
 }
 
 uint ordered_bits(float u) {
@@ -74,14 +89,23 @@ void main() {
     float strips = float(face.strip_count);
     uint first = uint(clamp(floor(a.y * strips), 0.0, strips - 1.0));
     uint last = uint(clamp(floor(b.y * strips), 0.0, strips - 1.0));
+    uvec4 columns = columns_between(min(a.x, b.x), max(a.x, b.x));
     for (uint k = first; k <= last; ++k) {
         uint base = word_at(line_starts, fi.first_strip + k);
         uint count = word_at(line_starts, fi.first_strip + k + 1u) - base;
         if (count == 0u) continue;
         float mu = float(count);
+        precise float low = a.y * strips - float(k);
+        precise float high = b.y * strips - float(k);
+        if (!INSERT) {
+            precise float around = 0.5 / mu + BAND_ROUNDING;
+            precise float below = low - around;
+            precise float above = high + around;
+            mark(fi.first_strip + k, below, above, columns);
+        }
         // one line too many on each side: the comparison below decides
-        float lowest = floor((a.y * strips - float(k)) * mu - 0.5);
-        float highest = ceil((b.y * strips - float(k)) * mu - 0.5);
+        float lowest = floor(low * mu - 0.5);
+        float highest = ceil(high * mu - 0.5);
         if (highest < 0.0 || lowest > mu - 1.0) continue;
         uint from = uint(max(lowest, 0.0));
         uint to = uint(min(highest, mu - 1.0));

@@ -11,7 +11,9 @@
 //!                    Counters.failed, and the next frame gets what it would have needed
 //! ```
 
-use crate::abi::{BLOCK, Counters, Factors, Fragment, Rect, SQUARE, SubPatch, TILE, TileLeaf};
+use crate::abi::{
+    BLOCK, BORDER_BANDS, BORDER_COLUMNS, Counters, Factors, Fragment, Rect, SQUARE, SubPatch, TILE, TileLeaf,
+};
 #[cfg(feature = "rivals")]
 use crate::capacities::is_texture;
 use crate::capacities::{Capacities, Counts};
@@ -114,12 +116,13 @@ pub(crate) struct TableBuffers {
     pub row_starts: Texels,
     pub row_total: Buffer,
     pub intercepts: Texels,
+    pub border_cells: Texels,
 }
 
 impl TableBuffers {
     /// Zero when the frame begins.
-    pub(crate) fn cleared(&self) -> [&Buffer; 3] {
-        [&self.strip_heights, &self.face_speeds, &self.row_counts]
+    pub(crate) fn cleared(&self) -> [&Buffer; 4] {
+        [&self.strip_heights, &self.face_speeds, &self.row_counts, &self.border_cells]
     }
 }
 
@@ -221,6 +224,11 @@ impl Buffers {
                 row_starts: numbers("trim row starts", capacities.rows, Texel::Words)?,
                 row_total: words("trim row total", 1)?,
                 intercepts: numbers("trim intercepts", capacities.intercepts, Texel::Words)?,
+                border_cells: texels(
+                    "trim border cells",
+                    u64::from(counts.strips) * u64::from(BORDER_BANDS * BORDER_COLUMNS / 8),
+                    Texel::U32x4,
+                )?,
             })
         };
         #[cfg(feature = "rivals")]

@@ -41,11 +41,11 @@ void main() {
 #ifdef TRIMMED
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
     vec2 around = frame.ring_px * (abs(dx) + abs(dy)); // of the point: its ring is in that box
-    uint area = trim_area(fi, at - around, at + around);
+    uint area = trim_area(fi, face, at - around, at + around);
     if (area == TRIM_OUT) discard;
     bool inside = area == TRIM_IN || trim_inside(fi, face, at);
     bool near = inside;
-    for (uint k = 0u; !near && k < RING_POINTS; ++k) {
+    for (uint k = 0u; area == TRIM_MIXED && !near && k < RING_POINTS; ++k) {
         vec2 step_ = frame.ring_px * RING[k];
         near = trim_inside(fi, face, at + step_.x * dx + step_.y * dy);
     }

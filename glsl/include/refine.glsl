@@ -3,7 +3,6 @@
 // Newton's method on F(u, v) = projection(S(u, v)) - pixel:  step = -J^-1 F, kept only while the
 // distance to the pixel shrinks (at a silhouette there may be no such point).
 //
-// One evaluation, in one loop: a rasterizer in software runs what no pixel asks for once, too.
 // The better point is taken before the loop is left, not after. Written the other way round (`if (!nearer) break;
 // best = next;`) Mesa 22.3's llvmpipe now and then gave a lane that had left the loop the step it had refused, where
 // other lanes of its group went on: which, the order of the threads decided.
@@ -38,47 +37,29 @@ mat2 pixels_along(Sample s, View view) {
     return mat2((qu.xy - p * qu.w) / s.q.w, (qv.xy - p * qv.w) / s.q.w);
 }
 
-// Where Newton's method is.
-struct Search {
-    Sample best;
-    float error; // its distance from the pixel, squared
-    uint steps;  // taken
-    vec2 next;   // where to look
-};
-
-Search search_from(vec2 uv) {
-    Search search;
-    search.error = 0.0;
-    search.steps = 0u;
-    search.next = uv;
-    return search;
-}
-
-// What was found there; whether to look on.
-bool goes_on(inout Search search, Sample found, View view) {
-    float miss = dot(found.miss, found.miss);
-    bool nearer = search.steps == 0u || miss < search.error;
-    if (nearer) {
-        search.best = found;
-        search.error = miss;
-    }
-    mat2 along = pixels_along(search.best, view);
+// Where Newton's method goes from there, if anywhere.
+bool step_from(Sample s, View view, out vec2 step_) {
+    mat2 along = pixels_along(s, view);
     vec2 pu = along[0];
     vec2 pv = along[1];
     float det = pu.x * pv.y - pu.y * pv.x;
-    vec2 away = search.best.miss;
-    vec2 step_ = vec2(away.x * pv.y - away.y * pv.x, pu.x * away.y - pu.y * away.x) / det;
+    step_ = vec2(s.miss.x * pv.y - s.miss.y * pv.x, pu.x * s.miss.y - pu.y * s.miss.x) / det;
     float largest = max(abs(step_.x), abs(step_.y));
     if (largest > MAX_STEP) step_ *= MAX_STEP / largest;
-    search.next = search.best.uv - step_;
-    bool close = search.error < CLOSE_ENOUGH * CLOSE_ENOUGH;
-    return nearer && !close && abs(det) >= 1e-12 && search.steps++ < NEWTON_STEPS;
+    return dot(s.miss, s.miss) >= CLOSE_ENOUGH * CLOSE_ENOUGH && abs(det) >= 1e-12;
 }
 
 Sample refine(Patch patch_, View view, vec2 uv, vec2 pixel) {
-    Search search = search_from(uv);
-    while (goes_on(search, sample_at(patch_, view, search.next, pixel), view)) {}
-    return search.best;
+    Sample best = sample_at(patch_, view, uv, pixel);
+    for (uint i = 0u; i < NEWTON_STEPS; ++i) {
+        vec2 step_;
+        if (!step_from(best, view, step_)) break;
+        Sample next = sample_at(patch_, view, best.uv - step_, pixel);
+        bool nearer = dot(next.miss, next.miss) < dot(best.miss, best.miss);
+        if (nearer) best = next;
+        if (!nearer) break;
+    }
+    return best;
 }
 
 #endif

@@ -3,6 +3,7 @@
 #ifndef TABLE_GLSL
 #define TABLE_GLSL
 
+#include "border_cells.glsl"
 #include "words.glsl"
 
 // as texels, which a driver fetches at once where it gathers words of storage buffers one by one
@@ -10,6 +11,7 @@ layout(binding = TABLE_BINDING + 0) uniform usamplerBuffer line_starts;
 layout(binding = TABLE_BINDING + 1) uniform usamplerBuffer row_starts;
 layout(binding = TABLE_BINDING + 2) uniform usamplerBuffer row_counts;
 layout(binding = TABLE_BINDING + 3) uniform usamplerBuffer flips; // u, in order in each row
+layout(binding = TABLE_BINDING + 4) uniform usamplerBuffer border_cells; // one a band
 
 // First row of a strip; of the one behind the last, where it ends.
 uint first_row(uint strip) { return word_at(line_starts, strip); }
@@ -48,6 +50,19 @@ bool table_inside(uint first_strip, float strips, vec2 uv) {
     if (row >= frame.row_capacity) return true; // the host grows the table and records again
     uint first = word_at(row_starts, row);
     return (flips_passed(first, first + word_at(row_counts, row), uv.x) & 1u) != 0u;
+}
+
+// Whether all of a box is inside or none of it: within a strip, what is looked up changes at trim curves alone.
+bool table_same(uint first_strip, float strips, vec2 lo, vec2 hi) {
+    float from = lo.y * strips;
+    float to = hi.y * strips;
+    if (!(from >= 0.0 && to < strips)) return false;
+    uint first = uint(from * float(BORDER_BANDS));
+    uint last = uint(to * float(BORDER_BANDS));
+    if (last > first + 1u || first / BORDER_BANDS != last / BORDER_BANDS) return false;
+    int band = int(first_strip * BORDER_BANDS);
+    uvec4 marked = texelFetch(border_cells, band + int(first)) | texelFetch(border_cells, band + int(last));
+    return (marked & columns_between(lo.x, hi.x)) == uvec4(0u);
 }
 
 #endif

@@ -4,22 +4,29 @@
 //
 //   bool trim_inside(FaceInstance fi, Face face, vec2 uv)     (u, v) normalised to the face's surface;
 //                                                             face has FACE_TRIMMED
-//   uint trim_area(FaceInstance fi, vec2 lo, vec2 hi)         of a box in (u, v): all of it inside, all of it
-//                                                             outside, or neither is easily told
+//   uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi)
+//                                                             of a box in (u, v): all of it inside, all of it
+//                                                             outside, all of it like any point of it, or none of
+//                                                             that is easily told
 #ifndef TRIM_GLSL
 #define TRIM_GLSL
 
 const uint TRIM_OUT = 0u;
 const uint TRIM_IN = 1u;
 const uint TRIM_MIXED = 2u;
+const uint TRIM_SAME = 3u;
 
 #ifdef TRIM_BY_TABLE
-#define TRIM_BUFFERS 4
+#define TRIM_BUFFERS 5
 #define TABLE_BINDING TRIM_BINDING
 #include "table.glsl"
 
 bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
     return table_inside(fi.first_strip, float(face.strip_count), uv);
+}
+
+uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
+    return table_same(fi.first_strip, float(face.strip_count), lo, hi) ? TRIM_SAME : TRIM_MIXED;
 }
 #endif
 
@@ -32,11 +39,11 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
     return exact_winding(fi.face, uv) != 0;
 }
 
-uint trim_area(FaceInstance fi, vec2 lo, vec2 hi) {
+uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
     return exact_area(fi.face, lo, hi);
 }
-#elif !defined(TRIM_BY_BISECT)
-uint trim_area(FaceInstance fi, vec2 lo, vec2 hi) {
+#elif !defined(TRIM_BY_TABLE) && !defined(TRIM_BY_BISECT)
+uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
     return TRIM_MIXED;
 }
 #endif

@@ -69,15 +69,15 @@ void main() {
     bool doubtful = solid && away;
     float reach = solid && !away ? GROWTH * frame.ring_px : frame.ring_px;
     vec2 around = reach * (abs(dx) + abs(dy)); // of the point: its ring is in that box
-    uint area = trim_area(fi, at - around, at + around);
+    uint area = trim_area(fi, face, at - around, at + around);
     if (area == TRIM_OUT) discard;
     bool inside = area == TRIM_IN || trim_inside(fi, face, at);
     float border_depth = -1.0; // nearest to the viewer among the ring's points inside the face
-    bool grows = true;
+    bool grows = area == TRIM_MIXED;
     float px = frame.focal * (frame.perspective != 0u ? gl_FragCoord.w : 1.0) * instance_at(fi.instance).scale;
     if (solid && !away) {
         vec2 far = around / patch_.domain.zw; // (u, v) of the patch that the ring spans
-        grows = bend_within(patch_, far) * px <= (RING_SLACK - 1.0) * reach + 2.0 * frame.deviation_px;
+        grows = grows && bend_within(patch_, far) * px <= (RING_SLACK - 1.0) * reach + 2.0 * frame.deviation_px;
     }
     for (uint k = 0u; !inside && grows && k < RING_POINTS; ++k) {
         vec2 step_ = reach * RING[k];

@@ -200,6 +200,10 @@ pub struct Cell {
 pub const SQUARE: u32 = 4;
 /// Cells of a patch along u and along v that tell where nothing of its face is.
 pub const OUTSIDE_CELLS: u32 = 8;
+/// Bands of a strip, and columns of a band, in which trim curves are marked: `glsl/include/border_cells.glsl`.
+pub const BORDER_BANDS: u32 = 4;
+/// See [`BORDER_BANDS`].
+pub const BORDER_COLUMNS: u32 = 128;
 
 /// One trim curve.
 #[repr(C)]

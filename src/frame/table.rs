@@ -50,7 +50,7 @@ impl<'a> TableParts<'a> {
     /// What the look-up reads, in the order of `glsl/include/trim.glsl`.
     pub(super) fn test(self) -> Vec<Resource<'a>> {
         let t = self.buffers;
-        [&t.line_starts, &t.row_starts, &t.row_counts, &t.intercepts].map(Resource::from).to_vec()
+        [&t.line_starts, &t.row_starts, &t.row_counts, &t.intercepts, &t.border_cells].map(Resource::from).to_vec()
     }
 
     /// Records the passes; what the trim test reads is then ready for it.
@@ -65,6 +65,7 @@ impl<'a> TableParts<'a> {
                 (&t.strip_heights, cleared.0, cleared.1),
                 (&t.face_speeds, cleared.0, cleared.1),
                 (&t.row_counts, cleared.0, cleared.1),
+                (&t.border_cells, cleared.0, cleared.1),
             ],
         );
         let density = density::Bindings {
@@ -130,6 +131,7 @@ impl<'a> TableParts<'a> {
             row_starts: &t.row_starts,
             row_counts: &t.row_counts,
             intercepts: &t.intercepts,
+            border_cells: &t.border_cells,
             dispatches: &t.dispatches,
         };
         p.cross.count(cmd, &cross);
@@ -176,6 +178,7 @@ impl<'a> TableParts<'a> {
                 (&t.row_starts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
                 (&t.row_counts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
                 (&t.intercepts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
+                (&t.border_cells, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
             ],
         );
     }

@@ -28,6 +28,7 @@ pub(super) struct Chain {
     pub segment_starts: Vec<u32>,
     pub dispatches: [[u32; 3]; 3],
     pub row_counts: Vec<u32>,
+    pub border_cells: Vec<[u32; 4]>,
     pub row_starts: Vec<u32>,
     pub row_total: u32,
     /// As `cross` leaves them; the order within a row is not part of the contract.
@@ -58,6 +59,7 @@ impl Chain {
         c.segment_starts = starts(&c.segment_counts);
         c.dispatches = twin::sizes::sizes(frame, &c.line_starts, &c.segment_starts, &mut c.counters);
         c.row_counts = twin::cross::count(frame, scene, &c.line_starts, &c.segment_starts);
+        c.border_cells = twin::cross::border_cells(frame, scene, &c.line_starts, &c.segment_starts);
         (c.row_starts, c.row_total) = twin::scan::scan(&c.row_counts[..c.counters.rows as usize]);
         c.intercepts = vec![UNTOUCHED; frame.intercept_capacity as usize];
         let (mut counts, given) = (c.row_counts.clone(), (c.line_starts.as_slice(), c.segment_starts.as_slice()));

@@ -9,8 +9,15 @@ use crate::gpu::Texel;
 use crate::passes::cross::{Bindings, Cross};
 use crate::twin::sort::from_ordered;
 
-/// One role of the pass on the GPU: `row_counts` and `intercepts` after it.
-fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> (Vec<u32>, Vec<u32>) {
+/// What the pass leaves.
+struct Left {
+    row_counts: Vec<u32>,
+    intercepts: Vec<u32>,
+    border_cells: Vec<[u32; 4]>,
+}
+
+/// One role of the pass on the GPU.
+fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> Left {
     let s = SceneBuffers::new(gpu, case);
     let before = if insert { chain.row_counts.clone() } else { vec![0; chain.row_counts.len()] };
     let starts = |name: &str, words: &[u32]| gpu.upload_texels(name, words, Texel::Words);
@@ -19,6 +26,7 @@ fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> (Vec<u32>, Vec
     let row_starts = starts("row starts", &chain.row_starts);
     let row_counts = gpu.upload("row counts", &before);
     let intercepts = gpu.upload("intercepts", &vec![UNTOUCHED; chain.intercepts.len()]);
+    let border_cells = gpu.upload("border cells", &vec![[0u32; 4]; chain.border_cells.len()]);
     let dispatches = gpu.upload("dispatches", chain.dispatches.as_flattened());
     let bindings = Bindings {
         frame: &s.frame,
@@ -32,22 +40,28 @@ fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> (Vec<u32>, Vec
         row_starts: &row_starts,
         row_counts: &row_counts,
         intercepts: &intercepts,
+        border_cells: &border_cells,
         dispatches: &dispatches,
     };
     let pass = Cross::new(gpu.device()).unwrap();
     gpu.run(|cmd| if insert { pass.insert(cmd, &bindings) } else { pass.count(cmd, &bindings) });
-    (gpu.read(&row_counts, before.len()), gpu.read(&intercepts, chain.intercepts.len()))
+    Left {
+        row_counts: gpu.read(&row_counts, before.len()),
+        intercepts: gpu.read(&intercepts, chain.intercepts.len()),
+        border_cells: gpu.read(&border_cells, chain.border_cells.len()),
+    }
 }
 
 /// The GPU gets `given`; the twins' results for the true case are in `chain`.
 fn compare(gpu: &Gpu, given: &Case, chain: &Chain) -> Result<(), Mismatch> {
-    let (counts, untouched) = on_gpu(gpu, given, chain, false);
-    same("row counts", &counts, &chain.row_counts)?;
-    same("intercepts before inserting", &untouched, &vec![UNTOUCHED; untouched.len()])?;
+    let counted = on_gpu(gpu, given, chain, false);
+    same("row counts", &counted.row_counts, &chain.row_counts)?;
+    same("intercepts before inserting", &counted.intercepts, &vec![UNTOUCHED; chain.intercepts.len()])?;
+    same("border cells", &counted.border_cells, &chain.border_cells)?;
 
-    let (left, inserted) = on_gpu(gpu, given, chain, true);
-    same("row counts after inserting", &left, &vec![0; left.len()])?;
-    let (on_gpu, twin) = (rows_sorted(chain, inserted), rows_sorted(chain, chain.intercepts.clone()));
+    let left = on_gpu(gpu, given, chain, true);
+    same("row counts after inserting", &left.row_counts, &vec![0; chain.row_counts.len()])?;
+    let (on_gpu, twin) = (rows_sorted(chain, left.intercepts), rows_sorted(chain, chain.intercepts.clone()));
     let directions = |words: &[u32]| words.iter().map(|w| w & 1).collect::<Vec<_>>();
     let u = |words: &[u32]| words.iter().map(|w| from_ordered(w & !1)).collect::<Vec<_>>();
     same("directions", &directions(&on_gpu), &directions(&twin))?;

@@ -4,6 +4,7 @@
 use super::chain::Chain;
 use super::shapes::{model_and_cameras, sheet_loops};
 use super::{Case, Random};
+use crate::abi::BORDER_BANDS;
 use crate::trim::LoopIndex;
 use crate::twin::table::Table;
 use glam::DVec2;
@@ -18,8 +19,17 @@ fn table<'a>(case: &Case, chain: &'a Chain, flips: &'a [f32]) -> Table<'a> {
         row_starts: &chain.row_starts,
         row_counts: &chain.flip_counts,
         flips,
+        border_cells: &chain.border_cells,
         row_capacity: case.frame.row_capacity,
     }
+}
+
+/// Half the sides of the boxes that are asked about.
+const AROUND: [f32; 2] = [0.004, 0.002];
+
+/// The box around a point.
+fn around([u, v]: [f32; 2]) -> ([f32; 2], [f32; 2]) {
+    ([u - AROUND[0], v - AROUND[1]], [u + AROUND[0], v + AROUND[1]])
 }
 
 /// Points of the normalised domain, some outside, some on its border.
@@ -65,6 +75,35 @@ fn the_table_decides_as_the_exact_loops_do() {
     assert!(decided.iter().all(|&n| n > 3000), "outside, inside: {decided:?}");
 }
 
+/// Where a box is said to be all inside or all outside, so are points all over it; and most boxes are.
+#[test]
+fn boxes_that_no_border_meets_are_all_the_same() {
+    let (model, cameras) = model_and_cameras();
+    let mut said = [0, 0, 0]; // not, outside, inside
+    for camera in &cameras {
+        let case = Case::new(&model, camera, 0.5);
+        let chain = Chain::new(&case);
+        let flips: Vec<f32> = chain.flips.iter().map(|&bits| f32::from_bits(bits)).collect();
+        let table = table(&case, &chain, &flips);
+        let (first, strips) = (case.data.face_instances[SHEET].first_strip, case.data.faces[SHEET].strip_count as f32);
+        for p in points(5_000) {
+            let (lo, hi) = around(p);
+            if !table.same(first, strips, lo, hi) {
+                said[0] += 1;
+                continue;
+            }
+            let inside = table.inside(first, strips, p);
+            said[1 + usize::from(inside)] += 1;
+            for k in 0..15 * 15 {
+                let at = |axis: usize, k: u32| lo[axis] + (hi[axis] - lo[axis]) * (k as f32 / 14.0);
+                let q = [at(0, k % 15).min(hi[0]), at(1, k / 15).min(hi[1])];
+                assert_eq!(table.inside(first, strips, q), inside, "{q:?} unlike {p:?}");
+            }
+        }
+    }
+    assert!(said[1] > 1000 && said[2] > 1000 && said[0] < said[1] + said[2], "not told, outside, inside: {said:?}");
+}
+
 /// Of `tests/gpu/glsl/table.comp`, which wraps the include.
 #[cfg(feature = "headless")]
 mod parity {
@@ -88,29 +127,35 @@ mod parity {
         let row_starts = gpu.upload_texels("row starts", &given.row_starts, Texel::Words);
         let row_counts = gpu.upload_texels("row counts", &given.flip_counts, Texel::Words);
         let flips = gpu.upload_texels("flips", &given.flips, Texel::Words);
+        let border_cells = gpu.upload_texels("border cells", &given.border_cells, Texel::U32x4);
         let uvs = gpu.upload("points", &points);
-        let inside = gpu.upload("inside", &vec![7u32; points.len()]);
+        let answers = gpu.upload("answers", &vec![7u32; points.len()]);
         let info = ComputeInfo {
             name: "table",
             spirv: &spirv(),
             bindings: &[vec![Binding::Uniform], vec![Binding::Texels; TRIM_TABLE.texels], vec![Binding::Storage; 2]]
                 .concat(),
-            push_bytes: 8,
+            push_bytes: 16,
             constants: &[],
         };
         let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
-        let push = [placed.first_strip, strips.to_bits()];
+        let push = [placed.first_strip, strips.to_bits(), AROUND[0].to_bits(), AROUND[1].to_bits()];
         gpu.run(|cmd| {
-            let texels = [&line_starts, &row_starts, &row_counts, &flips].map(Resource::from);
-            let answers = [&uvs, &inside].map(Resource::from);
-            let resources: Vec<_> = [Resource::from(&frame)].into_iter().chain(texels).chain(answers).collect();
+            let texels = [&line_starts, &row_starts, &row_counts, &flips, &border_cells].map(Resource::from);
+            let of_points = [&uvs, &answers].map(Resource::from);
+            let resources: Vec<_> = [Resource::from(&frame)].into_iter().chain(texels).chain(of_points).collect();
             cmd.bind(&pipeline, &resources, bytemuck::bytes_of(&push));
             cmd.dispatch(points.len() as u32 / 64);
         });
         let flips: Vec<f32> = expected.flips.iter().map(|&bits| f32::from_bits(bits)).collect();
         let table = table(case, expected, &flips);
-        let twin: Vec<u32> = points.iter().map(|&uv| u32::from(table.inside(placed.first_strip, strips, uv))).collect();
-        same("inside", &gpu.read(&inside, points.len()), &twin)
+        let answer = |&p: &[f32; 2]| {
+            let (lo, hi) = around(p);
+            let told = table.same(placed.first_strip, strips, lo, hi);
+            u32::from(table.inside(placed.first_strip, strips, p)) | u32::from(told) << 1
+        };
+        let twin: Vec<u32> = points.iter().map(answer).collect();
+        same("answers", &gpu.read(&answers, points.len()), &twin)
     }
 
     #[test]
@@ -132,6 +177,9 @@ mod parity {
         let strip = case.data.face_instances[SHEET].first_strip as usize + 2;
         let row = chain.line_starts[strip] as usize;
         other.flip_counts[row..].fill(0);
+        assert!(compare(&gpu, case, &other, &chain).is_err());
+        let mut other = chain.clone();
+        other.border_cells[strip * BORDER_BANDS as usize..].fill([0; 4]);
         assert!(compare(&gpu, case, &other, &chain).is_err());
         gpu.finish();
     }

@@ -1,7 +1,7 @@
 //! Pass `cross`: every linear segment of a trim curve meets every scan line that it crosses.
 //!
 //! ```text
-//!   count    row_counts[row] += 1                                one thread a segment, as many
+//!   count    row_counts[row] += 1, border cells marked           one thread a segment, as many
 //!   (scan)   row_starts = sums                                   as pass `sizes` found
 //!   insert   intercepts[row_starts[row] + place] = u, direction
 //! ```
@@ -9,7 +9,7 @@
 //! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_points`, `curve_items`, `line_starts`,
 //! `segment_starts`, `row_starts`, `dispatches`. Writes: `row_counts` (zero before
 //! counting and again after inserting),
-//! `intercepts`. Twin: `src/twin/cross.rs`.
+//! `intercepts`, `border_cells` (zero before counting). Twin: `src/twin/cross.rs`.
 
 use crate::bindings::with_texels;
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
@@ -37,6 +37,8 @@ pub(crate) struct Bindings<'a> {
     pub row_starts: &'a Texels,
     pub row_counts: &'a Buffer,
     pub intercepts: &'a Buffer,
+    /// `glsl/include/border_cells.glsl`.
+    pub border_cells: &'a Buffer,
     /// Written by pass `sizes`; this pass's is the first.
     pub dispatches: &'a Buffer,
 }
@@ -49,7 +51,7 @@ impl Cross {
                 &ComputeInfo {
                     name,
                     spirv: shaders::CROSS_COMP,
-                    bindings: &with_texels(1..9, 11),
+                    bindings: &with_texels(1..9, 12),
                     push_bytes: 0,
                     constants: &[(INSERT, u32::from(insert))],
                 },
@@ -81,6 +83,7 @@ impl Cross {
             b.row_starts.into(),
             b.row_counts.into(),
             b.intercepts.into(),
+            b.border_cells.into(),
         ];
         cmd.bind(pipeline, &resources, &[]);
         cmd.dispatch_indirect(b.dispatches, 0);

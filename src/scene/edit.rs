@@ -117,7 +117,7 @@ impl EditLoop {
 
     /// Its curves and control points for the table.
     fn curve_writes(&self, new: &TrimLoop, domain: &Domain) -> Vec<Write> {
-        let (mut curves, points) = loop_curves(new, domain, true);
+        let (mut curves, points) = loop_curves(new, domain);
         curves.iter_mut().for_each(|c| c.first += self.first_point);
         vec![
             write(EditTarget::Curves, self.first_curve, &curves),

@@ -123,7 +123,7 @@ impl FaceData {
                     data.cells[first..].iter_mut().for_each(|cell| cell.speed_v = -cell.speed_v);
                 }
             }
-            face.loops.iter().for_each(|l| data.push_loop(l, &domain, editable));
+            face.loops.iter().for_each(|l| data.push_loop(l, &domain));
         }
         if !trimmed {
             data.close_seams(grid.count_u, grid.count_v);
@@ -225,8 +225,8 @@ impl FaceData {
         }
     }
 
-    fn push_loop(&mut self, l: &TrimLoop, domain: &Domain, editable: bool) {
-        let (mut curves, points) = loop_curves(l, domain, editable);
+    fn push_loop(&mut self, l: &TrimLoop, domain: &Domain) {
+        let (mut curves, points) = loop_curves(l, domain);
         let first = self.curve_points.len() as u32;
         curves.iter_mut().for_each(|c| c.first += first);
         if let Some(edit) = &mut self.edit {
@@ -276,9 +276,9 @@ impl FaceData {
     }
 }
 
-/// A loop's curves and their control points, with indices relative to them. Curves along a scan line
-/// cross none: they are left out, but for a loop that may be edited.
-pub(super) fn loop_curves(l: &TrimLoop, domain: &Domain, editable: bool) -> (Vec<abi::Curve>, Vec<f32>) {
+/// A loop's curves and their control points, with indices relative to them. Those along a scan line cross none, but
+/// mark where they are (`glsl/include/border_cells.glsl`).
+pub(super) fn loop_curves(l: &TrimLoop, domain: &Domain) -> (Vec<abi::Curve>, Vec<f32>) {
     // every joint is rounded once and used by both its curves, so the loop stays closed in f32
     let curves: Vec<Bezier<DVec3>> = l.curves().collect();
     let (mut out, mut points) = (Vec::with_capacity(curves.len()), Vec::new());
@@ -293,9 +293,6 @@ pub(super) fn loop_curves(l: &TrimLoop, domain: &Domain, editable: bool) -> (Vec
         let v = |p: &DVec3| (p.y / p.z) as f32;
         let lowest = unit.iter().map(v).fold(start[1].min(end[1]), f32::min);
         let highest = unit.iter().map(v).fold(start[1].max(end[1]), f32::max);
-        if lowest == highest && !editable {
-            continue;
-        }
         let degree = c.degree() as u32;
         let bend = chord_bend(&Bezier { points: unit.clone() });
         out.push(abi::Curve {

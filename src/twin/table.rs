@@ -1,6 +1,9 @@
 //! Twin of `glsl/include/table.glsl`: look-up in the u-intercept table, nearest scan line, then a binary
 //! search.
 
+use super::border_cells::columns_between;
+use crate::abi::BORDER_BANDS;
+
 /// The table as the passes leave it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Table<'a> {
@@ -12,6 +15,8 @@ pub struct Table<'a> {
     pub row_counts: &'a [u32],
     /// Their `u`, ascending in each row.
     pub flips: &'a [f32],
+    /// Columns of each band that trim curves pass.
+    pub border_cells: &'a [[u32; 4]],
     /// Rows that there is room for.
     pub row_capacity: u32,
 }
@@ -39,5 +44,21 @@ impl Table<'_> {
             return false; // also a row that found no room
         }
         self.flips[first..first + flips].partition_point(|&flip| flip <= u) % 2 == 1
+    }
+
+    /// Whether all of the box from `lo` to `hi` is inside or none of it. `false` where that is not easily told.
+    pub fn same(&self, first_strip: u32, strips: f32, lo: [f32; 2], hi: [f32; 2]) -> bool {
+        let (from, to) = (lo[1] * strips, hi[1] * strips);
+        if !(from >= 0.0 && to < strips) {
+            return false;
+        }
+        let bands = BORDER_BANDS as f32;
+        let (first, last) = ((from * bands) as u32, (to * bands) as u32);
+        if last > first + 1 || first / BORDER_BANDS != last / BORDER_BANDS {
+            return false;
+        }
+        let band = |k: u32| self.border_cells[(first_strip * BORDER_BANDS + k) as usize];
+        let columns = columns_between(lo[0], hi[0]);
+        (0..4).all(|w| (band(first)[w] | band(last)[w]) & columns[w] == 0)
     }
 }

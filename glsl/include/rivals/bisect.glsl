@@ -130,7 +130,7 @@ bool bisect_cell(BisectFace own, vec2 uv, out uint band, out uint cell) {
 }
 
 // Of a box within a band: it lies between two cells or beyond all.
-uint trim_area(FaceInstance fi, vec2 lo, vec2 hi) {
+uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
     BisectFace own = bisect_face_at(fi.face);
     uint band;
     uint cell;

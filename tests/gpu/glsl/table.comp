@@ -1,19 +1,20 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// The look-up of table.glsl, one thread a point, for src/parity/table.rs.
+// The look-ups of table.glsl, one thread a point, for src/parity/table.rs: bit 0 of the point, bit 1 of the box around it.
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 5) readonly buffer Points { vec2 points[]; };
-layout(scalar, binding = 6) writeonly buffer Inside { uint inside[]; };
-layout(push_constant) uniform Push { uint first_strip; float strips; };
+layout(scalar, binding = 6) readonly buffer Points { vec2 points[]; };
+layout(scalar, binding = 7) writeonly buffer Answers { uint answers[]; };
+layout(push_constant) uniform Push { uint first_strip; float strips; vec2 around; };
 
 #define TABLE_BINDING 1
 #include "table.glsl"
 
 void main() {
     uint i = gl_GlobalInvocationID.x;
-    inside[i] = uint(table_inside(first_strip, strips, points[i]));
+    vec2 p = points[i];
+    answers[i] = uint(table_inside(first_strip, strips, p)) | uint(table_same(first_strip, strips, p - around, p + around)) << 1;
 }

@@ -1,0 +1,31 @@
+// Where trim curves pass, coarsely: a bit for each cell of a placed face's strips. Written by pass `cross`, asked by
+// table.glsl. Twin of src/twin/border_cells.rs.
+//
+//            128 columns of u, a texel of four words
+//          ┌─┬─┬─┬─┬─┬─┬─┬─┐
+//    band  │ │ │ │█│█│ │ │ │        a chord of the table is in these cells, or less than half a scan line below or above:
+//          ├─┼─┼─┼─┼─┼─┼─┼─┤        what is looked up there is that of the nearest line. Where a box meets no such cell,
+//    band  │ │ │ │ │█│█│ │ │        all of it is inside or none
+//          └─┴─┴─┴─┴─┴─┴─┴─┘
+#ifndef BORDER_CELLS_GLSL
+#define BORDER_CELLS_GLSL
+
+const uint BORDER_BANDS = 4u;       // of a strip
+const float BORDER_COLUMNS = 128.0; // of a band
+// Of a strip: more than v times the number of strips is rounded, at most 2^-24 of 128.
+const float BAND_ROUNDING = 1e-4;
+
+// The bits below column `n`.
+uvec4 columns_below(int n) {
+    ivec4 bits = clamp(ivec4(n) - ivec4(0, 32, 64, 96), 0, 32);
+    return mix((uvec4(1u) << (uvec4(bits) & 31u)) - 1u, uvec4(0xffffffffu), equal(bits, ivec4(32)));
+}
+
+// The bits of the columns that u from `lo` to `hi` meets; what is beyond the face counts as its outermost columns.
+uvec4 columns_between(float lo, float hi) {
+    int first = int(clamp(floor(lo * BORDER_COLUMNS), 0.0, BORDER_COLUMNS - 1.0));
+    int last = int(clamp(floor(hi * BORDER_COLUMNS), 0.0, BORDER_COLUMNS - 1.0));
+    return columns_below(last + 1) & ~columns_below(first);
+}
+
+#endif
