@@ -15,9 +15,18 @@ use std::ops::Range;
 pub(crate) const PRIMITIVES: [Binding; 4] = [Binding::Storage, Binding::Texels, Binding::Texels, Binding::Texels];
 
 /// The bindings of the sun, after all others of a pass: `glsl/include/sun.glsl`. Those that cast shadows are among them.
-pub(crate) const SUN_BINDINGS: [Binding; 11] = with_primitives(SUN_OWN);
+pub(crate) const SUN_BINDINGS: [Binding; 13] = {
+    let mut bindings: [Binding; 13] = with_primitives(SUN_OWN);
+    // triangles, lists, facets, parts
+    let mut i = 3;
+    while i < SUN_OWN {
+        bindings[i] = Binding::Texels;
+        i += 1;
+    }
+    bindings
+};
 /// The first of them, which a pass needs that has the scene's primitives for itself.
-pub(crate) const SUN_OWN: usize = 5;
+pub(crate) const SUN_OWN: usize = 7;
 
 /// Patches as they are placed, after the constants.
 #[derive(Clone, Copy)]

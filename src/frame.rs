@@ -191,6 +191,8 @@ pub(crate) struct Frame<'a> {
     pub volume_places: Option<&'a Texels>,
     /// Where the sun is, in a scene that has one.
     pub sun: Option<&'a Buffer>,
+    /// Middles of the placed parts that cast shadows; where there are some.
+    pub sun_parts: Option<&'a Texels>,
     pub counters: &'a ReadBack,
     pub colour: &'a [Attachment<'a>],
     /// As the colour target holds it, unless that is kept.

@@ -278,10 +278,12 @@ pub struct SceneSettings {
     /// Where the key light comes from: a direction from the model towards it, in model axes, of any length but 0;
     /// `None` for a studio's light, which travels with the camera and casts no shadows.
     ///
-    /// It is parallel, and reaches a point where no opaque Boolean solid lies on the way, exactly: every face of the
-    /// scene is shaded. Shadows are cast by primitives with equations and by meshes that are their operands. What else
-    /// the scene has casts none, and is counted in [`FrameStats::shadowless`]: placed parts, what is seen through, and
-    /// operands that are spline parts; such an operand is left out of the solid that casts the shadow.
+    /// It is parallel, and reaches a point where nothing opaque lies on the way: every face of the scene is shaded, and
+    /// all that is opaque casts shadows. Those of primitives with equations and of meshes are exact. Spline faces, placed
+    /// or of operands, cast them as triangles within [`FrameStats::shadow_deviation`] of the faces. What is seen through
+    /// casts none, nor do parts that [`Model::trim_by`](crate::model::Model::trim_by) cuts open, nor what is more than a
+    /// million triangles: all that is counted in [`FrameStats::shadowless`]. Made with the scene: loops that are edited
+    /// later change no shadow.
     pub sun: Option<DVec3>,
     /// Most bytes that the lists of [`SolidWay::Events`] take: which primitives each tile of 16 x 16 pixels sees, and
     /// where each pixel's ray crosses operands that are meshes or spline parts. Where they would take more, the picture
@@ -384,9 +386,14 @@ pub struct FrameStats {
     /// Instances with faces that would be seen through, but are not closed, or cut open by a volume: they have no
     /// inside, and are drawn opaque.
     pub open_clear: u64,
-    /// In a scene with a sun: placed parts, solids that are seen through, and operands of Boolean solids that are
-    /// spline parts. They cast no shadow.
+    /// In a scene with a sun: solids and parts that are seen through, parts that a volume cuts open, and what would be
+    /// too many triangles: parts, and spline parts that are operands, which are left out of the solid that casts the
+    /// shadow. They cast none.
     pub shadowless: u64,
+    /// In a scene with a sun: shadows that spline faces cast are those of surfaces that are no farther from them than this,
+    /// model units. An 8192nd of the diagonal of what casts shadows at most, and a 1024th of a part's own; more where
+    /// that would be too many triangles.
+    pub shadow_deviation: f64,
     /// Layers of faces that [`SolidWay::Blister`] peeled off before every pixel was decided.
     pub layers: u64,
     /// Bands of rows of tiles in which the lists of [`SolidWay::Events`] were made: 1 where all of them fit, 0 where

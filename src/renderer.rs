@@ -13,6 +13,7 @@
 //! false`, and the next `record` into its slot makes them larger. A view from very near is resolved by what [`CloseUp`]
 //! cuts for it.
 
+mod asked;
 mod centres;
 mod constants;
 mod edit;
@@ -27,7 +28,7 @@ use crate::frame::{Frame, Near, Passes, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Texels, Uploads};
 use crate::model::{Camera, CameraError, Model};
 use crate::passes::{resolve, solid_layers};
-use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, Samples, SceneSettings, TrimWay};
+use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, SceneSettings};
 pub use crate::scene::{CloseUp, EditError, UndrawnSolid};
 use crate::scene::{Scene, SceneData, Write};
 use ash::vk;
@@ -166,17 +167,6 @@ enum Retired {
     Texels(Texels),
 }
 
-/// Nothing is asked for that smooth trims do not go with.
-fn check_smooth_trims(data: &SceneData, settings: SceneSettings) -> Result<(), RenderError> {
-    let refused = match settings.trim {
-        _ if settings.samples != Samples::One => Some("several samples a pixel, which smooth them, too"),
-        _ if data.is_layered => Some("something to see through, or to mark"),
-        None | Some(TrimWay::Exact) => None,
-        Some(_) => Some("another way to trim than `exact`"),
-    };
-    refused.map_or(Ok(()), |what| Err(RenderError::SmoothTrims(what)))
-}
-
 /// Tolerances below this ask for more than single precision gives at full zoom.
 const LEAST_TOLERANCE_PX: f64 = 0.125;
 
@@ -221,12 +211,23 @@ impl Renderer {
     /// # Errors
     /// As [`upload`](Self::upload).
     pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), RenderError> {
-        if let Some(towards) = settings.sun.filter(|s| !s.is_finite() || *s == glam::DVec3::ZERO) {
-            return Err(RenderError::Sun(towards));
-        }
-        let data = SceneData::new(model, settings)?;
+        asked::check_sun(settings)?;
+        self.load(SceneData::new(model, settings)?, settings)
+    }
+
+    /// As [`upload_with`](Self::upload_with), of what [`CloseUp`] cut out of a model for a view: shadows are those of the
+    /// whole model, of which all spline faces that cast them are made triangles for each cut.
+    ///
+    /// # Errors
+    /// As [`upload`](Self::upload).
+    pub fn upload_cut(&mut self, whole: &Model, cut: &Model, settings: SceneSettings) -> Result<(), RenderError> {
+        asked::check_sun(settings)?;
+        self.load(SceneData::cut_from(whole, cut, settings)?, settings)
+    }
+
+    fn load(&mut self, data: SceneData, settings: SceneSettings) -> Result<(), RenderError> {
         if settings.smooth_trims {
-            check_smooth_trims(&data, settings)?;
+            asked::check_smooth_trims(&data, settings)?;
         }
         let counts = Counts::of(&data);
         counts.check()?;
@@ -374,6 +375,7 @@ impl Renderer {
             layers: loaded.capacities.layers,
             volume_places: slot.centres.volume(),
             sun: slot.centres.sun(),
+            sun_parts: slot.centres.sun_parts(),
             counters: &slot.counters,
             colour: &colour,
             background: constants::background(input, &self.formats),
@@ -423,6 +425,7 @@ impl Renderer {
             overlap_pixels: u64::from(c.overlaps),
             open_clear: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.open)),
             shadowless: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.shadowless)),
+            shadow_deviation: self.loaded.as_ref().and_then(|l| l.data.sun.as_ref()).map_or(0.0, |sun| sun.deviation),
             layers: u64::from(c.layers),
             bands: slot.bands,
             solid_bytes: slot.solid_bytes.clone(),

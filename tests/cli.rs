@@ -236,8 +236,8 @@ fn a_model_is_cut_open() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
-/// The ball's shadow falls on the sheet away from the sun, of the scene or of the command line; that the sheet casts
-/// none is told, and the light is judged.
+/// The ball's shadow falls on the sheet away from the sun, of the scene or of the command line; the light is judged. That
+/// glass casts none is told.
 #[test]
 fn the_sun_casts_shadows() {
     let folder = std::env::temp_dir().join(format!("selvedge-sun-{}", std::process::id()));
@@ -250,7 +250,8 @@ fn the_sun_casts_shadows() {
         let draw = ["render", &scene, "-o", &picture, "--camera", "top", "--size", "96x72", "--camera-out", &camera];
         let output = selvedge(&[&draw[..], more].concat());
         assert_eq!(output.status.code(), Some(0), "{more:?}: {}", text(&output.stderr));
-        assert!(text(&output.stderr).contains("cast no shadow"), "{more:?}: {}", text(&output.stderr));
+        let clear = more.contains(&"--xray");
+        assert_eq!(text(&output.stderr).contains("cast no shadow"), clear, "{more:?}: {}", text(&output.stderr));
         let half: serde_json::Value = serde_json::from_slice(&std::fs::read(&camera).unwrap()).unwrap();
         let scale = 36.0 / half["ortho"].as_f64().unwrap();
         let bright =
@@ -261,6 +262,8 @@ fn the_sun_casts_shadows() {
     assert!(left + 15 < right, "{left} in shade, {right} lit");
     let [left, right] = sides(&["--sun=-1,0,0.25"]);
     assert!(right + 15 < left, "{right} in shade, {left} lit");
+    let [left, right] = sides(&["--xray", "#2"]);
+    assert!(left.abs_diff(right) < 15, "{left} and {right} lit");
     let check = selvedge(&["check", &scene, "--camera", "top"]);
     let told = text(&check.stdout);
     assert!(check.status.code() == Some(0) && told.contains("light: wrong") && told.contains(" 0, 0.000"), "{told}");

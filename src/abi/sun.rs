@@ -1,4 +1,4 @@
-//! The sun: where it is, and what it sees of the Boolean solids. Twin of `glsl/include/sun.glsl`.
+//! The sun: where it is, and what it sees of what casts shadows. Twin of `glsl/include/sun.glsl`.
 
 use bytemuck::{Pod, Zeroable};
 
@@ -12,6 +12,7 @@ pub struct Sun {
     pub down: u32,
     pub up: [f32; 3],
     pub eye: [f32; 2],
+    pub crack: f32,
 }
 
 /// A tile of what the sun sees.
@@ -23,6 +24,8 @@ pub struct SunTile {
     pub entry: u32,
     pub first_triangle: u32,
     pub end_triangle: u32,
+    pub first_facet: u32,
+    pub end_facet: u32,
 }
 
 /// A triangle of an operand, as the sun sees it.
@@ -33,4 +36,16 @@ pub struct SunTriangle {
     pub heights: [f32; 3],
     pub shell: u32,
     pub surface: u32,
+    pub slack: f32,
+}
+
+/// A triangle of a placed part, likewise.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct SunFacet {
+    pub corners: [[f32; 2]; 3],
+    pub plane: [f32; 3],
+    pub steep: f32,
+    pub slack: f32,
+    pub part: u32,
 }

@@ -2,7 +2,8 @@
 
 use super::{Frame, WRITE_TO_READ};
 use crate::bindings::{Primitives, SUN_BINDINGS};
-use crate::gpu::{Access, Commands, Resource, barrier};
+use crate::gpu::{Access, Commands, Resource, Texels, barrier};
+use crate::scene::SunTiles;
 
 impl<'a> Frame<'a> {
     /// The sun's buffers, in their order; `None` in a scene without one.
@@ -10,16 +11,22 @@ impl<'a> Frame<'a> {
         let sun = self.sun?;
         // where nothing casts shadows the shader reads but the first
         let (tiles, leaves) = self.scene.sun.as_ref().map_or((sun, sun), |s| (&s.tiles, &s.leaves));
-        let triangles = self.scene.sun.as_ref().and_then(|s| s.triangles.as_ref());
-        let [triangles, listed] = triangles.map_or([sun; 2], |t| t.each_ref());
-        let (points, words) = (&self.scene.points, &self.scene.items);
+        let (points, words, quads) = (&self.scene.points, &self.scene.items, &self.scene.patches);
+        let of = |which: fn(&'a SunTiles) -> Option<&'a Texels>, none: &'a Texels| {
+            self.scene.sun.as_ref().and_then(which).unwrap_or(none)
+        };
+        let triangles = of(|s| s.triangles.as_ref(), quads);
+        let lists = of(|s| s.lists.as_ref(), words);
+        let facets = of(|s| s.facets.as_ref(), quads);
+        let parts = self.sun_parts.unwrap_or(points);
         let nobody = Primitives { leaves: sun, leaf_surfaces: words, surfaces: points, surface_places: points };
         let solids = self.scene.solids.as_ref().zip(self.centres);
         let (casters, middles) =
             solids.map_or((nobody, sun), |(s, centres)| (s.primitives(centres.surfaces), centres.leaves));
-        let own = [sun, tiles, leaves, triangles, listed].map(Resource::from);
+        let stored = [sun, tiles, leaves].map(Resource::from);
+        let fetched = [triangles, lists, facets, parts].map(Resource::from);
         let last = [middles, &self.buffers.counters].map(Resource::from);
-        let mut all = own.into_iter().chain(casters.resources()).chain(last);
+        let mut all = stored.into_iter().chain(fetched).chain(casters.resources()).chain(last);
         Some(std::array::from_fn(|_| all.next().expect("as many as SUN_BINDINGS")))
     }
 

@@ -204,7 +204,7 @@ impl HeadlessRenderer {
         let whole = settings.editable || settings.thickness || settings.highlight.is_some();
         let near = if whole { None } else { self.close_up.of(model, camera) };
         if near.is_some() || self.close {
-            self.renderer.upload_with(near.as_ref().unwrap_or(model), *settings)?;
+            self.renderer.upload_cut(model, near.as_ref().unwrap_or(model), *settings)?;
         }
         self.close = near.is_some();
         Ok(())

@@ -6,7 +6,7 @@ use crate::abi;
 use crate::frame::Centres;
 use crate::gpu::{Buffer, Device, GpuError, Texels};
 use crate::model::Camera;
-use crate::scene::SceneData;
+use crate::scene::{SceneData, SolidData};
 
 /// Buffers of one frame slot; `None` where the scene has nothing of the kind.
 #[derive(Default)]
@@ -17,6 +17,8 @@ pub(super) struct SlotCentres {
     volume: Option<Texels>,
     /// The sun, and where its picture has the eye.
     sun: Option<Buffer>,
+    /// The parts that it sees.
+    sun_parts: Option<Texels>,
 }
 
 impl SlotCentres {
@@ -40,21 +42,22 @@ impl SlotCentres {
             self.leaves = Some(upload_buffer(device, "solid leaf centres", bytes)?);
         }
         self.leaves.iter_mut().for_each(|buffer| buffer.write(0, &leaves));
-        let volume = data.volume.as_ref().map(|v| v.places.as_slice());
+        let seen = |data: &SolidData| data.places.iter().map(|p| p.seen_from(camera.eye)).collect::<Vec<_>>();
+        let parts = data.sun.as_ref().map(|sun| sun.middles_from(camera.eye)).filter(|parts| !parts.is_empty());
         let lists = [
-            (&mut self.surfaces, "solid surface places", any.then_some(solids.places.as_slice())),
-            (&mut self.volume, "volume surface places", volume),
+            (&mut self.surfaces, "solid surface places", any.then(|| seen(solids))),
+            (&mut self.volume, "volume surface places", data.volume.as_ref().map(seen)),
+            (&mut self.sun_parts, "sun parts", parts),
         ];
-        for (place, name, list) in lists {
-            let texels: Vec<_> = list.into_iter().flatten().map(|p| p.seen_from(camera.eye)).collect();
-            let bytes = size_of_val(texels.as_slice()) as u64;
-            if list.is_none() || place.as_ref().is_some_and(|t| t.bytes() < bytes) {
+        for (place, name, texels) in lists {
+            let bytes = texels.as_ref().map_or(0, |texels| size_of_val(texels.as_slice()) as u64);
+            if texels.is_none() || place.as_ref().is_some_and(|t| t.bytes() < bytes) {
                 retired.extend(place.take().map(Retired::Texels));
             }
-            if list.is_some() && place.is_none() {
+            if texels.is_some() && place.is_none() {
                 *place = Some(upload_texels(device, name, bytes)?);
             }
-            place.iter_mut().for_each(|kept| kept.write(0, &texels));
+            place.iter_mut().zip(&texels).for_each(|(kept, texels)| kept.write(0, texels));
         }
         match &data.sun {
             None => retired.extend(self.sun.take().map(Retired::Buffer)),
@@ -76,6 +79,10 @@ impl SlotCentres {
 
     pub(super) fn sun(&self) -> Option<&Buffer> {
         self.sun.as_ref()
+    }
+
+    pub(super) fn sun_parts(&self) -> Option<&Texels> {
+        self.sun_parts.as_ref()
     }
 
     pub(super) fn volume(&self) -> Option<&Texels> {

@@ -8,7 +8,7 @@ use super::mesh::Meshes;
 use super::solids::{Lists, SolidData, UndrawnSolid};
 use super::sun::SunData;
 use crate::abi;
-use crate::model::{Camera, Instance, Lone, Model, Projection};
+use crate::model::{Camera, Instance, Items, Lone, Model, Projection, SolidError};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
 use crate::picture::{Highlight, Samples, SceneSettings, TrimWay};
@@ -85,6 +85,11 @@ pub(crate) struct SceneData {
 
 impl SceneData {
     pub(crate) fn new(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
+        Self::cut_from(model, model, settings)
+    }
+
+    /// Of what a view sees of a model, cut out of it: shadows are those of the whole.
+    pub(crate) fn cut_from(whole: &Model, model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
         let usual = if settings.smooth_trims { TrimWay::Exact } else { TrimWay::Table };
         let way = settings.trim.unwrap_or(usual);
         let trim = Trimming { way, smooth: settings.smooth_trims, editable: settings.editable };
@@ -92,12 +97,8 @@ impl SceneData {
         let edit = edits.then(EditScene::default);
         let all = settings.thickness || settings.highlight.is_some();
         let items = (all || !model.is_opaque()).then(|| model.items(all)).transpose()?;
-        let mut model = Cow::Borrowed(model);
-        if let Some(items) = items.as_ref().filter(|items| items.drawn.contains(&false)) {
-            let mut drawn = items.drawn.iter();
-            model.to_mut().instances.retain(|_| drawn.next() == Some(&true));
-        }
-        let model = &*model;
+        let is_whole = std::ptr::eq(whole, model);
+        let model = &*drawn_as_faces(model, items.as_ref());
         let open = items.as_ref().map_or(0, |items| items.open);
         let clear = items.as_ref().is_some_and(|items| !items.clear.is_empty());
         let seen_through = items.as_ref().map_or(0, |items| items.clear.len());
@@ -107,8 +108,19 @@ impl SceneData {
         let union = lone.as_ref().map_or(&model.solids, |lone| &lone.rest);
         let lists = items.map_or_else(|| Lists::union(union), |items| Lists::of(items, all));
         let solids = SolidData::new(&lists, settings.solids)?;
-        let sun = settings.sun.map(|towards| SunData::new(towards, &solids));
-        let shadowless = sun.as_ref().map_or(0, |_| model.instances.len() + seen_through + solids.splines_of_union());
+        // what a volume cuts open casts no shadow: it would be that of all of it
+        let is_cut = model.trim.is_some();
+        let sun = settings.sun.map(|towards| match is_whole {
+            _ if is_cut => Ok(SunData::new(towards, &solids, None)),
+            true => Ok(SunData::new(towards, &solids, Some(model))),
+            false => {
+                let items = (!whole.is_opaque()).then(|| whole.items(all)).transpose()?;
+                Ok(SunData::new(towards, &solids, Some(&drawn_as_faces(whole, items.as_ref()))))
+            }
+        });
+        let sun = sun.transpose().map_err(|e: SolidError| UndrawnSolid::from(e))?;
+        let cut = if is_cut { model.instances.len() } else { 0 };
+        let shadowless = sun.as_ref().map_or(0, |sun| sun.left_out + cut + seen_through);
         let volume = model.trim.as_ref().map(|volume| SolidData::volume(volume, way)).transpose()?.flatten();
         let mut data = Self {
             is_layered: (clear || settings.highlight.is_some()) && solids.is_followed(),
@@ -337,6 +349,16 @@ impl SceneData {
             repeat(&mut self.curve_items, curves);
         }
     }
+}
+
+/// The model without the instances that are followed as solids.
+fn drawn_as_faces<'a>(model: &'a Model, items: Option<&Items>) -> Cow<'a, Model> {
+    let mut model = Cow::Borrowed(model);
+    if let Some(items) = items.filter(|items| items.drawn.contains(&false)) {
+        let mut drawn = items.drawn.iter();
+        model.to_mut().instances.retain(|_| drawn.next() == Some(&true));
+    }
+    model
 }
 
 /// The largest factor by which a linear map lengthens a vector, rounded up: exact for similarity

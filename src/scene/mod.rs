@@ -38,4 +38,4 @@ pub use solids::UndrawnSolid;
 pub(crate) use solids::{Asked, Blister, SolidData};
 #[cfg(feature = "rivals")]
 pub(crate) use upload::RivalScene;
-pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Shells, Solids, TableScene, Trims};
+pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, TableScene, Trims};

@@ -22,6 +22,7 @@ use crate::model::{Bounds, Items, Primitive, Shape, Solid, SolidError, SurfaceTa
 use crate::picture::{SolidWay, TrimWay};
 pub(crate) use blister::{Asked, Blister};
 use glam::DVec3;
+pub(super) use shell::Operand;
 use std::borrow::Cow;
 use std::ops::Range;
 pub(super) use surface::Surface;
@@ -313,12 +314,6 @@ impl SolidData {
     /// Whether rays are followed through some of the lists.
     pub(crate) fn is_followed(&self) -> bool {
         (self.followed as usize) < self.leaves.len()
-    }
-
-    /// Spline parts among the operands of what is drawn as one union.
-    pub(super) fn splines_of_union(&self) -> usize {
-        let in_union = |o: &&shell::Operand| self.shell_leaves[o.shell as usize] < self.followed;
-        self.operands.iter().filter(in_union).filter(|o| o.meshes.is_empty()).count()
     }
 
     /// The volume that trims a scene; `None` when it is everywhere.

@@ -40,8 +40,10 @@ pub(crate) struct Scene {
 pub(crate) struct SunTiles {
     pub tiles: Buffer,
     pub leaves: Buffer,
-    /// Those of operands, and which each tile sees; only where there are some.
-    pub triangles: Option<[Buffer; 2]>,
+    /// Those of operands and of placed parts, and which each tile sees; only where there are some.
+    pub triangles: Option<Texels>,
+    pub facets: Option<Texels>,
+    pub lists: Option<Texels>,
 }
 
 /// A volume's switches, and their surfaces.
@@ -255,14 +257,9 @@ impl Scene {
                     Ok(SunTiles {
                         tiles: persistent(&mut uploads, cmd, "sun tiles", &sun.tiles)?,
                         leaves: persistent(&mut uploads, cmd, "sun leaves", leaves)?,
-                        triangles: (!sun.tile_triangles.is_empty())
-                            .then(|| {
-                                Ok([
-                                    persistent(&mut uploads, cmd, "sun triangles", &sun.triangles)?,
-                                    persistent(&mut uploads, cmd, "sun tile triangles", &sun.tile_triangles)?,
-                                ])
-                            })
-                            .transpose()?,
+                        triangles: some_texels(&mut uploads, cmd, "sun triangles", &sun.triangles, Texel::U32x4)?,
+                        facets: some_texels(&mut uploads, cmd, "sun facets", &sun.facets, Texel::U32x4)?,
+                        lists: some_texels(&mut uploads, cmd, "sun lists", &sun.lists, Texel::Words)?,
                     })
                 })
                 .transpose()?,
@@ -348,6 +345,17 @@ fn texels<T: Pod>(
     let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
     let buffer = uploads.buffer(cmd, Pool::Persistent, name, usage, data)?;
     Texels::new(cmd.device(), buffer, texel)
+}
+
+/// Only where there are some.
+fn some_texels<T: Pod>(
+    uploads: &mut Uploads,
+    cmd: &Commands<'_>,
+    name: &str,
+    data: &[T],
+    texel: Texel,
+) -> Result<Option<Texels>, GpuError> {
+    (!data.is_empty()).then(|| texels(uploads, cmd, name, data, texel)).transpose()
 }
 
 fn persistent<T: Pod>(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &[T]) -> Result<Buffer, GpuError> {

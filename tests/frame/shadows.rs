@@ -1,4 +1,7 @@
-//! Shadows that Boolean solids cast, against the exact reference and against closed forms, every pixel.
+//! Shadows, against the exact reference and against closed forms, every pixel: those that Boolean solids cast, and in
+//! `parts` those of spline faces and meshes.
+
+mod parts;
 
 use crate::layers::{BLUE, centre, glass, model, one};
 use crate::shapes::solids::{self, at, ball, below, block, cone, moved, post, ring, turned};
@@ -240,7 +243,7 @@ fn in_plate(camera: &Camera, at: DVec2, n: DVec3, s: DVec3) -> bool {
     p.x.abs().max(p.y.abs()) < 2.5
 }
 
-/// Spline faces, trimmed ones, open ones and meshes are shaded; they cast none, which is told.
+/// Spline faces, trimmed ones, open ones and meshes are shaded, by others and by themselves.
 #[test]
 fn every_kind_of_face_is_shaded() {
     let cases = [
@@ -253,8 +256,7 @@ fn every_kind_of_face_is_shaded() {
     ];
     let mut renderer = watched(&Model::default());
     for (name, mut m) in cases {
-        let (bounds, instances) = (m.bounds(), m.instances.len() as u64);
-        let (c, r) = (bounds.centre(), bounds.diagonal());
+        let (c, r) = (m.bounds().centre(), m.bounds().diagonal());
         let towards = DVec3::new(-0.3, -0.6, 0.9).normalize();
         let to =
             DAffine3::from_scale_rotation_translation(DVec3::splat(r), DQuat::from_rotation_arc(DVec3::Z, towards), c);
@@ -270,7 +272,7 @@ fn every_kind_of_face_is_shaded() {
         renderer.upload_with(&m, sunny(towards)).unwrap();
         let (light, picture) =
             judged(&mut renderer, (&tracer, &sun), &camera).unwrap_or_else(|e| panic!("{name}: {e}"));
-        assert_eq!(picture.stats.shadowless, instances, "{name}");
+        assert_eq!(picture.stats.shadowless, 0, "{name}");
         let (all, lit) = facing(&picture, &camera, towards);
         assert!(lit > 100 && all - lit > 100, "{name}: {lit} of {all} lit, {light:?}");
     }
@@ -339,8 +341,8 @@ fn the_eye_may_be_anywhere() {
     assert_silent(renderer);
 }
 
-/// Solids that are nothing, and none at all, leave everything lit that faces the sun; with no sun there is nothing of
-/// it.
+/// Solids that are nothing leave everything lit that faces the sun, as does a ball its own light; with no sun there is
+/// nothing of it.
 #[test]
 fn only_who_casts_shadows_has_what_that_takes() {
     let nothing = solids::solid("A*B", vec![ball(0.5, 0.0), ball(0.5, 3.0)]);
@@ -356,7 +358,7 @@ fn only_who_casts_shadows_has_what_that_takes() {
     for m in [shapes::sphere(), with(&shapes::sphere())] {
         let (names, picture) = objects(&m, sunny(SUN));
         assert!(names.iter().any(|n| n.starts_with("resolve")) && names.iter().any(|n| n == "sun"), "{names:?}");
-        assert_eq!(names.iter().any(|n| n == "sun tiles"), !m.solids.is_empty(), "{names:?}");
+        assert!(names.iter().any(|n| n == "sun tiles"), "{names:?}");
         let mut lit = 0;
         for (i, n) in picture.normal.iter().enumerate() {
             let rise = DVec3::from(n.map(f64::from)).dot(SUN.normalize());
@@ -369,6 +371,12 @@ fn only_who_casts_shadows_has_what_that_takes() {
         let (names, picture) = objects(&m, SceneSettings::default());
         assert!(names.is_empty() && picture.sunlit.is_empty(), "{names:?}");
     }
+    // what is seen through has none
+    let mut clear = shapes::sphere();
+    clear.instances[0].colour = Some([0.5; 4]);
+    let (names, picture) = objects(&clear, sunny(SUN));
+    assert!(names.iter().any(|n| n == "sun") && !names.iter().any(|n| n == "sun tiles"), "{names:?}");
+    assert_eq!(picture.stats.shadowless, 1);
 }
 
 /// What is seen through is shaded, face by face, and lets the light through; its samples are lit each by itself.
@@ -412,7 +420,8 @@ fn among_layers_and_samples() {
     assert_silent(renderer);
 }
 
-/// Cut by a plane or a volume, what stays casts and catches shadows; parts that became operands cast none.
+/// Cut by a plane or a volume, what stays catches shadows; solids cast them, and parts that a volume cuts do not, which
+/// is told.
 #[test]
 fn cut_open() {
     let cut = holed().section(DVec3::new(0.3, 1.0, 0.1), 0.4).unwrap();
@@ -425,7 +434,7 @@ fn cut_open() {
     let part = operands::part(shapes::sphere());
     let operand = model(vec![Solid::union(&[one(part), one(block([-3.0, -3.0, -3.0], [3.0, 3.0, -2.0]))]).unwrap()]);
     let mut renderer = watched(&Model::default());
-    for (name, m, shadowless) in [("by a plane", cut, 0), ("by a volume", trimmed, 1), ("an operand", operand, 1)] {
+    for (name, m, shadowless) in [("by a plane", cut, 0), ("by a volume", trimmed, 1), ("an operand", operand, 0)] {
         let (tracer, sun) = (Tracer::new(&m), SunTracer::new(&m, SUN).unwrap());
         renderer.upload_with(&m, sunny(SUN)).unwrap();
         let (light, picture) = judged(&mut renderer, (&tracer, &sun), &perspective(&m, (96, 64)))

@@ -326,9 +326,9 @@ pub struct FrameArgs {
     /// counts of the pixels are told, and stand in the statistics
     #[arg(long)]
     pub highlight: bool,
-    /// Light from this direction, which stays where it is in the model, with the shadows that Boolean solids cast: from
-    /// the model towards the sun. Without it the light of a scene file, or one that travels with the camera and casts
-    /// none
+    /// Light from this direction, which stays where it is in the model, with the shadows that all opaque things cast:
+    /// from the model towards the sun. Without it the light of a scene file, or one that travels with the camera and
+    /// casts none
     #[arg(long, value_name = "X,Y,Z", value_parser = direction, allow_hyphen_values = true)]
     pub sun: Option<DVec3>,
     /// Part of the name of the Vulkan device to use

@@ -69,7 +69,7 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
 fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
     let wrong = format!("wrong > {tolerance_px} px");
     let lit = verdicts.iter().any(|v| v.sun.is_some());
-    let light = lit.then_some("light: wrong, worst shift, px");
+    let light = lit.then_some("light: wrong, deviated, worst shift, px");
     let beyond = format!("> {EXACT_DEPTH_PX} px, {EXACT_NORMAL_DEG} deg");
     let regular = ["regular: depth, px: worst, mean", "normal, deg: worst", &beyond, "not regular"];
     let shape = ["view", "judged", &wrong, "worst shift, px"].into_iter().chain(regular);
@@ -86,7 +86,7 @@ fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
             exact.beyond.to_string(),
             exact.irregular.to_string(),
         ];
-        let light = sun.map(|sun| format!("{}, {:.3}", sun.wrong, sun.worst_shift_px));
+        let light = sun.map(|sun| format!("{}, {}, {:.3}", sun.wrong, sun.deviated, sun.worst_shift_px));
         let end = [stats.clamps.to_string(), if *kept { "kept" } else { "BROKEN" }.to_string()];
         table.add_row(shape.into_iter().chain(light).chain(end));
     }

@@ -86,7 +86,7 @@ pub fn clamps(stats: &FrameStats) {
     }
     if stats.shadowless > 0 {
         tracing::warn!(
-            "{} parts, operands of spline faces and solids to be seen through cast no shadow",
+            "{} parts and solids cast no shadow: to be seen through, cut open by a volume, or too many triangles",
             stats.shadowless
         );
     }

@@ -1,0 +1,22 @@
+//! What settings may ask for.
+
+use super::RenderError;
+use crate::picture::{Samples, SceneSettings, TrimWay};
+use crate::scene::SceneData;
+
+/// Nothing is asked for that smooth trims do not go with.
+pub(super) fn check_smooth_trims(data: &SceneData, settings: SceneSettings) -> Result<(), RenderError> {
+    let refused = match settings.trim {
+        _ if settings.samples != Samples::One => Some("several samples a pixel, which smooth them, too"),
+        _ if data.is_layered => Some("something to see through, or to mark"),
+        None | Some(TrimWay::Exact) => None,
+        Some(_) => Some("another way to trim than `exact`"),
+    };
+    refused.map_or(Ok(()), |what| Err(RenderError::SmoothTrims(what)))
+}
+
+/// The sun is in some direction.
+pub(super) fn check_sun(settings: SceneSettings) -> Result<(), RenderError> {
+    let nowhere = settings.sun.filter(|s| !s.is_finite() || *s == glam::DVec3::ZERO);
+    nowhere.map_or(Ok(()), |towards| Err(RenderError::Sun(towards)))
+}
