@@ -262,7 +262,7 @@ fn the_sun_casts_shadows() {
     assert!(left + 15 < right, "{left} in shade, {right} lit");
     let [left, right] = sides(&["--sun=-1,0,0.25"]);
     assert!(right + 15 < left, "{right} in shade, {left} lit");
-    let [left, right] = sides(&["--xray", "#2"]);
+    let [left, right] = sides(&["--xray", "#1"]);
     assert!(left.abs_diff(right) < 15, "{left} and {right} lit");
     let check = selvedge(&["check", &scene, "--camera", "top"]);
     let told = text(&check.stdout);

@@ -22,6 +22,7 @@
 //     what is no patch behind the pixel            nothing, so that it is seen
 //   a ring before what is seen, which is asked like a neighbour:
 //     helpers of two faces before every witness    the nearest: an edge runs here
+//     a helper that covers the face itself         the nearest: both end here in a silhouette
 //     a witness                                    the nearest: behind a silhouette, or no border at all; not the
 //                                                  face itself where it ends and two others meet, as near as they lean
 //     the face itself, which has grown to here     it stays, before witnesses and behind no helper, in all of the ring
@@ -31,6 +32,8 @@
 //     a witness                                    the nearest: silhouettes meet, drawn inside of what they are
 //   and where a volume cuts the scene open (WITHIN_VOLUME), before a face from behind:
 //     helpers of one face                          the nearest: the outline of the part runs here
+//
+// Of helpers of two faces the farther one counts as the nearest where it covers the nearer one: see `covers`.
 //
 // Without any of these what was seen stays. Doubtful neighbours are not asked, and healed pixels
 // stay marked, so the order of the threads does not matter. Where a front and a back nearly touch, doubtful
@@ -221,6 +224,38 @@ Answer ask(uvec2 seen, vec2 pixel, uint ring, Answer behind) {
     return answer;
 }
 
+// Into the face from its border near the pixel, pixels: the sum of the ring's points in it; zero where all are.
+vec2 inwards(Answer answer, vec2 pixel) {
+    uint item = seen_item(answer.word.x);
+    FaceInstance fi = face_instance_at(face_instance_of(item));
+    Face face = face_at(fi.face);
+    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    View view = view_at(fi.instance);
+    Sample s = sample_at(patch_, view, unpack_uv(answer.word.y), pixel);
+    mat2 uv_along = inverse(pixels_along(s, view));
+    vec2 sum = vec2(0.0);
+    for (uint k = 0u; k < RING_POINTS; ++k) {
+        vec2 step_ = frame.ring_px * RING[k];
+        if (is_there(fi, face, item, patch_, s.uv + uv_along * step_)) sum += step_;
+    }
+    return sum;
+}
+
+// Whether `a` hides `b` up to a silhouette in which both end here:
+//
+//     nearer     a ──.__         __.·· b continued      to the left of the edge, where both are, a is seen;
+//                       `──.__.·´                       to the right neither is, but rounding may leave b there,
+//                        __.─´`·.__                     or both continued, of which b is nearer
+//     farther    b ──.─´           `·· a continued
+//
+// Who ends in an edge that is no silhouette lies on the other side of it. `a` is there within the ring, before `b`:
+// to show it is off by no more than that.
+bool covers(Answer a, Answer b, vec2 pixel) {
+    if (max(a.miss, b.miss) > ON_PIXEL_PX) return false; // a surface's own silhouette
+    vec2 into = inwards(a, pixel);
+    return dot(into, inwards(b, pixel)) > 0.0 && a.depth - b.depth + dot(a.slope - b.slope, into) < 0.0;
+}
+
 // Of what is no patch, seen at a pixel.
 float other_depth(uvec2 seen, vec2 pixel) {
     if (!sees_mesh(seen.x)) return uintBitsToFloat(seen.y);
@@ -249,7 +284,8 @@ void main() {
     Answer helper = none;
     Answer closest = none;
     bool closest_before = false;
-    uint helping_face = 0u; // index + 1; helpers of two faces meet in an edge here
+    Answer second = none; // helper, of another face
+    uint helping_face = 0u; // index + 1, of the helper; helpers of two faces meet in an edge here
     bool two_help = false;
     uint meeting_face = 0u; // index + 1; two faces that meet the doubtful one here, where it ends
     bool two_meet = false;
@@ -301,19 +337,32 @@ void main() {
         uint face = face_instance_at(face_instance_of(seen_item(seen.x))).face + 1u;
         if (answer.kind == WITNESS && answer.depth < witness.depth) witness = answer;
         if (answer.kind == HELPER) {
-            if (answer.depth < helper.depth) helper = answer;
             two_help = two_help || (helping_face != 0u && helping_face != face);
-            helping_face = face;
+            bool another = face != helping_face;
+            if (answer.depth < helper.depth) {
+                if (another) second = helper;
+                helper = answer;
+                helping_face = face;
+            } else if (another && answer.depth < second.depth) {
+                second = answer;
+            }
         }
         if (answer.kind != NO && face != own_face && answer.depth - lean(answer) - lean(self) <= self.depth) {
             two_meet = two_meet || (meeting_face != 0u && meeting_face != face);
             meeting_face = face;
         }
     }
+    // beyond their silhouette the one that it hides goes on before the other
+    if (second.kind == HELPER && !wholly_before(helper, second) && covers(second, helper, pixel)) helper = second;
     // its border tells nothing: the face may be hidden but for that. Unless it ends here, where two others meet: it may
     // be the third, which they hide
     bool stays = false; // it has grown to the pixel, and is what is there
-    if (ringed && on && self.depth < witness.depth && !(self.kind == HELPER && two_meet)) {
+    bool covered = false; // by the helper, up to a silhouette in which both end here
+    if (ringed && on && self.kind == HELPER && helper.kind == HELPER && helper.depth < witness.depth) {
+        bool other_face = face_instance_at(face_instance_of(seen_item(helper.word.x))).face + 1u != own_face;
+        covered = other_face && covers(helper, self, pixel);
+    }
+    if (ringed && on && !covered && self.depth < witness.depth && !(self.kind == HELPER && two_meet)) {
         stays = !self.inside && wholly_before(self, witness) && !wholly_before(helper, self);
         if (self.inside || stays) {
             witness = self;
@@ -328,7 +377,7 @@ void main() {
     uvec2 healed = own;
     bool has_witness = witness.kind == WITNESS;
     bool has_helper = helper.kind == HELPER;
-    bool edge = two_help && helper.depth < witness.depth && !stays && !lone;
+    bool edge = covered || two_help && helper.depth < witness.depth && !stays && !lone;
 #ifdef WITHIN_VOLUME
     // the inside of what the volume cuts open, and before it the border of one face: the part's outline
     if (ringed && there && self.away) edge = edge || has_helper && helper.depth < self.depth;

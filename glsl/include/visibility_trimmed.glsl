@@ -14,8 +14,9 @@
 //
 // Where a volume trims the scene (WITHIN_VOLUME), the exact point at (u, v) must be within it, of rings too.
 //
-// The ring of an open shell continues the surface, but never nearer to the viewer than the border
-// that it continues: a floor seen from a low angle must not flow over what stands before its edge.
+// The ring of an open shell is as near to the viewer as the border that it continues: not as the surface goes on, since
+// a floor seen from a low angle must not flow over what stands before its edge, nor be lost behind another face that ends
+// there and goes on before it.
 #include "scene.glsl"
 #include "view.glsl"
 #define INSTANCES_BINDING 9
@@ -91,7 +92,7 @@ void main() {
     if (!in_volume(exact_point(patch_, view_at(fi.instance), uv), inside ? ON_PX : frame.ring_px)) discard;
 #endif
     float z = gl_FragCoord.z;
-    if (!inside && !doubtful) z = min(z, border_depth);
+    if (!inside && !doubtful) z = solid ? min(z, border_depth) : border_depth;
     float stand_back = 0.0;
     if (solid && !away) {
         // depth per unit along the view axis, times the size of a pixel there

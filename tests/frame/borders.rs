@@ -53,6 +53,15 @@ fn a_wall_that_two_tops_hide_is_not_seen_between_them() {
     keeps_the_promise(&borders::abutting(), 50..70);
 }
 
+/// Where the mantle and an end meet in a silhouette, the end, which the mantle hides up to there, was drawn beyond it: in
+/// the plane that continues it it is nearer than what continues the mantle.
+#[test]
+fn a_face_hidden_up_to_a_silhouette_is_not_seen_beyond_it() {
+    let mut drum = borders::drum(1.5, 0.7);
+    drum.parts[0].closed = false; // each face has a ring, on both sides
+    keeps_the_promise(&drum, 50..100);
+}
+
 /// Both silhouettes are drawn inside of what they are, by less than the tolerance, and pixels' centres lie where they
 /// meet: no crack, but the background shows.
 #[test]
