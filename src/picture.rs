@@ -137,10 +137,9 @@ pub enum SolidWay {
     Cst,
     /// Layers of faces, peeled off from front to back, and each asked whether it bounds the solid: by labels in a
     /// stencil image, as Hable and Rossignac have it. Its cost is that of all primitives, once a layer. Scenes in which
-    /// some operand is a spline part, or a mesh whose triangles do not all face outward and meet in pairs, or something
-    /// is seen through, are drawn by events. What a mesh that crosses itself encloses twice is outside here, and what it
-    /// encloses inside out shows its far walls; of a mesh's face and another that coincide, the face that is not the
-    /// mesh's is seen; and a ray that enters and leaves a mesh within the rounding of a depth may see either side.
+    /// some operand is a spline part, or a mesh that is not closed and turned outwards, crosses itself or lies back to back,
+    /// or something is seen through, are drawn by events. Of a mesh's face and another that coincide, the face that is not
+    /// the mesh's is seen; and a ray that enters and leaves a mesh within the rounding of a depth may see either side.
     Blister,
 }
 

@@ -224,8 +224,9 @@ Answer ask(uvec2 seen, vec2 pixel, uint ring, Answer behind) {
     return answer;
 }
 
-// Into the face from its border near the pixel, pixels: the sum of the ring's points in it; zero where all are.
-vec2 inwards(Answer answer, vec2 pixel) {
+// Into the face from its border near the pixel, pixels: the sum of the ring's points in it; zero where all are. `ends`:
+// the other way the face does not reach half of the ring.
+vec2 inwards(Answer answer, vec2 pixel, out bool ends) {
     uint item = seen_item(answer.word.x);
     FaceInstance fi = face_instance_at(face_instance_of(item));
     Face face = face_at(fi.face);
@@ -238,6 +239,8 @@ vec2 inwards(Answer answer, vec2 pixel) {
         vec2 step_ = frame.ring_px * RING[k];
         if (is_there(fi, face, item, patch_, s.uv + uv_along * step_)) sum += step_;
     }
+    vec2 out_ = -0.5 * frame.ring_px / max(length(sum), 1e-6) * sum;
+    ends = !is_there(fi, face, item, patch_, s.uv + uv_along * out_);
     return sum;
 }
 
@@ -248,12 +251,14 @@ vec2 inwards(Answer answer, vec2 pixel) {
 //                        __.─´`·.__                     or both continued, of which b is nearer
 //     farther    b ──.─´           `·· a continued
 //
-// Who ends in an edge that is no silhouette lies on the other side of it. `a` is there within the ring, before `b`:
-// to show it is off by no more than that.
+// Who ends in an edge that is no silhouette lies on the other side of it, and who goes on beyond it is seen there. `a` is
+// there within the ring, before `b`: to show it is off by no more than that.
 bool covers(Answer a, Answer b, vec2 pixel) {
     if (max(a.miss, b.miss) > ON_PIXEL_PX) return false; // a surface's own silhouette
-    vec2 into = inwards(a, pixel);
-    return dot(into, inwards(b, pixel)) > 0.0 && a.depth - b.depth + dot(a.slope - b.slope, into) < 0.0;
+    bool a_ends, b_ends;
+    vec2 into = inwards(a, pixel, a_ends);
+    bool together = dot(into, inwards(b, pixel, b_ends)) > 0.0 && a_ends && b_ends;
+    return together && a.depth - b.depth + dot(a.slope - b.slope, into) < 0.0;
 }
 
 // Of what is no patch, seen at a pixel.

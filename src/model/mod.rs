@@ -31,11 +31,11 @@ pub use camera::{Camera, CameraError, Projection};
 pub use face::{Face, FaceError, LoopAt, SurfaceKind, TrimLoop};
 pub use items::Items;
 pub use mesh::{Mesh, MeshError};
-pub(crate) use solid::Lone;
 pub use solid::{
     CarriedFace, Carrier, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
     SurfaceTable,
 };
+pub(crate) use solid::{Lone, outward};
 pub use stored::ModelError;
 pub use xray::UnknownName;
 

@@ -5,6 +5,7 @@ use crate::solids::right_at;
 use crate::support::{assert_identical, assert_silent, perspective, render, watched};
 use glam::{DAffine3, DVec3};
 use selvedge::model::{Camera, Model, Projection};
+use selvedge::picture::{SceneSettings, SolidWay};
 use selvedge::reference::{JudgeOptions, Tracer, judge};
 
 /// The exact reference takes its time for meshes and splines.
@@ -37,21 +38,24 @@ fn unclean_meshes() {
     right_at(SIZE, operands::unclean(), false);
 }
 
-/// A part that is inside out shows its near walls, though nothing touches the mesh.
+/// A part that is inside out shows its near walls, though nothing touches the mesh, whatever the way.
 #[test]
 fn meshes_that_are_partly_inside_out() {
     let mut renderer = watched(&Model::default());
     let mut wrong = Vec::new();
     for (name, model) in operands::partly_inside_out() {
-        renderer.upload(&model).unwrap();
         let tracer = Tracer::new(&model);
         let whole = perspective(&model, SIZE);
         // the near plane cuts the mesh
         let cutting = Camera { depth_range: (whole.eye.distance(whole.target), 50.0), ..whole };
-        for camera in [whole, cutting] {
-            let j = judge(&tracer, &camera, &render(&mut renderer, &camera), &JudgeOptions::default());
-            let fault = j.wrong != 0 || j.normal_deg.count == 0;
-            wrong.extend(fault.then(|| format!("{name}: {} wrong, {:?}", j.wrong, j.mismatches.first())));
+        for way in SolidWay::ALL {
+            renderer.upload_with(&model, SceneSettings { solids: *way, ..Default::default() }).unwrap();
+            for camera in [whole, cutting] {
+                let j = judge(&tracer, &camera, &render(&mut renderer, &camera), &JudgeOptions::default());
+                let fault = j.wrong != 0 || j.normal_deg.count == 0;
+                let told = || format!("{name}, by {}: {} wrong, {:?}", way.name(), j.wrong, j.mismatches.first());
+                wrong.extend(fault.then(told));
+            }
         }
     }
     assert_silent(renderer);

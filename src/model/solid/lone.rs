@@ -11,11 +11,11 @@
 //! turned outwards and crosses itself nowhere is entered where triangles face the eye, so the nearest of those is what a
 //! list of all crossings would tell. Not so within a part that is inside out, or that lies in the mesh twice: a mesh whose
 //! triangles cross or touch, or that has one shell too many around another, does not count as lone (`embedded.rs`). Nor
-//! does one with two faces that lie back to back, which bound nothing.
+//! does one with two faces that lie back to back, which bound nothing (`outward.rs`).
 
-use super::embedded::is_embedded;
 use super::operands::Operands;
-use super::{Primitive, Shape, Solid, SolidError, SurfaceTable, nearby::Nearby, reach};
+use super::outward::outward;
+use super::{Primitive, Shape, Solid, SolidError, nearby::Nearby, reach};
 use crate::csg::Node;
 use crate::model::{Bounds, Mesh};
 
@@ -42,7 +42,7 @@ impl Lone {
         let mut lone = vec![Vec::new(); solids.len()];
         let mut meshes = Vec::new();
         for (solid, root, primitive) in apart(solids, &operands) {
-            if let Some(mesh) = outward(primitive) {
+            if let Some(mesh) = outward(primitive).and_then(|mesh| placed(primitive, &mesh)) {
                 meshes.push(mesh);
                 lone[solid].push(root);
             }
@@ -104,13 +104,8 @@ fn apart<'a>(solids: &'a [Solid], operands: &[Operands<'_>]) -> Vec<(usize, u32,
     lone.map(|((solid, root, primitive, _), _)| (solid, root, primitive)).collect()
 }
 
-/// The primitive's mesh in its solid's coordinates; `None` where it is not closed, not turned outwards, crosses itself, or
-/// lies back to back with itself.
-fn outward(primitive: &Primitive) -> Option<Mesh> {
-    let Shape::Mesh(mesh) = &primitive.shape else { return None };
-    if !is_closed(mesh) || six_volumes(mesh) <= 0.0 || is_back_to_back(primitive) || !is_embedded(mesh) {
-        return None;
-    }
+/// The primitive's mesh in its solid's coordinates, counter-clockwise from outside.
+fn placed(primitive: &Primitive, mesh: &Mesh) -> Option<Mesh> {
     let turn =
         |[a, b, c]: [u32; 3]| if primitive.transform.matrix3.determinant() < 0.0 { [a, c, b] } else { [a, b, c] };
     let positions = mesh.positions().iter().map(|p| primitive.transform.transform_point3(*p)).collect();
@@ -120,34 +115,9 @@ fn outward(primitive: &Primitive) -> Option<Mesh> {
     Some(placed)
 }
 
-/// Every edge is there once in each direction.
-fn is_closed(mesh: &Mesh) -> bool {
-    let mut edges: Vec<(u32, u32, bool)> = Vec::with_capacity(3 * mesh.triangles().len());
-    for &[a, b, c] in mesh.triangles() {
-        edges.extend([(a, b), (b, c), (c, a)].map(|(from, to)| (from.min(to), from.max(to), from < to)));
-    }
-    edges.sort_unstable();
-    edges.chunk_by(|a, b| (a.0, a.1) == (b.0, b.1)).all(|same| matches!(same, [(_, _, false), (_, _, true)]))
-}
-
-/// Six times the volume, own coordinates: positive where triangles run counter-clockwise from outside.
-fn six_volumes(mesh: &Mesh) -> f64 {
-    let middle = mesh.bounds().centre();
-    let corners = (0..mesh.triangles().len()).map(|t| mesh.corners(t).map(|p| p - middle));
-    corners.map(|[a, b, c]| a.dot(b.cross(c))).sum()
-}
-
-/// Some plane holds triangles that look either way.
-fn is_back_to_back(primitive: &Primitive) -> bool {
-    let Ok(solid) = Solid::of(primitive.clone()) else { return true };
-    let table = SurfaceTable::new(&solid, SurfaceTable::DRAWN);
-    let mut looks: Vec<[bool; 2]> = vec![[false; 2]; table.surfaces().len()];
-    table.faces(0).iter().for_each(|face| looks[face.surface as usize][usize::from(face.flipped)] = true);
-    looks.contains(&[true, true])
-}
-
 #[cfg(test)]
 mod tests {
+    use super::super::outward::{is_closed, six_volumes};
     use super::*;
     use crate::csg::parse;
     use glam::{DAffine3, DVec3};

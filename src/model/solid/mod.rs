@@ -5,6 +5,7 @@ mod embedded;
 mod lone;
 mod nearby;
 mod operands;
+mod outward;
 mod reach;
 mod shape;
 mod surface;
@@ -14,6 +15,7 @@ mod tests;
 pub use carrier::Carrier;
 pub(crate) use lone::Lone;
 pub(super) use operands::Operands;
+pub(crate) use outward::outward;
 pub use shape::{Primitive, Quadric, Shape, ShapeError};
 pub use surface::{CarriedFace, Surface, SurfaceTable};
 

@@ -8,8 +8,7 @@
 use super::SolidData;
 use crate::abi::{LEAF_NEGATIVE, LEAF_SHELL, LEAF_UNBOUNDED};
 use crate::csg::{Blist, Convention, Labels, Tree, TreeError, covering_set};
-use crate::model::{Bounds, Camera, Primitive};
-use glam::DVec3;
+use crate::model::{Bounds, Camera, Primitive, outward};
 use std::ops::Range;
 
 /// Who is asked.
@@ -152,30 +151,9 @@ fn weight(primitive: &Primitive) -> f64 {
     size.x * size.y + size.y * size.z + size.z * size.x
 }
 
-/// Whether rays enter each mesh of an operand through triangles that face them, and leave it through the others: each
-/// edge is passed once in either direction, and the volume enclosed is positive.
+/// Whether rays enter each operand that is a mesh through triangles that face them, and leave it through the others.
 pub(super) fn face_outward(data: &SolidData) -> bool {
-    data.operand_draws.iter().all(|corners| faces_outward(data, corners))
-}
-
-fn faces_outward(data: &SolidData, corners: &Range<u32>) -> bool {
-    let triangles = &data.operand_triangles[corners.start as usize / 3..corners.end as usize / 3];
-    let place = |v: u32| DVec3::from(data.operand_positions[v as usize].map(f64::from));
-    let volume: f64 = triangles.iter().map(|t| t.map(place)).map(|[a, b, c]| a.dot(b.cross(c))).sum();
-    // vertices at the same place are the same
-    let bits = |v: u32| data.operand_positions[v as usize].map(|x| (x + 0.0).to_bits());
-    let mut edges: Vec<_> = triangles
-        .iter()
-        .flat_map(|t| [[t[0], t[1]], [t[1], t[2]], [t[2], t[0]]])
-        .map(|edge| edge.map(bits))
-        .map(|[a, b]| if a < b { (a, b, true) } else { (b, a, false) })
-        .collect();
-    edges.sort_unstable();
-    let (pairs, rest) = edges.as_chunks::<2>();
-    let ends = |(a, b, _): (_, _, bool)| (a, b);
-    let both_ways = pairs.iter().all(|&[back, forth]| ends(back) == ends(forth) && back.2 != forth.2);
-    let once = pairs.windows(2).all(|w| ends(w[0][0]) != ends(w[1][0]));
-    volume > 0.0 && rest.is_empty() && both_ways && once
+    data.operands.iter().all(|operand| outward(&operand.primitive).is_some())
 }
 
 #[cfg(test)]
@@ -184,7 +162,7 @@ mod tests {
     use crate::model::{Mesh, Shape, Solid};
     use crate::picture::SolidWay;
     use crate::scene::solids::Lists;
-    use glam::DAffine3;
+    use glam::{DAffine3, DVec3};
     use std::sync::Arc;
 
     const CORNERS: [[f64; 3]; 4] = [[0.0; 3], [1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]];
