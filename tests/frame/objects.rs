@@ -160,7 +160,7 @@ fn a_way_to_draw_solids_has_its_own_passes() {
         assert_silent(renderer);
         objects
     };
-    let (equations, (_, mesh)) = (shapes::solids::holes(2), shapes::operands::meshes().swap_remove(0));
+    let (equations, (_, mesh)) = (shapes::solids::holes(2), shapes::operands::meshes().swap_remove(1));
     let all = [SolidWay::Events, SolidWay::Cst, SolidWay::Blister];
     for (way, own) in all.into_iter().zip(["solid events", "solid cst", "blister"]) {
         let objects = of(way, &equations);
