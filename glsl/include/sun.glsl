@@ -47,7 +47,7 @@ struct SunTile {
     uint end_facet;
 };
 
-// A triangle of an operand that is a mesh, across the rays: in tiles, from the operand's middle.
+// A triangle of an operand without equations, across the rays: in tiles, from the operand's middle.
 struct SunTriangle {
     vec2 corners[3];
     vec3 heights; // of the corners towards the sun, model units, from there

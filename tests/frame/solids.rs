@@ -24,7 +24,7 @@ fn has_mesh(model: &Model) -> bool {
 }
 
 /// What is wrong with a picture, or nothing.
-fn faults(renderer: &mut HeadlessRenderer, tracer: &Tracer, camera: &Camera, blank: bool) -> Option<String> {
+pub fn faults(renderer: &mut HeadlessRenderer, tracer: &Tracer, camera: &Camera, blank: bool) -> Option<String> {
     let picture = render(renderer, camera);
     let j = judge(tracer, camera, &picture, &JudgeOptions::default());
     let empty = j.normal_deg.count == 0;
