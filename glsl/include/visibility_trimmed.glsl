@@ -72,19 +72,33 @@ void main() {
     vec2 around = reach * (abs(dx) + abs(dy)); // of the point: its ring is in that box
     uint area = trim_area(fi, face, at - around, at + around);
     if (area == TRIM_OUT) discard;
-    bool inside = area == TRIM_IN || trim_inside(fi, face, at);
     float border_depth = -1.0; // nearest to the viewer among the ring's points inside the face
     bool grows = area == TRIM_MIXED;
     float px = frame.focal * (frame.perspective != 0u ? gl_FragCoord.w : 1.0) * instance_at(fi.instance).scale;
+    // depth per unit along the view axis, times the size of a pixel there
+    float range = frame.far - frame.near;
+    float unit = frame.perspective != 0u ? frame.near * frame.far * gl_FragCoord.w / range : 1.0 / range;
+    float off = 2.0 * frame.deviation_px;
+    bool steep = false;
     if (solid && !away) {
         vec2 far = around / patch_.domain.zw; // (u, v) of the patch that the ring spans
         grows = grows && bend_within(patch_, far) * px <= (RING_SLACK - 1.0) * reach + 2.0 * frame.deviation_px;
+        steep = length(slope) > STEEP * unit / frame.focal;
     }
-    for (uint k = 0u; !inside && grows && k < RING_POINTS; ++k) {
-        vec2 step_ = reach * RING[k];
-        if (trim_inside(fi, face, at + step_.x * dx + step_.y * dy)) {
-            border_depth = max(border_depth, gl_FragCoord.z + dot(step_, slope));
-        }
+    // Questions, all asked in one place, since a wide machine runs every place for every pixel: the point itself; then the
+    // ring where it is outside, a point nearer to the viewer where it is inside and steep.
+    bool inside = area == TRIM_IN;
+    bool goes_on = inside;
+    vec2 step_ = vec2(0.0);
+    uint k = 0u;
+    while (true) {
+        bool is_in = trim_inside(fi, face, at + step_.x * dx + step_.y * dy);
+        if (k == 0u) inside = inside || is_in;
+        else if (inside) goes_on = goes_on || is_in;
+        else if (is_in) border_depth = max(border_depth, gl_FragCoord.z + dot(step_, slope));
+        if (inside ? !steep || k == 1u : !grows || k == RING_POINTS) break;
+        step_ = inside ? off * normalize(slope) : reach * RING[k];
+        ++k;
     }
     if (!inside && border_depth < 0.0) discard;
 #ifdef WITHIN_VOLUME
@@ -95,15 +109,7 @@ void main() {
     if (!inside && !doubtful) z = solid ? min(z, border_depth) : border_depth;
     float stand_back = 0.0;
     if (solid && !away) {
-        // depth per unit along the view axis, times the size of a pixel there
-        float range = frame.far - frame.near;
-        float unit = frame.perspective != 0u ? frame.near * frame.far * gl_FragCoord.w / range : 1.0 / range;
-        float off = 2.0 * frame.deviation_px;
-        if (inside && length(slope) > STEEP * unit / frame.focal) {
-            vec2 nearer = off * normalize(slope);
-            bool goes_on = area == TRIM_IN || trim_inside(fi, face, at + nearer.x * dx + nearer.y * dy);
-            if (goes_on) off = min(off, 2.0 * (bend_within(patch_, vec2(1.0)) * px + SNAP_PX));
-        }
+        if (inside && steep && goes_on) off = min(off, 2.0 * (bend_within(patch_, vec2(1.0)) * px + SNAP_PX));
         stand_back = off * (abs(slope.x) + abs(slope.y) + unit / frame.focal) + STAND_BACK * z;
     }
     if (!inside && (doubtful || !solid)) {

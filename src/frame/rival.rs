@@ -27,12 +27,13 @@ pub(super) struct TexturePasses {
 }
 
 impl RivalPasses {
-    pub(super) fn new(device: &Device, rival: Rival) -> Result<Self, GpuError> {
+    /// `hides`: patches may lie behind others.
+    pub(super) fn new(device: &Device, rival: Rival, hides: bool) -> Result<Self, GpuError> {
         Ok(match rival {
             Rival::Untrimmed => Self::Untrimmed,
             Rival::Bisect { .. } => Self::Bisect,
             Rival::Texture { .. } => Self::Texture(Box::new(TexturePasses {
-                density: density::Density::new(device, false)?,
+                density: density::Density::new(device, hides)?,
                 texture: rival_texture::RivalTexture::new(device)?,
             })),
         })
@@ -101,7 +102,7 @@ impl TextureParts<'_> {
             cell_items: &self.scene.cell_items,
             strip_heights: &t.strip_heights,
             face_speeds: &t.face_speeds,
-            drawn_faces: None,
+            drawn_faces: frame.hidden().map(|parts| parts.drawn_faces()),
         };
         self.passes.density.record(cmd, &density, b.counts.cells);
         barrier::buffers(cmd, &[(&t.face_speeds, w, r), (&b.counters, w1, w2)]);

@@ -41,7 +41,7 @@ impl TrimPasses {
             TrimWay::Table => Way::Table(Box::new(TablePasses::new(device, data.hides())?)),
             TrimWay::Exact => Way::Exact,
             #[cfg(feature = "rivals")]
-            TrimWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival)?),
+            TrimWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival, data.hides())?),
         };
         let others = data.has_meshes() || data.solids.kinds().is_some();
         let volume = data.volume.as_ref().and_then(SolidData::kinds);

@@ -281,7 +281,8 @@ impl Bisect {
     }
 }
 
-/// The range of u in which a piece lies between two scan lines, with some units in the last place to spare.
+/// The range of u in which a piece lies between two scan lines, with some units in the last place to spare: of u, and of
+/// the lines, since the shader rounds the piece, and where it is nearly level a unit of v is many of u.
 fn clipped(piece: &Piece, curve: &Bezier<DVec3>, bottom: f32, top: f32) -> (f32, f32) {
     let at = |v: f32| {
         let (start, end) = (piece.start, piece.end);
@@ -298,7 +299,7 @@ fn clipped(piece: &Piece, curve: &Bezier<DVec3>, bottom: f32, top: f32) -> (f32,
         }
         curve.point(b).x as f32
     };
-    let (a, b) = (at(bottom), at(top));
     let slack = 8.0 * f32::EPSILON;
+    let (a, b) = (at(bottom - slack), at(top + slack));
     (a.min(b) - slack, a.max(b) + slack)
 }

@@ -205,12 +205,7 @@ impl SceneData {
     /// Patches may lie behind others, and enough of them to ask. Those of operands are crossed whatever lies before them,
     /// and each sample sees others.
     pub(crate) fn hides(&self) -> bool {
-        let is_ours = match self.trim_way() {
-            None | Some(TrimWay::Table | TrimWay::Exact) => true,
-            #[cfg(feature = "rivals")]
-            Some(TrimWay::Rival(_)) => false,
-        };
-        is_ours && self.items.len() >= FEWEST_HIDDEN && !self.has_operands && self.samples == Samples::One
+        self.items.len() >= FEWEST_HIDDEN && !self.has_operands && self.samples == Samples::One
     }
 
     /// Some mesh is placed.

@@ -1,10 +1,11 @@
 //! Bisection of monotone pieces against exact winding numbers.
 
 use glam::{DVec2, Vec2};
-use selvedge::model::{Face, Model};
+use selvedge::model::{Face, Model, TrimLoop};
 use selvedge::picture::Sorted;
 use selvedge::rivals::bisect::{Bisect, STEPS};
 use selvedge::rivals::many_holes;
+use selvedge::spline::Bezier;
 use selvedge::trim::LoopIndex;
 
 fn face(model: &Model) -> &Face {
@@ -42,6 +43,42 @@ fn sixteen_steps_are_as_exact_as_single_precision() {
             let (_, off) = disagreements(face(&many_holes(across)), (STEPS, sorted), 100_000);
             // a few units in the last place of coordinates up to 1
             assert!(off < 4.0 * f64::from(f32::EPSILON), "{off} with {across} holes a row, {sorted:?}");
+        }
+    }
+}
+
+/// A border that rises by less than single precision tells apart, with ends of other pieces at its height: both ways to
+/// sort ask the same pieces about a point.
+#[test]
+fn nearly_level_borders_are_sorted_as_they_are_rounded() {
+    const ULP: f64 = f32::EPSILON as f64 / 2.0; // of a number from 0.5 to 1
+    let mut model = many_holes(1);
+    let side = model.parts[0].faces[0].surface.domain().0.1;
+    let quad = |corners: [DVec2; 4]| {
+        let curves = (0..4).map(|k| Bezier::line(corners[k] * side, corners[(k + 1) % 4] * side)).collect();
+        TrimLoop::new(curves, DVec2::splat(1e-12)).expect("closed")
+    };
+    // it lies 0.4 units above where it is rounded to
+    let height = f64::from(0.6f32);
+    let top = |x: f64, units: f64| DVec2::new(x, height + units * ULP);
+    let mut loops = vec![quad([DVec2::splat(0.1), DVec2::new(0.5, 0.1), top(0.5, 3.4), top(0.1, 0.4)])];
+    // small ones beside it, whose ends end bands at the heights between
+    for k in [1.0, 2.0] {
+        let corner = top(0.6 + 0.1 * k, k);
+        loops.push(quad(
+            [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| corner + 0.05 * DVec2::new(x, y)),
+        ));
+    }
+    model.parts[0].faces[0].loops = loops;
+    let [source, tuned] = [Sorted::Source, Sorted::Tuned].map(|sorted| {
+        let mut bisect = Bisect::default();
+        bisect.push(face(&model), STEPS, sorted);
+        bisect
+    });
+    for step in -8..=8 {
+        for k in 0..1000u16 {
+            let p = Vec2::new(f32::from(k) / 1000.0, (height + f64::from(step) * ULP) as f32);
+            assert_eq!(source.contains(0, p), tuned.contains(0, p), "{p}, {step} units from the border");
         }
     }
 }
