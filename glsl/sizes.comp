@@ -1,22 +1,28 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `sizes`: rows and segments of the trim table, and the dispatches that follow from them.
-// One thread. Twin: src/twin/sizes.rs.
+// Pass `sizes`: where the rows of each v-strip are, as a look-up wants it; and of the whole trim table rows and segments,
+// and the dispatches that follow from them. One thread a strip, of which the first does the rest. Twin: src/twin/sizes.rs.
 #include "scene.glsl"
 
-layout(local_size_x = 1) in;
+layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer LineStarts { uint line_starts[]; };
 layout(scalar, binding = 2) readonly buffer SegmentStarts { uint segment_starts[]; };
 layout(scalar, binding = 3) writeonly buffer Dispatches { uvec3 dispatches[]; }; // cross, sort, scan of the rows
-layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
+layout(scalar, binding = 4) writeonly buffer Strips { uvec2 strips[]; }; // first row, rows
+layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
 
 const uint GROUP = 128u;        // threads of a workgroup in passes cross and sort
 const uint SCAN_BLOCK = 1024u;  // rows of a workgroup in the prefix sum
 const uint MAX_GROUPS = 65535u; // what every device can dispatch
 
 void main() {
+    uint strip = gl_GlobalInvocationID.x;
+    if (strip >= frame.strip_count) return;
+    uint first_row = line_starts[strip];
+    strips[strip] = uvec2(first_row, line_starts[strip + 1u] - first_row);
+    if (strip != 0u) return;
     uint rows = line_starts[frame.strip_count];
     uint segments = segment_starts[frame.curve_count];
     if (rows > frame.row_capacity) counters.failed |= FAILED_ROWS;

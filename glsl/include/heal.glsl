@@ -140,7 +140,7 @@ bool is_there(FaceInstance fi, Face face, uint item, Patch patch_, vec2 uv) {
         if (clamp(uv, 0.0, 1.0) == uv) return true;
         float strips = float(face.strip_count);
         uint strip = fi.first_strip + uint(clamp(at.y * strips, 0.0, strips - 1.0));
-        if (first_row(strip) == first_row(strip + 1u)) return in_whole_patch(fi, face, item, uv);
+        if (rows_of_strip(strip) == 0u) return in_whole_patch(fi, face, item, uv);
     }
 #endif
     return trim_inside(fi, face, at);

@@ -27,15 +27,17 @@ pub(super) struct Chain {
     pub segment_counts: Vec<u32>,
     pub segment_starts: Vec<u32>,
     pub dispatches: [[u32; 3]; 3],
+    pub strips: Vec<[u32; 2]>,
     pub row_counts: Vec<u32>,
     pub border_cells: Vec<[u32; 4]>,
     pub row_starts: Vec<u32>,
     pub row_total: u32,
     /// As `cross` leaves them; the order within a row is not part of the contract.
     pub intercepts: Vec<u32>,
-    /// As `sort` leaves them: the first `flip_counts[row]` words of a row are float bits.
+    /// As `sort` leaves them: float bits from the first to the last flip of each row.
     pub flips: Vec<u32>,
-    pub flip_counts: Vec<u32>,
+    /// First flip of each row, and one behind its last.
+    pub rows: Vec<[u32; 2]>,
     pub counters: Counters,
 }
 
@@ -58,6 +60,7 @@ impl Chain {
         c.segment_counts = twin::segments::segments(frame, scene, &c.density.face_speeds, &c.line_starts);
         c.segment_starts = starts(&c.segment_counts);
         c.dispatches = twin::sizes::sizes(frame, &c.line_starts, &c.segment_starts, &mut c.counters);
+        c.strips = twin::sizes::strips(&c.line_starts);
         c.row_counts = twin::cross::count(frame, scene, &c.line_starts, &c.segment_starts);
         c.border_cells = twin::cross::border_cells(frame, scene, &c.line_starts, &c.segment_starts);
         (c.row_starts, c.row_total) = twin::scan::scan(&c.row_counts[..c.counters.rows as usize]);
@@ -65,7 +68,7 @@ impl Chain {
         let (mut counts, given) = (c.row_counts.clone(), (c.line_starts.as_slice(), c.segment_starts.as_slice()));
         twin::cross::insert(frame, scene, given, &c.row_starts, &mut counts, &mut c.intercepts);
         c.flips = c.intercepts.clone();
-        c.flip_counts = twin::sort::sort(frame, &c.row_starts, c.row_total, &mut c.flips, &mut c.counters);
+        c.rows = twin::sort::sort(frame, &c.row_starts, c.row_total, &mut c.flips, &mut c.counters);
         c
     }
 }

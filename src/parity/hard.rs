@@ -72,9 +72,8 @@ mod table {
         assert_eq!((chain.counters.failed, chain.counters.clamps), (0, 0), "{}", case.name);
         let flips: Vec<f32> = chain.flips.iter().map(|&bits| f32::from_bits(bits)).collect();
         let table = Table {
-            line_starts: &chain.line_starts,
-            row_starts: &chain.row_starts,
-            row_counts: &chain.flip_counts,
+            strips: &chain.strips,
+            rows: &chain.rows,
             flips: &flips,
             border_cells: &chain.border_cells,
             row_capacity: case_.frame.row_capacity,

@@ -14,6 +14,7 @@ fn compare(gpu: &Gpu, frame: &Frame, given: [&[u32]; 2], expected: [&[u32]; 2]) 
     let line_starts = gpu.upload("line starts", given[0]);
     let segment_starts = gpu.upload("segment starts", given[1]);
     let dispatches = gpu.upload("dispatches", &[UNTOUCHED; 9]);
+    let strips = gpu.upload("strips", &vec![UNTOUCHED; 2 * frame.strip_count as usize]);
     let counters = gpu.upload("counters", &[before]);
     let pass = Sizes::new(gpu.device()).unwrap();
     let bindings = Bindings {
@@ -21,11 +22,14 @@ fn compare(gpu: &Gpu, frame: &Frame, given: [&[u32]; 2], expected: [&[u32]; 2]) 
         line_starts: &line_starts,
         segment_starts: &segment_starts,
         dispatches: &dispatches,
+        strips: &strips,
         counters: &counters,
     };
-    gpu.run(|cmd| pass.record(cmd, &bindings));
+    gpu.run(|cmd| pass.record(cmd, &bindings, frame.strip_count));
     let mut after = before;
     let twin = twin::sizes::sizes(frame, expected[0], expected[1], &mut after);
+    let of_strips = twin::sizes::strips(expected[0]);
+    same("strips", &gpu.read(&strips, of_strips.len()), &of_strips)?;
     same("dispatches", &gpu.read(&dispatches, 3), &twin)?;
     same("counters", &gpu.read(&counters, 1), &[after])
 }
@@ -54,5 +58,9 @@ fn a_difference_is_seen() {
     *other.last_mut().unwrap() += 1;
     let mismatch = compare(&gpu, &case.frame, [starts[0], &other], starts).unwrap_err();
     assert_eq!(mismatch.buffer, "counters");
+    let mut other = chain.line_starts.clone();
+    other[1] += 1;
+    let mismatch = compare(&gpu, &case.frame, [&other, starts[1]], starts).unwrap_err();
+    assert_eq!(mismatch.buffer, "strips");
     gpu.finish();
 }

@@ -1,6 +1,7 @@
-//! Pass `sizes`: rows and segments of the trim table, and the dispatches that follow from them.
+//! Pass `sizes`: where the rows of each v-strip are; rows and segments of the whole trim table, and the dispatches that
+//! follow from them.
 //!
-//! Reads: `frame`, `line_starts`, `segment_starts`. Writes: `dispatches`, `counters`.
+//! Reads: `frame`, `line_starts`, `segment_starts`. Writes: `dispatches`, `strips`, `counters`.
 //! Twin: `src/twin/sizes.rs`.
 
 use crate::bindings::with_constants;
@@ -8,7 +9,7 @@ use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 1;
+const GROUP: u32 = 64;
 
 /// The pass.
 pub(crate) struct Sizes {
@@ -22,6 +23,8 @@ pub(crate) struct Bindings<'a> {
     pub segment_starts: &'a Buffer,
     /// Of passes cross and sort.
     pub dispatches: &'a Buffer,
+    /// First row and rows of each.
+    pub strips: &'a Buffer,
     pub counters: &'a Buffer,
 }
 
@@ -32,7 +35,7 @@ impl Sizes {
             &ComputeInfo {
                 name: "sizes",
                 spirv: shaders::SIZES_COMP,
-                bindings: &with_constants(5),
+                bindings: &with_constants(6),
                 push_bytes: 0,
                 constants: &[],
             },
@@ -40,10 +43,10 @@ impl Sizes {
         Ok(Self { pipeline })
     }
 
-    /// One thread.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
-        let resources = [b.frame, b.line_starts, b.segment_starts, b.dispatches, b.counters].map(Into::into);
+    /// One thread for each of `strips`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, strips: u32) {
+        let resources = [b.frame, b.line_starts, b.segment_starts, b.dispatches, b.strips, b.counters].map(Into::into);
         cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(GROUP);
+        cmd.dispatch(strips.div_ceil(GROUP));
     }
 }

@@ -284,14 +284,10 @@ impl Bisect {
 /// The range of u in which a piece lies between two scan lines, with some units in the last place to spare: of u, and of
 /// the lines, since the shader rounds the piece, and where it is nearly level a unit of v is many of u.
 fn clipped(piece: &Piece, curve: &Bezier<DVec3>, bottom: f32, top: f32) -> (f32, f32) {
+    let (lower, upper) =
+        if piece.start[1] <= piece.end[1] { (piece.start, piece.end) } else { (piece.end, piece.start) };
     let at = |v: f32| {
-        let (start, end) = (piece.start, piece.end);
-        if (start[1] >= v) == (end[1] >= v) {
-            // nearer end
-            let near = if (start[1] - v).abs() <= (end[1] - v).abs() { start } else { end };
-            return near[0];
-        }
-        let rises = end[1] > start[1];
+        let rises = piece.end[1] > piece.start[1];
         let (mut a, mut b) = (0.0, 1.0);
         for _ in 0..48 {
             let t = 0.5 * (a + b);
@@ -300,6 +296,9 @@ fn clipped(piece: &Piece, curve: &Bezier<DVec3>, bottom: f32, top: f32) -> (f32,
         curve.point(b).x as f32
     };
     let slack = 8.0 * f32::EPSILON;
-    let (a, b) = (at(bottom - slack), at(top + slack));
+    let (bottom, top) = (bottom - slack, top + slack);
+    // a level one all along
+    let a = if bottom <= lower[1] { lower[0] } else { at(bottom) };
+    let b = if top >= upper[1] { upper[0] } else { at(top) };
     (a.min(b) - slack, a.max(b) + slack)
 }

@@ -1,5 +1,5 @@
-//! Twin of the pass [`sizes`](crate::passes): rows and segments of the trim table, and the dispatches
-//! that follow from them.
+//! Twin of the pass [`sizes`](crate::passes): where the rows of each v-strip are; rows and segments of the whole trim
+//! table, and the dispatches that follow from them.
 
 use super::FAILED_ROWS;
 use crate::abi::{Counters, Frame};
@@ -12,6 +12,11 @@ const SCAN_BLOCK: u32 = 1024;
 const MAX_GROUPS: u32 = 65535;
 /// Most segments that pass `cross` can be given.
 pub const MOST_SEGMENTS: u32 = MAX_GROUPS * GROUP;
+
+/// First row of each strip, and how many it has.
+pub fn strips(line_starts: &[u32]) -> Vec<[u32; 2]> {
+    line_starts.windows(2).map(|pair| [pair[0], pair[1] - pair[0]]).collect()
+}
 
 /// Workgroups of `cross`, of `sort` and of the scan of the rows. Sets `rows`,
 /// `wanted_rows` and `segments` of the counters.

@@ -47,6 +47,33 @@ fn sixteen_steps_are_as_exact_as_single_precision() {
     }
 }
 
+/// A quadrilateral, in shares of the sheet's side.
+fn quad(side: f64, corners: [DVec2; 4]) -> TrimLoop {
+    let curves = (0..4).map(|k| Bezier::line(corners[k] * side, corners[(k + 1) % 4] * side)).collect();
+    TrimLoop::new(curves, DVec2::splat(1e-12)).expect("closed")
+}
+
+/// Level borders within bands part what is above them from what is below.
+#[test]
+fn level_borders_within_bands() {
+    let mut model = many_holes(9);
+    let side = model.parts[0].faces[0].surface.domain().0.1;
+    for k in 0..7 {
+        let [lo, hi] = [0.11, 0.83].map(|x| DVec2::new(x, x) + 0.013 * f64::from(k) * DVec2::new(1.0, -0.7));
+        let corners = [lo, DVec2::new(hi.x, lo.y), hi, DVec2::new(lo.x, hi.y)];
+        model.parts[0].faces[0].loops.push(quad(side, corners));
+    }
+    let [source, tuned] = [Sorted::Source, Sorted::Tuned].map(|sorted| {
+        let mut bisect = Bisect::default();
+        bisect.push(face(&model), STEPS, sorted);
+        bisect
+    });
+    assert!(tuned.bands.len() < source.bands.len());
+    for p in points(100_000) {
+        assert_eq!(source.contains(0, p), tuned.contains(0, p), "{p}");
+    }
+}
+
 /// A border that rises by less than single precision tells apart, with ends of other pieces at its height: both ways to
 /// sort ask the same pieces about a point.
 #[test]
@@ -54,18 +81,15 @@ fn nearly_level_borders_are_sorted_as_they_are_rounded() {
     const ULP: f64 = f32::EPSILON as f64 / 2.0; // of a number from 0.5 to 1
     let mut model = many_holes(1);
     let side = model.parts[0].faces[0].surface.domain().0.1;
-    let quad = |corners: [DVec2; 4]| {
-        let curves = (0..4).map(|k| Bezier::line(corners[k] * side, corners[(k + 1) % 4] * side)).collect();
-        TrimLoop::new(curves, DVec2::splat(1e-12)).expect("closed")
-    };
     // it lies 0.4 units above where it is rounded to
     let height = f64::from(0.6f32);
     let top = |x: f64, units: f64| DVec2::new(x, height + units * ULP);
-    let mut loops = vec![quad([DVec2::splat(0.1), DVec2::new(0.5, 0.1), top(0.5, 3.4), top(0.1, 0.4)])];
+    let mut loops = vec![quad(side, [DVec2::splat(0.1), DVec2::new(0.5, 0.1), top(0.5, 3.4), top(0.1, 0.4)])];
     // small ones beside it, whose ends end bands at the heights between
     for k in [1.0, 2.0] {
         let corner = top(0.6 + 0.1 * k, k);
         loops.push(quad(
+            side,
             [(0.0, 0.0), (1.0, 0.0), (1.0, 1.0), (0.0, 1.0)].map(|(x, y)| corner + 0.05 * DVec2::new(x, y)),
         ));
     }
