@@ -107,7 +107,8 @@ bool by_winding(uint from, uint end, int number, uint start) {
     return number == 0;
 }
 
-// Entering and leaving in turn, mended by rings; returns whether they do. Keeps nothing unless it `writes`.
+// Entering and leaving in turn, mended by rings; returns whether they do: an entry without an exit is all right where it is
+// kept, and not where they are told to be as many. Keeps nothing unless it `writes`.
 bool in_turn(uint from, uint end, bool within, uint start, bool writes) {
     Fragment ring[2]; // the first of a ring since the last that was kept: entering, leaving
     bool has_ring[2] = bool[](false, false);
@@ -123,7 +124,7 @@ bool in_turn(uint from, uint end, bool within, uint start, bool writes) {
         if ((kind == 1u) != within) {
             // one is missing between: of the other kind
             if (!has_ring[1u - kind]) {
-                lost = lost || kind == 1u;
+                lost = lost || kind == 1u || !writes;
                 continue;
             }
             if (writes) {

@@ -215,6 +215,10 @@ Answer ask(uvec2 seen, vec2 pixel, uint ring, Answer behind) {
         }
         if (inside || !there) continue;
         vec4 q = to_pixel(view, vec4(patch_jet(patch_.first, patch_.shape, s.uv + duv).point, 1.0));
+#ifdef WITHIN_VOLUME
+        // each alone may reach to the pixel from beside the corner in which they meet
+        if (!in_volume(q, ON_PX)) continue;
+#endif
         vec2 off = q.xy / q.w - pixel;
         if (q.z <= behind.depth + dot(behind.slope, off) && length(off) <= RING_SLACK * frame.ring_px) {
             answer.kind = HELPER;

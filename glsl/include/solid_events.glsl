@@ -10,9 +10,12 @@
 // The ray is followed from the near plane until outside becomes inside: a near plane within the solid cuts
 // it open, and the first side entered from there is seen. Nothing is stored but the spans of the tile's
 // first leaves: exits of a Blist lead forward, so one scan over the leaves answers both whether the
-// solid is behind depth t and where the next event is. The surfaces' equations stand once, in a loop of their own,
+// solid is behind depth t and where the next event is that matters. The surfaces' equations stand once, in a loop of their own,
 // which passes over spans that are kept: a driver that runs both sides of every branch has no need to solve them again.
 // Where the depth of the face is found already, the walk begins there and tells whose it is.
+//
+// An event that matters is one of a leaf that the walk asks: the others are not looked at whatever they are, so until
+// then the walk ends as it does. In A - (B + C + ...) nothing is asked before A begins.
 #ifndef SOLID_EVENTS_GLSL
 #define SOLID_EVENTS_GLSL
 
@@ -76,16 +79,18 @@ struct Candidates {
 struct Walk {
     uint at;        // behind depth t
     uint at_before; // in front of it
-    float next;     // the next depth at which something begins or ends
+    float next;     // the next depth at which a leaf that the walk behind t asks begins or ends
     Candidates found;
     uint candidates;
 };
 
 // Leaf i of the tile, met at t; `other` is taken for what it is not, candidates count from `after` on.
 void meet(inout Walk walk, uint i, TileLeaf here, Crossing c, uint other, uint after) {
-    if (i == walk.at) walk.at = c.inside != (i == other) ? here.in_exit : here.out_exit;
+    if (i == walk.at) {
+        walk.at = c.inside != (i == other) ? here.in_exit : here.out_exit;
+        walk.next = min(walk.next, c.next);
+    }
     if (i == walk.at_before) walk.at_before = c.before != (i == other) ? here.in_exit : here.out_exit;
-    walk.next = min(walk.next, c.next);
     if (i < after || !c.ends) return;
     ++walk.candidates;
     if ((here.of & LEAF_NEGATIVE) != 0u) walk.found.negative = min(walk.found.negative, i);

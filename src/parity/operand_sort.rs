@@ -126,10 +126,15 @@ fn fragment(bits: u32, depth: f32) -> Fragment {
 
 /// Depths kept of one ray through shell 2, and the counters.
 fn one(fragments: &[Fragment]) -> (Vec<f32>, u32, u32) {
+    one_from(-99.0, fragments)
+}
+
+/// The same with the near plane somewhere: its box is from 20 to 60.
+fn one_from(near: f32, fragments: &[Fragment]) -> (Vec<f32>, u32, u32) {
     let c = case(&mut Random::new(1), 1);
     let shells = Shells { leaves: &c.leaves, centres: &c.centres, shell_leaves: &c.shell_leaves };
     let (mut all, mut counters) = (fragments.to_vec(), Counters::default());
-    let frame = Frame { fragment_capacity: 99, near: -99.0, ..c.frame };
+    let frame = Frame { fragment_capacity: 99, near, ..c.frame };
     let count = operand_sort(&frame, shells, &[0, all.len() as u32], &mut all, &mut counters)[0];
     (all[..count as usize].iter().map(|f| f.depth).collect(), counters.mended, counters.unpaired)
 }
@@ -152,4 +157,8 @@ fn gaps_are_mended_by_rings_alone() {
     assert_eq!(one(&[ring_in(2.0), ring_out(3.0)]), (vec![], 0, 0));
     // near a silhouette, two changed places
     assert_eq!(one(&[leave(1.0), enter(1.01), enter(3.0), leave(4.0)]), (vec![1.0, 1.01, 3.0, 4.0], 0, 0));
+    // also where the ray may begin within: it is left as often as entered, so it does not
+    let cut = one_from(30.0, &[leave(31.0), enter(31.1), enter(33.0), leave(34.0)]);
+    assert_eq!(cut, (vec![31.0, 31.1, 33.0, 34.0], 0, 0));
+    assert_eq!(one_from(30.0, &[leave(31.0), enter(33.0), leave(34.0)]), (vec![31.0, 33.0, 34.0], 0, 0));
 }

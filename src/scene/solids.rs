@@ -263,7 +263,11 @@ impl SolidData {
             let bounded = bounds.is_empty() || bounds.min.is_finite() && bounds.max.is_finite();
             let (centre, half) = match bounded {
                 true if bounds.is_empty() => (shared.middle, DVec3::ZERO), // somewhere, a point
-                true => (bounds.centre(), (bounds.max - bounds.min) * 0.5),
+                // a face is that of the surface that it shares: of another primitive, which may be larger
+                true => {
+                    let beyond = if is_shell { 0.0 } else { shared.table.distance() };
+                    (bounds.centre(), (bounds.max - bounds.min) * 0.5 + beyond)
+                }
                 false => (shared.middle, DVec3::INFINITY),
             };
             let mut flags = all_flags;

@@ -68,8 +68,13 @@ pub fn operand_sort(
             let before = kept.len();
             let mended = counters.mended;
             let patches = of_one[0].shell & FRAGMENT_PATCH != 0;
-            let mut closed = patches && in_turn(of_one, cuts.0, &mut kept, counters);
-            if !patches || (!closed && sum == number) {
+            let turns = if patches {
+                in_turn(of_one, cuts.0, &mut kept, counters)
+            } else {
+                InTurn { closed: false, all: false }
+            };
+            let mut closed = turns.closed;
+            if !patches || (!turns.all && sum == number) {
                 // what was tried goes
                 kept.truncate(before);
                 counters.mended = mended;
@@ -121,13 +126,21 @@ fn by_winding(all: &[Fragment], mut number: i32, kept: &mut Vec<Fragment>) -> bo
     number == 0
 }
 
-/// Of faces; returns whether entering and leaving go in turn, mended where a gap is.
-fn in_turn(all: &[Fragment], cut: bool, kept: &mut Vec<Fragment>, counters: &mut Counters) -> bool {
+/// Whether entering and leaving go in turn, mended where a gap is.
+struct InTurn {
+    /// What is left out are entries alone, and the ray ends outside.
+    closed: bool,
+    /// Nothing is left out.
+    all: bool,
+}
+
+/// Of faces.
+fn in_turn(all: &[Fragment], cut: bool, kept: &mut Vec<Fragment>, counters: &mut Counters) -> InTurn {
     let first = all.iter().find(|f| f.shell & FRAGMENT_RING == 0);
     let mut within = cut && first.is_some_and(leaves);
     let start = if within { FRAGMENT_WITHIN } else { 0 };
     let mut rings: [Option<Fragment>; 2] = [None; 2]; // entering, leaving
-    let mut lost = false;
+    let mut lost = [false; 2]; // entering, leaving
     let mut mend = |ring: Fragment, kept: &mut Vec<Fragment>| {
         kept.push(Fragment { shell: ring.shell & !FRAGMENT_RING | start, ..ring });
         counters.mended += 1;
@@ -142,7 +155,7 @@ fn in_turn(all: &[Fragment], cut: bool, kept: &mut Vec<Fragment>, counters: &mut
             match rings[1 - kind] {
                 Some(ring) => mend(ring, kept),
                 None => {
-                    lost |= leaves(f);
+                    lost[kind] = true;
                     continue;
                 }
             }
@@ -155,5 +168,5 @@ fn in_turn(all: &[Fragment], cut: bool, kept: &mut Vec<Fragment>, counters: &mut
         mend(ring, kept);
         within = false;
     }
-    !within && !lost
+    InTurn { closed: !within && !lost[1], all: !within && lost == [false; 2] }
 }

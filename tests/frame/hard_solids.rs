@@ -9,6 +9,7 @@ use crate::support::{assert_silent, perspective, render, watched};
 use glam::DVec3;
 use selvedge::csg::{Builder, Op};
 use selvedge::model::{Mesh, Model, Primitive, Quadric, Shape, Solid};
+use selvedge::picture::{SceneSettings, SolidWay};
 use std::sync::Arc;
 
 const SIZE: (u32, u32) = (120, 80);
@@ -139,10 +140,15 @@ fn leaving_out_what_a_tile_does_not_see_changes_nothing() {
     assert!(boxed.solids[0].primitives().iter().all(finite) && !unboxed.solids[0].primitives()[1..].iter().any(finite));
     let camera = perspective(&boxed, SIZE);
     let mut renderer = watched(&boxed);
-    let pruned = render(&mut renderer, &camera);
-    renderer.upload(&unboxed).unwrap();
-    let all = render(&mut renderer, &camera);
-    assert!(pruned.face == all.face && pruned.depth == all.depth && pruned.colour == all.colour);
-    assert_eq!((pruned.stats.clamps, all.stats.clamps), (0, 0));
+    for way in SolidWay::ALL {
+        let settings = SceneSettings { solids: *way, ..Default::default() };
+        renderer.upload_with(&boxed, settings).unwrap();
+        let pruned = render(&mut renderer, &camera);
+        renderer.upload_with(&unboxed, settings).unwrap();
+        let all = render(&mut renderer, &camera);
+        let same = pruned.face == all.face && pruned.depth == all.depth && pruned.colour == all.colour;
+        assert!(same, "by {}", way.name());
+        assert_eq!((pruned.stats.clamps, all.stats.clamps), (0, 0), "by {}", way.name());
+    }
     assert_silent(renderer);
 }

@@ -18,6 +18,7 @@ mod every_shape;
 mod hard;
 mod hard_solids;
 mod hard_trims;
+mod hard_views;
 mod hidden;
 mod kept;
 mod layers;

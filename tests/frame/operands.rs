@@ -21,16 +21,10 @@ fn spline_parts() {
     right_at(SIZE, operands::splines(), false);
 }
 
-/// Near a silhouette Newton's method may end on the other sheet of a squeezed torus, so that its fragments are
-/// out of order: no more than one pixel of the picture may show it.
+/// Near a silhouette fragments of a squeezed torus change places, behind a near plane that cuts its box.
 #[test]
 fn a_squeezed_torus_in_a_mesh() {
-    let model = operands::squeezed_torus();
-    let mut renderer = watched(&model);
-    let camera = perspective(&model, SIZE);
-    let j = judge(&Tracer::new(&model), &camera, &render(&mut renderer, &camera), &JudgeOptions::default());
-    assert!(j.wrong <= 1, "{} wrong, {:?}", j.wrong, j.mismatches);
-    assert_silent(renderer);
+    right_at(SIZE, vec![("a mesh less a torus", operands::squeezed_torus())], false);
 }
 
 #[test]

@@ -123,7 +123,13 @@ fn many_primitives() {
 /// Holes that make a tile see more than 1024 leaves, and 10 001 of them: few pixels, whose truth takes long.
 #[test]
 fn thousands_of_primitives() {
-    right_at((48, 32), vec![("1024 holes", solids::holes(32)), ("10 000 holes", solids::holes(100))], false);
+    let far_out = solids::holes_by(100, &solids::post(3.0, -5.0, 15.0));
+    let cases = vec![
+        ("1024 holes", solids::holes(32)),
+        ("10 000 holes", solids::holes(100)),
+        ("10 000 whose tools stand out", far_out),
+    ];
+    right_at((48, 32), cases, false);
 }
 
 /// A ray that needs more steps than the driver allows is counted, not drawn wrongly in silence.

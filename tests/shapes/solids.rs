@@ -78,9 +78,13 @@ pub fn folded(op: Op, mut primitives: Vec<Primitive>) -> Model {
 
 /// A plate of `n` by `n` flush holes, 10 apart.
 pub fn holes(n: u32) -> Model {
+    holes_by(n, &post(3.0, 0.0, 5.0))
+}
+
+/// The same by other tools, which stand at the origin.
+pub fn holes_by(n: u32, tool: &Primitive) -> Model {
     let side = 10.0 * f64::from(n);
-    let hole =
-        |k: u32| moved(at(f64::from(k % n) * 10.0 + 5.0, f64::from(k / n) * 10.0 + 5.0, 0.0), post(3.0, 0.0, 5.0));
+    let hole = |k: u32| moved(at(f64::from(k % n) * 10.0 + 5.0, f64::from(k / n) * 10.0 + 5.0, 0.0), tool.clone());
     folded(Op::Difference, [block([0.0; 3], [side, side, 5.0])].into_iter().chain((0..n * n).map(hole)).collect())
 }
 
@@ -146,6 +150,8 @@ pub fn coincident() -> Vec<Named> {
 /// Tangents, apexes, four roots, thin shells.
 pub fn delicate() -> Vec<Named> {
     let across = |p: Primitive| moved(turned(FRAC_PI_2, 0.0, 0.0), p);
+    // the views' direction lies in the ring's plane: up to four crossings
+    let edge_on = DQuat::from_rotation_arc(DVec3::Z, DVec3::new(1.6, 1.0, 0.0).normalize());
     let shell = |thin: f64| {
         solid("A-B-C", vec![ball(1.0, 0.0), ball(1.0 - thin, 0.0), block([0.0, -2.0, 0.0], [2.0, 0.0, 2.0])])
     };
@@ -194,6 +200,9 @@ pub fn delicate() -> Vec<Named> {
         ),
         ("a conical sink", solid("A-B", vec![block([-1.0, -1.0, 0.0], [1.0; 3]), cone(0.0, 0.8, 1.0)])),
         ("a ring", solid("A", vec![moved(turned(0.9, 0.3, 0.0), ring(3.0, 1.0))])),
+        ("a ring edge-on", solid("A", vec![moved(DAffine3::from_quat(edge_on), ring(3.0, 1.0))])),
+        ("a horn torus, whole", solid("A", vec![moved(turned(0.9, 0.3, 0.0), ring(1.0, 1.0))])),
+        ("a spindle torus, whole", solid("A", vec![moved(turned(0.9, 0.3, 0.0), ring(1.0, 2.0))])),
         ("a horn torus", solid("A-B", vec![ring(1.0, 1.0), block([0.0, -3.0, 0.0], [3.0, 0.0, 3.0])])),
         ("a spindle torus", solid("A-B", vec![ring(1.0, 2.0), block([0.0, -4.0, 0.0], [4.0, 0.0, 4.0])])),
         (

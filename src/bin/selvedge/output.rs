@@ -79,7 +79,10 @@ pub fn warnings(import: &Import) {
 /// Tells where the frame could not be cut finely enough.
 pub fn clamps(stats: &FrameStats) {
     if stats.clamps > 0 {
-        tracing::warn!("{} patches were not split finely enough: the tolerance is not kept there", stats.clamps);
+        tracing::warn!(
+            "{} patches were not split finely enough, or rays not followed to their ends: the tolerance is not kept there",
+            stats.clamps
+        );
     }
     if stats.open_clear > 0 {
         tracing::warn!("{} parts to be seen through are not closed: they are drawn opaque", stats.open_clear);

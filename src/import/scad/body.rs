@@ -125,7 +125,15 @@ impl Reader<'_> {
                 let segments = self.segments(args, radii[0].max(radii[1]));
                 Ok(flat::round(&mut self.assembly, &placed, radii, height, segments))
             }
-            _ => convex::polyhedron(&mut self.assembly, &placed, args),
+            _ => {
+                let body = convex::polyhedron(&mut self.assembly, &placed, args)?;
+                if convex::is_inverted(args)? {
+                    self.warn("inverted faces", args, || {
+                        "polyhedron: the faces are inside out: taken for right".into()
+                    });
+                }
+                Ok(body)
+            }
         }
     }
 

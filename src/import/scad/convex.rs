@@ -83,6 +83,17 @@ pub(super) fn polyhedron(to: &mut Assembly, placed: &Placed, args: &Args<'_>) ->
     Ok(to.add(Shape::Mesh(Arc::new(mesh)), placed))
 }
 
+/// Whether faces that close turn their backs outwards: a polyhedron is the same one, but whoever made it did not mean it.
+pub(super) fn is_inverted(args: &Args<'_>) -> Result<bool, Fault> {
+    let points: Vec<DVec3> = args.points("points")?.into_iter().map(DVec3::from_array).collect();
+    let faces = args.indices("faces", points.len())?;
+    let first = points.first().copied().unwrap_or_default();
+    let at = |i: u32| points[i as usize] - first;
+    let fan = |f: &Vec<u32>| (2..f.len()).map(|i| at(f[0]).dot(at(f[i - 1]).cross(at(f[i])))).sum::<f64>();
+    // six times the volume; clockwise from outside there
+    Ok(faces.iter().map(fan).sum::<f64>() > 0.0)
+}
+
 /// Whether every edge is run through once each way.
 fn closed(faces: &[Vec<u32>]) -> Result<(), &'static str> {
     let mut balance: HashMap<(u32, u32), i32> = HashMap::new();

@@ -115,6 +115,15 @@ fn polyhedra() {
     let tetra = format!("polyhedron({points}, faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3], [1, 3, 2]]);");
     let expected = |p: DVec3| (p.x + p.y + p.z - 2.0).max(-p.min_element());
     same(&tetra, 2.1, expected);
+    let told = |text: &str| import(text).warnings.iter().map(ToString::to_string).collect::<Vec<_>>();
+    assert_eq!(told(&tetra), [""; 0]);
+    let inverted = format!("\npolyhedron({points}, faces = [[2, 1, 0], [1, 3, 0], [3, 2, 0], [2, 3, 1]]);");
+    same(&inverted, 2.1, expected);
+    let told = told(&inverted);
+    assert!(
+        told.len() == 1 && told[0].starts_with("t.csg:2: inverted faces: polyhedron: the faces are inside out"),
+        "{told:?}"
+    );
     let open = format!("polyhedron({points}, faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3]]);");
     assert!(refusal(&open).starts_with("t.csg:1: polyhedron: the faces do not close"));
 }

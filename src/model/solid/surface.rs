@@ -51,6 +51,8 @@ pub struct SurfaceTable {
     faces: Vec<CarriedFace>,
     /// Of each primitive, the first of its faces; one more at the end.
     starts: Vec<u32>,
+    /// The tolerance, in the solid's units.
+    distance: f64,
 }
 
 /// A face before it has a surface.
@@ -88,7 +90,7 @@ impl SurfaceTable {
         let boxes = each().flat_map(candidates).map(|c| c.near(distance)).collect();
         let nearby = Nearby::new(boxes, distance);
         let mut finder = Finder { centre, size, distance, nearby, ..Finder::default() };
-        let mut table = Self { surfaces: Vec::new(), faces: Vec::new(), starts: vec![0] };
+        let mut table = Self { surfaces: Vec::new(), faces: Vec::new(), starts: vec![0], distance };
         for primitive in each() {
             for candidate in candidates(primitive) {
                 let face = finder.find(candidate, &table.faces);
@@ -98,6 +100,12 @@ impl SurfaceTable {
         }
         table.surfaces = finder.kept.into_iter().map(|c| c.surface).collect();
         table
+    }
+
+    /// How far a face may be from the surface that it shares, in the solid's units: primitives reach as far beyond their
+    /// [`bounds`](super::Primitive::bounds).
+    pub fn distance(&self) -> f64 {
+        self.distance
     }
 
     /// The distinct surfaces.

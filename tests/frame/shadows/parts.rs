@@ -326,8 +326,14 @@ fn a_carved_pot_is_dark_where_the_sun_does_not_reach() {
     let light = judge_sun(&tracer, &sun, &camera, &picture, &JudgeOptions::default());
     assert_silent(renderer);
     assert!(light.lit > 5000 && light.compared - light.lit > 5000, "{light:?}");
-    // of 43,200 pixels: where rays set out along the wall they leave it within the cell that they set out from
-    assert!(light.wrong <= 2 && light.deviated == 0 && picture.stats.clamps == 0, "{light:?}");
+    assert!(light.deviated == 0 && picture.stats.clamps == 0, "{light:?}");
+    // at the border of its own shade a ray leaves the hollow wall by less than a cell bends, and meets it at once: that
+    // the wall is there is not known, but the sun gives less than a thousandth of its light there, no step of eight bits
+    let grazed = |i: usize| DVec3::from(picture.normal[i].map(f64::from)).dot(towards.normalize()) < 1e-3;
+    let told = (0..).zip(&picture.sunlit).map(|(i, lit)| *lit && !grazed(i)).collect();
+    let seen = Picture { sunlit: told, ..picture.clone() };
+    let rest = judge_sun(&tracer, &sun, &camera, &seen, &JudgeOptions::default());
+    assert!(light.wrong <= 2 && rest.wrong == 0, "{light:?}, {rest:?}");
 }
 
 /// Meshes cast exactly what they are: not within a deviation; and what a scene has not, it does not make.

@@ -1,0 +1,196 @@
+//! Hard cases of Boolean solids in views whose every pixel is known beforehand, by all ways to draw: gaps, shells and
+//! layers that are told by counting rows and columns.
+
+use crate::shapes::solids::{self, at, ball, below, block, moved, post, ring, turned};
+use crate::solids::{faults, right_at};
+use crate::support::{assert_identical, assert_silent, perspective, render, watched};
+use glam::{DVec2, DVec3};
+use selvedge::csg::{Builder, Op};
+use selvedge::headless::HeadlessRenderer;
+use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Solid, SurfaceTable};
+use selvedge::picture::{SceneSettings, SolidWay};
+use selvedge::reference::Tracer;
+
+/// A parallel view along y, `height` high, whose middle is `target`.
+fn along_y(target: DVec3, height: f64, size: (u32, u32)) -> Camera {
+    let projection = Projection::Orthographic { height };
+    Camera { eye: target - DVec3::Y * 3.0, target, up: DVec3::Z, projection, depth_range: (1.0, 10.0), size }
+}
+
+/// By every way each pixel (column, row) shows the face that is expected, twice.
+fn shows(
+    renderer: &mut HeadlessRenderer,
+    name: &str,
+    model: &Model,
+    camera: &Camera,
+    expected: impl Fn(u32, u32) -> u32,
+) {
+    for way in SolidWay::ALL {
+        renderer.upload_with(model, SceneSettings { solids: *way, ..Default::default() }).unwrap();
+        let picture = render(renderer, camera);
+        for (i, face) in (0u32..).zip(&picture.face) {
+            let (x, y) = (i % camera.size.0, i / camera.size.0);
+            assert_eq!(*face, expected(x, y), "{name}, by {}: column {x}, row {y}", way.name());
+        }
+        assert_eq!(picture.stats.clamps, 0, "{name}, by {}", way.name());
+        assert_identical(&picture, &render(renderer, camera), name);
+    }
+}
+
+/// A gap eight pixels high between two cubes, a thousandth to a hundred-thousandth of the model: eight rows of nothing.
+#[test]
+fn gaps_stay_open() {
+    let mut renderer = watched(&Model::default());
+    for share in [1e-3, 1e-4, 1e-5] {
+        let gap = share * DVec3::new(1.0, 1.0, 2.0).length();
+        let all = vec![block([0.0; 3], [1.0; 3]), block([0.0, 0.0, 1.0 + gap], [1.0, 1.0, 2.0])];
+        let camera = along_y(DVec3::new(0.5, 0.0, 1.0 + 0.5 * gap), 4.0 * gap, (12, 32));
+        let row = |_, y| [2, 0, 1][usize::from(y >= 12) + usize::from(y >= 20)];
+        shows(&mut renderer, &format!("a gap of {share}"), &solids::solid("A+B", all), &camera, row);
+    }
+    assert_silent(renderer);
+}
+
+/// Half a hollow ball, its rim from above: the shell is eight columns wide, whatever it measures. Below the share of the
+/// model that rounded files are off by (`SurfaceTable::DRAWN`) it is nothing.
+#[test]
+fn shells_are_as_thick_as_they_are() {
+    let mut renderer = watched(&Model::default());
+    for thin in [1e-2, 1e-3, 1e-4, 3e-5, 1e-5, 1e-6] {
+        let lid = block([-2.0, -2.0, 0.0], [2.0; 3]);
+        let all = vec![ball(1.0, 0.0), ball(1.0 - thin, 0.0), lid];
+        let size = all.iter().map(Primitive::bounds).fold(Bounds::EMPTY, |a, b| a.union(b)).diagonal();
+        let bowl = solids::solid("A-B-C", all);
+        let eye = DVec3::new(1.0 - 0.5 * thin, 0.0, 3.0);
+        let projection = Projection::Orthographic { height: 4.0 * thin };
+        let target = eye.with_z(0.0);
+        let camera = Camera { eye, target, up: DVec3::Y, projection, depth_range: (1.0, 10.0), size: (32, 32) };
+        // the inner wall, the rim, nothing
+        let column = |x, _| {
+            if thin < SurfaceTable::DRAWN * size { 0 } else { [2, 3, 0][usize::from(x >= 12) + usize::from(x >= 20)] }
+        };
+        shows(&mut renderer, &format!("a shell of {thin}"), &bowl, &camera, column);
+    }
+    assert_silent(renderer);
+}
+
+/// Rays of the middle row lie in the face that two cubes share: they are within exactly one of them, so the union has no
+/// slit. Which one depends on who states the plane first: it is not within that one.
+#[test]
+fn rays_in_a_face_are_on_one_side_of_it() {
+    let mut renderer = watched(&Model::default());
+    let cubes = || vec![block([0.0; 3], [1.0; 3]), block([0.0, 0.0, 1.0], [1.0, 1.0, 2.0])];
+    let camera = along_y(DVec3::new(0.5, 0.0, 1.0), 4.0, (33, 33));
+    // a pixel is 4/33 of a unit: eight on either side of the middle
+    let within = |x: u32, y: u32, low: u32, high: u32| x.abs_diff(16) <= 4 && (low..=high).contains(&y);
+    let whose = |x, y| u32::from(within(x, y, 17, 24)) + 2 * u32::from(within(x, y, 8, 16));
+    shows(&mut renderer, "both", &solids::solid("A+B", cubes()), &camera, whose);
+    shows(&mut renderer, "the lower", &solids::solid("A-B", cubes()), &camera, |x, y| whose(x, y) & 1);
+    shows(&mut renderer, "the upper", &solids::solid("B-A", cubes()), &camera, |x, y| {
+        if y == 16 { 0 } else { whose(x, y) & 2 }
+    });
+    shows(&mut renderer, "what is shared", &solids::solid("AB", cubes()), &camera, |_, _| 0);
+    assert_silent(renderer);
+}
+
+/// 128 balls in a row, all but the last of them cut away: 255 faces lie before the one that is seen.
+#[test]
+fn what_lies_behind_255_faces_is_seen() {
+    let mut all: Vec<Primitive> = (0..128).map(|k| ball(0.4, f64::from(k))).collect();
+    all.push(below(DVec3::NEG_X, -126.5));
+    (1..).zip(&mut all).for_each(|(id, p)| p.id = id);
+    let mut b = Builder::new();
+    let far = b.leaf(128);
+    let balls: Vec<u32> = (0..128).map(|p| b.leaf(p)).collect();
+    let union = b.fold(Op::Union, balls);
+    let root = b.pair(Op::Intersection, far, union);
+    let model = Model { solids: vec![Solid::new(all, b.finish(root).unwrap()).unwrap()], ..Model::default() };
+    let camera = Camera {
+        eye: DVec3::X * -2.0,
+        target: DVec3::ZERO,
+        up: DVec3::Z,
+        projection: Projection::Orthographic { height: 0.02 },
+        depth_range: (1.0, 200.0),
+        size: (24, 16),
+    };
+    let mut renderer = watched(&model);
+    shows(&mut renderer, "the last ball", &model, &camera, |_, _| 128);
+    assert_silent(renderer);
+}
+
+/// Balanced trees of sums of products of sums: those that need most labels.
+#[test]
+fn trees_that_need_many_labels() {
+    let tree = |n: u32| {
+        let mut b = Builder::new();
+        let mut k = 0f64;
+        // multiples of the golden ratio: spread evenly, and none like another
+        let mut place = || {
+            k += 1.0;
+            (k * 0.618_033_988_749_895).fract() * 0.5 - 0.25
+        };
+        let mut all: Vec<Primitive> = (0..n).map(|_| moved(at(place(), place(), place()), ball(0.6, 0.0))).collect();
+        (1..).zip(&mut all).for_each(|(id, p)| p.id = id);
+        let mut row: Vec<u32> = (0..n).map(|p| b.leaf(p)).collect();
+        let mut op = Op::Union;
+        while row.len() > 1 {
+            row = row.chunks(2).map(|c| if c.len() == 2 { b.pair(op, c[0], c[1]) } else { c[0] }).collect();
+            op = if op == Op::Union { Op::Intersection } else { Op::Union };
+        }
+        let tree = b.finish(row[0]).unwrap();
+        Model { solids: vec![Solid::new(all, tree).unwrap()], ..Model::default() }
+    };
+    right_at((48, 32), vec![("15 leaves", tree(15)), ("46 leaves", tree(46))], false);
+    // of 255, each of hundreds of layers asks all: not by layers
+    let model = tree(255);
+    let (tracer, camera) = (Tracer::new(&model), perspective(&model, (48, 32)));
+    let mut renderer = watched(&model);
+    for solids in [SolidWay::Events, SolidWay::Cst] {
+        renderer.upload_with(&model, SceneSettings { solids, ..Default::default() }).unwrap();
+        assert_eq!(faults(&mut renderer, &tracer, &camera, false), None, "255 leaves, by {}", solids.name());
+    }
+    assert_silent(renderer);
+}
+
+/// The solid and the eye moved together: the same picture, but for pixels at edges.
+#[test]
+fn rigid_motions_move_the_picture() {
+    let still = solids::solid(
+        "A-B+CD",
+        vec![
+            block([-1.0; 3], [1.0, 1.0, 0.5]),
+            post(0.6, -2.0, 4.0),
+            ball(1.2, 0.5),
+            moved(at(0.5, 0.0, 0.5), ring(0.8, 0.3)),
+        ],
+    );
+    let motion = at(3.0, -7.0, 11.0) * turned(0.4, 1.0, -2.0);
+    let moving = |p: &Primitive| moved(motion, p.clone());
+    let solid = &still.solids[0];
+    let solid = Solid::new(solid.primitives().iter().map(moving).collect(), solid.tree().clone()).unwrap();
+    let gone = Model { solids: vec![solid], ..Model::default() };
+    let here = perspective(&still, (240, 160));
+    let there = Camera {
+        eye: motion.transform_point3(here.eye),
+        target: motion.transform_point3(here.target),
+        up: motion.transform_vector3(here.up),
+        ..here
+    };
+    let mut renderer = watched(&still);
+    let first = render(&mut renderer, &here);
+    renderer.upload(&gone).unwrap();
+    let second = render(&mut renderer, &there);
+    assert_eq!(faults(&mut renderer, &Tracer::new(&gone), &there, false), None);
+    let differ = first.face.iter().zip(&second.face).filter(|(a, b)| a != b).count();
+    assert!(differ <= 1, "{differ} pixels");
+    // across the face: sixteen roundings of a depth near 8
+    let across = |i: usize| {
+        let (_, d) = here.ray(DVec2::new((i % 240) as f64 + 0.5, (i / 240) as f64 + 0.5));
+        let cosine = DVec3::from(first.normal[i].map(f64::from)).dot(d.normalize()).abs();
+        f64::from((first.depth[i] - second.depth[i]).abs()) * cosine
+    };
+    let both = (0..first.face.len()).filter(|i| first.face[*i] == second.face[*i] && first.face[*i] != 0);
+    let off = both.map(across).fold(0.0, f64::max);
+    assert!(off < 8e-6, "{off}");
+    assert_silent(renderer);
+}
