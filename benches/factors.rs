@@ -6,7 +6,7 @@
 use glam::DVec3;
 use selvedge::import;
 use selvedge::model::{Bounds, Camera};
-use selvedge::rivals::factors::{Way, Ways, of_model, of_random};
+use selvedge::rivals::factors::{Spread, Way, Ways, of_model, of_random};
 use std::path::Path;
 
 const WAYS: [Way; 10] = [
@@ -23,21 +23,24 @@ const WAYS: [Way; 10] = [
 ];
 
 fn print(what: &str, all: &[Ways]) {
-    println!("{what}: {} patches in the picture", all[0].patches);
+    println!("\n{what}: {} patches in the picture\n", all[0].patches);
     println!(
-        "{:28}{:>12}{:>12}{:>12}{:>14}{:>12}{:>10}",
-        "way", "unanswered", "> 0.5 px", "worst px", "quads", "polynomial", "rational"
+        "| way | > 0.5 px | worst px | clamped | quads | polynomial | rational | polynomial, depth too | rational |"
     );
+    println!("|---|---:|---:|---:|---:|---:|---:|---:|---:|");
+    let spread = |s: Spread| if s.median.is_nan() { "-".into() } else { format!("{:.2}, {:.2}", s.median, s.most) };
     for w in all {
         println!(
-            "{:28}{:>12}{:>12}{:>12.3}{:>14.0}{:>12.2}{:>10.2}",
-            format!("{:?}", w.way),
-            w.unanswered,
+            "| {:?} | {} | {:.3} | {} | {:.0} | {} | {} | {} | {} |",
+            w.way,
             w.violations,
             w.worst / 2.0,
+            w.unanswered,
             w.quads,
-            w.finer_polynomial,
-            w.finer_rational
+            spread(w.finer_polynomial),
+            spread(w.finer_rational),
+            spread(w.space_polynomial),
+            spread(w.space_rational)
         );
     }
 }

@@ -23,6 +23,11 @@ float bend_over(Patch patch_, vec2 step_) {
     return dot(patch_.bend, vec3(step_.x * step_.x, 2.0 * step_.x * step_.y, step_.y * step_.y));
 }
 
+// Bounds |S_uv|.
+float turn_of(Patch patch_) {
+    return patch_.bend.y + sqrt(patch_.bend.x * patch_.bend.z);
+}
+
 // Whether nothing of the face is in a cell of `n` x `n`. `outside`: a bit for each of OUTSIDE_CELLS x OUTSIDE_CELLS, rows
 // of them from the lowest bit on.
 bool is_outside(uvec2 outside, uvec2 cell, uint n) {
@@ -112,7 +117,7 @@ bool cover_cell(Patch patch_, View view, float scale, vec2 segment, uvec2 cell, 
         vec4 pushed = q + outwards.x * push.x * qu + outwards.y * push.y * qv;
         if (pushed.z < near) return false;
         cover(c, pushed);
-        float turned = patch_.bend.y * (push.x * size.y + push.y * size.x) / 2.0;
+        float turned = turn_of(patch_) * (push.x * size.y + push.y * size.x) / 2.0;
         off = max(off, chord + bend_over(patch_, push) / 2.0 + turned);
     }
     c.depth -= off * scale;

@@ -32,7 +32,7 @@ struct Patch {
     vec3 box_max;
     uint shape;
     vec4 domain;     // u0, v0, u1 - u0, v1 - v0 within the face
-    vec3 bend;       // largest |S_uu|, |S_uv|, |S_vv| over the unit square, part units
+    vec3 bend;       // |S_uu x x + 2 S_uv x y + S_vv y y| <= bend.x x x + 2 bend.y |x y| + bend.z y y, part units
     uint face;
 };
 

@@ -4,7 +4,7 @@
 //!    box of the patch ──▶ outside the picture? ──▶ tau = 0
 //!         │
 //!         ▼ smallest W
-//!    |S_uu|, |S_uv|, |S_vv| x pixels per unit ──▶ (tau_u, tau_v), the guaranteed factor
+//!    second derivatives x pixels per unit ──▶ (tau_u, tau_v), the guaranteed factor
 //! ```
 //!
 //! The factor is derived in [`twin::factor`](crate::twin::factor).

@@ -159,7 +159,7 @@ impl FaceData {
             box_max: hi,
             shape: abi::Patch::pack_shape((p.patch.degree_u, p.patch.degree_v), self.rational, side, borders),
             domain: [corner.x as f32, corner.y as f32, size.x as f32, size.y as f32],
-            bend: flat_is_zero([bend.uu, bend.uv, bend.vv], p.patch.bounds()).map(|x| x as f32),
+            bend: flat_is_zero([bend.uu, bend.twist, bend.vv], p.patch.bounds()).map(|x| x as f32),
             face: 0,
         });
         if side == Side::Outside && !editable {

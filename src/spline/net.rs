@@ -28,6 +28,7 @@ pub(super) struct Net<T> {
     values: Vec<T>,
 }
 
+/// What a net has for coefficients.
 pub(super) trait Value:
     Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
 {
@@ -69,6 +70,45 @@ impl<T: Value> Net<T> {
         Self::build(self.n, self.k, |i, j| self.at(i, j) - other.at(i, j))
     }
 
+    /// Row by row, `u` fastest.
+    pub fn all(&self) -> &[T] {
+        &self.values
+    }
+
+    /// The same function, of a degree that is no lower.
+    pub fn elevated(&self, n: usize, k: usize) -> Self {
+        if (self.n, self.k) == (n, k) {
+            return self.clone();
+        }
+        self.times(&Net::build(n - self.n, k - self.k, |_, _| 1.0))
+    }
+
+    /// The nets over both halves of the range of `u`.
+    pub fn halves_u(mut self) -> [Self; 2] {
+        let mut right = self.clone();
+        for row in self.values.chunks_exact_mut(self.n + 1).zip(right.values.chunks_exact_mut(self.n + 1)) {
+            halve(row.0, row.1);
+        }
+        [self, right]
+    }
+
+    /// The nets over both halves of the range of `v`.
+    pub fn halves_v(mut self) -> [Self; 2] {
+        let mut above = self.clone();
+        let columns = self.n + 1;
+        let mut column = vec![T::default(); self.k + 1];
+        let mut other = column.clone();
+        for i in 0..columns {
+            (0..=self.k).for_each(|j| column[j] = self.at(i, j));
+            halve(&mut column, &mut other);
+            for j in 0..=self.k {
+                self.values[j * columns + i] = column[j];
+                above.values[j * columns + i] = other[j];
+            }
+        }
+        [self, above]
+    }
+
     /// Product with a scalar net: coefficient `m` of degree `n1 + n2` is
     /// `sum C(n1, a) C(n2, m - a) / C(n1 + n2, m) f_a g_{m-a}`, in each direction.
     pub fn times(&self, other: &Net<f64>) -> Self {
@@ -94,6 +134,18 @@ impl<T: Value> Net<T> {
             }
         }
         product
+    }
+}
+
+/// De Casteljau's algorithm at 1/2: `row` becomes the coefficients over the first half, `other` those over the second.
+fn halve<T: Value>(row: &mut [T], other: &mut [T]) {
+    let n = row.len() - 1;
+    for last in (0..=n).rev() {
+        other[last] = row[n];
+        // what is behind stays: row[k] after k steps is a coefficient of the first half
+        for i in (n - last + 1..=n).rev() {
+            row[i] = (row[i - 1] + row[i]) * 0.5;
+        }
     }
 }
 

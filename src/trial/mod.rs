@@ -6,5 +6,5 @@ mod patch;
 mod random;
 
 pub(crate) use case::Case;
-pub(crate) use patch::{Emit, Kind, Trial};
+pub(crate) use patch::{Deviation, Emit, Kind, Trial};
 pub(crate) use random::Random;

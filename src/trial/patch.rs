@@ -58,6 +58,8 @@ pub(crate) struct Trial {
 pub(crate) struct Deviation {
     /// The largest in pixels where the triangle is in the picture.
     pub px: f64,
+    /// The same with what it is off in depth, by the same number of pixels a unit.
+    pub space_px: f64,
     /// Points compared.
     pub points: usize,
     /// Every cell was measured and is in the picture.
@@ -165,7 +167,9 @@ impl Trial {
                 let exact = s[i + a][j + b];
                 for t in triangles_at(corners, a as f64 / fineness as f64, b as f64 / fineness as f64) {
                     if self.seen(t) && exact.w > 0.0 {
-                        most.px = most.px.max(pixel(t).distance(pixel(exact)));
+                        let (px, deep) = (pixel(t).distance(pixel(exact)), self.depth_px(t, exact));
+                        most.px = most.px.max(px);
+                        most.space_px = most.space_px.max(px.hypot(deep));
                         most.points += 1;
                     } else {
                         most.whole = false;
@@ -176,14 +180,31 @@ impl Trial {
         most
     }
 
-    /// The smallest factors in the ratio of `tau`, which keep the budget, that do so too.
-    pub(crate) fn smallest(&self, tau: [usize; 2], fineness: usize, emit: Emit) -> [usize; 2] {
+    /// How far apart two points are in depth, in pixels there.
+    fn depth_px(&self, t: DVec4, s: DVec4) -> f64 {
+        let focal = f64::from(self.frame.focal);
+        // in perspective w is the depth, of homogeneous points times a weight that only their vertices know
+        if self.frame.perspective != 0 {
+            focal * (t.w - s.w).abs() / s.w
+        } else {
+            focal * (t.z / t.w - s.z / s.w).abs()
+        }
+    }
+
+    /// The smallest factors in the ratio of `tau` whose deviation, by `of`, is within the budget, as that of `tau` is.
+    pub(crate) fn smallest(
+        &self,
+        tau: [usize; 2],
+        fineness: usize,
+        emit: Emit,
+        of: impl Fn(Deviation) -> f64,
+    ) -> [usize; 2] {
         let most = tau[0].max(tau[1]);
         let scaled = |part: usize| tau.map(|t| (t * part).div_ceil(most));
         let (mut low, mut high) = (0, most); // `high` suffices
         while high - low > 1 {
             let middle = (low + high) / 2;
-            let kept = self.measure(scaled(middle), fineness, emit).px <= self.allowed();
+            let kept = of(self.measure(scaled(middle), fineness, emit)) <= self.allowed();
             if kept { high = middle } else { low = middle }
         }
         scaled(high)

@@ -12,15 +12,16 @@
 //! so `Σ λ_i d_i = 0`. Taylor's theorem along the unit vector of `e`, at `(u, v)`, leaves
 //!
 //! ```text
-//!   |e| ≤ ½ Σ λ_i (|S_uu| du_i² + 2 |S_uv| |du_i dv_i| + |S_vv| dv_i²)
+//!   |e| ≤ ½ Σ λ_i |S_uu du_i² + 2 S_uv du_i dv_i + S_vv dv_i²| ≤ ½ Σ λ_i (a du_i² + 2 b |du_i dv_i| + c dv_i²)
 //! ```
 //!
-//! with the largest derivatives over the rectangle. `Σ λ_i du_i²` is the variance of a quantity that
+//! each `i` with the derivatives at a place of its own, and `a`, `b`, `c` from
+//! [`derivative_bound`](crate::spline::DerivativeBound), good for all places. `Σ λ_i du_i²` is the variance of a quantity that
 //! spans at most `1 / tau_u`, hence at most `1 / (4 tau_u²)` (Popoviciu), and `Σ λ_i |du_i dv_i|` at most
 //! `1 / (4 tau_u tau_v)` (Cauchy and Schwarz). So
 //!
 //! ```text
-//!   |e| ≤ E = (|S_uu| / tau_u² + 2 |S_uv| / (tau_u tau_v) + |S_vv| / tau_v²) / 8
+//!   |e| ≤ E = (a / tau_u² + 2 b / (tau_u tau_v) + c / tau_v²) / 8
 //! ```
 //!
 //! for every triangle in such a rectangle, of either diagonal; pass [`split`](super::split) sees to it that
@@ -48,7 +49,7 @@
 //! face's ring reaches beyond `[0, 1]²`: `visibility_surface.glsl` pushes no vertex so far that the surface leaves its
 //! tangent by more than a quarter of the budget, so across the border it is off by 25/16 of it at most.
 //!
-//! **The choice.** With `a`, `b`, `c` the derivatives over the budget and `r = tau_u / tau_v`, the quads are
+//! **The choice.** With `a`, `b`, `c` over the budget and `r = tau_u / tau_v`, the quads are
 //!
 //! ```text
 //!   tau_u tau_v = a / r + 2 b + c r          fewest, 2 (sqrt(a c) + b), at r = sqrt(a / c)
@@ -72,7 +73,7 @@ const UP: f32 = 1.00001;
 /// Segments `(tau_u, tau_v)`, whole numbers of small product, with
 /// `bend[0] / tau_u² + 2 bend[1] / (tau_u tau_v) + bend[2] / tau_v² ≤ budget`.
 ///
-/// `bend` bounds `|S_uu|`, `|S_uv|`, `|S_vv|` in part units; `budget` is `8 deviation_px` over the pixels
+/// `bend`: `|S_uu x² + 2 S_uv x y + S_vv y²| ≤ bend[0] x² + 2 bend[1] |x y| + bend[2] y²`, part units; `budget` is `8 deviation_px` over the pixels
 /// that one part unit can cover. Good for factors up to 10⁹.
 pub fn factors(bend: [f32; 3], budget: f32) -> [f32; 2] {
     let [a, b, c] = bend.map(|x| x / budget);

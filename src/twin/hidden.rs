@@ -12,13 +12,13 @@
 //! ```
 //!
 //! **Triangles.** A triangle's point at `(u, v)` is within `E(1 / τ)` of the surface there, and the surface of a cell of
-//! sides `s` within `E(s)` of what is bilinear through its corners, with `E(s) = (|S_uu| s_u² + 2 |S_uv| s_u s_v +
-//! |S_vv| s_v²) / 8` ([`factor`](super::factor)). A bilinear point is a mean of the corners: its depth lies between
+//! sides `s` within `E(s)` of what is bilinear through its corners, with `E(s) = (a s_u² + 2 b s_u s_v + c s_v²) / 8`
+//! and `a`, `b`, `c` the patch's bend ([`factor`](super::factor)). A bilinear point is a mean of the corners: its depth lies between
 //! theirs, and its pixel within theirs, which are quotients of linear functions.
 //!
 //! **Borders.** What pass `visibility` pushes outwards, it pushes along the tangent by at most a segment, and by as much
 //! as takes it twice the ring across the border: `s + p` is within `4 E(p)` of `s + p S_u`, and the tangent turns by at
-//! most `|S_uv|` along the border. How many units of u that is hangs on the place; here it is asked at the cell's
+//! most `|S_uv| <= b + sqrt(a c)` along the border (the form along `(s, 1 / s)` less that along `(s, -1 / s)` is 4 S_uv). How many units of u that is hangs on the place; here it is asked at the cell's
 //! corners and doubled. Of faces with cells that are left out ([`is_outside`]) all sides of a cell count as borders.
 //!
 //! **What does not pass the depth test changes nothing.** Neither visibility nor depth, and a ring counts only before
@@ -178,6 +178,12 @@ impl Seen<'_> {
         uu * step.x * step.x + 2.0 * uv * step.x * step.y + vv * step.y * step.y
     }
 
+    /// Bounds `|S_uv|`.
+    fn turn(&self) -> f64 {
+        let [uu, twist, vv] = self.abi.bend.map(f64::from);
+        twist + (uu * vv).sqrt()
+    }
+
     fn to_pixel(&self, p: DVec3, w: f64) -> [f64; 4] {
         let rows = [self.view.x, self.view.y, self.view.depth, self.view.w];
         rows.map(|row| DVec4::from_array(row.map(f64::from)).dot(p.extend(w)))
@@ -214,7 +220,7 @@ impl Seen<'_> {
             let (qu, qv) = (self.to_pixel(jet.du, 0.0), self.to_pixel(jet.dv, 0.0));
             let push = (PUSH_SLACK * self.push(q, qu, qv)).min(DVec2::splat(f64::from(MAX_PUSH)).min(self.segment));
             add(std::array::from_fn(|k| q[k] + outwards[0] * push.x * qu[k] + outwards[1] * push.y * qv[k]))?;
-            let turned = f64::from(self.abi.bend[1]) * (push.x * size.y + push.y * size.x) / 2.0;
+            let turned = self.turn() * (push.x * size.y + push.y * size.x) / 2.0;
             off = off.max(chord + self.bend(push) / 2.0 + turned);
         }
         let depth = depth - off * self.scale;

@@ -189,8 +189,11 @@ pub struct BenchArgs {
 #[derive(Debug, Args)]
 pub struct SweepArgs {
     /// The models: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
-    #[arg(required = true)]
+    #[arg(required_unless_present = "degrees")]
     pub models: Vec<PathBuf>,
+    /// Also a wavy sheet of 1024 patches of each of these degrees
+    #[arg(long, value_name = "LIST", value_parser = clap::value_parser!(u8).range(1..=9), value_delimiter = ',')]
+    pub degrees: Vec<u8>,
     /// How patches are divided: bound, or a level from 1 to 64; several, with commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "bound")]
     pub factors: Vec<Factors>,
@@ -215,11 +218,18 @@ pub struct SweepArgs {
     /// Pixels judged in the first frame of each; 0 judges none
     #[arg(long, value_name = "N", default_value_t = 2_000)]
     pub samples: usize,
+    /// In place of the table: the bound beside the smallest fixed level that is off by no more, of each view and of all
+    /// zooms together
+    #[arg(long, conflicts_with = "factors")]
+    pub against_fixed: bool,
+    /// Also the triangles a second beside those of an instanced grid of as many
+    #[arg(long)]
+    pub rate: bool,
     /// Part of the name of the Vulkan device to use
     #[arg(long, value_name = "NAME")]
     pub device: Option<String>,
     /// Table to write
-    #[arg(long, value_name = "FILE.csv")]
+    #[arg(long, value_name = "FILE.csv", conflicts_with = "against_fixed")]
     pub out: Option<PathBuf>,
 }
 

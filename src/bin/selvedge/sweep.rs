@@ -5,8 +5,13 @@
 //! ```
 //!
 //! What stands in one group of rows was measured in turn, so that whatever else the machine does slows all of it
-//! alike; their ratios mean something where times do not. In the end, how time grows with each quantity that was swept:
-//! the exponent `p` of `time ~ quantity^p`, fitted by least squares of the logarithms.
+//! alike; their ratios mean something where times do not. In the end, how time grows (`growth`), with `--rate` triangles a
+//! second beside those of a plain grid (`rate`); or, with `--against-fixed`, another table (`against`).
+
+mod against;
+mod growth;
+mod rate;
+mod sheet;
 
 use crate::args::{Factors, Size, SubdivideArgs, SweepArgs};
 use crate::camera::closer;
@@ -55,31 +60,32 @@ struct Row {
 
 /// Sweeps every model.
 pub fn run(args: &SweepArgs) -> Result<Outcome> {
+    let models = models(args)?;
+    if args.against_fixed {
+        return against::run(args, &models);
+    }
     let mut rows = Vec::new();
     let mut device = String::new();
-    for file in &args.models {
-        let import = session::open(file, &SubdivideArgs::default())?;
-        if import.model.trim.is_some() {
-            bail!("{}: a volume trims it, and would not go with the copies", file.display());
-        }
-        let name = file.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+    for (name, model) in &models {
         for &copies in &args.copies {
-            let model = copied(&import.model, copies, args.distinct);
-            let options = HeadlessOptions { device: args.device.clone(), validation: false };
-            let mut renderer = HeadlessRenderer::new(&options)?;
+            let model = copied(model, copies, args.distinct);
+            let mut renderer = renderer(args)?;
             during("uploading the model", || renderer.upload(&model))?;
             let tracer = (args.samples > 0).then(|| Tracer::new(&model));
             for &zoom in &args.zooms {
                 for &Size(width, height) in &args.sizes {
                     let camera = camera(&model, zoom, (width, height));
-                    let mut group = Group { name: &name, copies, zoom, camera, tracer: tracer.as_ref() };
+                    let mut group = Group { name, copies, zoom, camera, tracer: tracer.as_ref() };
                     let measured = during("measuring", || group.measure(args, &mut renderer, &mut device))?;
                     rows.extend(measured);
                 }
             }
         }
     }
-    output::print(&format!("{device}\n{}\n{}", table(&rows), exponents(&rows)))?;
+    output::print(&format!("{device}\n{}\n{}", table(&rows), growth::told(&rows)))?;
+    if args.rate {
+        output::print(&rate::told(args, &rows)?)?;
+    }
     if let Some(path) = &args.out {
         output::file(path, |to| {
             let mut lines = csv::Writer::from_writer(to);
@@ -88,6 +94,25 @@ pub fn run(args: &SweepArgs) -> Result<Outcome> {
         })?;
     }
     Ok(Outcome::Good)
+}
+
+/// Those of the files, and the sheets, by name.
+fn models(args: &SweepArgs) -> Result<Vec<(String, Model)>> {
+    let mut models = Vec::new();
+    for file in &args.models {
+        let import = session::open(file, &SubdivideArgs::default())?;
+        if import.model.trim.is_some() {
+            bail!("{}: a volume trims it, and would not go with the copies", file.display());
+        }
+        models.push((file.file_stem().unwrap_or_default().to_string_lossy().into_owned(), import.model));
+    }
+    let sheets = args.degrees.iter().map(|&degree| (format!("degree {degree}"), sheet::of_degree(degree.into())));
+    models.extend(sheets);
+    Ok(models)
+}
+
+fn renderer(args: &SweepArgs) -> Result<HeadlessRenderer> {
+    Ok(HeadlessRenderer::new(&HeadlessOptions { device: args.device.clone(), validation: false })?)
 }
 
 /// In a cube of copies, a tenth of the model apart.
@@ -156,12 +181,7 @@ impl Group<'_> {
                 .map(|t| verdict::of(t, &self.camera, &picture, args.samples, way.1, self.zoom, &way.0.to_string()));
             let last = stats.last().expect("at least one frame");
             *device = format!("{} ({})", last.device, last.driver);
-            let pass = |name: &str| {
-                let of = |s: &FrameStats| {
-                    s.passes.iter().filter(|p| name.is_empty() || p.name == name).map(|p| p.gpu_ms).sum()
-                };
-                median(stats.iter().map(of).collect())
-            };
+            let pass = |name: &str| pass_ms(stats, name);
             let pool = |name: &str| last.pools.iter().filter(|p| p.name == name).map(|p| p.bytes).sum();
             rows.push(Row {
                 model: self.name.to_owned(),
@@ -189,6 +209,13 @@ impl Group<'_> {
         }
         Ok(rows)
     }
+}
+
+/// Milliseconds of the passes of that name, of all where it is empty; the median over the frames.
+fn pass_ms(frames: &[FrameStats], name: &str) -> f64 {
+    let of =
+        |s: &FrameStats| s.passes.iter().filter(|p| name.is_empty() || p.name == name).map(|p| p.gpu_ms).sum::<f64>();
+    median(frames.iter().map(of).collect())
 }
 
 fn median(mut values: Vec<f64>) -> f64 {
@@ -240,43 +267,9 @@ fn table(rows: &[Row]) -> String {
     table.to_string()
 }
 
-/// A quantity of a row.
-type Quantity = (&'static str, fn(&Row) -> f64);
-
-/// Exponents of what was swept, over the rows of `bound`.
-fn exponents(rows: &[Row]) -> String {
-    let quantities: [Quantity; 3] = [
-        ("patches", |r| r.patches as f64),
-        ("covered pixels", |r| r.covered as f64),
-        ("triangles", |r| r.triangles as f64),
-    ];
-    let line = |(name, of): &Quantity| {
-        let points: Vec<_> =
-            rows.iter().filter(|r| r.factors == "bound").map(|r| (of(r).ln(), r.all_ms.ln())).collect();
-        exponent(&points).map(|p| format!("time grows with {name} to the power of {p:.2}"))
-    };
-    quantities.iter().filter_map(line).collect::<Vec<_>>().join("\n")
-}
-
-/// The slope of the least-squares line; `None` where the abscissae do not differ by a factor of two.
-fn exponent(points: &[(f64, f64)]) -> Option<f64> {
-    let n = points.len() as f64;
-    let (mx, my) = points.iter().fold((0.0, 0.0), |(x, y), p| (x + p.0 / n, y + p.1 / n));
-    let (lo, hi) = points.iter().fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), p| (lo.min(p.0), hi.max(p.0)));
-    let spread: f64 = points.iter().map(|p| (p.0 - mx).powi(2)).sum();
-    (hi - lo > 2f64.ln()).then(|| points.iter().map(|p| (p.0 - mx) * (p.1 - my)).sum::<f64>() / spread)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn a_power_law_has_its_exponent() {
-        let points: Vec<_> = [1.0f64, 3.0, 20.0].iter().map(|x| (x.ln(), (5.0 * x.powf(0.75)).ln())).collect();
-        assert!((exponent(&points).expect("spread") - 0.75).abs() < 1e-12);
-        assert_eq!(exponent(&[(1.0, 2.0), (1.1, 3.0)]), None);
-    }
 
     #[test]
     fn copies_stand_apart() {

@@ -2,13 +2,15 @@
 
 use super::Way;
 use crate::model::{Camera, Model};
-use crate::trial::{Emit, Kind, Trial};
+use crate::trial::{Deviation, Emit, Kind, Trial};
 use rayon::prelude::*;
 
 /// Lattice intervals along one side of a cell: the middle of the diagonal is where triangles are off by most.
 const FINENESS: usize = 2;
 /// Finer triangulations take no part in the search for the smallest sufficient one.
 const MOST_SEARCHED: usize = 64;
+/// Of hardware.
+const MOST_LEVEL: u32 = 64;
 /// A budget of half a pixel for the tessellation alone; see `Budget`.
 const TOLERANCE_PX: f64 = 6.0;
 
@@ -21,6 +23,25 @@ struct Outcome {
     quads: f64,
     /// How much finer than the smallest sufficient factors of the same ratio, where that was looked for.
     finer: Option<f64>,
+    /// The same of those that are off in depth by no more, either; of ways that emit points.
+    finer_in_space: Option<f64>,
+}
+
+/// Of a set of numbers; not numbers where there are none.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Spread {
+    /// Half of them are no larger.
+    pub median: f64,
+    /// Nine in ten are no larger.
+    pub most: f64,
+}
+
+impl Spread {
+    fn of(mut values: Vec<f64>) -> Self {
+        values.sort_by(f64::total_cmp);
+        let at = |share: f64| values.get((values.len() as f64 * share) as usize).copied().unwrap_or(f64::NAN);
+        Self { median: at(0.5), most: at(0.9) }
+    }
 }
 
 /// Every way on the same patches.
@@ -38,10 +59,14 @@ pub struct Ways {
     pub worst: f64,
     /// Quads of all patches together.
     pub quads: f64,
-    /// Median of factor over smallest sufficient factor, polynomial patches; not a number where there are none.
-    pub finer_polynomial: f64,
+    /// Factor over smallest sufficient factor, polynomial patches.
+    pub finer_polynomial: Spread,
     /// The same, rational patches.
-    pub finer_rational: f64,
+    pub finer_rational: Spread,
+    /// Factor over the smallest one that keeps the budget in space, depth too; polynomial patches, ways that emit points.
+    pub space_polynomial: Spread,
+    /// The same, rational patches.
+    pub space_rational: Spread,
 }
 
 /// Random patches of degrees 2 to 7 with weights to 100 : 1, in perspective and through the near plane. The smallest
@@ -59,6 +84,41 @@ pub fn of_model(model: &Model, camera: &Camera, ways: &[Way]) -> Vec<Ways> {
     summaries(ways, &outcomes)
 }
 
+/// The patches of a model in one view, to be asked what ways are off by there.
+pub struct Seen {
+    trials: Vec<Trial>,
+}
+
+impl Seen {
+    /// Those that the camera may see; `tolerance_px` is the promise, of which the tessellation has its share.
+    pub fn new(model: &Model, camera: &Camera, tolerance_px: f64) -> Self {
+        let mut trials = Trial::of_model(model, camera, tolerance_px);
+        trials.retain(|trial| trial.tau[0] > 0);
+        Self { trials }
+    }
+
+    /// The largest deviation in pixels over all patches; what trims cut away counts.
+    pub fn deviation_px(&self, way: Way) -> f64 {
+        let off =
+            |trial: &Trial| way.factors(trial).map_or(f64::INFINITY, |t| trial.measure(t, FINENESS, way.emits()).px);
+        self.trials.par_iter().map(off).reduce(|| 0.0, f64::max)
+    }
+
+    /// The smallest level up to 64 that deviates by no more; `None` where none does.
+    pub fn level(&self, px: f64) -> Option<u32> {
+        let kept = |level: u32| self.deviation_px(Way::Fixed(level as usize)) <= px;
+        let (mut low, mut high) = (0, MOST_LEVEL);
+        if !kept(high) {
+            return None;
+        }
+        while high - low > 1 {
+            let middle = (low + high) / 2;
+            if kept(middle) { high = middle } else { low = middle }
+        }
+        Some(high)
+    }
+}
+
 /// One outcome a way; none for a patch that nobody sees.
 fn on(trial: &Trial, ways: &[Way], search: bool) -> Vec<Outcome> {
     if trial.tau[0] == 0 || trial.measure([8; 2], 1, Emit::Point).points == 0 {
@@ -70,7 +130,7 @@ fn on(trial: &Trial, ways: &[Way], search: bool) -> Vec<Outcome> {
 fn outcome(trial: &Trial, way: Way, search: bool) -> Outcome {
     let (rational, emit) = (trial.rational(), way.emits());
     let Some(tau) = way.factors(trial) else {
-        return Outcome { rational, answered: false, excess: 0.0, quads: 0.0, finer: None };
+        return Outcome { rational, answered: false, excess: 0.0, quads: 0.0, finer: None, finer_in_space: None };
     };
     let deviation = trial.measure(tau, FINENESS, emit);
     let allowed = trial.allowed();
@@ -78,15 +138,20 @@ fn outcome(trial: &Trial, way: Way, search: bool) -> Outcome {
     let quads = count(tau);
     let kept = deviation.px <= allowed;
     let searched = search && kept && deviation.whole && tau != [1, 1] && tau[0].max(tau[1]) <= MOST_SEARCHED;
-    let finer = searched.then(|| (quads / count(trial.smallest(tau, FINENESS, emit))).sqrt());
-    Outcome { rational, answered: true, excess: deviation.px / allowed, quads, finer }
+    let over = |of: fn(Deviation) -> f64| (quads / count(trial.smallest(tau, FINENESS, emit, of))).sqrt();
+    let finer = searched.then(|| over(|d| d.px));
+    let in_space = searched && emit == Emit::Point && deviation.space_px <= allowed;
+    let finer_in_space = in_space.then(|| over(|d| d.space_px));
+    Outcome { rational, answered: true, excess: deviation.px / allowed, quads, finer, finer_in_space }
 }
 
 fn summaries(ways: &[Way], outcomes: &[Vec<Outcome>]) -> Vec<Ways> {
     let seen: Vec<_> = outcomes.iter().filter(|all| !all.is_empty()).collect();
     let summary = |(k, way): (usize, &Way)| {
         let all = || seen.iter().map(|outcomes| &outcomes[k]);
-        let finer = |rational: bool| median(all().filter(|o| o.rational == rational).filter_map(|o| o.finer).collect());
+        let finer = |rational: bool, of: fn(&Outcome) -> Option<f64>| {
+            Spread::of(all().filter(|o| o.rational == rational).filter_map(of).collect())
+        };
         Ways {
             way: *way,
             patches: seen.len(),
@@ -94,16 +159,13 @@ fn summaries(ways: &[Way], outcomes: &[Vec<Outcome>]) -> Vec<Ways> {
             violations: all().filter(|o| o.excess > 1.0).count(),
             worst: all().map(|o| o.excess).fold(0.0, f64::max),
             quads: all().map(|o| o.quads).sum(),
-            finer_polynomial: finer(false),
-            finer_rational: finer(true),
+            finer_polynomial: finer(false, |o| o.finer),
+            finer_rational: finer(true, |o| o.finer),
+            space_polynomial: finer(false, |o| o.finer_in_space),
+            space_rational: finer(true, |o| o.finer_in_space),
         }
     };
     ways.iter().enumerate().map(summary).collect()
-}
-
-fn median(mut values: Vec<f64>) -> f64 {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied().unwrap_or(f64::NAN)
 }
 
 #[cfg(test)]

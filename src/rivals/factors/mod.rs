@@ -26,7 +26,7 @@
 
 mod measure;
 
-pub use measure::{Ways, of_model, of_random};
+pub use measure::{Seen, Spread, Ways, of_model, of_random};
 
 use super::slefe::{Enclosure, MOST_DEGREE, Slefe};
 use crate::spline::{Control, Patch};

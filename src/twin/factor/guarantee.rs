@@ -38,7 +38,7 @@ fn no_patch_deviates_by_more_than_the_budget() {
     let finer = |rational: bool| {
         let all = trials.par_iter().filter(|(t, d)| t.rational() == rational && d.whole && t.tau != [1, 1]);
         let quads = |[u, v]: [usize; 2]| (u * v) as f64;
-        let finer = |t: &Trial| (quads(t.tau) / quads(t.smallest(t.tau, FINENESS, Emit::Point))).sqrt();
+        let finer = |t: &Trial| (quads(t.tau) / quads(t.smallest(t.tau, FINENESS, Emit::Point, |d| d.px))).sqrt();
         median(all.map(|(t, _)| finer(t)).collect())
     };
     let (polynomial, rational) = (finer(false), finer(true));
