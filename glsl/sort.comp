@@ -16,7 +16,7 @@ layout(local_size_x = 128) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1) uniform usamplerBuffer row_starts;
 layout(scalar, binding = 2) readonly buffer RowTotal { uint row_total; };
-layout(scalar, binding = 3) writeonly buffer Rows { uvec2 rows[]; }; // first flip, one behind the last
+layout(scalar, binding = 3) writeonly buffer RowCounts { uint row_counts[]; };
 layout(scalar, binding = 4) buffer Intercepts { uint intercepts[]; };
 layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
 
@@ -69,21 +69,21 @@ uint sort_few(uint first, uint count) {
 
 void main() {
     uint row = gl_GlobalInvocationID.x;
-    uint row_count = counters.rows;
-    if (row >= row_count) return;
+    uint rows = counters.rows;
+    if (row >= rows) return;
     if (row == 0u) {
         counters.intercepts = row_total;
         if (row_total > frame.intercept_capacity) atomicOr(counters.failed, FAILED_INTERCEPTS);
     }
     uint first = word_at(row_starts, row);
-    uint end = row + 1u < row_count ? word_at(row_starts, row + 1u) : row_total;
+    uint end = row + 1u < rows ? word_at(row_starts, row + 1u) : row_total;
     if (end > frame.intercept_capacity) {
-        rows[row] = uvec2(0u); // the host grows the table and records again
+        row_counts[row] = 0u; // the host grows the table and records again
         return;
     }
     uint count = end - first;
     if (count <= FEW) {
-        rows[row] = uvec2(first, first + sort_few(first, count));
+        row_counts[row] = sort_few(first, count);
         return;
     }
     for (uint i = count / 2u; i > 0u; --i) sift(first, i - 1u, count);
@@ -104,5 +104,5 @@ void main() {
         }
         winding = next;
     }
-    rows[row] = uvec2(first, first + flips);
+    row_counts[row] = flips;
 }

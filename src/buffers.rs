@@ -113,10 +113,9 @@ pub(crate) struct TableBuffers {
     pub segment_starts: Texels,
     pub dispatches: Buffer,
     pub strips: Texels,
-    pub row_counts: Buffer,
+    pub row_counts: Texels,
     pub row_starts: Texels,
     pub row_total: Buffer,
-    pub rows: Texels,
     pub intercepts: Texels,
     pub border_cells: Texels,
 }
@@ -223,10 +222,9 @@ impl Buffers {
                 segment_starts: numbers("trim segment starts", counts.curves + 1, Texel::Words)?,
                 dispatches: indirect("trim dispatches", 3 * size_of::<[u32; 3]>() as u64)?,
                 strips: texels("trim strips", 8 * u64::from(counts.strips), Texel::U32x2)?,
-                row_counts: words("trim row counts", capacities.rows)?,
+                row_counts: numbers("trim row counts", capacities.rows, Texel::Words)?,
                 row_starts: numbers("trim row starts", capacities.rows, Texel::Words)?,
                 row_total: words("trim row total", 1)?,
-                rows: texels("trim rows", 8 * u64::from(capacities.rows), Texel::U32x2)?,
                 intercepts: numbers("trim intercepts", capacities.intercepts, Texel::Words)?,
                 border_cells: texels(
                     "trim border cells",

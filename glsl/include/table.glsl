@@ -4,12 +4,14 @@
 #define TABLE_GLSL
 
 #include "border_cells.glsl"
+#include "words.glsl"
 
 // as texels, which a driver fetches at once where it gathers words of storage buffers one by one
 layout(binding = TABLE_BINDING + 0) uniform usamplerBuffer table_strips; // first row, rows
-layout(binding = TABLE_BINDING + 1) uniform usamplerBuffer table_rows;   // first flip, one behind the last
-layout(binding = TABLE_BINDING + 2) uniform usamplerBuffer flips;        // u, in order in each row
-layout(binding = TABLE_BINDING + 3) uniform usamplerBuffer border_cells; // one a band
+layout(binding = TABLE_BINDING + 1) uniform usamplerBuffer row_starts;
+layout(binding = TABLE_BINDING + 2) uniform usamplerBuffer row_counts;
+layout(binding = TABLE_BINDING + 3) uniform usamplerBuffer flips;        // u, in order in each row
+layout(binding = TABLE_BINDING + 4) uniform usamplerBuffer border_cells; // one a band
 
 uint rows_of_strip(uint strip) { return texelFetch(table_strips, int(strip)).y; }
 
@@ -43,8 +45,8 @@ bool table_inside(uint first_strip, float strips, vec2 uv) {
     if (strip.y == 0u) return false;
     uint row = strip.x + min(uint(fract(s) * float(strip.y)), strip.y - 1u);
     if (row >= frame.row_capacity) return true; // the host grows the table and records again
-    uvec2 of_row = texelFetch(table_rows, int(row)).xy;
-    return (flips_passed(of_row.x, of_row.y, uv.x) & 1u) != 0u;
+    uint first = word_at(row_starts, row);
+    return (flips_passed(first, first + word_at(row_counts, row), uv.x) & 1u) != 0u;
 }
 
 // Whether all of a box is inside or none of it: within a strip, what is looked up changes at trim curves alone.

@@ -50,7 +50,7 @@ impl<'a> TableParts<'a> {
     /// What the look-up reads, in the order of `glsl/include/trim.glsl`.
     pub(super) fn test(self) -> Vec<Resource<'a>> {
         let t = self.buffers;
-        [&t.strips, &t.rows, &t.intercepts, &t.border_cells].map(Resource::from).to_vec()
+        [&t.strips, &t.row_starts, &t.row_counts, &t.intercepts, &t.border_cells].map(Resource::from).to_vec()
     }
 
     /// Records the passes; what the trim test reads is then ready for it.
@@ -160,13 +160,13 @@ impl<'a> TableParts<'a> {
             &[(&t.row_starts, w, r), (&t.row_total, w, r), (&t.row_counts, r, w), (&b.counters, r, w)],
         );
         p.cross.insert(cmd, &cross);
-        barrier::buffers(cmd, &[(&t.intercepts, w, w)]);
+        barrier::buffers(cmd, &[(&t.intercepts, w, w), (&t.row_counts, w, w)]);
 
         let sort = sort::Bindings {
             frame: frame.constants,
             row_starts: &t.row_starts,
             row_total: &t.row_total,
-            rows: &t.rows,
+            row_counts: &t.row_counts,
             intercepts: &t.intercepts,
             counters: &b.counters,
             dispatches: &t.dispatches,
@@ -176,7 +176,8 @@ impl<'a> TableParts<'a> {
             cmd,
             &[
                 (&t.strips, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
-                (&t.rows, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
+                (&t.row_starts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
+                (&t.row_counts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
                 (&t.intercepts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
                 (&t.border_cells, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
             ],

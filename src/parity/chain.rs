@@ -34,10 +34,9 @@ pub(super) struct Chain {
     pub row_total: u32,
     /// As `cross` leaves them; the order within a row is not part of the contract.
     pub intercepts: Vec<u32>,
-    /// As `sort` leaves them: float bits from the first to the last flip of each row.
+    /// As `sort` leaves them: the first `flip_counts[row]` words of a row are float bits.
     pub flips: Vec<u32>,
-    /// First flip of each row, and one behind its last.
-    pub rows: Vec<[u32; 2]>,
+    pub flip_counts: Vec<u32>,
     pub counters: Counters,
 }
 
@@ -68,7 +67,7 @@ impl Chain {
         let (mut counts, given) = (c.row_counts.clone(), (c.line_starts.as_slice(), c.segment_starts.as_slice()));
         twin::cross::insert(frame, scene, given, &c.row_starts, &mut counts, &mut c.intercepts);
         c.flips = c.intercepts.clone();
-        c.rows = twin::sort::sort(frame, &c.row_starts, c.row_total, &mut c.flips, &mut c.counters);
+        c.flip_counts = twin::sort::sort(frame, &c.row_starts, c.row_total, &mut c.flips, &mut c.counters);
         c
     }
 }

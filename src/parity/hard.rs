@@ -73,7 +73,8 @@ mod table {
         let flips: Vec<f32> = chain.flips.iter().map(|&bits| f32::from_bits(bits)).collect();
         let table = Table {
             strips: &chain.strips,
-            rows: &chain.rows,
+            row_starts: &chain.row_starts,
+            row_counts: &chain.flip_counts,
             flips: &flips,
             border_cells: &chain.border_cells,
             row_capacity: case_.frame.row_capacity,

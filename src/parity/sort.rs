@@ -1,7 +1,7 @@
 //! Parity of the pass `sort`: exact, whatever the order in which the rows were filled.
 
 use super::Random;
-use super::chain::{Chain, UNTOUCHED};
+use super::chain::Chain;
 use super::harness::{Gpu, Mismatch, same};
 use super::shapes::cases;
 use crate::abi::{Counters, Frame};
@@ -43,7 +43,7 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &Rows, expected: &Rows) -> Result<()
     let frame_buffer = gpu.upload("frame", &[*frame]);
     let row_starts = gpu.upload_texels("row starts", &given.starts, Texel::Words);
     let row_total = gpu.upload("row total", &[given.total]);
-    let of_rows = gpu.upload("rows", &vec![[UNTOUCHED; 2]; given.starts.len()]);
+    let row_counts = gpu.upload("row counts", &vec![0u32; given.starts.len()]);
     let intercepts = gpu.upload("intercepts", &given.intercepts);
     let counters = gpu.upload("counters", &[given.counters]);
     let rows = given.starts.len() as u32;
@@ -52,7 +52,7 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &Rows, expected: &Rows) -> Result<()
         frame: &frame_buffer,
         row_starts: &row_starts,
         row_total: &row_total,
-        rows: &of_rows,
+        row_counts: &row_counts,
         intercepts: &intercepts,
         counters: &counters,
         dispatches: &dispatches,
@@ -60,16 +60,17 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &Rows, expected: &Rows) -> Result<()
     let pass = Sort::new(gpu.device()).unwrap();
     gpu.run(|cmd| pass.record(cmd, &bindings));
     let (mut flips, mut after) = (expected.intercepts.clone(), expected.counters);
-    let places = twin::sort::sort(frame, &expected.starts, expected.total, &mut flips, &mut after);
-    same("rows", &gpu.read(&of_rows, places.len()), &places)?;
-    let found = flips_of(&places, &gpu.read(&intercepts, flips.len()));
-    same("flips", &found, &flips_of(&places, &flips))?;
+    let counts = twin::sort::sort(frame, &expected.starts, expected.total, &mut flips, &mut after);
+    same("row counts", &gpu.read(&row_counts, counts.len()), &counts)?;
+    let found = flips_of(expected, &counts, &gpu.read(&intercepts, flips.len()));
+    same("flips", &found, &flips_of(expected, &counts, &flips))?;
     same("counters", &gpu.read(&counters, 1), &[after])
 }
 
 /// Those of all rows, one after another: what a row holds behind them is nobody's.
-fn flips_of(places: &[[u32; 2]], words: &[u32]) -> Vec<u32> {
-    places.iter().flat_map(|&[first, end]| &words[first as usize..end as usize]).copied().collect()
+fn flips_of(rows: &Rows, counts: &[u32], words: &[u32]) -> Vec<u32> {
+    let of_row = |(&start, &count): (&u32, &u32)| &words[start as usize..][..count as usize];
+    rows.starts.iter().zip(counts).filter(|&(_, &count)| count > 0).flat_map(of_row).copied().collect()
 }
 
 #[test]

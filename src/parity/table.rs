@@ -16,7 +16,8 @@ const SHEET: usize = 2;
 fn table<'a>(case: &Case, chain: &'a Chain, flips: &'a [f32]) -> Table<'a> {
     Table {
         strips: &chain.strips,
-        rows: &chain.rows,
+        row_starts: &chain.row_starts,
+        row_counts: &chain.flip_counts,
         flips,
         border_cells: &chain.border_cells,
         row_capacity: case.frame.row_capacity,
@@ -123,7 +124,8 @@ mod parity {
         let (strips, points) = (case.data.faces[SHEET].strip_count as f32, points(4096));
         let frame = gpu.upload("frame", &[case.frame]);
         let of_strips = gpu.upload_texels("strips", &given.strips, Texel::U32x2);
-        let rows = gpu.upload_texels("rows", &given.rows, Texel::U32x2);
+        let row_starts = gpu.upload_texels("row starts", &given.row_starts, Texel::Words);
+        let row_counts = gpu.upload_texels("row counts", &given.flip_counts, Texel::Words);
         let flips = gpu.upload_texels("flips", &given.flips, Texel::Words);
         let border_cells = gpu.upload_texels("border cells", &given.border_cells, Texel::U32x4);
         let uvs = gpu.upload("points", &points);
@@ -139,7 +141,7 @@ mod parity {
         let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
         let push = [placed.first_strip, strips.to_bits(), AROUND[0].to_bits(), AROUND[1].to_bits()];
         gpu.run(|cmd| {
-            let texels = [&of_strips, &rows, &flips, &border_cells].map(Resource::from);
+            let texels = [&of_strips, &row_starts, &row_counts, &flips, &border_cells].map(Resource::from);
             let of_points = [&uvs, &answers].map(Resource::from);
             let resources: Vec<_> = [Resource::from(&frame)].into_iter().chain(texels).chain(of_points).collect();
             cmd.bind(&pipeline, &resources, bytemuck::bytes_of(&push));
@@ -174,7 +176,7 @@ mod parity {
         let mut other = chain.clone();
         let strip = case.data.face_instances[SHEET].first_strip as usize + 2;
         let row = chain.line_starts[strip] as usize;
-        other.rows[row..].fill([0; 2]);
+        other.flip_counts[row..].fill(0);
         assert!(compare(&gpu, case, &other, &chain).is_err());
         let mut other = chain.clone();
         other.border_cells[strip * BORDER_BANDS as usize..].fill([0; 4]);

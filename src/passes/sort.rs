@@ -5,7 +5,8 @@
 //!   flips        |              |        inside    0 1 1 1 1 1 0
 //! ```
 //!
-//! Reads: `frame`, `row_starts`, `row_total`, `dispatches`. Writes: `rows`, `intercepts` (now flips), `counters`. Twin: `src/twin/sort.rs`.
+//! Reads: `frame`, `row_starts`, `row_total`, `dispatches`. Writes: `row_counts` (now the number of flips),
+//! `intercepts`, `counters`. Twin: `src/twin/sort.rs`.
 
 use crate::bindings::with_texels;
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
@@ -22,8 +23,7 @@ pub(crate) struct Bindings<'a> {
     pub row_starts: &'a Texels,
     /// Intercepts of all rows.
     pub row_total: &'a Buffer,
-    /// First flip of each row, and one behind its last.
-    pub rows: &'a Buffer,
+    pub row_counts: &'a Buffer,
     pub intercepts: &'a Buffer,
     pub counters: &'a Buffer,
     /// Written by pass `sizes`; this pass's is the second.
@@ -51,7 +51,7 @@ impl Sort {
             b.frame.into(),
             b.row_starts.into(),
             b.row_total.into(),
-            b.rows.into(),
+            b.row_counts.into(),
             b.intercepts.into(),
             b.counters.into(),
         ];

@@ -14,7 +14,7 @@ use super::FAILED_INTERCEPTS;
 use crate::abi::{Counters, Frame};
 
 /// Sorts the intercepts of each row, overwrites the first ones with the flips' `u` (float bits), and
-/// returns the first flip of each row and one behind its last.
+/// returns how many flips each row has.
 ///
 /// `row_total` is the number of intercepts of all rows. A row that does not fit `intercept_capacity`
 /// has no flip: the host grows the table and records again.
@@ -24,7 +24,7 @@ pub fn sort(
     row_total: u32,
     intercepts: &mut [u32],
     counters: &mut Counters,
-) -> Vec<[u32; 2]> {
+) -> Vec<u32> {
     let rows = counters.rows as usize;
     if rows > 0 {
         counters.intercepts = row_total;
@@ -36,10 +36,9 @@ pub fn sort(
         .map(|row| {
             let end = if row + 1 < rows { row_starts[row + 1] } else { row_total };
             if end > frame.intercept_capacity {
-                return [0; 2];
+                return 0;
             }
-            let first = row_starts[row];
-            let row = &mut intercepts[first as usize..end as usize];
+            let row = &mut intercepts[row_starts[row] as usize..end as usize];
             row.sort_unstable();
             let (mut flips, mut winding) = (0, 0);
             for i in 0..row.len() {
@@ -51,7 +50,7 @@ pub fn sort(
                 }
                 winding = next;
             }
-            [first, first + flips as u32]
+            flips as u32
         })
         .collect()
 }
@@ -85,7 +84,7 @@ mod tests {
         let mut shuffled = [row[3], row[5], row[0], row[4], row[2], row[1]];
         let frame = Frame { intercept_capacity: 6, ..Default::default() };
         let mut counters = Counters { rows: 1, ..Default::default() };
-        assert_eq!(sort(&frame, &[0], 6, &mut shuffled, &mut counters), [[0, 2]]);
+        assert_eq!(sort(&frame, &[0], 6, &mut shuffled, &mut counters), [2]);
         let flips = [shuffled[0], shuffled[1]].map(f32::from_bits);
         // the direction's bit costs the last bit of u
         assert!((flips[0] - 0.1).abs() < 1e-7 && (flips[1] - 0.6).abs() < 2e-7, "{flips:?}");

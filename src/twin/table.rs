@@ -9,8 +9,10 @@ use crate::abi::BORDER_BANDS;
 pub struct Table<'a> {
     /// First row of each placed strip, and how many it has.
     pub strips: &'a [[u32; 2]],
-    /// First flip of each row, and one behind its last.
-    pub rows: &'a [[u32; 2]],
+    /// First flip of each row.
+    pub row_starts: &'a [u32],
+    /// Flips of each row.
+    pub row_counts: &'a [u32],
     /// Their `u`, ascending in each row.
     pub flips: &'a [f32],
     /// Columns of each band that trim curves pass.
@@ -35,8 +37,11 @@ impl Table<'_> {
         if row >= self.row_capacity {
             return true;
         }
-        let [first, end] = self.rows[row as usize]; // nothing, where the row found no room
-        self.flips[first as usize..end as usize].partition_point(|&flip| flip <= u) % 2 == 1
+        let (first, flips) = (self.row_starts[row as usize] as usize, self.row_counts[row as usize] as usize);
+        if flips == 0 {
+            return false; // also a row that found no room
+        }
+        self.flips[first..first + flips].partition_point(|&flip| flip <= u) % 2 == 1
     }
 
     /// Whether all of the box from `lo` to `hi` is inside or none of it. `false` where that is not easily told.
