@@ -6,7 +6,7 @@ use crate::shapes::{ball_mesh, sphere};
 use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched, watched_with};
 use glam::{DVec2, DVec3, DVec4};
 use selvedge::csg::{Builder, Op};
-use selvedge::model::{Camera, Colour, Model, Primitive, Projection, Solid, SurfaceTable};
+use selvedge::model::{Camera, Colour, Model, Primitive, Projection, Shape, Solid, SurfaceTable};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings};
 use selvedge::reference::csg::LayerTracer;
 use selvedge::reference::{JudgeOptions, Tracer, judge};
@@ -17,6 +17,9 @@ const STEPS: f64 = 1.0;
 /// Rays this far beside the pixel's centre meet other faces: the pixel is at an edge. A ray's direction and a surface's
 /// place are rounded to 1e-7 of a picture 160 pixels wide, so the drawn edge is nearer than a thousandth.
 pub const EDGE_PX: f64 = 0.01;
+/// The same of spline parts, whose silhouettes are drawn up to a twelfth of the tolerance of half a pixel off, and some
+/// rounding.
+const SPLINE_EDGE_PX: f64 = 0.5 / 12.0 + EDGE_PX;
 /// Most pixels of a picture that may lie at edges, one in so many.
 const EDGES: usize = 12;
 
@@ -106,10 +109,12 @@ pub fn is_at_edge(layers: &LayerTracer, camera: &Camera, at: DVec2, far: f64) ->
 /// Colours of every pixel, but for those at edges; returns how many pixels show something.
 fn assert_colours(model: &Model, camera: &Camera, picture: &Picture, background: Colour, what: &str) -> usize {
     let layers = tracer(model);
+    let has_splines = model.solids.iter().flat_map(Solid::primitives).any(|p| matches!(p.shape, Shape::Part(_)));
+    let edge_px = if has_splines { SPLINE_EDGE_PX } else { EDGE_PX };
     let (mut edges, mut seen) = (0, 0);
     for (i, drawn) in picture.colour.iter().enumerate() {
         let at = centre(i, picture.size);
-        if is_at_edge(&layers, camera, at, EDGE_PX) {
+        if is_at_edge(&layers, camera, at, edge_px) {
             edges += 1;
             continue;
         }
@@ -121,7 +126,7 @@ fn assert_colours(model: &Model, camera: &Camera, picture: &Picture, background:
         let differs = |other: [f64; 4]| truth.iter().zip(other).map(|(t, d)| (t - d).abs()).fold(0.0, f64::max);
         let off = differs(drawn.map(f64::from));
         // what is that near may as well be seen: another triangle, a face that turns away
-        let near = AROUND.map(|d| differs(truly(at + d * EDGE_PX))).into_iter().fold(0.0, f64::max);
+        let near = AROUND.map(|d| differs(truly(at + d * edge_px))).into_iter().fold(0.0, f64::max);
         assert!(
             off <= STEPS + near,
             "{what}: at {at} drawn {drawn:?}, truly {truth:?}: {:?}",
