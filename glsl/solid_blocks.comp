@@ -2,7 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `solid_blocks`: which leaves each block of tiles may see, in Blist order: counted first, then
-// listed where the prefix sum says. One thread a block.
+// listed where the prefix sum says. One thread a run of leaves of a block.
 // Twin: src/twin/solid_blocks.rs.
 #include "scene.glsl"
 #include "tiles.glsl"
@@ -19,12 +19,15 @@ layout(scalar, binding = 4) writeonly buffer BlockLeaves { uint block_leaves[]; 
 void main() {
     uint n = gl_GlobalInvocationID.x;
     uvec2 blocks = block_count(frame);
-    if (n >= blocks.x * blocks.y) return;
-    uvec2 first = BLOCK * uvec2(n % blocks.x, n / blocks.x);
+    uint runs = run_count(frame);
+    if (n >= blocks.x * blocks.y * runs) return;
+    uint block = n / runs;
+    uvec2 first = BLOCK * uvec2(block % blocks.x, block / blocks.x);
     uvec2 last = first + BLOCK - 1u;
     uint start = LISTS ? block_starts[n] : 0u;
     uint count = 0u;
-    for (uint leaf = 0u; leaf < frame.leaf_count; ++leaf) {
+    uint from = n % runs * LEAF_RUN;
+    for (uint leaf = from; leaf < min(from + LEAF_RUN, frame.leaf_count); ++leaf) {
         if (!meets(rects[leaf], first, last)) continue;
         if (LISTS && start + count < frame.block_leaf_capacity) block_leaves[start + count] = leaf;
         ++count;

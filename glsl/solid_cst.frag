@@ -91,7 +91,7 @@ void main() {
         }
         TileLeaf here = itself;
         if (purpose == WALK) here = tile_leaf_at(tile_leaves, next);
-        bool is_own = here.leaf == own;
+        bool is_own = leaf_number(here) == own;
         Span s = mine;
         if (purpose != WALK || !is_own) s = leaf_span(here.of, ray.o, ray.d, t, side);
         if (purpose == SIDE) {

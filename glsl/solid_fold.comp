@@ -10,6 +10,8 @@
 //     exit e ──▶ [absent] ──out──▶ [absent] ──out──▶ [present]     the first ancestor of e, or e itself,
 //                                                                  that the tile sees
 //
+//   A leaf over which no exit leads but to EXIT_FALSE is a gate: without it the point is outside.
+//
 //   Ancestors follow in Blist order, and p is one of e when e lies in p's range of preorder numbers.
 #include "scene.glsl"
 #include "solids.glsl"
@@ -21,17 +23,48 @@ layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
 layout(scalar, binding = 2) readonly buffer TileStarts { uint tile_starts[]; };
 layout(scalar, binding = 3) buffer TileLeaves { TileLeaf tile_leaves[]; };
 layout(scalar, binding = 4) writeonly buffer TileEntries { uint tile_entries[]; };
+layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
+
+// A driver that ends long loops is found by what is missing.
+uint asked = 0u;
+uint answered = 0u;
+
+// The first TileLeaf from `from` on that is leaf `to` or a later one.
+uint first_not_before(uint to, uint from, uint end) {
+    while (from < end) {
+        uint middle = (from + end) / 2u;
+        if (tile_leaves[middle].leaf < to) from = middle + 1u;
+        else end = middle;
+    }
+    return from;
+}
 
 // Where a walk that goes to leaf or exit `to` of the whole Blist goes in the tile; `from` is the first
-// TileLeaf that it can be.
+// TileLeaf that it can be. Looked for from both ends at once, since either way may be long: among the leaves that the
+// tile sees behind `to`, and among the ancestors of `to`.
 uint fold(uint to, uint from, uint end) {
     if (to >= EXIT_FALSE) return to;
-    uint pre = leaves[to].pre;
-    for (uint i = from; i < end; ++i) {
-        Leaf leaf = leaves[tile_leaves[i].leaf];
-        if (tile_leaves[i].leaf >= to && leaf.pre <= pre && pre < leaf.end) return i;
+    ++asked;
+    Leaf target = leaves[to];
+    uint found = (target.flags & LEAF_FALLS) != 0u ? EXIT_FALSE : EXIT_TRUE;
+    uint seen = from < end && tile_leaves[from].leaf >= to ? from : first_not_before(to, from, end);
+    uint ancestor = to;
+    while (seen < end && ancestor < EXIT_FALSE) {
+        uint at = tile_leaves[seen].leaf;
+        Leaf leaf = leaves[at];
+        if (leaf.pre <= target.pre && target.pre < leaf.end) {
+            found = seen;
+            seen = end;
+        } else {
+            uint up = at < ancestor ? first_not_before(ancestor, seen + 1u, end) : end;
+            bool is_seen = up < end && tile_leaves[up].leaf == ancestor;
+            if (is_seen) found = up;
+            seen = is_seen ? end : seen + 1u;
+            ancestor = leaves[ancestor].out_exit;
+        }
     }
-    return (leaves[to].flags & LEAF_FALLS) != 0u ? EXIT_FALSE : EXIT_TRUE;
+    if (seen >= end || ancestor >= EXIT_FALSE) ++answered;
+    return found;
 }
 
 // Items that rays are followed through are lists of their own, one after another: where each begins is marked.
@@ -41,20 +74,31 @@ void main() {
     if (n >= tiles.x * tiles.y) return;
     uint start = min(tile_starts[n], frame.tile_leaf_capacity);
     uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
-    tile_entries[first_of_band(frame) + n] = fold(0u, start, end);
+    uint begin = fold(0u, start, end);
+    tile_entries[first_of_band(frame) + n] = begin;
+    uint reach = begin == EXIT_FALSE ? 0u : begin;
     uint item = EXIT_FALSE;
     uint entry = EXIT_FALSE;
-    for (uint i = start; i < end; ++i) {
+    uint i = start;
+    for (; i < end; ++i) {
         uint at = tile_leaves[i].leaf;
         Leaf leaf = leaves[at];
-        tile_leaves[i].in_exit = fold(leaf.in_exit, i + 1u, end);
-        tile_leaves[i].out_exit = fold(leaf.out_exit, i + 1u, end);
+        uint in_exit = fold(leaf.in_exit, i + 1u, end);
+        uint out_exit = fold(leaf.out_exit, i + 1u, end);
+        tile_leaves[i].in_exit = in_exit;
+        tile_leaves[i].out_exit = out_exit;
         tile_leaves[i].of = leaf.first << LEAF_FLAG_BITS | leaf.flags;
-        if (at < frame.followed_leaf) continue;
+        if (at < frame.followed_leaf) {
+            if (reach <= i) tile_leaves[i].leaf = at | TILE_LEAF_GATE; // nobody looks back at it
+            if (in_exit != EXIT_FALSE) reach = max(reach, in_exit);
+            if (out_exit != EXIT_FALSE) reach = max(reach, out_exit);
+            continue;
+        }
         if (leaf.item != item) {
             item = leaf.item;
             entry = fold(item, i, end);
         }
-        if (i == entry) tile_leaves[i].leaf = at | TILE_LEAF_ENTRY; // nobody looks back at it
+        if (i == entry) tile_leaves[i].leaf = at | TILE_LEAF_ENTRY;
     }
+    if (i < end || answered != asked) atomicAdd(counters.clamps, 1u);
 }

@@ -3,6 +3,8 @@
 #extension GL_GOOGLE_include_directive : require
 // Pass `solid_tiles`: which leaves each tile of the band may see, of those of its block: counted first,
 // then listed. One thread a tile.
+//
+// Four of the block's leaves are looked at in a step, since drivers may end long loops; then the tile counts as a clamp.
 // Twin: src/twin/solid_tiles.rs.
 #include "scene.glsl"
 #include "tiles.glsl"
@@ -19,18 +21,29 @@ layout(scalar, binding = 5) readonly buffer TileStarts { uint tile_starts[]; };
 layout(scalar, binding = 6) writeonly buffer TileLeaves { TileLeaf tile_leaves[]; };
 layout(scalar, binding = 7) buffer CountersBuffer { Counters counters; };
 
+uvec2 tile;
+uint start;
+uint count = 0u; // leaves seen
+
+void look_at(uint leaf) {
+    if (!meets(rects[leaf], tile, tile)) return;
+    if (LISTS && start + count < frame.tile_leaf_capacity) tile_leaves[start + count].leaf = leaf;
+    ++count;
+}
+
 void main() {
     uint n = gl_GlobalInvocationID.x;
     uvec2 tiles = band_tiles(frame);
     if (n >= tiles.x * tiles.y) return;
-    uvec2 tile = uvec2(n % tiles.x, frame.band_top / TILE + n / tiles.x);
+    tile = uvec2(n % tiles.x, frame.band_top / TILE + n / tiles.x);
     uvec2 blocks = block_count(frame);
     uint block = tile.y / BLOCK * blocks.x + tile.x / BLOCK;
-    uint start = LISTS ? tile_starts[n] : 0u;
-    uint count = 0u;
-    uint end = block_starts[block + 1u];
+    start = LISTS ? tile_starts[n] : 0u;
+    uint runs = run_count(frame);
+    uint from = block_starts[block * runs];
+    uint end = min(block_starts[(block + 1u) * runs], frame.block_leaf_capacity);
     if (n == 0u && !LISTS) {
-        uint wanted = block_starts[blocks.x * blocks.y];
+        uint wanted = block_starts[blocks.x * blocks.y * runs];
         counters.block_leaves = wanted;
         if (wanted > frame.block_leaf_capacity) atomicOr(counters.failed, FAILED_BLOCK_LEAVES);
     }
@@ -46,11 +59,16 @@ void main() {
         atomicMax(counters.band_tile_leaves, 0xffffffffu);
         atomicOr(counters.failed, FAILED_TILE_LEAVES);
     }
-    for (uint i = block_starts[block]; i < min(end, frame.block_leaf_capacity); ++i) {
-        uint leaf = block_leaves[i];
-        if (!meets(rects[leaf], tile, tile)) continue;
-        if (LISTS && start + count < frame.tile_leaf_capacity) tile_leaves[start + count].leaf = leaf;
-        ++count;
+    uint i = from;
+    for (; i < end; i += 4u) {
+        uint last = end - 1u;
+        uvec4 at = min(i + uvec4(0u, 1u, 2u, 3u), uvec4(last));
+        uvec4 leaf = uvec4(block_leaves[at.x], block_leaves[at.y], block_leaves[at.z], block_leaves[at.w]);
+        look_at(leaf.x);
+        if (i + 1u < end) look_at(leaf.y);
+        if (i + 2u < end) look_at(leaf.z);
+        if (i + 3u < end) look_at(leaf.w);
     }
+    if (LISTS && i < end) atomicAdd(counters.clamps, 1u);
     if (!LISTS) tile_counts[n] = count;
 }

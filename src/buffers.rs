@@ -12,7 +12,7 @@
 //! ```
 
 use crate::abi::{
-    BLOCK, BORDER_BANDS, BORDER_COLUMNS, Counters, Factors, Fragment, Rect, SQUARE, SubPatch, TILE, TileLeaf,
+    BLOCK, BORDER_BANDS, BORDER_COLUMNS, Counters, Factors, Fragment, LEAF_RUN, Rect, SQUARE, SubPatch, TILE, TileLeaf,
 };
 #[cfg(feature = "rivals")]
 use crate::capacities::is_texture;
@@ -138,10 +138,13 @@ pub(crate) struct SolidBuffers {
     /// (u, v) of spline faces that bound operands.
     pub operand_uv: Option<Image>,
     pub layers: Option<LayerImages>,
+    /// Where rays are walked on from, a word a pixel of a band; where one walk did not suffice.
+    pub ways: Option<Buffer>,
 }
 
 /// Which leaves each tile of a band sees, and their Blist.
 pub(crate) struct TileBuffers {
+    /// Runs of leaves of all blocks.
     pub blocks: u32,
     /// In the picture.
     pub tiles: u32,
@@ -206,8 +209,10 @@ impl Buffers {
         let across = |side: u32| size.0.div_ceil(side) * size.1.div_ceil(side);
         let [all_tiles, blocks] = [across(TILE), across(TILE * BLOCK)].map(|count| count * u32::from(in_tiles));
         let band_rows = capacities.band_rows.min(size.1.div_ceil(TILE));
+        let blocks = blocks * counts.leaves.div_ceil(LEAF_RUN);
         let tiles = all_tiles.min(size.0.div_ceil(TILE) * band_rows);
-        let pixels = if counts.has_fragments() { size.0 * (band_rows * TILE).min(size.1) } else { 0 };
+        let band_pixels = size.0 * (band_rows * TILE).min(size.1);
+        let pixels = if counts.has_fragments() { band_pixels } else { 0 };
         let scanned =
             [2 * n, counts.strips, counts.curves, counts.face_instances, capacities.rows, tiles, blocks, pixels];
         let scanned = scanned.into_iter().max().unwrap_or(0);
@@ -327,6 +332,7 @@ impl Buffers {
                                 })
                             })
                             .transpose()?,
+                        ways: (capacities.walks > 1).then(|| words("solid ways", band_pixels)).transpose()?,
                         fragments: (pixels > 0)
                             .then(|| {
                                 Ok(FragmentBuffers {
@@ -376,6 +382,7 @@ impl SolidBuffers {
             let [a, b] = &l.layers;
             sum("layers", &[a, b, &l.found, &l.depth, &l.stencil].map(Image::bytes))
         });
-        blocks.into_iter().chain(tiles).chain(crossings).chain(layers).collect()
+        let ways = self.ways.as_ref().map(|ways| sum("ways", &[ways.bytes()]));
+        blocks.into_iter().chain(tiles).chain(crossings).chain(layers).chain(ways).collect()
     }
 }

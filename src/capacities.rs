@@ -155,6 +155,8 @@ const FEWEST_FRAGMENTS: u32 = 1 << 14;
 const FEWEST_LAYERS: u32 = 4;
 /// Of faces, each of which asks every primitive.
 const MOST_LAYERS: u32 = 1 << 10;
+/// Along a ray, each as long as a driver lets a loop be: what is left then is counted as clamps.
+pub(crate) const MOST_WALKS: u32 = 64;
 /// Rows that pass `sort` takes, 128 to a workgroup.
 const MOST_ROWS: u32 = MOST_GROUPS * 128;
 
@@ -173,6 +175,8 @@ pub(crate) struct Capacities {
     pub band_rows: u32,
     /// That way `blister` peels.
     pub layers: u32,
+    /// Along each ray of way `events`, one where the other ended.
+    pub walks: u32,
 }
 
 /// Bits of [`Counters::failed`], as in `scene.glsl`.
@@ -180,6 +184,7 @@ const FAILED_DRAWS: u32 = 2;
 const FAILED_TILE_LEAVES: u32 = 64;
 const FAILED_FRAGMENTS: u32 = 128;
 const FAILED_LAYERS: u32 = 256;
+const FAILED_WALKS: u32 = 512;
 
 impl Capacities {
     /// A first guess that fits most scenes in full view.
@@ -198,6 +203,7 @@ impl Capacities {
             fragments: if counts.has_fragments() { FEWEST_FRAGMENTS } else { 0 },
             band_rows: WHOLE,
             layers: if counts.blister { FEWEST_LAYERS } else { 0 },
+            walks: 1,
         }
     }
 
@@ -329,6 +335,7 @@ impl Capacities {
                 had if c.failed & FAILED_LAYERS != 0 => 2 * had,
                 _ => (c.layers + 1).max(FEWEST_LAYERS),
             },
+            walks: if c.failed & FAILED_WALKS != 0 { (4 * self.walks).min(MOST_WALKS) } else { self.walks },
         })
     }
 }
@@ -391,6 +398,18 @@ mod tests {
         let most = Capacities { layers: MOST_LAYERS, ..peels };
         let c = Counters { layers: MOST_LAYERS + 1, failed: FAILED_LAYERS, ..Default::default() };
         assert!(matches!(of(most, c), Err(TooMany { what: "layers of faces", .. })));
+    }
+
+    /// Four times as many as did not suffice, and then they stay.
+    #[test]
+    fn walks_grow_to_the_most() {
+        let ended = Counters { failed: FAILED_WALKS, ..Default::default() };
+        let mut had = first();
+        for walks in [4, 16, 64, MOST_WALKS] {
+            had = grown(had, &ended).unwrap();
+            assert_eq!(had.walks, walks);
+        }
+        assert_eq!(grown(had, &Counters::default()).unwrap().walks, MOST_WALKS);
     }
 
     #[test]

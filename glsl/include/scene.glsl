@@ -200,7 +200,7 @@ struct Counters {
     uint layers;       // peeled by way `blister`
     uint hidden;       // patches left out because they lie behind others
     uint clamps;       // factors or densities above their hard limits
-    uint failed;       // one bit a buffer that was too small
+    uint failed;       // one bit a buffer that was too small, or a pass that was drawn too seldom
 };
 
 const uint FAILED_SUB_PATCHES = 1u;
@@ -212,6 +212,7 @@ const uint FAILED_BLOCK_LEAVES = 32u;
 const uint FAILED_TILE_LEAVES = 64u;
 const uint FAILED_FRAGMENTS = 128u;
 const uint FAILED_LAYERS = 256u;
+const uint FAILED_WALKS = 512u;
 
 // Tessellation of one item, decided by the split pass. Totals over the whole patch.
 struct Factors {

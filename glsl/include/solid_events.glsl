@@ -14,8 +14,13 @@
 // which passes over spans that are kept: a driver that runs both sides of every branch has no need to solve them again.
 // Where the depth of the face is found already, the walk begins there and tells whose it is.
 //
+// A driver may end a long loop before its end. Such a ray is walked on from the last event that it came to, by the same
+// pass drawn again: a walk for each part of the way, of which there are more only once a frame has told that they are
+// needed.
+//
 // An event that matters is one of a leaf that the walk asks: the others are not looked at whatever they are, so until
-// then the walk ends as it does. In A - (B + C + ...) nothing is asked before A begins.
+// then the walk ends as it does. In A - (B + C + ...) nothing is asked before A begins. And while a gate of the tile's list is
+// shut, nothing else matters: in (A + B + ...) - C the next event within C is its end.
 #ifndef SOLID_EVENTS_GLSL
 #define SOLID_EVENTS_GLSL
 
@@ -45,6 +50,19 @@ layout(scalar, binding = 11) buffer CountersBuffer { Counters counters; };
 
 #ifdef FACE_IS_FOUND
 layout(binding = 12, rg32ui) readonly uniform uimage2D found;
+#endif
+
+#ifndef FACE_IS_FOUND
+layout(scalar, binding = 13) buffer Ways { uint ways[]; }; // of each pixel: bound where there is more than one walk
+layout(scalar, push_constant) uniform Walks {
+    uint nth;     // this walk, from 0
+    uint walks;   // of this drawing
+    uint is_most; // a frame may not ask for more
+};
+
+// A way: the depth of the event from which the next walk goes on, its sign bit set where the solid is in front of it; 0
+// where a walk came to its end.
+const uint WAY_BEFORE = 0x80000000u;
 #endif
 
 // Whether some leaf is a shell: compiled in only then.
@@ -88,7 +106,8 @@ struct Walk {
 void meet(inout Walk walk, uint i, TileLeaf here, Crossing c, uint other, uint after) {
     if (i == walk.at) {
         walk.at = c.inside != (i == other) ? here.in_exit : here.out_exit;
-        walk.next = min(walk.next, c.next);
+        bool shut = walk.at == EXIT_FALSE && (here.leaf & TILE_LEAF_GATE) != 0u;
+        walk.next = shut ? c.next : min(walk.next, c.next);
     }
     if (i == walk.at_before) walk.at_before = c.before != (i == other) ? here.in_exit : here.out_exit;
     if (i < after || !c.ends) return;
@@ -102,7 +121,7 @@ void main() {
     uint first = min(word_at(tile_starts, n), frame.tile_leaf_capacity);
     uint end = min(word_at(tile_starts, n + 1u), frame.tile_leaf_capacity);
     if (SOLIDS_ARE_FOLLOWED) {
-        while (end > first && (tile_leaf_at(tile_leaves, end - 1u).leaf & ~TILE_LEAF_ENTRY) >= frame.followed_leaf) --end;
+        while (end > first && leaf_number(tile_leaf_at(tile_leaves, end - 1u)) >= frame.followed_leaf) --end;
     }
     uint entry = word_at(tile_entries, first_of_band(frame) + n);
     if (entry == EXIT_FALSE) discard;
@@ -126,6 +145,18 @@ void main() {
     if (face.x == 0u) discard;
     t = uintBitsToFloat(face.y);
     before = false;
+#else
+    if (nth > 0u) {
+        uint way = ways[pixel];
+        if (way == 0u) discard;
+        before = (way & WAY_BEFORE) != 0u;
+        t = uintBitsToFloat(way & ~WAY_BEFORE);
+    }
+    float begun = t;
+    bool begun_before = before;
+    // where the last search began: a scan may be ended without its telling, but not two
+    float sure = t;
+    bool sure_before = before;
 #endif
     // four events a leaf, at most as many questions about owners, and one about the side
     uint most = 8u * (end - first) + 2u * fragment_count + 4u;
@@ -135,6 +166,12 @@ void main() {
     uint wanted = 0u;
     uint steps = 0u;
     for (uint scan = 0u; scan < most && !done; ++scan) {
+#ifndef FACE_IS_FOUND
+        if (purpose == SEARCH) {
+            sure = t;
+            sure_before = before;
+        }
+#endif
         // the spans of [first, known) are kept, those of [from, to) computed: all at first, then what is not kept, and
         // the asked leaf's again to tell its side
         bool tells = purpose == SIDE;
@@ -210,7 +247,16 @@ void main() {
             t = walk.next;
         }
     }
-    if (steps != wanted || !(done || passed)) atomicAdd(counters.clamps, 1u);
+    bool ended = steps == wanted && (done || passed);
+#ifdef FACE_IS_FOUND
+    if (!ended) atomicAdd(counters.clamps, 1u);
+#else
+    bool goes_on = !ended && (sure != begun || sure_before != begun_before);
+    if (walks > 1u) ways[pixel] = goes_on ? floatBitsToUint(sure) | (sure_before ? WAY_BEFORE : 0u) : 0u;
+    if (goes_on && nth + 1u == walks && is_most == 0u) atomicOr(counters.failed, FAILED_WALKS);
+    else if (!ended && (!goes_on || nth + 1u == walks)) atomicAdd(counters.clamps, 1u);
+    if (goes_on) discard;
+#endif
     if (!done) discard;
     visible = uvec2(word | side, floatBitsToUint(t));
     gl_FragDepth = reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0);

@@ -173,7 +173,7 @@ void main() {
     uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first = min(tile_starts[n], frame.tile_leaf_capacity);
     uint end = min(tile_starts[n + 1u], frame.tile_leaf_capacity);
-    while (first < end && (tile_leaf_at(tile_leaves, first).leaf & ~TILE_LEAF_ENTRY) < frame.followed_leaf) ++first;
+    while (first < end && leaf_number(tile_leaf_at(tile_leaves, first)) < frame.followed_leaf) ++first;
     Ray ray = eye_ray(frame, gl_FragCoord.xy);
     uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
@@ -225,7 +225,7 @@ void main() {
         for (uint i = scan_from; i < scan_end; ++i) {
             ++steps;
             TileLeaf here = tile_leaf_at(tile_leaves, i);
-            uint number = here.leaf & ~TILE_LEAF_ENTRY;
+            uint number = leaf_number(here);
             Leaf leaf = leaves[number];
             if (leaf.item != w.item) {
                 close_item(w, i, first, done_key, purpose == SEARCH && !begins);
@@ -304,7 +304,7 @@ void main() {
             if (wants) {
                 // an opaque face hides what is entered where it is, and all behind it
                 bool entered = (layer.key & ENTERED) != 0u;
-                uint number = tile_leaf_at(tile_leaves, layer.from).leaf & ~TILE_LEAF_ENTRY;
+                uint number = leaf_number(tile_leaf_at(tile_leaves, layer.from));
                 float slack = (leaves[number].flags & LEAF_SHELL) != 0u ? TOUCHES * abs(t) : 0.0;
                 bool hidden = entered ? t + slack >= stop : t - slack > stop;
                 if (hidden) {

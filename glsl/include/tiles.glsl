@@ -9,6 +9,7 @@
 
 const uint TILE = 16u;  // pixels
 const uint BLOCK = 8u;  // tiles
+const uint LEAF_RUN = 32768u; // leaves that one thread looks at: drivers may end longer loops
 
 // Tiles from first to last, both counted in; nowhere when first > last.
 struct Rect {
@@ -18,7 +19,7 @@ struct Rect {
 
 // A leaf in a tile, wired to the others there; exits are TileLeaf indices or EXIT_*.
 struct TileLeaf {
-    uint leaf;      // and TILE_LEAF_ENTRY
+    uint leaf;      // and TILE_LEAF_*
     uint in_exit;
     uint out_exit;
     uint of;        // the leaf's own: first << LEAF_FLAG_BITS | flags
@@ -26,6 +27,10 @@ struct TileLeaf {
 
 // The walk of an item that rays are followed through begins here.
 const uint TILE_LEAF_ENTRY = 0x80000000u;
+// Every walk of the union that ends inside comes through this leaf.
+const uint TILE_LEAF_GATE = 0x40000000u;
+
+uint leaf_number(TileLeaf here) { return here.leaf & ~(TILE_LEAF_ENTRY | TILE_LEAF_GATE); }
 
 // Of the lists as texels: a driver fetches one at once, but may load a struct word by word.
 TileLeaf tile_leaf_at(usamplerBuffer tile_leaves, uint i) {
@@ -47,6 +52,9 @@ uint tile_in_band(Frame frame, uvec2 pixel) {
 
 // Of all tiles of the picture, that which is the first of the band.
 uint first_of_band(Frame frame) { return frame.band_top / TILE * tile_count(frame).x; }
+
+// Each block's list is made in so many runs, one after another.
+uint run_count(Frame frame) { return (frame.leaf_count + LEAF_RUN - 1u) / LEAF_RUN; }
 
 uvec2 block_count(Frame frame) { return (tile_count(frame) + BLOCK - 1u) / BLOCK; }
 

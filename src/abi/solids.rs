@@ -53,9 +53,13 @@ pub const LEAF_FLAG_BITS: u32 = 7;
 
 /// [`TileLeaf::leaf`]: the walk of an item that rays are followed through begins here.
 pub const TILE_LEAF_ENTRY: u32 = 0x8000_0000;
+/// [`TileLeaf::leaf`]: every walk of the union that ends inside comes through this leaf.
+pub const TILE_LEAF_GATE: u32 = 0x4000_0000;
 
 /// Pixels along a tile's side.
 pub const TILE: u32 = 16;
+/// Leaves that one thread of pass `solid_blocks` looks at.
+pub const LEAF_RUN: u32 = 32_768;
 /// Tiles along a block's side.
 pub const BLOCK: u32 = 8;
 

@@ -14,6 +14,7 @@ use super::bands::Band;
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::TILE;
 use crate::buffers::{FragmentBuffers, SolidBuffers, TileBuffers};
+use crate::capacities::MOST_WALKS;
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, Texels, barrier};
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
 use crate::passes::{blister, resolve, solid_blocks, solid_cst, solid_events, solid_fold, solid_rects, solid_tiles};
@@ -210,10 +211,11 @@ impl<'a> Frame<'a> {
                     }),
                     counters: &b.counters,
                     tile_squares: &tiles.tile_squares,
+                    ways: t.ways.as_ref(),
                 };
                 barrier::buffers(cmd, &[(&b.counters, w, Access::FRAGMENT_WRITE)]);
                 let uv = t.operand_uv.as_ref().map(|image| Attachment { image, load: Load::Discard });
-                events.record(cmd, &bindings, (colour, uv, depth), band.rows.clone(), self.tiles_of(band));
+                self.walks(cmd, events, &bindings, (colour, uv, depth), band);
                 barrier::buffers(cmd, &[(&b.counters, Access::FRAGMENT_WRITE, w)]);
             }
             (Way::Cst(_), None, _) | (_, _, None) => {
@@ -228,6 +230,40 @@ impl<'a> Frame<'a> {
 }
 
 impl Frame<'_> {
+    /// The rays of a band's pixels, from event to event; again and again from where they came to, where a driver ends long
+    /// loops.
+    fn walks(
+        &self,
+        cmd: &Commands<'_>,
+        pass: &solid_events::SolidEvents,
+        bindings: &solid_events::Bindings<'_>,
+        (colour, uv, depth): (Attachment<'_>, Option<Attachment<'_>>, Attachment<'_>),
+        band: &Band,
+    ) {
+        let of = self.buffers.capacities.walks;
+        let drawn = [(colour.image, Access::COLOUR_WRITE), (depth.image, Access::DEPTH_WRITE)];
+        let drawn = drawn.into_iter().chain(uv.map(|uv| (uv.image, Access::COLOUR_WRITE)));
+        let drawn: Vec<_> = drawn.map(|(image, access)| (image, access, access)).collect();
+        let kept = (
+            Attachment { load: Load::Keep, ..colour },
+            uv.map(|uv| Attachment { load: Load::Keep, ..uv }),
+            Attachment { load: Load::Keep, ..depth },
+        );
+        for nth in 0..of {
+            if let Some(ways) = bindings.ways {
+                // by the walk before, of this band or another, or of another sample
+                barrier::buffers(cmd, &[(ways, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
+            }
+            if nth > 0 {
+                barrier::buffers(cmd, &[(bindings.counters, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
+                barrier::images(cmd, &drawn);
+            }
+            let walk = solid_events::Walk { nth, of, is_most: of >= MOST_WALKS };
+            let targets = if nth == 0 { (colour, uv, depth) } else { kept };
+            pass.record(cmd, bindings, targets, (band.rows.clone(), self.tiles_of(band)), walk);
+        }
+    }
+
     /// Which leaves each block of tiles sees.
     fn blocks(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>, p: &TilePasses, t: &TileBuffers) {
         let (w, r) = WRITE_TO_READ;
@@ -274,9 +310,13 @@ impl Frame<'_> {
             tile_starts: &t.tile_starts,
             tile_leaves: &t.tile_leaves,
             tile_entries: &t.tile_entries,
+            counters: &self.buffers.counters,
         };
         p.fold.record(cmd, &fold, count);
-        barrier::buffers(cmd, &[(&t.tile_entries, w, r), (&t.tile_squares, Access::VERTEX_READ, w)]);
+        barrier::buffers(
+            cmd,
+            &[(&self.buffers.counters, w, w), (&t.tile_entries, w, r), (&t.tile_squares, Access::VERTEX_READ, w)],
+        );
         let squares = solid_squares::Bindings {
             frame: self.constants,
             tile_entries: &t.tile_entries,

@@ -3,7 +3,7 @@
 
 use super::Random;
 use super::harness::{Gpu, Mismatch, same};
-use crate::abi::{EXIT_FALSE, EXIT_TRUE, Frame, Leaf, TileLeaf};
+use crate::abi::{Counters, EXIT_FALSE, EXIT_TRUE, Frame, Leaf, TILE_LEAF_GATE, TileLeaf};
 use crate::csg::{Blist, Builder, Op, Tree};
 use crate::model::{Camera, Model, Primitive, Projection, Shape, Solid};
 use crate::passes::{solid_fold, solid_rects, solid_squares};
@@ -64,20 +64,21 @@ fn random_tiles(random: &mut Random, leaves: u32, tiles: u32) -> (Vec<u32>, Vec<
     (starts, all)
 }
 
-/// Where a walk through one tile ends, for the primitives that a point is in.
-fn walk(tile_leaves: &[TileLeaf], entry: u32, inside: impl Fn(u32) -> bool) -> bool {
-    let mut at = entry;
+/// Where a walk through one tile ends, for the primitives that a point is in, and how many gates it came through.
+fn walk(tile_leaves: &[TileLeaf], entry: u32, inside: impl Fn(u32) -> bool) -> (bool, usize) {
+    let (mut at, mut gates) = (entry, 0);
     while let Some(here) = tile_leaves.get(at as usize) {
-        at = if inside(here.leaf) { here.in_exit } else { here.out_exit };
+        gates += usize::from(here.leaf & TILE_LEAF_GATE != 0);
+        at = if inside(here.leaf & !TILE_LEAF_GATE) { here.in_exit } else { here.out_exit };
     }
-    at == EXIT_TRUE
+    (at == EXIT_TRUE, gates)
 }
 
 /// A tile's list decides as the tree does in which the absent primitives are constants of nothing.
 #[test]
 fn a_folded_list_is_the_folded_tree() {
     let mut random = Random::new(11);
-    let mut inside_count = 0;
+    let (mut inside_count, mut gate_count) = (0, 0);
     for _ in 0..300 {
         let count = random.integer(1, 24);
         let solid = random_solid(&mut random, count);
@@ -91,15 +92,20 @@ fn a_folded_list_is_the_folded_tree() {
         let entry = twin::solid_fold::solid_fold(&leaves, u32::MAX, &starts, &mut tile_leaves)[0];
         let folded = solid.tree().fold(|p| absent[p as usize].then_some(false));
         let list = Blist::new(&folded).unwrap();
+        let gates = tile_leaves.iter().filter(|here| here.leaf & TILE_LEAF_GATE != 0).count();
+        gate_count += gates;
         for _ in 0..40 {
             let within: Vec<bool> = absent.iter().map(|a| !a && random.integer(0, 1) == 0).collect();
             let expected = solid.tree().contains(|p| within[p as usize]);
             assert_eq!(list.contains(|p| within[p as usize]), expected);
-            assert_eq!(walk(&tile_leaves, entry, |leaf| within[primitive(leaf) as usize]), expected, "{solid:?}");
+            let (ends_inside, passed) = walk(&tile_leaves, entry, |leaf| within[primitive(leaf) as usize]);
+            assert_eq!(ends_inside, expected, "{solid:?}");
+            assert!(!expected || passed == gates, "{passed} of {gates} gates: {solid:?}");
             inside_count += u32::from(expected);
         }
     }
     assert!((2000..10_000).contains(&inside_count), "{inside_count} of 12000");
+    assert!(gate_count > 300, "{gate_count} gates");
 }
 
 fn fold_on_gpu(
@@ -125,6 +131,7 @@ fn fold_on_gpu(
     let tile_starts = gpu.upload("tile starts", starts);
     let wired = gpu.upload("tile leaves", tile_leaves);
     let entries = gpu.upload("tile entries", &vec![7u32; tiles as usize]);
+    let counters = gpu.upload("counters", &[Counters::default()]);
     let pass = solid_fold::SolidFold::new(gpu.device()).unwrap();
     let bindings = solid_fold::Bindings {
         frame: &frames,
@@ -132,12 +139,14 @@ fn fold_on_gpu(
         tile_starts: &tile_starts,
         tile_leaves: &wired,
         tile_entries: &entries,
+        counters: &counters,
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, tiles));
     let mut twin = tile_leaves.to_vec();
     let twin_entries = twin::solid_fold::solid_fold(expected, followed[1], starts, &mut twin);
     same("tile leaves", &gpu.read(&wired, twin.len()), &twin)?;
-    same("tile entries", &gpu.read(&entries, tiles as usize), &twin_entries)
+    same("tile entries", &gpu.read(&entries, tiles as usize), &twin_entries)?;
+    same("counters", &gpu.read(&counters, 1), &[Counters::default()])
 }
 
 #[test]
@@ -174,6 +183,44 @@ fn fold_parity() {
     let other = [data.followed, u32::MAX];
     let unmarked = fold_on_gpu(&gpu, &data.leaves, &data.leaves, other, &starts, &tile_leaves).unwrap_err();
     assert_eq!(unmarked.buffer, "tile leaves");
+    gpu.finish();
+}
+
+/// 600 balls with a hole in each, and a cut through all of them: of a tile that sees no hole, one that sees no cut either,
+/// and one that sees everything. Looked for from one end alone, exits would take a driver's whole loop.
+#[test]
+fn long_lists_are_folded() {
+    const BALLS: u32 = 600;
+    let mut b = Builder::new();
+    let drilled: Vec<u32> = (0..BALLS)
+        .map(|n| {
+            let [ball, hole] = [2 * n, 2 * n + 1].map(|p| b.leaf(p));
+            b.pair(Op::Difference, ball, hole)
+        })
+        .collect();
+    let balls = b.fold(Op::Union, drilled);
+    let cut = b.leaf(2 * BALLS);
+    let root = b.pair(Op::Difference, balls, cut);
+    let primitive = |n: u32| Primitive {
+        shape: Shape::Sphere { radius: 0.4 },
+        transform: DAffine3::from_translation(DVec3::X * f64::from(n)),
+        colour: [1.0; 4],
+        id: n,
+    };
+    let leaves = leaves_of(&Solid::new((0..=2 * BALLS).map(primitive).collect(), b.finish(root).unwrap()).unwrap());
+    let leaves = leaves.solids.leaves;
+    let tile = |sees: &dyn Fn(u32) -> bool| {
+        let seen = (0..leaves.len() as u32).filter(|leaf| sees(leaves[*leaf as usize].id));
+        seen.map(|leaf| TileLeaf { leaf, ..TileLeaf::default() }).collect::<Vec<_>>()
+    };
+    let tiles = [tile(&|id| id % 2 == 0), tile(&|id| id % 2 == 0 && id < 2 * BALLS), tile(&|_| true)];
+    let mut starts = vec![0];
+    starts.extend(tiles.iter().scan(0, |end, list| {
+        *end += list.len() as u32;
+        Some(*end)
+    }));
+    let gpu = Gpu::new();
+    fold_on_gpu(&gpu, &leaves, &leaves, [u32::MAX; 2], &starts, &tiles.concat()).unwrap();
     gpu.finish();
 }
 

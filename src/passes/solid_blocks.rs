@@ -42,19 +42,19 @@ impl SolidBlocks {
         Ok(Self { count: pipeline("solid blocks (count)", 0)?, list: pipeline("solid blocks (list)", 1)? })
     }
 
-    /// One thread for each of `blocks`.
-    pub(crate) fn count(&self, cmd: &Commands<'_>, b: &Bindings<'_>, blocks: u32) {
-        record(cmd, &self.count, b, blocks);
+    /// One thread for each of `runs` of leaves of all blocks.
+    pub(crate) fn count(&self, cmd: &Commands<'_>, b: &Bindings<'_>, runs: u32) {
+        record(cmd, &self.count, b, runs);
     }
 
     /// As [`count`](Self::count), after the prefix sum.
-    pub(crate) fn list(&self, cmd: &Commands<'_>, b: &Bindings<'_>, blocks: u32) {
-        record(cmd, &self.list, b, blocks);
+    pub(crate) fn list(&self, cmd: &Commands<'_>, b: &Bindings<'_>, runs: u32) {
+        record(cmd, &self.list, b, runs);
     }
 }
 
-fn record(cmd: &Commands<'_>, pipeline: &Pipeline, b: &Bindings<'_>, blocks: u32) {
+fn record(cmd: &Commands<'_>, pipeline: &Pipeline, b: &Bindings<'_>, runs: u32) {
     let resources = [b.frame, b.rects, b.counts, b.starts, b.leaves].map(Into::into);
     cmd.bind(pipeline, &resources, &[]);
-    cmd.dispatch(blocks.div_ceil(GROUP));
+    cmd.dispatch(runs.div_ceil(GROUP));
 }

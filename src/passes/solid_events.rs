@@ -6,7 +6,7 @@
 //!
 //! Reads: everything that `Bindings` names. Writes: the visibility image (side, depth) and depth, beside what
 //! pass `visibility` drew; of spline faces the image of (u, v). Needs no storage per pixel beside the fragments of
-//! operands without equations.
+//! operands without equations, unless a driver ends long loops: then rays are walked on from where they came to.
 
 use crate::abi;
 use crate::bindings::{Primitives, with_primitives};
@@ -58,6 +58,18 @@ pub(crate) struct Bindings<'a> {
     /// `clamps`: rays that a driver did not let come to their end.
     pub counters: &'a Buffer,
     pub tile_squares: &'a Buffer,
+    /// Where the next walk goes on, a word a pixel of the band; where there is more than one.
+    pub ways: Option<&'a Buffer>,
+}
+
+/// One of the walks along the rays of a drawing.
+#[derive(Clone, Copy)]
+pub(crate) struct Walk {
+    /// From 0.
+    pub nth: u32,
+    pub of: u32,
+    /// Rays that do not come to their end in the last of them are clamps; else the frame asks for more.
+    pub is_most: bool,
 }
 
 /// Of each pixel, sorted.
@@ -75,7 +87,7 @@ impl SolidEvents {
         visibility: vk::Format,
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
-        let mut bindings = with_primitives::<13>(1);
+        let mut bindings = with_primitives::<14>(1);
         bindings[5..8].fill(Binding::Texels);
         bindings[10] = Binding::Texels;
         let target = |format| ColourTarget { format, blend: Blend::Replace };
@@ -89,7 +101,7 @@ impl SolidEvents {
                     (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_EVENTS_FRAG),
                 ],
                 bindings: &bindings,
-                push_bytes: 0,
+                push_bytes: 12,
                 constants: &[
                     (SOLIDS_HAVE, kinds.surfaces),
                     (SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),
@@ -114,15 +126,17 @@ impl SolidEvents {
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
         (visibility, uv, depth): (Attachment<'_>, Option<Attachment<'_>>, Attachment<'_>),
-        rows: Range<u32>,
-        tiles: Range<u32>,
+        (rows, tiles): (Range<u32>, Range<u32>),
+        walk: Walk,
     ) {
         // the shader has these bindings in every scene, and reads them only where there are shells
         let none = Fragments { starts: b.frame, counts: b.frame, all: b.tile_leaves };
         let f = b.fragments.as_ref().unwrap_or(&none);
         let lists: [Resource<'_>; 3] = [b.tile_starts.into(), b.tile_leaves.into(), b.tile_entries.into()];
         let fragments: [Resource<'_>; 3] = [f.starts.into(), f.counts.into(), f.all.into()];
-        let rest = [b.counters, b.tile_squares].map(Resource::from);
+        let rest = [b.counters, b.tile_squares, b.ways.unwrap_or(b.counters)].map(Resource::from);
+        let walk: Vec<u8> =
+            [walk.nth, walk.of, u32::from(walk.is_most)].into_iter().flat_map(u32::to_ne_bytes).collect();
         let resources: Vec<_> = [b.frame.into()]
             .into_iter()
             .chain(b.primitives.resources())
@@ -132,7 +146,7 @@ impl SolidEvents {
             .collect();
         let colour: Vec<_> = [visibility].into_iter().chain(uv).collect();
         cmd.rendering_rows((visibility.image.size(), rows), &colour, Some(depth), || {
-            cmd.bind(&self.pipeline, &resources, &[]);
+            cmd.bind(&self.pipeline, &resources, &walk);
             cmd.draw_instances(0..6, tiles);
         });
     }

@@ -1,6 +1,7 @@
 //! Pass `solid_fold`: the Blist of each tile, without the leaves that the tile does not see.
 //!
-//! Reads: `frame`, `leaves`, `tile_starts`. Writes: exits of `tile_leaves`, `tile_entries`.
+//! Reads: `frame`, `leaves`, `tile_starts`. Writes: exits of `tile_leaves`, `tile_entries`; of `counters` the `clamps`, tiles
+//! whose loops a driver ended.
 //! Twin: `src/twin/solid_fold.rs`.
 
 use crate::bindings::with_constants;
@@ -23,6 +24,7 @@ pub(crate) struct Bindings<'a> {
     pub tile_leaves: &'a Buffer,
     /// Where each tile's walk begins.
     pub tile_entries: &'a Buffer,
+    pub counters: &'a Buffer,
 }
 
 impl SolidFold {
@@ -32,7 +34,7 @@ impl SolidFold {
             &ComputeInfo {
                 name: "solid fold",
                 spirv: shaders::SOLID_FOLD_COMP,
-                bindings: &with_constants(5),
+                bindings: &with_constants(6),
                 push_bytes: 0,
                 constants: &[],
             },
@@ -42,7 +44,7 @@ impl SolidFold {
 
     /// One thread for each of `tiles`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, tiles: u32) {
-        let resources = [b.frame, b.leaves, b.tile_starts, b.tile_leaves, b.tile_entries].map(Into::into);
+        let resources = [b.frame, b.leaves, b.tile_starts, b.tile_leaves, b.tile_entries, b.counters].map(Into::into);
         cmd.bind(&self.pipeline, &resources, &[]);
         cmd.dispatch(tiles.div_ceil(GROUP));
     }

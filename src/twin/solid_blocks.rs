@@ -1,7 +1,7 @@
 //! Twin of `glsl/solid_blocks.comp`: which leaves each block of tiles may see.
 
 use super::solid_tiles::{lists_of, meets};
-use crate::abi::{BLOCK, Frame, Rect};
+use crate::abi::{BLOCK, Frame, LEAF_RUN, Rect};
 use crate::twin::solid_rects::tile_count;
 
 /// Blocks across and down the picture.
@@ -9,12 +9,19 @@ pub fn block_count(frame: &Frame) -> [u32; 2] {
     tile_count(frame).map(|n| n.div_ceil(BLOCK))
 }
 
-/// Where the list of each block begins (and the last one ends), and all lists, leaves in order.
+/// Where the list of each block begins (and the last one ends), run after run of [`LEAF_RUN`] leaves; and all lists, leaves in
+/// order.
 pub fn solid_blocks(frame: &Frame, rects: &[Rect]) -> (Vec<u32>, Vec<u32>) {
     let [across, down] = block_count(frame);
+    let leaves = rects.len() as u32;
+    let runs = leaves.div_ceil(LEAF_RUN);
     let sees = |n: u32, leaf: &u32| {
-        let first = [n % across, n / across].map(|b| b * BLOCK);
+        let block = n / runs;
+        let first = [block % across, block / across].map(|b| b * BLOCK);
         meets(&rects[*leaf as usize], first, first.map(|t| t + BLOCK - 1))
     };
-    lists_of(across * down, |n| (0..rects.len() as u32).filter(|leaf| sees(n, leaf)).collect())
+    lists_of(across * down * runs, |n| {
+        let from = n % runs * LEAF_RUN;
+        (from..leaves.min(from + LEAF_RUN)).filter(|leaf| sees(n, leaf)).collect()
+    })
 }

@@ -5,16 +5,19 @@
 //!                                                                that the tile sees
 //! ```
 
-use crate::abi::{EXIT_FALSE, EXIT_TRUE, LEAF_FALLS, Leaf, TILE_LEAF_ENTRY, TileLeaf};
+use crate::abi::{EXIT_FALSE, EXIT_TRUE, LEAF_FALLS, Leaf, TILE_LEAF_ENTRY, TILE_LEAF_GATE, TileLeaf};
 
 /// Wires `tile_leaves`, of which tile `n` has those from `tile_starts[n]` to `tile_starts[n + 1]`, to each
-/// other; returns where the walk of each tile begins. From leaf `followed` on lists are items of their own, and where
+/// other; returns where the walk of each tile begins. A leaf over which no exit leads but to `EXIT_FALSE` is marked as a
+/// gate. From leaf `followed` on lists are items of their own, and where
 /// each begins is marked.
 pub fn solid_fold(leaves: &[Leaf], followed: u32, tile_starts: &[u32], tile_leaves: &mut [TileLeaf]) -> Vec<u32> {
     let tile = |ends: &[u32]| {
         let (start, end) = (ends[0], ends[1]);
         let union = fold(leaves, tile_leaves, 0, start, end);
         let (mut item, mut entry) = (None, EXIT_FALSE);
+        let passes = |exit: &u32| *exit != EXIT_FALSE;
+        let mut reach = Some(union).filter(passes).unwrap_or(0);
         for i in start..end {
             let at = tile_leaves[i as usize].leaf;
             let leaf = leaves[at as usize];
@@ -24,7 +27,12 @@ pub fn solid_fold(leaves: &[Leaf], followed: u32, tile_starts: &[u32], tile_leav
                 item = Some(leaf.item);
                 entry = fold(leaves, tile_leaves, leaf.item, i, end);
             }
-            let mark = if at >= followed && i == entry { TILE_LEAF_ENTRY } else { 0 };
+            let mark = match at < followed {
+                true if reach <= i => TILE_LEAF_GATE,
+                false if i == entry => TILE_LEAF_ENTRY,
+                _ => 0,
+            };
+            reach = [in_exit, out_exit].into_iter().filter(passes).fold(reach, u32::max);
             tile_leaves[i as usize] = TileLeaf { leaf: at | mark, in_exit, out_exit, of: leaf.own() };
         }
         union

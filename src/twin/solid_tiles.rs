@@ -1,6 +1,6 @@
 //! Twin of `glsl/solid_tiles.comp`: which leaves each tile may see, of those of its block.
 
-use crate::abi::{BLOCK, Frame, Rect, TILE};
+use crate::abi::{BLOCK, Frame, LEAF_RUN, Rect, TILE};
 use crate::twin::solid_blocks::block_count;
 use crate::twin::solid_rects::tile_count;
 
@@ -32,7 +32,9 @@ pub fn solid_tiles(frame: &Frame, rects: &[Rect], block_starts: &[u32], block_le
     let list = |n: u32| {
         let tile = [n % across, frame.band_top / TILE + n / across];
         let block = (tile[1] / BLOCK * block_count(frame)[0] + tile[0] / BLOCK) as usize;
-        let here = &block_leaves[block_starts[block] as usize..block_starts[block + 1] as usize];
+        let runs = rects.len().div_ceil(LEAF_RUN as usize);
+        let [start, end] = [block, block + 1].map(|block| block_starts[block * runs] as usize);
+        let here = &block_leaves[start..end];
         here.iter().copied().filter(|leaf| meets(&rects[*leaf as usize], tile, tile)).collect()
     };
     lists_of(across * down, list)

@@ -93,28 +93,58 @@ fn rays_in_a_face_are_on_one_side_of_it() {
     assert_silent(renderer);
 }
 
-/// 128 balls in a row, all but the last of them cut away: 255 faces lie before the one that is seen.
-#[test]
-fn what_lies_behind_255_faces_is_seen() {
-    let mut all: Vec<Primitive> = (0..128).map(|k| ball(0.4, f64::from(k))).collect();
-    all.push(below(DVec3::NEG_X, -126.5));
+/// How the cut through a row of balls is said.
+#[derive(Clone, Copy, Debug)]
+enum Cut {
+    /// Asked before the balls.
+    First,
+    /// After them.
+    Last,
+    /// After them, as the union of what is kept and of a ball that is nowhere: neither is a gate of the list.
+    OfTwo,
+}
+
+/// So many balls in a row, all but the last of them cut away.
+fn row_of_balls(count: u32, cut: Cut) -> Model {
+    let mut all: Vec<Primitive> = (0..count).map(|k| ball(0.4, f64::from(k))).collect();
+    all.push(below(DVec3::NEG_X, 1.5 - f64::from(count)));
+    all.push(ball(0.4, f64::from(count) + 5.0));
     (1..).zip(&mut all).for_each(|(id, p)| p.id = id);
     let mut b = Builder::new();
-    let far = b.leaf(128);
-    let balls: Vec<u32> = (0..128).map(|p| b.leaf(p)).collect();
+    let balls: Vec<u32> = (0..count).map(|p| b.leaf(p)).collect();
     let union = b.fold(Op::Union, balls);
-    let root = b.pair(Op::Intersection, far, union);
-    let model = Model { solids: vec![Solid::new(all, b.finish(root).unwrap()).unwrap()], ..Model::default() };
-    let camera = Camera {
+    let [far, nowhere] = [b.leaf(count), b.leaf(count + 1)];
+    let two = b.pair(Op::Union, far, nowhere);
+    let [x, y] = match cut {
+        Cut::First => [far, union],
+        Cut::Last => [union, far],
+        Cut::OfTwo => [union, two],
+    };
+    let root = b.pair(Op::Intersection, x, y);
+    Model { solids: vec![Solid::new(all, b.finish(root).unwrap()).unwrap()], ..Model::default() }
+}
+
+/// 255 and more faces lie before the one that is seen. Where nothing says beforehand that none of them counts, each is an
+/// event of its ray, and a driver may end such a ray's loop: it goes on in a walk of its own. Tiles see hundreds of leaves.
+#[test]
+fn what_lies_behind_255_faces_is_seen() {
+    let mut renderer = watched(&Model::default());
+    let view = |count: u32| Camera {
         eye: DVec3::X * -2.0,
         target: DVec3::ZERO,
         up: DVec3::Z,
         projection: Projection::Orthographic { height: 0.02 },
-        depth_range: (1.0, 200.0),
+        depth_range: (1.0, 8.0 + f64::from(count)),
         size: (24, 16),
     };
-    let mut renderer = watched(&model);
-    shows(&mut renderer, "the last ball", &model, &camera, |_, _| 128);
+    shows(&mut renderer, "the last of 128 balls", &row_of_balls(128, Cut::First), &view(128), |_, _| 128);
+    for (count, cut) in [(128, Cut::Last), (500, Cut::Last), (200, Cut::OfTwo)] {
+        renderer.upload(&row_of_balls(count, cut)).unwrap();
+        let picture = render(&mut renderer, &view(count));
+        assert_eq!(picture.stats.clamps, 0, "{count} balls, cut {cut:?}");
+        assert!(picture.face.iter().all(|face| *face == count), "{count} balls, cut {cut:?}: {:?}", picture.face);
+        assert_identical(&picture, &render(&mut renderer, &view(count)), "again");
+    }
     assert_silent(renderer);
 }
 
