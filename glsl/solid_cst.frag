@@ -30,6 +30,8 @@ layout(scalar, binding = 5) readonly buffer TileStarts { uint tile_starts[]; };
 layout(binding = 6) uniform usamplerBuffer tile_leaves;
 layout(scalar, binding = 7) readonly buffer TileEntries { uint tile_entries[]; };
 
+layout(scalar, binding = 10) buffer CountersBuffer { Counters counters; };
+
 layout(location = 0) flat in uint asked;
 #include "leaf_span.glsl"
 
@@ -65,6 +67,7 @@ void main() {
     Walks at = Walks(EXIT_FALSE, EXIT_FALSE, EXIT_FALSE, EXIT_FALSE);
     uint side = 0u;
     bool found = false;
+    bool none = false; // no end is left
     TileLeaf itself = TileLeaf(own, EXIT_FALSE, EXIT_FALSE, leaves[own].first << LEAF_FLAG_BITS | leaves[own].flags);
     // each end walks through every leaf at most
     uint most = 4u * (end - first) + 8u;
@@ -84,7 +87,10 @@ void main() {
                     valid = t > frame.near && t < frame.far && mine.lo < mine.hi && (!gap || mine.g0 < mine.g1);
                     ++tried;
                 }
-                if (!valid) break;
+                if (!valid) {
+                    none = tried == 4u;
+                    break;
+                }
                 at = Walks(entry, entry, entry, entry);
                 next = entry;
             }
@@ -108,6 +114,8 @@ void main() {
             if (at.behind_flipped == next) at.behind_flipped = behind != is_own ? here.in_exit : here.out_exit;
         }
     }
+    // a driver that ends long loops is told of
+    if (!(found || none)) atomicAdd(counters.clamps, 1u);
     if (!found) discard;
     visible = uvec2(SEEN_SOLID | side, floatBitsToUint(t));
     gl_FragDepth = reversed_depth(frame, t) / (frame.perspective != 0u ? t : 1.0);

@@ -49,7 +49,11 @@ uint fold(uint to, uint from, uint end) {
     uint found = (target.flags & LEAF_FALLS) != 0u ? EXIT_FALSE : EXIT_TRUE;
     uint seen = from < end && tile_leaves[from].leaf >= to ? from : first_not_before(to, from, end);
     uint ancestor = to;
-    while (seen < end && ancestor < EXIT_FALSE) {
+    while (true) {
+        if (seen >= end || ancestor >= EXIT_FALSE) {
+            ++answered;
+            break;
+        }
         uint at = tile_leaves[seen].leaf;
         Leaf leaf = leaves[at];
         if (leaf.pre <= target.pre && target.pre < leaf.end) {
@@ -63,7 +67,6 @@ uint fold(uint to, uint from, uint end) {
             ancestor = leaves[ancestor].out_exit;
         }
     }
-    if (seen >= end || ancestor >= EXIT_FALSE) ++answered;
     return found;
 }
 
@@ -79,8 +82,9 @@ void main() {
     uint reach = begin == EXIT_FALSE ? 0u : begin;
     uint item = EXIT_FALSE;
     uint entry = EXIT_FALSE;
-    uint i = start;
-    for (; i < end; ++i) {
+    uint steps = 0u;
+    for (uint i = start; i < end; ++i) {
+        ++steps;
         uint at = tile_leaves[i].leaf;
         Leaf leaf = leaves[at];
         uint in_exit = fold(leaf.in_exit, i + 1u, end);
@@ -100,5 +104,5 @@ void main() {
         }
         if (i == entry) tile_leaves[i].leaf = at | TILE_LEAF_ENTRY;
     }
-    if (i < end || answered != asked) atomicAdd(counters.clamps, 1u);
+    if (start < end && steps != end - start || answered != asked) atomicAdd(counters.clamps, 1u);
 }

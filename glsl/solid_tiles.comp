@@ -59,8 +59,9 @@ void main() {
         atomicMax(counters.band_tile_leaves, 0xffffffffu);
         atomicOr(counters.failed, FAILED_TILE_LEAVES);
     }
-    uint i = from;
-    for (; i < end; i += 4u) {
+    uint steps = 0u;
+    for (uint i = from; i < end; i += 4u) {
+        ++steps;
         uint last = end - 1u;
         uvec4 at = min(i + uvec4(0u, 1u, 2u, 3u), uvec4(last));
         uvec4 leaf = uvec4(block_leaves[at.x], block_leaves[at.y], block_leaves[at.z], block_leaves[at.w]);
@@ -69,6 +70,6 @@ void main() {
         if (i + 2u < end) look_at(leaf.z);
         if (i + 3u < end) look_at(leaf.w);
     }
-    if (LISTS && i < end) atomicAdd(counters.clamps, 1u);
+    if (LISTS && from < end && steps != (end - from + 3u) / 4u) atomicAdd(counters.clamps, 1u);
     if (!LISTS) tile_counts[n] = count;
 }

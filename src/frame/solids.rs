@@ -194,8 +194,11 @@ impl<'a> Frame<'a> {
                     tile_entries: &t.tile_entries,
                     rects: &parts.buffers.rects,
                     order,
+                    counters: &b.counters,
                 };
+                barrier::buffers(cmd, &[(&b.counters, w, Access::FRAGMENT_WRITE)]);
                 cst.record(cmd, &cst_bindings, (colour, depth), *drawn);
+                barrier::buffers(cmd, &[(&b.counters, Access::FRAGMENT_WRITE, w)]);
             }
             (Way::Events(events), _, Some(tiles)) => {
                 let bindings = solid_events::Bindings {

@@ -144,9 +144,9 @@ fn fold_on_gpu(
     gpu.run(|cmd| pass.record(cmd, &bindings, tiles));
     let mut twin = tile_leaves.to_vec();
     let twin_entries = twin::solid_fold::solid_fold(expected, followed[1], starts, &mut twin);
+    same("counters", &gpu.read(&counters, 1), &[Counters::default()])?;
     same("tile leaves", &gpu.read(&wired, twin.len()), &twin)?;
-    same("tile entries", &gpu.read(&entries, tiles as usize), &twin_entries)?;
-    same("counters", &gpu.read(&counters, 1), &[Counters::default()])
+    same("tile entries", &gpu.read(&entries, tiles as usize), &twin_entries)
 }
 
 #[test]
@@ -221,6 +221,22 @@ fn long_lists_are_folded() {
     }));
     let gpu = Gpu::new();
     fold_on_gpu(&gpu, &leaves, &leaves, [u32::MAX; 2], &starts, &tiles.concat()).unwrap();
+    gpu.finish();
+}
+
+/// A list so long that a driver may end the loop over it is either right or told of.
+#[test]
+fn a_list_of_too_many_is_told_of() {
+    let count = 70_000;
+    let last = |i: u32| if i + 1 < count { i + 1 } else { EXIT_FALSE };
+    let leaf =
+        |i: u32| Leaf { in_exit: EXIT_TRUE, out_exit: last(i), pre: count - 1 - i, end: count, ..Leaf::default() };
+    let leaves: Vec<Leaf> = (0..count).map(leaf).collect();
+    let tile: Vec<TileLeaf> = (0..count).map(|leaf| TileLeaf { leaf, ..TileLeaf::default() }).collect();
+    let gpu = Gpu::new();
+    if let Err(mismatch) = fold_on_gpu(&gpu, &leaves, &leaves, [u32::MAX; 2], &[0, count], &tile) {
+        assert_eq!(mismatch.buffer, "counters");
+    }
     gpu.finish();
 }
 

@@ -35,6 +35,8 @@ pub(crate) struct Bindings<'a> {
     pub rects: &'a Buffer,
     /// Which leaf an instance draws, as `trimmed_leaf.glsl` says.
     pub order: &'a Buffer,
+    /// `clamps`: ends of leaves that a driver did not let be followed through the Blist.
+    pub counters: &'a Buffer,
 }
 
 impl SolidCst {
@@ -45,7 +47,7 @@ impl SolidCst {
         visibility: vk::Format,
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
-        let mut bindings = with_primitives::<10>(1);
+        let mut bindings = with_primitives::<11>(1);
         bindings[6] = Binding::Texels;
         let pipeline = Pipeline::graphics(
             device,
@@ -79,7 +81,7 @@ impl SolidCst {
         drawn: u32,
     ) {
         let lists: [Resource<'_>; 2] = [b.tile_starts.into(), b.tile_leaves.into()];
-        let rest = [b.tile_entries, b.rects, b.order].map(Resource::from);
+        let rest = [b.tile_entries, b.rects, b.order, b.counters].map(Resource::from);
         let resources: Vec<_> =
             [b.frame.into()].into_iter().chain(b.primitives.resources()).chain(lists).chain(rest).collect();
         cmd.rendering(visibility.image.size(), &[visibility], Some(depth), || {
