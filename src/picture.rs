@@ -363,9 +363,9 @@ pub struct FrameStats {
     /// Pixels near borders of trimmed faces at which more than one face was asked who is seen; of the sample with the
     /// most.
     pub doubtful_pixels: u64,
-    /// Patches whose tessellation factor would have exceeded the largest split, and rays through Boolean
-    /// solids that need more steps than the driver lets a shader make: the promise is not kept there. 0 in a
-    /// good frame.
+    /// Patches whose tessellation factor would have exceeded the largest split; rays and tiles of Boolean solids and
+    /// rows of the trim table that need more steps than the driver lets a shader make: the promise is not kept there.
+    /// 0 in a good frame.
     pub clamps: u64,
     /// Patches that were left out because they lie behind others; 0 in the first frames of a scene, which find out.
     pub hidden_patches: u64,

@@ -199,7 +199,7 @@ struct Counters {
     uint overlaps;
     uint layers;       // peeled by way `blister`
     uint hidden;       // patches left out because they lie behind others
-    uint clamps;       // factors or densities above their hard limits
+    uint clamps;       // factors or densities above their hard limits, loops that a driver ended
     uint failed;       // one bit a buffer that was too small, or a pass that was drawn too seldom
 };
 
