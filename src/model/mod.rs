@@ -65,6 +65,9 @@ pub struct Model {
     pub trim: Option<Solid>,
     /// Length unit of the source, for the record; coordinates are already millimetres.
     pub unit: String,
+    /// Faces of Boolean solids that are nearer to each other than this share of the solids' diagonal are one face, as
+    /// [`Model::coincidence`] says; `None`: [`SurfaceTable::ROUNDED`].
+    pub coincident: Option<f64>,
 }
 
 /// One body: a closed solid, or an open shell.
@@ -153,6 +156,14 @@ impl Part {
 }
 
 impl Model {
+    /// Largest share of their diagonal by which faces of Boolean solids may be apart and yet be one face, as
+    /// [`SurfaceTable::new`] has it: [`coincident`](Self::coincident), between [`SurfaceTable::FINEST`] and
+    /// [`SurfaceTable::COARSEST`]; [`SurfaceTable::ROUNDED`] where nothing is said.
+    pub fn coincidence(&self) -> f64 {
+        let said = self.coincident.filter(|share| !share.is_nan());
+        said.map_or(SurfaceTable::ROUNDED, |share| share.clamp(SurfaceTable::FINEST, SurfaceTable::COARSEST))
+    }
+
     /// Box of all instances in model coordinates.
     pub fn bounds(&self) -> Bounds {
         let parts: Vec<Bounds> = self.parts.iter().map(Part::bounds).collect();

@@ -28,6 +28,9 @@ pub enum ModelError {
     /// A colour outside `[0, 1]`.
     #[error("a colour is not between 0 and 1")]
     Colour,
+    /// [`Model::coincident`] is not a number.
+    #[error("faces coincide within what is not a number")]
+    Coincident,
 }
 
 /// A [`Model`] as stored.
@@ -39,6 +42,7 @@ pub(super) struct ModelData {
     solids: Vec<Solid>,
     trim: Option<Solid>,
     unit: String,
+    coincident: Option<f64>,
 }
 
 /// A [`Face`] as stored.
@@ -66,7 +70,7 @@ impl TryFrom<ModelData> for Model {
     type Error = ModelError;
 
     fn try_from(data: ModelData) -> Result<Self, ModelError> {
-        let ModelData { name, parts, instances, solids, trim, unit } = data;
+        let ModelData { name, parts, instances, solids, trim, unit, coincident } = data;
         for mesh in parts.iter().flat_map(|part| &part.meshes) {
             check_colour(mesh.colour)?;
             if mesh.id == 0 {
@@ -83,7 +87,10 @@ impl TryFrom<ModelData> for Model {
                 return Err(ModelError::Transform { instance });
             }
         }
-        Ok(Self { name, parts, instances, solids, trim, unit })
+        if coincident.is_some_and(f64::is_nan) {
+            return Err(ModelError::Coincident);
+        }
+        Ok(Self { name, parts, instances, solids, trim, unit, coincident })
     }
 }
 

@@ -39,7 +39,7 @@ pub use judge::{
 pub use probe::Probe;
 pub use sun::{SunJudgement, SunTracer, judge_sun};
 
-use crate::model::{Bounds, Camera, Items, Model, SurfaceTable};
+use crate::model::{Bounds, Camera, Items, Model};
 use crate::picture::Picture;
 use crate::trim::LoopIndex;
 use bvh::Bvh;
@@ -152,9 +152,9 @@ impl Tracer {
         let bounds = boxes.iter().fold(Bounds::EMPTY, |a, b| a.union(*b));
         let top = Bvh::new(&boxes, PAD * bounds.diagonal());
         let some = items.as_ref().ok().is_none_or(|i| !(i.opaque.is_empty() && i.clear.is_empty()));
-        let layers = |items: Items| csg::LayerTracer::new(&items, SurfaceTable::DRAWN).ok();
+        let layers = |items: Items| csg::LayerTracer::new(&items, model.coincidence()).ok();
         let solids = items.ok().filter(|_| some).and_then(layers);
-        let trim = model.trim.as_ref().and_then(|v| csg::SolidTracer::new(v, SurfaceTable::DRAWN).ok());
+        let trim = model.trim.as_ref().and_then(|v| csg::SolidTracer::new(v, model.coincidence()).ok());
         let lost = u64::from(some && solids.is_none()) + u64::from(model.trim.is_some() && trim.is_none());
         let given_up = AtomicU64::new(lost);
         let bounds = solids.iter().fold(bounds, |all, s| all.union(s.union().bounds()));

@@ -18,7 +18,7 @@ use super::judge::samples;
 use super::leaf::Ray;
 use super::solver::Solver;
 use super::{Hit, JudgeOptions, Probe, Tracer};
-use crate::model::{Camera, Model, Solid, SolidError, SurfaceTable};
+use crate::model::{Camera, Model, Solid, SolidError};
 use crate::picture::Picture;
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
@@ -60,7 +60,7 @@ impl SunTracer {
     /// [`SolidError`] when an expression is too large.
     pub fn new(model: &Model, towards: DVec3) -> Result<Self, SolidError> {
         let opaque = model.items(false)?.opaque;
-        let casters = SolidTracer::new(&Solid::union(&opaque)?, SurfaceTable::DRAWN)?;
+        let casters = SolidTracer::new(&Solid::union(&opaque)?, model.coincidence())?;
         let casts = model.trim.is_none() && !model.instances.is_empty();
         let parts = casts.then(|| Tracer::new(&Model { solids: Vec::new(), ..model.clone() }));
         let bounds = model.bounds().union(casters.bounds());

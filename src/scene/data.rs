@@ -107,7 +107,7 @@ impl SceneData {
         let lone = nearest.then(|| Lone::of(&model.solids)).transpose()?.flatten();
         let union = lone.as_ref().map_or(&model.solids, |lone| &lone.rest);
         let lists = items.map_or_else(|| Lists::union(union), |items| Lists::of(items, all));
-        let solids = SolidData::new(&lists, settings.solids)?;
+        let solids = SolidData::new(&lists, model.coincidence(), settings.solids)?;
         // what a volume cuts open casts no shadow: it would be that of all of it
         let is_cut = model.trim.is_some();
         let sun = settings.sun.map(|towards| match is_whole {
@@ -121,7 +121,12 @@ impl SceneData {
         let sun = sun.transpose().map_err(|e: SolidError| UndrawnSolid::from(e))?;
         let cut = if is_cut { model.instances.len() } else { 0 };
         let shadowless = sun.as_ref().map_or(0, |sun| sun.left_out + cut + seen_through);
-        let volume = model.trim.as_ref().map(|volume| SolidData::volume(volume, way)).transpose()?.flatten();
+        let volume = model
+            .trim
+            .as_ref()
+            .map(|volume| SolidData::volume(volume, model.coincidence(), way))
+            .transpose()?
+            .flatten();
         let mut data = Self {
             is_layered: (clear || settings.highlight.is_some()) && solids.is_followed(),
             thickness: settings.thickness,

@@ -123,10 +123,12 @@ struct Shared {
 
 impl SolidData {
     /// The switches of all lists, one list after another.
-    pub(crate) fn new(lists: &Lists<'_>, way: SolidWay) -> Result<Self, UndrawnSolid> {
+    ///
+    /// `coincidence` is that of [`Model::coincidence`](crate::model::Model::coincidence).
+    pub(crate) fn new(lists: &Lists<'_>, coincidence: f64, way: SolidWay) -> Result<Self, UndrawnSolid> {
         let mut data = Self::default();
         let whole = Solid::union(&lists.solids)?;
-        let table = SurfaceTable::new(&whole, SurfaceTable::DRAWN);
+        let table = SurfaceTable::new(&whole, coincidence);
         let middle = middle_of(&lists.solids);
         let surface_of = data.push_surfaces(&whole, &table, middle);
         let shells = vec![None; whole.primitives().len()];
@@ -321,7 +323,7 @@ impl SolidData {
     }
 
     /// The volume that trims a scene; `None` when it is everywhere.
-    pub(super) fn volume(volume: &Solid, way: TrimWay) -> Result<Option<Self>, UndrawnSolid> {
+    pub(super) fn volume(volume: &Solid, coincidence: f64, way: TrimWay) -> Result<Option<Self>, UndrawnSolid> {
         let by_comparison = !TrimWay::ALL.contains(&way);
         if by_comparison {
             return Err(UndrawnSolid::VolumeBy(way.name()));
@@ -329,7 +331,7 @@ impl SolidData {
         if volume.tree().fold(|_| None).as_constant() == Some(true) {
             return Ok(None);
         }
-        let mut data = Self::new(&Lists::union(std::slice::from_ref(volume)), SolidWay::Events)?;
+        let mut data = Self::new(&Lists::union(std::slice::from_ref(volume)), coincidence, SolidWay::Events)?;
         if !data.shell_leaves.is_empty() {
             return Err(UndrawnSolid::Volume);
         }

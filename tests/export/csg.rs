@@ -50,7 +50,7 @@ const VOLUME: f64 = 1e-9;
 /// Classifies points by lines through them, and compares, also the lines' lengths inside; returns the points inside and those
 /// too near to a boundary.
 fn compare(a: &Solid, b: &Solid, count: u32) -> (u32, u32) {
-    let [first, second] = [a, b].map(|s| SolidTracer::new(s, SurfaceTable::DRAWN).unwrap());
+    let [first, second] = [a, b].map(|s| SolidTracer::new(s, SurfaceTable::ROUNDED).unwrap());
     let size = first.bounds().diagonal();
     let own = a.bounds();
     let bounds = if own.min.is_finite() && own.max.is_finite() { own } else { first.bounds() };

@@ -52,23 +52,26 @@ fn gaps_stay_open() {
 }
 
 /// Half a hollow ball, its rim from above: the shell is eight columns wide, whatever it measures. Below the share of the
-/// model that rounded files are off by (`SurfaceTable::DRAWN`) it is nothing.
+/// model that its faces may be apart and yet be one it is nothing: for rounded coordinates 4e-6, for others as
+/// `Model::coincident` says.
 #[test]
 fn shells_are_as_thick_as_they_are() {
     let mut renderer = watched(&Model::default());
-    for thin in [1e-2, 1e-3, 1e-4, 3e-5, 1e-5, 1e-6] {
+    let cases = [(1e-2, None), (1e-3, None), (1e-4, None), (3e-5, None), (1e-5, None), (1e-6, None)];
+    let finer = [1e-4, 1e-5, 1e-6].map(|thin| (thin, Some(SurfaceTable::FINEST)));
+    for (thin, coincident) in cases.into_iter().chain(finer) {
         let lid = block([-2.0, -2.0, 0.0], [2.0; 3]);
         let all = vec![ball(1.0, 0.0), ball(1.0 - thin, 0.0), lid];
         let size = all.iter().map(Primitive::bounds).fold(Bounds::EMPTY, |a, b| a.union(b)).diagonal();
-        let bowl = solids::solid("A-B-C", all);
+        let bowl = Model { coincident, ..solids::solid("A-B-C", all) };
         let eye = DVec3::new(1.0 - 0.5 * thin, 0.0, 3.0);
         let projection = Projection::Orthographic { height: 4.0 * thin };
         let target = eye.with_z(0.0);
         let camera = Camera { eye, target, up: DVec3::Y, projection, depth_range: (1.0, 10.0), size: (32, 32) };
+        let is_one_face = thin < bowl.coincidence() * size;
+        assert_eq!(is_one_face, coincident.is_none() && thin < 2e-5, "{thin} of {size}");
         // the inner wall, the rim, nothing
-        let column = |x, _| {
-            if thin < SurfaceTable::DRAWN * size { 0 } else { [2, 3, 0][usize::from(x >= 12) + usize::from(x >= 20)] }
-        };
+        let column = |x, _| if is_one_face { 0 } else { [2, 3, 0][usize::from(x >= 12) + usize::from(x >= 20)] };
         shows(&mut renderer, &format!("a shell of {thin}"), &bowl, &camera, column);
     }
     assert_silent(renderer);

@@ -6,7 +6,7 @@ use crate::shapes::{ball_mesh, sphere};
 use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched, watched_with};
 use glam::{DVec2, DVec3, DVec4};
 use selvedge::csg::{Builder, Op};
-use selvedge::model::{Camera, Colour, Model, Primitive, Projection, Shape, Solid, SurfaceTable};
+use selvedge::model::{Camera, Colour, Model, Primitive, Projection, Shape, Solid};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings};
 use selvedge::reference::csg::LayerTracer;
 use selvedge::reference::{JudgeOptions, Tracer, judge};
@@ -78,7 +78,7 @@ pub fn gear() -> Solid {
 }
 
 pub fn tracer(model: &Model) -> LayerTracer {
-    LayerTracer::new(&model.items(false).unwrap(), SurfaceTable::DRAWN).unwrap()
+    LayerTracer::new(&model.items(false).unwrap(), model.coincidence()).unwrap()
 }
 
 fn encoded(c: f64) -> f64 {

@@ -12,7 +12,7 @@ use super::{VERSION, cameras, cuts, place};
 use crate::import::camera::PictureSettings;
 use crate::import::solid::Assembly;
 use crate::import::{FaceRecord, Import, ImportReport, Warning};
-use crate::model::{Colour, Face, Instance, Model, Part, Primitive, Solid};
+use crate::model::{Colour, Face, Instance, Model, Part, Primitive, Solid, SurfaceTable};
 use glam::DAffine3;
 use std::collections::{BTreeSet, HashMap};
 use std::ops::Range;
@@ -81,7 +81,7 @@ pub(super) fn read(text: &str, file: &str, folder: Option<&Path>) -> Outcome<Imp
     Ok(import)
 }
 
-/// Version, name, unit and tolerance.
+/// Version, name, unit and tolerances.
 fn settings<'a>(scene: &mut Scene<'a>, table: &mut Table<'a>, file: &str) -> Outcome<Model> {
     let version = table.get("selvedge").ok_or_else(|| {
         Fault::new(0, format!("not a scene: `selvedge = {VERSION}` is missing, the version of its form"))
@@ -94,7 +94,13 @@ fn settings<'a>(scene: &mut Scene<'a>, table: &mut Table<'a>, file: &str) -> Out
     scene.unit = table.read("unit", |v| v.word(&UNITS))?.unwrap_or(1.0);
     // a thousandth of a millimetre
     scene.tolerance = table.read("tolerance", Value::positive)?.unwrap_or(1e-3 / scene.unit);
-    Ok(Model { name: name.map_or_else(|| crate::import::stem(file), str::to_owned), ..Model::default() })
+    let coincident = table.get("coincident").map(|value| {
+        let (share, range) = (value.number()?, SurfaceTable::FINEST..=SurfaceTable::COARSEST);
+        let told = || value.fault(format!("a share from {:e} to {:e} is wanted", range.start(), range.end()));
+        if range.contains(&share) { Ok(share) } else { Err(told()) }
+    });
+    let name = name.map_or_else(|| crate::import::stem(file), str::to_owned);
+    Ok(Model { name, coincident: coincident.transpose()?, ..Model::default() })
 }
 
 /// The model so far.

@@ -55,7 +55,7 @@ fn is_back_to_back(primitive: &Primitive, mesh: &Mesh) -> bool {
         _ => Shape::Mesh(Arc::new(mesh.clone())),
     };
     let Ok(solid) = Solid::of(Primitive { shape, ..primitive.clone() }) else { return true };
-    let table = SurfaceTable::new(&solid, SurfaceTable::DRAWN);
+    let table = SurfaceTable::new(&solid, SurfaceTable::ROUNDED);
     let mut looks: Vec<[bool; 2]> = vec![[false; 2]; table.surfaces().len()];
     table.faces(0).iter().for_each(|face| looks[face.surface as usize][usize::from(face.flipped)] = true);
     looks.contains(&[true, true])

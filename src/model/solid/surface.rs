@@ -69,9 +69,11 @@ impl SurfaceTable {
     /// Tolerance for files that round to six digits: coplanar faces come back from a rotation up to 2.5e-6
     /// of their coordinates apart, while gaps of 1e-5 of the model stay open.
     pub const ROUNDED: f64 = 4e-6;
-    /// Tolerance of what is drawn, and of the reference that it is held against: files tell of rounded
-    /// coordinates nowhere, so they are taken to be rounded.
-    pub const DRAWN: f64 = Self::ROUNDED;
+    /// Least tolerance of what is drawn: single precision tells faces apart, and which comes first, from some ten
+    /// of these on; below, a pixel here and there shows one face for the other.
+    pub const FINEST: f64 = 1e-7;
+    /// Largest tolerance of what is drawn.
+    pub const COARSEST: f64 = 1e-3;
     /// Tolerance for coordinates in full precision.
     pub const EXACT: f64 = 1e-11;
 

@@ -160,6 +160,7 @@ impl CloseUp {
             unit: model.unit.clone(),
             solids: model.solids.clone(),
             trim: model.trim.clone(),
+            coincident: model.coincident,
             ..Model::default()
         };
         for (placed, sight, faces) in &seen {

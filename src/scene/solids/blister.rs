@@ -159,7 +159,7 @@ pub(super) fn face_outward(data: &SolidData) -> bool {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Mesh, Shape, Solid};
+    use crate::model::{Mesh, Shape, Solid, SurfaceTable};
     use crate::picture::SolidWay;
     use crate::scene::solids::Lists;
     use glam::{DAffine3, DVec3};
@@ -172,7 +172,9 @@ mod tests {
         let mesh = Mesh::new(1, CORNERS.map(DVec3::from).to_vec(), triangles, Vec::new()).unwrap();
         let (shape, transform) = (Shape::Mesh(Arc::new(mesh)), DAffine3::IDENTITY);
         let primitive = Primitive { id: 1, colour: [0.5; 4], shape, transform };
-        SolidData::new(&Lists::union(&[Solid::of(primitive).unwrap()]), SolidWay::Blister).unwrap().blister
+        SolidData::new(&Lists::union(&[Solid::of(primitive).unwrap()]), SurfaceTable::ROUNDED, SolidWay::Blister)
+            .unwrap()
+            .blister
     }
 
     #[test]

@@ -100,7 +100,7 @@ impl View {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Mesh, Primitive, Projection, Shape, Solid};
+    use crate::model::{Mesh, Primitive, Projection, Shape, Solid, SurfaceTable};
     use crate::picture::SolidWay;
     use crate::scene::solids::Lists;
     use glam::DAffine3;
@@ -114,7 +114,8 @@ mod tests {
         let shape = Shape::Mesh(Arc::new(mesh));
         let one = Primitive { id: 1, colour: [0.5; 4], shape, transform: DAffine3::from_translation(at) };
         let solid = Solid::of(one).unwrap();
-        let data = SolidData::new(&Lists::union(std::slice::from_ref(&solid)), SolidWay::Events).unwrap();
+        let data = SolidData::new(&Lists::union(std::slice::from_ref(&solid)), SurfaceTable::ROUNDED, SolidWay::Events)
+            .unwrap();
         let camera = Camera {
             eye: DVec3::Z * 100.0,
             target: DVec3::ZERO,

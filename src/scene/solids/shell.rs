@@ -130,7 +130,7 @@ impl SolidData {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::model::{Mesh, Solid};
+    use crate::model::{Mesh, Solid, SurfaceTable};
     use crate::picture::SolidWay;
     use crate::scene::solids::Lists;
     use glam::DAffine3;
@@ -149,7 +149,7 @@ mod tests {
     fn data(shapes: Vec<Shape>) -> SolidData {
         let one = |shape| Primitive { id: 1, colour: [0.5; 4], shape, transform: DAffine3::IDENTITY };
         let solids: Vec<Solid> = shapes.into_iter().map(|shape| Solid::of(one(shape)).unwrap()).collect();
-        SolidData::new(&Lists::union(&solids), SolidWay::Events).unwrap()
+        SolidData::new(&Lists::union(&solids), SurfaceTable::ROUNDED, SolidWay::Events).unwrap()
     }
 
     fn mesh(mesh: Mesh) -> Shape {

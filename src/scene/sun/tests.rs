@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::csg::{Builder, Op};
-use crate::model::{Primitive, Shape, Solid};
+use crate::model::{Primitive, Shape, Solid, SurfaceTable};
 use crate::picture::SolidWay;
 use crate::scene::solids::Lists;
 use glam::DAffine3;
@@ -42,7 +42,7 @@ fn solids(dice: &mut Dice, count: u32, ops: [Op; 4]) -> SolidData {
     }
     let tree = b.finish(nodes[0]).unwrap();
     let solid = Solid::new(primitives, tree).unwrap();
-    SolidData::new(&Lists::union(std::slice::from_ref(&solid)), SolidWay::Events).unwrap()
+    SolidData::new(&Lists::union(std::slice::from_ref(&solid)), SurfaceTable::ROUNDED, SolidWay::Events).unwrap()
 }
 
 /// Where a walk ends that is out of every leaf but those of which `inside` says otherwise.

@@ -33,10 +33,12 @@ fn unknown_keys_and_words_have_their_place() {
     expect(&[
         (
             "colour = 1\n",
-            "2:1: `colour` is not known here; known are `selvedge`, `name`, `unit`, `tolerance`, `curve`, `surface`, \
-             `solid`, `part`, `file`, `instance`, `camera`, `picture`, `trim`, `section`, \
-             `xray`",
+            "2:1: `colour` is not known here; known are `selvedge`, `name`, `unit`, `tolerance`, \
+             `coincident`, `curve`, `surface`, `solid`, `part`, `file`, `instance`, `camera`, `picture`, `trim`, \
+             `section`, `xray`",
         ),
+        ("coincident = 0\n", "2:14: `coincident`: a share from 1e-7 to 1e-3 is wanted"),
+        ("coincident = nan\n", "2:14: `coincident`: not a finite number"),
         ("unit = \"parsec\"\n", "2:8: `unit`: `parsec` is none of `mm`, `cm`, `m`, `um`, `km`, `in`, `ft`"),
         ("[solid.a]\nshape = \"sphere\"\nradus = 3\n", "2:8: `radius` is missing"),
         (

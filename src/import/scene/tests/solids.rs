@@ -36,6 +36,9 @@ fn a_drilled_plate() {
     ] {
         assert_eq!(inside(&import, at), expected, "{at:?}");
     }
+    let finer =
+        crate::import::scene(format!("selvedge = 1\ncoincident = 2e-7\n{PLATE}").as_bytes(), "t.toml", None).unwrap();
+    assert_eq!((import.model.coincident, finer.model.coincident), (None, Some(2e-7)));
     let primitives = import.model.solids[0].primitives();
     assert_eq!(primitives[0].colour, [1.0, 0.0, 0.0, 1.0]);
     assert_ne!(primitives[0].id, primitives[1].id);

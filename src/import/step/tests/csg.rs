@@ -40,7 +40,7 @@ fn one(import: &Import) -> &Solid {
 
 /// Whether points are inside: a line through each.
 fn holds(solid: &Solid, points: &[(DVec3, bool)]) {
-    let tracer = SolidTracer::new(solid, SurfaceTable::DRAWN).unwrap();
+    let tracer = SolidTracer::new(solid, SurfaceTable::ROUNDED).unwrap();
     for (p, inside) in points {
         let trace = tracer.trace(*p, DVec3::new(0.3, 0.5, 0.8));
         assert_eq!(trace.inside(0.0), *inside, "at {p}");
