@@ -271,6 +271,42 @@ fn the_sun_casts_shadows() {
     std::fs::remove_dir_all(&folder).unwrap();
 }
 
+/// `sweep` writes a row a setting, and beside the bound the smallest level that is off by no more.
+#[test]
+fn sweeps_measure_what_they_are_asked() {
+    let out = std::env::temp_dir().join(format!("selvedge-sweep-{}.csv", std::process::id()));
+    let file = out.to_string_lossy();
+    let sample = concat!(env!("CARGO_MANIFEST_DIR"), "/samples/bracket.step");
+    let small = ["--sizes", "160x120", "--frames", "1", "--samples", "200"];
+    let done = |more: &[&str]| {
+        let output = selvedge(&[&["sweep", sample], &small[..], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{more:?}: {}", text(&output.stderr));
+        text(&output.stdout)
+    };
+    let told = done(&["--degrees", "2", "--factors", "bound,8", "--rate", "--out", &file]);
+    let mut table = csv::Reader::from_path(&out).unwrap();
+    let rows: Vec<std::collections::HashMap<String, String>> = table.deserialize().map(Result::unwrap).collect();
+    std::fs::remove_file(&out).unwrap();
+    let column = |name: &str| rows.iter().map(|row| row[name].as_str()).collect::<Vec<_>>();
+    assert_eq!(column("model"), ["bracket", "bracket", "degree 2", "degree 2"]);
+    assert_eq!(column("factors"), ["bound", "8", "bound", "8"]);
+    // 32 by 32 spans of a face, cut into patches at the middles too
+    assert_eq!(column("patches")[2..], ["4096", "4096"]);
+    assert_eq!((column("wrong"), column("clamps")), (vec!["0"; 4], vec!["0"; 4]));
+    // two triangles for each of 8 by 8 cells of each sub-patch that may be seen
+    for row in rows.iter().filter(|row| row["factors"] == "8") {
+        let count = |name: &str| row[name].parse::<u64>().unwrap();
+        assert_eq!(count("triangles"), 128 * count("sub_patches"), "{row:?}");
+    }
+    assert!(told.contains("triangles a second in tessellation and visibility"), "{told}");
+
+    let told = done(&["--against-fixed", "--zooms", "1,4"]);
+    let levels: Vec<&str> = told.lines().filter(|line| line.contains(" bracket ")).collect();
+    assert_eq!(levels.len(), 3, "a row a view and one for all: {told}");
+    refused(&["sweep", sample, "--against-fixed", "--out", &file], "cannot be used with");
+    refused(&["sweep", sample, "--against-fixed", "--factors", "8"], "cannot be used with");
+}
+
 /// Width, height and a pixel of a picture.
 fn pixel(path: &str, x: u32, y: u32) -> ((u32, u32), [u8; 4]) {
     let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
