@@ -1,9 +1,9 @@
 //! Frames trimmed by each rival against the exact reference, watched by the validation layers.
 
-use glam::DVec3;
+use glam::{DAffine3, DVec3};
 use selvedge::gpu::GpuError;
 use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
-use selvedge::model::{Camera, Model, Projection};
+use selvedge::model::{Camera, Instance, Model, Projection};
 use selvedge::picture::Sorted;
 use selvedge::picture::{FrameSettings, Outputs, Rival, SceneSettings, TrimWay};
 use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
@@ -18,8 +18,12 @@ fn camera(model: &Model) -> Camera {
     Camera::framing(model.bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), SIZE)
 }
 
+fn sample(name: &str) -> Model {
+    selvedge::import::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("samples").join(name)).unwrap().model
+}
+
 fn panel() -> Model {
-    selvedge::import::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/panel.step")).unwrap().model
+    sample("panel.step")
 }
 
 fn watched(model: &Model, trim: Option<TrimWay>) -> HeadlessRenderer {
@@ -55,6 +59,41 @@ fn bisection_keeps_half_a_pixel_and_one_step_does_not() {
     // holes of 20 pixels, whose quarters become chords that bulge by a third of the radius
     let j = rival(&many_holes(6), Rival::Bisect { steps: 0, sorted: Sorted::Tuned });
     assert!(j.wrong > 100 && j.worst_shift_px > 1.0, "{} wrong, {} px", j.wrong, j.worst_shift_px);
+}
+
+/// Whatever the way: a comparison in which some draw what lies behind would be of that, not of trims.
+#[test]
+fn rivals_leave_out_what_lies_behind() {
+    let one = sample("bracket.step");
+    let mut model = Model { instances: Vec::new(), ..one.clone() };
+    // away from the eye
+    let behind = -0.5 * one.bounds().diagonal() * DVec3::new(1.0, -1.6, 1.1).normalize();
+    for k in 0..12 {
+        let place = |i: &Instance| Instance {
+            transform: DAffine3::from_translation(f64::from(k) * behind) * i.transform,
+            ..i.clone()
+        };
+        model.instances.extend(one.instances.iter().map(place));
+    }
+    // the first one fills the picture
+    let camera = Camera { depth_range: (camera(&one).depth_range.0, 1e4), ..camera(&one) };
+    let mut renderer = watched(&model, None);
+    let mut left_out = |trim| {
+        renderer.upload_with(&model, SceneSettings { trim: Some(trim), ..SceneSettings::default() }).unwrap();
+        let settings = FrameSettings { all_passes: true, ..FrameSettings::default() };
+        let mut draw = || renderer.render(&camera, &settings, Outputs::default()).unwrap().stats;
+        [draw(), draw(), draw()].map(|stats| stats.hidden_patches)
+    };
+    let sorted = Sorted::Tuned;
+    let rivals = [Rival::Untrimmed, Rival::Bisect { steps: 16, sorted }, Rival::Texture { eighths: 16 }];
+    let ways = rivals.map(TrimWay::Rival).into_iter().chain(TrimWay::ALL.iter().copied());
+    for way in ways {
+        // the second frame asks, and the third is told
+        let [first, _, third] = left_out(way);
+        assert!(first == 0 && third > 100, "{way:?}: {first}, then {third} patches");
+    }
+    let messages = renderer.shutdown();
+    assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
 }
 
 #[test]
