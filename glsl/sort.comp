@@ -2,8 +2,9 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `sort`: each row in order of u, reduced to the places where inside and outside change.
-// One thread a row; a driver that ends long loops, at some 4500 intercepts, is told of. Sorted, so that the result does not depend on the order of insertion: few intercepts, as most rows
-// have, in registers, the others by heap, in place. What a row holds behind its flips is nobody's.
+// One thread a row; sorted, so that the result does not depend on the order of insertion: few intercepts, as most rows
+// have, in registers, the others by heap, in place. What a row holds behind its flips is nobody's. A driver may end the loops
+// of a row of more than some 4500: that counts as a clamp.
 //
 //   intercepts   ↑  ↑  ↓  ↑  ↓  ↓        winding   0 1 2 1 2 1 0
 //   flips        |              |        inside    0 1 1 1 1 1 0

@@ -144,8 +144,8 @@ pub(crate) struct SolidBuffers {
 
 /// Which leaves each tile of a band sees, and their Blist.
 pub(crate) struct TileBuffers {
-    /// Runs of leaves of all blocks.
-    pub blocks: u32,
+    /// Of leaves, of all blocks.
+    pub runs: u32,
     /// In the picture.
     pub tiles: u32,
     pub block_counts: Buffer,
@@ -209,12 +209,12 @@ impl Buffers {
         let across = |side: u32| size.0.div_ceil(side) * size.1.div_ceil(side);
         let [all_tiles, blocks] = [across(TILE), across(TILE * BLOCK)].map(|count| count * u32::from(in_tiles));
         let band_rows = capacities.band_rows.min(size.1.div_ceil(TILE));
-        let blocks = blocks * counts.leaves.div_ceil(LEAF_RUN);
+        let runs = blocks * counts.leaves.div_ceil(LEAF_RUN);
         let tiles = all_tiles.min(size.0.div_ceil(TILE) * band_rows);
         let band_pixels = size.0 * (band_rows * TILE).min(size.1);
         let pixels = if counts.has_fragments() { band_pixels } else { 0 };
         let scanned =
-            [2 * n, counts.strips, counts.curves, counts.face_instances, capacities.rows, tiles, blocks, pixels];
+            [2 * n, counts.strips, counts.curves, counts.face_instances, capacities.rows, tiles, runs, pixels];
         let scanned = scanned.into_iter().max().unwrap_or(0);
         let draw_bytes = 2 * u64::from(capacities.draws) * size_of::<vk::DrawIndirectCommand>() as u64;
         let table = || {
@@ -299,10 +299,10 @@ impl Buffers {
                             .then(|| {
                                 let room = capacities.tile_leaves;
                                 Ok(TileBuffers {
-                                    blocks,
+                                    runs,
                                     tiles: all_tiles,
-                                    block_counts: words("solid block counts", blocks)?,
-                                    block_starts: words("solid block starts", blocks + 1)?,
+                                    block_counts: words("solid block counts", runs)?,
+                                    block_starts: words("solid block starts", runs + 1)?,
                                     block_leaves: words("solid block leaves", capacities.block_leaves)?,
                                     tile_counts: words("solid tile counts", tiles)?,
                                     tile_starts: numbers("solid tile starts", tiles + 1, Texel::Words)?,

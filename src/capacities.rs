@@ -289,9 +289,26 @@ impl Capacities {
         Ok(Self { band_rows, ..self }.with(room))
     }
 
+    /// Four times as many walks as did not suffice; else one, 4, 16, … of which the last had nothing to do, or was the
+    /// last that may be. What rays did with lists that lacked something does not count.
+    fn walks(self, c: &Counters, size: (u32, u32), range: u32) -> Result<u32, TooMany> {
+        let grown = match c.failed {
+            0 => (0..).map(|n| 4u32.pow(n)).find(|walks| *walks > c.walks).unwrap_or(MOST_WALKS),
+            FAILED_WALKS => 4 * self.walks,
+            _ => self.walks,
+        };
+        let rows = self.band_rows.saturating_mul(TILE).min(size.1);
+        let (pixels, most) = (size.0.saturating_mul(rows), range / size_of::<u32>() as u32);
+        if grown > 1 && pixels > most {
+            return Err(TooMany { what: "pixels whose rays are walked on", count: pixels, most });
+        }
+        Ok(grown.min(MOST_WALKS))
+    }
+
     /// Buffers made for these take as much as those made for `others`.
     pub(crate) fn takes_as_much(self, others: Self) -> bool {
-        Self { layers: others.layers, ..self } == others
+        let walks = if (self.walks > 1) == (others.walks > 1) { others.walks } else { self.walks };
+        Self { layers: others.layers, walks, ..self } == others
     }
 
     /// What the frame that reported `c` would have needed, with a quarter to spare where a storage
@@ -335,7 +352,7 @@ impl Capacities {
                 had if c.failed & FAILED_LAYERS != 0 => 2 * had,
                 _ => (c.layers + 1).max(FEWEST_LAYERS),
             },
-            walks: if c.failed & FAILED_WALKS != 0 { (4 * self.walks).min(MOST_WALKS) } else { self.walks },
+            walks: self.walks(c, size, range)?,
         })
     }
 }
@@ -400,16 +417,27 @@ mod tests {
         assert!(matches!(of(most, c), Err(TooMany { what: "layers of faces", .. })));
     }
 
-    /// Four times as many as did not suffice, and then they stay.
     #[test]
-    fn walks_grow_to_the_most() {
+    fn walks_follow_the_view() {
         let ended = Counters { failed: FAILED_WALKS, ..Default::default() };
         let mut had = first();
         for walks in [4, 16, 64, MOST_WALKS] {
             had = grown(had, &ended).unwrap();
             assert_eq!(had.walks, walks);
         }
-        assert_eq!(grown(had, &Counters::default()).unwrap().walks, MOST_WALKS);
+        // as the view needs
+        let of = |c| grown(had, &c).unwrap().walks;
+        assert_eq!(of(Counters { walks: 63, ..Default::default() }), MOST_WALKS);
+        assert_eq!(of(Counters { walks: 64, ..Default::default() }), MOST_WALKS);
+        assert_eq!(of(Counters { walks: 3, ..Default::default() }), 4);
+        assert_eq!(of(Counters { walks: 1, ..Default::default() }), 4);
+        assert_eq!(of(Counters::default()), 1);
+        // lists that lack something say nothing of rays
+        let both = Counters { failed: FAILED_WALKS | FAILED_TILE_LEAVES, tile_leaves: 99, ..Default::default() };
+        assert_eq!(grown(first(), &both).unwrap().walks, 1);
+        assert!(had.takes_as_much(Capacities { walks: 4, ..had }) && !had.takes_as_much(first()));
+        let large = first().grown(&ended, Counts::default(), (16_384, 16_384), RANGE);
+        assert!(matches!(large, Err(TooMany { what: "pixels whose rays are walked on", .. })));
     }
 
     #[test]

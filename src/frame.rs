@@ -187,6 +187,8 @@ pub(crate) struct Frame<'a> {
     pub shell_pixels: &'a [Range<u32>; 2],
     /// That way `blister` peels.
     pub layers: u32,
+    /// Along each ray of way `events`.
+    pub walks: u32,
     /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.
     pub volume_places: Option<&'a Texels>,
     /// Where the sun is, in a scene that has one.

@@ -363,9 +363,9 @@ pub struct FrameStats {
     /// Pixels near borders of trimmed faces at which more than one face was asked who is seen; of the sample with the
     /// most.
     pub doubtful_pixels: u64,
-    /// Patches whose tessellation factor would have exceeded the largest split; rays and tiles of Boolean solids and
-    /// rows of the trim table that need more steps than the driver lets a shader make: the promise is not kept there.
-    /// 0 in a good frame.
+    /// Patches whose tessellation factor would have exceeded the largest split; and how often a ray or a tile of Boolean
+    /// solids or a row of the trim table needed more steps than the driver lets a shader make: the promise is not kept
+    /// there. 0 in a good frame.
     pub clamps: u64,
     /// Patches that were left out because they lie behind others; 0 in the first frames of a scene, which find out.
     pub hidden_patches: u64,
@@ -399,10 +399,10 @@ pub struct FrameStats {
     /// that way draws nothing. See [`SceneSettings::solid_budget`].
     pub bands: u32,
     /// Bytes of what the way to draw Boolean solids takes beside what every frame has: lists of the primitives that
-    /// `blocks` of 8 x 8 tiles see, and `tiles`; lists of `crossings` with operands; images of `layers`. Those that
-    /// there are; [`SceneSettings::solid_budget`] is for `tiles` and `crossings`.
+    /// `blocks` of 8 x 8 tiles see, and `tiles`; lists of `crossings` with operands; images of `layers`; `ways`, where
+    /// rays are walked on from. Those that there are; [`SceneSettings::solid_budget`] is for `tiles` and `crossings`.
     pub solid_bytes: Vec<PoolBytes>,
-    /// Times the frame was recorded again because a buffer was too small.
+    /// Times the frame was recorded again because a buffer was too small, or rays had to be walked on.
     pub retries: u32,
     /// Bytes copied for edits of trim loops since the frame before.
     pub edit_bytes: u64,

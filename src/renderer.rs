@@ -373,6 +373,7 @@ impl Renderer {
             keeps: known.keeps,
             shell_pixels: &shell_pixels,
             layers: loaded.capacities.layers,
+            walks: loaded.capacities.walks,
             volume_places: slot.centres.volume(),
             sun: slot.centres.sun(),
             sun_parts: slot.centres.sun_parts(),

@@ -198,6 +198,7 @@ struct Counters {
     uint contacts;     // pixels whose rays meet coincident faces of two items, and that are within two at once
     uint overlaps;
     uint layers;       // peeled by way `blister`
+    uint walks;        // along rays through Boolean solids that did not come to their ends
     uint hidden;       // patches left out because they lie behind others
     uint clamps;       // factors or densities above their hard limits, loops that a driver ended
     uint failed;       // one bit a buffer that was too small, or a pass that was drawn too seldom

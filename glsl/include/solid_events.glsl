@@ -19,8 +19,8 @@
 // needed.
 //
 // An event that matters is one of a leaf that the walk asks: the others are not looked at whatever they are, so until
-// then the walk ends as it does. In A - (B + C + ...) nothing is asked before A begins. And while a gate of the tile's list is
-// shut, nothing else matters: in (A + B + ...) - C the next event within C is its end.
+// then the walk ends as it does. In A - (B + C + ...) nothing is asked before A begins. And while a gate of the tile's list
+// is shut, nothing else matters: in (A + B + ...) - C the next event within C is its end.
 #ifndef SOLID_EVENTS_GLSL
 #define SOLID_EVENTS_GLSL
 
@@ -117,6 +117,14 @@ void meet(inout Walk walk, uint i, TileLeaf here, Crossing c, uint other, uint a
 }
 
 void main() {
+    uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));
+#ifndef FACE_IS_FOUND
+    uint way = 0u;
+    if (nth > 0u) {
+        way = ways[pixel];
+        if (way == 0u) discard;
+    }
+#endif
     uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first = min(word_at(tile_starts, n), frame.tile_leaf_capacity);
     uint end = min(word_at(tile_starts, n + 1u), frame.tile_leaf_capacity);
@@ -126,7 +134,6 @@ void main() {
     uint entry = word_at(tile_entries, first_of_band(frame) + n);
     if (entry == EXIT_FALSE) discard;
     Ray ray = eye_ray(frame, gl_FragCoord.xy);
-    uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));
     uint first_fragment = SOLIDS_HAVE_SHELLS ? fragment_starts[pixel] : 0u;
     uint fragment_count = SOLIDS_HAVE_SHELLS ? fragment_counts[pixel] : 0u;
     Span kept[KEPT];
@@ -147,31 +154,18 @@ void main() {
     before = false;
 #else
     if (nth > 0u) {
-        uint way = ways[pixel];
-        if (way == 0u) discard;
         before = (way & WAY_BEFORE) != 0u;
         t = uintBitsToFloat(way & ~WAY_BEFORE);
     }
     float begun = t;
     bool begun_before = before;
-    // where the last search began: a scan may be ended without its telling, but not two
-    float sure = t;
-    bool sure_before = before;
 #endif
     // four events a leaf, at most as many questions about owners, and one about the side
     uint most = 8u * (end - first) + 2u * fragment_count + 4u;
     bool done = false;
     bool passed = false; // the far plane
-    // a driver that ends long loops is found by what is missing
-    uint wanted = 0u;
-    uint steps = 0u;
+    uint two = min(end - first, 1u) + 1u;
     for (uint scan = 0u; scan < most && !done; ++scan) {
-#ifndef FACE_IS_FOUND
-        if (purpose == SEARCH) {
-            sure = t;
-            sure_before = before;
-        }
-#endif
         // the spans of [first, known) are kept, those of [from, to) computed: all at first, then what is not kept, and
         // the asked leaf's again to tell its side
         bool tells = purpose == SIDE;
@@ -179,9 +173,7 @@ void main() {
         uint to = !tells ? end : asked == NOBODY ? from : asked + 1u;
         uint known = tells ? first : from;
         Walk walk = Walk(entry, entry, NEVER, Candidates(NOBODY, NOBODY), 0u);
-        wanted += known - first + (to - from);
         for (uint i = first; i < known; ++i) {
-            ++steps;
             TileLeaf here = tile_leaf_at(tile_leaves, i);
             Crossing c;
             uint last;
@@ -193,7 +185,6 @@ void main() {
             meet(walk, i, here, c, purpose == OWNER ? asked : NOBODY, after);
         }
         for (uint i = from; i < to; ++i) {
-            ++steps;
             TileLeaf here = tile_leaf_at(tile_leaves, i);
             Crossing c;
             if (SOLIDS_HAVE_SHELLS && (here.of & LEAF_SHELL) != 0u) {
@@ -212,6 +203,11 @@ void main() {
             }
             meet(walk, i, here, c, purpose == OWNER ? asked : NOBODY, after);
         }
+        // a driver that has ended a loop ends all of them from then on, this one of two steps, too: then the scan is not
+        // to be trusted
+        uint steps = 0u;
+        for (uint i = 0u; i < two; ++i) ++steps;
+        if (steps != two) break;
         bool inside = walk.at == EXIT_TRUE;
         if (purpose == SIDE) {
             done = true;
@@ -247,15 +243,16 @@ void main() {
             t = walk.next;
         }
     }
-    bool ended = steps == wanted && (done || passed);
+    bool ended = done || passed;
 #ifdef FACE_IS_FOUND
     if (!ended) atomicAdd(counters.clamps, 1u);
 #else
-    bool goes_on = !ended && (sure != begun || sure_before != begun_before);
-    if (walks > 1u) ways[pixel] = goes_on ? floatBitsToUint(sure) | (sure_before ? WAY_BEFORE : 0u) : 0u;
+    // from the event whose scan was the last to be trusted, if that is farther on
+    bool goes_on = !ended && (t > begun || t == begun && before != begun_before);
+    if (goes_on) atomicMax(counters.walks, nth + 1u);
+    if (walks > 1u) ways[pixel] = goes_on ? floatBitsToUint(t) | (before ? WAY_BEFORE : 0u) : 0u;
     if (goes_on && nth + 1u == walks && is_most == 0u) atomicOr(counters.failed, FAILED_WALKS);
     else if (!ended && (!goes_on || nth + 1u == walks)) atomicAdd(counters.clamps, 1u);
-    if (goes_on) discard;
 #endif
     if (!done) discard;
     visible = uvec2(word | side, floatBitsToUint(t));

@@ -26,10 +26,11 @@ const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, unpaired) == 6
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, contacts) == 72);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, overlaps) == 76);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, layers) == 80);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, hidden) == 84);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, clamps) == 88);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, failed) == 92);
-const _: () = assert!(core::mem::size_of::<crate::abi::Counters>() == 96);
+const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, walks) == 84);
+const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, hidden) == 88);
+const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, clamps) == 92);
+const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, failed) == 96);
+const _: () = assert!(core::mem::size_of::<crate::abi::Counters>() == 100);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Face, domain) == 0);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Face, first_patch) == 16);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Face, count_u) == 20);

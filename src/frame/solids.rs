@@ -243,7 +243,7 @@ impl Frame<'_> {
         (colour, uv, depth): (Attachment<'_>, Option<Attachment<'_>>, Attachment<'_>),
         band: &Band,
     ) {
-        let of = self.buffers.capacities.walks;
+        let of = self.walks;
         let drawn = [(colour.image, Access::COLOUR_WRITE), (depth.image, Access::DEPTH_WRITE)];
         let drawn = drawn.into_iter().chain(uv.map(|uv| (uv.image, Access::COLOUR_WRITE)));
         let drawn: Vec<_> = drawn.map(|(image, access)| (image, access, access)).collect();
@@ -277,11 +277,11 @@ impl Frame<'_> {
             starts: &t.block_starts,
             leaves: &t.block_leaves,
         };
-        p.blocks.count(cmd, &blocks, t.blocks);
+        p.blocks.count(cmd, &blocks, t.runs);
         barrier::buffers(cmd, &[(&t.block_counts, w, r), (&t.block_starts, r, w)]);
-        self.scan(cmd, &t.block_counts, &t.block_starts, t.blocks);
+        self.scan(cmd, &t.block_counts, &t.block_starts, t.runs);
         barrier::buffers(cmd, &[(&t.block_starts, w, r), (&t.block_counts, r, w)]);
-        p.blocks.list(cmd, &blocks, t.blocks);
+        p.blocks.list(cmd, &blocks, t.runs);
         barrier::buffers(cmd, &[(&t.block_leaves, w, r)]);
     }
 

@@ -104,7 +104,7 @@ impl SceneData {
         let seen_through = items.as_ref().map_or(0, |items| items.clear.len());
         // whatever asks for more than the nearest face asks for all of the solids
         let nearest = items.is_none() && settings.sun.is_none() && model.trim.is_none();
-        let lone = nearest.then(|| Lone::of(&model.solids)).transpose()?.flatten();
+        let lone = nearest.then(|| Lone::of(&model.solids, model.coincidence())).transpose()?.flatten();
         let union = lone.as_ref().map_or(&model.solids, |lone| &lone.rest);
         let lists = items.map_or_else(|| Lists::union(union), |items| Lists::of(items, all));
         let solids = SolidData::new(&lists, model.coincidence(), settings.solids)?;

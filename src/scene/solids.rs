@@ -172,7 +172,7 @@ impl SolidData {
         }
         let splines = data.operands.iter().any(|operand| !operand.faces().is_empty());
         let peels = way == SolidWay::Blister && !splines && !data.is_followed();
-        if peels && !data.leaves.is_empty() && blister::face_outward(&data) {
+        if peels && !data.leaves.is_empty() && blister::face_outward(&data, coincidence) {
             let made = Blister::new(&data, shared.whole.tree(), shared.whole.primitives(), &shared.leaf_of);
             data.blister = Some(made.map_err(SolidError::from)?);
         }

@@ -120,7 +120,7 @@ fn copied(model: &Model, copies: usize, distinct: bool) -> Model {
     let bounds = model.bounds();
     let step = (bounds.max - bounds.min) * 1.1;
     let side = (1..).find(|n: &usize| n.pow(3) >= copies).unwrap_or(1);
-    let mut all = Model { parts: model.parts.clone(), solids: model.solids.clone(), ..Model::default() };
+    let mut all = Model { instances: Vec::new(), ..model.clone() };
     for copy in 0..copies {
         if distinct && copy > 0 {
             all.parts.extend(model.parts.iter().cloned());

@@ -19,8 +19,8 @@ use super::{Primitive, Shape, Solid, SolidError, nearby::Nearby, reach};
 use crate::csg::Node;
 use crate::model::{Bounds, Mesh};
 
-/// Boxes nearer to each other than this share of the model's diagonal touch: far more than coordinates are rounded by,
-/// far less than a pixel of a picture of the model.
+/// Boxes nearer to each other than this share of the model's diagonal touch: far more than numbers in full precision are
+/// rounded by, far less than a pixel of a picture of the model.
 const TOUCHES: f64 = 1e-6;
 
 /// Solids taken apart.
@@ -33,16 +33,16 @@ pub(crate) struct Lone {
 }
 
 impl Lone {
-    /// `None` where no mesh is lone.
+    /// `None` where no mesh is lone; `coincidence` is that of [`Model::coincidence`](crate::model::Model::coincidence).
     ///
     /// # Errors
     /// [`SolidError`] when an expression becomes too large.
-    pub(crate) fn of(solids: &[Solid]) -> Result<Option<Self>, SolidError> {
+    pub(crate) fn of(solids: &[Solid], coincidence: f64) -> Result<Option<Self>, SolidError> {
         let operands: Vec<Operands<'_>> = solids.iter().map(Operands::of).collect();
         let mut lone = vec![Vec::new(); solids.len()];
         let mut meshes = Vec::new();
-        for (solid, root, primitive) in apart(solids, &operands) {
-            if let Some(mesh) = outward(primitive).and_then(|mesh| placed(primitive, &mesh)) {
+        for (solid, root, primitive) in apart(solids, &operands, coincidence) {
+            if let Some(mesh) = outward(primitive, coincidence).and_then(|mesh| placed(primitive, &mesh)) {
                 meshes.push(mesh);
                 lone[solid].push(root);
             }
@@ -66,7 +66,7 @@ impl Lone {
 }
 
 /// The meshes among the operands whose boxes touch no other operand's: solid, root and primitive.
-fn apart<'a>(solids: &'a [Solid], operands: &[Operands<'_>]) -> Vec<(usize, u32, &'a Primitive)> {
+fn apart<'a>(solids: &'a [Solid], operands: &[Operands<'_>], coincidence: f64) -> Vec<(usize, u32, &'a Primitive)> {
     let (mut boxes, mut candidates) = (Vec::new(), Vec::new());
     for (s, (solid, operands)) in solids.iter().zip(operands).enumerate() {
         let is_mesh = |root: u32| match solid.tree().nodes()[root as usize] {
@@ -85,7 +85,7 @@ fn apart<'a>(solids: &'a [Solid], operands: &[Operands<'_>]) -> Vec<(usize, u32,
     if candidates.is_empty() || !all.diagonal().is_finite() {
         return Vec::new(); // what has no end touches everything
     }
-    let margin = TOUCHES * all.diagonal();
+    let margin = coincidence.max(TOUCHES) * all.diagonal();
     boxes.retain(|b| !b.is_empty());
     candidates.retain(|c| !c.3.is_empty());
     let first = boxes.len() as u32;
@@ -120,6 +120,7 @@ mod tests {
     use super::super::outward::{is_closed, six_volumes};
     use super::*;
     use crate::csg::parse;
+    use crate::model::SurfaceTable;
     use glam::{DAffine3, DVec3};
     use std::sync::Arc;
 
@@ -141,9 +142,13 @@ mod tests {
 
     /// How many meshes are lone, and how many primitives are left.
     fn counts(expression: &str, primitives: Vec<Primitive>) -> (usize, usize) {
+        counts_within(SurfaceTable::ROUNDED, expression, primitives)
+    }
+
+    fn counts_within(coincidence: f64, expression: &str, primitives: Vec<Primitive>) -> (usize, usize) {
         let solid = Solid::new(primitives, parse(expression).unwrap().tree).unwrap();
         let all = solid.primitives().len();
-        let lone = Lone::of(&[solid]).unwrap();
+        let lone = Lone::of(&[solid], coincidence).unwrap();
         lone.map_or((0, all), |l| (l.meshes.len(), l.rest.iter().map(|s| s.primitives().len()).sum()))
     }
 
@@ -153,6 +158,10 @@ mod tests {
         let ball = || of(Shape::Sphere { radius: 0.5 });
         assert_eq!(counts("A", vec![one()]), (1, 0));
         assert_eq!(counts("A+B", vec![one(), tetra(&TETRA, at(1.5))]), (2, 0));
+        // so near that faces are one, or not
+        let near = || vec![one(), tetra(&TETRA, at(1.0 + 1e-4))];
+        assert_eq!(counts("A+B", near()), (2, 0));
+        assert_eq!(counts_within(SurfaceTable::COARSEST, "A+B", near()), (0, 2));
         // boxes with a side in common, and within each other
         assert_eq!(counts("A+B", vec![one(), tetra(&TETRA, at(1.0))]), (0, 2));
         assert_eq!(counts("A+B", vec![one(), ball()]), (0, 2));
@@ -197,7 +206,7 @@ mod tests {
     #[test]
     fn meshes_are_placed() {
         let transform = at(4.0) * DAffine3::from_scale(DVec3::new(-2.0, 1.0, 1.0));
-        let lone = Lone::of(&[Solid::of(tetra(&TETRA, transform)).unwrap()]).unwrap().unwrap();
+        let lone = Lone::of(&[Solid::of(tetra(&TETRA, transform)).unwrap()], SurfaceTable::ROUNDED).unwrap().unwrap();
         let mesh = &lone.meshes[0];
         assert_eq!((mesh.id, mesh.colour), (7, Some([0.25; 4])));
         assert_eq!((mesh.bounds().min, mesh.bounds().max), (DVec3::X * 2.0, DVec3::new(4.0, 1.0, 1.0)));

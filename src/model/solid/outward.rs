@@ -15,8 +15,9 @@ use std::collections::HashMap;
 use std::sync::Arc;
 
 /// The primitive's triangles as one mesh, own coordinates, which bound each part of space once; `None` where they are
-/// not closed, not turned outwards, cross themselves or lie back to back, or where there are spline faces.
-pub(crate) fn outward(primitive: &Primitive) -> Option<Cow<'_, Mesh>> {
+/// not closed, not turned outwards, cross themselves or lie back to back, or where there are spline faces. `coincidence` is
+/// that of [`Model::coincidence`](crate::model::Model::coincidence).
+pub(crate) fn outward(primitive: &Primitive, coincidence: f64) -> Option<Cow<'_, Mesh>> {
     let mesh = match &primitive.shape {
         Shape::Mesh(mesh) => Cow::Borrowed(&**mesh),
         Shape::Part(part) if part.faces.is_empty() => match part.meshes.as_slice() {
@@ -26,8 +27,10 @@ pub(crate) fn outward(primitive: &Primitive) -> Option<Cow<'_, Mesh>> {
         _ => return None,
     };
     let mesh = if is_closed(&mesh) { mesh } else { Cow::Owned(welded(&mesh)) };
-    let clean =
-        is_closed(&mesh) && six_volumes(&mesh) > 0.0 && !is_back_to_back(primitive, &mesh) && is_embedded(&mesh);
+    let clean = is_closed(&mesh)
+        && six_volumes(&mesh) > 0.0
+        && !is_back_to_back(primitive, &mesh, coincidence)
+        && is_embedded(&mesh);
     clean.then_some(mesh)
 }
 
@@ -49,13 +52,13 @@ pub(super) fn six_volumes(mesh: &Mesh) -> f64 {
 }
 
 /// Some plane holds triangles that look either way.
-fn is_back_to_back(primitive: &Primitive, mesh: &Mesh) -> bool {
+fn is_back_to_back(primitive: &Primitive, mesh: &Mesh, coincidence: f64) -> bool {
     let shape = match &primitive.shape {
         Shape::Mesh(own) if std::ptr::eq(&**own, mesh) => primitive.shape.clone(),
         _ => Shape::Mesh(Arc::new(mesh.clone())),
     };
     let Ok(solid) = Solid::of(Primitive { shape, ..primitive.clone() }) else { return true };
-    let table = SurfaceTable::new(&solid, SurfaceTable::ROUNDED);
+    let table = SurfaceTable::new(&solid, coincidence);
     let mut looks: Vec<[bool; 2]> = vec![[false; 2]; table.surfaces().len()];
     table.faces(0).iter().for_each(|face| looks[face.surface as usize][usize::from(face.flipped)] = true);
     looks.contains(&[true, true])
@@ -109,7 +112,7 @@ mod tests {
 
     fn triangles(shape: Shape) -> Option<usize> {
         let primitive = Primitive { shape, transform: DAffine3::IDENTITY, colour: [0.5; 4], id: 1 };
-        outward(&primitive).map(|mesh| mesh.triangles().len())
+        outward(&primitive, SurfaceTable::ROUNDED).map(|mesh| mesh.triangles().len())
     }
 
     fn of_mesh(mesh: Mesh) -> Option<usize> {

@@ -69,8 +69,8 @@ impl SurfaceTable {
     /// Tolerance for files that round to six digits: coplanar faces come back from a rotation up to 2.5e-6
     /// of their coordinates apart, while gaps of 1e-5 of the model stay open.
     pub const ROUNDED: f64 = 4e-6;
-    /// Least tolerance of what is drawn: single precision tells faces apart, and which comes first, from some ten
-    /// of these on; below, a pixel here and there shows one face for the other.
+    /// Least tolerance of what is drawn. Single precision may take one of two faces for the other where they are nearer
+    /// than some ten of these, at a pixel here and there where rays graze them.
     pub const FINEST: f64 = 1e-7;
     /// Largest tolerance of what is drawn.
     pub const COARSEST: f64 = 1e-3;

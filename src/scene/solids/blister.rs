@@ -152,8 +152,8 @@ fn weight(primitive: &Primitive) -> f64 {
 }
 
 /// Whether rays enter each operand that is a mesh through triangles that face them, and leave it through the others.
-pub(super) fn face_outward(data: &SolidData) -> bool {
-    data.operands.iter().all(|operand| outward(&operand.primitive).is_some())
+pub(super) fn face_outward(data: &SolidData, coincidence: f64) -> bool {
+    data.operands.iter().all(|operand| outward(&operand.primitive, coincidence).is_some())
 }
 
 #[cfg(test)]
