@@ -118,7 +118,7 @@ fn parity() {
     let frame = Frame { size: [32.0, 16.0], band_height: 4096, leaf_count: 300_000, ..Frame::default() };
     let room = Frame { block_leaf_capacity: 1 << 20, tile_leaf_capacity: 1 << 20, ..frame };
     let rect = |n: u32| {
-        let tile = [u32::from(n % 9 == 0), 0];
+        let tile = [u32::from(n.is_multiple_of(9)), 0];
         Rect { first: tile, last: tile }
     };
     let rects: Vec<Rect> = (0..frame.leaf_count).map(rect).collect();
