@@ -23,7 +23,7 @@ mod slot;
 use crate::abi;
 use crate::buffers::{Buffers, SolidBuffers};
 pub use crate::capacities::TooMany;
-use crate::capacities::{Capacities, Counts};
+use crate::capacities::{Capacities, Counts, MOST_WALKS};
 use crate::frame::{Frame, Near, Passes, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Texels, Uploads};
 use crate::model::{Camera, CameraError, Model};
@@ -374,6 +374,7 @@ impl Renderer {
             shell_pixels: &shell_pixels,
             layers: loaded.capacities.layers,
             walks: loaded.capacities.walks,
+            walks_are_most: loaded.capacities.walks >= MOST_WALKS,
             volume_places: slot.centres.volume(),
             sun: slot.centres.sun(),
             sun_parts: slot.centres.sun_parts(),

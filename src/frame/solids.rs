@@ -14,7 +14,6 @@ use super::bands::Band;
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::TILE;
 use crate::buffers::{FragmentBuffers, SolidBuffers, TileBuffers};
-use crate::capacities::MOST_WALKS;
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, Texels, barrier};
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
 use crate::passes::{blister, resolve, solid_blocks, solid_cst, solid_events, solid_fold, solid_rects, solid_tiles};
@@ -261,7 +260,7 @@ impl Frame<'_> {
                 barrier::buffers(cmd, &[(bindings.counters, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
                 barrier::images(cmd, &drawn);
             }
-            let walk = solid_events::Walk { nth, of, is_most: of >= MOST_WALKS };
+            let walk = solid_events::Walk { nth, of, is_most: self.walks_are_most };
             let targets = if nth == 0 { (colour, uv, depth) } else { kept };
             pass.record(cmd, bindings, targets, (band.rows.clone(), self.tiles_of(band)), walk);
         }
