@@ -138,8 +138,8 @@ pub(crate) struct SolidBuffers {
     /// (u, v) of spline faces that bound operands.
     pub operand_uv: Option<Image>,
     pub layers: Option<LayerImages>,
-    /// Where rays are walked on from, a word a pixel of a band; where one walk did not suffice.
-    pub ways: Option<Buffer>,
+    /// Where rays go on from, a word a pixel of a band; where one leg did not suffice.
+    pub halts: Option<Buffer>,
 }
 
 /// Which leaves each tile of a band sees, and their Blist.
@@ -332,7 +332,7 @@ impl Buffers {
                                 })
                             })
                             .transpose()?,
-                        ways: (capacities.walks > 1).then(|| words("solid ways", band_pixels)).transpose()?,
+                        halts: (capacities.legs > 1).then(|| words("solid halts", band_pixels)).transpose()?,
                         fragments: (pixels > 0)
                             .then(|| {
                                 Ok(FragmentBuffers {
@@ -382,7 +382,7 @@ impl SolidBuffers {
             let [a, b] = &l.layers;
             sum("layers", &[a, b, &l.found, &l.depth, &l.stencil].map(Image::bytes))
         });
-        let ways = self.ways.as_ref().map(|ways| sum("ways", &[ways.bytes()]));
-        blocks.into_iter().chain(tiles).chain(crossings).chain(layers).chain(ways).collect()
+        let halts = self.halts.as_ref().map(|halts| sum("halts", &[halts.bytes()]));
+        blocks.into_iter().chain(tiles).chain(crossings).chain(layers).chain(halts).collect()
     }
 }

@@ -155,8 +155,8 @@ const FEWEST_FRAGMENTS: u32 = 1 << 14;
 const FEWEST_LAYERS: u32 = 4;
 /// Of faces, each of which asks every primitive.
 const MOST_LAYERS: u32 = 1 << 10;
-/// Along a ray, each as long as a driver lets a loop be: what is left then is counted as clamps.
-pub(crate) const MOST_WALKS: u32 = 64;
+/// Of a ray, each as long as a driver lets a loop be: what is left then is counted as clamps.
+pub(crate) const MOST_LEGS: u32 = 64;
 /// Rows that pass `sort` takes, 128 to a workgroup.
 const MOST_ROWS: u32 = MOST_GROUPS * 128;
 
@@ -175,8 +175,8 @@ pub(crate) struct Capacities {
     pub band_rows: u32,
     /// That way `blister` peels.
     pub layers: u32,
-    /// Along each ray of way `events`, one where the other ended.
-    pub walks: u32,
+    /// Of each ray of way `events`, one where the other ended.
+    pub legs: u32,
 }
 
 /// Bits of [`Counters::failed`], as in `scene.glsl`.
@@ -184,7 +184,7 @@ const FAILED_DRAWS: u32 = 2;
 const FAILED_TILE_LEAVES: u32 = 64;
 const FAILED_FRAGMENTS: u32 = 128;
 const FAILED_LAYERS: u32 = 256;
-const FAILED_WALKS: u32 = 512;
+const FAILED_LEGS: u32 = 512;
 
 impl Capacities {
     /// A first guess that fits most scenes in full view.
@@ -203,7 +203,7 @@ impl Capacities {
             fragments: if counts.has_fragments() { FEWEST_FRAGMENTS } else { 0 },
             band_rows: WHOLE,
             layers: if counts.blister { FEWEST_LAYERS } else { 0 },
-            walks: 1,
+            legs: 1,
         }
     }
 
@@ -289,26 +289,26 @@ impl Capacities {
         Ok(Self { band_rows, ..self }.with(room))
     }
 
-    /// Four times as many walks as did not suffice; else one, 4, 16, … of which the last had nothing to do, or was the
+    /// Four times as many legs as did not suffice; else one, 4, 16, … of which the last had nothing to do, or was the
     /// last that may be. What rays did with lists that lacked something does not count.
-    fn walks(self, c: &Counters, size: (u32, u32), range: u32) -> Result<u32, TooMany> {
+    fn legs(self, c: &Counters, size: (u32, u32), range: u32) -> Result<u32, TooMany> {
         let grown = match c.failed {
-            0 => (0..).map(|n| 4u32.pow(n)).find(|walks| *walks > c.walks).unwrap_or(MOST_WALKS),
-            FAILED_WALKS => 4 * self.walks,
-            _ => self.walks,
+            0 => (0..).map(|n| 4u32.pow(n)).find(|legs| *legs > c.legs).unwrap_or(MOST_LEGS),
+            FAILED_LEGS => 4 * self.legs,
+            _ => self.legs,
         };
         let rows = self.band_rows.saturating_mul(TILE).min(size.1);
         let (pixels, most) = (size.0.saturating_mul(rows), range / size_of::<u32>() as u32);
         if grown > 1 && pixels > most {
-            return Err(TooMany { what: "pixels whose rays are walked on", count: pixels, most });
+            return Err(TooMany { what: "pixels whose rays go on in legs", count: pixels, most });
         }
-        Ok(grown.min(MOST_WALKS))
+        Ok(grown.min(MOST_LEGS))
     }
 
     /// Buffers made for these take as much as those made for `others`.
     pub(crate) fn takes_as_much(self, others: Self) -> bool {
-        let walks = if (self.walks > 1) == (others.walks > 1) { others.walks } else { self.walks };
-        Self { layers: others.layers, walks, ..self } == others
+        let legs = if (self.legs > 1) == (others.legs > 1) { others.legs } else { self.legs };
+        Self { layers: others.layers, legs, ..self } == others
     }
 
     /// What the frame that reported `c` would have needed, with a quarter to spare where a storage
@@ -352,7 +352,7 @@ impl Capacities {
                 had if c.failed & FAILED_LAYERS != 0 => 2 * had,
                 _ => (c.layers + 1).max(FEWEST_LAYERS),
             },
-            walks: self.walks(c, size, range)?,
+            legs: self.legs(c, size, range)?,
         })
     }
 }
@@ -418,26 +418,26 @@ mod tests {
     }
 
     #[test]
-    fn walks_follow_the_view() {
-        let ended = Counters { failed: FAILED_WALKS, ..Default::default() };
+    fn legs_follow_the_view() {
+        let ended = Counters { failed: FAILED_LEGS, ..Default::default() };
         let mut had = first();
-        for walks in [4, 16, 64, MOST_WALKS] {
+        for legs in [4, 16, 64, MOST_LEGS] {
             had = grown(had, &ended).unwrap();
-            assert_eq!(had.walks, walks);
+            assert_eq!(had.legs, legs);
         }
         // as the view needs
-        let of = |c| grown(had, &c).unwrap().walks;
-        assert_eq!(of(Counters { walks: 63, ..Default::default() }), MOST_WALKS);
-        assert_eq!(of(Counters { walks: 64, ..Default::default() }), MOST_WALKS);
-        assert_eq!(of(Counters { walks: 3, ..Default::default() }), 4);
-        assert_eq!(of(Counters { walks: 1, ..Default::default() }), 4);
+        let of = |c| grown(had, &c).unwrap().legs;
+        assert_eq!(of(Counters { legs: 63, ..Default::default() }), MOST_LEGS);
+        assert_eq!(of(Counters { legs: 64, ..Default::default() }), MOST_LEGS);
+        assert_eq!(of(Counters { legs: 3, ..Default::default() }), 4);
+        assert_eq!(of(Counters { legs: 1, ..Default::default() }), 4);
         assert_eq!(of(Counters::default()), 1);
         // lists that lack something say nothing of rays
-        let both = Counters { failed: FAILED_WALKS | FAILED_TILE_LEAVES, tile_leaves: 99, ..Default::default() };
-        assert_eq!(grown(first(), &both).unwrap().walks, 1);
-        assert!(had.takes_as_much(Capacities { walks: 4, ..had }) && !had.takes_as_much(first()));
+        let both = Counters { failed: FAILED_LEGS | FAILED_TILE_LEAVES, tile_leaves: 99, ..Default::default() };
+        assert_eq!(grown(first(), &both).unwrap().legs, 1);
+        assert!(had.takes_as_much(Capacities { legs: 4, ..had }) && !had.takes_as_much(first()));
         let large = first().grown(&ended, Counts::default(), (16_384, 16_384), RANGE);
-        assert!(matches!(large, Err(TooMany { what: "pixels whose rays are walked on", .. })));
+        assert!(matches!(large, Err(TooMany { what: "pixels whose rays go on in legs", .. })));
     }
 
     #[test]

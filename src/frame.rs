@@ -187,9 +187,9 @@ pub(crate) struct Frame<'a> {
     pub shell_pixels: &'a [Range<u32>; 2],
     /// That way `blister` peels.
     pub layers: u32,
-    /// Along each ray of way `events`; a frame may not ask for more.
-    pub walks: u32,
-    pub walks_are_most: bool,
+    /// Of each ray of way `events`; a frame may not ask for more.
+    pub legs: u32,
+    pub legs_are_most: bool,
     /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.
     pub volume_places: Option<&'a Texels>,
     /// Where the sun is, in a scene that has one.

@@ -399,10 +399,10 @@ pub struct FrameStats {
     /// that way draws nothing. See [`SceneSettings::solid_budget`].
     pub bands: u32,
     /// Bytes of what the way to draw Boolean solids takes beside what every frame has: lists of the primitives that
-    /// `blocks` of 8 x 8 tiles see, and `tiles`; lists of `crossings` with operands; images of `layers`; `ways`, where
-    /// rays are walked on from. Those that there are; [`SceneSettings::solid_budget`] is for `tiles` and `crossings`.
+    /// `blocks` of 8 x 8 tiles see, and `tiles`; lists of `crossings` with operands; images of `layers`; `halts`, where
+    /// rays go on from. Those that there are; [`SceneSettings::solid_budget`] is for `tiles` and `crossings`.
     pub solid_bytes: Vec<PoolBytes>,
-    /// Times the frame was recorded again because a buffer was too small, or rays had to be walked on.
+    /// Times the frame was recorded again because a buffer was too small, or rays went on in more legs.
     pub retries: u32,
     /// Bytes copied for edits of trim loops since the frame before.
     pub edit_bytes: u64,

@@ -23,7 +23,7 @@ mod slot;
 use crate::abi;
 use crate::buffers::{Buffers, SolidBuffers};
 pub use crate::capacities::TooMany;
-use crate::capacities::{Capacities, Counts, MOST_WALKS};
+use crate::capacities::{Capacities, Counts, MOST_LEGS};
 use crate::frame::{Frame, Near, Passes, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Texels, Uploads};
 use crate::model::{Camera, CameraError, Model};
@@ -373,8 +373,8 @@ impl Renderer {
             keeps: known.keeps,
             shell_pixels: &shell_pixels,
             layers: loaded.capacities.layers,
-            walks: loaded.capacities.walks,
-            walks_are_most: loaded.capacities.walks >= MOST_WALKS,
+            legs: loaded.capacities.legs,
+            legs_are_most: loaded.capacities.legs >= MOST_LEGS,
             volume_places: slot.centres.volume(),
             sun: slot.centres.sun(),
             sun_parts: slot.centres.sun_parts(),

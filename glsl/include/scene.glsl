@@ -198,7 +198,7 @@ struct Counters {
     uint contacts;     // pixels whose rays meet coincident faces of two items, and that are within two at once
     uint overlaps;
     uint layers;       // peeled by way `blister`
-    uint walks;        // along rays through Boolean solids that did not come to their ends
+    uint legs;         // of rays through Boolean solids that did not come to their ends
     uint hidden;       // patches left out because they lie behind others
     uint clamps;       // factors or densities above their hard limits, loops that a driver ended
     uint failed;       // one bit a buffer that was too small, or a pass that was drawn too seldom
@@ -213,7 +213,7 @@ const uint FAILED_BLOCK_LEAVES = 32u;
 const uint FAILED_TILE_LEAVES = 64u;
 const uint FAILED_FRAGMENTS = 128u;
 const uint FAILED_LAYERS = 256u;
-const uint FAILED_WALKS = 512u;
+const uint FAILED_LEGS = 512u;
 
 // Tessellation of one item, decided by the split pass. Totals over the whole patch.
 struct Factors {

@@ -14,9 +14,8 @@
 // which passes over spans that are kept: a driver that runs both sides of every branch has no need to solve them again.
 // Where the depth of the face is found already, the walk begins there and tells whose it is.
 //
-// A driver may end a long loop before its end. Such a ray is walked on from the last event that it came to, by the same
-// pass drawn again: a walk for each part of the way, of which there are more only once a frame has told that they are
-// needed.
+// A driver may end a long loop before its end. Such a ray goes on from the last event that it came to, by the same
+// pass drawn again: in legs, of which there are several only once a frame has told that they are needed.
 //
 // An event that matters is one of a leaf that the walk asks: the others are not looked at whatever they are, so until
 // then the walk ends as it does. In A - (B + C + ...) nothing is asked before A begins. And while a gate of the tile's list
@@ -53,16 +52,16 @@ layout(binding = 12, rg32ui) readonly uniform uimage2D found;
 #endif
 
 #ifndef FACE_IS_FOUND
-layout(scalar, binding = 13) buffer Ways { uint ways[]; }; // of each pixel: bound where there is more than one walk
-layout(scalar, push_constant) uniform Walks {
-    uint nth;     // this walk, from 0
-    uint walks;   // of this drawing
+layout(scalar, binding = 13) buffer Halts { uint halts[]; }; // of each pixel: bound where there are several legs
+layout(scalar, push_constant) uniform Legs {
+    uint nth;     // this leg, from 0
+    uint legs;    // of this drawing
     uint is_most; // a frame may not ask for more
 };
 
-// A way: the depth of the event from which the next walk goes on, its sign bit set where the solid is in front of it; 0
-// where a walk came to its end.
-const uint WAY_BEFORE = 0x80000000u;
+// A halt: the depth of the event from which the next leg goes on, its sign bit set where the solid is in front of it; 0
+// where the ray came to its end.
+const uint HALT_BEFORE = 0x80000000u;
 #endif
 
 // Whether some leaf is a shell: compiled in only then.
@@ -119,10 +118,10 @@ void meet(inout Walk walk, uint i, TileLeaf here, Crossing c, uint other, uint a
 void main() {
     uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));
 #ifndef FACE_IS_FOUND
-    uint way = 0u;
+    uint halt = 0u;
     if (nth > 0u) {
-        way = ways[pixel];
-        if (way == 0u) discard;
+        halt = halts[pixel];
+        if (halt == 0u) discard;
     }
 #endif
     uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
@@ -154,8 +153,8 @@ void main() {
     before = false;
 #else
     if (nth > 0u) {
-        before = (way & WAY_BEFORE) != 0u;
-        t = uintBitsToFloat(way & ~WAY_BEFORE);
+        before = (halt & HALT_BEFORE) != 0u;
+        t = uintBitsToFloat(halt & ~HALT_BEFORE);
     }
     float begun = t;
     bool begun_before = before;
@@ -249,10 +248,10 @@ void main() {
 #else
     // from the event whose scan was the last to be trusted, if that is farther on
     bool goes_on = !ended && (t > begun || t == begun && before != begun_before);
-    if (goes_on) atomicMax(counters.walks, nth + 1u);
-    if (walks > 1u) ways[pixel] = goes_on ? floatBitsToUint(t) | (before ? WAY_BEFORE : 0u) : 0u;
-    if (goes_on && nth + 1u == walks && is_most == 0u) atomicOr(counters.failed, FAILED_WALKS);
-    else if (!ended && (!goes_on || nth + 1u == walks)) atomicAdd(counters.clamps, 1u);
+    if (goes_on) atomicMax(counters.legs, nth + 1u);
+    if (legs > 1u) halts[pixel] = goes_on ? floatBitsToUint(t) | (before ? HALT_BEFORE : 0u) : 0u;
+    if (goes_on && nth + 1u == legs && is_most == 0u) atomicOr(counters.failed, FAILED_LEGS);
+    else if (!ended && (!goes_on || nth + 1u == legs)) atomicAdd(counters.clamps, 1u);
 #endif
     if (!done) discard;
     visible = uvec2(word | side, floatBitsToUint(t));

@@ -26,7 +26,7 @@ const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, unpaired) == 6
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, contacts) == 72);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, overlaps) == 76);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, layers) == 80);
-const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, walks) == 84);
+const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, legs) == 84);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, hidden) == 88);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, clamps) == 92);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Counters, failed) == 96);

@@ -97,7 +97,7 @@ pub struct Counters {
     pub contacts: u32,
     pub overlaps: u32,
     pub layers: u32,
-    pub walks: u32,
+    pub legs: u32,
     pub hidden: u32,
     pub clamps: u32,
     pub failed: u32,

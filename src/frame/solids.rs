@@ -213,11 +213,11 @@ impl<'a> Frame<'a> {
                     }),
                     counters: &b.counters,
                     tile_squares: &tiles.tile_squares,
-                    ways: t.ways.as_ref(),
+                    halts: t.halts.as_ref(),
                 };
                 barrier::buffers(cmd, &[(&b.counters, w, Access::FRAGMENT_WRITE)]);
                 let uv = t.operand_uv.as_ref().map(|image| Attachment { image, load: Load::Discard });
-                self.walks(cmd, events, &bindings, (colour, uv, depth), band);
+                self.legs(cmd, events, &bindings, (colour, uv, depth), band);
                 barrier::buffers(cmd, &[(&b.counters, Access::FRAGMENT_WRITE, w)]);
             }
             (Way::Cst(_), None, _) | (_, _, None) => {
@@ -234,7 +234,7 @@ impl<'a> Frame<'a> {
 impl Frame<'_> {
     /// The rays of a band's pixels, from event to event; again and again from where they came to, where a driver ends long
     /// loops.
-    fn walks(
+    fn legs(
         &self,
         cmd: &Commands<'_>,
         pass: &solid_events::SolidEvents,
@@ -242,7 +242,7 @@ impl Frame<'_> {
         (colour, uv, depth): (Attachment<'_>, Option<Attachment<'_>>, Attachment<'_>),
         band: &Band,
     ) {
-        let of = self.walks;
+        let of = self.legs;
         let drawn = [(colour.image, Access::COLOUR_WRITE), (depth.image, Access::DEPTH_WRITE)];
         let drawn = drawn.into_iter().chain(uv.map(|uv| (uv.image, Access::COLOUR_WRITE)));
         let drawn: Vec<_> = drawn.map(|(image, access)| (image, access, access)).collect();
@@ -252,17 +252,17 @@ impl Frame<'_> {
             Attachment { load: Load::Keep, ..depth },
         );
         for nth in 0..of {
-            if let Some(ways) = bindings.ways {
-                // by the walk before, of this band or another, or of another sample
-                barrier::buffers(cmd, &[(ways, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
+            if let Some(halts) = bindings.halts {
+                // by the leg before, of this band or another, or of another sample
+                barrier::buffers(cmd, &[(halts, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
             }
             if nth > 0 {
                 barrier::buffers(cmd, &[(bindings.counters, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
                 barrier::images(cmd, &drawn);
             }
-            let walk = solid_events::Walk { nth, of, is_most: self.walks_are_most };
+            let leg = solid_events::Leg { nth, of, is_most: self.legs_are_most };
             let targets = if nth == 0 { (colour, uv, depth) } else { kept };
-            pass.record(cmd, bindings, targets, (band.rows.clone(), self.tiles_of(band)), walk);
+            pass.record(cmd, bindings, targets, (band.rows.clone(), self.tiles_of(band)), leg);
         }
     }
 

@@ -6,7 +6,7 @@
 //!
 //! Reads: everything that `Bindings` names. Writes: the visibility image (side, depth) and depth, beside what
 //! pass `visibility` drew; of spline faces the image of (u, v). Needs no storage per pixel beside the fragments of
-//! operands without equations, unless a driver ends long loops: then rays are walked on from where they came to.
+//! operands without equations, unless a driver ends long loops: then rays go on in legs, from where they came to.
 
 use crate::abi;
 use crate::bindings::{Primitives, with_primitives};
@@ -58,13 +58,13 @@ pub(crate) struct Bindings<'a> {
     /// `clamps`: rays that a driver did not let come to their end.
     pub counters: &'a Buffer,
     pub tile_squares: &'a Buffer,
-    /// Where the next walk goes on, a word a pixel of the band; where there is more than one.
-    pub ways: Option<&'a Buffer>,
+    /// Where the next leg goes on, a word a pixel of the band; where there are several.
+    pub halts: Option<&'a Buffer>,
 }
 
-/// One of the walks along the rays of a drawing.
+/// One of the legs of a drawing's rays.
 #[derive(Clone, Copy)]
-pub(crate) struct Walk {
+pub(crate) struct Leg {
     /// From 0.
     pub nth: u32,
     pub of: u32,
@@ -127,16 +127,15 @@ impl SolidEvents {
         b: &Bindings<'_>,
         (visibility, uv, depth): (Attachment<'_>, Option<Attachment<'_>>, Attachment<'_>),
         (rows, tiles): (Range<u32>, Range<u32>),
-        walk: Walk,
+        leg: Leg,
     ) {
         // the shader has these bindings in every scene, and reads them only where there are shells
         let none = Fragments { starts: b.frame, counts: b.frame, all: b.tile_leaves };
         let f = b.fragments.as_ref().unwrap_or(&none);
         let lists: [Resource<'_>; 3] = [b.tile_starts.into(), b.tile_leaves.into(), b.tile_entries.into()];
         let fragments: [Resource<'_>; 3] = [f.starts.into(), f.counts.into(), f.all.into()];
-        let rest = [b.counters, b.tile_squares, b.ways.unwrap_or(b.counters)].map(Resource::from);
-        let walk: Vec<u8> =
-            [walk.nth, walk.of, u32::from(walk.is_most)].into_iter().flat_map(u32::to_ne_bytes).collect();
+        let rest = [b.counters, b.tile_squares, b.halts.unwrap_or(b.counters)].map(Resource::from);
+        let leg: Vec<u8> = [leg.nth, leg.of, u32::from(leg.is_most)].into_iter().flat_map(u32::to_ne_bytes).collect();
         let resources: Vec<_> = [b.frame.into()]
             .into_iter()
             .chain(b.primitives.resources())
@@ -146,7 +145,7 @@ impl SolidEvents {
             .collect();
         let colour: Vec<_> = [visibility].into_iter().chain(uv).collect();
         cmd.rendering_rows((visibility.image.size(), rows), &colour, Some(depth), || {
-            cmd.bind(&self.pipeline, &resources, &walk);
+            cmd.bind(&self.pipeline, &resources, &leg);
             cmd.draw_instances(0..6, tiles);
         });
     }
