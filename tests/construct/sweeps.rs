@@ -63,14 +63,22 @@ const STEPS: usize = 600;
 /// Of the integration, at 600 steps of paths of length 10.
 const INTEGRATED: f64 = 1e-8;
 
+/// Curvature vectors before and after parameter `t`: two at a knot, and the sharpest of a piece is often at its end.
+fn bends(path: &BSpline<DVec4>, t: f64) -> [DVec3; 2] {
+    [t - 1e-9, t + 1e-9].map(|t| {
+        let [_, d, dd] = derivatives(path, t.clamp(0.0, 1.0 - 1e-12));
+        (dd - d * (dd.dot(d) / d.length_squared())) / d.length_squared()
+    })
+}
+
 /// A placed frame of a sweep as described: parameter, point, axes of the profile (scaled), and the path's curvature
-/// vector.
+/// vectors.
 struct Placed {
     v: f64,
     centre: DVec3,
     x: DVec3,
     y: DVec3,
-    bend: DVec3,
+    bends: [DVec3; 2],
 }
 
 /// The frames of a sweep at all steps.
@@ -85,14 +93,13 @@ fn frames(sweep: &Sweep) -> Vec<Placed> {
     let holonomy = if closed { last.dot(t.cross(r)).atan2(last.dot(r)) } else { 0.0 };
     let placed = |(k, (r, so_far)): (usize, &(DVec3, f64))| {
         let v = k as f64 / STEPS as f64;
-        let [centre, d, dd] = derivatives(sweep.path, v.min(1.0 - 1e-12));
+        let [centre, d, _] = derivatives(sweep.path, v.min(1.0 - 1e-12));
         let share = so_far / length;
         let angle = (sweep.twist - holonomy) * share;
         let t = d.normalize();
         let scale = sweep.scale.0 + (sweep.scale.1 - sweep.scale.0) * share;
         let x = *r * angle.cos() + t.cross(*r) * angle.sin();
-        let bend = (dd - t * dd.dot(t)) / d.length_squared();
-        Placed { v, centre, x: x * scale, y: t.cross(x) * scale, bend }
+        Placed { v, centre, x: x * scale, y: t.cross(x) * scale, bends: bends(sweep.path, v) }
     };
     all.iter().enumerate().map(placed).collect()
 }
@@ -115,8 +122,8 @@ fn deviation(sweep: &Sweep, surface: &selvedge::spline::Surface) -> f64 {
 fn fold(sweep: &Sweep) -> f64 {
     let (a, b) = sweep.profile.domain();
     let profile: Vec<DVec2> = fractions(60).map(|u| sweep.profile.point(a + (b - a) * u)).collect();
-    let near = |f: &Placed| profile.iter().map(|p| (f.x * p.x + f.y * p.y).dot(f.bend)).fold(0.0, f64::max);
-    frames(sweep).iter().map(near).fold(0.0, f64::max)
+    let near = |f: &Placed, bend: DVec3| profile.iter().map(|p| (f.x * p.x + f.y * p.y).dot(bend)).fold(0.0, f64::max);
+    frames(sweep).iter().flat_map(|f| f.bends.map(|bend| near(f, bend))).fold(0.0, f64::max)
 }
 
 /// Of [`fold`], by its steps.
@@ -213,11 +220,7 @@ proptest! {
     fn a_tube_keeps_its_distance(path in path(), radius in 0.05..0.3f64, digits in 2.0..5.0f64) {
         let tolerance = 10f64.powf(-digits);
         let built = tube(&path, radius, tolerance);
-        let bent = |v: f64| {
-            let [_, d, dd] = derivatives(&path, v.min(1.0 - 1e-12));
-            d.cross(dd).length() / d.length().powi(3)
-        };
-        let sharpest = radius * fractions(600).map(bent).fold(0.0, f64::max);
+        let sharpest = radius * fractions(600).flat_map(|v| bends(&path, v)).map(DVec3::length).fold(0.0, f64::max);
         if matches!(built, Err(ConstructError::Folds { .. })) {
             prop_assert!(sharpest >= 1.0 - FOLD_SEEN, "refused, and the bend is {sharpest} of the radius only");
             return Ok(());
