@@ -8,11 +8,16 @@
 //          │   ────╱──────                  bottom-open, top-closed: v_a < v <= v_b, so a line through
 //          │   a ●                          a shared vertex counts one crossing, and a touch 0 or 2
 //
+// A scan line has a row in each bay that is seen (bays.glsl); what crosses it there adds to the row's winding, from which
+// pass `carry` makes the one that the next bay begins with.
+//
 // An intercept is u as order-preserving bits, its lowest bit the direction: 1 upwards.
 // Twin: src/twin/cross.rs.
 #include "scene.glsl"
 
 layout(constant_id = 1) const bool INSERT = false;
+// Strips of some face have several bays.
+layout(constant_id = 2) const bool SCENE_HAS_BAYS = false;
 
 layout(local_size_x = 128) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
@@ -22,17 +27,20 @@ layout(binding = 2) uniform usamplerBuffer faces;
 layout(binding = 3) uniform usamplerBuffer curves;
 layout(binding = 4) uniform samplerBuffer curve_points;
 layout(binding = 5) uniform usamplerBuffer curve_items; // the placed face of each
-layout(binding = 6) uniform usamplerBuffer line_starts;
+layout(binding = 6) uniform usamplerBuffer strips;
 layout(binding = 7) uniform usamplerBuffer segment_starts;
 layout(binding = 8) uniform usamplerBuffer row_starts;
 layout(scalar, binding = 9) buffer RowCounts { uint row_counts[]; };
 layout(scalar, binding = 10) writeonly buffer Intercepts { uint intercepts[]; };
 layout(scalar, binding = 11) buffer BorderCells { uint border_cells[]; }; // four words a band
+layout(scalar, binding = 12) buffer RowWindings { int row_windings[]; }; // where SCENE_HAS_BAYS
 
+#include "bays.glsl"
 #include "border_cells.glsl"
 #include "curve.glsl"
 #include "curves.glsl"
 #include "faces.glsl"
+#include "ordered.glsl"
 #include "words.glsl"
 
 uint first_segment(uint item) { return word_at(segment_starts, item); }
@@ -49,22 +57,17 @@ uint curve_of(uint segment) {
     return lo;
 }
 
-// Marks the bands of a strip from `lo` to `hi`, 0 to 1, as far as it has them.
-void mark(uint strip, float lo, float hi, uvec4 columns) {
+// Marks the bands of a bay from `lo` to `hi` of its strip, 0 to 1, as far as it has them.
+void mark(uint bay_item, float lo, float hi, uvec4 columns) {
     float last_band = float(BORDER_BANDS - 1u);
     uint first = uint(clamp(floor(lo * float(BORDER_BANDS)), 0.0, last_band));
     uint last = uint(clamp(floor(hi * float(BORDER_BANDS)), 0.0, last_band));
     for (uint band = first; band <= last; ++band) {
-        uint at = 4u * (strip * BORDER_BANDS + band);
+        uint at = 4u * (bay_item * BORDER_BANDS + band);
         for (uint word = 0u; word < 4u; ++word) {
             if (columns[word] != 0u) atomicOr(border_cells[at + word], columns[word]);
         }
     }
-}
-
-uint ordered_bits(float u) {
-    uint bits = floatBitsToUint(u);
-    return (bits & 0x80000000u) != 0u ? ~bits : bits | 0x80000000u;
 }
 
 void main() {
@@ -86,22 +89,29 @@ void main() {
         a = b;
         b = swap;
     }
-    float strips = float(face.strip_count);
-    uint first = uint(clamp(floor(a.y * strips), 0.0, strips - 1.0));
-    uint last = uint(clamp(floor(b.y * strips), 0.0, strips - 1.0));
-    uvec4 columns = columns_between(min(a.x, b.x), max(a.x, b.x));
+    float strip_n = float(strip_count(face.strips));
+    uint bays = bay_count(face.strips);
+    uint first = uint(clamp(floor(a.y * strip_n), 0.0, strip_n - 1.0));
+    uint last = uint(clamp(floor(b.y * strip_n), 0.0, strip_n - 1.0));
+    float left = min(a.x, b.x);
+    float right = max(a.x, b.x);
     for (uint k = first; k <= last; ++k) {
-        uint base = word_at(line_starts, fi.first_strip + k);
-        uint count = word_at(line_starts, fi.first_strip + k + 1u) - base;
-        if (count == 0u) continue;
-        float mu = float(count);
-        precise float low = a.y * strips - float(k);
-        precise float high = b.y * strips - float(k);
+        uint item = fi.first_bay + k * bays;
+        StripRows rows = strip_rows(strips, item);
+        if (rows.lines == 0u) continue;
+        // right of all that is seen, or of a loop that is left of it all
+        if (SCENE_HAS_BAYS && (bay_of(left, bays) > last_bay(rows) || bay_of(curve.range_u.y, bays) < rows.first_bay)) continue;
+        float mu = float(rows.lines);
+        precise float low = a.y * strip_n - float(k);
+        precise float high = b.y * strip_n - float(k);
         if (!INSERT) {
             precise float around = 0.5 / mu + BAND_ROUNDING;
             precise float below = low - around;
             precise float above = high + around;
-            mark(fi.first_strip + k, below, above, columns);
+            uint last_marked = min(bay_of(right, bays), last_bay(rows));
+            for (uint bay = max(bay_of(left, bays), rows.first_bay); bay <= last_marked; ++bay) {
+                mark(item + bay, below, above, columns_between(within_bay(left, bay, bays), within_bay(right, bay, bays)));
+            }
         }
         // one line too many on each side: the comparison below decides
         float lowest = floor(low * mu - 0.5);
@@ -110,19 +120,25 @@ void main() {
         uint from = uint(max(lowest, 0.0));
         uint to = uint(min(highest, mu - 1.0));
         for (uint line = from; line <= to; ++line) {
-            precise float v = (float(k) + (float(line) + 0.5) / mu) / strips;
+            precise float v = (float(k) + (float(line) + 0.5) / mu) / strip_n;
             if (!(a.y < v && v <= b.y)) continue;
-            uint row = base + line;
+            precise float u = a.x + (v - a.y) / (b.y - a.y) * (b.x - a.x);
+            uint intercept = ordered_bits(clamp(u, left, right)) & ~1u;
+            uint row = rows.first + line;
+            if (SCENE_HAS_BAYS) {
+                uint bay = bay_of(from_ordered(intercept), bays);
+                if (bay > last_bay(rows)) continue;
+                row = row_of(rows, line, bay);
+            }
             if (row >= frame.row_capacity) continue;
             if (!INSERT) {
                 atomicAdd(row_counts[row], 1u);
+                if (SCENE_HAS_BAYS && rows.bays > 1u) atomicAdd(row_windings[row], upwards != 0u ? 1 : -1);
             } else {
                 // counting down, so that the counts need not be cleared in between
                 uint place = atomicAdd(row_counts[row], 0xffffffffu) - 1u;
-                precise float u = a.x + (v - a.y) / (b.y - a.y) * (b.x - a.x);
-                u = clamp(u, min(a.x, b.x), max(a.x, b.x));
                 uint at = word_at(row_starts, row) + place;
-                if (at < frame.intercept_capacity) intercepts[at] = (ordered_bits(u) & ~1u) | upwards;
+                if (at < frame.intercept_capacity) intercepts[at] = intercept | upwards;
             }
         }
     }

@@ -6,12 +6,15 @@
 //   |S_v| <= speed_v  and  W >= w over the cell   =>   strip height in pixels <= speed_v pixels / strips
 //
 // The largest over the strip's visible cells stands for the paper's sup rho; strips that nobody
-// sees get no scan line. Twin: src/twin/density.rs.
+// sees get no scan line, and bays beyond those that are seen no row. Twin: src/twin/density.rs.
+#include "bays.glsl"
 #include "scene.glsl"
 #include "view.glsl"
 
 // Patches may lie behind others: faces none of whose patches is drawn get no scan line either.
 layout(constant_id = 1) const bool SCENE_HIDES = false;
+// Strips of some face have several bays.
+layout(constant_id = 2) const bool SCENE_HAS_BAYS = false;
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
@@ -24,6 +27,7 @@ layout(scalar, binding = 6) readonly buffer CellItems { uint cell_face_instance[
 layout(scalar, binding = 7) buffer StripHeights { uint strip_heights[]; }; // float bits, pixels
 layout(scalar, binding = 8) buffer FaceSpeeds { uint face_speeds[]; };     // float bits, pixels per unit u, v
 layout(scalar, binding = 9) readonly buffer DrawnFaces { uint drawn_faces[]; }; // where SCENE_HIDES
+layout(scalar, binding = 10) buffer SeenBays { uint seen_bays[]; }; // a bit for each bay of a strip, where SCENE_HAS_BAYS
 
 void main() {
     uint item = gl_GlobalInvocationID.x;
@@ -38,8 +42,11 @@ void main() {
     if (seen.w < 0.0) return;
     float pixels = pixels_per_unit(frame, instances[fi.instance], seen);
     // positive floats order like their bits
-    float height = cell.speed_v * pixels / float(face.strip_count);
-    atomicMax(strip_heights[fi.first_strip + cell.strip], floatBitsToUint(max(height, 1e-6)));
+    float height = cell.speed_v * pixels / float(strip_count(face.strips));
+    uint bay = cell.bay % bay_count(face.strips);
+    uint strip = fi.first_bay + cell.bay - bay;
+    atomicMax(strip_heights[strip], floatBitsToUint(max(height, 1e-6)));
+    if (SCENE_HAS_BAYS) atomicOr(seen_bays[strip], 1u << bay);
     atomicMax(face_speeds[2u * placed], floatBitsToUint(cell.speed_u * pixels));
     atomicMax(face_speeds[2u * placed + 1u], floatBitsToUint(cell.speed_v * pixels));
 }

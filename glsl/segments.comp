@@ -8,16 +8,21 @@
 // Twin: src/twin/segments.rs.
 #include "scene.glsl"
 
+// Strips of some face have several bays.
+layout(constant_id = 1) const bool SCENE_HAS_BAYS = false;
+
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1) uniform usamplerBuffer face_instances;
 layout(binding = 2) uniform usamplerBuffer faces;
 layout(binding = 3) uniform usamplerBuffer curves;
 layout(binding = 4) uniform usamplerBuffer curve_items; // the placed face of each
-layout(binding = 5) uniform usamplerBuffer line_starts;
+layout(binding = 5) uniform usamplerBuffer strip_starts;
 layout(scalar, binding = 6) readonly buffer FaceSpeeds { uint face_speeds[]; };
 layout(scalar, binding = 7) writeonly buffer SegmentCounts { uint segment_counts[]; };
+layout(scalar, binding = 8) readonly buffer SeenBays { uint seen_bays[]; }; // where SCENE_HAS_BAYS
 
+#include "bays.glsl"
 #include "curves.glsl"
 #include "faces.glsl"
 #include "words.glsl"
@@ -25,7 +30,23 @@ layout(scalar, binding = 7) writeonly buffer SegmentCounts { uint segment_counts
 const uint LINES_PER_SEGMENT = 32u;
 const float MAX_SEGMENTS = 65536.0;
 
-uint first_line(uint strip) { return word_at(line_starts, strip); }
+uint first_row(uint bay_item) { return word_at(strip_starts, bay_item); }
+
+// Scan lines of a face's strips from `lo` to `hi` that have rows where the curve counts: in a bay that it or what is
+// right of it in its loop reaches. Of a loop left of all bays that are seen no winding number is left.
+uint lines_of(FaceInstance fi, uint bays, uint lo, uint hi, Curve curve) {
+    if (!SCENE_HAS_BAYS) return first_row(fi.first_bay + hi + 1u) - first_row(fi.first_bay + lo);
+    uint from = bay_of(curve.range_u.x, bays);
+    uint to = bay_of(curve.range_u.y, bays);
+    uint lines = 0u;
+    for (uint strip = lo; strip <= hi; ++strip) {
+        uint item = fi.first_bay + strip * bays;
+        uvec2 seen = seen_range(seen_bays[item]);
+        if (from >= seen.x + seen.y || to < seen.x) continue;
+        lines += (first_row(item + 1u) - first_row(item)) / seen.y;
+    }
+    return lines;
+}
 
 void main() {
     uint item = gl_GlobalInvocationID.x;
@@ -34,10 +55,10 @@ void main() {
     FaceInstance fi = face_instance_at(placed);
     Face face = face_at(fi.face);
     Curve curve = curve_at(face.first_curve + item - fi.first_curve);
-    float strips = float(face.strip_count);
+    float strips = float(strip_count(face.strips));
     uint lo = uint(clamp(floor(curve.range_v.x * strips), 0.0, strips - 1.0));
     uint hi = uint(clamp(floor(curve.range_v.y * strips), 0.0, strips - 1.0));
-    uint lines = first_line(fi.first_strip + hi + 1u) - first_line(fi.first_strip + lo);
+    uint lines = lines_of(fi, bay_count(face.strips), lo, hi, curve);
     if (lines == 0u) {
         segment_counts[item] = 0u;
         return;

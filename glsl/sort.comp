@@ -10,22 +10,23 @@
 //   flips        |              |        inside    0 1 1 1 1 1 0
 //
 // Twin: src/twin/sort.rs.
+#include "ordered.glsl"
 #include "scene.glsl"
 #include "words.glsl"
+
+// Strips of some face have several bays: their rows begin with the winding number of what is left of them.
+layout(constant_id = 1) const bool SCENE_HAS_BAYS = false;
 
 layout(local_size_x = 128) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1) uniform usamplerBuffer row_starts;
 layout(scalar, binding = 2) readonly buffer RowTotal { uint row_total; };
-layout(scalar, binding = 3) writeonly buffer RowCounts { uint row_counts[]; };
+layout(scalar, binding = 3) writeonly buffer RowCounts { uint row_counts[]; }; // flips << 1 | inside before the first
 layout(scalar, binding = 4) buffer Intercepts { uint intercepts[]; };
 layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
+layout(scalar, binding = 6) readonly buffer RowWindings { int row_windings[]; }; // where SCENE_HAS_BAYS
 
 const uint FEW = 16u;
-
-float from_ordered(uint bits) {
-    return uintBitsToFloat((bits & 0x80000000u) != 0u ? bits & 0x7fffffffu : ~bits);
-}
 
 void sift(uint first, uint root, uint count) {
     uint value = intercepts[first + root];
@@ -42,7 +43,7 @@ void sift(uint first, uint root, uint count) {
 
 // Each number finds its place among those before it, all of which stay in registers; how many flips there are. Loops as
 // long as the row: a rasterizer in software takes as many rounds as the longest of the rows that it works on at once.
-uint sort_few(uint first, uint count) {
+uint sort_few(uint first, uint count, int winding) {
     uint v[FEW];
     for (uint k = 0u; k < FEW; ++k) v[k] = 0xffffffffu;
     for (uint i = 0u; i < count; ++i) {
@@ -54,7 +55,6 @@ uint sort_few(uint first, uint count) {
         }
     }
     uint flips = 0u;
-    int winding = 0;
     for (uint i = 0u; i < count; ++i) {
         uint bits = v[0];
         for (uint k = 1u; k < FEW; ++k) v[k - 1u] = v[k];
@@ -83,8 +83,10 @@ void main() {
         return;
     }
     uint count = end - first;
+    int winding = SCENE_HAS_BAYS ? row_windings[row] : 0;
+    uint inside = winding != 0 ? 1u : 0u;
     if (count <= FEW) {
-        row_counts[row] = sort_few(first, count);
+        row_counts[row] = sort_few(first, count, winding) << 1 | inside;
         return;
     }
     for (uint i = count / 2u; i > 0u; --i) sift(first, i - 1u, count);
@@ -95,7 +97,6 @@ void main() {
         sift(first, 0u, i - 1u);
     }
     uint flips = 0u;
-    int winding = 0;
     uint steps = 0u;
     for (uint i = 0u; i < count; ++i) {
         ++steps;
@@ -108,5 +109,5 @@ void main() {
         winding = next;
     }
     if (steps != count) atomicAdd(counters.clamps, 1u);
-    row_counts[row] = flips;
+    row_counts[row] = flips << 1 | inside;
 }

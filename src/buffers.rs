@@ -12,7 +12,8 @@
 //! ```
 
 use crate::abi::{
-    BLOCK, BORDER_BANDS, BORDER_COLUMNS, Counters, Factors, Fragment, LEAF_RUN, Rect, SQUARE, SubPatch, TILE, TileLeaf,
+    BLOCK, BORDER_BANDS, BORDER_COLUMNS, Counters, Factors, Fragment, LEAF_RUN, Rect, SQUARE, StripRows, SubPatch,
+    TILE, TileLeaf,
 };
 #[cfg(feature = "rivals")]
 use crate::capacities::is_texture;
@@ -107,8 +108,8 @@ impl TextureBuffers {
 pub(crate) struct TableBuffers {
     pub strip_heights: Buffer,
     pub face_speeds: Buffer,
-    pub line_counts: Buffer,
-    pub line_starts: Texels,
+    pub strip_counts: Buffer,
+    pub strip_starts: Texels,
     pub segment_counts: Buffer,
     pub segment_starts: Texels,
     pub dispatches: Buffer,
@@ -118,12 +119,22 @@ pub(crate) struct TableBuffers {
     pub row_total: Buffer,
     pub intercepts: Texels,
     pub border_cells: Texels,
+    /// `None` where each strip has one bay.
+    pub bays: Option<BayBuffers>,
+}
+
+/// What strips with several bays need.
+pub(crate) struct BayBuffers {
+    pub seen: Buffer,
+    pub row_windings: Buffer,
 }
 
 impl TableBuffers {
     /// Zero when the frame begins.
-    pub(crate) fn cleared(&self) -> [&Buffer; 4] {
-        [&self.strip_heights, &self.face_speeds, &self.row_counts, &self.border_cells]
+    pub(crate) fn cleared(&self) -> impl Iterator<Item = &Buffer> {
+        let of_bays = self.bays.iter().flat_map(|bays| [&bays.seen, &bays.row_windings]);
+        let all: [&Buffer; 4] = [&self.strip_heights, &self.face_speeds, &self.row_counts, &self.border_cells];
+        all.into_iter().chain(of_bays)
     }
 }
 
@@ -213,41 +224,48 @@ impl Buffers {
         let tiles = all_tiles.min(size.0.div_ceil(TILE) * band_rows);
         let band_pixels = size.0 * (band_rows * TILE).min(size.1);
         let pixels = if counts.has_fragments() { band_pixels } else { 0 };
-        let scanned =
-            [2 * n, counts.strips, counts.curves, counts.face_instances, capacities.rows, tiles, runs, pixels];
+        let scanned = [2 * n, counts.bays, counts.curves, counts.face_instances, capacities.rows, tiles, runs, pixels];
         let scanned = scanned.into_iter().max().unwrap_or(0);
         let draw_bytes = 2 * u64::from(capacities.draws) * size_of::<vk::DrawIndirectCommand>() as u64;
         let table = || {
             Ok::<_, GpuError>(TableBuffers {
-                strip_heights: words("trim strip heights", counts.strips)?,
+                strip_heights: words("trim strip heights", counts.bays)?,
                 face_speeds: words("trim face speeds", 2 * counts.face_instances)?,
-                line_counts: words("trim line counts", counts.strips)?,
-                line_starts: numbers("trim line starts", counts.strips + 1, Texel::Words)?,
+                strip_counts: words("trim strip counts", counts.bays)?,
+                strip_starts: numbers("trim strip starts", counts.bays + 1, Texel::Words)?,
                 segment_counts: words("trim segment counts", counts.curves)?,
                 segment_starts: numbers("trim segment starts", counts.curves + 1, Texel::Words)?,
                 dispatches: indirect("trim dispatches", 3 * size_of::<[u32; 3]>() as u64)?,
-                strips: texels("trim strips", 8 * u64::from(counts.strips), Texel::U32x2)?,
+                strips: texels("trim strips", size_of::<StripRows>() as u64 * u64::from(counts.bays), Texel::U32x4)?,
                 row_counts: numbers("trim row counts", capacities.rows, Texel::Words)?,
                 row_starts: numbers("trim row starts", capacities.rows, Texel::Words)?,
                 row_total: words("trim row total", 1)?,
                 intercepts: numbers("trim intercepts", capacities.intercepts, Texel::Words)?,
                 border_cells: texels(
                     "trim border cells",
-                    u64::from(counts.strips) * u64::from(BORDER_BANDS * BORDER_COLUMNS / 8),
+                    u64::from(counts.bays) * u64::from(BORDER_BANDS * BORDER_COLUMNS / 8),
                     Texel::U32x4,
                 )?,
+                bays: (counts.wide_strips > 0)
+                    .then(|| {
+                        Ok(BayBuffers {
+                            seen: words("trim seen bays", counts.bays)?,
+                            row_windings: words("trim row windings", capacities.rows)?,
+                        })
+                    })
+                    .transpose()?,
             })
         };
         #[cfg(feature = "rivals")]
         let texture = || {
             Ok::<_, GpuError>(TextureBuffers {
-                strip_heights: words("trim strip heights", counts.strips)?,
+                strip_heights: words("trim strip heights", counts.bays)?,
                 face_speeds: words("trim face speeds", 2 * counts.face_instances)?,
                 words: words("trim texture sizes", counts.face_instances)?,
                 starts: words("trim texture starts", counts.face_instances + 1)?,
                 places: texels(
                     "trim texture places",
-                    u64::from(counts.strips) * size_of::<[u32; 4]>() as u64,
+                    u64::from(counts.bays) * size_of::<[u32; 4]>() as u64,
                     Texel::U32x4,
                 )?,
                 texels: numbers("trim texels", capacities.intercepts, Texel::Words)?,

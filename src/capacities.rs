@@ -21,7 +21,9 @@ pub(crate) use bands::{Limits, WHOLE};
 pub(crate) struct Counts {
     pub items: u32,
     pub cells: u32,
-    pub strips: u32,
+    pub bays: u32,
+    /// v-strips with several.
+    pub wide_strips: u32,
     pub curves: u32,
     pub face_instances: u32,
     /// Patches may lie behind others.
@@ -68,7 +70,8 @@ impl Counts {
         Self {
             items: data.items.len() as u32,
             cells: data.cell_items.len() as u32,
-            strips: data.strip_count,
+            bays: data.bay_count,
+            wide_strips: count(data.wide_strips.len()),
             curves: data.curve_items.len() as u32,
             face_instances: data.face_instances.len() as u32,
             hides: data.hides(),
@@ -113,7 +116,8 @@ impl Counts {
         let all = [
             ("patches", self.items, MOST_THREADS),
             ("cells", self.cells, MOST_THREADS),
-            ("v-strips", self.strips, MOST_THREADS),
+            ("bays of v-strips", self.bays, MOST_THREADS),
+            ("v-strips with several bays", self.wide_strips, MOST_GROUPS),
             ("curves", self.curves, MOST_THREADS),
             ("triangles", self.triangles, MOST_TRIANGLES),
             ("primitives", self.leaves, MOST_THREADS),
@@ -195,8 +199,8 @@ impl Capacities {
         Self {
             sub_patches: counts.items.saturating_add(256),
             draws: 64,
-            rows: table * (1 << 16).max(2 * counts.strips).min(MOST_ROWS),
-            intercepts: counted * (1 << 18).max(4 * counts.strips),
+            rows: table * (1 << 16).max(2 * counts.bays).min(MOST_ROWS),
+            intercepts: counted * (1 << 18).max(4 * counts.bays),
             doubts: trimmed * (1 << 14),
             block_leaves: counts.leaves.saturating_mul(4),
             tile_leaves: counts.leaves.saturating_mul(16),
@@ -374,7 +378,7 @@ mod tests {
     const RANGE: u32 = 1 << 27;
 
     fn first() -> Capacities {
-        Capacities::first(Counts { items: 1000, strips: 8, trim: Some(TrimWay::Table), ..Default::default() })
+        Capacities::first(Counts { items: 1000, bays: 8, trim: Some(TrimWay::Table), ..Default::default() })
     }
 
     fn grown(had: Capacities, c: &Counters) -> Result<Capacities, TooMany> {

@@ -131,16 +131,14 @@ bool in_whole_patch(FaceInstance fi, Face face, uint item, vec2 uv) {
 }
 
 // Whether the face is there at (u, v) of the item's patch. The table has rows only where its border runs: not
-// for strips in which all patches are whole.
+// for strips and bays in which all patches are whole.
 bool is_there(FaceInstance fi, Face face, uint item, Patch patch_, vec2 uv) {
     if ((face.flags & FACE_TRIMMED) == 0u) return in_whole_patch(fi, face, item, uv);
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
 #ifdef TRIM_BY_TABLE
     if (side_of(patch_.shape) == SIDE_INSIDE) {
         if (clamp(uv, 0.0, 1.0) == uv) return true;
-        float strips = float(face.strip_count);
-        uint strip = fi.first_strip + uint(clamp(at.y * strips, 0.0, strips - 1.0));
-        if (rows_of_strip(strip) == 0u) return in_whole_patch(fi, face, item, uv);
+        if (!table_covers(fi.first_bay, face.strips, at)) return in_whole_patch(fi, face, item, uv);
     }
 #endif
     return trim_inside(fi, face, at);

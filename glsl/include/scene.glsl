@@ -6,7 +6,7 @@
 //                    ├── first_item   + local patch  = item     (one patch of one placed face)
 //                    ├── first_cell   + local cell   = cell item
 //                    ├── first_curve  + local curve  = curve item
-//                    └── first_strip  + local strip  = strip item
+//                    └── first_bay    + strip * bays + bay = bay item (a strip's is that of its first bay)
 //
 //   Patch, side ──▶ Link ──▶ the next side that lies on the same curve: patches of one part, whose items are as far apart
 //
@@ -70,14 +70,14 @@ struct Face {
     uint colour;        // linear light, unorm 8 bits each, red lowest
     uint first_cell;
     uint first_curve;
-    uint strip_count;   // uniform v-strips of the trim table; 0 where there is none
+    uint strips;        // of the trim table: uniform v-strips, bays of each << 16; 0 where there is none (bays.glsl)
 };
 
 struct FaceInstance {
     uint face;
     uint instance;
     uint first_item;
-    uint first_strip;
+    uint first_bay;
     uint first_cell;
     uint first_curve;
 };
@@ -106,13 +106,13 @@ struct MeshInstance {
     uint instance;
 };
 
-// The part of a patch that lies in one v-strip.
+// The part of a patch that lies in one bay of one v-strip.
 struct Cell {
     vec3 box_min;
     float speed_u; // largest |S_u|, |S_v| there, part units per unit of normalised u, v
     vec3 box_max;
     float speed_v; // negative where no loop meets the patch, in scenes whose loops may be edited
-    uint strip;
+    uint bay;       // strip * bays + bay
 };
 
 struct Curve {
@@ -122,6 +122,7 @@ struct Curve {
     uint degree;
     vec2 bend;      // deviation from n equal chords is at most bend / n^2, in u and in v
     vec2 range_v;   // lowest and highest v of the control polygon
+    vec2 range_u;   // its lowest u, and the highest of its loop
 };
 
 // What a patch asks for: tau_u | TAU_HIDDEN | tau_v << 16, or 0 where it is not seen.
@@ -145,7 +146,7 @@ struct Frame {
     uint fixed_factor;  // of every patch; 0: what the bound asks for
     uint item_count;
     uint cell_count;
-    uint strip_count;
+    uint bay_count;     // of all strips of all placed faces
     uint curve_count;
     uint draw_vertices; // most tessellated vertices in one draw
     uint encode_srgb;   // 1: the colour target does not encode by itself; ENCODE_SUMMED

@@ -3,17 +3,25 @@
 #ifndef TABLE_GLSL
 #define TABLE_GLSL
 
+#include "bays.glsl"
 #include "border_cells.glsl"
 #include "words.glsl"
 
 // as texels, which a driver fetches at once where it gathers words of storage buffers one by one
-layout(binding = TABLE_BINDING + 0) uniform usamplerBuffer table_strips; // first row, rows
+layout(binding = TABLE_BINDING + 0) uniform usamplerBuffer table_strips; // StripRows, at each strip's first bay
 layout(binding = TABLE_BINDING + 1) uniform usamplerBuffer row_starts;
-layout(binding = TABLE_BINDING + 2) uniform usamplerBuffer row_counts;
+layout(binding = TABLE_BINDING + 2) uniform usamplerBuffer row_counts;   // flips << 1 | inside before the first
 layout(binding = TABLE_BINDING + 3) uniform usamplerBuffer flips;        // u, in order in each row
-layout(binding = TABLE_BINDING + 4) uniform usamplerBuffer border_cells; // one a band
+layout(binding = TABLE_BINDING + 4) uniform usamplerBuffer border_cells; // one a band of a bay
 
-uint rows_of_strip(uint strip) { return texelFetch(table_strips, int(strip)).y; }
+// Whether a placed face whose bay items begin at `first` has rows at (u, v); `strips` as in Face.
+bool table_covers(uint first, uint strips, vec2 uv) {
+    float n = float(strip_count(strips));
+    uint bays = bay_count(strips);
+    StripRows rows = strip_rows(table_strips, first + uint(clamp(uv.y * n, 0.0, n - 1.0)) * bays);
+    uint bay = bay_of(uv.x, bays);
+    return rows.lines != 0u && bay >= rows.first_bay && bay <= last_bay(rows);
+}
 
 // How many of the flips [first, end) are at u or before it: a binary search among texels of four.
 //
@@ -38,28 +46,37 @@ uint flips_passed(uint first, uint end, float u) {
     return max(passed, first) - first;
 }
 
-bool table_inside(uint first_strip, float strips, vec2 uv) {
-    float s = uv.y * strips;
-    if (!(s >= 0.0 && s < strips)) return false;
-    uvec2 strip = texelFetch(table_strips, int(first_strip + uint(s))).xy;
-    if (strip.y == 0u) return false;
-    uint row = strip.x + min(uint(fract(s) * float(strip.y)), strip.y - 1u);
+bool table_inside(uint first, uint strips, vec2 uv) {
+    float n = float(strip_count(strips));
+    uint bays = bay_count(strips);
+    float s = uv.y * n;
+    if (!(s >= 0.0 && s < n)) return false;
+    StripRows rows = strip_rows(table_strips, first + uint(s) * bays);
+    if (rows.lines == 0u) return false;
+    uint row = row_of(rows, min(uint(fract(s) * float(rows.lines)), rows.lines - 1u), bay_of(uv.x, bays));
     if (row >= frame.row_capacity) return true; // the host grows the table and records again
-    uint first = word_at(row_starts, row);
-    return (flips_passed(first, first + word_at(row_counts, row), uv.x) & 1u) != 0u;
+    uint first_flip = word_at(row_starts, row);
+    uint counted = word_at(row_counts, row);
+    return ((flips_passed(first_flip, first_flip + (counted >> 1), uv.x) ^ counted) & 1u) != 0u;
 }
 
-// Whether all of a box is inside or none of it: within a strip, what is looked up changes at trim curves alone.
-bool table_same(uint first_strip, float strips, vec2 lo, vec2 hi) {
-    float from = lo.y * strips;
-    float to = hi.y * strips;
-    if (!(from >= 0.0 && to < strips)) return false;
-    uint first = uint(from * float(BORDER_BANDS));
-    uint last = uint(to * float(BORDER_BANDS));
-    if (last > first + 1u || first / BORDER_BANDS != last / BORDER_BANDS) return false;
-    int band = int(first_strip * BORDER_BANDS);
-    uvec4 marked = texelFetch(border_cells, band + int(first)) | texelFetch(border_cells, band + int(last));
-    return (marked & columns_between(lo.x, hi.x)) == uvec4(0u);
+// Whether all of a box is inside or none of it: within a bay, what is looked up changes at trim curves alone.
+bool table_same(uint first, uint strips, vec2 lo, vec2 hi) {
+    float n = float(strip_count(strips));
+    uint bays = bay_count(strips);
+    float from = lo.y * n;
+    float to = hi.y * n;
+    if (!(from >= 0.0 && to < n)) return false;
+    uint strip = uint(from);
+    uint bay = bay_of(lo.x, bays);
+    if (uint(to) != strip || bay_of(hi.x, bays) != bay) return false;
+    uint low = uint(from * float(BORDER_BANDS));
+    uint high = uint(to * float(BORDER_BANDS));
+    if (high > low + 1u) return false;
+    uint band = (first + strip * bays + bay) * BORDER_BANDS;
+    uint up = strip * BORDER_BANDS;
+    uvec4 marked = texelFetch(border_cells, int(band + low - up)) | texelFetch(border_cells, int(band + high - up));
+    return (marked & columns_between(within_bay(lo.x, bay, bays), within_bay(hi.x, bay, bays))) == uvec4(0u);
 }
 
 #endif

@@ -29,7 +29,7 @@ pub struct Frame {
     pub fixed_factor: u32,
     pub item_count: u32,
     pub cell_count: u32,
-    pub strip_count: u32,
+    pub bay_count: u32,
     pub curve_count: u32,
     pub draw_vertices: u32,
     pub encode_srgb: u32,

@@ -54,6 +54,23 @@ pub struct Patch {
     pub face: u32,
 }
 
+impl Face {
+    /// Packs [`Face::strips`].
+    pub fn pack_strips(strips: u32, bays: u32) -> u32 {
+        strips | bays << 16
+    }
+
+    /// v-strips of the trim table; 0 where there is none.
+    pub fn strip_count(&self) -> u32 {
+        self.strips & 0xffff
+    }
+
+    /// Bays of each strip.
+    pub fn bay_count(&self) -> u32 {
+        self.strips >> 16
+    }
+}
+
 impl Patch {
     /// Packs [`Patch::shape`].
     pub fn pack_shape(degrees: (usize, usize), rational: bool, side: Side, borders: u32) -> u32 {
@@ -135,7 +152,7 @@ pub struct Face {
     pub colour: u32,
     pub first_cell: u32,
     pub first_curve: u32,
-    pub strip_count: u32,
+    pub strips: u32,
 }
 
 /// One face of one placed part.
@@ -145,7 +162,7 @@ pub struct FaceInstance {
     pub face: u32,
     pub instance: u32,
     pub first_item: u32,
-    pub first_strip: u32,
+    pub first_bay: u32,
     pub first_cell: u32,
     pub first_curve: u32,
 }
@@ -193,7 +210,7 @@ pub struct Cell {
     pub speed_u: f32,
     pub box_max: [f32; 3],
     pub speed_v: f32,
-    pub strip: u32,
+    pub bay: u32,
 }
 
 /// Pixels along a side of the smallest squares whose farthest depth is kept.
@@ -205,6 +222,16 @@ pub const BORDER_BANDS: u32 = 4;
 /// See [`BORDER_BANDS`].
 pub const BORDER_COLUMNS: u32 = 128;
 
+/// Where the rows of a v-strip are: `glsl/include/bays.glsl`.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct StripRows {
+    pub first: u32,
+    pub lines: u32,
+    pub first_bay: u32,
+    pub bays: u32,
+}
+
 /// One trim curve.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
@@ -215,4 +242,5 @@ pub struct Curve {
     pub degree: u32,
     pub bend: [f32; 2],
     pub range_v: [f32; 2],
+    pub range_u: [f32; 2],
 }

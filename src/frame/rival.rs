@@ -33,7 +33,7 @@ impl RivalPasses {
             Rival::Untrimmed => Self::Untrimmed,
             Rival::Bisect { .. } => Self::Bisect,
             Rival::Texture { .. } => Self::Texture(Box::new(TexturePasses {
-                density: density::Density::new(device, hides)?,
+                density: density::Density::new(device, hides, false)?,
                 texture: rival_texture::RivalTexture::new(device)?,
             })),
         })
@@ -103,6 +103,7 @@ impl TextureParts<'_> {
             strip_heights: &t.strip_heights,
             face_speeds: &t.face_speeds,
             drawn_faces: frame.hidden().map(|parts| parts.drawn_faces()),
+            seen_bays: None,
         };
         self.passes.density.record(cmd, &density, b.counts.cells);
         barrier::buffers(cmd, &[(&t.face_speeds, w, r), (&b.counters, w1, w2)]);

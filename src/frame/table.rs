@@ -4,13 +4,14 @@
 //!   cells ──density──▶ strip heights ──lines──(scan)──▶ rows
 //!   curves ──segments──(scan)──▶ chords ──sizes──▶ dispatches
 //!   chords ──cross: count──(scan)──▶ cross: insert──▶ intercepts ──sort──▶ flips of each row
+//!                 ╰──▶ row windings ──carry──▶ what rows begin with ──╯       only where strips have several bays
 //! ```
 
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::Counters;
 use crate::buffers::TableBuffers;
 use crate::gpu::{Access, Commands, Device, GpuError, Resource, barrier};
-use crate::passes::{cross, density, lines, scan, segments, sizes, sort};
+use crate::passes::{carry, cross, density, lines, scan, segments, sizes, sort};
 use crate::scene::TableScene;
 use std::mem::offset_of;
 
@@ -21,19 +22,22 @@ pub(super) struct TablePasses {
     segments: segments::Segments,
     sizes: sizes::Sizes,
     cross: cross::Cross,
+    /// `None` where each strip has one bay.
+    carry: Option<carry::Carry>,
     sort: sort::Sort,
 }
 
 impl TablePasses {
-    /// `hides`: patches may lie behind others.
-    pub(super) fn new(device: &Device, hides: bool) -> Result<Self, GpuError> {
+    /// `hides`: patches may lie behind others. `bays`: strips of some face have several bays.
+    pub(super) fn new(device: &Device, hides: bool, bays: bool) -> Result<Self, GpuError> {
         Ok(Self {
-            density: density::Density::new(device, hides)?,
-            lines: lines::Lines::new(device)?,
-            segments: segments::Segments::new(device)?,
-            sizes: sizes::Sizes::new(device)?,
-            cross: cross::Cross::new(device)?,
-            sort: sort::Sort::new(device)?,
+            density: density::Density::new(device, hides, bays)?,
+            lines: lines::Lines::new(device, bays)?,
+            segments: segments::Segments::new(device, bays)?,
+            sizes: sizes::Sizes::new(device, bays)?,
+            cross: cross::Cross::new(device, bays)?,
+            carry: bays.then(|| carry::Carry::new(device)).transpose()?,
+            sort: sort::Sort::new(device, bays)?,
         })
     }
 }
@@ -59,15 +63,10 @@ impl<'a> TableParts<'a> {
         let (p, trims, t) = (self.passes, self.scene, self.buffers);
         let (w, r) = WRITE_TO_READ;
         let cleared = (Access::TRANSFER_WRITE, Access::COMPUTE_WRITE);
-        barrier::buffers(
-            cmd,
-            &[
-                (&t.strip_heights, cleared.0, cleared.1),
-                (&t.face_speeds, cleared.0, cleared.1),
-                (&t.row_counts, cleared.0, cleared.1),
-                (&t.border_cells, cleared.0, cleared.1),
-            ],
-        );
+        let all_cleared: Vec<_> = t.cleared().map(|buffer| (buffer, cleared.0, cleared.1)).collect();
+        barrier::buffers(cmd, &all_cleared);
+        let seen_bays = t.bays.as_ref().map(|bays| &bays.seen);
+        let row_windings = t.bays.as_ref().map(|bays| &bays.row_windings);
         let density = density::Bindings {
             frame: frame.constants,
             views: frame.views,
@@ -79,20 +78,25 @@ impl<'a> TableParts<'a> {
             strip_heights: &t.strip_heights,
             face_speeds: &t.face_speeds,
             drawn_faces: frame.hidden().map(|parts| parts.drawn_faces()),
+            seen_bays,
         };
         p.density.record(cmd, &density, b.counts.cells);
         barrier::buffers(cmd, &[(&t.strip_heights, w, r), (&t.face_speeds, w, r)]);
+        if let Some(seen) = seen_bays {
+            barrier::buffers(cmd, &[(seen, w, r)]);
+        }
 
         let lines = lines::Bindings {
             frame: frame.constants,
             strip_heights: &t.strip_heights,
-            line_counts: &t.line_counts,
+            strip_counts: &t.strip_counts,
             counters: &b.counters,
+            seen_bays,
         };
-        p.lines.record(cmd, &lines, b.counts.strips);
-        barrier::buffers(cmd, &[(&t.line_counts, w, r), (&b.counters, w, w)]);
-        frame.scan(cmd, &t.line_counts, &t.line_starts, b.counts.strips);
-        barrier::buffers(cmd, &[(&t.line_starts, w, r)]);
+        p.lines.record(cmd, &lines, b.counts.bays);
+        barrier::buffers(cmd, &[(&t.strip_counts, w, r), (&b.counters, w, w)]);
+        frame.scan(cmd, &t.strip_counts, &t.strip_starts, b.counts.bays);
+        barrier::buffers(cmd, &[(&t.strip_starts, w, r)]);
 
         let segments = segments::Bindings {
             frame: frame.constants,
@@ -100,9 +104,10 @@ impl<'a> TableParts<'a> {
             faces: &s.faces,
             curves: &trims.curves,
             curve_items: &trims.curve_items,
-            line_starts: &t.line_starts,
+            strip_starts: &t.strip_starts,
             face_speeds: &t.face_speeds,
             segment_counts: &t.segment_counts,
+            seen_bays,
         };
         p.segments.record(cmd, &segments, b.counts.curves);
         barrier::buffers(cmd, &[(&t.segment_counts, w, r)]);
@@ -111,14 +116,15 @@ impl<'a> TableParts<'a> {
 
         let sizes = sizes::Bindings {
             frame: frame.constants,
-            line_starts: &t.line_starts,
+            strip_starts: &t.strip_starts,
             segment_starts: &t.segment_starts,
             dispatches: &t.dispatches,
             strips: &t.strips,
             counters: &b.counters,
+            seen_bays,
         };
-        p.sizes.record(cmd, &sizes, b.counts.strips);
-        barrier::buffers(cmd, &[(&t.dispatches, w, Access::INDIRECT_READ), (&b.counters, w, w)]);
+        p.sizes.record(cmd, &sizes, b.counts.bays);
+        barrier::buffers(cmd, &[(&t.dispatches, w, Access::INDIRECT_READ), (&t.strips, w, r), (&b.counters, w, w)]);
 
         let cross = cross::Bindings {
             frame: frame.constants,
@@ -127,12 +133,13 @@ impl<'a> TableParts<'a> {
             curves: &trims.curves,
             curve_points: &trims.curve_points,
             curve_items: &trims.curve_items,
-            line_starts: &t.line_starts,
+            strips: &t.strips,
             segment_starts: &t.segment_starts,
             row_starts: &t.row_starts,
             row_counts: &t.row_counts,
             intercepts: &t.intercepts,
             border_cells: &t.border_cells,
+            row_windings,
             dispatches: &t.dispatches,
         };
         p.cross.count(cmd, &cross);
@@ -159,6 +166,15 @@ impl<'a> TableParts<'a> {
             cmd,
             &[(&t.row_starts, w, r), (&t.row_total, w, r), (&t.row_counts, r, w), (&b.counters, r, w)],
         );
+        if let Some(((carry, bays), wide_strips)) =
+            p.carry.as_ref().zip(t.bays.as_ref()).zip(trims.wide_strips.as_ref())
+        {
+            let row_windings = &bays.row_windings;
+            barrier::buffers(cmd, &[(row_windings, w, Access::COMPUTE_READ | Access::COMPUTE_WRITE)]);
+            let bindings = carry::Bindings { frame: frame.constants, strips: &t.strips, wide_strips, row_windings };
+            carry.record(cmd, &bindings, b.counts.wide_strips);
+            barrier::buffers(cmd, &[(row_windings, w, r)]);
+        }
         p.cross.insert(cmd, &cross);
         barrier::buffers(cmd, &[(&t.intercepts, w, w), (&t.row_counts, w, w)]);
 
@@ -169,6 +185,7 @@ impl<'a> TableParts<'a> {
             row_counts: &t.row_counts,
             intercepts: &t.intercepts,
             counters: &b.counters,
+            row_windings,
             dispatches: &t.dispatches,
         };
         p.sort.record(cmd, &sort);

@@ -1,7 +1,7 @@
 //! All twins in the order of [`frame`](crate::frame): the inputs and the outputs of every pass.
 
 use super::Case;
-use crate::abi::{Counters, SubPatch};
+use crate::abi::{Counters, StripRows, SubPatch};
 use crate::twin;
 use crate::twin::density::Density;
 use crate::twin::emit::Draw;
@@ -22,19 +22,22 @@ pub(super) struct Chain {
     pub sub_patches: Vec<SubPatch>,
     pub draws: Vec<Draw>,
     pub density: Density,
-    pub line_counts: Vec<u32>,
-    pub line_starts: Vec<u32>,
+    pub strip_counts: Vec<u32>,
+    pub strip_starts: Vec<u32>,
     pub segment_counts: Vec<u32>,
     pub segment_starts: Vec<u32>,
     pub dispatches: [[u32; 3]; 3],
-    pub strips: Vec<[u32; 2]>,
+    pub strips: Vec<StripRows>,
     pub row_counts: Vec<u32>,
+    /// As `cross` leaves them, and as `carry` does.
+    pub rows_add_up: Vec<i32>,
+    pub row_windings: Vec<i32>,
     pub border_cells: Vec<[u32; 4]>,
     pub row_starts: Vec<u32>,
     pub row_total: u32,
     /// As `cross` leaves them; the order within a row is not part of the contract.
     pub intercepts: Vec<u32>,
-    /// As `sort` leaves them: the first `flip_counts[row]` words of a row are float bits.
+    /// As `sort` leaves them: the first `flip_counts[row] >> 1` words of a row are float bits.
     pub flips: Vec<u32>,
     pub flip_counts: Vec<u32>,
     pub counters: Counters,
@@ -54,20 +57,23 @@ impl Chain {
         twin::emit::emit(frame, &c.split.factors, &c.sub_patch_starts, &c.vertex_starts, list, &mut c.counters);
 
         c.density = twin::density::density(frame, scene);
-        c.line_counts = twin::lines::lines(frame, &c.density.strip_heights, &mut c.counters);
-        c.line_starts = starts(&c.line_counts);
-        c.segment_counts = twin::segments::segments(frame, scene, &c.density.face_speeds, &c.line_starts);
+        c.strip_counts = twin::lines::lines(frame, &c.density.strip_heights, &c.density.seen_bays, &mut c.counters);
+        c.strip_starts = starts(&c.strip_counts);
+        c.segment_counts = twin::segments::segments(frame, scene, &c.density, &c.strip_starts);
         c.segment_starts = starts(&c.segment_counts);
-        c.dispatches = twin::sizes::sizes(frame, &c.line_starts, &c.segment_starts, &mut c.counters);
-        c.strips = twin::sizes::strips(&c.line_starts);
-        c.row_counts = twin::cross::count(frame, scene, &c.line_starts, &c.segment_starts);
-        c.border_cells = twin::cross::border_cells(frame, scene, &c.line_starts, &c.segment_starts);
+        c.dispatches = twin::sizes::sizes(frame, &c.strip_starts, &c.segment_starts, &mut c.counters);
+        c.strips = twin::sizes::strips(&c.strip_starts, &c.density.seen_bays);
+        (c.row_counts, c.rows_add_up) = twin::cross::count(frame, scene, &c.strips, &c.segment_starts);
+        c.border_cells = twin::cross::border_cells(frame, scene, &c.strips, &c.segment_starts);
+        c.row_windings = c.rows_add_up.clone();
+        twin::carry::carry(frame, &c.strips, &case.data.wide_strips, &mut c.row_windings);
         (c.row_starts, c.row_total) = twin::scan::scan(&c.row_counts[..c.counters.rows as usize]);
         c.intercepts = vec![UNTOUCHED; frame.intercept_capacity as usize];
-        let (mut counts, given) = (c.row_counts.clone(), (c.line_starts.as_slice(), c.segment_starts.as_slice()));
+        let (mut counts, given) = (c.row_counts.clone(), (c.strips.as_slice(), c.segment_starts.as_slice()));
         twin::cross::insert(frame, scene, given, &c.row_starts, &mut counts, &mut c.intercepts);
         c.flips = c.intercepts.clone();
-        c.flip_counts = twin::sort::sort(frame, &c.row_starts, c.row_total, &mut c.flips, &mut c.counters);
+        let windings = &c.row_windings;
+        c.flip_counts = twin::sort::sort(frame, &c.row_starts, c.row_total, windings, &mut c.flips, &mut c.counters);
         c
     }
 }

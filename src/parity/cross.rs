@@ -14,6 +14,7 @@ struct Left {
     row_counts: Vec<u32>,
     intercepts: Vec<u32>,
     border_cells: Vec<[u32; 4]>,
+    row_windings: Vec<i32>,
 }
 
 /// One role of the pass on the GPU.
@@ -21,12 +22,14 @@ fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> Left {
     let s = SceneBuffers::new(gpu, case);
     let before = if insert { chain.row_counts.clone() } else { vec![0; chain.row_counts.len()] };
     let starts = |name: &str, words: &[u32]| gpu.upload_texels(name, words, Texel::Words);
-    let (line_starts, segment_starts) =
-        (starts("line starts", &chain.line_starts), starts("segment starts", &chain.segment_starts));
+    let strips = gpu.upload_texels("strips", &chain.strips, Texel::U32x4);
+    let segment_starts = starts("segment starts", &chain.segment_starts);
     let row_starts = starts("row starts", &chain.row_starts);
     let row_counts = gpu.upload("row counts", &before);
     let intercepts = gpu.upload("intercepts", &vec![UNTOUCHED; chain.intercepts.len()]);
     let border_cells = gpu.upload("border cells", &vec![[0u32; 4]; chain.border_cells.len()]);
+    let bays = !case.data.wide_strips.is_empty();
+    let row_windings = gpu.upload("row windings", &vec![0i32; chain.rows_add_up.len()]);
     let dispatches = gpu.upload("dispatches", chain.dispatches.as_flattened());
     let bindings = Bindings {
         frame: &s.frame,
@@ -35,20 +38,22 @@ fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> Left {
         curves: &s.curves,
         curve_points: &s.curve_points,
         curve_items: &s.curve_items,
-        line_starts: &line_starts,
+        strips: &strips,
         segment_starts: &segment_starts,
         row_starts: &row_starts,
         row_counts: &row_counts,
         intercepts: &intercepts,
         border_cells: &border_cells,
+        row_windings: bays.then_some(&row_windings),
         dispatches: &dispatches,
     };
-    let pass = Cross::new(gpu.device()).unwrap();
+    let pass = Cross::new(gpu.device(), bays).unwrap();
     gpu.run(|cmd| if insert { pass.insert(cmd, &bindings) } else { pass.count(cmd, &bindings) });
     Left {
         row_counts: gpu.read(&row_counts, before.len()),
         intercepts: gpu.read(&intercepts, chain.intercepts.len()),
         border_cells: gpu.read(&border_cells, chain.border_cells.len()),
+        row_windings: gpu.read(&row_windings, chain.rows_add_up.len()),
     }
 }
 
@@ -58,6 +63,7 @@ fn compare(gpu: &Gpu, given: &Case, chain: &Chain) -> Result<(), Mismatch> {
     same("row counts", &counted.row_counts, &chain.row_counts)?;
     same("intercepts before inserting", &counted.intercepts, &vec![UNTOUCHED; chain.intercepts.len()])?;
     same("border cells", &counted.border_cells, &chain.border_cells)?;
+    same("row windings", &counted.row_windings, &chain.rows_add_up)?;
 
     let left = on_gpu(gpu, given, chain, true);
     same("row counts after inserting", &left.row_counts, &vec![0; chain.row_counts.len()])?;

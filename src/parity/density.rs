@@ -1,17 +1,19 @@
 //! Parity of the pass `density`: exact; where the GPU rounds otherwise, within 24 units in the last place.
 
 use super::Case;
-use super::harness::{Gpu, Mismatch, SceneBuffers, floats};
+use super::harness::{Gpu, Mismatch, SceneBuffers, floats, same};
 use super::shapes::cases;
 use crate::passes::density::{Bindings, Density};
 use crate::twin;
 
 fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
-    let (strips, faces) = (given.data.strip_count as usize, given.data.face_instances.len());
+    let (strips, faces) = (given.data.bay_count as usize, given.data.face_instances.len());
     let s = SceneBuffers::new(gpu, given);
     let strip_heights = gpu.upload("strip heights", &vec![0.0f32; strips]);
     let face_speeds = gpu.upload("face speeds", &vec![0.0f32; 2 * faces]);
-    let pass = Density::new(gpu.device(), false).unwrap();
+    let bays = !given.data.wide_strips.is_empty();
+    let seen_bays = gpu.upload("seen bays", &vec![0u32; strips]);
+    let pass = Density::new(gpu.device(), false, bays).unwrap();
     let bindings = Bindings {
         frame: &s.frame,
         views: &s.views,
@@ -23,10 +25,14 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
         strip_heights: &strip_heights,
         face_speeds: &face_speeds,
         drawn_faces: None,
+        seen_bays: bays.then_some(&seen_bays),
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, given.data.cell_items.len() as u32));
     let twin = twin::density::density(&expected.frame, &expected.scene());
     floats("strip heights", &gpu.read(&strip_heights, strips), &twin.strip_heights, gpu.slack())?;
+    if bays {
+        same("seen bays", &gpu.read(&seen_bays, strips), &twin.seen_bays)?;
+    }
     floats("face speeds", &gpu.read(&face_speeds, 2 * faces), twin.face_speeds.as_flattened(), gpu.slack())
 }
 
@@ -47,6 +53,6 @@ fn a_difference_is_seen() {
     let last = fast.data.cells.len() - 1; // of the plate: the last strip of either instance
     fast.data.cells[last].speed_v *= 1.001;
     let mismatch = compare(&gpu, &fast, case).unwrap_err();
-    assert_eq!((mismatch.buffer, mismatch.index), ("strip heights", case.data.strip_count as usize / 2 - 1));
+    assert_eq!((mismatch.buffer, mismatch.index), ("strip heights", case.data.bay_count as usize / 2 - 1));
     gpu.finish();
 }

@@ -79,7 +79,7 @@ mod table {
             border_cells: &chain.border_cells,
             row_capacity: case_.frame.row_capacity,
         };
-        let strips = case_.data.faces[0].strip_count as f32;
+        let face = &case_.data.faces[0];
         let pixel = 1.0 / (zoom * f64::from(SIZE));
         let grid = (0..SIZE * SIZE).map(|k| DVec2::new(f64::from(k % SIZE) + 0.5, f64::from(k / SIZE) + 0.5));
         let grid = grid.map(|p| centre + (p - 0.5 * f64::from(SIZE)) * pixel);
@@ -89,10 +89,10 @@ mod table {
         let far = |p: &DVec2| index.distance(*p, 1.0) > TOLERANCE_PX * pixel;
         let points: Vec<DVec2> = grid.chain(rows).filter(seen).filter(far).collect();
         for p in &points {
-            let inside = |p: DVec2| table.inside(0, strips, p.as_vec2().to_array());
+            let inside = |p: DVec2| table.inside(0, face, p.as_vec2().to_array());
             assert_eq!(inside(*p), index.contains(*p), "{} at {p}, zoom {zoom}", case.name);
             let corners = [(-1.0, -1.0), (1.0, -1.0), (-1.0, 1.0), (1.0, 1.0)].map(|c| *p + pixel * DVec2::from(c));
-            if table.same(0, strips, corners[0].as_vec2().to_array(), corners[3].as_vec2().to_array()) {
+            if table.same(0, face, corners[0].as_vec2().to_array(), corners[3].as_vec2().to_array()) {
                 let same = corners.iter().all(|q| inside(*q) == inside(*p));
                 assert!(same, "{}: the box around {p}, zoom {zoom}", case.name);
             }

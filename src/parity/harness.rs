@@ -136,7 +136,7 @@ impl SceneBuffers {
             items: gpu.upload("items", &d.items),
             cells: gpu.upload("cells", &d.cells),
             cell_items: gpu.upload("cell items", &d.cell_items),
-            curves: gpu.upload_texels("curves", &d.curves, Texel::U32x2),
+            curves: gpu.upload_texels("curves", &d.curves, Texel::U32x4),
             curve_points: gpu.upload_texels("curve points", &d.curve_points, Texel::Numbers),
             curve_items: gpu.upload_texels("curve items", &d.curve_items, Texel::Words),
         }

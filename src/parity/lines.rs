@@ -7,22 +7,24 @@ use crate::abi::{Counters, Frame};
 use crate::passes::lines::{Bindings, Lines};
 use crate::twin;
 
-fn compare(gpu: &Gpu, frame: &Frame, given: &[f32], expected: &[f32]) -> Result<(), Mismatch> {
+fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: &[f32], expected: &[f32]) -> Result<(), Mismatch> {
     let frame_buffer = gpu.upload("frame", &[*frame]);
     let strip_heights = gpu.upload("strip heights", given);
-    let line_counts = gpu.upload("line counts", &vec![UNTOUCHED; given.len()]);
+    let strip_counts = gpu.upload("strip counts", &vec![UNTOUCHED; given.len()]);
     let counters = gpu.upload("counters", &[Counters::default()]);
-    let pass = Lines::new(gpu.device()).unwrap();
+    let seen_bays = gpu.upload("seen bays", seen);
+    let pass = Lines::new(gpu.device(), true).unwrap();
     let bindings = Bindings {
         frame: &frame_buffer,
         strip_heights: &strip_heights,
-        line_counts: &line_counts,
+        strip_counts: &strip_counts,
         counters: &counters,
+        seen_bays: Some(&seen_bays),
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, given.len() as u32));
     let mut clamps = Counters::default();
-    let twin = twin::lines::lines(frame, expected, &mut clamps);
-    counts("line counts", &gpu.read(&line_counts, given.len()), &twin, gpu.slack())?;
+    let twin = twin::lines::lines(frame, expected, seen, &mut clamps);
+    counts("strip counts", &gpu.read(&strip_counts, given.len()), &twin, gpu.slack())?;
     same("counters", &gpu.read(&counters, 1), &[clamps])
 }
 
@@ -30,11 +32,12 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &[f32], expected: &[f32]) -> Result<
 fn parity() {
     let gpu = Gpu::new();
     for case in cases() {
-        let mut heights = Chain::new(&case).density.strip_heights;
-        compare(&gpu, &case.frame, &heights, &heights).unwrap();
+        let density = Chain::new(&case).density;
+        let (mut heights, seen) = (density.strip_heights, density.seen_bays);
+        compare(&gpu, &case.frame, &seen, &heights, &heights).unwrap();
         heights[0] = 1e6; // more than a strip can have
         heights[1] = 65536.0 * case.frame.row_px; // as many as it can have
-        compare(&gpu, &case.frame, &heights, &heights).unwrap();
+        compare(&gpu, &case.frame, &seen, &heights, &heights).unwrap();
     }
     gpu.finish();
 }
@@ -43,10 +46,11 @@ fn parity() {
 fn a_difference_is_seen() {
     let gpu = Gpu::new();
     let case = &cases()[0];
-    let heights = Chain::new(case).density.strip_heights;
+    let density = Chain::new(case).density;
+    let (heights, seen) = (density.strip_heights, density.seen_bays);
     let mut other = heights.clone();
     other[4] += 2.0 * case.frame.row_px;
-    let mismatch = compare(&gpu, &case.frame, &other, &heights).unwrap_err();
-    assert_eq!((mismatch.buffer, mismatch.index), ("line counts", 4));
+    let mismatch = compare(&gpu, &case.frame, &seen, &other, &heights).unwrap_err();
+    assert_eq!((mismatch.buffer, mismatch.index), ("strip counts", 4));
     gpu.finish();
 }

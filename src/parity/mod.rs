@@ -25,6 +25,8 @@ pub(crate) use shapes::{placed, untrimmed};
 #[cfg(feature = "headless")]
 mod bound;
 #[cfg(feature = "headless")]
+mod carry;
+#[cfg(feature = "headless")]
 mod cross;
 #[cfg(feature = "headless")]
 mod density;

@@ -12,22 +12,25 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case, chain: &Chain) -> Result<()
     let n = given.data.curve_items.len();
     let s = SceneBuffers::new(gpu, given);
     let face_speeds = gpu.upload("face speeds", &chain.density.face_speeds);
-    let line_starts = gpu.upload_texels("line starts", &chain.line_starts, Texel::Words);
+    let strip_starts = gpu.upload_texels("strip starts", &chain.strip_starts, Texel::Words);
     let segment_counts = gpu.upload("segment counts", &vec![UNTOUCHED; n]);
-    let pass = Segments::new(gpu.device()).unwrap();
+    let bays = !given.data.wide_strips.is_empty();
+    let seen_bays = gpu.upload("seen bays", &chain.density.seen_bays);
+    let pass = Segments::new(gpu.device(), bays).unwrap();
     let bindings = Bindings {
         frame: &s.frame,
         face_instances: &s.face_instances,
         faces: &s.faces,
         curves: &s.curves,
         curve_items: &s.curve_items,
-        line_starts: &line_starts,
+        strip_starts: &strip_starts,
         face_speeds: &face_speeds,
         segment_counts: &segment_counts,
+        seen_bays: bays.then_some(&seen_bays),
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
     let scene = expected.scene();
-    let twin = twin::segments::segments(&expected.frame, &scene, &chain.density.face_speeds, &chain.line_starts);
+    let twin = twin::segments::segments(&expected.frame, &scene, &chain.density, &chain.strip_starts);
     counts("segment counts", &gpu.read(&segment_counts, n), &twin, gpu.slack())
 }
 

@@ -5,6 +5,7 @@
 //!   drop     1 cubic patch whose sides u = 0, 1 coincide    drawn plain, its own neighbour
 //!   sheet    3 x 2 bicubic patches, 3 loops: a rational     plain, trimmed and absent patches
 //!            hole, and a cubic hole that overlaps it
+//!   sieve    in another model in place of the sheet: 600 holes, so that its strips have several bays
 //!   plate    1 bilinear patch, a square with a round hole   trimmed
 //!
 //!   placed as they are, and once mirrored, stretched and aside
@@ -101,6 +102,15 @@ pub(super) fn sheet_loops() -> Vec<TrimLoop> {
     ]
 }
 
+/// In place of those of the sheet.
+pub(super) fn sieve_loops() -> Vec<TrimLoop> {
+    let holes = (0..600).map(|k| {
+        let at = DVec2::new(0.12 + 0.071 * f64::from(k % 40), 0.1 + 0.125 * f64::from(k / 40));
+        round_hole(at, 0.03)
+    });
+    std::iter::once(polygon(&[(0.03, 0.02), (2.97, 0.05), (2.96, 1.97), (0.04, 1.96)])).chain(holes).collect()
+}
+
 pub(super) fn sheet_face() -> Face {
     face(3, SurfaceKind::BSpline, sheet(), sheet_loops())
 }
@@ -153,7 +163,15 @@ pub(super) fn model_and_cameras() -> (Model, Vec<Camera>) {
     (model, vec![all, close, parallel])
 }
 
-/// The model seen by each camera; then a loose tolerance; then too little room for anything.
+/// The model with the sieve in place of the sheet.
+pub(super) fn model_with_sieve() -> Model {
+    let (mut model, _) = model_and_cameras();
+    model.parts[0].faces[2].loops = sieve_loops();
+    model
+}
+
+/// The model seen by each camera; then a loose tolerance; then too little room for anything; then the one with the sieve:
+/// all of it, a part of its bays, and with too few rows.
 pub(super) fn cases() -> Vec<Case> {
     let (model, cameras) = model_and_cameras();
     let mut cases: Vec<Case> = cameras.iter().map(|camera| Case::new(&model, camera, 0.5)).collect();
@@ -163,6 +181,11 @@ pub(super) fn cases() -> Vec<Case> {
     tight.frame.draw_capacity = 2;
     tight.frame.row_capacity = 2_000;
     tight.frame.intercept_capacity = 900;
+    cases.push(tight);
+    let sieve = model_with_sieve();
+    cases.extend(cameras[..2].iter().map(|camera| Case::new(&sieve, camera, 0.5)));
+    let mut tight = cases[6].clone();
+    tight.frame.row_capacity = 500;
     cases.push(tight);
     cases
 }
@@ -195,5 +218,13 @@ mod tests {
         assert!(chains[1].split.factors.iter().any(|f| f.splits != 1 | 1 << 16), "and splits some");
         assert!(chains[1].counters.plain_draws > 1, "and needs several draws");
         assert_eq!(chains[4].counters.failed, 15, "every buffer of the tight case is too small");
+        let seen = |chain: &Chain| chain.strips.iter().filter(|rows| rows.lines > 0).map(|rows| rows.bays).max();
+        assert_eq!(cases[5].data.faces[2].bay_count(), 4);
+        assert_eq!(seen(&chains[5]), Some(4), "all bays of the sieve");
+        let is_part = |rows: &abi::StripRows| rows.lines > 0 && (rows.first_bay > 0 || rows.bays < 4);
+        let wide =
+            |chain: &Chain| cases[6].data.wide_strips.iter().any(|&strip| is_part(&chain.strips[strip as usize]));
+        assert!(wide(&chains[6]), "the close view sees some of them");
+        assert_eq!(chains[7].counters.failed, crate::twin::FAILED_ROWS, "too few rows");
     }
 }

@@ -7,28 +7,30 @@ use crate::abi::{Counters, Frame};
 use crate::passes::sizes::{Bindings, Sizes};
 use crate::twin;
 
-fn compare(gpu: &Gpu, frame: &Frame, given: [&[u32]; 2], expected: [&[u32]; 2]) -> Result<(), Mismatch> {
+fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: [&[u32]; 2], expected: [&[u32]; 2]) -> Result<(), Mismatch> {
     // as the passes before may leave them
     let before = Counters { clamps: 3, failed: 1, plain: 9, ..Default::default() };
     let frame_buffer = gpu.upload("frame", &[*frame]);
-    let line_starts = gpu.upload("line starts", given[0]);
+    let strip_starts = gpu.upload("strip starts", given[0]);
     let segment_starts = gpu.upload("segment starts", given[1]);
     let dispatches = gpu.upload("dispatches", &[UNTOUCHED; 9]);
-    let strips = gpu.upload("strips", &vec![UNTOUCHED; 2 * frame.strip_count as usize]);
+    let strips = gpu.upload("strips", &vec![UNTOUCHED; 4 * frame.bay_count as usize]);
     let counters = gpu.upload("counters", &[before]);
-    let pass = Sizes::new(gpu.device()).unwrap();
+    let seen_bays = gpu.upload("seen bays", seen);
+    let pass = Sizes::new(gpu.device(), true).unwrap();
     let bindings = Bindings {
         frame: &frame_buffer,
-        line_starts: &line_starts,
+        strip_starts: &strip_starts,
         segment_starts: &segment_starts,
         dispatches: &dispatches,
         strips: &strips,
         counters: &counters,
+        seen_bays: Some(&seen_bays),
     };
-    gpu.run(|cmd| pass.record(cmd, &bindings, frame.strip_count));
+    gpu.run(|cmd| pass.record(cmd, &bindings, frame.bay_count));
     let mut after = before;
     let twin = twin::sizes::sizes(frame, expected[0], expected[1], &mut after);
-    let of_strips = twin::sizes::strips(expected[0]);
+    let of_strips = twin::sizes::strips(expected[0], seen);
     same("strips", &gpu.read(&strips, of_strips.len()), &of_strips)?;
     same("dispatches", &gpu.read(&dispatches, 3), &twin)?;
     same("counters", &gpu.read(&counters, 1), &[after])
@@ -39,11 +41,11 @@ fn parity() {
     let gpu = Gpu::new();
     for case in cases() {
         let chain = Chain::new(&case);
-        let starts = [chain.line_starts.as_slice(), chain.segment_starts.as_slice()];
-        compare(&gpu, &case.frame, starts, starts).unwrap();
+        let starts = [chain.strip_starts.as_slice(), chain.segment_starts.as_slice()];
+        compare(&gpu, &case.frame, &chain.density.seen_bays, starts, starts).unwrap();
         let mut many = chain.segment_starts.clone(); // more than one dispatch can hold
         *many.last_mut().unwrap() = 9_000_000;
-        compare(&gpu, &case.frame, [starts[0], &many], [starts[0], &many]).unwrap();
+        compare(&gpu, &case.frame, &chain.density.seen_bays, [starts[0], &many], [starts[0], &many]).unwrap();
     }
     gpu.finish();
 }
@@ -53,14 +55,14 @@ fn a_difference_is_seen() {
     let gpu = Gpu::new();
     let case = &cases()[0];
     let chain = Chain::new(case);
-    let starts = [chain.line_starts.as_slice(), chain.segment_starts.as_slice()];
+    let starts = [chain.strip_starts.as_slice(), chain.segment_starts.as_slice()];
     let mut other = chain.segment_starts.clone();
     *other.last_mut().unwrap() += 1;
-    let mismatch = compare(&gpu, &case.frame, [starts[0], &other], starts).unwrap_err();
+    let mismatch = compare(&gpu, &case.frame, &chain.density.seen_bays, [starts[0], &other], starts).unwrap_err();
     assert_eq!(mismatch.buffer, "counters");
-    let mut other = chain.line_starts.clone();
+    let mut other = chain.strip_starts.clone();
     other[1] += 1;
-    let mismatch = compare(&gpu, &case.frame, [&other, starts[1]], starts).unwrap_err();
+    let mismatch = compare(&gpu, &case.frame, &chain.density.seen_bays, [&other, starts[1]], starts).unwrap_err();
     assert_eq!(mismatch.buffer, "strips");
     gpu.finish();
 }

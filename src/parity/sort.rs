@@ -16,6 +16,7 @@ struct Rows {
     starts: Vec<u32>,
     total: u32,
     counters: Counters,
+    windings: Vec<i32>,
     intercepts: Vec<u32>,
 }
 
@@ -24,7 +25,13 @@ impl Rows {
         // as before this pass
         let counters = Counters { intercepts: 0, failed: 0, ..chain.counters };
         let intercepts = chain.intercepts.clone();
-        Self { starts: chain.row_starts.clone(), total: chain.row_total, counters, intercepts }
+        Self {
+            starts: chain.row_starts.clone(),
+            total: chain.row_total,
+            counters,
+            windings: chain.row_windings.clone(),
+            intercepts,
+        }
     }
 
     /// Each row in another order.
@@ -54,6 +61,7 @@ impl Run {
         let row_counts = gpu.upload("row counts", &vec![0u32; given.starts.len()]);
         let intercepts = gpu.upload("intercepts", &given.intercepts);
         let counters = gpu.upload("counters", &[given.counters]);
+        let row_windings = gpu.upload("row windings", &given.windings);
         let rows = given.starts.len() as u32;
         let dispatches = gpu.upload("dispatches", &[0, 0, 0, rows.div_ceil(128), 1, 1]);
         let bindings = Bindings {
@@ -63,16 +71,18 @@ impl Run {
             row_counts: &row_counts,
             intercepts: &intercepts,
             counters: &counters,
+            row_windings: Some(&row_windings),
             dispatches: &dispatches,
         };
-        let pass = Sort::new(gpu.device()).unwrap();
+        let pass = Sort::new(gpu.device(), true).unwrap();
         gpu.run(|cmd| pass.record(cmd, &bindings));
         Self { row_counts, intercepts, counters }
     }
 
     fn compare(&self, gpu: &Gpu, frame: &Frame, expected: &Rows) -> Result<(), Mismatch> {
         let (mut flips, mut after) = (expected.intercepts.clone(), expected.counters);
-        let counts = twin::sort::sort(frame, &expected.starts, expected.total, &mut flips, &mut after);
+        let counts =
+            twin::sort::sort(frame, &expected.starts, expected.total, &expected.windings, &mut flips, &mut after);
         same("row counts", &gpu.read(&self.row_counts, counts.len()), &counts)?;
         let found = flips_of(expected, &counts, &gpu.read(&self.intercepts, flips.len()));
         same("flips", &found, &flips_of(expected, &counts, &flips))?;
@@ -86,8 +96,8 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &Rows, expected: &Rows) -> Result<()
 
 /// Those of all rows, one after another: what a row holds behind them is nobody's.
 fn flips_of(rows: &Rows, counts: &[u32], words: &[u32]) -> Vec<u32> {
-    let of_row = |(&start, &count): (&u32, &u32)| &words[start as usize..][..count as usize];
-    rows.starts.iter().zip(counts).filter(|&(_, &count)| count > 0).flat_map(of_row).copied().collect()
+    let of_row = |(&start, &count): (&u32, &u32)| &words[start as usize..][..(count >> 1) as usize];
+    rows.starts.iter().zip(counts).filter(|&(_, &count)| count > 1).flat_map(of_row).copied().collect()
 }
 
 #[test]
@@ -106,9 +116,11 @@ fn parity() {
 fn parity_of_long_rows() {
     let gpu = Gpu::new();
     let mut random = Random::new(3);
-    let mut rows = Rows { starts: Vec::new(), total: 0, counters: Counters::default(), intercepts: Vec::new() };
+    let (starts, intercepts) = (Vec::new(), Vec::new());
+    let mut rows = Rows { starts, total: 0, counters: Counters::default(), windings: Vec::new(), intercepts };
     for length in [0, 1, 2, 3, 4, 5, 6, 7, 8, 9, 64, 0, 1000, 8, 4097] {
         rows.starts.push(rows.intercepts.len() as u32);
+        rows.windings.push(random.integer(0, 4) as i32 - 2);
         rows.intercepts.extend((0..length).map(|_| {
             let u = (random.range(-0.5, 1.5) * 100.0).round() as f32 / 100.0;
             ordered_bits(u) & !1 | random.integer(0, 1)
@@ -131,7 +143,8 @@ fn a_row_of_too_many_is_told_of() {
     let length = 40_000;
     let intercepts = (0..length).map(|_| ordered_bits(random.range(0.0, 1.0) as f32) & !1 | random.integer(0, 1));
     let counters = Counters { rows: 1, ..Counters::default() };
-    let rows = Rows { starts: vec![0], total: length, counters, intercepts: intercepts.collect() };
+    let intercepts = intercepts.collect();
+    let rows = Rows { starts: vec![0], total: length, counters, windings: vec![0], intercepts };
     let frame = Frame { intercept_capacity: length, ..Default::default() };
     let run = Run::new(&gpu, &frame, &rows);
     let clamps = gpu.read::<Counters>(&run.counters, 1)[0].clamps;
@@ -152,5 +165,8 @@ fn a_difference_is_seen() {
     let mut other = rows.clone();
     other.intercepts[6] ^= 1; // the direction
     assert!(compare(&gpu, &case.frame, &other, &rows).is_err());
+    let mut other = rows.clone();
+    other.windings[0] ^= 1; // what the row begins with
+    assert_eq!(compare(&gpu, &case.frame, &other, &rows).unwrap_err().buffer, "row counts");
     gpu.finish();
 }

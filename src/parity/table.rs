@@ -2,10 +2,11 @@
 //! exactly.
 
 use super::chain::Chain;
-use super::shapes::{model_and_cameras, sheet_loops};
+use super::shapes::{model_and_cameras, model_with_sieve, sheet_loops, sieve_loops};
 use super::{Case, Random};
-use crate::abi::BORDER_BANDS;
+use crate::abi::{BORDER_BANDS, Face, StripRows};
 use crate::trim::LoopIndex;
+use crate::twin::bays::bay_of;
 use crate::twin::table::Table;
 use glam::DVec2;
 
@@ -40,33 +41,40 @@ fn points(count: usize) -> Vec<[f32; 2]> {
     border.into_iter().chain(inner).collect()
 }
 
+/// The rows of the strip that a point is in; `None` where nobody sees its bay.
+fn rows_at(chain: &Chain, first_bay: u32, face: &Face, [u, v]: [f32; 2]) -> Option<StripRows> {
+    let strip = first_bay + (v * face.strip_count() as f32) as u32 * face.bay_count();
+    let (rows, bay) = (chain.strips[strip as usize], bay_of(u, face.bay_count()));
+    (rows.lines > 0 && bay >= rows.first_bay && bay <= rows.last_bay()).then_some(rows)
+}
+
 /// A point is decided as by the exact loops unless it is nearer to one than half a row and a chord.
 #[test]
 fn the_table_decides_as_the_exact_loops_do() {
     let (model, cameras) = model_and_cameras();
+    let sieve = model_with_sieve();
+    let views = cameras.iter().flat_map(|camera| [(&model, sheet_loops(), camera), (&sieve, sieve_loops(), camera)]);
     let mut decided = [0, 0];
-    for camera in &cameras {
-        let case = Case::new(&model, camera, 0.5);
+    for (model, loops, camera) in views {
+        let case = Case::new(model, camera, 0.5);
         let chain = Chain::new(&case);
         let flips: Vec<f32> = chain.flips.iter().map(|&bits| f32::from_bits(bits)).collect();
         let table = table(&case, &chain, &flips);
         let placed = case.data.face_instances[SHEET];
-        let (exact, domain) = (LoopIndex::new(&sheet_loops()), DVec2::new(3.0, 2.0));
-        let strips = case.data.faces[SHEET].strip_count;
+        let (exact, domain) = (LoopIndex::new(&loops), DVec2::new(3.0, 2.0));
+        let face = &case.data.faces[SHEET];
+        let strips = face.strip_count();
         let speed = chain.density.face_speeds[SHEET].map(f64::from);
         for [u, v] in points(20_000).into_iter().filter(|p| p[1] > 0.0 && p[1] < 1.0) {
-            let strip = (placed.first_strip + (v * strips as f32) as u32) as usize;
-            if chain.line_counts[strip] == 0 {
-                continue; // nobody sees it
-            }
+            let Some(rows) = rows_at(&chain, placed.first_bay, face, [u, v]) else { continue };
             // the nearest row, and a chord that is off by chord_px where a unit covers the most pixels
-            let row = 0.5 / f64::from(strips * chain.line_counts[strip]);
+            let row = 0.5 / f64::from(strips * rows.lines);
             let chord = f64::from(case.frame.chord_px) / speed[0].min(speed[1]);
             let uv = DVec2::new(u.into(), v.into());
             let off = exact.distance_scaled(uv * domain, 1.0 / domain, 1.0);
             const ROUNDING: f64 = 1e-6; // of single precision, and the direction in the last bit of u
             if off > row + chord + ROUNDING {
-                let inside = table.inside(placed.first_strip, strips as f32, [u, v]);
+                let inside = table.inside(placed.first_bay, face, [u, v]);
                 assert_eq!(inside, exact.contains(uv * domain), "{uv}, {off:e} from the nearest loop");
                 decided[usize::from(inside)] += 1;
             }
@@ -79,29 +87,39 @@ fn the_table_decides_as_the_exact_loops_do() {
 #[test]
 fn boxes_that_no_border_meets_are_all_the_same() {
     let (model, cameras) = model_and_cameras();
-    let mut said = [0, 0, 0]; // not, outside, inside
-    for camera in &cameras {
-        let case = Case::new(&model, camera, 0.5);
+    let sieve = model_with_sieve();
+    let mut all_said = [[0, 0, 0]; 2]; // not, outside, inside; of the sheet and of the sieve
+    for (k, model, camera) in cameras.iter().flat_map(|camera| [(0, &model, camera), (1, &sieve, camera)]) {
+        let said = &mut all_said[k];
+        let case = Case::new(model, camera, 0.5);
         let chain = Chain::new(&case);
         let flips: Vec<f32> = chain.flips.iter().map(|&bits| f32::from_bits(bits)).collect();
         let table = table(&case, &chain, &flips);
-        let (first, strips) = (case.data.face_instances[SHEET].first_strip, case.data.faces[SHEET].strip_count as f32);
+        let (first, face) = (case.data.face_instances[SHEET].first_bay, &case.data.faces[SHEET]);
         for p in points(5_000) {
             let (lo, hi) = around(p);
-            if !table.same(first, strips, lo, hi) {
+            if !table.same(first, face, lo, hi) {
                 said[0] += 1;
                 continue;
             }
-            let inside = table.inside(first, strips, p);
+            if rows_at(&chain, first, face, p).is_none() {
+                continue;
+            }
+            let inside = table.inside(first, face, p);
             said[1 + usize::from(inside)] += 1;
             for k in 0..15 * 15 {
                 let at = |axis: usize, k: u32| lo[axis] + (hi[axis] - lo[axis]) * (k as f32 / 14.0);
                 let q = [at(0, k % 15).min(hi[0]), at(1, k / 15).min(hi[1])];
-                assert_eq!(table.inside(first, strips, q), inside, "{q:?} unlike {p:?}");
+                assert_eq!(table.inside(first, face, q), inside, "{q:?} unlike {p:?}");
             }
         }
     }
-    assert!(said[1] > 1000 && said[2] > 1000 && said[0] < said[1] + said[2], "not told, outside, inside: {said:?}");
+    let [sheet, sieve] = all_said;
+    assert!(
+        sheet[1] > 1000 && sheet[2] > 1000 && sheet[0] < sheet[1] + sheet[2],
+        "not told, outside, inside: {sheet:?}"
+    );
+    assert!(sieve[1] > 100 && sieve[2] > 100, "not told, outside, inside: {sieve:?}"); // most of it is near a hole
 }
 
 /// Of `tests/gpu/glsl/table.comp`, which wraps the include.
@@ -121,9 +139,9 @@ mod parity {
 
     fn compare(gpu: &Gpu, case: &Case, given: &Chain, expected: &Chain) -> Result<(), Mismatch> {
         let placed = case.data.face_instances[SHEET];
-        let (strips, points) = (case.data.faces[SHEET].strip_count as f32, points(4096));
+        let (face, points) = (&case.data.faces[SHEET], points(4096));
         let frame = gpu.upload("frame", &[case.frame]);
-        let of_strips = gpu.upload_texels("strips", &given.strips, Texel::U32x2);
+        let of_strips = gpu.upload_texels("strips", &given.strips, Texel::U32x4);
         let row_starts = gpu.upload_texels("row starts", &given.row_starts, Texel::Words);
         let row_counts = gpu.upload_texels("row counts", &given.flip_counts, Texel::Words);
         let flips = gpu.upload_texels("flips", &given.flips, Texel::Words);
@@ -139,7 +157,7 @@ mod parity {
             constants: &[],
         };
         let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
-        let push = [placed.first_strip, strips.to_bits(), AROUND[0].to_bits(), AROUND[1].to_bits()];
+        let push = [placed.first_bay, face.strips, AROUND[0].to_bits(), AROUND[1].to_bits()];
         gpu.run(|cmd| {
             let texels = [&of_strips, &row_starts, &row_counts, &flips, &border_cells].map(Resource::from);
             let of_points = [&uvs, &answers].map(Resource::from);
@@ -151,8 +169,8 @@ mod parity {
         let table = table(case, expected, &flips);
         let answer = |&p: &[f32; 2]| {
             let (lo, hi) = around(p);
-            let told = table.same(placed.first_strip, strips, lo, hi);
-            u32::from(table.inside(placed.first_strip, strips, p)) | u32::from(told) << 1
+            let told = table.same(placed.first_bay, face, lo, hi);
+            u32::from(table.inside(placed.first_bay, face, p)) | u32::from(told) << 1
         };
         let twin: Vec<u32> = points.iter().map(answer).collect();
         same("answers", &gpu.read(&answers, points.len()), &twin)
@@ -174,8 +192,8 @@ mod parity {
         let case = &cases()[0];
         let chain = Chain::new(case);
         let mut other = chain.clone();
-        let strip = case.data.face_instances[SHEET].first_strip as usize + 2;
-        let row = chain.line_starts[strip] as usize;
+        let strip = case.data.face_instances[SHEET].first_bay as usize + 2;
+        let row = chain.strip_starts[strip] as usize;
         other.flip_counts[row..].fill(0);
         assert!(compare(&gpu, case, &other, &chain).is_err());
         let mut other = chain.clone();

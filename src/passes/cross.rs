@@ -6,10 +6,10 @@
 //!   insert   intercepts[row_starts[row] + place] = u, direction
 //! ```
 //!
-//! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_points`, `curve_items`, `line_starts`,
+//! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_points`, `curve_items`, `strips`,
 //! `segment_starts`, `row_starts`, `dispatches`. Writes: `row_counts` (zero before
 //! counting and again after inserting),
-//! `intercepts`, `border_cells` (zero before counting). Twin: `src/twin/cross.rs`.
+//! `intercepts`, `border_cells` and `row_windings` (zero before counting). Twin: `src/twin/cross.rs`.
 
 use crate::bindings::with_texels;
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
@@ -17,6 +17,8 @@ use crate::shaders;
 
 /// `constant_id` of `INSERT`.
 const INSERT: u32 = 1;
+/// `constant_id` of `SCENE_HAS_BAYS`.
+const SCENE_HAS_BAYS: u32 = 2;
 
 /// The pass, in its two roles.
 pub(crate) struct Cross {
@@ -32,28 +34,31 @@ pub(crate) struct Bindings<'a> {
     pub curves: &'a Texels,
     pub curve_points: &'a Texels,
     pub curve_items: &'a Texels,
-    pub line_starts: &'a Texels,
+    pub strips: &'a Texels,
     pub segment_starts: &'a Texels,
     pub row_starts: &'a Texels,
     pub row_counts: &'a Buffer,
     pub intercepts: &'a Buffer,
     /// `glsl/include/border_cells.glsl`.
     pub border_cells: &'a Buffer,
+    /// What crosses each row adds up to, where strips have several bays.
+    pub row_windings: Option<&'a Buffer>,
     /// Written by pass `sizes`; this pass's is the first.
     pub dispatches: &'a Buffer,
 }
 
 impl Cross {
-    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+    /// `bays`: strips of some face have several bays.
+    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
         let pipeline = |name, insert: bool| {
             Pipeline::compute(
                 device,
                 &ComputeInfo {
                     name,
                     spirv: shaders::CROSS_COMP,
-                    bindings: &with_texels(1..9, 12),
+                    bindings: &with_texels(1..9, 13),
                     push_bytes: 0,
-                    constants: &[(INSERT, u32::from(insert))],
+                    constants: &[(INSERT, u32::from(insert)), (SCENE_HAS_BAYS, u32::from(bays))],
                 },
             )
         };
@@ -78,12 +83,14 @@ impl Cross {
             b.curves.into(),
             b.curve_points.into(),
             b.curve_items.into(),
-            b.line_starts.into(),
+            b.strips.into(),
             b.segment_starts.into(),
             b.row_starts.into(),
             b.row_counts.into(),
             b.intercepts.into(),
             b.border_cells.into(),
+            // not written where there are none
+            b.row_windings.unwrap_or(b.frame).into(),
         ];
         cmd.bind(pipeline, &resources, &[]);
         cmd.dispatch_indirect(b.dispatches, 0);

@@ -1,12 +1,12 @@
 //! Pass `density`: pixels that each v-strip of a trimmed face can cover.
 //!
 //! ```text
-//!    cell = part of a patch in one strip:   |S_v| x pixels per unit / strips  = height_px
+//!    cell = part of a patch in a bay of a strip:   |S_v| x pixels per unit / strips  = height_px
 //!    strip height = largest of its visible cells; 0 when none is visible
 //! ```
 //!
-//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `cells`, `cell_items`. Writes: `strip_heights`, `face_speeds`.
-//! Twin: `src/twin/density.rs`.
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `cells`, `cell_items`. Writes: `strip_heights`, `face_speeds`,
+//! `seen_bays`. Twin: `src/twin/density.rs`.
 
 use crate::bindings::with_constants;
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
@@ -17,6 +17,8 @@ const GROUP: u32 = 64;
 
 /// `constant_id` of `SCENE_HIDES`.
 const SCENE_HIDES: u32 = 1;
+/// `constant_id` of `SCENE_HAS_BAYS`.
+const SCENE_HAS_BAYS: u32 = 2;
 
 /// The pass.
 pub(crate) struct Density {
@@ -39,19 +41,21 @@ pub(crate) struct Bindings<'a> {
     pub face_speeds: &'a Buffer,
     /// Whether patches of each placed face are drawn, in scenes where they may lie behind others.
     pub drawn_faces: Option<&'a Buffer>,
+    /// A bit for each bay of a strip, where strips have several; zero before.
+    pub seen_bays: Option<&'a Buffer>,
 }
 
 impl Density {
-    /// `hides`: patches may lie behind others.
-    pub(crate) fn new(device: &Device, hides: bool) -> Result<Self, GpuError> {
+    /// `hides`: patches may lie behind others. `bays`: strips of some face have several bays.
+    pub(crate) fn new(device: &Device, hides: bool, bays: bool) -> Result<Self, GpuError> {
         let pipeline = Pipeline::compute(
             device,
             &ComputeInfo {
                 name: "density",
                 spirv: shaders::DENSITY_COMP,
-                bindings: &with_constants(10),
+                bindings: &with_constants(11),
                 push_bytes: 0,
-                constants: &[(SCENE_HIDES, u32::from(hides))],
+                constants: &[(SCENE_HIDES, u32::from(hides)), (SCENE_HAS_BAYS, u32::from(bays))],
             },
         )?;
         Ok(Self { pipeline })
@@ -69,8 +73,9 @@ impl Density {
             b.cell_items,
             b.strip_heights,
             b.face_speeds,
-            // not read then
+            // neither read nor written then
             b.drawn_faces.unwrap_or(b.frame),
+            b.seen_bays.unwrap_or(b.frame),
         ]
         .map(Into::into);
         cmd.bind(&self.pipeline, &resources, &[]);

@@ -1,6 +1,6 @@
 //! Pass `lines`: scan lines of each v-strip, `mu = ceil(height / spacing)`.
 //!
-//! Reads: `frame`, `strip_heights`. Writes: `line_counts`, `counters`.
+//! Reads: `frame`, `strip_heights`. Writes: `strip_counts`, `counters`.
 //! Twin: `src/twin/lines.rs`.
 
 use crate::bindings::with_constants;
@@ -9,6 +9,9 @@ use crate::shaders;
 
 /// Threads of a workgroup, as in the shader.
 const GROUP: u32 = 64;
+
+/// `constant_id` of `SCENE_HAS_BAYS`.
+const SCENE_HAS_BAYS: u32 = 1;
 
 /// The pass.
 pub(crate) struct Lines {
@@ -19,30 +22,35 @@ pub(crate) struct Lines {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub strip_heights: &'a Buffer,
-    pub line_counts: &'a Buffer,
+    pub strip_counts: &'a Buffer,
     /// `clamps`.
     pub counters: &'a Buffer,
+    /// A bit for each bay of a strip, where strips have several.
+    pub seen_bays: Option<&'a Buffer>,
 }
 
 impl Lines {
-    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+    /// `bays`: strips of some face have several bays.
+    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
         let pipeline = Pipeline::compute(
             device,
             &ComputeInfo {
                 name: "lines",
                 spirv: shaders::LINES_COMP,
-                bindings: &with_constants(4),
+                bindings: &with_constants(5),
                 push_bytes: 0,
-                constants: &[],
+                constants: &[(SCENE_HAS_BAYS, u32::from(bays))],
             },
         )?;
         Ok(Self { pipeline })
     }
 
-    /// One thread for each of `strips`.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, strips: u32) {
-        let resources = [b.frame, b.strip_heights, b.line_counts, b.counters].map(Into::into);
+    /// One thread for each of `bays`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, bays: u32) {
+        // not read where there are none
+        let seen_bays = b.seen_bays.unwrap_or(b.frame);
+        let resources = [b.frame, b.strip_heights, b.strip_counts, b.counters, seen_bays].map(Into::into);
         cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(strips.div_ceil(GROUP));
+        cmd.dispatch(bays.div_ceil(GROUP));
     }
 }

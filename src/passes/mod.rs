@@ -5,6 +5,7 @@
 pub(crate) mod average;
 pub(crate) mod blister;
 pub(crate) mod bound;
+pub(crate) mod carry;
 pub(crate) mod coverage;
 pub(crate) mod cross;
 pub(crate) mod density;

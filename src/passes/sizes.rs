@@ -1,7 +1,7 @@
 //! Pass `sizes`: where the rows of each v-strip are; rows and segments of the whole trim table, and the dispatches that
 //! follow from them.
 //!
-//! Reads: `frame`, `line_starts`, `segment_starts`. Writes: `dispatches`, `strips`, `counters`.
+//! Reads: `frame`, `strip_starts`, `segment_starts`. Writes: `dispatches`, `strips`, `counters`.
 //! Twin: `src/twin/sizes.rs`.
 
 use crate::bindings::with_constants;
@@ -11,6 +11,9 @@ use crate::shaders;
 /// Threads of a workgroup, as in the shader.
 const GROUP: u32 = 64;
 
+/// `constant_id` of `SCENE_HAS_BAYS`.
+const SCENE_HAS_BAYS: u32 = 1;
+
 /// The pass.
 pub(crate) struct Sizes {
     pipeline: Pipeline,
@@ -19,34 +22,40 @@ pub(crate) struct Sizes {
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub line_starts: &'a Buffer,
+    pub strip_starts: &'a Buffer,
     pub segment_starts: &'a Buffer,
     /// Of passes cross and sort.
     pub dispatches: &'a Buffer,
-    /// First row and rows of each.
+    /// Where the rows of each are, at its first bay.
     pub strips: &'a Buffer,
     pub counters: &'a Buffer,
+    /// A bit for each bay of a strip, where strips have several.
+    pub seen_bays: Option<&'a Buffer>,
 }
 
 impl Sizes {
-    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+    /// `bays`: strips of some face have several bays.
+    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
         let pipeline = Pipeline::compute(
             device,
             &ComputeInfo {
                 name: "sizes",
                 spirv: shaders::SIZES_COMP,
-                bindings: &with_constants(6),
+                bindings: &with_constants(7),
                 push_bytes: 0,
-                constants: &[],
+                constants: &[(SCENE_HAS_BAYS, u32::from(bays))],
             },
         )?;
         Ok(Self { pipeline })
     }
 
-    /// One thread for each of `strips`.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, strips: u32) {
-        let resources = [b.frame, b.line_starts, b.segment_starts, b.dispatches, b.strips, b.counters].map(Into::into);
+    /// One thread for each of `bays`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, bays: u32) {
+        // not read where there are none
+        let seen_bays = b.seen_bays.unwrap_or(b.frame);
+        let resources = [b.frame, b.strip_starts, b.segment_starts, b.dispatches, b.strips, b.counters, seen_bays];
+        let resources = resources.map(Into::into);
         cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(strips.div_ceil(GROUP));
+        cmd.dispatch(bays.div_ceil(GROUP));
     }
 }

@@ -5,12 +5,16 @@
 //!   flips        |              |        inside    0 1 1 1 1 1 0
 //! ```
 //!
-//! Reads: `frame`, `row_starts`, `row_total`, `dispatches`. Writes: `row_counts` (now the number of flips),
+//! Reads: `frame`, `row_starts`, `row_total`, `row_windings`, `dispatches`. Writes: `row_counts` (now twice the number of
+//! flips, and 1 more where the row begins inside),
 //! `intercepts`, `counters`. Twin: `src/twin/sort.rs`.
 
 use crate::bindings::with_texels;
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
 use crate::shaders;
+
+/// `constant_id` of `SCENE_HAS_BAYS`.
+const SCENE_HAS_BAYS: u32 = 1;
 
 /// The pass.
 pub(crate) struct Sort {
@@ -26,20 +30,23 @@ pub(crate) struct Bindings<'a> {
     pub row_counts: &'a Buffer,
     pub intercepts: &'a Buffer,
     pub counters: &'a Buffer,
+    /// What each row begins with, where strips have several bays.
+    pub row_windings: Option<&'a Buffer>,
     /// Written by pass `sizes`; this pass's is the second.
     pub dispatches: &'a Buffer,
 }
 
 impl Sort {
-    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+    /// `bays`: strips of some face have several bays.
+    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
         let pipeline = Pipeline::compute(
             device,
             &ComputeInfo {
                 name: "sort",
                 spirv: shaders::SORT_COMP,
-                bindings: &with_texels(1..2, 6),
+                bindings: &with_texels(1..2, 7),
                 push_bytes: 0,
-                constants: &[],
+                constants: &[(SCENE_HAS_BAYS, u32::from(bays))],
             },
         )?;
         Ok(Self { pipeline })
@@ -54,6 +61,8 @@ impl Sort {
             b.row_counts.into(),
             b.intercepts.into(),
             b.counters.into(),
+            // not read where there are none
+            b.row_windings.unwrap_or(b.frame).into(),
         ];
         cmd.bind(&self.pipeline, &resources, &[]);
         cmd.dispatch_indirect(b.dispatches, size_of::<[u32; 3]>() as u64);

@@ -50,7 +50,7 @@ pub(super) fn constants(
         fixed_factor: input.settings.levels.fixed().unwrap_or(0),
         item_count: counts.items,
         cell_count: counts.cells,
-        strip_count: counts.strips,
+        bay_count: counts.bays,
         curve_count: counts.curves,
         draw_vertices: device.quirks().max_tessellated_vertices_per_draw.saturating_sub(MOST_VERTICES).max(1),
         encode_srgb: u32::from(!encodes(formats)),

@@ -37,7 +37,7 @@ pub fn wanted_bytes(model: &Model, camera: &Camera, eighths: u32) -> Result<f64,
         far: camera.depth_range.1 as f32,
         perspective: u32::from(matches!(camera.projection, Projection::Perspective { .. })),
         cell_count: data.cell_items.len() as u32,
-        strip_count: data.strip_count,
+        bay_count: data.bay_count,
         ..Frame::default()
     };
     let pixels = camera.pixel_matrix();

@@ -32,11 +32,14 @@ pub(crate) struct SceneData {
     pub faces: Vec<abi::Face>,
     pub face_instances: Vec<abi::FaceInstance>,
     pub instances: Vec<abi::Instance>,
-    /// Face instance of each item, cell item, strip item and curve item.
+    /// Face instance of each item, cell item and curve item.
     pub items: Vec<u32>,
     pub cell_items: Vec<u32>,
     pub curve_items: Vec<u32>,
-    pub strip_count: u32,
+    /// Of all strips of all placed faces.
+    pub bay_count: u32,
+    /// Bay items of strips with several bays.
+    pub wide_strips: Vec<u32>,
     pub cells: Vec<abi::Cell>,
     pub curves: Vec<abi::Curve>,
     pub curve_points: Vec<f32>,
@@ -338,11 +341,15 @@ impl SceneData {
                 face: face as u32,
                 instance,
                 first_item: self.items.len() as u32,
-                first_strip: self.strip_count,
+                first_bay: self.bay_count,
                 first_cell: self.cell_items.len() as u32,
                 first_curve: self.curve_items.len() as u32,
             });
-            self.strip_count += f.strip_count;
+            let (strips, bays) = (f.strip_count(), f.bay_count());
+            if bays > 1 {
+                self.wide_strips.extend((0..strips).map(|strip| self.bay_count + strip * bays));
+            }
+            self.bay_count += strips * bays;
             let repeat = |list: &mut Vec<u32>, n: u32| list.extend(std::iter::repeat_n(placed, n as usize));
             repeat(&mut self.items, f.count_u * f.count_v);
             repeat(&mut self.cell_items, cells);

@@ -15,10 +15,17 @@ use crate::trim::{ExactTrim, LoopIndex, RectSide, chord_bend};
 use glam::{DVec2, DVec3};
 
 /// v-strips of a face with few rows of patches. More strips follow a changing density more closely
-/// and leave out more rows beyond the picture; each costs a cell of 36 bytes.
+/// and leave out more rows beyond the picture; each costs a cell of 36 bytes a bay.
 const LEAST_STRIPS: usize = 8;
 /// The paper's benchmark used 128 strips for every surface; nothing asked for more.
 const MOST_STRIPS: usize = 128;
+/// Intercepts of a scan line, on average, for each bay: fewer than pass `sort` holds in registers. Bays that nobody sees
+/// cost nothing in a view, so many are better than few; each costs a cell a strip.
+const BAY_INTERCEPTS: f64 = 8.0;
+/// A word has a bit for each.
+const MOST_BAYS: f64 = 32.0;
+/// The root of the number of curves, for each strip: four rows of holes that are as many across, of four curves each.
+const STRIP_CURVES: f64 = 8.0;
 
 /// A side whose control points are as near to each other, relative to the patch, is a point: some roundings of single
 /// precision.
@@ -82,7 +89,7 @@ impl FaceData {
                 count_v: grid.count_v as u32,
                 id: face.id,
                 colour: face.colour.map_or(DEFAULT_COLOUR, pack_colour),
-                strip_count: if table { strip_count(grid.count_v) } else { 0 },
+                strips: if table { strips(face, &grid, way) } else { 0 },
                 ..Default::default()
             },
             patches: Vec::new(),
@@ -199,29 +206,24 @@ impl FaceData {
         }
     }
 
-    /// One cell for each v-strip that the patch reaches.
+    /// One cell for each bay of each v-strip that the patch reaches.
     fn push_cells(&mut self, p: &SurfacePatch, origin: DVec3, domain: &Domain) {
-        let strips = f64::from(self.face.strip_count);
+        let (strips, bays) = (self.face.strip_count(), self.face.bay_count());
         let corner = domain.unit(DVec2::new(p.u.0, p.v.0));
         let size = domain.unit(DVec2::new(p.u.1, p.v.1)) - corner;
-        let first = (corner.y * strips).floor().clamp(0.0, strips - 1.0) as u32;
-        let last = (((corner.y + size.y) * strips).ceil() - 1.0).clamp(f64::from(first), strips - 1.0) as u32;
-        for strip in first..=last {
-            let local = |s: u32| ((f64::from(s) / strips - corner.y) / size.y).clamp(0.0, 1.0);
-            let (a, b) = (local(strip), local(strip + 1));
-            if b <= a {
-                continue;
+        for (strip, v) in shares(corner.y, size.y, strips) {
+            for (bay, u) in shares(corner.x, size.x, bays) {
+                let piece = p.patch.rectangle(u, v);
+                let (speed_u, speed_v) = piece.speed_bound();
+                let (box_min, box_max) = outward_box(&piece, origin);
+                self.cells.push(abi::Cell {
+                    box_min,
+                    speed_u: round_up(speed_u / (size.x * (u.1 - u.0))),
+                    box_max,
+                    speed_v: round_up(speed_v / (size.y * (v.1 - v.0))),
+                    bay: strip * bays + bay,
+                });
             }
-            let piece = p.patch.rectangle((0.0, 1.0), (a, b));
-            let (speed_u, speed_v) = piece.speed_bound();
-            let (box_min, box_max) = outward_box(&piece, origin);
-            self.cells.push(abi::Cell {
-                box_min,
-                speed_u: round_up(speed_u / size.x),
-                box_max,
-                speed_v: round_up(speed_v / (size.y * (b - a))),
-                strip,
-            });
         }
     }
 
@@ -282,6 +284,7 @@ pub(super) fn loop_curves(l: &TrimLoop, domain: &Domain) -> (Vec<abi::Curve>, Ve
     // every joint is rounded once and used by both its curves, so the loop stays closed in f32
     let curves: Vec<Bezier<DVec3>> = l.curves().collect();
     let (mut out, mut points) = (Vec::with_capacity(curves.len()), Vec::new());
+    let mut rightmost = f32::NEG_INFINITY;
     let joint = |c: &Bezier<DVec3>| {
         let p = domain.unit(c.points[0].point());
         [p.x as f32, p.y as f32]
@@ -293,6 +296,9 @@ pub(super) fn loop_curves(l: &TrimLoop, domain: &Domain) -> (Vec<abi::Curve>, Ve
         let v = |p: &DVec3| (p.y / p.z) as f32;
         let lowest = unit.iter().map(v).fold(start[1].min(end[1]), f32::min);
         let highest = unit.iter().map(v).fold(start[1].max(end[1]), f32::max);
+        let u = |p: &DVec3| (p.x / p.z) as f32;
+        let leftmost = unit.iter().map(u).fold(start[0].min(end[0]), f32::min);
+        rightmost = unit.iter().map(u).fold(rightmost.max(start[0]), f32::max);
         let degree = c.degree() as u32;
         let bend = chord_bend(&Bezier { points: unit.clone() });
         out.push(abi::Curve {
@@ -302,11 +308,13 @@ pub(super) fn loop_curves(l: &TrimLoop, domain: &Domain) -> (Vec<abi::Curve>, Ve
             degree,
             bend: [round_up(bend.x), round_up(bend.y)],
             range_v: [lowest, highest],
+            range_u: [leftmost, f32::NAN], // not known before all of them are
         });
         if degree > 1 {
             points.extend(unit.iter().flat_map(|p| [p.x as f32, p.y as f32, p.z as f32]));
         }
     }
+    out.iter_mut().for_each(|c| c.range_u[1] = rightmost);
     (out, points)
 }
 
@@ -328,8 +336,30 @@ fn needs_curves(way: TrimWay) -> bool {
     }
 }
 
-fn strip_count(rows: usize) -> u32 {
-    (2 * rows).clamp(LEAST_STRIPS, MOST_STRIPS) as u32
+/// [`abi::Face::strips`]. Strips depend on what edits do not change, since they decide where scan lines are.
+fn strips(face: &Face, grid: &PatchGrid, way: TrimWay) -> u32 {
+    let curves = || face.loops.iter().flat_map(TrimLoop::curves);
+    let for_curves = (curves().count() as f64).sqrt() / STRIP_CURVES;
+    let strips = (2 * grid.count_v).max(for_curves as usize).clamp(LEAST_STRIPS, MOST_STRIPS) as u32;
+    if way != TrimWay::Table {
+        return abi::Face::pack_strips(strips, 1);
+    }
+    let height = |c: Bezier<DVec3>| {
+        let v = || c.points.iter().map(|p| p.point().y);
+        v().fold(f64::NEG_INFINITY, f64::max) - v().fold(f64::INFINITY, f64::min)
+    };
+    let (v0, v1) = face.surface.domain().1;
+    let intercepts = curves().map(height).sum::<f64>() / (v1 - v0);
+    abi::Face::pack_strips(strips, (intercepts / BAY_INTERCEPTS).clamp(1.0, MOST_BAYS) as u32)
+}
+
+/// Which of `n` equal parts of 0 to 1 an interval reaches, and the share of the interval, 0 to 1 within it, that is in each.
+fn shares(start: f64, length: f64, n: u32) -> impl Iterator<Item = (u32, (f64, f64))> {
+    let parts = f64::from(n);
+    let first = (start * parts).floor().clamp(0.0, parts - 1.0) as u32;
+    let last = (((start + length) * parts).ceil() - 1.0).clamp(f64::from(first), parts - 1.0) as u32;
+    let local = move |k: u32| ((f64::from(k) / parts - start) / length).clamp(0.0, 1.0);
+    (first..=last).map(move |k| (k, (local(k), local(k + 1)))).filter(|(_, (from, to))| from < to)
 }
 
 /// Each patch against the loops; a face without loops is inside everywhere.

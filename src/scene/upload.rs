@@ -133,6 +133,8 @@ pub(crate) struct TableScene {
     pub curves: Texels,
     pub curve_points: Texels,
     pub curve_items: Texels,
+    /// Bay items of strips with several bays; `None` where there are none.
+    pub wide_strips: Option<Buffer>,
 }
 
 impl Solids {
@@ -273,9 +275,12 @@ fn table_scene(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SceneData) -> R
     Ok(TableScene {
         cells: persistent(uploads, cmd, "trim cells", &data.cells)?,
         cell_items: persistent(uploads, cmd, "trim cell items", &data.cell_items)?,
-        curves: texels(uploads, cmd, "trim curves", &data.curves, Texel::U32x2)?,
+        curves: texels(uploads, cmd, "trim curves", &data.curves, Texel::U32x4)?,
         curve_points: texels(uploads, cmd, "trim curve points", &data.curve_points, Texel::Numbers)?,
         curve_items: texels(uploads, cmd, "trim curve items", &data.curve_items, Texel::Words)?,
+        wide_strips: (!data.wide_strips.is_empty())
+            .then(|| persistent(uploads, cmd, "trim wide strips", &data.wide_strips))
+            .transpose()?,
     })
 }
 

@@ -38,7 +38,7 @@ impl Case {
             chord_px: budget.chord as f32,
             item_count: data.items.len() as u32,
             cell_count: data.cell_items.len() as u32,
-            strip_count: data.strip_count,
+            bay_count: data.bay_count,
             curve_count: data.curve_items.len() as u32,
             draw_vertices: 5000,
             sub_patch_capacity: 1 << 16,

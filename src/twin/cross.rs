@@ -8,20 +8,30 @@
 //!     │   a ●                          v of line j of strip k:  (k + (j + 1/2) / mu_k) / strips
 //! ```
 //!
+//! A scan line has a row in each bay that is seen (`bays.rs`).
+//!
 //! An intercept is `u` as order-preserving bits, its lowest bit the direction: 1 upwards. In which
 //! order a row receives its intercepts is left to the GPU; the rows compare as sets.
 
+use super::bays::{bay_of, within_bay};
 use super::border_cells::columns_between;
 use super::curve::curve_point;
 use super::sizes::MOST_SEGMENTS;
+use super::sort::from_ordered;
 use super::{Scene, strips_of};
-use crate::abi::{BORDER_BANDS, Frame};
+use crate::abi::{BORDER_BANDS, Frame, StripRows};
 
-/// Intercepts of each of `row_capacity` rows.
-pub fn count(frame: &Frame, scene: &Scene<'_>, line_starts: &[u32], segment_starts: &[u32]) -> Vec<u32> {
+/// Intercepts of each of `row_capacity` rows, and what those of strips with several bays add to the winding number.
+pub fn count(frame: &Frame, scene: &Scene<'_>, strips: &[StripRows], segment_starts: &[u32]) -> (Vec<u32>, Vec<i32>) {
     let mut counts = vec![0; frame.row_capacity as usize];
-    crossings(frame, scene, line_starts, segment_starts, |row, _| counts[row] += 1);
-    counts
+    let mut windings = vec![0; frame.row_capacity as usize];
+    crossings(frame, scene, strips, segment_starts, |chord, row, _| {
+        counts[row] += 1;
+        if chord.rows.bays > 1 {
+            windings[row] += if chord.upwards { 1 } else { -1 };
+        }
+    });
+    (counts, windings)
 }
 
 /// Writes the intercepts of each row from `row_starts` on, as far as there is room, and counts
@@ -29,12 +39,12 @@ pub fn count(frame: &Frame, scene: &Scene<'_>, line_starts: &[u32], segment_star
 pub fn insert(
     frame: &Frame,
     scene: &Scene<'_>,
-    (line_starts, segment_starts): (&[u32], &[u32]),
+    (strips, segment_starts): (&[StripRows], &[u32]),
     row_starts: &[u32],
     row_counts: &mut [u32],
     intercepts: &mut [u32],
 ) {
-    crossings(frame, scene, line_starts, segment_starts, |row, intercept| {
+    crossings(frame, scene, strips, segment_starts, |_, row, intercept| {
         row_counts[row] -= 1;
         let at = (row_starts[row] + row_counts[row]) as usize;
         if at < frame.intercept_capacity as usize {
@@ -49,16 +59,20 @@ pub fn ordered_bits(u: f32) -> u32 {
     if bits & 0x8000_0000 != 0 { !bits } else { bits | 0x8000_0000 }
 }
 
-/// Four words for each band of each strip: the columns of it that chords pass, or come nearer to than half a scan line.
-pub fn border_cells(frame: &Frame, scene: &Scene<'_>, line_starts: &[u32], segment_starts: &[u32]) -> Vec<[u32; 4]> {
-    let mut cells = vec![[0; 4]; (frame.strip_count * BORDER_BANDS) as usize];
-    chords(frame, scene, line_starts, segment_starts, |chord| {
-        let columns = columns_between(chord.low[0].min(chord.high[0]), chord.low[0].max(chord.high[0]));
-        let around = 0.5 / chord.lines as f32 + BAND_ROUNDING;
+/// Four words for each band of each bay: the columns of it that chords pass, or come nearer to than half a scan line.
+pub fn border_cells(frame: &Frame, scene: &Scene<'_>, strips: &[StripRows], segment_starts: &[u32]) -> Vec<[u32; 4]> {
+    let mut cells = vec![[0; 4]; (frame.bay_count * BORDER_BANDS) as usize];
+    chords(frame, scene, strips, segment_starts, |chord| {
+        let around = 0.5 / chord.rows.lines as f32 + BAND_ROUNDING;
         let band = |y: f32| (y * BORDER_BANDS as f32).floor().clamp(0.0, (BORDER_BANDS - 1) as f32) as u32;
-        for k in band(chord.of_strip(chord.low) - around)..=band(chord.of_strip(chord.high) + around) {
-            let words = &mut cells[(chord.strip * BORDER_BANDS + k) as usize];
-            words.iter_mut().zip(columns).for_each(|(word, bits)| *word |= bits);
+        let (left, right) = chord.reach();
+        let first = bay_of(left, chord.bays).max(chord.rows.first_bay);
+        for bay in first..=bay_of(right, chord.bays).min(chord.rows.last_bay()) {
+            let columns = columns_between(within_bay(left, bay, chord.bays), within_bay(right, bay, chord.bays));
+            for k in band(chord.of_strip(chord.low) - around)..=band(chord.of_strip(chord.high) + around) {
+                let words = &mut cells[((chord.item + bay) * BORDER_BANDS + k) as usize];
+                words.iter_mut().zip(columns).for_each(|(word, bits)| *word |= bits);
+            }
         }
     });
     cells
@@ -72,13 +86,13 @@ struct Chord {
     low: [f32; 2],
     high: [f32; 2],
     upwards: bool,
-    /// Of all strips, and of the face's.
-    strip: u32,
+    /// The strip's first bay item; the strip's number in its face.
+    item: u32,
     of_face: f32,
-    /// Of the face.
+    /// Strips of the face, and bays of each.
     strips: f32,
-    first_row: u32,
-    lines: u32,
+    bays: u32,
+    rows: StripRows,
 }
 
 impl Chord {
@@ -86,18 +100,24 @@ impl Chord {
     fn of_strip(&self, p: [f32; 2]) -> f32 {
         p[1] * self.strips - self.of_face
     }
+
+    /// Its lowest and highest `u`.
+    fn reach(&self) -> (f32, f32) {
+        (self.low[0].min(self.high[0]), self.low[0].max(self.high[0]))
+    }
 }
 
 /// Row and intercept of every crossing, segment by segment.
 fn crossings(
     frame: &Frame,
     scene: &Scene<'_>,
-    line_starts: &[u32],
+    strips: &[StripRows],
     segment_starts: &[u32],
-    mut visit: impl FnMut(usize, u32),
+    mut visit: impl FnMut(&Chord, usize, u32),
 ) {
-    chords(frame, scene, line_starts, segment_starts, |chord| {
-        let (a, b, mu) = (chord.low, chord.high, chord.lines as f32);
+    chords(frame, scene, strips, segment_starts, |chord| {
+        let (a, b, mu) = (chord.low, chord.high, chord.rows.lines as f32);
+        let (left, right) = chord.reach();
         // one line too many on each side: the comparison below decides
         let lowest = (chord.of_strip(a) * mu - 0.5).floor();
         let highest = (chord.of_strip(b) * mu - 0.5).ceil();
@@ -106,22 +126,26 @@ fn crossings(
         }
         for line in lowest.max(0.0) as u32..=highest.min(mu - 1.0) as u32 {
             let v = (chord.of_face + (line as f32 + 0.5) / mu) / chord.strips;
-            let row = chord.first_row + line;
-            if !(a[1] < v && v <= b[1]) || row >= frame.row_capacity {
+            if !(a[1] < v && v <= b[1]) {
                 continue;
             }
             let u = a[0] + (v - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
-            let u = u.clamp(a[0].min(b[0]), a[0].max(b[0]));
-            visit(row as usize, (ordered_bits(u) & !1) | u32::from(chord.upwards));
+            let intercept = ordered_bits(u.clamp(left, right)) & !1;
+            let bay = bay_of(from_ordered(intercept), chord.bays);
+            let row = chord.rows.row_of(line, bay);
+            if bay > chord.rows.last_bay() || row >= frame.row_capacity {
+                continue;
+            }
+            visit(chord, row as usize, intercept | u32::from(chord.upwards));
         }
     });
 }
 
-/// Every segment in every strip.
+/// Every segment in every strip, but for those right of all that is seen, and those of loops that are left of it all.
 fn chords(
     frame: &Frame,
     scene: &Scene<'_>,
-    line_starts: &[u32],
+    strips: &[StripRows],
     segment_starts: &[u32],
     mut visit: impl FnMut(&Chord),
 ) {
@@ -134,14 +158,17 @@ fn chords(
             let to = curve_point(&curve, scene.curve_points, i + 1, n);
             let upwards = from[1] < to[1];
             let (low, high) = if upwards { (from, to) } else { (to, from) };
-            let (first, last) = strips_of(low[1], high[1], face.strip_count);
+            let (first, last) = strips_of(low[1], high[1], face.strip_count());
+            let bays = face.bay_count();
             for k in first..=last {
-                let strip = placed.first_strip + k;
-                let first_row = line_starts[strip as usize];
-                let lines = line_starts[strip as usize + 1] - first_row;
-                let (of_face, strips) = (k as f32, face.strip_count as f32);
-                if lines > 0 {
-                    visit(&Chord { low, high, upwards, strip, of_face, strips, first_row, lines });
+                let item = placed.first_bay + k * bays;
+                let rows = strips[item as usize];
+                let (of_face, strip_count) = (k as f32, face.strip_count() as f32);
+                let chord = Chord { low, high, upwards, item, of_face, strips: strip_count, bays, rows };
+                let is_right = bay_of(chord.reach().0, bays) > rows.last_bay();
+                let is_left = bay_of(curve.range_u[1], bays) < rows.first_bay;
+                if rows.lines > 0 && !is_right && !is_left {
+                    visit(&chord);
                 }
             }
         }

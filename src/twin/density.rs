@@ -11,17 +11,20 @@ use crate::abi::Frame;
 /// What the pass writes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Density {
-    /// Height of each placed strip in pixels; 0 for one that cannot be seen.
+    /// Height of each placed strip in pixels, at its first bay; 0 for one that cannot be seen.
     pub strip_heights: Vec<f32>,
     /// Largest pixels per unit of `u` and of `v` of each placed face.
     pub face_speeds: Vec<[f32; 2]>,
+    /// A bit for each bay that can be seen of each placed strip, at its first bay.
+    pub seen_bays: Vec<u32>,
 }
 
 /// The largest over the visible cells of each strip and of each face.
 pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
     let mut out = Density {
-        strip_heights: vec![0.0; frame.strip_count as usize],
+        strip_heights: vec![0.0; frame.bay_count as usize],
         face_speeds: vec![[0.0; 2]; scene.face_instances.len()],
+        seen_bays: vec![0; frame.bay_count as usize],
     };
     for item in 0..frame.cell_count as usize {
         let placed_index = scene.cell_items[item] as usize;
@@ -35,9 +38,12 @@ pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
         let (margin, far) = (frame.ring_px + 1.0, far_of(&face, frame));
         let Some(seen) = see(view, frame, cell.box_min, cell.box_max, margin, far) else { continue };
         let pixels = pixels_per_unit(frame, &scene.instances[placed.instance as usize], &seen);
-        let height = &mut out.strip_heights[(placed.first_strip + cell.strip) as usize];
+        let bay = cell.bay % face.bay_count();
+        let strip = (placed.first_bay + cell.bay - bay) as usize;
+        out.seen_bays[strip] |= 1 << bay;
+        let height = &mut out.strip_heights[strip];
         // a visible strip gets a scan line, however flat it is seen
-        *height = height.max((cell.speed_v * pixels / face.strip_count as f32).max(1e-6));
+        *height = height.max((cell.speed_v * pixels / face.strip_count() as f32).max(1e-6));
         let speeds = &mut out.face_speeds[placed_index];
         *speeds = [speeds[0].max(cell.speed_u * pixels), speeds[1].max(cell.speed_v * pixels)];
     }

@@ -1,18 +1,21 @@
-//! Twin of the pass [`lines`](crate::passes): `mu = ceil(height / spacing)` scan lines for each v-strip.
+//! Twin of the pass [`lines`](crate::passes): `mu = ceil(height / spacing)` scan lines for each v-strip, and a
+//! row of each in every bay from the first to the last that is seen.
 
+use super::bays::seen_range;
 use crate::abi::{Counters, Frame};
 
 /// Most scan lines of one strip.
 pub const MAX_ROWS: u32 = 65536;
 
-/// Scan lines of each strip of `strip_heights` pixels; those cut to [`MAX_ROWS`] count as clamps.
-pub fn lines(frame: &Frame, strip_heights: &[f32], counters: &mut Counters) -> Vec<u32> {
+/// Rows of each strip of `strip_heights` pixels, at its first bay; scan lines cut to [`MAX_ROWS`] count as clamps.
+pub fn lines(frame: &Frame, strip_heights: &[f32], seen_bays: &[u32], counters: &mut Counters) -> Vec<u32> {
     strip_heights
         .iter()
-        .map(|height| {
+        .zip(seen_bays)
+        .map(|(height, &seen)| {
             let lines = (height / frame.row_px).ceil();
             counters.clamps += u32::from(lines > MAX_ROWS as f32);
-            lines.min(MAX_ROWS as f32) as u32
+            lines.min(MAX_ROWS as f32) as u32 * seen_range(seen).1
         })
         .collect()
 }

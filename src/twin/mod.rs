@@ -11,8 +11,10 @@
 //! llvmpipe, the results are the same bit for bit; Vulkan allows a GPU 2.5 units in the last place for
 //! a quotient and 3 for a root, so there a `ceil` may come out one higher or lower.
 
+pub mod bays;
 pub mod border_cells;
 pub mod bound;
+pub mod carry;
 pub mod coverage;
 pub mod cross;
 pub mod curve;

@@ -3,27 +3,36 @@
 //! ```text
 //!   n >= sqrt(bend . speed / chord_px)        chords within chord_px of the curve on the screen
 //!   n >= lines that it may cross / 32         threads of equal work in pass `cross`
-//!   n  = 0                                    no scan line where the curve is: nobody sees it
+//!   n  = 0                                    no scan line where the curve is: nobody sees it, or right of it
 //! ```
 
+use super::bays::{bay_of, seen_range};
+use super::density::Density;
 use super::{Scene, strips_of};
 use crate::abi::Frame;
 
 const LINES_PER_SEGMENT: u32 = 32;
 const MAX_SEGMENTS: f32 = 65536.0;
 
-/// Segments of each curve item; `line_starts` holds the rows before each strip, and the total.
-pub fn segments(frame: &Frame, scene: &Scene<'_>, face_speeds: &[[f32; 2]], line_starts: &[u32]) -> Vec<u32> {
+/// Segments of each curve item; `strip_starts` holds the rows before each strip, and the total.
+pub fn segments(frame: &Frame, scene: &Scene<'_>, density: &Density, strip_starts: &[u32]) -> Vec<u32> {
     (0..frame.curve_count as usize)
         .map(|item| {
             let (placed, face, curve) = scene.curve(item);
-            let (lo, hi) = strips_of(curve.range_v[0], curve.range_v[1], face.strip_count);
-            let start = |strip: u32| line_starts[(placed.first_strip + strip) as usize];
-            let lines = start(hi + 1) - start(lo);
+            let (lo, hi) = strips_of(curve.range_v[0], curve.range_v[1], face.strip_count());
+            // in bays that the curve or what is right of it in its loop reaches
+            let [from, to] = curve.range_u.map(|u| bay_of(u, face.bay_count()));
+            let of_strip = |strip: u32| {
+                let item = (placed.first_bay + strip * face.bay_count()) as usize;
+                let (first, bays) = seen_range(density.seen_bays[item]);
+                let is_met = from < first + bays && to >= first;
+                if is_met { (strip_starts[item + 1] - strip_starts[item]) / bays } else { 0 }
+            };
+            let lines: u32 = (lo..=hi).map(of_strip).sum();
             if lines == 0 {
                 return 0;
             }
-            let speed = face_speeds[scene.curve_items[item] as usize];
+            let speed = density.face_speeds[scene.curve_items[item] as usize];
             let deviation = curve.bend[0] * speed[0] + curve.bend[1] * speed[1];
             let for_chords = (deviation / frame.chord_px).sqrt().ceil();
             let for_lines = lines.div_ceil(LINES_PER_SEGMENT) as f32;

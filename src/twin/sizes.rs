@@ -2,7 +2,8 @@
 //! table, and the dispatches that follow from them.
 
 use super::FAILED_ROWS;
-use crate::abi::{Counters, Frame};
+use super::bays::seen_range;
+use crate::abi::{Counters, Frame, StripRows};
 
 /// Threads of a workgroup in passes `cross` and `sort`.
 const GROUP: u32 = 128;
@@ -13,15 +14,19 @@ const MAX_GROUPS: u32 = 65535;
 /// Most segments that pass `cross` can be given.
 pub const MOST_SEGMENTS: u32 = MAX_GROUPS * GROUP;
 
-/// First row of each strip, and how many it has.
-pub fn strips(line_starts: &[u32]) -> Vec<[u32; 2]> {
-    line_starts.windows(2).map(|pair| [pair[0], pair[1] - pair[0]]).collect()
+/// Where the rows of each strip are, at its first bay.
+pub fn strips(strip_starts: &[u32], seen_bays: &[u32]) -> Vec<StripRows> {
+    let of_strip = |(pair, &seen): (&[u32], &u32)| {
+        let (first_bay, bays) = seen_range(seen);
+        StripRows { first: pair[0], lines: (pair[1] - pair[0]) / bays, first_bay, bays }
+    };
+    strip_starts.windows(2).zip(seen_bays).map(of_strip).collect()
 }
 
 /// Workgroups of `cross`, of `sort` and of the scan of the rows. Sets `rows`,
 /// `wanted_rows` and `segments` of the counters.
-pub fn sizes(frame: &Frame, line_starts: &[u32], segment_starts: &[u32], counters: &mut Counters) -> [[u32; 3]; 3] {
-    let wanted = line_starts[frame.strip_count as usize];
+pub fn sizes(frame: &Frame, strip_starts: &[u32], segment_starts: &[u32], counters: &mut Counters) -> [[u32; 3]; 3] {
+    let wanted = strip_starts[frame.bay_count as usize];
     let segments = segment_starts[frame.curve_count as usize];
     if wanted > frame.row_capacity {
         counters.failed |= FAILED_ROWS;

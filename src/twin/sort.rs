@@ -14,7 +14,7 @@ use super::FAILED_INTERCEPTS;
 use crate::abi::{Counters, Frame};
 
 /// Sorts the intercepts of each row, overwrites the first ones with the flips' `u` (float bits), and
-/// returns how many flips each row has.
+/// returns of each row `flips << 1`, and 1 more where it begins inside: with a winding number that is not 0.
 ///
 /// `row_total` is the number of intercepts of all rows. A row that does not fit `intercept_capacity`
 /// has no flip: the host grows the table and records again.
@@ -22,6 +22,7 @@ pub fn sort(
     frame: &Frame,
     row_starts: &[u32],
     row_total: u32,
+    row_windings: &[i32],
     intercepts: &mut [u32],
     counters: &mut Counters,
 ) -> Vec<u32> {
@@ -33,14 +34,15 @@ pub fn sort(
         }
     }
     (0..rows)
-        .map(|row| {
-            let end = if row + 1 < rows { row_starts[row + 1] } else { row_total };
+        .map(|index| {
+            let end = if index + 1 < rows { row_starts[index + 1] } else { row_total };
             if end > frame.intercept_capacity {
                 return 0;
             }
-            let row = &mut intercepts[row_starts[row] as usize..end as usize];
+            let row = &mut intercepts[row_starts[index] as usize..end as usize];
             row.sort_unstable();
-            let (mut flips, mut winding) = (0, 0);
+            let start = row_windings[index];
+            let (mut flips, mut winding) = (0, start);
             for i in 0..row.len() {
                 let bits = row[i];
                 let next = winding + if bits & 1 != 0 { 1 } else { -1 };
@@ -50,7 +52,7 @@ pub fn sort(
                 }
                 winding = next;
             }
-            flips as u32
+            (flips as u32) << 1 | u32::from(start != 0)
         })
         .collect()
 }
@@ -84,7 +86,7 @@ mod tests {
         let mut shuffled = [row[3], row[5], row[0], row[4], row[2], row[1]];
         let frame = Frame { intercept_capacity: 6, ..Default::default() };
         let mut counters = Counters { rows: 1, ..Default::default() };
-        assert_eq!(sort(&frame, &[0], 6, &mut shuffled, &mut counters), [2]);
+        assert_eq!(sort(&frame, &[0], 6, &[0], &mut shuffled, &mut counters), [2 << 1]);
         let flips = [shuffled[0], shuffled[1]].map(f32::from_bits);
         // the direction's bit costs the last bit of u
         assert!((flips[0] - 0.1).abs() < 1e-7 && (flips[1] - 0.6).abs() < 2e-7, "{flips:?}");

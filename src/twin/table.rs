@@ -1,62 +1,72 @@
 //! Twin of `glsl/include/table.glsl`: look-up in the u-intercept table, nearest scan line, then a binary
 //! search.
 
+use super::bays::{bay_of, within_bay};
 use super::border_cells::columns_between;
-use crate::abi::BORDER_BANDS;
+use crate::abi::{BORDER_BANDS, Face, StripRows};
 
 /// The table as the passes leave it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Table<'a> {
-    /// First row of each placed strip, and how many it has.
-    pub strips: &'a [[u32; 2]],
+    /// Where the rows of each placed strip are, at its first bay.
+    pub strips: &'a [StripRows],
     /// First flip of each row.
     pub row_starts: &'a [u32],
-    /// Flips of each row.
+    /// Flips of each row, twice, and 1 more where it begins inside.
     pub row_counts: &'a [u32],
     /// Their `u`, ascending in each row.
     pub flips: &'a [f32],
-    /// Columns of each band that trim curves pass.
+    /// Columns of each band of each bay that trim curves pass.
     pub border_cells: &'a [[u32; 4]],
     /// Rows that there is room for.
     pub row_capacity: u32,
 }
 
 impl Table<'_> {
-    /// Whether the normalised `(u, v)` belongs to the placed face whose `strips` v-strips begin at
-    /// `first_strip`. A point beyond the capacity does: the host grows the table and records again.
-    pub fn inside(&self, first_strip: u32, strips: f32, [u, v]: [f32; 2]) -> bool {
+    /// Whether the normalised `(u, v)` belongs to the placed `face` whose bay items begin at
+    /// `first_bay`. A point beyond the capacity does: the host grows the table and records again.
+    pub fn inside(&self, first_bay: u32, face: &Face, [u, v]: [f32; 2]) -> bool {
+        let (strips, bays) = (face.strip_count() as f32, face.bay_count());
         let s = v * strips;
         if !(s >= 0.0 && s < strips) {
             return false;
         }
-        let [base, count] = self.strips[first_strip as usize + s as usize];
-        if count == 0 {
+        let rows = self.strips[(first_bay + s as u32 * bays) as usize];
+        if rows.lines == 0 {
             return false;
         }
-        let row = base + (((s - s.floor()) * count as f32) as u32).min(count - 1);
+        let line = (((s - s.floor()) * rows.lines as f32) as u32).min(rows.lines - 1);
+        let row = rows.row_of(line, bay_of(u, bays));
         if row >= self.row_capacity {
             return true;
         }
-        let (first, flips) = (self.row_starts[row as usize] as usize, self.row_counts[row as usize] as usize);
+        let (first, counted) = (self.row_starts[row as usize] as usize, self.row_counts[row as usize]);
+        let flips = (counted >> 1) as usize;
         if flips == 0 {
-            return false; // also a row that found no room
+            return counted & 1 == 1; // 0 also of a row that found no room
         }
-        self.flips[first..first + flips].partition_point(|&flip| flip <= u) % 2 == 1
+        let passed = self.flips[first..first + flips].partition_point(|&flip| flip <= u);
+        passed % 2 == usize::from(counted & 1 == 0)
     }
 
     /// Whether all of the box from `lo` to `hi` is inside or none of it. `false` where that is not easily told.
-    pub fn same(&self, first_strip: u32, strips: f32, lo: [f32; 2], hi: [f32; 2]) -> bool {
+    pub fn same(&self, first_bay: u32, face: &Face, lo: [f32; 2], hi: [f32; 2]) -> bool {
+        let (strips, bays) = (face.strip_count() as f32, face.bay_count());
         let (from, to) = (lo[1] * strips, hi[1] * strips);
         if !(from >= 0.0 && to < strips) {
             return false;
         }
-        let bands = BORDER_BANDS as f32;
-        let (first, last) = ((from * bands) as u32, (to * bands) as u32);
-        if last > first + 1 || first / BORDER_BANDS != last / BORDER_BANDS {
+        let (strip, bay) = (from as u32, bay_of(lo[0], bays));
+        if to as u32 != strip || bay_of(hi[0], bays) != bay {
             return false;
         }
-        let band = |k: u32| self.border_cells[(first_strip * BORDER_BANDS + k) as usize];
-        let columns = columns_between(lo[0], hi[0]);
+        let (first, last) = ((from * BORDER_BANDS as f32) as u32, (to * BORDER_BANDS as f32) as u32);
+        if last > first + 1 {
+            return false;
+        }
+        let item = first_bay + strip * bays + bay;
+        let band = |k: u32| self.border_cells[(item * BORDER_BANDS + k - strip * BORDER_BANDS) as usize];
+        let columns = columns_between(within_bay(lo[0], bay, bays), within_bay(hi[0], bay, bays));
         (0..4).all(|w| (band(first)[w] | band(last)[w]) & columns[w] == 0)
     }
 }

@@ -8,7 +8,7 @@ layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 6) readonly buffer Points { vec2 points[]; };
 layout(scalar, binding = 7) writeonly buffer Answers { uint answers[]; };
-layout(push_constant) uniform Push { uint first_strip; float strips; vec2 around; };
+layout(push_constant) uniform Push { uint first_bay; uint strips; vec2 around; };
 
 #define TABLE_BINDING 1
 #include "table.glsl"
@@ -16,5 +16,5 @@ layout(push_constant) uniform Push { uint first_strip; float strips; vec2 around
 void main() {
     uint i = gl_GlobalInvocationID.x;
     vec2 p = points[i];
-    answers[i] = uint(table_inside(first_strip, strips, p)) | uint(table_same(first_strip, strips, p - around, p + around)) << 1;
+    answers[i] = uint(table_inside(first_bay, strips, p)) | uint(table_same(first_bay, strips, p - around, p + around)) << 1;
 }
