@@ -57,7 +57,7 @@ mod tests {
 
     #[test]
     fn the_shares_close_gaps_and_keep_the_promise() {
-        for tolerance in [0.125, 0.5, 2.0] {
+        for tolerance in [0.1, 0.5, 2.0] {
             let b = Budget::of(tolerance);
             let error = b.deviation + b.row / 2.0 + b.chord;
             assert!(b.ring >= error, "two neighbours may leave a gap");

@@ -119,7 +119,7 @@ impl Passes {
         };
         let tessellation = |()| {
             Ok(TessellationPasses {
-                bound: bound::Bound::new(device)?,
+                bound: bound::Bound::new(device, !data.cones.is_empty())?,
                 split: split::Split::new(device, !data.links.is_empty())?,
                 emit: emit::Emit::new(device)?,
             })
@@ -355,6 +355,7 @@ impl Frame<'_> {
             items: &s.items,
             taus: &b.taus,
             counters: &b.counters,
+            cones: s.cones.as_ref(),
         };
         p.bound.record(cmd, &bound, items);
         if let Some(parts) = self.hidden() {

@@ -8,7 +8,7 @@ use serde::Serialize;
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameSettings {
     /// Largest distance in pixels between a drawn boundary and the true one; the promise. At least
-    /// 1/8; the default is one half.
+    /// [`LEAST_TOLERANCE_PX`](Self::LEAST_TOLERANCE_PX); the default is one half.
     pub tolerance_px: f64,
     /// Colour behind the model; `None` keeps what the target holds.
     pub background: Option<Colour>,
@@ -34,6 +34,11 @@ impl Default for FrameSettings {
     fn default() -> Self {
         Self { tolerance_px: 0.5, background: Some([1.0, 1.0, 1.0, 1.0]), levels: Levels::Bound, all_passes: false }
     }
+}
+
+impl FrameSettings {
+    /// Tolerances below this ask for more than single precision gives at full zoom.
+    pub const LEAST_TOLERANCE_PX: f64 = 0.1;
 }
 
 impl Levels {

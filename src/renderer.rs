@@ -86,8 +86,8 @@ pub enum RenderError {
     /// Vulkan or its memory.
     #[error(transparent)]
     Gpu(#[from] GpuError),
-    /// [`FrameSettings::tolerance_px`] is not at least 1/8.
-    #[error("the tolerance must be at least 1/8 pixel, not {0}")]
+    /// [`FrameSettings::tolerance_px`] is below [`FrameSettings::LEAST_TOLERANCE_PX`].
+    #[error("the tolerance must be at least {least} pixels, not {0}", least = FrameSettings::LEAST_TOLERANCE_PX)]
     Tolerance(f64),
     /// The model, or what this view needs of it.
     #[error(transparent)]
@@ -166,9 +166,6 @@ enum Retired {
     Buffer(Buffer),
     Texels(Texels),
 }
-
-/// Tolerances below this ask for more than single precision gives at full zoom.
-const LEAST_TOLERANCE_PX: f64 = 0.125;
 
 impl Renderer {
     /// Formats of the images of depth, face, (u, v) and normal. The fourth component of a normal is 1, but 0 for
@@ -305,7 +302,7 @@ impl Renderer {
     ) -> Result<(), RenderError> {
         input.camera.check()?;
         let tolerance = input.settings.tolerance_px;
-        if !(tolerance >= LEAST_TOLERANCE_PX && tolerance.is_finite()) {
+        if !(tolerance >= FrameSettings::LEAST_TOLERANCE_PX && tolerance.is_finite()) {
             return Err(RenderError::Tolerance(tolerance));
         }
         let targets = input.targets;

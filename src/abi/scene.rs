@@ -133,6 +133,11 @@ impl Link {
         self.place >> 13 & 15
     }
 
+    /// The side runs against the curve.
+    pub fn is_reversed(&self) -> bool {
+        self.place >> 17 & 1 != 0
+    }
+
     /// Other sides lie on the same curve.
     pub fn is_shared(&self) -> bool {
         self.place >> 19 & 1 != 0

@@ -1,19 +1,23 @@
 //! Parity of the pass `bound`: exact; where the GPU rounds otherwise, a factor may differ by one.
 
-use super::Case;
 use super::chain::UNTOUCHED;
 use super::harness::{Gpu, Mismatch, SceneBuffers, halves, same};
 use super::shapes::cases;
-use crate::abi::Counters;
+use super::{Case, cages};
+use crate::abi::{Counters, FACE_SAME_SENSE};
+use crate::model::{Camera, Projection};
 use crate::passes::bound::{Bindings, Bound};
+use crate::spline::Patch;
 use crate::twin;
+use glam::{DAffine3, DVec3, DVec4};
 
 fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
     let count = given.data.items.len();
     let s = SceneBuffers::new(gpu, given);
     let taus = gpu.upload("taus", &vec![UNTOUCHED; count]);
     let counters = gpu.upload("counters", &[Counters::default()]);
-    let pass = Bound::new(gpu.device()).unwrap();
+    let cones = (!given.data.cones.is_empty()).then(|| gpu.upload("cones", &given.data.cones));
+    let pass = Bound::new(gpu.device(), !given.data.cones.is_empty()).unwrap();
     let bindings = Bindings {
         frame: &s.frame,
         views: &s.views,
@@ -24,6 +28,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
         items: &s.items,
         taus: &taus,
         counters: &counters,
+        cones: cones.as_ref(),
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, count as u32));
     let mut clamps = Counters::default();
@@ -45,6 +50,73 @@ fn parity() {
         assert!(counters.clamps > 0);
         compare(&gpu, &fine, &fine).unwrap();
     }
+    gpu.finish();
+}
+
+/// A closed part without trims, as it is and mirrored, from around it, every third view parallel.
+fn seamless() -> Vec<(Camera, Case)> {
+    let mut model = cages::a_box().model;
+    let mut other = model.instances[0].clone();
+    let aside = DAffine3::from_translation(DVec3::new(9.0, 1.0, -2.0));
+    other.transform = aside * DAffine3::from_scale(DVec3::new(1.0, -0.5, 2.0));
+    model.instances.push(other);
+    let case = |k: u32| {
+        let (a, b) = (2.4 * f64::from(k), f64::from(k) / 6.0 - 0.9);
+        let from = DVec3::new(a.cos(), a.sin(), b);
+        let camera = Camera::framing(model.bounds(), from, DVec3::Z, 0.6, (480, 360));
+        let parallel = Camera { projection: Projection::Orthographic { height: 12.0 }, ..camera };
+        let camera = if k % 3 == 0 { parallel } else { camera };
+        (camera, Case::new(&model, &camera, 0.5))
+    };
+    (0..12).map(case).collect()
+}
+
+/// Every outward normal of an item's patch points away from the viewer: in double precision, at 13 by 13 points.
+fn faces_away(case: &Case, camera: &Camera, item: usize) -> bool {
+    let data = &case.data;
+    let placed = data.face_instances[data.items[item] as usize];
+    let face = data.faces[placed.face as usize];
+    let packed = &data.patches[face.first_patch as usize + item - placed.first_item as usize];
+    let (n, k) = packed.degrees();
+    let first = packed.first as usize;
+    let points = data.points[first..first + (n + 1) * (k + 1)].iter().map(|p| DVec4::from(p.map(f64::from)));
+    let patch = Patch { degree_u: n, degree_v: k, points: points.collect() };
+    let to_model = data.placements[placed.instance as usize];
+    let outward = if face.flags & FACE_SAME_SENSE != 0 { 1.0 } else { -1.0 } * to_model.matrix3.determinant().signum();
+    (0..169).all(|c| {
+        let jet = patch.jet(f64::from(c % 13) / 12.0, f64::from(c / 13) / 12.0);
+        let normal = to_model.transform_vector3(jet.du).cross(to_model.transform_vector3(jet.dv)) * outward;
+        let towards = match camera.projection {
+            Projection::Perspective { .. } => to_model.transform_point3(jet.point) - camera.eye,
+            Projection::Orthographic { .. } => camera.axes().2,
+        };
+        normal.dot(towards) >= 0.0
+    })
+}
+
+/// What looks away is left out; and what is left out looks away, all of it.
+#[test]
+fn parity_of_what_looks_away() {
+    let gpu = Gpu::new();
+    let cases = seamless();
+    for (camera, case) in &cases {
+        compare(&gpu, case, case).unwrap();
+        let mut all = case.clone();
+        all.data.cones.clear();
+        let with = twin::bound::bound(&case.frame, &case.scene(), &mut Counters::default());
+        let without = twin::bound::bound(&all.frame, &all.scene(), &mut Counters::default());
+        let left_out = || (0..with.len()).filter(|&item| with[item] != without[item]);
+        assert!(left_out().all(|item| with[item] == 0));
+        let share = left_out().count() as f64 / with.len() as f64;
+        assert!((0.15..0.5).contains(&share), "{share} of the patches are left out");
+        for item in left_out() {
+            assert!(faces_away(case, camera, item), "item {item}");
+        }
+    }
+    let case = &cases[1].1;
+    let mut other = case.clone();
+    other.data.cones.iter_mut().for_each(|cone| (0..3).for_each(|k| cone[k] = -cone[k]));
+    assert_eq!(compare(&gpu, &other, case).unwrap_err().buffer, "taus");
     gpu.finish();
 }
 

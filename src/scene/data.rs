@@ -1,8 +1,9 @@
 //! The whole scene as plain arrays, and the transforms that stay in `f64`.
 
+use super::cones::{Normals, cones};
 use super::edit::EditScene;
 use super::exact::ExactData;
-use super::face::{Cuts, FaceData, Trimming, pack_colour};
+use super::face::{Body, Cuts, FaceData, Trimming, pack_colour};
 use super::link::link;
 use super::mesh::Meshes;
 use super::solids::{Lists, SolidData, UndrawnSolid};
@@ -26,6 +27,8 @@ pub(crate) struct SceneData {
     pub patches: Vec<abi::Patch>,
     /// Of each patch: where nothing of its face is. In scenes whose patches may lie behind others.
     pub outside: Vec<[u32; 2]>,
+    /// Of each patch's normals (`twin::cone`); none where no part is closed without trims.
+    pub cones: Vec<[f32; 4]>,
     pub points: Vec<[f32; 4]>,
     /// Four a patch; none where no faces without trims share a side.
     pub links: Vec<abi::Link>,
@@ -159,11 +162,19 @@ impl SceneData {
             origins.push(origin);
             if used {
                 let cuts = Cuts::of(&part.faces);
+                let body = match part.closed && !open {
+                    false => Body::Open,
+                    true if part.faces.iter().all(|f| f.loops.is_empty()) => Body::Seamless,
+                    true => Body::Closed,
+                };
                 let faces: Vec<FaceData> =
-                    part.faces.par_iter().map(|f| FaceData::new(f, origin, part.closed && !open, trim, cuts)).collect();
+                    part.faces.par_iter().map(|f| FaceData::new(f, origin, body, trim, cuts)).collect();
                 let first = data.faces.len();
+                let normals: Vec<Normals> = faces.iter().flat_map(|f| &f.normals).copied().collect();
                 faces.into_iter().for_each(|f| data.push_face(f));
-                data.link(first);
+                if data.link(first) {
+                    data.push_cones(first, &normals, 0.5 * bounds.diagonal());
+                }
                 #[cfg(feature = "rivals")]
                 if let TrimWay::Rival(Rival::Bisect { steps, sorted }) = way {
                     part.faces.iter().for_each(|f| data.bisect.push(f, steps, sorted));
@@ -189,15 +200,29 @@ impl SceneData {
         if !data.links.is_empty() {
             data.links.resize(4 * data.patches.len(), abi::Link::default());
         }
+        if data.cones.iter().all(|cone| *cone == [0.0; 4]) {
+            data.cones = Vec::new();
+        } else {
+            data.cones.resize(data.patches.len(), [0.0; 4]);
+        }
         if !data.hides() {
             data.outside = Vec::new();
         }
         Ok(data)
     }
 
-    /// The faces from this one on meet along sides, where they do.
-    fn link(&mut self, first_face: usize) {
-        link(&self.faces, first_face..self.faces.len(), &self.patches, &mut self.points, &mut self.links);
+    /// The faces from this one on meet along sides, where they do; whether all sides of those without trims do.
+    fn link(&mut self, first_face: usize) -> bool {
+        link(&self.faces, first_face..self.faces.len(), &self.patches, &mut self.points, &mut self.links)
+    }
+
+    /// Of the faces from this one on, a part that reaches `radius` far from its origin.
+    fn push_cones(&mut self, first_face: usize, normals: &[Normals], radius: f64) {
+        if !normals.is_empty() {
+            let cones = cones(&self.faces[first_face..], &self.links, normals, radius);
+            self.cones.resize(self.patches.len() - cones.len(), [0.0; 4]);
+            self.cones.extend(cones);
+        }
     }
 
     /// How faces are trimmed; `None` when no patch is.
@@ -243,7 +268,8 @@ impl SceneData {
             let first = self.faces.len();
             let cuts = Cuts::of(operand.faces());
             for face in operand.faces() {
-                let mut f = FaceData::new(face, operand.origin, true, Trimming { editable: false, ..trim }, cuts);
+                let mut f =
+                    FaceData::new(face, operand.origin, Body::Closed, Trimming { editable: false, ..trim }, cuts);
                 f.face.flags |= abi::FACE_OPERAND;
                 f.face.id = operand.primitive.id;
                 if face.colour.is_none() {

@@ -1,5 +1,6 @@
 //! One face: patches, cells and trim curves, with indices relative to the face.
 
+use super::cones::Normals;
 use super::edit::{EditFace, EditLoop, EditPatch};
 use super::exact::exact_trim;
 pub(super) use super::flatten::Cuts;
@@ -37,6 +38,8 @@ pub(super) struct FaceData {
     pub patches: Vec<abi::Patch>,
     /// Of each patch: where nothing of the face is.
     pub outside: Vec<[u32; 2]>,
+    /// Of each patch of a [`Body::Seamless`].
+    pub normals: Vec<Normals>,
     pub points: Vec<[f32; 4]>,
     pub cells: Vec<abi::Cell>,
     pub curves: Vec<abi::Curve>,
@@ -46,6 +49,16 @@ pub(super) struct FaceData {
     /// What edits need, where they may come.
     pub edit: Option<EditFace>,
     pub rational: bool,
+}
+
+/// What a face is a part of.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(super) enum Body {
+    Open,
+    /// Said to be closed.
+    Closed,
+    /// Said to be closed, and without trims.
+    Seamless,
 }
 
 /// The rectangle of the surface's parameters, and its map to the unit square.
@@ -72,7 +85,7 @@ pub(super) struct Trimming {
 }
 
 impl FaceData {
-    pub(super) fn new(face: &Face, origin: DVec3, solid: bool, trim: Trimming, cuts: Cuts) -> Self {
+    pub(super) fn new(face: &Face, origin: DVec3, body: Body, trim: Trimming, cuts: Cuts) -> Self {
         let Trimming { way, smooth, editable } = trim;
         let grid = flattened(face.surface.patches(), cuts.in_face(face));
         let ((u0, u1), (v0, v1)) = face.surface.domain();
@@ -95,6 +108,7 @@ impl FaceData {
             patches: Vec::new(),
             // edits would change it
             outside: if editable { vec![[0; 2]; sides.len()] } else { outside(&grid, &sides, index.as_ref()) },
+            normals: if body == Body::Seamless { Normals::of(&grid, face.same_sense, origin) } else { Vec::new() },
             points: Vec::new(),
             cells: Vec::new(),
             curves: Vec::new(),
@@ -108,7 +122,7 @@ impl FaceData {
         };
         let flag = |on: bool, bit: u32| if on { bit } else { 0 };
         data.face.flags = flag(face.same_sense, abi::FACE_SAME_SENSE)
-            | flag(solid, abi::FACE_SOLID)
+            | flag(body != Body::Open, abi::FACE_SOLID)
             | flag(trimmed, abi::FACE_TRIMMED);
         for (n, (patch, side)) in grid.patches.iter().zip(&sides).enumerate() {
             data.push_patch(&grid, n, patch, (*side, editable), origin, &domain);

@@ -64,16 +64,17 @@ struct Group {
 }
 
 /// The links of these faces, at `links[4 * patch + side]`; grows `links` to hold them where there are some.
-/// Corners that are nearly the same become the same.
+/// Corners that are nearly the same become the same. Whether all sides of faces without trims are linked, but for
+/// those that are points, and those that a face has in common with itself.
 pub(super) fn link(
     faces: &[Face],
     range: Range<usize>,
     patches: &[Patch],
     points: &mut [[f32; 4]],
     links: &mut Vec<Link>,
-) {
+) -> bool {
     let borders: Vec<Border> = borders(faces, range, patches).collect();
-    let Some(mut corners) = Corners::new(&borders, patches, points) else { return };
+    let Some(mut corners) = Corners::new(&borders, patches, points) else { return true };
     // all that stay first: so what becomes of a corner depends on nothing but itself
     for border in &borders {
         corners.keep(border, &patches[border.patch], points);
@@ -96,6 +97,7 @@ pub(super) fn link(
             links[name as usize] = Link::new(next, (place.start, place.halvings), place.reversed, owner);
         }
     }
+    sides.iter().all(|side| links.get(side.name as usize).is_some_and(Link::is_shared))
 }
 
 /// A patch that has open borders of its face.

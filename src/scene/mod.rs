@@ -15,6 +15,7 @@
 //! `f64` every frame.
 
 mod closeup;
+mod cones;
 mod data;
 mod edit;
 mod exact;

@@ -17,6 +17,8 @@ pub(crate) struct Scene {
     /// Where nothing of their faces is; `None` where they are not asked whether they lie behind others.
     pub outside: Option<Buffer>,
     /// Homogeneous control points.
+    /// Of the normals of each patch; `None` where no part is closed without trims.
+    pub cones: Option<Buffer>,
     pub points: Texels,
     /// Sides that faces share; `None` where they share none.
     pub links: Option<Buffer>,
@@ -173,6 +175,9 @@ impl Scene {
             patches: read_both(&mut uploads, cmd, "patches", &data.patches, Texel::U32x4)?,
             outside: (!data.outside.is_empty())
                 .then(|| persistent(&mut uploads, cmd, "patches outside", &data.outside))
+                .transpose()?,
+            cones: (!data.cones.is_empty())
+                .then(|| persistent(&mut uploads, cmd, "patch cones", &data.cones))
                 .transpose()?,
             points: texels(&mut uploads, cmd, "points", &data.points, Texel::F32x4)?,
             links: (!data.links.is_empty())

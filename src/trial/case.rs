@@ -59,6 +59,7 @@ impl Case {
             face_instances: &d.face_instances,
             faces: &d.faces,
             patches: &d.patches,
+            cones: &d.cones,
             points: &d.points,
             outside: &d.outside,
             links: &d.links,

@@ -1,6 +1,7 @@
 //! Twin of the pass [`bound`](crate::passes): which patches can be seen, and how finely each must be
 //! divided.
 
+use super::cone::looks_away;
 use super::factor::factors;
 use super::view::{covers_a_centre, far_of, pixels_per_unit, see};
 use super::{MOST_SEGMENTS, Scene};
@@ -18,8 +19,13 @@ pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u
             }
             let (margin, far) = (frame.ring_px + 1.0, far_of(&face, frame));
             let Some(seen) = see(view, frame, patch.box_min, patch.box_max, margin, far) else { return 0 };
-            // a ring may reach farther than the box
-            if patch.side() == Side::Inside && !covers_a_centre(&seen, frame.deviation_px + frame.spread_px) {
+            // nothing is drawn farther from the box: cut patches have rings
+            let ring = if patch.side() == Side::Inside { 0.0 } else { frame.ring_px };
+            if !covers_a_centre(&seen, frame.deviation_px + frame.spread_px + ring) {
+                return 0;
+            }
+            let cone = scene.cones.get(face.first_patch as usize + item - placed.first_item as usize);
+            if cone.is_some_and(|cone| looks_away(view, frame, &patch, *cone)) {
                 return 0;
             }
             let pixels = pixels_per_unit(frame, &scene.instances[placed.instance as usize], &seen);

@@ -15,6 +15,7 @@ pub mod bays;
 pub mod border_cells;
 pub mod bound;
 pub mod carry;
+pub mod cone;
 pub mod coverage;
 pub mod cross;
 pub mod curve;
@@ -75,6 +76,8 @@ pub struct Scene<'a> {
     pub points: &'a [[f32; 4]],
     /// Of each patch where nothing of its face is, in scenes where they may lie behind others.
     pub outside: &'a [[u32; 2]],
+    /// Of the outward normals of each patch ([`cone`]); none where no part is closed without trims.
+    pub cones: &'a [[f32; 4]],
     /// Sides that faces share, four a patch; none where they share none.
     pub links: &'a [Link],
     /// Face instance of each item.

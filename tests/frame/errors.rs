@@ -59,7 +59,7 @@ fn a_tolerance_that_single_precision_cannot_keep() {
     let mut renderer = watched(&model);
     let camera = perspective(&model, (64, 48));
     let before = render(&mut renderer, &camera);
-    for tolerance in [0.0, -1.0, 0.124, f64::NAN, f64::INFINITY] {
+    for tolerance in [0.0, -1.0, 0.099, f64::NAN, f64::INFINITY] {
         match refusal(&mut renderer, &camera, tolerance) {
             RenderError::Tolerance(said) => assert_eq!(said.to_bits(), tolerance.to_bits()),
             error => panic!("{tolerance}: {error}"),

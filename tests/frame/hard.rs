@@ -3,7 +3,7 @@
 
 use crate::shapes::{self, one};
 use crate::support::{assert_silent, render, watched};
-use glam::{DAffine3, DVec3, DVec4};
+use glam::{DAffine3, DVec2, DVec3, DVec4};
 use selvedge::model::{Camera, Face, Instance, Model, Projection, SurfaceKind};
 use selvedge::picture::Picture;
 use selvedge::reference::{JudgeOptions, Tracer, judge};
@@ -181,4 +181,31 @@ fn many_patches_below_a_pixel() {
     assert_eq!(picture.stats.patches, 90_000);
     assert!(picture.stats.sub_patches < 40_000, "{} are drawn", picture.stats.sub_patches);
     assert!(covered(&picture) > 1000);
+}
+
+/// A thousand plates with a hole, a fifth of a pixel wide: those whose rings reach no pixel's centre are left out, and about as
+/// many pixels show one as have one at their centres: what borders may be off by is much of such a plate.
+#[test]
+fn many_cut_patches_below_a_pixel() {
+    let plate = shapes::plate();
+    let n = 32;
+    let step = 7.3 * shapes::PLATE_HALF; // 0.73 pixels: all phases of the grid
+    let at = |k: i32| DVec3::new(f64::from(k % n), f64::from(k / n), 0.0) * step;
+    let placed = |k| Instance { transform: DAffine3::from_translation(at(k)), ..plate.instances[0].clone() };
+    let model = Model { instances: (0..n * n).map(placed).collect(), ..plate.clone() };
+    let middle = DVec3::new(1.0, 1.0, 0.0) * step * 0.5 * f64::from(n);
+    let projection = Projection::Orthographic { height: f64::from(SIZE.1) * 10.0 * shapes::PLATE_HALF };
+    let depth_range = (1.0, 1e4);
+    let camera = Camera { up: DVec3::Y, projection, depth_range, ..view(middle + DVec3::Z * 1e3, middle, 1.0) };
+    let picture = draw(&model, &camera);
+    let (patches, drawn) = (picture.stats.patches, picture.stats.sub_patches);
+    assert!((0.4..0.75).contains(&(drawn as f64 / patches as f64)), "{drawn} of {patches} are drawn");
+    let tracer = Tracer::new(&model);
+    let pixels = (0..SIZE.0 * SIZE.1).map(|i| DVec2::new(f64::from(i % SIZE.0) + 0.5, f64::from(i / SIZE.0) + 0.5));
+    let exact = pixels.filter(|&p| tracer.first(&camera, p).is_some()).count();
+    assert!(
+        exact > 20 && covered(&picture).abs_diff(exact) <= exact / 4,
+        "{} pixels, {exact} exactly",
+        covered(&picture)
+    );
 }

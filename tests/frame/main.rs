@@ -40,7 +40,9 @@ mod smooth_trims;
 mod solids;
 mod stair;
 mod support;
+mod tolerance;
 mod touching;
 #[path = "../shapes/trims.rs"]
 mod trims;
+mod turned;
 mod zoom;

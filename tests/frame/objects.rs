@@ -3,7 +3,7 @@
 use crate::support::{assert_silent, perspective, watched_with};
 use crate::{cages, shapes};
 use selvedge::headless::HeadlessRenderer;
-use selvedge::model::Model;
+use selvedge::model::{Model, Part};
 use selvedge::picture::{FrameSettings, Outputs, Samples, SceneSettings, SolidWay, TrimWay};
 
 /// Pipelines of the trim table.
@@ -105,6 +105,18 @@ fn only_a_scene_of_many_patches_knows_which_lie_behind_others() {
         assert_eq!(count, if is_asked { of_hiding.len() + passes.len() } else { 0 }, "{objects:?}");
         let adds_up = objects.iter().any(|name| name == "resolve (background, samples)");
         assert_eq!(adds_up, settings == samples, "{objects:?}");
+        assert_silent(renderer);
+    }
+}
+
+/// Of the shapes these alone are closed and without trims, and more than one face that meets itself.
+#[test]
+fn only_closed_parts_without_trims_have_cones() {
+    for shape in shapes::all() {
+        let (renderer, objects) = objects(&shape.model, Outputs::default());
+        let has = objects.iter().any(|o| o == "patch cones");
+        let may = |p: &Part| p.closed && !p.faces.is_empty() && p.faces.iter().all(|f| f.loops.is_empty());
+        assert_eq!(has, shape.model.parts.iter().any(may), "{}: {objects:?}", shape.name);
         assert_silent(renderer);
     }
 }

@@ -314,7 +314,7 @@ pub struct CameraArgs {
 /// How a frame is drawn.
 #[derive(Debug, Args)]
 pub struct FrameArgs {
-    /// Largest distance in pixels between a drawn boundary and the true one, at least 0.125
+    /// Largest distance in pixels between a drawn boundary and the true one, at least 0.1
     #[arg(long, value_name = "PX", default_value_t = 0.5, value_parser = tolerance)]
     pub tolerance: f64,
     /// How finely patches are divided: bound, which keeps the promise, or the same level from 1 to 64 everywhere, which

@@ -1,6 +1,7 @@
 //! Numbers and vectors of the command line, with what is told of bad ones.
 
 use glam::DVec3;
+use selvedge::picture::FrameSettings;
 
 /// `X,Y,Z`.
 pub fn vector(text: &str) -> Result<DVec3, String> {
@@ -23,8 +24,8 @@ pub fn direction(text: &str) -> Result<DVec3, String> {
 pub fn tolerance(text: &str) -> Result<f64, String> {
     text.parse::<f64>()
         .ok()
-        .filter(|t| t.is_finite() && *t >= 0.125)
-        .ok_or_else(|| "wants a number of pixels, at least 0.125".into())
+        .filter(|t| t.is_finite() && *t >= FrameSettings::LEAST_TOLERANCE_PX)
+        .ok_or_else(|| format!("wants a number of pixels, at least {}", FrameSettings::LEAST_TOLERANCE_PX))
 }
 
 /// How many times closer.

@@ -1,0 +1,129 @@
+//! Patches of closed parts without trims that look away are left out, and no picture shows it: it is the same as that of the
+//! same surface around a speck, whose sides are nobody else's, so that nothing is left out.
+
+use crate::support::{assert_silent, perspective, render, watched};
+use crate::{cages, shapes};
+use glam::{DAffine3, DVec3};
+use selvedge::model::{Camera, Face, Model, Projection};
+use selvedge::picture::Picture;
+use selvedge::spline::Surface;
+
+const SIZE: (u32, u32) = (160, 120);
+const VIEWS: u32 = 12;
+
+/// The same part with a speck of a face just below its first one.
+fn with_a_speck(model: &Model) -> Model {
+    let mut model = model.clone();
+    let size = model.parts[0].bounds().diagonal();
+    let first = &model.parts[0].faces[0];
+    let jet = first.surface.patches().patches[0].patch.jet(0.4, 0.3);
+    let outwards = jet.du.cross(jet.dv).normalize() * if first.same_sense { 1.0 } else { -1.0 };
+    let at = |x: f64, y: f64| (jet.point - outwards * 0.01 * size + DVec3::new(x, y, 0.0) * 1e-6 * size).extend(1.0);
+    let corners = vec![at(0.0, 0.0), at(1.0, 0.0), at(0.0, 1.0), at(1.0, 1.0)];
+    let knots = || vec![0.0, 0.0, 1.0, 1.0];
+    let surface = Surface::new((1, 1), knots(), knots(), corners).unwrap();
+    let speck = Face { id: 999, surface, loops: Vec::new(), ..first.clone() };
+    model.parts[0].faces.push(speck);
+    model
+}
+
+/// Around the model, every third view parallel.
+fn views(model: &Model) -> Vec<Camera> {
+    let view = |k: u32| {
+        let (a, b) = (f64::from(k) * 2.399_963, (f64::from(k) + 0.5) * 2.0 / f64::from(VIEWS) - 1.0);
+        let from = DVec3::new(a.cos() * (1.0 - b * b).sqrt(), a.sin() * (1.0 - b * b).sqrt(), b);
+        let camera = Camera::framing(model.bounds(), from, DVec3::new(0.3, 0.5, 0.7), 0.6, SIZE);
+        let height = model.bounds().diagonal();
+        if k % 3 == 0 { Camera { projection: Projection::Orthographic { height }, ..camera } } else { camera }
+    };
+    (0..VIEWS).map(view).collect()
+}
+
+/// The size of a pixel at the model.
+fn pixel(model: &Model, camera: &Camera) -> f64 {
+    match camera.projection {
+        Projection::Orthographic { height } => height / f64::from(SIZE.1),
+        Projection::Perspective { .. } => model.bounds().diagonal() / f64::from(SIZE.1),
+    }
+}
+
+/// The same face in every pixel, as deep within `slack`: a side that is shared with a patch that is left out may have fewer
+/// segments, and beside a silhouette the point under a pixel depends on them.
+fn assert_same(a: &Picture, b: &Picture, slack: f64, what: &str) {
+    assert!(a.face == b.face, "face {what}");
+    for (i, (a, b)) in a.depth.iter().zip(&b.depth).enumerate() {
+        assert!(a == b || f64::from((a - b).abs()) <= slack, "depth {what}, pixel {i}: {a} and {b}");
+    }
+}
+
+/// Pictures of both in all views; the triangles of the one, and of the other.
+fn same(name: &str, model: &Model, views: &[Camera]) -> [u64; 2] {
+    let (mut closed, mut loose) = (watched(model), watched(&with_a_speck(model)));
+    let mut triangles = [0; 2];
+    for (k, camera) in views.iter().enumerate() {
+        let pictures = [render(&mut closed, camera), render(&mut loose, camera)];
+        assert_same(&pictures[0], &pictures[1], 0.1 * pixel(model, camera), &format!("{name}, view {k}"));
+        triangles = [0, 1].map(|i: usize| triangles[i] + pictures[i].stats.triangles);
+    }
+    [closed, loose].into_iter().for_each(assert_silent);
+    triangles
+}
+
+#[test]
+fn no_picture_shows_it() {
+    let (sphere, torus) = (shapes::sphere(), shapes::torus());
+    let closed = cages::all();
+    let all = [("sphere", &sphere), ("torus", &torus)].into_iter().chain(closed.iter().map(|c| (c.name, &c.model)));
+    let mut shares = Vec::new();
+    for (name, model) in all {
+        let [drawn, others] = same(name, model, &views(model));
+        assert!(drawn <= others, "{name}: {drawn} triangles, {others} with a speck");
+        shares.push((name, drawn as f64 / others as f64));
+    }
+    let fine = |&(name, _): &&(&str, f64)| ["fine", "torus", "triangles"].contains(&name);
+    assert!(shares.iter().filter(fine).all(|&(_, share)| share < 0.8), "shares of the triangles: {shares:?}");
+}
+
+/// Mirrored, stretched and moved.
+#[test]
+fn nor_where_the_part_is_placed_otherwise() {
+    let mut model = cages::a_box().model;
+    let stretched = DAffine3::from_scale(DVec3::new(-1.0, 2.0, 0.5)) * DAffine3::from_rotation_x(0.7);
+    model.instances[0].transform = DAffine3::from_translation(DVec3::new(30.0, -4.0, 9.0)) * stretched;
+    let [drawn, others] = same("a stretched box", &model, &views(&model));
+    assert!(drawn * 10 < others * 9, "{drawn} triangles, {others} with a speck");
+}
+
+/// The inside is seen where the near plane cuts what is before it away, and by an eye that is within.
+#[test]
+fn the_inside_is_seen() {
+    let model = cages::a_box().model;
+    let whole = perspective(&model, SIZE);
+    let middle = (whole.eye - whole.target).length();
+    let cut = Camera { depth_range: (middle, whole.depth_range.1), ..whole };
+    let within = Camera { eye: whole.target, target: whole.target + DVec3::X, depth_range: (0.01, 10.0), ..whole };
+    let [drawn, others] = same("a box from within", &model, &[cut, within]);
+    assert!(drawn <= others && others <= drawn + 4, "{drawn} triangles, {others} with a speck");
+    let from_within = |picture: &Picture| picture.face.iter().filter(|&&id| id != 0).count();
+    let mut renderer = watched(&model);
+    assert!(from_within(&render(&mut renderer, &cut)) > 500);
+    assert_eq!(from_within(&render(&mut renderer, &within)), (SIZE.0 * SIZE.1) as usize);
+    assert_silent(renderer);
+}
+
+/// Parts that say that they are closed, and err.
+#[test]
+fn what_only_says_that_it_is_closed_stays() {
+    let (whole, mut inverted) = (cages::a_box().model, cages::a_box().model);
+    inverted.parts[0].faces.iter_mut().for_each(|face| face.same_sense = !face.same_sense);
+    let (mut one_inverted, mut torn) = (whole.clone(), whole.clone());
+    one_inverted.parts[0].faces[7].same_sense = !one_inverted.parts[0].faces[7].same_sense;
+    torn.parts[0].faces.remove(7);
+    for (name, model) in [("inverted", &inverted), ("one inverted", &one_inverted), ("torn", &torn)] {
+        let [drawn, others] = same(name, model, &views(model));
+        assert!(
+            drawn <= others && others <= drawn + 2 * views(model).len() as u64,
+            "{name}: {drawn}, {others} with a speck"
+        );
+    }
+}
