@@ -1,0 +1,42 @@
+// Of passes that say how finely each patch must be divided: which patches can be seen. The entry point's `factors_of`
+// says what those need. One thread an item.
+#ifndef BOUND_GLSL
+#define BOUND_GLSL
+
+#include "scene.glsl"
+#include "view.glsl"
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
+layout(scalar, binding = 3) readonly buffer FaceInstances { FaceInstance face_instances[]; };
+layout(scalar, binding = 4) readonly buffer Faces { Face faces[]; };
+layout(scalar, binding = 5) readonly buffer Patches { Patch patches[]; };
+layout(scalar, binding = 6) readonly buffer Items { uint item_face_instance[]; };
+layout(scalar, binding = 7) writeonly buffer Taus { uint taus[]; };
+layout(scalar, binding = 8) buffer CountersBuffer { Counters counters; };
+
+// Segments along u and v, whole numbers from 1 on.
+vec2 factors_of(Patch patch_, uint instance, Seen seen);
+
+void main() {
+    uint item = gl_GlobalInvocationID.x;
+    if (item >= frame.item_count) return;
+    FaceInstance fi = face_instances[item_face_instance[item]];
+    Face face = faces[fi.face];
+    Patch patch_ = patches[face.first_patch + item - fi.first_item];
+    taus[item] = 0u;
+    if (side_of(patch_.shape) == SIDE_OUTSIDE) return;
+    View view = views[fi.instance];
+    Seen seen = see(view, frame, patch_.box_min, patch_.box_max, frame.ring_px + 1.0, far_of(face, frame));
+    if (seen.w < 0.0) return;
+    // a ring may reach farther than the box
+    if (side_of(patch_.shape) == SIDE_INSIDE && !covers_a_centre(seen, frame.deviation_px + frame.spread_px)) return;
+    vec2 tau = frame.fixed_factor != 0u ? vec2(frame.fixed_factor) : factors_of(patch_, fi.instance, seen);
+    if (max(tau.x, tau.y) > float(MAX_FACTOR * MAX_SPLIT)) atomicAdd(counters.clamps, 1u);
+    uvec2 t = uvec2(min(tau, vec2(MAX_FACTOR * MAX_SPLIT)));
+    taus[item] = t.x | t.y << 16;
+}
+
+#endif
