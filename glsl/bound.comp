@@ -3,46 +3,10 @@
 #extension GL_GOOGLE_include_directive : require
 // Pass `bound`: which patches can be seen, and how finely each must be divided.
 // One thread an item. Twin: src/twin/bound.rs.
-#include "scene.glsl"
-#include "view.glsl"
-
-// Some closed part has no trims.
-layout(constant_id = 1) const bool SCENE_HAS_CONES = false;
-
-layout(local_size_x = 64) in;
-layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 1) readonly buffer Views { View views[]; };
-layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
-layout(scalar, binding = 3) readonly buffer FaceInstances { FaceInstance face_instances[]; };
-layout(scalar, binding = 4) readonly buffer Faces { Face faces[]; };
-layout(scalar, binding = 5) readonly buffer Patches { Patch patches[]; };
-layout(scalar, binding = 6) readonly buffer Items { uint item_face_instance[]; };
-layout(scalar, binding = 7) writeonly buffer Taus { uint taus[]; };
-layout(scalar, binding = 8) buffer CountersBuffer { Counters counters; };
-layout(scalar, binding = 9) readonly buffer Cones { vec4 cones[]; }; // where SCENE_HAS_CONES
-
-#include "cone.glsl"
+#include "bound.glsl"
 #include "factor.glsl"
 
-void main() {
-    uint item = gl_GlobalInvocationID.x;
-    if (item >= frame.item_count) return;
-    FaceInstance fi = face_instances[item_face_instance[item]];
-    Face face = faces[fi.face];
-    uint index = face.first_patch + item - fi.first_item;
-    Patch patch_ = patches[index];
-    taus[item] = 0u;
-    if (side_of(patch_.shape) == SIDE_OUTSIDE) return;
-    Seen seen = see(views[fi.instance], frame, patch_.box_min, patch_.box_max, frame.ring_px + 1.0, far_of(face, frame));
-    if (seen.w < 0.0) return;
-    // nothing is drawn farther from the box: cut patches have rings
-    float beyond = frame.deviation_px + frame.spread_px + (side_of(patch_.shape) == SIDE_INSIDE ? 0.0 : frame.ring_px);
-    if (!covers_a_centre(seen, beyond)) return;
-    if (SCENE_HAS_CONES && looks_away(views[fi.instance], frame, patch_, cones[index])) return;
-    float pixels = pixels_per_unit(frame, instances[fi.instance], seen);
-    vec2 tau = factors(patch_.bend, 8.0 * frame.deviation_px / pixels);
-    if (frame.fixed_factor != 0u) tau = vec2(frame.fixed_factor);
-    if (max(tau.x, tau.y) > float(MAX_FACTOR * MAX_SPLIT)) atomicAdd(counters.clamps, 1u);
-    uvec2 t = uvec2(min(tau, vec2(MAX_FACTOR * MAX_SPLIT)));
-    taus[item] = t.x | t.y << 16;
+vec2 factors_of(Patch patch_, uint instance, Seen seen) {
+    float pixels = pixels_per_unit(frame, instances[instance], seen);
+    return factors(patch_.bend, 8.0 * frame.deviation_px / pixels);
 }

@@ -4,6 +4,7 @@
 //!   constants      of the frame, or the sun, in a uniform block: a driver fetches its words once for many invocations,
 //!                  where it gathers those of a storage buffer for each
 //!   placed patches views, faces' places, faces, patches, items, points           glsl/include/placed.glsl
+//!   bounded        views, instances, faces' places, faces, patches, items, taus, counters, cones   glsl/include/bound.glsl
 //!   PRIMITIVES     leaves, their sides, surfaces, surfaces' places         glsl/include/solids.glsl, volume.glsl
 //!   SUN_BINDINGS   sun, its tiles, …, PRIMITIVES, leaves' centres, counts  glsl/include/sun.glsl
 //! ```
@@ -43,6 +44,47 @@ impl<'a> Placed<'a> {
     /// In binding order.
     pub(crate) fn resources(&self) -> [Resource<'a>; 6] {
         [self.views, self.face_instances, self.faces, self.patches, self.items, self.points].map(Resource::from)
+    }
+}
+
+/// Of passes that say how finely each patch must be divided.
+#[derive(Clone, Copy)]
+pub(crate) struct Bounded<'a> {
+    pub frame: &'a Buffer,
+    /// Part to pixel, per instance.
+    pub views: &'a Buffer,
+    pub instances: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub patches: &'a Buffer,
+    /// Face instance of each item.
+    pub items: &'a Buffer,
+    /// `tau_u | tau_v << 16` per item; written.
+    pub taus: &'a Buffer,
+    /// `clamps`; written.
+    pub counters: &'a Buffer,
+    /// Of each patch's normals, where some closed part has no trims.
+    pub cones: Option<&'a Buffer>,
+}
+
+impl<'a> Bounded<'a> {
+    /// How many there are.
+    pub(crate) const COUNT: usize = 10;
+    /// Threads of a workgroup, as in the shader.
+    pub(crate) const GROUP: u32 = 64;
+
+    /// `constant_id` of `SCENE_HAS_CONES`, and its value.
+    pub(crate) fn constants(cones: bool) -> [(u32, u32); 1] {
+        [(1, u32::from(cones))]
+    }
+
+    /// In binding order.
+    pub(crate) fn resources(&self) -> [Resource<'a>; 10] {
+        let cones = self.cones.unwrap_or(self.frame); // not read then
+        let placed = [self.views, self.instances, self.face_instances, self.faces, self.patches, self.items];
+        let [views, instances, face_instances, faces, patches, items] = placed.map(Resource::from);
+        let [frame, taus, counters, cones] = [self.frame, self.taus, self.counters, cones].map(Resource::from);
+        [frame, views, instances, face_instances, faces, patches, items, taus, counters, cones]
     }
 }
 

@@ -44,9 +44,10 @@ use crate::gpu::{
 use crate::passes::coverage::Coverage;
 use crate::passes::seen_squares::SeenSquares;
 use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
-use crate::passes::{bound, emit, mesh, reset, resolve, scan, split, visibility};
+use crate::passes::{emit, mesh, reset, resolve, scan, split, visibility};
 use crate::picture::TrimWay;
 use crate::scene::{MeshBuffers, Scene, SceneData, SolidData};
+use divide::DividePass;
 use hidden::HiddenPasses;
 use layers::{Drawing, LayerPasses};
 use samples::{SamplePasses, Scopes};
@@ -57,6 +58,7 @@ use trim::{TrimParts, TrimPasses};
 mod bands;
 mod blister;
 mod coverage;
+mod divide;
 mod edit;
 mod heal;
 mod hidden;
@@ -99,7 +101,7 @@ pub(crate) struct Passes {
 
 /// Those that say how finely each patch is drawn.
 struct TessellationPasses {
-    bound: bound::Bound,
+    divide: DividePass,
     split: split::Split,
     emit: emit::Emit,
 }
@@ -119,7 +121,7 @@ impl Passes {
         };
         let tessellation = |()| {
             Ok(TessellationPasses {
-                bound: bound::Bound::new(device, !data.cones.is_empty())?,
+                divide: DividePass::new(device, data)?,
                 split: split::Split::new(device, !data.links.is_empty())?,
                 emit: emit::Emit::new(device)?,
             })
@@ -342,26 +344,12 @@ impl Frame<'_> {
     }
 
     fn tessellation(&self, cmd: &Commands<'_>, p: &TessellationPasses) {
-        let (s, b) = (self.scene, self.buffers);
-        let items = b.counts.items;
         let (w, r) = WRITE_TO_READ;
-        let bound = bound::Bindings {
-            frame: self.constants,
-            views: self.views,
-            instances: &s.instances,
-            face_instances: &s.face_instances,
-            faces: &s.faces,
-            patches: &s.patches,
-            items: &s.items,
-            taus: &b.taus,
-            counters: &b.counters,
-            cones: s.cones.as_ref(),
-        };
-        p.bound.record(cmd, &bound, items);
+        p.divide.record(self, cmd);
         if let Some(parts) = self.hidden() {
             parts.hide(self, cmd);
         }
-        barrier::buffers(cmd, &[(&b.taus, w, r)]);
+        barrier::buffers(cmd, &[(&self.buffers.taus, w, r)]);
         self.divide(cmd, p);
     }
 

@@ -261,6 +261,10 @@ pub struct SceneSettings {
     /// How to trim; `None` takes [`TrimWay::Table`], which was the faster one wherever both were measured:
     /// `docs/trimming.md`.
     pub trim: Option<TrimWay>,
+    /// Patches are divided by slefes of so many segments, 1 to 9, where [`FrameSettings::levels`] says
+    /// [`Levels::Bound`]: see [`crate::rivals::factors`]. The promise is *not* kept; for comparisons.
+    #[cfg(feature = "rivals")]
+    pub slefe_segments: Option<usize>,
     /// How to draw Boolean solids.
     pub solids: SolidWay,
     /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover or grow into.

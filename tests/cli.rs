@@ -283,16 +283,17 @@ fn sweeps_measure_what_they_are_asked() {
         assert_eq!(output.status.code(), Some(0), "{more:?}: {}", text(&output.stderr));
         text(&output.stdout)
     };
-    let told = done(&["--degrees", "2", "--factors", "bound,8", "--rate", "--out", &file]);
+    let told = done(&["--degrees", "2", "--factors", "bound,slefe,8", "--rate", "--out", &file]);
     let mut table = csv::Reader::from_path(&out).unwrap();
     let rows: Vec<std::collections::HashMap<String, String>> = table.deserialize().map(Result::unwrap).collect();
     std::fs::remove_file(&out).unwrap();
     let column = |name: &str| rows.iter().map(|row| row[name].as_str()).collect::<Vec<_>>();
-    assert_eq!(column("model"), ["bracket", "bracket", "degree 2", "degree 2"]);
-    assert_eq!(column("factors"), ["bound", "8", "bound", "8"]);
+    assert_eq!(column("model"), [["bracket"; 3], ["degree 2"; 3]].concat());
+    assert_eq!(column("factors"), ["bound", "slefe", "8"].repeat(2));
     // 32 by 32 spans of a face, cut into patches at the middles too
-    assert_eq!(column("patches")[2..], ["4096", "4096"]);
-    assert_eq!((column("wrong"), column("clamps")), (vec!["0"; 4], vec!["0"; 4]));
+    assert_eq!(column("patches")[3..], ["4096"; 3]);
+    assert_eq!((column("wrong"), column("clamps")), (vec!["0"; 6], vec!["0"; 6]));
+    assert!(column("deviation_px").iter().all(|px| (0.0..0.5).contains(&px.parse::<f64>().unwrap())), "{rows:?}");
     // two triangles for each of 8 by 8 cells of each sub-patch that may be seen
     for row in rows.iter().filter(|row| row["factors"] == "8") {
         let count = |name: &str| row[name].parse::<u64>().unwrap();
@@ -305,6 +306,8 @@ fn sweeps_measure_what_they_are_asked() {
     assert_eq!(levels.len(), 3, "a row a view and one for all: {told}");
     refused(&["sweep", sample, "--against-fixed", "--out", &file], "cannot be used with");
     refused(&["sweep", sample, "--against-fixed", "--factors", "8"], "cannot be used with");
+    refused(&["sweep", sample, "--factors", "slefe10"], "1 to 9 segments");
+    refused(&["check", sample, "--factors", "slefe"], "a level from 1 to 64");
 }
 
 /// Width, height and a pixel of a picture.

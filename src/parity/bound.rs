@@ -5,8 +5,9 @@ use super::harness::{Gpu, Mismatch, SceneBuffers, halves, same};
 use super::shapes::cases;
 use super::{Case, cages};
 use crate::abi::{Counters, FACE_SAME_SENSE};
+use crate::bindings::Bounded;
 use crate::model::{Camera, Projection};
-use crate::passes::bound::{Bindings, Bound};
+use crate::passes::bound::Bound;
 use crate::spline::Patch;
 use crate::twin;
 use glam::{DAffine3, DVec3, DVec4};
@@ -18,7 +19,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
     let counters = gpu.upload("counters", &[Counters::default()]);
     let cones = (!given.data.cones.is_empty()).then(|| gpu.upload("cones", &given.data.cones));
     let pass = Bound::new(gpu.device(), !given.data.cones.is_empty()).unwrap();
-    let bindings = Bindings {
+    let bindings = Bounded {
         frame: &s.frame,
         views: &s.views,
         instances: &s.instances,
@@ -65,7 +66,7 @@ fn seamless() -> Vec<(Camera, Case)> {
         let from = DVec3::new(a.cos(), a.sin(), b);
         let camera = Camera::framing(model.bounds(), from, DVec3::Z, 0.6, (480, 360));
         let parallel = Camera { projection: Projection::Orthographic { height: 12.0 }, ..camera };
-        let camera = if k % 3 == 0 { parallel } else { camera };
+        let camera = if k.is_multiple_of(3) { parallel } else { camera };
         (camera, Case::new(&model, &camera, 0.5))
     };
     (0..12).map(case).collect()

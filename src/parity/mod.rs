@@ -44,6 +44,8 @@ mod lines;
 mod operand_sort;
 #[cfg(feature = "headless")]
 mod reset;
+#[cfg(all(feature = "headless", feature = "rivals"))]
+mod rival_slefe;
 #[cfg(feature = "headless")]
 mod segments;
 #[cfg(feature = "headless")]

@@ -22,6 +22,8 @@ pub(crate) mod reset;
 pub(crate) mod resolve;
 pub(crate) mod reveal;
 #[cfg(feature = "rivals")]
+pub(crate) mod rival_slefe;
+#[cfg(feature = "rivals")]
 pub(crate) mod rival_texture;
 pub mod scan;
 pub(crate) mod seen_squares;

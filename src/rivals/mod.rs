@@ -12,7 +12,8 @@
 //!
 //! Each is written as its source says, and tuned where that leaves room, so that a comparison is worth
 //! something. What ways to trim need on the GPU hangs on the same seam as the engine's own
-//! ([`TrimWay::Rival`](crate::picture::TrimWay)), behind the feature `rivals`.
+//! ([`TrimWay::Rival`](crate::picture::TrimWay)), behind the feature `rivals`. One way to divide is there, too:
+//! [`SceneSettings::slefe_segments`](crate::picture::SceneSettings::slefe_segments).
 
 pub mod bisect;
 pub mod factors;

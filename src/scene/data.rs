@@ -21,6 +21,17 @@ use std::ops::Range;
 /// Patches below which it is not worth while to ask which of them lie behind others.
 const FEWEST_HIDDEN: usize = 64;
 
+/// What says how finely patches are divided.
+#[derive(Clone, Debug, Default)]
+pub(crate) enum Division {
+    /// Bounds on their derivatives.
+    #[default]
+    Bound,
+    /// Slefes, and the table that the pass reads: `rivals::slefe::words`.
+    #[cfg(feature = "rivals")]
+    Slefe(Vec<u32>),
+}
+
 /// The arrays that the GPU gets; see `glsl/include/scene.glsl` for how they refer to each other.
 #[derive(Clone, Debug, Default)]
 pub(crate) struct SceneData {
@@ -59,6 +70,7 @@ pub(crate) struct SceneData {
     /// Of the scene's faces, where they are bisected.
     #[cfg(feature = "rivals")]
     pub bisect: crate::rivals::bisect::Bisect,
+    pub division: Division,
     /// How faces would be trimmed.
     way: Option<TrimWay>,
     /// Of each pixel.
@@ -149,6 +161,10 @@ impl SceneData {
             edit,
             ..Self::default()
         };
+        #[cfg(feature = "rivals")]
+        if let Some(segments) = settings.slefe_segments {
+            data.division = Division::Slefe(crate::rivals::slefe::words(segments));
+        }
         // cut open, a part has no inside
         let open = data.volume.is_some();
         let mut used = vec![false; model.parts.len()];

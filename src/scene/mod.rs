@@ -28,7 +28,7 @@ mod sun;
 mod upload;
 
 pub use closeup::CloseUp;
-pub(crate) use data::{SceneData, focal_and_slant, view};
+pub(crate) use data::{Division, SceneData, focal_and_slant, view};
 pub use edit::EditError;
 pub(crate) use edit::{EditTarget, Write};
 #[cfg(test)]

@@ -1,5 +1,7 @@
 //! The scene's persistent buffers: only those that its model needs.
 
+#[cfg(feature = "rivals")]
+use super::Division;
 use super::solids::Surface;
 use super::{Blister, SceneData, SolidData};
 use crate::bindings::{Placed, Primitives};
@@ -26,6 +28,9 @@ pub(crate) struct Scene {
     pub face_instances: Texels,
     pub instances: Texels,
     pub items: Texels,
+    /// What divides patches in place of the bound; `None` where that does.
+    #[cfg(feature = "rivals")]
+    pub slefes: Option<Buffer>,
     /// What trimming needs; `None` when no patch is trimmed.
     pub trims: Option<Trims>,
     /// Boolean solids; `None` when there are none.
@@ -187,6 +192,11 @@ impl Scene {
             face_instances: read_both(&mut uploads, cmd, "face instances", &data.face_instances, Texel::U32x2)?,
             instances: read_both(&mut uploads, cmd, "instances", &data.instances, Texel::Words)?,
             items: read_both(&mut uploads, cmd, "items", &data.items, Texel::Words)?,
+            #[cfg(feature = "rivals")]
+            slefes: match &data.division {
+                Division::Bound => None,
+                Division::Slefe(table) => Some(persistent(&mut uploads, cmd, "slefes", table)?),
+            },
             trims: match data.trim_way() {
                 None => None,
                 Some(TrimWay::Table) => Some(Trims::Table(Box::new(table_scene(&mut uploads, cmd, data)?))),

@@ -10,6 +10,8 @@ use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings,
 /// Its buffers grow with the view.
 const BY_TABLE: SceneSettings = SceneSettings {
     trim: Some(TrimWay::Table),
+    #[cfg(feature = "rivals")]
+    slefe_segments: None,
     solids: SolidWay::Events,
     editable: false,
     samples: Samples::One,

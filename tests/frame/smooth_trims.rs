@@ -21,6 +21,8 @@ const SMOOTH: SceneSettings = SceneSettings { smooth_trims: true, ..plain() };
 const fn plain() -> SceneSettings {
     SceneSettings {
         trim: Some(TrimWay::Exact),
+        #[cfg(feature = "rivals")]
+        slefe_segments: None,
         solids: selvedge::picture::SolidWay::Events,
         editable: false,
         samples: Samples::One,

@@ -34,7 +34,7 @@ fn views(model: &Model) -> Vec<Camera> {
         let from = DVec3::new(a.cos() * (1.0 - b * b).sqrt(), a.sin() * (1.0 - b * b).sqrt(), b);
         let camera = Camera::framing(model.bounds(), from, DVec3::new(0.3, 0.5, 0.7), 0.6, SIZE);
         let height = model.bounds().diagonal();
-        if k % 3 == 0 { Camera { projection: Projection::Orthographic { height }, ..camera } } else { camera }
+        if k.is_multiple_of(3) { Camera { projection: Projection::Orthographic { height }, ..camera } } else { camera }
     };
     (0..VIEWS).map(view).collect()
 }
@@ -80,7 +80,7 @@ fn no_picture_shows_it() {
         assert!(drawn <= others, "{name}: {drawn} triangles, {others} with a speck");
         shares.push((name, drawn as f64 / others as f64));
     }
-    let fine = |&(name, _): &&(&str, f64)| ["fine", "torus", "triangles"].contains(&name);
+    let fine = |&(name, _): &&(&str, f64)| ["fine", "torus", "triangles"].contains(name);
     assert!(shares.iter().filter(fine).all(|&(_, share)| share < 0.8), "shares of the triangles: {shares:?}");
 }
 

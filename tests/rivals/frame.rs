@@ -27,10 +27,14 @@ fn panel() -> Model {
 }
 
 fn watched(model: &Model, trim: Option<TrimWay>) -> HeadlessRenderer {
+    watched_with(model, SceneSettings { trim, ..SceneSettings::default() })
+}
+
+fn watched_with(model: &Model, settings: SceneSettings) -> HeadlessRenderer {
     let options = HeadlessOptions { device: None, validation: true };
     let mut renderer =
         HeadlessRenderer::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"));
-    renderer.upload_with(model, SceneSettings { trim, ..SceneSettings::default() }).unwrap();
+    renderer.upload_with(model, settings).unwrap();
     renderer
 }
 
@@ -153,4 +157,27 @@ fn a_texture_beyond_the_device_is_told_and_the_next_view_drawn() {
     // single precision rounds sizes up or down by a texel
     assert!((counted / words - 1.0).abs() < 0.01, "{counted} words instead of {words}");
     assert!(renderer.shutdown().is_empty());
+}
+
+/// Slefes divide patches in place of the bound, which such a scene does not have, and otherwise than it would.
+#[test]
+fn slefes_make_a_picture() {
+    let model = panel();
+    let camera = camera(&model);
+    let tracer = Tracer::new(&model);
+    let drawn = [None, Some(3), Some(9)].map(|slefe_segments| {
+        let mut renderer = watched_with(&model, SceneSettings { slefe_segments, ..SceneSettings::default() });
+        let picture = renderer.render(&camera, &FrameSettings::default(), Outputs::ALL).unwrap();
+        let has = |name: &str| renderer.objects().iter().any(|object| object == name);
+        let expected = [slefe_segments.is_none(), slefe_segments.is_some(), slefe_segments.is_some()];
+        assert_eq!(["bound", "rival slefe", "slefes"].map(has), expected, "{:?}", renderer.objects());
+        let messages = renderer.shutdown();
+        assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
+        let covered = picture.face.iter().filter(|face| **face != 0).count();
+        let j = judge(&tracer, &camera, &picture, &JudgeOptions::default());
+        // no promise, but a picture of the model
+        assert!(covered > 10_000 && 100 * j.wrong < j.sampled, "{covered} covered, {} of {} wrong", j.wrong, j.sampled);
+        picture.stats.triangles
+    });
+    assert!(drawn[0] != drawn[1] && drawn[1] != drawn[2], "{drawn:?}");
 }

@@ -1,6 +1,7 @@
 //! What the command line accepts, checked before anything is opened.
 
 use crate::cut::CutArgs;
+use crate::sweep::Divided;
 use crate::trims::Way;
 use crate::values::{at_least_one, direction, length, mebibytes, times, tolerance, vector, zoom};
 use clap::{Args, Parser, Subcommand, ValueEnum};
@@ -194,9 +195,10 @@ pub struct SweepArgs {
     /// Also a wavy sheet of 1024 patches of each of these degrees
     #[arg(long, value_name = "LIST", value_parser = clap::value_parser!(u8).range(1..=9), value_delimiter = ',')]
     pub degrees: Vec<u8>,
-    /// How patches are divided: bound, or a level from 1 to 64; several, with commas
+    /// How patches are divided: bound, a level from 1 to 64, or slefe: by slefes of 3 segments, or as many as stand
+    /// behind it, up to slefe9; several, with commas
     #[arg(long, value_name = "LIST", value_delimiter = ',', default_value = "bound")]
-    pub factors: Vec<Factors>,
+    pub factors: Vec<Divided>,
     /// Tolerances in pixels
     #[arg(long, value_name = "LIST", value_parser = tolerance, value_delimiter = ',', default_value = "0.5")]
     pub tolerances: Vec<f64>,

@@ -1,19 +1,21 @@
-//! `selvedge sweep`: speed against error, over tolerances, sizes, levels, zooms and numbers of copies.
+//! `selvedge sweep`: speed against error, over tolerances, sizes, ways to divide, zooms and numbers of copies.
 //!
 //! ```text
 //!   model ─▶ copies ─▶ zoom ─▶ size ─▶ { every way and tolerance, in turn, frame by frame } ─▶ a row each
 //! ```
 //!
 //! What stands in one group of rows was measured in turn, so that whatever else the machine does slows all of it
-//! alike; their ratios mean something where times do not. In the end, how time grows (`growth`), with `--rate` triangles a
-//! second beside those of a plain grid (`rate`); or, with `--against-fixed`, another table (`against`).
+//! alike; their ratios mean something where times do not. Slefes have renderers of their own: they belong to the scene.
+//! In the end, how time grows (`growth`), with `--rate` triangles a second beside those of a plain grid (`rate`); or,
+//! with `--against-fixed`, another table (`against`).
 
 mod against;
+mod divided;
 mod growth;
 mod rate;
 mod sheet;
 
-use crate::args::{Factors, Size, SubdivideArgs, SweepArgs};
+use crate::args::{Size, SubdivideArgs, SweepArgs};
 use crate::camera::closer;
 use crate::progress::during;
 use crate::{Outcome, output, session, verdict};
@@ -21,9 +23,13 @@ use anyhow::{Result, bail};
 use glam::{DAffine3, DVec3};
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Model};
-use selvedge::picture::{FrameSettings, FrameStats, Outputs};
+use selvedge::picture::{FrameSettings, FrameStats, Outputs, SceneSettings};
 use selvedge::reference::Tracer;
+use selvedge::rivals::factors::Seen;
 use serde::Serialize;
+use std::collections::{BTreeMap, BTreeSet};
+
+pub use divided::Divided;
 
 const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
 const FOV_DEG: f64 = 35.0;
@@ -55,8 +61,15 @@ struct Row {
     judged: u64,
     wrong: u64,
     worst_shift_px: f64,
+    /// The largest distance between triangles and surface over all patches that may be in the picture, computed, of
+    /// the model as it was loaded; infinite where one is clamped, not a number where nothing is judged and in models
+    /// with solids or things to see through.
+    deviation_px: f64,
     clamps: u64,
 }
+
+/// A renderer for each scene, by the segments of its slefes.
+type Renderers = BTreeMap<Option<usize>, HeadlessRenderer>;
 
 /// Sweeps every model.
 pub fn run(args: &SweepArgs) -> Result<Outcome> {
@@ -69,14 +82,13 @@ pub fn run(args: &SweepArgs) -> Result<Outcome> {
     for (name, model) in &models {
         for &copies in &args.copies {
             let model = copied(model, copies, args.distinct);
-            let mut renderer = renderer(args)?;
-            during("uploading the model", || renderer.upload(&model))?;
+            let mut renderers = during("uploading the model", || renderers(args, &model))?;
             let tracer = (args.samples > 0).then(|| Tracer::new(&model));
             for &zoom in &args.zooms {
                 for &Size(width, height) in &args.sizes {
                     let camera = camera(&model, zoom, (width, height));
-                    let mut group = Group { name, copies, zoom, camera, tracer: tracer.as_ref() };
-                    let measured = during("measuring", || group.measure(args, &mut renderer, &mut device))?;
+                    let group = Group { name, model: &model, copies, zoom, camera, tracer: tracer.as_ref() };
+                    let measured = during("measuring", || group.measure(args, &mut renderers, &mut device))?;
                     rows.extend(measured);
                 }
             }
@@ -115,6 +127,17 @@ fn renderer(args: &SweepArgs) -> Result<HeadlessRenderer> {
     Ok(HeadlessRenderer::new(&HeadlessOptions { device: args.device.clone(), validation: false })?)
 }
 
+/// With the model in as many scenes as the ways to divide ask for.
+fn renderers(args: &SweepArgs, model: &Model) -> Result<Renderers> {
+    let scenes: BTreeSet<_> = args.factors.iter().map(|divided| divided.slefe_segments()).collect();
+    let uploaded = |slefe_segments| {
+        let mut renderer = renderer(args)?;
+        renderer.upload_with(model, SceneSettings { slefe_segments, ..SceneSettings::default() })?;
+        Ok((slefe_segments, renderer))
+    };
+    scenes.into_iter().map(uploaded).collect()
+}
+
 /// In a cube of copies, a tenth of the model apart.
 fn copied(model: &Model, copies: usize, distinct: bool) -> Model {
     let bounds = model.bounds();
@@ -148,6 +171,7 @@ fn camera(model: &Model, zoom: f64, size: (u32, u32)) -> Camera {
 /// What is measured in turn.
 struct Group<'a> {
     name: &'a str,
+    model: &'a Model,
     copies: usize,
     zoom: f64,
     camera: Camera,
@@ -155,27 +179,32 @@ struct Group<'a> {
 }
 
 impl Group<'_> {
-    fn measure(&mut self, args: &SweepArgs, renderer: &mut HeadlessRenderer, device: &mut String) -> Result<Vec<Row>> {
+    fn measure(&self, args: &SweepArgs, renderers: &mut Renderers, device: &mut String) -> Result<Vec<Row>> {
         let ways = args.factors.iter().flat_map(|f| args.tolerances.iter().map(move |t| (*f, *t)));
-        let ways: Vec<(Factors, f64)> = ways.collect();
-        let settings = |(factors, tolerance_px): (Factors, f64)| FrameSettings {
+        let ways: Vec<(Divided, f64)> = ways.collect();
+        let settings = |(factors, tolerance_px): (Divided, f64)| FrameSettings {
             tolerance_px,
-            levels: factors.0,
+            levels: factors.levels(),
             all_passes: true,
             ..FrameSettings::default()
+        };
+        let mut draw = |way: &(Divided, f64), outputs| {
+            let renderer = renderers.get_mut(&way.0.slefe_segments()).expect("one for each way");
+            renderer.render(&self.camera, &settings(*way), outputs)
         };
         let mut frames: Vec<Vec<FrameStats>> = vec![Vec::new(); ways.len()];
         for frame in 0..WARM_UP_FRAMES + args.frames {
             for (way, stats) in ways.iter().zip(&mut frames) {
-                let picture = renderer.render(&self.camera, &settings(*way), Outputs::default())?;
+                let picture = draw(way, Outputs::default())?;
                 if frame >= WARM_UP_FRAMES {
                     stats.push(picture.stats);
                 }
             }
         }
+        let seen = self.seen(args);
         let mut rows = Vec::new();
-        for (way, stats) in ways.iter().zip(&frames) {
-            let picture = renderer.render(&self.camera, &settings(*way), Outputs::ALL)?;
+        for (i, (way, stats)) in ways.iter().zip(&frames).enumerate() {
+            let picture = draw(way, Outputs::ALL)?;
             let judged = self
                 .tracer
                 .map(|t| verdict::of(t, &self.camera, &picture, args.samples, way.1, self.zoom, &way.0.to_string()));
@@ -204,10 +233,18 @@ impl Group<'_> {
                 judged: judged.as_ref().map_or(0, |j| j.sampled),
                 wrong: judged.as_ref().map_or(0, verdict::wrong),
                 worst_shift_px: judged.as_ref().map_or(f64::NAN, verdict::worst_shift_px),
+                deviation_px: seen.get(i % args.tolerances.len()).map_or(f64::NAN, |s| s.deviation_px(way.0.way())),
                 clamps: last.clamps,
             });
         }
         Ok(rows)
+    }
+
+    /// The patches at each tolerance, where they are judged and every patch is that of a face as it stands.
+    fn seen(&self, args: &SweepArgs) -> Vec<Seen> {
+        let plain = self.model.solids.is_empty() && self.model.is_opaque();
+        let tolerances = args.tolerances.iter().filter(|_| self.tracer.is_some() && plain);
+        tolerances.map(|t| Seen::new(self.model, &self.camera, *t)).collect()
     }
 }
 
@@ -242,6 +279,7 @@ fn table(rows: &[Row]) -> String {
         "judged",
         "wrong",
         "worst px",
+        "deviation, px",
     ]);
     for r in rows {
         table.add_row([
@@ -262,6 +300,7 @@ fn table(rows: &[Row]) -> String {
             r.judged.to_string(),
             r.wrong.to_string(),
             format!("{:.3}", r.worst_shift_px),
+            format!("{:.4}", r.deviation_px),
         ]);
     }
     table.to_string()

@@ -44,7 +44,7 @@ pub enum Way {
         /// Pieces along a side.
         cuts: usize,
     },
-    /// Projected slefe boxes.
+    /// Projected slefe boxes. On the GPU: pass `rival_slefe`.
     Ipass {
         /// Of the slefe.
         segments: usize,
@@ -173,11 +173,12 @@ fn homogeneous(patch: &Patch, trial: &Trial, by: &impl Enclose) -> [f64; 2] {
     factors(bend.map(|b: f64| b as f32), (8.0 * w) as f32).map(f64::from)
 }
 
-/// `m sqrt(e / tolerance)`, `e` the largest extent in pixels of a slefe box; weights are ignored.
-fn ipass(trial: &Trial, segments: usize) -> f64 {
-    let patch = &trial.patch;
+/// `m sqrt(e / tolerance)`, `e` the largest extent in pixels of a slefe box; weights are ignored. Infinite where there
+/// is no answer: above the table's degrees, and where a box reaches the near plane.
+pub(crate) fn ipass(trial: &Trial, segments: usize) -> f64 {
+    let (patch, frame) = (&trial.patch, &trial.frame);
     if patch.degree_u.max(patch.degree_v) > MOST_DEGREE {
-        return f64::NAN;
+        return f64::INFINITY;
     }
     let (rows, columns) = (Slefe::new(patch.degree_u, segments), Slefe::new(patch.degree_v, segments));
     let boxes: [Enclosure; 3] = std::array::from_fn(|axis| {
@@ -187,15 +188,18 @@ fn ipass(trial: &Trial, segments: usize) -> f64 {
     for i in 0..boxes[0].lower.len() {
         let corner = |c: usize| {
             let at = |axis: usize| if c >> axis & 1 == 0 { boxes[axis].lower[i] } else { boxes[axis].upper[i] };
-            let q = trial.to_pixels * DVec4::new(at(0), at(1), at(2), 1.0);
-            DVec2::new(q.x, q.y) / q.w
+            trial.to_pixels * DVec4::new(at(0), at(1), at(2), 1.0)
         };
-        let corners: [DVec2; 8] = std::array::from_fn(corner);
+        let corners: [DVec4; 8] = std::array::from_fn(corner);
+        if frame.perspective != 0 && corners.iter().any(|q| q.w <= f64::from(frame.near)) {
+            return f64::INFINITY;
+        }
+        let corners = corners.map(|q| DVec2::new(q.x, q.y) / q.w);
         let span = |of: fn(DVec2) -> f64| {
             let all = corners.map(of);
             all.iter().fold(f64::NEG_INFINITY, |m, x| m.max(*x)) - all.iter().fold(f64::INFINITY, |m, x| m.min(*x))
         };
         widest = widest.max(span(|p| p.x)).max(span(|p| p.y));
     }
-    (segments as f64 * (widest / f64::from(trial.frame.deviation_px)).sqrt()).max(1.0)
+    (segments as f64 * (widest / f64::from(frame.deviation_px)).sqrt()).max(1.0)
 }

@@ -33,6 +33,9 @@ pub const MOST_DEGREE: usize = 9;
 /// Segments in the table.
 pub const MOST_SEGMENTS: usize = 9;
 
+/// Segments where nobody asks for others.
+pub const USUAL_SEGMENTS: usize = 3;
+
 /// The table as it is stored: a line `n m j` and the `m + 1` values of `L_j`, for `j <= n / 2`; the others are
 /// mirrored.
 pub const TABLE: &str = include_str!("table.txt");
@@ -76,6 +79,17 @@ pub fn value(coefficients: &[f64], t: f64) -> f64 {
         (0..last).for_each(|i| c[i] += (c[i + 1] - c[i]) * t);
     }
     c[0]
+}
+
+/// The table as shaders read it: `segments`, then `U_j` and `L_j` in turn at the break points, `j` after `j`, degree
+/// after degree from 2 to [`MOST_DEGREE`], in single precision.
+///
+/// # Panics
+/// Without 1 to [`MOST_SEGMENTS`] segments.
+pub(crate) fn words(segments: usize) -> Vec<u32> {
+    let bounds = (2..=MOST_DEGREE).flat_map(|degree| Slefe::new(degree, segments).bounds);
+    let pairs = bounds.flat_map(|(upper, lower)| upper.into_iter().zip(lower)).flat_map(|(u, l)| [u, l]);
+    std::iter::once(segments as u32).chain(pairs.map(|x| (x as f32).to_bits())).collect()
 }
 
 impl Slefe {

@@ -1,0 +1,51 @@
+// Of passes that say how finely each patch must be divided: which patches can be seen. The entry point's `factors_of`
+// says what those need. One thread an item.
+#ifndef BOUND_GLSL
+#define BOUND_GLSL
+
+#include "scene.glsl"
+#include "view.glsl"
+
+// Some closed part has no trims.
+layout(constant_id = 1) const bool SCENE_HAS_CONES = false;
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
+layout(scalar, binding = 3) readonly buffer FaceInstances { FaceInstance face_instances[]; };
+layout(scalar, binding = 4) readonly buffer Faces { Face faces[]; };
+layout(scalar, binding = 5) readonly buffer Patches { Patch patches[]; };
+layout(scalar, binding = 6) readonly buffer Items { uint item_face_instance[]; };
+layout(scalar, binding = 7) writeonly buffer Taus { uint taus[]; };
+layout(scalar, binding = 8) buffer CountersBuffer { Counters counters; };
+layout(scalar, binding = 9) readonly buffer Cones { vec4 cones[]; }; // where SCENE_HAS_CONES
+
+#include "cone.glsl"
+
+// Segments along u and v, whole numbers from 1 on.
+vec2 factors_of(Patch patch_, uint instance, Seen seen);
+
+void main() {
+    uint item = gl_GlobalInvocationID.x;
+    if (item >= frame.item_count) return;
+    FaceInstance fi = face_instances[item_face_instance[item]];
+    Face face = faces[fi.face];
+    uint index = face.first_patch + item - fi.first_item;
+    Patch patch_ = patches[index];
+    taus[item] = 0u;
+    if (side_of(patch_.shape) == SIDE_OUTSIDE) return;
+    View view = views[fi.instance];
+    Seen seen = see(view, frame, patch_.box_min, patch_.box_max, frame.ring_px + 1.0, far_of(face, frame));
+    if (seen.w < 0.0) return;
+    // nothing is drawn farther from the box: cut patches have rings
+    float beyond = frame.deviation_px + frame.spread_px + (side_of(patch_.shape) == SIDE_INSIDE ? 0.0 : frame.ring_px);
+    if (!covers_a_centre(seen, beyond)) return;
+    if (SCENE_HAS_CONES && looks_away(view, frame, patch_, cones[index])) return;
+    vec2 tau = frame.fixed_factor != 0u ? vec2(frame.fixed_factor) : factors_of(patch_, fi.instance, seen);
+    if (max(tau.x, tau.y) > float(MAX_FACTOR * MAX_SPLIT)) atomicAdd(counters.clamps, 1u);
+    uvec2 t = uvec2(min(tau, vec2(MAX_FACTOR * MAX_SPLIT)));
+    taus[item] = t.x | t.y << 16;
+}
+
+#endif

@@ -1,0 +1,53 @@
+//! The frame's part that says how finely patches are divided: pass `bound`, or one to compare with in its place.
+
+use super::Frame;
+use crate::bindings::Bounded;
+use crate::gpu::{Commands, Device, GpuError};
+use crate::passes::bound;
+#[cfg(feature = "rivals")]
+use crate::passes::rival_slefe;
+use crate::scene::{Division, SceneData};
+
+/// The pass of a scene.
+pub(super) enum DividePass {
+    Bound(bound::Bound),
+    #[cfg(feature = "rivals")]
+    Slefe(rival_slefe::RivalSlefe),
+}
+
+impl DividePass {
+    pub(super) fn new(device: &Device, data: &SceneData) -> Result<Self, GpuError> {
+        let cones = !data.cones.is_empty();
+        Ok(match data.division {
+            Division::Bound => Self::Bound(bound::Bound::new(device, cones)?),
+            #[cfg(feature = "rivals")]
+            Division::Slefe(_) => Self::Slefe(rival_slefe::RivalSlefe::new(device, cones)?),
+        })
+    }
+
+    /// Writes `taus`, and counts clamps.
+    pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        let (s, b) = (frame.scene, frame.buffers);
+        let bounded = Bounded {
+            frame: frame.constants,
+            views: frame.views,
+            instances: &s.instances,
+            face_instances: &s.face_instances,
+            faces: &s.faces,
+            patches: &s.patches,
+            items: &s.items,
+            taus: &b.taus,
+            counters: &b.counters,
+            cones: s.cones.as_ref(),
+        };
+        match self {
+            Self::Bound(pass) => pass.record(cmd, &bounded, b.counts.items),
+            #[cfg(feature = "rivals")]
+            Self::Slefe(pass) => {
+                let Some(slefes) = &s.slefes else { unreachable!("made with the pass") };
+                let bindings = rival_slefe::Bindings { bounded, points: &s.points, slefes };
+                pass.record(cmd, &bindings, b.counts.items);
+            }
+        }
+    }
+}
