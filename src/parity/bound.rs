@@ -8,9 +8,8 @@ use crate::abi::{Counters, FACE_SAME_SENSE};
 use crate::bindings::Bounded;
 use crate::model::{Camera, Projection};
 use crate::passes::bound::Bound;
-use crate::spline::Patch;
 use crate::twin;
-use glam::{DAffine3, DVec3, DVec4};
+use glam::{DAffine3, DVec3};
 
 fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
     let count = given.data.items.len();
@@ -78,10 +77,7 @@ fn faces_away(case: &Case, camera: &Camera, item: usize) -> bool {
     let placed = data.face_instances[data.items[item] as usize];
     let face = data.faces[placed.face as usize];
     let packed = &data.patches[face.first_patch as usize + item - placed.first_item as usize];
-    let (n, k) = packed.degrees();
-    let first = packed.first as usize;
-    let points = data.points[first..first + (n + 1) * (k + 1)].iter().map(|p| DVec4::from(p.map(f64::from)));
-    let patch = Patch { degree_u: n, degree_v: k, points: points.collect() };
+    let patch = case.patch(packed);
     let to_model = data.placements[placed.instance as usize];
     let outward = if face.flags & FACE_SAME_SENSE != 0 { 1.0 } else { -1.0 } * to_model.matrix3.determinant().signum();
     (0..169).all(|c| {

@@ -16,7 +16,7 @@ use crate::trim::{ExactTrim, LoopIndex, RectSide, chord_bend};
 use glam::{DVec2, DVec3};
 
 /// v-strips of a face with few rows of patches. More strips follow a changing density more closely
-/// and leave out more rows beyond the picture; each costs a cell of 36 bytes a bay.
+/// and leave out more rows beyond the picture; each costs a cell of 52 bytes a bay.
 const LEAST_STRIPS: usize = 8;
 /// The paper's benchmark used 128 strips for every surface; nothing asked for more.
 const MOST_STRIPS: usize = 128;
@@ -135,7 +135,7 @@ impl FaceData {
             for (n, (patch, side)) in grid.patches.iter().zip(&sides).enumerate() {
                 let (first, cut) = (data.cells.len(), *side == Side::Boundary);
                 if cut || editable {
-                    data.push_cells(patch, origin, &domain);
+                    data.push_cells(patch, origin, &domain, index.as_ref().filter(|_| !editable));
                 }
                 if let Some(edit) = &mut data.edit {
                     edit.cells.extend(data.cells[first..].iter().map(|cell| (n as u32, cell.speed_v)));
@@ -220,23 +220,35 @@ impl FaceData {
         }
     }
 
-    /// One cell for each bay of each v-strip that the patch reaches.
-    fn push_cells(&mut self, p: &SurfacePatch, origin: DVec3, domain: &Domain) {
+    /// One cell for each bay of each v-strip that the patch reaches. How fast the surface runs counts where the `loops` are,
+    /// since scan lines need not be near each other elsewhere; without `loops`, which may be edited, everywhere. Surfaces
+    /// are larger than their faces, and often distorted where nobody sees them.
+    fn push_cells(&mut self, p: &SurfacePatch, origin: DVec3, domain: &Domain, loops: Option<&LoopIndex>) {
         let (strips, bays) = (self.face.strip_count(), self.face.bay_count());
         let corner = domain.unit(DVec2::new(p.u.0, p.v.0));
         let size = domain.unit(DVec2::new(p.u.1, p.v.1)) - corner;
         for (strip, v) in shares(corner.y, size.y, strips) {
             for (bay, u) in shares(corner.x, size.x, bays) {
-                let piece = p.patch.rectangle(u, v);
-                let (speed_u, speed_v) = piece.speed_bound();
-                let (box_min, box_max) = outward_box(&piece, origin);
-                self.cells.push(abi::Cell {
-                    box_min,
-                    speed_u: round_up(speed_u / (size.x * (u.1 - u.0))),
-                    box_max,
-                    speed_v: round_up(speed_v / (size.y * (v.1 - v.0))),
-                    bay: strip * bays + bay,
-                });
+                let (lo, hi) = (DVec2::new(u.0, v.0), DVec2::new(u.1, v.1));
+                let near = loops.map_or(Some((lo, hi)), |index| near_loops(index, p, lo, hi));
+                let is_inside = || loops.is_some_and(|index| index.contains(at(p, (lo + hi) * 0.5)));
+                // a strip without rows is outside; a bay without them may lie between others
+                if near.is_none() && bays == 1 && !is_inside() {
+                    continue;
+                }
+                let (box_min, box_max) = outward_box(&p.patch.rectangle(u, v), origin);
+                let bay = strip * bays + bay;
+                let mut cell = abi::Cell { box_min, box_max, bay, ..Default::default() };
+                if let Some((lo, hi)) = near {
+                    let piece = p.patch.rectangle((lo.x, hi.x), (lo.y, hi.y));
+                    let (speed_u, speed_v) = piece.speed_bound();
+                    let (slope_v, spread_v) = piece.slope_v();
+                    let per = 1.0 / (size * (hi - lo));
+                    (cell.speed_u, cell.speed_v) = (round_up(speed_u * per.x), round_up(speed_v * per.y));
+                    (cell.slope_v, cell.spread_v) =
+                        ((slope_v * per.y).as_vec3().to_array(), round_up(spread_v * per.y));
+                }
+                self.cells.push(cell);
             }
         }
     }
@@ -373,7 +385,30 @@ fn shares(start: f64, length: f64, n: u32) -> impl Iterator<Item = (u32, (f64, f
     let first = (start * parts).floor().clamp(0.0, parts - 1.0) as u32;
     let last = (((start + length) * parts).ceil() - 1.0).clamp(f64::from(first), parts - 1.0) as u32;
     let local = move |k: u32| ((f64::from(k) / parts - start) / length).clamp(0.0, 1.0);
-    (first..=last).map(move |k| (k, (local(k), local(k + 1)))).filter(|(_, (from, to))| from < to)
+    // what single precision does not tell from nothing: where ends meet up to rounding, derivatives there are roundings, too
+    (first..=last).map(move |k| (k, (local(k), local(k + 1)))).filter(|(_, (from, to))| to - from > 1e-7)
+}
+
+/// The point of the surface's parameters at `uv`, 0 to 1 within a patch.
+fn at(p: &SurfacePatch, uv: DVec2) -> DVec2 {
+    let (lo, hi) = (DVec2::new(p.u.0, p.v.0), DVec2::new(p.u.1, p.v.1));
+    lo + (hi - lo) * uv
+}
+
+/// Where the loops are in a rectangle within a patch: around those of its parts that a curve meets, or comes so near to that
+/// its chords may; `None` where no curve does.
+fn near_loops(index: &LoopIndex, p: &SurfacePatch, lo: DVec2, hi: DVec2) -> Option<(DVec2, DVec2)> {
+    /// Along either parameter.
+    const PARTS: u32 = 4;
+    /// Of a part: chords are off by less, where parts are wider than a pixel.
+    const AROUND: f64 = 1.0 / 16.0;
+    let part = (hi - lo) / f64::from(PARTS);
+    let corner = |i: u32, j: u32| lo + part * DVec2::new(f64::from(i), f64::from(j));
+    let around = |i: u32, j: u32| (corner(i, j) - part * AROUND, corner(i + 1, j + 1) + part * AROUND);
+    let meets = |&(lo, hi): &(DVec2, DVec2)| index.classify(at(p, lo), at(p, hi)) == RectSide::Boundary;
+    let parts = (0..PARTS * PARTS).map(|c| around(c % PARTS, c / PARTS)).filter(meets);
+    let (from, to) = parts.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
+    Some((from.max(lo), to.min(hi)))
 }
 
 /// Each patch against the loops; a face without loops is inside everywhere.
