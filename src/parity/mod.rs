@@ -19,6 +19,11 @@ mod exact;
 mod hard;
 mod shapes;
 
+#[cfg(feature = "headless")]
+use crate::{abi, spline::Patch};
+#[cfg(feature = "headless")]
+use glam::DVec4;
+
 pub(crate) use crate::trial::{Case, Random};
 pub(crate) use shapes::{placed, untrimmed};
 
@@ -61,3 +66,14 @@ mod split;
 #[cfg(feature = "headless")]
 mod squares;
 mod table;
+
+#[cfg(feature = "headless")]
+impl Case {
+    /// A patch as it was uploaded, in part coordinates.
+    fn patch(&self, packed: &abi::Patch) -> Patch {
+        let (n, k) = packed.degrees();
+        let first = packed.first as usize;
+        let points = self.data.points[first..first + (n + 1) * (k + 1)].iter().map(|p| DVec4::from(p.map(f64::from)));
+        Patch { degree_u: n, degree_v: k, points: points.collect() }
+    }
+}

@@ -1,5 +1,6 @@
 //! One face: patches, cells and trim curves, with indices relative to the face.
 
+use super::cells::{cells, strips};
 use super::cones::Normals;
 use super::edit::{EditFace, EditLoop, EditPatch};
 use super::exact::exact_trim;
@@ -14,19 +15,6 @@ use crate::picture::TrimWay;
 use crate::spline::{Bezier, Control, Patch, PatchGrid, SurfacePatch};
 use crate::trim::{ExactTrim, LoopIndex, RectSide, chord_bend};
 use glam::{DVec2, DVec3};
-
-/// v-strips of a face with few rows of patches. More strips follow a changing density more closely
-/// and leave out more rows beyond the picture; each costs a cell of 52 bytes a bay.
-const LEAST_STRIPS: usize = 8;
-/// The paper's benchmark used 128 strips for every surface; nothing asked for more.
-const MOST_STRIPS: usize = 128;
-/// Intercepts of a scan line, on average, for each bay: fewer than pass `sort` holds in registers. Bays that nobody sees
-/// cost nothing in a view, so many are better than few; each costs a cell a strip.
-const BAY_INTERCEPTS: f64 = 8.0;
-/// A word has a bit for each.
-const MOST_BAYS: f64 = 32.0;
-/// The root of the number of curves, for each strip: four rows of holes that are as many across, of four curves each.
-const STRIP_CURVES: f64 = 8.0;
 
 /// A side whose control points are as near to each other, relative to the patch, is a point: some roundings of single
 /// precision.
@@ -69,7 +57,7 @@ pub(crate) struct Domain {
 }
 
 impl Domain {
-    fn unit(&self, p: DVec2) -> DVec2 {
+    pub(super) fn unit(&self, p: DVec2) -> DVec2 {
         (p - self.origin) / self.size
     }
 }
@@ -135,7 +123,8 @@ impl FaceData {
             for (n, (patch, side)) in grid.patches.iter().zip(&sides).enumerate() {
                 let (first, cut) = (data.cells.len(), *side == Side::Boundary);
                 if cut || editable {
-                    data.push_cells(patch, origin, &domain, index.as_ref().filter(|_| !editable));
+                    let loops = index.as_ref().filter(|_| !editable);
+                    data.cells.extend(cells(&data.face, patch, origin, &domain, loops));
                 }
                 if let Some(edit) = &mut data.edit {
                     edit.cells.extend(data.cells[first..].iter().map(|cell| (n as u32, cell.speed_v)));
@@ -217,39 +206,6 @@ impl FaceData {
             first_cell: 0,
             cells: Vec::new(),
             exact: None,
-        }
-    }
-
-    /// One cell for each bay of each v-strip that the patch reaches. How fast the surface runs counts where the `loops` are,
-    /// since scan lines need not be near each other elsewhere; without `loops`, which may be edited, everywhere. Surfaces
-    /// are larger than their faces, and often distorted where nobody sees them.
-    fn push_cells(&mut self, p: &SurfacePatch, origin: DVec3, domain: &Domain, loops: Option<&LoopIndex>) {
-        let (strips, bays) = (self.face.strip_count(), self.face.bay_count());
-        let corner = domain.unit(DVec2::new(p.u.0, p.v.0));
-        let size = domain.unit(DVec2::new(p.u.1, p.v.1)) - corner;
-        for (strip, v) in shares(corner.y, size.y, strips) {
-            for (bay, u) in shares(corner.x, size.x, bays) {
-                let (lo, hi) = (DVec2::new(u.0, v.0), DVec2::new(u.1, v.1));
-                let near = loops.map_or(Some((lo, hi)), |index| near_loops(index, p, lo, hi));
-                let is_inside = || loops.is_some_and(|index| index.contains(at(p, (lo + hi) * 0.5)));
-                // a strip without rows is outside; a bay without them may lie between others
-                if near.is_none() && bays == 1 && !is_inside() {
-                    continue;
-                }
-                let (box_min, box_max) = outward_box(&p.patch.rectangle(u, v), origin);
-                let bay = strip * bays + bay;
-                let mut cell = abi::Cell { box_min, box_max, bay, ..Default::default() };
-                if let Some((lo, hi)) = near {
-                    let piece = p.patch.rectangle((lo.x, hi.x), (lo.y, hi.y));
-                    let (speed_u, speed_v) = piece.speed_bound();
-                    let (slope_v, spread_v) = piece.slope_v();
-                    let per = 1.0 / (size * (hi - lo));
-                    (cell.speed_u, cell.speed_v) = (round_up(speed_u * per.x), round_up(speed_v * per.y));
-                    (cell.slope_v, cell.spread_v) =
-                        ((slope_v * per.y).as_vec3().to_array(), round_up(spread_v * per.y));
-                }
-                self.cells.push(cell);
-            }
         }
     }
 
@@ -362,55 +318,6 @@ fn needs_curves(way: TrimWay) -> bool {
     }
 }
 
-/// [`abi::Face::strips`]. Strips depend on what edits do not change, since they decide where scan lines are.
-fn strips(face: &Face, grid: &PatchGrid, way: TrimWay) -> u32 {
-    let curves = || face.loops.iter().flat_map(TrimLoop::curves);
-    let for_curves = (curves().count() as f64).sqrt() / STRIP_CURVES;
-    let strips = (2 * grid.count_v).max(for_curves as usize).clamp(LEAST_STRIPS, MOST_STRIPS) as u32;
-    if way != TrimWay::Table {
-        return abi::Face::pack_strips(strips, 1);
-    }
-    let height = |c: Bezier<DVec3>| {
-        let v = || c.points.iter().map(|p| p.point().y);
-        v().fold(f64::NEG_INFINITY, f64::max) - v().fold(f64::INFINITY, f64::min)
-    };
-    let (v0, v1) = face.surface.domain().1;
-    let intercepts = curves().map(height).sum::<f64>() / (v1 - v0);
-    abi::Face::pack_strips(strips, (intercepts / BAY_INTERCEPTS).clamp(1.0, MOST_BAYS) as u32)
-}
-
-/// Which of `n` equal parts of 0 to 1 an interval reaches, and the share of the interval, 0 to 1 within it, that is in each.
-fn shares(start: f64, length: f64, n: u32) -> impl Iterator<Item = (u32, (f64, f64))> {
-    let parts = f64::from(n);
-    let first = (start * parts).floor().clamp(0.0, parts - 1.0) as u32;
-    let last = (((start + length) * parts).ceil() - 1.0).clamp(f64::from(first), parts - 1.0) as u32;
-    let local = move |k: u32| ((f64::from(k) / parts - start) / length).clamp(0.0, 1.0);
-    // what single precision does not tell from nothing: where ends meet up to rounding, derivatives there are roundings, too
-    (first..=last).map(move |k| (k, (local(k), local(k + 1)))).filter(|(_, (from, to))| to - from > 1e-7)
-}
-
-/// The point of the surface's parameters at `uv`, 0 to 1 within a patch.
-fn at(p: &SurfacePatch, uv: DVec2) -> DVec2 {
-    let (lo, hi) = (DVec2::new(p.u.0, p.v.0), DVec2::new(p.u.1, p.v.1));
-    lo + (hi - lo) * uv
-}
-
-/// Where the loops are in a rectangle within a patch: around those of its parts that a curve meets, or comes so near to that
-/// its chords may; `None` where no curve does.
-fn near_loops(index: &LoopIndex, p: &SurfacePatch, lo: DVec2, hi: DVec2) -> Option<(DVec2, DVec2)> {
-    /// Along either parameter.
-    const PARTS: u32 = 4;
-    /// Of a part: chords are off by less, where parts are wider than a pixel.
-    const AROUND: f64 = 1.0 / 16.0;
-    let part = (hi - lo) / f64::from(PARTS);
-    let corner = |i: u32, j: u32| lo + part * DVec2::new(f64::from(i), f64::from(j));
-    let around = |i: u32, j: u32| (corner(i, j) - part * AROUND, corner(i + 1, j + 1) + part * AROUND);
-    let meets = |&(lo, hi): &(DVec2, DVec2)| index.classify(at(p, lo), at(p, hi)) == RectSide::Boundary;
-    let parts = (0..PARTS * PARTS).map(|c| around(c % PARTS, c / PARTS)).filter(meets);
-    let (from, to) = parts.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-    Some((from.max(lo), to.min(hi)))
-}
-
 /// Each patch against the loops; a face without loops is inside everywhere.
 fn sides(grid: &PatchGrid, loops: Option<&LoopIndex>) -> Vec<Side> {
     let Some(index) = loops else { return vec![Side::Inside; grid.patches.len()] };
@@ -473,7 +380,7 @@ fn poles(patch: &Patch) -> u32 {
 }
 
 /// The box of the control points relative to `origin`, rounded outwards.
-fn outward_box(patch: &Patch, origin: DVec3) -> ([f32; 3], [f32; 3]) {
+pub(super) fn outward_box(patch: &Patch, origin: DVec3) -> ([f32; 3], [f32; 3]) {
     let (lo, hi) = patch.bounds();
     let (lo, hi) = (lo - origin, hi - origin);
     let down = |x: f64| (x as f32).next_down();
@@ -487,6 +394,6 @@ fn flat_is_zero(bend: [f64; 3], (lo, hi): (DVec3, DVec3)) -> [f64; 3] {
 }
 
 /// The next single-precision number above.
-fn round_up(x: f64) -> f32 {
+pub(super) fn round_up(x: f64) -> f32 {
     (x as f32).next_up()
 }

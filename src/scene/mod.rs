@@ -14,6 +14,7 @@
 //! relative to the centre of their part, and the transform from there to the eye is composed in
 //! `f64` every frame.
 
+mod cells;
 mod closeup;
 mod cones;
 mod data;

@@ -5,9 +5,7 @@ use crate::budget::Budget;
 use crate::model::{Camera, Model, Projection};
 use crate::picture::{SceneSettings, TrimWay};
 use crate::scene::{SceneData, focal_and_slant, view};
-use crate::spline::Patch;
 use crate::twin;
-use glam::DVec4;
 
 /// One scene, one view.
 #[derive(Clone, Debug)]
@@ -50,14 +48,6 @@ impl Case {
             ..Default::default()
         };
         Self { data, views, frame }
-    }
-
-    /// A patch as it was uploaded, in part coordinates.
-    pub(crate) fn patch(&self, packed: &abi::Patch) -> Patch {
-        let (n, k) = packed.degrees();
-        let first = packed.first as usize;
-        let points = self.data.points[first..first + (n + 1) * (k + 1)].iter().map(|p| DVec4::from(p.map(f64::from)));
-        Patch { degree_u: n, degree_v: k, points: points.collect() }
     }
 
     /// The scene for the twins.
