@@ -4,7 +4,6 @@
 // Pass `density`: pixels that each v-strip of a trimmed face can cover. One thread a cell.
 //
 //   |S_v| <= speed_v  and  W >= w over the cell   =>   strip height in pixels <= speed_v pixels / strips
-//   |S_v - slope_v| <= spread_v                   =>   less where the strip is seen at an angle: twin
 //
 // The largest over the strip's visible cells stands for the paper's sup rho; strips that nobody
 // sees get no scan line, and bays beyond those that are seen no row. Twin: src/twin/density.rs.
@@ -30,29 +29,6 @@ layout(scalar, binding = 8) buffer FaceSpeeds { uint face_speeds[]; };     // fl
 layout(scalar, binding = 9) readonly buffer DrawnFaces { uint drawn_faces[]; }; // where SCENE_HIDES
 layout(scalar, binding = 10) buffer SeenBays { uint seen_bays[]; }; // a bit for each bay of a strip, where SCENE_HAS_BAYS
 
-// Of the bound in all directions: the rounding of one in a direction.
-const float SPEED_ROUNDING = 1e-4;
-
-// Pixels to the right and down per unit of v, at most, of what is in the picture; `most` holds in all directions.
-float speed_on_screen(View view, Seen seen, Cell cell, float most) {
-    float margin = frame.ring_px + 1.0;
-    vec2 low = clamp(seen.low, vec2(-margin), frame.size + margin);
-    vec2 high = clamp(seen.high, vec2(-margin), frame.size + margin);
-    vec2 speed = vec2(0.0);
-    for (uint i = 0u; i < 4u; ++i) {
-        uint axis = i & 1u;
-        float pixel = i < 2u ? low[axis] : high[axis];
-        vec4 row = axis == 0u ? view.x : view.y;
-        precise vec3 r = row.xyz - pixel * view.w.xyz;
-        precise float along = r.x * cell.slope_v.x + r.y * cell.slope_v.y + r.z * cell.slope_v.z;
-        precise float size2 = r.x * r.x + r.y * r.y + r.z * r.z;
-        precise float here = abs(along) + sqrt(size2) * cell.spread_v;
-        speed[axis] = max(speed[axis], here);
-    }
-    precise float both = sqrt(speed.x * speed.x + speed.y * speed.y) / seen.w + SPEED_ROUNDING * most;
-    return min(both, most);
-}
-
 void main() {
     uint item = gl_GlobalInvocationID.x;
     if (item >= frame.cell_count) return;
@@ -66,7 +42,7 @@ void main() {
     if (seen.w < 0.0) return;
     float pixels = pixels_per_unit(frame, instances[fi.instance], seen);
     // positive floats order like their bits
-    float height = speed_on_screen(views[fi.instance], seen, cell, cell.speed_v * pixels) / float(strip_count(face.strips));
+    float height = cell.speed_v * pixels / float(strip_count(face.strips));
     uint bay = cell.bay % bay_count(face.strips);
     uint strip = fi.first_bay + cell.bay - bay;
     atomicMax(strip_heights[strip], floatBitsToUint(max(height, 1e-6)));

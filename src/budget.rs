@@ -30,7 +30,7 @@ pub(crate) struct Budget {
 }
 
 impl Budget {
-    /// Shares of a tolerance: a sixth to the rows' spacing, a sixteenth to the chords (halving them
+    /// Shares of a tolerance: a quarter to the rows' spacing, a sixteenth to the chords (halving them
     /// costs only segments), one half to the ring.
     ///
     /// The surface gets a twelfth although a quarter would do for the sums: a deviation in depth hides
@@ -38,15 +38,13 @@ impl Budget {
     /// ten CAD files in three views, 8, 1 and 0 pixels of one file were off by more than the tolerance
     /// with a quarter, an eighth and a twelfth; a twelfth costs 1.7 times the triangles of an eighth.
     ///
-    /// Rows farther apart would be cheaper, and the first two sums have room for three times as far. But borders that are
-    /// off more leave more for `heal` to find: of the open shells of impeller and gpucast_part_a, in three views of three
-    /// sizes each, 8 and 7 pixels were off with a sixth, 15 and 5 with a quarter, and at 1280 x 720 alone 10 and 5 with a half
-    /// where a quarter had 0 and 3 (strips were higher then than they were seen). A sixth takes 1.4 times the rows of a
-    /// quarter.
+    /// Rows farther apart would be cheaper, and the first two sums have room for twice as far. The third has not: of the
+    /// open shells of impeller and gpucast_part_a, in three views of 1280 x 720 each, 0 and 3 pixels were off
+    /// with a quarter, 10 and 5 with a half; with a wider ring, of 0.655 and rows of 0.39, 4 and 6.
     pub(crate) fn of(tolerance_px: f64) -> Self {
         Self {
             deviation: tolerance_px / 12.0,
-            row: tolerance_px / 6.0,
+            row: tolerance_px / 4.0,
             chord: tolerance_px / 16.0,
             ring: tolerance_px / 2.0,
         }

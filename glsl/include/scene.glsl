@@ -112,8 +112,6 @@ struct Cell {
     float speed_u; // largest |S_u|, |S_v| there, part units per unit of normalised u, v
     vec3 box_max;
     float speed_v; // negative where no loop meets the patch, in scenes whose loops may be edited
-    vec3 slope_v;  // S_v there is within spread_v of this, the same units
-    float spread_v;
     uint bay;       // strip * bays + bay
 };
 

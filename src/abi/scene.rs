@@ -215,8 +215,6 @@ pub struct Cell {
     pub speed_u: f32,
     pub box_max: [f32; 3],
     pub speed_v: f32,
-    pub slope_v: [f32; 3],
-    pub spread_v: f32,
     pub bay: u32,
 }
 

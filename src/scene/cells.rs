@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!    v ▲  strip   ├────┬────┤
-//!      │          │cell│cell│ bays        of each: a box, and how fast the surface runs where its loops are
+//!      │          │cell│cell│ bays        of each: a box, and how fast the surface runs there
 //!      │          ├────┼────┤
 //!      └─────────────────────▶ u
 //! ```
@@ -12,11 +12,10 @@ use crate::abi;
 use crate::model::{Face, TrimLoop};
 use crate::picture::TrimWay;
 use crate::spline::{Bezier, Control, PatchGrid, SurfacePatch};
-use crate::trim::{LoopIndex, RectSide};
 use glam::{DVec2, DVec3};
 
 /// v-strips of a face with few rows of patches. More strips follow a changing density more closely
-/// and leave out more rows beyond the picture; each costs a cell of 52 bytes a bay.
+/// and leave out more rows beyond the picture; each costs a cell of 36 bytes a bay.
 const LEAST_STRIPS: usize = 8;
 /// The paper's benchmark used 128 strips for every surface; nothing asked for more.
 const MOST_STRIPS: usize = 128;
@@ -55,76 +54,32 @@ fn shares(start: f64, length: f64, n: u32) -> impl Iterator<Item = (u32, (f64, f
     (first..=last).map(move |k| (k, (local(k), local(k + 1)))).filter(|(_, (from, to))| to - from > 1e-7)
 }
 
-/// One cell for each bay of each v-strip that the patch reaches. How fast the surface runs counts where the `loops` are,
-/// since scan lines need not be near each other elsewhere; without `loops`, which may be edited, everywhere. Surfaces
-/// are larger than their faces, and often distorted where nobody sees them.
-pub(super) fn cells(
-    face: &abi::Face,
-    p: &SurfacePatch,
-    origin: DVec3,
-    domain: &Domain,
-    loops: Option<&LoopIndex>,
-) -> Vec<abi::Cell> {
-    let mut cells = Vec::new();
+/// One for each bay of each v-strip that a patch of the face reaches.
+pub(super) fn cells(face: &abi::Face, p: &SurfacePatch, origin: DVec3, domain: &Domain) -> Vec<abi::Cell> {
     let (strips, bays) = (face.strip_count(), face.bay_count());
     let corner = domain.unit(DVec2::new(p.u.0, p.v.0));
     let size = domain.unit(DVec2::new(p.u.1, p.v.1)) - corner;
-    for (strip, v) in shares(corner.y, size.y, strips) {
-        for (bay, u) in shares(corner.x, size.x, bays) {
-            let (lo, hi) = (DVec2::new(u.0, v.0), DVec2::new(u.1, v.1));
-            let near = loops.map_or(Some((lo, hi)), |index| near_loops(index, p, lo, hi));
-            let is_inside = || loops.is_some_and(|index| index.contains(at(p, (lo + hi) * 0.5)));
-            // a strip without rows is outside; a bay without them may lie between others
-            if near.is_none() && bays == 1 && !is_inside() {
-                continue;
-            }
-            let (box_min, box_max) = outward_box(&p.patch.rectangle(u, v), origin);
-            let bay = strip * bays + bay;
-            let mut cell = abi::Cell { box_min, box_max, bay, ..Default::default() };
-            if let Some((lo, hi)) = near {
-                let piece = p.patch.rectangle((lo.x, hi.x), (lo.y, hi.y));
-                let (speed_u, speed_v) = piece.speed_bound();
-                let (slope_v, spread_v) = piece.slope_v();
-                let per = 1.0 / (size * (hi - lo));
-                (cell.speed_u, cell.speed_v) = (round_up(speed_u * per.x), round_up(speed_v * per.y));
-                (cell.slope_v, cell.spread_v) = ((slope_v * per.y).as_vec3().to_array(), round_up(spread_v * per.y));
-            }
-            cells.push(cell);
+    let cell = |(strip, v): (u32, (f64, f64)), (bay, u): (u32, (f64, f64))| {
+        let piece = p.patch.rectangle(u, v);
+        let (speed_u, speed_v) = piece.speed_bound();
+        let (box_min, box_max) = outward_box(&piece, origin);
+        abi::Cell {
+            box_min,
+            speed_u: round_up(speed_u / (size.x * (u.1 - u.0))),
+            box_max,
+            speed_v: round_up(speed_v / (size.y * (v.1 - v.0))),
+            bay: strip * bays + bay,
         }
-    }
-    cells
-}
-
-/// The point of the surface's parameters at `uv`, 0 to 1 within a patch.
-fn at(p: &SurfacePatch, uv: DVec2) -> DVec2 {
-    let (lo, hi) = (DVec2::new(p.u.0, p.v.0), DVec2::new(p.u.1, p.v.1));
-    lo + (hi - lo) * uv
-}
-
-/// Where the loops are in a rectangle within a patch: around those of its parts that a curve meets, or comes so near to that
-/// its chords may; `None` where no curve does.
-fn near_loops(index: &LoopIndex, p: &SurfacePatch, lo: DVec2, hi: DVec2) -> Option<(DVec2, DVec2)> {
-    /// Along either parameter.
-    const PARTS: u32 = 4;
-    /// Of a part: chords are off by less, where parts are wider than a pixel.
-    const AROUND: f64 = 1.0 / 16.0;
-    let part = (hi - lo) / f64::from(PARTS);
-    let corner = |i: u32, j: u32| lo + part * DVec2::new(f64::from(i), f64::from(j));
-    let around = |i: u32, j: u32| (corner(i, j) - part * AROUND, corner(i + 1, j + 1) + part * AROUND);
-    let meets = |&(lo, hi): &(DVec2, DVec2)| index.classify(at(p, lo), at(p, hi)) == RectSide::Boundary;
-    let parts = (0..PARTS * PARTS).map(|c| around(c % PARTS, c / PARTS)).filter(meets);
-    let (from, to) = parts.reduce(|a, b| (a.0.min(b.0), a.1.max(b.1)))?;
-    Some((from.max(lo), to.min(hi)))
+    };
+    let in_u: Vec<_> = shares(corner.x, size.x, bays).collect();
+    shares(corner.y, size.y, strips).flat_map(|v| in_u.iter().map(move |&u| (v, u))).map(|(v, u)| cell(v, u)).collect()
 }
 
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::parity::{placed, untrimmed};
-    use crate::picture::SceneSettings;
-    use crate::scene::SceneData;
     use crate::spline::Surface;
-    use glam::{DAffine3, DVec4};
+    use glam::DVec4;
 
     #[test]
     fn shares_add_up_and_none_is_but_a_rounding() {
@@ -144,30 +99,19 @@ mod tests {
         }
     }
 
-    /// A hundred times as long as its face, and bent where nobody sees it: strips without loops have no cells, and the others
-    /// the speed at the loops.
+    /// Thirds end within a rounding of the borders of 48 strips: nothing of a third is in its neighbours' strips.
     #[test]
-    fn only_strips_with_loops_have_cells_and_the_speed_there() {
-        // y = v up to 0.5, and fast beyond
-        let point = |(x, y): (f64, f64)| DVec4::new(x, y, 0.0, 1.0);
-        let net = [(0.0, 0.0), (1.0, 0.0), (0.0, 0.5), (1.0, 0.5), (0.0, 100.0), (1.0, 100.0)].map(point).to_vec();
-        let surface = Surface::new((1, 1), vec![0.0, 0.0, 1.0, 1.0], vec![0.0, 0.0, 0.5, 1.0, 1.0], net).unwrap();
-        let corners = [(0.1, 0.05), (0.9, 0.05), (0.9, 0.2), (0.1, 0.2)];
-        let side = |i: usize| {
-            let at = |i: usize| DVec2::from(corners[i % 4]).extend(1.0);
-            Bezier { points: vec![at(i), at(i + 1)] }
-        };
-        let l = TrimLoop::new((0..4).map(side).collect(), DVec2::ZERO).unwrap();
-        let face = crate::model::Face { loops: vec![l], ..untrimmed(surface) };
-        let settings = |editable| SceneSettings { trim: Some(TrimWay::Table), editable, ..SceneSettings::default() };
-        let data =
-            |editable| SceneData::new(&placed(vec![face.clone()], DAffine3::IDENTITY), settings(editable)).unwrap();
-        let (fixed, editable) = (data(false), data(true));
-        assert_eq!(fixed.faces[0].strip_count(), 8);
-        let strips: Vec<u32> = fixed.cells.iter().map(|cell| cell.bay).collect();
-        assert_eq!(strips, [0, 1], "strips of an eighth, from 0.05 to 0.2");
-        assert!(fixed.cells.iter().all(|cell| (cell.speed_v - 1.0).abs() < 1e-5), "{:?}", fixed.cells);
-        assert!(fixed.cells.iter().all(|cell| cell.slope_v[1] > 0.999 && cell.spread_v < 1e-5), "{:?}", fixed.cells);
-        assert_eq!(editable.cells.len(), 8, "an edit may take the loop anywhere");
+    fn a_patch_has_no_cell_in_a_strip_that_it_meets_by_a_rounding() {
+        let point = |i: usize| DVec4::new((i % 2) as f64, (i / 2) as f64, 0.0, 1.0);
+        let knots = vec![0.0, 0.0, 0.1 + 0.2, 0.6, 0.9, 0.9]; // in binary none of them is a third
+        let surface = Surface::new((1, 1), vec![0.0, 0.0, 1.0, 1.0], knots, (0..8).map(point).collect()).unwrap();
+        let domain = Domain { origin: DVec2::ZERO, size: DVec2::new(1.0, 0.9) };
+        let face = abi::Face { strips: abi::Face::pack_strips(48, 1), ..Default::default() };
+        for (nth, p) in surface.patches().patches.iter().enumerate() {
+            let cells = cells(&face, p, DVec3::ZERO, &domain);
+            let strips: Vec<u32> = cells.iter().map(|cell| cell.bay).collect();
+            assert_eq!(strips, (16 * nth as u32..16 * (nth as u32 + 1)).collect::<Vec<_>>());
+            assert!(cells.iter().all(|cell| (cell.speed_v - 3.0).abs() < 1e-4), "{cells:?}");
+        }
     }
 }

@@ -123,8 +123,7 @@ impl FaceData {
             for (n, (patch, side)) in grid.patches.iter().zip(&sides).enumerate() {
                 let (first, cut) = (data.cells.len(), *side == Side::Boundary);
                 if cut || editable {
-                    let loops = index.as_ref().filter(|_| !editable);
-                    data.cells.extend(cells(&data.face, patch, origin, &domain, loops));
+                    data.cells.extend(cells(&data.face, patch, origin, &domain));
                 }
                 if let Some(edit) = &mut data.edit {
                     edit.cells.extend(data.cells[first..].iter().map(|cell| (n as u32, cell.speed_v)));

@@ -79,23 +79,6 @@ impl Patch {
         DerivativeBound { u, v, uu, uv, vv, twist: twist.min(uv) }
     }
 
-    /// A ball that holds every `S_v`: its centre, and its radius. Weights must be positive.
-    pub fn slope_v(&self) -> (DVec3, f64) {
-        let (_, numerator) = numerators(self);
-        let (_, weight) = nets(self);
-        let slopes: Vec<DVec3> = if self.is_polynomial() {
-            numerator.all().iter().map(|&d| d / self.points[0].w).collect()
-        } else {
-            let square = weight.times(&weight);
-            let numerator = numerator.elevated(square.n, square.k);
-            numerator.all().iter().zip(square.all()).map(|(&d, w)| d / *w).collect()
-        };
-        let range = |(lo, hi): (DVec3, DVec3), d: &DVec3| (lo.min(*d), hi.max(*d));
-        let (lo, hi) = slopes.iter().fold((DVec3::INFINITY, DVec3::NEG_INFINITY), range);
-        let centre = (lo + hi) * 0.5;
-        (centre, slopes.iter().map(|d| d.distance(centre)).fold(0.0, f64::max))
-    }
-
     /// Upper bounds of `|S_u|` and `|S_v|` alone, from one hull.
     pub fn speed_bound(&self) -> (f64, f64) {
         let w_min = self.points.iter().map(|p| p.w).fold(f64::INFINITY, f64::min);

@@ -3,22 +3,10 @@
 //! ```text
 //!   |S_v| <= speed_v  and  W >= w over the cell   =>   strip height in pixels <= speed_v pixels / strips
 //! ```
-//!
-//! A strip that is seen at an angle has fewer. With the pixel `x = X / W`, where `X` and `W` are linear in the point,
-//!
-//! ```text
-//!   W x_v = (X - x W) · S_v        |S_v - c| <= r        =>    W |x_v| <= |(X - x W) · c| + |X - x W| r
-//! ```
-//!
-//! whose right side is convex in `x`, so the ends of what the cell may cover of the picture suffice; `y` alike. Of the two
-//! the hypotenuse is taken, since the row that is looked up is off along both.
 
 use super::Scene;
-use super::view::{Seen, far_of, pixels_per_unit, see};
-use crate::abi::{Cell, Frame, View};
-
-/// Of the bound in all directions: the rounding of one in a direction.
-const SPEED_ROUNDING: f32 = 1e-4;
+use super::view::{far_of, pixels_per_unit, see};
+use crate::abi::Frame;
 
 /// What the pass writes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -55,27 +43,9 @@ pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
         out.seen_bays[strip] |= 1 << bay;
         let height = &mut out.strip_heights[strip];
         // a visible strip gets a scan line, however flat it is seen
-        let speed = speed_on_screen(view, frame, &seen, &cell, cell.speed_v * pixels);
-        *height = height.max((speed / face.strip_count() as f32).max(1e-6));
+        *height = height.max((cell.speed_v * pixels / face.strip_count() as f32).max(1e-6));
         let speeds = &mut out.face_speeds[placed_index];
         *speeds = [speeds[0].max(cell.speed_u * pixels), speeds[1].max(cell.speed_v * pixels)];
     }
     out
-}
-
-/// Pixels to the right and down per unit of `v`, at most, of what is in the picture; `most` holds in all directions.
-fn speed_on_screen(view: &View, frame: &Frame, seen: &Seen, cell: &Cell, most: f32) -> f32 {
-    let margin = frame.ring_px + 1.0;
-    let [slope_x, slope_y, slope_z] = cell.slope_v;
-    let axis = |row: [f32; 4], low: f32, high: f32, size: f32| {
-        [low, high].into_iter().fold(0.0f32, |speed, pixel| {
-            let pixel = pixel.clamp(-margin, size + margin);
-            let [x, y, z]: [f32; 3] = std::array::from_fn(|k| row[k] - pixel * view.w[k]);
-            let along = x * slope_x + y * slope_y + z * slope_z;
-            speed.max(along.abs() + (x * x + y * y + z * z).sqrt() * cell.spread_v)
-        })
-    };
-    let x = axis(view.x, seen.low[0], seen.high[0], frame.size[0]);
-    let y = axis(view.y, seen.low[1], seen.high[1], frame.size[1]);
-    ((x * x + y * y).sqrt() / seen.w + SPEED_ROUNDING * most).min(most)
 }
