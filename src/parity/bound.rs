@@ -5,7 +5,6 @@ use super::harness::{Gpu, Mismatch, SceneBuffers, halves, same};
 use super::shapes::cases;
 use super::{Case, cages};
 use crate::abi::{Counters, FACE_SAME_SENSE};
-use crate::bindings::Bounded;
 use crate::model::{Camera, Projection};
 use crate::passes::bound::Bound;
 use crate::twin;
@@ -18,18 +17,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
     let counters = gpu.upload("counters", &[Counters::default()]);
     let cones = (!given.data.cones.is_empty()).then(|| gpu.upload("cones", &given.data.cones));
     let pass = Bound::new(gpu.device(), !given.data.cones.is_empty()).unwrap();
-    let bindings = Bounded {
-        frame: &s.frame,
-        views: &s.views,
-        instances: &s.instances,
-        face_instances: &s.face_instances,
-        faces: &s.faces,
-        patches: &s.patches,
-        items: &s.items,
-        taus: &taus,
-        counters: &counters,
-        cones: cones.as_ref(),
-    };
+    let bindings = s.bounded(&taus, &counters, cones.as_ref());
     gpu.run(|cmd| pass.record(cmd, &bindings, count as u32));
     let mut clamps = Counters::default();
     let twin = twin::bound::bound(&expected.frame, &expected.scene(), &mut clamps);

@@ -1,6 +1,7 @@
 //! A watched device, the way to and from it, and comparisons that name the place.
 
 use super::Case;
+use crate::bindings::Bounded;
 use crate::gpu::{Access, Buffer, Commands, Device, Pool, ReadBack, Texel, Texels, Uploads, barrier};
 use crate::headless::{HeadlessDevice, HeadlessOptions};
 use crate::scene::ExactData;
@@ -139,6 +140,27 @@ impl SceneBuffers {
             curves: gpu.upload_texels("curves", &d.curves, Texel::U32x4),
             curve_points: gpu.upload_texels("curve points", &d.curve_points, Texel::Numbers),
             curve_items: gpu.upload_texels("curve items", &d.curve_items, Texel::Words),
+        }
+    }
+
+    /// As passes that say how finely patches are divided read them.
+    pub(super) fn bounded<'a>(
+        &'a self,
+        taus: &'a Buffer,
+        counters: &'a Buffer,
+        cones: Option<&'a Buffer>,
+    ) -> Bounded<'a> {
+        Bounded {
+            frame: &self.frame,
+            views: &self.views,
+            instances: &self.instances,
+            face_instances: &self.face_instances,
+            faces: &self.faces,
+            patches: &self.patches,
+            items: &self.items,
+            taus,
+            counters,
+            cones,
         }
     }
 }

@@ -5,7 +5,6 @@ use super::harness::{Gpu, Mismatch, SceneBuffers, same};
 use super::shapes::{model_and_cameras, model_with_sieve};
 use super::{Case, placed, untrimmed};
 use crate::abi::Counters;
-use crate::bindings::Bounded;
 use crate::gpu::Texel;
 use crate::model::{Camera, Model};
 use crate::passes::rival_slefe::{Bindings, RivalSlefe};
@@ -38,18 +37,7 @@ fn compare(gpu: &Gpu, given: &Case, asked: &[f64], segments: usize) -> Result<Co
     let taus = gpu.upload("taus", &vec![u32::MAX; count]);
     let counters = gpu.upload("counters", &[Counters::default()]);
     let pass = RivalSlefe::new(gpu.device(), false).unwrap();
-    let bounded = Bounded {
-        frame: &s.frame,
-        views: &s.views,
-        instances: &s.instances,
-        face_instances: &s.face_instances,
-        faces: &s.faces,
-        patches: &s.patches,
-        items: &s.items,
-        taus: &taus,
-        counters: &counters,
-        cones: None,
-    };
+    let bounded = s.bounded(&taus, &counters, None);
     let points = gpu.upload_texels("points", &given.data.points, Texel::F32x4);
     let bindings = Bindings { bounded, points: &points, slefes: &gpu.upload("slefes", &words(segments)) };
     gpu.run(|cmd| pass.record(cmd, &bindings, count as u32));
