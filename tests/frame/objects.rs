@@ -109,7 +109,7 @@ fn only_a_scene_of_many_patches_knows_which_lie_behind_others() {
     }
 }
 
-/// Of the shapes these alone are closed and without trims, and more than one face that meets itself.
+/// Cones of normals exist where a part is closed, none of its faces is trimmed, and all sides of them meet others.
 #[test]
 fn only_closed_parts_without_trims_have_cones() {
     for shape in shapes::all() {

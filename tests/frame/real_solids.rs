@@ -12,7 +12,7 @@ use selvedge::picture::Picture;
 use selvedge::reference::{JudgeOptions, Tracer, judge};
 use std::path::{Path, PathBuf};
 
-const SIZE: (u32, u32) = (640, 360);
+const SIZE: (u32, u32) = (320, 180);
 const ZOOMS: [f64; 3] = [1.0, 8.0, 64.0];
 
 /// STEP and IGES files of a folder and those within it.
