@@ -125,5 +125,12 @@ fn what_only_says_that_it_is_closed_stays() {
             drawn <= others && others <= drawn + 2 * views(model).len() as u64,
             "{name}: {drawn}, {others} with a speck"
         );
+        // who does not say so has nothing left out, whatever becomes of the speck
+        let mut open = model.clone();
+        open.parts[0].closed = false;
+        let mut renderer = watched(&open);
+        let all: u64 = views(model).iter().map(|camera| render(&mut renderer, camera).stats.triangles).sum();
+        assert_silent(renderer);
+        assert_eq!(drawn, all, "{name}");
     }
 }
