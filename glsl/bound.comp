@@ -6,7 +6,87 @@
 #include "bound.glsl"
 #include "factor.glsl"
 
-vec2 factors_of(Patch patch_, uint instance, Seen seen) {
-    float pixels = pixels_per_unit(frame, instances[instance], seen);
-    return factors(patch_.bend, 8.0 * frame.deviation_px / pixels);
+// What is off in depth alone may be off by so much more than what moves pixels.
+const float DEPTH_SHARE = 1.5;
+
+vec4 control_point(Patch patch_, uvec2 at) {
+    return texelFetch(points, int(patch_.first + at.y * (degree_u(patch_.shape) + 1u) + at.x));
+}
+
+// `seen`, of the patch's box, drawn closer: what is drawn is a mean of the control points. False where one of them is
+// before the near plane.
+bool draw_closer(Patch patch_, View view, inout Seen seen) {
+    uint count = (degree_u(patch_.shape) + 1u) * (degree_v(patch_.shape) + 1u);
+    float w = 3.0e38;
+    float steepest = 0.0; // squared slope
+    vec2 low = vec2(3.0e38);
+    vec2 high = vec2(-3.0e38);
+    for (uint i = 0u; i < count; ++i) {
+        vec4 p = texelFetch(points, int(patch_.first + i));
+        vec4 q = to_pixel(view, p);
+        precise float depth = q.w / p.w;
+        w = min(w, depth);
+        precise vec2 pixel = q.xy / q.w;
+        low = min(low, pixel);
+        high = max(high, pixel);
+        precise vec2 slope = (pixel - 0.5 * frame.size) / frame.focal;
+        precise float slope2 = slope.x * slope.x + slope.y * slope.y;
+        steepest = max(steepest, slope2);
+    }
+    if (frame.perspective == 0u) {
+        seen = Seen(1.0, 1.0, low, high);
+        return true;
+    }
+    if (!(w >= frame.near)) return false;
+    precise float slant = sqrt(1.0 + steepest);
+    seen = Seen(max(w, seen.w), min(slant, seen.slant), low, high);
+    return true;
+}
+
+// How far a step d of the part moves a homogeneous pixel's quotient, times W: the most at the corners of what is seen.
+float moves(View view, vec3 d, vec2 low, vec2 high) {
+    vec4 q = to_pixel(view, vec4(d, 0.0));
+    precise vec2 at_low = q.xy - low * q.w;
+    precise vec2 at_high = q.xy - high * q.w;
+    vec2 most = max(abs(at_low), abs(at_high)); // each is linear, and so is the other's
+    precise float length2 = most.x * most.x + most.y * most.y;
+    return sqrt(length2);
+}
+
+// As Patch.bend, of a polynomial patch, of what moves pixels: times W.
+vec3 bend_seen(Patch patch_, View view, vec2 low, vec2 high) {
+    uint n = degree_u(patch_.shape);
+    uint k = degree_v(patch_.shape);
+    vec3 times = vec3(n * (n - 1u), n * k, k * (k - 1u));
+    vec3 most = vec3(0.0);
+    for (uint j = 0u; j <= k; ++j) {
+        for (uint i = 0u; i <= n; ++i) {
+            uvec2 one = min(uvec2(i, j) + 1u, uvec2(n, k));
+            uvec2 two = min(uvec2(i, j) + 2u, uvec2(n, k));
+            vec3 p = control_point(patch_, uvec2(i, j)).xyz;
+            vec3 pu = control_point(patch_, uvec2(one.x, j)).xyz;
+            vec3 pv = control_point(patch_, uvec2(i, one.y)).xyz;
+            precise vec3 uu = (control_point(patch_, uvec2(two.x, j)).xyz - pu) - (pu - p);
+            precise vec3 uv = (control_point(patch_, one).xyz - pv) - (pu - p);
+            precise vec3 vv = (control_point(patch_, uvec2(i, two.y)).xyz - pv) - (pv - p);
+            if (i + 2u <= n) most.x = max(most.x, moves(view, uu, low, high));
+            most.y = max(most.y, moves(view, uv, low, high));
+            if (j + 2u <= k) most.z = max(most.z, moves(view, vv, low, high));
+        }
+    }
+    precise vec3 bend = most * times;
+    return bend;
+}
+
+vec2 factors_of(Patch patch_, View view, uint instance, Seen seen) {
+    if (patch_.bend == vec3(0.0)) return vec2(1.0);
+    bool whole = draw_closer(patch_, view, seen);
+    float budget = 8.0 * frame.deviation_px;
+    precise vec3 bend = patch_.bend * pixels_per_unit(frame, instances[instance], seen);
+    vec2 tau = factors(bend, budget);
+    if (!whole || is_rational(patch_.shape)) return tau;
+    precise vec3 moves = bend_seen(patch_, view, clamp(seen.low, vec2(0.0), frame.size), clamp(seen.high, vec2(0.0), frame.size)) / seen.w;
+    precise vec3 in_depth = bend / DEPTH_SHARE;
+    vec2 fewer = factors(max(moves, in_depth), budget);
+    return fewer.x * fewer.y < tau.x * tau.y ? fewer : tau;
 }

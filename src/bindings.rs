@@ -4,7 +4,8 @@
 //!   constants      of the frame, or the sun, in a uniform block: a driver fetches its words once for many invocations,
 //!                  where it gathers those of a storage buffer for each
 //!   placed patches views, faces' places, faces, patches, items, points           glsl/include/placed.glsl
-//!   bounded        views, instances, faces' places, faces, patches, items, taus, counters, cones   glsl/include/bound.glsl
+//!   bounded        views, instances, faces' places, faces, patches, items, taus, counters, cones, points
+//!                                                                                  glsl/include/bound.glsl
 //!   PRIMITIVES     leaves, their sides, surfaces, surfaces' places         glsl/include/solids.glsl, volume.glsl
 //!   SUN_BINDINGS   sun, its tiles, …, PRIMITIVES, leaves' centres, counts  glsl/include/sun.glsl
 //! ```
@@ -65,13 +66,18 @@ pub(crate) struct Bounded<'a> {
     pub counters: &'a Buffer,
     /// Of each patch's normals, where some closed part has no trims.
     pub cones: Option<&'a Buffer>,
+    /// Control points.
+    pub points: &'a Texels,
 }
 
 impl<'a> Bounded<'a> {
-    /// How many there are.
-    pub(crate) const COUNT: usize = 10;
     /// Threads of a workgroup, as in the shader.
     pub(crate) const GROUP: u32 = 64;
+
+    /// What they are.
+    pub(crate) fn bindings() -> Vec<Binding> {
+        with_texels(10..11, 11)
+    }
 
     /// `constant_id` of `SCENE_HAS_CONES`, and its value.
     pub(crate) fn constants(cones: bool) -> [(u32, u32); 1] {
@@ -79,12 +85,12 @@ impl<'a> Bounded<'a> {
     }
 
     /// In binding order.
-    pub(crate) fn resources(&self) -> [Resource<'a>; 10] {
+    pub(crate) fn resources(&self) -> [Resource<'a>; 11] {
         let cones = self.cones.unwrap_or(self.frame); // not read then
         let placed = [self.views, self.instances, self.face_instances, self.faces, self.patches, self.items];
         let [views, instances, face_instances, faces, patches, items] = placed.map(Resource::from);
         let [frame, taus, counters, cones] = [self.frame, self.taus, self.counters, cones].map(Resource::from);
-        [frame, views, instances, face_instances, faces, patches, items, taus, counters, cones]
+        [frame, views, instances, face_instances, faces, patches, items, taus, counters, cones, self.points.into()]
     }
 }
 

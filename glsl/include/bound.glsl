@@ -20,11 +20,12 @@ layout(scalar, binding = 6) readonly buffer Items { uint item_face_instance[]; }
 layout(scalar, binding = 7) writeonly buffer Taus { uint taus[]; };
 layout(scalar, binding = 8) buffer CountersBuffer { Counters counters; };
 layout(scalar, binding = 9) readonly buffer Cones { vec4 cones[]; }; // where SCENE_HAS_CONES
+layout(binding = 10) uniform samplerBuffer points;                    // one a homogeneous control point
 
 #include "cone.glsl"
 
 // Segments along u and v, whole numbers from 1 on.
-vec2 factors_of(Patch patch_, uint instance, Seen seen);
+vec2 factors_of(Patch patch_, View view, uint instance, Seen seen);
 
 void main() {
     uint item = gl_GlobalInvocationID.x;
@@ -42,7 +43,7 @@ void main() {
     float beyond = frame.deviation_px + frame.spread_px + (side_of(patch_.shape) == SIDE_INSIDE ? 0.0 : frame.ring_px);
     if (!covers_a_centre(seen, beyond)) return;
     if (SCENE_HAS_CONES && looks_away(view, frame, patch_, cones[index])) return;
-    vec2 tau = frame.fixed_factor != 0u ? vec2(frame.fixed_factor) : factors_of(patch_, fi.instance, seen);
+    vec2 tau = frame.fixed_factor != 0u ? vec2(frame.fixed_factor) : factors_of(patch_, view, fi.instance, seen);
     if (max(tau.x, tau.y) > float(MAX_FACTOR * MAX_SPLIT)) atomicAdd(counters.clamps, 1u);
     uvec2 t = uvec2(min(tau, vec2(MAX_FACTOR * MAX_SPLIT)));
     taus[item] = t.x | t.y << 16;

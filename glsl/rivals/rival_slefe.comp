@@ -6,7 +6,6 @@
 // curved surfaces, 2012. One thread an item. The same in f64: Way::Ipass of src/rivals/factors.
 #include "bound.glsl"
 
-layout(binding = 10) uniform samplerBuffer points; // one a homogeneous control point
 layout(scalar, binding = 11) readonly buffer Slefes {
     uint segments;
     vec2 basis[]; // U_j, L_j at each break point, j after j, degree after degree from 2 on: src/rivals/slefe
@@ -71,11 +70,10 @@ float extent(View view, vec4 q, vec3 reach) {
     return max(high.x - low.x, high.y - low.y);
 }
 
-vec2 factors_of(Patch patch_, uint instance, Seen seen) {
+vec2 factors_of(Patch patch_, View view, uint instance, Seen seen) {
     uint n = degree_u(patch_.shape);
     uint k = degree_v(patch_.shape);
     if (max(n, k) > MOST_DEGREE) return vec2(NO_ANSWER);
-    View view = views[instance];
     vec3 origin = point_at(patch_.first, vec3(0.0));
     float widest = 0.0;
     Bounds rows[MOST_DEGREE + 1u];

@@ -87,6 +87,11 @@ impl Patch {
         self.shape >> 11 & 15
     }
 
+    /// Its weights may differ.
+    pub fn is_rational(&self) -> bool {
+        self.shape >> 8 & 1 != 0
+    }
+
     /// The degrees stored in [`Patch::shape`].
     pub fn degrees(&self) -> (usize, usize) {
         ((self.shape & 15) as usize, (self.shape >> 4 & 15) as usize)

@@ -39,13 +39,14 @@ impl DividePass {
             taus: &b.taus,
             counters: &b.counters,
             cones: s.cones.as_ref(),
+            points: &s.points,
         };
         match self {
             Self::Bound(pass) => pass.record(cmd, &bounded, b.counts.items),
             #[cfg(feature = "rivals")]
             Self::Slefe(pass) => {
                 let Some(slefes) = &s.slefes else { unreachable!("made with the pass") };
-                let bindings = rival_slefe::Bindings { bounded, points: &s.points, slefes };
+                let bindings = rival_slefe::Bindings { bounded, slefes };
                 pass.record(cmd, &bindings, b.counts.items);
             }
         }

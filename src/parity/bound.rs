@@ -105,6 +105,23 @@ fn parity_of_what_looks_away() {
     gpu.finish();
 }
 
+/// Of a polynomial patch the control points themselves are asked, and fewer segments may do than its bend alone asks for.
+#[test]
+fn parity_of_what_moves_no_pixel() {
+    let gpu = Gpu::new();
+    let case = &cases()[0];
+    let of = |case: &Case| twin::bound::bound(&case.frame, &case.scene(), &mut Counters::default());
+    let mut rational = case.clone();
+    rational.data.patches.iter_mut().for_each(|patch| patch.shape |= 1 << 8);
+    let (with, without) = (of(case), of(&rational));
+    let fewer = with.iter().zip(&without).position(|(a, b)| a != b).expect("a patch that bends towards the eye");
+    let quads = |tau: u32| (tau & 0xffff) * (tau >> 16);
+    assert!(quads(with[fewer]) < quads(without[fewer]));
+    compare(&gpu, &rational, &rational).unwrap();
+    assert_eq!(compare(&gpu, &rational, case).unwrap_err().buffer, "taus");
+    gpu.finish();
+}
+
 #[test]
 fn a_difference_is_seen() {
     let gpu = Gpu::new();

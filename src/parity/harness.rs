@@ -116,6 +116,7 @@ pub(super) struct SceneBuffers {
     pub face_instances: Texels,
     pub faces: Texels,
     pub patches: Buffer,
+    pub points: Texels,
     pub items: Buffer,
     pub cells: Buffer,
     pub cell_items: Buffer,
@@ -134,6 +135,7 @@ impl SceneBuffers {
             face_instances: gpu.upload_texels("face instances", &d.face_instances, Texel::U32x2),
             faces: gpu.upload_texels("faces", &d.faces, Texel::Words),
             patches: gpu.upload("patches", &d.patches),
+            points: gpu.upload_texels("points", &d.points, Texel::F32x4),
             items: gpu.upload("items", &d.items),
             cells: gpu.upload("cells", &d.cells),
             cell_items: gpu.upload("cell items", &d.cell_items),
@@ -161,6 +163,7 @@ impl SceneBuffers {
             taus,
             counters,
             cones,
+            points: &self.points,
         }
     }
 }

@@ -6,7 +6,6 @@ use super::shapes::model_and_cameras;
 use super::squares::drawn;
 use super::{Case, Random};
 use crate::abi::{Counters, SQUARE};
-use crate::gpu::{Access, Pool, Texel, Texels, Uploads};
 use crate::model::Camera;
 use crate::passes::{farthest, hide, reveal};
 use crate::twin;
@@ -114,14 +113,6 @@ fn compare_reveal(gpu: &Gpu, case: &Case, given: &Farthest, expected: &Farthest)
     let mut old = taus(case);
     // every third was left out before
     old.iter_mut().step_by(3).filter(|tau| **tau != 0).for_each(|tau| *tau |= TAU_HIDDEN);
-    let mut uploads = Uploads::new();
-    let mut points = None;
-    gpu.run(|cmd| {
-        let usage = ash::vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
-        let buffer = uploads.buffer(cmd, Pool::Transient, "points", usage, &case.data.points).unwrap();
-        uploads.finish(cmd, Access::COMPUTE_READ);
-        points = Some(Texels::new(gpu.device(), buffer, Texel::F32x4).unwrap());
-    });
     let farthest = gpu.upload("farthest", &given.depths);
     let (taus, hidden) = (gpu.upload("taus", &old), gpu.upload("hidden", &vec![7u32; n]));
     let outside = gpu.upload("outside", &case.data.outside);
@@ -134,7 +125,7 @@ fn compare_reveal(gpu: &Gpu, case: &Case, given: &Farthest, expected: &Farthest)
         face_instances: &s.face_instances,
         faces: &s.faces,
         patches: &s.patches,
-        points: points.as_ref().unwrap(),
+        points: &s.points,
         items: &s.items,
         farthest: &farthest,
         taus: &taus,

@@ -5,7 +5,6 @@ use super::harness::{Gpu, Mismatch, SceneBuffers, same};
 use super::shapes::{model_and_cameras, model_with_sieve};
 use super::{Case, placed, untrimmed};
 use crate::abi::Counters;
-use crate::gpu::Texel;
 use crate::model::{Camera, Model};
 use crate::passes::rival_slefe::{Bindings, RivalSlefe};
 use crate::rivals::factors::ipass;
@@ -38,8 +37,7 @@ fn compare(gpu: &Gpu, given: &Case, asked: &[f64], segments: usize) -> Result<Co
     let counters = gpu.upload("counters", &[Counters::default()]);
     let pass = RivalSlefe::new(gpu.device(), false).unwrap();
     let bounded = s.bounded(&taus, &counters, None);
-    let points = gpu.upload_texels("points", &given.data.points, Texel::F32x4);
-    let bindings = Bindings { bounded, points: &points, slefes: &gpu.upload("slefes", &words(segments)) };
+    let bindings = Bindings { bounded, slefes: &gpu.upload("slefes", &words(segments)) };
     gpu.run(|cmd| pass.record(cmd, &bindings, count as u32));
     let found = gpu.read(&taus, count);
     if let Some(index) = (0..count).find(|&i| !is_near(found[i], asked[i])) {

@@ -3,16 +3,17 @@
 //! ```text
 //!    box of the patch ──▶ outside the picture? all of it turned away? ──▶ tau = 0
 //!         │
-//!         ▼ smallest W
+//!         ▼ smallest W of its control points
 //!    second derivatives x pixels per unit ──▶ (tau_u, tau_v), the guaranteed factor
 //! ```
 //!
 //! The factor is derived in [`twin::factor`](crate::twin::factor).
 //!
-//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `items`, `cones`. Writes: `taus`, `counters`.
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `items`, `cones`, `points`. Writes:
+//! `taus`, `counters`.
 //! Twin: `src/twin/bound.rs`.
 
-use crate::bindings::{Bounded, with_constants};
+use crate::bindings::Bounded;
 use crate::gpu::{Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
@@ -29,7 +30,7 @@ impl Bound {
             &ComputeInfo {
                 name: "bound",
                 spirv: shaders::BOUND_COMP,
-                bindings: &with_constants(Bounded::COUNT),
+                bindings: &Bounded::bindings(),
                 push_bytes: 0,
                 constants: &Bounded::constants(cones),
             },

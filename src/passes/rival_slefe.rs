@@ -13,8 +13,8 @@
 //! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `items`, `cones`, `points`, `slefes`. Writes:
 //! `taus`, `counters`. The same in `f64`: `Way::Ipass` of `src/rivals/factors`.
 
-use crate::bindings::{Bounded, with_constants};
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
+use crate::bindings::Bounded;
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
 use crate::shaders;
 
 /// The pass.
@@ -25,7 +25,6 @@ pub(crate) struct RivalSlefe {
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub bounded: Bounded<'a>,
-    pub points: &'a Texels,
     /// Segments, and bounds of the basis functions on them.
     pub slefes: &'a Buffer,
 }
@@ -33,8 +32,8 @@ pub(crate) struct Bindings<'a> {
 impl RivalSlefe {
     /// `cones`: some closed part has no trims.
     pub(crate) fn new(device: &Device, cones: bool) -> Result<Self, GpuError> {
-        let mut bindings = with_constants(Bounded::COUNT + 2);
-        bindings[Bounded::COUNT] = Binding::Texels;
+        let mut bindings = Bounded::bindings();
+        bindings.push(Binding::Storage);
         let pipeline = Pipeline::compute(
             device,
             &ComputeInfo {
@@ -50,7 +49,7 @@ impl RivalSlefe {
 
     /// One thread for each of `items`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
-        let resources = [b.bounded.resources().as_slice(), &[b.points.into(), b.slefes.into()]].concat();
+        let resources = [b.bounded.resources().as_slice(), &[b.slefes.into()]].concat();
         cmd.bind(&self.pipeline, &resources, &[]);
         cmd.dispatch(items.div_ceil(Bounded::GROUP));
     }

@@ -3,9 +3,10 @@
 
 use super::cone::looks_away;
 use super::factor::factors;
-use super::view::{covers_a_centre, far_of, pixels_per_unit, see};
+use super::view::{Seen, covers_a_centre, far_of, pixels_per_unit, see, to_pixel};
 use super::{MOST_SEGMENTS, Scene};
-use crate::abi::{Counters, Frame, Side};
+use crate::abi::{Counters, Frame, Patch, Side, View};
+use glam::Vec3;
 
 /// `tau_u | tau_v << 16` of each item; 0 for one that cannot be seen. Counts factors above
 /// [`MOST_SEGMENTS`] in `counters.clamps`.
@@ -28,9 +29,9 @@ pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u
             if cone.is_some_and(|cone| looks_away(view, frame, &patch, *cone)) {
                 return 0;
             }
-            let pixels = pixels_per_unit(frame, &scene.instances[placed.instance as usize], &seen);
             let tau = match frame.fixed_factor {
-                0 => factors(patch.bend, 8.0 * frame.deviation_px / pixels),
+                0 if patch.bend == [0.0; 3] => [1.0; 2],
+                0 => factors_of(frame, scene, &patch, placed.instance as usize, seen),
                 fixed => [fixed as f32; 2],
             };
             let most = MOST_SEGMENTS as f32;
@@ -38,4 +39,75 @@ pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u
             tau[0].min(most) as u32 | (tau[1].min(most) as u32) << 16
         })
         .collect()
+}
+
+/// What is off in depth alone may be off by so much more than what moves pixels: the patch in space, in all.
+pub const DEPTH_SHARE: f32 = 1.5;
+
+fn factors_of(frame: &Frame, scene: &Scene<'_>, patch: &Patch, instance: usize, seen: Seen) -> [f32; 2] {
+    let view = &scene.views[instance];
+    let (n, k) = patch.degrees();
+    let points = &scene.points[patch.first as usize..][..(n + 1) * (k + 1)];
+    let closer = draw_closer(frame, points, view, seen);
+    let budget = 8.0 * frame.deviation_px;
+    let seen = closer.unwrap_or(seen);
+    let bend = patch.bend.map(|b| b * pixels_per_unit(frame, &scene.instances[instance], &seen));
+    let tau = factors(bend, budget);
+    if closer.is_none() || patch.is_rational() {
+        return tau;
+    }
+    let within = |p: [f32; 2]| [0, 1].map(|a| p[a].clamp(0.0, frame.size[a]));
+    let moves = bend_seen(points, (n, k), view, [within(seen.low), within(seen.high)]);
+    let both: [f32; 3] = std::array::from_fn(|d| (moves[d] / seen.w).max(bend[d] / DEPTH_SHARE));
+    let fewer = factors(both, budget);
+    if fewer[0] * fewer[1] < tau[0] * tau[1] { fewer } else { tau }
+}
+
+/// What is `seen` of the patch's box, drawn closer: what is drawn is a mean of the control points. `None` where one of
+/// them is before the near plane.
+fn draw_closer(frame: &Frame, points: &[[f32; 4]], view: &View, seen: Seen) -> Option<Seen> {
+    let (mut w, mut steepest) = (3.0e38f32, 0.0f32);
+    let (mut low, mut high) = ([3.0e38f32; 2], [-3.0e38f32; 2]);
+    for p in points {
+        let q = to_pixel(view, *p);
+        w = w.min(q[3] / p[3]);
+        let pixel = [q[0] / q[3], q[1] / q[3]];
+        for (a, pixel) in pixel.into_iter().enumerate() {
+            (low[a], high[a]) = (low[a].min(pixel), high[a].max(pixel));
+        }
+        let slope = std::array::from_fn::<f32, 2, _>(|a| (pixel[a] - 0.5 * frame.size[a]) / frame.focal);
+        steepest = steepest.max(slope[0] * slope[0] + slope[1] * slope[1]);
+    }
+    if frame.perspective == 0 {
+        return Some(Seen { w: 1.0, slant: 1.0, low, high });
+    }
+    let slant = (1.0 + steepest).sqrt().min(seen.slant);
+    (w >= frame.near).then_some(Seen { w: w.max(seen.w), slant, low, high })
+}
+
+/// As [`Patch::bend`], of a polynomial patch of these degrees, of what moves pixels within `range`: times `W`.
+fn bend_seen(points: &[[f32; 4]], (n, k): (usize, usize), view: &View, range: [[f32; 2]; 2]) -> [f32; 3] {
+    let at = |i: usize, j: usize| {
+        let p = points[j.min(k) * (n + 1) + i.min(n)];
+        Vec3::new(p[0], p[1], p[2])
+    };
+    let moves = |d: Vec3| {
+        let q = to_pixel(view, [d.x, d.y, d.z, 0.0]);
+        let most = [0, 1].map(|a| range.iter().map(|end| (q[a] - end[a] * q[3]).abs()).fold(0.0, f32::max));
+        (most[0] * most[0] + most[1] * most[1]).sqrt()
+    };
+    let mut most = [0.0f32; 3];
+    for (i, j) in (0..=k).flat_map(|j| (0..=n).map(move |i| (i, j))) {
+        let (p, pu, pv) = (at(i, j), at(i + 1, j), at(i, j + 1));
+        let uu = (at(i + 2, j) - pu) - (pu - p);
+        let uv = (at(i + 1, j + 1) - pv) - (pu - p);
+        let vv = (at(i, j + 2) - pv) - (pv - p);
+        for (d, (second, counts)) in [(uu, i + 2 <= n), (uv, true), (vv, j + 2 <= k)].into_iter().enumerate() {
+            if counts {
+                most[d] = most[d].max(moves(second));
+            }
+        }
+    }
+    let times = [n * n.saturating_sub(1), n * k, k * k.saturating_sub(1)].map(|x| x as f32);
+    std::array::from_fn(|d| most[d] * times[d])
 }

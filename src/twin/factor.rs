@@ -34,20 +34,35 @@
 //!   focal |e_xy - (S_xy / S_z) e_z| / T_z        focal |e_xy - (T_xy / T_z) e_z| / S_z
 //! ```
 //!
-//! By Cauchy and Schwarz `|e_xy - s e_z| ≤ |e| sqrt(1 + |s|²)`. `S` and `T` lie in the box of the control
-//! points, so both depths are at least its `W_min`, and `|s|` is at most the slope of the box's steepest
-//! corner; where `S` or `T` is in the picture, at most that of the picture's: `slant = sqrt(1 + tan²)` with the
-//! smaller one. A placement stretches `e` by `scale` at most:
+//! By Cauchy and Schwarz `|e_xy - s e_z| ≤ |e| sqrt(1 + |s|²)`. `S` and `T` are means of the control
+//! points, so both depths are at least the smallest of theirs, `W_min`, and `|s|` is at most the steepest slope of
+//! theirs; where `S` or `T` is in the picture, at most that of the picture's: `slant = sqrt(1 + tan²)` with the
+//! smaller one. (Their box has nearer and steeper corners: a twentieth more segments in the median of random patches.) A placement
+//! stretches `e` by `scale` at most:
 //!
 //! ```text
 //!   deviation_px ≤ E · scale · focal · slant / W_min
 //! ```
 //!
-//! In a parallel view `focal` is pixels per unit and `slant = W = 1`. Where the box crosses the near plane,
-//! `W_min` is cut to `near`: the drawn `T` has `T_z ≥ near`, and `S_z ≥ near - |e|` costs a factor of at most
+//! In a parallel view `focal` is pixels per unit and `slant = W = 1`. Where a control point lies before the near plane,
+//! the box stands for them, and where that crosses it, `W_min` is cut to `near`: the drawn `T` has `T_z ≥ near`, and `S_z ≥ near - |e|` costs a factor of at most
 //! `1 / (1 - deviation_px / focal)`, one part in 5000 for half a pixel at the usual lenses. A trimmed
 //! face's ring reaches beyond `[0, 1]²`: `visibility_surface.glsl` pushes no vertex so far that the surface leaves its
 //! tangent by more than a quarter of the budget, so across the border it is off by 25/16 of it at most.
+//!
+//! **Towards the eye.** What is off along the ray moves no pixel. For a polynomial patch pass [`bound`](super::bound) projects
+//! the second differences of the net, which bound its second derivatives, into the picture:
+//!
+//! ```text
+//!   a, b, c = sup |(d_X - x d_W, d_Y - y d_W)|      d = n (n-1) Δ²_u, n k Δ_u Δ_v, k (k-1) Δ²_v of the control points
+//!   deviation_px ≤ E / W_min                        as homogeneous pixels; (x, y) where the patch is seen in the picture
+//! ```
+//!
+//! since the pixels of `T` and `S` are apart by `|e_X - x e_W| / T_W` with `(x, y)` the pixel of `S`, and by the same with
+//! the two exchanged; each coordinate is linear in `x`, so the ends of its range have the most. What is off in depth,
+//! at the same scale, may then be `DEPTH_SHARE` times the budget and no more: factors that keep both are taken
+//! where they make fewer quads. Rational patches stay with the bound in space: second differences of their nets see
+//! weights vary around every arc.
 //!
 //! **The choice.** With `a`, `b`, `c` over the budget and `r = tau_u / tau_v`, the quads are
 //!

@@ -172,6 +172,15 @@ fn summaries(ways: &[Way], outcomes: &[Vec<Outcome>]) -> Vec<Ways> {
 mod tests {
     use super::*;
 
+    /// By the median of random patches the bound takes no more than half as many segments again as the smallest sufficient
+    /// ones of its ratio, of rational ones twice as many.
+    #[test]
+    fn the_bound_divides_little_too_finely() {
+        let bound = &of_random(400, 400, &[Way::Bound])[0];
+        assert!(bound.patches > 300 && bound.violations == 0, "{bound:?}");
+        assert!(bound.finer_polynomial.median <= 1.5 && bound.finer_rational.median <= 2.0, "{bound:?}");
+    }
+
     /// Of 120 random patches: ways with a proof break no budget; the plain slefe and a fixed level do.
     #[test]
     fn proofs_hold_and_habits_do_not() {

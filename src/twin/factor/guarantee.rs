@@ -2,6 +2,7 @@
 //! --features rivals` does so with as many patches as one likes, and compares other ways.
 
 use crate::trial::{Emit, Kind, Trial};
+use crate::twin::bound::DEPTH_SHARE;
 use rayon::prelude::*;
 
 const PATCHES: u64 = 300;
@@ -29,6 +30,8 @@ fn no_patch_deviates_by_more_than_the_budget() {
             assert!(!unseen || deviation.points == 0, "seed {seed}: left out, but seen");
             let kept = unseen || trial.clamped() || deviation.px <= trial.allowed();
             assert!(kept, "seed {seed}: {} px", deviation.px);
+            let deep = unseen || trial.clamped() || deviation.space_px <= f64::from(DEPTH_SHARE) * trial.allowed();
+            assert!(deep, "seed {seed}: {} px in space", deviation.space_px);
             (trial, deviation)
         })
         .collect();
