@@ -6,7 +6,7 @@
 #include "bound.glsl"
 #include "factor.glsl"
 
-// What is off in depth alone may be off by so much more than what moves pixels.
+// Where a bend towards the eye moves no pixel, points may be off in space by so many times what pixels may.
 const float DEPTH_SHARE = 1.5;
 
 vec4 control_point(Patch patch_, uvec2 at) {
@@ -43,7 +43,7 @@ bool draw_closer(Patch patch_, View view, inout Seen seen) {
     return true;
 }
 
-// How far a step d of the part moves a homogeneous pixel's quotient, times W: the most at the corners of what is seen.
+// Pixels that what is off by `d`, part units, is moved by, times W: the most over pixels from `low` to `high`.
 float moves(View view, vec3 d, vec2 low, vec2 high) {
     vec4 q = to_pixel(view, vec4(d, 0.0));
     precise vec2 at_low = q.xy - low * q.w;
@@ -85,8 +85,10 @@ vec2 factors_of(Patch patch_, View view, uint instance, Seen seen) {
     precise vec3 bend = patch_.bend * pixels_per_unit(frame, instances[instance], seen);
     vec2 tau = factors(bend, budget);
     if (!whole || is_rational(patch_.shape)) return tau;
-    precise vec3 moves = bend_seen(patch_, view, clamp(seen.low, vec2(0.0), frame.size), clamp(seen.high, vec2(0.0), frame.size)) / seen.w;
+    vec2 low = clamp(seen.low, vec2(0.0), frame.size);
+    vec2 high = clamp(seen.high, vec2(0.0), frame.size);
+    precise vec3 across = bend_seen(patch_, view, low, high) / seen.w;
     precise vec3 in_depth = bend / DEPTH_SHARE;
-    vec2 fewer = factors(max(moves, in_depth), budget);
+    vec2 fewer = factors(max(across, in_depth), budget);
     return fewer.x * fewer.y < tau.x * tau.y ? fewer : tau;
 }

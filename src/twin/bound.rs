@@ -41,7 +41,7 @@ pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u
         .collect()
 }
 
-/// What is off in depth alone may be off by so much more than what moves pixels: the patch in space, in all.
+/// Where a bend towards the eye moves no pixel, points may be off in space by so many times what pixels may.
 pub const DEPTH_SHARE: f32 = 1.5;
 
 fn factors_of(frame: &Frame, scene: &Scene<'_>, patch: &Patch, instance: usize, seen: Seen) -> [f32; 2] {
@@ -57,8 +57,8 @@ fn factors_of(frame: &Frame, scene: &Scene<'_>, patch: &Patch, instance: usize, 
         return tau;
     }
     let within = |p: [f32; 2]| [0, 1].map(|a| p[a].clamp(0.0, frame.size[a]));
-    let moves = bend_seen(points, (n, k), view, [within(seen.low), within(seen.high)]);
-    let both: [f32; 3] = std::array::from_fn(|d| (moves[d] / seen.w).max(bend[d] / DEPTH_SHARE));
+    let across = bend_seen(points, (n, k), view, [within(seen.low), within(seen.high)]);
+    let both: [f32; 3] = std::array::from_fn(|d| (across[d] / seen.w).max(bend[d] / DEPTH_SHARE));
     let fewer = factors(both, budget);
     if fewer[0] * fewer[1] < tau[0] * tau[1] { fewer } else { tau }
 }
