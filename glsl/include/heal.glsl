@@ -14,7 +14,7 @@
 //   a face from behind, real (a gap looks into the solid):
 //                                  the nearest witness or helper before it, else whichever neighbour's
 //                                  surface passes beside the pixel's centre, one before it if possible
-//   a face from behind, not real (its border is near):
+//   a face from behind, not real (its fold is near, or its border by a rounding):
 //     helpers of two faces before every witness    the nearest: an edge runs here
 //     a witness                                    the nearest: behind a silhouette
 //     a neighbour that sees nothing                nothing
@@ -234,7 +234,7 @@ vec2 inwards(Answer answer, vec2 pixel, out bool ends) {
     Face face = face_at(fi.face);
     Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
     View view = view_at(fi.instance);
-    Sample s = sample_at(patch_, view, unpack_uv(answer.word.y), pixel);
+    Sample s = sample_at(patch_, base_of(patch_), view, unpack_uv(answer.word.y), pixel);
     mat2 uv_along = inverse(pixels_along(s, view));
     vec2 sum = vec2(0.0);
     for (uint k = 0u; k < RING_POINTS; ++k) {

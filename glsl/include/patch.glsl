@@ -29,9 +29,15 @@ void advance(inout Weights w, uint m, uint i, float t) {
     w.choose = i + 1u < m ? w.choose * (float(m - i) / float(i + 1u)) : 1.0;
 }
 
+// A homogeneous control point, seen from `base`.
+vec4 control_point(int at, vec3 base) {
+    vec4 p = texelFetch(points, at);
+    return vec4(p.xyz - base * p.w, p.w);
+}
+
 // Value and slope of row `j`: Horner's scheme on the first n and on the last n control points. One loop as long as the
 // row, here and below: a rasterizer in software runs what follows a branch, and any loop once, for nothing.
-void patch_row(uint first, uint n, uint j, float u, out vec4 value, out vec4 slope) {
+void patch_row(uint first, uint n, uint j, vec3 base, float u, out vec4 value, out vec4 slope) {
     int at = int(first + j * (n + 1u));
     float s = 1.0 - u;
     vec4 a = vec4(0.0);
@@ -39,7 +45,7 @@ void patch_row(uint first, uint n, uint j, float u, out vec4 value, out vec4 slo
     Weights w = Weights(1.0, 1.0);
     float before = 0.0;
     for (uint i = 0u; i <= n; ++i) {
-        vec4 p = texelFetch(points, at + int(i));
+        vec4 p = control_point(at + int(i), base);
         b = b * s + p * before;
         if (i < n) a = a * s + p * weight_of(w);
         before = weight_of(w);
@@ -49,8 +55,9 @@ void patch_row(uint first, uint n, uint j, float u, out vec4 value, out vec4 slo
     slope = (b - a) * float(n);
 }
 
-// Point and first derivatives at (u, v); parameters outside [0, 1] extrapolate.
-Jet patch_jet(uint first, uint shape, vec2 uv) {
+// Point, less `base`, and first derivatives at (u, v); parameters outside [0, 1] extrapolate. Derivatives are differences:
+// those of a small patch far from the origin keep only the digits that its points do, unless `base` is among them.
+Jet patch_jet_from(uint first, uint shape, vec3 base, vec2 uv) {
     uint n = degree_u(shape);
     uint k = degree_v(shape);
     bool rational = SCENE_HAS_RATIONAL && is_rational(shape);
@@ -65,7 +72,7 @@ Jet patch_jet(uint first, uint shape, vec2 uv) {
     float before = 0.0;
     for (uint j = 0u; j <= k; ++j) {
         vec4 p, along;
-        patch_row(first, n, j, uv.x, p, along);
+        patch_row(first, n, j, base, uv.x, p, along);
         b = b * s + p * before;
         if (j < k) a = a * s + p * weight_of(w);
         slope = slope * s + along * weight_of(wide);
@@ -88,5 +95,7 @@ Jet patch_jet(uint first, uint shape, vec2 uv) {
     }
     return jet;
 }
+
+Jet patch_jet(uint first, uint shape, vec2 uv) { return patch_jet_from(first, shape, vec3(0.0), uv); }
 
 #endif

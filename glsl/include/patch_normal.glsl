@@ -1,31 +1,76 @@
-// The point of the exact surface under a pixel with its normal, where it has none of its own, too. Needs scene.glsl and
-// refine.glsl.
+// The point of the exact surface of a face under a pixel, with its normal where it has none of its own, too. Needs
+// scene.glsl and refine.glsl; whoever includes this has `Patch patch_at(uint)`.
 #ifndef PATCH_NORMAL_GLSL
 #define PATCH_NORMAL_GLSL
+
+// Some surface is made of patches that do not go on as those beside them would: of several, and no plane, cylinder, cone,
+// sphere or torus.
+layout(constant_id = 19) const bool SCENE_HAS_PIECES = false;
 
 const float FIRST_INWARDS = 1e-3; // of the way to the patch's middle
 const float MOST_INWARDS = 0.3;
 
-// What `refine` finds, and S_u x S_v there, or where it vanishes (pole, collapsed side) its limit from the patch's inside.
+// The patch of a face on which (u, v) of its patch `n` lies: that itself, or the one beside it.
+uint patch_beside(Face face, uint n, vec2 uv) {
+    ivec2 count = ivec2(face.count_u, face.count_v);
+    ivec2 place = ivec2(n % face.count_u, n / face.count_u);
+    place += ivec2(greaterThan(uv, vec2(1.0))) - ivec2(lessThan(uv, vec2(0.0)));
+    if ((face.flags & FACE_CLOSED_U) != 0u) place.x = (place.x + count.x) % count.x;
+    if ((face.flags & FACE_CLOSED_V) != 0u) place.y = (place.y + count.y) % count.y;
+    place = clamp(place, ivec2(0), count - 1);
+    return uint(place.y * count.x + place.x);
+}
+
+// What `refine` finds from (u, v) of patch `n` of the face, on whichever patch that is, `patch_`, and S_u x S_v there, or
+// where it vanishes (pole, collapsed side) its limit from the patch's inside. A drawn patch may cover a pixel whose centre
+// sees the one beside it, which need not go on as the drawn one would; between knots that are nearly one lie others, far
+// narrower, and are passed over.
+//
 // One evaluation, in one loop: a rasterizer in software runs what no pixel asks for once, too. For fragments: their groups
 // are the same in every frame, where those of compute shaders may not be (refine.glsl says what that does).
-Sample refine_with_normal(Patch patch_, View view, vec2 uv, vec2 pixel, out vec3 normal) {
+Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patch patch_, out vec3 normal) {
+    vec2 closed = vec2((face.flags & FACE_CLOSED_U) != 0u, (face.flags & FACE_CLOSED_V) != 0u);
+    Patch own = patch_at(face.first_patch + n);
+    vec3 base = base_of(own);
     Sample best;
+    uint drawn = n; // the best one's patch
     vec2 next = uv;
+    vec2 at;        // the same of the whole face, where another patch is looked at
+    bool hops = false;
     uint steps = 0u;
     float inwards = 0.0; // found: the normal is looked for
     bool found = false;
     while (!found) {
-        Sample here = sample_at(patch_, view, next, pixel);
+        if (SCENE_HAS_PIECES) {
+            own = patch_at(face.first_patch + n);
+            base = base_of(own);
+            if (hops) next = (at - own.domain.xy) / own.domain.zw;
+        }
+        Sample here = sample_at(own, base, view, next, pixel);
         Jet jet = here.jet;
         bool goes_on = false;
         if (inwards == 0.0) {
-            bool nearer = steps == 0u || dot(here.miss, here.miss) < dot(best.miss, best.miss);
-            if (nearer) best = here;
+            // no control points where all of a patch is trimmed away
+            bool nowhere = hops && side_of(own.shape) == SIDE_OUTSIDE;
+            bool passes = hops && !nowhere && patch_beside(face, n, next) != n;
+            bool nearer = steps == 0u || !passes && !nowhere && dot(here.miss, here.miss) < dot(best.miss, best.miss);
+            if (nearer) {
+                best = here;
+                patch_ = own;
+                drawn = n;
+            }
             vec2 step_;
-            goes_on = step_from(best, view, step_) && nearer && steps < NEWTON_STEPS;
+            goes_on = step_from(best, view, step_) && nearer || passes;
+            goes_on = goes_on && steps < NEWTON_STEPS;
             ++steps;
-            next = best.uv - step_;
+            if (!passes) next = best.uv - step_;
+            if (SCENE_HAS_PIECES) {
+                uint beside = patch_beside(face, n, next);
+                hops = goes_on && beside != n;
+                at = own.domain.xy + next * own.domain.zw;
+                at -= closed * floor(at);
+                n = goes_on ? beside : drawn;
+            }
             jet = best.jet;
         }
         if (!goes_on) {

@@ -11,7 +11,7 @@
 
 const uint NEWTON_STEPS = 4u;
 const float MAX_STEP = 0.25;      // of the patch
-const float CLOSE_ENOUGH = 1e-3;  // pixels
+const float CLOSE_ENOUGH = 5e-4;  // pixels
 
 struct Sample {
     vec2 uv;
@@ -20,11 +20,17 @@ struct Sample {
     vec2 miss;   // pixels
 };
 
-Sample sample_at(Patch patch_, View view, vec2 uv, vec2 pixel) {
+// A corner of the patch: what is near it is known best from there.
+vec3 base_of(Patch patch_) {
+    vec4 corner = texelFetch(points, int(patch_.first));
+    return corner.xyz / corner.w;
+}
+
+Sample sample_at(Patch patch_, vec3 base, View view, vec2 uv, vec2 pixel) {
     Sample s;
     s.uv = uv;
-    s.jet = patch_jet(patch_.first, patch_.shape, uv);
-    s.q = to_pixel(view, vec4(s.jet.point, 1.0));
+    s.jet = patch_jet_from(patch_.first, patch_.shape, base, uv);
+    s.q = to_pixel(view, vec4(base, 1.0)) + to_pixel(view, vec4(s.jet.point, 0.0));
     s.miss = s.q.xy / s.q.w - pixel;
     return s;
 }
@@ -50,11 +56,12 @@ bool step_from(Sample s, View view, out vec2 step_) {
 }
 
 Sample refine(Patch patch_, View view, vec2 uv, vec2 pixel) {
-    Sample best = sample_at(patch_, view, uv, pixel);
+    vec3 base = base_of(patch_);
+    Sample best = sample_at(patch_, base, view, uv, pixel);
     for (uint i = 0u; i < NEWTON_STEPS; ++i) {
         vec2 step_;
         if (!step_from(best, view, step_)) break;
-        Sample next = sample_at(patch_, view, best.uv - step_, pixel);
+        Sample next = sample_at(patch_, base, view, best.uv - step_, pixel);
         bool nearer = dot(next.miss, next.miss) < dot(best.miss, best.miss);
         if (nearer) best = next;
         if (!nearer) break;

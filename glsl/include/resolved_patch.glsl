@@ -13,11 +13,11 @@ void write_patch(uvec2 seen, bool operand) {
     uint item = seen_item(seen.x);
     FaceInstance fi = face_instance_at(face_instance_of(item));
     Face face = face_at(fi.face);
-    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
     Instance instance = instance_at(fi.instance);
     View view = view_at(fi.instance);
+    Patch patch_;
     vec3 n;
-    Sample s = refine_with_normal(patch_, view, unpack_uv(seen.y), gl_FragCoord.xy, n);
+    Sample s = surface_under(face, item - fi.first_item, view, unpack_uv(seen.y), gl_FragCoord.xy, patch_, n);
     n = normalize(instance.normal * n);
     bool flip = ((face.flags & FACE_SAME_SENSE) == 0u) != (instance.mirrored != 0u);
     if (operand) flip = dot(n, eye_ray(frame, gl_FragCoord.xy).d) > 0.0;

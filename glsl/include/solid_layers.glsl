@@ -64,6 +64,9 @@ layout(constant_id = 17) const bool SOLIDS_HAVE_PATCHES = false;
 #include "patch.glsl"
 #include "resolved.glsl"
 #include "refine.glsl"
+
+Patch patch_at(uint i) { return patches[i]; }
+
 #include "patch_normal.glsl"
 #include "visible.glsl"
 #include "sides.glsl"
@@ -157,9 +160,10 @@ Layer layer_of_patch(Fragment f, Ray ray) {
     uint item = seen_item(f.what);
     FaceInstance fi = face_instances[item_face_instance[item]];
     Face face = faces[fi.face];
-    Patch patch_ = patches[face.first_patch + item - fi.first_item];
+    View view = views[fi.instance];
+    Patch patch_;
     vec3 n;
-    Sample s = refine_with_normal(patch_, views[fi.instance], unpack_uv(f.uv), gl_FragCoord.xy, n);
+    Sample s = surface_under(face, item - fi.first_item, view, unpack_uv(f.uv), gl_FragCoord.xy, patch_, n);
     n = normalize(instances[fi.instance].normal * n);
     vec2 at = patch_.domain.xy + s.uv * patch_.domain.zw;
     vec4 colour = unpackUnorm4x8(face.colour);

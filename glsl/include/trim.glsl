@@ -42,7 +42,12 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
     return exact_area(fi.face, lo, hi);
 }
-#elif !defined(TRIM_BY_TABLE) && !defined(TRIM_BY_BISECT)
+#endif
+
+#if defined(TRIM_BY_TABLE) || defined(TRIM_BY_EXACT) || defined(TRIM_BY_BISECT)
+const bool AREA_IS_TOLD = true;
+#else
+const bool AREA_IS_TOLD = false; // each is TRIM_MIXED
 uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
     return TRIM_MIXED;
 }

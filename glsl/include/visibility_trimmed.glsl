@@ -4,10 +4,11 @@
 // a pixel in the gap would show what lies behind. Such pixels must be found, then mended by pass
 // `heal`, which looks closer:
 //
-//   * a face of a solid seen from behind: the gap looks into the solid. It wins over a face of
-//     another solid that touches it.
-//   * the ring, ring_px wide, around a face of a solid seen from behind, so that the faces behind
-//     leave no gap themselves, and around each face of an open shell.
+//   * a face of a solid seen from behind, farther than that from its border: the gap looks into the solid. It wins over a
+//     face of another solid that touches it.
+//   * the ring, ring_px wide, around a face of a solid seen from behind, so that the faces behind leave no gap themselves, and
+//     around each face of an open shell. To either side of the former's border: a hole's far end, drawn narrower than it
+//     is, must not hide the hole's wall.
 //
 // Rings are not drawn: what they are before may be right, and narrower than they are. Only how near
 // the nearest of them comes is kept for each pixel.
@@ -101,9 +102,10 @@ void main() {
         ++k;
     }
     if (!inside && border_depth < 0.0) discard;
+    bool ring = doubtful ? !inside || AREA_IS_TOLD && grows : !inside && !solid;
 #ifdef WITHIN_VOLUME
     // a gap between faces may run along the volume's boundary: rings reach beyond it
-    if (!in_volume(exact_point(patch_, view_at(fi.instance), uv), inside ? ON_PX : frame.ring_px)) discard;
+    if (!in_volume(exact_point(patch_, view_at(fi.instance), uv), inside && !ring ? ON_PX : frame.ring_px)) discard;
 #endif
     float z = gl_FragCoord.z;
     if (!inside && !doubtful) z = solid ? min(z, border_depth) : border_depth;
@@ -112,7 +114,7 @@ void main() {
         if (inside && steep && goes_on) off = min(off, 2.0 * (bend_within(patch_, vec2(1.0)) * px + SNAP_PX));
         stand_back = off * (abs(slope.x) + abs(slope.y) + unit / frame.focal) + STAND_BACK * z;
     }
-    if (!inside && (doubtful || !solid)) {
+    if (ring) {
         uvec2 pixel = uvec2(gl_FragCoord.xy);
         // depths are not negative, so they order like their bits
         atomicMax(rings[pixel.y * uint(frame.size.x) + pixel.x], floatBitsToUint(max(z - stand_back, 0.0)));

@@ -43,6 +43,7 @@ impl LayerPasses {
             shells: !data.solids.shell_leaves.is_empty(),
             patches: data.has_operands,
             rational: data.has_rational,
+            pieces: data.has_pieces,
             marks: data.highlight.map(|h| [h.contact, h.overlap]),
             sun: data.sun.is_some(),
         };

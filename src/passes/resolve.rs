@@ -27,6 +27,8 @@ pub(crate) const AOV_FORMATS: [vk::Format; 4] =
 
 /// `constant_id` of `SCENE_HAS_RATIONAL`.
 const SCENE_HAS_RATIONAL: u32 = 0;
+/// `constant_id` of `SCENE_HAS_PIECES`.
+const SCENE_HAS_PIECES: u32 = 19;
 /// `constant_id` of `HAS_AOVS`.
 const HAS_AOVS: u32 = 3;
 
@@ -61,6 +63,8 @@ pub(crate) struct Kinds {
     /// Beside those that bound operands.
     pub patches: bool,
     pub rational: bool,
+    /// Some patches do not go on as those beside them would.
+    pub pieces: bool,
     pub meshes: bool,
     /// Boolean ones.
     pub solids: Option<SolidKinds>,
@@ -251,11 +255,12 @@ impl Resolve {
         of_operand[7] = Binding::Texels;
         of_operand[8..].fill(Binding::StorageImage);
         let rational = (SCENE_HAS_RATIONAL, u32::from(kinds.rational));
-        let operand = |()| lit(shaders::RESOLVE_VERT, "operand", of.operands, &of_operand, &[rational]);
+        let pieces = (SCENE_HAS_PIECES, u32::from(kinds.pieces));
+        let operand = |()| lit(shaders::RESOLVE_VERT, "operand", of.operands, &of_operand, &[rational, pieces]);
         let operands = kinds.operands.then_some(()).map(operand).transpose()?;
         let patch = |()| {
             let weights = if kinds.rational { "rational" } else { "polynomial" };
-            let constants = [rational, (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some()))];
+            let constants = [rational, pieces, (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some()))];
             lit(shaders::RESOLVE_SEEN_VERT, weights, of.patches, &bindings, &constants)
         };
         let patches = kinds.patches.then_some(()).map(patch).transpose()?;

@@ -21,6 +21,8 @@ use std::ops::Range;
 
 /// `constant_id` of `SCENE_HAS_RATIONAL`.
 const SCENE_HAS_RATIONAL: u32 = 0;
+/// `constant_id` of `SCENE_HAS_PIECES`.
+const SCENE_HAS_PIECES: u32 = 19;
 /// `constant_id` of `HAS_AOVS`.
 const HAS_AOVS: u32 = 3;
 /// `constant_id` of `SOLIDS_HAVE`.
@@ -62,6 +64,8 @@ pub(crate) struct Kinds {
     /// Some of those are spline parts, some with unequal weights.
     pub patches: bool,
     pub rational: bool,
+    /// Some patches do not go on as those beside them would.
+    pub pieces: bool,
     /// Linear colour and opacity of contacts and overlaps, where they are wanted.
     pub marks: Option<[[f32; 4]; 2]>,
     /// The key light is a sun.
@@ -142,6 +146,7 @@ impl SolidLayers {
                 push_bytes: size_of::<[[f32; 4]; 2]>() as u32,
                 constants: &[
                     (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
+                    (SCENE_HAS_PIECES, u32::from(kinds.pieces)),
                     (HAS_AOVS, u32::from(writes)),
                     (SOLIDS_HAVE, kinds.surfaces),
                     (SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),

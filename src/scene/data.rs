@@ -61,6 +61,8 @@ pub(crate) struct SceneData {
     pub meshes: Meshes,
     /// Some patch has unequal weights.
     pub has_rational: bool,
+    /// Some surface is of several patches, and none of those that are one equation everywhere.
+    pub has_pieces: bool,
     /// Some patch is drawn without a trim test.
     pub has_plain: bool,
     /// Some patch needs a trim test.
@@ -342,6 +344,7 @@ impl SceneData {
             scene.faces.push(f.edit.take());
         }
         self.has_rational |= f.rational;
+        self.has_pieces |= f.pieces;
         self.has_patches |= f.face.flags & abi::FACE_OPERAND == 0;
         self.faces.push(f.face);
         self.patches.append(&mut f.patches);

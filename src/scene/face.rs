@@ -8,7 +8,7 @@ pub(super) use super::flatten::Cuts;
 use super::flatten::flattened;
 use crate::abi;
 use crate::abi::Side;
-use crate::model::{Face, TrimLoop};
+use crate::model::{Face, SurfaceKind, TrimLoop};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
 use crate::picture::TrimWay;
@@ -37,6 +37,14 @@ pub(super) struct FaceData {
     /// What edits need, where they may come.
     pub edit: Option<EditFace>,
     pub rational: bool,
+    /// Of several patches, and not one equation everywhere.
+    pub pieces: bool,
+}
+
+/// Each patch of such a surface goes on as the one beside it.
+fn is_elementary(kind: SurfaceKind) -> bool {
+    use SurfaceKind::{Cone, Cylinder, Plane, Sphere, Torus};
+    matches!(kind, Plane | Cylinder | Cone | Sphere | Torus)
 }
 
 /// What a face is a part of.
@@ -107,6 +115,7 @@ impl FaceData {
             },
             edit: None,
             rational: !face.surface.is_polynomial(),
+            pieces: grid.patches.len() > 1 && !is_elementary(face.kind),
         };
         let flag = |on: bool, bit: u32| if on { bit } else { 0 };
         data.face.flags = flag(face.same_sense, abi::FACE_SAME_SENSE)

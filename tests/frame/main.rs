@@ -26,6 +26,7 @@ mod ledges;
 mod lengths;
 mod light;
 mod meshes;
+mod narrow;
 mod objects;
 mod operands;
 mod real_solids;

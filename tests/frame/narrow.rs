@@ -1,0 +1,77 @@
+//! Depth and normal are the exact surface's where patches are narrow, and small beside the part they belong to.
+
+use crate::shapes::one;
+use crate::support::{assert_silent, render, watched};
+use glam::{DVec3, DVec4};
+use selvedge::model::{Camera, Face, Model, Projection, SurfaceKind};
+use selvedge::reference::{JudgeOptions, Tracer, judge};
+use selvedge::spline::{Control, Surface};
+
+const SIDE: f64 = 2_000.0;
+
+fn uniform(spans: usize) -> Vec<f64> {
+    let inner = (1..spans).map(|k| k as f64 / spans as f64);
+    [0.0; 4].into_iter().chain(inner).chain([1.0; 4]).collect()
+}
+
+/// Uniform knots, between 0 and 1, each of them with another one so little after it.
+fn paired(spans: usize, apart: f64) -> Vec<f64> {
+    let inner = (1..spans).map(|k| k as f64 / spans as f64).flat_map(|k| [k, k + apart]);
+    [0.0; 4].into_iter().chain(inner).chain([1.0; 4]).collect()
+}
+
+/// A wavy sheet, face 1, at one end of a part `2 far` long, with a flat one at the other.
+fn sheet(far: f64, knots_u: Vec<f64>) -> Model {
+    let knots_v = vec![0.0, 0.0, 0.0, 0.0, 1.0, 1.0, 1.0, 1.0];
+    let count = knots_u.len() - 4;
+    let mean = |i: usize| knots_u[i + 1..i + 4].iter().sum::<f64>() / 3.0; // Greville's
+    let mut points = Vec::new();
+    for j in 0..4 {
+        for i in 0..count {
+            let (u, v) = (mean(i), f64::from(j) / 3.0);
+            let height = (std::f64::consts::TAU * 3.0 * u).sin() * 60.0 + v * v * 200.0;
+            points.push(DVec4::from_point(DVec3::new(far + SIDE * u, SIDE * v, height), 1.0));
+        }
+    }
+    let sheet = Surface::new((3, 3), knots_u, knots_v, points).unwrap();
+    let flat = [(0.0, 0.0), (10.0, 0.0), (0.0, 10.0), (10.0, 10.0)];
+    let flat = flat.map(|(x, y)| DVec4::from_point(DVec3::new(-far + x, y, 0.0), 1.0)).to_vec();
+    let flat = Surface::new((1, 1), vec![0.0, 0.0, 1.0, 1.0], vec![0.0, 0.0, 1.0, 1.0], flat).unwrap();
+    let face = |id, kind, surface| Face { id, kind, surface, loops: Vec::new(), same_sense: true, colour: None };
+    one("sheet", false, vec![face(1, SurfaceKind::BSpline, sheet), face(2, SurfaceKind::Plane, flat)])
+}
+
+/// Every pixel, each of which is 3 mm wide.
+fn assert_exact(far: f64, knots_u: Vec<f64>) {
+    let model = sheet(far, knots_u);
+    let target = DVec3::new(far + 0.5 * SIDE, 0.5 * SIDE, 50.0);
+    let camera = Camera {
+        eye: target + DVec3::new(300.0, -900.0, 1500.0),
+        target,
+        up: DVec3::Z,
+        projection: Projection::Perspective { fov_y: 35f64.to_radians() },
+        depth_range: (10.0, 1e5),
+        size: (480, 360),
+    };
+    let mut renderer = watched(&model);
+    let picture = render(&mut renderer, &camera);
+    assert_silent(renderer);
+    let options = JudgeOptions { samples: None, ..JudgeOptions::default() };
+    let j = judge(&Tracer::new(&model), &camera, &picture, &options);
+    let exact = &j.exact;
+    println!("{:?}, {:?}; {} beyond", exact.depth_px, exact.normal_deg, exact.beyond);
+    assert_eq!((j.wrong, exact.beyond), (0, 0), "{:?}", exact.normal_deg);
+    assert!(exact.depth_px.count > 150_000, "{} of {}", exact.depth_px.count, j.sampled);
+}
+
+/// Of each two patches one is 2 mm wide, and the surface turns otherwise behind it than before it.
+#[test]
+fn a_pixel_sees_its_own_patch_where_others_are_narrow() {
+    assert_exact(0.0, paired(12, 1e-3));
+}
+
+/// Patches of 40 mm in a part as long as an aircraft, where single precision tells 2e-3 mm from nothing.
+#[test]
+fn normals_of_small_patches_far_from_the_part_s_middle() {
+    assert_exact(18_000.0, uniform(50));
+}
