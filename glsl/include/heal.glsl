@@ -25,7 +25,9 @@
 //     a helper that covers the face itself         the nearest: both end here in a silhouette
 //     a witness                                    the nearest: behind a silhouette, or no border at all; not the
 //                                                  face itself where it ends and two others meet, as near as they lean
-//     the face itself, which has grown to here     it stays, before witnesses and behind no helper, in all of the ring
+//     the face itself, which has grown to here     it stays, before witnesses and behind no helper, in all of the ring.
+//                                                  Where nobody else is, a neighbour's solid face helps that bends away
+//                                                  between the two pixels: it hides what ends in its silhouette
 //     nothing is seen                              nothing
 //     a helper                                     the nearest
 //   nothing, between patches on both sides:
@@ -170,6 +172,23 @@ Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec
     return s;
 }
 
+// A face that bends away from the viewer between the pixel and `beside`, which sees it: whether it is there within the ring
+// towards that one. At the pixel itself its surface looks away, where its trims tell nothing.
+Answer ask_towards(vec2 beside, uvec2 seen, vec2 pixel, Answer behind) {
+    uint item = seen_item(seen.x);
+    FaceInstance fi = face_instance_at(face_instance_of(item));
+    Face face = face_at(fi.face);
+    View view = view_at(fi.instance);
+    vec2 at = pixel + frame.ring_px * normalize(beside - pixel);
+    Sample s = refine_across(fi, face, view, item, unpack_uv(seen.y), at);
+    mat2 along = pixels_along(s, view);
+    bool away = looks_away(determinant(along), face, instance_at(fi.instance));
+    bool there = is_there(fi, face, item, patch_at(face.first_patch + item - fi.first_item), s.uv);
+    bool helps = there && !away && length(s.miss) <= ON_PIXEL_PX && s.q.z <= behind.depth;
+    uvec2 word = uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0))));
+    return Answer(helps ? HELPER : NO, false, s.q.z, frame.ring_px, away, vec2(0.0), word);
+}
+
 // Who is not inside its trims helps only where it is before `behind`.
 Answer ask(uvec2 seen, vec2 pixel, uint ring, Answer behind) {
     uint item = seen_item(seen.x);
@@ -296,6 +315,8 @@ void main() {
     bool two_help = false;
     uint meeting_face = 0u; // index + 1; two faces that meet the doubtful one here, where it ends
     bool two_meet = false;
+    uvec2 bending = uvec2(0u); // a neighbour sees it, and it looks away at the pixel
+    vec2 bending_at = pixel + 1.0;
     if (ringed && nothing && other.x != 0u) {
         witness = Answer(WITNESS, true, other_depth(other, pixel), 0.0, false, vec2(0.0), uvec2(0u));
     }
@@ -333,6 +354,10 @@ void main() {
             continue;
         }
         Answer answer = ask(seen, pixel, RING_OUTSIDE, behind);
+        if (steps == 1u && answer.kind == NO && answer.away) {
+            bending = seen;
+            bending_at = vec2(beside) + 0.5;
+        }
         // who is farther away must be there, and look here: its border tells nothing
         if (steps > 1u && (answer.kind != WITNESS || answer.away)) continue;
         bool before = answer.depth <= limit;
@@ -358,6 +383,10 @@ void main() {
             two_meet = two_meet || (meeting_face != 0u && meeting_face != face);
             meeting_face = face;
         }
+    }
+    // where nobody else is
+    if (ringed && !nothing && bending.x != 0u && witness.kind == NO && helper.kind == NO) {
+        helper = ask_towards(bending_at, bending, pixel, behind);
     }
     // beyond their silhouette the one that it hides goes on before the other
     if (second.kind == HELPER && !wholly_before(helper, second) && covers(second, helper, pixel)) helper = second;

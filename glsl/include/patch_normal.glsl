@@ -10,16 +10,17 @@ layout(constant_id = 19) const bool SCENE_HAS_PIECES = false;
 const float FIRST_INWARDS = 1e-3; // of the way to the patch's middle
 const float MOST_INWARDS = 0.3;
 
-// The patch of a face on which (u, v) of its patch `n` lies: that itself, or the one beside it.
-uint patch_beside(Face face, uint n, vec2 uv) {
-    ivec2 count = ivec2(face.count_u, face.count_v);
-    ivec2 place = ivec2(n % face.count_u, n / face.count_u);
+// Column and row of the patch of a face on which (u, v) of that at `place` lies: that itself, or the one beside it.
+ivec2 place_beside(Face face, ivec2 place, vec2 uv) {
+    ivec2 last = ivec2(face.count_u, face.count_v) - 1;
     place += ivec2(greaterThan(uv, vec2(1.0))) - ivec2(lessThan(uv, vec2(0.0)));
-    if ((face.flags & FACE_CLOSED_U) != 0u) place.x = (place.x + count.x) % count.x;
-    if ((face.flags & FACE_CLOSED_V) != 0u) place.y = (place.y + count.y) % count.y;
-    place = clamp(place, ivec2(0), count - 1);
-    return uint(place.y * count.x + place.x);
+    ivec2 within = clamp(place, ivec2(0), last);
+    ivec2 around = mix(mix(place, last, lessThan(place, ivec2(0))), ivec2(0), greaterThan(place, last));
+    bvec2 closed = bvec2((face.flags & FACE_CLOSED_U) != 0u, (face.flags & FACE_CLOSED_V) != 0u);
+    return mix(within, around, closed);
 }
+
+uint patch_in(Face face, ivec2 place) { return face.first_patch + uint(place.y) * face.count_u + uint(place.x); }
 
 // What `refine` finds from (u, v) of patch `n` of the face, on whichever patch that is, `patch_`, and S_u x S_v there, or
 // where it vanishes (pole, collapsed side) its limit from the patch's inside. A drawn patch may cover a pixel whose centre
@@ -29,11 +30,13 @@ uint patch_beside(Face face, uint n, vec2 uv) {
 // One evaluation, in one loop: a rasterizer in software runs what no pixel asks for once, too. For fragments: their groups
 // are the same in every frame, where those of compute shaders may not be (refine.glsl says what that does).
 Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patch patch_, out vec3 normal) {
+    // divided once: a division of integers costs a rasterizer in software as much as what is looked up
+    ivec2 place = SCENE_HAS_PIECES ? ivec2(n % face.count_u, n / face.count_u) : ivec2(0);
     vec2 closed = vec2((face.flags & FACE_CLOSED_U) != 0u, (face.flags & FACE_CLOSED_V) != 0u);
     Patch own = patch_at(face.first_patch + n);
     vec3 base = base_of(own);
     Sample best;
-    uint drawn = n; // the best one's patch
+    ivec2 drawn = place; // the best one's patch
     vec2 next = uv;
     vec2 at;        // the same of the whole face, where another patch is looked at
     bool hops = false;
@@ -42,7 +45,7 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
     bool found = false;
     while (!found) {
         if (SCENE_HAS_PIECES) {
-            own = patch_at(face.first_patch + n);
+            own = patch_at(patch_in(face, place));
             base = base_of(own);
             if (hops) next = (at - own.domain.xy) / own.domain.zw;
         }
@@ -52,12 +55,12 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
         if (inwards == 0.0) {
             // no control points where all of a patch is trimmed away
             bool nowhere = hops && side_of(own.shape) == SIDE_OUTSIDE;
-            bool passes = hops && !nowhere && patch_beside(face, n, next) != n;
+            bool passes = hops && !nowhere && place_beside(face, place, next) != place;
             bool nearer = steps == 0u || !passes && !nowhere && dot(here.miss, here.miss) < dot(best.miss, best.miss);
             if (nearer) {
                 best = here;
                 patch_ = own;
-                drawn = n;
+                drawn = place;
             }
             vec2 step_;
             goes_on = step_from(best, view, step_) && nearer || passes;
@@ -65,11 +68,11 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
             ++steps;
             if (!passes) next = best.uv - step_;
             if (SCENE_HAS_PIECES) {
-                uint beside = patch_beside(face, n, next);
-                hops = goes_on && beside != n;
+                ivec2 beside = place_beside(face, place, next);
+                hops = goes_on && beside != place;
                 at = own.domain.xy + next * own.domain.zw;
                 at -= closed * floor(at);
-                n = goes_on ? beside : drawn;
+                place = goes_on ? beside : drawn;
             }
             jet = best.jet;
         }

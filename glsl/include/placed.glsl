@@ -7,8 +7,8 @@
 #include "words.glsl"
 
 layout(binding = 1) uniform samplerBuffer views;           // four a placed part
-layout(binding = 2) uniform usamplerBuffer face_instances; // three a placed face
-layout(binding = 3) uniform usamplerBuffer faces;          // 13 words a face
+layout(binding = 2) uniform usamplerBuffer face_instances; // two a placed face
+layout(binding = 3) uniform usamplerBuffer faces;          // four a face
 layout(binding = 4) uniform usamplerBuffer patches;        // four a patch
 layout(binding = 5) uniform usamplerBuffer items;          // a word a placed patch
 layout(binding = 6) uniform samplerBuffer points;          // one a control point
@@ -35,20 +35,16 @@ Patch patch_at(uint i) {
 }
 
 #ifdef INSTANCES_BINDING
-layout(binding = INSTANCES_BINDING) uniform usamplerBuffer instances; // 13 words a placed part
-
-uint instance_word(uint at) { return word_at(instances, at); }
-
-vec3 instance_column(uint at) {
-    return uintBitsToFloat(uvec3(instance_word(at), instance_word(at + 1u), instance_word(at + 2u)));
-}
+layout(binding = INSTANCES_BINDING) uniform usamplerBuffer instances; // four a placed part
 
 Instance instance_at(uint i) {
-    uint at = i * 13u;
-    mat3 normal = mat3(instance_column(at), instance_column(at + 3u), instance_column(at + 6u));
-    return Instance(
-        normal, uintBitsToFloat(instance_word(at + 9u)), instance_word(at + 10u), instance_word(at + 11u), instance_word(at + 12u)
-    );
+    int at = int(i) * 4;
+    vec4 a = uintBitsToFloat(texelFetch(instances, at));
+    vec4 b = uintBitsToFloat(texelFetch(instances, at + 1));
+    uvec4 c = texelFetch(instances, at + 2);
+    uvec4 d = texelFetch(instances, at + 3);
+    mat3 normal = mat3(a.xyz, vec3(a.w, b.xy), vec3(b.zw, uintBitsToFloat(c.x)));
+    return Instance(normal, uintBitsToFloat(c.y), c.z, c.w, d.x, d.yzw);
 }
 #endif
 

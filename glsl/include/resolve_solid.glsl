@@ -39,7 +39,7 @@ void main() {
     vec3 n = normalize(side.n);
     // the solid begins here: its outside is before
     if (dot(n, ray.d) > 0.0) n = -n;
-    Instance nowhere = Instance(mat3(1.0), 1.0, 0u, 0u, 0u); // leaves are where they are
+    Instance nowhere = Instance(mat3(1.0), 1.0, 0u, 0u, 0u, uvec3(0u)); // leaves are where they are
     write_surface(leaf.colour, nowhere, n, true, t, leaf.id, vec2(uintBitsToFloat(0x7fc00000u)), side.surface);
 }
 

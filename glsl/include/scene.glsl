@@ -60,17 +60,22 @@ const uint FACE_SOLID = 8u;      // the part is closed: back faces are never see
 const uint FACE_TRIMMED = 16u;   // some patch meets a trim curve
 const uint FACE_OPERAND = 32u;   // of a Boolean solid: drawn as its fragments only
 
+// Those that every pixel asks for are whole texels, and what is asked for together is in one.
 struct Face {
     vec4 domain;        // u0, v0, u1 - u0, v1 - v0 of the source's own parameters
+
     uint first_patch;
-    uint count_u;
-    uint count_v;
     uint flags;
+    uint strips;        // of the trim table: uniform v-strips, bays of each << 16; 0 where there is none (bays.glsl)
+    uint first_curve;
+
     uint id;
     uint colour;        // linear light, unorm 8 bits each, red lowest
+    uint count_u;
+    uint count_v;
+
     uint first_cell;
-    uint first_curve;
-    uint strips;        // of the trim table: uniform v-strips, bays of each << 16; 0 where there is none (bays.glsl)
+    uvec3 unused;
 };
 
 struct FaceInstance {
@@ -78,8 +83,10 @@ struct FaceInstance {
     uint instance;
     uint first_item;
     uint first_bay;
+
     uint first_cell;
     uint first_curve;
+    uvec2 unused;
 };
 
 struct Instance {
@@ -87,7 +94,9 @@ struct Instance {
     float scale;   // largest stretch of the transform
     uint colour;   // as Face.colour; opacity 0: the faces keep theirs
     uint mirrored; // 1 when the transform turns the space inside out
+
     uint shell;    // of its FACE_OPERAND faces: which operand of the Boolean solids they bound
+    uvec3 unused;
 };
 
 const uint MESH_SOLID = 1u;   // the part is closed

@@ -155,14 +155,16 @@ impl Link {
 pub struct Face {
     pub domain: [f32; 4],
     pub first_patch: u32,
-    pub count_u: u32,
-    pub count_v: u32,
     pub flags: u32,
+    pub strips: u32,
+    pub first_curve: u32,
     pub id: u32,
     pub colour: u32,
+    pub count_u: u32,
+    pub count_v: u32,
     pub first_cell: u32,
-    pub first_curve: u32,
-    pub strips: u32,
+    /// Up to whole texels.
+    pub unused: [u32; 3],
 }
 
 /// One face of one placed part.
@@ -175,6 +177,8 @@ pub struct FaceInstance {
     pub first_bay: u32,
     pub first_cell: u32,
     pub first_curve: u32,
+    /// Up to whole texels.
+    pub unused: [u32; 2],
 }
 
 /// One placed part.
@@ -186,6 +190,8 @@ pub struct Instance {
     pub colour: u32,
     pub mirrored: u32,
     pub shell: u32,
+    /// Up to whole texels.
+    pub unused: [u32; 3],
 }
 
 /// The mesh belongs to a closed part.

@@ -372,6 +372,7 @@ impl SceneData {
             colour: i.colour.map_or(0, |c| pack_colour([c[0], c[1], c[2], 1.0])),
             mirrored: u32::from(mirrored),
             shell,
+            ..abi::Instance::default()
         });
         self.placements.push(i.transform * DAffine3::from_translation(origin));
         let instance = self.instances.len() as u32 - 1;
@@ -389,6 +390,7 @@ impl SceneData {
                 first_bay: self.bay_count,
                 first_cell: self.cell_items.len() as u32,
                 first_curve: self.curve_items.len() as u32,
+                ..abi::FaceInstance::default()
             });
             let (strips, bays) = (f.strip_count(), f.bay_count());
             if bays > 1 {

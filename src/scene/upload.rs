@@ -188,9 +188,9 @@ impl Scene {
             links: (!data.links.is_empty())
                 .then(|| persistent(&mut uploads, cmd, "patch links", &data.links))
                 .transpose()?,
-            faces: read_both(&mut uploads, cmd, "faces", &data.faces, Texel::Words)?,
-            face_instances: read_both(&mut uploads, cmd, "face instances", &data.face_instances, Texel::U32x2)?,
-            instances: read_both(&mut uploads, cmd, "instances", &data.instances, Texel::Words)?,
+            faces: read_both(&mut uploads, cmd, "faces", &data.faces, Texel::U32x4)?,
+            face_instances: read_both(&mut uploads, cmd, "face instances", &data.face_instances, Texel::U32x4)?,
+            instances: read_both(&mut uploads, cmd, "instances", &data.instances, Texel::U32x4)?,
             items: read_both(&mut uploads, cmd, "items", &data.items, Texel::Words)?,
             #[cfg(feature = "rivals")]
             slefes: match &data.division {
