@@ -65,6 +65,7 @@ layout(scalar, binding = 14) readonly buffer Positions { vec3 positions[]; };
 #define INSTANCES_BINDING 10
 #include "placed.glsl"
 #include "patch.glsl"
+#include "patch_place.glsl"
 #include "refine.glsl"
 #include "ring.glsl"
 #include "visible.glsl"
@@ -112,24 +113,13 @@ float lean(Answer answer) { return RING_SLACK * frame.ring_px * length(answer.sl
 // In all of the ring: surfaces that meet in it are not.
 bool wholly_before(Answer a, Answer b) { return a.depth + lean(a) + lean(b) < b.depth; }
 
-// Column and row of the `n`th patch of a face.
-ivec2 place_of(Face face, int n) {
-    int across = int(max(face.count_u, 1u));
-    return ivec2(n % across, n / across);
-}
-
-// Which way a point of a patch lies beyond it, by more than `slack`.
-ivec2 way_beyond(vec2 uv, float slack) {
-    return ivec2(greaterThan(uv, vec2(1.0 + slack))) - ivec2(lessThan(uv, vec2(-slack)));
-}
-
 // Whether (u, v) of a patch that no loop cuts is in it, or in one beside it that the loops leave. A surface
 // goes on beyond its own end, but the face does not.
 bool in_whole_patch(FaceInstance fi, Face face, uint item, vec2 uv) {
     ivec2 count = ivec2(face.count_u, face.count_v);
     ivec2 place = place_of(face, int(item - fi.first_item)) + way_beyond(uv, ROUNDED);
     if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, count))) return false;
-    return side_of(patch_at(face.first_patch + uint(place.y * count.x + place.x)).shape) != SIDE_OUTSIDE;
+    return side_of(patch_at(patch_in(face, place)).shape) != SIDE_OUTSIDE;
 }
 
 // Whether the face is there at (u, v) of the item's patch. The table has rows only where its border runs: not
@@ -156,7 +146,7 @@ Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec
         ivec2 place = place_of(face, n);
         ivec2 next = clamp(place + way_beyond(s.uv, BEYOND), ivec2(0), count - 1);
         if (next == place) break;
-        Patch there = patch_at(face.first_patch + uint(next.y * count.x + next.x));
+        Patch there = patch_at(patch_in(face, next));
         if (side_of(there.shape) == SIDE_OUTSIDE) break; // it has no control points
         Patch here = patch_at(face.first_patch + uint(n));
         vec2 from = (here.domain.xy + s.uv * here.domain.zw - there.domain.xy) / there.domain.zw;
@@ -164,7 +154,7 @@ Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec
         // beside a silhouette it may not come as near: then the first patch's continuation is better
         bool on = length(t.miss) <= max(length(s.miss), ON_PIXEL_PX);
         if (on) {
-            item = fi.first_item + uint(next.y * count.x + next.x);
+            item = fi.first_item + patch_in(face, next) - face.first_patch;
             s = t;
         }
         if (!on) break; // only now: see refine.glsl
@@ -185,6 +175,9 @@ Answer ask_towards(vec2 beside, uvec2 seen, vec2 pixel, Answer behind) {
     bool away = looks_away(determinant(along), face, instance_at(fi.instance));
     bool there = is_there(fi, face, item, patch_at(face.first_patch + item - fi.first_item), s.uv);
     bool helps = there && !away && length(s.miss) <= ON_PIXEL_PX && s.q.z <= behind.depth;
+#ifdef WITHIN_VOLUME
+    helps = helps && in_volume(s.q, ON_PX);
+#endif
     uvec2 word = uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0))));
     return Answer(helps ? HELPER : NO, false, s.q.z, frame.ring_px, away, vec2(0.0), word);
 }

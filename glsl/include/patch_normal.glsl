@@ -3,6 +3,8 @@
 #ifndef PATCH_NORMAL_GLSL
 #define PATCH_NORMAL_GLSL
 
+#include "patch_place.glsl"
+
 // Some surface is made of patches that do not go on as those beside them would: of several, and no plane, cylinder, cone,
 // sphere or torus.
 layout(constant_id = 19) const bool SCENE_HAS_PIECES = false;
@@ -13,14 +15,12 @@ const float MOST_INWARDS = 0.3;
 // Column and row of the patch of a face on which (u, v) of that at `place` lies: that itself, or the one beside it.
 ivec2 place_beside(Face face, ivec2 place, vec2 uv) {
     ivec2 last = ivec2(face.count_u, face.count_v) - 1;
-    place += ivec2(greaterThan(uv, vec2(1.0))) - ivec2(lessThan(uv, vec2(0.0)));
+    place += way_beyond(uv, 0.0);
     ivec2 within = clamp(place, ivec2(0), last);
     ivec2 around = mix(mix(place, last, lessThan(place, ivec2(0))), ivec2(0), greaterThan(place, last));
     bvec2 closed = bvec2((face.flags & FACE_CLOSED_U) != 0u, (face.flags & FACE_CLOSED_V) != 0u);
     return mix(within, around, closed);
 }
-
-uint patch_in(Face face, ivec2 place) { return face.first_patch + uint(place.y) * face.count_u + uint(place.x); }
 
 // What `refine` finds from (u, v) of patch `n` of the face, on whichever patch that is, `patch_`, and S_u x S_v there, or
 // where it vanishes (pole, collapsed side) its limit from the patch's inside. A drawn patch may cover a pixel whose centre
@@ -31,7 +31,7 @@ uint patch_in(Face face, ivec2 place) { return face.first_patch + uint(place.y) 
 // are the same in every frame, where those of compute shaders may not be (refine.glsl says what that does).
 Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patch patch_, out vec3 normal) {
     // divided once: a division of integers costs a rasterizer in software as much as what is looked up
-    ivec2 place = SCENE_HAS_PIECES ? ivec2(n % face.count_u, n / face.count_u) : ivec2(0);
+    ivec2 place = SCENE_HAS_PIECES ? place_of(face, int(n)) : ivec2(0);
     vec2 closed = vec2((face.flags & FACE_CLOSED_U) != 0u, (face.flags & FACE_CLOSED_V) != 0u);
     Patch own = patch_at(face.first_patch + n);
     vec3 base = base_of(own);
@@ -44,8 +44,11 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
     float inwards = 0.0; // found: the normal is looked for
     bool found = false;
     while (!found) {
+        bool nowhere = false;
         if (SCENE_HAS_PIECES) {
             own = patch_at(patch_in(face, place));
+            nowhere = hops && side_of(own.shape) == SIDE_OUTSIDE; // all of it is trimmed away: it has no control points
+            if (nowhere) own = patch_;
             base = base_of(own);
             if (hops) next = (at - own.domain.xy) / own.domain.zw;
         }
@@ -53,8 +56,6 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
         Jet jet = here.jet;
         bool goes_on = false;
         if (inwards == 0.0) {
-            // no control points where all of a patch is trimmed away
-            bool nowhere = hops && side_of(own.shape) == SIDE_OUTSIDE;
             bool passes = hops && !nowhere && place_beside(face, place, next) != place;
             bool nearer = steps == 0u || !passes && !nowhere && dot(here.miss, here.miss) < dot(best.miss, best.miss);
             if (nearer) {
