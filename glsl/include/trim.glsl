@@ -42,12 +42,7 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
     return exact_area(fi.face, lo, hi);
 }
-#endif
-
-#if defined(TRIM_BY_TABLE) || defined(TRIM_BY_EXACT) || defined(TRIM_BY_BISECT)
-const bool AREA_IS_TOLD = true;
-#else
-const bool AREA_IS_TOLD = false; // each is TRIM_MIXED
+#elif !defined(TRIM_BY_TABLE) && !defined(TRIM_BY_BISECT)
 uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
     return TRIM_MIXED;
 }

@@ -4,11 +4,11 @@
 // a pixel in the gap would show what lies behind. Such pixels must be found, then mended by pass
 // `heal`, which looks closer:
 //
-//   * a face of a solid seen from behind, farther than that from its border: the gap looks into the solid. It wins over a
-//     face of another solid that touches it.
-//   * the ring, ring_px wide, around a face of a solid seen from behind, so that the faces behind leave no gap themselves, and
-//     around each face of an open shell. To either side of the former's border: a hole's far end, drawn narrower than it
-//     is, must not hide the hole's wall.
+//   * a face of a solid seen from behind, with all of the ring around the pixel's centre, ring_px wide, in it: the gap
+//     looks into the solid. It wins over a face of another solid that touches it.
+//   * the ring around a face of a solid seen from behind, so that the faces behind leave no gap themselves, and around
+//     each face of an open shell. To either side of the border of the former: a hole's far end, drawn narrower than it
+//     is, must not hide its wall.
 //
 // Rings are not drawn: what they are before may be right, and narrower than they are. Only how near
 // the nearest of them comes is kept for each pixel.
@@ -87,22 +87,25 @@ void main() {
         steep = length(slope) > STEEP * unit / frame.focal;
     }
     // Questions, all asked in one place, since a wide machine runs every place for every pixel: the point itself; then the
-    // ring where it is outside, a point nearer to the viewer where it is inside and steep.
+    // ring where it is outside or seen from behind, a point nearer to the viewer where it is inside and steep.
     bool inside = area == TRIM_IN;
     bool goes_on = inside;
+    bool whole = true; // seen from behind: none of the ring is outside
     vec2 step_ = vec2(0.0);
     uint k = 0u;
     while (true) {
         bool is_in = trim_inside(fi, face, at + step_.x * dx + step_.y * dy);
         if (k == 0u) inside = inside || is_in;
+        else if (inside && doubtful) whole = whole && is_in;
         else if (inside) goes_on = goes_on || is_in;
         else if (is_in) border_depth = max(border_depth, gl_FragCoord.z + dot(step_, slope));
-        if (inside ? !steep || k == 1u : !grows || k == RING_POINTS) break;
-        step_ = inside ? off * normalize(slope) : reach * RING[k];
+        bool around_it = doubtful || !inside;
+        if (around_it ? !grows || !whole || k == RING_POINTS : !steep || k == 1u) break;
+        step_ = around_it ? reach * RING[k] : off * normalize(slope);
         ++k;
     }
     if (!inside && border_depth < 0.0) discard;
-    bool ring = doubtful ? !inside || AREA_IS_TOLD && grows : !inside && !solid;
+    bool ring = !inside && (doubtful || !solid) || !whole;
 #ifdef WITHIN_VOLUME
     // a gap between faces may run along the volume's boundary: rings reach beyond it
     if (!in_volume(exact_point(patch_, view_at(fi.instance), uv), inside && !ring ? ON_PX : frame.ring_px)) discard;
