@@ -17,8 +17,8 @@
 //!   of more than the slope explains starts the same search as a wrong id, for the drawn depth.
 //!
 //! `exact` says more, of *regular* surface: what is seen up to [`SMOOTH_PX`] around the centre is one sheet of one
-//! face, nowhere grazing, and turns by [`TURN`] at most, and without a jump at the centre itself. Elsewhere a shift within the limit may show another sheet, or
-//! the normal changes by more within the arithmetic's last digits of a pixel; those are counted only. Whether a pixel
+//! face, nowhere grazing, and turns by [`TURN`] at most, and without a jump at the centre itself. Elsewhere a shift
+//! within the limit may show another sheet, or the normal changes by more within the arithmetic's last digits of a pixel; those are counted only. Whether a pixel
 //! is regular is asked of the exact surface alone, and only where the drawn one is off by more than [`EXACT_DEPTH_PX`]
 //! or [`EXACT_NORMAL_DEG`]: all others are taken as regular.
 
@@ -47,7 +47,8 @@ pub const SMOOTH_PX: f64 = 1.0;
 /// By how much its normal may turn within that, radians: a radius of curvature of ten pixels, of which [`CENTRE_PX`] is
 /// 0.006 degrees.
 pub const TURN: f64 = 0.1;
-/// How well a pixel's centre is known, pixels. Where faces are made of pieces that meet in a slight edge, normals jump within it.
+/// How well a pixel's centre is known, pixels. Where faces are made of pieces that meet in a slight edge, normals jump
+/// within it.
 pub const CENTRE_PX: f64 = 1e-3;
 /// Normals of one mesh jump between triangles. A drawn normal off by more than this, radians, is compared
 /// with what is seen beside the pixel's centre, too.
