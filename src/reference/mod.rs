@@ -33,8 +33,8 @@ mod sun;
 mod tests;
 
 pub use judge::{
-    Bin, CENTRE_PX, Class, DepthErrors, EXACT_DEPTH_PX, EXACT_NORMAL_DEG, Errors, Exactness, Folds, GRAZING_COSINE,
-    JudgeOptions, Judgement, Mismatch, SMOOTH_PX, TURN, judge,
+    Bin, Class, DepthErrors, EXACT_DEPTH_PX, EXACT_NORMAL_DEG, Errors, Exactness, Folds, GRAZING_COSINE, JudgeOptions,
+    Judgement, Mismatch, SMOOTH_PX, TURN, judge,
 };
 pub use probe::Probe;
 pub use sun::{SunJudgement, SunTracer, judge_sun};

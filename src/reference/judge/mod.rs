@@ -17,8 +17,8 @@
 //!   of more than the slope explains starts the same search as a wrong id, for the drawn depth.
 //!
 //! `exact` says more, of *regular* surface: what is seen up to [`SMOOTH_PX`] around the centre is one sheet of one
-//! face, nowhere grazing, and turns by [`TURN`] at most, and without a jump at the centre itself. Elsewhere a shift
-//! within the limit may show another sheet, or the normal changes by more within the arithmetic's last digits of a pixel; those are counted only. Whether a pixel
+//! face, nowhere grazing, and turns by [`TURN`] at most. Elsewhere a shift within the limit may show another sheet, or
+//! the normal changes by more within the arithmetic's last digits of a pixel; those are counted only. Whether a pixel
 //! is regular is asked of the exact surface alone, and only where the drawn one is off by more than [`EXACT_DEPTH_PX`]
 //! or [`EXACT_NORMAL_DEG`]: all others are taken as regular.
 
@@ -44,12 +44,9 @@ pub const EXACT_DEPTH_PX: f64 = 0.1;
 pub const EXACT_NORMAL_DEG: f64 = 0.01;
 /// How far around a pixel's centre regular surface must be one smooth sheet, pixels: beyond any shift within the limit.
 pub const SMOOTH_PX: f64 = 1.0;
-/// By how much its normal may turn within that, radians: a radius of curvature of ten pixels, of which [`CENTRE_PX`] is
-/// 0.006 degrees.
+/// By how much its normal may turn within that, radians: a radius of curvature of ten pixels. A pixel's centre is known
+/// to a thousandth of a pixel, which then is 0.006 degrees.
 pub const TURN: f64 = 0.1;
-/// How well a pixel's centre is known, pixels. Where faces are made of pieces that meet in a slight edge, normals jump
-/// within it.
-pub const CENTRE_PX: f64 = 1e-3;
 /// Normals of one mesh jump between triangles. A drawn normal off by more than this, radians, is compared
 /// with what is seen beside the pixel's centre, too.
 const SMOOTH: f64 = 1e-3;
@@ -240,11 +237,6 @@ impl Bench<'_> {
 
     /// What is seen around `centre` is the sheet of `hit`, and turns little.
     fn is_smooth(&self, probe: &mut Probe, centre: DVec2, hit: &Hit) -> bool {
-        let turn = |h: &Hit| angle_between(h.normal, hit.normal);
-        let still = |pixel: DVec2| probe.first(pixel).is_some_and(|h| turn(&h).to_degrees() <= EXACT_NORMAL_DEG);
-        if !beside(centre, CENTRE_PX).all(still) {
-            return false;
-        }
         beside(centre, SMOOTH_PX).all(|pixel| {
             let (origin, direction) = self.camera.ray(pixel);
             probe.first(pixel).is_some_and(|h| {
@@ -254,7 +246,7 @@ impl Bench<'_> {
                 let apart = (flat - (h.point - origin).dot(direction)).abs();
                 (h.face, h.instance) == (hit.face, hit.instance)
                     && cosine >= GRAZING_COSINE
-                    && turn(&h) <= TURN
+                    && angle_between(h.normal, hit.normal) <= TURN
                     && apart <= fold_depth(self.camera, hit, direction)
             })
         })
