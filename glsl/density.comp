@@ -8,6 +8,7 @@
 // The largest over the strip's visible cells stands for the paper's sup rho; strips that nobody
 // sees get no scan line, and bays beyond those that are seen no row. Twin: src/twin/density.rs.
 #include "bays.glsl"
+#include "octahedral.glsl"
 #include "scene.glsl"
 #include "view.glsl"
 
@@ -38,8 +39,13 @@ void main() {
     Face face = faces[fi.face];
     Cell cell = cells[face.first_cell + item - fi.first_cell];
     if (cell.speed_v < 0.0) return; // no loop meets its patch
-    Seen seen = see(views[fi.instance], frame, cell.box_min, cell.box_max, frame.ring_px + 1.0, far_of(face, frame));
+    View view = views[fi.instance];
+    float margin = frame.ring_px + 1.0;
+    Seen seen = see(view, frame, cell.box_min, cell.box_max, margin, far_of(face, frame));
     if (seen.w < 0.0) return;
+    if (frame.perspective != 0u) {
+        seen.w = max(seen.w, nearest_in_slab(view, frame, octahedral(cell.normal), cell.low, cell.high, margin));
+    }
     float pixels = pixels_per_unit(frame, instances[fi.instance], seen);
     // positive floats order like their bits
     float height = cell.speed_v * pixels / float(strip_count(face.strips));

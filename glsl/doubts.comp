@@ -17,7 +17,7 @@
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, rg32ui) uniform uimage2D visibility;
-layout(scalar, binding = 2) writeonly buffer Doubts { uint doubts[]; }; // column | row << 16 | RINGED | LONE
+layout(scalar, binding = 2) writeonly buffer Doubts { Doubt doubts[]; };
 layout(scalar, binding = 3) buffer Dispatch { uvec3 dispatch; }; // of the second step; zero before
 layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
 layout(binding = 5) uniform sampler2D depth; // reversed
@@ -79,7 +79,7 @@ void main() {
             atomicOr(counters.failed, FAILED_DOUBTS);
             continue;
         }
-        doubts[at] = uint(pixel.x) | uint(pixel.y) << 16 | flags;
+        doubts[at].pixel = uint(pixel.x) | uint(pixel.y) << 16 | flags;
         atomicMax(dispatch.x, at / GROUP + 1u);
         atomicMax(dispatch.y, 1u);
         atomicMax(dispatch.z, 1u);

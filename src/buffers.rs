@@ -12,8 +12,8 @@
 //! ```
 
 use crate::abi::{
-    BLOCK, BORDER_BANDS, BORDER_COLUMNS, Counters, Factors, Fragment, LEAF_RUN, Rect, SQUARE, StripRows, SubPatch,
-    TILE, TileLeaf,
+    BLOCK, BORDER_BANDS, BORDER_COLUMNS, Counters, Doubt, Factors, Fragment, LEAF_RUN, Rect, SQUARE, StripRows,
+    SubPatch, TILE, TileLeaf,
 };
 #[cfg(feature = "rivals")]
 use crate::capacities::is_texture;
@@ -300,7 +300,7 @@ impl Buffers {
                 .map(|way| {
                     Ok(TrimBuffers {
                         rings: numbers("trim rings", size.0 * size.1, Texel::Numbers)?,
-                        doubts: words("trim doubts", capacities.doubts)?,
+                        doubts: structs("trim doubts", capacities.doubts, size_of::<Doubt>())?,
                         heal_dispatch: indirect("heal dispatch", size_of::<[u32; 3]>() as u64)?,
                         table: (way == TrimWay::Table).then(table).transpose()?,
                         #[cfg(feature = "rivals")]

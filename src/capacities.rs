@@ -8,7 +8,7 @@
 
 mod bands;
 
-use crate::abi::{BLOCK, Counters, SubPatch, TILE, TileLeaf};
+use crate::abi::{BLOCK, Counters, Doubt, SubPatch, TILE, TileLeaf};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
 use crate::picture::{Samples, TrimWay};
@@ -346,7 +346,7 @@ impl Capacities {
             draws: self.draws.saturating_mul(more_draws),
             rows: room(self.rows, c.wanted_rows, MOST_ROWS),
             intercepts: room(self.intercepts, c.intercepts, range / size_of::<u32>() as u32),
-            doubts: room(self.doubts, c.doubts, range / size_of::<u32>() as u32),
+            doubts: room(self.doubts, c.doubts, range / size_of::<Doubt>() as u32),
             block_leaves: room(self.block_leaves, c.block_leaves, range / size_of::<u32>() as u32),
             tile_leaves: lists.tile_leaves,
             fragments: lists.fragments,

@@ -12,8 +12,8 @@
 //   its own front, across a fold, is a witness too; so is what is no patch behind the pixel, where an
 //   end of the patches is near: a neighbour sees nothing or such a thing behind the doubtful face, or there is a witness
 //   a face from behind, real (a gap looks into the solid):
-//                                  the nearest witness or helper before it, else whichever neighbour's
-//                                  surface passes beside the pixel's centre, one before it if possible
+//                                  the nearest witness or helper before it, else a front that touches it, else whichever
+//                                  neighbour's surface passes before or beside the pixel's centre, one before it if possible
 //   a face from behind, not real (its fold is near, or its border by a rounding):
 //     helpers of two faces before every witness    the nearest: an edge runs here
 //     a witness                                    the nearest: behind a silhouette
@@ -22,7 +22,7 @@
 //     what is no patch behind the pixel            nothing, so that it is seen
 //   a ring before what is seen, which is asked like a neighbour:
 //     helpers of two faces before every witness    the nearest: an edge runs here
-//     a helper that covers the face itself         the nearest: both end here in a silhouette
+//     who covers the face itself                   the nearest: both end here in a silhouette
 //     a witness                                    the nearest: behind a silhouette, or no border at all; not the
 //                                                  face itself where it ends and two others meet, as near as they lean
 //     the face itself, which has grown to here     it stays, before witnesses and behind no helper, in all of the ring.
@@ -46,8 +46,8 @@
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(binding = 7, rg32ui) uniform uimage2D visibility;
-layout(scalar, binding = 8) readonly buffer Doubts { uint doubts[]; };
+layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
+layout(scalar, binding = 8) buffer Doubts { Doubt doubts[]; };
 layout(scalar, binding = 9) readonly buffer CountersBuffer { Counters counters; };
 layout(binding = 11, rg32ui) readonly uniform uimage2D others;
 layout(scalar, binding = 12) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
@@ -86,6 +86,7 @@ const float SAME_DEPTH = 1e-6;
 
 // How far away a neighbour is looked for.
 const uint BAND_PX = 4u;
+const uint WIDE_BAND_PX = 16u; // from within a face from behind: it may lie on another solid's front
 
 // How many patches of its face a neighbour's answer may lead across: a patch may be smaller than a pixel.
 const uint MAX_HOPS = 8u;
@@ -182,6 +183,18 @@ Answer ask_towards(vec2 beside, uvec2 seen, vec2 pixel, Answer behind) {
     return Answer(helps ? HELPER : NO, false, s.q.z, frame.ring_px, away, vec2(0.0), word);
 }
 
+// How far apart in depth a front and a back count as one: the front stands back by this (visibility_trimmed.glsl).
+float touch(Answer front) {
+    float px = (frame.perspective != 0u ? front.depth : 1.0) / frame.focal;
+    return 2.0 * frame.deviation_px * (abs(front.slope.x) + abs(front.slope.y) + px) + 2.0 * SAME_DEPTH * front.depth;
+}
+
+// Whether a neighbour is asked. A mark on what an open shell shows is that of a ring before it: as it is drawn, it is there.
+bool tells(uint word) {
+    if ((word & DOUBTFUL) == 0u) return true;
+    return !sees_nothing(word) && (face_at(face_instance_at(face_instance_of(seen_item(word))).face).flags & FACE_SOLID) == 0u;
+}
+
 // Who is not inside its trims helps only where it is before `behind`.
 Answer ask(uvec2 seen, vec2 pixel, uint ring, Answer behind) {
     uint item = seen_item(seen.x);
@@ -246,7 +259,7 @@ vec2 inwards(Answer answer, vec2 pixel, out bool ends) {
     Face face = face_at(fi.face);
     Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
     View view = view_at(fi.instance);
-    Sample s = sample_at(patch_, base_of(patch_), view, unpack_uv(answer.word.y), pixel);
+    Sample s = sample_at(patch_, net_of(patch_), view, unpack_uv(answer.word.y), pixel);
     mat2 uv_along = inverse(pixels_along(s, view));
     vec2 sum = vec2(0.0);
     for (uint k = 0u; k < RING_POINTS; ++k) {
@@ -284,9 +297,10 @@ float other_depth(uvec2 seen, vec2 pixel) {
 void main() {
     uint n = gl_GlobalInvocationID.x;
     if (n >= min(counters.doubts, frame.doubt_capacity)) return;
-    bool ringed = (doubts[n] & RINGED) != 0u;
-    bool lone = (doubts[n] & LONE) != 0u;
-    ivec2 at = ivec2(doubts[n] & 0x7fffu, (doubts[n] & ~RINGED) >> 16);
+    uint doubt = doubts[n].pixel;
+    bool ringed = (doubt & RINGED) != 0u;
+    bool lone = (doubt & LONE) != 0u;
+    ivec2 at = doubtful_pixel(doubt);
     vec2 pixel = vec2(at) + 0.5;
     uvec2 own = imageLoad(visibility, at).xy;
     uvec2 other = SCENE_HAS_OTHERS ? imageLoad(others, at).xy : uvec2(0u);
@@ -303,6 +317,7 @@ void main() {
     Answer helper = none;
     Answer closest = none;
     bool closest_before = false;
+    Answer touching = none; // a front where the doubtful back is
     Answer second = none; // helper, of another face
     uint helping_face = 0u; // index + 1, of the helper; helpers of two faces meet in an edge here
     bool two_help = false;
@@ -323,6 +338,7 @@ void main() {
     }
     Answer behind = none;
     if (ringed && there) behind = self; // a border that it hides is none
+    uint band = real ? WIDE_BAND_PX : BAND_PX;
     bool beside_nothing = false;
     bool beside_behind = false; // something else that is behind the doubtful face
     for (uint k = 0u; k < RING_POINTS; ++k) {
@@ -331,13 +347,13 @@ void main() {
         ivec2 beside = at;
         uvec2 seen = uvec2(DOUBTFUL, 0u);
         uint steps = 0u;
-        while (steps < BAND_PX && (seen.x & DOUBTFUL) != 0u) {
+        while (steps < band && !tells(seen.x)) {
             ++steps;
             beside += step_;
             if (any(lessThan(beside, ivec2(0))) || any(greaterThanEqual(beside, ivec2(frame.size)))) break;
             seen = imageLoad(visibility, beside).xy;
         }
-        if ((seen.x & DOUBTFUL) != 0u) continue;
+        if (!tells(seen.x)) continue;
         if (sees_nothing(seen.x)) {
             if (steps > 1u) continue;
             uvec2 there = SCENE_HAS_OTHERS ? imageLoad(others, beside).xy : uvec2(0u);
@@ -354,10 +370,13 @@ void main() {
         // who is farther away must be there, and look here: its border tells nothing
         if (steps > 1u && (answer.kind != WITNESS || answer.away)) continue;
         bool before = answer.depth <= limit;
-        if (before && !closest_before || before == closest_before && answer.miss < closest.miss) {
+        bool hidden = !before && answer.miss <= ON_PIXEL_PX; // by the doubtful face
+        if (!hidden && (before && !closest_before || before == closest_before && answer.miss < closest.miss)) {
             closest = answer;
             closest_before = before;
         }
+        bool touches = answer.kind == WITNESS && !answer.away && abs(answer.depth - self.depth) <= touch(answer);
+        if (touches && answer.depth < touching.depth) touching = answer;
         if (!before) continue;
         uint face = face_instance_at(face_instance_of(seen_item(seen.x))).face + 1u;
         if (answer.kind == WITNESS && answer.depth < witness.depth) witness = answer;
@@ -386,10 +405,13 @@ void main() {
     // its border tells nothing: the face may be hidden but for that. Unless it ends here, where two others meet: it may
     // be the third, which they hide
     bool stays = false; // it has grown to the pixel, and is what is there
-    bool covered = false; // by the helper, up to a silhouette in which both end here
-    if (ringed && on && self.kind == HELPER && helper.kind == HELPER && helper.depth < witness.depth) {
-        bool other_face = face_instance_at(face_instance_of(seen_item(helper.word.x))).face + 1u != own_face;
-        covered = other_face && covers(helper, self, pixel);
+    bool helped = helper.kind == HELPER && helper.depth < witness.depth;
+    Answer nearest = witness;
+    if (helped) nearest = helper;
+    bool covered = false; // by the nearest, up to a silhouette in which both end here
+    if (ringed && on && self.kind == HELPER && nearest.kind != NO) {
+        bool other_face = face_instance_at(face_instance_of(seen_item(nearest.word.x))).face + 1u != own_face;
+        covered = other_face && covers(nearest, self, pixel);
     }
     if (ringed && on && !covered && self.depth < witness.depth && !(self.kind == HELPER && two_meet)) {
         stays = !self.inside && wholly_before(self, witness) && !wholly_before(helper, self);
@@ -406,7 +428,7 @@ void main() {
     uvec2 healed = own;
     bool has_witness = witness.kind == WITNESS;
     bool has_helper = helper.kind == HELPER;
-    bool edge = covered || two_help && helper.depth < witness.depth && !stays && !lone;
+    bool edge = covered && helped || two_help && helper.depth < witness.depth && !stays && !lone;
 #ifdef WITHIN_VOLUME
     // the inside of what the volume cuts open, and before it the border of one face: the part's outline
     if (ringed && there && self.away) edge = edge || has_helper && helper.depth < self.depth;
@@ -414,6 +436,7 @@ void main() {
     if (real) {
         if (has_witness && !(has_helper && helper.depth < witness.depth)) healed = witness.word;
         else if (has_helper) healed = helper.word;
+        else if (touching.kind == WITNESS) healed = touching.word;
         else if (closest.miss <= RING_SLACK * frame.ring_px) healed = closest.word;
     } else if (edge) {
         healed = helper.word;
@@ -426,5 +449,5 @@ void main() {
     } else if (!ringed && other.x != 0u) {
         healed = uvec2(0u);
     }
-    imageStore(visibility, at, uvec4(healed.x | DOUBTFUL, healed.y, 0u, 0u));
+    doubts[n].healed = uvec2(healed.x | DOUBTFUL, healed.y);
 }

@@ -34,7 +34,7 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
     ivec2 place = SCENE_HAS_PIECES ? place_of(face, int(n)) : ivec2(0);
     vec2 closed = vec2((face.flags & FACE_CLOSED_U) != 0u, (face.flags & FACE_CLOSED_V) != 0u);
     Patch own = patch_at(face.first_patch + n);
-    vec3 base = base_of(own);
+    Net net = net_of(own);
     Sample best;
     ivec2 drawn = place; // the best one's patch
     vec2 next = uv;
@@ -49,10 +49,10 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
             own = patch_at(patch_in(face, place));
             nowhere = hops && side_of(own.shape) == SIDE_OUTSIDE; // all of it is trimmed away: it has no control points
             if (nowhere) own = patch_;
-            base = base_of(own);
+            net = net_of(own);
             if (hops) next = (at - own.domain.xy) / own.domain.zw;
         }
-        Sample here = sample_at(own, base, view, next, pixel);
+        Sample here = sample_at(own, net, view, next, pixel);
         Jet jet = here.jet;
         bool goes_on = false;
         if (inwards == 0.0) {
@@ -64,8 +64,10 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
                 drawn = place;
             }
             vec2 step_;
-            goes_on = step_from(best, view, step_) && nearer || passes;
-            goes_on = goes_on && steps < NEWTON_STEPS;
+            bool farther = step_from(best, view, step_);
+            // the rest of the way may lead across a side
+            if (SCENE_HAS_PIECES && nearer) farther = farther || place_beside(face, place, best.uv - step_) != place;
+            goes_on = (farther && nearer || passes) && steps < NEWTON_STEPS;
             ++steps;
             if (!passes) next = best.uv - step_;
             if (SCENE_HAS_PIECES) {

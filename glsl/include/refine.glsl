@@ -20,17 +20,31 @@ struct Sample {
     vec2 miss;   // pixels
 };
 
-// A corner of the patch: what is near it is known best from there.
-vec3 base_of(Patch patch_) {
-    vec4 corner = texelFetch(points, int(patch_.first));
-    return corner.xyz / corner.w;
+// Some patch has a fine net (src/scene/fine.rs).
+layout(constant_id = 20) const bool SCENE_HAS_FINE = false;
+
+// Control points, from `first` on, and where they are seen from: a point near the patch, since what is near that is known
+// best from there. `less`: what they are still to be reduced by.
+struct Net {
+    uint first;
+    vec3 less;
+    vec3 base;
+};
+
+// The fine net, or the control points themselves as they are seen from a corner.
+Net net_of(Patch patch_) {
+    uint count = (degree_u(patch_.shape) + 1u) * (degree_v(patch_.shape) + 1u);
+    bool fine = SCENE_HAS_FINE && has_fine_net(patch_.shape);
+    vec4 base = texelFetch(points, int(patch_.first + (fine ? count : 0u)));
+    base.xyz /= base.w;
+    return Net(patch_.first + (fine ? count + 1u : 0u), fine ? vec3(0.0) : base.xyz, base.xyz);
 }
 
-Sample sample_at(Patch patch_, vec3 base, View view, vec2 uv, vec2 pixel) {
+Sample sample_at(Patch patch_, Net net, View view, vec2 uv, vec2 pixel) {
     Sample s;
     s.uv = uv;
-    s.jet = patch_jet_from(patch_.first, patch_.shape, base, uv);
-    s.q = to_pixel(view, vec4(base, 1.0)) + to_pixel(view, vec4(s.jet.point, 0.0));
+    s.jet = patch_jet_from(net.first, patch_.shape, net.less, uv);
+    s.q = to_pixel(view, vec4(net.base, 1.0)) + to_pixel(view, vec4(s.jet.point, 0.0));
     s.miss = s.q.xy / s.q.w - pixel;
     return s;
 }
@@ -56,12 +70,12 @@ bool step_from(Sample s, View view, out vec2 step_) {
 }
 
 Sample refine(Patch patch_, View view, vec2 uv, vec2 pixel) {
-    vec3 base = base_of(patch_);
-    Sample best = sample_at(patch_, base, view, uv, pixel);
+    Net net = net_of(patch_);
+    Sample best = sample_at(patch_, net, view, uv, pixel);
     for (uint i = 0u; i < NEWTON_STEPS; ++i) {
         vec2 step_;
         if (!step_from(best, view, step_)) break;
-        Sample next = sample_at(patch_, base, view, best.uv - step_, pixel);
+        Sample next = sample_at(patch_, net, view, best.uv - step_, pixel);
         bool nearer = dot(next.miss, next.miss) < dot(best.miss, best.miss);
         if (nearer) best = next;
         if (!nearer) break;

@@ -18,17 +18,11 @@ layout(binding = 8, rg32ui) readonly uniform uimage2D visibility;
 layout(binding = 9, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
 
 #include "facet.glsl"
+#include "octahedral.glsl"
 #include "resolved.glsl"
 #include "visible.glsl"
 
-// A unit vector from the octahedron |x| + |y| + |z| = 1 unfolded to a square. Source: Z. H. Cigolle et
-// al., A Survey of Efficient Representations for Independent Unit Vectors, JCGT 3 (2), 2014.
-vec3 octahedral(uint word) {
-    vec2 e = unpackSnorm2x16(word);
-    vec3 n = vec3(e, 1.0 - abs(e.x) - abs(e.y));
-    if (n.z < 0.0) n.xy = (1.0 - abs(n.yx)) * vec2(n.x < 0.0 ? -1.0 : 1.0, n.y < 0.0 ? -1.0 : 1.0);
-    return normalize(n);
-}
+vec3 corner_normal(uint corner) { return normalize(octahedral(normals[corner])); }
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
@@ -43,8 +37,8 @@ void main() {
     vec3 n = across(f.ab, f.ac);
     if ((mesh.flags & MESH_NORMALS) != 0u) {
         uint corner = mesh.first_normal + 3u * (seen.y - mesh.first_triangle);
-        n = octahedral(normals[corner]) * (1.0 - f.st.x - f.st.y) +
-            octahedral(normals[corner + 1u]) * f.st.x + octahedral(normals[corner + 2u]) * f.st.y;
+        n = corner_normal(corner) * (1.0 - f.st.x - f.st.y) +
+            corner_normal(corner + 1u) * f.st.x + corner_normal(corner + 2u) * f.st.y;
     }
     n = instance.normal * n;
     float size = length(n);

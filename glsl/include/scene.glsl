@@ -122,6 +122,9 @@ struct Cell {
     vec3 box_max;
     float speed_v; // negative where no loop meets the patch, in scenes whose loops may be edited
     uint bay;       // strip * bays + bay
+    uint normal;    // octahedral: the surface lies where low <= normal . p <= high
+    float low;
+    float high;
 };
 
 struct Curve {
@@ -238,6 +241,12 @@ struct SubPatch {
     uint place; // i | j << 8: which of the item's sub-patches
 };
 
+// A pixel for pass `heal`.
+struct Doubt {
+    uint pixel;    // column | row << 16 | RINGED | LONE (visible.glsl)
+    uvec2 healed;  // what is seen there
+};
+
 const uint MAX_FACTOR = 64u;   // the hardware's tessellation factor
 const uint MAX_SPLIT = 64u;    // sub-patches along one side
 const uint MAX_ROWS = 65536u;  // scan lines of one strip
@@ -250,5 +259,6 @@ uint degree_v(uint shape) { return (shape >> 4) & 15u; }
 bool is_rational(uint shape) { return ((shape >> 8) & 1u) != 0u; }
 uint side_of(uint shape) { return (shape >> 9) & 3u; }
 uint borders_of(uint shape) { return (shape >> 11) & 15u; }
+bool has_fine_net(uint shape) { return ((shape >> 15) & 1u) != 0u; }
 
 #endif

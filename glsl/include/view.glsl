@@ -85,6 +85,46 @@ Seen see(View view, Frame frame, vec3 lo, vec3 hi, float margin, float far) {
     return seen;
 }
 
+// Of every rounding below, relative to what is added up.
+const float SLAB_ROUNDING = 1e-5;
+
+// A bound of W from below, for what a perspective picture `margin` pixels wider shows of a slab of points:
+//
+//            ╱      ╱              low <= n . p <= high,   n = a x + b y + c w  in rows of the view (their xyz)
+//     eye   ╱ slab ╱
+//      •───╱─▶    ╱       =>       n . p - n . eye = W (a X/W + b Y/W + c),  largest in a corner of the picture
+//         ╱      ╱
+//
+// 0 where the eye is in the slab. A box that the eye is in tells nothing; the slab around a bent piece of surface is as
+// thin as that is flat.
+float nearest_in_slab(View view, Frame frame, vec3 n, float low, float high, float margin) {
+    vec3 x = view.x.xyz;
+    vec3 y = view.y.xyz;
+    vec3 w = view.w.xyz;
+    precise vec3 yw = y.yzx * w.zxy - y.zxy * w.yzx;
+    precise vec3 wx = w.yzx * x.zxy - w.zxy * x.yzx;
+    precise vec3 xy = x.yzx * y.zxy - x.zxy * y.yzx;
+    precise float det = x.x * yw.x + x.y * yw.y + x.z * yw.z;
+    precise float a = (n.x * yw.x + n.y * yw.y + n.z * yw.z) / det;
+    precise float b = (n.x * wx.x + n.y * wx.y + n.z * wx.z) / det;
+    precise float c = (n.x * xy.x + n.y * xy.y + n.z * xy.z) / det;
+    precise vec3 eye = vec3(a * view.x.w, b * view.y.w, c * view.w.w); // their sum is -n . eye
+    precise float off = eye.x + eye.y + eye.z;
+    precise float rounding = SLAB_ROUNDING * (abs(eye.x) + abs(eye.y) + abs(eye.z) + max(abs(low), abs(high)));
+    precise float before = low + off - rounding;
+    precise float behind = -(high + off) - rounding;
+    float gap = max(before, behind);
+    if (gap <= 0.0) return 0.0;
+    vec2 slope = before > 0.0 ? vec2(a, b) : -vec2(a, b);
+    float straight = before > 0.0 ? c : -c;
+    vec2 last = frame.size + margin;
+    precise vec2 most = max(slope * -margin, slope * last);
+    precise float steepest = straight + most.x + most.y;
+    precise float slack = SLAB_ROUNDING * (abs(straight) + abs(most.x) + abs(most.y));
+    precise float least = gap / (steepest + slack);
+    return steepest + slack > 0.0 ? least : 0.0;
+}
+
 // Rounding of a vertex' pixel; far above that of single precision for pictures up to 16384 pixels.
 const float PIXEL_ROUNDING = 0.015625;
 

@@ -18,6 +18,8 @@ const uint DOUBTFUL = 0x80000000u;
 const uint RINGED = 0x80000000u;
 // Beside RINGED: no ring, but nothing is seen there, and patches are on both sides.
 const uint LONE = 0x8000u;
+// Where it is.
+ivec2 doubtful_pixel(uint doubt) { return ivec2(doubt & 0x7fffu, (doubt & ~RINGED) >> 16); }
 const uint SEEN_KIND = 0x60000000u;
 const uint SEEN_MESH = 0x20000000u;
 const uint SEEN_SOLID = 0x40000000u; // Boolean

@@ -113,6 +113,14 @@ pub struct Factors {
     pub splits: u32,
 }
 
+/// A pixel for pass `heal`, and what is seen there.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct Doubt {
+    pub pixel: u32,
+    pub healed: [u32; 2],
+}
+
 /// One entry of the draw list.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]

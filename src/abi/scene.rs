@@ -40,7 +40,7 @@ pub const FACE_TRIMMED: u32 = 16;
 /// One Bézier patch.
 ///
 /// ```text
-///   shape   bits 0-3 degree_u | 4-7 degree_v | 8 rational | 9-10 Side | 11-14 borders
+///   shape   bits 0-3 degree_u | 4-7 degree_v | 8 rational | 9-10 Side | 11-14 borders | 15 a fine net follows
 /// ```
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
@@ -75,6 +75,11 @@ impl Patch {
     /// Packs [`Patch::shape`].
     pub fn pack_shape(degrees: (usize, usize), rational: bool, side: Side, borders: u32) -> u32 {
         degrees.0 as u32 | (degrees.1 as u32) << 4 | u32::from(rational) << 8 | (side as u32) << 9 | borders << 11
+    }
+
+    /// The same word of a patch whose control points a fine net follows (`src/scene/fine.rs`).
+    pub fn with_fine_net(shape: u32) -> u32 {
+        shape | 1 << 15
     }
 
     /// The same word with another side.
@@ -227,6 +232,9 @@ pub struct Cell {
     pub box_max: [f32; 3],
     pub speed_v: f32,
     pub bay: u32,
+    pub normal: u32,
+    pub low: f32,
+    pub high: f32,
 }
 
 /// Pixels along a side of the smallest squares whose farthest depth is kept.

@@ -34,8 +34,8 @@ impl Frame<'_> {
             rings: &t.rings,
         };
         p.heal.find(cmd, &doubts);
-        barrier::images(cmd, &[(&b.visibility, w, w)]);
-        barrier::buffers(cmd, &[(&t.doubts, w, r), (&b.counters, w, r), (&t.heal_dispatch, w, Access::INDIRECT_READ)]);
+        barrier::images(cmd, &[(&b.visibility, w, r)]);
+        barrier::buffers(cmd, &[(&t.doubts, w, w), (&b.counters, w, r), (&t.heal_dispatch, w, Access::INDIRECT_READ)]);
         let heal = heal::Bindings {
             frame: self.constants,
             placed: s.placed(self.views),
@@ -56,5 +56,8 @@ impl Frame<'_> {
             dispatch: &t.heal_dispatch,
         };
         p.heal.record(cmd, &heal);
+        barrier::images(cmd, &[(&b.visibility, r, w)]);
+        barrier::buffers(cmd, &[(&t.doubts, w, r)]);
+        p.heal.show(cmd, &heal);
     }
 }

@@ -44,6 +44,7 @@ impl LayerPasses {
             patches: data.has_operands,
             rational: data.has_rational,
             pieces: data.has_pieces,
+            fine: data.has_fine,
             marks: data.highlight.map(|h| [h.contact, h.overlap]),
             sun: data.sun.is_some(),
         };

@@ -15,6 +15,7 @@ pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
         patches: data.has_patches,
         rational: data.has_rational,
         pieces: data.has_pieces,
+        fine: data.has_fine,
         meshes: data.has_meshes(),
         solids: data.solids.kinds().map(|surfaces| resolve::SolidKinds {
             surfaces,

@@ -1,7 +1,7 @@
 //! Pass `heal`: pixels that look through a gap between two faces get the face that belongs there.
 //!
 //! ```text
-//!   visibility image, rings ──find──▶ list of doubtful pixels ──record──▶ visibility image
+//!   visibility image, rings ──find──▶ list of doubtful pixels ──record──▶ who is seen there ──show──▶ visibility image
 //!
 //!        ┌───┬───┬───┐     asks the faces of the neighbours, on their exact surfaces at the pixel's
 //!        │ A │ A │ B │     centre, which of them is there; the rules stand in glsl/include/heal.glsl
@@ -11,7 +11,7 @@
 //! ```
 //!
 //! Reads: everything that the bindings name but what it writes. Writes: `find`: `doubts`, `dispatch`,
-//! `counters`, and the mark in the visibility image; `record`: the visibility image. Both at doubtful pixels only.
+//! `counters`, and the mark in the visibility image; `record`: `doubts`; `show`: the visibility image. All at doubtful pixels only.
 
 use crate::bindings::{PRIMITIVES, Placed, Primitives, with_constants, with_placed};
 use crate::gpu::{
@@ -31,10 +31,11 @@ const SCENE_HAS_OTHERS: u32 = 4;
 /// `constant_id` of `SOLIDS_HAVE`.
 const SOLIDS_HAVE: u32 = 5;
 
-/// The pass, in its two steps.
+/// The pass, in its three steps.
 pub(crate) struct Heal {
     find: Pipeline,
     heal: Pipeline,
+    show: Pipeline,
     nearest: Sampler,
 }
 
@@ -94,6 +95,8 @@ impl Heal {
         find[1] = Binding::StorageImage;
         find[5] = Binding::Sampled;
         find[6] = Binding::Texels;
+        let mut show = with_constants(4);
+        show[1] = Binding::StorageImage;
         let mut heal = with_placed(15);
         heal.extend(vec![Binding::Texels; test.texels]);
         heal.extend(PRIMITIVES.iter().filter(|_| volume.is_some()));
@@ -116,6 +119,7 @@ impl Heal {
         Ok(Self {
             find: pipeline("heal (find)", shaders::DOUBTS_COMP, &find)?,
             heal: pipeline(&format!("heal ({}, {weights}{within})", test.way), second, &heal)?,
+            show: pipeline("heal (show)", shaders::HEALED_COMP, &show)?,
             nearest: Sampler::new(device, vk::Filter::NEAREST)?,
         })
     }
@@ -162,6 +166,12 @@ impl Heal {
             .chain(volume)
             .collect();
         cmd.bind(&self.heal, &resources, &[]);
+        cmd.dispatch_indirect(b.dispatch, 0);
+    }
+
+    /// One thread a doubtful pixel, as in the second step, whose bindings these are.
+    pub(crate) fn show(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
+        cmd.bind(&self.show, &[b.frame.into(), b.visibility.into(), b.doubts.into(), b.counters.into()], &[]);
         cmd.dispatch_indirect(b.dispatch, 0);
     }
 }

@@ -29,6 +29,9 @@ pub(crate) const AOV_FORMATS: [vk::Format; 4] =
 const SCENE_HAS_RATIONAL: u32 = 0;
 /// `constant_id` of `SCENE_HAS_PIECES`.
 const SCENE_HAS_PIECES: u32 = 19;
+
+/// `constant_id` of `SCENE_HAS_FINE`.
+const SCENE_HAS_FINE: u32 = 20;
 /// `constant_id` of `HAS_AOVS`.
 const HAS_AOVS: u32 = 3;
 
@@ -65,6 +68,8 @@ pub(crate) struct Kinds {
     pub rational: bool,
     /// Some patches do not go on as those beside them would.
     pub pieces: bool,
+    /// Some patch has a fine net.
+    pub fine: bool,
     pub meshes: bool,
     /// Boolean ones.
     pub solids: Option<SolidKinds>,
@@ -256,11 +261,13 @@ impl Resolve {
         of_operand[8..].fill(Binding::StorageImage);
         let rational = (SCENE_HAS_RATIONAL, u32::from(kinds.rational));
         let pieces = (SCENE_HAS_PIECES, u32::from(kinds.pieces));
-        let operand = |()| lit(shaders::RESOLVE_VERT, "operand", of.operands, &of_operand, &[rational, pieces]);
+        let fine = (SCENE_HAS_FINE, u32::from(kinds.fine));
+        let operand = |()| lit(shaders::RESOLVE_VERT, "operand", of.operands, &of_operand, &[rational, pieces, fine]);
         let operands = kinds.operands.then_some(()).map(operand).transpose()?;
         let patch = |()| {
             let weights = if kinds.rational { "rational" } else { "polynomial" };
-            let constants = [rational, pieces, (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some()))];
+            let others = (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some()));
+            let constants = [rational, pieces, fine, others];
             lit(shaders::RESOLVE_SEEN_VERT, weights, of.patches, &bindings, &constants)
         };
         let patches = kinds.patches.then_some(()).map(patch).transpose()?;

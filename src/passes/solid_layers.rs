@@ -23,6 +23,9 @@ use std::ops::Range;
 const SCENE_HAS_RATIONAL: u32 = 0;
 /// `constant_id` of `SCENE_HAS_PIECES`.
 const SCENE_HAS_PIECES: u32 = 19;
+
+/// `constant_id` of `SCENE_HAS_FINE`.
+const SCENE_HAS_FINE: u32 = 20;
 /// `constant_id` of `HAS_AOVS`.
 const HAS_AOVS: u32 = 3;
 /// `constant_id` of `SOLIDS_HAVE`.
@@ -66,6 +69,8 @@ pub(crate) struct Kinds {
     pub rational: bool,
     /// Some patches do not go on as those beside them would.
     pub pieces: bool,
+    /// Some patch of theirs has a fine net.
+    pub fine: bool,
     /// Linear colour and opacity of contacts and overlaps, where they are wanted.
     pub marks: Option<[[f32; 4]; 2]>,
     /// The key light is a sun.
@@ -147,6 +152,7 @@ impl SolidLayers {
                 constants: &[
                     (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
                     (SCENE_HAS_PIECES, u32::from(kinds.pieces)),
+                    (SCENE_HAS_FINE, u32::from(kinds.fine)),
                     (HAS_AOVS, u32::from(writes)),
                     (SOLIDS_HAVE, kinds.surfaces),
                     (SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),

@@ -9,13 +9,14 @@
 
 use super::face::{Domain, outward_box, round_up};
 use crate::abi;
+use crate::math::octahedral;
 use crate::model::{Face, TrimLoop};
 use crate::picture::TrimWay;
-use crate::spline::{Bezier, Control, PatchGrid, SurfacePatch};
+use crate::spline::{Bezier, Control, Patch, PatchGrid, SurfacePatch};
 use glam::{DVec2, DVec3};
 
 /// v-strips of a face with few rows of patches. More strips follow a changing density more closely
-/// and leave out more rows beyond the picture; each costs a cell of 36 bytes a bay.
+/// and leave out more rows beyond the picture; each costs a cell of 48 bytes a bay.
 const LEAST_STRIPS: usize = 8;
 /// The paper's benchmark used 128 strips for every surface; nothing asked for more.
 const MOST_STRIPS: usize = 128;
@@ -54,6 +55,18 @@ fn shares(start: f64, length: f64, n: u32) -> impl Iterator<Item = (u32, (f64, f
     (first..=last).map(move |k| (k, (local(k), local(k + 1)))).filter(|(_, (from, to))| to - from > 1e-7)
 }
 
+/// The slab that a patch lies in, across its diagonals: its normal, and where along that it lies.
+fn slab(piece: &Patch, origin: DVec3) -> (u32, f32, f32) {
+    let (n, k) = (piece.degree_u, piece.degree_v);
+    let at = |i: usize, j: usize| piece.points[j * (n + 1) + i].point() - origin;
+    let across = (at(n, k) - at(0, 0)).cross(at(0, k) - at(n, 0));
+    let word = octahedral::pack(across.try_normalize().unwrap_or(DVec3::Z));
+    let normal = DVec3::from_array(octahedral::unpack(word).map(f64::from));
+    let along = piece.points.iter().map(|p| normal.dot(p.point() - origin));
+    let (low, high) = along.fold((f64::INFINITY, f64::NEG_INFINITY), |(lo, hi), x| (lo.min(x), hi.max(x)));
+    (word, (low as f32).next_down(), round_up(high))
+}
+
 /// One for each bay of each v-strip that a patch of the face reaches.
 pub(super) fn cells(face: &abi::Face, p: &SurfacePatch, origin: DVec3, domain: &Domain) -> Vec<abi::Cell> {
     let (strips, bays) = (face.strip_count(), face.bay_count());
@@ -63,12 +76,16 @@ pub(super) fn cells(face: &abi::Face, p: &SurfacePatch, origin: DVec3, domain: &
         let piece = p.patch.rectangle(u, v);
         let (speed_u, speed_v) = piece.speed_bound();
         let (box_min, box_max) = outward_box(&piece, origin);
+        let (normal, low, high) = slab(&piece, origin);
         abi::Cell {
             box_min,
             speed_u: round_up(speed_u / (size.x * (u.1 - u.0))),
             box_max,
             speed_v: round_up(speed_v / (size.y * (v.1 - v.0))),
             bay: strip * bays + bay,
+            normal,
+            low,
+            high,
         }
     };
     let in_u: Vec<_> = shares(corner.x, size.x, bays).collect();

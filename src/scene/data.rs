@@ -63,6 +63,8 @@ pub(crate) struct SceneData {
     pub has_rational: bool,
     /// Some surface is of several patches, and none of those that are one equation everywhere.
     pub has_pieces: bool,
+    /// Some patch has a fine net.
+    pub has_fine: bool,
     /// Some patch is drawn without a trim test.
     pub has_plain: bool,
     /// Some patch needs a trim test.
@@ -345,6 +347,7 @@ impl SceneData {
         }
         self.has_rational |= f.rational;
         self.has_pieces |= f.pieces;
+        self.has_fine |= f.fine;
         self.has_patches |= f.face.flags & abi::FACE_OPERAND == 0;
         self.faces.push(f.face);
         self.patches.append(&mut f.patches);

@@ -4,6 +4,7 @@ use super::cells::{cells, strips};
 use super::cones::Normals;
 use super::edit::{EditFace, EditLoop, EditPatch};
 use super::exact::exact_trim;
+use super::fine::fine_net;
 pub(super) use super::flatten::Cuts;
 use super::flatten::flattened;
 use crate::abi;
@@ -18,7 +19,7 @@ use glam::{DVec2, DVec3};
 
 /// A side whose control points are as near to each other, relative to the patch, is a point: some roundings of single
 /// precision.
-const POINT: f64 = 1e-6;
+pub(super) const POINT: f64 = 1e-6;
 
 /// What one face contributes to the scene's arrays.
 pub(super) struct FaceData {
@@ -39,6 +40,8 @@ pub(super) struct FaceData {
     pub rational: bool,
     /// Of several patches, and not one equation everywhere.
     pub pieces: bool,
+    /// Some patch has a fine net.
+    pub fine: bool,
 }
 
 /// Each patch of such a surface goes on as the one beside it.
@@ -116,6 +119,7 @@ impl FaceData {
             edit: None,
             rational: !face.surface.is_polynomial(),
             pieces: grid.patches.len() > 1 && !is_elementary(face.kind),
+            fine: false,
         };
         let flag = |on: bool, bit: u32| if on { bit } else { 0 };
         data.face.flags = flag(face.same_sense, abi::FACE_SAME_SENSE)
@@ -194,6 +198,12 @@ impl FaceData {
                 local.z as f32,
                 if self.rational { (q.w / unit) as f32 } else { 1.0 },
             ]);
+        }
+        if let Some(net) = fine_net(&p.patch, origin, unit) {
+            self.points.extend(net);
+            self.fine = true;
+            let patch = self.patches.last_mut().expect("it was pushed above");
+            patch.shape = abi::Patch::with_fine_net(patch.shape);
         }
     }
 

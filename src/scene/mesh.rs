@@ -7,6 +7,7 @@
 
 use super::face::{DEFAULT_COLOUR, pack_colour};
 use crate::abi;
+use crate::math::octahedral;
 use crate::model::{Mesh, Model};
 use glam::DVec3;
 use rayon::prelude::*;
@@ -75,15 +76,5 @@ impl Meshes {
 fn corner_normals(mesh: &Mesh, triangle: usize) -> [u32; 3] {
     let [a, b, c] = mesh.corners(triangle);
     let flat = (b - a).cross(c - a).try_normalize().unwrap_or(DVec3::Z);
-    mesh.normals()[triangle].map(|n| octahedral(n.try_normalize().unwrap_or(flat)))
-}
-
-/// A unit vector on the octahedron `|x| + |y| + |z| = 1` unfolded to a square, as two signed 16-bit
-/// numbers; off by at most 0.0037°. Source: Z. H. Cigolle et al., *A Survey of Efficient Representations
-/// for Independent Unit Vectors*, Journal of Computer Graphics Techniques 3 (2), 2014.
-fn octahedral(n: DVec3) -> u32 {
-    let p = n / n.abs().element_sum();
-    let fold = |a: f64, b: f64| if p.z < 0.0 { (1.0 - b.abs()) * 1f64.copysign(a) } else { a };
-    let half = |x: f64| u32::from((x * 32767.0).round() as i16 as u16);
-    half(fold(p.x, p.y)) | half(fold(p.y, p.x)) << 16
+    mesh.normals()[triangle].map(|n| octahedral::pack(n.try_normalize().unwrap_or(flat)))
 }

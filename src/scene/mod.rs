@@ -21,6 +21,7 @@ mod data;
 mod edit;
 mod exact;
 mod face;
+mod fine;
 mod flatten;
 mod link;
 mod mesh;

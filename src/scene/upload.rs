@@ -18,9 +18,9 @@ pub(crate) struct Scene {
     pub patches: Texels,
     /// Where nothing of their faces is; `None` where they are not asked whether they lie behind others.
     pub outside: Option<Buffer>,
-    /// Homogeneous control points.
     /// Of the normals of each patch; `None` where no part is closed without trims.
     pub cones: Option<Buffer>,
+    /// Homogeneous control points, and fine nets.
     pub points: Texels,
     /// Sides that faces share; `None` where they share none.
     pub links: Option<Buffer>,

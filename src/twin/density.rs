@@ -5,8 +5,9 @@
 //! ```
 
 use super::Scene;
-use super::view::{far_of, pixels_per_unit, see};
+use super::view::{far_of, nearest_in_slab, pixels_per_unit, see};
 use crate::abi::Frame;
+use crate::math::octahedral;
 
 /// What the pass writes.
 #[derive(Clone, Debug, Default, PartialEq)]
@@ -36,7 +37,16 @@ pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
         }
         let view = &scene.views[placed.instance as usize];
         let (margin, far) = (frame.ring_px + 1.0, far_of(&face, frame));
-        let Some(seen) = see(view, frame, cell.box_min, cell.box_max, margin, far) else { continue };
+        let Some(mut seen) = see(view, frame, cell.box_min, cell.box_max, margin, far) else { continue };
+        if frame.perspective != 0 {
+            seen.w = seen.w.max(nearest_in_slab(
+                view,
+                frame,
+                octahedral::unpack(cell.normal),
+                (cell.low, cell.high),
+                margin,
+            ));
+        }
         let pixels = pixels_per_unit(frame, &scene.instances[placed.instance as usize], &seen);
         let bay = cell.bay % face.bay_count();
         let strip = (placed.first_bay + cell.bay - bay) as usize;

@@ -74,6 +74,35 @@ pub fn see(view: &View, frame: &Frame, lo: [f32; 3], hi: [f32; 3], margin: f32, 
     })
 }
 
+/// Of every rounding of [`nearest_in_slab`], relative to what is added up.
+const SLAB_ROUNDING: f32 = 1e-5;
+/// A bound of `W` from below, for what a perspective picture `margin` pixels wider shows of the points `p` with
+/// `low <= n . p <= high`; 0 where the eye is among them. Derived in `glsl/include/view.glsl`.
+pub fn nearest_in_slab(view: &View, frame: &Frame, n: [f32; 3], (low, high): (f32, f32), margin: f32) -> f32 {
+    let [x, y, w] = [view.x, view.y, view.w];
+    let cross =
+        |a: [f32; 4], b: [f32; 4]| [a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]];
+    let (yw, wx, xy) = (cross(y, w), cross(w, x), cross(x, y));
+    let det = x[0] * yw[0] + x[1] * yw[1] + x[2] * yw[2];
+    let [a, b, c] = [yw, wx, xy].map(|m| (n[0] * m[0] + n[1] * m[1] + n[2] * m[2]) / det);
+    let eye = [a * x[3], b * y[3], c * w[3]];
+    let off = eye[0] + eye[1] + eye[2];
+    let rounding = SLAB_ROUNDING * (eye[0].abs() + eye[1].abs() + eye[2].abs() + low.abs().max(high.abs()));
+    let before = low + off - rounding;
+    let behind = -(high + off) - rounding;
+    let gap = before.max(behind);
+    if gap <= 0.0 {
+        return 0.0;
+    }
+    let side = if before > 0.0 { 1.0 } else { -1.0 };
+    let most = [side * a, side * b].map(|slope| slope * -margin);
+    let most = std::array::from_fn::<f32, 2, _>(|k| most[k].max(side * [a, b][k] * (frame.size[k] + margin)));
+    let straight = side * c;
+    let steepest = straight + most[0] + most[1];
+    let slack = SLAB_ROUNDING * (straight.abs() + most[0].abs() + most[1].abs());
+    if steepest + slack > 0.0 { gap / (steepest + slack) } else { 0.0 }
+}
+
 /// Rounding of a vertex' pixel; far above that of single precision for pictures up to 16384 pixels.
 const PIXEL_ROUNDING: f32 = 0.015625;
 
@@ -91,4 +120,67 @@ pub fn pixels_per_unit(frame: &Frame, instance: &Instance, seen: &Seen) -> f32 {
 /// Depth beyond which a face is not seen: those of operands tell a ray's way to the end.
 pub fn far_of(face: &Face, frame: &Frame) -> f32 {
     if face.flags & FACE_OPERAND != 0 { 3.0e38 } else { frame.far }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::Random;
+    use glam::{DMat3, DVec3};
+
+    const SIZE: [f32; 2] = [640.0, 360.0];
+
+    /// A camera of this focal length in pixels somewhere near the origin; its rows, and its axes and eye.
+    fn camera(random: &mut Random, focal: f64) -> (View, DMat3, DVec3) {
+        let mut next = || random.range(-1.0, 1.0);
+        let forward = DVec3::new(next(), next(), next()).normalize();
+        let eye = DVec3::new(next(), next(), next()) * 3.0;
+        let right = forward.any_orthonormal_vector();
+        let down = forward.cross(right);
+        let middle = [0, 1].map(|k: usize| 0.5 * f64::from(SIZE[k]));
+        let row = |d: DVec3| d.extend(-d.dot(eye)).as_vec4().to_array();
+        let view = View {
+            x: row(right * focal + forward * middle[0]),
+            y: row(down * focal + forward * middle[1]),
+            depth: row(forward),
+            w: row(forward),
+        };
+        (view, DMat3::from_cols(right, down, forward), eye)
+    }
+
+    /// What is seen of a slab is no nearer than its bound; and that is all but reached, by the plane before the eye.
+    #[test]
+    fn a_slab_is_no_nearer_than_its_bound() {
+        let mut random = Random::new(7);
+        let frame = Frame { size: SIZE, perspective: 1, ..Frame::default() };
+        let (mut bounded, mut reached) = (0, 0);
+        for _ in 0..20_000 {
+            let focal = 400.0;
+            let (view, axes, eye) = camera(&mut random, focal);
+            let mut next = || random.range(-1.0, 1.0);
+            let n = DVec3::new(next(), next(), next());
+            let n = (n / n.abs().element_sum()).as_vec3().to_array();
+            let (middle, half) = (2.0 * next(), 0.1 * next().abs());
+            let (low, high) = ((middle - half) as f32, (middle + half) as f32);
+            let bound = f64::from(nearest_in_slab(&view, &frame, n, (low, high), 2.0));
+            // the near side, at the picture's corners and its middle: linear in between
+            let normal = DVec3::from_array(n.map(f64::from));
+            let from = normal.dot(eye);
+            if f64::from(low) <= from && from <= f64::from(high) {
+                assert_eq!(bound, 0.0);
+                continue;
+            }
+            let side = f64::from(if from < f64::from(low) { low } else { high });
+            let pixels = [(-2.0, -2.0), (642.0, -2.0), (-2.0, 362.0), (642.0, 362.0), (320.0, 180.0)];
+            let depths = pixels.map(|(x, y): (f64, f64)| {
+                let ray = axes * DVec3::new((x - 320.0) / focal, (y - 180.0) / focal, 1.0);
+                (side - from) / normal.dot(ray)
+            });
+            let nearest = depths.into_iter().filter(|w| *w > 0.0).fold(f64::INFINITY, f64::min);
+            assert!(bound <= nearest, "{bound} and {nearest}");
+            bounded += u32::from(bound > 0.0);
+            reached += u32::from(bound > 0.99 * nearest);
+        }
+        assert!(bounded > 8_000 && reached * 10 > bounded * 9, "{bounded}, {reached}");
+    }
 }

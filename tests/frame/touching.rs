@@ -8,34 +8,56 @@
 //!        ─▼──         2, looks down       twelfth: the strip wins every pixel that it covers
 //! ```
 
-use crate::shapes::{self, PLATE_HALF, TOUCHING_GAP, TOUCHING_STRIP};
+use crate::shapes::{self, PLATE_HALF, TOUCHING_END, TOUCHING_GAP, TOUCHING_STRIP};
 use crate::support::{assert_silent, render, watched};
 use glam::DVec3;
-use selvedge::model::{Camera, Projection};
+use selvedge::model::{Camera, Model, Projection};
+use selvedge::picture::Picture;
 
 /// Pixels a side of the picture.
 const SIZE: u32 = 64;
 
-/// From straight above nothing of the strip is seen: face 1 has each pixel whose centre is above it.
-#[test]
-fn a_strip_just_below_a_face_is_not_seen() {
-    let model = shapes::touching();
-    let mut renderer = watched(&model);
-    let pixel = 0.15;
+const PIXEL: f64 = 0.15;
+
+fn from_straight_above(model: &Model) -> Picture {
+    let mut renderer = watched(model);
     let camera = Camera {
         eye: DVec3::Z * 10.0,
         target: DVec3::ZERO,
         up: DVec3::Y,
-        projection: Projection::Orthographic { height: pixel * f64::from(SIZE) },
+        projection: Projection::Orthographic { height: PIXEL * f64::from(SIZE) },
         depth_range: (5.0, 15.0),
         size: (SIZE, SIZE),
     };
-    assert!(TOUCHING_GAP < pixel / 24.0, "the strip must win before it is healed");
-    assert!(TOUCHING_STRIP > 2.0 * pixel, "some doubtful pixel must have no other neighbour");
+    assert!(TOUCHING_GAP < PIXEL / 24.0, "the strip must win before it is healed");
     let picture = render(&mut renderer, &camera);
-    let count = |id: u32| picture.face.iter().filter(|&&f| f == id).count();
-    // all borders run between pixel centres
-    let side = (2.0 * PLATE_HALF / pixel).round() as usize;
-    assert_eq!((count(1), count(2)), (side * side, 0));
     assert_silent(renderer);
+    picture
+}
+
+/// Pixels of a face, and those between two x across the plate; all borders run between pixel centres.
+fn counts<const N: usize>(picture: &Picture, widths: [(u32, f64); N]) -> [(usize, usize); N] {
+    let side = |length: f64| (length / PIXEL).round() as usize;
+    let count = |id: u32| picture.face.iter().filter(|&&f| f == id).count();
+    widths.map(|(id, width)| (count(id), side(width) * side(2.0 * PLATE_HALF)))
+}
+
+/// Nothing of the strip is seen: face 1 has each pixel whose centre is above it.
+#[test]
+fn a_strip_just_below_a_face_is_not_seen() {
+    assert!(TOUCHING_STRIP > 2.0 * PIXEL, "some doubtful pixel must have no other neighbour");
+    let picture = from_straight_above(&shapes::touching());
+    for (pixels, expected) in counts(&picture, [(1, 2.0 * PLATE_HALF), (2, 0.0)]) {
+        assert_eq!(pixels, expected);
+    }
+}
+
+/// Where face 1 ends with it, pixels have the floor beside them, which the strip hides, and face 1 farther away.
+#[test]
+fn nor_is_the_floor_below_it() {
+    let picture = from_straight_above(&shapes::touching_at_its_end());
+    let (plate, floor) = (PLATE_HALF + TOUCHING_END, PLATE_HALF - TOUCHING_END);
+    for (pixels, expected) in counts(&picture, [(1, plate), (2, 0.0), (3, floor)]) {
+        assert_eq!(pixels, expected);
+    }
 }

@@ -1,5 +1,6 @@
 //! Deep zoom against the exact reference: a thousand and a million times closer, at the origin and far from it.
 
+use crate::shapes::borders;
 use crate::support::{assert_silent, render, watched};
 use glam::{DAffine3, DVec2, DVec3};
 use selvedge::model::{Camera, Model};
@@ -80,4 +81,27 @@ fn bracket_a_million_times_closer() {
 #[test]
 fn bracket_a_million_times_closer_and_a_million_units_away() {
     keeps_the_promise(&moved(sample("bracket.step"), 1e6), 1e6);
+}
+
+/// An eye beside the side of a drum, within the boxes of its pieces but not at it, that looks along it and across. Rows of
+/// the trim table follow how near the side is, not the box.
+#[test]
+fn an_eye_beside_a_bent_face_is_near_no_more_than_that() {
+    let model = borders::drum(20.0, 50.0);
+    let tracer = Tracer::new(&model);
+    let mut renderer = watched(&model);
+    for k in 0..12 {
+        let turn = 0.4 + 0.52 * f64::from(k);
+        let out = DVec3::new(turn.cos(), turn.sin(), 0.0);
+        let (beside, height) = (DVec3::new(-out.y, out.x, 0.0), DVec3::Z * (10.0 + 3.0 * f64::from(k)));
+        let eye = 20.3 * out + height;
+        let target = eye + beside - 0.4 * out + 0.3 * DVec3::Z;
+        let mut camera = Camera { eye, target, ..Camera::framing(model.bounds(), DVec3::X, DVec3::Z, 0.6, SIZE) };
+        camera.fit_depth(model.bounds());
+        let picture = render(&mut renderer, &camera);
+        let j = judge(&tracer, &camera, &picture, &JudgeOptions::default());
+        assert_eq!((j.wrong, picture.stats.clamps), (0, 0), "view {k}: {} rows", picture.stats.trim_rows);
+        assert!(picture.stats.trim_rows > 0, "view {k}");
+    }
+    assert_silent(renderer);
 }

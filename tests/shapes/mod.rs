@@ -50,6 +50,9 @@ pub const TOUCHING_GAP: f64 = 0.003;
 /// Half its width.
 pub const TOUCHING_STRIP: f64 = 0.375;
 
+/// Half the width of the one of [`touching_at_its_end`].
+pub const TOUCHING_END: f64 = 0.75;
+
 /// Tops of the walls of [`ledges`], face 1 to 4, nearest first.
 pub const LEDGES: [f64; 4] = [0.0, 0.31, 0.75, 8.0];
 
@@ -188,14 +191,29 @@ pub fn mirrored() -> Model {
 /// A square face of a solid, 1, that looks up, and [`TOUCHING_GAP`] below it a strip along y, 2, of another
 /// solid, that looks down: as where solids cut into each other, or a file has a face the wrong way round.
 pub fn touching() -> Model {
-    let flat = |id, half_x: f64, z: f64| Face {
-        loops: vec![rectangle(DVec2::new(-half_x, -PLATE_HALF), DVec2::new(half_x, PLATE_HALF))],
-        same_sense: id == 1,
+    let strip = level(2, (-TOUCHING_STRIP, TOUCHING_STRIP), -TOUCHING_GAP);
+    two_parts([vec![level(1, (-PLATE_HALF, PLATE_HALF), 0.0)], vec![strip]])
+}
+
+/// The same where face 1 ends with the strip, at x = [`TOUCHING_END`], and the strip's solid has a floor below both, 3.
+pub fn touching_at_its_end() -> Model {
+    let strip = level(2, (-TOUCHING_END, TOUCHING_END), -TOUCHING_GAP);
+    let floor = level(3, (-PLATE_HALF, PLATE_HALF), -0.3);
+    two_parts([vec![level(1, (-PLATE_HALF, TOUCHING_END), 0.0)], vec![strip, floor]])
+}
+
+/// A rectangle from one x to another; face 2 looks down.
+fn level(id: u32, (from, to): (f64, f64), z: f64) -> Face {
+    Face {
+        loops: vec![rectangle(DVec2::new(from, -PLATE_HALF), DVec2::new(to, PLATE_HALF))],
+        same_sense: id != 2,
         ..face(id, SurfaceKind::Plane, plane(DVec3::Z * z, DVec3::X, DVec3::Y, 1.5 * PLATE_HALF))
-    };
-    let mut model = one("touching", true, vec![flat(1, PLATE_HALF, 0.0)]);
-    let strip = one("strip", true, vec![flat(2, TOUCHING_STRIP, -TOUCHING_GAP)]);
-    model.parts.extend(strip.parts);
+    }
+}
+
+fn two_parts([a, b]: [Vec<Face>; 2]) -> Model {
+    let mut model = one("touching", true, a);
+    model.parts.extend(one("strip", true, b).parts);
     model.instances.push(Instance { part: 1, ..placed(DAffine3::IDENTITY, None) });
     model
 }
