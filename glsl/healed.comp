@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `heal`, last step: what the second found is seen. A step of its own, since that asks a pixel's neighbours for what
-// was drawn there. One thread a doubtful pixel.
+// Pass `heal`, last step: what the second found is seen. A step of its own, since that asks a pixel's neighbours for
+// what was drawn there. One thread a doubtful pixel.
 #include "scene.glsl"
 #include "visible.glsl"
 

@@ -12,8 +12,9 @@
 //   its own front, across a fold, is a witness too; so is what is no patch behind the pixel, where an
 //   end of the patches is near: a neighbour sees nothing or such a thing behind the doubtful face, or there is a witness
 //   a face from behind, real (a gap looks into the solid):
-//                                  the nearest witness or helper before it, else a front that touches it, else whichever
-//                                  neighbour's surface passes before or beside the pixel's centre, one before it if possible
+//                                  the nearest witness or helper before it, else a front that touches it, else
+//                                  whichever neighbour's surface passes before or beside the pixel's centre, one
+//                                  before it if possible
 //   a face from behind, not real (its fold is near, or its border by a rounding):
 //     helpers of two faces before every witness    the nearest: an edge runs here
 //     a witness                                    the nearest: behind a silhouette
@@ -189,7 +190,8 @@ float touch(Answer front) {
     return 2.0 * frame.deviation_px * (abs(front.slope.x) + abs(front.slope.y) + px) + 2.0 * SAME_DEPTH * front.depth;
 }
 
-// Whether a neighbour is asked. A mark on what an open shell shows is that of a ring before it: as it is drawn, it is there.
+// Whether a neighbour is asked. A mark on what an open shell shows is that of a ring before it: as it is drawn, it is
+// there.
 bool tells(uint word) {
     if ((word & DOUBTFUL) == 0u) return true;
     return !sees_nothing(word) && (face_at(face_instance_at(face_instance_of(seen_item(word))).face).flags & FACE_SOLID) == 0u;

@@ -11,7 +11,8 @@
 //! ```
 //!
 //! Reads: everything that the bindings name but what it writes. Writes: `find`: `doubts`, `dispatch`,
-//! `counters`, and the mark in the visibility image; `record`: `doubts`; `show`: the visibility image. All at doubtful pixels only.
+//! `counters`, and the mark in the visibility image; `record`: `doubts`; `show`: the visibility image. All of them at
+//! doubtful pixels only.
 
 use crate::bindings::{PRIMITIVES, Placed, Primitives, with_constants, with_placed};
 use crate::gpu::{

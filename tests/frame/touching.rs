@@ -29,7 +29,7 @@ fn from_straight_above(model: &Model) -> Picture {
         depth_range: (5.0, 15.0),
         size: (SIZE, SIZE),
     };
-    assert!(TOUCHING_GAP < PIXEL / 24.0, "the strip must win before it is healed");
+    const { assert!(TOUCHING_GAP < PIXEL / 24.0, "the strip must win before it is healed") };
     let picture = render(&mut renderer, &camera);
     assert_silent(renderer);
     picture
@@ -45,7 +45,7 @@ fn counts<const N: usize>(picture: &Picture, widths: [(u32, f64); N]) -> [(usize
 /// Nothing of the strip is seen: face 1 has each pixel whose centre is above it.
 #[test]
 fn a_strip_just_below_a_face_is_not_seen() {
-    assert!(TOUCHING_STRIP > 2.0 * PIXEL, "some doubtful pixel must have no other neighbour");
+    const { assert!(TOUCHING_STRIP > 2.0 * PIXEL, "some doubtful pixel must have no other neighbour") };
     let picture = from_straight_above(&shapes::touching());
     for (pixels, expected) in counts(&picture, [(1, 2.0 * PLATE_HALF), (2, 0.0)]) {
         assert_eq!(pixels, expected);
