@@ -38,10 +38,10 @@
 //
 // Of helpers of two faces the farther one counts as the nearest where it covers the nearer one: see `covers`.
 //
-// Without any of these what was seen stays. Doubtful neighbours are not asked, and healed pixels
-// stay marked, so the order of the threads does not matter. Where a front and a back nearly touch, doubtful
-// pixels fill a band: then the first pixel beyond it is asked, in each of the eight directions, and heard
-// only as a witness that looks at the viewer.
+// Without any of these what was seen stays. Who is seen is written into the list, and shown by the next step (healed.comp),
+// so neighbours tell what was drawn and the order of the threads does not matter. Doubtful ones are not asked, but for
+// open shells' (`tells`). Where a front and a back nearly touch, doubtful pixels fill a band: then the first pixel beyond
+// it is asked, in each of the eight directions, and heard only as a witness that looks at the viewer.
 #include "scene.glsl"
 #include "view.glsl"
 
@@ -194,7 +194,8 @@ float touch(Answer front) {
 // there.
 bool tells(uint word) {
     if ((word & DOUBTFUL) == 0u) return true;
-    return !sees_nothing(word) && (face_at(face_instance_at(face_instance_of(seen_item(word))).face).flags & FACE_SOLID) == 0u;
+    if (sees_nothing(word)) return false;
+    return (face_at(face_instance_at(face_instance_of(seen_item(word))).face).flags & FACE_SOLID) == 0u;
 }
 
 // Who is not inside its trims helps only where it is before `behind`.
@@ -451,5 +452,5 @@ void main() {
     } else if (!ringed && other.x != 0u) {
         healed = uvec2(0u);
     }
-    doubts[n].healed = uvec2(healed.x | DOUBTFUL, healed.y);
+    doubts[n].healed = healed;
 }

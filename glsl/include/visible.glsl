@@ -18,8 +18,6 @@ const uint DOUBTFUL = 0x80000000u;
 const uint RINGED = 0x80000000u;
 // Beside RINGED: no ring, but nothing is seen there, and patches are on both sides.
 const uint LONE = 0x8000u;
-// Where it is.
-ivec2 doubtful_pixel(uint doubt) { return ivec2(doubt & 0x7fffu, (doubt & ~RINGED) >> 16); }
 const uint SEEN_KIND = 0x60000000u;
 const uint SEEN_MESH = 0x20000000u;
 const uint SEEN_SOLID = 0x40000000u; // Boolean
@@ -33,6 +31,9 @@ bool sees_other(uint word) { return SCENE_HAS_OTHERS && (word & SEEN_KIND) != 0u
 bool sees_mesh(uint word) { return (word & SEEN_KIND) == SEEN_MESH; }
 bool sees_solid(uint word) { return (word & SEEN_KIND) == SEEN_SOLID; }
 bool sees_operand(uint word) { return (word & SEEN_KIND) == SEEN_OPERAND; }
+
+// Column and row of a word of that list.
+ivec2 doubtful_pixel(uint doubt) { return ivec2(doubt & 0x7fffu, (doubt & ~RINGED) >> 16); }
 
 uint seen_item(uint word) { return (word & ~(DOUBTFUL | SEEN_KIND)) - 1u; }
 uint seen_mesh_instance(uint word) { return word & ~(DOUBTFUL | SEEN_KIND); }

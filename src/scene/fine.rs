@@ -3,14 +3,15 @@
 //! ```text
 //!   points of a patch    first              first + count
 //!                        ▼                  ▼
-//!                        p₀ p₁ ⋯            C  p₀ − C  p₁ − C  ⋯        C: one of the two that lie closest to each other
+//!                        p₀ p₁ ⋯            C  p₀ − C  p₁ − C  ⋯        C: one of the two between which it may turn most
 //! ```
 //!
 //! Single precision rounds what is `x` from the part's centre by up to `x` 2⁻²⁴ in each coordinate, so two control points
 //! `l` apart may turn by √3 `x` 2⁻²³ / `l`. The sides that a loft draws together over a nose, a thousandth of the patch
 //! long or less, are then off by more than the picture promises of its normals. Relative to `C` they are as good as single
-//! precision is near zero. What is drawn keeps to the control points, which neighbouring patches share bit for bit; the
-//! pass `resolve` reads the fine net, where there is one.
+//! precision is near zero. Whether a patch needs one is asked of its own roundings, and of those of sums over all of it. What
+//! is drawn keeps to the control points, which neighbouring patches share bit for bit; the passes `resolve` and
+//! `solid_layers` read the fine net, where there is one.
 
 use super::face::POINT;
 use crate::spline::{Control, Patch};

@@ -12,7 +12,7 @@
 //!
 //! Single precision suffices because nothing is stored far from where it is seen: control points are
 //! relative to the centre of their part, and the transform from there to the eye is composed in
-//! `f64` every frame.
+//! `f64` every frame. Patches too slight for that have a fine net beside their points (`fine.rs`).
 
 mod cells;
 mod closeup;

@@ -1,4 +1,5 @@
-//! Deep zoom against the exact reference: a thousand and a million times closer, at the origin and far from it.
+//! Deep zoom against the exact reference: a thousand and a million times closer, at the origin and far from it; and
+//! an eye close beside a bent face.
 
 use crate::shapes::borders;
 use crate::support::{assert_silent, render, watched};
