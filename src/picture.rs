@@ -267,7 +267,8 @@ pub struct SceneSettings {
     pub slefe_segments: Option<usize>,
     /// How to draw Boolean solids.
     pub solids: SolidWay,
-    /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover or grow into.
+    /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover or grow into, and time,
+    /// because trimmed faces are not cut into pieces of which most need no trim test.
     pub editable: bool,
     /// Samples of each pixel's colour: edges are smoothed where there are more than one.
     pub samples: Samples,

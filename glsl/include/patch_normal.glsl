@@ -64,7 +64,7 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
                 drawn = place;
             }
             vec2 step_;
-            bool farther = step_from(best, view, step_);
+            bool farther = step_from(patch_, best, view, step_);
             // the rest of the way may lead across a side
             if (SCENE_HAS_PIECES && nearer) farther = farther || place_beside(face, place, best.uv - step_) != place;
             goes_on = (farther && nearer || passes) && steps < NEWTON_STEPS;

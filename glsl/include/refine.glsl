@@ -10,7 +10,7 @@
 #define REFINE_GLSL
 
 const uint NEWTON_STEPS = 4u;
-const float MAX_STEP = 0.25;      // of the patch
+const float MAX_STEP = 0.25;      // of the patch, or of the one that it was cut from
 const float CLOSE_ENOUGH = 5e-4;  // pixels
 
 struct Sample {
@@ -57,15 +57,15 @@ mat2 pixels_along(Sample s, View view) {
     return mat2((qu.xy - p * qu.w) / s.q.w, (qv.xy - p * qv.w) / s.q.w);
 }
 
-// Where Newton's method goes from there, if anywhere.
-bool step_from(Sample s, View view, out vec2 step_) {
+// Where Newton's method goes from there on the patch, if anywhere.
+bool step_from(Patch patch_, Sample s, View view, out vec2 step_) {
     mat2 along = pixels_along(s, view);
     vec2 pu = along[0];
     vec2 pv = along[1];
     float det = pu.x * pv.y - pu.y * pv.x;
     step_ = vec2(s.miss.x * pv.y - s.miss.y * pv.x, pu.x * s.miss.y - pu.y * s.miss.x) / det;
-    float largest = max(abs(step_.x), abs(step_.y));
-    if (largest > MAX_STEP) step_ *= MAX_STEP / largest;
+    vec2 steps = abs(step_) / (MAX_STEP * pieces_of(patch_.shape));
+    step_ /= max(max(steps.x, steps.y), 1.0);
     return dot(s.miss, s.miss) >= CLOSE_ENOUGH * CLOSE_ENOUGH && abs(det) >= 1e-12;
 }
 
@@ -74,7 +74,7 @@ Sample refine(Patch patch_, View view, vec2 uv, vec2 pixel) {
     Sample best = sample_at(patch_, net, view, uv, pixel);
     for (uint i = 0u; i < NEWTON_STEPS; ++i) {
         vec2 step_;
-        if (!step_from(best, view, step_)) break;
+        if (!step_from(patch_, best, view, step_)) break;
         Sample next = sample_at(patch_, net, view, best.uv - step_, pixel);
         bool nearer = dot(next.miss, next.miss) < dot(best.miss, best.miss);
         if (nearer) best = next;

@@ -260,5 +260,7 @@ bool is_rational(uint shape) { return ((shape >> 8) & 1u) != 0u; }
 uint side_of(uint shape) { return (shape >> 9) & 3u; }
 uint borders_of(uint shape) { return (shape >> 11) & 15u; }
 bool has_fine_net(uint shape) { return ((shape >> 15) & 1u) != 0u; }
+// How many of it would be as large as the patch that it was cut from (src/scene/apart.rs), along u and v.
+vec2 pieces_of(uint shape) { return vec2(((uvec2(shape) >> uvec2(16u, 22u)) & 63u) + 1u); }
 
 #endif

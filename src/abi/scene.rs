@@ -40,7 +40,8 @@ pub const FACE_TRIMMED: u32 = 16;
 /// One Bézier patch.
 ///
 /// ```text
-///   shape   bits 0-3 degree_u | 4-7 degree_v | 8 rational | 9-10 Side | 11-14 borders | 15 a fine net follows
+///   shape   bits 0-3 degree_u | 4-7 degree_v | 8 rational | 9-10 Side | 11-14 borders | 15 a fine net follows |
+///           16-21, 22-27 pieces of its size in the patch that it was cut from, along u and v, less one
 /// ```
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
@@ -80,6 +81,13 @@ impl Patch {
     /// The same word of a patch whose control points a fine net follows (`src/scene/fine.rs`).
     pub fn with_fine_net(shape: u32) -> u32 {
         shape | 1 << 15
+    }
+
+    /// The same word of a patch that is such shares of a larger one, along u and v.
+    pub fn with_shares(shape: u32, shares: [f64; 2]) -> u32 {
+        // how many there would be of them, less one: six bits each
+        let [u, v] = shares.map(|share| ((1.0 / share).ceil() as u32).clamp(1, 64) - 1);
+        shape & 0xffff | u << 16 | v << 22
     }
 
     /// The same word with another side.

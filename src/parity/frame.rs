@@ -19,7 +19,7 @@ fn a_frame_counts_what_the_twins_count() {
     renderer.upload(&model).unwrap();
     for camera in &cameras {
         for tolerance_px in [0.5, 3.0] {
-            let chain = Chain::new(&Case::new(&model, camera, tolerance_px)).counters;
+            let chain = Chain::new(&Case::cut(&model, camera, tolerance_px)).counters;
             let settings = FrameSettings { tolerance_px, ..Default::default() };
             let stats = renderer.render(camera, &settings, Outputs::default()).unwrap().stats;
             let on_gpu = [stats.sub_patches, stats.trim_rows, stats.trim_intercepts, stats.clamps];

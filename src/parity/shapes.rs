@@ -171,7 +171,7 @@ pub(super) fn model_with_sieve() -> Model {
 }
 
 /// The model seen by each camera; then a loose tolerance; then too little room for anything; then the one with the sieve:
-/// all of it, a part of its bays, and with too few rows.
+/// all of it, a part of its bays, and with too few rows; at last the model with its patches cut.
 pub(super) fn cases() -> Vec<Case> {
     let (model, cameras) = model_and_cameras();
     let mut cases: Vec<Case> = cameras.iter().map(|camera| Case::new(&model, camera, 0.5)).collect();
@@ -187,6 +187,7 @@ pub(super) fn cases() -> Vec<Case> {
     let mut tight = cases[6].clone();
     tight.frame.row_capacity = 500;
     cases.push(tight);
+    cases.push(Case::cut(&model, &cameras[0], 0.5));
     cases
 }
 

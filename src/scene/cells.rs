@@ -12,7 +12,7 @@ use crate::abi;
 use crate::math::octahedral;
 use crate::model::{Face, TrimLoop};
 use crate::picture::TrimWay;
-use crate::spline::{Bezier, Control, Patch, PatchGrid, SurfacePatch};
+use crate::spline::{Bezier, Control, Patch, SurfacePatch};
 use glam::{DVec2, DVec3};
 
 /// v-strips of a face with few rows of patches. More strips follow a changing density more closely
@@ -28,11 +28,11 @@ const MOST_BAYS: f64 = 32.0;
 /// The root of the number of curves, for each strip: four rows of holes that are as many across, of four curves each.
 const STRIP_CURVES: f64 = 8.0;
 
-/// [`abi::Face::strips`]. Strips depend on what edits do not change, since they decide where scan lines are.
-pub(super) fn strips(face: &Face, grid: &PatchGrid, way: TrimWay) -> u32 {
+/// [`abi::Face::strips`] of a face with so many rows of patches. Strips depend on what edits do not change, since they decide where scan lines are.
+pub(super) fn strips(face: &Face, rows: usize, way: TrimWay) -> u32 {
     let curves = || face.loops.iter().flat_map(TrimLoop::curves);
     let for_curves = (curves().count() as f64).sqrt() / STRIP_CURVES;
-    let strips = (2 * grid.count_v).max(for_curves as usize).clamp(LEAST_STRIPS, MOST_STRIPS) as u32;
+    let strips = (2 * rows).max(for_curves as usize).clamp(LEAST_STRIPS, MOST_STRIPS) as u32;
     if way != TrimWay::Table {
         return abi::Face::pack_strips(strips, 1);
     }

@@ -107,14 +107,28 @@ pub(crate) struct SceneData {
 
 impl SceneData {
     pub(crate) fn new(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        Self::cut_from(model, model, settings)
+        // edits would change where cuts pay
+        let extent = if settings.editable { f64::INFINITY } else { model.bounds().diagonal() };
+        Self::of(model, model, settings, extent)
     }
 
-    /// Of what a view sees of a model, cut out of it: shadows are those of the whole.
+    /// Of what a view sees of a model, cut out of it: shadows are those of the whole. It serves no other view, so its
+    /// patches stay as they are.
     pub(crate) fn cut_from(whole: &Model, model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
+        Self::of(whole, model, settings, f64::INFINITY)
+    }
+
+    /// All patches as they are.
+    #[cfg(any(test, feature = "rivals"))]
+    pub(crate) fn uncut(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
+        Self::of(model, model, settings, f64::INFINITY)
+    }
+
+    /// `extent`: see [`Trimming`].
+    fn of(whole: &Model, model: &Model, settings: SceneSettings, extent: f64) -> Result<Self, UndrawnSolid> {
         let usual = if settings.smooth_trims { TrimWay::Exact } else { TrimWay::Table };
         let way = settings.trim.unwrap_or(usual);
-        let trim = Trimming { way, smooth: settings.smooth_trims, editable: settings.editable };
+        let trim = Trimming { way, smooth: settings.smooth_trims, editable: settings.editable, extent: f64::INFINITY };
         let edits = settings.editable && matches!(way, TrimWay::Table | TrimWay::Exact);
         let edit = edits.then(EditScene::default);
         let all = settings.thickness || settings.highlight.is_some();
@@ -171,16 +185,21 @@ impl SceneData {
         }
         // cut open, a part has no inside
         let open = data.volume.is_some();
-        let mut used = vec![false; model.parts.len()];
-        model.instances.iter().for_each(|i| used[i.part] = true);
+        // of each part that is placed: the largest of its copies
+        let mut scales: Vec<Option<f64>> = vec![None; model.parts.len()];
+        for i in &model.instances {
+            let largest = scales[i.part].unwrap_or(0.0);
+            scales[i.part] = Some(largest.max(stretch(i.transform.matrix3)));
+        }
         let mut first_faces = Vec::with_capacity(model.parts.len());
         let mut origins = Vec::with_capacity(model.parts.len());
-        for (part, used) in model.parts.iter().zip(used) {
+        for (part, scale) in model.parts.iter().zip(scales) {
             first_faces.push(data.faces.len());
             let bounds = part.bounds();
             let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
             origins.push(origin);
-            if used {
+            if let Some(scale) = scale {
+                let trim = Trimming { extent: extent / scale, ..trim };
                 let cuts = Cuts::of(&part.faces);
                 let body = match part.closed && !open {
                     false => Body::Open,

@@ -1,5 +1,6 @@
 //! One face: patches, cells and trim curves, with indices relative to the face.
 
+use super::apart::{Apart, apart};
 use super::cells::{cells, strips};
 use super::cones::Normals;
 use super::edit::{EditFace, EditLoop, EditPatch};
@@ -81,16 +82,26 @@ pub(super) struct Trimming {
     pub smooth: bool,
     /// They may be edited.
     pub editable: bool,
+    /// How large the scene is that their patches are cut for ([`apart`](super::apart)), in the units of the part;
+    /// infinite: they stay as they are.
+    pub extent: f64,
 }
 
 impl FaceData {
     pub(super) fn new(face: &Face, origin: DVec3, body: Body, trim: Trimming, cuts: Cuts) -> Self {
-        let Trimming { way, smooth, editable } = trim;
-        let grid = flattened(face.surface.patches(), cuts.in_face(face));
+        let Trimming { way, smooth, editable, .. } = trim;
+        let flat = flattened(face.surface.patches(), cuts.in_face(face));
         let ((u0, u1), (v0, v1)) = face.surface.domain();
         let domain = Domain { origin: DVec2::new(u0, v0), size: DVec2::new(u1 - u0, v1 - v0) };
         let index = (!face.loops.is_empty()).then(|| LoopIndex::new(&face.loops));
-        let sides = sides(&grid, index.as_ref());
+        let (rows, pieces) = (flat.count_v, flat.patches.len() > 1 && !is_elementary(face.kind));
+        let Apart { grid, sides, shares } = match &index {
+            None => {
+                let sides = vec![Side::Inside; flat.patches.len()];
+                Apart::whole(flat, sides)
+            }
+            Some(index) => apart(flat, index, trim.extent),
+        };
         let trimmed = sides.contains(&Side::Boundary);
         let table = trimmed && needs_curves(way);
         let editable = editable && trimmed && matches!(way, TrimWay::Table | TrimWay::Exact);
@@ -101,7 +112,7 @@ impl FaceData {
                 count_v: grid.count_v as u32,
                 id: face.id,
                 colour: face.colour.map_or(DEFAULT_COLOUR, pack_colour),
-                strips: if table { strips(face, &grid, way) } else { 0 },
+                strips: if table { strips(face, rows, way) } else { 0 },
                 ..Default::default()
             },
             patches: Vec::new(),
@@ -118,7 +129,7 @@ impl FaceData {
             },
             edit: None,
             rational: !face.surface.is_polynomial(),
-            pieces: grid.patches.len() > 1 && !is_elementary(face.kind),
+            pieces,
             fine: false,
         };
         let flag = |on: bool, bit: u32| if on { bit } else { 0 };
@@ -127,6 +138,9 @@ impl FaceData {
             | flag(trimmed, abi::FACE_TRIMMED);
         for (n, (patch, side)) in grid.patches.iter().zip(&sides).enumerate() {
             data.push_patch(&grid, n, patch, (*side, editable), origin, &domain);
+            let shares = [shares[0][n % grid.count_u], shares[1][n / grid.count_u]];
+            let pushed = data.patches.last_mut().expect("it was pushed");
+            pushed.shape = abi::Patch::with_shares(pushed.shape, shares);
         }
         data.edit = editable.then(|| data.edit_face(&grid, domain, smooth));
         if let Some(edit) = data.edit.as_mut().filter(|_| !table) {
@@ -334,17 +348,6 @@ fn needs_curves(way: TrimWay) -> bool {
         #[cfg(feature = "rivals")]
         TrimWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
     }
-}
-
-/// Each patch against the loops; a face without loops is inside everywhere.
-fn sides(grid: &PatchGrid, loops: Option<&LoopIndex>) -> Vec<Side> {
-    let Some(index) = loops else { return vec![Side::Inside; grid.patches.len()] };
-    let side = |p: &SurfacePatch| match index.classify(DVec2::new(p.u.0, p.v.0), DVec2::new(p.u.1, p.v.1)) {
-        RectSide::Inside => Side::Inside,
-        RectSide::Outside => Side::Outside,
-        RectSide::Boundary => Side::Boundary,
-    };
-    grid.patches.iter().map(side).collect()
 }
 
 /// Of each patch at the loops, a bit for each of [`abi::OUTSIDE_CELLS`] cells along u and along v, rows of them from the

@@ -68,11 +68,16 @@ pub(crate) fn flattened(grid: PatchGrid, cuts: Cuts) -> PatchGrid {
     };
     let across: Vec<_> = (0..grid.count_u).map(|i| ends(ku, &column(i))).collect();
     let up: Vec<_> = (0..grid.count_v).map(|j| ends(kv, &row(j))).collect();
+    divided(grid, &[across, up])
+}
+
+/// The grid with its patches cut at these places, 0 to 1 of each column along u and of each row along v.
+pub(super) fn divided(grid: PatchGrid, [across, up]: &[Vec<Vec<f64>>; 2]) -> PatchGrid {
     let pieces = |ends: &[Vec<f64>]| -> Vec<(usize, (f64, f64))> {
         let of = |(i, ends): (usize, &Vec<f64>)| ends.windows(2).map(|w| (i, (w[0], w[1]))).collect::<Vec<_>>();
         ends.iter().enumerate().flat_map(of).collect()
     };
-    let (across, up) = (pieces(&across), pieces(&up));
+    let (across, up) = (pieces(across), pieces(up));
     let (count_u, count_v) = (across.len(), up.len());
     if (count_u, count_v) == (grid.count_u, grid.count_v) {
         return grid;

@@ -14,6 +14,7 @@
 //! relative to the centre of their part, and the transform from there to the eye is composed in
 //! `f64` every frame. Patches too slight for that have a fine net beside their points (`fine.rs`).
 
+mod apart;
 mod cells;
 mod closeup;
 mod cones;

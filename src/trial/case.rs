@@ -16,11 +16,25 @@ pub(crate) struct Case {
 }
 
 impl Case {
-    /// Room for everything; draws are cut small enough that there are several.
+    /// Patches as they are. Room for everything; draws are cut small enough that there are several.
     pub(crate) fn new(model: &Model, camera: &Camera, tolerance_px: f64) -> Self {
+        let data = SceneData::uncut(model, Self::settings()).expect("no operand that cannot be drawn");
+        Self::of(data, camera, tolerance_px)
+    }
+
+    /// Patches of trimmed faces cut as renderers get them.
+    #[cfg(test)]
+    pub(crate) fn cut(model: &Model, camera: &Camera, tolerance_px: f64) -> Self {
+        let data = SceneData::new(model, Self::settings()).expect("no operand that cannot be drawn");
+        Self::of(data, camera, tolerance_px)
+    }
+
+    fn settings() -> SceneSettings {
+        SceneSettings { trim: Some(TrimWay::Table), ..SceneSettings::default() }
+    }
+
+    fn of(data: SceneData, camera: &Camera, tolerance_px: f64) -> Self {
         camera.check().expect("the camera of a case shows something");
-        let data = SceneData::new(model, SceneSettings { trim: Some(TrimWay::Table), ..Default::default() })
-            .expect("no operand that cannot be drawn");
         let pixels = camera.pixel_matrix();
         let views = data.placements.iter().map(|&placement| view(pixels, placement)).collect();
         let (focal, slant) = focal_and_slant(camera);

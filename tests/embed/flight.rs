@@ -7,7 +7,7 @@ use crate::targets::Targets;
 use ash::vk;
 use glam::{DAffine3, DVec3};
 use selvedge::model::{Camera, Colour, Model};
-use selvedge::picture::FrameSettings;
+use selvedge::picture::{FrameSettings, SceneSettings};
 use selvedge::renderer::{FrameInput, RenderError, Renderer, Targets as Into};
 
 const FORMAT: vk::Format = vk::Format::R8G8B8A8_UNORM;
@@ -119,6 +119,8 @@ fn without_room(across: u32, size: (u32, u32)) {
     model.instances = (0..across * across).map(placed).collect();
     let camera = Camera::framing(model.bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, size);
     let mut renderer = renderer(&host, &model, FORMAT);
+    // made for edits, patches are as many as they were
+    renderer.upload_with(&model, SceneSettings { editable: true, ..SceneSettings::default() }).unwrap();
     let targets = [(); SLOTS].map(|()| Targets::new(&host, size, FORMAT));
     assert_eq!(renderer.report(0).unwrap(), None, "no frame has been recorded");
 

@@ -94,9 +94,9 @@ fn an_edit_shows_what_lay_behind() {
     }
     let camera = Camera { up: DVec3::Y, ..from(&model, DVec3::new(0.05, -0.1, 1.0)) };
     for &trim in TrimWay::ALL {
-        let fixed = SceneSettings { trim: Some(trim), ..SceneSettings::default() };
-        let mut edited = watched_with(&model, SceneSettings { editable: true, ..fixed });
-        let mut other = watched_with(&model, fixed);
+        let settings = SceneSettings { trim: Some(trim), editable: true, ..SceneSettings::default() };
+        let mut edited = watched_with(&model, settings);
+        let mut other = watched_with(&model, settings);
         let before = [(); 3].map(|()| render(&mut edited, &camera).stats.hidden_patches);
         assert!(before[2] > 20, "{trim:?}: {before:?} patches were left out before");
         let mut changed = model.clone();
@@ -106,7 +106,7 @@ fn an_edit_shows_what_lay_behind() {
             let moved = changed.parts[0].faces[0].loops[1].translated(by).unwrap();
             edited.edit_loop(at, &moved).unwrap();
             changed.parts[0].faces[0].loops[1] = moved;
-            let (picture, expected) = (render(&mut edited, &camera), alone(&mut other, &changed, fixed, &camera));
+            let (picture, expected) = (render(&mut edited, &camera), alone(&mut other, &changed, settings, &camera));
             assert_identical(&picture, &expected, &format!("hole by {by}, {trim:?}"));
             shown.push(picture.stats.hidden_patches);
         }

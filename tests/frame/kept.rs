@@ -35,8 +35,7 @@ struct Pair {
 
 impl Pair {
     fn new(model: &Model, scene: SceneSettings) -> Self {
-        let fixed = SceneSettings { editable: false, ..scene };
-        Self { scene: fixed, viewer: watched_with(model, scene), fresh: watched_with(model, fixed) }
+        Self { scene, viewer: watched_with(model, scene), fresh: watched_with(model, scene) }
     }
 
     /// The first picture of a view finds what is seen; those that follow come to keep it, and are the same.

@@ -2,6 +2,7 @@
 
 use crate::support::{assert_silent, perspective, watched_with};
 use crate::{cages, shapes};
+use glam::{DAffine3, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Model, Part};
 use selvedge::picture::{FrameSettings, Outputs, Samples, SceneSettings, SolidWay, TrimWay};
@@ -97,6 +98,7 @@ fn only_a_scene_of_many_patches_knows_which_lie_behind_others() {
     // four treads have 24 patches, all of the stair 144
     let (mut few, many) = (shapes::stair(), shapes::stair());
     few.instances.truncate(4);
+    few.instances[3].transform.translation.x += 1e4; // none of them is cut
     let default = SceneSettings::default();
     let samples = SceneSettings { samples: Samples::Four, ..default };
     for (model, settings, is_asked) in [(&few, default, false), (&many, default, true), (&many, samples, false)] {
@@ -201,12 +203,25 @@ fn only_a_rational_scene_has_rational_pipelines() {
 /// A scene whose every patch is cut by a trim curve has no pipeline for whole ones, and the reverse.
 #[test]
 fn a_kind_of_patch_that_no_face_has_gets_no_pipeline() {
-    for (model, has, lacks) in [(shapes::plate(), "table", "plain"), (shapes::wave(), "plain", "table")] {
+    // so small in its scene that its patches are not cut
+    let mut plate = shapes::plate();
+    plate.instances.push(shapes::placed(DAffine3::from_translation(1e4 * DVec3::X), None));
+    for (model, has, lacks) in [(plate, "table", "plain"), (shapes::wave(), "plain", "table")] {
         let (renderer, objects) = objects(&model, Outputs::default());
         let drawing = |kind: &str| objects.iter().any(|name| name.starts_with(&format!("visibility ({kind}")));
         assert!(drawing(has) && !drawing(lacks), "{objects:?}");
         assert_silent(renderer);
     }
+}
+
+/// A trimmed face that is most of its scene is drawn without a test where no trim curve is near.
+#[test]
+fn a_large_face_is_tested_in_parts() {
+    let (renderer, objects) = objects(&shapes::plate(), Outputs::default());
+    for kind in ["table", "plain"] {
+        assert!(objects.iter().any(|name| name.starts_with(&format!("visibility ({kind}"))), "{objects:?}");
+    }
+    assert_silent(renderer);
 }
 
 #[test]

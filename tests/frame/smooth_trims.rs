@@ -192,13 +192,14 @@ fn a_loop_that_is_edited_is_smooth_at_once() {
     let model = holes(&[(DVec2::new(0.3, 0.6), 0.9)]);
     let edited = holes(&[(DVec2::new(-0.6, 0.3), 1.2)]);
     let camera = perspective(&model, SIZE);
-    let mut renderer = watched_with(&model, SceneSettings { editable: true, ..SMOOTH });
+    let settings = SceneSettings { editable: true, ..SMOOTH };
+    let mut renderer = watched_with(&model, settings);
     renderer.render(&camera, &FrameSettings::default(), Outputs::default()).unwrap();
     let at = LoopAt { part: 0, face: 0, trim_loop: 1 };
     renderer.edit_loop(at, &edited.parts[0].faces[0].loops[1]).unwrap();
     let after = renderer.render(&camera, &FrameSettings::default(), Outputs::ALL).unwrap();
     assert_silent(renderer);
-    assert_identical(&draw(&edited, SMOOTH, &camera), &after, "after the edit");
+    assert_identical(&draw(&edited, settings, &camera), &after, "after the edit");
     assert!(after.colour.iter().any(|c| (0.3..0.9).contains(&linear(*c).x)));
 }
 

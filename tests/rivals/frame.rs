@@ -140,8 +140,11 @@ fn a_texture_beyond_the_device_is_told_and_the_next_view_drawn() {
     let trim = Some(TrimWay::Rival(Rival::Texture { eighths: 16 }));
     let mut renderer = watched(&model, trim);
     let whole = camera(&model);
-    // closer still, the face would be cut to the view
-    let close = Camera { projection: Projection::Perspective { fov_y: 35f64.to_radians() / 100.0 }, ..whole };
+    // at the border of a hole; closer still, the face would be cut to the view
+    let face = model.parts[0].faces.iter().max_by_key(|face| face.loops.len()).unwrap();
+    let border = face.loops[1].curves().next().unwrap().points[0];
+    let target = face.surface.jet(border.x / border.z, border.y / border.z).point;
+    let close = Camera { target, projection: Projection::Perspective { fov_y: 35f64.to_radians() / 100.0 }, ..whole };
     let settings = FrameSettings::default();
     match renderer.render(&close, &settings, Outputs::default()) {
         Err(HeadlessError::Gpu(GpuError::TooLarge { .. }))

@@ -90,7 +90,7 @@ fn drag(args: &BenchArgs, path: &Path) -> Result<(Report, bool)> {
         }
         import.model.parts[at.part].faces[at.face].loops[at.trim_loop] = moved;
         if frame % COMPARED == 0 {
-            let fresh = during("uploading the edited model", || Session::new(&args.frame, &import))?
+            let fresh = during("uploading the edited model", || Session::editable(&args.frame, &import))?
                 .render(&camera, Outputs::default())?;
             report.compared += 1;
             report.different += usize::from(fresh.colour != picture.colour);
