@@ -51,6 +51,8 @@ void write(uint item, uint patch_) {
     factors[item] = Factors(inner.x | inner.y << 16, low.x | high.x << 16, low.y | high.y << 16,
                             splits.x | splits.y << 16);
     uvec2 most = max(inner, max(low, high)) / splits;
+    // the tessellator makes two of one along an axis, unless it is one everywhere
+    if (most != uvec2(1u)) most = max(most, 2u);
     uint sub_patches = drawn ? splits.x * splits.y : 0u;
     uint vertices = sub_patches * (most.x + 1u) * (most.y + 1u);
     uint plain = side_of(patches[patch_].shape) == SIDE_INSIDE ? 1u : 0u;

@@ -144,7 +144,7 @@ impl Part<'_> {
             let [at_low, at_high] = sides_of(axis);
             (low[a], high[a]) = (side(at_low, others[0]), side(at_high, others[1]));
         }
-        let most: [u32; 2] = std::array::from_fn(|a| inner[a].max(low[a]).max(high[a]) / splits[a]);
+        let most = std::array::from_fn(|a| inner[a].max(low[a]).max(high[a]) / splits[a]);
         let sub_patches = if drawn { splits[0] * splits[1] } else { 0 };
         let pack = |[a, b]: [u32; 2]| a | b << 16;
         let factors = Factors {
@@ -153,8 +153,15 @@ impl Part<'_> {
             edge_v: pack([low[1], high[1]]),
             splits: pack(splits),
         };
-        (factors, sub_patches, sub_patches * (most[0] + 1) * (most[1] + 1))
+        (factors, sub_patches, sub_patches * vertices(most))
     }
+}
+
+/// The most vertices of a sub-patch that has no side, and no interior, of more segments along each axis.
+fn vertices(most: [u32; 2]) -> u32 {
+    // the tessellator makes two of one along an axis, unless it is one everywhere
+    let [u, v] = if most == [1, 1] { most } else { most.map(|n| n.max(2)) };
+    (u + 1) * (v + 1)
 }
 
 /// The axis along which a side runs.

@@ -166,3 +166,29 @@ fn sides_that_faces_share_agree() {
         assert!(short == 0 || largest > 20, "{short} of {shared} with factors up to {largest}");
     }
 }
+
+/// Vertices that the specification gives a quad of equal segments. Source: Vulkan 1.3, 23.7 Quad Tessellation.
+fn tessellated(inner: [u32; 2], outer: [u32; 4]) -> u32 {
+    if inner == [1; 2] && outer == [1; 4] {
+        return 4;
+    }
+    let [m, n] = inner.map(|n| n.max(2)); // one, treated as a little more, is rounded up
+    (m - 1) * (n - 1) + outer.iter().sum::<u32>()
+}
+
+/// Draws are cut where they would make more vertices than the driver bears: none makes more than were counted.
+#[test]
+fn no_sub_patch_makes_more_vertices_than_are_counted() {
+    const LEVELS: [u32; 5] = [1, 2, 3, 16, 64];
+    let pairs = || LEVELS.into_iter().flat_map(|a| LEVELS.map(|b| [a, b]));
+    for inner in pairs() {
+        for sides_u in pairs() {
+            for sides_v in pairs() {
+                let most = [(inner[0], sides_u), (inner[1], sides_v)].map(|(n, [low, high])| n.max(low).max(high));
+                let made = tessellated(inner, [sides_v[0], sides_u[0], sides_v[1], sides_u[1]]);
+                assert!(made <= vertices(most), "{inner:?}, {sides_u:?}, {sides_v:?}: {made} of {}", vertices(most));
+            }
+        }
+    }
+    assert_eq!([[1, 1], [64, 1], [64, 64]].map(vertices), [4, 195, 4225]);
+}
