@@ -94,13 +94,12 @@ impl FaceData {
         let ((u0, u1), (v0, v1)) = face.surface.domain();
         let domain = Domain { origin: DVec2::new(u0, v0), size: DVec2::new(u1 - u0, v1 - v0) };
         let index = (!face.loops.is_empty()).then(|| LoopIndex::new(&face.loops));
-        let (rows, pieces) = (flat.count_v, flat.patches.len() > 1 && !is_elementary(face.kind));
         let Apart { grid, sides, shares } = match &index {
             None => {
                 let sides = vec![Side::Inside; flat.patches.len()];
-                Apart::whole(flat, sides)
+                Apart::whole(flat.clone(), sides)
             }
-            Some(index) => apart(flat, index, trim.extent),
+            Some(index) => apart(flat.clone(), index, trim.extent),
         };
         let trimmed = sides.contains(&Side::Boundary);
         let table = trimmed && needs_curves(way);
@@ -112,7 +111,7 @@ impl FaceData {
                 count_v: grid.count_v as u32,
                 id: face.id,
                 colour: face.colour.map_or(DEFAULT_COLOUR, pack_colour),
-                strips: if table { strips(face, rows, way) } else { 0 },
+                strips: if table { strips(face, flat.count_v, way) } else { 0 },
                 ..Default::default()
             },
             patches: Vec::new(),
@@ -129,7 +128,7 @@ impl FaceData {
             },
             edit: None,
             rational: !face.surface.is_polynomial(),
-            pieces,
+            pieces: flat.patches.len() > 1 && !is_elementary(face.kind),
             fine: false,
         };
         let flag = |on: bool, bit: u32| if on { bit } else { 0 };
@@ -147,8 +146,13 @@ impl FaceData {
             edit.loops.extend(face.loops.iter().map(|l| EditLoop::new(l, 0, 0)));
         }
         if table {
-            for (n, (patch, side)) in grid.patches.iter().zip(&sides).enumerate() {
-                let (first, cut) = (data.cells.len(), *side == Side::Boundary);
+            // pieces would make more of them than rows that they save
+            let mut is_cut = vec![false; flat.patches.len()];
+            for (p, _) in grid.patches.iter().zip(&sides).filter(|(_, side)| **side == Side::Boundary) {
+                is_cut[flat.index(0.5 * (p.u.0 + p.u.1), 0.5 * (p.v.0 + p.v.1))] = true;
+            }
+            for (n, (patch, cut)) in flat.patches.iter().zip(is_cut).enumerate() {
+                let first = data.cells.len();
                 if cut || editable {
                     data.cells.extend(cells(&data.face, patch, origin, &domain));
                 }
