@@ -1,4 +1,4 @@
-//! Patches of trimmed faces cut into pieces, so that most of what is seen of them needs no trim test.
+//! Patches of solids' trimmed faces cut into pieces, so that most of what is seen of them needs no trim test.
 //!
 //! ```text
 //!   ┌─────────────────┐           ┌───┬─────┬───────┐

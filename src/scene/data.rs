@@ -199,13 +199,15 @@ impl SceneData {
             let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
             origins.push(origin);
             if let Some(scale) = scale {
-                let trim = Trimming { extent: extent / scale, ..trim };
                 let cuts = Cuts::of(&part.faces);
                 let body = match part.closed && !open {
                     false => Body::Open,
                     true if part.faces.iter().all(|f| f.loops.is_empty()) => Body::Seamless,
                     true => Body::Closed,
                 };
+                // an open shell's border hides what bends away behind it by less than triangles may be off: as it was
+                let extent = if body == Body::Open { f64::INFINITY } else { extent / scale };
+                let trim = Trimming { extent, ..trim };
                 let faces: Vec<FaceData> =
                     part.faces.par_iter().map(|f| FaceData::new(f, origin, body, trim, cuts)).collect();
                 let first = data.faces.len();

@@ -214,14 +214,22 @@ fn a_kind_of_patch_that_no_face_has_gets_no_pipeline() {
     }
 }
 
-/// A trimmed face that is most of its scene is drawn without a test where no trim curve is near.
+/// Trimmed faces of a solid that is all of its scene are drawn without a test where no trim curve is near; those of one that is
+/// small in it are tested whole.
 #[test]
-fn a_large_face_is_tested_in_parts() {
-    let (renderer, objects) = objects(&shapes::plate(), Outputs::default());
-    for kind in ["table", "plain"] {
-        assert!(objects.iter().any(|name| name.starts_with(&format!("visibility ({kind}"))), "{objects:?}");
+fn large_faces_are_tested_in_parts() {
+    let mut tread = shapes::stair();
+    tread.instances.truncate(1);
+    let mut small = tread.clone();
+    let mut far = small.instances[0].clone();
+    far.transform.translation.x += 1e4;
+    small.instances.push(far);
+    for (model, is_cut) in [(tread, true), (small, false)] {
+        let (renderer, objects) = objects(&model, Outputs::default());
+        let has = ["table", "plain"].map(|k| objects.iter().any(|name| name.starts_with(&format!("visibility ({k}"))));
+        assert_eq!(has, [true, is_cut], "{objects:?}");
+        assert_silent(renderer);
     }
-    assert_silent(renderer);
 }
 
 #[test]
