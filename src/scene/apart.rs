@@ -21,8 +21,8 @@ use crate::trim::{LoopIndex, RectSide};
 use glam::{DVec2, DVec4};
 use std::ops::Range;
 
-/// Across the scene, in the view that decides. Twice as many make frames of the whole scene slower by 3 % and more, of a
-/// tenth of it faster by less.
+/// Across the scene, in the view that decides. Twice as many made turning frames of whole scenes slower by 5 %; ten times
+/// closer frames took 0.91 to 1.03 of the time.
 const VIEW_PX: f64 = 2000.0;
 /// What a drawn piece costs, in tested pixels. llvmpipe: some 5 µs, and 50 ns.
 const PIECE_PX: f64 = 150.0;

@@ -205,7 +205,8 @@ impl SceneData {
                     true if part.faces.iter().all(|f| f.loops.is_empty()) => Body::Seamless,
                     true => Body::Closed,
                 };
-                // an open shell's border hides what bends away behind it by less than triangles may be off: as it was
+                // an open shell's border hides what bends away behind it by less than triangles may be off: pieces, divided
+                // otherwise, may show it
                 let extent = if body == Body::Open { f64::INFINITY } else { extent / scale };
                 let trim = Trimming { extent, ..trim };
                 let faces: Vec<FaceData> =
