@@ -116,6 +116,7 @@ impl Passes {
             plain: data.has_plain,
             linked: !data.links.is_empty(),
             trimmed: test,
+            bays: !data.wide_strips.is_empty(),
             operands: data.has_operands,
             volume,
         };

@@ -3,6 +3,7 @@
 #ifndef TABLE_GLSL
 #define TABLE_GLSL
 
+#include "along.glsl"
 #include "bays.glsl"
 #include "border_cells.glsl"
 #include "words.glsl"
@@ -23,41 +24,74 @@ bool table_covers(uint first, uint strips, vec2 uv) {
     return rows.lines != 0u && bay >= rows.first_bay && bay <= last_bay(rows);
 }
 
-// How many of the flips [first, end) are at u or before it: a binary search among texels of four.
+// A place in a row: between two flips.
+struct Between {
+    uint passed; // flips before it
+    float before; // the last of them; far away without one
+    float behind; // the next one
+};
+
+const float NO_FLIP = 3.0e38;
+
+// Where u is among the flips [first, end); one at u is before it. A binary search among texels of four.
 //
 //     texel        mid - 1    │     mid      │    mid + 1
 //     flips     ·  ·  f0  f1  │ f2 f3 f4 f5  │ f6  ·  ·  ·      all four passed: behind it; none: before it; else found
-uint flips_passed(uint first, uint end, float u) {
+//
+// Of two texels that u is between, both have been fetched.
+Between between(uint first, uint end, float u) {
     uint lo = first / 4u;
     uint hi = (end + 3u) / 4u;
-    uint passed = 4u * lo;
+    Between place = Between(4u * lo, -NO_FLIP, NO_FLIP);
     while (lo < hi) {
         uint mid = (lo + hi) / 2u;
         uvec4 at = 4u * mid + uvec4(0u, 1u, 2u, 3u);
         vec4 flip = uintBitsToFloat(texelFetch(flips, int(mid)));
         // what lies before the row counts as passed, what lies behind it does not
-        uvec4 is_passed = uvec4(lessThan(at, uvec4(first))) | uvec4(lessThan(at, uvec4(end))) & uvec4(lessThanEqual(flip, vec4(u)));
-        uint count = is_passed.x + is_passed.y + is_passed.z + is_passed.w;
-        passed = 4u * mid + count;
+        flip = mix(mix(flip, vec4(-NO_FLIP), lessThan(at, uvec4(first))), vec4(NO_FLIP), greaterThanEqual(at, uvec4(end)));
+        bvec4 is_passed = lessThanEqual(flip, vec4(u));
+        uvec4 ones = uvec4(is_passed);
+        uint count = ones.x + ones.y + ones.z + ones.w;
+        vec4 passed = mix(vec4(-NO_FLIP), flip, is_passed);
+        vec4 left = mix(flip, vec4(NO_FLIP), is_passed);
+        place.before = max(place.before, max(max(passed.x, passed.y), max(passed.z, passed.w)));
+        place.behind = min(place.behind, min(min(left.x, left.y), min(left.z, left.w)));
+        place.passed = 4u * mid + count;
         if (count == 4u) lo = mid + 1u;
         else if (count == 0u) hi = mid;
         else lo = hi;
     }
-    return max(passed, first) - first;
+    place.passed = max(place.passed, first) - first;
+    return place;
 }
 
-bool table_inside(uint first, uint strips, vec2 uv) {
+// Whether (u, v) is inside, and whether flips of its scan line are within `reach` of u, in its bay: along.glsl.
+uint table_along(uint first, uint strips, vec2 uv, float reach) {
     float n = float(strip_count(strips));
     uint bays = bay_count(strips);
     float s = uv.y * n;
-    if (!(s >= 0.0 && s < n)) return false;
+    if (!(s >= 0.0 && s < n)) return 0u;
     StripRows rows = strip_rows(table_strips, first + uint(s) * bays);
-    if (rows.lines == 0u) return false;
+    if (rows.lines == 0u) return 0u;
     uint row = row_of(rows, min(uint(fract(s) * float(rows.lines)), rows.lines - 1u), bay_of(uv.x, bays));
-    if (row >= frame.row_capacity) return true; // the host grows the table and records again
-    uint first_flip = word_at(row_starts, row);
+    if (row >= frame.row_capacity) return ALONG_INSIDE; // the host grows the table and records again
+    uint begin = word_at(row_starts, row);
     uint counted = word_at(row_counts, row);
-    return ((flips_passed(first_flip, first_flip + (counted >> 1), uv.x) ^ counted) & 1u) != 0u;
+    Between place = between(begin, begin + (counted >> 1), uv.x);
+    uint along = (place.passed ^ counted) & 1u;
+    if (place.before > uv.x - reach) along |= ALONG_BEFORE;
+    if (place.behind < uv.x + reach) along |= ALONG_BEHIND;
+    return along;
+}
+
+bool table_inside(uint first, uint strips, vec2 uv) {
+    return (table_along(first, strips, uv, 0.0) & ALONG_INSIDE) != 0u;
+}
+
+// Whether all of a scan line from one u to another is in one bay.
+bool table_one_bay(uint strips, float lo, float hi) {
+    uint bays = bay_count(strips);
+    return bay_of(lo, bays) == bay_of(hi, bays);
 }
 
 // Whether all of a box is inside or none of it: within a bay, what is looked up changes at trim curves alone.

@@ -33,7 +33,11 @@ layout(scalar, binding = 10) buffer Rings { uint rings[]; }; // depth's bits for
 #include "exact_point.glsl"
 #endif
 #include "facing.glsl"
-#include "ring.glsl"
+#ifdef TRIM_BY_TABLE
+#include "border_lines.glsl"
+#else
+#include "border_points.glsl"
+#endif
 #include "visible.glsl"
 
 layout(location = 0) in vec2 uv;
@@ -73,7 +77,6 @@ void main() {
     vec2 around = reach * (abs(dx) + abs(dy)); // of the point: its ring is in that box
     uint area = trim_area(fi, face, at - around, at + around);
     if (area == TRIM_OUT) discard;
-    float border_depth = -1.0; // nearest to the viewer among the ring's points inside the face
     bool grows = area == TRIM_MIXED;
     float px = frame.focal * (frame.perspective != 0u ? gl_FragCoord.w : 1.0) * instance_at(fi.instance).scale;
     // depth per unit along the view axis, times the size of a pixel there
@@ -86,24 +89,13 @@ void main() {
         grows = grows && bend_within(patch_, far) * px <= (RING_SLACK - 1.0) * reach + 2.0 * frame.deviation_px;
         steep = length(slope) > STEEP * unit / frame.focal;
     }
-    // Questions, all asked in one place, since a wide machine runs every place for every pixel: the point itself; then the
-    // ring where it is outside or seen from behind, a point nearer to the viewer where it is inside and steep.
-    bool inside = area == TRIM_IN;
-    bool goes_on = inside;
-    bool whole = true; // seen from behind: none of the ring is outside
-    vec2 step_ = vec2(0.0);
-    uint k = 0u;
-    while (true) {
-        bool is_in = trim_inside(fi, face, at + step_.x * dx + step_.y * dy);
-        if (k == 0u) inside = inside || is_in;
-        else if (inside && doubtful) whole = whole && is_in;
-        else if (inside) goes_on = goes_on || is_in;
-        else if (is_in) border_depth = max(border_depth, gl_FragCoord.z + dot(step_, slope));
-        bool around_it = doubtful || !inside;
-        if (around_it ? !grows || !whole || k == RING_POINTS : !steep || k == 1u) break;
-        step_ = around_it ? reach * RING[k] : off * normalize(slope);
-        ++k;
-    }
+    vec2 ahead = steep ? off * normalize(slope) : vec2(0.0);
+    Border border = border_at(FacePoint(fi, face, at, dx, dy), grows ? reach : 0.0, doubtful, ahead, slope);
+    bool inside = area == TRIM_IN || border.inside;
+    bool whole = !doubtful || border.whole;
+    bool goes_on = border.goes_on;
+    // of the ring's points inside the face, the nearest to the viewer
+    float border_depth = border.rise == NO_BORDER ? -1.0 : max(gl_FragCoord.z + border.rise, 0.0);
     if (!inside && border_depth < 0.0) discard;
     bool ring = !inside && (doubtful || !solid) || !whole;
 #ifdef WITHIN_VOLUME

@@ -7,7 +7,7 @@ use super::{Case, Random};
 use crate::abi::{BORDER_BANDS, Face, StripRows};
 use crate::trim::LoopIndex;
 use crate::twin::bays::bay_of;
-use crate::twin::table::Table;
+use crate::twin::table::{ALONG_BEFORE, ALONG_BEHIND, Table};
 use glam::DVec2;
 
 /// The face instance of the sheet and its strips, in the first instance of the model.
@@ -122,6 +122,38 @@ fn boxes_that_no_border_meets_are_all_the_same() {
     assert!(sieve[1] > 100 && sieve[2] > 100, "not told, outside, inside: {sieve:?}"); // most of it is near a hole
 }
 
+/// Where no border is told along a line, all of it is as its point is; where one is told, some of it is not.
+#[test]
+fn lines_without_borders_are_all_the_same() {
+    let (model, cameras) = model_and_cameras();
+    let sieve = model_with_sieve();
+    let mut lines = [[0, 0]; 2]; // without and with a border; of the sheet and of the sieve
+    let mut unseen = 0;
+    for (k, model, camera) in cameras.iter().flat_map(|camera| [(0, &model, camera), (1, &sieve, camera)]) {
+        let case = Case::new(model, camera, 0.5);
+        let chain = Chain::new(&case);
+        let flips: Vec<f32> = chain.flips.iter().map(|&bits| f32::from_bits(bits)).collect();
+        let table = table(&case, &chain, &flips);
+        let (first, face) = (case.data.face_instances[SHEET].first_bay, &case.data.faces[SHEET]);
+        for [u, v] in points(5_000).into_iter().filter(|p| p[0] >= 0.0 && p[0] < 1.0) {
+            let reach = 4.0 * AROUND[0];
+            let told = table.along(first, face, [u, v], reach);
+            let inside = table.inside(first, face, [u, v]);
+            for (bit, way) in [(ALONG_BEFORE, -1.0), (ALONG_BEHIND, 1.0)] {
+                let steps = (1..400).map(|step| u + way * reach * (step as f32 / 400.0));
+                let mut steps = steps.take_while(|&at| bay_of(at, face.bay_count()) == bay_of(u, face.bay_count()));
+                let changes = steps.any(|at| table.inside(first, face, [at, v]) != inside);
+                assert!(!changes || told & bit != 0, "{u}, {v}: a border in way {way} is not told");
+                lines[k][usize::from(told & bit != 0)] += 1;
+                unseen += u32::from(told & bit != 0 && !changes); // nearer than a step to an end, or to another border
+            }
+        }
+    }
+    let [sheet, sieve] = lines;
+    assert!(sheet[0] > 1000 && sheet[1] > 300 && sieve[0] > 1000 && sieve[1] > 1000, "without, with: {lines:?}");
+    assert!(unseen * 50 < sheet[1] + sieve[1], "{unseen} of the borders that are told were not found: {lines:?}");
+}
+
 /// Of `tests/gpu/glsl/table.comp`, which wraps the include.
 #[cfg(feature = "headless")]
 mod parity {
@@ -170,7 +202,9 @@ mod parity {
         let answer = |&p: &[f32; 2]| {
             let (lo, hi) = around(p);
             let told = table.same(placed.first_bay, face, lo, hi);
-            u32::from(table.inside(placed.first_bay, face, p)) | u32::from(told) << 1
+            table.along(placed.first_bay, face, p, AROUND[0])
+                | u32::from(told) << 3
+                | u32::from(table.inside(placed.first_bay, face, p)) << 4
         };
         let twin: Vec<u32> = points.iter().map(answer).collect();
         same("answers", &gpu.read(&answers, points.len()), &twin)

@@ -30,6 +30,8 @@ const SCENE_HAS_RATIONAL: u32 = 0;
 const TRIMMED: u32 = 2;
 /// `constant_id` of `SOLIDS_HAVE`.
 const SOLIDS_HAVE: u32 = 5;
+/// `constant_id` of `TRIMS_HAVE_BAYS`.
+const TRIMS_HAVE_BAYS: u32 = 21;
 /// `constant_id` of `SCENE_HAS_OPERANDS`.
 const SCENE_HAS_OPERANDS: u32 = 10;
 
@@ -48,6 +50,8 @@ pub(crate) struct Kinds<'a> {
     pub linked: bool,
     /// How faces are trimmed, where some are.
     pub trimmed: Option<&'a TrimTest>,
+    /// Some strip of the trim table has several bays.
+    pub bays: bool,
     /// Some patches bound operands of Boolean solids: they are not drawn here.
     pub operands: bool,
     /// A volume trims the scene; its most general kind of surface.
@@ -106,6 +110,7 @@ impl Visibility {
                     constants: &[
                         (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
                         (TRIMMED, u32::from(trimmed.is_some())),
+                        (TRIMS_HAVE_BAYS, u32::from(kinds.bays)),
                         (SCENE_HAS_OPERANDS, u32::from(kinds.operands)),
                         (SOLIDS_HAVE, kinds.volume.unwrap_or_default()),
                     ],

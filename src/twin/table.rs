@@ -5,6 +5,13 @@ use super::bays::{bay_of, within_bay};
 use super::border_cells::columns_between;
 use crate::abi::{BORDER_BANDS, Face, StripRows};
 
+/// Of what [`Table::along`] tells: the point is inside.
+pub const ALONG_INSIDE: u32 = 1;
+/// A border runs within reach, at a smaller u.
+pub const ALONG_BEFORE: u32 = 2;
+/// A border runs within reach, at a larger u.
+pub const ALONG_BEHIND: u32 = 4;
+
 /// The table as the passes leave it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Table<'a> {
@@ -25,28 +32,37 @@ pub struct Table<'a> {
 impl Table<'_> {
     /// Whether the normalised `(u, v)` belongs to the placed `face` whose bay items begin at
     /// `first_bay`. A point beyond the capacity does: the host grows the table and records again.
-    pub fn inside(&self, first_bay: u32, face: &Face, [u, v]: [f32; 2]) -> bool {
+    pub fn inside(&self, first_bay: u32, face: &Face, uv: [f32; 2]) -> bool {
+        self.along(first_bay, face, uv, 0.0) & ALONG_INSIDE != 0
+    }
+
+    /// The same, and whether flips of the point's scan line are within `reach` of `u`, in its bay.
+    pub fn along(&self, first_bay: u32, face: &Face, [u, v]: [f32; 2], reach: f32) -> u32 {
         let (strips, bays) = (face.strip_count() as f32, face.bay_count());
         let s = v * strips;
         if !(s >= 0.0 && s < strips) {
-            return false;
+            return 0;
         }
         let rows = self.strips[(first_bay + s as u32 * bays) as usize];
         if rows.lines == 0 {
-            return false;
+            return 0;
         }
         let line = (((s - s.floor()) * rows.lines as f32) as u32).min(rows.lines - 1);
         let row = rows.row_of(line, bay_of(u, bays));
         if row >= self.row_capacity {
-            return true;
+            return ALONG_INSIDE;
         }
         let (first, counted) = (self.row_starts[row as usize] as usize, self.row_counts[row as usize]);
         let flips = (counted >> 1) as usize;
         if flips == 0 {
-            return counted & 1 == 1; // 0 also of a row that found no room
+            return counted & ALONG_INSIDE; // 0 also of a row that found no room
         }
-        let passed = self.flips[first..first + flips].partition_point(|&flip| flip <= u);
-        passed % 2 == usize::from(counted & 1 == 0)
+        let flips = &self.flips[first..first + flips];
+        let (before, behind) = flips.split_at(flips.partition_point(|&flip| flip <= u));
+        let is_near = |near: bool, bit: u32| if near { bit } else { 0 };
+        (before.len() as u32 ^ counted) & ALONG_INSIDE
+            | is_near(before.last().is_some_and(|&flip| flip > u - reach), ALONG_BEFORE)
+            | is_near(behind.first().is_some_and(|&flip| flip < u + reach), ALONG_BEHIND)
     }
 
     /// Whether all of the box from `lo` to `hi` is inside or none of it. `false` where that is not easily told.

@@ -1,7 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// The look-ups of table.glsl, one thread a point, for src/parity/table.rs: bit 0 of the point, bit 1 of the box around it.
+// The look-ups of table.glsl, one thread a point, for src/parity/table.rs: bits 0 to 2 of the point and its line, bit 3 of the
+// box around it, bit 4 of the point alone.
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
@@ -16,5 +17,7 @@ layout(push_constant) uniform Push { uint first_bay; uint strips; vec2 around; }
 void main() {
     uint i = gl_GlobalInvocationID.x;
     vec2 p = points[i];
-    answers[i] = uint(table_inside(first_bay, strips, p)) | uint(table_same(first_bay, strips, p - around, p + around)) << 1;
+    answers[i] = table_along(first_bay, strips, p, around.x) |
+                 uint(table_same(first_bay, strips, p - around, p + around)) << 3 |
+                 uint(table_inside(first_bay, strips, p)) << 4;
 }

@@ -1,0 +1,73 @@
+// The border near a pixel, by the u-intercept table: three scan lines tell what the ring's eight points would, and what is
+// between them.
+//
+//          ┌─────┐      ┐ `across`: the scan line at its end, half as long
+//        ╱         ╲    ┘
+//      ╱      ·─────▶╲    that of the point, within `along`, where u alone changes
+//      ╲             ╱
+//        ╲         ╱
+//          └─────┘        and the one as far on the other side
+//
+// A straight border that has one of eight points on a circle beyond it is at most as far as the middles of their octagon's
+// sides. A regular hexagon whose sides are as far (APOTHEM) has a corner beyond it then, too, and all corners are on the lines.
+//
+// Always three look-ups and no loop: where a wide machine asks for most pixels anyway, a loop costs it more.
+#ifndef BORDER_LINES_GLSL
+#define BORDER_LINES_GLSL
+
+#include "border.glsl"
+#include "ring.glsl"
+
+// Some strip has several bays: a line is told within one of them.
+layout(constant_id = 21) const bool TRIMS_HAVE_BAYS = false;
+
+const float APOTHEM = 0.92387953; // cos(pi / 8), of the ring's radius
+const float CORNER = 1.06680402;  // of the hexagon: APOTHEM / cos(pi / 6)
+
+uint told_along(FacePoint p, vec2 step_, float reach) {
+    return table_along(p.fi.first_bay, p.face.strips, p.at + step_.x * p.dx + step_.y * p.dy, reach);
+}
+
+// The rise to the nearest point that a line tells inside, `aside` long to either side.
+float rise_along(uint told, float at, float aside) {
+    float rise = NO_BORDER;
+    if ((told & (ALONG_INSIDE | ALONG_BEFORE)) != 0u) rise = at - aside;
+    if ((told & (ALONG_INSIDE | ALONG_BEHIND)) != 0u) rise = max(rise, at + aside);
+    return rise;
+}
+
+Border border_at(FacePoint p, float reach, bool from_behind, vec2 ahead, vec2 slope) {
+    // pixels, the way in which v changes most: across the scan lines
+    vec2 upwards = vec2(p.dx.y, p.dy.y) / max(length(vec2(p.dx.y, p.dy.y)), 1e-30);
+    vec2 across = APOTHEM * reach * upwards;
+    vec2 along = CORNER * reach * vec2(upwards.y, -upwards.x);
+    float width = along.x * p.dx.x + along.y * p.dy.x;
+    if (width < 0.0) along = -along;
+    width = abs(width);
+    uint told = told_along(p, vec2(0.0), width);
+    bool inside = (told & ALONG_INSIDE) != 0u;
+    bool asks_ahead = inside && !from_behind;
+    uint told_one = told_along(p, asks_ahead ? ahead : across, 0.5 * width);
+    uint told_other = told_along(p, -across, 0.5 * width);
+    bool whole = told == ALONG_INSIDE && told_one == ALONG_INSIDE && told_other == ALONG_INSIDE;
+    float aside = dot(along, slope);
+    float up = dot(across, slope);
+    float rise = rise_along(told, 0.0, aside);
+    rise = max(rise, rise_along(told_one, up, 0.5 * aside));
+    rise = max(rise, rise_along(told_other, -up, 0.5 * aside));
+    if (TRIMS_HAVE_BAYS) {
+        // a line may end within the ring: its points do not
+        float wide = CORNER * reach * (abs(p.dx.x) + abs(p.dy.x));
+        bool one_bay = table_one_bay(p.face.strips, p.at.x - wide, p.at.x + wide);
+        for (uint k = 0u; k < RING_POINTS && !one_bay; ++k) {
+            vec2 step_ = reach * RING[k];
+            bool is_in = told_along(p, step_, 0.0) == ALONG_INSIDE;
+            whole = whole && is_in;
+            if (is_in) rise = max(rise, dot(step_, slope));
+        }
+    }
+    bool rings = reach > 0.0;
+    return Border(inside, whole || !rings, (told_one & ALONG_INSIDE) != 0u, rings ? rise : NO_BORDER);
+}
+
+#endif
