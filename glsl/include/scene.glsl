@@ -17,7 +17,8 @@
 #ifndef SCENE_GLSL
 #define SCENE_GLSL
 
-// Patch.shape: degree_u | degree_v << 4 | rational << 8 | side << 9 | borders << 11
+// Patch.shape: degree_u | degree_v << 4 | rational << 8 | side << 9 | borders << 11 | fine net << 15 | pieces of its size in the
+// patch that it was cut from, along u << 16, along v << 22
 const uint SIDE_OUTSIDE = 0u;  // wholly trimmed away: never drawn
 const uint SIDE_INSIDE = 1u;   // no trim curve meets it: drawn without a test
 const uint SIDE_BOUNDARY = 2u; // the trim test decides per pixel
