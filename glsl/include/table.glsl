@@ -1,5 +1,5 @@
 // Look-up in the u-intercept table: nearest scan line, then a binary search.
-// Needs `frame`; whoever includes this defines TABLE_BINDING, where its four buffers begin.
+// Needs `frame`; whoever includes this defines TABLE_BINDING, where its five buffers begin.
 #ifndef TABLE_GLSL
 #define TABLE_GLSL
 
