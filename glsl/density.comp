@@ -6,16 +6,15 @@
 //   |S_v| <= speed_v  and  W >= w over the cell   =>   strip height in pixels <= speed_v pixels / strips
 //
 // The largest over the strip's visible cells stands for the paper's sup rho; strips that nobody
-// sees get no scan line, and bays beyond those that are seen no row. Twin: src/twin/density.rs.
+// sees get no scan line, and bays beyond those that are seen no row. A table for all views from about as far
+// (src/scene/around.rs) takes the same density everywhere, seen or not. Twin: src/twin/density.rs.
 #include "bays.glsl"
 #include "octahedral.glsl"
 #include "scene.glsl"
 #include "view.glsl"
 
-// Patches may lie behind others: faces none of whose patches is drawn get no scan line either.
-layout(constant_id = 1) const bool SCENE_HIDES = false;
 // Strips of some face have several bays.
-layout(constant_id = 2) const bool SCENE_HAS_BAYS = false;
+layout(constant_id = 1) const bool SCENE_HAS_BAYS = false;
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
@@ -27,26 +26,32 @@ layout(scalar, binding = 5) readonly buffer Cells { Cell cells[]; };
 layout(scalar, binding = 6) readonly buffer CellItems { uint cell_face_instance[]; };
 layout(scalar, binding = 7) buffer StripHeights { uint strip_heights[]; }; // float bits, pixels
 layout(scalar, binding = 8) buffer FaceSpeeds { uint face_speeds[]; };     // float bits, pixels per unit u, v
-layout(scalar, binding = 9) readonly buffer DrawnFaces { uint drawn_faces[]; }; // where SCENE_HIDES
-layout(scalar, binding = 10) buffer SeenBays { uint seen_bays[]; }; // a bit for each bay of a strip, where SCENE_HAS_BAYS
+layout(scalar, binding = 9) buffer SeenBays { uint seen_bays[]; }; // a bit for each bay of a strip, where SCENE_HAS_BAYS
+
+// That one unit of the cell can cover; negative where nobody sees it.
+float pixels_of(FaceInstance fi, Face face, Cell cell) {
+    Instance instance = instances[fi.instance];
+    if (frame.table_density > 0.0) return frame.table_density * instance.scale;
+    View view = views[fi.instance];
+    float margin = frame.ring_px + 1.0;
+    Seen seen = see(view, frame, cell.box_min, cell.box_max, margin, far_of(face, frame));
+    if (seen.w < 0.0) return -1.0;
+    if (frame.perspective != 0u) {
+        seen.w = max(seen.w, nearest_in_slab(view, frame, octahedral(cell.normal), cell.low, cell.high, margin));
+    }
+    return pixels_per_unit(frame, instance, seen);
+}
 
 void main() {
     uint item = gl_GlobalInvocationID.x;
     if (item >= frame.cell_count) return;
     uint placed = cell_face_instance[item];
-    if (SCENE_HIDES && drawn_faces[placed] == 0u) return;
     FaceInstance fi = face_instances[placed];
     Face face = faces[fi.face];
     Cell cell = cells[face.first_cell + item - fi.first_cell];
     if (cell.speed_v < 0.0) return; // no loop meets its patch
-    View view = views[fi.instance];
-    float margin = frame.ring_px + 1.0;
-    Seen seen = see(view, frame, cell.box_min, cell.box_max, margin, far_of(face, frame));
-    if (seen.w < 0.0) return;
-    if (frame.perspective != 0u) {
-        seen.w = max(seen.w, nearest_in_slab(view, frame, octahedral(cell.normal), cell.low, cell.high, margin));
-    }
-    float pixels = pixels_per_unit(frame, instances[fi.instance], seen);
+    float pixels = pixels_of(fi, face, cell);
+    if (pixels < 0.0) return;
     // positive floats order like their bits
     float height = cell.speed_v * pixels / float(strip_count(face.strips));
     uint bay = cell.bay % bay_count(face.strips);

@@ -7,19 +7,14 @@
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 1) readonly buffer Items { uint item_face_instance[]; };
-layout(scalar, binding = 2) readonly buffer Hidden { uint hidden[]; };
-layout(scalar, binding = 3) buffer Taus { uint taus[]; };
-layout(scalar, binding = 4) writeonly buffer DrawnFaces { uint drawn_faces[]; }; // zero before, or all of them 1
-layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
+layout(scalar, binding = 1) readonly buffer Hidden { uint hidden[]; };
+layout(scalar, binding = 2) buffer Taus { uint taus[]; };
+layout(scalar, binding = 3) buffer CountersBuffer { Counters counters; };
 
 void main() {
     uint item = gl_GlobalInvocationID.x;
     if (item >= frame.item_count || taus[item] == 0u) return;
-    if (hidden[item] != 0u) {
-        taus[item] |= TAU_HIDDEN;
-        atomicAdd(counters.hidden, 1u);
-    } else {
-        drawn_faces[item_face_instance[item]] = 1u;
-    }
+    if (hidden[item] == 0u) return;
+    taus[item] |= TAU_HIDDEN;
+    atomicAdd(counters.hidden, 1u);
 }

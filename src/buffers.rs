@@ -66,8 +66,6 @@ pub(crate) struct Buffers {
 pub(crate) struct HiddenBuffers {
     /// A word an item; from frame to frame.
     pub hidden: Buffer,
-    /// A word a placed face.
-    pub drawn_faces: Buffer,
     /// A float a square of pixels, then a tile, then a block of tiles.
     pub farthest: Buffer,
 }
@@ -121,6 +119,8 @@ pub(crate) struct TableBuffers {
     pub border_cells: Texels,
     /// `None` where each strip has one bay.
     pub bays: Option<BayBuffers>,
+    /// What was counted when the table was made.
+    pub counters: Buffer,
 }
 
 /// What strips with several bays need.
@@ -254,6 +254,7 @@ impl Buffers {
                         })
                     })
                     .transpose()?,
+                counters: structs("trim table counters", 1, size_of::<Counters>())?,
             })
         };
         #[cfg(feature = "rivals")]
@@ -290,7 +291,6 @@ impl Buffers {
                 .then(|| {
                     Ok::<_, GpuError>(HiddenBuffers {
                         hidden: words("hidden patches", n)?,
-                        drawn_faces: words("drawn faces", counts.face_instances)?,
                         farthest: words("farthest depths", across(SQUARE) + across(TILE) + across(TILE * BLOCK))?,
                     })
                 })

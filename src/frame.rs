@@ -186,6 +186,8 @@ pub(crate) struct Frame<'a> {
     pub hiding: Hiding,
     /// What is seen, or what samples are drawn from, is that of the frame before.
     pub keeps: bool,
+    /// So is the trim table.
+    pub keeps_table: bool,
     /// Columns and rows of the pixels that operands without equations may be in.
     pub shell_pixels: &'a [Range<u32>; 2],
     /// That way `blister` peels.
@@ -220,11 +222,11 @@ impl Frame<'_> {
         self.wait(cmd);
         match &self.passes.samples {
             Some(passes) => {
-                self.unless_kept(cmd, || self.make(cmd, times));
+                self.unless_seen(cmd, || self.make(cmd, times));
                 self.record_samples(cmd, times, passes);
             }
             None => {
-                self.unless_kept(cmd, || {
+                self.unless_seen(cmd, || {
                     self.make(cmd, times);
                     self.see(cmd, &mut Scopes::of(times));
                 });
@@ -234,15 +236,15 @@ impl Frame<'_> {
         self.no_thickness(cmd);
     }
 
-    /// What is drawn from: patches divided, and the trim table.
+    /// What is drawn from: the trim table, and patches divided.
     fn make(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
         self.begin(cmd);
-        if let Some(passes) = &self.passes.tessellation {
-            times.scope(cmd, "tessellation", || self.tessellation(cmd, passes));
-        }
         let trim = self.trim();
         if let Some(table) = trim.as_ref().and_then(TrimParts::table) {
-            times.scope(cmd, "trim table", || table.record(self, cmd));
+            self.unless_made(cmd, table.buffers, || times.scope(cmd, "trim table", || table.record(self, cmd)));
+        }
+        if let Some(passes) = &self.passes.tessellation {
+            times.scope(cmd, "tessellation", || self.tessellation(cmd, passes));
         }
         #[cfg(feature = "rivals")]
         if let Some(texture) = trim.as_ref().and_then(TrimParts::rival).and_then(|parts| parts.texture()) {
@@ -307,7 +309,8 @@ impl Frame<'_> {
     /// Clears what the passes count that make what is drawn from.
     fn begin(&self, cmd: &Commands<'_>) {
         let b = self.buffers;
-        for counted in b.trim.iter().flat_map(|t| &t.table).flat_map(TableBuffers::cleared) {
+        let table = b.trim.iter().flat_map(|t| &t.table).filter(|_| !self.keeps_table);
+        for counted in table.flat_map(TableBuffers::cleared) {
             cmd.fill(counted, 0);
         }
         #[cfg(feature = "rivals")]

@@ -333,7 +333,8 @@ impl Renderer {
             loaded.data.drop_uploaded();
         }
         let view = (*input.camera, input.settings);
-        let known = Known::after(loaded.known, view, !loaded.edits.is_empty(), loaded.counts.hides);
+        let density = loaded.data.table_density(input.camera);
+        let known = Known::after(loaded.known, view, density, !loaded.edits.is_empty(), loaded.counts.hides);
         slot.edit_bytes = 0;
         if let Some(scene) = loaded.scene.as_ref().filter(|_| !loaded.edits.is_empty()) {
             let uploads = Frame::edit(&cmd, scene, &loaded.edits)?;
@@ -368,6 +369,7 @@ impl Renderer {
             near,
             hiding: known.hiding,
             keeps: known.keeps,
+            keeps_table: known.keeps_table,
             shell_pixels: &shell_pixels,
             layers: loaded.capacities.layers,
             legs: loaded.capacities.legs,

@@ -156,6 +156,7 @@ struct Frame {
     float ring_px;      // how far a trimmed face reaches over its border to close cracks
     float row_px;       // spacing of the trim table's scan lines
     float chord_px;     // budget of a trim curve's linear segments
+    float table_density; // pixels a model unit that the trim table is for, whatever the view; 0: of what this one shows
     uint fixed_factor;  // of every patch; 0: what the bound asks for
     uint item_count;
     uint cell_count;

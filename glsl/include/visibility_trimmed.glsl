@@ -8,7 +8,8 @@
 //     looks into the solid. It wins over a face of another solid that touches it.
 //   * the ring around a face of a solid seen from behind, so that the faces behind leave no gap themselves, and around
 //     each face of an open shell. To either side of the border of the former: a hole's far end, drawn narrower than it
-//     is, must not hide its wall.
+//     is, must not hide its wall. Within the border of the latter it is drawn, and marked where it is seen from behind:
+//     it may meet the face before it in a silhouette, which is drawn narrower than it is.
 //
 // Rings are not drawn: what they are before may be right, and narrower than they are. Only how near
 // the nearest of them comes is kept for each pixel.
@@ -90,14 +91,14 @@ void main() {
         steep = length(slope) > STEEP * unit / frame.focal;
     }
     vec2 ahead = steep ? off * normalize(slope) : vec2(0.0);
-    Border border = border_at(FacePoint(fi, face, at, dx, dy), grows ? reach : 0.0, doubtful, ahead, slope);
+    Border border = border_at(FacePoint(fi, face, at, dx, dy), grows ? reach : 0.0, away, ahead, slope);
     bool inside = area == TRIM_IN || border.inside;
-    bool whole = !doubtful || border.whole;
+    bool whole = !away || border.whole;
     bool goes_on = border.goes_on;
     // of the ring's points inside the face, the nearest to the viewer
     float border_depth = border.rise == NO_BORDER ? -1.0 : max(gl_FragCoord.z + border.rise, 0.0);
     if (!inside && border_depth < 0.0) discard;
-    bool ring = !inside && (doubtful || !solid) || !whole;
+    bool ring = !inside && (doubtful || !solid) || doubtful && !whole;
 #ifdef WITHIN_VOLUME
     // a gap between faces may run along the volume's boundary: rings reach beyond it
     if (!in_volume(exact_point(patch_, view_at(fi.instance), uv), inside && !ring ? ON_PX : frame.ring_px)) discard;
@@ -109,12 +110,13 @@ void main() {
         if (inside && steep && goes_on) off = min(off, 2.0 * (bend_within(patch_, vec2(1.0)) * px + SNAP_PX));
         stand_back = off * (abs(slope.x) + abs(slope.y) + unit / frame.focal) + STAND_BACK * z;
     }
-    if (ring) {
+    // depths are not negative, so they order like their bits
+    uint ring_depth = floatBitsToUint(max(z - stand_back, 0.0));
+    if (ring || !whole) {
         uvec2 pixel = uvec2(gl_FragCoord.xy);
-        // depths are not negative, so they order like their bits
-        atomicMax(rings[pixel.y * uint(frame.size.x) + pixel.x], floatBitsToUint(max(z - stand_back, 0.0)));
-        discard;
+        atomicMax(rings[pixel.y * uint(frame.size.x) + pixel.x], ring ? ring_depth : ring_depth + 1u);
     }
+    if (ring) discard;
     visible = uvec2(item + 1u | (doubtful ? DOUBTFUL : 0u), pack_uv(uv));
     gl_FragDepth = z - stand_back;
 }

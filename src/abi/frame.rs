@@ -26,6 +26,7 @@ pub struct Frame {
     pub ring_px: f32,
     pub row_px: f32,
     pub chord_px: f32,
+    pub table_density: f32,
     pub fixed_factor: u32,
     pub item_count: u32,
     pub cell_count: u32,

@@ -12,12 +12,11 @@
 //! So a view is right whatever was known before, and the picture the same bit for bit as with every patch drawn: what is
 //! left out would have lost the depth test at each pixel, and its rings lie behind what is seen there. The derivation
 //! stands in `twin::hidden`. Only of faces that have the same depth to the bit another may be drawn first, and seen. A
-//! view that is the same as that which told draws once, and asks nothing; the trim table leaves out what is not drawn
-//! then, too.
+//! view that is the same as that which told draws once, and asks nothing.
 
 use super::{Frame, TessellationPasses, WRITE_TO_READ, WRITE_TO_WRITE};
 use crate::buffers::HiddenBuffers;
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, barrier};
+use crate::gpu::{Access, Commands, Device, GpuError, Resource, barrier};
 use crate::passes::{farthest, hide, reset, reveal};
 use crate::scene::SceneData;
 
@@ -78,14 +77,8 @@ impl<'a> Frame<'a> {
 }
 
 impl<'a> HiddenParts<'a> {
-    /// Whether patches of each placed face are drawn.
-    pub(super) fn drawn_faces(&self) -> &'a Buffer {
-        &self.buffers.drawn_faces
-    }
-
-    /// Clears what `hide` writes, and in a first frame what it reads. What moves may want any face.
+    /// Clears what `hide` reads in a first frame.
     pub(super) fn begin(&self, cmd: &Commands<'_>, hiding: Hiding) {
-        cmd.fill(&self.buffers.drawn_faces, u32::from(hiding == Hiding::Moved));
         if hiding == Hiding::First {
             cmd.fill(&self.buffers.hidden, 0);
         }
@@ -96,20 +89,11 @@ impl<'a> HiddenParts<'a> {
         let (b, h) = (frame.buffers, self.buffers);
         let (w, r) = WRITE_TO_READ;
         let cleared = Access { layout: w.layout, ..Access::TRANSFER_WRITE };
-        barrier::buffers(
-            cmd,
-            &[(&b.taus, w, w), (&h.drawn_faces, cleared, w), (&h.hidden, cleared | w, r), (&b.counters, w, w)],
-        );
-        let bindings = hide::Bindings {
-            frame: frame.constants,
-            items: &frame.scene.items,
-            hidden: &h.hidden,
-            taus: &b.taus,
-            drawn_faces: &h.drawn_faces,
-            counters: &b.counters,
-        };
+        barrier::buffers(cmd, &[(&b.taus, w, w), (&h.hidden, cleared | w, r), (&b.counters, w, w)]);
+        let bindings =
+            hide::Bindings { frame: frame.constants, hidden: &h.hidden, taus: &b.taus, counters: &b.counters };
         self.passes.hide.record(cmd, &bindings, b.counts.items);
-        barrier::buffers(cmd, &[(&h.drawn_faces, w, r), (&b.counters, w, w)]);
+        barrier::buffers(cmd, &[(&b.counters, w, w)]);
     }
 
     /// After `visibility`: what lies behind what it drew; and where something had been left out that does not, that as

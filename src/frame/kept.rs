@@ -1,12 +1,15 @@
-//! The frame's part for what a still camera keeps: what each pixel sees.
+//! The frame's part for what stays from frame to frame: what each pixel sees, and the trim table.
 //!
 //! ```text
-//!   a new view, an edit, new buffers   ──▶ reset ─▶ tessellation ─▶ trim table ─▶ mesh … heal ─▶ resolve … layers
-//!                                                                     ┊           │ counters
-//!                                                several samples a pixel: here    ▼
-//!                                                                     ┊     kept counters
-//!                                                                     ┊           │ counters
-//!   the view of the frame before, again ──▶ ──────────────────────────┴───────────●────────────▶ resolve … layers
+//!   a new view, an edit, new buffers   ──▶ reset ─▶ trim table ─▶ tessellation ─▶ mesh … heal ─▶ resolve … layers
+//!                                                   │ counters       ┊            │ counters
+//!                                                   ▼                ┊            ▼
+//!                                             counters of the        ┊      kept counters
+//!                                             table │                ┊            │
+//!                                                   │ counters       ┊            │
+//!   a view from about as far           ──▶ reset ───●───────▶ tessellation ─ …    │ counters
+//!                                                 several samples a pixel: here   │
+//!   the view of the frame before, again ──▶ ─────────────────────────┴────────────●────────────▶ resolve … layers
 //! ```
 //!
 //! What these passes write hangs on the view, the settings, the scene and the room that there is, and what comes after them
@@ -20,7 +23,8 @@
 
 use super::{COPIED, Frame};
 use crate::abi::Counters;
-use crate::gpu::{Access, Commands, barrier};
+use crate::buffers::TableBuffers;
+use crate::gpu::{Access, Buffer, Commands, barrier};
 
 /// Who touches counters before and after.
 fn counted() -> Access {
@@ -29,10 +33,20 @@ fn counted() -> Access {
 
 impl Frame<'_> {
     /// Records what this view is made of, for frames to come; or takes up what the frame before left.
-    pub(super) fn unless_kept(&self, cmd: &Commands<'_>, record: impl FnOnce()) {
-        let (counters, kept) = (&self.buffers.counters, &self.buffers.kept_counters);
+    pub(super) fn unless_seen(&self, cmd: &Commands<'_>, record: impl FnOnce()) {
+        self.unless_kept(cmd, (self.keeps, &self.buffers.kept_counters), record);
+    }
+
+    /// The same of the trim table, at the beginning of a view: nothing has been counted yet.
+    pub(super) fn unless_made(&self, cmd: &Commands<'_>, table: &TableBuffers, record: impl FnOnce()) {
+        self.unless_kept(cmd, (self.keeps_table, &table.counters), record);
+    }
+
+    fn unless_kept(&self, cmd: &Commands<'_>, (keeps, kept): (bool, &Buffer), record: impl FnOnce()) {
+        let counters = &self.buffers.counters;
         let bytes = size_of::<Counters>() as u64;
-        if self.keeps {
+        if keeps {
+            barrier::buffers(cmd, &[(counters, counted(), Access::TRANSFER_WRITE)]);
             cmd.copy(kept, 0, counters, 0, bytes);
             barrier::buffers(cmd, &[(counters, Access::TRANSFER_WRITE, counted())]);
             return;

@@ -27,13 +27,12 @@ pub(super) struct TexturePasses {
 }
 
 impl RivalPasses {
-    /// `hides`: patches may lie behind others.
-    pub(super) fn new(device: &Device, rival: Rival, hides: bool) -> Result<Self, GpuError> {
+    pub(super) fn new(device: &Device, rival: Rival) -> Result<Self, GpuError> {
         Ok(match rival {
             Rival::Untrimmed => Self::Untrimmed,
             Rival::Bisect { .. } => Self::Bisect,
             Rival::Texture { .. } => Self::Texture(Box::new(TexturePasses {
-                density: density::Density::new(device, hides, false)?,
+                density: density::Density::new(device, false)?,
                 texture: rival_texture::RivalTexture::new(device)?,
             })),
         })
@@ -102,7 +101,6 @@ impl TextureParts<'_> {
             cell_items: &self.scene.cell_items,
             strip_heights: &t.strip_heights,
             face_speeds: &t.face_speeds,
-            drawn_faces: frame.hidden().map(|parts| parts.drawn_faces()),
             seen_bays: None,
         };
         self.passes.density.record(cmd, &density, b.counts.cells);

@@ -1,4 +1,4 @@
-//! The frame's part for the trim table: the u-intercepts of this view.
+//! The frame's part for the trim table: the u-intercepts of this view, or of all views from about as far as it.
 //!
 //! ```text
 //!   cells ──density──▶ strip heights ──lines──(scan)──▶ rows
@@ -6,6 +6,9 @@
 //!   chords ──cross: count──(scan)──▶ cross: insert──▶ intercepts ──sort──▶ flips of each row
 //!                 ╰──▶ row windings ──carry──▶ what rows begin with ──╯       only where strips have several bays
 //! ```
+//!
+//! A table for all views from about as far (`scene::around`) is made once and stays until there is another view, of another
+//! density, or an edit; `kept.rs` tells how.
 
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::Counters;
@@ -28,10 +31,10 @@ pub(super) struct TablePasses {
 }
 
 impl TablePasses {
-    /// `hides`: patches may lie behind others. `bays`: strips of some face have several bays.
-    pub(super) fn new(device: &Device, hides: bool, bays: bool) -> Result<Self, GpuError> {
+    /// `bays`: strips of some face have several bays.
+    pub(super) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
         Ok(Self {
-            density: density::Density::new(device, hides, bays)?,
+            density: density::Density::new(device, bays)?,
             lines: lines::Lines::new(device, bays)?,
             segments: segments::Segments::new(device, bays)?,
             sizes: sizes::Sizes::new(device, bays)?,
@@ -77,7 +80,6 @@ impl<'a> TableParts<'a> {
             cell_items: &trims.cell_items,
             strip_heights: &t.strip_heights,
             face_speeds: &t.face_speeds,
-            drawn_faces: frame.hidden().map(|parts| parts.drawn_faces()),
             seen_bays,
         };
         p.density.record(cmd, &density, b.counts.cells);

@@ -38,12 +38,10 @@ impl TrimPasses {
     pub(super) fn new(device: &Device, data: &SceneData) -> Result<Option<Self>, GpuError> {
         let Some(way) = data.trim_way() else { return Ok(None) };
         let way = match way {
-            TrimWay::Table => {
-                Way::Table(Box::new(TablePasses::new(device, data.hides(), !data.wide_strips.is_empty())?))
-            }
+            TrimWay::Table => Way::Table(Box::new(TablePasses::new(device, !data.wide_strips.is_empty())?)),
             TrimWay::Exact => Way::Exact,
             #[cfg(feature = "rivals")]
-            TrimWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival, data.hides())?),
+            TrimWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival)?),
         };
         let others = data.has_meshes() || data.solids.kinds().is_some();
         let volume = data.volume.as_ref().and_then(SolidData::kinds);

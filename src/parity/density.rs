@@ -13,7 +13,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
     let face_speeds = gpu.upload("face speeds", &vec![0.0f32; 2 * faces]);
     let bays = !given.data.wide_strips.is_empty();
     let seen_bays = gpu.upload("seen bays", &vec![0u32; strips]);
-    let pass = Density::new(gpu.device(), false, bays).unwrap();
+    let pass = Density::new(gpu.device(), bays).unwrap();
     let bindings = Bindings {
         frame: &s.frame,
         views: &s.views,
@@ -24,7 +24,6 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
         cell_items: &s.cell_items,
         strip_heights: &strip_heights,
         face_speeds: &face_speeds,
-        drawn_faces: None,
         seen_bays: bays.then_some(&seen_bays),
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, given.data.cell_items.len() as u32));
@@ -41,8 +40,29 @@ fn parity() {
     let gpu = Gpu::new();
     for case in cases() {
         compare(&gpu, &case, &case).unwrap();
+        let mut whole = case.clone();
+        whole.frame.table_density = 12.5;
+        compare(&gpu, &whole, &whole).unwrap();
     }
     gpu.finish();
+}
+
+/// The same density everywhere, whatever is seen; and it is more than any of these views asks for.
+#[test]
+fn a_table_for_many_views_holds_each() {
+    let mut more = 0;
+    for case in cases() {
+        let one = twin::density::density(&case.frame, &case.scene());
+        let mut frame = case.frame;
+        frame.table_density = one.face_speeds.iter().flatten().fold(0.0, |all: f32, speed| all.max(*speed));
+        let many = twin::density::density(&frame, &case.scene());
+        for ((one, many), seen) in one.strip_heights.iter().zip(&many.strip_heights).zip(&one.seen_bays) {
+            assert!(one <= many);
+            more += usize::from(*seen == 0 && *many > 0.0);
+        }
+        assert!(one.seen_bays.iter().zip(&many.seen_bays).all(|(one, many)| one & !many == 0));
+    }
+    assert!(more > 0, "every strip is seen in every view");
 }
 
 #[test]

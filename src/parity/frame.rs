@@ -17,9 +17,13 @@ fn a_frame_counts_what_the_twins_count() {
     let mut renderer = HeadlessRenderer::new(&options).unwrap();
     let (model, cameras) = model_and_cameras();
     renderer.upload(&model).unwrap();
+    let mut tables = [0, 0]; // of one view, of many
     for camera in &cameras {
         for tolerance_px in [0.5, 3.0] {
-            let chain = Chain::new(&Case::cut(&model, camera, tolerance_px)).counters;
+            let mut case = Case::cut(&model, camera, tolerance_px);
+            case.frame.table_density = case.data.table_density(camera).unwrap_or(0.0);
+            tables[usize::from(case.frame.table_density > 0.0)] += 1;
+            let chain = Chain::new(&case).counters;
             let settings = FrameSettings { tolerance_px, ..Default::default() };
             let stats = renderer.render(camera, &settings, Outputs::default()).unwrap().stats;
             let on_gpu = [stats.sub_patches, stats.trim_rows, stats.trim_intercepts, stats.clamps];
@@ -29,6 +33,7 @@ fn a_frame_counts_what_the_twins_count() {
             assert!(on_gpu.iter().zip(&twin).all(near), "GPU {on_gpu:?}, twins {twin:?}");
         }
     }
+    assert!(tables.iter().all(|count| *count > 0), "tables of one view and of many: {tables:?}");
     let messages = renderer.shutdown();
     assert!(messages.is_empty(), "{messages:#?}");
 }

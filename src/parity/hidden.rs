@@ -33,26 +33,16 @@ fn taus(case: &Case) -> Vec<u32> {
 }
 
 fn compare_hide(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<(), Mismatch> {
-    let (n, faces) = (case.data.items.len(), case.data.face_instances.len());
+    let n = case.data.items.len();
     let s = SceneBuffers::new(gpu, case);
     let mut twin_taus = taus(case);
     let (hidden, taus) = (gpu.upload("hidden", given), gpu.upload("taus", &twin_taus));
-    let drawn_faces = gpu.upload("drawn faces", &vec![0u32; faces]);
     let counters = gpu.upload("counters", &[Counters::default()]);
     let pass = hide::Hide::new(gpu.device()).unwrap();
-    let bindings = hide::Bindings {
-        frame: &s.frame,
-        items: &s.items,
-        hidden: &hidden,
-        taus: &taus,
-        drawn_faces: &drawn_faces,
-        counters: &counters,
-    };
+    let bindings = hide::Bindings { frame: &s.frame, hidden: &hidden, taus: &taus, counters: &counters };
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
-    let mut twin_faces = vec![0; faces];
-    let marked = twin::hidden::hide(&case.data.items, expected, &mut twin_taus, &mut twin_faces);
+    let marked = twin::hidden::hide(expected, &mut twin_taus);
     same("taus", &gpu.read(&taus, n), &twin_taus)?;
-    same("drawn faces", &gpu.read(&drawn_faces, faces), &twin_faces)?;
     same("counters", &gpu.read(&counters, 1), &[Counters { hidden: marked, ..Counters::default() }])
 }
 

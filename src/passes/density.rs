@@ -15,10 +15,8 @@ use crate::shaders;
 /// Threads of a workgroup, as in the shader.
 const GROUP: u32 = 64;
 
-/// `constant_id` of `SCENE_HIDES`.
-const SCENE_HIDES: u32 = 1;
 /// `constant_id` of `SCENE_HAS_BAYS`.
-const SCENE_HAS_BAYS: u32 = 2;
+const SCENE_HAS_BAYS: u32 = 1;
 
 /// The pass.
 pub(crate) struct Density {
@@ -39,23 +37,21 @@ pub(crate) struct Bindings<'a> {
     pub strip_heights: &'a Buffer,
     /// Float bits of pixels per unit u, v; zero before.
     pub face_speeds: &'a Buffer,
-    /// Whether patches of each placed face are drawn, in scenes where they may lie behind others.
-    pub drawn_faces: Option<&'a Buffer>,
     /// A bit for each bay of a strip, where strips have several; zero before.
     pub seen_bays: Option<&'a Buffer>,
 }
 
 impl Density {
-    /// `hides`: patches may lie behind others. `bays`: strips of some face have several bays.
-    pub(crate) fn new(device: &Device, hides: bool, bays: bool) -> Result<Self, GpuError> {
+    /// `bays`: strips of some face have several bays.
+    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
         let pipeline = Pipeline::compute(
             device,
             &ComputeInfo {
                 name: "density",
                 spirv: shaders::DENSITY_COMP,
-                bindings: &with_constants(11),
+                bindings: &with_constants(10),
                 push_bytes: 0,
-                constants: &[(SCENE_HIDES, u32::from(hides)), (SCENE_HAS_BAYS, u32::from(bays))],
+                constants: &[(SCENE_HAS_BAYS, u32::from(bays))],
             },
         )?;
         Ok(Self { pipeline })
@@ -74,7 +70,6 @@ impl Density {
             b.strip_heights,
             b.face_speeds,
             // neither read nor written then
-            b.drawn_faces.unwrap_or(b.frame),
             b.seen_bays.unwrap_or(b.frame),
         ]
         .map(Into::into);

@@ -1,7 +1,7 @@
 //! Pass `hide`: patches that lay behind others in the frame before are not drawn, unless pass
 //! [`reveal`](super::reveal) finds that they may be seen.
 //!
-//! Reads: `frame`, `items`, `hidden`. Writes: `taus`, `drawn_faces`, `counters`. Twin: `src/twin/hidden.rs`.
+//! Reads: `frame`, `hidden`. Writes: `taus`, `counters`. Twin: `src/twin/hidden.rs`.
 
 use crate::bindings::with_constants;
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
@@ -18,13 +18,9 @@ pub(crate) struct Hide {
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    /// Face instance of each item.
-    pub items: &'a Buffer,
     /// Of each item: whether it lay behind others.
     pub hidden: &'a Buffer,
     pub taus: &'a Buffer,
-    /// Of each placed face: whether patches of it are drawn; zero before, or all of them 1.
-    pub drawn_faces: &'a Buffer,
     /// `hidden`.
     pub counters: &'a Buffer,
 }
@@ -36,7 +32,7 @@ impl Hide {
             &ComputeInfo {
                 name: "hide",
                 spirv: shaders::HIDE_COMP,
-                bindings: &with_constants(6),
+                bindings: &with_constants(4),
                 push_bytes: 0,
                 constants: &[],
             },
@@ -46,7 +42,7 @@ impl Hide {
 
     /// One thread for each of `items`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
-        let resources = [b.frame, b.items, b.hidden, b.taus, b.drawn_faces, b.counters].map(Into::into);
+        let resources = [b.frame, b.hidden, b.taus, b.counters].map(Into::into);
         cmd.bind(&self.pipeline, &resources, &[]);
         cmd.dispatch(items.div_ceil(GROUP));
     }

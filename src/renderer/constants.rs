@@ -47,6 +47,7 @@ pub(super) fn constants(
         ring_px: budget.ring as f32,
         row_px: budget.row as f32,
         chord_px: budget.chord as f32,
+        table_density: loaded.data.table_density(camera).unwrap_or(0.0),
         fixed_factor: input.settings.levels.fixed().unwrap_or(0),
         item_count: counts.items,
         cell_count: counts.cells,

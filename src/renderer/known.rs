@@ -1,14 +1,16 @@
-//! What stays from frame to frame: what is known of patches that lie behind others, and what is seen.
+//! What stays from frame to frame: what is known of patches that lie behind others, what is seen, and the trim table.
 //!
 //! ```text
 //!   scenes that hide     First ─▶ Asks ─▶ Same ─▶ Same, keeps ─▶ Same, keeps ─ … ─▶ Moved ─▶ Same ─▶ Same, keeps
 //!   others               made ──▶ keeps ─▶ …                                        made ──▶ keeps
 //!                        └──────── one view ────────────────────────────────────┘   └──── another, or an edit ───
+//!   table of one view    made ──▶ made ─▶ …                                         made ──▶ made
+//!   of many views        made ──▶ keeps ─▶ …                                        keeps, but for an edit
 //! ```
 //!
 //! A frame that hides asks once it has drawn: what it is told changes what the next one draws, though not what is seen,
 //! and the one after that nothing. All begins anew with new buffers: another scene, another size of the picture, more
-//! room.
+//! room. What a table is made of follows from its density and the tolerance alone (`scene::around`).
 
 use crate::frame::Hiding;
 use crate::model::Camera;
@@ -20,12 +22,23 @@ pub(super) struct Known {
     pub(super) hiding: Hiding,
     /// What is seen is what the frame before saw.
     pub(super) keeps: bool,
+    /// The trim table is that of the frame before.
+    pub(super) keeps_table: bool,
+    /// Of a table for many views.
+    density: Option<f32>,
     view: (Camera, FrameSettings),
 }
 
 impl Known {
-    /// Of the frame that follows one; `edited`: some trim changes between them. `hides`: patches may lie behind others.
-    pub(super) fn after(before: Option<Self>, view: (Camera, FrameSettings), edited: bool, hides: bool) -> Self {
+    /// Of the frame that follows one. `density`: where the trim table is for many views. `edited`: some trim changes between
+    /// them. `hides`: patches may lie behind others.
+    pub(super) fn after(
+        before: Option<Self>,
+        view: (Camera, FrameSettings),
+        density: Option<f32>,
+        edited: bool,
+        hides: bool,
+    ) -> Self {
         let (camera, settings) = view;
         // which passes are recorded is no part of the view
         let view = (camera, FrameSettings { all_passes: false, ..settings });
@@ -37,6 +50,14 @@ impl Known {
             Some(_) => Hiding::Moved,
         };
         let made = before.filter(is_same).is_some_and(|before| !hides || before.hiding == Hiding::Same);
-        Self { hiding, keeps: made && !settings.all_passes, view }
+        let is_made_for = |before: &Self| {
+            let (_, settings_before) = before.view;
+            before.density.is_some()
+                && before.density == density
+                && settings_before.tolerance_px == settings.tolerance_px
+        };
+        let has_table = before.filter(is_made_for).is_some() && !edited;
+        let may_keep = !settings.all_passes;
+        Self { hiding, keeps: made && may_keep, keeps_table: has_table && may_keep, density, view }
     }
 }

@@ -1,5 +1,6 @@
 //! The whole scene as plain arrays, and the transforms that stay in `f64`.
 
+use super::around::Ball;
 use super::cones::{Normals, cones};
 use super::edit::EditScene;
 use super::exact::ExactData;
@@ -83,6 +84,8 @@ pub(crate) struct SceneData {
     smooth_trims: bool,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
+    /// What the table trims lies in it; `None` where there is no table, too.
+    pub trimmed: Option<Ball>,
     /// Boolean solids.
     pub solids: SolidData,
     /// The volume that trims faces and meshes, but for one that is everywhere.
@@ -250,6 +253,7 @@ impl SceneData {
         if !data.hides() {
             data.outside = Vec::new();
         }
+        data.trimmed = Ball::trimmed_by_table(&data);
         Ok(data)
     }
 
@@ -300,7 +304,7 @@ impl SceneData {
         let volume = self.volume.take().map(SolidData::centres_only);
         let edit = self.edit.take();
         let sun = self.sun.take().map(SunData::directions_only);
-        *self = Self { placements, solids, volume, edit, sun, ..Self::default() };
+        *self = Self { placements, trimmed: self.trimmed, solids, volume, edit, sun, ..Self::default() };
     }
 
     /// Operands of Boolean solids without equations are placed as parts are, after them.

@@ -15,6 +15,7 @@
 //! `f64` every frame. Patches too slight for that have a fine net beside their points (`fine.rs`).
 
 mod apart;
+mod around;
 mod cells;
 mod closeup;
 mod cones;

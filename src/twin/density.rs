@@ -6,7 +6,7 @@
 
 use super::Scene;
 use super::view::{far_of, nearest_in_slab, pixels_per_unit, see};
-use crate::abi::Frame;
+use crate::abi::{Cell, Face, FaceInstance, Frame};
 use crate::math::octahedral;
 
 /// What the pass writes.
@@ -18,6 +18,22 @@ pub struct Density {
     pub face_speeds: Vec<[f32; 2]>,
     /// A bit for each bay that can be seen of each placed strip, at its first bay.
     pub seen_bays: Vec<u32>,
+}
+
+/// Pixels that one unit of a cell can cover; `None` where nobody sees it.
+fn pixels_of(frame: &Frame, scene: &Scene<'_>, placed: FaceInstance, face: &Face, cell: &Cell) -> Option<f32> {
+    let instance = &scene.instances[placed.instance as usize];
+    if frame.table_density > 0.0 {
+        return Some(frame.table_density * instance.scale);
+    }
+    let view = &scene.views[placed.instance as usize];
+    let (margin, far) = (frame.ring_px + 1.0, far_of(face, frame));
+    let mut seen = see(view, frame, cell.box_min, cell.box_max, margin, far)?;
+    if frame.perspective != 0 {
+        let normal = octahedral::unpack(cell.normal);
+        seen.w = seen.w.max(nearest_in_slab(view, frame, normal, (cell.low, cell.high), margin));
+    }
+    Some(pixels_per_unit(frame, instance, &seen))
 }
 
 /// The largest over the visible cells of each strip and of each face.
@@ -35,19 +51,7 @@ pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
         if cell.speed_v < 0.0 {
             continue;
         }
-        let view = &scene.views[placed.instance as usize];
-        let (margin, far) = (frame.ring_px + 1.0, far_of(&face, frame));
-        let Some(mut seen) = see(view, frame, cell.box_min, cell.box_max, margin, far) else { continue };
-        if frame.perspective != 0 {
-            seen.w = seen.w.max(nearest_in_slab(
-                view,
-                frame,
-                octahedral::unpack(cell.normal),
-                (cell.low, cell.high),
-                margin,
-            ));
-        }
-        let pixels = pixels_per_unit(frame, &scene.instances[placed.instance as usize], &seen);
+        let Some(pixels) = pixels_of(frame, scene, placed, &face, &cell) else { continue };
         let bay = cell.bay % face.bay_count();
         let strip = (placed.first_bay + cell.bay - bay) as usize;
         out.seen_bays[strip] |= 1 << bay;

@@ -50,16 +50,12 @@ pub fn is_drawn(tau: u32) -> bool {
     tau != 0 && tau & TAU_HIDDEN == 0
 }
 
-/// Marks patches that were `hidden`, and of which faces patches are drawn; how many are marked.
-pub fn hide(items: &[u32], hidden: &[u32], taus: &mut [u32], drawn_faces: &mut [u32]) -> u32 {
+/// Marks patches that were `hidden`; how many are marked.
+pub fn hide(hidden: &[u32], taus: &mut [u32]) -> u32 {
     let mut marked = 0;
-    for ((tau, &was_hidden), &placed) in taus.iter_mut().zip(hidden).zip(items).filter(|((tau, _), _)| **tau != 0) {
-        if was_hidden == 0 {
-            drawn_faces[placed as usize] = 1;
-        } else {
-            *tau |= TAU_HIDDEN;
-            marked += 1;
-        }
+    for (tau, _) in taus.iter_mut().zip(hidden).filter(|(tau, was_hidden)| **tau != 0 && **was_hidden != 0) {
+        *tau |= TAU_HIDDEN;
+        marked += 1;
     }
     marked
 }

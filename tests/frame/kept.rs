@@ -1,5 +1,6 @@
-//! A still camera keeps what each pixel sees, and no picture shows it: every image is the same bit for bit as that of a
-//! renderer that has drawn nothing before, and every count as in a frame of all passes.
+//! A still camera keeps what each pixel sees, and one that turns around the model its trim table. No picture shows it: every
+//! image is the same bit for bit as that of a renderer that has drawn nothing before, and every count as in a frame of all
+//! passes.
 
 use crate::hidden::crowd;
 use crate::layers::in_glass;
@@ -7,7 +8,7 @@ use crate::shapes::{self, operands, solids};
 use crate::support::{assert_identical, assert_silent, watched_with};
 use glam::{DVec2, DVec3};
 use selvedge::headless::HeadlessRenderer;
-use selvedge::model::{Camera, LoopAt, Model};
+use selvedge::model::{Camera, LoopAt, Model, Projection};
 use selvedge::picture::{
     FrameSettings, FrameStats, Highlight, Levels, Outputs, Picture, Samples, SceneSettings, SolidWay, TrimWay,
 };
@@ -81,6 +82,61 @@ fn passes(picture: &Picture) -> Vec<&str> {
 /// All that a frame tells but its time, and what was drawn anew.
 fn counts(picture: &Picture) -> FrameStats {
     FrameStats { passes: Vec::new(), kept: false, triangles: 0, ..picture.stats.clone() }
+}
+
+/// Whether the next picture of a viewer makes a trim table. It is as a fresh renderer draws it, of as many rows.
+fn makes_a_table(pair: &mut Pair, model: &Model, camera: &Camera, settings: FrameSettings, what: &str) -> bool {
+    pair.fresh.upload_with(model, pair.scene).unwrap();
+    let expected = pair.fresh.render(camera, &settings, Outputs::ALL).unwrap();
+    let picture = pair.viewer.render(camera, &settings, Outputs::ALL).unwrap();
+    assert_identical(&picture, &expected, what);
+    let of_table = |p: &Picture| (p.stats.trim_rows, p.stats.trim_segments, p.stats.trim_intercepts, p.stats.clamps);
+    assert_eq!(of_table(&picture), of_table(&expected), "{what}");
+    assert!(!picture.stats.kept && picture.stats.trim_rows > 0, "{what}");
+    assert!(passes(&expected).contains(&"trim table"), "{what}: a first picture has no table");
+    passes(&picture).contains(&"trim table")
+}
+
+#[test]
+fn views_from_about_as_far_share_a_trim_table() {
+    let mut model = few();
+    let scene = SceneSettings { trim: Some(TrimWay::Table), editable: true, ..SceneSettings::default() };
+    let mut pair = Pair::new(&model, scene);
+    let settings = FrameSettings::default();
+    let coarse = FrameSettings { tolerance_px: 2.0, ..settings };
+    let anew = FrameSettings { all_passes: true, ..settings };
+    let camera = from(&model, 0.3);
+    let farther = Camera { eye: camera.eye.lerp(camera.target, -0.5), ..camera };
+    let farther = Camera { depth_range: (1.0, 2.0 * camera.depth_range.1), ..farther };
+    let close = Camera { eye: camera.eye.lerp(camera.target, 0.9), depth_range: (0.05, 100.0), ..camera };
+    let beside = Camera { eye: close.eye + DVec3::X, target: close.target + DVec3::X, ..close };
+    let parallel = Camera { projection: Projection::Orthographic { height: 30.0 }, ..camera };
+    let aside = Camera { eye: parallel.eye + DVec3::X, target: parallel.target + DVec3::X, ..parallel };
+    let views = [
+        ("first", camera, settings, true),
+        ("turned", from(&model, 0.5), settings, false),
+        ("turned around", from(&model, 3.0), settings, false),
+        ("coarser", from(&model, 0.4), coarse, true),
+        ("coarser, turned", from(&model, 0.6), coarse, false),
+        ("as fine as before", camera, settings, true),
+        ("anew", from(&model, 0.7), anew, true),
+        ("turned since", from(&model, 0.8), settings, false),
+        ("farther", farther, settings, true),
+        ("close", close, settings, true),
+        ("beside it", beside, settings, true),
+        ("back", from(&model, 0.9), settings, true),
+        ("parallel", parallel, settings, true),
+        ("parallel, aside", aside, settings, false),
+    ];
+    for (what, camera, settings, made) in views {
+        assert_eq!(makes_a_table(&mut pair, &model, &camera, settings, what), made, "{what}");
+    }
+    let moved = model.parts[0].faces[0].loops[1].translated(DVec2::new(0.3, 0.1)).unwrap();
+    pair.viewer.edit_loop(LoopAt { part: 0, face: 0, trim_loop: 1 }, &moved).unwrap();
+    model.parts[0].faces[0].loops[1] = moved;
+    assert!(makes_a_table(&mut pair, &model, &parallel, settings, "edited"));
+    assert!(!makes_a_table(&mut pair, &model, &aside, settings, "since the edit"));
+    pair.ends();
 }
 
 /// Everything that a view is made of, changed and changed back.

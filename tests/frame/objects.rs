@@ -92,7 +92,7 @@ fn only_a_scene_with_meshes_has_what_they_need() {
 /// Links and what reads them exist only where faces share sides.
 #[test]
 fn only_a_scene_of_many_patches_knows_which_lie_behind_others() {
-    let of_hiding = ["hidden patches", "drawn faces", "farthest depths", "patches outside"];
+    let of_hiding = ["hidden patches", "farthest depths", "patches outside"];
     let passes = ["hide", "farthest", "reveal", "reset (draws)"];
     let is_of_hiding = |name: &str| of_hiding.contains(&name) || passes.contains(&name);
     // four treads have 24 patches, all of the stair 144

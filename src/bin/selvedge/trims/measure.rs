@@ -6,12 +6,15 @@
 //! ```
 //!
 //! Without a test pixels are kept that a test discards, so the difference can be below zero.
+//!
+//! All passes are recorded, and once more what a view takes that turns: a table that serves it as well is kept.
 
 use super::way::{Contender, Way};
 use crate::args::TrimsArgs;
 use crate::progress::during;
 use crate::verdict;
 use anyhow::Result;
+use glam::DQuat;
 use selvedge::gpu::GpuError;
 use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Model};
@@ -61,6 +64,9 @@ pub struct Cost {
     pub own_passes_ms: f64,
     pub heal_ms: f64,
     pub frame_ms: f64,
+    /// The first and the last of these, of a view that turns.
+    pub turning_trim_ms: f64,
+    pub turning_frame_ms: f64,
     pub passes: Vec<(String, f64)>,
     pub bytes: u64,
     pub objects: Vec<(String, u64)>,
@@ -96,8 +102,8 @@ pub struct Bench<'a> {
     tracer: &'a Tracer,
     /// Trims nothing.
     untrimmed: Option<HeadlessRenderer>,
-    /// Milliseconds of pass "visibility" without a test, view by view.
-    without: Vec<(Camera, f64)>,
+    /// Milliseconds of pass "visibility" without a test, view by view: standing, and turning.
+    without: Vec<(Camera, [f64; 2])>,
 }
 
 impl<'a> Bench<'a> {
@@ -159,17 +165,19 @@ impl<'a> Bench<'a> {
         let settings =
             FrameSettings { tolerance_px: contender.tolerance_px(), all_passes: true, ..FrameSettings::default() };
         let frames = self.args.frames;
-        let Some(stats) = during(&what, || quickest(&mut entered.timed, camera, &settings, frames))? else {
+        let Some(stats) = during(&what, || quickest(&mut entered.timed, &settings, frames, |_| *camera))? else {
             return Ok(row);
         };
+        let turning = during(&what, || turning(&mut entered.timed, camera, &settings, frames))?.unwrap_or_default();
         row.device = format!("{} ({})", stats.device, stats.driver);
         let objects = entered.timed.object_bytes();
         if !matches!(contender, Contender::Texture { .. }) {
             row.trim_bytes = objects.iter().filter(|(name, _)| is_for_trims(way, name)).map(|(_, b)| *b as f64).sum();
         }
         let trims = !matches!(contender, Contender::Pretessellated { .. });
-        let without = if trims { self.without(camera)? } else { time(&stats, "visibility") };
-        row.cost = Some(cost(&stats, without, objects));
+        let own = [&stats, &turning].map(|stats| time(stats, "visibility"));
+        let without = if trims { self.without(camera)? } else { own };
+        row.cost = Some(cost(&stats, &turning, without, objects));
         let picture = entered.judged.render(camera, &settings, Outputs::ALL)?;
         let j = verdict::of(self.tracer, camera, &picture, self.args.samples, 0.5, zoom, &what);
         row.error =
@@ -177,8 +185,8 @@ impl<'a> Bench<'a> {
         Ok(row)
     }
 
-    /// Pass "visibility" of this view without a test.
-    fn without(&mut self, camera: &Camera) -> Result<f64> {
+    /// Pass "visibility" of this view without a test, standing and turning.
+    fn without(&mut self, camera: &Camera) -> Result<[f64; 2]> {
         if let Some((_, ms)) = self.without.iter().find(|(known, _)| known == camera) {
             return Ok(*ms);
         }
@@ -187,30 +195,50 @@ impl<'a> Bench<'a> {
         }
         let Some(renderer) = &mut self.untrimmed else { unreachable!("made above") };
         let settings = FrameSettings { all_passes: true, ..FrameSettings::default() };
-        let stats = quickest(renderer, camera, &settings, self.args.frames)?;
-        let ms = stats.map_or(0.0, |stats| time(&stats, "visibility"));
+        let standing = quickest(renderer, &settings, self.args.frames, |_| *camera)?;
+        let turning = turning(renderer, camera, &settings, self.args.frames)?;
+        let ms = [standing, turning].map(|stats| stats.map_or(0.0, |stats| time(&stats, "visibility")));
         self.without.push((*camera, ms));
         Ok(ms)
     }
 }
 
-/// The least time of each pass over some frames; `None` when the device has no room.
-fn quickest(
+/// The view turned around its target by so little that it shows the same.
+fn turned(camera: &Camera, nth: usize) -> Camera {
+    let turn = DQuat::from_axis_angle(camera.up.normalize(), nth as f64 * 1e-5);
+    Camera { eye: camera.target + turn * (camera.eye - camera.target), ..*camera }
+}
+
+/// The least time of each pass of a view that turns, drawn as a viewer draws it.
+fn turning(
     renderer: &mut HeadlessRenderer,
     camera: &Camera,
     settings: &FrameSettings,
     frames: usize,
 ) -> Result<Option<FrameStats>> {
+    quickest(renderer, &FrameSettings { all_passes: false, ..*settings }, frames, |nth| turned(camera, nth))
+}
+
+/// The least time of each pass over some frames; `None` when the device has no room. Passes that a frame leaves out took it
+/// no time.
+fn quickest(
+    renderer: &mut HeadlessRenderer,
+    settings: &FrameSettings,
+    frames: usize,
+    camera: impl Fn(usize) -> Camera,
+) -> Result<Option<FrameStats>> {
     let mut best: Option<FrameStats> = None;
     for frame in 0..WARM_UP_FRAMES + frames {
-        let stats = match renderer.render(camera, settings, Outputs::default()) {
+        let stats = match renderer.render(&camera(frame), settings, Outputs::default()) {
             Ok(picture) => picture.stats,
             Err(error) if no_room(&error) => return Ok(None),
             Err(error) => return Err(error.into()),
         };
         match &mut best {
             Some(best) if frame > WARM_UP_FRAMES => {
-                best.passes.iter_mut().zip(&stats.passes).for_each(|(b, s)| b.gpu_ms = b.gpu_ms.min(s.gpu_ms));
+                for pass in &mut best.passes {
+                    pass.gpu_ms = pass.gpu_ms.min(time(&stats, &pass.name));
+                }
             }
             _ => best = Some(stats),
         }
@@ -231,13 +259,19 @@ fn time(stats: &FrameStats, pass: &str) -> f64 {
     stats.passes.iter().filter(|p| p.name == pass).map(|p| p.gpu_ms).sum()
 }
 
-fn cost(stats: &FrameStats, without: f64, objects: Vec<(String, u64)>) -> Cost {
-    let own_passes_ms = stats.passes.iter().filter(|p| p.name.starts_with("trim")).map(|p| p.gpu_ms).sum();
+fn cost(stats: &FrameStats, turning: &FrameStats, without: [f64; 2], objects: Vec<(String, u64)>) -> Cost {
+    let own_passes_ms = |stats: &FrameStats| -> f64 {
+        stats.passes.iter().filter(|p| p.name.starts_with("trim")).map(|p| p.gpu_ms).sum()
+    };
+    let trim_ms = |stats: &FrameStats, without: f64| own_passes_ms(stats) + time(stats, "visibility") - without;
+    let frame_ms = |stats: &FrameStats| stats.passes.iter().map(|p| p.gpu_ms).sum();
     Cost {
-        trim_ms: own_passes_ms + time(stats, "visibility") - without,
-        own_passes_ms,
+        trim_ms: trim_ms(stats, without[0]),
+        own_passes_ms: own_passes_ms(stats),
         heal_ms: time(stats, "heal"),
-        frame_ms: stats.passes.iter().map(|p| p.gpu_ms).sum(),
+        frame_ms: frame_ms(stats),
+        turning_trim_ms: trim_ms(turning, without[1]),
+        turning_frame_ms: frame_ms(turning),
         passes: stats.passes.iter().map(|p| (p.name.clone(), p.gpu_ms)).collect(),
         bytes: objects.iter().map(|(_, bytes)| bytes).sum(),
         objects,
@@ -266,8 +300,11 @@ mod tests {
     fn trim_time_is_own_passes_and_the_difference() {
         let pass = |name: &str, gpu_ms| PassTime { name: name.into(), gpu_ms };
         let passes = vec![pass("trim table", 2.0), pass("visibility", 7.0), pass("heal", 1.0), pass("resolve", 3.0)];
-        let cost = cost(&FrameStats { passes, ..FrameStats::default() }, 5.5, vec![("trim rows".into(), 12)]);
+        let turning = FrameStats { passes: passes[1..].to_vec(), ..FrameStats::default() };
+        let all = FrameStats { passes, ..FrameStats::default() };
+        let cost = cost(&all, &turning, [5.5, 5.0], vec![("trim rows".into(), 12)]);
         assert_eq!((cost.trim_ms, cost.own_passes_ms, cost.heal_ms, cost.frame_ms), (3.5, 2.0, 1.0, 13.0));
+        assert_eq!((cost.turning_trim_ms, cost.turning_frame_ms), (2.0, 11.0));
         assert_eq!(cost.bytes, 12);
     }
 

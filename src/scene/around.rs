@@ -1,0 +1,200 @@
+//! One trim table for all views from about as far.
+//!
+//! ```text
+//!               ╭────╮             the ball holds all that is trimmed. A unit at P, w deep, covers at most
+//!    eye ·──────│─P  │────▶ axis   focal |P| / w² pixels where it is seen, whatever way the surface faces there
+//!               ╰────╯
+//!
+//!    along a ray that leaves the ball's middle by φ and the axis by at most α + φ:
+//!
+//!          |P| >= ρ(φ)  and  w = |P| cos θ, θ <= α + φ      =>      |P| / w² <= 1 / (ρ(φ) cos² (α + φ))
+//! ```
+//!
+//! Scan lines for a density that is at least that of a view serve it, and which they are follows from the density alone.
+//! Rounded up to the next of a few steps it is the same for all views from about as far: a model that is turned needs no new
+//! table while it is seen as a whole, and a view's picture is the same whatever was drawn before.
+//!
+//! Such a table has rows for what lies beside the picture, too. Views of a part of the model get one of their own.
+
+use super::data::{SceneData, focal_and_slant};
+use crate::model::{Bounds, Camera, Projection};
+use crate::picture::TrimWay;
+use glam::{DVec3, Vec3};
+
+/// Densities are rounded up to the next power of the fourth root of two: a twelfth too many rows, on average.
+const STEPS: f64 = 4.0;
+/// How many times the longer side of the picture the ball may be wide; beyond that most of the table is beside the picture.
+const MOST_WIDE: f64 = 2.0;
+/// Parts of the angle under which the ball is seen that are told apart.
+const PARTS: u32 = 32;
+/// Of the boxes that the ball holds, and of the sums below.
+const ROUNDING: f64 = 1e-6;
+
+/// What is trimmed lies in it, in the model's coordinates.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub(crate) struct Ball {
+    centre: DVec3,
+    radius: f64,
+}
+
+impl SceneData {
+    /// The density of the trim table for all views from about as far as this one, pixels a model unit; `None`: this view
+    /// wants one of its own, or there is no table.
+    pub(crate) fn table_density(&self, camera: &Camera) -> Option<f32> {
+        self.trimmed?.table_density(camera)
+    }
+}
+
+impl Ball {
+    /// Around the boxes of all cells of the trim table, as they are placed; `None` where there is no table.
+    pub(super) fn trimmed_by_table(data: &SceneData) -> Option<Self> {
+        if data.trim_way() != Some(TrimWay::Table) {
+            return None;
+        }
+        let corners = data.cell_items.iter().enumerate().flat_map(|(item, &placed)| {
+            let placed = data.face_instances[placed as usize];
+            let first = data.faces[placed.face as usize].first_cell as usize;
+            let cell = data.cells[first + item - placed.first_cell as usize];
+            let [min, max] = [cell.box_min, cell.box_max].map(|p| Vec3::from_array(p).as_dvec3());
+            let placement = data.placements[placed.instance as usize];
+            Bounds { min, max }.corners().map(|corner| placement.transform_point3(corner))
+        });
+        Self::around(corners.fold(Bounds::EMPTY, Bounds::with))
+    }
+
+    /// Around a box; `None` around nothing, or where it has no end.
+    fn around(bounds: Bounds) -> Option<Self> {
+        let radius = 0.5 * bounds.diagonal() * (1.0 + ROUNDING);
+        (!bounds.is_empty() && radius.is_finite() && radius > 0.0).then(|| Self { centre: bounds.centre(), radius })
+    }
+
+    /// Most pixels that a model unit covers where a picture shows the ball; `None` from within it, and from so near that
+    /// it tells nothing.
+    fn density(&self, camera: &Camera) -> Option<f64> {
+        let (focal, slant) = focal_and_slant(camera);
+        if matches!(camera.projection, Projection::Orthographic { .. }) {
+            return Some(focal);
+        }
+        let to_centre = self.centre - camera.eye;
+        let distance = to_centre.length();
+        let share = self.radius / distance;
+        if share >= 1.0 - ROUNDING {
+            return None;
+        }
+        let (_, _, forward) = camera.axes();
+        let beside = forward.angle_between(to_centre);
+        let corner = (1.0 / slant).acos();
+        let part = |k: u32| share.asin() * f64::from(k) / f64::from(PARTS);
+        let densest = (0..PARTS).map(|k| {
+            let (from, to) = (part(k), part(k + 1));
+            let nearest =
+                distance * from.cos() - (self.radius.powi(2) - (distance * from.sin()).powi(2)).max(0.0).sqrt();
+            let depth = (beside + to).min(corner).cos();
+            1.0 / (nearest * depth * depth)
+        });
+        Some(focal * densest.fold(0.0, f64::max) * (1.0 + ROUNDING))
+    }
+
+    /// That of [`SceneData::table_density`].
+    fn table_density(&self, camera: &Camera) -> Option<f32> {
+        let steps = (self.density(camera)?.log2() * STEPS).ceil();
+        let density = (steps / STEPS).exp2();
+        let (width, height) = camera.size;
+        let is_whole = 2.0 * self.radius * density <= MOST_WIDE * f64::from(width.max(height));
+        is_whole.then(|| (density as f32).next_up())
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::trial::Random;
+
+    fn ball() -> Ball {
+        Ball { centre: DVec3::new(3.0, -1.0, 2.0), radius: 5.0 }
+    }
+
+    fn camera(eye: DVec3, target: DVec3, projection: Projection) -> Camera {
+        Camera { eye, target, up: DVec3::Z, projection, depth_range: (0.1, 1e3), size: (640, 360) }
+    }
+
+    fn direction(random: &mut Random) -> DVec3 {
+        loop {
+            let p = DVec3::from_array(std::array::from_fn(|_| random.range(-1.0, 1.0)));
+            if (1e-3..1.0).contains(&p.length()) {
+                return p.normalize();
+            }
+        }
+    }
+
+    /// Largest stretch of a step at a point, by differences of what is projected.
+    fn stretch(camera: &Camera, p: DVec3) -> Option<f64> {
+        const STEP: f64 = 1e-6;
+        let (at, _) = camera.project(p)?;
+        let (w, h) = camera.size;
+        let is_seen = at.x >= 0.0 && at.y >= 0.0 && at.x <= f64::from(w) && at.y <= f64::from(h);
+        let columns =
+            [DVec3::X, DVec3::Y, DVec3::Z].map(|axis| (camera.project(p + STEP * axis).unwrap().0 - at) / STEP);
+        // the larger singular value of a 2 x 3 matrix
+        let (a, b, c) =
+            columns.iter().fold((0.0, 0.0, 0.0), |(a, b, c), d| (a + d.x * d.x, b + d.x * d.y, c + d.y * d.y));
+        is_seen.then(|| (0.5 * (a + c) + (0.25 * (a - c).powi(2) + b * b).sqrt()).sqrt())
+    }
+
+    #[test]
+    fn no_point_of_the_ball_is_denser_and_some_is_nearly_as_dense() {
+        let mut random = Random::new(11);
+        for n in 0..60 {
+            let distance = random.range(5.2, 30.0);
+            let eye = ball().centre + direction(&mut random) * distance;
+            let target = ball().centre + direction(&mut random) * random.range(0.0, 4.0);
+            let projection = match n % 3 {
+                0 => Projection::Orthographic { height: 12.0 },
+                _ => Projection::Perspective { fov_y: random.range(0.3, 1.5) },
+            };
+            let camera = camera(eye, target, projection);
+            let bound = ball().density(&camera).unwrap();
+            let mut densest = 0.0f64;
+            let mut see = |p: DVec3| densest = densest.max(stretch(&camera, p).unwrap_or(0.0));
+            for _ in 0..4000 {
+                see(ball().centre + ball().radius * direction(&mut random) * random.range(0.7, 1.0));
+            }
+            see(ball().centre - (ball().centre - eye).normalize() * ball().radius);
+            assert!(densest <= bound * (1.0 + 1e-6), "{densest} of {bound}: {camera:?}");
+            // from nearer, few of the points are where it is densest
+            assert!(distance < 7.0 || densest >= 0.6 * bound, "{densest} of {bound}: {camera:?}");
+        }
+    }
+
+    #[test]
+    fn a_turn_has_one_density_and_other_views_have_their_own() {
+        let perspective = Projection::Perspective { fov_y: 0.8 };
+        let turned = |k: u32| {
+            let angle = f64::from(k) * 0.1 + 0.01;
+            let from = DVec3::new(angle.cos(), angle.sin(), 0.6).normalize();
+            ball().table_density(&camera(ball().centre + 14.0 * from, ball().centre, perspective))
+        };
+        let first = turned(0).unwrap();
+        assert!((1..60).all(|k| turned(k) == Some(first)));
+        let from = |distance: f64, projection| camera(ball().centre + distance * DVec3::X, ball().centre, projection);
+        let whole = from(14.0, perspective);
+        let asked = ball().density(&whole).unwrap();
+        assert!(f64::from(first) >= asked && f64::from(first) < 1.2 * asked, "{first} for {asked}");
+        assert!(ball().table_density(&from(28.0, perspective)).unwrap() < first);
+        let narrow = from(14.0, Projection::Perspective { fov_y: 0.1 });
+        for own in [from(5.5, perspective), from(4.9, perspective), narrow] {
+            assert_eq!(ball().table_density(&own), None, "{own:?}");
+        }
+        let near = from(4.0, Projection::Orthographic { height: 12.0 });
+        assert!(ball().table_density(&near).is_some(), "parallel rays do not spread");
+    }
+
+    #[test]
+    fn nothing_and_everything_have_no_ball() {
+        assert_eq!(Ball::around(Bounds::EMPTY), None);
+        assert_eq!(Ball::around(Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY }), None);
+        let flat = Bounds { min: DVec3::ZERO, max: DVec3::new(6.0, 8.0, 0.0) };
+        let ball = Ball::around(flat).unwrap();
+        assert!(ball.radius >= 5.0 && ball.radius < 5.001 && ball.centre == DVec3::new(3.0, 4.0, 0.0));
+    }
+}
