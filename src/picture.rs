@@ -15,8 +15,9 @@ pub struct FrameSettings {
     /// How finely patches are divided.
     pub levels: Levels,
     /// Every pass is recorded in every frame. Else a frame of the same view as the one before, with the same settings and
-    /// no edit between them, keeps what each pixel sees, and draws that into its targets: the same picture, bit for bit,
-    /// sooner. For measurements; asking for it or not makes no other view.
+    /// no edit between them, keeps what each pixel sees, and draws that into its targets, and one of a view from about as
+    /// far keeps the trim table: the same picture, bit for bit, sooner. For measurements; asking for it or not makes no
+    /// other view.
     pub all_passes: bool,
 }
 
@@ -56,7 +57,8 @@ impl Levels {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TrimWay {
-    /// The u-intercept table: made anew for each view, one binary search a pixel.
+    /// The u-intercept table: made for all views from about as far, or closer up for each; a binary search in each of three
+    /// rows a pixel.
     Table,
     /// The loops themselves, in bands and cells made once: a few monotone arcs a pixel.
     Exact,
