@@ -60,7 +60,7 @@ pub enum TrimWay {
     /// The u-intercept table: made for all views from about as far, or closer up for each; a binary search in each of three
     /// rows a pixel.
     Table,
-    /// The loops themselves, in bands and cells made once: a few monotone arcs a pixel.
+    /// The loops themselves, as arcs of conics in cells made once: a few of them a pixel.
     Exact,
     /// One to compare with; never chosen, never met by an embedder.
     #[cfg(feature = "rivals")]

@@ -52,14 +52,14 @@ pub static TRIM_TABLE: TrimTest = TrimTest {
     within: Some(Within { visibility: VISIBILITY_TABLE_VOLUME_FRAG, heal: HEAL_TABLE_VOLUME_COMP }),
     texels: 5,
 };
-/// Arcs in bands and cells.
+/// Cells with lists of arcs.
 pub static TRIM_EXACT: TrimTest = TrimTest {
     way: "exact",
     visibility: VISIBILITY_EXACT_FRAG,
     operand_patch: OPERAND_PATCH_EXACT_FRAG,
     heal: HEAL_EXACT_COMP,
     within: Some(Within { visibility: VISIBILITY_EXACT_VOLUME_FRAG, heal: HEAL_EXACT_VOLUME_COMP }),
-    texels: 6,
+    texels: 3,
 };
 
 /// No test at all.

@@ -1,6 +1,6 @@
 // What a trimmed face is at a pixel's centre and in the ring around it: what the trim test is asked, and what it tells.
-// border_points.glsl asks any test, point by point; border_lines.glsl one that knows the borders along v = const. Both
-// define
+// border_points.glsl asks any test, point by point; border_lines.glsl one that knows the borders along v = const;
+// border_arcs.glsl one that has the arcs near a point. All define
 //
 //   Border border_at(FacePoint p, float reach, bool from_behind, vec2 ahead, vec2 slope)
 //

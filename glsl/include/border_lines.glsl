@@ -8,8 +8,7 @@
 //        ╲         ╱
 //          └─────┘        and the one as far on the other side
 //
-// A straight border that has one of eight points on a circle beyond it is at most as far as the middles of their octagon's
-// sides. A regular hexagon whose sides are as far (APOTHEM) has a corner beyond it then, too, and all corners are on the lines.
+// The corners of ring.glsl's hexagon are on the lines, turned so that the lines are scan lines.
 //
 // Always three look-ups and no loop: where a wide machine asks for most pixels anyway, a loop costs it more.
 #ifndef BORDER_LINES_GLSL
@@ -20,9 +19,6 @@
 
 // Some strip has several bays: a line is told within one of them.
 layout(constant_id = 21) const bool TRIMS_HAVE_BAYS = false;
-
-const float APOTHEM = 0.92387953; // cos(pi / 8), of the ring's radius
-const float CORNER = 1.06680402;  // of the hexagon: APOTHEM / cos(pi / 6)
 
 uint told_along(FacePoint p, vec2 step_, float reach) {
     return table_along(p.fi.first_bay, p.face.strips, p.at + step_.x * p.dx + step_.y * p.dy, reach);

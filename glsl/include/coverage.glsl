@@ -1,5 +1,5 @@
 // How much of a pixel a trimmed face covers, from its exact arcs. Twin of src/twin/coverage.rs, where the formula is
-// derived. Needs exact.glsl, whose cells hold arcs along scan lines, too.
+// derived. Needs exact.glsl, whose lists hold arcs along scan lines, too.
 #ifndef COVERAGE_GLSL
 #define COVERAGE_GLSL
 
@@ -9,10 +9,8 @@ struct Cover {
     bool cut;     // a border runs through the pixel
 };
 
-const uint MOST_CELLS = 64u;     // that a pixel is asked in
-const uint CHORDS = 8u;          // of a bent arc, in one cell
-const uint ROOT_STEPS = 40u;     // every second one halves
-const float ROOT_PX = 1e-3;      // where an arc enters a cell, in the pixel's box
+const uint MOST_CELLS = 128u; // that a pixel is asked in
+const uint CHORDS = 8u;      // of a bent arc, in one cell
 
 // Area of the pixel that a ray from its centre sweeps, from (1, 0) to `d`.
 float swept(vec2 d) {
@@ -33,6 +31,12 @@ float swept_along(vec2 a, vec2 b) {
 bool left_of(ExactArc arc, vec2 uv) {
     if (arc.low.y < uv.y && uv.y <= arc.high.y) return arc_right(arc, uv);
     return (uv.y > arc.high.y) == (arc.high.x > arc.low.x);
+}
+
+// Weight of an arc's corner, where the ends have 1; 0 where it is straight.
+float arc_weight(ExactArc arc) {
+    precise float weight = 0.5 * sqrt(arc.fullness);
+    return weight;
 }
 
 // The part of a chord that is in the pixel. Source: Y.-D. Liang, B. A. Barsky, A new concept and method for line
@@ -59,59 +63,54 @@ bool clip_to_pixel(inout vec2 a, inout vec2 b) {
     return true;
 }
 
-// Parameter at which a coordinate of an arc, relative to its lower end, becomes `x`, where both are within `slack`;
-// 0 or 1 beyond its ends.
-float arc_reach(ExactArc arc, uint axis, float x, vec2 slack) {
-    precise vec2 chord = arc.high - arc.low;
-    vec2 way = vec2(chord.x < 0.0 ? -1.0 : 1.0, chord.y < 0.0 ? -1.0 : 1.0);
-    float to = way[axis] * x;
-    vec2 a = vec2(0.0);
-    vec2 b = way * chord;
-    if (!(to > a[axis])) return 0.0;
-    if (!(to < b[axis])) return 1.0;
-    precise float straight = to / b[axis];
-    if ((arc.shape & ARC_DEGREE) <= 1u) return straight;
-    float ta = 0.0;
-    float tb = 1.0;
-    for (uint step_ = 0u; step_ < ROOT_STEPS && any(greaterThan(b - a, slack)); ++step_) {
-        precise float share = (step_ & 1u) == 0u ? (to - a[axis]) / (b[axis] - a[axis]) : 0.5;
-        precise float t = ta + (tb - ta) * share;
-        if (!(t > ta && t < tb)) {
-            t = 0.5 * (ta + tb);
-            if (!(t > ta && t < tb)) break;
-        }
-        vec2 q = clamp(way * arc_point(arc, t), a, b);
-        if (q[axis] >= to) {
-            tb = t;
-            b = q;
-        } else {
-            ta = t;
-            a = q;
-        }
-    }
-    precise float last = ta + (tb - ta) * ((to - a[axis]) / (b[axis] - a[axis]));
-    return b[axis] > a[axis] ? last : tb;
+// Parameter at which a coordinate of an arc, relative to its lower end, becomes `x`; 0 or 1 beyond its ends.
+float arc_reach(ExactArc arc, uint axis, float x) {
+    float chord = exact_chord(arc)[axis];
+    float way = chord < 0.0 ? -1.0 : 1.0;
+    float to = way * x;
+    float corner = way * arc.corner[axis];
+    float end = way * chord;
+    if (!(to > 0.0)) return 0.0;
+    if (!(to < end)) return 1.0;
+    precise float straight = to / end;
+    if (arc.fullness == 0.0) return straight;
+    precise float b = arc_weight(arc) * (corner - to);
+    precise float left = end - to;
+    precise float root = sqrt(b * b + left * to);
+    // of t = r / (1 + r), whichever sum has no difference in it
+    precise float above = to / (to + (b + root));
+    precise float below = (root - b) / ((root - b) + left);
+    return b > 0.0 ? above : below;
 }
 
-// Parameters between which an arc is in a box, whose corners are relative to its lower end.
-vec2 arc_within(ExactArc arc, vec2 lo, vec2 hi, vec2 slack) {
+// Parameters between which an arc is in a box, whose corners are relative to its lower end. Along the box's upper and
+// right side it is not: cells that share a side must not both have it.
+vec2 arc_within(ExactArc arc, vec2 lo, vec2 hi) {
     vec2 range = vec2(0.0, 1.0);
     for (uint axis = 0u; axis < 2u; ++axis) {
         if (arc.high[axis] == arc.low[axis]) {
-            if (lo[axis] > 0.0 || hi[axis] < 0.0) return vec2(1.0, 0.0);
+            if (lo[axis] > 0.0 || hi[axis] <= 0.0) return vec2(1.0, 0.0);
             continue;
         }
         bool falls = arc.high[axis] < arc.low[axis];
-        range.x = max(range.x, arc_reach(arc, axis, falls ? hi[axis] : lo[axis], slack));
-        range.y = min(range.y, arc_reach(arc, axis, falls ? lo[axis] : hi[axis], slack));
+        range.x = max(range.x, arc_reach(arc, axis, falls ? hi[axis] : lo[axis]));
+        range.y = min(range.y, arc_reach(arc, axis, falls ? lo[axis] : hi[axis]));
     }
     return range;
 }
 
+// A point of an arc, relative to its lower end.
 vec2 arc_at(ExactArc arc, float t) {
-    precise vec2 straight = (arc.high - arc.low) * t;
-    if (t >= 1.0) return arc.high - arc.low;
-    return (arc.shape & ARC_DEGREE) <= 1u ? straight : arc_point(arc, t);
+    vec2 chord = exact_chord(arc);
+    if (t >= 1.0) return chord;
+    precise vec2 straight = chord * t;
+    if (arc.fullness == 0.0) return straight;
+    precise float s = 1.0 - t;
+    precise float corner = 2.0 * arc_weight(arc) * (s * t);
+    precise float end = t * t;
+    precise float sum = s * s + corner + end;
+    precise vec2 point = (corner * arc.corner + end * chord) / sum;
+    return point;
 }
 
 // What of the pixel around `uv` is inside. `along`: how far the pixel moves with u, and with v.
@@ -123,29 +122,37 @@ Cover exact_cover(uint face, vec2 uv, mat2 along) {
     precise vec2 reach = vec2(abs(along[1].y) + abs(along[1].x), abs(along[0].y) + abs(along[0].x)) * (0.5 / abs(det));
     vec2 lo = uv - reach;
     vec2 hi = uv + reach;
-    ExactFace f = exact_face_at(face);
-    uint end = f.first_band + f.band_count;
-    if (f.band_count < 2u || !(lo.x <= hi.x && lo.y <= hi.y)) return cover;
+    if (!(lo.x <= hi.x && lo.y <= hi.y)) return cover;
+    ExactGrid grid = exact_grid(face);
     float hidden = 0.0;
     uint asked = 0u;
-    for (uint band = exact_band(f, lo.y); band < end; ++band) {
-        float bottom = exact_band_at(band - 1u).top;
-        if (!(bottom <= hi.y)) break;
-        uint first = exact_band_at(band - 1u).end;
-        uint last = exact_band_at(band).end;
-        for (uint cell = exact_cell(first, last, lo.x); cell < last; ++cell) {
-            float left = cell > first ? exact_cell_at(cell - 1u).right : lo.x;
-            if (!(left <= hi.x)) break;
+    // one list for the whole pixel, where there is one: that of the centre's cell
+    vec2 middle = exact_index(grid, uv);
+    ExactCell cell_of_middle = exact_cell(grid, middle);
+    vec2 middle_part = exact_part(grid, uv, middle, exact_halvings(cell_of_middle));
+    ExactList list_of_middle = exact_list_of(grid, cell_of_middle, middle, middle_part);
+    bool one = holds_for(list_of_middle, lo) && holds_for(list_of_middle, hi);
+    vec2 first = one ? middle : exact_index(grid, lo);
+    vec2 last = one ? middle : exact_index(grid, hi);
+    for (vec2 index = first; index.y <= last.y; index = index.x < last.x ? vec2(index.x + 1.0, index.y) : vec2(first.x, index.y + 1.0)) {
+        ExactCell cell = exact_cell(grid, index);
+        vec2 from_part = one ? middle_part : exact_part(grid, lo, index, exact_halvings(cell));
+        vec2 to_part = one ? middle_part : exact_part(grid, hi, index, exact_halvings(cell));
+        for (vec2 part = from_part; part.y <= to_part.y; part = part.x < to_part.x ? vec2(part.x + 1.0, part.y) : vec2(from_part.x, part.y + 1.0)) {
             if (++asked > MOST_CELLS) return Cover(cover.share, vec2(0.0), false);
-            ExactCell c = exact_cell_at(cell);
-            vec2 from = max(lo, vec2(left, bottom));
-            vec2 to = min(hi, vec2(c.right, exact_band_at(band).top));
-            for (uint i = 0u; i < c.count; ++i) {
-                ExactArc arc = exact_arc_at(exact_entry_at(c.first + i));
-                vec2 range = arc_within(arc, from - arc.low, to - arc.low, ROOT_PX * reach);
+            ExactList list = exact_list_of(grid, cell, index, part);
+            vec2 from = one ? lo : max(lo, list.lo);
+            vec2 to = one ? hi : min(hi, list.hi);
+            bool more = true;
+            for (uint i = list.first; more; ++i) {
+                ExactArc arc = exact_arc_at(i);
+                more = (arc.shape & ARC_LAST) == 0u;
+                precise vec2 low = from - arc.low;
+                precise vec2 high = to - arc.low;
+                vec2 range = arc_within(arc, low, high);
                 if (!(range.x < range.y)) continue;
                 float way = (arc.shape & ARC_UP) != 0u ? 1.0 : -1.0;
-                uint chords = (arc.shape & ARC_DEGREE) <= 1u ? 1u : CHORDS;
+                uint chords = arc.fullness == 0.0 ? 1u : CHORDS;
                 bool in_row = arc.low.y < uv.y && uv.y <= arc.high.y;
                 precise vec2 base = arc.low - uv;
                 precise vec2 p = base + arc_at(arc, range.x);

@@ -1,203 +1,181 @@
-// The exact trim test: band, cell, and the few arcs that the cell holds. Twin of
-// src/twin/exact.rs; what the structures mean stands in src/trim/exact.
+// The exact trim test: a cell, and the few arcs of its list. Twin of src/twin/exact.rs; what the structures mean stands
+// in src/trim/exact.
 //
-//   face ──▶ bands: binary search in v ──▶ cells: binary search in u ──▶ winding + entries ──▶ arcs ──▶ points
+//   face ──▶ cell of the first level ──▶ part of it, where it is split ──▶ winding + list ──▶ arcs
 //
-// Whoever includes this defines EXACT_BINDING, where its six buffers begin.
+// Whoever includes this defines EXACT_BINDING, where its three buffers begin.
 #ifndef EXACT_GLSL
 #define EXACT_GLSL
 
 struct ExactFace {
-    uint first_band;
-    uint band_count;
-};
-
-struct ExactBand {
-    float top;
-    uint end; // one past its last cell
+    uint first_cell;
+    uint first;  // column, and row << 16; signed
+    uint counts; // columns, and rows << 16
+    uint bits;   // columns to the domain, as a power of two, and rows << 16
 };
 
 struct ExactCell {
-    float right;
-    int winding; // by what lies right of it
-    uint first;
-    uint count;
+    uint first;  // arc of its list, or CELL_SPLIT and its first part
+    int winding; // by what is not in the list; or halvings
 };
 
 struct ExactArc {
     vec2 low;
     vec2 high;
-    vec2 hull;  // least and largest chord x (control point - low)
-    uint first; // float in exact_points, three a control point
-    uint shape; // degree, 1 for a straight arc; ARC_UP: the loop runs from low to high
+    vec2 corner;    // where the tangents at the ends meet - low; zero where it is straight
+    float fullness; // corner² = fullness · low · high, in barycentric coordinates; 0 where it is straight
+    uint shape;     // AT_LOW, AT_HIGH, ARC_UP, ARC_LAST
 };
 
-#include "words.glsl"
-
 // texels, which a driver fetches at once where it gathers words of storage buffers one by one
-layout(binding = EXACT_BINDING + 0) uniform usamplerBuffer exact_faces;   // one a face
-layout(binding = EXACT_BINDING + 1) uniform usamplerBuffer exact_bands;   // one a band
-layout(binding = EXACT_BINDING + 2) uniform usamplerBuffer exact_cells;   // one a cell
-layout(binding = EXACT_BINDING + 3) uniform usamplerBuffer exact_entries; // one an entry
-layout(binding = EXACT_BINDING + 4) uniform usamplerBuffer exact_arcs;    // two an arc
-layout(binding = EXACT_BINDING + 5) uniform samplerBuffer exact_points;   // three a control point
+layout(binding = EXACT_BINDING + 0) uniform usamplerBuffer exact_faces; // one a face
+layout(binding = EXACT_BINDING + 1) uniform usamplerBuffer exact_cells; // two cells in one
+layout(binding = EXACT_BINDING + 2) uniform usamplerBuffer exact_arcs;  // two an arc
 
-ExactFace exact_face_at(uint i) {
-    uvec2 face = texelFetch(exact_faces, int(i)).xy;
-    return ExactFace(face.x, face.y);
-}
+const uint CELL_SPLIT = 0x80000000u;
+const uint AT_LOW = 1u; // a chain leaves the list from this end of the arc
+const uint AT_HIGH = 2u;
+const uint ARC_UP = 4u;   // the loop runs from low to high
+const uint ARC_LAST = 8u; // of its list
+const float MARGIN = 0.25; // around a cell, of its sides: for points there its list holds, too
+const float FAR = 1e30;   // beyond it a coordinate is none
 
-ExactBand exact_band_at(uint i) {
-    uvec2 band = texelFetch(exact_bands, int(i)).xy;
-    return ExactBand(uintBitsToFloat(band.x), band.y);
+// A list of arcs, and the points that it is for.
+struct ExactList {
+    uint first;  // arc
+    int winding; // by what is not in it
+    vec2 lo;     // the cell's own rectangle; infinite, as far as can be, beyond the outermost cells
+    vec2 hi;
+    vec2 margin; // around it: of the points that the list is for
+};
+
+// A face's cells.
+struct ExactGrid {
+    uint first_cell;
+    vec2 first;
+    vec2 counts;
+    uvec2 bits;
+};
+
+float power_of_two(int bits) { return uintBitsToFloat(uint(127 + bits) << 23u); }
+
+vec2 exact_scale(ExactGrid grid) { return vec2(power_of_two(int(grid.bits.x)), power_of_two(int(grid.bits.y))); }
+
+ExactGrid exact_grid(uint face) {
+    uvec4 words = texelFetch(exact_faces, int(face));
+    vec2 first = vec2(bitfieldExtract(int(words.y), 0, 16), bitfieldExtract(int(words.y), 16, 16));
+    vec2 counts = vec2(words.z & 0xffffu, words.z >> 16u);
+    return ExactGrid(words.x, first, counts, uvec2(words.w & 0xffffu, words.w >> 16u));
 }
 
 ExactCell exact_cell_at(uint i) {
-    uvec4 cell = texelFetch(exact_cells, int(i));
-    return ExactCell(uintBitsToFloat(cell.x), int(cell.y), cell.z, cell.w);
+    uvec4 two = texelFetch(exact_cells, int(i >> 1u));
+    uvec2 cell = (i & 1u) == 0u ? two.xy : two.zw;
+    return ExactCell(cell.x, int(cell.y));
 }
 
-// Of an entry.
-ExactArc exact_arc_at(uint entry) {
-    int at = int(entry >> 2u) * 2;
-    uvec4 ends = texelFetch(exact_arcs, at);
-    uvec4 rest = texelFetch(exact_arcs, at + 1);
-    vec4 low_high = uintBitsToFloat(ends);
-    return ExactArc(low_high.xy, low_high.zw, uintBitsToFloat(rest.xy), rest.z, rest.w);
+ExactArc exact_arc_at(uint i) {
+    vec4 ends = uintBitsToFloat(texelFetch(exact_arcs, int(2u * i)));
+    uvec4 rest = texelFetch(exact_arcs, int(2u * i + 1u));
+    return ExactArc(ends.xy, ends.zw, uintBitsToFloat(rest.xy), uintBitsToFloat(rest.z), rest.w);
 }
 
-uint exact_entry_at(uint i) { return word_at(exact_entries, i); }
-
-vec3 exact_point_at(uint i) {
-    return numbers_at(exact_points, i);
+vec2 exact_index(ExactGrid grid, vec2 uv) {
+    precise vec2 at = uv * exact_scale(grid) - grid.first;
+    return min(max(floor(at), 0.0), grid.counts - 1.0);
 }
 
-const uint AT_LOW = 1u;  // flags of an entry: a chain leaves the cell from this end of the arc
-const uint AT_HIGH = 2u;
-const uint AREA_OUT = 0u; // what an area holds
-const uint AREA_IN = 1u;
-const uint AREA_MIXED = 2u; // or what is not easily told
-const uint ARC_DEGREE = 31u;
-const uint ARC_UP = 32u;
-const uint MAX_STEPS = 40u;  // every second one halves: 2^-20 of the arc, in parameter, at the least
-
-// Point of a bent arc, relative to its lower end: Horner's scheme in the Bernstein basis.
-vec2 arc_point(ExactArc arc, float t) {
-    uint degree = arc.shape & ARC_DEGREE;
-    precise float s = 1.0 - t;
-    precise float f = 1.0;
-    precise float c = 1.0;
-    uint at = arc.first;
-    precise vec3 sum = exact_point_at(at) * s;
-    for (uint k = 1u; k < degree; ++k) {
-        at += 3u;
-        f = f * t;
-        c = c * (float(degree - k + 1u) / float(k));
-        sum = (sum + exact_point_at(at) * (f * c)) * s;
-    }
-    at += 3u;
-    sum = sum + exact_point_at(at) * (f * t);
-    precise vec2 point = sum.xy / sum.z;
-    return point;
+vec2 exact_part(ExactGrid grid, vec2 uv, vec2 index, uint halvings) {
+    float parts = power_of_two(int(halvings));
+    precise vec2 at = (uv * exact_scale(grid) - grid.first - index) * parts;
+    return min(max(floor(at), 0.0), parts - 1.0);
 }
 
-// Sign of the crossing's place: the arc passes uv.y, low.y < uv.y <= high.y, at some u > uv.x.
-bool arc_right(ExactArc arc, vec2 uv) {
-    if (uv.x < min(arc.low.x, arc.high.x)) return true;
-    if (uv.x >= max(arc.low.x, arc.high.x)) return false;
-    if (uv.y == arc.high.y) return arc.high.x > uv.x; // at a flat end the parameter tells nothing
-    precise vec2 p = uv - arc.low;
+ExactCell exact_cell(ExactGrid grid, vec2 index) {
+    return exact_cell_at(grid.first_cell + uint(index.y * grid.counts.x + index.x));
+}
+
+uint exact_halvings(ExactCell cell) { return (cell.first & CELL_SPLIT) != 0u ? uint(cell.winding) : 0u; }
+
+// That of a part of a cell.
+ExactList exact_list_of(ExactGrid grid, ExactCell cell, vec2 index, vec2 part) {
+    uint halvings = exact_halvings(cell);
+    float parts = power_of_two(int(halvings));
+    // asked for whole cells, too: a branch would be run beside it
+    ExactCell own = exact_cell_at((cell.first & ~CELL_SPLIT) + uint(part.y * parts + part.x));
+    if ((cell.first & CELL_SPLIT) == 0u) own = cell;
+    ivec2 bits = -ivec2(grid.bits + halvings);
+    vec2 side = vec2(power_of_two(bits.x), power_of_two(bits.y));
+    precise vec2 at = index * parts + part;
+    bvec2 is_first = lessThanEqual(at, vec2(0.0));
+    bvec2 is_last = greaterThanEqual(at, grid.counts * parts - 1.0);
+    precise vec2 lo = (grid.first * parts + at) * side;
+    precise vec2 hi = lo + side;
+    vec2 none = vec2(FAR);
+    return ExactList(own.first, own.winding, mix(lo, -none, is_first), mix(hi, none, is_last), MARGIN * side);
+}
+
+// That of the cell that a point is in.
+ExactList exact_list(uint face, vec2 uv) {
+    ExactGrid grid = exact_grid(face);
+    vec2 index = exact_index(grid, uv);
+    ExactCell cell = exact_cell(grid, index);
+    return exact_list_of(grid, cell, index, exact_part(grid, uv, index, exact_halvings(cell)));
+}
+
+vec2 exact_chord(ExactArc arc) {
     precise vec2 chord = arc.high - arc.low;
-    precise float side = chord.x * p.y - p.x * chord.y;
-    if (side > arc.hull.y) return true;
-    uint degree = arc.shape & ARC_DEGREE;
-    if (side < arc.hull.x || degree <= 1u) return false;
-    float ta = 0.0;
-    float tb = 1.0;
-    vec2 a = vec2(0.0);
-    vec2 b = chord;
-    for (uint step_ = 0u; step_ < MAX_STEPS; ++step_) {
-        precise float share = (step_ & 1u) == 0u ? (p.y - a.y) / (b.y - a.y) : 0.5;
-        precise float t = ta + (tb - ta) * share;
-        if (!(t > ta && t < tb)) {
-            t = 0.5 * (ta + tb);
-            if (!(t > ta && t < tb)) break;
-        }
-        precise vec2 q = clamp(arc_point(arc, t), min(a, b), max(a, b));
-        if (q.y >= p.y) {
-            tb = t;
-            b = q;
-        } else {
-            ta = t;
-            a = q;
-        }
-        if (p.x < min(a.x, b.x)) return true;
-        if (p.x >= max(a.x, b.x)) return false;
-    }
-    precise float last = (b.x - a.x) * (p.y - a.y) - (p.x - a.x) * (b.y - a.y);
-    return last > 0.0;
+    return chord;
 }
 
-// First band whose top is not below v, of those behind the face's first; one past the last where there is none.
-uint exact_band(ExactFace f, float v) {
-    uint lo = f.first_band + 1u;
-    uint hi = f.first_band + f.band_count;
-    while (lo < hi) {
-        uint mid = (lo + hi) / 2u;
-        if (exact_band_at(mid).top < v) lo = mid + 1u;
-        else hi = mid;
-    }
-    return lo;
+// The arc passes uv.y, low.y < uv.y <= high.y, at some u > uv.x.
+bool arc_right(ExactArc arc, vec2 uv) {
+    vec2 chord = exact_chord(arc);
+    precise float area = chord.x * arc.corner.y - arc.corner.x * chord.y;
+    float turned = area < 0.0 ? -1.0 : 1.0;
+    vec2 to_high = turned * chord;
+    vec2 to_corner = turned * arc.corner;
+    precise vec2 p = uv - arc.low;
+    precise float middle = to_high.x * p.y - p.x * to_high.y;
+    precise float high = p.x * to_corner.y - to_corner.x * p.y;
+    precise float low = turned * area - middle - high;
+    precise float square = middle * middle;
+    precise float product = max(low, 0.0) * (arc.fullness * max(high, 0.0));
+    bool beyond = middle > 0.0 && square > product;
+    bool right = beyond == (turned > 0.0);
+    return uv.y == arc.high.y ? arc.high.x > uv.x : right; // at the end as its neighbour has it
 }
 
-// First of some cells whose right border is not left of u, or `end`.
-uint exact_cell(uint first, uint end, float u) {
-    while (first < end) {
-        uint mid = (first + end) / 2u;
-        if (exact_cell_at(mid).right < u) first = mid + 1u;
-        else end = mid;
-    }
-    return first;
+// What an arc adds to the winding number of a point.
+int arc_winding(ExactArc arc, vec2 uv) {
+    int direction = (arc.shape & ARC_UP) != 0u ? 1 : -1;
+    int low = (arc.shape & AT_LOW) != 0u ? direction : 0;
+    int high = (arc.shape & AT_HIGH) != 0u ? direction : 0;
+    int within = arc_right(arc, uv) ? direction : 0;
+    return uv.y > arc.low.y ? (uv.y > arc.high.y ? high : within) - low : 0;
 }
 
-// Winding number of the face's loops around uv.
+bool is_number(vec2 uv) { return all(lessThan(abs(uv), vec2(FAR))); }
+
+bool holds_for(ExactList list, vec2 uv) {
+    return all(greaterThanEqual(uv, list.lo - list.margin)) && all(lessThanEqual(uv, list.hi + list.margin));
+}
+
+// Winding number of a point in a list's box; 0 for what is no number.
+int exact_winding_in(ExactList list, vec2 uv) {
+    int winding = list.winding;
+    bool more = true;
+    for (uint i = list.first; more; ++i) {
+        ExactArc arc = exact_arc_at(i);
+        winding += arc_winding(arc, uv);
+        more = (arc.shape & ARC_LAST) == 0u;
+    }
+    return is_number(uv) ? winding : 0;
+}
+
+// Winding number of the face's loops around uv; 0 for what is no number.
 int exact_winding(uint face, vec2 uv) {
-    ExactFace f = exact_face_at(face);
-    if (f.band_count < 2u || !(uv.y > exact_band_at(f.first_band).top)) return 0;
-    uint band = exact_band(f, uv.y);
-    if (band >= f.first_band + f.band_count) return 0;
-    uint last = exact_band_at(band).end;
-    uint cell = exact_cell(exact_band_at(band - 1u).end, last, uv.x);
-    if (cell >= last) return 0;
-    ExactCell c = exact_cell_at(cell);
-    int winding = c.winding;
-    for (uint i = 0u; i < c.count; ++i) {
-        uint entry = exact_entry_at(c.first + i);
-        ExactArc arc = exact_arc_at(entry);
-        int direction = (arc.shape & ARC_UP) != 0u ? 1 : -1;
-        if ((entry & AT_LOW) != 0u && arc.low.y < uv.y) winding -= direction;
-        if ((entry & AT_HIGH) != 0u && arc.high.y < uv.y) winding += direction;
-        if (arc.low.y < uv.y && uv.y <= arc.high.y && arc_right(arc, uv)) winding += direction;
-    }
-    return winding;
-}
-
-// Whether all of a box is inside the face, all of it outside, or neither is told by the one cell that holds it. Cells
-// with arcs are not asked: a wide machine would do it beside the point by point test, not in its place.
-uint exact_area(uint face, vec2 lo, vec2 hi) {
-    ExactFace f = exact_face_at(face);
-    if (f.band_count < 2u || !(hi.y > exact_band_at(f.first_band).top)) return AREA_OUT;
-    uint band = exact_band(f, hi.y);
-    if (!(exact_band_at(band - 1u).top < lo.y)) return AREA_MIXED;
-    if (band >= f.first_band + f.band_count) return AREA_OUT;
-    uint first = exact_band_at(band - 1u).end;
-    uint last = exact_band_at(band).end;
-    uint cell = exact_cell(first, last, hi.x);
-    if (cell > first && !(exact_cell_at(cell - 1u).right < lo.x)) return AREA_MIXED;
-    if (cell >= last) return AREA_OUT;
-    ExactCell c = exact_cell_at(cell);
-    if (c.count > 0u) return AREA_MIXED;
-    return c.winding != 0 ? AREA_IN : AREA_OUT;
+    return is_number(uv) ? exact_winding_in(exact_list(face, uv), uv) : 0;
 }
 
 #endif

@@ -6,6 +6,16 @@ const uint RING_POINTS = 8u;
 const float DIAGONAL = 0.70710678;
 const vec2 RING[RING_POINTS] = vec2[](vec2(1, 0), vec2(0, 1), vec2(-1, 0), vec2(0, -1), vec2(DIAGONAL, DIAGONAL),
                                       vec2(-DIAGONAL, DIAGONAL), vec2(-DIAGONAL, -DIAGONAL), vec2(DIAGONAL, -DIAGONAL));
+
+// A straight border that has one of those beyond it is at most as far as the middles of their octagon's sides (APOTHEM). A
+// regular hexagon whose sides are as far has a corner beyond it, too.
+const float APOTHEM = 0.92387953; // cos(pi / 8), of the ring's radius
+const float CORNER = 1.06680402;  // APOTHEM / cos(pi / 6)
+const uint HEXAGON_CORNERS = 6u;
+const vec2 HEXAGON[HEXAGON_CORNERS] = vec2[](vec2(CORNER, 0), vec2(-CORNER, 0), vec2(0.5 * CORNER, APOTHEM),
+                                             vec2(-0.5 * CORNER, APOTHEM), vec2(0.5 * CORNER, -APOTHEM),
+                                             vec2(-0.5 * CORNER, -APOTHEM));
+
 // A point of the ring may project a little farther away than its radius: the step was linear.
 const float RING_SLACK = 1.25;
 

@@ -31,7 +31,7 @@ uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
 #endif
 
 #ifdef TRIM_BY_EXACT
-#define TRIM_BUFFERS 6
+#define TRIM_BUFFERS 3
 #define EXACT_BINDING TRIM_BINDING
 #include "exact.glsl"
 
@@ -39,10 +39,9 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
     return exact_winding(fi.face, uv) != 0;
 }
 
-uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
-    return exact_area(fi.face, lo, hi);
-}
-#elif !defined(TRIM_BY_TABLE) && !defined(TRIM_BY_BISECT)
+#endif
+
+#if !defined(TRIM_BY_TABLE) && !defined(TRIM_BY_BISECT)
 uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
     return TRIM_MIXED;
 }

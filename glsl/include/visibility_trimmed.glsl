@@ -36,6 +36,8 @@ layout(scalar, binding = 10) buffer Rings { uint rings[]; }; // depth's bits for
 #include "facing.glsl"
 #ifdef TRIM_BY_TABLE
 #include "border_lines.glsl"
+#elif defined(TRIM_BY_EXACT)
+#include "border_arcs.glsl"
 #else
 #include "border_points.glsl"
 #endif

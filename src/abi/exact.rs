@@ -3,41 +3,43 @@
 use bytemuck::{Pod, Zeroable};
 
 /// [`ExactArc::shape`]: the loop runs from the lower end to the higher one.
-pub const ARC_UP: u32 = 32;
+pub const ARC_UP: u32 = 4;
+/// [`ExactArc::shape`]: the list ends here.
+pub const ARC_LAST: u32 = 8;
+/// [`ExactCell::first`]: the cell is split, and its second word is the number of halvings.
+pub const CELL_SPLIT: u32 = 1 << 31;
 
-/// Where a face's bands are.
+/// Where a face's cells are.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct ExactFace {
-    pub first_band: u32,
-    pub band_count: u32,
+    pub first_cell: u32,
+    /// Place of the first column; that of the first row in the upper half. Signed.
+    pub first: u32,
+    /// Columns; rows in the upper half.
+    pub counts: u32,
+    /// Columns to the domain, as a power of two; rows in the upper half.
+    pub bits: u32,
 }
 
-/// Arcs between two scan lines.
-#[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
-pub struct ExactBand {
-    pub top: f32,
-    pub end: u32,
-}
-
-/// Part of a band.
+/// A rectangle of the domain.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct ExactCell {
-    pub right: f32,
-    pub winding: i32,
+    /// First arc of its list, or [`CELL_SPLIT`] and its first part.
     pub first: u32,
-    pub count: u32,
+    /// Winding number by what is not in the list; or halvings.
+    pub winding: i32,
 }
 
-/// A monotone piece of a trim curve.
+/// A monotone piece of a trim curve, in a list.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct ExactArc {
     pub low: [f32; 2],
     pub high: [f32; 2],
-    pub hull: [f32; 2],
-    pub first: u32,
+    pub corner: [f32; 2],
+    pub fullness: f32,
+    /// [`AT_LOW`](crate::trim::AT_LOW), [`AT_HIGH`](crate::trim::AT_HIGH), [`ARC_UP`], [`ARC_LAST`].
     pub shape: u32,
 }

@@ -6,7 +6,7 @@ use crate::model::TrimLoop;
 use crate::scene::ExactData;
 use crate::spline::{Bezier, Control};
 use crate::trim::{ExactTrim, LoopIndex};
-use crate::twin::exact::{Area, Exact};
+use crate::twin::exact::Exact;
 use glam::{DVec2, DVec3};
 
 /// Largest distance in the unit domain at which an answer may differ from that in `f64`, for loops within it:
@@ -15,14 +15,7 @@ use glam::{DVec2, DVec3};
 const TOLERANCE: f64 = 4.0 / 16_777_216.0;
 
 pub(super) fn twin(data: &ExactData) -> Exact<'_> {
-    Exact {
-        faces: &data.faces,
-        bands: &data.bands,
-        cells: &data.cells,
-        entries: &data.entries,
-        arcs: &data.arcs,
-        points: &data.points,
-    }
+    Exact { faces: &data.faces, cells: &data.cells, arcs: &data.arcs }
 }
 
 fn data(faces: &[Vec<TrimLoop>]) -> ExactData {
@@ -99,43 +92,44 @@ fn the_twin_decides_as_the_exact_loops_do() {
     assert!(asked == 24_000 && worst > 0.0, "points next to a curve must show the rounding of single precision");
 }
 
-/// Whatever box is told to be all inside or all outside, points in it are, by the exact loops: but for those
-/// that the test itself may tell otherwise. And a third of the boxes at least are told, else little is asked here: half of
-/// them are beside a loop, up to four of their sizes off.
+/// A list holds for every point of its box: it tells what the list of the point's own cell does, and what the exact loops
+/// do; but next to a curve, where each may round as the test itself does. A third of the points are told by lists of another
+/// cell, and a tenth by lists that have arcs, else little is asked here.
 #[test]
-fn areas_hold_what_they_say() {
+fn lists_hold_within_their_boxes() {
     let mut random = Random::new(11);
-    let (mut told, mut asked) = (0, 0);
+    let (mut others, mut beside, mut asked) = (0, 0, 0);
     for _ in 0..300 {
         let loops: Vec<TrimLoop> = (0..random.integer(1, 3)).map(|_| random_loop(&mut random)).collect();
         let (index, data) = (LoopIndex::new(&loops), data(std::slice::from_ref(&loops)));
-        let curves: Vec<_> = loops.iter().flat_map(TrimLoop::curves).collect();
-        for _ in 0..60 {
-            let size = 10f64.powf(random.range(-5.0, -1.0));
-            let mut within =
-                |p: DVec2, reach: f64| p + reach * DVec2::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0));
-            let near = within(DVec2::splat(0.5), 0.55);
-            let curve = &curves[(near.x.abs() * 1e4) as usize % curves.len()];
-            let centre = if near.y > 0.5 { near } else { within(curve.point(near.x.clamp(0.0, 1.0)), 4.0 * size) };
-            let (lo, hi) = ((centre - size).as_vec2().to_array(), (centre + size).as_vec2().to_array());
-            let area = twin(&data).area(0, lo, hi);
+        let twin = twin(&data);
+        for _ in 0..100 {
+            let centre = [random.range(-0.1, 1.1) as f32, random.range(-0.1, 1.1) as f32];
+            let list = twin.list(0, centre);
+            let [lo, hi, margin] = [list.lo, list.hi, list.margin].map(|p| DVec2::from(p.map(f64::from)));
+            let [lo, hi] = [lo - margin, hi + margin].map(|p| p.clamp(DVec2::splat(-0.2), DVec2::splat(1.2)));
+            // two of three in the margin
+            let share = DVec2::new(random.range(0.0, 1.0), random.range(0.0, 1.0));
+            let share = if random.integer(0, 2) == 0 {
+                share
+            } else {
+                share.map(|x| if x < 0.5 { 0.3 * x } else { 1.0 - 0.3 * (1.0 - x) })
+            };
+            let p = (lo + share * (hi - lo)).as_vec2().to_array();
+            let found = twin.winding_in(&list, p);
+            let p64 = DVec2::from(p.map(f64::from));
+            let off = index.distance(p64, 1.0);
+            let all = [found, twin.winding(0, p), index.winding(p64)];
+            assert!(off <= TOLERANCE || all == [found; 3], "{p:?} by {list:?}: {all:?}, {off:e} off {loops:?}");
             asked += 1;
-            told += usize::from(area != Area::Mixed);
-            for _ in 0..if area == Area::Mixed { 0 } else { 20 } {
-                let p = within(centre, size).as_vec2().to_array();
-                let p: [f32; 2] = std::array::from_fn(|i| p[i].clamp(lo[i], hi[i]));
-                let exact = index.winding(DVec2::from(p.map(f64::from))) != 0;
-                let off = index.distance(DVec2::from(p.map(f64::from)), 1.0);
-                assert!((area == Area::In) == exact || off <= TOLERANCE, "{p:?}: {area:?}, {off:e} off {loops:?}");
-                assert_eq!(
-                    twin(&data).winding(0, p) != 0,
-                    area == Area::In,
-                    "{p:?} in {lo:?} {hi:?}, {off:e} off {loops:?}"
-                );
-            }
+            others += usize::from(twin.list(0, p) != list);
+            beside += usize::from(data.arcs[list.first as usize].low != data.arcs[list.first as usize].high);
         }
     }
-    assert!(3 * told > asked, "{told} of {asked} are told");
+    assert!(
+        3 * others > asked && 10 * beside > asked,
+        "{others} by another cell's list, {beside} beside arcs, of {asked}"
+    );
 }
 
 /// `cargo nextest run --run-ignored only a_hundred_thousand_loops`: tells the figures.
@@ -198,6 +192,7 @@ mod parity {
     use super::*;
     use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource};
     use crate::shaders::TRIM_EXACT;
+    use crate::twin::exact::FAR;
 
     fn spirv() -> Vec<u32> {
         let bytes = include_bytes!("../../tests/gpu/spirv/exact.comp.spv");
@@ -229,8 +224,8 @@ mod parity {
     /// As in `exact.comp`.
     fn answer(twin: Exact<'_>, face: usize, points: &[[f32; 2]], i: usize) -> [i32; 2] {
         let (p, q) = (points[i], points[(i + 1).min(points.len() - 1)]);
-        let (lo, hi) = ([p[0].min(q[0]), p[1].min(q[1])], [p[0].max(q[0]), p[1].max(q[1])]);
-        [twin.winding(face, p), twin.area(face, lo, hi) as i32]
+        let list = twin.list(face, if p.iter().all(|x| x.abs() < FAR) { p } else { [0.0; 2] });
+        [twin.winding(face, p), if list.holds_for(q) { twin.winding_in(&list, q) } else { 99 }]
     }
 
     /// Rows of the hard cases, points beside the curves, and points that are none.
@@ -272,7 +267,7 @@ mod parity {
         let (faces, points) = faces();
         let data = data(&faces);
         let mut other = data.clone();
-        let arc = other.arcs.iter().position(|arc| arc.shape & 31 == 2).unwrap();
+        let arc = other.arcs.iter().position(|arc| arc.fullness > 0.0).unwrap();
         other.arcs[arc].shape ^= crate::abi::ARC_UP;
         assert!(compare(&gpu, &other, &data, &points).is_err());
         gpu.finish();

@@ -74,14 +74,11 @@ impl Gpu {
     }
 
     /// What the exact trim test reads, in its order.
-    pub(super) fn upload_exact(&self, data: &ExactData) -> [Texels; 6] {
+    pub(super) fn upload_exact(&self, data: &ExactData) -> [Texels; 3] {
         [
-            self.upload_texels("faces", &data.faces, Texel::U32x2),
-            self.upload_texels("bands", &data.bands, Texel::U32x2),
-            self.upload_texels("cells", &data.cells, Texel::U32x4),
-            self.upload_texels("entries", &data.entries, Texel::Words),
+            self.upload_texels("faces", &data.faces, Texel::U32x4),
+            self.upload_texels("cells", &data.cells, Texel::Words),
             self.upload_texels("arcs", &data.arcs, Texel::U32x4),
-            self.upload_texels("points", &data.points, Texel::Numbers),
         ]
     }
 

@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   edit_loop(at, new loop) ──▶ its curves and control points    trimmed by table
-//!                           ──▶ what differs in its face's arcs, bands and cells          trimmed exactly
+//!                           ──▶ what differs of its face's arcs  trimmed exactly
 //!                           ──▶ words of patches and cells       those that its old or new box meets, and
 //!                                                                whose side has changed
 //!                    └──────▶ Writes ──record──▶ copies at the beginning of the next frame
@@ -10,7 +10,7 @@
 //!
 //! A scene made for it keeps what an edit may need: curves along scan lines, control points of patches
 //! that are trimmed away, and cells of patches that no loop meets, which the sign of their speed tells
-//! pass `density` to skip; and for each face's arcs, bands and cells more room than they take, since their number
+//! pass `density` to skip; and for each face's cells and lists of arcs more room than they take, since their number
 //! changes with a loop's shape. So every edit overwrites in place, and what is drawn is what a fresh scene of
 //! the edited model would draw. What an edit costs depends on its face alone; winding numbers add up, so
 //! each loop has an index of its own, and only the edited one's is made anew.

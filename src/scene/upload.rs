@@ -116,20 +116,17 @@ pub(crate) enum RivalScene {
     Texture(TableScene, Buffer),
 }
 
-/// Arcs in bands and cells; see `glsl/include/exact.glsl`.
+/// Cells and their arcs; see `glsl/include/exact.glsl`.
 pub(crate) struct ExactScene {
     pub faces: Texels,
-    pub bands: Texels,
     pub cells: Texels,
-    pub entries: Texels,
     pub arcs: Texels,
-    pub points: Texels,
 }
 
 impl ExactScene {
     /// As the trim test reads them.
-    pub(crate) fn all(&self) -> [&Texels; 6] {
-        [&self.faces, &self.bands, &self.cells, &self.entries, &self.arcs, &self.points]
+    pub(crate) fn all(&self) -> [&Texels; 3] {
+        [&self.faces, &self.cells, &self.arcs]
     }
 }
 
@@ -205,12 +202,9 @@ impl Scene {
                     Some(Trims::Rival(Box::new(rival_scene(&mut uploads, cmd, data, rival)?)))
                 }
                 Some(TrimWay::Exact) => Some(Trims::Exact(Box::new(ExactScene {
-                    faces: texels(&mut uploads, cmd, "trim faces", &data.exact.faces, Texel::U32x2)?,
-                    bands: texels(&mut uploads, cmd, "trim bands", &data.exact.bands, Texel::U32x2)?,
-                    cells: texels(&mut uploads, cmd, "trim band cells", &data.exact.cells, Texel::U32x4)?,
-                    entries: texels(&mut uploads, cmd, "trim entries", &data.exact.entries, Texel::Words)?,
+                    faces: texels(&mut uploads, cmd, "trim faces", &data.exact.faces, Texel::U32x4)?,
+                    cells: texels(&mut uploads, cmd, "trim cells", &data.exact.cells, Texel::Words)?,
                     arcs: texels(&mut uploads, cmd, "trim arcs", &data.exact.arcs, Texel::U32x4)?,
-                    points: texels(&mut uploads, cmd, "trim arc points", &data.exact.points, Texel::Numbers)?,
                 }))),
             },
             solids: (!data.solids.leaves.is_empty())

@@ -21,7 +21,7 @@
 //! |---|---|---|
 //! | [`LoopIndex`] | winding number, rectangle class, distance: exact curves | `O(log n)` |
 //! | [`TrimTable`] | in or out, by scan line, the way the GPU does | one binary search |
-//! | [`ExactTrim`] | winding number in single precision, as the GPU does without a table | `O(log n)` |
+//! | [`ExactTrim`] | winding number in single precision, as the GPU does without a table | a few arcs |
 //! | [`crossing`] | whether loops cross | nearly linear |
 //! | [`chord_bend, segment_count`] | how many chords stay within a tolerance | closed form |
 //!
@@ -40,7 +40,7 @@ mod winding;
 
 pub use classify::RectSide;
 pub use crossing::{Crossing, crossing};
-pub use exact::{AT_HIGH, AT_LOW, ExactTrim};
+pub use exact::{AT_HIGH, AT_LOW, Cell, Entry, ExactTrim, MARGIN};
 pub use flatten::{chord_bend, polyline, segment_count};
 pub use piece::{MonotonePiece, monotone_pieces};
 pub use table::TrimTable;

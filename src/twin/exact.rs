@@ -1,21 +1,11 @@
 //! Twin of `glsl/include/exact.glsl`: the exact trim test. What the structures mean stands in
 //! [`trim::ExactTrim`](crate::trim::ExactTrim).
 
-use crate::abi::{ARC_UP, ExactArc, ExactBand, ExactCell, ExactFace};
-use crate::trim::{AT_HIGH, AT_LOW};
+use crate::abi::{ARC_LAST, ARC_UP, CELL_SPLIT, ExactArc, ExactCell, ExactFace};
+use crate::trim::{AT_HIGH, AT_LOW, MARGIN};
 
-const MAX_STEPS: u32 = 40;
-
-/// What a box of the domain holds.
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Area {
-    /// Nothing of the face.
-    Out,
-    /// The face alone.
-    In,
-    /// Perhaps both.
-    Mixed,
-}
+/// Beyond it a coordinate is none.
+pub const FAR: f32 = 1e30;
 
 /// The arrays of all faces.
 #[derive(Clone, Copy, Debug, Default)]
@@ -23,138 +13,206 @@ pub struct Exact<'a> {
     /// By number of the face.
     pub faces: &'a [ExactFace],
     /// Of all faces.
-    pub bands: &'a [ExactBand],
-    /// Of all bands.
     pub cells: &'a [ExactCell],
-    /// Of all cells.
-    pub entries: &'a [u32],
-    /// Of all loops.
+    /// Lists of all cells.
     pub arcs: &'a [ExactArc],
-    /// Homogeneous control points of bent arcs, three numbers each.
-    pub points: &'a [f32],
+}
+
+/// A list of arcs, and the points that it is for.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct List {
+    /// Its first arc.
+    pub first: u32,
+    /// Winding number by what is not in the list.
+    pub winding: i32,
+    /// Least corner of the cell's own rectangle; infinite, as far as can be, beyond the outermost cells.
+    pub lo: [f32; 2],
+    /// Largest corner.
+    pub hi: [f32; 2],
+    /// Around it: of the points that the list is for.
+    pub margin: [f32; 2],
+}
+
+impl List {
+    /// Whether it tells the winding number of a point.
+    pub fn holds_for(&self, uv: [f32; 2]) -> bool {
+        (0..2).all(|i| uv[i] >= self.lo[i] - self.margin[i] && uv[i] <= self.hi[i] + self.margin[i])
+    }
+}
+
+/// A face's cells along one axis.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Axis {
+    first: f32,
+    count: f32,
+    scale: f32,
+}
+
+impl Axis {
+    /// Cell that a coordinate is in.
+    pub(super) fn index(self, x: f32) -> f32 {
+        (x * self.scale - self.first).floor().max(0.0).min(self.count - 1.0)
+    }
+
+    /// Part of a cell that it is in, of so many.
+    pub(super) fn part(self, x: f32, index: f32, parts: f32) -> f32 {
+        ((x * self.scale - self.first - index) * parts).floor().max(0.0).min(parts - 1.0)
+    }
+
+    /// From where to where a part of a cell is, and its list's margin.
+    fn range(self, index: f32, part: f32, parts: f32) -> [f32; 3] {
+        let side = 1.0 / (self.scale * parts);
+        let at = index * parts + part;
+        let lo = (self.first * parts + at) * side;
+        let hi = lo + side;
+        let (is_first, is_last) = (at <= 0.0, at >= self.count * parts - 1.0);
+        [if is_first { -FAR } else { lo }, if is_last { FAR } else { hi }, MARGIN * side]
+    }
+}
+
+impl ExactFace {
+    pub(super) fn axes(&self) -> [Axis; 2] {
+        std::array::from_fn(|i| {
+            let half = |pair: u32| pair >> (16 * i) & 0xffff;
+            Axis {
+                first: f32::from(half(self.first) as u16 as i16),
+                count: half(self.counts) as f32,
+                scale: (1u32 << half(self.bits)) as f32,
+            }
+        })
+    }
+
+    pub(super) fn cell(&self, axes: &[Axis; 2], [column, row]: [f32; 2]) -> usize {
+        (self.first_cell + row as u32 * axes[0].count as u32 + column as u32) as usize
+    }
 }
 
 impl Exact<'_> {
+    /// The list of the cell that the normalised `uv` is in.
+    pub fn list(&self, face: usize, uv: [f32; 2]) -> List {
+        let f = self.faces[face];
+        let axes = f.axes();
+        let index: [f32; 2] = std::array::from_fn(|i| axes[i].index(uv[i]));
+        let cell = f.cell(&axes, index);
+        let parts = self.parts(cell);
+        let part = std::array::from_fn(|i| axes[i].part(uv[i], index[i], parts));
+        self.list_of(&axes, cell, index, part)
+    }
+
+    /// Parts of a cell along each axis.
+    pub(super) fn parts(&self, cell: usize) -> f32 {
+        let cell = self.cells[cell];
+        if cell.first & CELL_SPLIT != 0 { (1u32 << cell.winding) as f32 } else { 1.0 }
+    }
+
+    /// That of a part of a cell.
+    pub(super) fn list_of(&self, axes: &[Axis; 2], cell: usize, index: [f32; 2], part: [f32; 2]) -> List {
+        let parts = self.parts(cell);
+        let mut own = self.cells[cell];
+        if own.first & CELL_SPLIT != 0 {
+            own = self.cells[((own.first & !CELL_SPLIT) + part[1] as u32 * parts as u32 + part[0] as u32) as usize];
+        }
+        let [u, v] = std::array::from_fn(|i| axes[i].range(index[i], part[i], parts));
+        let [lo, hi, margin] = std::array::from_fn(|k| [u[k], v[k]]);
+        List { first: own.first, winding: own.winding, lo, hi, margin }
+    }
+
+    /// Winding number of a point in the box of a list; 0 for one that is no number.
+    pub fn winding_in(&self, list: &List, uv: [f32; 2]) -> i32 {
+        if !uv.iter().all(|x| x.abs() < FAR) {
+            return 0;
+        }
+        list.winding + self.arcs(list.first).map(|arc| arc.winding(uv)).sum::<i32>()
+    }
+
     /// Winding number of the loops of a face around the normalised `(u, v)`; 0 for one that is no number.
-    pub fn winding(&self, face: usize, [u, v]: [f32; 2]) -> i32 {
-        let f = self.faces[face];
-        let bands = &self.bands[f.first_band as usize..][..f.band_count as usize];
-        if bands.len() < 2 || v.is_nan() || v <= bands[0].top {
-            return 0;
-        }
-        let band = 1 + bands[1..].partition_point(|band| band.top < v);
-        if band >= bands.len() {
-            return 0;
-        }
-        let cells = &self.cells[bands[band - 1].end as usize..bands[band].end as usize];
-        let Some(cell) = cells.get(cells.partition_point(|cell| cell.right < u)) else { return 0 };
-        let mut winding = cell.winding;
-        for &entry in &self.entries[cell.first as usize..][..cell.count as usize] {
-            let arc = &self.arcs[(entry >> 2) as usize];
-            let direction = if arc.shape & ARC_UP != 0 { 1 } else { -1 };
-            if entry & AT_LOW != 0 && arc.low[1] < v {
-                winding -= direction;
-            }
-            if entry & AT_HIGH != 0 && arc.high[1] < v {
-                winding += direction;
-            }
-            if arc.low[1] < v && v <= arc.high[1] && self.lies_right(arc, [u, v]) {
-                winding += direction;
-            }
-        }
-        winding
+    pub fn winding(&self, face: usize, uv: [f32; 2]) -> i32 {
+        self.winding_in(&self.list(face, uv), uv)
     }
 
-    /// Whether all of a box is inside the face, all of it outside, or neither is told by the one cell that holds it.
-    pub fn area(&self, face: usize, lo: [f32; 2], hi: [f32; 2]) -> Area {
-        let f = self.faces[face];
-        let bands = &self.bands[f.first_band as usize..][..f.band_count as usize];
-        if bands.len() < 2 || hi[1].is_nan() || hi[1] <= bands[0].top {
-            return Area::Out;
-        }
-        let band = 1 + bands[1..].partition_point(|band| band.top < hi[1]);
-        if bands[band - 1].top >= lo[1] || lo[1].is_nan() {
-            return Area::Mixed;
-        }
-        if band >= bands.len() {
-            return Area::Out;
-        }
-        let cells = &self.cells[bands[band - 1].end as usize..bands[band].end as usize];
-        let cell = cells.partition_point(|cell| cell.right < hi[0]);
-        if cell > 0 && (cells[cell - 1].right >= lo[0] || lo[0].is_nan()) {
-            return Area::Mixed;
-        }
-        match cells.get(cell) {
-            None => Area::Out,
-            Some(cell) if cell.count > 0 => Area::Mixed,
-            Some(cell) if cell.winding != 0 => Area::In,
-            Some(_) => Area::Out,
+    /// A list's arcs.
+    pub(super) fn arcs(&self, first: u32) -> impl Iterator<Item = &ExactArc> {
+        let arcs = &self.arcs[first as usize..];
+        let last = arcs.iter().position(|arc| arc.shape & ARC_LAST != 0).expect("every list ends");
+        arcs[..=last].iter()
+    }
+}
+
+impl ExactArc {
+    /// What it adds to the winding number of a point.
+    fn winding(&self, uv: [f32; 2]) -> i32 {
+        let direction = if self.shape & ARC_UP != 0 { 1 } else { -1 };
+        let low = if self.shape & AT_LOW != 0 { direction } else { 0 };
+        if uv[1] > self.high[1] {
+            (if self.shape & AT_HIGH != 0 { direction } else { 0 }) - low
+        } else if uv[1] > self.low[1] {
+            (if self.lies_right(uv) { direction } else { 0 }) - low
+        } else {
+            0
         }
     }
 
-    /// The arc passes `v`, which is above its lower end and not above its higher one, at some larger `u`.
-    pub(super) fn lies_right(&self, arc: &ExactArc, [u, v]: [f32; 2]) -> bool {
-        if u < arc.low[0].min(arc.high[0]) {
-            return true;
+    /// It passes `v`, which is above its lower end and not above its higher one, at some larger `u`.
+    pub(super) fn lies_right(&self, [u, v]: [f32; 2]) -> bool {
+        if v == self.high[1] {
+            return self.high[0] > u; // as its neighbour has it
         }
-        if u >= arc.low[0].max(arc.high[0]) {
-            return false;
-        }
-        if v == arc.high[1] {
-            return arc.high[0] > u;
-        }
-        let p = [u - arc.low[0], v - arc.low[1]];
-        let chord = [arc.high[0] - arc.low[0], arc.high[1] - arc.low[1]];
-        let side = chord[0] * p[1] - p[0] * chord[1];
-        if side > arc.hull[1] {
-            return true;
-        }
-        let degree = arc.shape & (ARC_UP - 1);
-        if side < arc.hull[0] || degree <= 1 {
-            return false;
-        }
-        let (mut ta, mut tb, mut a, mut b) = (0.0f32, 1.0f32, [0.0f32; 2], chord);
-        for step in 0..MAX_STEPS {
-            let share = if step & 1 == 0 { (p[1] - a[1]) / (b[1] - a[1]) } else { 0.5 };
-            let within = |t: f32| t > ta && t < tb;
-            let mut t = ta + (tb - ta) * share;
-            if !within(t) {
-                t = 0.5 * (ta + tb);
-                if !within(t) {
-                    break;
-                }
-            }
-            let q = self.point(arc.first as usize, degree, t);
-            let q: [f32; 2] = std::array::from_fn(|i| q[i].clamp(a[i].min(b[i]), a[i].max(b[i])));
-            if q[1] >= p[1] {
-                (tb, b) = (t, q);
-            } else {
-                (ta, a) = (t, q);
-            }
-            if p[0] < a[0].min(b[0]) {
-                return true;
-            }
-            if p[0] >= a[0].max(b[0]) {
-                return false;
-            }
-        }
-        (b[0] - a[0]) * (p[1] - a[1]) - (p[0] - a[0]) * (b[1] - a[1]) > 0.0
+        let (chord, corner) = (self.chord(), self.corner);
+        let p = [u - self.low[0], v - self.low[1]];
+        let area = chord[0] * corner[1] - corner[0] * chord[1];
+        let turned = if area < 0.0 { -1.0 } else { 1.0 };
+        let middle = turned * chord[0] * p[1] - p[0] * (turned * chord[1]);
+        let high = p[0] * (turned * corner[1]) - turned * corner[0] * p[1];
+        let low = turned * area - middle - high;
+        let beyond = middle > 0.0 && middle * middle > low.max(0.0) * (self.fullness * high.max(0.0));
+        beyond == (turned > 0.0)
     }
 
-    /// Point of a bent arc, relative to its lower end, by Horner's scheme in the Bernstein basis.
-    pub(super) fn point(&self, first: usize, degree: u32, t: f32) -> [f32; 2] {
-        let control = |k: u32| -> [f32; 3] { std::array::from_fn(|i| self.points[first + 3 * k as usize + i]) };
+    /// Weight of the corner, where the ends have 1; 0 when the arc is straight.
+    fn weight(&self) -> f32 {
+        0.5 * self.fullness.sqrt()
+    }
+
+    /// Its ends, from the lower to the higher.
+    pub(super) fn chord(&self) -> [f32; 2] {
+        [self.high[0] - self.low[0], self.high[1] - self.low[1]]
+    }
+
+    /// A point of it, relative to its lower end.
+    pub(super) fn point(&self, t: f32) -> [f32; 2] {
+        let chord = self.chord();
+        if t >= 1.0 {
+            return chord;
+        }
+        if self.fullness == 0.0 {
+            return chord.map(|x| x * t);
+        }
         let s = 1.0 - t;
-        let (mut f, mut c) = (1.0f32, 1.0f32);
-        let mut sum = control(0).map(|x| x * s);
-        for k in 1..degree {
-            f *= t;
-            c *= (degree - k + 1) as f32 / k as f32;
-            let p = control(k);
-            sum = std::array::from_fn(|i| (sum[i] + p[i] * (f * c)) * s);
+        let (corner, end) = (2.0 * self.weight() * (s * t), t * t);
+        let sum = s * s + corner + end;
+        std::array::from_fn(|i| (corner * self.corner[i] + end * chord[i]) / sum)
+    }
+
+    /// Parameter at which a coordinate, relative to its lower end, becomes `x`; 0 or 1 beyond its ends.
+    ///
+    /// With `r = t / (1 - t)`, corner `c`, its weight `w` and chord `d` it is `(2 w r c + r² d) / (1 + 2 w r + r²)`: `r` is the
+    /// only positive root of `(d - x) r² + 2 w (c - x) r - x`.
+    pub(super) fn reached(&self, axis: usize, x: f32) -> f32 {
+        let chord = self.chord()[axis];
+        let way = if chord < 0.0 { -1.0 } else { 1.0 };
+        let (to, corner, end) = (way * x, way * self.corner[axis], way * chord);
+        if to.is_nan() || to <= 0.0 {
+            return 0.0;
         }
-        let p = control(degree);
-        let sum: [f32; 3] = std::array::from_fn(|i| sum[i] + p[i] * (f * t));
-        [sum[0] / sum[2], sum[1] / sum[2]]
+        if to >= end {
+            return 1.0;
+        }
+        if self.fullness == 0.0 {
+            return to / end;
+        }
+        let b = self.weight() * (corner - to);
+        let root = (b * b + (end - to) * to).sqrt();
+        // of t = r / (1 + r), whichever sum has no difference in it
+        if b > 0.0 { to / (to + (b + root)) } else { (root - b) / ((root - b) + (end - to)) }
     }
 }

@@ -1,6 +1,7 @@
 //! Loops cut into arcs in the normalised domain, joints rounded once.
 
 use super::Arc;
+use super::conic::{Conic, append_conics};
 use crate::model::TrimLoop;
 use crate::spline::{Bezier, Control};
 use crate::trim::piece::{Piece, append_pieces};
@@ -27,15 +28,20 @@ impl Chains {
 pub(super) fn chains(loops: &[TrimLoop], origin: DVec2, size: DVec2) -> Chains {
     let unit = |p: DVec2| (p - origin) / size;
     let mut all = Chains::default();
+    let (mut pieces, mut conics) = (Vec::new(), Vec::new());
     for trim_loop in loops {
         let first = all.arcs.len();
         let curves: Vec<Bezier<DVec3>> = trim_loop.curves().collect();
         let Some(last) = curves.last() else { continue };
         let mut at = last.points[last.degree()].point();
         for curve in curves {
-            let mut pieces = Vec::new();
+            pieces.clear();
             append_pieces(&mut pieces, 0, &curve, at);
-            all.arcs.extend(pieces.iter().filter_map(|piece| arc(&curve, piece, unit)));
+            for piece in &pieces {
+                conics.clear();
+                cut(&mut conics, &curve, piece, unit);
+                append_arcs(&mut all.arcs, &conics, (unit(piece.start), unit(piece.end)));
+            }
             at = curve.points[curve.degree()].point();
         }
         let count = (all.arcs.len() - first) as u32;
@@ -46,36 +52,36 @@ pub(super) fn chains(loops: &[TrimLoop], origin: DVec2, size: DVec2) -> Chains {
     all
 }
 
-/// `None` when both ends round to the same point.
-fn arc(curve: &Bezier<DVec3>, piece: &Piece, unit: impl Fn(DVec2) -> DVec2) -> Option<Arc> {
-    let joint = |p: DVec2| unit(p).as_vec2().to_array();
-    let (start, end) = (joint(piece.start), joint(piece.end));
-    if start == end {
-        return None;
-    }
-    let up = start[1] <= end[1];
-    let (low, high) = if up { (start, end) } else { (end, start) };
-    let mut arc = Arc { low, high, hull: [0.0; 2], up, points: Vec::new() };
-    if piece.straight || low[0] == high[0] || low[1] == high[1] {
-        return Some(arc);
+/// The arcs of a piece, whose last end is that of the piece.
+fn cut(conics: &mut Vec<Conic>, curve: &Bezier<DVec3>, piece: &Piece, unit: impl Fn(DVec2) -> DVec2) {
+    let (start, end) = (unit(piece.start), unit(piece.end));
+    if piece.straight || start.x == end.x || start.y == end.y {
+        conics.push(Conic { end, corner: start, fullness: 0.0 });
+        return;
     }
     let mut points = curve.segment(piece.t.0, piece.t.1).points;
-    if !up {
-        points.reverse();
+    points.iter_mut().for_each(|p| *p = DVec3::from_point(unit(p.point()), p.z));
+    let last = points.len() - 1;
+    (points[0], points[last]) = (DVec3::from_point(start, points[0].z), DVec3::from_point(end, points[last].z));
+    append_conics(conics, &Bezier { points });
+}
+
+/// In single precision, joints kept inside the box of the piece's ends: rounding must not undo its monotony.
+fn append_arcs(arcs: &mut Vec<Arc>, conics: &[Conic], (start, end): (DVec2, DVec2)) {
+    let mut from = start;
+    for (k, conic) in conics.iter().enumerate() {
+        let to = if k + 1 < conics.len() { conic.end.clamp(from.min(end), from.max(end)) } else { end };
+        let joints = [from, to].map(|p| p.as_vec2().to_array());
+        if joints[0] != joints[1] {
+            let up = joints[0][1] <= joints[1][1];
+            let (low, high) = if up { (joints[0], joints[1]) } else { (joints[1], joints[0]) };
+            let bent = conic.fullness > 0.0 && low[0] != high[0] && low[1] != high[1];
+            let base = DVec2::from(low.map(f64::from));
+            let chord = DVec2::from(high.map(f64::from)) - base;
+            let corner = (conic.corner - base).clamp(chord.min(DVec2::ZERO), chord.max(DVec2::ZERO));
+            let (corner, fullness) = if bent { (corner, conic.fullness) } else { (DVec2::ZERO, 0.0) };
+            arcs.push(Arc { low, high, corner: corner.as_vec2().to_array(), fullness: fullness as f32, up });
+        }
+        from = to;
     }
-    let base = DVec2::from(low.map(f64::from));
-    let chord = DVec2::from(high.map(f64::from)) - base;
-    let weight = points[0].z;
-    let local = |p: &DVec3| DVec3::from_point(unit(p.point()) - base, p.z / weight);
-    let mut local: Vec<DVec3> = points.iter().map(local).collect();
-    let last = local.len() - 1;
-    local[0] = DVec3::from_point(DVec2::ZERO, local[0].z);
-    local[last] = DVec3::from_point(chord, local[last].z);
-    let crosses = || local.iter().map(|p| chord.perp_dot(p.point()));
-    // a cross product in the shader rounds two products and a difference
-    let rounding = 4.0 * f64::from(f32::EPSILON) * (chord.x * chord.y).abs();
-    arc.hull[0] = (crosses().fold(0.0, f64::min) - rounding) as f32;
-    arc.hull[1] = (crosses().fold(0.0, f64::max) + rounding) as f32;
-    arc.points = local.iter().map(|p| p.as_vec3().to_array()).collect();
-    Some(arc)
 }

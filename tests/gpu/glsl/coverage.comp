@@ -18,8 +18,8 @@ struct Answer {
     uint cut;
 };
 
-layout(scalar, binding = 6) readonly buffer Pixels { Pixel pixels[]; };
-layout(scalar, binding = 7) writeonly buffer Answers { Answer answers[]; };
+layout(scalar, binding = 3) readonly buffer Pixels { Pixel pixels[]; };
+layout(scalar, binding = 4) writeonly buffer Answers { Answer answers[]; };
 layout(push_constant) uniform Push { uint face; uint count; };
 
 void main() {

@@ -8,11 +8,12 @@
 layout(local_size_x = 64) in;
 struct Answer {
     int winding;
-    uint area; // of the box from this point to the next
+    int next; // of the next point, by this one's list; NOT_FOR it
 };
+const int NOT_FOR = 99;
 
-layout(scalar, binding = 6) readonly buffer Points { vec2 points[]; };
-layout(scalar, binding = 7) writeonly buffer Answers { Answer answers[]; };
+layout(scalar, binding = 3) readonly buffer Points { vec2 points[]; };
+layout(scalar, binding = 4) writeonly buffer Answers { Answer answers[]; };
 layout(push_constant) uniform Push { uint face; uint count; };
 
 void main() {
@@ -20,7 +21,6 @@ void main() {
     if (i >= count) return;
     vec2 p = points[i];
     vec2 q = points[min(i + 1u, count - 1u)];
-    vec2 lo = min(p, q);
-    vec2 hi = max(p, q);
-    answers[i] = Answer(exact_winding(face, p), exact_area(face, lo, hi));
+    ExactList list = exact_list(face, is_number(p) ? p : vec2(0.0));
+    answers[i] = Answer(exact_winding(face, p), holds_for(list, q) ? exact_winding_in(list, q) : NOT_FOR);
 }

@@ -1,0 +1,155 @@
+//! How many cells of the first level a face has, and which of them an arc is near.
+
+use super::{Arc, Grid, MARGIN};
+use glam::{DVec2, IVec2};
+use std::ops::RangeInclusive;
+
+/// Arcs to a cell of the first level, on average.
+const ARCS_A_CELL: f64 = 1.0;
+/// Cells that arcs are in at most, all added up, to an arc.
+const MOST_CELLS_AN_ARC: f64 = 8.0;
+/// Finest columns and rows, of the domain.
+const MOST_BITS: u32 = 15;
+/// Columns or rows.
+const MOST_COUNT: f64 = 4096.0;
+
+impl Grid {
+    /// Around all arcs. Cells are as wide and high as arcs are on average.
+    pub(super) fn around(arcs: &[Arc]) -> Self {
+        if arcs.is_empty() {
+            return Self { first: [0; 2], counts: [1; 2], bits: [0; 2] };
+        }
+        let point = |p: [f32; 2]| DVec2::from(p.map(f64::from));
+        let (lo, hi) = arcs.iter().fold((DVec2::MAX, DVec2::MIN), |(lo, hi), arc| {
+            let (a, b) = (point(arc.low), point(arc.high));
+            (lo.min(a.min(b)), hi.max(a.max(b)))
+        });
+        let lengths: DVec2 = arcs.iter().map(|arc| (point(arc.high) - point(arc.low)).abs()).sum();
+        let ratio = (lengths.x / lengths.y).clamp(1e-4, 1e4);
+        let cells = (arcs.len() as f64 / ARCS_A_CELL).max(1.0);
+        let height = ((hi - lo).max(DVec2::splat(1e-7)).element_product() / (cells * ratio)).sqrt();
+        let sides = DVec2::new(ratio * height, height);
+        let mut bits = sides.to_array().map(|side| (-side.log2()).round().clamp(0.0, f64::from(MOST_BITS)) as u32);
+        loop {
+            let scale = DVec2::from(bits.map(|b| f64::from(1u32 << b)));
+            let (first, end) = ((lo * scale).floor(), (hi * scale).ceil());
+            let counts = (end - first).max(DVec2::ONE);
+            let too_many = DVec2::splat(MOST_COUNT).cmplt(counts);
+            let met: f64 = arcs.iter().map(|arc| cells_met((point(arc.high) - point(arc.low)).abs() * scale)).sum();
+            let fits = !too_many.any() && met <= MOST_CELLS_AN_ARC * arcs.len() as f64;
+            if fits || bits == [0; 2] {
+                // both conversions clamp: outermost cells have what is beyond
+                let first = first.to_array().map(|x| x as i16);
+                let counts = counts.to_array().map(|n| n.min(MOST_COUNT) as u16);
+                return Self { first, counts, bits };
+            }
+            let all = !too_many.any();
+            let coarser = [all || too_many.x, all || too_many.y];
+            bits = std::array::from_fn(|i| bits[i].saturating_sub(u32::from(coarser[i])));
+        }
+    }
+
+    /// Width and height of a cell.
+    pub(super) fn sides(&self) -> DVec2 {
+        DVec2::from(self.bits.map(|b| 1.0 / f64::from(1u32 << b)))
+    }
+
+    /// The columns (`axis` 0) or rows whose boxes, margin included, meet a range.
+    pub(super) fn meeting(&self, axis: usize, (lo, hi): (f64, f64)) -> RangeInclusive<u32> {
+        let scale = f64::from(1u32 << self.bits[axis]);
+        let (first, last) = (f64::from(self.first[axis]), f64::from(self.counts[axis] - 1));
+        let margin = f64::from(MARGIN);
+        let from = (lo * scale - first - 1.0 - margin).ceil().clamp(0.0, last);
+        let to = (hi * scale - first + margin).floor().clamp(0.0, last);
+        from as u32..=to as u32
+    }
+}
+
+/// Of an arc so many cells wide and high.
+fn cells_met(size: DVec2) -> f64 {
+    size.x + size.y + 1.0 + 2.0 * f64::from(MARGIN)
+}
+
+/// A part of the domain for which one list holds.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Region {
+    /// Its own rectangle.
+    pub lo: DVec2,
+    pub hi: DVec2,
+    /// The box of its list: wider, and infinite beyond the outermost cells.
+    pub box_lo: DVec2,
+    pub box_hi: DVec2,
+}
+
+impl Region {
+    /// One of a grid's cells.
+    pub(super) fn of(grid: &Grid, at: [u32; 2]) -> Self {
+        let sides = grid.sides();
+        let first = DVec2::from(grid.first.map(f64::from));
+        let at = IVec2::from(at.map(|i| i as i32));
+        let lo = (first + at.as_dvec2()) * sides;
+        let last = IVec2::from(grid.counts.map(|n| i32::from(n) - 1));
+        Self::new(lo, sides, at.cmpeq(IVec2::ZERO).into(), at.cmpeq(last).into())
+    }
+
+    /// One of the cells that this one is split into.
+    pub(super) fn part(&self, at: [u32; 2], halvings: u32) -> Self {
+        let n = 1 << halvings;
+        let sides = (self.hi - self.lo) / f64::from(n);
+        let lo = self.lo + DVec2::from(at.map(f64::from)) * sides;
+        let outer = |edge: DVec2, i: usize| edge[i].is_infinite();
+        let first = std::array::from_fn(|i| at[i] == 0 && outer(self.box_lo, i));
+        let last = std::array::from_fn(|i| at[i] == n - 1 && outer(self.box_hi, i));
+        Self::new(lo, sides, first, last)
+    }
+
+    fn new(lo: DVec2, sides: DVec2, first: [bool; 2], last: [bool; 2]) -> Self {
+        let (hi, margin) = (lo + sides, f64::from(MARGIN) * sides);
+        let box_lo = DVec2::select(first.into(), DVec2::NEG_INFINITY, lo - margin);
+        let box_hi = DVec2::select(last.into(), DVec2::INFINITY, hi + margin);
+        Self { lo, hi, box_lo, box_hi }
+    }
+
+    /// Where it is told which winding number the rest of the loops leaves.
+    pub(super) fn centre(&self) -> DVec2 {
+        0.5 * (self.lo + self.hi)
+    }
+
+    /// Whether an arc meets the box.
+    pub(super) fn meets(&self, arc: &Arc) -> bool {
+        let rows = (self.box_lo.y, self.box_hi.y);
+        arc.span(rows).is_some_and(|(left, right)| left <= self.box_hi.x && right >= self.box_lo.x)
+    }
+}
+
+impl Arc {
+    /// Least and largest `u` between two scan lines, rounded outwards; `None` where no part of it is.
+    pub(super) fn span(&self, (lo, hi): (f64, f64)) -> Option<(f64, f64)> {
+        let [from, to] = [self.low, self.high].map(|p| p.map(f64::from));
+        if from[1] > hi || to[1] < lo {
+            return None;
+        }
+        let bottom = if from[1] < lo { self.at(lo) } else { from[0] };
+        let top = if to[1] > hi { self.at(hi) } else { to[0] };
+        let rounding = 1e-6 * (to[0] - from[0]).abs();
+        Some((bottom.min(top) - rounding, bottom.max(top) + rounding))
+    }
+
+    /// `u` where it passes a scan line between its ends.
+    ///
+    /// With `r = t / (1 - t)` and the corner's weight `w` the coordinate is `(2 w r c + r² d) / (1 + 2 w r + r²)`, so `r` is
+    /// the positive root of `(d - v) r² + 2 w (c - v) r - v`, of which there is one.
+    pub(super) fn at(&self, v: f64) -> f64 {
+        let base = DVec2::from(self.low.map(f64::from));
+        let chord = DVec2::from(self.high.map(f64::from)) - base;
+        let (corner, y) = (DVec2::from(self.corner.map(f64::from)), v - base.y);
+        if self.fullness == 0.0 {
+            return base.x + chord.x * (y / chord.y);
+        }
+        let w = 0.5 * f64::from(self.fullness).sqrt();
+        let (a, b) = (chord.y - y, w * (corner.y - y));
+        let root = (b * b + a * y).sqrt();
+        let r = if b > 0.0 { y / (b + root) } else { (root - b) / a };
+        base.x + (2.0 * w * r * corner.x + r * r * chord.x) / (1.0 + 2.0 * w * r + r * r)
+    }
+}
