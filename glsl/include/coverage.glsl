@@ -134,11 +134,13 @@ Cover exact_cover(uint face, vec2 uv, mat2 along) {
     bool one = holds_for(list_of_middle, lo) && holds_for(list_of_middle, hi);
     vec2 first = one ? middle : exact_index(grid, lo);
     vec2 last = one ? middle : exact_index(grid, hi);
-    for (vec2 index = first; index.y <= last.y; index = index.x < last.x ? vec2(index.x + 1.0, index.y) : vec2(first.x, index.y + 1.0)) {
+    for (vec2 index = first; index.y <= last.y;
+         index = index.x < last.x ? vec2(index.x + 1.0, index.y) : vec2(first.x, index.y + 1.0)) {
         ExactCell cell = exact_cell(grid, index);
         vec2 from_part = one ? middle_part : exact_part(grid, lo, index, exact_halvings(cell));
         vec2 to_part = one ? middle_part : exact_part(grid, hi, index, exact_halvings(cell));
-        for (vec2 part = from_part; part.y <= to_part.y; part = part.x < to_part.x ? vec2(part.x + 1.0, part.y) : vec2(from_part.x, part.y + 1.0)) {
+        for (vec2 part = from_part; part.y <= to_part.y;
+             part = part.x < to_part.x ? vec2(part.x + 1.0, part.y) : vec2(from_part.x, part.y + 1.0)) {
             if (++asked > MOST_CELLS) return Cover(cover.share, vec2(0.0), false);
             ExactList list = exact_list_of(grid, cell, index, part);
             vec2 from = one ? lo : max(lo, list.lo);

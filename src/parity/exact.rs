@@ -2,6 +2,7 @@
 
 use super::Random;
 use super::hard;
+use crate::abi::CELL_SPLIT;
 use crate::model::TrimLoop;
 use crate::scene::ExactData;
 use crate::spline::{Bezier, Control};
@@ -94,14 +95,16 @@ fn the_twin_decides_as_the_exact_loops_do() {
 
 /// A list holds for every point of its box: it tells what the list of the point's own cell does, and what the exact loops
 /// do; but next to a curve, where each may round as the test itself does. A third of the points are told by lists of another
-/// cell, and a tenth by lists that have arcs, else little is asked here.
+/// cell, and a tenth by lists that have arcs, else little is asked here; most faces have split cells.
 #[test]
 fn lists_hold_within_their_boxes() {
     let mut random = Random::new(11);
     let (mut others, mut beside, mut asked) = (0, 0, 0);
+    let mut split = 0;
     for _ in 0..300 {
         let loops: Vec<TrimLoop> = (0..random.integer(1, 3)).map(|_| random_loop(&mut random)).collect();
         let (index, data) = (LoopIndex::new(&loops), data(std::slice::from_ref(&loops)));
+        split += u32::from(data.cells.iter().any(|cell| cell.first & CELL_SPLIT != 0));
         let twin = twin(&data);
         for _ in 0..100 {
             let centre = [random.range(-0.1, 1.1) as f32, random.range(-0.1, 1.1) as f32];
@@ -126,6 +129,7 @@ fn lists_hold_within_their_boxes() {
             beside += usize::from(data.arcs[list.first as usize].low != data.arcs[list.first as usize].high);
         }
     }
+    assert!(split > 200, "{split} faces with split cells");
     assert!(
         3 * others > asked && 10 * beside > asked,
         "{others} by another cell's list, {beside} beside arcs, of {asked}"

@@ -14,7 +14,7 @@ const MOST_BITS: u32 = 15;
 const MOST_COUNT: f64 = 4096.0;
 
 impl Grid {
-    /// Around all arcs. Cells are as wide and high as arcs are on average.
+    /// Around all arcs. Cells have the proportions that arcs have on average, so they are about square on the surface.
     pub(super) fn around(arcs: &[Arc]) -> Self {
         if arcs.is_empty() {
             return Self { first: [0; 2], counts: [1; 2], bits: [0; 2] };

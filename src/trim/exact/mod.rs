@@ -76,13 +76,13 @@ pub enum Cell {
     Split {
         /// First of them.
         first: u32,
-        /// At most [`MOST_HALVINGS`].
+        /// Of each side; at most 4.
         halvings: u32,
     },
 }
 
-/// Of [`Cell::Split`].
-pub const MOST_HALVINGS: u32 = 4;
+/// Of the sides of a [`Cell::Split`].
+const MOST_HALVINGS: u32 = 4;
 
 /// An arc of a list.
 #[derive(Clone, Copy, Debug, PartialEq)]
