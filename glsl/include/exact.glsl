@@ -135,10 +135,12 @@ bool arc_right(ExactArc arc, vec2 uv) {
     float turned = area < 0.0 ? -1.0 : 1.0;
     vec2 to_high = turned * chord;
     vec2 to_corner = turned * arc.corner;
+    precise vec2 back = to_corner - to_high; // from the higher end to the corner
     precise vec2 p = uv - arc.low;
+    precise vec2 q = uv - arc.high;
     precise float middle = to_high.x * p.y - p.x * to_high.y;
     precise float high = p.x * to_corner.y - to_corner.x * p.y;
-    precise float low = turned * area - middle - high;
+    precise float low = back.x * q.y - q.x * back.y; // as a rest it would have the rounding of the longer sides
     precise float square = middle * middle;
     precise float product = max(low, 0.0) * (arc.fullness * max(high, 0.0));
     bool beyond = middle > 0.0 && square > product;

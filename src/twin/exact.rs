@@ -161,9 +161,11 @@ impl ExactArc {
         let p = [u - self.low[0], v - self.low[1]];
         let area = chord[0] * corner[1] - corner[0] * chord[1];
         let turned = if area < 0.0 { -1.0 } else { 1.0 };
+        let q = [u - self.high[0], v - self.high[1]];
+        let back: [f32; 2] = std::array::from_fn(|i| turned * corner[i] - turned * chord[i]);
         let middle = turned * chord[0] * p[1] - p[0] * (turned * chord[1]);
         let high = p[0] * (turned * corner[1]) - turned * corner[0] * p[1];
-        let low = turned * area - middle - high;
+        let low = back[0] * q[1] - q[0] * back[1]; // as a rest it would have the rounding of the longer sides
         let beyond = middle > 0.0 && middle * middle > low.max(0.0) * (self.fullness * high.max(0.0));
         beyond == (turned > 0.0)
     }
