@@ -93,6 +93,39 @@ fn the_twin_decides_as_the_exact_loops_do() {
     assert!(asked == 24_000 && worst > 0.0, "points next to a curve must show the rounding of single precision");
 }
 
+/// Arcs whose corner is next to one of their ends, where the sides of the triangle differ by up to 2^20: points beside
+/// them are told as closely as others.
+#[test]
+fn uneven_corners_cost_no_accuracy() {
+    let mut random = Random::new(12);
+    let mut asked = 0;
+    for k in 0..2000 {
+        let point = |random: &mut Random| DVec2::new(random.range(0.05, 0.95), random.range(0.05, 0.95));
+        let (a, b, third) = (point(&mut random), point(&mut random), point(&mut random));
+        let share = 2f64.powf(-random.range(1.0, 20.0));
+        let share = if k % 2 == 0 { share } else { 1.0 - share };
+        // within the box of both ends, so that the arc is one monotone piece
+        let turn = if random.integer(0, 1) == 0 { DVec2::new(a.x, b.y) } else { DVec2::new(b.x, a.y) };
+        let corner = a.lerp(b, share).lerp(turn, 2f64.powf(-random.range(0.0, 10.0)));
+        let weight = 2f64.powf(random.range(-3.0, 3.0));
+        let points = [(a, 1.0), (corner, weight), (b, 1.0)].map(|(p, w)| DVec3::from_point(p, w));
+        let arc = Bezier { points: points.to_vec() };
+        let closed = vec![arc.clone(), Bezier::line(b, third), Bezier::line(third, a)];
+        let loops = [TrimLoop::new(closed, DVec2::splat(1e-14)).expect("closed")];
+        let (index, data) = (LoopIndex::new(&loops), data(&[loops.to_vec()]));
+        for _ in 0..60 {
+            let off = DVec2::new(random.range(-1.0, 1.0), random.range(-1.0, 1.0)) * 2e-6;
+            let uv = (arc.point(random.range(0.0, 1.0)) + off).as_vec2().to_array();
+            let p = DVec2::from(uv.map(f64::from));
+            let (found, exact) = (twin(&data).winding(0, uv), index.winding(p));
+            let off = index.distance(p, 1.0);
+            assert!(found == exact || off <= TOLERANCE, "{p}: {found}, not {exact}, {off:e} from {loops:?}");
+            asked += usize::from(off > TOLERANCE);
+        }
+    }
+    assert!(asked > 60_000, "{asked} points are at stake");
+}
+
 /// A list holds for every point of its box: it tells what the list of the point's own cell does, and what the exact loops
 /// do; but next to a curve, where each may round as the test itself does. A third of the points are told by lists of another
 /// cell, and a tenth by lists that have arcs, else little is asked here; most faces have split cells.

@@ -23,6 +23,7 @@ const MOST_PARTS_AN_ENTRY: usize = 4;
 pub(super) enum Flats {
     /// They are in no list.
     Left,
+    /// They are in the lists of all boxes that they meet.
     Kept,
 }
 

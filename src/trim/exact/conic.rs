@@ -23,8 +23,9 @@
 use crate::spline::{Bezier, Control, binomial};
 use glam::{DVec2, DVec3};
 
-/// How far an arc may be from its trim curve, of the unit domain: half the rounding of a coordinate in `f32`.
-pub(super) const TOLERANCE: f64 = 0.5 / 16_777_216.0;
+/// How far an arc may be from its trim curve, of the unit domain, or of the largest coordinate beyond it: half the rounding of
+/// a coordinate in `f32`.
+const TOLERANCE: f64 = 0.5 / 16_777_216.0;
 /// Halvings after which a piece counts as straight: it is a point in single precision long before.
 const MOST_HALVINGS: u32 = 48;
 /// Halvings that find the point of a piece that is as far along the chord as the corner.
@@ -42,31 +43,34 @@ pub(super) struct Conic {
 
 /// Appends the arcs of a piece that turns back neither in `u` nor in `v`; its control points have positive weights.
 pub(super) fn append_conics(conics: &mut Vec<Conic>, piece: &Bezier<DVec3>) {
-    append(conics, piece, MOST_HALVINGS);
+    let largest = piece.points.iter().map(|p| p.point().abs().max_element()).fold(1.0, f64::max);
+    append(conics, piece, TOLERANCE * largest, MOST_HALVINGS);
 }
 
-fn append(conics: &mut Vec<Conic>, piece: &Bezier<DVec3>, halvings: u32) {
+fn append(conics: &mut Vec<Conic>, piece: &Bezier<DVec3>, tolerance: f64, halvings: u32) {
     let (start, end) = (piece.points[0].point(), piece.points[piece.degree()].point());
-    if halvings == 0 || is_straight(piece, start, end) {
+    if halvings == 0 || is_straight(piece, start, end, tolerance) {
         conics.push(Conic { end, corner: start, fullness: 0.0 });
-    } else if let Some(conic) = followed(piece, start, end) {
+    } else if let Some(conic) = followed(piece, start, end, tolerance) {
         conics.push(conic);
     } else {
         let (before, behind) = piece.split(0.5);
-        append(conics, &before, halvings - 1);
-        append(conics, &behind, halvings - 1);
+        append(conics, &before, tolerance, halvings - 1);
+        append(conics, &behind, tolerance, halvings - 1);
     }
 }
 
-/// All control points are near the chord: so is the piece, and it runs along it.
-fn is_straight(piece: &Bezier<DVec3>, start: DVec2, end: DVec2) -> bool {
+/// All control points are near the chord: so is the piece, and it runs along it. So is what is too large to be told: no
+/// comparison holds there, and halving would not end.
+fn is_straight(piece: &Bezier<DVec3>, start: DVec2, end: DVec2, tolerance: f64) -> bool {
     let chord = end - start;
-    let most = TOLERANCE * chord.length();
-    chord.length() <= TOLERANCE || piece.points.iter().all(|p| chord.perp_dot(p.point() - start).abs() <= most)
+    let most = tolerance * chord.length();
+    let is_off = |p: &DVec3| chord.perp_dot(p.point() - start).abs() > most;
+    chord.length() <= tolerance || !piece.points.iter().any(is_off)
 }
 
 /// The conic that follows the piece.
-fn followed(piece: &Bezier<DVec3>, start: DVec2, end: DVec2) -> Option<Conic> {
+fn followed(piece: &Bezier<DVec3>, start: DVec2, end: DVec2, tolerance: f64) -> Option<Conic> {
     let chord = end - start;
     let distinct = 1e-9 * chord.length();
     let way = |from: DVec2| move |p: &DVec3| Some(p.point() - from).filter(|d| d.length() > distinct);
@@ -81,8 +85,11 @@ fn followed(piece: &Bezier<DVec3>, start: DVec2, end: DVec2) -> Option<Conic> {
     let triangle = Triangle { start, corner, chord };
     let [low, middle, high] = triangle.coordinates(shoulder(piece, &triangle));
     let fullness = middle * middle / (low * high);
-    let follows =
-        low > 0.0 && middle > 0.0 && high > 0.0 && fullness.is_finite() && triangle.is_followed(piece, fullness);
+    let follows = low > 0.0
+        && middle > 0.0
+        && high > 0.0
+        && fullness.is_finite()
+        && triangle.is_followed(piece, fullness, tolerance);
     follows.then_some(Conic { end, corner, fullness })
 }
 
@@ -124,10 +131,10 @@ impl Triangle {
         [p.z - middle - high, middle, high]
     }
 
-    /// Whether a conic is within [`TOLERANCE`] of the whole piece.
-    fn is_followed(&self, piece: &Bezier<DVec3>, fullness: f64) -> bool {
+    /// Whether a conic is within the tolerance of the whole piece.
+    fn is_followed(&self, piece: &Bezier<DVec3>, fullness: f64, tolerance: f64) -> bool {
         let away = self.corner - (self.start + 0.5 * self.chord);
-        let step = TOLERANCE / away.length();
+        let step = tolerance / away.length();
         let coordinates: Vec<[f64; 3]> = piece.points.iter().map(|p| self.coordinates(*p)).collect();
         let moved = |by: f64| {
             let weights = piece.points.iter().map(|p| p.z);
@@ -240,7 +247,17 @@ mod tests {
         // a conic that is not the piece's is refused
         let (piece, _) = conics(cases[0].0);
         let ends = (piece.points[0].point(), piece.points[3].point());
-        assert!(followed(&piece, ends.0, ends.1).is_none());
+        assert!(followed(&piece, ends.0, ends.1, TOLERANCE).is_none());
+    }
+
+    /// What lies far beyond the domain is followed as single precision has it, and what is too large to be told ends.
+    #[test]
+    fn huge_pieces_are_a_few_arcs() {
+        for size in [1e3, 1e9, 1e30, 1e160, 1e300] {
+            let wave = [(0.0, 0.0, 1.0), (0.5 * size, 0.0, 1.0), (0.5 * size, size, 1.0), (size, size, 1.0)];
+            let (_, conics) = conics(&wave);
+            assert!(conics.len() <= 72, "{} arcs of size {size:e}", conics.len());
+        }
     }
 
     /// A circle that a file gives as one curve of degree five is cut into its quarters before; each is followed.

@@ -6,11 +6,11 @@ use std::ops::RangeInclusive;
 
 /// Arcs to a cell of the first level, on average.
 const ARCS_A_CELL: f64 = 1.0;
-/// Cells that arcs are in at most, all added up, to an arc.
+/// Cells to an arc at most, and as many that arcs are in, all added up.
 const MOST_CELLS_AN_ARC: f64 = 8.0;
 /// Finest columns and rows, of the domain.
 const MOST_BITS: u32 = 15;
-/// Columns or rows.
+/// Most columns or rows.
 const MOST_COUNT: f64 = 4096.0;
 
 impl Grid {
@@ -30,22 +30,20 @@ impl Grid {
         let height = ((hi - lo).max(DVec2::splat(1e-7)).element_product() / (cells * ratio)).sqrt();
         let sides = DVec2::new(ratio * height, height);
         let mut bits = sides.to_array().map(|side| (-side.log2()).round().clamp(0.0, f64::from(MOST_BITS)) as u32);
+        let most = MOST_CELLS_AN_ARC * arcs.len() as f64;
         loop {
             let scale = DVec2::from(bits.map(|b| f64::from(1u32 << b)));
             let (first, end) = ((lo * scale).floor(), (hi * scale).ceil());
             let counts = (end - first).max(DVec2::ONE);
-            let too_many = DVec2::splat(MOST_COUNT).cmplt(counts);
             let met: f64 = arcs.iter().map(|arc| cells_met((point(arc.high) - point(arc.low)).abs() * scale)).sum();
-            let fits = !too_many.any() && met <= MOST_CELLS_AN_ARC * arcs.len() as f64;
+            let fits = counts.max_element() <= MOST_COUNT && counts.element_product() <= most && met <= most;
             if fits || bits == [0; 2] {
-                // both conversions clamp: outermost cells have what is beyond
+                // outermost cells have what is beyond: one cell has loops that are many domains wide
                 let first = first.to_array().map(|x| x as i16);
-                let counts = counts.to_array().map(|n| n.min(MOST_COUNT) as u16);
+                let counts = if fits { counts.to_array().map(|n| n as u16) } else { [1; 2] };
                 return Self { first, counts, bits };
             }
-            let all = !too_many.any();
-            let coarser = [all || too_many.x, all || too_many.y];
-            bits = std::array::from_fn(|i| bits[i].saturating_sub(u32::from(coarser[i])));
+            bits = bits.map(|b| b.saturating_sub(1));
         }
     }
 
@@ -151,5 +149,35 @@ impl Arc {
         let root = (b * b + a * y).sqrt();
         let r = if b > 0.0 { y / (b + root) } else { (root - b) / a };
         base.x + (2.0 * w * r * corner.x + r * r * chord.x) / (1.0 + 2.0 * w * r + r * r)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Straight sides of a rectangle.
+    fn rectangle(width: f32, height: f32) -> Vec<Arc> {
+        let side = |low, high, up| Arc { low, high, corner: [0.0; 2], fullness: 0.0, up };
+        let corners = [[0.0, 0.0], [width, 0.0], [width, height], [0.0, height]];
+        vec![
+            side(corners[0], corners[1], true),
+            side(corners[1], corners[2], true),
+            side(corners[3], corners[2], false),
+            side(corners[0], corners[3], false),
+        ]
+    }
+
+    /// As many cells as arcs ask for, about, however wide, narrow or far away the loops are.
+    #[test]
+    fn cells_are_few_whatever_the_size() {
+        let sizes = [1e-30, 1e-7, 1e-3, 1.0, 5e3, 1e6, 1e30, f32::MAX];
+        for (width, height) in sizes.into_iter().flat_map(|w| sizes.map(|h| (w, h))) {
+            let arcs = rectangle(width, height);
+            let grid = Grid::around(&arcs);
+            let cells = f64::from(grid.counts[0]) * f64::from(grid.counts[1]);
+            assert!(cells <= MOST_CELLS_AN_ARC * arcs.len() as f64, "{width:e} x {height:e}: {grid:?}");
+        }
+        assert_eq!(Grid::around(&rectangle(1.0, 1.0)), Grid { first: [0; 2], counts: [2; 2], bits: [1; 2] });
     }
 }

@@ -13,8 +13,7 @@
 //!
 //! An *arc* is a piece of a trim curve that turns back neither in `u` nor in `v`: straight, or of a conic ([`conic`]), from
 //! its lower end to its higher one. Whether a point lies left of it is decided without a search, all in `f32`, the shader's
-//! arithmetic: by the box of its ends; else by the chord; else, between the chord and the corner, by the sign of the
-//! conic's equation.
+//! arithmetic: by the side of its chord, and on the corner's side by the sign of the conic's equation.
 //!
 //! **Winding.** The winding number of `p` counts crossings right of `p`. Arcs of the list are asked. The others add up to
 //! one number for all points of the box, provided that they form whole chains; a chain that leaves the list at a
