@@ -198,7 +198,7 @@ impl Capacities {
         let counted = table.max(u32::from(counts.trim.is_some_and(is_texture)));
         Self {
             sub_patches: counts.items.saturating_add(256),
-            draws: 64,
+            draws: 256,
             rows: table * (1 << 16).max(2 * counts.bays).min(MOST_ROWS),
             intercepts: counted * (1 << 18).max(4 * counts.bays),
             doubts: trimmed * (1 << 14),
