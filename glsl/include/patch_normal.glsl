@@ -52,7 +52,7 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
             net = net_of(own);
             if (hops) next = (at - own.domain.xy) / own.domain.zw;
         }
-        Sample here = sample_at(own, net, view, next, pixel);
+        Sample here = along_plane(own, net, sample_at(own, net, view, next, pixel), view, pixel);
         Jet jet = here.jet;
         bool goes_on = false;
         if (inwards == 0.0) {
