@@ -52,7 +52,7 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
             net = net_of(own);
             if (hops) next = (at - own.domain.xy) / own.domain.zw;
         }
-        Sample here = along_plane(own, net, sample_at(own, net, view, next, pixel), view, pixel);
+        Sample here = sample_at(own, net, view, next, pixel);
         Jet jet = here.jet;
         bool goes_on = false;
         if (inwards == 0.0) {
@@ -65,6 +65,13 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
             }
             vec2 step_;
             bool farther = step_from(patch_, best, view, step_);
+            // on a plane no other evaluation is needed, unless the step leads out of it
+            vec2 there = best.uv - step_;
+            if (farther && patch_.bend == vec3(0.0) && clamp(there, 0.0, 1.0) == there) {
+                best = along_plane(best, view, step_, pixel);
+                step_ = vec2(0.0);
+                farther = false;
+            }
             // the rest of the way may lead across a side
             if (SCENE_HAS_PIECES && nearer) farther = farther || place_beside(face, place, best.uv - step_) != place;
             goes_on = (farther && nearer || passes) && steps < NEWTON_STEPS;

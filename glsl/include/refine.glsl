@@ -69,17 +69,11 @@ bool step_from(Patch patch_, Sample s, View view, out vec2 step_) {
     return dot(s.miss, s.miss) >= CLOSE_ENOUGH * CLOSE_ENOUGH && abs(det) >= 1e-12;
 }
 
-// Newton's next sample on a plane, with no other evaluation: the derivatives are the same everywhere. Of a patch that is
-// none, or where the step leads out of it, the sample itself.
-Sample along_plane(Patch patch_, Net net, Sample s, View view, vec2 pixel) {
-    vec2 step_;
-    bool steps = step_from(patch_, s, view, step_) && patch_.bend == vec3(0.0);
-    vec2 uv = s.uv - step_;
-    steps = steps && clamp(uv, 0.0, 1.0) == uv;
-    if (!steps) step_ = vec2(0.0);
+// The sample a step back on a plane, where the derivatives are the same everywhere.
+Sample along_plane(Sample s, View view, vec2 step_, vec2 pixel) {
     s.uv -= step_;
     s.jet.point -= step_.x * s.jet.du + step_.y * s.jet.dv;
-    s.q = to_pixel(view, vec4(net.base, 1.0)) + to_pixel(view, vec4(s.jet.point, 0.0));
+    s.q -= step_.x * to_pixel(view, vec4(s.jet.du, 0.0)) + step_.y * to_pixel(view, vec4(s.jet.dv, 0.0));
     s.miss = s.q.xy / s.q.w - pixel;
     return s;
 }
