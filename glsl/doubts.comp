@@ -36,7 +36,7 @@ void main() {
     ivec2 size = ivec2(frame.size);
     uint doubtful = 0u;
     uint nothing = 0u;
-    uint rung = 0u; // a ring is there
+    uint has_ring = 0u; // a ring is there
     uint ringed = 0u; // before what is seen
     uint patch_seen = 0u;
     // marks of other threads may come meanwhile: they are not asked for
@@ -49,10 +49,10 @@ void main() {
             if (sees_nothing(word)) nothing |= bit;
             else patch_seen |= bit;
             if ((word & DOUBTFUL) != 0u) doubtful |= bit;
-            if (number_at(rings, uint(row * size.x + column)) > 0.0) rung |= bit;
+            if (number_at(rings, uint(row * size.x + column)) > 0.0) has_ring |= bit;
         }
         // few have a ring: the depth of the others is not looked at
-        for (uint left_over = rung; left_over != 0u; left_over &= left_over - 1u) {
+        for (uint left_over = has_ring; left_over != 0u; left_over &= left_over - 1u) {
             int row = top + findLSB(left_over);
             float ring = number_at(rings, uint(row * size.x + column));
             if (ring > texelFetch(depth, ivec2(column, row), 0).x) ringed |= left_over & (~left_over + 1u);

@@ -57,6 +57,8 @@ mat2 pixels_along(Sample s, View view) {
     return mat2((qu.xy - p * qu.w) / s.q.w, (qv.xy - p * qv.w) / s.q.w);
 }
 
+bool misses(Sample s) { return dot(s.miss, s.miss) >= CLOSE_ENOUGH * CLOSE_ENOUGH; }
+
 // Where Newton's method goes from there on the patch, if anywhere.
 bool step_from(Patch patch_, Sample s, View view, out vec2 step_) {
     mat2 along = pixels_along(s, view);
@@ -66,7 +68,7 @@ bool step_from(Patch patch_, Sample s, View view, out vec2 step_) {
     step_ = vec2(s.miss.x * pv.y - s.miss.y * pv.x, pu.x * s.miss.y - pu.y * s.miss.x) / det;
     vec2 steps = abs(step_) / (MAX_STEP * pieces_of(patch_.shape));
     step_ /= max(max(steps.x, steps.y), 1.0);
-    return dot(s.miss, s.miss) >= CLOSE_ENOUGH * CLOSE_ENOUGH && abs(det) >= 1e-12;
+    return misses(s) && abs(det) >= 1e-12;
 }
 
 // The sample a step back on a plane, where the derivatives are the same everywhere.
