@@ -21,7 +21,7 @@ layout(local_size_x = 128) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1) uniform usamplerBuffer row_starts;
 layout(scalar, binding = 2) readonly buffer RowTotal { uint row_total; };
-layout(scalar, binding = 3) writeonly buffer RowCounts { uint row_counts[]; }; // flips << 1 | inside before the first
+layout(scalar, binding = 3) writeonly buffer Rows { uvec2 rows[]; }; // first flip; flips << 1 | inside before it
 layout(scalar, binding = 4) buffer Intercepts { uint intercepts[]; };
 layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
 layout(scalar, binding = 6) readonly buffer RowWindings { int row_windings[]; }; // where SCENE_HAS_BAYS
@@ -70,23 +70,23 @@ uint sort_few(uint first, uint count, int winding) {
 
 void main() {
     uint row = gl_GlobalInvocationID.x;
-    uint rows = counters.rows;
-    if (row >= rows) return;
+    uint row_count = counters.rows;
+    if (row >= row_count) return;
     if (row == 0u) {
         counters.intercepts = row_total;
         if (row_total > frame.intercept_capacity) atomicOr(counters.failed, FAILED_INTERCEPTS);
     }
     uint first = word_at(row_starts, row);
-    uint end = row + 1u < rows ? word_at(row_starts, row + 1u) : row_total;
+    uint end = row + 1u < row_count ? word_at(row_starts, row + 1u) : row_total;
     if (end > frame.intercept_capacity) {
-        row_counts[row] = 0u; // the host grows the table and records again
+        rows[row] = uvec2(first, 0u); // the host grows the table and records again
         return;
     }
     uint count = end - first;
     int winding = SCENE_HAS_BAYS ? row_windings[row] : 0;
     uint inside = winding != 0 ? 1u : 0u;
     if (count <= FEW) {
-        row_counts[row] = sort_few(first, count, winding) << 1 | inside;
+        rows[row] = uvec2(first, sort_few(first, count, winding) << 1 | inside);
         return;
     }
     for (uint i = count / 2u; i > 0u; --i) sift(first, i - 1u, count);
@@ -109,5 +109,5 @@ void main() {
         winding = next;
     }
     if (steps != count) atomicAdd(counters.clamps, 1u);
-    row_counts[row] = flips << 1 | inside;
+    rows[row] = uvec2(first, flips << 1 | inside);
 }

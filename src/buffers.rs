@@ -112,7 +112,9 @@ pub(crate) struct TableBuffers {
     pub segment_starts: Texels,
     pub dispatches: Buffer,
     pub strips: Texels,
-    pub row_counts: Texels,
+    /// While rows are filled how many intercepts each has, a word a row; then of each row its first flip, and its
+    /// number of flips twice, 1 more where it begins inside.
+    pub rows: Texels,
     pub row_starts: Texels,
     pub row_total: Buffer,
     pub intercepts: Texels,
@@ -133,7 +135,7 @@ impl TableBuffers {
     /// Zero when the frame begins.
     pub(crate) fn cleared(&self) -> impl Iterator<Item = &Buffer> {
         let of_bays = self.bays.iter().flat_map(|bays| [&bays.seen, &bays.row_windings]);
-        let all: [&Buffer; 4] = [&self.strip_heights, &self.face_speeds, &self.row_counts, &self.border_cells];
+        let all: [&Buffer; 4] = [&self.strip_heights, &self.face_speeds, &self.rows, &self.border_cells];
         all.into_iter().chain(of_bays)
     }
 }
@@ -237,10 +239,10 @@ impl Buffers {
                 segment_starts: numbers("trim segment starts", counts.curves + 1, Texel::Words)?,
                 dispatches: indirect("trim dispatches", 3 * size_of::<[u32; 3]>() as u64)?,
                 strips: texels("trim strips", size_of::<StripRows>() as u64 * u64::from(counts.bays), Texel::U32x4)?,
-                row_counts: numbers("trim row counts", capacities.rows, Texel::Words)?,
+                rows: texels("trim rows", 8 * u64::from(capacities.rows), Texel::U32x2)?,
                 row_starts: numbers("trim row starts", capacities.rows, Texel::Words)?,
                 row_total: words("trim row total", 1)?,
-                intercepts: numbers("trim intercepts", capacities.intercepts, Texel::Words)?,
+                intercepts: numbers("trim intercepts", capacities.intercepts, Texel::U32x2)?,
                 border_cells: texels(
                     "trim border cells",
                     u64::from(counts.bays) * u64::from(BORDER_BANDS * BORDER_COLUMNS / 8),

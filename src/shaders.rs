@@ -50,7 +50,7 @@ pub static TRIM_TABLE: TrimTest = TrimTest {
     operand_patch: OPERAND_PATCH_TABLE_FRAG,
     heal: HEAL_TABLE_COMP,
     within: Some(Within { visibility: VISIBILITY_TABLE_VOLUME_FRAG, heal: HEAL_TABLE_VOLUME_COMP }),
-    texels: 5,
+    texels: 4,
 };
 /// Cells with lists of arcs.
 pub static TRIM_EXACT: TrimTest = TrimTest {

@@ -10,7 +10,9 @@
 //
 // The corners of ring.glsl's hexagon are on the lines, turned so that the lines are scan lines.
 //
-// Always three look-ups and no loop: where a wide machine asks for most pixels anyway, a loop costs it more.
+// Always three look-ups, and one loop for the searches of all of them: a loop costs a wide machine about as much as a look-up,
+// however few rounds it takes. So where a steep front asks for the point ahead, that takes the place of one of the lines
+// across before it is known whether the point is inside: such a front grows to one side only.
 #ifndef BORDER_LINES_GLSL
 #define BORDER_LINES_GLSL
 
@@ -22,6 +24,10 @@ layout(constant_id = 21) const bool TRIMS_HAVE_BAYS = false;
 
 uint told_along(FacePoint p, vec2 step_, float reach) {
     return table_along(p.fi.first_bay, p.face.strips, p.at + step_.x * p.dx + step_.y * p.dy, reach);
+}
+
+Search search_for(FacePoint p, vec2 step_) {
+    return search_at(p.fi.first_bay, p.face.strips, p.at + step_.x * p.dx + step_.y * p.dy);
 }
 
 // The rise to the nearest point that a line tells inside, `aside` long to either side.
@@ -40,16 +46,25 @@ Border border_at(FacePoint p, float reach, bool from_behind, vec2 ahead, vec2 sl
     float width = along.x * p.dx.x + along.y * p.dy.x;
     if (width < 0.0) along = -along;
     width = abs(width);
-    uint told = told_along(p, vec2(0.0), width);
+    bool asks_ahead = !from_behind && ahead != vec2(0.0);
+    vec2 one = asks_ahead ? ahead : across;
+    Search at_point = search_for(p, vec2(0.0));
+    Search at_one = search_for(p, one);
+    Search at_other = search_for(p, -across);
+    while (is_open(at_point) || is_open(at_one) || is_open(at_other)) {
+        halve(at_point);
+        halve(at_one);
+        halve(at_other);
+    }
+    uint told = told_by(at_point, width);
+    uint told_one = told_by(at_one, asks_ahead ? 0.0 : 0.5 * width);
+    uint told_other = told_by(at_other, 0.5 * width);
     bool inside = (told & ALONG_INSIDE) != 0u;
-    bool asks_ahead = inside && !from_behind;
-    uint told_one = told_along(p, asks_ahead ? ahead : across, 0.5 * width);
-    uint told_other = told_along(p, -across, 0.5 * width);
     bool whole = told == ALONG_INSIDE && told_one == ALONG_INSIDE && told_other == ALONG_INSIDE;
     float aside = dot(along, slope);
     float up = dot(across, slope);
     float rise = rise_along(told, 0.0, aside);
-    rise = max(rise, rise_along(told_one, up, 0.5 * aside));
+    if (!asks_ahead) rise = max(rise, rise_along(told_one, up, 0.5 * aside));
     rise = max(rise, rise_along(told_other, -up, 0.5 * aside));
     if (TRIMS_HAVE_BAYS) {
         // a line may end within the ring: its points do not

@@ -1,19 +1,17 @@
 // Look-up in the u-intercept table: nearest scan line, then a binary search.
-// Needs `frame`; whoever includes this defines TABLE_BINDING, where its five buffers begin.
+// Needs `frame`; whoever includes this defines TABLE_BINDING, where its four buffers begin.
 #ifndef TABLE_GLSL
 #define TABLE_GLSL
 
 #include "along.glsl"
 #include "bays.glsl"
 #include "border_cells.glsl"
-#include "words.glsl"
 
 // as texels, which a driver fetches at once where it gathers words of storage buffers one by one
 layout(binding = TABLE_BINDING + 0) uniform usamplerBuffer table_strips; // StripRows, at each strip's first bay
-layout(binding = TABLE_BINDING + 1) uniform usamplerBuffer row_starts;
-layout(binding = TABLE_BINDING + 2) uniform usamplerBuffer row_counts;   // flips << 1 | inside before the first
-layout(binding = TABLE_BINDING + 3) uniform usamplerBuffer flips;        // u, in order in each row
-layout(binding = TABLE_BINDING + 4) uniform usamplerBuffer border_cells; // one a band of a bay
+layout(binding = TABLE_BINDING + 1) uniform usamplerBuffer table_rows;   // first flip; flips << 1 | inside before it
+layout(binding = TABLE_BINDING + 2) uniform usamplerBuffer flips;        // u, in order in each row, two a texel
+layout(binding = TABLE_BINDING + 3) uniform usamplerBuffer border_cells; // one a band of a bay
 
 // Whether a placed face whose bay items begin at `first` has rows at (u, v); `strips` as in Face.
 bool table_covers(uint first, uint strips, vec2 uv) {
@@ -24,64 +22,81 @@ bool table_covers(uint first, uint strips, vec2 uv) {
     return rows.lines != 0u && bay >= rows.first_bay && bay <= last_bay(rows);
 }
 
-// A place in a row: between two flips.
-struct Between {
-    uint passed; // flips before it
-    float before; // the last of them; far away without one
+const float NO_FLIP = 3.0e38;
+
+// A point's place among the flips of its row; one at its u is before it. A binary search among texels of two.
+//
+//     texel     mid - 1  │   mid   │ mid + 1
+//     flips      ·  f0   │  f1 f2  │ f3  ·         both passed: behind it; none: before it; else found
+//
+// Of two texels that u is between, both have been fetched.
+struct Search {
+    float u;
+    uint first; // of the row's flips
+    uint end;
+    uint inside; // before the first
+    uint lo; // texels that it may be in
+    uint hi;
+    uint passed; // flips before it, and those of rows before
+    float before; // the last of the row's; far away without one
     float behind; // the next one
 };
 
-const float NO_FLIP = 3.0e38;
-
-// Where u is among the flips [first, end); one at u is before it. A binary search among texels of four.
-//
-//     texel        mid - 1    │     mid      │    mid + 1
-//     flips     ·  ·  f0  f1  │ f2 f3 f4 f5  │ f6  ·  ·  ·      all four passed: behind it; none: before it; else found
-//
-// Of two texels that u is between, both have been fetched.
-Between between(uint first, uint end, float u) {
-    uint lo = first / 4u;
-    uint hi = (end + 3u) / 4u;
-    Between place = Between(4u * lo, -NO_FLIP, NO_FLIP);
-    while (lo < hi) {
-        uint mid = (lo + hi) / 2u;
-        uvec4 at = 4u * mid + uvec4(0u, 1u, 2u, 3u);
-        vec4 flip = uintBitsToFloat(texelFetch(flips, int(mid)));
-        // what lies before the row counts as passed, what lies behind it does not
-        flip = mix(mix(flip, vec4(-NO_FLIP), lessThan(at, uvec4(first))), vec4(NO_FLIP), greaterThanEqual(at, uvec4(end)));
-        bvec4 is_passed = lessThanEqual(flip, vec4(u));
-        uvec4 ones = uvec4(is_passed);
-        uint count = ones.x + ones.y + ones.z + ones.w;
-        vec4 passed = mix(vec4(-NO_FLIP), flip, is_passed);
-        vec4 left = mix(flip, vec4(NO_FLIP), is_passed);
-        place.before = max(place.before, max(max(passed.x, passed.y), max(passed.z, passed.w)));
-        place.behind = min(place.behind, min(min(left.x, left.y), min(left.z, left.w)));
-        place.passed = 4u * mid + count;
-        if (count == 4u) lo = mid + 1u;
-        else if (count == 0u) hi = mid;
-        else lo = hi;
-    }
-    place.passed = max(place.passed, first) - first;
-    return place;
-}
-
-// Whether (u, v) is inside, and whether flips of its scan line are within `reach` of u, in its bay: along.glsl.
-uint table_along(uint first, uint strips, vec2 uv, float reach) {
+// Where the search of (u, v) begins. Without flips to look at it ends there, too.
+Search search_at(uint first, uint strips, vec2 uv) {
     float n = float(strip_count(strips));
     uint bays = bay_count(strips);
     float s = uv.y * n;
-    if (!(s >= 0.0 && s < n)) return 0u;
-    StripRows rows = strip_rows(table_strips, first + uint(s) * bays);
-    if (rows.lines == 0u) return 0u;
+    bool on_face = s >= 0.0 && s < n;
+    StripRows rows = strip_rows(table_strips, first + (on_face ? uint(s) * bays : 0u));
     uint row = row_of(rows, min(uint(fract(s) * float(rows.lines)), rows.lines - 1u), bay_of(uv.x, bays));
-    if (row >= frame.row_capacity) return ALONG_INSIDE; // the host grows the table and records again
-    uint begin = word_at(row_starts, row);
-    uint counted = word_at(row_counts, row);
-    Between place = between(begin, begin + (counted >> 1), uv.x);
-    uint along = (place.passed ^ counted) & 1u;
-    if (place.before > uv.x - reach) along |= ALONG_BEFORE;
-    if (place.behind < uv.x + reach) along |= ALONG_BEHIND;
+    bool has_row = on_face && rows.lines != 0u;
+    bool has_room = row < frame.row_capacity;
+    row = has_row && has_room ? row : 0u;
+    uvec2 told = texelFetch(table_rows, int(row)).xy;
+    if (!has_row) told.y = 0u;
+    else if (!has_room) told.y = 1u; // the host grows the table and records again
+    uint end = told.x + (told.y >> 1);
+    uint lo = told.x / 2u;
+    uint hi = end > told.x ? (end + 1u) / 2u : lo;
+    return Search(uv.x, told.x, end, told.y & 1u, lo, hi, told.x, -NO_FLIP, NO_FLIP);
+}
+
+bool is_open(Search s) { return s.lo < s.hi; }
+
+// One step; none where it has ended.
+void halve(inout Search s) {
+    uint mid = (s.lo + s.hi) / 2u;
+    uvec2 at = 2u * mid + uvec2(0u, 1u);
+    vec2 flip = uintBitsToFloat(texelFetch(flips, int(mid)).xy);
+    // what lies before the row counts as passed, what lies behind it does not
+    flip = mix(mix(flip, vec2(-NO_FLIP), lessThan(at, uvec2(s.first))), vec2(NO_FLIP), greaterThanEqual(at, uvec2(s.end)));
+    bvec2 is_passed = lessThanEqual(flip, vec2(s.u));
+    uint count = uint(is_passed.x) + uint(is_passed.y);
+    vec2 passed = mix(vec2(-NO_FLIP), flip, is_passed);
+    vec2 left = mix(flip, vec2(NO_FLIP), is_passed);
+    if (is_open(s)) {
+        s.before = max(s.before, max(passed.x, passed.y));
+        s.behind = min(s.behind, min(left.x, left.y));
+        s.passed = 2u * mid + count;
+        uint hi = count == 0u ? mid : s.hi;
+        s.lo = count == 2u ? mid + 1u : count == 0u ? s.lo : s.hi;
+        s.hi = hi;
+    }
+}
+
+// Whether its point is inside, and whether flips of its scan line are within `reach` of u, in its bay: along.glsl.
+uint told_by(Search s, float reach) {
+    uint along = (max(s.passed, s.first) - s.first ^ s.inside) & 1u;
+    if (s.before > s.u - reach) along |= ALONG_BEFORE;
+    if (s.behind < s.u + reach) along |= ALONG_BEHIND;
     return along;
+}
+
+uint table_along(uint first, uint strips, vec2 uv, float reach) {
+    Search s = search_at(first, strips, uv);
+    while (is_open(s)) halve(s);
+    return told_by(s, reach);
 }
 
 bool table_inside(uint first, uint strips, vec2 uv) {

@@ -17,7 +17,7 @@ const uint TRIM_MIXED = 2u;
 const uint TRIM_SAME = 3u;
 
 #ifdef TRIM_BY_TABLE
-#define TRIM_BUFFERS 5
+#define TRIM_BUFFERS 4
 #define TABLE_BINDING TRIM_BINDING
 #include "table.glsl"
 

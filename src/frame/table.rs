@@ -57,7 +57,7 @@ impl<'a> TableParts<'a> {
     /// What the look-up reads, in the order of `glsl/include/trim.glsl`.
     pub(super) fn test(self) -> Vec<Resource<'a>> {
         let t = self.buffers;
-        [&t.strips, &t.row_starts, &t.row_counts, &t.intercepts, &t.border_cells].map(Resource::from).to_vec()
+        [&t.strips, &t.rows, &t.intercepts, &t.border_cells].map(Resource::from).to_vec()
     }
 
     /// Records the passes; what the trim test reads is then ready for it.
@@ -138,14 +138,14 @@ impl<'a> TableParts<'a> {
             strips: &t.strips,
             segment_starts: &t.segment_starts,
             row_starts: &t.row_starts,
-            row_counts: &t.row_counts,
+            row_counts: &t.rows,
             intercepts: &t.intercepts,
             border_cells: &t.border_cells,
             row_windings,
             dispatches: &t.dispatches,
         };
         p.cross.count(cmd, &cross);
-        barrier::buffers(cmd, &[(&t.row_counts, w, r), (&t.row_starts, r, w), (&b.sums, w, w)]);
+        barrier::buffers(cmd, &[(&t.rows, w, r), (&t.row_starts, r, w), (&b.sums, w, w)]);
         let word = |offset: usize| (offset / size_of::<u32>()) as u32;
         frame.passes.scan.record(
             cmd,
@@ -157,17 +157,14 @@ impl<'a> TableParts<'a> {
                 capacity: b.capacities.rows,
             },
             &scan::Bindings {
-                values: &t.row_counts,
+                values: &t.rows,
                 offsets: &t.row_starts,
                 sums: &b.sums,
                 total: &t.row_total,
                 total_index: 0,
             },
         );
-        barrier::buffers(
-            cmd,
-            &[(&t.row_starts, w, r), (&t.row_total, w, r), (&t.row_counts, r, w), (&b.counters, r, w)],
-        );
+        barrier::buffers(cmd, &[(&t.row_starts, w, r), (&t.row_total, w, r), (&t.rows, r, w), (&b.counters, r, w)]);
         if let Some(((carry, bays), wide_strips)) =
             p.carry.as_ref().zip(t.bays.as_ref()).zip(trims.wide_strips.as_ref())
         {
@@ -178,13 +175,13 @@ impl<'a> TableParts<'a> {
             barrier::buffers(cmd, &[(row_windings, w, r)]);
         }
         p.cross.insert(cmd, &cross);
-        barrier::buffers(cmd, &[(&t.intercepts, w, w), (&t.row_counts, w, w)]);
+        barrier::buffers(cmd, &[(&t.intercepts, w, w), (&t.rows, w, w)]);
 
         let sort = sort::Bindings {
             frame: frame.constants,
             row_starts: &t.row_starts,
             row_total: &t.row_total,
-            row_counts: &t.row_counts,
+            rows: &t.rows,
             intercepts: &t.intercepts,
             counters: &b.counters,
             row_windings,
@@ -195,8 +192,7 @@ impl<'a> TableParts<'a> {
             cmd,
             &[
                 (&t.strips, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
-                (&t.row_starts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
-                (&t.row_counts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
+                (&t.rows, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
                 (&t.intercepts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
                 (&t.border_cells, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
             ],

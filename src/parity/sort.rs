@@ -48,7 +48,7 @@ impl Rows {
 
 /// What the pass leaves.
 struct Run {
-    row_counts: Buffer,
+    rows: Buffer,
     intercepts: Buffer,
     counters: Buffer,
 }
@@ -58,7 +58,7 @@ impl Run {
         let frame_buffer = gpu.upload("frame", &[*frame]);
         let row_starts = gpu.upload_texels("row starts", &given.starts, Texel::Words);
         let row_total = gpu.upload("row total", &[given.total]);
-        let row_counts = gpu.upload("row counts", &vec![0u32; given.starts.len()]);
+        let told = gpu.upload("rows", &vec![[0u32; 2]; given.starts.len()]);
         let intercepts = gpu.upload("intercepts", &given.intercepts);
         let counters = gpu.upload("counters", &[given.counters]);
         let row_windings = gpu.upload("row windings", &given.windings);
@@ -68,7 +68,7 @@ impl Run {
             frame: &frame_buffer,
             row_starts: &row_starts,
             row_total: &row_total,
-            row_counts: &row_counts,
+            rows: &told,
             intercepts: &intercepts,
             counters: &counters,
             row_windings: Some(&row_windings),
@@ -76,14 +76,16 @@ impl Run {
         };
         let pass = Sort::new(gpu.device(), true).unwrap();
         gpu.run(|cmd| pass.record(cmd, &bindings));
-        Self { row_counts, intercepts, counters }
+        Self { rows: told, intercepts, counters }
     }
 
     fn compare(&self, gpu: &Gpu, frame: &Frame, expected: &Rows) -> Result<(), Mismatch> {
         let (mut flips, mut after) = (expected.intercepts.clone(), expected.counters);
         let counts =
             twin::sort::sort(frame, &expected.starts, expected.total, &expected.windings, &mut flips, &mut after);
-        same("row counts", &gpu.read(&self.row_counts, counts.len()), &counts)?;
+        let rows: Vec<[u32; 2]> =
+            expected.starts.iter().copied().zip(counts.iter().copied()).map(<[u32; 2]>::from).collect();
+        same("rows", &gpu.read(&self.rows, rows.len()), &rows)?;
         let found = flips_of(expected, &counts, &gpu.read(&self.intercepts, flips.len()));
         same("flips", &found, &flips_of(expected, &counts, &flips))?;
         same("counters", &gpu.read(&self.counters, 1), &[after])
@@ -167,6 +169,6 @@ fn a_difference_is_seen() {
     assert!(compare(&gpu, &case.frame, &other, &rows).is_err());
     let mut other = rows.clone();
     other.windings[0] ^= 1; // what the row begins with
-    assert_eq!(compare(&gpu, &case.frame, &other, &rows).unwrap_err().buffer, "row counts");
+    assert_eq!(compare(&gpu, &case.frame, &other, &rows).unwrap_err().buffer, "rows");
     gpu.finish();
 }

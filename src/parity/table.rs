@@ -174,9 +174,10 @@ mod parity {
         let (face, points) = (&case.data.faces[SHEET], points(4096));
         let frame = gpu.upload("frame", &[case.frame]);
         let of_strips = gpu.upload_texels("strips", &given.strips, Texel::U32x4);
-        let row_starts = gpu.upload_texels("row starts", &given.row_starts, Texel::Words);
-        let row_counts = gpu.upload_texels("row counts", &given.flip_counts, Texel::Words);
-        let flips = gpu.upload_texels("flips", &given.flips, Texel::Words);
+        let rows: Vec<[u32; 2]> =
+            given.row_starts.iter().copied().zip(given.flip_counts.iter().copied()).map(<[u32; 2]>::from).collect();
+        let rows = gpu.upload_texels("rows", &rows, Texel::U32x2);
+        let flips = gpu.upload_texels("flips", &given.flips, Texel::U32x2);
         let border_cells = gpu.upload_texels("border cells", &given.border_cells, Texel::U32x4);
         let uvs = gpu.upload("points", &points);
         let answers = gpu.upload("answers", &vec![7u32; points.len()]);
@@ -191,7 +192,7 @@ mod parity {
         let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
         let push = [placed.first_bay, face.strips, AROUND[0].to_bits(), AROUND[1].to_bits()];
         gpu.run(|cmd| {
-            let texels = [&of_strips, &row_starts, &row_counts, &flips, &border_cells].map(Resource::from);
+            let texels = [&of_strips, &rows, &flips, &border_cells].map(Resource::from);
             let of_points = [&uvs, &answers].map(Resource::from);
             let resources: Vec<_> = [Resource::from(&frame)].into_iter().chain(texels).chain(of_points).collect();
             cmd.bind(&pipeline, &resources, bytemuck::bytes_of(&push));

@@ -5,9 +5,8 @@
 //!   flips        |              |        inside    0 1 1 1 1 1 0
 //! ```
 //!
-//! Reads: `frame`, `row_starts`, `row_total`, `row_windings`, `dispatches`. Writes: `row_counts` (now twice the number of
-//! flips, and 1 more where the row begins inside),
-//! `intercepts`, `counters`. Twin: `src/twin/sort.rs`.
+//! Reads: `frame`, `row_starts`, `row_total`, `row_windings`, `dispatches`. Writes: `rows` (of each its first
+//! flip, and its number of flips twice, 1 more where it begins inside), `intercepts`, `counters`. Twin: `src/twin/sort.rs`.
 
 use crate::bindings::with_texels;
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
@@ -27,7 +26,8 @@ pub(crate) struct Bindings<'a> {
     pub row_starts: &'a Texels,
     /// Intercepts of all rows.
     pub row_total: &'a Buffer,
-    pub row_counts: &'a Buffer,
+    /// Two words a row.
+    pub rows: &'a Buffer,
     pub intercepts: &'a Buffer,
     pub counters: &'a Buffer,
     /// What each row begins with, where strips have several bays.
@@ -58,7 +58,7 @@ impl Sort {
             b.frame.into(),
             b.row_starts.into(),
             b.row_total.into(),
-            b.row_counts.into(),
+            b.rows.into(),
             b.intercepts.into(),
             b.counters.into(),
             // not read where there are none

@@ -7,8 +7,8 @@
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 6) readonly buffer Points { vec2 points[]; };
-layout(scalar, binding = 7) writeonly buffer Answers { uint answers[]; };
+layout(scalar, binding = 5) readonly buffer Points { vec2 points[]; };
+layout(scalar, binding = 6) writeonly buffer Answers { uint answers[]; };
 layout(push_constant) uniform Push { uint first_bay; uint strips; vec2 around; };
 
 #define TABLE_BINDING 1
