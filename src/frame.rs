@@ -38,15 +38,14 @@ use crate::abi::Counters;
 use crate::bindings::Primitives;
 use crate::buffers::{Buffers, TableBuffers};
 use crate::gpu::{
-    Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Resource, Texels, Timestamps,
-    barrier,
+    Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Texels, Timestamps, barrier,
 };
 use crate::passes::coverage::Coverage;
 use crate::passes::seen_squares::SeenSquares;
 use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::passes::{emit, mesh, reset, resolve, scan, split, visibility};
 use crate::picture::TrimWay;
-use crate::scene::{MeshBuffers, Scene, SceneData, SolidData};
+use crate::scene::{Scene, SceneData, SolidData};
 use divide::DividePass;
 use hidden::HiddenPasses;
 use layers::{Drawing, LayerPasses};
@@ -59,6 +58,7 @@ mod bands;
 mod blister;
 mod coverage;
 mod divide;
+mod drawn;
 mod edit;
 mod heal;
 mod hidden;
@@ -88,6 +88,9 @@ pub(crate) struct Passes {
     trim: Option<TrimPasses>,
     solids: Option<SolidPasses>,
     visibility: visibility::Visibility,
+    /// The same without a trim test, to compare with.
+    #[cfg(feature = "rivals")]
+    untested: Option<visibility::Visibility>,
     mesh: Option<mesh::Mesh>,
     /// Of scenes with patches or meshes.
     squares: Option<SeenSquares>,
@@ -159,6 +162,8 @@ impl Passes {
             hidden,
             solids: solids?,
             visibility,
+            #[cfg(feature = "rivals")]
+            untested: rival::untested(device, data, kinds)?,
             mesh,
             squares,
             resolve,
@@ -264,6 +269,8 @@ impl Frame<'_> {
             times.scope(cmd, "solids", || self.solid_faces(cmd, &parts));
         }
         let test = trim.as_ref().map_or(Vec::new(), TrimParts::test);
+        #[cfg(feature = "rivals")]
+        self.untested(cmd, times);
         times.drawing(cmd, "visibility", || self.visibility(cmd, &test, false));
         if let (Some(parts), Some(tessellation)) = (self.reveals(), &self.passes.tessellation) {
             times.drawing(cmd, "reveal", || parts.reveal(self, cmd, tessellation, &test));
@@ -431,53 +438,6 @@ impl Frame<'_> {
     fn volume(&self) -> Option<Primitives<'_>> {
         let volume = self.scene.volume.as_ref().zip(self.volume_places);
         volume.map(|(v, places)| v.primitives(places))
-    }
-
-    /// Meshes first: what hides them may be in doubt.
-    fn mesh(&self, cmd: &Commands<'_>, pass: &mesh::Mesh, m: &MeshBuffers) {
-        let b = self.buffers;
-        let bindings = mesh::Bindings {
-            frame: self.constants,
-            views: self.views,
-            mesh_instances: &m.instances,
-            triangles: &m.triangles,
-            positions: &m.positions,
-            volume: self.volume(),
-        };
-        let seen = b.others.as_ref().unwrap_or(&b.visibility);
-        pass.record(cmd, &bindings, (seen, &b.depth), &m.draws, m.outward);
-        barrier::images(
-            cmd,
-            &[(seen, Access::COLOUR_WRITE, Access::COLOUR_WRITE), (&b.depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],
-        );
-    }
-
-    /// `again`: over what it drew before.
-    fn visibility(&self, cmd: &Commands<'_>, test: &[Resource<'_>], again: bool) {
-        let (s, b) = (self.scene, self.buffers);
-        barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE, Access::INDIRECT_READ)]);
-        if let Some(t) = &b.trim {
-            let before = if again { Access::FRAGMENT_WRITE } else { Access::TRANSFER_WRITE };
-            barrier::buffers(cmd, &[(&t.rings, before, Access::FRAGMENT_WRITE)]);
-        }
-        let bindings = visibility::Bindings {
-            frame: self.constants,
-            placed: s.placed(self.views),
-            factors: &b.factors,
-            sub_patches: &b.sub_patches,
-            instances: &s.instances,
-            rings: b.trim.as_ref().map(|t| &*t.rings),
-            trim: test,
-            volume: self.volume(),
-            links: s.links.as_ref(),
-            draws: &b.draws,
-            counters: &b.counters,
-        };
-        let drawn = again || s.meshes.is_some() || s.solids.is_some();
-        let colour = if again || drawn && b.others.is_none() { Load::Keep } else { Load::ColourU32([0; 4]) };
-        let visibility = Attachment { image: &b.visibility, load: colour };
-        let depth = Attachment { image: &b.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
-        self.passes.visibility.record(cmd, &bindings, (visibility, depth), b.capacities.draws);
     }
 }
 

@@ -267,6 +267,10 @@ pub struct SceneSettings {
     /// [`Levels::Bound`]: see [`crate::rivals::factors`]. The promise is *not* kept; for comparisons.
     #[cfg(feature = "rivals")]
     pub slefe_segments: Option<usize>,
+    /// Before pass `visibility` the same sub-patches are drawn without a trim test, which nobody sees: pass `visibility
+    /// untested` tells what tests cost. Not in scenes with anything but patches, and where nothing is trimmed.
+    #[cfg(feature = "rivals")]
+    pub untested: bool,
     /// How to draw Boolean solids.
     pub solids: SolidWay,
     /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover or grow into, and time,

@@ -4,13 +4,17 @@
 //!   cells ──density──▶ face speeds ──sizes──(scan)──▶ starts      textures only; the others have no pass
 //!   curves ──flip──▶ bits ──fill──▶ texels, places
 //! ```
+//!
+//! And for what trim tests cost, whatever the way: the frame's sub-patches drawn without one, into images that pass
+//! `visibility` then clears.
 
+use super::samples::Scopes;
 use super::{Frame, WRITE_TO_READ, WRITE_TO_WRITE};
 use crate::buffers::TextureBuffers;
 use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, barrier};
-use crate::passes::{density, rival_texture};
+use crate::passes::{density, rival_texture, visibility};
 use crate::picture::Rival;
-use crate::scene::{RivalScene, TableScene};
+use crate::scene::{RivalScene, SceneData, TableScene};
 use crate::shaders::{TRIM_BISECT, TRIM_TEXTURE, TRIM_UNTRIMMED, TrimTest};
 
 /// The passes of such a way.
@@ -80,6 +84,29 @@ impl<'a> RivalParts<'a> {
             }
             _ => None,
         }
+    }
+}
+
+/// Pass `visibility` without a test; `None` where nobody asked for it, or there is none to leave out.
+pub(super) fn untested(
+    device: &Device,
+    data: &SceneData,
+    kinds: visibility::Kinds<'_>,
+) -> Result<Option<visibility::Visibility>, GpuError> {
+    let others = data.has_meshes() || data.solids.kinds().is_some() || kinds.volume.is_some();
+    let kinds = visibility::Kinds { trimmed: kinds.trimmed.map(|_| &TRIM_UNTRIMMED), ..kinds };
+    let made = data.untested && !others && kinds.trimmed.is_some();
+    made.then(|| visibility::Visibility::new(device, kinds)).transpose()
+}
+
+impl Frame<'_> {
+    /// Draws the patches without a test, where that is asked for.
+    pub(super) fn untested(&self, cmd: &Commands<'_>, times: &mut Scopes<'_>) {
+        let Some(pass) = &self.passes.untested else { return };
+        times.scope(cmd, "visibility untested", || self.patches(cmd, pass, &[], false));
+        let b = self.buffers;
+        let (colour, depth) = (Access::COLOUR_WRITE, Access::DEPTH_WRITE);
+        barrier::images(cmd, &[(&b.visibility, colour, colour), (&b.depth, depth, depth)]);
     }
 }
 

@@ -76,6 +76,9 @@ pub(crate) struct SceneData {
     #[cfg(feature = "rivals")]
     pub bisect: crate::rivals::bisect::Bisect,
     pub division: Division,
+    /// Patches are also drawn without a trim test.
+    #[cfg(feature = "rivals")]
+    pub untested: bool,
     /// How faces would be trimmed.
     way: Option<TrimWay>,
     /// Of each pixel.
@@ -183,8 +186,10 @@ impl SceneData {
             ..Self::default()
         };
         #[cfg(feature = "rivals")]
-        if let Some(segments) = settings.slefe_segments {
-            data.division = Division::Slefe(crate::rivals::slefe::words(segments));
+        {
+            let slefes = settings.slefe_segments.map(|segments| Division::Slefe(crate::rivals::slefe::words(segments)));
+            data.division = slefes.unwrap_or_default();
+            data.untested = settings.untested;
         }
         // cut open, a part has no inside
         let open = data.volume.is_some();

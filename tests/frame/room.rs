@@ -12,6 +12,8 @@ const BY_TABLE: SceneSettings = SceneSettings {
     trim: Some(TrimWay::Table),
     #[cfg(feature = "rivals")]
     slefe_segments: None,
+    #[cfg(feature = "rivals")]
+    untested: false,
     solids: SolidWay::Events,
     editable: false,
     samples: Samples::One,

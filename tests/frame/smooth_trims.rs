@@ -23,6 +23,8 @@ const fn plain() -> SceneSettings {
         trim: Some(TrimWay::Exact),
         #[cfg(feature = "rivals")]
         slefe_segments: None,
+        #[cfg(feature = "rivals")]
+        untested: false,
         solids: selvedge::picture::SolidWay::Events,
         editable: false,
         samples: Samples::One,

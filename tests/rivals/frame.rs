@@ -5,7 +5,7 @@ use selvedge::gpu::GpuError;
 use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Instance, Model, Projection};
 use selvedge::picture::Sorted;
-use selvedge::picture::{FrameSettings, Outputs, Rival, SceneSettings, TrimWay};
+use selvedge::picture::{FrameSettings, Outputs, Picture, Rival, SceneSettings, TrimWay};
 use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
 use selvedge::renderer::RenderError;
 use selvedge::rivals::pretessellated::pretessellated;
@@ -124,6 +124,30 @@ fn meshes_are_off_by_their_deflection() {
         assert_eq!(j.wrong, 0, "{}: {:?}", model.name, j.mismatches);
         let j = judged(&pretessellated(&model, 4.0 * pixel).0, None, &model);
         assert!(j.wrong > 10 && j.worst_shift_px > 0.7, "{} wrong, {} px", j.wrong, j.worst_shift_px);
+    }
+}
+
+/// What tests cost is told by the same frame: nobody sees that its patches were also drawn without them.
+#[test]
+fn patches_drawn_without_a_test_are_not_seen() {
+    let model = panel();
+    let settings = FrameSettings::default();
+    for trim in [TrimWay::Table, TrimWay::Exact, TrimWay::Rival(Rival::Bisect { steps: 16, sorted: Sorted::Tuned })] {
+        let mut renderer = watched(&model, Some(trim));
+        let mut draw = |untested| {
+            renderer
+                .upload_with(&model, SceneSettings { trim: Some(trim), untested, ..SceneSettings::default() })
+                .unwrap();
+            renderer.render(&camera(&model), &settings, Outputs::ALL).unwrap()
+        };
+        let (alone, beside) = (draw(false), draw(true));
+        let untested =
+            |picture: &Picture| picture.stats.passes.iter().filter(|p| p.name == "visibility untested").count();
+        assert_eq!((untested(&alone), untested(&beside)), (0, 1), "{trim:?}");
+        assert_eq!((&alone.colour, &alone.depth), (&beside.colour, &beside.depth), "{trim:?}");
+        assert_eq!(alone.stats.triangles, beside.stats.triangles, "{trim:?}");
+        let messages = renderer.shutdown();
+        assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
     }
 }
 

@@ -2,10 +2,11 @@
 //!
 //! ```text
 //!   trim time = passes that the way has of its own                    "trim table", "trim texture"
-//!             + pass "visibility" - the same without a test           what the tests in the pixels cost
+//!             + "visibility" - "visibility untested"                  what the tests in the pixels cost
 //! ```
 //!
-//! Without a test pixels are kept that a test discards, so the difference can be below zero.
+//! Each frame draws its sub-patches twice, first without a test: the same ones, so what is seen through holes counts
+//! for neither. Without a test pixels are kept that a test discards, so the difference can be below zero.
 //!
 //! All passes are recorded, and once more what a view takes that turns: a table that serves it as well is kept.
 
@@ -18,7 +19,7 @@ use glam::DQuat;
 use selvedge::gpu::GpuError;
 use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Model};
-use selvedge::picture::{FrameSettings, FrameStats, Outputs, Rival, SceneSettings, TrimWay};
+use selvedge::picture::{FrameSettings, FrameStats, Outputs, SceneSettings, TrimWay};
 use selvedge::reference::Tracer;
 use selvedge::renderer::RenderError;
 use selvedge::rivals::{pretessellated::pretessellated, texture};
@@ -27,6 +28,9 @@ use std::time::Instant;
 
 /// Frames before the first measured one: buffers have grown, pipelines are compiled.
 const WARM_UP_FRAMES: usize = 2;
+
+/// The pass that draws without a test: it is not part of the frame.
+const UNTESTED: &str = "visibility untested";
 
 /// Which of the plots a row belongs to.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -100,21 +104,17 @@ pub struct Bench<'a> {
     name: &'a str,
     model: &'a Model,
     tracer: &'a Tracer,
-    /// Trims nothing.
-    untrimmed: Option<HeadlessRenderer>,
-    /// Milliseconds of pass "visibility" without a test, view by view: standing, and turning.
-    without: Vec<(Camera, [f64; 2])>,
 }
 
 impl<'a> Bench<'a> {
     pub fn new(args: &'a TrimsArgs, name: &'a str, model: &'a Model, tracer: &'a Tracer) -> Self {
-        Self { args, name, model, tracer, untrimmed: None, without: Vec::new() }
+        Self { args, name, model, tracer }
     }
 
-    fn renderer(&self, model: &Model, trim: Option<TrimWay>) -> Result<HeadlessRenderer> {
+    fn renderer(&self, model: &Model, trim: Option<TrimWay>, untested: bool) -> Result<HeadlessRenderer> {
         let options = HeadlessOptions { device: self.args.device.clone(), validation: false };
         let mut renderer = HeadlessRenderer::new(&options)?;
-        renderer.upload_with(model, SceneSettings { trim, ..SceneSettings::default() })?;
+        renderer.upload_with(model, SceneSettings { trim, untested, ..SceneSettings::default() })?;
         Ok(renderer)
     }
 
@@ -134,13 +134,13 @@ impl<'a> Bench<'a> {
             _ => None,
         };
         let model = mesh.as_ref().unwrap_or(self.model);
-        let timed = during(&what, || self.renderer(model, contender.trim()))?;
+        let timed = during(&what, || self.renderer(model, contender.trim(), true))?;
         let prepare_ms = start.elapsed().as_secs_f64() * 1e3;
-        Ok(Entered { contender, prepare_ms, timed, judged: self.renderer(model, contender.trim())? })
+        Ok(Entered { contender, prepare_ms, timed, judged: self.renderer(model, contender.trim(), false)? })
     }
 
     /// Measures and judges one view.
-    pub fn row(&mut self, entered: &mut Entered, sweep: Sweep, zoom: f64, camera: &Camera) -> Result<Row> {
+    pub fn row(&self, entered: &mut Entered, sweep: Sweep, zoom: f64, camera: &Camera) -> Result<Row> {
         let contender = entered.contender;
         let (way, (knob, knob_at)) = (contender.way(), contender.knob());
         let what = format!("{}: {way}, {zoom} times, {} x {}", self.name, camera.size.0, camera.size.1);
@@ -174,32 +174,12 @@ impl<'a> Bench<'a> {
         if !matches!(contender, Contender::Texture { .. }) {
             row.trim_bytes = objects.iter().filter(|(name, _)| is_for_trims(way, name)).map(|(_, b)| *b as f64).sum();
         }
-        let trims = !matches!(contender, Contender::Pretessellated { .. });
-        let own = [&stats, &turning].map(|stats| time(stats, "visibility"));
-        let without = if trims { self.without(camera)? } else { own };
-        row.cost = Some(cost(&stats, &turning, without, objects));
+        row.cost = Some(cost(&stats, &turning, objects));
         let picture = entered.judged.render(camera, &settings, Outputs::ALL)?;
         let j = verdict::of(self.tracer, camera, &picture, self.args.samples, 0.5, zoom, &what);
         row.error =
             Some(Error { judged: j.sampled, wrong: verdict::wrong(&j), worst_shift_px: verdict::worst_shift_px(&j) });
         Ok(row)
-    }
-
-    /// Pass "visibility" of this view without a test, standing and turning.
-    fn without(&mut self, camera: &Camera) -> Result<[f64; 2]> {
-        if let Some((_, ms)) = self.without.iter().find(|(known, _)| known == camera) {
-            return Ok(*ms);
-        }
-        if self.untrimmed.is_none() {
-            self.untrimmed = Some(self.renderer(self.model, Some(TrimWay::Rival(Rival::Untrimmed)))?);
-        }
-        let Some(renderer) = &mut self.untrimmed else { unreachable!("made above") };
-        let settings = FrameSettings { all_passes: true, ..FrameSettings::default() };
-        let standing = quickest(renderer, &settings, self.args.frames, |_| *camera)?;
-        let turning = turning(renderer, camera, &settings, self.args.frames)?;
-        let ms = [standing, turning].map(|stats| stats.map_or(0.0, |stats| time(&stats, "visibility")));
-        self.without.push((*camera, ms));
-        Ok(ms)
     }
 }
 
@@ -259,18 +239,23 @@ fn time(stats: &FrameStats, pass: &str) -> f64 {
     stats.passes.iter().filter(|p| p.name == pass).map(|p| p.gpu_ms).sum()
 }
 
-fn cost(stats: &FrameStats, turning: &FrameStats, without: [f64; 2], objects: Vec<(String, u64)>) -> Cost {
+fn cost(stats: &FrameStats, turning: &FrameStats, objects: Vec<(String, u64)>) -> Cost {
     let own_passes_ms = |stats: &FrameStats| -> f64 {
         stats.passes.iter().filter(|p| p.name.starts_with("trim")).map(|p| p.gpu_ms).sum()
     };
-    let trim_ms = |stats: &FrameStats, without: f64| own_passes_ms(stats) + time(stats, "visibility") - without;
-    let frame_ms = |stats: &FrameStats| stats.passes.iter().map(|p| p.gpu_ms).sum();
+    // a mesh has nothing to test
+    let tests_ms = |stats: &FrameStats| match time(stats, UNTESTED) {
+        0.0 => 0.0,
+        untested => time(stats, "visibility") - untested,
+    };
+    let trim_ms = |stats: &FrameStats| own_passes_ms(stats) + tests_ms(stats);
+    let frame_ms = |stats: &FrameStats| stats.passes.iter().filter(|p| p.name != UNTESTED).map(|p| p.gpu_ms).sum();
     Cost {
-        trim_ms: trim_ms(stats, without[0]),
+        trim_ms: trim_ms(stats),
         own_passes_ms: own_passes_ms(stats),
         heal_ms: time(stats, "heal"),
         frame_ms: frame_ms(stats),
-        turning_trim_ms: trim_ms(turning, without[1]),
+        turning_trim_ms: trim_ms(turning),
         turning_frame_ms: frame_ms(turning),
         passes: stats.passes.iter().map(|p| (p.name.clone(), p.gpu_ms)).collect(),
         bytes: objects.iter().map(|(_, bytes)| bytes).sum(),
@@ -299,12 +284,13 @@ mod tests {
     #[test]
     fn trim_time_is_own_passes_and_the_difference() {
         let pass = |name: &str, gpu_ms| PassTime { name: name.into(), gpu_ms };
-        let passes = vec![pass("trim table", 2.0), pass("visibility", 7.0), pass("heal", 1.0), pass("resolve", 3.0)];
+        let passes = [("trim table", 2.0), (UNTESTED, 5.5), ("visibility", 7.0), ("heal", 1.0), ("resolve", 3.0)];
+        let passes: Vec<_> = passes.map(|(name, ms)| pass(name, ms)).into();
         let turning = FrameStats { passes: passes[1..].to_vec(), ..FrameStats::default() };
         let all = FrameStats { passes, ..FrameStats::default() };
-        let cost = cost(&all, &turning, [5.5, 5.0], vec![("trim rows".into(), 12)]);
+        let cost = cost(&all, &turning, vec![("trim rows".into(), 12)]);
         assert_eq!((cost.trim_ms, cost.own_passes_ms, cost.heal_ms, cost.frame_ms), (3.5, 2.0, 1.0, 13.0));
-        assert_eq!((cost.turning_trim_ms, cost.turning_frame_ms), (2.0, 11.0));
+        assert_eq!((cost.turning_trim_ms, cost.turning_frame_ms), (1.5, 11.0));
         assert_eq!(cost.bytes, 12);
     }
 

@@ -71,7 +71,7 @@ fn models(args: &TrimsArgs) -> Vec<PathBuf> {
 /// All sweeps over one model.
 fn measured(args: &TrimsArgs, name: &str, model: Model) -> Result<Vec<Row>> {
     let tracer = during("preparing the exact model", || Tracer::new(&model));
-    let mut bench = Bench::new(args, name, &model, &tracer);
+    let bench = Bench::new(args, name, &model, &tracer);
     let mut rows = Vec::new();
     let Size(width, height) = args.size;
     let view = |zoom| zoomed(&model, (width, height), zoom);
