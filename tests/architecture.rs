@@ -50,6 +50,7 @@ const BARRIERS: &[&str] = &[
     "src/frame/bands.rs",
     "src/frame/blister.rs",
     "src/frame/coverage.rs",
+    "src/frame/drawn.rs",
     "src/frame/edit.rs",
     "src/frame/heal.rs",
     "src/frame/hidden.rs",
