@@ -18,6 +18,8 @@
 layout(constant_id = 1) const bool INSERT = false;
 // Strips of some face have several bays.
 layout(constant_id = 2) const bool SCENE_HAS_BAYS = false;
+// Somebody asks where trim curves pass: pass `operand_patch`.
+layout(constant_id = 3) const bool MARKS_BORDERS = false;
 
 layout(local_size_x = 128) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
@@ -32,7 +34,7 @@ layout(binding = 7) uniform usamplerBuffer segment_starts;
 layout(binding = 8) uniform usamplerBuffer row_starts;
 layout(scalar, binding = 9) buffer RowCounts { uint row_counts[]; };
 layout(scalar, binding = 10) writeonly buffer Intercepts { uint intercepts[]; };
-layout(scalar, binding = 11) buffer BorderCells { uint border_cells[]; }; // four words a band
+layout(scalar, binding = 11) buffer BorderCells { uint border_cells[]; }; // four words a band, where MARKS_BORDERS
 layout(scalar, binding = 12) buffer RowWindings { int row_windings[]; }; // where SCENE_HAS_BAYS
 
 #include "bays.glsl"
@@ -104,7 +106,7 @@ void main() {
         float mu = float(rows.lines);
         precise float low = a.y * strip_n - float(k);
         precise float high = b.y * strip_n - float(k);
-        if (!INSERT) {
+        if (!INSERT && MARKS_BORDERS) {
             precise float around = 0.5 / mu + BAND_ROUNDING;
             precise float below = low - around;
             precise float above = high + around;

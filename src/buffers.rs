@@ -118,6 +118,7 @@ pub(crate) struct TableBuffers {
     pub row_starts: Texels,
     pub row_total: Buffer,
     pub intercepts: Texels,
+    /// Of scenes with spline operands: only those ask.
     pub border_cells: Texels,
     /// `None` where each strip has one bay.
     pub bays: Option<BayBuffers>,
@@ -245,7 +246,8 @@ impl Buffers {
                 intercepts: numbers("trim intercepts", capacities.intercepts, Texel::U32x2)?,
                 border_cells: texels(
                     "trim border cells",
-                    u64::from(counts.bays) * u64::from(BORDER_BANDS * BORDER_COLUMNS / 8),
+                    u64::from(if counts.operand_patches { counts.bays } else { 1 })
+                        * u64::from(BORDER_BANDS * BORDER_COLUMNS / 8),
                     Texel::U32x4,
                 )?,
                 bays: (counts.wide_strips > 0)

@@ -1,5 +1,5 @@
-// Where trim curves pass, coarsely: a bit for each cell of the bays of a placed face's strips. Written by pass `cross`, asked by
-// table.glsl. Twin of src/twin/border_cells.rs.
+// Where trim curves pass, coarsely: a bit for each cell of the bays of a placed face's strips. Written by pass `cross` in
+// scenes with spline operands, asked by table.glsl. Twin of src/twin/border_cells.rs.
 //
 //            128 columns of a bay, a texel of four words
 //          ┌─┬─┬─┬─┬─┬─┬─┬─┐

@@ -78,7 +78,11 @@ void main() {
     bool doubtful = solid && away;
     float reach = solid && !away ? GROWTH * frame.ring_px : frame.ring_px;
     vec2 around = reach * (abs(dx) + abs(dy)); // of the point: its ring is in that box
+#ifdef TRIM_BY_TABLE
+    uint area = TRIM_MIXED; // three scan lines are asked for whatever the area is: that costs less than to know it
+#else
     uint area = trim_area(fi, face, at - around, at + around);
+#endif
     if (area == TRIM_OUT) discard;
     bool grows = area == TRIM_MIXED;
     float px = frame.focal * (frame.perspective != 0u ? gl_FragCoord.w : 1.0) * instance_at(fi.instance).scale;

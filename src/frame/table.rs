@@ -31,14 +31,14 @@ pub(super) struct TablePasses {
 }
 
 impl TablePasses {
-    /// `bays`: strips of some face have several bays.
-    pub(super) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
+    /// `bays`: strips of some face have several bays. `marks`: where curves pass is asked for.
+    pub(super) fn new(device: &Device, bays: bool, marks: bool) -> Result<Self, GpuError> {
         Ok(Self {
             density: density::Density::new(device, bays)?,
             lines: lines::Lines::new(device, bays)?,
             segments: segments::Segments::new(device, bays)?,
             sizes: sizes::Sizes::new(device, bays)?,
-            cross: cross::Cross::new(device, bays)?,
+            cross: cross::Cross::new(device, bays, marks)?,
             carry: bays.then(|| carry::Carry::new(device)).transpose()?,
             sort: sort::Sort::new(device, bays)?,
         })

@@ -38,7 +38,9 @@ impl TrimPasses {
     pub(super) fn new(device: &Device, data: &SceneData) -> Result<Option<Self>, GpuError> {
         let Some(way) = data.trim_way() else { return Ok(None) };
         let way = match way {
-            TrimWay::Table => Way::Table(Box::new(TablePasses::new(device, !data.wide_strips.is_empty())?)),
+            TrimWay::Table => {
+                Way::Table(Box::new(TablePasses::new(device, !data.wide_strips.is_empty(), data.has_operands)?))
+            }
             TrimWay::Exact => Way::Exact,
             #[cfg(feature = "rivals")]
             TrimWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival)?),

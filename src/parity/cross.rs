@@ -47,7 +47,7 @@ fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> Left {
         row_windings: bays.then_some(&row_windings),
         dispatches: &dispatches,
     };
-    let pass = Cross::new(gpu.device(), bays).unwrap();
+    let pass = Cross::new(gpu.device(), bays, true).unwrap();
     gpu.run(|cmd| if insert { pass.insert(cmd, &bindings) } else { pass.count(cmd, &bindings) });
     Left {
         row_counts: gpu.read(&row_counts, before.len()),

@@ -19,6 +19,8 @@ use crate::shaders;
 const INSERT: u32 = 1;
 /// `constant_id` of `SCENE_HAS_BAYS`.
 const SCENE_HAS_BAYS: u32 = 2;
+/// `constant_id` of `MARKS_BORDERS`.
+const MARKS_BORDERS: u32 = 3;
 
 /// The pass, in its two roles.
 pub(crate) struct Cross {
@@ -48,8 +50,8 @@ pub(crate) struct Bindings<'a> {
 }
 
 impl Cross {
-    /// `bays`: strips of some face have several bays.
-    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
+    /// `bays`: strips of some face have several bays. `marks`: where curves pass is asked for.
+    pub(crate) fn new(device: &Device, bays: bool, marks: bool) -> Result<Self, GpuError> {
         let pipeline = |name, insert: bool| {
             Pipeline::compute(
                 device,
@@ -58,7 +60,11 @@ impl Cross {
                     spirv: shaders::CROSS_COMP,
                     bindings: &with_texels(1..9, 13),
                     push_bytes: 0,
-                    constants: &[(INSERT, u32::from(insert)), (SCENE_HAS_BAYS, u32::from(bays))],
+                    constants: &[
+                        (INSERT, u32::from(insert)),
+                        (SCENE_HAS_BAYS, u32::from(bays)),
+                        (MARKS_BORDERS, u32::from(marks)),
+                    ],
                 },
             )
         };
