@@ -187,9 +187,10 @@ impl SceneData {
         };
         #[cfg(feature = "rivals")]
         {
-            let slefes = settings.slefe_segments.map(|segments| Division::Slefe(crate::rivals::slefe::words(segments)));
-            data.division = slefes.unwrap_or_default();
             data.untested = settings.untested;
+            if let Some(segments) = settings.slefe_segments {
+                data.division = Division::Slefe(crate::rivals::slefe::words(segments));
+            }
         }
         // cut open, a part has no inside
         let open = data.volume.is_some();
