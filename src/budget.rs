@@ -11,6 +11,7 @@
 //!   where one of two faces that meet sticks out by e, and the other falls short by row / 2 + chord,
 //!   the eight points of the ring must reach it:    ring cos(pi / 8) >= e + row / 2 + chord
 //!   three scan lines that reach as far end at most ring cos(pi / 8) / cos(pi / 6) away (glsl/include/border_lines.glsl)
+//!   trims that are exact spend no row and no chord: a square does, of ring 0.8 (glsl/include/border_arcs.glsl)
 //! ```
 //!
 //! * *deviation*: the tessellation's point at (u, v) lies this close to the exact surface at (u, v)
@@ -52,6 +53,11 @@ impl Budget {
             ring: tolerance_px / 2.0,
         }
     }
+
+    /// How far beside the picture pass `density` looks: rings reach there, and samples by half a pixel.
+    pub(crate) fn beside(&self) -> f64 {
+        self.ring + 1.0
+    }
 }
 
 #[cfg(test)]
@@ -68,6 +74,9 @@ mod tests {
             assert!(b.ring * (std::f64::consts::PI / 8.0).cos() >= apart, "who sticks out may not find its neighbour");
             let corner = b.ring * (std::f64::consts::PI / 8.0).cos() / (std::f64::consts::PI / 6.0).cos();
             assert!(error + corner <= tolerance, "a border may be off by more than the tolerance");
+            let square = 0.8 * b.ring; // SQUARE, glsl/include/ring.glsl
+            assert!(square >= 2.0 * b.deviation, "exact: who sticks out may not find its neighbour");
+            assert!(b.deviation + square * std::f64::consts::SQRT_2 <= tolerance, "exact: a border may be off by more");
         }
     }
 }

@@ -74,7 +74,7 @@ mod table;
 mod trim;
 
 pub(crate) use hidden::Hiding;
-pub(crate) use samples::SampleBuffers;
+pub(crate) use samples::ViewBuffers;
 pub(crate) use solids::{Centres, Near};
 
 /// The passes that a scene needs.
@@ -185,7 +185,9 @@ pub(crate) struct Frame<'a> {
     pub constants: &'a Buffer,
     pub views: &'a Texels,
     /// The same for each of a pixel's samples, where there are several.
-    pub samples: &'a [SampleBuffers],
+    pub samples: &'a [ViewBuffers],
+    /// What the trim table is made of, where that is not this view.
+    pub table_view: Option<&'a ViewBuffers>,
     pub centres: Option<Centres<'a>>,
     pub near: Near,
     pub hiding: Hiding,

@@ -57,7 +57,7 @@ impl Levels {
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TrimWay {
-    /// The u-intercept table: made for all views from about as far, or closer up for each; a binary search in each of three
+    /// The u-intercept table: made for all views from about as far, or closer up from near by; a binary search in each of three
     /// rows a pixel.
     Table,
     /// The loops themselves, as arcs of conics in cells made once: a few of them a pixel.

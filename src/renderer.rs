@@ -21,6 +21,7 @@ mod known;
 mod slot;
 
 use crate::abi;
+use crate::budget::Budget;
 use crate::buffers::{Buffers, SolidBuffers};
 pub use crate::capacities::TooMany;
 use crate::capacities::{Capacities, Counts, MOST_LEGS};
@@ -29,7 +30,7 @@ use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Ima
 use crate::model::{Camera, CameraError, Model};
 use crate::passes::{resolve, solid_layers};
 use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, SceneSettings};
-pub use crate::scene::{CloseUp, EditError, UndrawnSolid};
+pub use crate::scene::{CloseUp, Cut, EditError, UndrawnSolid, Wanted};
 use crate::scene::{Scene, SceneData, Write};
 use ash::vk;
 use known::Known;
@@ -217,7 +218,7 @@ impl Renderer {
     ///
     /// # Errors
     /// As [`upload`](Self::upload).
-    pub fn upload_cut(&mut self, whole: &Model, cut: &Model, settings: SceneSettings) -> Result<(), RenderError> {
+    pub fn upload_cut(&mut self, whole: &Model, cut: &Cut, settings: SceneSettings) -> Result<(), RenderError> {
         asked::check_sun(settings)?;
         self.load(SceneData::cut_from(whole, cut, settings)?, settings)
     }
@@ -325,16 +326,16 @@ impl Renderer {
         let cmd = unsafe { Commands::new(&self.device, cmd) };
         let Some(loaded) = &mut self.loaded else { panic!("upload a model before recording") };
         let slot = &mut self.slots[input.slot];
-        slot.write(&self.device, loaded, input, &self.formats)?;
+        let view = (*input.camera, input.settings);
+        let table = loaded.data.table_view(input.camera, Budget::of(tolerance).beside());
+        let known = Known::after(loaded.known, view, table, !loaded.edits.is_empty(), loaded.counts.hides);
+        slot.write(&self.device, loaded, input, &self.formats, &known)?;
         if loaded.scene.is_none() {
             let (scene, uploads) = Scene::record(&cmd, &loaded.data)?;
             slot.retired.push(Retired::Uploads(uploads));
             loaded.scene = Some(scene);
             loaded.data.drop_uploaded();
         }
-        let view = (*input.camera, input.settings);
-        let density = loaded.data.table_density(input.camera);
-        let known = Known::after(loaded.known, view, density, !loaded.edits.is_empty(), loaded.counts.hides);
         slot.edit_bytes = 0;
         if let Some(scene) = loaded.scene.as_ref().filter(|_| !loaded.edits.is_empty()) {
             let uploads = Frame::edit(&cmd, scene, &loaded.edits)?;
@@ -365,6 +366,7 @@ impl Renderer {
             constants: &slot.constants,
             views,
             samples: &slot.samples,
+            table_view: slot.table.as_ref(),
             centres: slot.centres.solids(),
             near,
             hiding: known.hiding,

@@ -7,7 +7,7 @@
 //!                                             counters of the        ┊      kept counters
 //!                                             table │                ┊            │
 //!                                                   │ counters       ┊            │
-//!   a view from about as far           ──▶ reset ───●───────▶ tessellation ─ …    │ counters
+//!   a view that the table serves       ──▶ reset ───●───────▶ tessellation ─ …    │ counters
 //!                                                 several samples a pixel: here   │
 //!   the view of the frame before, again ──▶ ─────────────────────────┴────────────●────────────▶ resolve … layers
 //! ```

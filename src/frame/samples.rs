@@ -45,8 +45,8 @@ impl SamplePasses {
     }
 }
 
-/// One sample's view, written by the host.
-pub(crate) struct SampleBuffers {
+/// A view besides the pixels' centres, written by the host.
+pub(crate) struct ViewBuffers {
     pub constants: Buffer,
     pub views: Texels,
 }
@@ -88,7 +88,7 @@ impl Frame<'_> {
         sample.draw(cmd, &mut Scopes::of(times), (Some(&passes.resolve), Drawing::Sample), 0);
         let added = into(Load::Keep);
         times.scope(cmd, "more samples", || {
-            for (nth, SampleBuffers { constants, views }) in (1..).zip(others) {
+            for (nth, ViewBuffers { constants, views }) in (1..).zip(others) {
                 let sample = Frame { constants, views, colour: &added, ..*self };
                 sample.begin_again(cmd, sum);
                 sample.draw(cmd, &mut Scopes(None), (Some(&passes.resolve), Drawing::Sample), nth);

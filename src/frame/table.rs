@@ -1,4 +1,4 @@
-//! The frame's part for the trim table: the u-intercepts of this view, or of all views from about as far as it.
+//! The frame's part for the trim table: the u-intercepts of this view, and of others from as far or from near by.
 //!
 //! ```text
 //!   cells ──density──▶ strip heights ──lines──(scan)──▶ rows
@@ -7,8 +7,8 @@
 //!                 ╰──▶ row windings ──carry──▶ what rows begin with ──╯       only where strips have several bays
 //! ```
 //!
-//! A table for all views from about as far (`scene::around`) is made once and stays until there is another view, of another
-//! density, or an edit; `kept.rs` tells how.
+//! A table is made once and stays until there is a view that it does not serve (`scene::trimmed`), or an edit; `kept.rs` tells
+//! how.
 
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::Counters;
@@ -70,9 +70,11 @@ impl<'a> TableParts<'a> {
         barrier::buffers(cmd, &all_cleared);
         let seen_bays = t.bays.as_ref().map(|bays| &bays.seen);
         let row_windings = t.bays.as_ref().map(|bays| &bays.row_windings);
+        let (constants, views) =
+            frame.table_view.map_or((frame.constants, frame.views), |wider| (&wider.constants, &wider.views));
         let density = density::Bindings {
-            frame: frame.constants,
-            views: frame.views,
+            frame: constants,
+            views,
             instances: &s.instances,
             face_instances: &s.face_instances,
             faces: &s.faces,

@@ -4,7 +4,7 @@ use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
 use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
 use crate::model::{Camera, LoopAt, Model, TrimLoop};
 use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
-use crate::renderer::{CloseUp, EditError, FrameInput, RenderError, Renderer, TargetFormats, Targets};
+use crate::renderer::{CloseUp, EditError, FrameInput, RenderError, Renderer, TargetFormats, Targets, Wanted};
 use ash::vk;
 use bytemuck::Pod;
 use std::mem::ManuallyDrop;
@@ -24,8 +24,6 @@ pub struct HeadlessRenderer {
     aovs: bool,
     model: Option<(Model, SceneSettings)>,
     close_up: CloseUp,
-    /// The renderer holds what one view saw close up, not the model.
-    close: bool,
 }
 
 /// Images of one size, and the buffers that they are copied to.
@@ -50,7 +48,6 @@ impl HeadlessRenderer {
             aovs: false,
             model: None,
             close_up: CloseUp::default(),
-            close: false,
         })
     }
 
@@ -69,7 +66,6 @@ impl HeadlessRenderer {
     pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), HeadlessError> {
         self.model = Some((model.clone(), settings));
         self.close_up = CloseUp::new(model);
-        self.close = false;
         Ok(self.renderer.upload_with(model, settings)?)
     }
 
@@ -186,7 +182,7 @@ impl HeadlessRenderer {
             renderer.upload_with(model, *settings)?;
             *self.renderer = renderer;
             self.aovs = aovs;
-            self.close = false;
+            self.close_up = CloseUp::new(model);
             *self.targets = None;
         }
         let fits = |t: &TargetImages| t.colour.0.size() == size && t.thickness.is_some() == thickness;
@@ -202,12 +198,16 @@ impl HeadlessRenderer {
         let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
         // loops that are being edited stay where they are, and parts are followed through as a whole
         let whole = settings.editable || settings.thickness || settings.highlight.is_some();
-        let near = if whole { None } else { self.close_up.of(model, camera) };
-        if near.is_some() || self.close {
-            self.renderer.upload_cut(model, near.as_ref().unwrap_or(model), *settings)?;
+        let wanted = if whole { Wanted::Same } else { self.close_up.of(model, camera) };
+        let uploaded = match &wanted {
+            Wanted::Same => Ok(()),
+            Wanted::Whole => self.renderer.upload_with(model, *settings),
+            Wanted::Cut(near) => self.renderer.upload_cut(model, near, *settings),
+        };
+        if uploaded.is_err() {
+            self.close_up.forget();
         }
-        self.close = near.is_some();
-        Ok(())
+        Ok(uploaded?)
     }
 
     fn read(&self, size: (u32, u32), outputs: Outputs, stats: FrameStats) -> Picture {

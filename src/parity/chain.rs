@@ -45,6 +45,11 @@ pub(super) struct Chain {
 
 impl Chain {
     pub(super) fn new(case: &Case) -> Self {
+        Self::with_table_of(case, case)
+    }
+
+    /// The trim table is of what another view of the same scene sees.
+    pub(super) fn with_table_of(case: &Case, table: &Case) -> Self {
         let (frame, scene) = (&case.frame, &case.scene());
         let mut c = Self::default();
         (c.draws, c.counters) = twin::reset::reset(frame);
@@ -56,7 +61,7 @@ impl Chain {
         let list = (c.sub_patches.as_mut_slice(), c.draws.as_mut_slice());
         twin::emit::emit(frame, &c.split.factors, &c.sub_patch_starts, &c.vertex_starts, list, &mut c.counters);
 
-        c.density = twin::density::density(frame, scene);
+        c.density = twin::density::density(&table.frame, &table.scene());
         c.strip_counts = twin::lines::lines(frame, &c.density.strip_heights, &c.density.seen_bays, &mut c.counters);
         c.strip_starts = starts(&c.strip_counts);
         c.segment_counts = twin::segments::segments(frame, scene, &c.density, &c.strip_starts);

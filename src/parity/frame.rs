@@ -5,8 +5,11 @@ use super::Case;
 use super::chain::Chain;
 use super::harness::Gpu;
 use super::shapes::model_and_cameras;
+use crate::budget::Budget;
 use crate::headless::{HeadlessOptions, HeadlessRenderer};
+use crate::model::{Camera, Projection};
 use crate::picture::{FrameSettings, Outputs};
+use crate::scene::TableView;
 
 #[test]
 fn a_frame_counts_what_the_twins_count() {
@@ -15,15 +18,22 @@ fn a_frame_counts_what_the_twins_count() {
     gpu.finish();
     let options = HeadlessOptions { device: None, validation: true };
     let mut renderer = HeadlessRenderer::new(&options).unwrap();
-    let (model, cameras) = model_and_cameras();
+    let (model, mut cameras) = model_and_cameras();
+    let narrow = Camera { projection: Projection::Perspective { fov_y: 0.1 }, ..cameras[0] };
+    cameras.push(narrow);
     renderer.upload(&model).unwrap();
-    let mut tables = [0, 0]; // of one view, of many
+    let mut tables = [0; 3]; // of one view, of many, of those near by
     for camera in &cameras {
         for tolerance_px in [0.5, 3.0] {
             let mut case = Case::cut(&model, camera, tolerance_px);
-            case.frame.table_density = case.data.table_density(camera).unwrap_or(0.0);
-            tables[usize::from(case.frame.table_density > 0.0)] += 1;
-            let chain = Chain::new(&case).counters;
+            let table = case.data.table_view(camera, Budget::of(tolerance_px).beside()).expect("faces are trimmed");
+            case.frame.table_density = table.density();
+            let wider = match &table {
+                TableView::Of(wider) if wider != camera => Some(Case::cut(&model, wider, tolerance_px)),
+                _ => None,
+            };
+            tables[if wider.is_some() { 2 } else { usize::from(table.density() > 0.0) }] += 1;
+            let chain = Chain::with_table_of(&case, wider.as_ref().unwrap_or(&case)).counters;
             let settings = FrameSettings { tolerance_px, ..Default::default() };
             let stats = renderer.render(camera, &settings, Outputs::default()).unwrap().stats;
             let on_gpu = [stats.sub_patches, stats.trim_rows, stats.trim_intercepts, stats.clamps];
@@ -33,7 +43,7 @@ fn a_frame_counts_what_the_twins_count() {
             assert!(on_gpu.iter().zip(&twin).all(near), "GPU {on_gpu:?}, twins {twin:?}");
         }
     }
-    assert!(tables.iter().all(|count| *count > 0), "tables of one view and of many: {tables:?}");
+    assert!(tables.iter().all(|count| *count > 0), "tables of one view, of many, of those near by: {tables:?}");
     let messages = renderer.shutdown();
     assert!(messages.is_empty(), "{messages:#?}");
 }

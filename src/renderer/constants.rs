@@ -4,8 +4,8 @@ use super::{FrameInput, Loaded, TargetFormats};
 use crate::abi;
 use crate::budget::Budget;
 use crate::gpu::Device;
-use crate::model::{Projection, srgb};
-use crate::scene::focal_and_slant;
+use crate::model::srgb;
+use crate::scene::{TableView, seen_by};
 use ash::vk;
 
 /// The colour target's format encodes linear light by itself.
@@ -24,30 +24,24 @@ pub(super) fn background(input: &FrameInput<'_>, formats: &TargetFormats) -> [f3
     [encoded(r), encoded(g), encoded(b), opacity]
 }
 
-/// What every shader of the frame reads.
+/// What every shader of the frame reads. `table`: where there is one.
 pub(super) fn constants(
     device: &Device,
     loaded: &Loaded,
     input: &FrameInput<'_>,
     formats: &TargetFormats,
+    table: Option<&TableView>,
 ) -> abi::Frame {
     let camera = input.camera;
     let budget = Budget::of(input.settings.tolerance_px);
-    let (focal, slant) = focal_and_slant(camera);
     let (right, up, forward) = camera.axes();
     let (counts, room) = (loaded.counts, loaded.capacities);
-    abi::Frame {
-        size: [camera.size.0 as f32, camera.size.1 as f32],
-        focal: focal as f32,
-        slant: slant as f32,
-        near: camera.depth_range.0 as f32,
-        far: camera.depth_range.1 as f32,
-        perspective: u32::from(matches!(camera.projection, Projection::Perspective { .. })),
+    let frame = abi::Frame {
         deviation_px: budget.deviation as f32,
         ring_px: budget.ring as f32,
         row_px: budget.row as f32,
         chord_px: budget.chord as f32,
-        table_density: loaded.data.table_density(camera).unwrap_or(0.0),
+        table_density: table.map_or(0.0, TableView::density),
         fixed_factor: input.settings.levels.fixed().unwrap_or(0),
         item_count: counts.items,
         cell_count: counts.cells,
@@ -77,7 +71,9 @@ pub(super) fn constants(
         offset: [0.0; 2],
         spread_px: counts.samples.offsets().iter().flatten().fold(0.0f64, |far, x| far.max(x.abs())) as f32,
         samples: counts.samples.count(),
-    }
+        ..abi::Frame::default()
+    };
+    seen_by(camera, frame)
 }
 
 /// Vertices of one sub-patch at the hardware's factor of 64: a draw may exceed its budget by so many.

@@ -4,17 +4,17 @@
 //!   scenes that hide     First ─▶ Asks ─▶ Same ─▶ Same, keeps ─▶ Same, keeps ─ … ─▶ Moved ─▶ Same ─▶ Same, keeps
 //!   others               made ──▶ keeps ─▶ …                                        made ──▶ keeps
 //!                        └──────── one view ────────────────────────────────────┘   └──── another, or an edit ───
-//!   table of one view    made ──▶ made ─▶ …                                         made ──▶ made
-//!   of many views        made ──▶ keeps ─▶ …                                        keeps, but for an edit
+//!   trim table           made ──▶ keeps ─▶ …                                        keeps where it serves that, too
 //! ```
 //!
 //! A frame that hides asks once it has drawn: what it is told changes what the next one draws, though not what is seen,
 //! and the one after that nothing. All begins anew with new buffers: another scene, another size of the picture, more
-//! room. What a table is made of follows from its density and the tolerance alone (`scene::around`).
+//! room. What a table is made of follows from what it serves and the tolerance alone (`scene::trimmed`).
 
 use crate::frame::Hiding;
 use crate::model::Camera;
 use crate::picture::FrameSettings;
+use crate::scene::TableView;
 
 /// What a frame was told, and of which view.
 #[derive(Clone, Copy, Debug)]
@@ -24,18 +24,18 @@ pub(super) struct Known {
     pub(super) keeps: bool,
     /// The trim table is that of the frame before.
     pub(super) keeps_table: bool,
-    /// Of a table for many views.
-    density: Option<f32>,
+    /// What that is made of; where there is one.
+    pub(super) table: Option<TableView>,
     view: (Camera, FrameSettings),
 }
 
 impl Known {
-    /// Of the frame that follows one. `density`: where the trim table is for many views. `edited`: some trim changes between
+    /// Of the frame that follows one. `table`: what its trim table is made of. `edited`: some trim changes between
     /// them. `hides`: patches may lie behind others.
     pub(super) fn after(
         before: Option<Self>,
         view: (Camera, FrameSettings),
-        density: Option<f32>,
+        table: Option<TableView>,
         edited: bool,
         hides: bool,
     ) -> Self {
@@ -52,12 +52,10 @@ impl Known {
         let made = before.filter(is_same).is_some_and(|before| !hides || before.hiding == Hiding::Same);
         let is_made_for = |before: &Self| {
             let (_, settings_before) = before.view;
-            before.density.is_some()
-                && before.density == density
-                && settings_before.tolerance_px == settings.tolerance_px
+            table.is_some() && before.table == table && settings_before.tolerance_px == settings.tolerance_px
         };
         let has_table = before.filter(is_made_for).is_some() && !edited;
         let may_keep = !settings.all_passes;
-        Self { hiding, keeps: made && may_keep, keeps_table: has_table && may_keep, density, view }
+        Self { hiding, keeps: made && may_keep, keeps_table: has_table && may_keep, table, view }
     }
 }

@@ -2,15 +2,16 @@
 
 use super::centres::SlotCentres;
 use super::constants::constants;
+use super::known::Known;
 use super::{FrameInput, Loaded, Retired, TargetFormats};
 use crate::abi;
 use crate::abi::Counters;
 use crate::capacities::Capacities;
-use crate::frame::SampleBuffers;
+use crate::frame::ViewBuffers;
 use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Pool, ReadBack, Texel, Texels, Timestamps};
 use crate::model::Camera;
 use crate::picture::PoolBytes;
-use crate::scene::view;
+use crate::scene::{TableView, seen_by, view};
 use ash::vk;
 use glam::{DMat4, DVec3};
 
@@ -22,7 +23,9 @@ pub(super) struct Slot {
     pub(super) constants: Buffer,
     pub(super) views: Option<Texels>,
     /// The same for each of a pixel's samples, where there are several.
-    pub(super) samples: Vec<SampleBuffers>,
+    pub(super) samples: Vec<ViewBuffers>,
+    /// What the trim table is made of, where that is another view.
+    pub(super) table: Option<ViewBuffers>,
     pub(super) centres: SlotCentres,
     pub(super) counters: ReadBack,
     /// What `counters` has room for, and how many the frame reports.
@@ -51,6 +54,7 @@ impl Slot {
             constants: upload_buffer(device, "frame constants", size_of::<abi::Frame>() as u64)?,
             views: None,
             samples: Vec::new(),
+            table: None,
             centres: SlotCentres::default(),
             counters: read_counters(device, 1)?,
             counter_room: 1,
@@ -79,6 +83,7 @@ impl Slot {
         loaded: &Loaded,
         input: &FrameInput<'_>,
         formats: &TargetFormats,
+        known: &Known,
     ) -> Result<(), GpuError> {
         let pixels = input.camera.pixel_matrix();
         let views: Vec<abi::View> = loaded.data.placements.iter().map(|p| view(pixels, *p)).collect();
@@ -91,9 +96,10 @@ impl Slot {
             buffer.write(0, &views);
         }
         self.centres.write(device, &loaded.data, input.camera, &mut self.retired)?;
-        let centre = constants(device, loaded, input, formats);
+        let centre = constants(device, loaded, input, formats, known.table.as_ref());
         self.constants.write(0, &[centre]);
         self.write_samples(device, loaded, input.camera, centre)?;
+        self.write_table(device, loaded, (input.camera, known), centre)?;
         // a drawing for each sample, and one for what is not their mean
         let beside = formats.aovs || formats.depth.is_some() || loaded.counts.thickness || self.samples.is_empty();
         self.counted = self.samples.len() + usize::from(beside);
@@ -116,13 +122,9 @@ impl Slot {
         let placements = &loaded.data.placements;
         let bytes = (placements.len() * size_of::<abi::View>()) as u64;
         if self.samples.len() != offsets.len() || self.samples.iter().any(|s| s.views.bytes() < bytes) {
-            let gone = std::mem::take(&mut self.samples)
-                .into_iter()
-                .flat_map(|s| [Retired::Buffer(s.constants), Retired::Texels(s.views)]);
-            self.retired.extend(gone);
+            self.retired.extend(std::mem::take(&mut self.samples).into_iter().flat_map(gone));
             for _ in offsets {
-                let constants = upload_buffer(device, "sample constants", size_of::<abi::Frame>() as u64)?;
-                self.samples.push(SampleBuffers { constants, views: upload_views(device, "sample views", bytes)? });
+                self.samples.push(view_buffers(device, ["sample constants", "sample views"], bytes)?);
             }
         }
         for (sample, &offset) in self.samples.iter_mut().zip(offsets) {
@@ -131,6 +133,38 @@ impl Slot {
             sample.views.write(0, &views);
             let offset = offset.map(|x| x as f32);
             sample.constants.write(0, &[abi::Frame { offset, encode_srgb: abi::ENCODE_SUMMED, ..centre }]);
+        }
+        Ok(())
+    }
+
+    /// Writes the view that the trim table is made of, where it is made in this frame and of another view.
+    fn write_table(
+        &mut self,
+        device: &Device,
+        loaded: &Loaded,
+        (camera, known): (&Camera, &Known),
+        centre: abi::Frame,
+    ) -> Result<(), GpuError> {
+        let wider = match &known.table {
+            Some(TableView::Of(wider)) if wider != camera => wider,
+            _ => {
+                self.retired.extend(self.table.take().into_iter().flat_map(gone));
+                return Ok(());
+            }
+        };
+        if known.keeps_table {
+            return Ok(());
+        }
+        let pixels = wider.pixel_matrix();
+        let views: Vec<abi::View> = loaded.data.placements.iter().map(|p| view(pixels, *p)).collect();
+        let bytes = size_of_val(views.as_slice()) as u64;
+        if self.table.as_ref().is_none_or(|table| table.views.bytes() < bytes) {
+            let made = view_buffers(device, ["trim table constants", "trim table views"], bytes)?;
+            self.retired.extend(self.table.replace(made).into_iter().flat_map(gone));
+        }
+        if let Some(table) = &mut self.table {
+            table.views.write(0, &views);
+            table.constants.write(0, &[seen_by(wider, centre)]);
         }
         Ok(())
     }
@@ -161,6 +195,15 @@ pub(super) fn upload_texels(device: &Device, name: &str, bytes: u64) -> Result<T
 fn upload_views(device: &Device, name: &str, bytes: u64) -> Result<Texels, GpuError> {
     use vk::BufferUsageFlags as Usage;
     texels(device, name, bytes, Usage::UNIFORM_TEXEL_BUFFER | Usage::STORAGE_BUFFER)
+}
+
+fn view_buffers(device: &Device, names: [&str; 2], bytes: u64) -> Result<ViewBuffers, GpuError> {
+    let constants = upload_buffer(device, names[0], size_of::<abi::Frame>() as u64)?;
+    Ok(ViewBuffers { constants, views: upload_views(device, names[1], bytes)? })
+}
+
+fn gone(buffers: ViewBuffers) -> [Retired; 2] {
+    [Retired::Buffer(buffers.constants), Retired::Texels(buffers.views)]
 }
 
 fn texels(device: &Device, name: &str, bytes: u64, usage: vk::BufferUsageFlags) -> Result<Texels, GpuError> {

@@ -16,9 +16,9 @@
 //! [`GpuError::TooLarge`](crate::gpu::GpuError::TooLarge). Passes: `src/passes/rival_texture.rs`.
 
 use crate::abi::Frame;
-use crate::model::{Camera, Model, Projection};
+use crate::model::{Camera, Model};
 use crate::picture::{Rival, SceneSettings, TrimWay};
-use crate::scene::{SceneData, UndrawnSolid, focal_and_slant, view};
+use crate::scene::{SceneData, UndrawnSolid, seen_by, view};
 use crate::twin;
 
 /// Bytes that all textures take in a view, had they room: what the passes count, without their limits.
@@ -28,18 +28,8 @@ use crate::twin;
 pub fn wanted_bytes(model: &Model, camera: &Camera, eighths: u32) -> Result<f64, UndrawnSolid> {
     let way = TrimWay::Rival(Rival::Texture { eighths });
     let data = SceneData::new(model, SceneSettings { trim: Some(way), ..SceneSettings::default() })?;
-    let (focal, slant) = focal_and_slant(camera);
-    let frame = Frame {
-        size: [camera.size.0 as f32, camera.size.1 as f32],
-        focal: focal as f32,
-        slant: slant as f32,
-        near: camera.depth_range.0 as f32,
-        far: camera.depth_range.1 as f32,
-        perspective: u32::from(matches!(camera.projection, Projection::Perspective { .. })),
-        cell_count: data.cell_items.len() as u32,
-        bay_count: data.bay_count,
-        ..Frame::default()
-    };
+    let frame = Frame { cell_count: data.cell_items.len() as u32, bay_count: data.bay_count, ..Frame::default() };
+    let frame = seen_by(camera, frame);
     let pixels = camera.pixel_matrix();
     let views: Vec<_> = data.placements.iter().map(|p| view(pixels, *p)).collect();
     let scene = twin::Scene {

@@ -12,7 +12,8 @@
 //!
 //! Made once, for no view in particular: what a piece costs in each frame is set against the tests that it saves where the
 //! whole scene is some thousand pixels wide. From as many lines as there is room for, the one that is worth least goes,
-//! and the next, until each is worth what it costs. Closer up, they are worth more.
+//! and the next, until each is worth what it costs. Closer up, they are worth more; what is cut out of a model for close
+//! views (`scene/closeup`) is made for views of one size and cut for that.
 
 use super::flatten::divided;
 use crate::abi::Side;
@@ -23,7 +24,7 @@ use std::ops::Range;
 
 /// Across the scene, in the view that decides. Twice as many made turning frames of whole scenes slower by 5 %; ten times
 /// closer frames took 0.91 to 1.03 of the time.
-const VIEW_PX: f64 = 2000.0;
+pub(super) const VIEW_PX: f64 = 2000.0;
 /// What a drawn piece costs, in tested pixels. llvmpipe: some 5 µs, and 50 ns.
 const PIECE_PX: f64 = 150.0;
 /// What a pixel that needs no test costs, in tested pixels.

@@ -14,12 +14,11 @@
 //! Rounded up to the next of a few steps it is the same for all views from about as far: a model that is turned needs no new
 //! table while it is seen as a whole, and a view's picture is the same whatever was drawn before.
 //!
-//! Such a table has rows for what lies beside the picture, too. Views of a part of the model get one of their own.
+//! Such a table has rows for what lies beside the picture, too: for views of a part of the model there is `nearby.rs`.
 
-use super::data::{SceneData, focal_and_slant};
+use super::focal_and_slant;
 use crate::model::{Bounds, Camera, Projection};
-use crate::picture::TrimWay;
-use glam::{DVec3, Vec3};
+use glam::DVec3;
 
 /// Densities are rounded up to the next power of the fourth root of two: a twelfth too many rows, on average.
 const STEPS: f64 = 4.0;
@@ -33,37 +32,13 @@ const ROUNDING: f64 = 1e-6;
 /// What is trimmed lies in it, in the model's coordinates.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) struct Ball {
-    centre: DVec3,
-    radius: f64,
-}
-
-impl SceneData {
-    /// The density of the trim table for all views from about as far as this one, pixels a model unit; `None`: this view
-    /// wants one of its own, or there is no table.
-    pub(crate) fn table_density(&self, camera: &Camera) -> Option<f32> {
-        self.trimmed?.table_density(camera)
-    }
+    pub(super) centre: DVec3,
+    pub(super) radius: f64,
 }
 
 impl Ball {
-    /// Around the boxes of all cells of the trim table, as they are placed; `None` where there is no table.
-    pub(super) fn trimmed_by_table(data: &SceneData) -> Option<Self> {
-        if data.trim_way() != Some(TrimWay::Table) {
-            return None;
-        }
-        let corners = data.cell_items.iter().enumerate().flat_map(|(item, &placed)| {
-            let placed = data.face_instances[placed as usize];
-            let first = data.faces[placed.face as usize].first_cell as usize;
-            let cell = data.cells[first + item - placed.first_cell as usize];
-            let [min, max] = [cell.box_min, cell.box_max].map(|p| Vec3::from_array(p).as_dvec3());
-            let placement = data.placements[placed.instance as usize];
-            Bounds { min, max }.corners().map(|corner| placement.transform_point3(corner))
-        });
-        Self::around(corners.fold(Bounds::EMPTY, Bounds::with))
-    }
-
     /// Around a box; `None` around nothing, or where it has no end.
-    fn around(bounds: Bounds) -> Option<Self> {
+    pub(super) fn around(bounds: Bounds) -> Option<Self> {
         let radius = 0.5 * bounds.diagonal() * (1.0 + ROUNDING);
         (!bounds.is_empty() && radius.is_finite() && radius > 0.0).then(|| Self { centre: bounds.centre(), radius })
     }
@@ -95,8 +70,9 @@ impl Ball {
         Some(focal * densest.fold(0.0, f64::max) * (1.0 + ROUNDING))
     }
 
-    /// That of [`SceneData::table_density`].
-    fn table_density(&self, camera: &Camera) -> Option<f32> {
+    /// The density of the trim table for all views from about as far as this one, pixels a model unit; `None`: it shows but
+    /// a part of the ball.
+    pub(super) fn table_density(&self, camera: &Camera) -> Option<f32> {
         let steps = (self.density(camera)?.log2() * STEPS).ceil();
         let density = (steps / STEPS).exp2();
         let (width, height) = camera.size;

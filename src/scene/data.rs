@@ -1,6 +1,6 @@
 //! The whole scene as plain arrays, and the transforms that stay in `f64`.
 
-use super::around::Ball;
+use super::closeup::Cut;
 use super::cones::{Normals, cones};
 use super::edit::EditScene;
 use super::exact::ExactData;
@@ -9,12 +9,13 @@ use super::link::link;
 use super::mesh::Meshes;
 use super::solids::{Lists, SolidData, UndrawnSolid};
 use super::sun::SunData;
+use super::trimmed::Trimmed;
 use crate::abi;
-use crate::model::{Camera, Instance, Items, Lone, Model, Projection, SolidError};
+use crate::model::{Instance, Items, Lone, Model, SolidError};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
 use crate::picture::{Highlight, Samples, SceneSettings, TrimWay};
-use glam::{DAffine3, DMat3, DMat4, DVec3};
+use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -87,8 +88,8 @@ pub(crate) struct SceneData {
     smooth_trims: bool,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
-    /// What the table trims lies in it; `None` where there is no table, too.
-    pub trimmed: Option<Ball>,
+    /// Where what the table trims is; `None` where there is no table, too.
+    pub trimmed: Option<Trimmed>,
     /// Boolean solids.
     pub solids: SolidData,
     /// The volume that trims faces and meshes, but for one that is everywhere.
@@ -115,23 +116,27 @@ impl SceneData {
     pub(crate) fn new(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
         // edits would change where cuts pay
         let extent = if settings.editable { f64::INFINITY } else { model.bounds().diagonal() };
-        Self::of(model, model, settings, extent)
+        Self::of(model, model, settings, |_, scale| extent / scale)
     }
 
-    /// Of what a view sees of a model, cut out of it: shadows are those of the whole. It serves no other view, so its
-    /// patches stay as they are.
-    pub(crate) fn cut_from(whole: &Model, model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        Self::of(whole, model, settings, f64::INFINITY)
+    /// Of what close views see of a model, cut out of it: shadows are those of the whole.
+    pub(crate) fn cut_from(whole: &Model, cut: &Cut, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
+        Self::of(whole, &cut.model, settings, |part, _| cut.extents[part])
     }
 
     /// All patches as they are.
     #[cfg(any(test, feature = "rivals"))]
     pub(crate) fn uncut(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        Self::of(model, model, settings, f64::INFINITY)
+        Self::of(model, model, settings, |_, _| f64::INFINITY)
     }
 
-    /// `extent`: see [`Trimming`].
-    fn of(whole: &Model, model: &Model, settings: SceneSettings, extent: f64) -> Result<Self, UndrawnSolid> {
+    /// `extent`: of a part, whose largest copy is so many times as large; see [`Trimming`].
+    fn of(
+        whole: &Model,
+        model: &Model,
+        settings: SceneSettings,
+        extent: impl Fn(usize, f64) -> f64,
+    ) -> Result<Self, UndrawnSolid> {
         let usual = if settings.smooth_trims { TrimWay::Exact } else { TrimWay::Table };
         let way = settings.trim.unwrap_or(usual);
         let trim = Trimming { way, smooth: settings.smooth_trims, editable: settings.editable, extent: f64::INFINITY };
@@ -202,7 +207,7 @@ impl SceneData {
         }
         let mut first_faces = Vec::with_capacity(model.parts.len());
         let mut origins = Vec::with_capacity(model.parts.len());
-        for (part, scale) in model.parts.iter().zip(scales) {
+        for (nth, (part, scale)) in model.parts.iter().zip(scales).enumerate() {
             first_faces.push(data.faces.len());
             let bounds = part.bounds();
             let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
@@ -216,7 +221,7 @@ impl SceneData {
                 };
                 // an open shell's border hides what bends away behind it by less than triangles may be off: pieces, divided
                 // otherwise, may show it
-                let extent = if body == Body::Open { f64::INFINITY } else { extent / scale };
+                let extent = if body == Body::Open { f64::INFINITY } else { extent(nth, scale) };
                 let trim = Trimming { extent, ..trim };
                 let faces: Vec<FaceData> =
                     part.faces.par_iter().map(|f| FaceData::new(f, origin, body, trim, cuts)).collect();
@@ -259,7 +264,7 @@ impl SceneData {
         if !data.hides() {
             data.outside = Vec::new();
         }
-        data.trimmed = Ball::trimmed_by_table(&data);
+        data.trimmed = Trimmed::by_table(&data);
         Ok(data)
     }
 
@@ -310,7 +315,8 @@ impl SceneData {
         let volume = self.volume.take().map(SolidData::centres_only);
         let edit = self.edit.take();
         let sun = self.sun.take().map(SunData::directions_only);
-        *self = Self { placements, trimmed: self.trimmed, solids, volume, edit, sun, ..Self::default() };
+        let trimmed = self.trimmed.take();
+        *self = Self { placements, trimmed, solids, volume, edit, sun, ..Self::default() };
     }
 
     /// Operands of Boolean solids without equations are placed as parts are, after them.
@@ -464,24 +470,4 @@ pub(super) fn stretch(m: DMat3) -> f64 {
     let rows = [t.x_axis, t.y_axis, t.z_axis].map(|c| c.abs().element_sum());
     let most = |x: [f64; 3]| x.into_iter().fold(0.0, f64::max);
     (most(columns) * most(rows)).sqrt()
-}
-
-/// The rows that take a placed part to homogeneous pixels: composed in `f64`, rounded once.
-pub(crate) fn view(pixels: DMat4, placement: DAffine3) -> abi::View {
-    let rows = (pixels * DMat4::from(placement)).transpose();
-    let row = |r: glam::DVec4| r.to_array().map(|x| x as f32);
-    abi::View { x: row(rows.x_axis), y: row(rows.y_axis), depth: row(rows.z_axis), w: row(rows.w_axis) }
-}
-
-/// Pixels per unit slope (or per model unit), and the largest stretch towards the picture's corners.
-pub(crate) fn focal_and_slant(camera: &Camera) -> (f64, f64) {
-    let (w, h) = (f64::from(camera.size.0), f64::from(camera.size.1));
-    match camera.projection {
-        Projection::Perspective { fov_y } => {
-            let focal = h * 0.5 / (fov_y * 0.5).tan();
-            let corner = (w * 0.5).hypot(h * 0.5) / focal;
-            (focal, (1.0 + corner * corner).sqrt())
-        }
-        Projection::Orthographic { height } => (h / height, 1.0),
-    }
 }

@@ -27,12 +27,15 @@ mod fine;
 mod flatten;
 mod link;
 mod mesh;
+mod nearby;
 mod solids;
 mod sun;
+mod trimmed;
 mod upload;
+mod view;
 
-pub use closeup::CloseUp;
-pub(crate) use data::{Division, SceneData, focal_and_slant, view};
+pub use closeup::{CloseUp, Cut, Wanted};
+pub(crate) use data::{Division, SceneData};
 pub use edit::EditError;
 pub(crate) use edit::{EditTarget, Write};
 #[cfg(test)]
@@ -41,6 +44,8 @@ pub(crate) use exact::ExactData;
 pub(crate) use flatten::{Cuts, flattened};
 pub use solids::UndrawnSolid;
 pub(crate) use solids::{Asked, Blister, SolidData};
+pub(crate) use trimmed::TableView;
 #[cfg(feature = "rivals")]
 pub(crate) use upload::RivalScene;
 pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, TableScene, Trims};
+pub(crate) use view::{focal_and_slant, seen_by, view};

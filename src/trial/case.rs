@@ -2,9 +2,9 @@
 
 use crate::abi;
 use crate::budget::Budget;
-use crate::model::{Camera, Model, Projection};
+use crate::model::{Camera, Model};
 use crate::picture::{SceneSettings, TrimWay};
-use crate::scene::{SceneData, focal_and_slant, view};
+use crate::scene::{SceneData, seen_by, view};
 use crate::twin;
 
 /// One scene, one view.
@@ -37,15 +37,8 @@ impl Case {
         camera.check().expect("the camera of a case shows something");
         let pixels = camera.pixel_matrix();
         let views = data.placements.iter().map(|&placement| view(pixels, placement)).collect();
-        let (focal, slant) = focal_and_slant(camera);
         let budget = Budget::of(tolerance_px);
         let frame = abi::Frame {
-            size: [camera.size.0 as f32, camera.size.1 as f32],
-            focal: focal as f32,
-            slant: slant as f32,
-            near: camera.depth_range.0 as f32,
-            far: camera.depth_range.1 as f32,
-            perspective: u32::from(matches!(camera.projection, Projection::Perspective { .. })),
             deviation_px: budget.deviation as f32,
             ring_px: budget.ring as f32,
             row_px: budget.row as f32,
@@ -61,7 +54,7 @@ impl Case {
             intercept_capacity: 1 << 20,
             ..Default::default()
         };
-        Self { data, views, frame }
+        Self { data, views, frame: seen_by(camera, frame) }
     }
 
     /// The scene for the twins.

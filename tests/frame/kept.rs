@@ -98,7 +98,7 @@ fn makes_a_table(pair: &mut Pair, model: &Model, camera: &Camera, settings: Fram
 }
 
 #[test]
-fn views_from_about_as_far_share_a_trim_table() {
+fn views_from_about_as_far_and_from_near_by_share_a_trim_table() {
     let mut model = few();
     let scene = SceneSettings { trim: Some(TrimWay::Table), editable: true, ..SceneSettings::default() };
     let mut pair = Pair::new(&model, scene);
@@ -109,7 +109,11 @@ fn views_from_about_as_far_share_a_trim_table() {
     let farther = Camera { eye: camera.eye.lerp(camera.target, -0.5), ..camera };
     let farther = Camera { depth_range: (1.0, 2.0 * camera.depth_range.1), ..farther };
     let close = Camera { eye: camera.eye.lerp(camera.target, 0.9), depth_range: (0.05, 100.0), ..camera };
+    let by = DVec3::new(1e-3, -2e-3, 1e-3);
+    let hardly = |view: Camera| Camera { eye: view.eye + by, target: view.target + by, ..view };
     let beside = Camera { eye: close.eye + DVec3::X, target: close.target + DVec3::X, ..close };
+    let narrow = Camera { projection: Projection::Perspective { fov_y: 0.4 }, ..close };
+    let part = Camera { projection: Projection::Orthographic { height: 8.0 }, ..camera };
     let parallel = Camera { projection: Projection::Orthographic { height: 30.0 }, ..camera };
     let aside = Camera { eye: parallel.eye + DVec3::X, target: parallel.target + DVec3::X, ..parallel };
     let views = [
@@ -123,7 +127,13 @@ fn views_from_about_as_far_share_a_trim_table() {
         ("turned since", from(&model, 0.8), settings, false),
         ("farther", farther, settings, true),
         ("close", close, settings, true),
+        ("close, hardly moved", hardly(close), settings, false),
         ("beside it", beside, settings, true),
+        ("close, narrow", narrow, settings, true),
+        ("close, narrow, hardly moved", hardly(narrow), settings, false),
+        ("close, narrow, coarser", hardly(narrow), coarse, true),
+        ("a part, parallel", part, settings, true),
+        ("a part, parallel, hardly moved", hardly(part), settings, false),
         ("back", from(&model, 0.9), settings, true),
         ("parallel", parallel, settings, true),
         ("parallel, aside", aside, settings, false),

@@ -2,9 +2,10 @@
 //! an eye close beside a bent face.
 
 use crate::shapes::borders;
-use crate::support::{assert_silent, render, watched};
+use crate::support::{assert_identical, assert_silent, render, watched};
 use glam::{DAffine3, DVec2, DVec3};
-use selvedge::model::{Camera, Model};
+use selvedge::model::{Camera, Model, Projection};
+use selvedge::picture::Picture;
 use selvedge::reference::{JudgeOptions, Tracer, judge};
 use std::path::Path;
 
@@ -82,6 +83,31 @@ fn bracket_a_million_times_closer() {
 #[test]
 fn bracket_a_million_times_closer_and_a_million_units_away() {
     keeps_the_promise(&moved(sample("bracket.step"), 1e6), 1e6);
+}
+
+/// While a view hardly moves nothing is cut, uploaded or made into a table; its picture is that of a fresh renderer.
+#[test]
+fn a_view_from_near_by_shares_what_was_cut() {
+    let model = sample("bracket.step");
+    let fov_y = 6e-4;
+    let start = Camera { projection: Projection::Perspective { fov_y }, ..closer(&model, 0, None, 1.0) };
+    let pixel = start.eye.distance(start.target) * fov_y / f64::from(SIZE.1);
+    let mut viewer = watched(&model);
+    let first = render(&mut viewer, &start);
+    let makes_a_table = |picture: &Picture| picture.stats.passes.iter().any(|pass| pass.name == "trim table");
+    assert!(makes_a_table(&first));
+    let mut shared = 0;
+    for step in 1..=6 {
+        let by = DVec3::new(0.2, 0.3, 0.1) * pixel * f64::from(step);
+        let camera = Camera { eye: start.eye + by, target: start.target + by, ..start };
+        let picture = render(&mut viewer, &camera);
+        let mut fresh = watched(&model);
+        assert_identical(&picture, &render(&mut fresh, &camera), &format!("step {step}"));
+        assert_silent(fresh);
+        shared += usize::from(!makes_a_table(&picture));
+    }
+    assert!(shared >= 4, "{shared} of six");
+    assert_silent(viewer);
 }
 
 /// An eye beside the side of a drum, within the boxes of its pieces but not at it, that looks along it and across. Rows of

@@ -323,7 +323,7 @@ pub struct FrameArgs {
     /// does not
     #[arg(long, value_name = "bound|N", default_value = "bound")]
     pub factors: Factors,
-    /// How to trim: table (made for views from about as far, closer up for each) or exact (made once); table without it
+    /// How to trim: table (made for views from about as far, closer up for those from near by) or exact (made once); table without it
     #[arg(long, value_name = "WAY")]
     pub trim: Option<TrimWay>,
     /// How to draw Boolean solids: events (a ray a pixel), cst (each primitive, trimmed by the others) or blister

@@ -15,14 +15,18 @@
 //! the view sees are made, so memory follows the view, not the zoom. Windows overlap by a margin: next to each other
 //! they show the same surface, and no crack between them. Everything else that is seen stays as it is.
 //!
-//! What is seen through is not cut: a ray is followed through all of it.
+//! What is cut is what a camera sees that serves all views from near by (`scene/nearby.rs`): while a view hardly changes,
+//! nothing is made or uploaded. What is seen through is not cut: a ray is followed through all of it.
 //!
 //! Cost: a face's patches are cut once and kept; a view costs some 50 µs a window and patch near it.
 
 mod loops;
 
+use super::apart::VIEW_PX;
+use super::around::Ball;
 use super::data::stretch;
 use super::focal_and_slant;
+use super::nearby::nearby;
 use crate::model::{Bounds, Camera, Face, Instance, Model, Part, TrimLoop};
 use crate::spline::{Patch, PatchGrid};
 use crate::trim::{LoopIndex, RectSide};
@@ -48,6 +52,37 @@ const MOST_DEPTH: u32 = 90;
 pub struct CloseUp {
     /// Of each part, of each face.
     faces: Vec<Vec<Known>>,
+    /// Around the model.
+    ball: Option<Ball>,
+    /// What was told last; `None`: nothing that holds.
+    held: Option<Held>,
+}
+
+/// What a view wants uploaded.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Wanted {
+    /// What was wanted last serves this view, too; at first that is the model as it is.
+    Same,
+    /// The model as it is.
+    Whole,
+    /// This in its place: [`Renderer::upload_cut`](crate::renderer::Renderer::upload_cut).
+    Cut(Box<Cut>),
+}
+
+/// What views from near by see of a model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct Cut {
+    /// Faces that are seen, or windows of them.
+    pub model: Model,
+    /// Of each of its parts: how large is what its views would show, were they [`VIEW_PX`] wide. Units of the part.
+    pub(super) extents: Vec<f64>,
+}
+
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Held {
+    Whole,
+    /// What this camera sees.
+    Cut(Camera),
 }
 
 /// What is known of a face.
@@ -109,6 +144,19 @@ impl Sight {
     }
 }
 
+/// What is seen of one placed part: its faces, and whether each is too close to be drawn as it is.
+struct Seen {
+    placed: usize,
+    sight: Sight,
+    faces: Vec<(usize, bool)>,
+}
+
+impl Seen {
+    fn is_close(&self) -> bool {
+        self.faces.iter().any(|(_, close)| *close)
+    }
+}
+
 /// A rectangle of a face's parameters.
 #[derive(Clone, Copy, Debug)]
 struct Window {
@@ -117,16 +165,51 @@ struct Window {
 }
 
 impl CloseUp {
-    /// Looks at nothing but control points.
+    /// Of a model that has been uploaded as it is. Looks at nothing but control points.
     pub fn new(model: &Model) -> Self {
         let known = |face: &Face| Known { bounds: face.surface.bounds(), cut: None };
-        Self { faces: model.parts.iter().map(|part| part.faces.iter().map(known).collect()).collect() }
+        let faces = model.parts.iter().map(|part| part.faces.iter().map(known).collect()).collect();
+        Self { faces, ball: Ball::around(model.bounds()), held: Some(Held::Whole) }
     }
 
-    /// The model to draw in place of `model`, the one that this was made for; `None` where that will do.
+    /// What to upload for this view of `model`, the one that this was made for, in place of what was told last.
     ///
-    /// Cost where it will do: some 0.2 µs a placed face.
-    pub fn of(&mut self, model: &Model, camera: &Camera) -> Option<Model> {
+    /// Cost where that serves this view, too: some 0.2 µs a placed face.
+    pub fn of(&mut self, model: &Model, camera: &Camera) -> Wanted {
+        let seen = self.seen(model, camera);
+        if !seen.iter().any(Seen::is_close) {
+            let held = self.held.replace(Held::Whole);
+            return if held == Some(Held::Whole) { Wanted::Same } else { Wanted::Whole };
+        }
+        let boxes: Vec<Bounds> = seen.iter().flat_map(|seen| self.boxes(model, seen, camera.eye)).collect();
+        let wider = self.ball.and_then(|ball| nearby(camera, BESIDE_PX, &ball, &boxes)).unwrap_or(*camera);
+        let held = self.held.replace(Held::Cut(wider));
+        if held == self.held {
+            return Wanted::Same;
+        }
+        let none = Model {
+            name: model.name.clone(),
+            unit: model.unit.clone(),
+            solids: model.solids.clone(),
+            trim: model.trim.clone(),
+            coincident: model.coincident,
+            ..Model::default()
+        };
+        let mut near = Cut { model: none, extents: Vec::new() };
+        for seen in self.seen(model, &wider) {
+            let instance = &model.instances[seen.placed];
+            self.add(&mut near, &model.parts[instance.part], instance, &seen);
+        }
+        Wanted::Cut(Box::new(near))
+    }
+
+    /// What was told last was not uploaded: the next view is told again.
+    pub fn forget(&mut self) {
+        self.held = None;
+    }
+
+    /// What a camera sees of each placed part.
+    fn seen(&mut self, model: &Model, camera: &Camera) -> Vec<Seen> {
         let spans: Vec<f64> = self.faces.iter().map(|faces| span(faces)).collect();
         let coarse = |(placed, instance): (usize, &Instance)| {
             let sight = Sight::new(camera, instance);
@@ -136,15 +219,15 @@ impl CloseUp {
             let part = &model.parts[instance.part];
             let whole = part.closed && !instance.is_opaque(part);
             let close = |k: &Known| sight.of_box(k.bounds).map(|pixels| pixels * span > MOST_PX);
-            let seen: Vec<_> = match whole {
+            let faces: Vec<_> = match whole {
                 true => faces.map(|(f, _)| (f, false)).collect(),
                 false => faces.filter_map(|(f, k)| Some((f, close(k)?))).collect(),
             };
-            (placed, sight, seen)
+            Seen { placed, sight, faces }
         };
-        let mut seen: Vec<_> = model.instances.iter().enumerate().map(coarse).collect();
+        let mut all: Vec<_> = model.instances.iter().enumerate().map(coarse).collect();
         // a face's box may come nearer than its patches
-        for (placed, sight, faces) in &mut seen {
+        for Seen { placed, sight, faces } in &mut all {
             let part = model.instances[*placed].part;
             for (f, close) in faces.iter_mut().filter(|(_, close)| *close) {
                 let (grid, _) = self.faces[part][*f].cut(&model.parts[part].faces[*f]);
@@ -152,33 +235,41 @@ impl CloseUp {
                 *close = patches.any(|pixels| pixels * spans[part] > MOST_PX);
             }
         }
-        if !seen.iter().any(|(_, _, faces)| faces.iter().any(|(_, close)| *close)) {
-            return None;
+        all
+    }
+
+    /// Boxes that hold what is seen, in the model's coordinates; of what is close, no larger than they are far from the eye.
+    fn boxes(&mut self, model: &Model, seen: &Seen, eye: DVec3) -> Vec<Bounds> {
+        let instance = &model.instances[seen.placed];
+        let mut boxes = Vec::new();
+        for &(f, close) in &seen.faces {
+            let known = &mut self.faces[instance.part][f];
+            if close {
+                let (grid, _) = known.cut(&model.parts[instance.part].faces[f]);
+                for p in &grid.patches {
+                    near_boxes(&p.patch, &seen.sight, (instance, eye), MOST_DEPTH, &mut boxes);
+                }
+            } else {
+                boxes.push(placed(known.bounds, instance));
+            }
         }
-        let mut near = Model {
-            name: model.name.clone(),
-            unit: model.unit.clone(),
-            solids: model.solids.clone(),
-            trim: model.trim.clone(),
-            coincident: model.coincident,
-            ..Model::default()
-        };
-        for (placed, sight, faces) in &seen {
-            let instance = &model.instances[*placed];
-            self.add(&mut near, &model.parts[instance.part], instance, sight, faces);
-        }
-        Some(near)
+        boxes
     }
 
     /// What is seen of one placed part: its faces as they are, and windows of those that are `close`.
-    fn add(&mut self, near: &mut Model, part: &Part, instance: &Instance, sight: &Sight, faces: &[(usize, bool)]) {
+    fn add(&mut self, near: &mut Cut, part: &Part, instance: &Instance, seen: &Seen) {
+        let Seen { sight, faces, .. } = seen;
         let whole: Vec<Face> = faces.iter().filter(|(_, close)| !close).map(|(f, _)| part.faces[*f].clone()).collect();
-        let mut push = |faces: Vec<Face>, meshes: Vec<crate::model::Mesh>| {
-            near.instances.push(Instance { part: near.parts.len(), ..instance.clone() });
-            near.parts.push(Part { name: part.name.clone(), faces, meshes, closed: part.closed });
+        let mut push = |faces: Vec<Face>, meshes: Vec<crate::model::Mesh>, pixels: f64| {
+            let Cut { model, extents } = &mut *near;
+            extents.push(VIEW_PX / pixels);
+            model.instances.push(Instance { part: model.parts.len(), ..instance.clone() });
+            model.parts.push(Part { name: part.name.clone(), faces, meshes, closed: part.closed });
         };
         if !(whole.is_empty() && part.meshes.is_empty()) {
-            push(whole, part.meshes.clone());
+            let seen = faces.iter().filter(|(_, close)| !close);
+            let pixels = seen.filter_map(|(f, _)| sight.of_box(self.faces[instance.part][*f].bounds));
+            push(whole, part.meshes.clone(), pixels.fold(f64::INFINITY, f64::min));
         }
         for (f, _) in faces.iter().filter(|(_, close)| *close) {
             let face = &part.faces[*f];
@@ -187,8 +278,10 @@ impl CloseUp {
             for p in &grid.patches {
                 halve(&p.patch, Window { u: p.u, v: p.v }, sight, MOST_DEPTH, &mut windows);
             }
-            for face in windows.into_iter().filter_map(|w| window_face(face, grid, index, w)) {
-                push(vec![face], Vec::new());
+            for (window, pixels) in windows {
+                if let Some(face) = window_face(face, grid, index, window) {
+                    push(vec![face], Vec::new(), pixels);
+                }
             }
         }
     }
@@ -206,13 +299,31 @@ impl Known {
     }
 }
 
-/// Halves what is seen of `patch`, which is `window` of its face, until it is small enough.
-fn halve(patch: &Patch, window: Window, sight: &Sight, depth: u32, windows: &mut Vec<Window>) {
-    let Some(pixels) = sight.of_patch(patch) else { return };
-    let (lo, hi) = patch.bounds();
-    if pixels * (hi - lo).length() <= WINDOW_PX || depth == 0 || windows.len() >= MOST_WINDOWS {
-        return windows.push(window);
+/// A box of part coordinates as it is placed.
+fn placed((min, max): (DVec3, DVec3), instance: &Instance) -> Bounds {
+    let corners = Bounds { min, max }.corners().map(|corner| instance.transform.transform_point3(corner));
+    corners.into_iter().fold(Bounds::EMPTY, Bounds::with)
+}
+
+/// Boxes around what is seen of a patch, none larger than it is far from the eye.
+fn near_boxes(patch: &Patch, sight: &Sight, at: (&Instance, DVec3), depth: u32, boxes: &mut Vec<Bounds>) {
+    if sight.of_patch(patch).is_none() {
+        return;
     }
+    let (instance, eye) = at;
+    let bounds = placed(patch.bounds(), instance);
+    let distance = (bounds.centre() - eye).abs() - 0.5 * (bounds.max - bounds.min);
+    let is_small = bounds.diagonal() <= distance.max(DVec3::ZERO).length();
+    if is_small || depth == 0 || boxes.len() >= MOST_WINDOWS {
+        return boxes.push(bounds);
+    }
+    let (a, b) = if is_longer_along_u(patch) { patch.split_u(0.5) } else { patch.split_v(0.5) };
+    near_boxes(&a, sight, at, depth - 1, boxes);
+    near_boxes(&b, sight, at, depth - 1, boxes);
+}
+
+/// By its control net.
+fn is_longer_along_u(patch: &Patch) -> bool {
     let length = |points: &mut dyn Iterator<Item = DVec3>| {
         let first = points.next();
         points.fold((0.0, first), |(sum, before), p| (sum + before.map_or(0.0, |b| b.distance(p)), Some(p))).0
@@ -221,9 +332,18 @@ fn halve(patch: &Patch, window: Window, sight: &Sight, depth: u32, windows: &mut
     let point = |p: &DVec4| p.truncate() / p.w;
     let rows = patch.points.chunks_exact(n).map(|row| length(&mut row.iter().map(point)));
     let columns = (0..n).map(|i| length(&mut patch.points.iter().skip(i).step_by(n).map(point)));
-    let along_u = rows.fold(0.0, f64::max) >= columns.fold(0.0, f64::max);
+    rows.fold(0.0, f64::max) >= columns.fold(0.0, f64::max)
+}
+
+/// Halves what is seen of `patch`, which is `window` of its face, until it is small enough; and pixels per unit of each.
+fn halve(patch: &Patch, window: Window, sight: &Sight, depth: u32, windows: &mut Vec<(Window, f64)>) {
+    let Some(pixels) = sight.of_patch(patch) else { return };
+    let (lo, hi) = patch.bounds();
+    if pixels * (hi - lo).length() <= WINDOW_PX || depth == 0 || windows.len() >= MOST_WINDOWS {
+        return windows.push((window, pixels));
+    }
     let middle = |(a, b): (f64, f64)| a + (b - a) / 2.0;
-    let ((a, b), [low, high]) = if along_u {
+    let ((a, b), [low, high]) = if is_longer_along_u(patch) {
         let m = middle(window.u);
         (patch.split_u(0.5), [Window { u: (window.u.0, m), ..window }, Window { u: (m, window.u.1), ..window }])
     } else {

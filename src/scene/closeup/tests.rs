@@ -83,7 +83,7 @@ fn camera(model: &Model, uv: DVec2, distance: f64) -> Camera {
 #[test]
 fn an_ordinary_view_keeps_the_model() {
     let model = wavy();
-    assert_eq!(CloseUp::new(&model).of(&model, &camera(&model, DVec2::splat(0.5), 10.0)), None);
+    assert_eq!(CloseUp::new(&model).of(&model, &camera(&model, DVec2::splat(0.5), 10.0)), Wanted::Same);
 }
 
 /// At (u, v) in the picture there is a window, small enough, and its surface is the face's; windows stay few.
@@ -96,7 +96,8 @@ fn windows_cover_what_is_seen() {
     for distance in [1e-2, 1e-4, 1e-6] {
         for uv in [DVec2::new(0.45, 0.2), DVec2::new(0.5, 0.4), DVec2::new(0.6, 0.65), DVec2::new(0.0, 1.0)] {
             let camera = camera(&model, uv, distance);
-            let near = close_up.of(&model, &camera).expect("too close for single precision");
+            let Wanted::Cut(cut) = close_up.of(&model, &camera) else { panic!("too close for single precision") };
+            let near = &cut.model;
             let faces: Vec<&Face> = near.parts.iter().flat_map(|p| &p.faces).collect();
             assert!(!faces.is_empty() && faces.len() < 40, "{} windows from {distance}", faces.len());
             assert!(near.parts.iter().all(|p| p.closed) && faces.iter().all(|f| f.id == 7 && f.same_sense));
@@ -127,4 +128,33 @@ fn windows_cover_what_is_seen() {
             assert!(seen > 50, "only {seen} points are in the picture");
         }
     }
+}
+
+/// A close view that moves by a pixel keeps what was cut, unless a cell of eyes or axes ends there; what is cut serves it.
+#[test]
+fn a_view_that_hardly_moves_keeps_what_was_cut() {
+    let model = wavy();
+    let mut close_up = CloseUp::new(&model);
+    let whole = camera(&model, DVec2::splat(0.5), 10.0);
+    let start = camera(&model, DVec2::new(0.45, 0.2), 1e-3);
+    assert_eq!(close_up.of(&model, &whole), Wanted::Same);
+    let mut told = [0; 2]; // that serves, too; cut anew
+    for step in 0..100 {
+        let by = DVec3::new(1.0, 0.5, 0.0) * 1e-3 * 0.6 / 600.0 * f64::from(step);
+        let moved = Camera { eye: start.eye + by, target: start.target + by, ..start };
+        match close_up.of(&model, &moved) {
+            Wanted::Same => told[0] += 1,
+            Wanted::Whole => panic!("too close for single precision"),
+            Wanted::Cut(cut) => {
+                told[1] += 1;
+                assert_eq!(cut.extents.len(), cut.model.parts.len());
+                assert_eq!(CloseUp::new(&model).of(&model, &moved), Wanted::Cut(cut), "what was drawn before counts");
+            }
+        }
+    }
+    assert!(told[0] >= 80 && told[1] >= 1, "{told:?}");
+    close_up.forget();
+    assert!(matches!(close_up.of(&model, &start), Wanted::Cut(_)));
+    assert_eq!(close_up.of(&model, &whole), Wanted::Whole);
+    assert_eq!(close_up.of(&model, &whole), Wanted::Same);
 }
