@@ -128,34 +128,62 @@ vec2 exact_chord(ExactArc arc) {
     return chord;
 }
 
-// The arc passes uv.y, low.y < uv.y <= high.y, at some u > uv.x.
-bool arc_right(ExactArc arc, vec2 uv) {
+// The sides of an arc's triangle.
+struct ArcSides {
+    float turned;   // 1 where the triangle is to the left of its chord, else -1; so are the sides
+    vec2 to_high;   // from the lower end
+    vec2 to_corner; // from there, too
+    vec2 back;      // from the higher end to the corner
+};
+
+ArcSides arc_sides(ExactArc arc) {
     vec2 chord = exact_chord(arc);
     precise float area = chord.x * arc.corner.y - arc.corner.x * chord.y;
     float turned = area < 0.0 ? -1.0 : 1.0;
     vec2 to_high = turned * chord;
     vec2 to_corner = turned * arc.corner;
-    precise vec2 back = to_corner - to_high; // from the higher end to the corner
+    precise vec2 back = to_corner - to_high;
+    return ArcSides(turned, to_high, to_corner, back);
+}
+
+// Where a point is that is `p` away from the lower and `q` from the higher end: corner, high and low, barycentric. Linear in
+// both.
+vec3 arc_place(ArcSides sides, vec2 p, vec2 q) {
+    precise float middle = sides.to_high.x * p.y - p.x * sides.to_high.y;
+    precise float high = p.x * sides.to_corner.y - sides.to_corner.x * p.y;
+    precise float low = sides.back.x * q.y - q.x * sides.back.y; // as a rest it would have the rounding of the longer sides
+    return vec3(middle, high, low);
+}
+
+// Of such a point between its ends an arc is to the right.
+bool arc_right_of(ExactArc arc, ArcSides sides, vec3 place) {
+    precise float square = place.x * place.x;
+    precise float product = max(place.z, 0.0) * (arc.fullness * max(place.y, 0.0));
+    bool beyond = place.x > 0.0 && square > product;
+    return beyond == (sides.turned > 0.0);
+}
+
+vec3 arc_place_of(ExactArc arc, ArcSides sides, vec2 uv) {
     precise vec2 p = uv - arc.low;
     precise vec2 q = uv - arc.high;
-    precise float middle = to_high.x * p.y - p.x * to_high.y;
-    precise float high = p.x * to_corner.y - to_corner.x * p.y;
-    precise float low = back.x * q.y - q.x * back.y; // as a rest it would have the rounding of the longer sides
-    precise float square = middle * middle;
-    precise float product = max(low, 0.0) * (arc.fullness * max(high, 0.0));
-    bool beyond = middle > 0.0 && square > product;
-    bool right = beyond == (turned > 0.0);
+    return arc_place(sides, p, q);
+}
+
+// The arc passes uv.y, low.y < uv.y <= high.y, at some u > uv.x.
+bool arc_right(ExactArc arc, vec2 uv) {
+    ArcSides sides = arc_sides(arc);
+    bool right = arc_right_of(arc, sides, arc_place_of(arc, sides, uv));
     return uv.y == arc.high.y ? arc.high.x > uv.x : right; // at the end as its neighbour has it
 }
 
-// What an arc adds to the winding number of a point.
-int arc_winding(ExactArc arc, vec2 uv) {
+// What an arc adds to the winding number of a point at v; `right`: it is to the right of it there.
+int arc_winding(ExactArc arc, float v, bool right) {
     int direction = (arc.shape & ARC_UP) != 0u ? 1 : -1;
     int low = (arc.shape & AT_LOW) != 0u ? direction : 0;
     int high = (arc.shape & AT_HIGH) != 0u ? direction : 0;
-    int within = arc_right(arc, uv) ? direction : 0;
-    return uv.y > arc.low.y ? (uv.y > arc.high.y ? high : within) - low : 0;
+    return v > arc.low.y ? (v > arc.high.y ? high : right ? direction : 0) - low : 0;
 }
+
 
 bool is_number(vec2 uv) { return all(lessThan(abs(uv), vec2(FAR))); }
 
@@ -169,7 +197,7 @@ int exact_winding_in(ExactList list, vec2 uv) {
     bool more = true;
     for (uint i = list.first; more; ++i) {
         ExactArc arc = exact_arc_at(i);
-        winding += arc_winding(arc, uv);
+        winding += arc_winding(arc, uv.y, arc_right(arc, uv));
         more = (arc.shape & ARC_LAST) == 0u;
     }
     return is_number(uv) ? winding : 0;

@@ -11,10 +11,10 @@ const vec2 RING[RING_POINTS] = vec2[](vec2(1, 0), vec2(0, 1), vec2(-1, 0), vec2(
 // regular hexagon whose sides are as far has a corner beyond it, too.
 const float APOTHEM = 0.92387953; // cos(pi / 8), of the ring's radius
 const float CORNER = 1.06680402;  // APOTHEM / cos(pi / 6)
-const uint HEXAGON_CORNERS = 6u;
-const vec2 HEXAGON[HEXAGON_CORNERS] = vec2[](vec2(CORNER, 0), vec2(-CORNER, 0), vec2(0.5 * CORNER, APOTHEM),
-                                             vec2(-0.5 * CORNER, APOTHEM), vec2(0.5 * CORNER, -APOTHEM),
-                                             vec2(-0.5 * CORNER, -APOTHEM));
+
+// Faces whose trims are exact are nearer to each other (src/budget.rs): a square does, with sides that are nearer by so much
+// that it reaches as far on average.
+const float SQUARE = 0.8; // from its middle to its sides, of the ring's radius
 
 // A point of the ring may project a little farther away than its radius: the step was linear.
 const float RING_SLACK = 1.25;
