@@ -6,7 +6,8 @@
 //! ```
 //!
 //! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `cells`, `cell_items`. Writes: `strip_heights`, `face_speeds`,
-//! `seen_bays`. Twin: `src/twin/density.rs`.
+//! `seen_bays`. `frame` and `views` are those of what the table is made of: this view, or a wider one that serves those from near
+//! by (`src/scene/nearby.rs`). Twin: `src/twin/density.rs`.
 
 use crate::bindings::with_constants;
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
