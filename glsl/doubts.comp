@@ -10,6 +10,9 @@
 //           ⋮ │ 30 rows                                  a · ·   · a ·   · · a
 //          30 ┘                                          · x ·   · x ·   · x ·   a x b
 //          31   row below                                · · b   · b ·   b · ·
+//
+// Where the eye is within a solid, all its faces are seen from behind. What sees nothing else within WIDE_BAND_PX, nor any
+// ring, is not listed: the second step would find nobody to ask.
 #include "scene.glsl"
 #include "visible.glsl"
 #include "words.glsl"
@@ -26,8 +29,31 @@ layout(binding = 6) uniform samplerBuffer rings;
 const uint GROUP = 64u; // threads of a workgroup of the second step
 const int LANES = 64;
 const int ROWS = 30;
+const int BAND = int(WIDE_BAND_PX);
+const int COLUMNS = LANES - 2 + 2 * BAND; // of the workgroup, and beside it
 
 shared uint patches_seen[LANES];
+shared uint full_columns; // of backs
+shared uint among_backs[COLUMNS];
+
+// A solid's face from behind, without a ring: what other threads mark has one, or sees nothing. Beside the picture there
+// is nobody to ask either.
+bool is_back(ivec2 pixel, ivec2 size) {
+    if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, size))) return true;
+    uint word = imageLoad(visibility, pixel).x;
+    return (word & DOUBTFUL) != 0u && !sees_nothing(word) && number_at(rings, uint(pixel.y * size.x + pixel.x)) == 0.0;
+}
+
+// A column's bits: nothing but backs up to BAND above and below.
+uint backs_along(int column, int top, ivec2 size) {
+    uint bits = 0u;
+    int run = 0;
+    for (int row = top + 1 - BAND; row <= top + ROWS + BAND; ++row) {
+        run = is_back(ivec2(column, row), size) ? run + 1 : 0;
+        if (run > 2 * BAND) bits |= 1u << uint(row - BAND - top);
+    }
+    return bits;
+}
 
 void main() {
     int lane = int(gl_LocalInvocationID.x);
@@ -39,6 +65,8 @@ void main() {
     uint has_ring = 0u; // a ring is there
     uint ringed = 0u; // before what is seen
     uint patch_seen = 0u;
+    if (lane == 0) full_columns = 0u;
+    barrier();
     // marks of other threads may come meanwhile: they are not asked for
     if (column >= 0 && column < size.x) {
         int first = max(top, 0);
@@ -59,7 +87,16 @@ void main() {
         }
     }
     patches_seen[lane] = patch_seen;
+    uint own = ((1u << uint(ROWS)) - 1u) << 1;
+    if ((doubtful & ~(has_ring | nothing) & own) == own) atomicAdd(full_columns, 1u);
     barrier();
+    int to_ask = full_columns > 0u ? COLUMNS : 0;
+    for (int k = lane; k < to_ask; k += LANES) {
+        among_backs[k] = backs_along(int(gl_WorkGroupID.x) * (LANES - 2) - BAND + k, top, size);
+    }
+    barrier();
+    uint unasked = to_ask > 0 ? doubtful : 0u;
+    for (int k = 0; k <= 2 * BAND && unasked != 0u; ++k) unasked &= among_backs[clamp(lane - 1 + k, 0, COLUMNS - 1)];
     if (lane == 0 || lane == LANES - 1 || column >= size.x) return;
     uint left = patches_seen[lane - 1];
     uint right = patches_seen[lane + 1];
@@ -68,14 +105,15 @@ void main() {
     between |= (patch_seen << 1) & (patch_seen >> 1);
     between |= (left << 1) & (right >> 1);
     between |= (left >> 1) & (right << 1);
+    uint behind_ring = ringed & doubtful;
     ringed &= ~doubtful;
     uint lone = nothing & between & ~(doubtful | ringed);
-    uint own = ((1u << uint(ROWS)) - 1u) << 1;
+    doubtful &= ~unasked;
     for (uint left_over = (doubtful | ringed | lone) & own; left_over != 0u; left_over &= left_over - 1u) {
         uint k = uint(findLSB(left_over));
         ivec2 pixel = ivec2(column, top + int(k));
         uint bit = 1u << k;
-        uint flags = 0u;
+        uint flags = (behind_ring & bit) != 0u ? BEHIND_RING : 0u;
         if ((doubtful & bit) == 0u) {
             flags = (lone & bit) != 0u ? RINGED | LONE : RINGED;
             uvec2 seen = imageLoad(visibility, pixel).xy;

@@ -31,6 +31,8 @@
 //                                                  between the two pixels: it hides what ends in its silhouette
 //     nothing is seen                              nothing
 //     a helper                                     the nearest
+//   a ring before what is seen, or before a face from behind, among such faces: as a ring above. The eye is within a
+//   solid, so what is seen of it is from behind, and asked though it is doubtful
 //   nothing, between patches on both sides:
 //     a witness                                    the nearest: silhouettes meet, drawn inside of what they are
 //   and where a volume cuts the scene open (WITHIN_VOLUME), before a face from behind:
@@ -85,9 +87,8 @@ const float ON_PIXEL_PX = 0.05;
 // Relative depth within which a face touches the doubtful one, and is as hidden as that.
 const float SAME_DEPTH = 1e-6;
 
-// How far away a neighbour is looked for.
+// How far away a neighbour is looked for; WIDE_BAND_PX from within a face from behind.
 const uint BAND_PX = 4u;
-const uint WIDE_BAND_PX = 16u; // from within a face from behind: it may lie on another solid's front
 
 // How many patches of its face a neighbour's answer may lead across: a patch may be smaller than a pixel.
 const uint MAX_HOPS = 8u;
@@ -198,6 +199,21 @@ bool tells(uint word) {
     return (face_at(face_instance_at(face_instance_of(seen_item(word))).face).flags & FACE_SOLID) == 0u;
 }
 
+// Whether at least three in four of those around the pixel see a solid's face from behind: then the eye is within it.
+bool among_backs(ivec2 at) {
+    int more = 0;
+    for (uint k = 0u; k < RING_POINTS; ++k) {
+        ivec2 step_ = ivec2(sign(RING[k]));
+        ivec2 beside = at;
+        for (uint steps = 0u; steps < WIDE_BAND_PX; ++steps) {
+            beside += step_;
+            if (any(lessThan(beside, ivec2(0))) || any(greaterThanEqual(beside, ivec2(frame.size)))) break;
+            more += tells(imageLoad(visibility, beside).x) ? -3 : 1;
+        }
+    }
+    return more > 0;
+}
+
 // Who is not inside its trims helps only where it is before `behind`.
 Answer ask(uvec2 seen, vec2 pixel, uint ring, Answer behind) {
     uint item = seen_item(seen.x);
@@ -302,8 +318,11 @@ void main() {
     if (n >= min(counters.doubts, frame.doubt_capacity)) return;
     uint doubt = doubts[n].pixel;
     bool ringed = (doubt & RINGED) != 0u;
-    bool lone = (doubt & LONE) != 0u;
     ivec2 at = doubtful_pixel(doubt);
+    // the eye is within a solid
+    bool within = (ringed || (doubt & BEHIND_RING) != 0u) && among_backs(at);
+    bool lone = ringed && (doubt & LONE) != 0u;
+    ringed = ringed || within;
     vec2 pixel = vec2(at) + 0.5;
     uvec2 own = imageLoad(visibility, at).xy;
     uvec2 other = SCENE_HAS_OTHERS ? imageLoad(others, at).xy : uvec2(0u);
@@ -348,15 +367,17 @@ void main() {
         // where fronts and backs touch, doubtful pixels fill a band: look across it
         ivec2 step_ = ivec2(sign(RING[k]));
         ivec2 beside = at;
-        uvec2 seen = uvec2(DOUBTFUL, 0u);
+        uvec2 seen = uvec2(0u);
         uint steps = 0u;
-        while (steps < band && !tells(seen.x)) {
+        bool heard = false;
+        while (steps < band && !heard) {
             ++steps;
             beside += step_;
             if (any(lessThan(beside, ivec2(0))) || any(greaterThanEqual(beside, ivec2(frame.size)))) break;
             seen = imageLoad(visibility, beside).xy;
+            heard = within || tells(seen.x);
         }
-        if (!tells(seen.x)) continue;
+        if (!heard) continue;
         if (sees_nothing(seen.x)) {
             if (steps > 1u) continue;
             uvec2 there = SCENE_HAS_OTHERS ? imageLoad(others, beside).xy : uvec2(0u);

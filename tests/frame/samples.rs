@@ -2,7 +2,7 @@
 //! golden image would hold, measured in pixels of shift instead of bits.
 
 use crate::support::{assert_silent, render, watched};
-use glam::DVec3;
+use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::Picture;
 use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
@@ -74,6 +74,26 @@ fn walls_seen_edge_on() {
         let j = judged(&tracer, &camera, &picture);
         assert_eq!((j.wrong, j.given_up), (0, 0), "from {from}: {:?}", j.mismatches);
     }
+    assert_silent(renderer);
+}
+
+/// All that is seen of the solid is from behind, and its other arms lie behind its gaps.
+#[test]
+fn the_eye_within_a_solid() {
+    let model = sample("zoo.step");
+    let mut camera = Camera {
+        eye: DVec3::new(60.6806, 87.5394, 11.5276),
+        target: DVec3::new(54.6456, 94.0687, 8.72294),
+        ..Camera::framing(model.bounds(), VIEWS[0], DVec3::Z, 60f64.to_radians(), (240, 180))
+    };
+    camera.fit_depth(model.bounds());
+    let tracer = Tracer::new(&model);
+    assert!(tracer.hits(&camera, DVec2::new(120.5, 90.5)).len() % 2 == 1, "the eye is not within a solid");
+    let mut renderer = watched(&model);
+    let picture = render(&mut renderer, &camera);
+    let j = judged(&tracer, &camera, &picture);
+    assert_eq!((j.wrong, j.given_up), (0, 0), "{:?}", j.mismatches);
+    assert!(picture.stats.doubtful_pixels < j.sampled / 2, "{:?}", picture.stats); // few are asked about
     assert_silent(renderer);
 }
 
