@@ -38,8 +38,10 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 const MOST_PX: f64 = 32_768.0;
 /// Windows are this large at most: (u, v) within one is stored with 2⁻¹⁶, from where Newton's method starts.
 const WINDOW_PX: f64 = 8_192.0;
-/// Of a window's width, on each side.
+/// Of a window's width, on each side; of wide ones as many pixels of their diagonal as do, since all that lies in margins
+/// is drawn by both.
 const MARGIN: f64 = 1.0 / 16.0;
+const MARGIN_PX: f64 = 64.0;
 /// Beyond the picture, in pixels.
 const BESIDE_PX: f64 = 4.0;
 /// A view with more windows gets the last ones larger; the frame then counts clamps where they do not suffice.
@@ -162,6 +164,14 @@ impl Seen {
 struct Window {
     u: (f64, f64),
     v: (f64, f64),
+}
+
+impl Window {
+    /// With a margin of that share of its width on each side.
+    fn wider(self, share: f64) -> Self {
+        let wider = |(a, b): (f64, f64)| (a - (b - a) * share, b + (b - a) * share);
+        Self { u: wider(self.u), v: wider(self.v) }
+    }
 }
 
 impl CloseUp {
@@ -335,12 +345,14 @@ fn is_longer_along_u(patch: &Patch) -> bool {
     rows.fold(0.0, f64::max) >= columns.fold(0.0, f64::max)
 }
 
-/// Halves what is seen of `patch`, which is `window` of its face, until it is small enough; and pixels per unit of each.
+/// Halves what is seen of `patch`, which is `window` of its face, until it is small enough. Windows with their margins, and
+/// pixels per unit of each.
 fn halve(patch: &Patch, window: Window, sight: &Sight, depth: u32, windows: &mut Vec<(Window, f64)>) {
     let Some(pixels) = sight.of_patch(patch) else { return };
     let (lo, hi) = patch.bounds();
     if pixels * (hi - lo).length() <= WINDOW_PX || depth == 0 || windows.len() >= MOST_WINDOWS {
-        return windows.push((window, pixels));
+        let margin = MARGIN.min(MARGIN_PX / (pixels * (hi - lo).length()));
+        return windows.push((window.wider(margin), pixels));
     }
     let middle = |(a, b): (f64, f64)| a + (b - a) / 2.0;
     let ((a, b), [low, high]) = if is_longer_along_u(patch) {
@@ -354,15 +366,12 @@ fn halve(patch: &Patch, window: Window, sight: &Sight, depth: u32, windows: &mut
     halve(&b, high, sight, depth - 1, windows);
 }
 
-/// The face over a window and its margin, `None` where it is trimmed away; all of it where the window is so small that
-/// knots no longer differ.
+/// The face over a window, `None` where it is trimmed away; all of it where the window is so small that knots no longer
+/// differ.
 fn window_face(face: &Face, grid: &PatchGrid, index: &LoopIndex, window: Window) -> Option<Face> {
     let ((u0, u1), (v0, v1)) = face.surface.domain();
-    let wider = |(a, b): (f64, f64), lo: f64, hi: f64| {
-        let margin = (b - a) * MARGIN;
-        ((a - margin).max(lo), (b + margin).min(hi))
-    };
-    let (u, v) = (wider(window.u, u0, u1), wider(window.v, v0, v1));
+    let u = (window.u.0.max(u0), window.u.1.min(u1));
+    let v = (window.v.0.max(v0), window.v.1.min(v1));
     let (lo, hi) = (DVec2::new(u.0, v.0), DVec2::new(u.1, v.1));
     let loops: Vec<TrimLoop> = match index.classify(lo, hi) {
         _ if face.loops.is_empty() => Vec::new(),
