@@ -169,11 +169,15 @@ vec3 arc_place_of(ExactArc arc, ArcSides sides, vec2 uv) {
     return arc_place(sides, p, q);
 }
 
-// The arc passes uv.y, low.y < uv.y <= high.y, at some u > uv.x.
+// The arc passes uv.y, low.y < uv.y <= high.y, at some u > uv.x; `place` is where uv is.
+bool arc_right_at(ExactArc arc, ArcSides sides, vec3 place, vec2 uv) {
+    bool right = arc_right_of(arc, sides, place);
+    return uv.y == arc.high.y ? arc.high.x > uv.x : right; // at the end as its neighbour has it
+}
+
 bool arc_right(ExactArc arc, vec2 uv) {
     ArcSides sides = arc_sides(arc);
-    bool right = arc_right_of(arc, sides, arc_place_of(arc, sides, uv));
-    return uv.y == arc.high.y ? arc.high.x > uv.x : right; // at the end as its neighbour has it
+    return arc_right_at(arc, sides, arc_place_of(arc, sides, uv), uv);
 }
 
 // What an arc adds to the winding number of a point at v; `right`: it is to the right of it there.
@@ -183,7 +187,6 @@ int arc_winding(ExactArc arc, float v, bool right) {
     int high = (arc.shape & AT_HIGH) != 0u ? direction : 0;
     return v > arc.low.y ? (v > arc.high.y ? high : right ? direction : 0) - low : 0;
 }
-
 
 bool is_number(vec2 uv) { return all(lessThan(abs(uv), vec2(FAR))); }
 
