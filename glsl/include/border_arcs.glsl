@@ -7,10 +7,10 @@
 //        │         │        linear, and opposite corners are as far from the point
 //      2 ●─────────● 3
 //
-// What lies beyond the list's box, a quarter of a cell around it, is not told. Asking in other cells would need a loop
-// around the loop of arcs, which costs as much as both together where no pixel runs it twice. A front that is not told of
-// a border does not grow to it: the gap is found by the back behind it, as wider ones are. Else what is not told counts as a
-// border, and pass `heal` looks closer; but a solid's back that is there is drawn, since it is doubtful itself.
+// What lies beyond the list's box, a quarter of a cell around it, is not told: to ask in other cells takes a loop around the
+// loop of arcs, which costs half of everything even where it ends after one round (docs/speed.md). A front that is not
+// told of a border does not grow to it: the gap is found by the back behind it, as wider ones are. Else what is not told
+// counts as a border, and pass `heal` looks closer; but a solid's back that is there is drawn, since it is doubtful itself.
 #ifndef BORDER_ARCS_GLSL
 #define BORDER_ARCS_GLSL
 
@@ -44,7 +44,7 @@ Border border_at(FacePoint p, float reach, bool from_behind, vec2 ahead, vec2 sl
     vec4 u = p.at.x + at_corners(far_u);
     vec4 v = p.at.y + at_corners(far_v);
     vec2 step_ = ahead.x * p.dx + ahead.y * p.dy;
-    vec2 before = p.at + step_;
+    vec2 at_ahead = p.at + step_;
     ExactList list = exact_list(p.fi.face, p.at);
     int winding = list.winding;
     int winding_ahead = list.winding;
@@ -56,7 +56,7 @@ Border border_at(FacePoint p, float reach, bool from_behind, vec2 ahead, vec2 sl
         vec3 place = arc_place_of(arc, sides, p.at);
         vec3 place_ahead = place + arc_place(sides, step_, step_);
         winding += arc_winding(arc, p.at.y, arc_right_at(arc, sides, place, p.at));
-        winding_ahead += arc_winding(arc, before.y, arc_right_of(arc, sides, place_ahead));
+        winding_ahead += arc_winding(arc, at_ahead.y, arc_right_of(arc, sides, place_ahead));
         windings += corner_windings(arc, sides, place, v, far_u, far_v);
         more = (arc.shape & ARC_LAST) == 0u;
     }
@@ -66,7 +66,7 @@ Border border_at(FacePoint p, float reach, bool from_behind, vec2 ahead, vec2 sl
     bvec4 inside = notEqual(windings, ivec4(0));
     bool solid = (p.face.flags & FACE_SOLID) != 0u;
     Border border = Border(winding != 0, true, false, NO_BORDER);
-    border.goes_on = winding_ahead != 0 && holds_for(list, before);
+    border.goes_on = winding_ahead != 0 && holds_for(list, at_ahead);
     if (reach > 0.0) {
         bvec4 there = mix(inside, bvec4(solid), untold);
         border.whole = all(there);
