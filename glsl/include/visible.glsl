@@ -20,7 +20,7 @@ const uint RINGED = 0x80000000u;
 const uint LONE = 0x8000u;
 // Without RINGED: what is seen is doubtful, and a ring lies before it.
 const uint BEHIND_RING = 0x8000u;
-// As far from a face from behind a front is looked for that it lies on.
+// How far from a face from behind `heal` looks for a front that it lies on.
 const uint WIDE_BAND_PX = 16u;
 const uint SEEN_KIND = 0x60000000u;
 const uint SEEN_MESH = 0x20000000u;

@@ -38,8 +38,7 @@ use glam::{DMat4, DVec2, DVec3, DVec4};
 const MOST_PX: f64 = 32_768.0;
 /// Windows are this large at most: (u, v) within one is stored with 2⁻¹⁶, from where Newton's method starts.
 const WINDOW_PX: f64 = 8_192.0;
-/// Of a window's width, on each side; of wide ones as many pixels of their diagonal as do, since all that lies in margins
-/// is drawn by both.
+/// Of a window's width, on each side, but no more than [`MARGIN_PX`] of its diagonal: what lies in margins is drawn twice.
 const MARGIN: f64 = 1.0 / 16.0;
 const MARGIN_PX: f64 = 64.0;
 /// Beyond the picture, in pixels.

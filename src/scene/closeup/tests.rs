@@ -130,6 +130,24 @@ fn windows_cover_what_is_seen() {
     }
 }
 
+/// Where windows meet, each reaches into the others, by little of its width: what is in several is drawn by all.
+#[test]
+fn windows_overlap_by_little() {
+    let model = wavy();
+    let Wanted::Cut(cut) = CloseUp::new(&model).of(&model, &camera(&model, DVec2::splat(0.5), 1e-4)) else {
+        panic!("too close for single precision")
+    };
+    let domains = cut.model.parts.iter().flat_map(|p| &p.faces).map(|f| <[_; 2]>::from(f.surface.domain()));
+    let meeting: Vec<_> = domains.filter(|d| d.iter().all(|(from, to)| (*from..=*to).contains(&0.5))).collect();
+    assert!(meeting.len() > 1, "{meeting:?}");
+    for domain in meeting {
+        let reach = domain.map(|(from, to)| (0.5 - from).min(to - 0.5) / (to - from));
+        let least = reach[0].min(reach[1]);
+        // 64 of 4,096 to 8,192 pixels
+        assert!(least > 1.0 / 256.0 && least < 1.0 / 32.0, "{least} of {domain:?}");
+    }
+}
+
 /// A close view that moves by a pixel keeps what was cut, unless a cell of eyes or axes ends there; what is cut serves it.
 #[test]
 fn a_view_that_hardly_moves_keeps_what_was_cut() {
