@@ -25,7 +25,7 @@ use crate::passes::resolve::BEHIND_FORMAT;
 use crate::passes::scan;
 use crate::passes::solid_events::OPERAND_UV_FORMAT;
 use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
-use crate::picture::{PoolBytes, Samples, TrimWay};
+use crate::picture::{PoolBytes, Samples, TakenWay};
 use ash::vk;
 
 /// Everything transient.
@@ -306,7 +306,7 @@ impl Buffers {
                         rings: numbers("trim rings", size.0 * size.1, Texel::Numbers)?,
                         doubts: structs("trim doubts", capacities.doubts, size_of::<Doubt>())?,
                         heal_dispatch: indirect("heal dispatch", size_of::<[u32; 3]>() as u64)?,
-                        table: (way == TrimWay::Table).then(table).transpose()?,
+                        table: (way == TakenWay::Table).then(table).transpose()?,
                         #[cfg(feature = "rivals")]
                         texture: is_texture(way).then(texture).transpose()?,
                     })

@@ -11,7 +11,7 @@ mod bands;
 use crate::abi::{BLOCK, Counters, Doubt, SubPatch, TILE, TileLeaf};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
-use crate::picture::{Samples, TrimWay};
+use crate::picture::{Samples, TakenWay};
 use crate::scene::SceneData;
 use bands::{Entries, Lists};
 pub(crate) use bands::{Limits, WHOLE};
@@ -48,7 +48,7 @@ pub(crate) struct Counts {
     pub sides: u32,
     pub mesh_instances: u32,
     /// How faces are trimmed, where some are.
-    pub trim: Option<TrimWay>,
+    pub trim: Option<TakenWay>,
     /// Of each pixel.
     pub samples: Samples,
     /// Pass `coverage` mixes pixels at the borders of trimmed faces.
@@ -114,18 +114,18 @@ impl Counts {
     /// Whether one dispatch covers each of them, and numbers tell them apart.
     pub(crate) fn check(self) -> Result<(), TooMany> {
         let all = [
-            ("patches", self.items, MOST_THREADS),
-            ("cells", self.cells, MOST_THREADS),
-            ("bays of v-strips", self.bays, MOST_THREADS),
-            ("v-strips with several bays", self.wide_strips, MOST_GROUPS),
-            ("curves", self.curves, MOST_THREADS),
-            ("triangles", self.triangles, MOST_TRIANGLES),
-            ("primitives", self.leaves, MOST_THREADS),
-            ("placed meshes", self.mesh_instances, MOST_SEEN),
-            ("sides of primitives", self.sides, MOST_SEEN),
+            ("patches", self.items, MOST_THREADS, FEWER_PARTS),
+            ("cells", self.cells, MOST_THREADS, EXACT),
+            ("bays of v-strips", self.bays, MOST_THREADS, EXACT),
+            ("v-strips with several bays", self.wide_strips, MOST_GROUPS, EXACT),
+            ("curves", self.curves, MOST_THREADS, EXACT),
+            ("triangles", self.triangles, MOST_TRIANGLES, "draw fewer of the meshes, or coarser ones"),
+            ("primitives", self.leaves, MOST_THREADS, FEWER_SOLIDS),
+            ("placed meshes", self.mesh_instances, MOST_SEEN, FEWER_PARTS),
+            ("sides of primitives", self.sides, MOST_SEEN, FEWER_SOLIDS),
         ];
-        match all.into_iter().find(|(_, count, most)| count > most) {
-            Some((what, count, most)) => Err(TooMany { what, count, most }),
+        match all.into_iter().find(|(_, count, most, _)| count > most) {
+            Some((what, count, most, help)) => Err(TooMany { what, count, most, help }),
             None => Ok(()),
         }
     }
@@ -133,7 +133,7 @@ impl Counts {
 
 /// The model, or what a view needs of it, is more than the engine counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{count} {what} are too many: at most {most} can be drawn")]
+#[error("{count} {what} are too many: at most {most} can be drawn; {help}")]
 pub struct TooMany {
     /// What there is too much of.
     pub what: &'static str,
@@ -141,7 +141,22 @@ pub struct TooMany {
     pub count: u32,
     /// How many there may be.
     pub most: u32,
+    /// What to ask for in its place.
+    pub help: &'static str,
 }
+
+impl TooMany {
+    /// It is the trim table that has no room: the exact way needs none.
+    pub(crate) fn is_of_table(&self) -> bool {
+        self.help == EXACT
+    }
+}
+
+/// [`TooMany::help`].
+const EXACT: &str = "trim by the way `exact`, or by `auto`, which takes it where the other has no room";
+const FEWER_PARTS: &str = "draw fewer parts at once, or place fewer copies";
+const FEWER_SOLIDS: &str = "draw fewer of the Boolean solids at once";
+const SMALLER: &str = "draw a smaller picture";
 
 /// Workgroups of a dispatch that every device takes.
 const MOST_GROUPS: u32 = 65_535;
@@ -151,6 +166,8 @@ const MOST_THREADS: u32 = MOST_GROUPS * 64;
 const MOST_TRIANGLES: u32 = u32::MAX / 3;
 /// What the bits of the visibility image tell apart.
 const MOST_SEEN: u32 = 1 << 29;
+/// In a view of the whole scene, where most items are a sub-patch of few segments.
+const VERTICES_OF_AN_ITEM: u64 = 16;
 /// Of Boolean solids, to begin with.
 const LEAVES_IN_A_TILE: u32 = 16;
 /// Crossings of operands, in any case.
@@ -194,7 +211,7 @@ impl Capacities {
     /// A first guess that fits most scenes in full view.
     pub(crate) fn first(counts: Counts) -> Self {
         let trimmed = u32::from(counts.trim.is_some());
-        let table = u32::from(counts.trim == Some(TrimWay::Table));
+        let table = u32::from(counts.trim == Some(TakenWay::Table));
         let counted = table.max(u32::from(counts.trim.is_some_and(is_texture)));
         Self {
             sub_patches: counts.items.saturating_add(256),
@@ -209,6 +226,12 @@ impl Capacities {
             layers: if counts.blister { FEWEST_LAYERS } else { 0 },
             legs: 1,
         }
+    }
+
+    /// The same, with room for the draws of a scene whose items have a few vertices each, so many of which make a draw.
+    pub(crate) fn drawn_by(self, counts: Counts, draw_vertices: u32) -> Self {
+        let draws = u64::from(counts.items) * VERTICES_OF_AN_ITEM / u64::from(draw_vertices);
+        Self { draws: self.draws.max(draws as u32), ..self }
     }
 
     /// The same, with room for so many crossings of operands, and for a quarter more.
@@ -304,7 +327,13 @@ impl Capacities {
         let rows = self.band_rows.saturating_mul(TILE).min(size.1);
         let (pixels, most) = (size.0.saturating_mul(rows), range / size_of::<u32>() as u32);
         if grown > 1 && pixels > most {
-            return Err(TooMany { what: "pixels whose rays go on in legs", count: pixels, most });
+            let what = "pixels whose rays go on in legs";
+            return Err(TooMany {
+                what,
+                count: pixels,
+                most,
+                help: "draw a smaller picture, or by a smaller solid budget",
+            });
         }
         Ok(grown.min(MOST_LEGS))
     }
@@ -319,14 +348,21 @@ impl Capacities {
     /// buffer of `range` bytes has it; the same when it had enough. `size` is that of the picture.
     pub(crate) fn grown(self, c: &Counters, counts: Counts, size: (u32, u32), range: u32) -> Result<Self, TooMany> {
         if c.wanted_rows > MOST_ROWS {
-            return Err(TooMany { what: "scan lines", count: c.wanted_rows, most: MOST_ROWS });
+            return Err(TooMany { what: "scan lines", count: c.wanted_rows, most: MOST_ROWS, help: EXACT });
+        }
+        let most_intercepts = range / size_of::<u32>() as u32;
+        if counts.trim == Some(TakenWay::Table) && c.intercepts > most_intercepts {
+            let what = "crossings of scan lines";
+            return Err(TooMany { what, count: c.intercepts, most: most_intercepts, help: EXACT });
         }
         let most_leaves = range / size_of::<TileLeaf>() as u32;
         if !counts.events && c.band_tile_leaves > most_leaves {
-            return Err(TooMany { what: "primitives in tiles", count: c.band_tile_leaves, most: most_leaves });
+            let what = "primitives in tiles";
+            return Err(TooMany { what, count: c.band_tile_leaves, most: most_leaves, help: SMALLER });
         }
         if c.failed & FAILED_LAYERS != 0 && self.layers >= MOST_LAYERS {
-            return Err(TooMany { what: "layers of faces", count: c.layers, most: MOST_LAYERS });
+            let help = "draw the solids by the way `events`";
+            return Err(TooMany { what: "layers of faces", count: c.layers, most: MOST_LAYERS, help });
         }
         let room = |had: u32, wanted: u32, most: u32| {
             let spare = wanted.saturating_add(wanted / 4).min(most);
@@ -345,7 +381,7 @@ impl Capacities {
             ),
             draws: self.draws.saturating_mul(more_draws),
             rows: room(self.rows, c.wanted_rows, MOST_ROWS),
-            intercepts: room(self.intercepts, c.intercepts, range / size_of::<u32>() as u32),
+            intercepts: room(self.intercepts, c.intercepts, most_intercepts),
             doubts: room(self.doubts, c.doubts, range / size_of::<Doubt>() as u32),
             block_leaves: room(self.block_leaves, c.block_leaves, range / size_of::<u32>() as u32),
             tile_leaves: lists.tile_leaves,
@@ -362,11 +398,11 @@ impl Capacities {
 }
 
 /// The way draws textures.
-pub(crate) fn is_texture(way: TrimWay) -> bool {
+pub(crate) fn is_texture(way: TakenWay) -> bool {
     match way {
-        TrimWay::Table | TrimWay::Exact => false,
+        TakenWay::Table | TakenWay::Exact => false,
         #[cfg(feature = "rivals")]
-        TrimWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
+        TakenWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
     }
 }
 
@@ -378,7 +414,7 @@ mod tests {
     const RANGE: u32 = 1 << 27;
 
     fn first() -> Capacities {
-        Capacities::first(Counts { items: 1000, bays: 8, trim: Some(TrimWay::Table), ..Default::default() })
+        Capacities::first(Counts { items: 1000, bays: 8, trim: Some(TakenWay::Table), ..Default::default() })
     }
 
     fn grown(had: Capacities, c: &Counters) -> Result<Capacities, TooMany> {
@@ -400,6 +436,14 @@ mod tests {
         // no room for a quarter more in one storage buffer
         let c = Counters { intercepts: RANGE / 4 - 1, failed: 8, ..Default::default() };
         assert_eq!(grown(first(), &c).unwrap().intercepts, RANGE / 4);
+    }
+
+    /// A driver that takes few vertices a draw gets many draws of a large scene at once.
+    #[test]
+    fn draws_follow_the_scene() {
+        let counts = Counts { items: 1 << 20, ..Default::default() };
+        let draws = |draw_vertices| Capacities::first(counts).drawn_by(counts, draw_vertices).draws;
+        assert_eq!((draws(u32::MAX), draws(1 << 12)), (Capacities::first(counts).draws, 1 << 12));
     }
 
     /// One layer more than were needed, so that it is seen to be empty; twice as many where some were wanting.

@@ -44,7 +44,7 @@ use crate::passes::coverage::Coverage;
 use crate::passes::seen_squares::SeenSquares;
 use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::passes::{emit, mesh, reset, resolve, scan, split, visibility};
-use crate::picture::TrimWay;
+use crate::picture::TakenWay;
 use crate::scene::{Scene, SceneData, SolidData};
 use divide::DividePass;
 use hidden::HiddenPasses;
@@ -148,7 +148,7 @@ impl Passes {
                         let resolve = resolved::targets(device, data, formats)?;
                         let samples = SamplePasses::new(device, data, formats)?;
                         let squares = data.has_surfaces().then(|| SeenSquares::new(device)).transpose()?;
-                        let scan = scan::Scan::new(device, data.trim_way() == Some(TrimWay::Table))?;
+                        let scan = scan::Scan::new(device, data.trim_way() == Some(TakenWay::Table))?;
                         Ok((resolve, samples, squares, reset::Reset::new(device, false)?, scan))
                     },
                 )

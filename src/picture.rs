@@ -53,10 +53,15 @@ impl Levels {
 }
 
 /// How pixels on trimmed patches are told from those that the loops cut away. All ways draw the same
-/// picture within [`FrameSettings::tolerance_px`]; see `ARCHITECTURE.md` for what each costs.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
+/// picture within [`FrameSettings::tolerance_px`]; `docs/trimming.md` tells what each costs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum TrimWay {
+    /// [`Table`](Self::Table) for scenes that are expected to need few scan lines, [`Exact`](Self::Exact) for the others:
+    /// [`renderer::trim_way`](crate::renderer::trim_way) tells which, and [`FrameStats::trim`] which one drew a frame.
+    /// Where a view needs more of the table than there can be, the scene is trimmed exactly from then on.
+    #[default]
+    Auto,
     /// The u-intercept table: made for all views from about as far, or closer up from near by; a binary search in each of three
     /// rows a pixel.
     Table,
@@ -99,13 +104,34 @@ pub enum Rival {
     },
 }
 
+/// The way that a scene is trimmed: what [`TrimWay::Auto`] has settled for, too.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum TakenWay {
+    Table,
+    Exact,
+    #[cfg(feature = "rivals")]
+    Rival(Rival),
+}
+
+impl From<TakenWay> for TrimWay {
+    fn from(way: TakenWay) -> Self {
+        match way {
+            TakenWay::Table => Self::Table,
+            TakenWay::Exact => Self::Exact,
+            #[cfg(feature = "rivals")]
+            TakenWay::Rival(rival) => Self::Rival(rival),
+        }
+    }
+}
+
 impl TrimWay {
-    /// Every way.
+    /// Every way, without [`Auto`](Self::Auto), which takes one of them.
     pub const ALL: &'static [Self] = &[Self::Table, Self::Exact];
 
     /// As in command lines and tables.
     pub fn name(self) -> &'static str {
         match self {
+            Self::Auto => "auto",
             Self::Table => "table",
             Self::Exact => "exact",
             #[cfg(feature = "rivals")]
@@ -122,13 +148,14 @@ impl std::str::FromStr for TrimWay {
     type Err = UnknownTrimWay;
 
     fn from_str(name: &str) -> Result<Self, UnknownTrimWay> {
-        Self::ALL.iter().copied().find(|way| way.name() == name).ok_or_else(|| UnknownTrimWay(name.to_owned()))
+        let mut named = std::iter::once(Self::Auto).chain(Self::ALL.iter().copied());
+        named.find(|way| way.name() == name).ok_or_else(|| UnknownTrimWay(name.to_owned()))
     }
 }
 
 /// No way to trim is called so.
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("no way to trim is called `{0}`; there are: {names}", names = TrimWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
+#[error("no way to trim is called `{0}`; there are: auto, {names}", names = TrimWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
 pub struct UnknownTrimWay(String);
 
 /// How Boolean solids are drawn. All ways draw the same picture, bit for bit, but where [`Blister`](Self::Blister)
@@ -260,9 +287,8 @@ impl Default for Highlight {
 /// What the caller decides about a loaded model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SceneSettings {
-    /// How to trim; `None` takes [`TrimWay::Table`], which was the faster one wherever both were measured:
-    /// `docs/trimming.md`.
-    pub trim: Option<TrimWay>,
+    /// How to trim.
+    pub trim: TrimWay,
     /// Patches are divided by slefes of so many segments, 1 to 9, where [`FrameSettings::levels`] says
     /// [`Levels::Bound`]: see [`crate::rivals::factors`]. The promise is *not* kept; for comparisons.
     #[cfg(feature = "rivals")]
@@ -282,8 +308,8 @@ pub struct SceneSettings {
     /// area that the exact trim curves cut from it. Costs far less than [`samples`](Self::samples), of which there must
     /// be one, and smooths nothing else: silhouettes of curved faces, meshes and Boolean solids stay as they are. All
     /// images but the colour stay as they are, bit for bit, and so do pixels away from borders, but that colours above
-    /// 1 are cut off there, too. Faces are trimmed by
-    /// [`TrimWay::Exact`]. What may not be asked for beside it is
+    /// 1 are cut off there, too. [`TrimWay::Auto`] is
+    /// [`TrimWay::Exact`] then. What may not be asked for beside it is
     /// [`RenderError::SmoothTrims`](crate::renderer::RenderError::SmoothTrims).
     pub smooth_trims: bool,
     /// The length of rays within solids will be asked for: rays are followed through all of them.
@@ -364,6 +390,8 @@ pub struct FrameStats {
     /// patches as they were divided and the trim table are that frame's. `passes` has none of what made them, and the
     /// counts are that frame's. Never with [`FrameSettings::all_passes`].
     pub kept: bool,
+    /// How faces were trimmed, never [`TrimWay::Auto`]; `None` where no face needs it.
+    pub trim: Option<TrimWay>,
     /// Patches of the loaded model, those of each instance counted; of a view from very near, those near it.
     pub patches: u64,
     /// Triangles that the tessellator made, and those of meshes; for one sample. 0 where they were not drawn: `kept`.

@@ -18,6 +18,7 @@ mod centres;
 mod constants;
 mod edit;
 mod known;
+mod load;
 mod slot;
 
 use crate::abi;
@@ -27,13 +28,14 @@ pub use crate::capacities::TooMany;
 use crate::capacities::{Capacities, Counts, MOST_LEGS};
 use crate::frame::{Frame, Near, Passes, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Texels, Uploads};
-use crate::model::{Camera, CameraError, Model};
+use crate::model::{Camera, CameraError};
 use crate::passes::{resolve, solid_layers};
-use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, SceneSettings};
-pub use crate::scene::{CloseUp, Cut, EditError, UndrawnSolid, Wanted};
+use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes};
+pub use crate::scene::{CloseUp, Cut, EditError, UndrawnSolid, Wanted, trim_way};
 use crate::scene::{Scene, SceneData, Write};
 use ash::vk;
 use known::Known;
+use load::Kept;
 use slot::Slot;
 
 /// Formats of the images that the host will pass to [`Renderer::record`].
@@ -96,10 +98,10 @@ pub enum RenderError {
     /// A Boolean solid that cannot be drawn.
     #[error(transparent)]
     Solid(#[from] UndrawnSolid),
-    /// [`SceneSettings::sun`] has no length, or no numbers.
+    /// [`sun`](crate::picture::SceneSettings::sun) has no length, or no numbers.
     #[error("the direction towards the sun must be finite and not 0, not {0}")]
     Sun(glam::DVec3),
-    /// [`SceneSettings::smooth_trims`] beside something that it does not go with.
+    /// [`smooth_trims`](crate::picture::SceneSettings::smooth_trims) beside something that it does not go with.
     #[error("smooth trims do not go with {0}")]
     SmoothTrims(&'static str),
     /// A target of another size than the camera's.
@@ -145,6 +147,8 @@ struct Loaded {
     edits: Vec<Write>,
     /// What the frame before left; `None`: its buffers are gone.
     known: Option<Known>,
+    /// The model, where it may have to be trimmed another way.
+    kept: Option<Box<Kept>>,
 }
 
 impl Loaded {
@@ -170,7 +174,7 @@ enum Retired {
 
 impl Renderer {
     /// Formats of the images of depth, face, (u, v) and normal. The fourth component of a normal is 1, but 0 for
-    /// background and where [`SceneSettings::sun`] does not reach.
+    /// background and where [`sun`](crate::picture::SceneSettings::sun) does not reach.
     pub const AOV_FORMATS: [vk::Format; 4] = resolve::AOV_FORMATS;
     /// Format of the image of thickness.
     pub const THICKNESS_FORMAT: vk::Format = solid_layers::THICKNESS_FORMAT;
@@ -195,60 +199,6 @@ impl Renderer {
         Ok(Self { device: device.clone(), formats, loaded: None, slots, last: None })
     }
 
-    /// Replaces the model: makes the pipelines that it needs; the next [`record`](Self::record)
-    /// copies its data. Frames in flight keep the old one until their slots come round.
-    ///
-    /// # Errors
-    /// [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before stays.
-    pub fn upload(&mut self, model: &Model) -> Result<(), RenderError> {
-        self.upload_with(model, SceneSettings::default())
-    }
-
-    /// As [`upload`](Self::upload), with settings that hold as long as the model.
-    ///
-    /// # Errors
-    /// As [`upload`](Self::upload).
-    pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), RenderError> {
-        asked::check_sun(settings)?;
-        self.load(SceneData::new(model, settings)?, settings)
-    }
-
-    /// As [`upload_with`](Self::upload_with), of what [`CloseUp`] cut out of a model for a view: shadows are those of the
-    /// whole model, of which all spline faces that cast them are made triangles for each cut.
-    ///
-    /// # Errors
-    /// As [`upload`](Self::upload).
-    pub fn upload_cut(&mut self, whole: &Model, cut: &Cut, settings: SceneSettings) -> Result<(), RenderError> {
-        asked::check_sun(settings)?;
-        self.load(SceneData::cut_from(whole, cut, settings)?, settings)
-    }
-
-    fn load(&mut self, data: SceneData, settings: SceneSettings) -> Result<(), RenderError> {
-        if settings.smooth_trims {
-            asked::check_smooth_trims(&data, settings)?;
-        }
-        let counts = Counts::of(&data);
-        counts.check()?;
-        let formats =
-            resolve::Formats { colour: self.formats.colour, depth: self.formats.depth, aovs: self.formats.aovs };
-        let passes = Passes::new(&self.device, &data, formats)?;
-        let loaded = Loaded {
-            data,
-            counts,
-            capacities: Capacities::first(counts),
-            passes,
-            scene: None,
-            buffers: None,
-            edits: Vec::new(),
-            known: None,
-        };
-        if let Some(old) = self.loaded.replace(loaded) {
-            self.retire(Retired::Loaded(Box::new(old)));
-            self.slots.iter_mut().for_each(|slot| slot.capacities = None);
-        }
-        Ok(())
-    }
-
     /// Records one frame: compute, draws, and the picture into the targets.
     ///
     /// # Errors
@@ -271,13 +221,15 @@ impl Renderer {
     /// As [`record`](Self::record), and the length of each pixel's ray within solids, between near and far plane and in
     /// model units, into an image of [`THICKNESS_FORMAT`](Self::THICKNESS_FORMAT) of the camera's size: Boolean solids
     /// and closed parts, where several overlap counted once; 0 where there is none. Its layouts and barriers are as
-    /// those of the colour target. The model was uploaded with [`SceneSettings::thickness`].
+    /// those of the colour target. The model was uploaded with
+    /// [`thickness`](crate::picture::SceneSettings::thickness).
     ///
     /// # Errors
     /// As [`record`](Self::record).
     ///
     /// # Panics
-    /// As [`record`](Self::record), and where the model was uploaded without [`SceneSettings::thickness`].
+    /// As [`record`](Self::record), and where the model was uploaded without
+    /// [`thickness`](crate::picture::SceneSettings::thickness).
     ///
     /// # Safety
     /// As [`record`](Self::record).
@@ -412,6 +364,7 @@ impl Renderer {
         let stats = FrameStats {
             passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
             kept: slot.kept,
+            trim: self.loaded.as_ref().and_then(|l| l.counts.trim).map(Into::into),
             patches: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.items)),
             triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
             sub_patches: u64::from(c.plain) + u64::from(c.trimmed),
@@ -466,6 +419,10 @@ impl Renderer {
                 Ok(grown) => grown,
                 // a picture of another size may have room
                 Err(_) if drawn != size => loaded.capacities,
+                Err(too_many) if too_many.is_of_table() && loaded.kept.is_some() => {
+                    self.load_exact()?;
+                    return self.make_room(slot, camera);
+                }
                 Err(too_many) => return Err(too_many.into()),
             },
             _ if loaded.scene.is_none() => {

@@ -12,7 +12,7 @@
 //! A frame tells what all rows want, the band with most, and the row with most. Where one band does not do, the first
 //! guess is by the mean of all rows, which the densest rows may exceed; the second is by the row with most, and holds.
 
-use super::TooMany;
+use super::{SMALLER, TooMany};
 use crate::abi::{Fragment, TILE, TileLeaf};
 use crate::gpu::Buffer;
 use crate::passes::scan;
@@ -152,6 +152,7 @@ impl Lists {
             what,
             count: counted(wanted),
             most: self.limits.range / of_one as u32,
+            help: SMALLER,
         };
         if fragments > range {
             return over("crossings of operands in one row of tiles", row.fragments, size_of::<Fragment>());
@@ -164,6 +165,7 @@ impl Lists {
             what: "bytes for the lists of one row of tiles",
             count: counted(bytes),
             most: counted(self.limits.budget),
+            help: "give a larger solid budget, or draw a smaller picture",
         }
     }
 }

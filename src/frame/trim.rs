@@ -16,7 +16,7 @@ use super::table::{TableParts, TablePasses};
 use crate::buffers::TrimBuffers;
 use crate::gpu::{Device, GpuError, Resource};
 use crate::passes::heal;
-use crate::picture::TrimWay;
+use crate::picture::TakenWay;
 use crate::scene::{ExactScene, SceneData, SolidData, Trims};
 use crate::shaders::{TRIM_EXACT, TRIM_TABLE, TrimTest};
 
@@ -38,12 +38,12 @@ impl TrimPasses {
     pub(super) fn new(device: &Device, data: &SceneData) -> Result<Option<Self>, GpuError> {
         let Some(way) = data.trim_way() else { return Ok(None) };
         let way = match way {
-            TrimWay::Table => {
+            TakenWay::Table => {
                 Way::Table(Box::new(TablePasses::new(device, !data.wide_strips.is_empty(), data.has_operands)?))
             }
-            TrimWay::Exact => Way::Exact,
+            TakenWay::Exact => Way::Exact,
             #[cfg(feature = "rivals")]
-            TrimWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival)?),
+            TakenWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival)?),
         };
         let others = data.has_meshes() || data.solids.kinds().is_some();
         let volume = data.volume.as_ref().and_then(SolidData::kinds);

@@ -9,8 +9,8 @@ pub(super) fn check_smooth_trims(data: &SceneData, settings: SceneSettings) -> R
     let refused = match settings.trim {
         _ if settings.samples != Samples::One => Some("several samples a pixel, which smooth them, too"),
         _ if data.is_layered => Some("something to see through, or to mark"),
-        None | Some(TrimWay::Exact) => None,
-        Some(_) => Some("another way to trim than `exact`"),
+        TrimWay::Auto | TrimWay::Exact => None,
+        _ => Some("another way to trim than `exact`"),
     };
     refused.map_or(Ok(()), |what| Err(RenderError::SmoothTrims(what)))
 }

@@ -47,7 +47,7 @@ pub(super) fn constants(
         cell_count: counts.cells,
         bay_count: counts.bays,
         curve_count: counts.curves,
-        draw_vertices: device.quirks().max_tessellated_vertices_per_draw.saturating_sub(MOST_VERTICES).max(1),
+        draw_vertices: draw_vertices(device),
         encode_srgb: u32::from(!encodes(formats)),
         sub_patch_capacity: room.sub_patches,
         draw_capacity: room.draws,
@@ -74,6 +74,11 @@ pub(super) fn constants(
         ..abi::Frame::default()
     };
     seen_by(camera, frame)
+}
+
+/// Vertices before a sub-patch that the same draw has.
+pub(super) fn draw_vertices(device: &Device) -> u32 {
+    device.quirks().max_tessellated_vertices_per_draw.saturating_sub(MOST_VERTICES).max(1)
 }
 
 /// Vertices of one sub-patch at the hardware's factor of 64: a draw may exceed its budget by so many.

@@ -27,7 +27,7 @@ use crate::twin;
 /// The model cannot be drawn at all.
 pub fn wanted_bytes(model: &Model, camera: &Camera, eighths: u32) -> Result<f64, UndrawnSolid> {
     let way = TrimWay::Rival(Rival::Texture { eighths });
-    let data = SceneData::new(model, SceneSettings { trim: Some(way), ..SceneSettings::default() })?;
+    let data = SceneData::new(model, SceneSettings { trim: way, ..SceneSettings::default() })?;
     let frame = Frame { cell_count: data.cell_items.len() as u32, bay_count: data.bay_count, ..Frame::default() };
     let frame = seen_by(camera, frame);
     let pixels = camera.pixel_matrix();

@@ -11,7 +11,7 @@ use super::face::{Domain, outward_box, round_up};
 use crate::abi;
 use crate::math::octahedral;
 use crate::model::{Face, TrimLoop};
-use crate::picture::TrimWay;
+use crate::picture::TakenWay;
 use crate::spline::{Bezier, Control, Patch, SurfacePatch};
 use glam::{DVec2, DVec3};
 
@@ -29,11 +29,11 @@ const MOST_BAYS: f64 = 32.0;
 const STRIP_CURVES: f64 = 8.0;
 
 /// [`abi::Face::strips`] of a face with so many rows of patches. Strips depend on what edits do not change, since they decide where scan lines are.
-pub(super) fn strips(face: &Face, rows: usize, way: TrimWay) -> u32 {
+pub(super) fn strips(face: &Face, rows: usize, way: TakenWay) -> u32 {
     let curves = || face.loops.iter().flat_map(TrimLoop::curves);
     let for_curves = (curves().count() as f64).sqrt() / STRIP_CURVES;
     let strips = (2 * rows).max(for_curves as usize).clamp(LEAST_STRIPS, MOST_STRIPS) as u32;
-    if way != TrimWay::Table {
+    if way != TakenWay::Table {
         return abi::Face::pack_strips(strips, 1);
     }
     let height = |c: Bezier<DVec3>| {

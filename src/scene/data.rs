@@ -7,14 +7,16 @@ use super::exact::ExactData;
 use super::face::{Body, Cuts, FaceData, Trimming, pack_colour};
 use super::link::link;
 use super::mesh::Meshes;
+use super::parts::{PlacedPart, each_made};
 use super::solids::{Lists, SolidData, UndrawnSolid};
 use super::sun::SunData;
 use super::trimmed::Trimmed;
+use super::way::taken;
 use crate::abi;
-use crate::model::{Instance, Items, Lone, Model, SolidError};
+use crate::model::{Bounds, Instance, Items, Lone, Model, Part, SolidError};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
-use crate::picture::{Highlight, Samples, SceneSettings, TrimWay};
+use crate::picture::{Highlight, Samples, SceneSettings, TakenWay};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -81,7 +83,7 @@ pub(crate) struct SceneData {
     #[cfg(feature = "rivals")]
     pub untested: bool,
     /// How faces would be trimmed.
-    way: Option<TrimWay>,
+    way: Option<TakenWay>,
     /// Of each pixel.
     pub samples: Samples,
     /// The borders of trimmed faces are wanted smooth.
@@ -137,10 +139,9 @@ impl SceneData {
         settings: SceneSettings,
         extent: impl Fn(usize, f64) -> f64,
     ) -> Result<Self, UndrawnSolid> {
-        let usual = if settings.smooth_trims { TrimWay::Exact } else { TrimWay::Table };
-        let way = settings.trim.unwrap_or(usual);
+        let way = taken(model, settings);
         let trim = Trimming { way, smooth: settings.smooth_trims, editable: settings.editable, extent: f64::INFINITY };
-        let edits = settings.editable && matches!(way, TrimWay::Table | TrimWay::Exact);
+        let edits = settings.editable && matches!(way, TakenWay::Table | TakenWay::Exact);
         let edit = edits.then(EditScene::default);
         let all = settings.thickness || settings.highlight.is_some();
         let items = (all || !model.is_opaque()).then(|| model.items(all)).transpose()?;
@@ -207,36 +208,37 @@ impl SceneData {
         }
         let mut first_faces = Vec::with_capacity(model.parts.len());
         let mut origins = Vec::with_capacity(model.parts.len());
-        for (nth, (part, scale)) in model.parts.iter().zip(scales).enumerate() {
-            first_faces.push(data.faces.len());
-            let bounds = part.bounds();
+        let mut placed = Vec::with_capacity(model.parts.len());
+        let bounds: Vec<Bounds> = model.parts.par_iter().map(Part::bounds).collect();
+        for (nth, ((part, bounds), scale)) in model.parts.iter().zip(&bounds).zip(scales).enumerate() {
             let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
             origins.push(origin);
-            if let Some(scale) = scale {
-                let cuts = Cuts::of(&part.faces);
-                let body = match part.closed && !open {
-                    false => Body::Open,
-                    true if part.faces.iter().all(|f| f.loops.is_empty()) => Body::Seamless,
-                    true => Body::Closed,
-                };
-                // an open shell's border hides what bends away behind it by less than triangles may be off: pieces, divided
-                // otherwise, may show it
-                let extent = if body == Body::Open { f64::INFINITY } else { extent(nth, scale) };
-                let trim = Trimming { extent, ..trim };
-                let faces: Vec<FaceData> =
-                    part.faces.par_iter().map(|f| FaceData::new(f, origin, body, trim, cuts)).collect();
-                let first = data.faces.len();
-                let normals: Vec<Normals> = faces.iter().flat_map(|f| &f.normals).copied().collect();
-                faces.into_iter().for_each(|f| data.push_face(f));
-                if data.link(first) {
-                    data.push_cones(first, &normals, 0.5 * bounds.diagonal());
-                }
-                #[cfg(feature = "rivals")]
-                if let TrimWay::Rival(Rival::Bisect { steps, sorted }) = way {
-                    part.faces.iter().for_each(|f| data.bisect.push(f, steps, sorted));
-                }
-            }
+            let Some(scale) = scale else { continue };
+            let body = match part.closed && !open {
+                false => Body::Open,
+                true if part.faces.iter().all(|f| f.loops.is_empty()) => Body::Seamless,
+                true => Body::Closed,
+            };
+            // an open shell's border hides what bends away behind it by less than triangles may be off: pieces, divided
+            // otherwise, may show it
+            let extent = if body == Body::Open { f64::INFINITY } else { extent(nth, scale) };
+            let trim = Trimming { extent, ..trim };
+            placed.push(PlacedPart { number: nth, part, origin, body, trim, cuts: Cuts::of(&part.faces) });
         }
+        each_made(&placed, |placed, faces| {
+            let (nth, first) = (placed.number, data.faces.len());
+            first_faces.resize(nth + 1, first);
+            let normals: Vec<Normals> = faces.iter().flat_map(|f| &f.normals).copied().collect();
+            faces.into_iter().for_each(|f| data.push_face(f));
+            if data.link(first) {
+                data.push_cones(first, &normals, 0.5 * bounds[nth].diagonal());
+            }
+            #[cfg(feature = "rivals")]
+            if let TakenWay::Rival(Rival::Bisect { steps, sorted }) = way {
+                placed.part.faces.iter().for_each(|f| data.bisect.push(f, steps, sorted));
+            }
+        });
+        first_faces.resize(model.parts.len(), data.faces.len());
         for instance in &model.instances {
             let part = &model.parts[instance.part];
             let first = first_faces[instance.part];
@@ -283,13 +285,13 @@ impl SceneData {
     }
 
     /// How faces are trimmed; `None` when no patch is.
-    pub(crate) fn trim_way(&self) -> Option<TrimWay> {
+    pub(crate) fn trim_way(&self) -> Option<TakenWay> {
         self.way.filter(|_| self.has_trimmed)
     }
 
     /// Pass `coverage` mixes pixels at the borders of trimmed faces: there are some that are seen themselves.
     pub(crate) fn smooths_trims(&self) -> bool {
-        self.smooth_trims && self.has_patches && self.trim_way() == Some(TrimWay::Exact)
+        self.smooth_trims && self.has_patches && self.trim_way() == Some(TakenWay::Exact)
     }
 
     /// Patches may lie behind others, and enough of them to ask. Those of operands are crossed whatever lies before them,
@@ -365,7 +367,7 @@ impl SceneData {
             }
         }
         f.curves.iter_mut().for_each(|c| c.first += curve_point);
-        if self.way == Some(TrimWay::Exact) {
+        if self.way == Some(TakenWay::Exact) {
             let place = self.exact.push(&f.exact, f.edit.is_some());
             if let Some(face) = &mut f.edit {
                 face.exact = Some((place, ExactData::of(&f.exact, &place)));

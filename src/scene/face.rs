@@ -13,7 +13,7 @@ use crate::abi::Side;
 use crate::model::{Face, SurfaceKind, TrimLoop};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
-use crate::picture::TrimWay;
+use crate::picture::TakenWay;
 use crate::spline::{Bezier, Control, Patch, PatchGrid, SurfacePatch};
 use crate::trim::{ExactTrim, LoopIndex, RectSide, chord_bend};
 use glam::{DVec2, DVec3};
@@ -23,6 +23,7 @@ use glam::{DVec2, DVec3};
 pub(super) const POINT: f64 = 1e-6;
 
 /// What one face contributes to the scene's arrays.
+#[derive(Clone)]
 pub(super) struct FaceData {
     pub face: abi::Face,
     pub patches: Vec<abi::Patch>,
@@ -75,9 +76,9 @@ impl Domain {
 }
 
 /// How the faces of a scene are trimmed.
-#[derive(Clone, Copy, Debug)]
+#[derive(Clone, Copy, Debug, PartialEq)]
 pub(super) struct Trimming {
-    pub way: TrimWay,
+    pub way: TakenWay,
     /// Pass `coverage` measures their borders.
     pub smooth: bool,
     /// They may be edited.
@@ -103,14 +104,12 @@ impl FaceData {
         };
         let trimmed = sides.contains(&Side::Boundary);
         let table = trimmed && needs_curves(way);
-        let editable = editable && trimmed && matches!(way, TrimWay::Table | TrimWay::Exact);
+        let editable = editable && trimmed && matches!(way, TakenWay::Table | TakenWay::Exact);
         let mut data = Self {
             face: abi::Face {
                 domain: [u0 as f32, v0 as f32, (u1 - u0) as f32, (v1 - v0) as f32],
                 count_u: grid.count_u as u32,
                 count_v: grid.count_v as u32,
-                id: face.id,
-                colour: face.colour.map_or(DEFAULT_COLOUR, pack_colour),
                 strips: if table { strips(face, flat.count_v, way) } else { 0 },
                 ..Default::default()
             },
@@ -123,7 +122,7 @@ impl FaceData {
             curves: Vec::new(),
             curve_points: Vec::new(),
             exact: match way {
-                TrimWay::Exact if trimmed => exact_trim(&face.loops, &domain, smooth),
+                TakenWay::Exact if trimmed => exact_trim(&face.loops, &domain, smooth),
                 _ => ExactTrim::default(),
             },
             edit: None,
@@ -168,7 +167,14 @@ impl FaceData {
         if !trimmed {
             data.close_seams(grid.count_u, grid.count_v);
         }
+        data.name(face);
         data
+    }
+
+    /// Takes what tells a face from one that is like it: number and colour.
+    pub(super) fn name(&mut self, face: &Face) {
+        self.face.id = face.id;
+        self.face.colour = face.colour.map_or(DEFAULT_COLOUR, pack_colour);
     }
 
     fn push_patch(
@@ -345,12 +351,12 @@ pub(super) fn pack_colour(c: crate::model::Colour) -> u32 {
 }
 
 /// The way is made of curves and cells in every view.
-fn needs_curves(way: TrimWay) -> bool {
+fn needs_curves(way: TakenWay) -> bool {
     match way {
-        TrimWay::Table => true,
-        TrimWay::Exact => false,
+        TakenWay::Table => true,
+        TakenWay::Exact => false,
         #[cfg(feature = "rivals")]
-        TrimWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
+        TakenWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
     }
 }
 

@@ -28,11 +28,13 @@ mod flatten;
 mod link;
 mod mesh;
 mod nearby;
+mod parts;
 mod solids;
 mod sun;
 mod trimmed;
 mod upload;
 mod view;
+mod way;
 
 pub use closeup::{CloseUp, Cut, Wanted};
 pub(crate) use data::{Division, SceneData};
@@ -49,3 +51,4 @@ pub(crate) use trimmed::TableView;
 pub(crate) use upload::RivalScene;
 pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, TableScene, Trims};
 pub(crate) use view::{focal_and_slant, seen_by, view};
+pub use way::trim_way;

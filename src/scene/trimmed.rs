@@ -12,7 +12,7 @@ use super::around::Ball;
 use super::data::SceneData;
 use super::nearby::nearby;
 use crate::model::{Bounds, Camera};
-use crate::picture::TrimWay;
+use crate::picture::TakenWay;
 use glam::Vec3;
 
 /// Cells that share a box: a few bytes for each, and yet boxes that are not much larger than a cell.
@@ -48,7 +48,7 @@ pub(crate) struct Trimmed {
 impl Trimmed {
     /// As placed; `None` where there is no table.
     pub(super) fn by_table(data: &SceneData) -> Option<Self> {
-        if data.trim_way() != Some(TrimWay::Table) {
+        if data.trim_way() != Some(TakenWay::Table) {
             return None;
         }
         let boxes: Vec<Bounds> = data

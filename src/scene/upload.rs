@@ -8,7 +8,7 @@ use crate::bindings::{Placed, Primitives};
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texel, Texels, Uploads};
 #[cfg(feature = "rivals")]
 use crate::picture::Rival;
-use crate::picture::TrimWay;
+use crate::picture::TakenWay;
 use ash::vk;
 use bytemuck::Pod;
 use std::ops::Range;
@@ -196,12 +196,12 @@ impl Scene {
             },
             trims: match data.trim_way() {
                 None => None,
-                Some(TrimWay::Table) => Some(Trims::Table(Box::new(table_scene(&mut uploads, cmd, data)?))),
+                Some(TakenWay::Table) => Some(Trims::Table(Box::new(table_scene(&mut uploads, cmd, data)?))),
                 #[cfg(feature = "rivals")]
-                Some(TrimWay::Rival(rival)) => {
+                Some(TakenWay::Rival(rival)) => {
                     Some(Trims::Rival(Box::new(rival_scene(&mut uploads, cmd, data, rival)?)))
                 }
-                Some(TrimWay::Exact) => Some(Trims::Exact(Box::new(ExactScene {
+                Some(TakenWay::Exact) => Some(Trims::Exact(Box::new(ExactScene {
                     faces: texels(&mut uploads, cmd, "trim faces", &data.exact.faces, Texel::U32x4)?,
                     cells: texels(&mut uploads, cmd, "trim cells", &data.exact.cells, Texel::Words)?,
                     arcs: texels(&mut uploads, cmd, "trim arcs", &data.exact.arcs, Texel::U32x4)?,

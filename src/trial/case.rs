@@ -30,7 +30,7 @@ impl Case {
     }
 
     fn settings() -> SceneSettings {
-        SceneSettings { trim: Some(TrimWay::Table), ..SceneSettings::default() }
+        SceneSettings { trim: TrimWay::Table, ..SceneSettings::default() }
     }
 
     fn of(data: SceneData, camera: &Camera, tolerance_px: f64) -> Self {

@@ -32,7 +32,7 @@ fn keeps_the_promise(model: &Model, views: Range<u32>) {
 
 fn keeps_it_by(way: TrimWay, model: &Model, views: Range<u32>) {
     let tracer = Tracer::new(model);
-    let mut renderer = watched_with(model, SceneSettings { trim: Some(way), ..SceneSettings::default() });
+    let mut renderer = watched_with(model, SceneSettings { trim: way, ..SceneSettings::default() });
     let mut faults = Vec::new();
     for k in views {
         let camera = view(model, k);

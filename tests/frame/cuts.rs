@@ -36,7 +36,7 @@ fn right(renderer: &mut HeadlessRenderer, name: &str, whole: &Model, model: &Mod
     let views = [("perspective", perspective(whole, SIZE)), ("parallel", orthographic(whole, SIZE))];
     renderer.upload(whole).unwrap();
     let uncut: Vec<_> = views.iter().map(|(_, camera)| render(renderer, camera).depth).collect();
-    renderer.upload_with(model, SceneSettings { trim: Some(way), ..Default::default() }).unwrap();
+    renderer.upload_with(model, SceneSettings { trim: way, ..Default::default() }).unwrap();
     let tracer = Tracer::new(model);
     let mut wrong = Vec::new();
     for ((view, camera), uncut) in views.into_iter().zip(uncut) {

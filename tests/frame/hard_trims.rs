@@ -95,7 +95,7 @@ fn judge(picture: &Picture, case: &trims::TrimCase, id: u32, (focus, zoom): (DVe
 
 fn every_case(way: TrimWay, zooms: &[f64]) {
     let cases = trims::all();
-    let mut renderer = renderer(&model(&cases), SceneSettings { trim: Some(way), ..Default::default() });
+    let mut renderer = renderer(&model(&cases), SceneSettings { trim: way, ..Default::default() });
     for (i, case) in cases.iter().enumerate() {
         // what the judge knows is what was stated by hand
         let index = LoopIndex::new(&case.loops);
@@ -147,7 +147,7 @@ fn no_frame_depends_on_the_one_before() {
     let i = cases.iter().position(|case| case.name == "7 holes").unwrap();
     let model = model(&cases[i..=i]);
     for &trim in TrimWay::ALL {
-        let settings = SceneSettings { trim: Some(trim), ..Default::default() };
+        let settings = SceneSettings { trim, ..Default::default() };
         let mut old = renderer(&model, settings);
         let focus = DVec2::from(cases[i].focus);
         let away =
@@ -182,7 +182,7 @@ fn edited_as_if_uploaded_afresh(trim: TrimWay, most_bytes: u64) {
     model.parts[0].faces[0].surface = Surface::new((1, 1), knots(), knots(), points).unwrap();
     let at = LoopAt { part: 0, face: 0, trim_loop: 0 };
     let view = Camera { size: (64, 64), ..camera(0, DVec2::splat(0.5), 1.0) };
-    let fixed = SceneSettings { trim: Some(trim), ..Default::default() };
+    let fixed = SceneSettings { trim, ..Default::default() };
     let mut edited = renderer(&model, SceneSettings { editable: true, ..fixed });
     draw(&mut edited, &view);
     for frame in 0..6 {
@@ -216,7 +216,7 @@ fn an_edit_costs_what_its_face_costs() {
     let at = LoopAt { part: 0, face: 0, trim_loop: 0 };
     let view = Camera { size: (64, 64), ..camera(0, DVec2::splat(0.5), 1.0) };
     for &trim in TrimWay::ALL {
-        let settings = SceneSettings { trim: Some(trim), editable: true, ..Default::default() };
+        let settings = SceneSettings { trim, editable: true, ..Default::default() };
         let sent = [&[one][..], &[one, many, many]].map(|names| {
             let cases: Vec<_> = names.iter().map(named).collect();
             let mut edited = renderer(&model(&cases), settings);

@@ -45,7 +45,7 @@ fn alone(renderer: &mut HeadlessRenderer, model: &Model, settings: SceneSettings
 
 /// Views one after the other, each twice; the most patches that were left out at a view's first and second picture.
 fn same_as_alone(model: &Model, trim: TrimWay, views: &[Camera]) -> [u64; 2] {
-    let settings = SceneSettings { trim: Some(trim), ..SceneSettings::default() };
+    let settings = SceneSettings { trim, ..SceneSettings::default() };
     let mut renderer = watched_with(model, settings);
     let mut other = watched_with(model, settings);
     let mut most = [0; 2];
@@ -94,7 +94,7 @@ fn an_edit_shows_what_lay_behind() {
     }
     let camera = Camera { up: DVec3::Y, ..from(&model, DVec3::new(0.05, -0.1, 1.0)) };
     for &trim in TrimWay::ALL {
-        let settings = SceneSettings { trim: Some(trim), editable: true, ..SceneSettings::default() };
+        let settings = SceneSettings { trim, editable: true, ..SceneSettings::default() };
         let mut edited = watched_with(&model, settings);
         let mut other = watched_with(&model, settings);
         let before = [(); 3].map(|()| render(&mut edited, &camera).stats.hidden_patches);

@@ -100,7 +100,7 @@ fn makes_a_table(pair: &mut Pair, model: &Model, camera: &Camera, settings: Fram
 #[test]
 fn views_from_about_as_far_and_from_near_by_share_a_trim_table() {
     let mut model = few();
-    let scene = SceneSettings { trim: Some(TrimWay::Table), editable: true, ..SceneSettings::default() };
+    let scene = SceneSettings { trim: TrimWay::Table, editable: true, ..SceneSettings::default() };
     let mut pair = Pair::new(&model, scene);
     let settings = FrameSettings::default();
     let coarse = FrameSettings { tolerance_px: 2.0, ..settings };
@@ -151,7 +151,7 @@ fn views_from_about_as_far_and_from_near_by_share_a_trim_table() {
 
 /// Everything that a view is made of, changed and changed back.
 fn made_anew(model: &Model, trim: TrimWay) {
-    let mut pair = Pair::new(model, SceneSettings { trim: Some(trim), ..SceneSettings::default() });
+    let mut pair = Pair::new(model, SceneSettings { trim, ..SceneSettings::default() });
     let settings = FrameSettings::default();
     let mut stands = |camera: &Camera, settings, what: &str| pair.stands(model, camera, settings, what);
     let camera = from(model, 0.3);
@@ -182,7 +182,7 @@ fn many_patches_are_made_anew() {
 fn an_edit_is_seen() {
     for &trim in TrimWay::ALL {
         let mut model = few();
-        let scene = SceneSettings { trim: Some(trim), editable: true, ..SceneSettings::default() };
+        let scene = SceneSettings { trim, editable: true, ..SceneSettings::default() };
         let mut pair = Pair::new(&model, scene);
         let camera = from(&model, 0.3);
         pair.stands(&model, &camera, FrameSettings::default(), "before");
@@ -249,7 +249,7 @@ fn whatever_follows_draws_what_is_kept() {
         ("samples", &beside, SceneSettings { samples: Samples::Four, ..default }),
         ("a sun", &beside, SceneSettings { sun: Some(DVec3::new(-0.5, 0.4, 0.9)), ..default }),
         ("bands", &beside, in_bands(&beside)),
-        ("smooth trims", &beside, SceneSettings { smooth_trims: true, trim: Some(TrimWay::Exact), ..default }),
+        ("smooth trims", &beside, SceneSettings { smooth_trims: true, trim: TrimWay::Exact, ..default }),
         ("marks", &beside, SceneSettings { highlight, ..default }),
         ("glass", &clear, default),
         ("glass, samples", &clear, SceneSettings { samples: Samples::Four, ..default }),

@@ -55,7 +55,7 @@ fn only_a_trimmed_scene_has_what_its_way_to_trim_needs() {
 }
 
 fn has_what_it_needs(way: TrimWay, needed: &[&str], others: &[&str]) {
-    let settings = SceneSettings { trim: Some(way), ..SceneSettings::default() };
+    let settings = SceneSettings { trim: way, ..SceneSettings::default() };
     for shape in shapes::all() {
         let (renderer, objects) = objects_with(&shape.model, settings, Outputs::default());
         let of_trimming: Vec<_> = objects.iter().filter(|name| is_of_trimming(name)).collect();

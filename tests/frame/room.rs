@@ -2,14 +2,14 @@
 
 use crate::shapes;
 use crate::support::{assert_identical, assert_silent, watched_with};
-use glam::{DAffine3, DQuat, DVec3};
-use selvedge::headless::HeadlessRenderer;
-use selvedge::model::{Camera, Model, Projection};
+use glam::{DAffine3, DQuat, DVec2, DVec3};
+use selvedge::headless::{HeadlessError, HeadlessRenderer};
+use selvedge::model::{Camera, LoopAt, Model, Projection};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, SolidWay, TrimWay};
 
 /// Its buffers grow with the view.
 const BY_TABLE: SceneSettings = SceneSettings {
-    trim: Some(TrimWay::Table),
+    trim: TrimWay::Table,
     #[cfg(feature = "rivals")]
     slefe_segments: None,
     #[cfg(feature = "rivals")]
@@ -78,4 +78,88 @@ fn more_sub_patches_than_the_first_list_holds() {
     let picture = check(&model, &camera, 0.125);
     assert!(picture.stats.sub_patches > 262, "{:?}", picture.stats);
     assert_eq!(picture.stats.clamps, 0, "{:?}", picture.stats);
+}
+
+/// So many plates upon each other that a view of a fifth of each has more scan lines than a table can number, and one of all
+/// of them has few.
+fn stack() -> Model {
+    let mut model = shapes::plate();
+    let place = |i: u32| DVec3::new(0.0, 0.0, -1e-3 * f64::from(i));
+    model.instances = (0..120).map(|i| shapes::placed(DAffine3::from_translation(place(i)), None)).collect();
+    model
+}
+
+/// The whole stack from above, and a part of it so many times closer.
+fn onto(model: &Model, closer: f64) -> Camera {
+    let above = Camera::framing(model.bounds(), DVec3::Z, DVec3::Y, 0.6, (64, 64));
+    let height = model.bounds().diagonal() / closer;
+    Camera { projection: Projection::Orthographic { height }, ..above }
+}
+
+fn finely(renderer: &mut HeadlessRenderer, camera: &Camera) -> Result<Picture, HeadlessError> {
+    renderer.render(camera, &FrameSettings { tolerance_px: 0.1, ..FrameSettings::default() }, Outputs::ALL)
+}
+
+/// What asks for the table alone is told what to ask for instead; what asks for no way gets that, and goes on with it.
+#[test]
+fn a_view_beyond_the_table_is_trimmed_exactly() {
+    let model = stack();
+    let (whole, close) = (onto(&model, 1.0), onto(&model, 300.0));
+    let mut by_table = watched_with(&model, BY_TABLE);
+    let refused = finely(&mut by_table, &close).unwrap_err().to_string();
+    assert!(refused.contains("scan lines are too many") && refused.contains("`exact`"), "{refused}");
+    let kept = finely(&mut by_table, &whole).unwrap();
+
+    let mut auto = watched_with(&model, SceneSettings { trim: TrimWay::Auto, ..BY_TABLE });
+    let first = finely(&mut auto, &whole).unwrap();
+    assert_eq!(first.stats.trim, Some(TrimWay::Table));
+    assert_identical(&first, &kept, "few scan lines");
+    let mut exact = watched_with(&model, SceneSettings { trim: TrimWay::Exact, ..BY_TABLE });
+    for (camera, what) in [(&close, "many"), (&whole, "few again")] {
+        let picture = finely(&mut auto, camera).unwrap();
+        assert_eq!(picture.stats.trim, Some(TrimWay::Exact), "{what}");
+        assert_identical(&picture, &finely(&mut exact, camera).unwrap(), what);
+    }
+    [by_table, auto, exact].into_iter().for_each(assert_silent);
+}
+
+/// Loops that were edited before are where they were put, and may be edited further.
+#[test]
+fn edits_outlive_the_table() {
+    let mut model = stack();
+    let (whole, close) = (onto(&model, 1.0), onto(&model, 300.0));
+    let settings = SceneSettings { trim: TrimWay::Auto, editable: true, ..BY_TABLE };
+    let mut edited = watched_with(&model, settings);
+    let at = LoopAt { part: 0, face: 0, trim_loop: 1 };
+    let mut edit = |edited: &mut HeadlessRenderer, by: DVec2| {
+        let moved = model.parts[0].faces[0].loops[1].translated(by).unwrap();
+        edited.edit_loop(at, &moved).unwrap();
+        model.parts[0].faces[0].loops[1] = moved;
+        model.clone()
+    };
+    assert_eq!(finely(&mut edited, &whole).unwrap().stats.trim, Some(TrimWay::Table));
+    let once = edit(&mut edited, DVec2::new(0.4, 0.1));
+    let mut exact = watched_with(&once, SceneSettings { trim: TrimWay::Exact, ..settings });
+    let picture = finely(&mut edited, &close).unwrap();
+    assert_eq!(picture.stats.trim, Some(TrimWay::Exact));
+    assert_identical(&picture, &finely(&mut exact, &close).unwrap(), "edited before");
+    let twice = edit(&mut edited, DVec2::new(-0.3, 0.2));
+    exact.upload_with(&twice, SceneSettings { trim: TrimWay::Exact, ..settings }).unwrap();
+    let picture = finely(&mut edited, &whole).unwrap();
+    assert_identical(&picture, &finely(&mut exact, &whole).unwrap(), "edited after");
+    [edited, exact].into_iter().for_each(assert_silent);
+}
+
+/// What is cut out of the model for a view from very near, too.
+#[test]
+fn a_close_view_beyond_the_table_is_trimmed_exactly() {
+    let model = stack();
+    let close = onto(&model, 2000.0);
+    let mut auto = watched_with(&model, SceneSettings { trim: TrimWay::Auto, ..BY_TABLE });
+    let mut exact = watched_with(&model, SceneSettings { trim: TrimWay::Exact, ..BY_TABLE });
+    assert_eq!(finely(&mut auto, &onto(&model, 1.0)).unwrap().stats.trim, Some(TrimWay::Table));
+    let picture = finely(&mut auto, &close).unwrap();
+    assert_eq!(picture.stats.trim, Some(TrimWay::Exact));
+    assert_identical(&picture, &finely(&mut exact, &close).unwrap(), "close");
+    [auto, exact].into_iter().for_each(assert_silent);
 }

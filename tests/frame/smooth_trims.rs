@@ -20,7 +20,7 @@ const SMOOTH: SceneSettings = SceneSettings { smooth_trims: true, ..plain() };
 
 const fn plain() -> SceneSettings {
     SceneSettings {
-        trim: Some(TrimWay::Exact),
+        trim: TrimWay::Exact,
         #[cfg(feature = "rivals")]
         slefe_segments: None,
         #[cfg(feature = "rivals")]
@@ -213,9 +213,9 @@ fn what_does_not_go_with_it_is_refused() {
         other => panic!("{other:?}"),
     };
     assert!(refused(SceneSettings { samples: Samples::Four, ..SMOOTH }).contains("samples"));
-    assert!(refused(SceneSettings { trim: Some(TrimWay::Table), ..SMOOTH }).contains("exact"));
+    assert!(refused(SceneSettings { trim: TrimWay::Table, ..SMOOTH }).contains("exact"));
     let marked = SceneSettings { highlight: Some(Highlight::default()), ..SMOOTH };
     let refused = renderer.upload_with(&shapes::solids::holes(2), marked);
     assert!(matches!(refused, Err(HeadlessError::Render(RenderError::SmoothTrims(what))) if what.contains("mark")));
-    renderer.upload_with(&shapes::beside(), SceneSettings { trim: None, ..SMOOTH }).unwrap();
+    renderer.upload_with(&shapes::beside(), SceneSettings { trim: TrimWay::Auto, ..SMOOTH }).unwrap();
 }

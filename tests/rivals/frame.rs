@@ -26,7 +26,7 @@ fn panel() -> Model {
     sample("panel.step")
 }
 
-fn watched(model: &Model, trim: Option<TrimWay>) -> HeadlessRenderer {
+fn watched(model: &Model, trim: TrimWay) -> HeadlessRenderer {
     watched_with(model, SceneSettings { trim, ..SceneSettings::default() })
 }
 
@@ -39,7 +39,7 @@ fn watched_with(model: &Model, settings: SceneSettings) -> HeadlessRenderer {
 }
 
 /// Draws `drawn` and judges it against `model`: every pixel.
-fn judged(drawn: &Model, trim: Option<TrimWay>, model: &Model) -> Judgement {
+fn judged(drawn: &Model, trim: TrimWay, model: &Model) -> Judgement {
     let mut renderer = watched(drawn, trim);
     let camera = camera(model);
     let picture = renderer.render(&camera, &FrameSettings::default(), Outputs::ALL).unwrap();
@@ -49,7 +49,7 @@ fn judged(drawn: &Model, trim: Option<TrimWay>, model: &Model) -> Judgement {
 }
 
 fn rival(model: &Model, rival: Rival) -> Judgement {
-    judged(model, Some(TrimWay::Rival(rival)), model)
+    judged(model, TrimWay::Rival(rival), model)
 }
 
 #[test]
@@ -81,9 +81,9 @@ fn rivals_leave_out_what_lies_behind() {
     }
     // the first one fills the picture
     let camera = Camera { depth_range: (camera(&one).depth_range.0, 1e4), ..camera(&one) };
-    let mut renderer = watched(&model, None);
+    let mut renderer = watched(&model, TrimWay::Auto);
     let mut left_out = |trim| {
-        renderer.upload_with(&model, SceneSettings { trim: Some(trim), ..SceneSettings::default() }).unwrap();
+        renderer.upload_with(&model, SceneSettings { trim, ..SceneSettings::default() }).unwrap();
         let settings = FrameSettings { all_passes: true, ..FrameSettings::default() };
         let mut draw = || renderer.render(&camera, &settings, Outputs::default()).unwrap().stats;
         [draw(), draw(), draw()].map(|stats| stats.hidden_patches)
@@ -120,9 +120,9 @@ fn meshes_are_off_by_their_deflection() {
         let (mesh, made) = pretessellated(&model, 0.4 * pixel);
         // what still bulges after the last round is told; a triangle in a thousand does not show
         assert_eq!((made.missing, 1000 * made.beyond / made.triangles), (0, 0));
-        let j = judged(&mesh, None, &model);
+        let j = judged(&mesh, TrimWay::Auto, &model);
         assert_eq!(j.wrong, 0, "{}: {:?}", model.name, j.mismatches);
-        let j = judged(&pretessellated(&model, 4.0 * pixel).0, None, &model);
+        let j = judged(&pretessellated(&model, 4.0 * pixel).0, TrimWay::Auto, &model);
         assert!(j.wrong > 10 && j.worst_shift_px > 0.7, "{} wrong, {} px", j.wrong, j.worst_shift_px);
     }
 }
@@ -133,11 +133,9 @@ fn patches_drawn_without_a_test_are_not_seen() {
     let model = panel();
     let settings = FrameSettings::default();
     for trim in [TrimWay::Table, TrimWay::Exact, TrimWay::Rival(Rival::Bisect { steps: 16, sorted: Sorted::Tuned })] {
-        let mut renderer = watched(&model, Some(trim));
+        let mut renderer = watched(&model, trim);
         let mut draw = |untested| {
-            renderer
-                .upload_with(&model, SceneSettings { trim: Some(trim), untested, ..SceneSettings::default() })
-                .unwrap();
+            renderer.upload_with(&model, SceneSettings { trim, untested, ..SceneSettings::default() }).unwrap();
             renderer.render(&camera(&model), &settings, Outputs::ALL).unwrap()
         };
         let (alone, beside) = (draw(false), draw(true));
@@ -161,7 +159,7 @@ fn a_frame_that_is_not_trimmed_is_wrong() {
 #[test]
 fn a_texture_beyond_the_device_is_told_and_the_next_view_drawn() {
     let model = many_holes(3);
-    let trim = Some(TrimWay::Rival(Rival::Texture { eighths: 16 }));
+    let trim = TrimWay::Rival(Rival::Texture { eighths: 16 });
     let mut renderer = watched(&model, trim);
     let whole = camera(&model);
     // at the border of a hole; closer still, the face would be cut to the view

@@ -323,9 +323,10 @@ pub struct FrameArgs {
     /// does not
     #[arg(long, value_name = "bound|N", default_value = "bound")]
     pub factors: Factors,
-    /// How to trim: table (made for views from about as far, closer up for those from near by) or exact (made once); table without it
-    #[arg(long, value_name = "WAY")]
-    pub trim: Option<TrimWay>,
+    /// How to trim: table (made for views from about as far, closer up for those from near by), exact (made once), or
+    /// auto: table where the scene needs few scan lines, exact beyond
+    #[arg(long, value_name = "WAY", default_value = "auto")]
+    pub trim: TrimWay,
     /// How to draw Boolean solids: events (a ray a pixel), cst (each primitive, trimmed by the others) or blister
     /// (layers of faces, classified by labels)
     #[arg(long, value_name = "WAY", default_value = "events")]

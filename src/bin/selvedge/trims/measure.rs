@@ -111,7 +111,7 @@ impl<'a> Bench<'a> {
         Self { args, name, model, tracer }
     }
 
-    fn renderer(&self, model: &Model, trim: Option<TrimWay>, untested: bool) -> Result<HeadlessRenderer> {
+    fn renderer(&self, model: &Model, trim: TrimWay, untested: bool) -> Result<HeadlessRenderer> {
         let options = HeadlessOptions { device: self.args.device.clone(), validation: false };
         let mut renderer = HeadlessRenderer::new(&options)?;
         renderer.upload_with(model, SceneSettings { trim, untested, ..SceneSettings::default() })?;

@@ -113,12 +113,12 @@ impl Contender {
     }
 
     /// What trims its scene; a mesh has nothing to trim.
-    pub fn trim(self) -> Option<TrimWay> {
+    pub fn trim(self) -> TrimWay {
         match self {
-            Self::Own { way, .. } => Some(way),
-            Self::Bisect { steps, sorted } => Some(TrimWay::Rival(Rival::Bisect { steps, sorted })),
-            Self::Texture { eighths } => Some(TrimWay::Rival(Rival::Texture { eighths })),
-            Self::Pretessellated { .. } => None,
+            Self::Own { way, .. } => way,
+            Self::Bisect { steps, sorted } => TrimWay::Rival(Rival::Bisect { steps, sorted }),
+            Self::Texture { eighths } => TrimWay::Rival(Rival::Texture { eighths }),
+            Self::Pretessellated { .. } => TrimWay::Auto,
         }
     }
 

@@ -1,0 +1,122 @@
+//! A model comes in, or in place of itself, to be trimmed another way.
+//!
+//! ```text
+//!   Auto ──rows expected──▶ few ──▶ Table, and the model is kept ──a view wants too many──▶ Exact
+//!             └────────────▶ many ─▶ Exact
+//! ```
+
+use super::constants::draw_vertices;
+use super::{Loaded, RenderError, Renderer, Retired, asked};
+use crate::capacities::{Capacities, Counts};
+use crate::frame::Passes;
+use crate::model::{LoopAt, Model, TrimLoop};
+use crate::passes::resolve;
+use crate::picture::{SceneSettings, TakenWay, TrimWay};
+use crate::scene::{Cut, SceneData, UndrawnSolid};
+
+/// What a scene is made of: a model, or what was cut out of it for a view.
+#[derive(Clone, Copy)]
+struct Source<'a> {
+    whole: &'a Model,
+    cut: Option<&'a Cut>,
+}
+
+impl Source<'_> {
+    fn data(self, settings: SceneSettings) -> Result<SceneData, UndrawnSolid> {
+        match self.cut {
+            None => SceneData::new(self.whole, settings),
+            Some(cut) => SceneData::cut_from(self.whole, cut, settings),
+        }
+    }
+}
+
+/// What is loaded once more where the table does not suffice for a view.
+pub(super) struct Kept {
+    whole: Model,
+    cut: Option<Cut>,
+    settings: SceneSettings,
+}
+
+impl Kept {
+    fn new(of: Source<'_>, settings: SceneSettings) -> Self {
+        // of a whole model only shadows are asked for beside what was cut out of it
+        let whole = if of.cut.is_none() || settings.sun.is_some() { of.whole.clone() } else { Model::default() };
+        Self { whole, cut: of.cut.cloned(), settings }
+    }
+
+    /// The loop is another one now.
+    pub(super) fn edit(&mut self, at: LoopAt, new: &TrimLoop) {
+        self.whole.parts[at.part].faces[at.face].loops[at.trim_loop] = new.clone();
+    }
+}
+
+impl Renderer {
+    /// Replaces the model: makes the pipelines that it needs; the next [`record`](Self::record)
+    /// copies its data. Frames in flight keep the old one until their slots come round.
+    ///
+    /// # Errors
+    /// [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before stays.
+    pub fn upload(&mut self, model: &Model) -> Result<(), RenderError> {
+        self.upload_with(model, SceneSettings::default())
+    }
+
+    /// As [`upload`](Self::upload), with settings that hold as long as the model.
+    ///
+    /// # Errors
+    /// As [`upload`](Self::upload).
+    pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), RenderError> {
+        self.load(Source { whole: model, cut: None }, settings)
+    }
+
+    /// As [`upload_with`](Self::upload_with), of what [`CloseUp`](super::CloseUp) cut out of a model for a view: shadows
+    /// are those of the whole model, of which all spline faces that cast them are made triangles for each cut.
+    ///
+    /// # Errors
+    /// As [`upload`](Self::upload).
+    pub fn upload_cut(&mut self, whole: &Model, cut: &Cut, settings: SceneSettings) -> Result<(), RenderError> {
+        self.load(Source { whole, cut: Some(cut) }, settings)
+    }
+
+    /// The same model once more, trimmed exactly: the table has no room for a view of it.
+    pub(super) fn load_exact(&mut self) -> Result<(), RenderError> {
+        let Some(kept) = self.loaded.as_mut().and_then(|loaded| loaded.kept.take()) else { return Ok(()) };
+        let Kept { whole, cut, settings } = &*kept;
+        let of = Source { whole, cut: cut.as_ref() };
+        self.load(of, SceneSettings { trim: TrimWay::Exact, ..*settings })
+    }
+
+    fn load(&mut self, of: Source<'_>, settings: SceneSettings) -> Result<(), RenderError> {
+        asked::check_sun(settings)?;
+        let mut data = of.data(settings)?;
+        if settings.smooth_trims {
+            asked::check_smooth_trims(&data, settings)?;
+        }
+        let may_change = settings.trim == TrimWay::Auto && data.trim_way() == Some(TakenWay::Table);
+        let mut kept = may_change.then(|| Box::new(Kept::new(of, settings)));
+        if may_change && Counts::of(&data).check().is_err() {
+            data = of.data(SceneSettings { trim: TrimWay::Exact, ..settings })?;
+            kept = None;
+        }
+        let counts = Counts::of(&data);
+        counts.check()?;
+        let formats =
+            resolve::Formats { colour: self.formats.colour, depth: self.formats.depth, aovs: self.formats.aovs };
+        let passes = Passes::new(&self.device, &data, formats)?;
+        let loaded = Loaded {
+            data,
+            counts,
+            capacities: Capacities::first(counts).drawn_by(counts, draw_vertices(&self.device)),
+            passes,
+            scene: None,
+            buffers: None,
+            edits: Vec::new(),
+            known: None,
+            kept,
+        };
+        if let Some(old) = self.loaded.replace(loaded) {
+            self.retire(Retired::Loaded(Box::new(old)));
+            self.slots.iter_mut().for_each(|slot| slot.capacities = None);
+        }
+        Ok(())
+    }
+}

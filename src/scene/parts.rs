@@ -1,0 +1,187 @@
+//! The faces of placed parts, made in parallel and handed on in order.
+//!
+//! ```text
+//!   parts      A   B   C   A'  D   B'        A' is A but for numbers and colours: made once
+//!   batches   └─────────────┘ └──────┘       made side by side, then handed on; what nobody else is like is not kept
+//! ```
+
+use super::face::{Body, Cuts, FaceData, Trimming};
+use crate::model::{Face, Part};
+use glam::DVec3;
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Faces that are made before they are handed on: work for all threads, and little memory beside that of a large scene.
+const BATCH: usize = 4096;
+
+/// A part, and what else its faces are made from.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct PlacedPart<'a> {
+    /// Of the part in its model.
+    pub number: usize,
+    pub part: &'a Part,
+    pub origin: DVec3,
+    pub body: Body,
+    pub trim: Trimming,
+    pub cuts: Cuts,
+}
+
+impl PlacedPart<'_> {
+    fn made(&self) -> Vec<FaceData> {
+        let Self { part, origin, body, trim, cuts, .. } = *self;
+        part.faces.par_iter().map(|face| FaceData::new(face, origin, body, trim, cuts)).collect()
+    }
+
+    /// Faces of a part that is like this one, with this one's numbers and colours.
+    fn named(&self, mut faces: Vec<FaceData>) -> Vec<FaceData> {
+        faces.iter_mut().zip(&self.part.faces).for_each(|(made, face)| made.name(face));
+        faces
+    }
+
+    /// Cheap to tell, and the same for parts that are alike.
+    fn key(&self) -> [u64; 5] {
+        let points = self.part.faces.iter().map(|face| face.surface.points().len()).sum::<usize>();
+        let [x, y, z] = self.origin.to_array().map(|x| (x + 0.0).to_bits());
+        [self.part.faces.len() as u64, points as u64, x, y, z]
+    }
+
+    /// The same faces come out, but for numbers, colours and the signs of zeros.
+    fn is_like(&self, other: &Self) -> bool {
+        let same = |(a, b): (&Face, &Face)| {
+            a.kind == b.kind && a.same_sense == b.same_sense && a.surface == b.surface && a.loops == b.loops
+        };
+        (self.origin, self.body, self.trim, self.cuts) == (other.origin, other.body, other.trim, other.cuts)
+            && self.part.faces.len() == other.part.faces.len()
+            && self.part.faces.iter().zip(&other.part.faces).all(same)
+    }
+}
+
+/// The first part that each one is like: itself, most often.
+fn alike(parts: &[PlacedPart<'_>]) -> Vec<usize> {
+    let mut firsts: HashMap<[u64; 5], Vec<usize>> = HashMap::new();
+    let first = |(n, part): (usize, &PlacedPart<'_>)| {
+        let known = firsts.entry(part.key()).or_default();
+        let like = known.iter().copied().find(|&first| parts[first].is_like(part));
+        like.unwrap_or_else(|| {
+            known.push(n);
+            n
+        })
+    };
+    parts.iter().enumerate().map(first).collect()
+}
+
+/// Makes the faces of all parts and hands each part's on, in order.
+pub(super) fn each_made(parts: &[PlacedPart<'_>], mut take: impl FnMut(&PlacedPart<'_>, Vec<FaceData>)) {
+    let like = alike(parts);
+    let mut to_come = vec![0usize; parts.len()];
+    like.iter().enumerate().filter(|(n, first)| n != *first).for_each(|(_, &first)| to_come[first] += 1);
+    let mut kept: HashMap<usize, Vec<FaceData>> = HashMap::new();
+    let mut start = 0;
+    while start < parts.len() {
+        let mut faces = 0;
+        let some = parts[start..].iter().zip(&like[start..]).enumerate().take_while(|(n, (part, first))| {
+            let room = faces < BATCH;
+            faces += if **first == start + n { part.part.faces.len() } else { 0 };
+            room
+        });
+        let end = start + some.count();
+        let made: Vec<_> = (start..end).into_par_iter().map(|n| (like[n] == n).then(|| parts[n].made())).collect();
+        for (n, made) in (start..end).zip(made) {
+            let first = like[n];
+            let faces = match made {
+                Some(faces) if to_come[n] > 0 => {
+                    kept.insert(n, faces.clone());
+                    faces
+                }
+                Some(faces) => faces,
+                None => {
+                    to_come[first] -= 1;
+                    let faces = if to_come[first] > 0 { kept.get(&first).cloned() } else { kept.remove(&first) };
+                    parts[n].named(faces.expect("it is kept for those that are like it"))
+                }
+            };
+            take(&parts[n], faces);
+        }
+        start = end;
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::model::Model;
+    use crate::picture::TakenWay;
+    use bytemuck::{bytes_of, cast_slice};
+
+    fn bracket() -> Model {
+        let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/bracket.step");
+        crate::import::open(&path).unwrap().model
+    }
+
+    /// The bracket, a shorter one, and both once more with other numbers and colours.
+    fn pairs() -> Model {
+        let mut model = bracket();
+        let whole = model.parts[0].clone();
+        let mut short = whole.clone();
+        short.faces.pop();
+        let renamed = |part: &Part| {
+            let mut part = part.clone();
+            for face in &mut part.faces {
+                (face.id, face.colour) = (face.id + 1000, Some([0.1, 0.2, 0.3, 1.0]));
+            }
+            part
+        };
+        model.parts = vec![whole.clone(), short.clone(), renamed(&whole), renamed(&short), renamed(&whole)];
+        model
+    }
+
+    fn placed(part: &Part, way: TakenWay) -> PlacedPart<'_> {
+        let trim = Trimming { way, smooth: false, editable: false, extent: 100.0 };
+        PlacedPart { number: 0, part, origin: DVec3::new(0.0, 1.0, 2.0), body: Body::Closed, trim, cuts: Cuts::Any }
+    }
+
+    /// A part that is like another has what it would have by itself, with its own numbers and colours.
+    #[test]
+    fn parts_that_are_alike_have_the_faces_that_each_would_have() {
+        for way in [TakenWay::Table, TakenWay::Exact] {
+            let model = pairs();
+            let parts: Vec<_> = model.parts.iter().map(|part| placed(part, way)).collect();
+            let mut taken = 0;
+            each_made(&parts, |part, faces| {
+                assert!(std::ptr::eq(part.part, parts[taken].part), "in order");
+                taken += 1;
+                let own = part.made();
+                assert_eq!(faces.len(), own.len());
+                for (a, b) in faces.iter().zip(&own) {
+                    assert_eq!(bytes_of(&a.face), bytes_of(&b.face));
+                    assert_eq!(cast_slice::<_, u8>(&a.patches), cast_slice::<_, u8>(&b.patches));
+                    assert_eq!((&a.points, &a.outside, &a.curve_points), (&b.points, &b.outside, &b.curve_points));
+                    assert_eq!(cast_slice::<_, u8>(&a.cells), cast_slice::<_, u8>(&b.cells));
+                    assert_eq!(cast_slice::<_, u8>(&a.curves), cast_slice::<_, u8>(&b.curves));
+                    assert_eq!(a.exact, b.exact);
+                }
+            });
+            assert_eq!(taken, 5);
+        }
+    }
+
+    #[test]
+    fn what_differs_in_anything_is_not_alike() {
+        let model = pairs();
+        let parts: Vec<_> = model.parts.iter().map(|part| placed(part, TakenWay::Table)).collect();
+        assert_eq!(alike(&parts), [0, 1, 0, 1, 0]);
+        let mut others = vec![parts[0]; 6];
+        others[1].origin.x = 1e-300;
+        others[2].body = Body::Open;
+        others[3].trim.extent = 2.0;
+        others[4].cuts = Cuts::Halves;
+        let mut turned = model.parts[0].clone();
+        turned.faces[0].same_sense ^= true;
+        others[5].part = &turned;
+        assert_eq!(alike(&others), [0, 1, 2, 3, 4, 5]);
+        let mut moved = model.parts[0].clone();
+        let face = moved.faces.iter_mut().find(|f| !f.loops.is_empty()).unwrap();
+        face.loops[0] = face.loops[0].translated(glam::DVec2::new(1e-12, 0.0)).unwrap();
+        assert_eq!(alike(&[parts[0], placed(&moved, TakenWay::Table)]), [0, 1]);
+    }
+}
