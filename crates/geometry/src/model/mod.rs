@@ -24,6 +24,7 @@ mod mesh;
 mod section;
 mod solid;
 pub mod srgb;
+#[cfg(feature = "serde")]
 mod stored;
 mod xray;
 
@@ -36,11 +37,11 @@ pub use solid::{
     CarriedFace, Carrier, Lone, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
     SurfaceTable, outward,
 };
+#[cfg(feature = "serde")]
 pub use stored::ModelError;
 pub use xray::UnknownName;
 
 use glam::{DAffine3, DVec3};
-use serde::{Deserialize, Serialize};
 
 /// Red, green, blue, opacity in linear light, each in `[0, 1]`.
 pub type Colour = [f32; 4];
@@ -49,8 +50,9 @@ pub type Colour = [f32; 4];
 pub const GREY: Colour = [0.262, 0.262, 0.262, 1.0];
 
 /// Everything that one file or scene holds.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "stored::ModelData")]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "stored::ModelData"))]
 pub struct Model {
     /// The file's or product's name.
     pub name: String,
@@ -71,7 +73,8 @@ pub struct Model {
 }
 
 /// One body: a closed solid, or an open shell.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Part {
     /// Name in the source, or empty.
     pub name: String,
@@ -84,7 +87,8 @@ pub struct Part {
 }
 
 /// A part placed in the model.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Instance {
     /// Index into [`Model::parts`].
     pub part: usize,

@@ -21,23 +21,27 @@ pub use surface::{CarriedFace, Surface, SurfaceTable};
 
 use super::Bounds;
 use crate::csg::{Builder, Entry, Node, Op, Tree, TreeError};
-use serde::{Deserialize, Serialize};
+#[cfg(feature = "serde")]
+use serde::Deserialize;
 
 /// Primitives and a Boolean expression over them. Valid by construction: see [`Solid::new`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "SolidData")]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "SolidData"))]
 pub struct Solid {
     pub(super) primitives: Vec<Primitive>,
     tree: Tree,
 }
 
 /// A solid before its indices are checked.
+#[cfg(feature = "serde")]
 #[derive(Deserialize)]
 struct SolidData {
     primitives: Vec<Primitive>,
     tree: Tree,
 }
 
+#[cfg(feature = "serde")]
 impl TryFrom<SolidData> for Solid {
     type Error = SolidError;
 
