@@ -107,7 +107,7 @@ mod tests {
 
     fn bracket() -> Model {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/bracket.step");
-        crate::import::open(&path).unwrap().model
+        selvedge_io::import::open(&path).unwrap().model
     }
 
     /// Its bodies once more for each place, side by side.

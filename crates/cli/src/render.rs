@@ -16,14 +16,15 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     if let Some(path) = &args.camera_out {
         output::json(path, &CameraFile::from(&camera))?;
     }
-    let mut session = Session::smooth(device?, &args.frame, &import, &args.edges)?;
+    let mut session = Session::of_one(device?, &args.frame, import, &args.edges)?;
     let picture = session.render(&camera, wanted(&args.aov))?;
     if args.frame.highlight {
         let stats = &picture.stats;
         tracing::warn!("{} pixels show contact, {} overlap", stats.contact_pixels, stats.overlap_pixels);
     }
     let gpu_ms: f64 = picture.stats.passes.iter().map(|p| p.gpu_ms).sum();
-    tracing::info!("{gpu_ms:.1} ms in {} passes on {}", picture.stats.passes.len(), picture.stats.device);
+    let trimmed = picture.stats.trim.map_or(String::new(), |way| format!(", trimmed by way {}", way.name()));
+    tracing::info!("{gpu_ms:.1} ms in {} passes on {}{trimmed}", picture.stats.passes.len(), picture.stats.device);
     // to close a device takes about as long as to write a picture
     let (written, complained) = rayon::join(|| write_all(args, &picture), || session.close());
     written?;

@@ -2,14 +2,15 @@
 
 use crate::args::{EdgeArgs, FrameArgs, SubdivideArgs};
 use crate::output;
-use crate::progress::{during, importing};
+use crate::progress::{advancing, during, importing};
 use anyhow::Result;
 use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
-use selvedge::model::{Camera, LoopAt, TrimLoop};
+use selvedge::model::{Camera, LoopAt, Model, TrimLoop};
 use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, SceneSettings};
 use selvedge_io::import::{self, Import};
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
 /// Reads a file, its polygons as `subdivide` says, and tells its warnings.
@@ -54,27 +55,44 @@ pub fn device(args: &FrameArgs) -> Result<HeadlessRenderer> {
 impl Session {
     /// Opens the device and hands it the model.
     pub fn new(args: &FrameArgs, import: &Import) -> Result<Self> {
-        Self::with(opened(args)?, args, import, SceneSettings::default())
+        Self::with(opened(args)?, args, import, SceneSettings::default(), Arc::new(import.model.clone()))
     }
 
     /// The same with smooth edges, on a device that is open.
     pub fn smooth(on: HeadlessRenderer, args: &FrameArgs, import: &Import, edges: &EdgeArgs) -> Result<Self> {
         let EdgeArgs { samples, smooth_trims } = *edges;
-        Self::with(on, args, import, SceneSettings { samples, smooth_trims, ..SceneSettings::default() })
+        let scene = SceneSettings { samples, smooth_trims, ..SceneSettings::default() };
+        Self::with(on, args, import, scene, Arc::new(import.model.clone()))
+    }
+
+    /// The same of a model that nothing else is asked of.
+    pub fn of_one(on: HeadlessRenderer, args: &FrameArgs, mut import: Import, edges: &EdgeArgs) -> Result<Self> {
+        let EdgeArgs { samples, smooth_trims } = *edges;
+        let scene = SceneSettings { samples, smooth_trims, ..SceneSettings::default() };
+        let model = Arc::new(std::mem::take(&mut import.model));
+        Self::with(on, args, &import, scene, model)
     }
 
     /// The same with a model whose loops may be edited.
     pub fn editable(args: &FrameArgs, import: &Import) -> Result<Self> {
-        Self::with(opened(args)?, args, import, SceneSettings { editable: true, ..SceneSettings::default() })
+        let scene = SceneSettings { editable: true, ..SceneSettings::default() };
+        Self::with(opened(args)?, args, import, scene, Arc::new(import.model.clone()))
     }
 
-    fn with(mut renderer: HeadlessRenderer, args: &FrameArgs, import: &Import, scene: SceneSettings) -> Result<Self> {
+    fn with(
+        mut renderer: HeadlessRenderer,
+        args: &FrameArgs,
+        import: &Import,
+        scene: SceneSettings,
+        model: Arc<Model>,
+    ) -> Result<Self> {
         let highlight = args.highlight.then(Highlight::default);
         let sun = sun(args, import);
         let (trim, solids) = (args.trim, args.solids);
         let solid_budget = args.solid_budget.map(|mebibytes| (mebibytes * f64::from(1 << 20)) as u64);
         let scene = SceneSettings { trim, solids, highlight, sun, solid_budget, ..scene };
-        during("uploading the model", || renderer.upload_with(&import.model, scene))?;
+        let faces = model.face_count();
+        advancing("preparing faces", faces, |told| renderer.upload_shared(model, scene, told))?;
         let mut settings =
             FrameSettings { tolerance_px: args.tolerance, levels: args.factors.0, ..FrameSettings::default() };
         settings.background = import.picture.background.or(settings.background);

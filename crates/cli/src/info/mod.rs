@@ -15,6 +15,8 @@ mod tree;
 use crate::args::InfoArgs;
 use crate::{Outcome, output, session};
 use anyhow::Result;
+use selvedge::picture::{SceneSettings, TrimWay};
+use selvedge::renderer::trim_way;
 use selvedge::model::{Mesh, Model, Part, SurfaceKind};
 use selvedge_io::import::{FaceRecord, Import, ImportReport};
 use serde::Serialize;
@@ -45,6 +47,8 @@ struct Info<'a> {
     assembly: Node<'a>,
     /// Millimetres; absent for an empty model.
     bounds: Option<[[f64; 3]; 2]>,
+    /// How its faces are trimmed unless `--trim` says otherwise; absent where none needs it.
+    trim: Option<&'static str>,
     warnings: Vec<String>,
     report: &'a ImportReport,
     /// Every face of the file: `deviation` and `gap` in millimetres, why it was healed or left out.
@@ -123,6 +127,7 @@ impl<'a> Info<'a> {
             folded_tiles: None,
             assembly: Node::new(model),
             bounds: (!bounds.is_empty()).then(|| [bounds.min.into(), bounds.max.into()]),
+            trim: trim_way(model, SceneSettings::default()).map(TrimWay::name),
             warnings: import.warnings.iter().map(ToString::to_string).collect(),
             report: &import.report,
             face_records: &import.report.face_records,
