@@ -103,7 +103,7 @@ impl<'a> File<'a> {
     /// [`ImportError`] when the text is not STEP, has no data, or more bad records than good ones.
     pub fn parse(bytes: &'a [u8], name: &str, warnings: &mut Warnings) -> Result<Self, ImportError> {
         if u32::try_from(bytes.len()).is_err() {
-            return Err(ImportError::TooLarge { file: name.to_owned() });
+            return Err(ImportError::TooLarge { file: name.to_owned(), limit: u32::MAX.into() });
         }
         if !recognise(bytes) {
             return Err(ImportError::NotStep { file: name.to_owned() });
