@@ -23,7 +23,7 @@ pub fn open(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Result<I
 /// Reads a file, whether or not there is anything to draw in it.
 pub fn described(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Result<Import> {
     let start = Instant::now();
-    let name = if target::is_standard(path) { "standard input".to_owned() } else { path.display().to_string() };
+    let name = named(path);
     let import = importing(&name, |tell| imported(path, &name, read, subdivide, tell))?;
     tracing::info!("read {name} in {:.1?}", start.elapsed());
     if subdivide.subdivide.is_some() {
@@ -32,6 +32,11 @@ pub fn described(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Res
     }
     output::warnings(&import);
     Ok(import)
+}
+
+/// The file as messages name it.
+fn named(path: &Path) -> String {
+    if target::is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
 }
 
 fn imported(
@@ -59,7 +64,7 @@ fn imported(
 /// Refuses a file of which nothing can be drawn, and with `--strict` one of which anything is left out; else tells what.
 pub fn judge(path: &Path, import: &Import, read: &ReadArgs) -> Result<()> {
     let summary = import.summary();
-    let told = format!("{}: {summary}", path.display());
+    let told = format!("{}: {summary}", named(path));
     if summary.draws_nothing() {
         bail!("{told}");
     }
@@ -156,9 +161,9 @@ impl Session {
                 0 => "its solids and what cuts it open leave no surface, or none at the centre of any pixel".to_owned(),
                 clamps => format!("{clamps} parts of the picture were not followed to their ends"),
             };
-            bail!("{}: nothing is seen with all of it in the picture: {why}", path.display());
+            bail!("{}: nothing is seen with all of it in the picture: {why}", named(path));
         }
-        let told = format!("{}: no pixel shows anything of it: the camera looks past it", path.display());
+        let told = format!("{}: no pixel shows anything of it: the camera looks past it", named(path));
         if read.strict {
             bail!("--strict: {told}");
         }

@@ -101,7 +101,7 @@ fn pictures_of_nothing_are_no_success() {
     };
     refused_drawing(&nothing, &[], 2);
     refused_drawing(&nothing, &["--eye", "0,-9,0", "--target", "0,0,0"], 2);
-    refused_drawing(&ball, &["--section", "1,0,0,-0.999999"], 2);
+    refused(&["render", &ball, "-o", &png, "--section", "1,0,0,-2"], "what cuts the model open leaves nothing of it");
     assert!(!fs::exists(&png).unwrap());
     refused_drawing(&ball, &["--eye", "0,-9,0", "--target", "0,-99,0"], 0);
     let past = ["render", &ball, "-o", &png, "--eye", "0,-9,0", "--target", "0,-99,0", "--strict"];

@@ -29,7 +29,7 @@ pub struct Summary {
     pub lost_faces: Reasons,
     /// What else is left out, by kind and reason: bodies, occurrences, polygons, statements that cannot be read, ...
     pub left_out: BTreeMap<String, Reasons>,
-    /// Files that hold parts of the model and are not followed.
+    /// Other files that the file names and that are not read: they may hold parts of the model.
     pub elsewhere: Vec<String>,
     /// What the file holds beside, and is not there to be drawn, by kind: curves, hidden items, annotation.
     pub beside: BTreeMap<String, usize>,
@@ -111,7 +111,7 @@ impl Summary {
         if !self.elsewhere.is_empty() {
             let named = |name: &String| if name.is_empty() { "one without a name".to_owned() } else { name.clone() };
             let names = listed(self.elsewhere.iter().map(named), self.elsewhere.len());
-            all.push(format!("parts in other files: {names}"));
+            all.push(format!("other files not read: {names}"));
         }
         all
     }
@@ -121,13 +121,17 @@ impl Summary {
 /// anything that could be drawn.
 impl fmt::Display for Summary {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let tallies = [(self.faces, "faces"), (self.meshes, "meshes"), (self.solids, "Boolean solids")];
+        let tallies = [
+            (self.faces, "face", "faces"),
+            (self.meshes, "mesh", "meshes"),
+            (self.solids, "Boolean solid", "Boolean solids"),
+        ];
         let counts: Vec<String> = tallies
             .iter()
-            .filter(|(tally, _)| tally.stated > 0)
-            .map(|(Tally { stated, drawn }, what)| match stated == drawn {
-                true => format!("{drawn} {what}"),
-                false => format!("{drawn} of {stated} {what}"),
+            .filter(|(tally, ..)| tally.stated > 0)
+            .map(|(Tally { stated, drawn }, one, several)| {
+                let what = if *stated == 1 { one } else { several };
+                if stated == drawn { format!("{drawn} {what}") } else { format!("{drawn} of {stated} {what}") }
             })
             .collect();
         let mut clauses = Vec::new();
@@ -180,8 +184,8 @@ mod tests {
         let good = step(include_bytes!("step/tests/good.step"), "good.step").unwrap();
         assert!(good.summary().is_complete() && !good.summary().draws_nothing());
         assert_eq!(told(&good), "drawn 3 faces");
-        assert_eq!(told(&obj(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "t.obj", None).unwrap()), "drawn 1 meshes");
-        assert_eq!(told(&scad(b"sphere(1);", "t.csg", Facets::Round).unwrap()), "drawn 1 Boolean solids");
+        assert_eq!(told(&obj(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\n", "t.obj", None).unwrap()), "drawn 1 mesh");
+        assert_eq!(told(&scad(b"sphere(1);", "t.csg", Facets::Round).unwrap()), "drawn 1 Boolean solid");
     }
 
     /// One damaged patch beside a whole one, in every format whose faces stand alone; then nothing but the damaged one.
@@ -204,7 +208,7 @@ mod tests {
         assert_eq!(some, "drawn 2 of 3 faces; 1 left out: 1 x attribute 2 is not a length above 0");
 
         let some = obj(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 9\n", "t.obj", None).unwrap();
-        assert!(told(&some).starts_with("drawn 1 meshes; 1 x polygon left out: 1 x "), "{}", told(&some));
+        assert!(told(&some).starts_with("drawn 1 mesh; 1 x polygon left out: 1 x "), "{}", told(&some));
     }
 
     /// Solids without volume are no loss, but nothing is there.

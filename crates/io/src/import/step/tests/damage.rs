@@ -190,6 +190,10 @@ proptest! {
             prop_assert!(import.warnings.len() < 300);
             let lost = import.report.faces - import.model.face_count();
             prop_assert_eq!(lost, import.report.dropped.total());
+            // what was said once is said in full
+            for (why, _) in import.report.dropped.iter().filter(|(_, count)| *count == 1) {
+                prop_assert!(import.warnings.iter().any(|w| w.message.contains(&why)), "{}: {:?}", why, import.warnings);
+            }
         }
     }
 
