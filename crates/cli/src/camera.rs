@@ -132,6 +132,11 @@ impl CameraArgs {
     }
 }
 
+/// All of the model in the picture, whatever is asked for.
+pub fn whole(bounds: Bounds, size: (u32, u32)) -> Camera {
+    Camera::framing(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size)
+}
+
 /// `camera` with a depth range that holds the model, checked.
 fn fitted(mut camera: Camera, bounds: Bounds) -> Result<Camera> {
     camera.fit_depth(bounds);

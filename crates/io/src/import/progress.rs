@@ -50,15 +50,25 @@ pub struct Options<'a> {
     /// Called at the beginning of each stage, before every body, after every face and some bytes of text, from several
     /// threads: it should return at once.
     pub progress: Option<&'a (dyn Fn(Stage) + Sync)>,
+    /// Most bytes of a file, before and after gzip is undone. Offsets are 32 bits wide: it is 4 GiB at most, and without it.
+    pub most_bytes: Option<u64>,
 }
 
 impl fmt::Debug for Options<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Options").field("progress", &self.progress.map(|_| "Fn(Stage)")).finish()
+        f.debug_struct("Options")
+            .field("progress", &self.progress.map(|_| "Fn(Stage)"))
+            .field("most_bytes", &self.most_bytes)
+            .finish()
     }
 }
 
 impl Options<'_> {
+    /// The limit that holds.
+    pub(crate) fn most_bytes(&self) -> u64 {
+        self.most_bytes.unwrap_or(u64::MAX).min(u32::MAX.into())
+    }
+
     /// Tells the stage, if anybody listens.
     pub(crate) fn tell(&self, stage: Stage) {
         if let Some(progress) = self.progress {
@@ -100,7 +110,7 @@ mod tests {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/bracket.step");
         let stages = Mutex::new(Vec::new());
         let tell = |stage| stages.lock().unwrap().push(stage);
-        let import = open_with(&path, &Options { progress: Some(&tell) }).unwrap();
+        let import = open_with(&path, &Options { progress: Some(&tell), ..Options::default() }).unwrap();
         let bytes = std::fs::metadata(&path).unwrap().len();
         let stages = stages.into_inner().unwrap();
         let total = import.report.faces;

@@ -121,8 +121,7 @@ pub(super) fn read(text: &str, name: &str, facets: Facets) -> Result<Import, Imp
         let solid = reader.assembly.finish(root);
         model.solids.push(solid.map_err(|message| failed(Fault::new(1, message)))?);
     }
-    let (warnings, counts) = reader.warnings.finish();
-    reader.report.warnings = counts;
+    let warnings = reader.warnings.finish(&mut reader.report);
     reader.report.bodies = model.solids.len();
     Ok(Import { model, warnings, report: reader.report, ..Import::default() })
 }
@@ -204,7 +203,7 @@ impl<'a> Reader<'a> {
             }
         }
         if background && !disabled {
-            self.warn("background left out", args, || format!("`%{}` is no part of the solid", args.node));
+            self.warn("background not drawn", args, || format!("`%{}` is no part of the solid", args.node));
         }
         if root {
             inside = TOP;

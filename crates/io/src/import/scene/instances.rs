@@ -283,14 +283,19 @@ impl<'a> Builder<'a> {
         own.gap = own.gap.max(of.gap);
         for (own, of) in [
             (&mut own.warnings, &of.warnings),
-            (&mut own.dropped, &of.dropped),
-            (&mut own.healed, &of.healed),
             (&mut own.ignored, &of.ignored),
             (&mut own.layers, &of.layers),
             (&mut own.nodes, &of.nodes),
         ] {
             of.iter().for_each(|(what, n)| *own.entry(what.clone()).or_default() += n);
         }
+        own.files_read.extend(of.files_read.iter().cloned());
+        own.dropped.extend(&of.dropped);
+        own.healed.extend(&of.healed);
+        for (kind, why) in &of.left_out {
+            own.left_out.entry(kind.clone()).or_default().extend(why);
+        }
+        own.external_files.extend(of.external_files.iter().cloned());
         self.warnings.extend(import.warnings.iter().cloned());
     }
 
@@ -349,6 +354,7 @@ impl<'a> Builder<'a> {
             }
         }
         let mut report = self.report;
+        report.files_read.extend(scene.files.take());
         report.format = format!("selvedge scene {VERSION}");
         report.units = vec![self.model.unit.clone()];
         report.bodies = self.model.parts.len() + self.model.solids.len();

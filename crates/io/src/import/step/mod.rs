@@ -141,9 +141,8 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
     report.face_records.iter_mut().for_each(|r| r.part = r.part.min(parts));
     report.dropped = notes.dropped;
     report.ignored = notes.ignored;
-    let (list, counts) = notes.warnings.finish();
-    report.warnings = counts;
-    Ok(Import { model, warnings: list, report, ..Import::default() })
+    let warnings = notes.warnings.finish(&mut report);
+    Ok(Import { model, warnings, report, ..Import::default() })
 }
 
 /// Builds all faces, in parallel; results are taken in file order. What a face was made from is freed
@@ -178,7 +177,7 @@ fn build(
             Ok(mut built) => {
                 built.face.colour = colour;
                 for note in &built.notes {
-                    *report.healed.entry(ImportReport::reason(note)).or_default() += 1;
+                    report.healed.add(note);
                     notes.push("face healed", || places.of(id), note.clone());
                 }
                 model.parts[record.part].faces.push(report.record(record, built));

@@ -114,7 +114,7 @@ impl<'a> File<'a> {
         options: &Options<'_>,
     ) -> Result<Self, ImportError> {
         if u32::try_from(bytes.len()).is_err() {
-            return Err(ImportError::TooLarge { file: name.to_owned() });
+            return Err(ImportError::TooLarge { file: name.to_owned(), limit: u32::MAX.into() });
         }
         if !recognise(bytes) {
             return Err(ImportError::NotStep { file: name.to_owned() });
