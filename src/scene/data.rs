@@ -115,7 +115,7 @@ pub(crate) struct SceneData {
 impl SceneData {
     pub(crate) fn new(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
         // edits would change where cuts pay
-        let extent = if settings.editable { f64::INFINITY } else { model.bounds().diagonal() };
+        let extent = if settings.editable { f64::INFINITY } else { model.control_bounds().diagonal() };
         Self::of(model, model, settings, |_, scale| extent / scale)
     }
 
@@ -209,7 +209,7 @@ impl SceneData {
         let mut origins = Vec::with_capacity(model.parts.len());
         for (nth, (part, scale)) in model.parts.iter().zip(scales).enumerate() {
             first_faces.push(data.faces.len());
-            let bounds = part.bounds();
+            let bounds = part.control_bounds();
             let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
             origins.push(origin);
             if let Some(scale) = scale {

@@ -40,6 +40,7 @@ pub use basis::Basis;
 pub use bernstein::{MAX_DEGREE, binomial};
 pub use bezier::{Bezier, Span};
 pub use bspline::{BSpline, SplineError};
+pub(crate) use net::Net;
 pub use derivative_bound::DerivativeBound;
 pub use differential::{Curvature, Jet2};
 pub use normal_cone::NormalCone;
