@@ -32,11 +32,11 @@ pub use face::{Face, FaceError, LoopAt, SurfaceKind, TrimLoop};
 pub use images::Images;
 pub use items::Items;
 pub use mesh::{Mesh, MeshError};
+pub(crate) use solid::{Boxes, meet};
 pub use solid::{
     CarriedFace, Carrier, Lone, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
     SurfaceTable, outward,
 };
-pub(crate) use solid::{Boxes, meet};
 pub use stored::ModelError;
 pub use xray::UnknownName;
 

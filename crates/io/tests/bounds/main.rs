@@ -4,10 +4,10 @@
 mod support;
 
 use glam::DVec3;
-use selvedge_io::brep::{Boundary, CurveGeometry, Edge, FaceGeometry, Frame, SurfaceGeometry, build_face};
-use selvedge_io::import::step;
 use selvedge_geometry::model::{Bounds, Face};
 use selvedge_geometry::trim::ANALYTIC;
+use selvedge_io::brep::{Boundary, CurveGeometry, Edge, FaceGeometry, Frame, SurfaceGeometry, build_face};
+use selvedge_io::import::step;
 use std::f64::consts::{FRAC_PI_2, TAU};
 use support::{assert_box, assert_support};
 
@@ -29,7 +29,8 @@ impl Edges {
     /// The arc of a circle between two angles, from the second to the first where it is not forward.
     fn arc(&mut self, frame: Frame, radius: f64, (a, b): (f64, f64), forward: bool) -> (usize, bool) {
         let at = |t: f64| frame.origin + radius * (frame.x * t.cos() + frame.y * t.sin());
-        self.add(CurveGeometry::Circle { frame, radius }, at(a), at(b), forward)
+        let end = if b - a == TAU { at(a) } else { at(b) };
+        self.add(CurveGeometry::Circle { frame, radius }, at(a), end, forward)
     }
 
     /// The face, and how far its trims may be off.
@@ -124,7 +125,7 @@ fn a_cylinder_cut_on_a_slant() {
 
 #[test]
 fn a_cone_between_two_circles() {
-    let (low, high, height) = (3.0, 1.0, 2.0);
+    let (low, high, height): (f64, f64, f64) = (1.0, 3.0, 2.0);
     let mut edges = Edges::default();
     let bottom = edges.arc(Frame::WORLD, low, (0.0, TAU), true);
     let top = edges.arc(frame_at(DVec3::Z * height), high, (0.0, TAU), false);

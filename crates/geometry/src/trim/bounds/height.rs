@@ -59,6 +59,12 @@ impl Height {
         self.all().iter().map(bound).fold(f64::NEG_INFINITY, f64::max)
     }
 
+    /// A height that it is nowhere below; infinite where a weight is not positive.
+    pub(super) fn lower(&self) -> f64 {
+        let bound = |pair: &DVec2| if pair.y > 0.0 { quotient(*pair) } else { f64::NEG_INFINITY };
+        self.all().iter().map(bound).fold(f64::INFINITY, f64::min)
+    }
+
     /// Whether it may have a critical point whose height is between two that are finite.
     pub(super) fn may_turn(&self, low: f64, high: f64) -> bool {
         let largest = self.all().iter().fold(DVec2::ZERO, |all, pair| all.max(pair.abs()));
@@ -123,7 +129,8 @@ impl Height {
         };
         let (powers_u, n) = (|| Powers::new(curve, 0, self.n), self.n);
         if let Some(v) = level(1) {
-            let row: Vec<DVec2> = (0..=n).map(|i| de_casteljau((0..=self.k).map(|j| self.at(i, j)).collect(), v)).collect();
+            let row: Vec<DVec2> =
+                (0..=n).map(|i| de_casteljau((0..=self.k).map(|j| self.at(i, j)).collect(), v)).collect();
             return powers_u().sum(&row);
         }
         let columns: Vec<Vec<DVec2>> = (0..=self.k).map(|j| (0..=n).map(|i| self.at(i, j)).collect()).collect();

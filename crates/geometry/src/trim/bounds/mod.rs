@@ -38,7 +38,7 @@ mod height;
 mod search;
 mod solid;
 
-use crate::model::{meet, Bounds, Face, Model, Part, SurfaceKind};
+use crate::model::{Bounds, Face, Model, Part, SurfaceKind, meet};
 use glam::{DAffine3, DVec3};
 use search::{Body, Search, Tolerance};
 use std::ops::Range;
@@ -134,7 +134,8 @@ fn of(bodies: &[Body<'_>], placements: &[(usize, DAffine3)]) -> Bounds {
 /// The box whose sides are so far along the directions.
 fn between([x, y, z, below_x, below_y, below_z]: [f64; 6]) -> Bounds {
     // no -0
-    Bounds { min: 0.0 - DVec3::new(below_x, below_y, below_z), max: DVec3::new(x, y, z) }
+    let all = Bounds { min: 0.0 - DVec3::new(below_x, below_y, below_z), max: DVec3::new(x, y, z) };
+    if all.is_empty() { Bounds::EMPTY } else { all }
 }
 
 /// Whether a surface was given by an equation of its own.

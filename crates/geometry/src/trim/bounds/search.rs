@@ -16,7 +16,7 @@ use std::cmp::Ordering;
 use std::collections::{BinaryHeap, HashMap};
 
 /// Steps of one search; after them what is left counts as high as its bounds.
-const MOST_STEPS: usize = 1 << 18;
+const MOST_STEPS: usize = 1 << 16;
 /// Halvings of a curve or patch; after them it counts as high as its bound.
 const MOST_HALVINGS: u32 = 96;
 
@@ -218,7 +218,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 }
                 let ends = [height.at(0, 0), height.at(height.n, 0)].map(quotient);
                 ends.into_iter().for_each(|end| self.find(end));
-                if self.is_done(upper, &height, halvings) {
+                if self.is_done(upper, height.lower(), &height, halvings) {
                     return;
                 }
                 for half in height.halves_u() {
@@ -277,15 +277,19 @@ impl<'s, 'a> Search<'s, 'a> {
                 }
             }
         }
-        if self.is_done(upper, &height, halvings) {
+        let lower = height.lower();
+        // as high as the trim curves in it, which are looked at
+        let is_level = !inside && upper - lower <= self.rounding;
+        if is_level || self.is_done(upper, lower, &height, halvings) {
             return;
         }
         let (middle, halvings) = (0.5 * (lo + hi), halvings + 1);
-        let (halves, first_hi, second_lo) = if height.n == 0 || height.k > 0 && height.is_steeper_in_v(self.low) {
-            (height.halves_v(), DVec2::new(hi.x, middle.y), DVec2::new(lo.x, middle.y))
-        } else {
-            (height.halves_u(), DVec2::new(middle.x, hi.y), DVec2::new(middle.x, lo.y))
-        };
+        let (halves, first_hi, second_lo) =
+            if height.n == 0 || height.k > 0 && height.is_steeper_in_v(self.low.max(lower)) {
+                (height.halves_v(), DVec2::new(hi.x, middle.y), DVec2::new(lo.x, middle.y))
+            } else {
+                (height.halves_u(), DVec2::new(middle.x, hi.y), DVec2::new(middle.x, lo.y))
+            };
         for (height, (lo, hi)) in halves.into_iter().zip([(lo, first_hi), (second_lo, hi)]) {
             let upper = height.upper().min(upper);
             self.push(placed, upper, What::Area(Area { face, height, lo, hi, inside, whole: false, halvings }));
@@ -293,8 +297,9 @@ impl<'s, 'a> Search<'s, 'a> {
     }
 
     /// Whether nothing higher than what is found is in it, its ends and sides apart; or it is too small to be halved.
-    fn is_done(&mut self, upper: f64, height: &Height, halvings: u32) -> bool {
-        if upper <= self.low || self.low.is_finite() && upper.is_finite() && !height.may_turn(self.low, upper) {
+    fn is_done(&mut self, upper: f64, lower: f64, height: &Height, halvings: u32) -> bool {
+        let from = self.low.max(lower);
+        if upper <= self.low || from.is_finite() && upper.is_finite() && !height.may_turn(from, upper) {
             return true;
         }
         if halvings >= MOST_HALVINGS {

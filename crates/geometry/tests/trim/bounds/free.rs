@@ -137,7 +137,8 @@ impl Climb<'_> {
         let mut best = self.height(p);
         while step > 1e-9 {
             let steps = (0..8).map(|k| p + step * DVec2::from_angle(TAU * f64::from(k) / 8.0));
-            let higher = steps.filter(|q| self.keeps(*q)).map(|q| (self.height(q), q)).max_by(|a, b| a.0.total_cmp(&b.0));
+            let higher =
+                steps.filter(|q| self.keeps(*q)).map(|q| (self.height(q), q)).max_by(|a, b| a.0.total_cmp(&b.0));
             match higher {
                 Some((height, q)) if height > best => (best, p) = (height, q),
                 _ => step *= 0.5,
@@ -154,7 +155,8 @@ impl Climb<'_> {
         };
         let mut best = height(t);
         while step > 1e-9 {
-            let higher = [t - step, t + step].into_iter().filter(|t| (0.0..=1.0).contains(t)).find(|t| height(*t) > best);
+            let higher =
+                [t - step, t + step].into_iter().filter(|t| (0.0..=1.0).contains(t)).find(|t| height(*t) > best);
             match higher {
                 Some(at) => (best, t) = (height(at), at),
                 None => step *= 0.5,
@@ -167,7 +169,7 @@ impl Climb<'_> {
 const SIDE: u32 = 24;
 
 proptest! {
-    #![proptest_config(ProptestConfig::with_cases(40))]
+    #![proptest_config(ProptestConfig::with_cases(24))]
 
     /// No point that the loops keep is beyond the box, and each of its sides is where one is.
     #[test]

@@ -47,7 +47,10 @@ fn turned_primitives_are_tight() {
     let cases: Vec<(Shape, Vec<DVec3>)> = vec![
         (Shape::Sphere { radius: 2.0 }, sphere.map(turned).collect()),
         (Shape::Cylinder { radius: 1.0, height: 5.0 }, ring(1.0, 0.0).chain(ring(1.0, 5.0)).map(turned).collect()),
-        (Shape::Cone { bottom: 2.0, top: 0.5, height: 3.0 }, ring(2.0, 0.0).chain(ring(0.5, 3.0)).map(turned).collect()),
+        (
+            Shape::Cone { bottom: 2.0, top: 0.5, height: 3.0 },
+            ring(2.0, 0.0).chain(ring(0.5, 3.0)).map(turned).collect(),
+        ),
         (Shape::Torus { major: 3.0, minor: 1.0 }, torus.map(turned).collect()),
         (Shape::Quadric(quadric), egg.collect()),
     ];
