@@ -101,12 +101,13 @@ impl<'a> Carried<'a> {
         }
     }
 
+    /// Whether the loops' box and a rectangle have a point in common.
+    pub fn may_meet(&self, lo: DVec2, hi: DVec2) -> bool {
+        self.around.is_none_or(|(from, to)| lo.cmple(to).all() && hi.cmpge(from).all())
+    }
+
     pub fn classify(&self, lo: DVec2, hi: DVec2) -> RectSide {
-        match self.around {
-            None => RectSide::Inside,
-            Some((from, to)) if lo.cmpgt(to).any() || hi.cmplt(from).any() => RectSide::Outside,
-            Some(_) => self.index().classify(lo, hi),
-        }
+        if self.around.is_none() { RectSide::Inside } else { self.index().classify(lo, hi) }
     }
 
     /// Whether the face is anywhere beside a piece of its trim curves: loops that cancel each other bound nothing.

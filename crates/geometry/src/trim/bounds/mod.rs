@@ -20,12 +20,12 @@
 //! *Accuracy.* A side is where a point of the model is, and no point is beyond it by more than [`ANALYTIC`] of the box's
 //! diagonal, or [`OTHER`] of it for faces that have no equation of their own, plus some roundings of the largest
 //! coordinate. Faces are those of the model: what an importer's tolerance moved stays moved. Where a search would take
-//! more than some 250,000 steps, the side is that of the bounds that are left, and too far out. Loops that cancel each
+//! more than some 65,000 steps, the side is that of the bounds that are left, and too far out. Loops that cancel each
 //! other bound nothing; a face of which nothing is left has no box.
 //!
 //! *Placed parts.* A direction of the model is turned into a direction of the part, so turned parts have boxes as tight
 //! as others. Of copies that are turned alike the highest is searched alone; of all others, those that no bound rules
-//! out. A copy costs one box, and a turned one that reaches as far as any other its faces' boxes and a search.
+//! out. A copy costs one box. A turned copy that may reach farthest costs a box for each of its faces, and their search.
 //!
 //! *Solids.* See [`solid`]. A volume that [trims](Model::trim_by) the model cuts the box of the faces, where it has a
 //! box: such sides are not nearer than the model, and may be farther.
@@ -56,7 +56,11 @@ const GOOD_GUESS: f64 = 0.1;
 const MOST_GUESSES: usize = 16;
 
 impl Face {
-    /// Box of the trimmed face; empty where its loops leave nothing. See [`crate::trim`] for how tight it is.
+    /// Box of the trimmed face; empty where its loops leave nothing.
+    ///
+    /// Each side is where a point of the face is. No point is beyond it by more than [`ANALYTIC`] of the box's diagonal,
+    /// or [`OTHER`] of it where the surface has no equation of its own, plus some roundings of the largest coordinate.
+    /// Cost: some 10 µs for a plane, 0.1 ms to 1 ms for a spline surface that is highest inside a patch.
     pub fn bounds(&self) -> Bounds {
         of(&[Body::new(std::slice::from_ref(self), &[])], &[(0, DAffine3::IDENTITY)])
     }

@@ -6,7 +6,7 @@
 //!     └────▶ mesh               └─▶ its four sides ──▶ their halves …
 //! ```
 
-use super::carried::Carried;
+use super::carried::{Carried, Piece};
 use super::height::{Height, ROUNDING, Up, quotient};
 use crate::model::{Bounds, Face, Mesh};
 use crate::trim::RectSide;
@@ -68,12 +68,15 @@ enum What {
     Body,
     Face(usize),
     Mesh(usize),
-    /// Of a trim curve of a face; whether the face is beside it is known.
-    Curve {
+    /// A piece of a trim curve, as high as its patch.
+    Piece {
         face: usize,
         piece: usize,
+    },
+    /// A part of such a piece.
+    Curve {
+        face: usize,
         height: Height,
-        known: bool,
         halvings: u32,
     },
     /// A rectangle of a face's domain within one patch, or a line of it.
@@ -92,6 +95,13 @@ struct Area {
     halvings: u32,
 }
 
+impl What {
+    /// Of those with equal bounds: trim curves raise the mark at once, areas ask the loops.
+    fn rank(&self) -> u8 {
+        u8::from(!matches!(self, Self::Area(_)))
+    }
+}
+
 impl PartialEq for Candidate {
     fn eq(&self, other: &Self) -> bool {
         self.cmp(other) == Ordering::Equal
@@ -105,7 +115,7 @@ impl PartialOrd for Candidate {
 }
 impl Ord for Candidate {
     fn cmp(&self, other: &Self) -> Ordering {
-        self.upper.total_cmp(&other.upper)
+        self.upper.total_cmp(&other.upper).then(self.what.rank().cmp(&other.what.rank()))
     }
 }
 
@@ -176,7 +186,7 @@ impl<'s, 'a> Search<'s, 'a> {
     fn allowed(&self, of: &Candidate, tolerance: Tolerance) -> f64 {
         let face = match &of.what {
             What::Body | What::Mesh(_) => return tolerance.analytic,
-            What::Face(face) | What::Curve { face, .. } | What::Area(Area { face, .. }) => *face,
+            What::Face(face) | What::Piece { face, .. } | What::Curve { face, .. } | What::Area(Area { face, .. }) => *face,
         };
         let (face, ..) = self.bodies[self.placed[of.placed].1].faces[face];
         if super::is_analytic(face.kind) { tolerance.analytic } else { tolerance.other }
@@ -211,11 +221,15 @@ impl<'s, 'a> Search<'s, 'a> {
                 self.find(corners.fold(f64::NEG_INFINITY, f64::max));
             }
             What::Face(face) => self.face(placed, up, face, body.carried(face)),
-            What::Curve { face, piece, height, known, halvings } => {
+            What::Piece { face, piece } => {
                 let carried = body.carried(face);
-                if !known && !carried.is_beside(piece) {
-                    return;
+                if carried.is_beside(piece) {
+                    let Piece { patch, curve, .. } = &carried.pieces[piece];
+                    let height = up.of_patch(&carried.grid.patches[*patch].patch).along(curve);
+                    self.push(placed, height.upper().min(upper), What::Curve { face, height, halvings: 0 });
                 }
+            }
+            What::Curve { face, height, halvings } => {
                 let ends = [height.at(0, 0), height.at(height.n, 0)].map(quotient);
                 ends.into_iter().for_each(|end| self.find(end));
                 if self.is_done(upper, height.lower(), &height, halvings) {
@@ -223,8 +237,7 @@ impl<'s, 'a> Search<'s, 'a> {
                 }
                 for half in height.halves_u() {
                     let upper = half.upper().min(upper);
-                    let halvings = halvings + 1;
-                    self.push(placed, upper, What::Curve { face, piece, height: half, known: true, halvings });
+                    self.push(placed, upper, What::Curve { face, height: half, halvings: halvings + 1 });
                 }
             }
             What::Area(area) => {
@@ -238,11 +251,7 @@ impl<'s, 'a> Search<'s, 'a> {
         let heights: Vec<Height> = carried.grid.patches.iter().map(|p| up.of_patch(&p.patch)).collect();
         let uppers: Vec<f64> = heights.iter().map(Height::upper).collect();
         for (number, piece) in carried.pieces.iter().enumerate() {
-            if uppers[piece.patch] > self.low {
-                let height = heights[piece.patch].along(&piece.curve);
-                let upper = height.upper().min(uppers[piece.patch]);
-                self.push(placed, upper, What::Curve { face, piece: number, height, known: false, halvings: 0 });
-            }
+            self.push(placed, uppers[piece.patch], What::Piece { face, piece: number });
         }
         for ((patch, height), upper) in carried.grid.patches.iter().zip(heights).zip(uppers) {
             let (lo, hi) = (DVec2::new(patch.u.0, patch.v.0), DVec2::new(patch.u.1, patch.v.1));
@@ -253,11 +262,9 @@ impl<'s, 'a> Search<'s, 'a> {
 
     fn area(&mut self, placed: usize, upper: f64, area: Area, carried: &Carried<'_>) {
         let Area { face, height, lo, hi, inside, whole, halvings } = area;
-        let side = if inside { RectSide::Inside } else { carried.classify(lo, hi) };
-        if side == RectSide::Outside {
+        if !carried.may_meet(lo, hi) {
             return;
         }
-        let inside = side == RectSide::Inside;
         for (i, j) in [(0, 0), (height.n, 0), (0, height.k), (height.n, height.k)] {
             let top = quotient(height.at(i, j));
             let corner = DVec2::new(if i == 0 { lo.x } else { hi.x }, if j == 0 { lo.y } else { hi.y });
@@ -278,9 +285,13 @@ impl<'s, 'a> Search<'s, 'a> {
             }
         }
         let lower = height.lower();
-        // as high as the trim curves in it, which are looked at
-        let is_level = !inside && upper - lower <= self.rounding;
-        if is_level || self.is_done(upper, lower, &height, halvings) {
+        if self.is_done(upper, lower, &height, halvings) {
+            return;
+        }
+        let side = if inside { RectSide::Inside } else { carried.classify(lo, hi) };
+        let inside = side == RectSide::Inside;
+        // a level one is as high as the trim curves in it, which are looked at
+        if side == RectSide::Outside || !inside && upper - lower <= self.rounding {
             return;
         }
         let (middle, halvings) = (0.5 * (lo + hi), halvings + 1);

@@ -80,7 +80,6 @@ fn half_space(normal: DVec3, offset: f64, d: DVec3) -> f64 {
 fn support(shape: &Shape, d: DVec3) -> f64 {
     let around = d.truncate().length();
     match shape {
-        Shape::HalfSpace { normal, offset } => half_space(*normal, *offset, d),
         Shape::Block { min, max } => d.dot(DVec3::select(d.cmpgt(DVec3::ZERO), *max, *min)),
         Shape::Sphere { radius } => radius * d.length(),
         Shape::Cylinder { radius, height } => radius * around + (height * d.z).max(0.0),
@@ -91,7 +90,8 @@ fn support(shape: &Shape, d: DVec3) -> f64 {
             let corners = mesh.triangles().iter().flatten().map(|v| d.dot(mesh.positions()[*v as usize]));
             corners.fold(f64::NEG_INFINITY, f64::max)
         }
-        Shape::Part(part) => part.bounds().corners().into_iter().map(|c| d.dot(c)).fold(f64::NEG_INFINITY, f64::max),
+        // in ways of their own: see `boxes`
+        Shape::HalfSpace { .. } | Shape::Part(_) => f64::INFINITY,
     }
 }
 
