@@ -186,7 +186,9 @@ impl<'s, 'a> Search<'s, 'a> {
     fn allowed(&self, of: &Candidate, tolerance: Tolerance) -> f64 {
         let face = match &of.what {
             What::Body | What::Mesh(_) => return tolerance.analytic,
-            What::Face(face) | What::Piece { face, .. } | What::Curve { face, .. } | What::Area(Area { face, .. }) => *face,
+            What::Face(face) | What::Piece { face, .. } | What::Curve { face, .. } | What::Area(Area { face, .. }) => {
+                *face
+            }
         };
         let (face, ..) = self.bodies[self.placed[of.placed].1].faces[face];
         if super::is_analytic(face.kind) { tolerance.analytic } else { tolerance.other }
