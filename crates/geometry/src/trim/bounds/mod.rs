@@ -60,7 +60,6 @@ impl Face {
     ///
     /// Each side is where a point of the face is. No point is beyond it by more than [`ANALYTIC`] of the box's diagonal,
     /// or [`OTHER`] of it where the surface has no equation of its own, plus some roundings of the largest coordinate.
-    /// Cost: some 10 µs for a plane, 0.1 ms to 1 ms for a spline surface that is highest inside a patch.
     pub fn bounds(&self) -> Bounds {
         of(&[Body::new(std::slice::from_ref(self), &[])], &[(0, DAffine3::IDENTITY)])
     }
