@@ -123,7 +123,7 @@ impl SceneData {
     /// Of a model; `told` of its faces as they are made.
     pub(crate) fn telling(model: &Model, settings: SceneSettings, told: Told<'_>) -> Result<Self, UndrawnSolid> {
         // edits would change where cuts pay
-        let extent = if settings.editable { f64::INFINITY } else { model.bounds().diagonal() };
+        let extent = if settings.editable { f64::INFINITY } else { model.control_bounds().diagonal() };
         Self::of(model, model, (settings, told), |_, scale| extent / scale)
     }
 
@@ -215,7 +215,7 @@ impl SceneData {
         let mut first_faces = Vec::with_capacity(model.parts.len());
         let mut origins = Vec::with_capacity(model.parts.len());
         let mut placed = Vec::with_capacity(model.parts.len());
-        let bounds: Vec<Bounds> = model.parts.par_iter().map(Part::bounds).collect();
+        let bounds: Vec<Bounds> = model.parts.par_iter().map(Part::control_bounds).collect();
         for (nth, ((part, bounds), scale)) in model.parts.iter().zip(&bounds).zip(scales).enumerate() {
             let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
             origins.push(origin);

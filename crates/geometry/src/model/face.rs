@@ -226,9 +226,9 @@ impl TrimLoop {
 }
 
 impl Face {
-    /// A box that contains the trimmed face: control points of the part of the surface that its
-    /// loops can reach.
-    pub fn bounds(&self) -> Bounds {
+    /// Box of the control points of the part of the surface that its loops can reach: it contains the trimmed face, and
+    /// may be much larger than it. How far the face reaches is [`Face::bounds`].
+    pub fn control_bounds(&self) -> Bounds {
         let (lo, hi) = self
             .loops
             .iter()

@@ -33,6 +33,7 @@ pub use face::{Face, FaceError, LoopAt, SurfaceKind, TrimLoop};
 pub use images::Images;
 pub use items::Items;
 pub use mesh::{Mesh, MeshError};
+pub(crate) use solid::{Boxes, meet};
 pub use solid::{
     CarriedFace, Carrier, Lone, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
     SurfaceTable, outward,
@@ -152,9 +153,10 @@ impl Bounds {
 }
 
 impl Part {
-    /// Box of the trimmed faces (see [`Face::bounds`]) and meshes in part coordinates.
-    pub fn bounds(&self) -> Bounds {
-        let faces = self.faces.iter().map(Face::bounds);
+    /// Box of the control points of its faces (see [`Face::control_bounds`]) and of its meshes, part coordinates: it
+    /// contains the part, and costs little.
+    pub fn control_bounds(&self) -> Bounds {
+        let faces = self.faces.iter().map(Face::control_bounds);
         faces.chain(self.meshes.iter().map(Mesh::bounds)).fold(Bounds::EMPTY, Bounds::union)
     }
 }
@@ -168,9 +170,10 @@ impl Model {
         said.map_or(SurfaceTable::ROUNDED, |share| share.clamp(SurfaceTable::FINEST, SurfaceTable::COARSEST))
     }
 
-    /// Box of all instances in model coordinates.
-    pub fn bounds(&self) -> Bounds {
-        let parts: Vec<Bounds> = self.parts.iter().map(Part::bounds).collect();
+    /// Box of the placed boxes of all parts' [control points](Part::control_bounds) and of the solids, model coordinates:
+    /// it contains the model, and may be much larger than it. How far the model reaches is [`Model::bounds`].
+    pub fn control_bounds(&self) -> Bounds {
+        let parts: Vec<Bounds> = self.parts.iter().map(Part::control_bounds).collect();
         self.instances
             .iter()
             .filter(|i| !parts[i.part].is_empty())

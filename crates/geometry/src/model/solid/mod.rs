@@ -16,6 +16,7 @@ pub use carrier::Carrier;
 pub use lone::Lone;
 pub(super) use operands::Operands;
 pub use outward::outward;
+pub(crate) use reach::{Boxes, meet};
 pub use shape::{Primitive, Quadric, Shape, ShapeError};
 pub use surface::{CarriedFace, Surface, SurfaceTable};
 
@@ -154,7 +155,12 @@ impl Solid {
     /// A box around the solid: boxes of the primitives under the same operations. Infinite where the
     /// solid may be unbounded.
     pub fn bounds(&self) -> Bounds {
-        reach::boxes(self).last().expect("a tree has a root").of
+        self.bounds_over(Boxes::of)
+    }
+
+    /// A box around the solid, over boxes of its primitives.
+    pub(crate) fn bounds_over(&self, primitive: impl Fn(&Primitive) -> Boxes) -> Bounds {
+        reach::boxes(self, primitive).last().expect("a tree has a root").of
     }
 
     /// Of each primitive, the box outside which nothing changes where it is taken for the outside, alone or with

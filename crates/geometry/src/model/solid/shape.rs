@@ -180,7 +180,7 @@ impl Shape {
             Self::Torus { major, minor } if *minor > 0.0 => round(major + minor, -minor, *minor),
             Self::Torus { .. } => Bounds::EMPTY,
             Self::Mesh(mesh) => mesh.bounds(),
-            Self::Part(part) => part.bounds(),
+            Self::Part(part) => part.control_bounds(),
         };
         let flat = !(bounds.min.cmplt(bounds.max)).all();
         if flat { Bounds::EMPTY } else { bounds }

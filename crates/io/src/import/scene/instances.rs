@@ -342,7 +342,7 @@ impl<'a> Builder<'a> {
         if of.is_empty() {
             return Err(name.fault(format!("nothing that is called `{}` is placed", shortened(word))));
         }
-        let all = of.iter().map(|p| solid::bounds(&self.model, p.1.clone(), p.2.clone()));
+        let all = of.iter().map(|p| self.model.bounds_of(p.1.clone(), p.2.clone()));
         Ok(all.fold(crate::model::Bounds::EMPTY, crate::model::Bounds::union))
     }
 
