@@ -162,7 +162,9 @@ mod tests {
             let parts: Vec<_> = model.parts.iter().map(|part| placed(part, way)).collect();
             let mut taken = 0;
             let told = AtomicUsize::new(0);
-            let tell = |n| drop(told.fetch_add(n, Ordering::Relaxed));
+            let tell = |n| {
+                let _ = told.fetch_add(n, Ordering::Relaxed);
+            };
             each_made(&parts, &tell, |part, faces| {
                 assert!(std::ptr::eq(part.part, parts[taken].part), "in order");
                 taken += 1;
