@@ -26,7 +26,9 @@ pub enum GpuError {
         source: gpu_allocator::AllocationError,
     },
     /// A storage buffer larger than a shader of this device may see.
-    #[error("`{resource}` needs {bytes} bytes, but this device binds at most {limit} (maxStorageBufferRange)")]
+    #[error(
+        "`{resource}` needs {bytes} bytes, but this device binds at most {limit} (maxStorageBufferRange); draw less at once: fewer parts, or a smaller picture"
+    )]
     TooLarge {
         /// Name of the buffer.
         resource: String,

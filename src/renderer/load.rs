@@ -47,7 +47,8 @@ impl Kept {
 
     /// The loop is another one now.
     pub(super) fn edit(&mut self, at: LoopAt, new: &TrimLoop) {
-        self.whole.parts[at.part].faces[at.face].loops[at.trim_loop] = new.clone();
+        let model = self.cut.as_mut().map_or(&mut self.whole, |cut| &mut cut.model);
+        model.parts[at.part].faces[at.face].loops[at.trim_loop] = new.clone();
     }
 }
 
@@ -107,11 +108,11 @@ impl Renderer {
             asked::check_smooth_trims(&data, settings)?;
         }
         let may_change = settings.trim == TrimWay::Auto && data.trim_way() == Some(TakenWay::Table);
-        let mut kept = may_change.then(|| Box::new(Kept::new(of, settings)));
-        if may_change && Counts::of(&data).check().is_err() {
+        let too_many = Counts::of(&data).check().err().filter(|too_many| may_change && too_many.is_of_table());
+        if too_many.is_some() {
             data = of.data(SceneSettings { trim: TrimWay::Exact, ..settings })?;
-            kept = None;
         }
+        let kept = (may_change && too_many.is_none()).then(|| Box::new(Kept::new(of, settings)));
         let counts = Counts::of(&data);
         counts.check()?;
         let formats =

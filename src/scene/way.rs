@@ -1,8 +1,8 @@
 //! Which way a scene is trimmed, told before anything is made for either.
 //!
 //! ```text
-//!   rows of a placed face  =  bays (strips + height)        height: its longest column of control points, in rows, where
-//!                                                           the scene is as wide as a picture of PICTURE_PX
+//!   rows of a placed face  =  bays (strips + length)        length: of a curve along v, in rows, where the scene is as
+//!                                                           wide as a picture of PICTURE_PX
 //!   Auto:  rows of all faces <= MOST_ROWS  and  points <= MOST_POINTS  ──▶ table        else ──▶ exact
 //! ```
 //!
@@ -17,7 +17,6 @@ use super::data::stretch;
 use crate::abi;
 use crate::model::{Face, Mesh, Model, Part, Shape};
 use crate::picture::{SceneSettings, TakenWay, TrimWay};
-use crate::spline::Control;
 use rayon::prelude::*;
 
 /// Rows that the table is expected to have at most where [`TrimWay::Auto`] takes it.
@@ -28,6 +27,8 @@ const MOST_POINTS: usize = 1 << 21;
 const PICTURE_PX: f64 = 2048.0;
 /// Between scan lines at the default tolerance.
 const ROW_PX: f64 = 0.125;
+/// Of each knot span of a curve whose length is told.
+const CHORDS: u32 = 4;
 
 /// How `settings` trim a model, never [`TrimWay::Auto`]; `None` where nothing of it is trimmed.
 pub fn trim_way(model: &Model, settings: SceneSettings) -> Option<TrimWay> {
@@ -69,32 +70,56 @@ fn points(model: &Model) -> usize {
     bodies.map(of).sum()
 }
 
-/// That the trim table of a picture of the whole scene has, about.
+/// That the trim table of a picture of the whole scene has, about; where those that it has however small it is seen are too
+/// many, these.
 fn rows(model: &Model) -> f64 {
     let Some(ball) = Ball::around(model.control_bounds()) else { return 0.0 };
-    let lines_a_unit = PICTURE_PX / (2.0 * ball.radius) / ROW_PX;
-    let of_part = |part: &Part| {
-        let faces = part.faces.par_iter().filter(|face| !face.loops.is_empty());
-        faces.map(rows_of).reduce(|| (0.0, 0.0), |a, b| (a.0 + b.0, a.1 + b.1))
+    let of_strips = |face: &Face| {
+        let (strips, bays) = strips_and_bays(face);
+        strips * bays
     };
-    let parts: Vec<_> = model.parts.par_iter().map(of_part).collect();
-    let placed = model.instances.iter().map(|i| (parts[i.part], stretch(i.transform.matrix3)));
-    let operands = operands(model).map(|(part, scale)| (of_part(part), scale));
-    placed.chain(operands).map(|((fewest, length), scale)| fewest + length * scale * lines_a_unit).sum()
+    let fewest = summed(model, of_strips, |_| 1.0);
+    if fewest > MOST_ROWS {
+        return fewest;
+    }
+    let of_length = |face: &Face| strips_and_bays(face).1 * length(face);
+    let lines_a_unit = PICTURE_PX / (2.0 * ball.radius) / ROW_PX;
+    fewest + summed(model, of_length, |scale| scale * lines_a_unit)
 }
 
-/// Rows of a face however small it is seen, and lengths along which it has one more for each scan line.
-fn rows_of(face: &Face) -> (f64, f64) {
+/// Of all placed faces that have loops: `of` each, as many times as `by` its scale.
+fn summed(model: &Model, of: impl Fn(&Face) -> f64 + Sync, by: impl Fn(f64) -> f64) -> f64 {
+    let of_part = |part: &Part| part.faces.par_iter().filter(|face| !face.loops.is_empty()).map(&of).sum::<f64>();
+    let parts: Vec<f64> = model.parts.par_iter().map(of_part).collect();
+    let placed = model.instances.iter().map(|i| (parts[i.part], stretch(i.transform.matrix3)));
+    let operands = operands(model).map(|(part, scale)| (of_part(part), scale));
+    placed.chain(operands).map(|(sum, scale)| sum * by(scale)).sum()
+}
+
+fn strips_and_bays(face: &Face) -> (f64, f64) {
+    let strips = strips(face, v_spans(face).count(), TakenWay::Table);
+    let face = abi::Face { strips, ..Default::default() };
+    (f64::from(face.strip_count()), f64::from(face.bay_count()))
+}
+
+/// Knots along v between which a surface is one polynomial.
+fn v_spans(face: &Face) -> impl Iterator<Item = (f64, f64)> {
     let (v0, v1) = face.surface.domain().1;
-    let (_, knots) = face.surface.knots();
-    let inner = knots.windows(2).filter(|pair| pair[0] < pair[1] && pair[0] >= v0 && pair[1] <= v1).count();
-    let strips = strips(face, inner, TakenWay::Table);
-    let face_strips = abi::Face { strips, ..Default::default() };
-    let (strips, bays) = (f64::from(face_strips.strip_count()), f64::from(face_strips.bay_count()));
-    let (count_u, count_v) = face.surface.counts();
-    let at = |i: usize, j: usize| face.surface.points()[j * count_u + i].point();
-    let column = |i: usize| (1..count_v).map(|j| at(i, j).distance(at(i, j - 1))).sum::<f64>();
-    (bays * strips, bays * (0..count_u).map(column).fold(0.0, f64::max))
+    let pairs = face.surface.knots().1.windows(2).map(|pair| (pair[0], pair[1]));
+    pairs.filter(move |(a, b)| a < b && *a >= v0 && *b <= v1)
+}
+
+/// The longest of a few curves along v, as chords between points of the surface: control points may lie far from it.
+fn length(face: &Face) -> f64 {
+    let (u0, u1) = face.surface.domain().0;
+    let chords = if face.surface.degrees().1 > 1 { CHORDS } else { 1 };
+    let along = |u: f64| {
+        let at = |v: f64| face.surface.jet(u, v).point;
+        let step = |(a, b): (f64, f64), k: u32| at(a + (b - a) * f64::from(k) / f64::from(chords));
+        let span = |ends| (0..chords).map(|k| step(ends, k).distance(step(ends, k + 1))).sum::<f64>();
+        v_spans(face).map(span).sum::<f64>()
+    };
+    [u0, 0.5 * (u0 + u1), u1].map(along).into_iter().fold(0.0, f64::max)
 }
 
 #[cfg(test)]
@@ -103,7 +128,8 @@ mod tests {
     use crate::budget::Budget;
     use crate::model::Instance;
     use crate::picture::FrameSettings;
-    use glam::{DAffine3, DVec3};
+    use crate::spline::Surface;
+    use glam::{DAffine3, DVec3, DVec4};
 
     fn bracket() -> Model {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/bracket.step");
@@ -123,6 +149,21 @@ mod tests {
     #[test]
     fn rows_are_those_of_the_default_tolerance() {
         assert_eq!(ROW_PX, Budget::of(FrameSettings::default().tolerance_px).row);
+    }
+
+    /// A control point of little weight may lie a million times as far away as any point of the surface.
+    #[test]
+    fn lengths_are_of_the_surface_not_of_its_control_points() {
+        let column = |x: f64| [(0.0, 1.0), (1.0, 1e-6), (1.0, 1.0)].map(|(y, w)| DVec4::new(x * w, y, 0.0, w));
+        let [left, right] = [column(0.0), column(1.0)];
+        let points = left.into_iter().zip(right).flat_map(|(a, b)| [a, b]).collect();
+        let knots = vec![0.0, 0.0, 0.0, 1.0, 1.0, 1.0];
+        let surface = Surface::new((1, 2), vec![0.0, 0.0, 1.0, 1.0], knots, points).unwrap();
+        let mut face = bracket().parts[0].faces[0].clone();
+        face.surface = surface;
+        // up to 1.5 in the middle, and back to 1 at the end
+        let length = length(&face);
+        assert!(length > 1.5 && length < 3.0, "{length}");
     }
 
     /// The bound is passed by as many copies as have so many rows: not one fewer.

@@ -149,17 +149,3 @@ fn edits_outlive_the_table() {
     assert_identical(&picture, &finely(&mut exact, &whole).unwrap(), "edited after");
     [edited, exact].into_iter().for_each(assert_silent);
 }
-
-/// What is cut out of the model for a view from very near, too.
-#[test]
-fn a_close_view_beyond_the_table_is_trimmed_exactly() {
-    let model = stack();
-    let close = onto(&model, 2000.0);
-    let mut auto = watched_with(&model, SceneSettings { trim: TrimWay::Auto, ..BY_TABLE });
-    let mut exact = watched_with(&model, SceneSettings { trim: TrimWay::Exact, ..BY_TABLE });
-    assert_eq!(finely(&mut auto, &onto(&model, 1.0)).unwrap().stats.trim, Some(TrimWay::Table));
-    let picture = finely(&mut auto, &close).unwrap();
-    assert_eq!(picture.stats.trim, Some(TrimWay::Exact));
-    assert_identical(&picture, &finely(&mut exact, &close).unwrap(), "close");
-    [auto, exact].into_iter().for_each(assert_silent);
-}
