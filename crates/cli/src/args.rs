@@ -373,9 +373,13 @@ impl std::fmt::Display for Factors {
     }
 }
 
-/// What becomes of polygons.
+/// How a file is read: what becomes of its polygons, and where parts are that stand in other files.
 #[derive(Debug, Default, Args)]
 pub struct SubdivideArgs {
+    /// Look for parts that stand in other files below this folder, too, not only beside the file that names them; may be
+    /// given several times
+    #[arg(long, value_name = "DIR")]
+    pub search: Vec<PathBuf>,
     /// Read an OBJ file's polygons as the control mesh of a smooth surface
     #[arg(long, value_enum, value_name = "SCHEME")]
     pub subdivide: Option<Smooth>,

@@ -22,8 +22,9 @@ pub fn open(path: &Path, subdivide: &SubdivideArgs) -> Result<Import> {
         tracing::info!("{faces} faces within {off:.2e} mm of the limit surface");
         return Ok(import);
     }
+    let folders = import::Folders::new(subdivide.search.clone());
     let import = importing(&path.display().to_string(), |tell| {
-        import::open_with(path, &import::Options { progress: Some(tell) })
+        import::open_with(path, &import::Options { progress: Some(tell), files: Some(&folders) })
     })?;
     tracing::info!("read {} in {:.1?}", path.display(), start.elapsed());
     output::warnings(&import);

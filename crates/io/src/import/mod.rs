@@ -19,6 +19,7 @@ mod camera;
 mod chain;
 mod colour;
 mod error;
+mod external;
 mod facets;
 mod iges;
 mod locate;
@@ -35,9 +36,11 @@ mod scene;
 mod solid;
 mod step;
 mod subdivided;
+mod text;
 
 pub use camera::{Lens, NamedCamera, PictureSettings, Stance};
 pub use error::ImportError;
+pub use external::{Files, Folders};
 pub use obj::cage::Cage;
 pub(crate) use progress::FaceCount;
 pub use progress::{Options, Stage};
@@ -85,53 +88,90 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
     open_with(path, &Options::default())
 }
 
-/// As [`open`], and tells how far it has come; the result is the same.
+/// As [`open`], and tells how far it has come; parts that stand in other files are looked for where
+/// [`Options::files`] says, and left out without it.
 ///
 /// # Errors
 /// As [`open`].
 pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportError> {
     let name = path.display().to_string();
     let bytes = load(path, &name, options)?;
+    let first = read(&bytes, &name, options)?;
+    Ok(external::follow(first, &name, options, &|bytes, name| match bytes {
+        [0x1f, 0x8b, ..] => read(&inflate(bytes, name)?, name, options),
+        _ => read(bytes, name, options),
+    }))
+}
+
+/// Reads bytes of the format that their content, else their name says.
+fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<external::Read, ImportError> {
     options.tell(Stage::Parse { bytes: bytes.len() as u64 });
-    if native::recognise(&bytes) {
-        return native(&bytes, &name);
+    let binary = native::recognise(bytes) || bytes.starts_with(RHINO);
+    // columns of IGES are bytes
+    if binary || iges::recognise(bytes) {
+        return alone(bytes, name).map(|import| (import, Vec::new()));
     }
-    if step::recognise(&bytes) {
-        return step::read(&bytes, &name, options);
+    let text = text::utf8(bytes);
+    let (mut import, mentions) = match text.text.as_bytes() {
+        step if step::recognise(step) => step::read(step, name, options)?,
+        other => (alone(other, name)?, Vec::new()),
+    };
+    text.tell(name, &mut import);
+    Ok((import, mentions))
+}
+
+/// Reads text, whatever its encoding.
+fn decoded(
+    bytes: &[u8],
+    name: &str,
+    read: impl FnOnce(&str) -> Result<Import, ImportError>,
+) -> Result<Import, ImportError> {
+    let text = text::utf8(bytes);
+    let mut import = read(&text.text)?;
+    text.tell(name, &mut import);
+    Ok(import)
+}
+
+/// The same for formats whose files name no parts in others.
+fn alone(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    if native::recognise(bytes) {
+        return native(bytes, name);
     }
-    if iges::recognise(&bytes) {
-        return iges(&bytes, &name);
+    if iges::recognise(bytes) {
+        return iges(bytes, name);
     }
     if bytes.starts_with(RHINO) {
-        return rhino(&bytes, &name);
+        return rhino(bytes, name);
     }
+    let path = Path::new(name);
     let file = path.file_name().and_then(|f| f.to_str()).map(str::to_ascii_lowercase).unwrap_or_default();
     let named = |all: &[&str]| all.iter().any(|e| file.ends_with(e));
-    let text = std::str::from_utf8(&bytes).unwrap_or_default();
+    let text = std::str::from_utf8(bytes).unwrap_or_default();
+    let name = name.to_owned();
     if named(&[".stp", ".step", ".p21", ".stpz", ".stp.gz", ".step.gz"]) {
         Err(ImportError::NotStep { file: name })
     } else if named(&[".igs", ".iges", ".igs.gz", ".iges.gz"]) {
         Err(ImportError::NotIges { file: name })
     } else if named(&[".selvedge", ".selvedge.gz"]) {
-        native(&bytes, &name)
+        native(bytes, &name)
     } else if named(&[".csg", ".csg.gz"]) {
-        scad(&bytes, &name, Facets::Round)
+        scad(bytes, &name, Facets::Round)
     } else if named(&[".asc", ".asc.gz"]) {
-        brlcad(&bytes, &name)
+        brlcad(bytes, &name)
     } else if named(&[".bv", ".bv.gz"]) {
-        bv(&bytes, &name)
+        bv(bytes, &name)
     } else if named(&[".toml", ".toml.gz"]) {
-        scene(&bytes, &name, path.parent())
+        scene(bytes, &name, path.parent())
     } else if named(&[".obj", ".obj.gz"]) {
-        obj(&bytes, &name, path.parent())
+        obj(bytes, &name, path.parent())
     } else if scad::recognise(text) {
-        scad(&bytes, &name, Facets::Round)
+        scad(bytes, &name, Facets::Round)
     } else if brlcad::recognise(text) {
-        brlcad(&bytes, &name)
-    } else if bv::recognise(&bytes) {
-        bv(&bytes, &name)
-    } else if obj::recognise(&bytes) {
-        obj(&bytes, &name, path.parent())
+        brlcad(bytes, &name)
+    } else if bv::recognise(bytes) {
+        bv(bytes, &name)
+    } else if obj::recognise(bytes) {
+        obj(bytes, &name, path.parent())
     } else {
         Err(ImportError::Format { file: name })
     }
@@ -168,7 +208,18 @@ fn read_apart(path: &Path, size: usize) -> std::io::Result<Vec<u8>> {
 /// # Errors
 /// [`ImportError`] when the text is not STEP or holds no usable data.
 pub fn step(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
-    step::read(bytes, name, &Options::default())
+    step_with(bytes, name, &Options::default())
+}
+
+/// As [`step`]; parts that stand in other files are looked for where [`Options::files`] says.
+///
+/// # Errors
+/// As [`step`].
+pub fn step_with(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Import, ImportError> {
+    decoded(bytes, name, |text| {
+        let first = step::read(text.as_bytes(), name, options)?;
+        Ok(external::follow(first, name, options, &|bytes, name| read(bytes, name, options)))
+    })
 }
 
 /// Reads the engine's own form: see [`crate::native`].
@@ -205,7 +256,7 @@ pub fn scene(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, 
 /// # Errors
 /// [`ImportError::Nothing`] when the text holds no vertex.
 pub fn obj(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
-    obj::read(bytes, name, folder)
+    decoded(bytes, name, |text| obj::read(text.as_bytes(), name, folder))
 }
 
 /// Reads the polygons of Wavefront OBJ text as control meshes, for subdivision; one an object.
@@ -213,7 +264,7 @@ pub fn obj(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, Im
 /// # Errors
 /// [`ImportError::Solid`] names the first line that cannot be read, [`ImportError::Nothing`] a file without polygons.
 pub fn cages(bytes: &[u8], name: &str) -> Result<Vec<Cage>, ImportError> {
-    obj::cage::read(bytes, name)
+    obj::cage::read(text::utf8(bytes).text.as_bytes(), name)
 }
 
 /// Reads a file of polygons as control meshes; gzip is undone first.
@@ -230,7 +281,7 @@ pub fn open_cages(path: &Path) -> Result<Vec<Cage>, ImportError> {
 /// # Errors
 /// [`ImportError::Nothing`] when the text does not begin with a patch.
 pub fn bv(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
-    bv::read(bytes, name)
+    decoded(bytes, name, |text| bv::read(text.as_bytes(), name))
 }
 
 /// Reads a Rhino `.3dm` file.
@@ -261,7 +312,7 @@ pub fn iges(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 /// # Errors
 /// [`ImportError::Solid`] names the line and node that is not read: hulls, Minkowski sums, text, ...
 pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportError> {
-    scad::read(text(bytes, name)?, name, facets)
+    decoded(bytes, name, |text| scad::read(text, name, facets))
 }
 
 /// Reads BRL-CAD's text of solids (`g2asc`, version 5); `name` is the file's name in messages.
@@ -269,14 +320,7 @@ pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportEr
 /// # Errors
 /// [`ImportError::Solid`] names the line and object that is not read.
 pub fn brlcad(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
-    brlcad::read(text(bytes, name)?, name)
-}
-
-fn text<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, ImportError> {
-    std::str::from_utf8(bytes).map_err(|e| {
-        let line = 1 + bytes[..e.valid_up_to()].iter().filter(|b| **b == b'\n').count();
-        ImportError::Solid { file: name.to_owned(), line, message: "not UTF-8 text".to_owned() }
-    })
+    decoded(bytes, name, |text| brlcad::read(text, name))
 }
 
 /// The file's name without folder and extension.

@@ -58,8 +58,10 @@ pub struct ImportReport {
     pub pcurves: usize,
     /// Names of the assembly occurrences, by their path from the root.
     pub occurrences: Vec<String>,
-    /// Files that hold parts of an assembly; they are not followed.
+    /// Files that hold parts of an assembly, by the names that the others give them.
     pub external_files: Vec<String>,
+    /// Those of them that were not read; what they hold is missing.
+    pub missing_files: Vec<String>,
     /// Nodes of a Boolean solid by name, as the file has them, and of modifiers (`%`, `#`, `!`, `*`).
     pub nodes: BTreeMap<String, usize>,
     /// Warnings by kind.
@@ -204,6 +206,46 @@ impl ImportReport {
         let face = self.record(record, BuiltFace { face, notes, deviation, gap: 0.0 });
         self.deviation = curves;
         face
+    }
+
+    /// Adds what is known about a file that holds parts of this one; its parts begin at `part`. What concerns the whole
+    /// model, its format, writer and occurrences, stays.
+    pub(crate) fn absorb(&mut self, other: Self, part: usize) {
+        let Self {
+            format: _, written_by: _, occurrences: _, units, external_files, missing_files, face_records, ..
+        } = other;
+        for (sum, more) in [
+            (&mut self.bodies, other.bodies),
+            (&mut self.edges, other.edges),
+            (&mut self.faces, other.faces),
+            (&mut self.meshes, other.meshes),
+            (&mut self.pcurves, other.pcurves),
+            (&mut self.irregular, other.irregular),
+            (&mut self.sloppy, other.sloppy),
+        ] {
+            *sum += more;
+        }
+        for (most, more) in
+            [(&mut self.deviation, other.deviation), (&mut self.made, other.made), (&mut self.gap, other.gap)]
+        {
+            *most = most.max(more);
+        }
+        for (counts, more) in [
+            (&mut self.nodes, other.nodes),
+            (&mut self.warnings, other.warnings),
+            (&mut self.dropped, other.dropped),
+            (&mut self.healed, other.healed),
+            (&mut self.ignored, other.ignored),
+            (&mut self.layers, other.layers),
+        ] {
+            more.into_iter().for_each(|(name, count)| *counts.entry(name).or_default() += count);
+        }
+        self.units.extend(units);
+        self.units.sort();
+        self.units.dedup();
+        self.external_files.extend(external_files);
+        self.missing_files.extend(missing_files);
+        self.face_records.extend(face_records.into_iter().map(|r| FaceRecord { part: r.part + part, ..r }));
     }
 
     /// A message without its numbers, the key under which it is counted: `face #3: edge #7 was turned`

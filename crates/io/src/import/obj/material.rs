@@ -7,7 +7,7 @@
 //! The format names no colour space; programs store what their screen shows, sRGB.
 
 use super::lines::lines;
-use crate::import::{Place, Warnings, colour};
+use crate::import::{Place, Warnings, colour, text};
 use crate::model::Colour;
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -43,7 +43,7 @@ impl Materials {
             Some(folder) => load(folder, name),
         };
         match result {
-            Ok(text) => self.read(&text, name, warnings),
+            Ok(bytes) => self.read(text::utf8(&bytes).text.as_bytes(), name, warnings),
             Err(why) => {
                 warnings.push("materials not read", || Place::Line(line), || format!("{name}: {why}"));
             }
