@@ -8,7 +8,7 @@ use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, Model, TrimLoop};
 use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, SceneSettings};
-use selvedge_io::import::{self, Import, ImportError, Options, Stage};
+use selvedge_io::import::{self, Folders, Import, ImportError, Options, Stage};
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
@@ -47,7 +47,8 @@ fn imported(
     subdivide: &SubdivideArgs,
     tell: &(dyn Fn(Stage) + Sync),
 ) -> Result<Import> {
-    let options = Options { progress: Some(tell), most_bytes: Some(read.most_bytes()) };
+    let folders = Folders::new(read.search.clone());
+    let options = Options { progress: Some(tell), most_bytes: Some(read.most_bytes()), files: Some(&folders) };
     let import = match subdivide.subdivide {
         Some(_) if target::is_standard(path) => bail!("--subdivide reads a file, not standard input"),
         Some(smooth) => import::open_subdivided(path, smooth.scheme(), subdivide.within, &options),

@@ -3,13 +3,18 @@
 use crate::values::{length, mebibytes};
 use clap::{Args, ValueEnum};
 use selvedge::construct::subdivide::Scheme;
+use std::path::PathBuf;
 
 /// Which files are taken.
-#[derive(Clone, Copy, Debug, Default, Args)]
+#[derive(Clone, Debug, Default, Args)]
 pub struct ReadArgs {
     /// Refuse a file of which anything is left out: exit status 2 in place of a warning
     #[arg(long)]
     pub strict: bool,
+    /// Look for parts that stand in other files below this folder, too, not only beside the file that names them; may be
+    /// given several times
+    #[arg(long, value_name = "DIR")]
+    pub search: Vec<PathBuf>,
     /// Most MiB of a file that are read, gzip undone; three quarters of the machine's memory without it, and 4096 at most
     #[arg(long, value_name = "MIB", value_parser = mebibytes)]
     pub limit_mib: Option<f64>,

@@ -102,7 +102,10 @@ impl Info<'_> {
         list("layers, items on them", named(&report.layers));
         list("warnings", named(&report.warnings));
         if !report.external_files.is_empty() {
-            lines.push(format!("other files named, not read: {}", report.external_files.join(", ")));
+            lines.push(format!("other files named: {}", report.external_files.join(", ")));
+        }
+        if !report.missing_files.is_empty() {
+            lines.push(format!("other files not read: {}", report.missing_files.join(", ")));
         }
         lines.join("\n")
     }

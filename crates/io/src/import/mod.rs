@@ -20,6 +20,7 @@ mod camera;
 mod chain;
 mod colour;
 mod error;
+mod external;
 mod facets;
 mod iges;
 mod locate;
@@ -39,9 +40,11 @@ mod source;
 mod step;
 mod subdivided;
 mod summary;
+mod text;
 
 pub use camera::{Lens, NamedCamera, PictureSettings, Stance};
 pub use error::ImportError;
+pub use external::{Files, Folders};
 pub use obj::cage::Cage;
 pub(crate) use progress::FaceCount;
 pub use progress::{Options, Stage};
@@ -82,14 +85,22 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
     open_with(path, &Options::default())
 }
 
-/// As [`open`], and tells how far it has come; the result is the same.
+/// As [`open`], and tells how far it has come; parts that stand in other files are looked for where
+/// [`Options::files`] says, and left out without it.
 ///
 /// # Errors
 /// As [`open`].
 pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportError> {
     let name = path.display().to_string();
     let bytes = source::load(path, &name, options)?;
-    read(&bytes, &name, path.parent(), options)
+    let first = read(&bytes, &name, path.parent(), options)?;
+    Ok(external::follow(first, &name, options, &|bytes, found| found_file(bytes, found, options)))
+}
+
+/// Reads a file that another one names.
+fn found_file(bytes: Vec<u8>, found: &str, options: &Options<'_>) -> Result<external::Read, ImportError> {
+    let bytes = source::inflated(bytes, found, options.most_bytes())?;
+    read(&bytes, found, Path::new(found).parent(), options)
 }
 
 /// Reads a stream to its end, as [`open_with`]; `name` stands for it in messages, and its ending tells the format where
@@ -98,9 +109,10 @@ pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportErr
 /// # Errors
 /// As [`open`].
 pub fn read_from(stream: &mut dyn Read, name: &str, options: &Options<'_>) -> Result<Import, ImportError> {
-    let known = |beginning: &[u8]| Format::of(beginning, name).is_some();
+    let known = |beginning: &[u8]| Format::of(&text::utf8(beginning).text, beginning, name).is_some();
     let bytes = source::drain(stream, name, options.most_bytes(), known)?;
-    read(&bytes, name, None, options)
+    let first = read(&bytes, name, None, options)?;
+    Ok(external::follow(first, name, &Options { files: None, ..*options }, &|_, _| unreachable!("no file is found")))
 }
 
 /// What is read here.
@@ -118,18 +130,25 @@ enum Format {
 }
 
 impl Format {
-    /// By the beginning of the content where it is certain, else by the name, else by what the content looks like.
-    fn of(bytes: &[u8], name: &str) -> Option<Self> {
-        let certain: [(Self, fn(&[u8]) -> bool); 4] = [
+    /// Formats that are read byte by byte, by how they begin.
+    fn certain(bytes: &[u8]) -> Option<Self> {
+        let known: [(Self, fn(&[u8]) -> bool); 3] = [
             (Self::Native, native::recognise),
-            (Self::Step, step::recognise),
-            (Self::Iges, iges::recognise),
             (Self::Rhino, |bytes| bytes.starts_with(RHINO)),
+            (Self::Iges, iges::recognise),
         ];
-        if let Some((format, _)) = certain.iter().find(|(_, recognise)| recognise(bytes)) {
-            return Some(*format);
+        known.iter().find(|(_, recognise)| recognise(bytes)).map(|(format, _)| *format)
+    }
+
+    /// By the beginning of the content where it is certain, else by the name, else by what the content looks like.
+    fn of(text: &str, bytes: &[u8], name: &str) -> Option<Self> {
+        if let Some(format) = Self::certain(bytes) {
+            return Some(format);
         }
-        const NAMED: [(&str, Format); 12] = [
+        if step::recognise(text.as_bytes()) {
+            return Some(Self::Step);
+        }
+        const NAMED: [(&str, Format); 13] = [
             (".stp", Format::Step),
             (".step", Format::Step),
             (".p21", Format::Step),
@@ -137,6 +156,7 @@ impl Format {
             (".igs", Format::Iges),
             (".iges", Format::Iges),
             (".selvedge", Format::Native),
+            (".3dm", Format::Rhino),
             (".csg", Format::Scad),
             (".asc", Format::Brlcad),
             (".bv", Format::Bv),
@@ -148,15 +168,13 @@ impl Format {
         if let Some((_, format)) = NAMED.iter().find(|(ending, _)| file.ends_with(ending)) {
             return Some(*format);
         }
-        let text =
-            std::str::from_utf8(bytes).or_else(|e| std::str::from_utf8(&bytes[..e.valid_up_to()])).unwrap_or_default();
         if scad::recognise(text) {
             Some(Self::Scad)
         } else if brlcad::recognise(text) {
             Some(Self::Brlcad)
-        } else if bv::recognise(bytes) {
+        } else if bv::recognise(text.as_bytes()) {
             Some(Self::Bv)
-        } else if obj::recognise(bytes) {
+        } else if obj::recognise(text.as_bytes()) {
             Some(Self::Obj)
         } else {
             None
@@ -164,21 +182,50 @@ impl Format {
     }
 }
 
-/// Reads what has been loaded; other files are looked for in `folder`, if there is one.
-fn read(bytes: &[u8], name: &str, folder: Option<&Path>, options: &Options<'_>) -> Result<Import, ImportError> {
+/// Reads what has been loaded, and what it leaves to other files; data and materials are looked for in `folder`, if there
+/// is one.
+fn read(
+    bytes: &[u8],
+    name: &str,
+    folder: Option<&Path>,
+    options: &Options<'_>,
+) -> Result<external::Read, ImportError> {
     options.tell(Stage::Parse { bytes: bytes.len() as u64 });
-    match Format::of(bytes, name) {
-        Some(Format::Native) => native(bytes, name),
-        Some(Format::Step) => step::read(bytes, name, options),
-        Some(Format::Iges) => iges(bytes, name),
-        Some(Format::Rhino) => rhino(bytes, name),
-        Some(Format::Scad) => scad(bytes, name, Facets::Round),
-        Some(Format::Brlcad) => brlcad(bytes, name),
-        Some(Format::Bv) => bv(bytes, name),
-        Some(Format::Scene) => scene(bytes, name, folder),
-        Some(Format::Obj) => obj(bytes, name, folder),
-        None => Err(ImportError::Format { file: name.to_owned() }),
-    }
+    let mut mentions = Vec::new();
+    // what is no text, or counts its bytes, is not decoded
+    let is_text = Format::certain(bytes).is_none();
+    let text = if is_text { text::utf8(bytes) } else { text::Text::default() };
+    let utf8 = text.text.as_bytes();
+    let mut import = match Format::of(&text.text, bytes, name) {
+        Some(Format::Native) => native(bytes, name)?,
+        Some(Format::Rhino) => rhino(bytes, name)?,
+        Some(Format::Iges) => iges(bytes, name)?,
+        Some(Format::Step) => {
+            let import;
+            (import, mentions) = step::read(utf8, name, options)?;
+            import
+        }
+        Some(Format::Scad) => scad(utf8, name, Facets::Round)?,
+        Some(Format::Brlcad) => brlcad(utf8, name)?,
+        Some(Format::Bv) => bv(utf8, name)?,
+        Some(Format::Scene) => scene(bytes, name, folder)?,
+        Some(Format::Obj) => obj(utf8, name, folder)?,
+        None => return Err(ImportError::Format { file: name.to_owned() }),
+    };
+    text.tell(name, &mut import);
+    Ok((import, mentions))
+}
+
+/// Reads text, whatever its encoding.
+fn decoded(
+    bytes: &[u8],
+    name: &str,
+    read: impl FnOnce(&str) -> Result<Import, ImportError>,
+) -> Result<Import, ImportError> {
+    let text = text::utf8(bytes);
+    let mut import = read(&text.text)?;
+    text.tell(name, &mut import);
+    Ok(import)
 }
 
 /// Reads ISO 10303-21 text (STEP AP203, AP214, AP242); `name` is the file's name in messages.
@@ -186,7 +233,18 @@ fn read(bytes: &[u8], name: &str, folder: Option<&Path>, options: &Options<'_>) 
 /// # Errors
 /// [`ImportError`] when the text is not STEP or holds no usable data.
 pub fn step(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
-    step::read(bytes, name, &Options::default())
+    step_with(bytes, name, &Options::default())
+}
+
+/// As [`step`]; parts that stand in other files are looked for where [`Options::files`] says.
+///
+/// # Errors
+/// As [`step`].
+pub fn step_with(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Import, ImportError> {
+    decoded(bytes, name, |text| {
+        let first = step::read(text.as_bytes(), name, options)?;
+        Ok(external::follow(first, name, options, &|bytes, found| found_file(bytes, found, options)))
+    })
 }
 
 /// Reads the engine's own form: see [`crate::native`].
@@ -223,7 +281,7 @@ pub fn scene(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, 
 /// # Errors
 /// [`ImportError::Nothing`] when the text holds no vertex.
 pub fn obj(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
-    obj::read(bytes, name, folder)
+    decoded(bytes, name, |text| obj::read(text.as_bytes(), name, folder))
 }
 
 /// Reads the polygons of Wavefront OBJ text as control meshes, for subdivision; one an object.
@@ -231,7 +289,7 @@ pub fn obj(bytes: &[u8], name: &str, folder: Option<&Path>) -> Result<Import, Im
 /// # Errors
 /// [`ImportError::Solid`] names the first line that cannot be read, [`ImportError::Nothing`] a file without polygons.
 pub fn cages(bytes: &[u8], name: &str) -> Result<Vec<Cage>, ImportError> {
-    obj::cage::read(bytes, name)
+    obj::cage::read(text::utf8(bytes).text.as_bytes(), name)
 }
 
 /// Reads a file of polygons as control meshes; gzip is undone first.
@@ -248,7 +306,7 @@ pub fn open_cages(path: &Path, options: &Options<'_>) -> Result<Vec<Cage>, Impor
 /// # Errors
 /// [`ImportError::Nothing`] when the text does not begin with a patch.
 pub fn bv(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
-    bv::read(bytes, name)
+    decoded(bytes, name, |text| bv::read(text.as_bytes(), name))
 }
 
 /// Reads a Rhino `.3dm` file.
@@ -279,7 +337,7 @@ pub fn iges(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 /// # Errors
 /// [`ImportError::Solid`] names the line and node that is not read: hulls, Minkowski sums, text, ...
 pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportError> {
-    scad::read(text(bytes, name)?, name, facets)
+    decoded(bytes, name, |text| scad::read(text, name, facets))
 }
 
 /// Reads BRL-CAD's text of solids (`g2asc`, version 5); `name` is the file's name in messages.
@@ -287,14 +345,7 @@ pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportEr
 /// # Errors
 /// [`ImportError::Solid`] names the line and object that is not read.
 pub fn brlcad(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
-    brlcad::read(text(bytes, name)?, name)
-}
-
-fn text<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, ImportError> {
-    std::str::from_utf8(bytes).map_err(|e| {
-        let line = 1 + bytes[..e.valid_up_to()].iter().filter(|b| **b == b'\n').count();
-        ImportError::Solid { file: name.to_owned(), line, message: "not UTF-8 text".to_owned() }
-    })
+    decoded(bytes, name, |text| brlcad::read(text, name))
 }
 
 /// The file's name without folder and extension.

@@ -5,6 +5,7 @@
 //!            from one thread; both of STEP alone                  from any thread, in any order
 //! ```
 
+use super::Files;
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -52,14 +53,16 @@ pub struct Options<'a> {
     pub progress: Option<&'a (dyn Fn(Stage) + Sync)>,
     /// Most bytes of a file, before and after gzip is undone. Offsets are 32 bits wide: it is 4 GiB at most, and without it.
     pub most_bytes: Option<u64>,
+    /// Where to look for files that others name, parts of an assembly; without it they are left out and named.
+    /// [`Folders`](super::Folders) looks on a disk.
+    pub files: Option<&'a dyn Files>,
 }
 
 impl fmt::Debug for Options<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Options")
-            .field("progress", &self.progress.map(|_| "Fn(Stage)"))
-            .field("most_bytes", &self.most_bytes)
-            .finish()
+        let (progress, files) = (self.progress.map(|_| "Fn(Stage)"), self.files.map(|_| "Files"));
+        let mut shown = f.debug_struct("Options");
+        shown.field("progress", &progress).field("most_bytes", &self.most_bytes).field("files", &files).finish()
     }
 }
 

@@ -60,10 +60,12 @@ pub struct ImportReport {
     pub pcurves: usize,
     /// Names of the assembly occurrences, by their path from the root.
     pub occurrences: Vec<String>,
-    /// Files that hold parts of an assembly; they are not followed.
+    /// Files that hold parts of an assembly, by the names that the others give them.
     pub external_files: Vec<String>,
     /// Files that were read beside the one that was opened: models, data and materials that it names.
     pub files_read: Vec<PathBuf>,
+    /// Those of them that were not read; what they hold is missing.
+    pub missing_files: Vec<String>,
     /// Nodes of a Boolean solid by name, as the file has them, and of modifiers (`%`, `#`, `!`, `*`).
     pub nodes: BTreeMap<String, usize>,
     /// Warnings by kind.
@@ -228,12 +230,14 @@ impl Warnings {
         self.list.push(Warning { file: self.file.clone(), place: place(), message, count: 1 });
     }
 
-    /// The warnings; their counts go to the report, by kind, and what they say of things that are not in the model.
+    /// The warnings; their counts are added to the report's, by kind, and what they say of things that are not in the model.
     pub fn finish(self, report: &mut ImportReport) -> Vec<Warning> {
-        report.warnings = self.kinds.into_iter().map(|(kind, (count, _))| (kind.to_owned(), count)).collect();
+        for (kind, (count, _)) in self.kinds {
+            *report.warnings.entry(kind.to_owned()).or_default() += count;
+        }
         for (kind, reasons) in self.missing {
             if Loss::of(kind) == Loss::LeftOut {
-                report.left_out.insert(kind.to_owned(), reasons);
+                report.left_out.entry(kind.to_owned()).or_default().extend(&reasons);
                 continue;
             }
             let what = kind.trim_end_matches("not drawn").trim_end_matches("not placed").trim_end_matches([' ', ',']);
@@ -280,6 +284,48 @@ impl ImportReport {
         let face = self.record(record, BuiltFace { face, notes, deviation, gap: 0.0 });
         self.deviation = curves;
         face
+    }
+
+    /// Adds what is known about a file that holds parts of this one; its parts begin at `part`. What concerns the whole
+    /// model, its format, writer and occurrences, stays.
+    pub(crate) fn absorb(&mut self, other: Self, part: usize) {
+        let Self {
+            format: _, written_by: _, occurrences: _, units, external_files, missing_files, face_records, ..
+        } = other;
+        for (sum, more) in [
+            (&mut self.bodies, other.bodies),
+            (&mut self.edges, other.edges),
+            (&mut self.faces, other.faces),
+            (&mut self.meshes, other.meshes),
+            (&mut self.pcurves, other.pcurves),
+            (&mut self.irregular, other.irregular),
+            (&mut self.sloppy, other.sloppy),
+        ] {
+            *sum += more;
+        }
+        for (most, more) in
+            [(&mut self.deviation, other.deviation), (&mut self.made, other.made), (&mut self.gap, other.gap)]
+        {
+            *most = most.max(more);
+        }
+        for (counts, more) in [
+            (&mut self.nodes, other.nodes),
+            (&mut self.warnings, other.warnings),
+            (&mut self.ignored, other.ignored),
+            (&mut self.layers, other.layers),
+        ] {
+            more.into_iter().for_each(|(name, count)| *counts.entry(name).or_default() += count);
+        }
+        self.dropped.extend(&other.dropped);
+        self.healed.extend(&other.healed);
+        other.left_out.iter().for_each(|(kind, why)| self.left_out.entry(kind.clone()).or_default().extend(why));
+        self.files_read.extend(other.files_read);
+        self.units.extend(units);
+        self.units.sort();
+        self.units.dedup();
+        self.external_files.extend(external_files);
+        self.missing_files.extend(missing_files);
+        self.face_records.extend(face_records.into_iter().map(|r| FaceRecord { part: r.part + part, ..r }));
     }
 }
 

@@ -112,7 +112,7 @@ fn is_gzip(bytes: &[u8]) -> bool {
 }
 
 /// Undoes gzip, if it is; output is bounded by [`MAX_EXPANSION`] and by `limit`.
-fn inflated(bytes: Vec<u8>, name: &str, limit: u64) -> Result<Vec<u8>, ImportError> {
+pub(super) fn inflated(bytes: Vec<u8>, name: &str, limit: u64) -> Result<Vec<u8>, ImportError> {
     if !is_gzip(&bytes) {
         return Ok(bytes);
     }

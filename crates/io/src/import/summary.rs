@@ -84,7 +84,7 @@ impl Summary {
             solids: Tally { stated: model.solids.len() + lost("solid"), drawn: solids },
             lost_faces: report.dropped.clone(),
             left_out: report.left_out.clone(),
-            elsewhere: report.external_files.clone(),
+            elsewhere: report.missing_files.clone(),
             beside,
         }
     }

@@ -10,6 +10,7 @@
 //! An entity is known by the number of its first card, always odd.
 
 use super::card::Card;
+use crate::import::text::Encoding;
 use crate::import::{Place, Warnings};
 
 /// One entity's entry.
@@ -48,7 +49,7 @@ pub(super) struct Entry {
 }
 
 /// Pairs up the cards; what cannot be read is told and left out.
-pub(super) fn read(cards: &[(Card<'_>, u32)], warnings: &mut Warnings) -> Vec<Entry> {
+pub(super) fn read(cards: &[(Card<'_>, u32)], encoding: Encoding, warnings: &mut Warnings) -> Vec<Entry> {
     let mut entries: Vec<Entry> = Vec::with_capacity(cards.len() / 2);
     let mut at = 0;
     let mut number = 0;
@@ -68,7 +69,7 @@ pub(super) fn read(cards: &[(Card<'_>, u32)], warnings: &mut Warnings) -> Vec<En
             continue;
         };
         at += 2;
-        match entry(number, (card.text, second.text), *line) {
+        match entry(number, (card.text, second.text), encoding, *line) {
             Ok(entry) if entries.last().is_some_and(|last| last.id >= entry.id) => {
                 warnings.push("directory entry left out", place, || format!("#{number} comes again or too late"));
             }
@@ -80,10 +81,10 @@ pub(super) fn read(cards: &[(Card<'_>, u32)], warnings: &mut Warnings) -> Vec<En
     entries
 }
 
-fn entry(id: u32, (first, second): (&[u8], &[u8]), line: u32) -> Result<Entry, String> {
+fn entry(id: u32, (first, second): (&[u8], &[u8]), encoding: Encoding, line: u32) -> Result<Entry, String> {
     let field = |card: &[u8], index: usize| -> String {
         let (a, b) = (8 * index, 8 * index + 8);
-        String::from_utf8_lossy(&card[a.min(card.len())..b.min(card.len())]).trim().to_owned()
+        encoding.decode(&card[a.min(card.len())..b.min(card.len())]).trim().to_owned()
     };
     let integer = |card: &[u8], index: usize, name: &str| match field(card, index).as_str() {
         "" => Ok(0),

@@ -155,7 +155,7 @@ impl<'a> Entity<'a> {
         match self.value(index) {
             value @ Value::Text(..) => {
                 let bytes = self.file.text(value).unwrap_or_default();
-                short(String::from_utf8_lossy(bytes).trim().to_owned())
+                short(self.file.encoding.decode(bytes).trim().to_owned())
             }
             _ => String::new(),
         }

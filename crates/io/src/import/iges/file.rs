@@ -13,6 +13,7 @@ use super::card::{Card, DATA, Section, TEXT, parts};
 use super::directory::{self, Entry};
 use super::global::Global;
 use super::value::{Value, record};
+use crate::import::text::Encoding;
 use crate::import::{ImportError, Place, Warnings};
 use rayon::prelude::*;
 
@@ -23,6 +24,8 @@ pub(super) struct File {
     pub global: Global,
     /// In increasing order of their numbers.
     pub entries: Vec<Entry>,
+    /// Of strings that are not UTF-8; columns and lengths count bytes.
+    pub encoding: Encoding,
     text: Vec<u8>,
     /// The values of the entries: each arena those that one thread has read.
     arenas: Vec<Vec<Value>>,
@@ -102,9 +105,10 @@ impl File {
             return Err(ImportError::NoDirectory { file: name.to_owned(), line: last_line as usize });
         }
         check_counts(terminate, (entries.len(), parameters.len()), last_line, warnings);
-        let global = Global::read(&global, global_line as usize, warnings);
-        let entries = directory::read(&entries, warnings);
-        let mut file = Self { global, entries, text: Vec::new(), arenas: Vec::new(), value_count: 0 };
+        let encoding = Encoding::of(bytes);
+        let global = Global::read(&global, encoding, global_line as usize, warnings);
+        let entries = directory::read(&entries, encoding, warnings);
+        let mut file = Self { global, entries, encoding, text: Vec::new(), arenas: Vec::new(), value_count: 0 };
         file.read_parameters(&parameters, warnings);
         Ok(file)
     }

@@ -8,6 +8,7 @@
 //! ```
 
 use super::value::{Delimiters, Value, record};
+use crate::import::text::Encoding;
 use crate::import::{Place, Warnings};
 
 /// What the section says, with the standard's defaults.
@@ -46,7 +47,7 @@ const VERSIONS: [&str; 12] = ["", "1.0", "2.0", "2.0", "2.0", "3.0", "3.0", "4.0
 
 impl Global {
     /// Reads the text of the section's cards, 72 columns each.
-    pub fn read(text: &[u8], line: usize, warnings: &mut Warnings) -> Self {
+    pub fn read(text: &[u8], encoding: Encoding, line: usize, warnings: &mut Warnings) -> Self {
         let warn = |warnings: &mut Warnings, message: String| {
             warnings.push("global section", || Place::Line(line), || message);
         };
@@ -57,7 +58,7 @@ impl Global {
         }
         let value = |index: usize| values.get(index - 1).copied().unwrap_or(Value::Empty);
         let string = |index: usize| match value(index) {
-            Value::Text(a, b) => String::from_utf8_lossy(&text[a as usize..b as usize]).trim().to_owned(),
+            Value::Text(a, b) => encoding.decode(&text[a as usize..b as usize]).trim().to_owned(),
             _ => String::new(),
         };
         let real = |index: usize| match value(index) {
@@ -131,7 +132,7 @@ mod tests {
 
     fn read(text: &str) -> (Global, Vec<String>) {
         let mut warnings = Warnings::new("g.igs");
-        let global = Global::read(text.as_bytes(), 2, &mut warnings);
+        let global = Global::read(text.as_bytes(), Encoding::default(), 2, &mut warnings);
         (global, warnings.finish(&mut ImportReport::default()).iter().map(ToString::to_string).collect())
     }
 

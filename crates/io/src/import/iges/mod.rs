@@ -35,7 +35,7 @@ mod tree;
 mod trim;
 mod value;
 
-use super::{FaceRecord, Import, ImportError, ImportReport, Warnings};
+use super::{FaceRecord, Import, ImportError, ImportReport, Place, Warnings, text};
 use crate::brep::build_face;
 use crate::model::{Instance, Model, Part};
 use file::File;
@@ -46,10 +46,13 @@ use tree::{Body, Tree};
 /// Whether the bytes begin like IGES, in any of its forms.
 pub(super) fn recognise(bytes: &[u8]) -> bool {
     card::recognise(bytes).is_some()
+        || text::utf16(bytes).is_some_and(|(text, _)| card::recognise(text.as_bytes()).is_some())
 }
 
 /// Reads IGES text; `name` is the file's name in messages.
 pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
+    let wide = text::utf16(bytes);
+    let bytes = wide.as_ref().map_or(bytes, |(text, _)| text.as_bytes());
     let form = |form| ImportError::IgesForm { file: name.to_owned(), form };
     match card::recognise(bytes) {
         None => return Err(ImportError::NotIges { file: name.to_owned() }),
@@ -59,6 +62,12 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     }
     let mut warnings = Warnings::new(name);
     let file = File::parse(bytes, name, &mut warnings)?;
+    if wide.as_ref().is_some_and(|(_, whole)| !whole) {
+        warnings.push(text::KIND, || Place::File, || "it is UTF-16 with units that are no characters".to_owned());
+    }
+    if let Some(message) = file.encoding.told() {
+        warnings.push(text::KIND, || Place::File, || message);
+    }
     let geometry = Geometry::new(&file, warnings);
     let tree = Tree::read(&geometry);
     let (bodies, placements) = (tree.bodies, tree.placements);

@@ -7,7 +7,7 @@
 //! The format names no colour space; programs store what their screen shows, sRGB.
 
 use super::lines::lines;
-use crate::import::{Place, Warnings, colour, source};
+use crate::import::{Place, Warnings, colour, source, text};
 use crate::model::Colour;
 use std::collections::HashMap;
 use std::fmt::Write;
@@ -44,9 +44,9 @@ impl Materials {
             Some(folder) => load(folder, name),
         };
         match result {
-            Ok((path, text)) => {
+            Ok((path, bytes)) => {
                 self.opened.push(path);
-                self.read(&text, name, warnings);
+                self.read(text::utf8(&bytes).text.as_bytes(), name, warnings);
             }
             Err(why) => {
                 warnings.push("materials not read", || Place::Line(line), || format!("{name}: {why}"));

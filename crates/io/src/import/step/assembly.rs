@@ -4,26 +4,26 @@
 //!   representation ──items──▶ bodies
 //!        │  ▲ same place: SHAPE_REPRESENTATION_RELATIONSHIP, several shapes of one product
 //!        │
-//!        ├─ CONTEXT_DEPENDENT_SHAPE_REPRESENTATION of a NEXT_ASSEMBLY_USAGE_OCCURRENCE
-//!        │    child in parent:  M(item in parent) · M(item in child)⁻¹
+//!        ├─ CONTEXT_DEPENDENT_SHAPE_REPRESENTATION of a NEXT_ASSEMBLY_USAGE_OCCURRENCE   see `place`
 //!        └─ MAPPED_ITEM         M(target) · M(origin)⁻¹
 //! ```
 //!
 //! Representations at the same place form one *group*. Groups and placements are a graph that ought to
-//! have no cycle; the walk from its roots makes one instance of a body per path. Which of the two
-//! representations of a placement is the child is decided by the products, not by the order in the
-//! file, which writers get wrong.
+//! have no cycle; the walk from its roots makes one instance of a body per path. What of it is drawn, and
+//! how often, is the rule of `once`.
 //!
 //! Source: ISO 10303-43 (representation structures), ISO 10303-44 (product structure), and CAx-IF
 //! Recommended Practices for assembly structure.
 
 use super::body::{self, Role};
+use super::document::Documents;
 use super::entity::{Entity, Fault, Fields};
 use super::geometry::{Geometry, Ledger};
+use super::once;
 use super::orphans::Orphans;
 use super::part21::{File, Value};
 use super::presentation::Presentation;
-use super::product::{Occurrence, Products};
+use super::product::Products;
 use super::units::Units;
 use glam::DAffine3;
 use std::collections::{BTreeMap, BTreeSet, HashMap};
@@ -63,27 +63,41 @@ pub(super) struct Assembly {
     pub units: HashMap<u32, Units>,
     /// Faces that no shell holds: the body named by the first of them.
     pub loose: Vec<u32>,
-    children: BTreeSet<u32>,
+    /// Groups that are the shape of a product.
+    pub owned: BTreeSet<u32>,
+    /// By the body that stands for them in its group: documents, and the names of their files.
+    pub files: BTreeMap<u32, Vec<(u32, Vec<String>)>>,
 }
 
-struct Reader<'a, 'r> {
-    file: &'a File<'a>,
-    ledger: &'r Ledger<'a>,
+pub(super) struct Reader<'a, 'r> {
+    pub file: &'a File<'a>,
+    pub ledger: &'r Ledger<'a>,
     presentation: &'r Presentation,
-    products: Products,
-    assembly: Assembly,
-    placements: Vec<(u32, Placement)>,
+    pub products: Products,
+    pub assembly: Assembly,
+    /// Parent's representation and placement.
+    pub placements: Vec<(u32, Placement)>,
+    /// Those that may be an occurrence's.
+    pub mentions: Vec<(u32, Placement)>,
+    /// Groups that list an item of a transformation.
+    pub listed: HashMap<u32, Vec<u32>>,
 }
 
-/// Representations that can hold shape; those of presentation and of properties cannot.
+/// Names of representations that can hold shape; those of properties cannot.
 fn is_shape(kind: &str) -> bool {
+    let further = ["WITH_PARAMETERS", "WITH_ACCURACY_PARAMETERS"];
+    let base = further.iter().find_map(|f| kind.strip_suffix(f)?.strip_suffix('_')).unwrap_or(kind);
     kind == "REPRESENTATION"
-        || kind == "SHAPE_REPRESENTATION_WITH_PARAMETERS"
-        || (kind.ends_with("SHAPE_REPRESENTATION") && kind != "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION")
+        || (base.ends_with("SHAPE_REPRESENTATION") && base != "CONTEXT_DEPENDENT_SHAPE_REPRESENTATION")
+}
+
+/// Names of representations that show shape held by others: drawings and saved views.
+fn is_presentation(kind: &str) -> bool {
+    ["DRAUGHTING_", "PRESENTATION_", "MECHANICAL_DESIGN_"].iter().any(|begin| kind.starts_with(begin))
 }
 
 /// Name, items and context of a representation.
-fn representation(entity: Entity<'_>) -> Fields<'_> {
+pub(super) fn representation(entity: Entity<'_>) -> Fields<'_> {
     entity.fields("REPRESENTATION", 0).unwrap_or_else(|_| entity.all())
 }
 
@@ -91,10 +105,11 @@ impl Assembly {
     /// Reads the graph.
     pub fn read(file: &File<'_>, ledger: &Ledger<'_>, presentation: &Presentation) -> Self {
         let products = Products::read(file, ledger);
-        let (assembly, placements) = Default::default();
-        let mut reader = Reader { file, ledger, presentation, products, assembly, placements };
-        let shapes: BTreeSet<u32> = file.kinds().filter(|k| is_shape(k)).flat_map(|k| file.of_kind(k)).collect();
-        let shapes = &shapes - &reader.products.aspects;
+        let (assembly, placements, mentions, listed) = Default::default();
+        let mut reader = Reader { file, ledger, presentation, products, assembly, placements, mentions, listed };
+        let all = |is: fn(&str) -> bool| file.kinds().filter(move |k| is(k)).flat_map(|k| file.of_kind(k));
+        let mut shapes: BTreeSet<u32> = all(is_shape).collect();
+        all(is_presentation).chain(reader.products.aspects.iter().copied()).for_each(|id| _ = shapes.remove(&id));
         reader.contexts(&shapes);
         reader.relationships(&shapes);
         reader.bodies(&shapes);
@@ -110,12 +125,6 @@ impl Assembly {
         representation
     }
 
-    /// Groups that nothing places; all of them when there is nothing but cycles.
-    pub fn roots(&self) -> Vec<u32> {
-        let roots: Vec<u32> = self.groups.keys().copied().filter(|g| !self.children.contains(g)).collect();
-        if roots.is_empty() { self.groups.keys().copied().collect() } else { roots }
-    }
-
     /// Units of a representation.
     pub fn units_of(&self, representation: u32) -> Units {
         self.units.get(&representation).cloned().unwrap_or_default()
@@ -126,6 +135,31 @@ impl Assembly {
         let (a, b) = (self.flatten(a), self.flatten(b));
         if a != b {
             self.up.insert(a.max(b), a.min(b));
+        }
+    }
+
+    /// Gives groups of which this file holds nothing a body that stands for their documents.
+    fn follow(&mut self, documents: Documents, groups: &mut BTreeMap<u32, Group>, ledger: &Ledger<'_>) {
+        let mut of_group: BTreeMap<u32, (u32, BTreeSet<u32>)> = BTreeMap::new();
+        for (shape, found) in documents.of_shape {
+            let group = of_group.entry(self.group(shape)).or_insert((shape, BTreeSet::new()));
+            group.1.extend(found);
+        }
+        let filled = filled(self, groups, &of_group.keys().copied().collect::<Vec<_>>());
+        let mut used: BTreeSet<u32> = BTreeSet::new();
+        for (id, (shape, found)) in of_group {
+            let group = groups.entry(id).or_default();
+            let below = group.placements.iter().map(|p| self.group(p.child));
+            if group.bodies.is_empty() && !below.clone().any(|child| child != id && filled.contains(&child)) {
+                group.bodies.push((shape, shape));
+                used.extend(&found);
+                let named = found.into_iter().filter_map(|d| Some((d, documents.names.get(&d)?.clone())));
+                self.files.insert(shape, named.collect());
+            }
+        }
+        let unused = documents.names.keys().filter(|d| !used.contains(d)).count();
+        if unused > 0 {
+            ledger.ignore("documents of no shape, or of one that stands here", unused);
         }
     }
 
@@ -141,12 +175,17 @@ impl Assembly {
 }
 
 impl<'a> Reader<'a, '_> {
-    fn entity(&self, id: u32) -> Result<Entity<'a>, Fault> {
+    pub fn entity(&self, id: u32) -> Result<Entity<'a>, Fault> {
         Entity::find(self.file, id)
     }
 
     /// Runs `f` for `#id`; a fault becomes a note.
-    fn guarded<T>(&mut self, kind: &'static str, id: u32, f: impl FnOnce(&mut Self) -> Result<T, Fault>) -> Option<T> {
+    pub fn guarded<T>(
+        &mut self,
+        kind: &'static str,
+        id: u32,
+        f: impl FnOnce(&mut Self) -> Result<T, Fault>,
+    ) -> Option<T> {
         let result = f(self);
         result.map_err(|fault| self.ledger.note(kind, id, fault.to_string())).ok()
     }
@@ -156,10 +195,10 @@ impl<'a> Reader<'a, '_> {
         let mut known: HashMap<u32, Units> = HashMap::new();
         for &id in shapes {
             let Some(context) = self.entity(id).ok().and_then(|e| representation(e).optional(2)) else { continue };
-            let read = |s: &mut Self| Units::of_context(s.file, context);
-            let units = known
-                .entry(context)
-                .or_insert_with(|| self.guarded("units taken as millimetres", context, read).unwrap_or_default());
+            let read = || {
+                Units::of_context(self.file, context, |what, fault| self.ledger.note(what, context, fault.to_string()))
+            };
+            let units = known.entry(context).or_insert_with(read);
             self.assembly.units.insert(id, units.clone());
         }
     }
@@ -173,18 +212,15 @@ impl<'a> Reader<'a, '_> {
             .collect();
         let kinds = ["SHAPE_REPRESENTATION_RELATIONSHIP", "REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION"];
         let ids: BTreeSet<u32> = kinds.iter().flat_map(|k| self.file.of_kind(k)).collect();
+        let mut free = Vec::new();
         for id in ids {
             self.guarded("relationship ignored", id, |s| {
                 let entity = s.entity(id)?;
                 let (first, second) = related(entity)?;
-                if !entity.is("REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION") {
-                    if shapes.contains(&first) && shapes.contains(&second) {
-                        s.assembly.join(first, second);
-                    }
-                } else if !owned.contains(&id) {
-                    let transform = s.transformation(entity, first, second)?;
-                    let placement = Placement { child: first, transform, name: String::new(), ids: vec![id] };
-                    s.placements.push((second, placement));
+                if entity.is("REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION") {
+                    free.extend(Some(id).filter(|id| !owned.contains(id)));
+                } else if shapes.contains(&first) && shapes.contains(&second) {
+                    s.assembly.join(first, second);
                 }
                 Ok(())
             });
@@ -196,6 +232,8 @@ impl<'a> Reader<'a, '_> {
         for id in joined {
             self.assembly.flatten(id);
         }
+        self.list_items(shapes);
+        self.free_relationships(free);
     }
 
     /// Bodies and mapped items among the items of each representation.
@@ -213,7 +251,8 @@ impl<'a> Reader<'a, '_> {
                         continue;
                     };
                     if entity.is("MAPPED_ITEM") {
-                        s.guarded("mapped item ignored", item, |s| s.mapped(entity, id));
+                        let placement = s.guarded("mapped item ignored", item, |s| s.mapped(entity, id));
+                        s.mentions.extend(placement.map(|placement| (id, placement)));
                         continue;
                     }
                     let role = body::role(&geometry, entity);
@@ -236,7 +275,6 @@ impl<'a> Reader<'a, '_> {
                 Ok(())
             });
         }
-        let context = shapes.iter().find(|id| self.assembly.units.contains_key(id)).copied().unwrap_or(0);
         let orphans = Orphans::find(self.file, &listed);
         for &orphan in &orphans.bodies {
             self.ledger.note("body without representation", orphan, "drawn with the file's first units");
@@ -245,9 +283,13 @@ impl<'a> Reader<'a, '_> {
             self.ledger.note("shell without body", orphan, "drawn with the file's first units");
         }
         let bodies = orphans.bodies.iter().chain(&orphans.shells).chain(orphans.faces.first());
-        let bodies: Vec<_> = bodies.map(|id| (*id, context)).collect();
-        if !bodies.is_empty() {
-            self.assembly.groups.entry(context).or_default().bodies.extend(bodies);
+        // a group of their own, where no placement of a representation moves them
+        let bodies: Vec<u32> = bodies.copied().collect();
+        if let Some(&group) = bodies.first() {
+            let units = shapes.iter().find_map(|id| self.assembly.units.get(id)).cloned();
+            self.assembly.units.extend(units.map(|units| (group, units)));
+            let listed = bodies.into_iter().map(|id| (id, group)).collect();
+            self.assembly.groups.insert(group, Group { bodies: listed, ..Group::default() });
         }
         if let Some(&first) = orphans.faces.first() {
             let count = orphans.faces.len();
@@ -256,91 +298,9 @@ impl<'a> Reader<'a, '_> {
         self.assembly.loose = orphans.faces;
     }
 
-    /// MAPPED_ITEM('',#map,target) with #map = REPRESENTATION_MAP(origin,representation).
-    fn mapped(&mut self, item: Entity<'a>, parent: u32) -> Result<(), Fault> {
-        let fields = item.fields("MAPPED_ITEM", 1)?;
-        let map = self.entity(fields.reference(0)?)?.all();
-        let child = map.reference(1)?;
-        let origin = self.placement_matrix(map.reference(0)?, child)?;
-        let target = self.placement_matrix(fields.reference(1)?, parent)?;
-        let transform = target * invert(origin, item.id())?;
-        let placement = Placement { child, transform, name: item.label(), ids: vec![item.id()] };
-        self.placements.push((parent, placement));
-        Ok(())
-    }
-
-    fn occurrences(&mut self) {
-        let mut placed = BTreeSet::new();
-        for id in self.file.of_kind("CONTEXT_DEPENDENT_SHAPE_REPRESENTATION").collect::<Vec<_>>() {
-            self.guarded("occurrence left out", id, |s| {
-                let fields = s.entity(id)?.all();
-                let relation = s.entity(fields.reference(0)?)?;
-                let usage = s.entity(fields.reference(1)?)?.all().reference(2)?;
-                placed.insert(usage);
-                let occurrence = Occurrence::read(s.file, usage)?;
-                let (first, second) = related(relation)?;
-                let (parent, child) = if s.shows(second, occurrence.child) && !s.shows(first, occurrence.child) {
-                    (first, second)
-                } else {
-                    (second, first)
-                };
-                let transform = s.transformation(relation, child, parent)?;
-                let ids = vec![id, relation.id(), usage];
-                s.placements.push((parent, Placement { child, transform, name: occurrence.name, ids }));
-                Ok(())
-            });
-        }
-        for id in self.file.of_kind("NEXT_ASSEMBLY_USAGE_OCCURRENCE").collect::<Vec<_>>() {
-            if placed.contains(&id) {
-                continue;
-            }
-            self.guarded("occurrence left out", id, |s| {
-                let occurrence = Occurrence::read(s.file, id)?;
-                let shape = |definition: u32| s.products.shapes.get(&definition).and_then(|v| v.first().copied());
-                // a product without any shape has nothing to place
-                if let (Some(parent), Some(child)) = (shape(occurrence.parent), shape(occurrence.child)) {
-                    s.ledger.note("occurrence without placement", id, "placed at the origin of its parent");
-                    let (transform, ids) = (DAffine3::IDENTITY, vec![id]);
-                    s.placements.push((parent, Placement { child, transform, name: occurrence.name, ids }));
-                }
-                Ok(())
-            });
-        }
-    }
-
-    /// The representation is a shape of the product definition.
-    fn shows(&self, representation: u32, definition: u32) -> bool {
-        let group = self.assembly.group(representation);
-        let shapes = self.products.shapes.get(&definition);
-        shapes.is_some_and(|shapes| shapes.iter().any(|s| self.assembly.group(*s) == group))
-    }
-
-    /// Child to parent coordinates of REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION.
-    fn transformation(&self, relation: Entity<'a>, child: u32, parent: u32) -> Result<DAffine3, Fault> {
-        let Ok(fields) = relation.fields("REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION", 4) else {
-            return Ok(DAffine3::IDENTITY);
-        };
-        let operator = self.entity(fields.reference(0)?)?;
-        let Ok(items) = operator.fields("ITEM_DEFINED_TRANSFORMATION", 2) else {
-            return self.placement_matrix(operator.id(), parent);
-        };
-        // item 1 belongs to the first representation of the relationship
-        let (first, _) = related(relation)?;
-        let (in_child, in_parent) = if first == child { (0, 1) } else { (1, 0) };
-        let in_child = self.placement_matrix(items.reference(in_child)?, child)?;
-        let in_parent = self.placement_matrix(items.reference(in_parent)?, parent)?;
-        Ok(in_parent * invert(in_child, relation.id())?)
-    }
-
-    /// A placement in the units of its representation.
-    fn placement_matrix(&self, id: u32, representation: u32) -> Result<DAffine3, Fault> {
-        let units = self.assembly.units_of(representation);
-        Geometry { file: self.file, units: &units, ledger: self.ledger }.transform(id)
-    }
-
     /// Gathers bodies and placements by group and drops groups without any body below them.
     fn finish(self) -> Assembly {
-        let Self { file, ledger, presentation, products, mut assembly, placements } = self;
+        let Self { file, ledger, presentation, products, mut assembly, placements, .. } = self;
         let mut groups: BTreeMap<u32, Group> = BTreeMap::new();
         let mut seen = BTreeSet::new();
         for (id, listed) in std::mem::take(&mut assembly.groups) {
@@ -361,26 +321,36 @@ impl<'a> Reader<'a, '_> {
                 group.name = Products::name(file, *definition).unwrap_or_default();
             }
         }
-        let filled = filled(&assembly, &groups);
+        assembly.owned = products.owner.keys().map(|representation| assembly.group(*representation)).collect();
+        assembly.groups = groups;
+        let tessellated = |id: u32| Entity::find(file, id).is_ok_and(once::is_tessellated);
+        let copies = assembly.drop_copies(tessellated);
+        if copies > 0 {
+            ledger.ignore("tessellated copies beside the products", copies);
+        }
+        let mut groups = std::mem::take(&mut assembly.groups);
+        let documents = Documents::read(file, ledger, &products);
+        assembly.follow(documents, &mut groups, ledger);
+        let filled = filled(&assembly, &groups, &[]);
         groups.retain(|id, _| filled.contains(id));
         for group in groups.values_mut() {
             group.placements.retain(|p| filled.contains(&assembly.group(p.child)));
         }
-        assembly.children = groups.values().flat_map(|g| &g.placements).map(|p| assembly.group(p.child)).collect();
         assembly.groups = groups;
         assembly
     }
 }
 
-/// Groups with a body in them or below: from the bodies upwards.
-fn filled(assembly: &Assembly, groups: &BTreeMap<u32, Group>) -> BTreeSet<u32> {
+/// Groups with a body in them or below, or one of `more`: from there upwards.
+fn filled(assembly: &Assembly, groups: &BTreeMap<u32, Group>, more: &[u32]) -> BTreeSet<u32> {
     let mut parents: HashMap<u32, Vec<u32>> = HashMap::new();
     for (id, group) in groups {
         for placement in &group.placements {
             parents.entry(assembly.group(placement.child)).or_default().push(*id);
         }
     }
-    let mut open: Vec<u32> = groups.iter().filter(|(_, g)| !g.bodies.is_empty()).map(|(id, _)| *id).collect();
+    let mut open = more.to_vec();
+    open.extend(groups.iter().filter(|(_, g)| !g.bodies.is_empty()).map(|(id, _)| *id));
     let mut filled = BTreeSet::new();
     while let Some(id) = open.pop() {
         if filled.insert(id) {
@@ -391,12 +361,7 @@ fn filled(assembly: &Assembly, groups: &BTreeMap<u32, Group>) -> BTreeSet<u32> {
 }
 
 /// The two representations of a relationship.
-fn related(entity: Entity<'_>) -> Result<(u32, u32), Fault> {
+pub(super) fn related(entity: Entity<'_>) -> Result<(u32, u32), Fault> {
     let fields = entity.fields("REPRESENTATION_RELATIONSHIP", 0).unwrap_or_else(|_| entity.all());
     Ok((fields.reference(2)?, fields.reference(3)?))
-}
-
-fn invert(transform: DAffine3, id: u32) -> Result<DAffine3, Fault> {
-    let inverse = transform.inverse();
-    if inverse.is_finite() { Ok(inverse) } else { Err(Fault::Value { id, what: "the placement cannot be inverted" }) }
 }

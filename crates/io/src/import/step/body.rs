@@ -7,6 +7,7 @@
 //!   SHELL_BASED_SURFACE_MODEL('',(shells))                         closed if every shell is
 //!   FACE_BASED_SURFACE_MODEL, GEOMETRIC_SET, a shell or a face     open
 //!   TESSELLATED_SOLID, TESSELLATED_SHELL, sets of triangles        meshes
+//!   EXTRUDED_AREA_SOLID, SWEPT_DISK_SOLID and their like            closed: see `swept`, `disk`
 //!   CSG_SOLID and its like                                         not here: see `csg`
 //! ```
 //!
@@ -19,6 +20,7 @@ use super::face::EdgeTable;
 use super::geometry::{FACE_LOST, Geometry};
 use super::presentation::Presentation;
 use super::spline;
+use super::swept::SWEPT;
 use super::tessellated::{self, Coordinates};
 use crate::brep::{Edge, FaceGeometry, SurfaceGeometry};
 use crate::model::{Colour, Mesh};
@@ -54,15 +56,8 @@ pub(super) const SHELLS: [&str; 7] = [
 ];
 pub(super) const FACES: [&str; 5] = ["ADVANCED_FACE", "FACE_SURFACE", "FACE", "ORIENTED_FACE", "CURVE_BOUNDED_SURFACE"];
 
-/// Geometry that is drawn by other programs but not by this one.
-const UNSUPPORTED: [&str; 6] = [
-    "EXTRUDED_AREA_SOLID",
-    "EXTRUDED_FACE_SOLID",
-    "REVOLVED_AREA_SOLID",
-    "REVOLVED_FACE_SOLID",
-    "SWEPT_DISK_SOLID",
-    "CUBIC_BEZIER_TRIANGULATED_FACE",
-];
+/// Geometry that is drawn by other programs but not by this one, by the end of its name.
+const UNSUPPORTED: [&str; 5] = ["_SOLID", "_BREP", "_SURFACE_MODEL", "_SHELL", "TRIANGULATED_FACE"];
 
 /// Surfaces that are faces without loops where a set or a representation lists them.
 fn is_bare(entity: Entity<'_>) -> bool {
@@ -90,7 +85,7 @@ pub(super) fn role(geometry: &Geometry<'_>, item: Entity<'_>) -> Role {
     if any(&SOLIDS) || any(&MODELS) || any(&SHELLS) || any(&FACES) || is_bare(item) {
         return Role::Body;
     }
-    if tessellated::is_tessellated(item) || csg::is_boolean(item) {
+    if tessellated::is_tessellated(item) || csg::is_boolean(item) || any(&SWEPT) {
         return Role::Body;
     }
     if any(&SETS) {
@@ -101,7 +96,8 @@ pub(super) fn role(geometry: &Geometry<'_>, item: Entity<'_>) -> Role {
         return if item.references().any(surface) { Role::Body } else { Role::Ignored };
     }
     let wire = |k: &str| k.ends_with("WIREFRAME_MODEL") || k.ends_with("CURVE") || k == "CARTESIAN_POINT";
-    match any(&UNSUPPORTED) {
+    let unsupported = |k: &str| UNSUPPORTED.iter().any(|end| k.ends_with(end));
+    match item.kinds().any(unsupported) {
         true => Role::Unsupported,
         false if item.kinds().any(wire) => Role::Ignored,
         false => Role::Other,
@@ -173,6 +169,13 @@ impl<'g, 'a> Builder<'g, 'a> {
         if SOLIDS.iter().any(|k| entity.is(k)) {
             self.body.closed = true;
             return self.solid(entity, colours);
+        }
+        if SWEPT.iter().any(|k| entity.is(k)) {
+            self.body.closed = true;
+            let colour = colours.iter().find_map(|i| self.looks.colours.of_item(*i));
+            let faces = self.geometry.swept(entity, &mut self.table)?;
+            self.body.faces.extend(faces.into_iter().map(|face| (face, colour)));
+            return Ok(());
         }
         if let Some(fields) = MODELS.iter().find_map(|k| entity.fields(k, 1).ok()) {
             self.body.closed = true;

@@ -7,6 +7,9 @@
 //!     ▶ COLOUR_RGB('',r,g,b)  or  DRAUGHTING_PRE_DEFINED_COLOUR('red')
 //! ```
 //!
+//! Beside FILL_AREA stand styles of curves on the surface: SURFACE_STYLE_BOUNDARY, SILHOUETTE, PARAMETER_LINE, …; their
+//! colours are those of curves, which are not drawn, and are counted where they are an item's only ones.
+//!
 //! A face takes its own colour, else its shell's, its solid's, its representation's. An
 //! OVER_RIDING_STYLED_ITEM beats a STYLED_ITEM on the same item. A colour on a MAPPED_ITEM, or one
 //! given for the context of one occurrence, is that instance's.
@@ -44,11 +47,22 @@ const STYLES: [&str; 9] = [
     "SURFACE_STYLE_RENDERING_WITH_PROPERTIES",
 ];
 
+/// Styles of curves on a surface: its border, its outline, its (u, v) lines. No curve is drawn, and none paints its face.
+const CURVES: [&str; 5] = [
+    "SURFACE_STYLE_BOUNDARY",
+    "SURFACE_STYLE_SILHOUETTE",
+    "SURFACE_STYLE_SEGMENTATION_CURVE",
+    "SURFACE_STYLE_CONTROL_GRID",
+    "SURFACE_STYLE_PARAMETER_LINE",
+];
+
 /// What has been found below a style so far.
 #[derive(Clone, Copy, Default)]
 struct Found {
     rgb: Option<[f64; 3]>,
     transparency: Option<f64>,
+    /// There are styles of curves on the surface.
+    curves: bool,
 }
 
 impl Colours {
@@ -87,11 +101,13 @@ impl Colours {
         for style in base.references(0)? {
             search(file, ledger, style?, &mut found)?;
         }
-        let (Some(rgb), Some(item)) = (found.rgb, base.optional(1)) else { return Ok(()) };
+        let (Some(rgb), Some(item)) = (found.rgb, base.optional(1)) else {
+            if found.curves {
+                ledger.ignore("colours of the curves on a surface", 1);
+            }
+            return Ok(());
+        };
         let colour = linear(rgb, 1.0 - found.transparency.unwrap_or(0.0));
-        if colour[3] < 1.0 {
-            ledger.note("transparent colour", id, "kept in the model, drawn opaque");
-        }
         if !in_context {
             self.items.insert(item, colour);
             return Ok(());
@@ -119,6 +135,8 @@ fn search(file: &File<'_>, ledger: &Ledger<'_>, id: u32, found: &mut Found) -> R
             found.rgb = found.rgb.or(Some(rgb.map(|c| c.clamp(0.0, 1.0))));
         } else if kinds.iter().any(|k| k.ends_with("PRE_DEFINED_COLOUR")) {
             found.rgb = found.rgb.or(named(&entity.all().text(0)));
+        } else if kinds.iter().any(|k| CURVES.contains(k)) {
+            found.curves = true;
         } else if let Ok(fields) = entity.fields("SURFACE_STYLE_TRANSPARENT", 0) {
             found.transparency = found.transparency.or(Some(fields.real(0)?.clamp(0.0, 1.0)));
         }

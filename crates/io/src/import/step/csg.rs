@@ -6,6 +6,7 @@
 //!   SOLID_REPLICA('',solid,operator)                      the same, placed by the operator
 //!   BLOCK ... HALF_SPACE_SOLID                            see `primitive`
 //!   MANIFOLD_SOLID_BREP, BREP_WITH_VOIDS, FACETED_BREP    faces, or triangles where all are polygons
+//!   EXTRUDED_AREA_SOLID and its like                      faces: see `swept`
 //! ```
 //!
 //! References make a graph, which may be deep and may share whatever it likes: it is walked without recursion, each
@@ -22,6 +23,7 @@ use super::entity::{Entity, Fault};
 use super::geometry::Geometry;
 use super::part21::Value;
 use super::primitive::PRIMITIVES;
+use super::swept::SWEPT;
 use crate::csg::{Builder, Node, Op, Tree};
 use crate::model::{Colour, Shape};
 use glam::DAffine3;
@@ -205,7 +207,7 @@ impl<'g, 'a> Walk<'g, 'a> {
 
     fn operand(&mut self, entity: Entity<'a>, scope: usize, colour: Option<Colour>) -> Result<u32, Fault> {
         let id = entity.id();
-        if !body::SOLIDS.iter().any(|k| entity.is(k)) {
+        if !body::SOLIDS.iter().chain(&SWEPT).any(|k| entity.is(k)) {
             if !is_boolean(entity) {
                 return Err(entity.not("an operand of a Boolean expression"));
             }

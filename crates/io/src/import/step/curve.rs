@@ -24,7 +24,7 @@ use super::part21::Value;
 use super::replica::Similarity;
 use super::spline;
 use super::units::Units;
-use crate::brep::{self, CurveGeometry, SurfaceGeometry};
+use crate::brep::{self, CurveGeometry, Frame, SurfaceGeometry};
 use crate::spline::BSpline;
 use glam::{DAffine3, DMat3, DVec2, DVec4};
 use std::f64::consts::TAU;
@@ -161,12 +161,18 @@ impl Geometry<'_> {
             Err(_) => (fields.reference(0)?, 1),
         };
         let frame = self.frame(position)?;
-        let length = |index: usize| Ok(fields.length(first + index)? * self.units.length);
+        let length = |index: usize| Ok(fields.radius(first + index)? * self.units.length);
+        let a = length(0)?;
+        let b = if matches!(kind, "ELLIPSE" | "HYPERBOLA") { length(1)? } else { a };
+        // the same points with lengths above 0: each axis follows the sign of its length
+        let frame =
+            Frame { x: frame.x * a.signum(), y: frame.y * b.signum(), z: frame.z * (a.signum() * b.signum()), ..frame };
+        let (a, b) = (a.abs(), b.abs());
         Ok(match kind {
-            "CIRCLE" => CurveGeometry::Circle { frame, radius: length(0)? },
-            "ELLIPSE" => CurveGeometry::Ellipse { frame, semi_x: length(0)?, semi_y: length(1)? },
-            "HYPERBOLA" => CurveGeometry::Hyperbola { frame, semi_x: length(0)?, semi_y: length(1)? },
-            _ => CurveGeometry::Parabola { frame, focal: length(0)? },
+            "CIRCLE" => CurveGeometry::Circle { frame, radius: a },
+            "ELLIPSE" => CurveGeometry::Ellipse { frame, semi_x: a, semi_y: b },
+            "HYPERBOLA" => CurveGeometry::Hyperbola { frame, semi_x: a, semi_y: b },
+            _ => CurveGeometry::Parabola { frame, focal: a },
         })
     }
 
@@ -282,7 +288,7 @@ fn space_curve(entity: Entity<'_>) -> Result<u32, Fault> {
 }
 
 /// The part of `basis` that runs from parameter `first` to `last`.
-fn trim(basis: CurveGeometry, first: f64, last: f64, sense: bool) -> Option<CurveGeometry> {
+pub(super) fn trim(basis: CurveGeometry, first: f64, last: f64, sense: bool) -> Option<CurveGeometry> {
     if let CurveGeometry::BSpline(spline) = &basis {
         let (a, b) = spline.domain();
         let (first, last) = (first.clamp(a, b), last.clamp(a, b));

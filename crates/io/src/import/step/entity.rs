@@ -141,6 +141,11 @@ impl<'a> Fields<'a> {
         self.need(index, "a length above 0", |v| v.number().filter(|x| *x > 0.0 && x.is_finite()))
     }
 
+    /// A length of either sign, but not 0: some writers state radii below 0.
+    pub fn radius(self, index: usize) -> Result<f64, Fault> {
+        self.need(index, "a length other than 0", |v| v.number().filter(|x| *x != 0.0 && x.is_finite()))
+    }
+
     /// A small count.
     pub fn count(self, index: usize) -> Result<usize, Fault> {
         self.need(index, "a count", Value::count)

@@ -4,7 +4,9 @@
 //!   ADVANCED_FACE('',(bounds),surface,same_sense)       normal of face = ± normal of surface
 //!   FACE_BOUND('',loop,orientation)                     loop run forwards or backwards
 //!   ORIENTED_EDGE('',*,*,edge,orientation)              edge run from start to end or back
+//!   SEAM_EDGE('',*,*,edge,orientation,pcurve)           the same, on the seam of a surface
 //!   EDGE_CURVE('',start,end,curve,same_sense)           edge runs along the curve or against it
+//!   SUBEDGE('',start,end,edge)                          a part of another edge
 //! ```
 //!
 //! STEP runs a loop with the face on its left, seen against the normal of the *face*.
@@ -126,7 +128,9 @@ impl Geometry<'_> {
         for oriented in fields.references(0)? {
             let oriented = self.entity(oriented?)?;
             self.ledger.spend(oriented.id(), 1)?;
-            let (edge, forward) = match oriented.fields("ORIENTED_EDGE", 3) {
+            let kinds = ["ORIENTED_EDGE", "SEAM_EDGE"];
+            // a complex instance of a seam keeps both in the part ORIENTED_EDGE
+            let (edge, forward) = match kinds.iter().find_map(|k| oriented.fields(k, 3).ok()).ok_or(()) {
                 Ok(fields) => (fields.reference(0)?, fields.flag(1)),
                 // some writers list the edge itself
                 Err(_) => (oriented.id(), true),
@@ -144,6 +148,9 @@ impl Geometry<'_> {
             return Ok(index);
         }
         let entity = self.entity(id)?;
+        if let Ok(fields) = entity.fields("SUBEDGE", 3) {
+            return self.part_of_edge(entity, fields.reference(0)?, table);
+        }
         let fields = entity.fields("EDGE_CURVE", 1)?;
         let (ends, first) = match entity.fields("EDGE", 1) {
             Ok(ends) => (ends, 0),
@@ -152,6 +159,15 @@ impl Geometry<'_> {
         let (start, end) = (self.vertex(ends.reference(0)?)?, self.vertex(ends.reference(1)?)?);
         let curve = self.curve(fields.reference(first)?)?;
         Ok(table.add(Edge { id, curve, start, end, same_sense: fields.flag(first + 1) }))
+    }
+
+    /// SUBEDGE('',start,end,edge): the part of another edge between two points of it.
+    fn part_of_edge(&self, entity: Entity<'_>, parent: u32, table: &mut EdgeTable) -> Result<usize, Fault> {
+        let (id, ends) = (entity.id(), entity.fields("EDGE", 1).or_else(|_| entity.fields("SUBEDGE", 1))?);
+        let (start, end) = (self.vertex(ends.reference(0)?)?, self.vertex(ends.reference(1)?)?);
+        let parent = self.ledger.nested(id, || self.edge(parent, table))?;
+        let Edge { curve, same_sense, .. } = table.edges[parent].clone();
+        Ok(table.add(Edge { id, curve, start, end, same_sense }))
     }
 
     fn vertex(&self, id: u32) -> Result<DVec3, Fault> {
@@ -212,6 +228,17 @@ impl EdgeTable {
     fn vertices(&self, bound: &Boundary) -> Vec<DVec3> {
         let Boundary::Edges(uses) = bound else { return Vec::new() };
         uses.iter().flat_map(|(e, _)| [self.edges[*e].start, self.edges[*e].end]).collect()
+    }
+
+    /// Straight edges from point to point.
+    pub fn chain(&mut self, id: u32, points: &[DVec3]) -> Vec<usize> {
+        let first = self.edges.len();
+        self.edges.extend(points.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| {
+            let (start, end) = (pair[0], pair[1]);
+            let curve = CurveGeometry::Line { origin: start, direction: end - start };
+            Edge { id, curve, start, end, same_sense: true }
+        }));
+        (first..self.edges.len()).collect()
     }
 
     fn add(&mut self, edge: Edge) -> usize {

@@ -6,8 +6,11 @@
 //!         ─units──▶ Units           per representation context
 //!         ─curve, spline, surface─▶ CurveGeometry, SurfaceGeometry          one geometry each
 //!         ─face, body, tessellated──▶ Body          faces and the edges that they share; triangles
+//!         ─swept, disk──▶ Body          solids that an area or a disk sweeps
 //!         ─csg, primitive, solids──▶ Solid          Boolean expressions over primitives and bodies
-//!         ─product, assembly, orphans, walk─▶ one instance per path
+//!         ─product, assembly, place, orphans─▶ groups and placements
+//!         ─once, walk─▶ one instance an occurrence
+//!         ─document──▶ Mention      parts in files of their own, which `import::external` follows
 //!         ─colour, presentation──▶ Looks            by styled item; layers, what is hidden
 //!         ─brep::build_face─▶ Face  in parallel, results in file order
 //! ```
@@ -20,11 +23,15 @@ mod body;
 mod colour;
 mod csg;
 mod curve;
+mod disk;
+mod document;
 mod entity;
 mod face;
 mod geometry;
+mod once;
 mod orphans;
 mod part21;
+mod place;
 mod presentation;
 mod primitive;
 mod product;
@@ -32,6 +39,7 @@ mod replica;
 mod solids;
 mod spline;
 mod surface;
+mod swept;
 mod tessellated;
 mod torn;
 mod units;
@@ -40,7 +48,8 @@ mod walk;
 pub(super) use part21::recognise;
 pub(super) use surface::{as_cylinder, offset};
 
-use super::{FaceCount, FaceRecord, Import, ImportError, ImportReport, Options, Stage, Warnings, locate};
+use super::external::{Mention, Read};
+use super::{FaceCount, FaceRecord, Import, ImportError, ImportReport, Options, Place, Stage, Warnings, locate};
 use crate::brep::build_face;
 use crate::model::{Instance, Model, Part};
 use assembly::Assembly;
@@ -52,15 +61,14 @@ use part21::{File, Places};
 use presentation::Presentation;
 use rayon::prelude::*;
 use solids::Solids;
-use std::collections::{BTreeSet, HashMap};
+use std::collections::{BTreeMap, BTreeSet, HashMap};
 
-/// Reads STEP text; `name` is the file's name in messages.
-pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Import, ImportError> {
+/// Reads STEP text, and what it leaves to other files; `name` is the file's name in messages.
+pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Read, ImportError> {
     let mut warnings = Warnings::new(name);
     let file = File::parse_telling(bytes, name, &mut warnings, options)?;
     let ledger = Ledger::new(&file, warnings);
     let mut report = header(&file);
-    externals(&file, &ledger, &mut report);
     let colours = Colours::read(&file, &ledger);
     let presentation = Presentation::read(&file, &ledger);
     let assembly = Assembly::read(&file, &ledger, &presentation);
@@ -88,7 +96,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
         for &(id, representation) in &group.bodies {
             options.tell(Stage::Bodies { mapped, total });
             mapped += 1;
-            if part_of.contains_key(&id) {
+            if part_of.contains_key(&id) || assembly.files.contains_key(&id) {
                 continue;
             }
             let unit = assembly.units_of(representation);
@@ -114,7 +122,17 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
         add(&mut model, &mut report, name, &mut body, tolerance);
         bodies.push((body, tolerance));
     }
+    let mut mentions: BTreeMap<u32, Mention> = BTreeMap::new();
     for placed in assembly.walk(&colours, &ledger) {
+        if let Some(documents) = assembly.files.get(&placed.body) {
+            let mention = mentions.entry(placed.body).or_insert_with(|| Mention {
+                at: Entity::find(&file, documents[0].0).map_or(Place::File, Entity::place),
+                documents: documents.iter().map(|(_, names)| names.clone()).collect(),
+                stands: Vec::new(),
+            });
+            mention.stands.push((placed.transform, placed.colour, placed.name));
+            continue;
+        }
         if solids.place(&placed, &ledger) {
             continue;
         }
@@ -142,7 +160,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
     report.dropped = notes.dropped;
     report.ignored = notes.ignored;
     let warnings = notes.warnings.finish(&mut report);
-    Ok(Import { model, warnings, report, ..Import::default() })
+    Ok((Import { model, warnings, report, ..Import::default() }, mentions.into_values().collect()))
 }
 
 /// Builds all faces, in parallel; results are taken in file order. What a face was made from is freed
@@ -202,19 +220,15 @@ fn header(file: &File<'_>) -> ImportReport {
     }
 }
 
-/// Parts that stand in other files.
-fn externals(file: &File<'_>, ledger: &Ledger<'_>, report: &mut ImportReport) {
-    for id in file.of_kind("DOCUMENT_FILE") {
-        let name = Entity::find(file, id).map(|e| e.all().text(0)).unwrap_or_default();
-        ledger.note("external file not followed", id, name.clone());
-        report.external_files.push(name);
-    }
-}
-
 /// The name of the first root product, else of the file.
 fn model_name(assembly: &Assembly, file: &str) -> String {
     let roots = assembly.roots();
-    let product = roots.first().map(|r| assembly.groups[r].name.clone()).filter(|n| !n.is_empty());
+    let product = roots
+        .products
+        .first()
+        .or(roots.others.first())
+        .map(|r| assembly.groups[r].name.clone())
+        .filter(|n| !n.is_empty());
     product.unwrap_or_else(|| {
         let stem = std::path::Path::new(file).file_stem();
         stem.map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()

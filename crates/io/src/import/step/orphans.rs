@@ -14,6 +14,7 @@ use super::csg::EXPRESSIONS;
 use super::entity::Entity;
 use super::part21::File;
 use super::primitive::{BOUNDED, PRIMITIVES};
+use super::swept::SWEPT;
 use std::collections::BTreeSet;
 
 /// Entities that nothing names, in file order.
@@ -31,7 +32,7 @@ impl Orphans {
     /// Everything drawable that neither stands in `listed` nor is part of another entity.
     pub fn find(file: &File<'_>, listed: &BTreeSet<u32>) -> Self {
         let shape = |kind: &str| {
-            let named = [&SOLIDS[..], &MODELS[..], &SETS[..], &SHELLS[..], &FACES[2..]];
+            let named = [&SOLIDS[..], &MODELS[..], &SETS[..], &SHELLS[..], &FACES[2..], &SWEPT[..]];
             kind.ends_with("REPRESENTATION") || named.iter().any(|names| names.contains(&kind))
         };
         let holding = held(file, shape);
@@ -41,7 +42,7 @@ impl Orphans {
             all.difference(listed).copied().collect::<Vec<u32>>()
         };
         let free = |ids: Vec<u32>| ids.into_iter().filter(|id| !holding.contains(id)).collect();
-        let mut bodies = of(&[&SOLIDS[..], &MODELS[..], &EXPRESSIONS[..], &PRIMITIVES[..BOUNDED]].concat());
+        let mut bodies = of(&[&SOLIDS[..], &MODELS[..], &SWEPT[..], &EXPRESSIONS[..], &PRIMITIVES[..BOUNDED]].concat());
         bodies.retain(|id| !operands.contains(id));
         // vertex shells hold no face, and a sub-set repeats faces of its parent
         Self { bodies, shells: free(of(&SHELLS[..5])), faces: free(of(&FACES[..2])) }

@@ -7,6 +7,9 @@
 //!   RIGHT_CIRCULAR_CYLINDER('',axis,height,radius)
 //!   RIGHT_CIRCULAR_CONE('',axis,height,radius,semi_angle)    grows wider from `radius`, which may be 0
 //!   TORUS('',axis,major,minor)
+//!   RECTANGULAR_PYRAMID('',axes,x,y,height)       a corner of its base at the origin, its tip above the middle
+//!   ECCENTRIC_CONE('',axes,a,b,height,x,y,ratio)  an elliptic base, a top `ratio` times as large, moved by x, y
+//!   TETRAHEDRON('',(4 points))                    CONVEX_HEXAHEDRON('',(8 points)): one face, then the one opposite
 //!   HALF_SPACE_SOLID('',surface,agreement)        .T.: the surface's normal points out of it
 //! ```
 //!
@@ -15,17 +18,17 @@
 //!
 //! Source: ISO 10303-42, 6.4.
 
-use super::entity::{Entity, Fault};
+use super::entity::{Entity, Fault, Fields};
 use super::geometry::{Geometry, frame, to_affine};
 use crate::brep::SurfaceGeometry;
 use crate::import::facets::triangulate;
-use crate::model::{Mesh, Quadric, Shape};
-use glam::{DAffine3, DVec3};
+use crate::model::{Bounds, Mesh, Quadric, Shape};
+use glam::{DAffine3, DMat3, DVec3};
 use std::collections::HashMap;
 use std::f64::consts::FRAC_PI_2;
 
 /// Names of operands that stand for themselves.
-pub(super) const PRIMITIVES: [&str; 9] = [
+pub(super) const PRIMITIVES: [&str; 13] = [
     "BLOCK",
     "RIGHT_ANGULAR_WEDGE",
     "SPHERE",
@@ -33,12 +36,16 @@ pub(super) const PRIMITIVES: [&str; 9] = [
     "RIGHT_CIRCULAR_CYLINDER",
     "RIGHT_CIRCULAR_CONE",
     "TORUS",
+    "RECTANGULAR_PYRAMID",
+    "ECCENTRIC_CONE",
+    "TETRAHEDRON",
+    "CONVEX_HEXAHEDRON",
     "HALF_SPACE_SOLID",
     "BOXED_HALF_SPACE",
 ];
 
 /// How many of them have an end.
-pub(super) const BOUNDED: usize = 7;
+pub(super) const BOUNDED: usize = 11;
 
 /// The intersection of shapes placed alike, or everything but that.
 #[derive(Debug)]
@@ -102,8 +109,66 @@ impl Geometry<'_> {
                 exact(Shape::Cone { bottom, top: bottom + height * angle.tan(), height }, axis()?)
             }
             "TORUS" => exact(Shape::Torus { major: length(1)?, minor: length(2)? }, axis()?),
+            "RECTANGULAR_PYRAMID" => {
+                let max = DVec3::new(length(1)?, length(2)?, length(3)?);
+                let (tip, steep) = (DVec3::new(0.5 * max.x, 0.5 * max.y, max.z), max.z);
+                let side = |normal: DVec3| Shape::HalfSpace { normal, offset: normal.dot(tip) };
+                let mut shapes = vec![Shape::Block { min: DVec3::ZERO, max }];
+                shapes.extend([-1.0, 1.0].map(|sign| side(DVec3::new(sign * steep, 0.0, tip.x))));
+                shapes.extend([-1.0, 1.0].map(|sign| side(DVec3::new(0.0, sign * steep, tip.y))));
+                Ok(Exact { shapes, place: axes()?, all_but: false })
+            }
+            "ECCENTRIC_CONE" => {
+                let (a, b, height) = (length(1)?, length(2)?, length(3)?);
+                let [x, y] = [fields.real(4)? * self.units.length, fields.real(5)? * self.units.length];
+                let ratio = fields.real(6)?;
+                if ratio < 0.0 {
+                    return Err(Fault::Value { id, what: "the ratio of the cone's ends is negative" });
+                }
+                // a right circular one of radius and height 1, stretched and leaning
+                let lean = DMat3::from_cols(DVec3::X * a, DVec3::Y * b, DVec3::new(x, y, height));
+                let shape = match ratio == 1.0 {
+                    true => Shape::Cylinder { height: 1.0, radius: 1.0 },
+                    false => Shape::Cone { bottom: 1.0, top: ratio, height: 1.0 },
+                };
+                exact(shape, axes()? * DAffine3::from_mat3(lean))
+            }
+            "TETRAHEDRON" => self.polytope(fields, &[&[0, 1, 2], &[0, 1, 3], &[0, 2, 3], &[1, 2, 3]]),
+            "CONVEX_HEXAHEDRON" => self.polytope(
+                fields,
+                &[&[0, 1, 2, 3], &[4, 5, 6, 7], &[0, 1, 5, 4], &[1, 2, 6, 5], &[2, 3, 7, 6], &[3, 0, 4, 7]],
+            ),
             _ => self.half_space(fields.reference(0)?, fields.flag(1)),
         }
+    }
+
+    /// A convex solid by its corners; `sides` are those of each face, in order around it.
+    fn polytope(&self, fields: Fields<'_>, sides: &[&[usize]]) -> Result<Exact, Fault> {
+        let fault = |what| Fault::Value { id: fields.id, what };
+        let corners = fields.references(0)?.map(|p| self.point(p?)).collect::<Result<Vec<_>, _>>()?;
+        if corners.len() != sides.iter().flat_map(|s| s.iter()).max().map_or(0, |last| last + 1) {
+            return Err(fault("the number of its corners is not that of its kind"));
+        }
+        let middle = corners.iter().sum::<DVec3>() / corners.len() as f64;
+        let bounds = corners.iter().copied().fold(Bounds::EMPTY, Bounds::with);
+        let mut shapes = vec![Shape::Block { min: bounds.min, max: bounds.max }];
+        for side in sides {
+            let at = |k: usize| corners[side[k % side.len()]];
+            // Newell's normal
+            let normal: DVec3 = (0..side.len()).map(|k| (at(k) - middle).cross(at(k + 1) - middle)).sum();
+            let normal = normal.try_normalize().ok_or(fault("a side has no area"))?;
+            let normal = if normal.dot(at(0) - middle) < 0.0 { -normal } else { normal };
+            let offset = side.iter().map(|k| normal.dot(corners[*k])).fold(f64::NEG_INFINITY, f64::max);
+            let off = |p: &DVec3| normal.dot(*p) - offset;
+            if side.iter().any(|k| off(&corners[*k]) < -self.units.tolerance) {
+                return Err(fault("a side is not plane"));
+            }
+            if corners.iter().any(|p| off(p) > self.units.tolerance) {
+                return Err(fault("it is not convex"));
+            }
+            shapes.push(Shape::HalfSpace { normal, offset });
+        }
+        Ok(Exact { shapes, place: DAffine3::IDENTITY, all_but: false })
     }
 
     fn half_space(&self, surface: u32, agreement: bool) -> Result<Exact, Fault> {

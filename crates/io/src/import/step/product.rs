@@ -20,7 +20,9 @@ pub(super) struct Products {
     pub shapes: BTreeMap<u32, Vec<u32>>,
     /// Product definition of a representation.
     pub owner: BTreeMap<u32, u32>,
-    /// Representations of an aspect (a hole, a datum, a validation property): they repeat solids and
+    /// Representations of an assembly occurrence, which show no more than where it stands.
+    pub usages: BTreeMap<u32, Vec<u32>>,
+    /// Representations of an occurrence or an aspect (a hole, a datum, a validation property): they repeat solids and
     /// faces of the product's shape.
     pub aspects: BTreeSet<u32>,
 }
@@ -50,12 +52,16 @@ impl Products {
         let representation = fields.reference(1)?;
         // else the property belongs to an aspect of the product
         let definition = property.all().optional(2).map(|d| Entity::find(file, d)).transpose()?;
+        let usage = definition.filter(|d| d.is("NEXT_ASSEMBLY_USAGE_OCCURRENCE")).map(Entity::id);
         if let Some(definition) = definition.filter(|d| d.kinds().any(|k| k.starts_with("PRODUCT_DEFINITION"))) {
             self.shapes.entry(definition.id()).or_default().push(representation);
             self.owner.entry(representation).or_insert(definition.id());
             self.aspects.remove(&representation);
         } else if !self.owner.contains_key(&representation) {
             self.aspects.insert(representation);
+        }
+        if let Some(usage) = usage {
+            self.usages.entry(usage).or_default().push(representation);
         }
         Ok(())
     }

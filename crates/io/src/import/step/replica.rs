@@ -22,7 +22,8 @@ impl Similarity {
         Self { map, scale: volume.abs().cbrt(), mirrored: volume < 0.0 }
     }
 
-    fn point(&self, p: DVec3) -> DVec3 {
+    /// The image of a point.
+    pub fn point(&self, p: DVec3) -> DVec3 {
         self.map.transform_point3(p)
     }
 

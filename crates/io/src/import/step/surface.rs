@@ -10,6 +10,16 @@
 //! of other surfaces are not rational: they are fitted, and a fit that misses the tolerance is told with
 //! its error.
 //!
+//! A radius below 0 means what the formula makes of it, with its parameters and its normal:
+//!
+//! ```text
+//!   cylinder, cone   the same points, turned by half about z: the normal points outwards
+//!   sphere           the same points, mirrored in the centre: the normal points inwards
+//!   torus R < 0      the torus of -R whose tube runs the other way: the normal points into the tube, and of a
+//!                    TOROIDAL_SURFACE with -R < r out of its inner part, the lemon, which is what is meant
+//!   torus r < 0      the same points, by half a turn around the tube
+//! ```
+//!
 //! RECTANGULAR_TRIMMED_SURFACE is a window of its basis, which a face without loops shows. The inner part
 //! of a DEGENERATE_TOROIDAL_SURFACE (`select_outer` false, the lemon) is a surface of revolution.
 //!
@@ -116,12 +126,12 @@ impl Geometry<'_> {
                     let (origin, axis) = self.axis(fields.reference(1)?)?;
                     Ok(SurfaceGeometry::Revolution { profile, origin, axis }.into())
                 }
-                kind => self.elementary(entity, kind).map(Carrier::from),
+                kind => self.elementary(entity, kind),
             }
         })
     }
 
-    fn elementary(&self, entity: Entity<'_>, kind: &'static str) -> Result<SurfaceGeometry, Fault> {
+    fn elementary(&self, entity: Entity<'_>, kind: &'static str) -> Result<Carrier, Fault> {
         let id = entity.id();
         let fields = entity.fields(kind, 1)?;
         // a complex instance keeps the position in the part ELEMENTARY_SURFACE
@@ -130,22 +140,30 @@ impl Geometry<'_> {
             Err(_) => (fields.reference(0)?, 1),
         };
         let frame = self.frame(position)?;
-        let length = |index: usize| Ok(fields.length(first + index)? * self.units.length);
-        Ok(match kind {
+        let length = |index: usize| Ok(fields.radius(first + index)? * self.units.length);
+        let about_z = |radius: f64| if radius < 0.0 { Frame { x: -frame.x, y: -frame.y, ..frame } } else { frame };
+        let surface = match kind {
             "PLANE" => SurfaceGeometry::Plane { frame },
-            "CYLINDRICAL_SURFACE" => SurfaceGeometry::Cylinder { frame, radius: length(0)? },
-            "SPHERICAL_SURFACE" => SurfaceGeometry::Sphere { frame, radius: length(0)? },
+            "CYLINDRICAL_SURFACE" => {
+                let radius = length(0)?;
+                SurfaceGeometry::Cylinder { frame: about_z(radius), radius: radius.abs() }
+            }
+            "SPHERICAL_SURFACE" => {
+                let radius = length(0)?;
+                let flipped = radius < 0.0;
+                let frame = if flipped { Frame { x: -frame.x, z: -frame.z, ..frame } } else { frame };
+                return Ok(Carrier { surface: SurfaceGeometry::Sphere { frame, radius: radius.abs() }, flipped });
+            }
             "CONICAL_SURFACE" => {
                 let radius = fields.real(first)? * self.units.length;
                 let half_angle = fields.real(first + 1)? * self.units.angle;
+                let (frame, half_angle) = (about_z(radius), if radius < 0.0 { -half_angle } else { half_angle });
+                let radius = radius.abs();
                 if half_angle == 0.0 && radius > 0.0 {
-                    return Ok(SurfaceGeometry::Cylinder { frame, radius });
+                    return Ok(SurfaceGeometry::Cylinder { frame, radius }.into());
                 }
-                if radius < 0.0 || half_angle == 0.0 || half_angle.abs() >= FRAC_PI_2 {
-                    return Err(Fault::Value {
-                        id,
-                        what: "a cone needs a radius of 0 or more and an angle below 90 degrees",
-                    });
+                if half_angle == 0.0 || half_angle.abs() >= FRAC_PI_2 {
+                    return Err(Fault::Value { id, what: "a cone needs an angle other than 0 and below a right one" });
                 }
                 SurfaceGeometry::Cone { frame, radius, half_angle }
             }
@@ -153,17 +171,22 @@ impl Geometry<'_> {
                 // a complex instance keeps the radii in the part TOROIDAL_SURFACE
                 let complex = entity.kinds().count() > 1;
                 let radii = if complex { entity.fields("TOROIDAL_SURFACE", 1)? } else { fields };
-                let length = |index: usize| Ok(radii.length(first + index)? * self.units.length);
+                let length = |index: usize| Ok(radii.radius(first + index)? * self.units.length);
                 let (major, minor) = (length(0)?, length(1)?);
-                let degenerate = kind == "DEGENERATE_TOROIDAL_SURFACE" && major < minor;
-                let outer = fields.flag(if complex { 0 } else { first + 2 });
-                if degenerate && !outer {
-                    lemon(frame, major, minor)
-                } else {
-                    SurfaceGeometry::Torus { frame, major, minor }
-                }
+                let (frame, flipped) = (about_z(major), major < 0.0);
+                let (major, minor) = (major.abs(), minor.abs());
+                let outer = match kind {
+                    "DEGENERATE_TOROIDAL_SURFACE" => fields.flag(if complex { 0 } else { first + 2 }),
+                    _ => !flipped,
+                };
+                let surface = match major < minor && !outer {
+                    true => lemon(frame, major, minor),
+                    false => SurfaceGeometry::Torus { frame, major, minor },
+                };
+                return Ok(Carrier { surface, flipped });
             }
-        })
+        };
+        Ok(surface.into())
     }
 
     fn offset(&self, entity: Entity<'_>) -> Result<Carrier, Fault> {

@@ -8,8 +8,12 @@ mod damage;
 mod derived;
 mod looks;
 mod models;
+mod once;
+mod places;
 mod shapes;
+mod swept;
 mod tessellated;
+mod texts;
 mod units;
 
 use crate::import::{Import, step};

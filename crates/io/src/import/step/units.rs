@@ -9,12 +9,21 @@
 //!   #a = (CONVERSION_BASED_UNIT('DEGREE',#n) NAMED_UNIT(#d) PLANE_ANGLE_UNIT())  #n: 0.01745… × #rad
 //! ```
 //!
-//! Each representation has its own context; two parts of one assembly may differ.
+//! Every instance may be simple or complex: `SI_UNIT(*,.MILLI.,.METRE.)`, `LENGTH_MEASURE_WITH_UNIT(25.4,#mm)`, or as
+//! CATIA V4 writes it
+//!
+//! ```text
+//!   #u = (LENGTH_MEASURE_WITH_UNIT() MEASURE_WITH_UNIT(LENGTH_MEASURE(1.E-5),#l)
+//!         UNCERTAINTY_MEASURE_WITH_UNIT('distance_accuracy_value',''))
+//! ```
+//!
+//! Each representation has its own context; two parts of one assembly may differ. What cannot be read is told and costs
+//! that one thing: the length unit, the angle unit or the tolerance.
 //!
 //! Source: ISO 10303-41, measure schema; ISO 10303-43, 4.4.
 
-use super::entity::{Entity, Fault};
-use super::part21::File;
+use super::entity::{Entity, Fault, Fields};
+use super::part21::{File, Value};
 
 /// What the numbers of a representation mean.
 #[derive(Clone, Debug, PartialEq)]
@@ -35,40 +44,111 @@ const DEFAULT_TOLERANCE: f64 = 1e-4;
 /// Largest tolerance taken at its word, in millimetres; larger ones would merge features.
 const MAX_TOLERANCE: f64 = 0.1;
 
+/// Longest chain of conversions.
+const MAX_DEPTH: usize = 8;
+
 impl Default for Units {
     fn default() -> Self {
         Self { length: 1.0, angle: 1.0, tolerance: DEFAULT_TOLERANCE, name: "mm".into() }
     }
 }
 
+/// What a unit measures, of what is read here.
+#[derive(Clone, Copy, PartialEq)]
+enum Kind {
+    Length,
+    Angle,
+}
+
 impl Units {
-    /// Units of the context `#id`; what it does not state is millimetres and radians.
-    pub fn of_context(file: &File<'_>, id: u32) -> Result<Self, Fault> {
+    /// Units of the context `#id`; what it does not state is millimetres and radians, and what cannot be read is told
+    /// to `note` with the entity that says it.
+    pub fn of_context(file: &File<'_>, id: u32, mut note: impl FnMut(&'static str, Fault)) -> Self {
         let mut units = Self::default();
-        let context = Entity::find(file, id)?;
-        if let Ok(fields) = context.fields("GLOBAL_UNIT_ASSIGNED_CONTEXT", 2) {
-            for unit in fields.references(0)? {
-                let unit = Entity::find(file, unit?)?;
-                if unit.is("LENGTH_UNIT") {
-                    (units.length, units.name) = length(file, unit)?;
-                } else if unit.is("PLANE_ANGLE_UNIT") {
-                    units.angle = factor(file, unit, 0)?;
-                }
+        let context = match Entity::find(file, id) {
+            Ok(context) => context,
+            Err(fault) => {
+                note("units taken as millimetres", fault);
+                return units;
+            }
+        };
+        // a list that is none, and members that are no references
+        let members = |kind: &'static str, what: &'static str, note: &mut dyn FnMut(&'static str, Fault)| {
+            let Ok(fields) = context.fields(kind, 2) else { return Vec::new() };
+            let list = fields.references(0).map_err(|fault| note(what, fault)).into_iter().flatten();
+            let found = list.map(|id| Entity::find(file, id?));
+            found.filter_map(|entity| entity.map_err(|fault| note(what, fault)).ok()).collect::<Vec<_>>()
+        };
+        for unit in members("GLOBAL_UNIT_ASSIGNED_CONTEXT", "unit ignored", &mut note) {
+            match kind_of(file, unit, 0) {
+                Some(Kind::Length) => match length(file, unit) {
+                    Ok(length) => (units.length, units.name) = length,
+                    Err(fault) => note("lengths taken as millimetres", fault),
+                },
+                Some(Kind::Angle) => match factor(file, unit, 0) {
+                    Ok(angle) => units.angle = angle,
+                    Err(fault) => note("angles taken as radians", fault),
+                },
+                None => {}
             }
         }
-        if let Ok(fields) = context.fields("GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT", 2) {
-            for measure in fields.references(0)? {
-                let measure = Entity::find(file, measure?)?;
-                let Ok(fields) = measure.fields("UNCERTAINTY_MEASURE_WITH_UNIT", 0) else { continue };
-                let unit = Entity::find(file, fields.reference(1)?)?;
-                if unit.is("LENGTH_UNIT") {
-                    let tolerance = fields.real(0)? * length(file, unit)?.0;
-                    units.tolerance = if tolerance > 0.0 { tolerance.min(MAX_TOLERANCE) } else { units.tolerance };
+        for measure in members("GLOBAL_UNCERTAINTY_ASSIGNED_CONTEXT", "tolerance ignored", &mut note) {
+            match tolerance(file, measure) {
+                Ok(Some(tolerance)) => {
+                    units.tolerance = tolerance.min(MAX_TOLERANCE);
                     break;
                 }
+                Ok(None) => {}
+                Err(fault) => note("tolerance ignored", fault),
             }
         }
-        Ok(units)
+        units
+    }
+}
+
+/// Millimetres of a length measure above 0; `None` for other measures.
+fn tolerance(file: &File<'_>, measure: Entity<'_>) -> Result<Option<f64>, Fault> {
+    let fields = value_and_unit(measure)?;
+    let unit = Entity::find(file, fields.reference(1)?)?;
+    if kind_of(file, unit, 0) != Some(Kind::Length) {
+        return Ok(None);
+    }
+    Ok(Some(fields.real(0)? * length(file, unit)?.0).filter(|t| *t > 0.0))
+}
+
+/// The fields of a measure with unit that are its value and its unit, whatever else it is.
+fn value_and_unit(measure: Entity<'_>) -> Result<Fields<'_>, Fault> {
+    // a complex instance has them in the part MEASURE_WITH_UNIT, a simple one in front
+    let simple = || {
+        let mut kinds = measure.kinds();
+        let alone = kinds.next().is_some_and(|k| k.ends_with("MEASURE_WITH_UNIT")) && kinds.next().is_none();
+        alone.then(|| measure.all())
+    };
+    let fields = measure.fields("MEASURE_WITH_UNIT", 0).ok().or_else(simple);
+    fields.ok_or_else(|| measure.not("a measure with unit"))
+}
+
+/// What a unit measures: by its own types, else by the SI unit's name, else by what it is converted from.
+fn kind_of(file: &File<'_>, unit: Entity<'_>, depth: usize) -> Option<Kind> {
+    if unit.is("LENGTH_UNIT") {
+        return Some(Kind::Length);
+    }
+    if unit.is("PLANE_ANGLE_UNIT") {
+        return Some(Kind::Angle);
+    }
+    if let Ok(si) = unit.fields("SI_UNIT", 1) {
+        return match si.value(1) {
+            Some(Value::Enumeration("METRE")) => Some(Kind::Length),
+            Some(Value::Enumeration("RADIAN")) => Some(Kind::Angle),
+            _ => None,
+        };
+    }
+    let conversion = unit.fields("CONVERSION_BASED_UNIT", 1).ok().filter(|_| depth < MAX_DEPTH)?;
+    let measure = Entity::find(file, conversion.optional(1)?).ok()?;
+    match measure.kinds().find_map(|k| k.strip_suffix("_MEASURE_WITH_UNIT")) {
+        Some("LENGTH") => Some(Kind::Length),
+        Some("PLANE_ANGLE") => Some(Kind::Angle),
+        _ => kind_of(file, Entity::find(file, value_and_unit(measure).ok()?.optional(1)?).ok()?, depth + 1),
     }
 }
 
@@ -83,7 +163,6 @@ fn length(file: &File<'_>, unit: Entity<'_>) -> Result<(f64, String), Fault> {
 
 /// SI base units (metre, radian) in one unit; conversions of conversions are followed a few steps.
 fn factor(file: &File<'_>, unit: Entity<'_>, depth: usize) -> Result<f64, Fault> {
-    const MAX_DEPTH: usize = 8;
     let id = unit.id();
     if depth > MAX_DEPTH {
         return Err(Fault::Cycle(id));
@@ -92,19 +171,14 @@ fn factor(file: &File<'_>, unit: Entity<'_>, depth: usize) -> Result<f64, Fault>
         prefix(si.value(0)).ok_or(Fault::Attribute { id, index: 1, wanted: "an SI prefix" })?
     } else {
         let conversion = unit.fields("CONVERSION_BASED_UNIT", 1)?;
-        let measure = Entity::find(file, conversion.reference(1)?)?;
-        let kinds = ["LENGTH_MEASURE_WITH_UNIT", "PLANE_ANGLE_MEASURE_WITH_UNIT", "MEASURE_WITH_UNIT"];
-        // in a complex instance the attributes stand in the part MEASURE_WITH_UNIT
-        let fields = kinds.iter().rev().find_map(|k| measure.fields(k, 0).ok());
-        let fields = fields.ok_or_else(|| measure.not("a measure with unit"))?;
+        let fields = value_and_unit(Entity::find(file, conversion.reference(1)?)?)?;
         fields.real(0)? * factor(file, Entity::find(file, fields.reference(1)?)?, depth + 1)?
     };
     let sane = value.is_finite() && value > 1e-30 && value < 1e30;
     if sane { Ok(value) } else { Err(Fault::Value { id, what: "the conversion factor is not a positive number" }) }
 }
 
-fn prefix(value: Option<super::part21::Value<'_>>) -> Option<f64> {
-    use super::part21::Value;
+fn prefix(value: Option<Value<'_>>) -> Option<f64> {
     Some(match value? {
         Value::Omitted | Value::Derived => 1.0,
         Value::Enumeration(name) => match name {

@@ -8,6 +8,7 @@ use super::colour::Colours;
 use super::geometry::Ledger;
 use crate::model::Colour;
 use glam::DAffine3;
+use std::collections::HashSet;
 
 /// One placed body.
 #[derive(Clone, Debug)]
@@ -35,14 +36,25 @@ const MAX_LEVELS: usize = 256;
 const MAX_NAME: usize = 512;
 
 impl Assembly {
-    /// Every body once per path from a root, in file order.
+    /// Every body once per path from a root, by the rule of `once`.
     pub fn walk(&self, colours: &Colours, ledger: &Ledger<'_>) -> Vec<Placed> {
-        let mut walk = Walk { assembly: self, colours, ledger, trail: Vec::new(), placed: Vec::new(), visits: 0 };
-        for root in self.roots() {
-            walk.visit(root, DAffine3::IDENTITY, &mut Vec::new(), "");
-        }
+        let roots = self.roots();
+        let mut walk = Walk {
+            assembly: self,
+            colours,
+            ledger,
+            trail: Vec::new(),
+            placed: Vec::new(),
+            visits: 0,
+            visited: HashSet::new(),
+            drawn: HashSet::new(),
+            settled: HashSet::new(),
+        };
+        walk.from(&roots.products);
+        walk.settled = walk.drawn.clone();
+        walk.from(&roots.others);
         if walk.full() {
-            let root = self.roots()[0];
+            let root = roots.products.first().or(roots.others.first()).copied().unwrap_or_default();
             ledger.note("occurrence left out", root, format!("all but the first {} instances", walk.placed.len()));
         }
         walk.placed
@@ -56,9 +68,24 @@ struct Walk<'w> {
     trail: Vec<u32>,
     placed: Vec<Placed>,
     visits: usize,
+    /// Groups seen on any path.
+    visited: HashSet<u32>,
+    /// Bodies placed on any path.
+    drawn: HashSet<u32>,
+    /// Those of them that are not to be placed again.
+    settled: HashSet<u32>,
 }
 
 impl Walk<'_> {
+    /// Visits what the roots before have not reached.
+    fn from(&mut self, roots: &[u32]) {
+        for root in roots {
+            if !self.visited.contains(root) {
+                self.visit(*root, DAffine3::IDENTITY, &mut Vec::new(), "");
+            }
+        }
+    }
+
     fn full(&self) -> bool {
         self.placed.len() >= MAX_INSTANCES || self.visits >= MAX_VISITS
     }
@@ -75,11 +102,17 @@ impl Walk<'_> {
         }
         let Some(group) = self.assembly.groups.get(&id) else { return };
         self.trail.push(id);
+        self.visited.insert(id);
         let colour = self.colours.of_path(path);
         for &(body, _) in &group.bodies {
             if self.full() {
                 break;
             }
+            if self.settled.contains(&body) || (self.trail.len() == 1 && self.drawn.contains(&body)) {
+                self.ledger.ignore("further mentions of drawn bodies", 1);
+                continue;
+            }
+            self.drawn.insert(body);
             self.placed.push(Placed { body, transform, colour, name: name.to_owned() });
         }
         for placement in &group.placements {

@@ -172,3 +172,24 @@ fn cards_of_every_shape() {
     assert!(matches!(form("X      1"), ImportError::NotIges { .. }));
     assert!(matches!(form("S      1"), ImportError::NoDirectory { line: 1, .. }));
 }
+
+/// A product's name in the file's own encoding: six bytes are two characters, and columns count bytes.
+#[test]
+fn names_in_chinese() {
+    let (name, other) = ("齿轮箱", "箱外壳零件总成右侧支架");
+    let [raw, more] = [name, other].map(|words| encoding_rs::GB18030.encode(words).0.into_owned());
+    assert_eq!((raw.len(), more.len()), (6, 22));
+    let global = super::GLOBAL.replace("4Hpart", "6H######").replace("5Ht.igs", "22H@@@@@@@@@@@@@@@@@@@@@@");
+    let text = super::file(&global, &[e(SQUARE)]).into_bytes();
+    let put = |text: &[u8], mark: u8, with: &[u8]| {
+        let at = text.iter().position(|b| *b == mark).unwrap();
+        assert!(text[at..at + with.len()].iter().all(|b| *b == mark));
+        [&text[..at], with, &text[at + with.len()..]].concat()
+    };
+    let bytes = put(&put(&text, b'#', &raw), b'@', &more);
+    let import = crate::import::iges(&bytes, "t.igs").unwrap();
+    assert_eq!(import.model.name, name);
+    assert_eq!(import.warnings[0].to_string(), "t.igs: text: it is not UTF-8: read as GBK");
+    let wide: Vec<u8> = String::from_utf8(text).unwrap().encode_utf16().flat_map(u16::to_le_bytes).collect();
+    assert_eq!(crate::import::iges(&wide, "t.igs").unwrap().model.name, "######");
+}

@@ -88,3 +88,17 @@ fn what_says_nothing_of_surfaces_is_counted() {
     assert_eq!(told(&read), expected);
     assert_eq!(read.model.parts[0].meshes[0].triangles(), [[0, 1, 2]]);
 }
+
+#[test]
+fn names_in_other_encodings() {
+    let (raw, ..) = encoding_rs::GB18030.encode("齿轮箱外壳零件总成右侧支架");
+    let text = [&b"o "[..], &raw, &CUBE.as_bytes()[6..]].concat();
+    let cube = crate::import::obj(&text, "t.obj", None).unwrap();
+    assert_eq!(
+        (cube.model.parts[0].name.as_str(), told(&cube)),
+        ("齿轮箱外壳零件总成右侧支架", vec!["t.obj: text: it is not UTF-8: read as GBK".into()])
+    );
+    let wide: Vec<u8> = CUBE.replace("cube", "齿轮").encode_utf16().flat_map(u16::to_be_bytes).collect();
+    let cube = crate::import::obj(&[b"\xfe\xff", &wide[..]].concat(), "t.obj", None).unwrap();
+    assert_eq!((cube.model.parts[0].name.as_str(), told(&cube)), ("齿轮", vec![]));
+}

@@ -116,6 +116,7 @@ fn cycles() {
 
 #[test]
 fn text_that_is_not_unicode() {
-    let error = scad(b"cube();\n\xff", "t.csg", Facets::Round).unwrap_err();
-    assert_eq!(error.to_string(), "t.csg:2: not UTF-8 text");
+    let import = scad(b"// gr\xf6\xdfer f\xfcr Getriebe\ncube();", "t.csg", Facets::Round).unwrap();
+    assert_eq!(import.warnings[0].to_string(), "t.csg: text: it is not UTF-8: read as windows-1252");
+    assert_eq!(import.model.solids.len(), 1);
 }

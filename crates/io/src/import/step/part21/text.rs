@@ -7,7 +7,7 @@
 //!   \PA\          (alphabet: ignored)    newline               ignored, as the standard demands
 //! ```
 //!
-//! Bytes above 127 are no standard but common: UTF-8 if they form it, else ISO 8859-1.
+//! Bytes above 127 are no standard but common; `import::text` has made them UTF-8.
 //!
 //! Source: ISO 10303-21:2016, 6.4.3.
 
@@ -15,7 +15,6 @@
 pub(in crate::import::step) fn decode(raw: &[u8]) -> String {
     let mut bytes: Vec<u8> = Vec::with_capacity(raw.len());
     let push = |bytes: &mut Vec<u8>, c: char| bytes.extend_from_slice(c.encode_utf8(&mut [0; 4]).as_bytes());
-    let utf8 = std::str::from_utf8(raw).is_ok();
     let mut at = 0;
     while let Some(&b) = raw.get(at) {
         let rest = &raw[at..];
@@ -49,10 +48,6 @@ pub(in crate::import::step) fn decode(raw: &[u8]) -> String {
                 4 + used
             }
             [b'\n' | b'\r', ..] => 1,
-            [0x80..=0xff, ..] if !utf8 => {
-                push(&mut bytes, char::from(b));
-                1
-            }
             _ => {
                 bytes.push(b);
                 1
@@ -94,7 +89,6 @@ mod tests {
         assert_eq!(decode(br"\X4\0001F600\X0\"), "😀");
         assert_eq!(decode(br"\PB\x"), "x");
         assert_eq!(decode("line\nbreak ü".as_bytes()), "linebreak ü");
-        assert_eq!(decode(b"\xe9"), "é");
     }
 
     #[test]

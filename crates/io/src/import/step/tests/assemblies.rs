@@ -6,7 +6,7 @@ use std::fmt::Write;
 
 /// One triangle as a surface model `#18` and what it needs; context `#1` is in millimetres, `#2` in
 /// centimetres.
-const TRIANGLE: &str = "#1=(GEOMETRIC_REPRESENTATION_CONTEXT(3) GLOBAL_UNIT_ASSIGNED_CONTEXT((#3)) REPRESENTATION_CONTEXT('',''));\
+pub(super) const TRIANGLE: &str = "#1=(GEOMETRIC_REPRESENTATION_CONTEXT(3) GLOBAL_UNIT_ASSIGNED_CONTEXT((#3)) REPRESENTATION_CONTEXT('',''));\
     #2=(GEOMETRIC_REPRESENTATION_CONTEXT(3) GLOBAL_UNIT_ASSIGNED_CONTEXT((#4)) REPRESENTATION_CONTEXT('',''));\
     #3=(LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.MILLI.,.METRE.));#4=(LENGTH_UNIT() NAMED_UNIT(*) SI_UNIT(.CENTI.,.METRE.));\
     #11=CARTESIAN_POINT('',(0.,0.,0.));#12=CARTESIAN_POINT('',(1.,0.,0.));#13=CARTESIAN_POINT('',(0.,1.,0.));\
@@ -16,7 +16,7 @@ const TRIANGLE: &str = "#1=(GEOMETRIC_REPRESENTATION_CONTEXT(3) GLOBAL_UNIT_ASSI
     #24=AXIS2_PLACEMENT_3D('',#11,$,$);#25=AXIS2_PLACEMENT_3D('',#23,#21,#22);#26=AXIS2_PLACEMENT_3D('',#12,$,$);\n";
 
 /// A product `name` with definition `#base` shown by representation `shape`.
-fn product(base: u32, name: &str, shape: u32) -> String {
+pub(super) fn product(base: u32, name: &str, shape: u32) -> String {
     let [f, p, s, d] = [base + 1, base + 2, base + 3, base + 4];
     format!(
         "#{base}=PRODUCT_DEFINITION('design','',#{f},$);#{f}=PRODUCT_DEFINITION_FORMATION('','',#{p});\
@@ -26,7 +26,7 @@ fn product(base: u32, name: &str, shape: u32) -> String {
 }
 
 /// An occurrence of definition `child` in `parent`; `reps` and `items` in the order of the file.
-fn occurrence(base: u32, name: &str, defs: (u32, u32), reps: (u32, u32), items: (u32, u32)) -> String {
+pub(super) fn occurrence(base: u32, name: &str, defs: (u32, u32), reps: (u32, u32), items: (u32, u32)) -> String {
     let [s, r, t, c] = [base + 1, base + 2, base + 3, base + 4];
     format!(
         "#{base}=NEXT_ASSEMBLY_USAGE_OCCURRENCE('{base}','{name}','',#{},#{},$);#{s}=PRODUCT_DEFINITION_SHAPE('','',#{base});\
@@ -36,7 +36,7 @@ fn occurrence(base: u32, name: &str, defs: (u32, u32), reps: (u32, u32), items: 
     )
 }
 
-fn near(a: DVec3, b: DVec3) -> bool {
+pub(super) fn near(a: DVec3, b: DVec3) -> bool {
     (a - b).length() < 1e-12
 }
 

@@ -116,7 +116,7 @@ fn one_change_one_message() {
             "NaN",
             "CIRCLE('',#24,5.)",
             "CIRCLE('',#24,1E999)",
-            "good.step:57: #61: face left out: #30: attribute 2 is not a length above 0",
+            "good.step:57: #61: face left out: #30: attribute 2 is not a length other than 0",
             1,
         ),
         (

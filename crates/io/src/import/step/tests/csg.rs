@@ -24,22 +24,22 @@ fn balls(data: &str) -> String {
 }
 
 /// A file whose representation, in centimetres and degrees, lists `#50`.
-fn read(data: &str) -> Import {
+pub(super) fn read(data: &str) -> Import {
     import(&format!("{COMMON}{}{data}#30=CSG_SHAPE_REPRESENTATION('',(#50,#4),#24);", balls(data)))
 }
 
-fn told(import: &Import) -> Vec<String> {
+pub(super) fn told(import: &Import) -> Vec<String> {
     import.warnings.iter().map(|w| w.message.clone()).collect()
 }
 
-fn one(import: &Import) -> &Solid {
+pub(super) fn one(import: &Import) -> &Solid {
     assert!(import.warnings.is_empty(), "{:?}", import.warnings);
     let [solid] = &import.model.solids[..] else { panic!("{} solids", import.model.solids.len()) };
     solid
 }
 
 /// Whether points are inside: a line through each.
-fn holds(solid: &Solid, points: &[(DVec3, bool)]) {
+pub(super) fn holds(solid: &Solid, points: &[(DVec3, bool)]) {
     let tracer = SolidTracer::new(solid, SurfaceTable::ROUNDED).unwrap();
     for (p, inside) in points {
         let trace = tracer.trace(*p, DVec3::new(0.3, 0.5, 0.8));
@@ -106,6 +106,39 @@ fn primitives_stand_where_they_should() {
             ],
         ),
         ("RIGHT_CIRCULAR_CONE('',#5,4.,0.,45.)", vec![([0.0, 0.0, e], true), ([0.0, 2.0 + e, 2.0], false)]),
+        (
+            // 4 by 2 at the bottom, the tip 3 above (2, 1)
+            "RECTANGULAR_PYRAMID('',#4,4.,2.,3.)",
+            vec![
+                ([2.0 * e, 2.0 * e, e], true),
+                ([2.0, 1.0, 3.0 - e], true),
+                ([2.0, 1.0, -e], false),
+                ([1.0 - e, 1.0, 1.5], false),
+                ([1.0 + e, 1.0, 1.5 - e], true),
+                ([3.0 + e, 1.0, 1.5], false),
+                ([2.0, 0.5 - e, 1.5], false),
+                ([2.0, 1.5 - 2.0 * e, 1.5], true),
+                ([2.0, 1.5 + e, 1.5], false),
+            ],
+        ),
+        (
+            // semi-axes 2 and 1; half as large at 4, where the middle is (1, -1)
+            "ECCENTRIC_CONE('',#4,2.,1.,4.,1.,-1.,0.5)",
+            vec![
+                ([2.0 - e, 0.0, e / 8.0], true),
+                ([0.0, 1.0 - e, e / 8.0], true),
+                ([2.0 - e, -1.0, 4.0 - e / 8.0], true),
+                ([e, -1.0, 4.0 - e / 8.0], true),
+                ([-e, -1.0, 4.0 - e / 8.0], false),
+                ([1.0, -0.5 - e, 4.0 - e / 8.0], true),
+                ([1.0, -1.0, 4.0 + e], false),
+            ],
+        ),
+        (
+            "ECCENTRIC_CONE('',#4,2.,1.,4.,1.,0.,1.)",
+            vec![([3.0 - e, 0.0, 4.0 - e / 8.0], true), ([3.0, 0.0, 3.0], false)],
+        ),
+        ("ECCENTRIC_CONE('',#4,2.,1.,4.,1.,0.,0.)", vec![([1.0, 0.0, 4.0 - e], true), ([1.0, 0.0, 4.0 + e], false)]),
         (
             "TORUS('',#5,3.,1.)",
             vec![
@@ -275,8 +308,8 @@ fn each_fault_names_its_entity() {
         (pair("XOR", 8, 9), "#51: the operator is no union, intersection or difference"),
         (pair("UNION", 8, 4), "#4 is AXIS2_PLACEMENT_3D, not an operand of a Boolean expression"),
         (
-            with("EXTRUDED_AREA_SOLID('',#1,#2,1.)"),
-            "#60 is EXTRUDED_AREA_SOLID, not an operand of a Boolean expression",
+            with("CYCLIDE_SEGMENT_SOLID('',#4,1.,1.,0.,0.)"),
+            "#60 is CYCLIDE_SEGMENT_SOLID, not an operand of a Boolean expression",
         ),
         (with("SPHERE('',-2.,#6)"), "#60: attribute 1 is not a length above 0"),
         (with("SPHERE('',0.,#6)"), "#60: attribute 1 is not a length above 0"),
@@ -288,6 +321,10 @@ fn each_fault_names_its_entity() {
         (with("RIGHT_CIRCULAR_CONE('',#5,1.,1.,90.)"), "#60: the angle of the cone is not between 0 and a right one"),
         (with("RIGHT_CIRCULAR_CONE('',#5,1.,1.,NaN)"), "#60: attribute 4 is not a finite number"),
         (with("RIGHT_ANGULAR_WEDGE('',#4,1.,1.,1.,1.)"), "#60: a wedge whose smaller side is not below its larger one"),
+        (with("RECTANGULAR_PYRAMID('',#4,1.,2.,-3.)"), "#60: attribute 4 is not a length above 0"),
+        (with("ECCENTRIC_CONE('',#4,1.,1.,1.,0.,0.,-0.5)"), "#60: the ratio of the cone's ends is negative"),
+        (with("TETRAHEDRON('',(#1,#6,#1))"), "#60: the number of its corners is not that of its kind"),
+        (with("TETRAHEDRON('',(#1,#6,#1,#6))"), "#60: a side has no area"),
         (with("TORUS('',#5,1.,-1.)"), "#60: attribute 3 is not a length above 0"),
         (
             with("HALF_SPACE_SOLID('',#61,.T.);#61=CONICAL_SURFACE('',#4,1.,45.)"),
@@ -325,4 +362,54 @@ fn where_solids_stand() {
     let found = import(&format!("{COMMON}{TETRAHEDRON}{}", balls(solid)));
     assert_eq!((told(&found), found.model.solids.len(), found.model.parts.len()), (vec![expected.to_owned(); 2], 1, 1));
     assert!(found.model.solids.iter().all(|s| *s.tree() == Tree::leaf(0)));
+}
+
+/// Corners in centimetres, in model coordinates.
+fn corners(points: &[[f64; 3]]) -> String {
+    let point =
+        |(i, p): (usize, &[f64; 3])| format!("#{}=CARTESIAN_POINT('',({:?},{:?},{:?}));", 70 + i, p[0], p[1], p[2]);
+    points.iter().enumerate().map(point).collect()
+}
+
+#[test]
+fn polytopes_by_their_corners() {
+    let e = 1e-6;
+    let tetrahedron = corners(&[[0.0, 0.0, 0.0], [3.0, 0.0, 0.0], [0.0, 3.0, 0.0], [0.0, 0.0, 3.0]]);
+    // in whatever order
+    for list in ["#70,#71,#72,#73", "#73,#71,#70,#72"] {
+        let found = read(&format!("#50=CSG_SOLID('',#51);#51=TETRAHEDRON('',({list}));{tetrahedron}"));
+        holds(
+            one(&found),
+            &[
+                (DVec3::splat(10.0 - e), true),
+                (DVec3::splat(10.0 + e), false),
+                (DVec3::splat(-e), false),
+                (DVec3::splat(e), true),
+            ],
+        );
+    }
+    // a frustum: 4 wide at the bottom, 2 at 1
+    let ring = |w: f64, z: f64| [[-w, -w, z], [w, -w, z], [w, w, z], [-w, w, z]];
+    let frustum = corners(&[ring(2.0, 0.0), ring(1.0, 1.0)].concat());
+    let list = "#70,#71,#72,#73,#74,#75,#76,#77";
+    let found = read(&format!("#50=CSG_SOLID('',#51);#51=CONVEX_HEXAHEDRON('',({list}));{frustum}"));
+    let at = |x: f64, y: f64, z: f64| DVec3::new(x, y, z) * 10.0;
+    holds(
+        one(&found),
+        &[
+            (at(1.5 - e, 0.0, 0.5), true),
+            (at(1.5 + e, 0.0, 0.5), false),
+            (at(0.0, -1.5 + e, 0.5), true),
+            (at(0.0, -1.5 - e, 0.5), false),
+            (at(0.9, 0.9, 1.0 - e), true),
+            (at(0.9, 0.9, 1.0 + e), false),
+        ],
+    );
+    for (list, message) in [
+        ("#70,#72,#71,#73,#74,#75,#76,#77", "#51: a side has no area"),
+        ("#70,#71,#72,#77,#74,#75,#76,#73", "#51: a side is not plane"),
+    ] {
+        let found = read(&format!("#50=CSG_SOLID('',#51);#51=CONVEX_HEXAHEDRON('',({list}));{frustum}"));
+        assert_eq!((told(&found), found.model.solids.len()), (vec![format!("Boolean solid left out: {message}")], 0));
+    }
 }

@@ -156,6 +156,104 @@ fn lemons_and_apples() {
     }
 }
 
+/// Radii below 0: the points and the normal of the formula.
+#[test]
+fn negative_radii_mean_what_the_formula_says() {
+    let surface = |entity: &str| {
+        let carrier = with(&format!("#100={entity};"), |g| g.surface(100)).unwrap();
+        (carrier.surface, carrier.flipped)
+    };
+    // the frame #8 is that of space; lengths are tenths
+    let (SurfaceGeometry::Cylinder { frame, radius }, false) = surface("CYLINDRICAL_SURFACE('',#8,-1.5)") else {
+        panic!()
+    };
+    assert!(radius == 15.0 && near(frame.x, -DVec3::X) && near(frame.y, -DVec3::Y) && near(frame.z, DVec3::Z));
+    let (SurfaceGeometry::Sphere { frame, radius }, true) = surface("SPHERICAL_SURFACE('',#8,-1.5)") else { panic!() };
+    assert!(radius == 15.0 && near(frame.x.cross(frame.y), frame.z) && near(frame.z, -DVec3::Z));
+    let (SurfaceGeometry::Cone { frame, radius, half_angle }, false) = surface("CONICAL_SURFACE('',#8,-1.,30.)") else {
+        panic!()
+    };
+    assert!(radius == 10.0 && near(frame.x, -DVec3::X) && (half_angle + 30f64.to_radians()).abs() < 1e-15);
+    let ring = surface("TOROIDAL_SURFACE('',#8,-2.,1.)");
+    assert!(matches!(ring, (SurfaceGeometry::Torus { major: 20.0, minor: 10.0, .. }, true)), "{ring:?}");
+    let tube = surface("TOROIDAL_SURFACE('',#8,2.,-1.)");
+    assert!(matches!(tube, (SurfaceGeometry::Torus { major: 20.0, minor: 10.0, .. }, false)), "{tube:?}");
+    let lemon = surface("TOROIDAL_SURFACE('',#8,-1.,2.)");
+    assert!(matches!(lemon, (SurfaceGeometry::Revolution { .. }, true)), "{lemon:?}");
+    let apple = surface("DEGENERATE_TOROIDAL_SURFACE('',#8,-1.,2.,.T.)");
+    assert!(matches!(apple, (SurfaceGeometry::Torus { .. }, true)), "{apple:?}");
+    for entity in [
+        "CYLINDRICAL_SURFACE('',#8,0.)",
+        "SPHERICAL_SURFACE('',#8,0.)",
+        "TOROIDAL_SURFACE('',#8,0.,1.)",
+        "TOROIDAL_SURFACE('',#8,1.,0.)",
+    ] {
+        let fault = with(&format!("#100={entity};"), |g| g.surface(100)).unwrap_err().to_string();
+        assert!(fault.ends_with("is not a length other than 0"), "{entity}: {fault}");
+    }
+    // curves: the same points at the same parameters
+    for (entity, at) in [
+        ("CIRCLE('',#8,-1.5)", |t: f64| DVec3::new(-15.0 * t.cos(), -15.0 * t.sin(), 0.0)),
+        ("ELLIPSE('',#8,-1.5,1.)", |t: f64| DVec3::new(-15.0 * t.cos(), 10.0 * t.sin(), 0.0)),
+        ("ELLIPSE('',#8,1.5,-1.)", |t: f64| DVec3::new(15.0 * t.cos(), -10.0 * t.sin(), 0.0)),
+        ("PARABOLA('',#8,-1.)", |t: f64| DVec3::new(-10.0 * t * t, -20.0 * t, 0.0)),
+        ("HYPERBOLA('',#8,-1.,2.)", |t: f64| DVec3::new(-10.0 * t.cosh(), 20.0 * t.sinh(), 0.0)),
+    ] as [(&str, fn(f64) -> DVec3); 5]
+    {
+        let found = curve(&format!("#100={entity};"));
+        for t in [0.0, 0.5, 2.0] {
+            let point = locate::point(&found, t).unwrap();
+            assert!((point - at(t)).length() < 1e-12 * at(t).length().max(1.0), "{entity} at {t}: {point}");
+        }
+    }
+}
+
+/// A lemon of a torus with R = -4, r = 10: sqrt(10² - 4²) up and down, 6 out, its normal outwards.
+#[test]
+fn a_torus_with_a_negative_major_radius_is_a_lemon() {
+    let found = step(include_bytes!("cases/negative_major_radius.stp"), "case.stp").unwrap();
+    assert!(found.warnings.is_empty(), "{:?}", found.warnings);
+    let [face] = &found.model.parts[0].faces[..] else { panic!() };
+    let grid = face.surface.patches();
+    let ((u0, u1), (v0, v1)) = face.surface.domain();
+    let (mut out, mut up) = (0f64, 0f64);
+    let at = |i: f64, j: f64| grid.point(u0 + (u1 - u0) * i / 64.0, v0 + (v1 - v0) * j / 64.0);
+    for (i, j) in (1..64).flat_map(|i| (1..64).map(move |j| (f64::from(i), f64::from(j)))) {
+        let p = at(i, j);
+        let (rho, h) = (p.x.hypot(p.y), 1e-3);
+        assert!(((rho + 4.0).hypot(p.z) - 10.0).abs() < 1e-9, "{p}");
+        let normal = (at(i + h, j) - at(i - h, j)).cross(at(i, j + h) - at(i, j - h));
+        assert!(normal.dot(p) * if face.same_sense { 1.0 } else { -1.0 } > 0.0, "the normal at {p}");
+        (out, up) = (out.max(rho), up.max(p.z));
+    }
+    // steps of a 64th of the arc: its ends are not among the points
+    assert!((out - 6.0).abs() < 5e-3 && up > 8.5 && up < 84f64.sqrt(), "{out} {up}");
+}
+
+/// SEAM_EDGE and SUBEDGE stand where an oriented edge and an edge may; without an edge they cost the face.
+#[test]
+fn seam_edges_and_parts_of_edges() {
+    let good = super::damage::GOOD;
+    let loops = good.lines().find(|line| line.contains("#51=")).unwrap();
+    assert!(loops.contains("#51=ORIENTED_EDGE('',*,*,#"), "{loops}");
+    let (edge, _) = loops.split_once("*,*,#").unwrap().1.split_once(',').unwrap();
+    let seam = loops.replace("ORIENTED_EDGE", "SEAM_EDGE").replace(");", ",#990);");
+    let found = step(good.replace(loops, &seam).as_bytes(), "good.step").unwrap();
+    assert_eq!((found.model.face_count(), found.warnings.len()), (3, 0), "{:?}", found.warnings);
+    let lost = step(good.replace(loops, &seam.replace(&format!("#{edge}"), "$")).as_bytes(), "good.step").unwrap();
+    assert!(
+        lost.model.face_count() < 3 && lost.warnings[0].message.contains("#51: attribute 1 is not a reference"),
+        "{:?}",
+        lost.warnings
+    );
+    // an edge as the whole of another one
+    let whole = good.lines().find(|line| line.starts_with(&format!("#{edge}=EDGE_CURVE"))).unwrap();
+    let ends = whole.split_once("('',").unwrap().1.split(',').take(2).collect::<Vec<_>>().join(",");
+    let part = whole.replace(&format!("#{edge}="), "#991=") + &format!("\n#{edge}=SUBEDGE('',{ends},#991);");
+    let found = step(good.replace(whole, &part).as_bytes(), "good.step").unwrap();
+    assert_eq!((found.model.face_count(), found.warnings.len()), (3, 0), "{:?}", found.warnings);
+}
+
 const SQUARE: &str = "#1=(GEOMETRIC_REPRESENTATION_CONTEXT(3) REPRESENTATION_CONTEXT('',''));#11=CARTESIAN_POINT('',(0.,0.,0.));\
     #12=CARTESIAN_POINT('',(4.,0.,0.));#13=CARTESIAN_POINT('',(0.,4.,0.));#14=CARTESIAN_POINT('',(4.,4.,0.));\
     #15=CARTESIAN_POINT('',(2.,2.,0.));#16=AXIS2_PLACEMENT_3D('',#15,$,$);#17=CIRCLE('',#16,1.);\

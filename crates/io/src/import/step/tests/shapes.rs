@@ -289,10 +289,10 @@ fn polygons_share_their_sides_and_span_their_plane() {
 #[test]
 fn faults_name_the_entity() {
     for (data, message) in [
-        ("#100=CIRCLE('',#7,0.);", "#100: attribute 2 is not a length above 0"),
+        ("#100=CIRCLE('',#7,0.);", "#100: attribute 2 is not a length other than 0"),
         ("#100=CIRCLE('',#99,1.);", "#99 does not exist"),
         ("#100=CIRCLE('',#11,1.);", "#11 is CIRCLE, not AXIS2_PLACEMENT_3D"),
-        ("#100=SPHERICAL_SURFACE('',#7,NaN);", "#100: attribute 2 is not a length above 0"),
+        ("#100=SPHERICAL_SURFACE('',#7,NaN);", "#100: attribute 2 is not a length other than 0"),
         ("#100=TRIMMED_CURVE('',#100,(#4),(#5),.T.,.CARTESIAN.);", "#100 refers to itself"),
         ("#100=COMPOSITE_CURVE('',(#101),.F.);#101=COMPOSITE_CURVE_SEGMENT(.C.,.T.,#100);", "#100 refers to itself"),
         ("#100=OFFSET_SURFACE('',#101,1.,.F.);#101=OFFSET_SURFACE('',#100,1.,.F.);", "#100 refers to itself"),
