@@ -30,6 +30,8 @@ pub struct BuiltFace {
     /// Largest distance in mm of an edge from the surface, which is the source's. No point of a trim curve
     /// is farther from its edge than `deviation + gap`.
     pub gap: f64,
+    /// Loops that the source states and the face lacks; each has a note.
+    pub lost_loops: usize,
 }
 
 /// Share of the tolerance that a fit may take, and a joint: each counts up to 1.25 times, the second along both axes.
@@ -66,6 +68,7 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         support.noise = 1e-7 * size;
     }
     uses.iter_mut().for_each(|bound| bound.retain(|e| e.length > support.target));
+    let mut lost_loops = lost(face, edges, &uses, &support, &mut notes);
     support.allow(uses.iter().flatten().map(|e| e.node_count).sum());
     let limits = Limits { face: face.id, size };
 
@@ -97,6 +100,9 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         loops.extend(border);
     }
     let gap = gaps(&loops, eps, size, &mut notes);
+    if loops.is_empty() && lost_loops > 0 {
+        return Err(BuildError::EmptyLoop { face: face.id });
+    }
     if loops.is_empty() {
         return whole(face, &support, notes);
     }
@@ -126,6 +132,7 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         let trim = TrimLoop::new(curves, snap).map_err(|source| BuildError::Loop { face: face.id, source })?;
         if trim.signed_area().abs() <= 1e-12 * (range[0].1 - range[0].0) * (range[1].1 - range[1].0) {
             notes.push(format!("face #{}: a loop without area was left out", face.id));
+            lost_loops += 1;
             continue;
         }
         trims.push(trim);
@@ -145,7 +152,7 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         same_sense: face.same_sense,
         colour: None,
     };
-    Ok(BuiltFace { face, notes, deviation, gap })
+    Ok(BuiltFace { face, notes, deviation, gap, lost_loops })
 }
 
 /// What is told of loops that cross: points within two of them, or within a hole and nothing else, follow the non-zero
@@ -158,7 +165,34 @@ pub fn crossing_note(loops: &[TrimLoop]) -> Option<String> {
     }
 }
 
-/// The edges of each bound in the direction of the bound; those without length are left out.
+/// How many bounds have no edge left; each is told. One at a pole says no more than that the face reaches the pole.
+fn lost(
+    face: &FaceGeometry,
+    edges: &[Edge],
+    uses: &[Vec<EdgeCurve>],
+    support: &Support,
+    notes: &mut Vec<String>,
+) -> usize {
+    let lists = face.bounds.iter().filter_map(|b| match b {
+        Boundary::Edges(list) => Some(list),
+        Boundary::Vertex(_) | Boundary::Natural => None,
+    });
+    let at_pole = |list: &[(usize, bool)]| {
+        let pole = |(index, _): &(usize, bool)| support.pole_at(edges[*index].start, 50.0 * support.eps);
+        list.first().is_some_and(|first| pole(first).is_some() && list.iter().all(|e| pole(e) == pole(first)))
+    };
+    let empty = lists.zip(uses).filter(|(list, uses)| uses.is_empty() && !at_pole(list)).map(|(list, _)| list);
+    let mut count = 0;
+    for list in empty {
+        let edge = list.first().map_or(String::new(), |(index, _)| format!(", edge #{},", edges[*index].id));
+        notes.push(format!("face #{}: a loop without length{edge} was left out", face.id));
+        count += 1;
+    }
+    count
+}
+
+/// The edges of each bound in the direction of the bound; those without length are left out. A single edge that bounds
+/// nothing as its vertices lie is once around its curve.
 fn edge_uses(face: &FaceGeometry, edges: &[Edge]) -> Result<Vec<Vec<EdgeCurve>>, BuildError> {
     let lists = face.bounds.iter().filter_map(|b| match b {
         Boundary::Edges(list) => Some(list),
@@ -175,6 +209,13 @@ fn edge_uses(face: &FaceGeometry, edges: &[Edge]) -> Result<Vec<Vec<EdgeCurve>>,
         for &(index, forward) in list {
             let edge = edges.get(index).ok_or(BuildError::EdgeIndex { face: face.id, index })?;
             out.extend(EdgeCurve::new(edge, forward, rounding)?);
+        }
+        if out.len() < 2 && out.first().is_none_or(EdgeCurve::is_sliver) {
+            let around = |&(index, forward): &(usize, bool)| EdgeCurve::around(&edges[index], forward, rounding);
+            let all = list.iter().filter_map(|e| around(e).transpose()).collect::<Result<Vec<_>, _>>()?;
+            if all.len() == 1 {
+                out = all;
+            }
         }
         uses.push(out);
     }
@@ -211,7 +252,7 @@ fn whole(face: &FaceGeometry, support: &Support, notes: Vec<String>) -> Result<B
         same_sense: face.same_sense,
         colour: None,
     };
-    Ok(BuiltFace { face, notes, deviation: 0.0, gap: 0.0 })
+    Ok(BuiltFace { face, notes, deviation: 0.0, gap: 0.0, lost_loops: 0 })
 }
 
 fn carrier_error(face: u32, e: CarrierError) -> BuildError {

@@ -88,7 +88,7 @@ pub fn face_in_parameters(
     notes.extend(crossing_note(&loops).map(|note| format!("face #{id}: {note}")));
     let (kind, surface) = (SurfaceKind::BSpline, surface.clone());
     let face = Face { id, kind, surface, loops, same_sense: true, colour: None };
-    Ok(BuiltFace { face, notes, deviation, gap })
+    Ok(BuiltFace { face, notes, deviation, gap, lost_loops: 0 })
 }
 
 fn range(surface: &Surface) -> DVec2 {

@@ -66,6 +66,8 @@ pub struct ImportReport {
     pub warnings: BTreeMap<String, usize>,
     /// Faces left out, by reason.
     pub dropped: BTreeMap<String, usize>,
+    /// Loops left out of faces that are there: holes are filled, or borders gone. A warning names each face.
+    pub lost_loops: usize,
     /// Healed faces, by what was healed.
     pub healed: BTreeMap<String, usize>,
     /// Largest [`FaceRecord::deviation`] of trim curves: the engine's own part of the error.
@@ -172,7 +174,8 @@ impl Warnings {
 impl ImportReport {
     /// Keeps what is known about a face that was built, and returns the face.
     pub(crate) fn record(&mut self, record: FaceRecord, built: BuiltFace) -> Face {
-        let BuiltFace { face, notes, deviation, gap } = built;
+        let BuiltFace { face, notes, deviation, gap, lost_loops } = built;
+        self.lost_loops += lost_loops;
         self.deviation = self.deviation.max(deviation);
         self.gap = self.gap.max(gap);
         self.sloppy += usize::from(gap > record.tolerance);
@@ -201,7 +204,7 @@ impl ImportReport {
     ) -> Face {
         self.made = self.made.max(deviation);
         let curves = self.deviation;
-        let face = self.record(record, BuiltFace { face, notes, deviation, gap: 0.0 });
+        let face = self.record(record, BuiltFace { face, notes, deviation, gap: 0.0, lost_loops: 0 });
         self.deviation = curves;
         face
     }

@@ -2,6 +2,7 @@
 
 mod borders;
 mod carriers;
+mod closing;
 mod curved;
 mod damage;
 mod derived;

@@ -51,7 +51,7 @@ impl<'a> Geometry<'a> {
         let entity = Entity::find(self.file, id)?;
         if entity.kind() == 108 {
             // a plane by itself has a curve around it
-            let model = self.segments(entity.pointer(5)?, &self.placed(entity, outer)?)?;
+            let model = closed(self.segments(entity.pointer(5)?, &self.placed(entity, outer)?)?);
             let loops = vec![Trim { model, ..Trim::default() }];
             return Ok(Sheet { id, carrier: self.surface(id, outer)?, loops, natural: false });
         }
@@ -85,8 +85,8 @@ impl<'a> Geometry<'a> {
         self.nested(id, |entity| {
             let entity = entity.of_kind(142, "142, a curve on a surface")?;
             let map = self.placed(entity, outer)?;
-            let parameter = entity.optional(3)?.map(|b| self.segments(b, &DAffine3::IDENTITY));
-            let model = entity.optional(4)?.map(|c| self.segments(c, &map));
+            let parameter = entity.optional(3)?.map(|b| self.segments(b, &DAffine3::IDENTITY).map(closed));
+            let model = entity.optional(4)?.map(|c| self.segments(c, &map).map(closed));
             let prefers_parameter = entity.integer(5)? == 1;
             self.either(id, model, parameter, prefers_parameter)
         })
@@ -118,7 +118,7 @@ impl<'a> Geometry<'a> {
             if !in_parameters {
                 trim.parameter.clear();
             }
-            Ok(trim)
+            Ok(Trim { model: closed(trim.model), parameter: closed(trim.parameter), ..trim })
         })
     }
 
@@ -290,6 +290,20 @@ impl Sheet {
         }
         Ok(Some(Boundary::Edges((from..edges.len()).map(|i| (i, true)).collect())))
     }
+}
+
+/// Angle up to which an arc that is a loop by itself is a whole turn: its ends are as far apart as those of a loop may be.
+const TURN: f64 = 0.1;
+
+/// The segments of a loop; a single arc whose ends nearly meet is a whole turn.
+fn closed(mut segments: Vec<Segment>) -> Vec<Segment> {
+    if let [only] = &mut segments[..]
+        && matches!(only.curve, CurveGeometry::Circle { .. } | CurveGeometry::Ellipse { .. })
+        && only.end - only.start <= TURN
+    {
+        only.end = only.start + std::f64::consts::TAU;
+    }
+    segments
 }
 
 /// Parameters at which a curve crosses the creases of a surface, to rounding.
