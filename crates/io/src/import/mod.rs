@@ -41,8 +41,8 @@ pub use error::ImportError;
 pub use obj::cage::Cage;
 pub(crate) use progress::FaceCount;
 pub use progress::{Options, Stage};
-pub(crate) use report::Warnings;
 pub use report::{FaceRecord, ImportReport, Place, Warning};
+pub(crate) use report::{LOOP_LOST, Warnings};
 pub use scad::Facets;
 pub use subdivided::open_subdivided;
 

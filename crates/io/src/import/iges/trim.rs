@@ -61,12 +61,11 @@ impl<'a> Geometry<'a> {
         self.nested(id, |entity| {
             let map = self.placed(entity, outer)?;
             if entity.kind() == 143 {
-                let carrier = self.surface(entity.pointer(2)?, &map)?;
                 let bounds = 4..4 + entity.count(3, 1)?;
                 let loops = bounds.map(|i| self.boundary(entity.pointer(i)?, &map)).collect::<Result<Vec<_>, _>>()?;
+                let carrier = self.surface_near(entity.pointer(2)?, &map, &ends(&loops))?;
                 return Ok(Sheet { id, carrier, natural: loops.is_empty(), loops });
             }
-            let carrier = self.surface(entity.pointer(1)?, &map)?;
             let outer_loop = entity.integer(2)? != 0;
             let mut loops = Vec::new();
             if outer_loop {
@@ -75,6 +74,7 @@ impl<'a> Geometry<'a> {
             for index in 5..5 + entity.count(3, 1)? {
                 loops.push(self.curve_on_surface(entity.pointer(index)?, &map)?);
             }
+            let carrier = self.surface_near(entity.pointer(1)?, &map, &ends(&loops))?;
             let carrier = if outer_loop { carrier } else { carrier.bounded(id)? };
             Ok(Sheet { id, carrier, loops, natural: !outer_loop })
         })
@@ -249,6 +249,7 @@ impl Sheet {
             surface: self.carrier.surface.clone(),
             bounds,
             same_sense: !self.carrier.flipped,
+            doubtful: false,
         };
         build_face(&face, &edges, tolerance)
     }
@@ -290,6 +291,11 @@ impl Sheet {
         }
         Ok(Some(Boundary::Edges((from..edges.len()).map(|i| (i, true)).collect())))
     }
+}
+
+/// The ends of the curves in space, which say where the surface is.
+fn ends(loops: &[Trim]) -> Vec<DVec3> {
+    loops.iter().flat_map(|l| &l.model).flat_map(|s| <[DVec3; 2]>::from(s.ends())).collect()
 }
 
 /// Angle up to which an arc that is a loop by itself is a whole turn: its ends are as far apart as those of a loop may be.

@@ -101,7 +101,7 @@ fn parts(
                         *report.healed.entry(ImportReport::reason(note)).or_default() += 1;
                         warnings.push("face healed", || Place::File, || format!("{}: {note}", id.as_str()));
                     }
-                    let built = BuiltFace { face, notes, deviation: 0.0, gap, lost_loops: 0 };
+                    let built = BuiltFace { face, notes, deviation: 0.0, gap, lost: Vec::new() };
                     part.faces.push(report.record(record, built));
                 }
                 Err(why) => {
