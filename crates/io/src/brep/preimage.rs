@@ -171,6 +171,9 @@ pub(super) fn widen_poles(
     }
 }
 
+/// Share of an edge's greatest distance from a pole within which its end may lie behind the pole.
+const CLOSE: f64 = 1e-2;
+
 /// Fractions strictly between the ends of an edge at which it passes a pole.
 fn passed_poles(support: &Support, edge: &EdgeCurve) -> Vec<(f64, Option<usize>)> {
     let mut stops = Vec::new();
@@ -181,11 +184,15 @@ fn passed_poles(support: &Support, edge: &EdgeCurve) -> Vec<(f64, Option<usize>)
     for (index, pole) in support.poles.iter().enumerate() {
         let distance = |s: f64| edge.point(s).distance(pole.point);
         let d: Vec<f64> = nodes.iter().map(|s| distance(*s)).collect();
-        for i in 1..nodes.len() - 1 {
-            if d[i] > d[i - 1] || d[i] > d[i + 1] {
+        let (last, most) = (nodes.len() - 1, d.iter().copied().fold(0.0, f64::max));
+        for i in 0..=last {
+            let (before, after) = (i.saturating_sub(1), (i + 1).min(last));
+            // an end at the pole is no passing, and one far from it lies before it
+            let end = (i == 0 || i == last) && (d[i] <= pole.reach || d[i] > CLOSE * most);
+            if end || d[i] > d[before] || d[i] > d[after] {
                 continue;
             }
-            let (mut a, mut b) = (nodes[i - 1], nodes[i + 1]);
+            let (mut a, mut b) = (nodes[before], nodes[after]);
             for _ in 0..80 {
                 let (c, e) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
                 if distance(c) <= distance(e) { b = e } else { a = c }

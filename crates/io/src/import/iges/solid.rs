@@ -14,6 +14,7 @@
 use super::curve::Segment;
 use super::entity::{Entity, Fault};
 use super::geometry::{FACE_LOST, Geometry, finite};
+use super::surface::SURFACES;
 use crate::brep::{Boundary, CurveGeometry, Edge, FaceGeometry};
 use crate::model::Colour;
 use glam::{DAffine3, DVec3};
@@ -116,6 +117,10 @@ impl<'a> Geometry<'a> {
     ) -> Result<(FaceGeometry, Option<Colour>), Fault> {
         let entity = entity.of_kind(510, "510, a face")?;
         let map = self.placed(entity, context.map)?;
+        let surface = Entity::find(self.file, entity.pointer(1)?)?;
+        if !SURFACES.contains(&surface.kind()) {
+            return Err(surface.unsupported());
+        }
         let mut bounds = Vec::new();
         for i in 4..4 + entity.count(2, 1)? {
             bounds.push(self.nested(entity.pointer(i)?, |l| self.face_loop(l, &map, shells))?);
@@ -125,7 +130,7 @@ impl<'a> Geometry<'a> {
             Boundary::Vertex(_) | Boundary::Natural => Vec::new(),
         };
         let vertices: Vec<DVec3> = bounds.iter().flat_map(edges).collect();
-        let carrier = self.surface_near(entity.pointer(1)?, &map, &vertices)?;
+        let carrier = self.surface_near(surface.id(), &map, &vertices)?;
         for boundary in bounds.iter_mut().filter(|_| carrier.flipped) {
             if let Boundary::Edges(uses) = boundary {
                 uses.reverse();

@@ -1,6 +1,8 @@
 //! Files that contradict themselves: loops that nearly close, edges that miss their vertices, offsets on the other side.
 
 use super::import;
+use super::shapes::curve;
+use crate::brep::CurveGeometry;
 use crate::import::Import;
 use crate::import::step;
 use crate::model::TrimLoop;
@@ -30,6 +32,24 @@ fn a_hole_whose_ends_nearly_meet_is_there() {
         // the hole is the outer loop at half its size
         let areas: Vec<f64> = face.loops.iter().map(TrimLoop::signed_area).collect();
         assert!((areas[0] + 4.0 * areas[1]).abs() < 1e-4 * areas[0].abs(), "{gap}: {areas:?}");
+    }
+}
+
+#[test]
+fn a_closed_curve_trimmed_by_one_point_is_all_of_it() {
+    let trimmed = |by: &str, sense: &str| {
+        let points =
+            "#101=B_SPLINE_CURVE_WITH_KNOTS('',1,(#4,#5,#6,#4),.UNSPECIFIED.,.T.,.F.,(2,1,1,2),(0.,1.,2.,3.),$);";
+        curve(&format!("{points}#100=TRIMMED_CURVE('',#101,({by}),({by}),{sense},.CARTESIAN.);"))
+    };
+    for sense in [".T.", ".F."] {
+        assert!(matches!(trimmed("#4", sense), CurveGeometry::Trimmed { start, end, .. } if end - start == 3.0));
+        let CurveGeometry::Composite(parts) = trimmed("#5", sense) else { panic!("two parts") };
+        let lengths = parts.iter().map(|p| match p {
+            CurveGeometry::Trimmed { start, end, .. } => end - start,
+            other => panic!("{other:?}"),
+        });
+        assert!((lengths.sum::<f64>() - 3.0).abs() < 1e-12);
     }
 }
 
