@@ -77,10 +77,10 @@ fn uses(face: &FaceGeometry) -> impl Iterator<Item = (usize, bool)> {
     face.bounds.iter().flat_map(edges).copied()
 }
 
-/// The curve that a trimmed one is a part of.
+/// The curve that a trimmed one runs along.
 fn basis(curve: &CurveGeometry) -> &CurveGeometry {
     match curve {
-        CurveGeometry::Trimmed { basis: inner, .. } => basis(inner),
+        CurveGeometry::Trimmed { basis: inner, forward: true, .. } => basis(inner),
         other => other,
     }
 }
@@ -116,7 +116,7 @@ fn better(edge: &Edge, faces: &[Support], (miss, tolerance): (f64, f64)) -> Opti
             let along = chord.dot(*direction).abs() >= ALONG * chord.length() * direction.length();
             let fits = chord != DVec3::ZERO && along && away(&mut steps().map(|s| start + chord * s)) <= most;
             let curve = CurveGeometry::Line { origin: start, direction: chord };
-            fits.then(|| Edge { curve, same_sense: true, ..*edge })
+            fits.then_some(Edge { curve, same_sense: true, ..*edge })
         }
         CurveGeometry::Circle { frame, radius } => {
             let level = |p: DVec3| p + frame.z * (start - p).dot(frame.z);

@@ -299,12 +299,11 @@ impl<'g, 'a> Tree<'g, 'a> {
                 continue;
             }
             match entity.kind() {
-                430 if self.instance_of(entity) != Some(186) => {
-                    if self.is_drawn(entity) {
-                        self.boolean(entity);
-                    }
-                }
-                186 | 430 | 510 | 514 if self.is_drawn(entity) => self.solid(entity),
+                186 | 510 | 514 if self.is_drawn(entity) => self.solid(entity),
+                430 if self.is_drawn(entity) => match self.instance_of(entity) {
+                    Some(150..=184) => self.boolean(entity),
+                    _ => self.solid(entity),
+                },
                 150..=180 if self.is_drawn(entity) => self.boolean(entity),
                 108 if entity.entry.form == 0 => self.not_drawn(entity, "an unbounded surface"),
                 190 | 192 | 194 if !entity.entry.dependent => self.not_drawn(entity, "an unbounded surface"),
