@@ -10,8 +10,11 @@ use selvedge_check::solids::SolidTracer;
 /// A unit square in the plane z = 0.
 const SQUARE: &str = "128,1,1,1,1,0,0,1,0,0,0.,0.,1.,1.,0.,0.,1.,1.,1.,1.,1.,1.,0.,0.,0.,1.,0.,0.,0.,1.,0.,1.,1.,0.;";
 
+/// A point, and whether it is inside.
+type Probe = ([f64; 3], bool);
+
 /// Whether points are inside of the file's only solid: a line through each.
-fn holds(import: &Import, points: &[([f64; 3], bool)]) {
+fn holds(import: &Import, points: &[Probe]) {
     assert!(import.warnings.is_empty(), "{:?}", import.warnings);
     let [solid] = &import.model.solids[..] else { panic!("{} solids", import.model.solids.len()) };
     let tracer = SolidTracer::new(solid, SurfaceTable::ROUNDED).unwrap();
@@ -24,7 +27,7 @@ fn holds(import: &Import, points: &[([f64; 3], bool)]) {
 #[test]
 fn primitives_stand_where_they_should() {
     let d = 1e-6;
-    let cases: [(&str, &[([f64; 3], bool)]); 8] = [
+    let cases: [(&str, &[Probe]); 8] = [
         ("150,1.,2.,3.;", &[([d, d, d], true), ([1.0 - d, 2.0 - d, 3.0 - d], true), ([1.0 + d, 1.0, 1.0], false)]),
         // local x along y, local z along x, so local y along z
         (
