@@ -9,7 +9,7 @@
 //! are scaled by S about its origin. The list names the places, counted from 1, that are drawn, or with `skip` 1 those
 //! that are not; where it is empty all are.
 //!
-//! Source: *IGES 5.3*, 4.95 and 4.96.
+//! Source: US Product Data Association, *IGES 5.3*, 1996.
 
 use super::entity::{Entity, Fault};
 use glam::{DAffine3, DVec2, DVec3};

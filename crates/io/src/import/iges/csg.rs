@@ -12,7 +12,7 @@
 //! A solid of faces (186) may be an operand. One operand that cannot be read costs the whole solid: without it, the rest
 //! is another one.
 //!
-//! Source: *IGES 5.3*, 4.50 to 4.57, 4.59 to 4.62, 4.98.
+//! Source: US Product Data Association, *IGES 5.3*, 1996.
 
 use super::entity::{Entity, Fault};
 use super::geometry::Geometry;
