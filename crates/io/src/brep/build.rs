@@ -4,9 +4,9 @@ use super::carrier::CarrierError;
 use super::edge::EdgeCurve;
 use super::fit::Fitter;
 use super::loops::{Limits, Loop};
-use super::nest::{arrange, come_home};
+use super::nest::{Directions, arrange, come_home};
 use super::order;
-use super::preimage::Lines;
+use super::preimage::{Lines, widen_poles};
 use super::rims::natural_border;
 use super::strand::Strand;
 use super::support::Support;
@@ -30,6 +30,8 @@ pub struct BuiltFace {
     /// Largest distance in mm of an edge from the surface, which is the source's. No point of a trim curve
     /// is farther from its edge than `deviation + gap`.
     pub gap: f64,
+    /// Loops that the source states and the face lacks, and why: holes are filled, or borders gone.
+    pub lost: Vec<String>,
 }
 
 /// Share of the tolerance that a fit may take, and a joint: each counts up to 1.25 times, the second along both axes.
@@ -66,6 +68,8 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         support.noise = 1e-7 * size;
     }
     uses.iter_mut().for_each(|bound| bound.retain(|e| e.length > support.target));
+    widen_poles(&mut support, &uses, (face.id, size), &mut notes);
+    let mut lost = lost(face, edges, &uses, &support);
     support.allow(uses.iter().flatten().map(|e| e.node_count).sum());
     let limits = Limits { face: face.id, size };
 
@@ -80,9 +84,12 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
     let mut loops = Vec::new();
     let mut lines = Lines::new();
     let mut hint = None;
+    let mut doubtful = face.doubtful;
     for bound in uses {
         let mut strands = Vec::new();
-        for edge in order::heal(bound, face.id, eps, &mut notes) {
+        let (bound, turned) = order::heal(bound, face.id, eps, &mut notes);
+        doubtful |= turned;
+        for edge in bound {
             let more = Strand::of_edge(&support, &Rc::new(edge), hint, &mut lines);
             hint = more.last().map(|s| s.end).or(hint);
             strands.extend(more);
@@ -97,10 +104,14 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         loops.extend(border);
     }
     let gap = gaps(&loops, eps, size, &mut notes);
+    if loops.is_empty() && !lost.is_empty() {
+        return Err(BuildError::EmptyLoop { face: face.id });
+    }
     if loops.is_empty() {
         return whole(face, &support, notes);
     }
-    let loops = arrange(&support, loops, &vertices, limits)?;
+    let directions = if doubtful { Directions::Doubtful(&mut notes) } else { Directions::Sound };
+    let loops = arrange(&support, loops, &vertices, limits, directions)?;
     let (loops, range) = come_home(&support, loops);
     if !(0..2).all(|i| range[i].1 > range[i].0 && (range[i].1 - range[i].0).is_finite()) {
         return Err(BuildError::NoArea { face: face.id });
@@ -125,7 +136,7 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         curves.retain(|c| c.degree() > 1 || c.points[0].point() != c.points[1].point());
         let trim = TrimLoop::new(curves, snap).map_err(|source| BuildError::Loop { face: face.id, source })?;
         if trim.signed_area().abs() <= 1e-12 * (range[0].1 - range[0].0) * (range[1].1 - range[1].0) {
-            notes.push(format!("face #{}: a loop without area was left out", face.id));
+            lost.push(format!("face #{}: a loop without area was left out", face.id));
             continue;
         }
         trims.push(trim);
@@ -145,7 +156,7 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
         same_sense: face.same_sense,
         colour: None,
     };
-    Ok(BuiltFace { face, notes, deviation, gap })
+    Ok(BuiltFace { face, notes, deviation, gap, lost })
 }
 
 /// What is told of loops that cross: points within two of them, or within a hole and nothing else, follow the non-zero
@@ -158,7 +169,26 @@ pub fn crossing_note(loops: &[TrimLoop]) -> Option<String> {
     }
 }
 
-/// The edges of each bound in the direction of the bound; those without length are left out.
+/// The bounds that have no edge left. One at a pole says no more than that the face reaches the pole.
+fn lost(face: &FaceGeometry, edges: &[Edge], uses: &[Vec<EdgeCurve>], support: &Support) -> Vec<String> {
+    let lists = face.bounds.iter().filter_map(|b| match b {
+        Boundary::Edges(list) => Some(list),
+        Boundary::Vertex(_) | Boundary::Natural => None,
+    });
+    let at_pole = |list: &[(usize, bool)]| {
+        let pole = |(index, _): &(usize, bool)| support.pole_at(edges[*index].start, 50.0 * support.eps);
+        list.first().is_some_and(|first| pole(first).is_some() && list.iter().all(|e| pole(e) == pole(first)))
+    };
+    let empty = lists.zip(uses).filter(|(list, uses)| uses.is_empty() && !at_pole(list));
+    let told = |(list, _): (&Vec<(usize, bool)>, _)| {
+        let edge = list.first().map_or(String::new(), |(index, _)| format!(", edge #{},", edges[*index].id));
+        format!("face #{}: a loop without length{edge} was left out", face.id)
+    };
+    empty.map(told).collect()
+}
+
+/// The edges of each bound in the direction of the bound; those without length are left out. A single edge that bounds
+/// nothing as its vertices lie is once around its curve.
 fn edge_uses(face: &FaceGeometry, edges: &[Edge]) -> Result<Vec<Vec<EdgeCurve>>, BuildError> {
     let lists = face.bounds.iter().filter_map(|b| match b {
         Boundary::Edges(list) => Some(list),
@@ -175,6 +205,13 @@ fn edge_uses(face: &FaceGeometry, edges: &[Edge]) -> Result<Vec<Vec<EdgeCurve>>,
         for &(index, forward) in list {
             let edge = edges.get(index).ok_or(BuildError::EdgeIndex { face: face.id, index })?;
             out.extend(EdgeCurve::new(edge, forward, rounding)?);
+        }
+        if out.len() < 2 && out.first().is_none_or(EdgeCurve::is_sliver) {
+            let around = |&(index, forward): &(usize, bool)| EdgeCurve::around(&edges[index], forward, rounding);
+            let all = list.iter().filter_map(|e| around(e).transpose()).collect::<Result<Vec<_>, _>>()?;
+            if all.len() == 1 {
+                out = all;
+            }
         }
         uses.push(out);
     }
@@ -211,7 +248,7 @@ fn whole(face: &FaceGeometry, support: &Support, notes: Vec<String>) -> Result<B
         same_sense: face.same_sense,
         colour: None,
     };
-    Ok(BuiltFace { face, notes, deviation: 0.0, gap: 0.0 })
+    Ok(BuiltFace { face, notes, deviation: 0.0, gap: 0.0, lost: Vec::new() })
 }
 
 fn carrier_error(face: u32, e: CarrierError) -> BuildError {

@@ -62,6 +62,37 @@ pub fn offset_surface(
     }
 }
 
+/// What of an offset lies farther than this share of its distance from its edges lies on the wrong side.
+const WRONG: f64 = 0.1;
+
+/// The surface made by `offset` at `distance`, mm, or at the same distance on the other side of its basis, where `edges`,
+/// points of its borders, lie there and not here: normals and indicators are wrong in files more often than edges are.
+/// The last value tells that it is on the other side.
+///
+/// # Errors
+/// Those of `offset` at `distance`.
+pub fn on_its_side<T, E>(
+    offset: impl Fn(f64) -> Result<T, E>,
+    surface: impl Fn(&T) -> &SurfaceGeometry,
+    (distance, tolerance): (f64, f64),
+    edges: &[DVec3],
+) -> Result<(T, bool), E> {
+    let stated = offset(distance)?;
+    let away = |t: &T| {
+        Support::new(surface(t), tolerance)
+            .ok()
+            .map(|s| edges.iter().map(|p| s.nearest(*p, None, 0.0).1).fold(0.0, f64::max))
+    };
+    let off = away(&stated).unwrap_or(0.0);
+    if off > tolerance.max(WRONG * distance.abs())
+        && let Ok(other) = offset(-distance)
+        && away(&other).is_some_and(|a| a <= WRONG * off)
+    {
+        return Ok((other, true));
+    }
+    Ok((stated, false))
+}
+
 /// The curve at `distance` mm along `reference × T`, and the largest error in mm.
 ///
 /// # Errors

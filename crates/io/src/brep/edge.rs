@@ -1,7 +1,7 @@
 //! One use of an edge by a loop: the curve run forward from one vertex to the other.
 
 use super::curve::Curve;
-use super::{BuildError, Edge};
+use super::{BuildError, CurveGeometry, Edge};
 use crate::model::Bounds;
 use glam::DVec3;
 
@@ -28,6 +28,9 @@ pub(super) struct EdgeCurve {
     pub node_count: usize,
 }
 
+/// Share of a curve's width by which the ends of a loop of one edge may miss each other.
+const OPEN: f64 = 0.05;
+
 impl EdgeCurve {
     /// The edge as a loop uses it, or `None` when it is no longer than `eps`, mm: the rounding of
     /// its coordinates.
@@ -35,17 +38,8 @@ impl EdgeCurve {
     /// # Errors
     /// [`BuildError::Curve`] when its numbers are impossible.
     pub fn new(edge: &Edge, forward: bool, eps: f64) -> Result<Option<Self>, BuildError> {
-        let named = |reason| BuildError::Curve { edge: edge.id, reason };
-        if !(edge.start.is_finite() && edge.end.is_finite()) {
-            return Err(named("a vertex is not finite"));
-        }
-        let stated = Curve::new(&edge.curve, eps).map_err(named)?;
-        let curve = if edge.same_sense == forward { stated } else { stated.reversed() };
-        let vertices = if forward { [edge.start, edge.end] } else { [edge.end, edge.start] };
+        let mut this = Self::without_range(edge, forward, eps)?;
         let closed = edge.start.distance(edge.end) <= 1e-3 * eps;
-        let (length, bounds, node_count) = (0.0, Bounds::EMPTY, 0);
-        let mut this =
-            Self { id: edge.id, curve, t0: 0.0, t1: 0.0, vertices, turned: false, length, bounds, node_count };
         if !this.set_range(closed, eps) {
             // an open curve met in the opposite order: the sense flag is wrong, the vertices are not
             this.curve = this.curve.reversed();
@@ -54,11 +48,59 @@ impl EdgeCurve {
                 return Ok(None);
             }
         }
-        let points: Vec<DVec3> = this.nodes().iter().map(|s| this.point(*s)).collect();
-        this.node_count = points.len();
-        this.length = points.windows(2).map(|w| w[0].distance(w[1])).sum();
-        this.bounds = points.into_iter().fold(Bounds::EMPTY, Bounds::with);
+        this.measure();
         Ok((this.length > eps).then_some(this))
+    }
+
+    /// The edge as a loop of its own: once around its curve, or along all of one whose ends nearly meet, whichever way the
+    /// vertices lie beside each other. `None` where that closes no loop.
+    ///
+    /// # Errors
+    /// As [`EdgeCurve::new`].
+    pub fn around(edge: &Edge, forward: bool, eps: f64) -> Result<Option<Self>, BuildError> {
+        let mut curve = &edge.curve;
+        while let CurveGeometry::Composite(segments) = curve
+            && let [only] = &segments[..]
+        {
+            curve = only;
+        }
+        let edge = Edge { curve: curve.clone(), ..*edge };
+        let mut this = Self::without_range(&edge, forward, eps)?;
+        let Some((a, b)) = this.curve.domain() else { return Ok(None) };
+        let [start, end] = this.vertices;
+        let gap = start.distance(end).max(eps);
+        let from_end = this.curve.period().is_none() || this.curve.point(a).distance(start) <= gap;
+        this.t0 = if from_end { a } else { this.curve.closest(start) };
+        this.t1 = this.t0 + (b - a);
+        let reach = this.point(0.5).distance(start);
+        let apart = start.distance(end).max(this.point(0.0).distance(start)).max(this.point(1.0).distance(end));
+        this.measure();
+        Ok((apart <= OPEN * reach && this.length > eps).then_some(this))
+    }
+
+    /// The edge bounds nothing by itself: it is about as long as its vertices are apart.
+    pub fn is_sliver(&self) -> bool {
+        self.length <= 4.0 * self.vertices[0].distance(self.vertices[1])
+    }
+
+    fn without_range(edge: &Edge, forward: bool, eps: f64) -> Result<Self, BuildError> {
+        let named = |reason| BuildError::Curve { edge: edge.id, reason };
+        if !(edge.start.is_finite() && edge.end.is_finite()) {
+            return Err(named("a vertex is not finite"));
+        }
+        let stated = Curve::new(&edge.curve, eps).map_err(named)?;
+        let curve = if edge.same_sense == forward { stated } else { stated.reversed() };
+        let vertices = if forward { [edge.start, edge.end] } else { [edge.end, edge.start] };
+        let (length, bounds, node_count) = (0.0, Bounds::EMPTY, 0);
+        Ok(Self { id: edge.id, curve, t0: 0.0, t1: 0.0, vertices, turned: false, length, bounds, node_count })
+    }
+
+    /// Length and box, once the range is known.
+    fn measure(&mut self) {
+        let points: Vec<DVec3> = self.nodes().iter().map(|s| self.point(*s)).collect();
+        self.node_count = points.len();
+        self.length = points.windows(2).map(|w| w[0].distance(w[1])).sum();
+        self.bounds = points.into_iter().fold(Bounds::EMPTY, Bounds::with);
     }
 
     /// Finds `t0 < t1`; false when the vertices come in the wrong order or coincide.
@@ -70,7 +112,7 @@ impl EdgeCurve {
             // one vertex, and a curve whose ends miss each other by more than eps: all of it
             if let (true, Some((a, b))) = (closed, self.curve.domain()) {
                 let reach = self.curve.point(0.5 * (a + b)).distance(start);
-                if self.curve.point(a).distance(start).max(self.curve.point(b).distance(start)) < 0.05 * reach {
+                if self.curve.point(a).distance(start).max(self.curve.point(b).distance(start)) < OPEN * reach {
                     (self.t0, self.t1) = (a, b);
                 }
             }
@@ -83,10 +125,23 @@ impl EdgeCurve {
         // a vertex within eps of the other one's parameter, seen from the wrong side, must not
         // turn a short edge into a whole turn
         let ahead = (self.t1 - self.t0).rem_euclid(period);
+        if ahead < 0.5 * period && !self.turned && self.spans_its_gap() {
+            (self.t0, self.t1) = self.curve.domain().unwrap_or((self.t0, self.t1));
+            return true;
+        }
         let speed = self.curve.jet(self.t0).1.length();
         let short = start.distance(end) <= 2.0 * eps && (period - ahead) * speed <= 4.0 * eps;
         self.t1 = self.t0 + ahead;
         ahead > 0.0 && !short
+    }
+
+    /// The curve closes but for a gap, and the vertices are its two ends: the edge is all of it, for nothing lies in the
+    /// gap.
+    fn spans_its_gap(&self) -> bool {
+        let (Curve::Pieces(_), Some((a, b))) = (&self.curve, self.curve.domain()) else { return false };
+        let [first, last] = [a, b].map(|t| self.curve.point(t));
+        let near = 0.25 * first.distance(last);
+        near > 0.0 && self.vertices[0].distance(first) <= near && self.vertices[1].distance(last) <= near
     }
 
     /// Curve parameter at the fraction `s` of the range.

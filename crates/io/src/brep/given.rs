@@ -10,7 +10,7 @@
 use super::build::crossing_note;
 use super::curve::segment;
 use super::map::SurfaceMap;
-use super::nest::depth;
+use super::nest::depths;
 use super::{BuildError, BuiltFace, CurveGeometry};
 use crate::model::{Bounds, Face, SurfaceKind, TrimLoop};
 use crate::spline::{Bezier, Control, Surface};
@@ -80,15 +80,15 @@ pub fn face_in_parameters(
         trims.push(trim);
     }
     let polygons: Vec<Vec<DVec2>> = if trims.len() > 1 { trims.iter().map(polygon).collect() } else { Vec::new() };
-    let outer = |i: usize| polygons.is_empty() || depth(&polygons, i).is_multiple_of(2);
-    let oriented = |(i, trim): (usize, TrimLoop)| {
-        if (trim.signed_area() > 0.0) == outer(i) { trim } else { trim.reversed() }
+    let depths = if polygons.is_empty() { vec![0; trims.len()] } else { depths(&polygons) };
+    let oriented = |(trim, depth): (TrimLoop, usize)| {
+        if (trim.signed_area() > 0.0) == depth.is_multiple_of(2) { trim } else { trim.reversed() }
     };
-    let loops: Vec<TrimLoop> = trims.into_iter().enumerate().map(oriented).collect();
+    let loops: Vec<TrimLoop> = trims.into_iter().zip(depths).map(oriented).collect();
     notes.extend(crossing_note(&loops).map(|note| format!("face #{id}: {note}")));
     let (kind, surface) = (SurfaceKind::BSpline, surface.clone());
     let face = Face { id, kind, surface, loops, same_sense: true, colour: None };
-    Ok(BuiltFace { face, notes, deviation, gap })
+    Ok(BuiltFace { face, notes, deviation, gap, lost: Vec::new() })
 }
 
 fn range(surface: &Surface) -> DVec2 {

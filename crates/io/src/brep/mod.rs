@@ -15,6 +15,7 @@
 //!
 //! | step | files |
 //! |---|---|
+//! | edges and faces of a body that contradict each other | `settle` |
 //! | curves and surfaces made ready | `curve`, `pieces`, `edge`; `support`, `invert`, `spline` |
 //! | those defined by others | `derived`, `approximate` |
 //! | edge → pre-image in the standard's own `(u, v)` | `order`; `trace`, `border`, `preimage`, `strand` |
@@ -43,6 +44,7 @@ mod order;
 mod pieces;
 mod preimage;
 mod rims;
+mod settle;
 mod spline;
 mod strand;
 mod support;
@@ -52,10 +54,11 @@ mod trace;
 mod tests;
 
 pub use build::{BuiltFace, build_face, crossing_note};
-pub use derived::{curve_on_surface, offset_curve, offset_surface};
+pub use derived::{curve_on_surface, offset_curve, offset_surface, on_its_side};
 pub use error::BuildError;
 pub use given::face_in_parameters;
 pub use map::SurfaceMap;
+pub use settle::settle;
 
 use crate::spline::{BSpline, Surface};
 use glam::{DVec3, DVec4};
@@ -206,4 +209,7 @@ pub struct FaceGeometry {
     pub bounds: Vec<Boundary>,
     /// The face's outward normal is the surface's.
     pub same_sense: bool,
+    /// The directions of its loops are contradicted by its neighbours: where only they say which side of them on a
+    /// closed surface is the face, the smaller one is.
+    pub doubtful: bool,
 }

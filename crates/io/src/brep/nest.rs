@@ -1,16 +1,27 @@
 //! Which loops are outer borders and which are holes: by containment, not by order or direction.
 
 use super::cut::cut_open;
+use super::edge::EdgeCurve;
 use super::loops::{Limits, Loop, area};
 use super::rims::natural_rims;
 use super::support::Support;
 use super::{BuildError, law};
 use glam::DVec2;
+use std::rc::Rc;
+
+/// What the directions of loops are worth.
+pub(super) enum Directions<'n> {
+    /// They keep the face on their left.
+    Sound,
+    /// They contradict each other; what is guessed instead is told.
+    Doubtful(&'n mut Vec<String>),
+}
 
 /// Unrolled loops of a face, outer ones counter-clockwise and holes clockwise, without winding.
 ///
 /// The given directions are read in one case only: on a closed surface whose loops can all be
-/// contracted, they say whether the face is inside or outside of them. A loop that runs along an edge
+/// contracted, they say whether the face is inside or outside of them; where they cannot be believed, it is the smaller
+/// part. A loop that runs along an edge
 /// twice, once each way, has the face on both sides of it and so needs no direction (and real files
 /// get it wrong there): the face is what it goes around.
 pub(super) fn arrange(
@@ -18,11 +29,21 @@ pub(super) fn arrange(
     loops: Vec<Loop>,
     vertices: &[usize],
     limits: Limits,
+    directions: Directions<'_>,
 ) -> Result<Vec<Loop>, BuildError> {
-    let told_by_direction = loops.iter().all(|l| l.winding == [0, 0] && !has_seam(l));
+    let told_by_direction = support.is_closed() && loops.iter().all(|l| l.winding == [0, 0] && !has_seam(l));
     let mut loops = cut_open(support, loops, vertices, limits)?;
     gather(support, &mut loops);
-    if told_by_direction && support.is_closed() && is_outside(support, &loops) {
+    let outside = match directions {
+        _ if !told_by_direction => false,
+        Directions::Sound => is_outside(support, &loops),
+        Directions::Doubtful(notes) => {
+            let what = "its loops do not say which side of them it is; the smaller one is taken";
+            notes.push(format!("face #{}: {what}", limits.face));
+            share_inside(support, &loops) > 0.5
+        }
+    };
+    if outside {
         let rims = natural_rims(support, &loops).ok_or(BuildError::Tangled { face: limits.face })?;
         loops.extend(rims);
         loops = cut_open(support, loops, vertices, limits)?;
@@ -42,6 +63,7 @@ fn gather(support: &Support, loops: &mut [Loop]) {
     let Some(outer) = (0..loops.len()).max_by(|a, b| size(*a).total_cmp(&size(*b))) else { return };
     let centre = |p: &[DVec2]| p.iter().sum::<DVec2>() / p.len() as f64;
     let middle = centre(&polygons[outer]);
+    let around = bounds(&polygons[outer]);
     for i in (0..loops.len()).filter(|i| *i != outer) {
         let mut candidates = vec![DVec2::ZERO];
         for ku in -1..=1 {
@@ -54,7 +76,7 @@ fn gather(support: &Support, loops: &mut [Loop]) {
         }
         let inside = |by: &DVec2| {
             let moved: Vec<DVec2> = polygons[i].iter().map(|p| *p + *by).collect();
-            contains(&polygons[outer], &moved)
+            contains((&polygons[outer][..], around), &moved)
         };
         if let Some(by) = candidates.into_iter().find(inside) {
             loops[i] = loops[i].clone().shifted(by);
@@ -62,33 +84,78 @@ fn gather(support: &Support, loops: &mut [Loop]) {
     }
 }
 
-/// Some edge is used twice.
+/// Some edge is used twice. The parts of one that passes a pole are one use.
 fn has_seam(l: &Loop) -> bool {
-    let mut edges: Vec<u32> = l.strands.iter().filter_map(|s| Some(s.part.as_ref()?.trace.edge.id)).collect();
-    edges.sort_unstable();
-    edges.windows(2).any(|w| w[0] == w[1])
+    let edges = l.strands.iter().filter_map(|s| Some(&s.part.as_ref()?.trace.edge));
+    let mut uses: Vec<(u32, *const EdgeCurve)> = edges.map(|e| (e.id, Rc::as_ptr(e))).collect();
+    uses.sort_unstable();
+    uses.dedup();
+    uses.windows(2).any(|w| w[0].0 == w[1].0)
 }
 
 /// Every outermost loop runs clockwise as given: the face is what they leave.
 fn is_outside(support: &Support, loops: &[Loop]) -> bool {
     let polygons: Vec<Vec<DVec2>> = loops.iter().map(|l| closed(l.polygon(support))).collect();
-    !loops.is_empty() && (0..loops.len()).all(|i| depth(&polygons, i) > 0 || area(&polygons[i]) < 0.0)
+    let depths = depths(&polygons);
+    !loops.is_empty() && (0..loops.len()).all(|i| depths[i] > 0 || area(&polygons[i]) < 0.0)
+}
+
+/// Share of a closed surface's area within an odd number of loops, by samples.
+fn share_inside(support: &Support, loops: &[Loop]) -> f64 {
+    const STEPS: u32 = 48;
+    let polygons: Vec<Vec<DVec2>> = loops.iter().map(|l| closed(l.polygon(support))).collect();
+    let [Some(u), Some(v)] = support.natural else { return 0.0 };
+    let at = |(a, b): (f64, f64), i: u32| a + (b - a) * (f64::from(i) + 0.5) / f64::from(STEPS);
+    let copies = |axis: usize| if support.periods[axis].is_some() { -1..=1 } else { 0..=0 };
+    let by = |axis: usize, k: i32| f64::from(k) * support.periods[axis].unwrap_or(0.0);
+    let (mut all, mut inside) = (0.0, 0.0);
+    for p in (0..STEPS).flat_map(|i| (0..STEPS).map(move |j| DVec2::new(at(u, i), at(v, j)))) {
+        let jet = support.jet(p);
+        let area = jet.du.cross(jet.dv).length();
+        let moved = copies(0).flat_map(|k| copies(1).map(move |l| p + DVec2::new(by(0, k), by(1, l))));
+        let within = moved.flat_map(|p| polygons.iter().filter(move |polygon| encloses(polygon, p))).count();
+        all += area;
+        inside += if within % 2 == 1 { area } else { 0.0 };
+    }
+    inside / all
 }
 
 /// Turns loops around so that those at even depth run counter-clockwise.
 fn orient(support: &Support, loops: &mut [Loop]) {
     let polygons: Vec<Vec<DVec2>> = loops.iter().map(|l| closed(l.polygon(support))).collect();
-    for i in 0..loops.len() {
-        let outer = depth(&polygons, i).is_multiple_of(2);
-        if (area(&polygons[i]) > 0.0) != outer {
-            loops[i] = loops[i].clone().reversed();
+    for ((l, polygon), depth) in loops.iter_mut().zip(&polygons).zip(depths(&polygons)) {
+        if (area(polygon) > 0.0) != depth.is_multiple_of(2) {
+            *l = l.clone().reversed();
         }
     }
 }
 
-/// How many other loops hold loop `i`.
-pub(super) fn depth(polygons: &[Vec<DVec2>], i: usize) -> usize {
-    (0..polygons.len()).filter(|j| *j != i && contains(&polygons[*j], &polygons[i])).count()
+/// How many other polygons hold each one: a sweep along the axis on which they are the shorter, so that only those
+/// whose boxes meet are asked.
+pub(super) fn depths(polygons: &[Vec<DVec2>]) -> Vec<usize> {
+    let boxes: Vec<(DVec2, DVec2)> = polygons.iter().map(|p| bounds(p)).collect();
+    let whole = boxes.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), (lo, hi)| (a.min(*lo), b.max(*hi)));
+    let share: DVec2 = boxes.iter().map(|(lo, hi)| (hi - lo) / (whole.1 - whole.0)).sum();
+    let axis = usize::from(share.y < share.x);
+    let mut order: Vec<usize> = (0..polygons.len()).collect();
+    order.sort_by(|a, b| boxes[*a].0[axis].total_cmp(&boxes[*b].0[axis]));
+    let mut depths = vec![0; polygons.len()];
+    let mut open: Vec<usize> = Vec::new();
+    for i in order {
+        open.retain(|j| boxes[*j].1[axis] >= boxes[i].0[axis]);
+        for &j in &open {
+            if (boxes[i].0.cmple(boxes[j].1) & boxes[j].0.cmple(boxes[i].1)).all() {
+                depths[i] += usize::from(contains((&polygons[j][..], boxes[j]), &polygons[i]));
+                depths[j] += usize::from(contains((&polygons[i][..], boxes[i]), &polygons[j]));
+            }
+        }
+        open.push(i);
+    }
+    depths
+}
+
+fn bounds(polygon: &[DVec2]) -> (DVec2, DVec2) {
+    polygon.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)))
 }
 
 fn closed(mut polygon: Vec<DVec2>) -> Vec<DVec2> {
@@ -97,8 +164,7 @@ fn closed(mut polygon: Vec<DVec2>) -> Vec<DVec2> {
 }
 
 /// `inner` lies in `outer`, by the vote of its edge midpoints: loops may touch.
-fn contains(outer: &[DVec2], inner: &[DVec2]) -> bool {
-    let (lo, hi) = outer.iter().fold((DVec2::INFINITY, DVec2::NEG_INFINITY), |(a, b), p| (a.min(*p), b.max(*p)));
+fn contains((outer, (lo, hi)): (&[DVec2], (DVec2, DVec2)), inner: &[DVec2]) -> bool {
     // at most some thirty votes of the longest loops
     let stride = inner.len().div_ceil(32).max(1);
     let mut votes = (0, 0);

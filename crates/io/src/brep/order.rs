@@ -14,8 +14,8 @@ use glam::DVec3;
 const MOST: usize = 4096;
 
 /// Puts edges in order and turns around those that do not begin where the one before ends, but end there.
-/// Vertices within `50 eps` mm meet.
-pub(super) fn heal(edges: Vec<EdgeCurve>, face: u32, eps: f64, notes: &mut Vec<String>) -> Vec<EdgeCurve> {
+/// Vertices within `50 eps` mm meet. True when half of them or more were turned: they do not say which way the loop runs.
+pub(super) fn heal(edges: Vec<EdgeCurve>, face: u32, eps: f64, notes: &mut Vec<String>) -> (Vec<EdgeCurve>, bool) {
     let edges = match sorted(&edges, eps) {
         Some(order) => {
             notes.push(format!("face #{face}: the edges of a loop were put in order"));
@@ -54,7 +54,7 @@ fn sorted(edges: &[EdgeCurve], eps: f64) -> Option<Vec<usize>> {
     near(end, edges[0].vertices[0], eps).then_some(order)
 }
 
-fn directed(edges: Vec<EdgeCurve>, face: u32, eps: f64, notes: &mut Vec<String>) -> Vec<EdgeCurve> {
+fn directed(edges: Vec<EdgeCurve>, face: u32, eps: f64, notes: &mut Vec<String>) -> (Vec<EdgeCurve>, bool) {
     let near = |p: DVec3, q: DVec3| near(p, q, eps);
     let flip = |e: EdgeCurve| {
         let [a, b] = e.vertices;
@@ -63,6 +63,7 @@ fn directed(edges: Vec<EdgeCurve>, face: u32, eps: f64, notes: &mut Vec<String>)
     };
     let mut out: Vec<EdgeCurve> = Vec::with_capacity(edges.len());
     let count = edges.len();
+    let mut turned = 0;
     for e in edges {
         if e.turned {
             notes.push(format!("face #{face}: edge #{} runs against its stated sense", e.id));
@@ -74,13 +75,15 @@ fn directed(edges: Vec<EdgeCurve>, face: u32, eps: f64, notes: &mut Vec<String>)
             if alone && !fits(last.vertices[1], &e) && fits(last.vertices[0], &e) {
                 notes.push(format!("face #{face}: edge #{} was turned around in its loop", last.id));
                 *last = flip(last.clone());
+                turned += 1;
             }
             if !near(last.vertices[1], e.vertices[0]) && near(last.vertices[1], e.vertices[1]) {
                 notes.push(format!("face #{face}: edge #{} was turned around in its loop", e.id));
                 e = flip(e);
+                turned += 1;
             }
         }
         out.push(e);
     }
-    out
+    (out, turned > 0 && 2 * turned >= count)
 }

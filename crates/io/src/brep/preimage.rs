@@ -134,38 +134,81 @@ fn constant_line(support: &Support, trace: &Trace, lines: &mut Lines) -> Option<
 
 /// Fractions at which the edge must be cut because it meets a pole there, with 0 and 1.
 fn pole_stops(support: &Support, edge: &EdgeCurve) -> Vec<(f64, Option<usize>)> {
-    // vertices miss poles by more than curves do
-    let reach = 4.0 * support.eps;
-    let end =
-        |i: usize, s: f64| support.pole_at(edge.vertices[i], reach).or_else(|| support.pole_at(edge.point(s), reach));
+    let end = |i: usize, s: f64| support.pole_of(edge.vertices[i]).or_else(|| support.pole_of(edge.point(s)));
     let mut stops = vec![(0.0, end(0, 0.0))];
-    let nodes = edge.nodes();
-    for (index, pole) in support.poles.iter().enumerate() {
-        let distance = |s: f64| edge.point(s).distance(pole.point);
-        let d: Vec<f64> = nodes.iter().map(|s| distance(*s)).collect();
-        for i in 1..nodes.len() - 1 {
-            if d[i] > d[i - 1] || d[i] > d[i + 1] {
-                continue;
-            }
-            let (mut a, mut b) = (nodes[i - 1], nodes[i + 1]);
-            for _ in 0..80 {
-                let (c, e) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
-                if distance(c) <= distance(e) { b = e } else { a = c }
-            }
-            let s = 0.5 * (a + b);
-            if distance(s) <= reach && s > 1e-6 && s < 1.0 - 1e-6 {
-                stops.push((s, Some(index)));
-            }
-        }
-    }
+    stops.extend(passed_poles(support, edge));
     stops.push((1.0, end(1, 1.0)));
     stops.sort_by(|a, b| a.0.total_cmp(&b.0));
     stops.dedup_by(|b, a| b.0 - a.0 < 1e-6);
     stops
 }
 
+/// Share of the face's size by which edges may end behind a pole: the tip of a cone that its maker missed.
+const BEHIND: f64 = 1e-4;
+
+/// Lets poles reach as far as edges that pass through them end behind them: those edges meet at the pole, which is told.
+pub(super) fn widen_poles(
+    support: &mut Support,
+    uses: &[Vec<EdgeCurve>],
+    (face, size): (u32, f64),
+    notes: &mut Vec<String>,
+) {
+    let mut behind = vec![0.0_f64; support.poles.len()];
+    for edge in uses.iter().flatten() {
+        for index in passed_poles(support, edge).into_iter().filter_map(|stop| stop.1) {
+            let ends = edge.vertices.map(|p| p.distance(support.poles[index].point));
+            for end in ends.into_iter().filter(|d| *d <= BEHIND * size) {
+                behind[index] = behind[index].max(end);
+            }
+        }
+    }
+    for (pole, behind) in support.poles.iter_mut().zip(behind) {
+        if behind > pole.reach {
+            notes.push(format!("face #{face}: edges end {behind:.3e} mm behind the tip of the surface, and now at it"));
+            // the neighbour ends as far away as rounding tells
+            pole.reach = 1.01 * behind;
+        }
+    }
+}
+
+/// Share of an edge's greatest distance from a pole within which its end may lie behind the pole.
+const CLOSE: f64 = 1e-2;
+
+/// Fractions strictly between the ends of an edge at which it passes a pole.
+fn passed_poles(support: &Support, edge: &EdgeCurve) -> Vec<(f64, Option<usize>)> {
+    let mut stops = Vec::new();
+    if support.poles.is_empty() {
+        return stops;
+    }
+    let nodes = edge.nodes();
+    for (index, pole) in support.poles.iter().enumerate() {
+        let distance = |s: f64| edge.point(s).distance(pole.point);
+        let d: Vec<f64> = nodes.iter().map(|s| distance(*s)).collect();
+        let (last, most) = (nodes.len() - 1, d.iter().copied().fold(0.0, f64::max));
+        for i in 0..=last {
+            let (before, after) = (i.saturating_sub(1), (i + 1).min(last));
+            // an end at the pole is no passing, and one far from it lies before it
+            let end = (i == 0 || i == last) && (d[i] <= pole.reach || d[i] > CLOSE * most);
+            if end || d[i] > d[before] || d[i] > d[after] {
+                continue;
+            }
+            let (mut a, mut b) = (nodes[before], nodes[after]);
+            for _ in 0..80 {
+                let (c, e) = (a + (b - a) / 3.0, b - (b - a) / 3.0);
+                if distance(c) <= distance(e) { b = e } else { a = c }
+            }
+            let s = 0.5 * (a + b);
+            if distance(s) <= pole.reach && s > 1e-6 && s < 1.0 - 1e-6 {
+                stops.push((s, Some(index)));
+            }
+        }
+    }
+    stops
+}
+
 /// The edge does not leave the pole between the two fractions.
 fn stays(support: &Support, edge: &EdgeCurve, (from, to): (f64, f64), pole: Option<usize>) -> bool {
-    let Some(pole) = pole.map(|i| support.poles[i].point) else { return false };
-    (1..8).all(|i| edge.point(from + (to - from) * f64::from(i) / 8.0).distance(pole) <= 8.0 * support.eps)
+    let Some(pole) = pole.map(|i| &support.poles[i]) else { return false };
+    let away = |i: i32| edge.point(from + (to - from) * f64::from(i) / 8.0).distance(pole.point);
+    (1..8).all(|i| away(i) <= 2.0 * pole.reach)
 }

@@ -124,7 +124,7 @@ impl SplineForm {
                 if let Some(point) = side.next()
                     && side.all(|p| p.distance(point) <= eps)
                 {
-                    poles.push(Pole { axis, value, point });
+                    poles.push(Pole { axis, value, point, reach: Pole::REACH * eps });
                 }
             }
         }

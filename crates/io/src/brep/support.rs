@@ -48,6 +48,13 @@ pub(super) struct Pole {
     pub value: f64,
     /// The point.
     pub point: DVec3,
+    /// Distance in mm within which an edge meets it.
+    pub reach: f64,
+}
+
+impl Pole {
+    /// Reach in distances at which points are the same: vertices miss poles by more than curves do.
+    pub const REACH: f64 = 4.0;
 }
 
 /// A surface ready to be trimmed.
@@ -244,7 +251,8 @@ impl Support {
     }
 
     fn find_poles(&self) -> Vec<Pole> {
-        let at = |value: f64| Pole { axis: 1, value, point: self.point(DVec2::new(0.0, value)) };
+        let reach = Pole::REACH * self.eps;
+        let at = |value: f64| Pole { axis: 1, value, point: self.point(DVec2::new(0.0, value)), reach };
         match &self.form {
             Form::Cone { radius, slope } => {
                 vec![Pole { point: self.frame.origin - self.frame.z * (radius / slope), ..at(-radius / slope) }]
@@ -286,6 +294,17 @@ impl Support {
             Form::Sphere { .. } | Form::Torus { .. } => [Law::Angle; 2],
             Form::Revolution { profile } => [Law::Angle, profile.law()],
             Form::Extrusion { profile, .. } => [profile.law(), Law::Linear],
+        }
+    }
+
+    /// A point of the axis that the surface is round about, and its direction; a sphere has its centre and every direction.
+    pub fn axis(&self) -> Option<(DVec3, Option<DVec3>)> {
+        match self.form {
+            Form::Sphere { .. } => Some((self.frame.origin, None)),
+            Form::Cylinder { .. } | Form::Cone { .. } | Form::Torus { .. } | Form::Revolution { .. } => {
+                Some((self.frame.origin, Some(self.frame.z)))
+            }
+            Form::Plane | Form::Extrusion { .. } | Form::Spline(_) => None,
         }
     }
 
@@ -360,6 +379,11 @@ impl Support {
     pub fn unwrap(&self, p: DVec2, near: DVec2) -> DVec2 {
         let one = |i: usize| self.periods[i].map_or(p[i], |period| super::law::nearest(p[i], near[i], period));
         DVec2::new(one(0), one(1))
+    }
+
+    /// The pole that `p` is.
+    pub fn pole_of(&self, p: DVec3) -> Option<usize> {
+        self.poles.iter().position(|pole| pole.point.distance(p) <= pole.reach)
     }
 
     /// The pole within `reach` mm of `p`.

@@ -23,6 +23,9 @@ pub(super) struct Trace {
     accept: f64,
 }
 
+/// Share of a trace that ends at a pole within its edge in which no node is a sample: the way there is halved instead.
+const BESIDE: f64 = 1e-2;
+
 impl Trace {
     /// Traces the edge over `[from, to]`. `poles`: the support's poles that its ends are, if any;
     /// `hint`: parameters near the start, for surfaces that pass twice through one point.
@@ -33,7 +36,10 @@ impl Trace {
         poles: [Option<usize>; 2],
         hint: Option<DVec2>,
     ) -> Self {
-        let mut nodes: Vec<f64> = edge.nodes().into_iter().filter(|s| *s > from && *s < to).collect();
+        // a sample beside a pole that the edge passes tells no angle, and one at it none at all
+        let beside = |end: f64| if end > 0.0 && end < 1.0 { BESIDE * (to - from) } else { 0.0 };
+        let inside = [from + beside(from), to - beside(to)];
+        let mut nodes: Vec<f64> = edge.nodes().into_iter().filter(|s| *s > inside[0] && *s < inside[1]).collect();
         if nodes.len() < 3 {
             nodes = (1..4).map(|i| from + (to - from) * f64::from(i) / 4.0).collect();
         }

@@ -39,7 +39,7 @@ pub(super) fn assemble(
             Ok((face, notes)) => {
                 let at = part(&mut parts, name, true);
                 let record = FaceRecord { id: face.id, part: at, ..FaceRecord::default() };
-                let face = report.record(record, BuiltFace { face, notes, deviation: 0.0, gap: 0.0 });
+                let face = report.record(record, BuiltFace { face, notes, deviation: 0.0, gap: 0.0, lost: Vec::new() });
                 parts[at].faces.push(face);
             }
             Err((id, why)) => lost.push((name, id, why)),

@@ -140,6 +140,9 @@ impl fmt::Display for Warning {
     }
 }
 
+/// The kind of warning of a face that lacks a loop: a hole is filled, or a border gone.
+pub(crate) const LOOP_LOST: &str = "loop left out";
+
 /// Warnings of each kind that are kept one by one; later ones only count.
 const KEPT_PER_KIND: usize = 10;
 
@@ -252,7 +255,8 @@ impl Warnings {
 impl ImportReport {
     /// Keeps what is known about a face that was built, and returns the face.
     pub(crate) fn record(&mut self, record: FaceRecord, built: BuiltFace) -> Face {
-        let BuiltFace { face, notes, deviation, gap } = built;
+        let BuiltFace { face, mut notes, deviation, gap, lost } = built;
+        notes.extend(lost);
         self.deviation = self.deviation.max(deviation);
         self.gap = self.gap.max(gap);
         self.sloppy += usize::from(gap > record.tolerance);
@@ -281,7 +285,7 @@ impl ImportReport {
     ) -> Face {
         self.made = self.made.max(deviation);
         let curves = self.deviation;
-        let face = self.record(record, BuiltFace { face, notes, deviation, gap: 0.0 });
+        let face = self.record(record, BuiltFace { face, notes, deviation, gap: 0.0, lost: Vec::new() });
         self.deviation = curves;
         face
     }

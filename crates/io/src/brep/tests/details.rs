@@ -66,3 +66,30 @@ fn senses_do_not_change_the_shape() {
     assert!(forward.face.same_sense && !backward.face.same_sense);
     assert_eq!(forward.face.loops, backward.face.loops);
 }
+
+/// Rectangles of every nesting and overlap, each against each.
+#[test]
+fn depths_are_those_of_all_pairs() {
+    let mut random = crate::math::random::Random::new(5);
+    for count in [1, 2, 7, 60] {
+        let mut rectangle = || {
+            let mut side = || {
+                let (a, b) = (random.range(0.0, 20.0), random.range(0.0, 20.0));
+                (a.min(b), a.max(b))
+            };
+            let ((u0, u1), (v0, v1)) = (side(), side());
+            [(u0, v0), (u1, v0), (u1, v1), (u0, v1), (u0, v0)].map(|(u, v)| DVec2::new(u, v)).to_vec()
+        };
+        let polygons: Vec<Vec<DVec2>> = (0..count).map(|_| rectangle()).collect();
+        // more than half of the sides' middles
+        let holds = |a: &[DVec2], b: &[DVec2]| {
+            let inside = |w: &&[DVec2]| {
+                let p = 0.5 * (w[0] + w[1]);
+                p.x > a[0].x && p.x < a[2].x && p.y > a[0].y && p.y < a[2].y
+            };
+            b.windows(2).filter(inside).count() > 2
+        };
+        let pairs = |i: usize| (0..count).filter(|j| *j != i && holds(&polygons[*j], &polygons[i])).count();
+        assert_eq!(super::super::nest::depths(&polygons), (0..count).map(pairs).collect::<Vec<_>>());
+    }
+}

@@ -2,12 +2,15 @@
 
 mod borders;
 mod carriers;
+mod closing;
 mod curved;
 mod damage;
 mod derived;
 mod details;
 mod flat;
 mod given;
+mod poles;
+mod settle;
 mod splines;
 
 use super::*;
@@ -57,7 +60,7 @@ fn full_circle(list: &mut Vec<Edge>, frame: Frame, radius: f64) -> usize {
 }
 
 fn face(surface: SurfaceGeometry, bounds: Vec<Boundary>) -> FaceGeometry {
-    FaceGeometry { id: 7, surface, bounds, same_sense: true }
+    FaceGeometry { id: 7, surface, bounds, same_sense: true, doubtful: false }
 }
 
 fn build(surface: SurfaceGeometry, bounds: Vec<Boundary>, edges: &[Edge]) -> BuiltFace {

@@ -8,7 +8,8 @@
 //!         ─curve, conic, spline, fit─▶ Segment                  curves in millimetres
 //!         ─surface, ruled─▶ Carrier                             surfaces, and how their (u, v) map
 //!         ─trim─▶ Sheet   ─solid─▶ Shells                       faces, by themselves or with shared edges
-//!         ─tree, colour─▶ bodies and their places
+//!         ─csg─▶ Expression         Boolean solids
+//!         ─tree, array, colour─▶ bodies and their places
 //!         ─brep::build_face─▶ Face  in parallel, results in file order
 //! ```
 //!
@@ -17,9 +18,11 @@
 //!
 //! Source: US Product Data Association, *Initial Graphics Exchange Specification IGES 5.3*, 1996.
 
+mod array;
 mod card;
 mod colour;
 mod conic;
+mod csg;
 mod curve;
 mod directory;
 mod entity;
@@ -35,13 +38,14 @@ mod tree;
 mod trim;
 mod value;
 
-use super::{FaceRecord, Import, ImportError, ImportReport, Place, Warnings, text};
-use crate::brep::build_face;
+use super::{FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Place, Warnings, text};
+use crate::brep::{build_face, settle};
 use crate::model::{Instance, Model, Part};
 use file::File;
 use geometry::{FACE_LOST, Geometry};
 use rayon::prelude::*;
-use tree::{Body, Tree};
+use std::sync::Arc;
+use tree::{Body, Placement, SOLID_LOST, Tree};
 
 /// Whether the bytes begin like IGES, in any of its forms.
 pub(super) fn recognise(bytes: &[u8]) -> bool {
@@ -70,13 +74,14 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     }
     let geometry = Geometry::new(&file, warnings);
     let tree = Tree::read(&geometry);
-    let (bodies, placements) = (tree.bodies, tree.placements);
+    let (mut bodies, placements) = (tree.bodies, tree.placements);
     let global = &file.global;
     let mut model = Model { name: model_name(&global.product, name), ..Model::default() };
     model.unit.clone_from(&global.unit_name);
     for body in &bodies {
         model.parts.push(Part { name: body.name.clone(), closed: body.closed, ..Part::default() });
     }
+    let (solids, placements): (Vec<_>, Vec<_>) = placements.into_iter().partition(|p| bodies[p.body].solid.is_some());
     for placed in placements {
         let (part, transform, name) = (placed.body, placed.transform, placed.name);
         model.instances.push(Instance { part, transform, colour: None, name });
@@ -85,20 +90,66 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
         format: format!("IGES {}", global.version).trim_end().to_owned(),
         written_by: global.system.clone(),
         units: vec![global.unit_name.clone()],
-        bodies: bodies.len(),
+        bodies: bodies.iter().filter(|b| !b.operand).count(),
         edges: bodies.iter().map(edges).sum(),
         pcurves: bodies.iter().map(pcurves).sum(),
         occurrences: model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect(),
         ..ImportReport::default()
     };
+    settled(&geometry, &mut bodies, &mut report);
     build(&geometry, &bodies, &mut model, &mut report);
+    let faces = model.face_count();
+    if !solids.is_empty() {
+        place_solids(&geometry, &bodies, &solids, &mut model, &mut report);
+    }
     let (warnings, dropped) = geometry.finish();
-    report.faces = model.face_count() + dropped.total();
+    report.faces = faces + dropped.total();
     report.dropped = dropped;
     let list = warnings.finish(&mut report);
     // most of what was read is needed no more, and is given back while the model is used
     rayon::spawn(move || drop((file, bodies)));
     Ok(Import { model, warnings: list, report, ..Import::default() })
+}
+
+/// Makes the Boolean solids from what their operands became, and takes both from the parts.
+fn place_solids(
+    geometry: &Geometry<'_>,
+    bodies: &[Body],
+    placements: &[Placement],
+    model: &mut Model,
+    report: &mut ImportReport,
+) {
+    let parts: Vec<Arc<Part>> = std::mem::take(&mut model.parts).into_iter().map(Arc::new).collect();
+    for placed in placements {
+        let Some((expression, first)) = &bodies[placed.body].solid else { continue };
+        match expression.solid(placed.transform, &parts[*first..placed.body]) {
+            Ok(solid) => model.solids.push(solid),
+            Err(why) => geometry.note(SOLID_LOST, expression.id, why),
+        }
+    }
+    for (name, count) in bodies.iter().filter_map(|b| b.solid.as_ref()).flat_map(|(e, _)| &e.kinds) {
+        *report.nodes.entry((*name).to_owned()).or_default() += count;
+    }
+    let stays = |b: &Body| !b.operand && b.solid.is_none();
+    let mut new = vec![None; parts.len()];
+    for (old, part) in parts.into_iter().enumerate().filter(|(old, _)| stays(&bodies[*old])) {
+        new[old] = Some(model.parts.len());
+        model.parts.push(Arc::unwrap_or_clone(part));
+    }
+    let left = model.parts.len();
+    model.instances.iter_mut().for_each(|i| i.part = new[i.part].unwrap_or(left));
+    report.face_records.iter_mut().for_each(|r| r.part = new[r.part].unwrap_or(left));
+}
+
+/// Edges of solids and shells put right where they miss their vertices.
+fn settled(geometry: &Geometry<'_>, bodies: &mut [Body], report: &mut ImportReport) {
+    for body in bodies {
+        let mut faces: Vec<_> = body.shells.faces.iter_mut().map(|(face, _)| face).collect();
+        for (id, note) in settle(&mut body.shells.edges, &mut faces, body.closed, geometry.file.global.resolution) {
+            *report.healed.entry(ImportReport::reason(&note)).or_default() += 1;
+            geometry.note("edge healed", id, note);
+        }
+    }
 }
 
 /// Builds all faces, in parallel; results are taken in file order.
@@ -121,6 +172,9 @@ fn build(geometry: &Geometry<'_>, bodies: &[Body], model: &mut Model, report: &m
                     for note in &built.notes {
                         report.healed.add(note);
                         geometry.note("face healed", id, note.as_str());
+                    }
+                    for why in &built.lost {
+                        geometry.note(LOOP_LOST, id, why.as_str());
                     }
                     model.parts[part].faces.push(report.record(record(id, part), built));
                 }

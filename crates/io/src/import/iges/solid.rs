@@ -14,6 +14,7 @@
 use super::curve::Segment;
 use super::entity::{Entity, Fault};
 use super::geometry::{FACE_LOST, Geometry, finite};
+use super::surface::SURFACES;
 use crate::brep::{Boundary, CurveGeometry, Edge, FaceGeometry};
 use crate::model::Colour;
 use glam::{DAffine3, DVec3};
@@ -55,18 +56,25 @@ impl<'a> Geometry<'a> {
                 514 => return self.shell(entity, context, &mut shells),
                 _ => {}
             }
-            let entity = entity.of_kind(186, "186, a solid")?;
-            let map = self.placed(entity, outer)?;
-            let sense = map.matrix3.determinant() > 0.0;
-            let colour = self.colour(entity);
-            let voids = entity.count(3, 2)?;
-            let all = [(1, 2)].into_iter().chain((0..voids).map(|i| (4 + 2 * i, 5 + 2 * i)));
-            for (shell, flag) in all {
-                let context = Context { map: &map, sense: sense == (entity.integer(flag)? != 0), colour };
-                self.nested(entity.pointer(shell)?, |shell| self.shell(shell, context, &mut shells))?;
-            }
+            shells = self.faces_of(entity, outer)?;
             Ok(())
         })?;
+        Ok(shells)
+    }
+
+    /// 186, already on the trail.
+    pub fn faces_of(&self, entity: Entity<'a>, outer: &DAffine3) -> Result<Shells, Fault> {
+        let mut shells = Shells::default();
+        let entity = entity.of_kind(186, "186, a solid")?;
+        let map = self.placed(entity, outer)?;
+        let sense = map.matrix3.determinant() > 0.0;
+        let colour = self.colour(entity);
+        let voids = entity.count(3, 2)?;
+        let all = [(1, 2)].into_iter().chain((0..voids).map(|i| (4 + 2 * i, 5 + 2 * i)));
+        for (shell, flag) in all {
+            let context = Context { map: &map, sense: sense == (entity.integer(flag)? != 0), colour };
+            self.nested(entity.pointer(shell)?, |shell| self.shell(shell, context, &mut shells))?;
+        }
         Ok(shells)
     }
 
@@ -109,20 +117,29 @@ impl<'a> Geometry<'a> {
     ) -> Result<(FaceGeometry, Option<Colour>), Fault> {
         let entity = entity.of_kind(510, "510, a face")?;
         let map = self.placed(entity, context.map)?;
-        let carrier = self.surface(entity.pointer(1)?, &map)?;
+        let surface = Entity::find(self.file, entity.pointer(1)?)?;
+        if !SURFACES.contains(&surface.kind()) {
+            return Err(surface.unsupported());
+        }
         let mut bounds = Vec::new();
         for i in 4..4 + entity.count(2, 1)? {
-            let mut boundary = self.nested(entity.pointer(i)?, |l| self.face_loop(l, &map, shells))?;
-            if carrier.flipped
-                && let Boundary::Edges(uses) = &mut boundary
-            {
+            bounds.push(self.nested(entity.pointer(i)?, |l| self.face_loop(l, &map, shells))?);
+        }
+        let edges = |b: &Boundary| match b {
+            Boundary::Edges(uses) => uses.iter().map(|u| shells.edges[u.0].start).collect(),
+            Boundary::Vertex(_) | Boundary::Natural => Vec::new(),
+        };
+        let vertices: Vec<DVec3> = bounds.iter().flat_map(edges).collect();
+        let carrier = self.surface_near(surface.id(), &map, &vertices)?;
+        for boundary in bounds.iter_mut().filter(|_| carrier.flipped) {
+            if let Boundary::Edges(uses) = boundary {
                 uses.reverse();
                 uses.iter_mut().for_each(|u| u.1 = !u.1);
             }
-            bounds.push(boundary);
         }
         let same_sense = context.sense != carrier.flipped;
-        let face = FaceGeometry { id: entity.id(), surface: carrier.surface, bounds, same_sense };
+        let (id, surface) = (entity.id(), carrier.surface);
+        let face = FaceGeometry { id, surface, bounds, same_sense, doubtful: false };
         Ok((face, self.colour(entity).or(context.colour)))
     }
 

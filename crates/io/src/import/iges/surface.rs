@@ -19,7 +19,7 @@ use super::entity::{Entity, Fault};
 use super::geometry::{Geometry, Placed, finite, similarity};
 use super::ruled;
 use crate::brep::{self, CurveGeometry, SurfaceGeometry, SurfaceMap};
-use crate::import::step::{as_cylinder, offset};
+use crate::import::step::{OTHER_SIDE, OTHER_SIDE_HOW, as_cylinder, offset};
 use glam::{DAffine2, DAffine3, DMat2, DVec2, DVec3};
 
 /// A surface with its parameters.
@@ -78,6 +78,11 @@ impl Carrier {
 impl<'a> Geometry<'a> {
     /// The surface `#id`.
     pub fn surface(&self, id: u32, outer: &DAffine3) -> Result<Carrier, Fault> {
+        self.surface_near(id, outer, &[])
+    }
+
+    /// The surface `#id`; of an offset, the side of its basis on which the points are, if they are on one.
+    pub fn surface_near(&self, id: u32, outer: &DAffine3, points: &[DVec3]) -> Result<Carrier, Fault> {
         self.nested(id, |entity| {
             let map = self.placed(entity, outer)?;
             match entity.kind() {
@@ -94,7 +99,7 @@ impl<'a> Geometry<'a> {
                     let (surface, range) = self.bspline_surface(entity, &map)?;
                     Ok(Carrier::new(SurfaceGeometry::BSpline(surface), DAffine2::IDENTITY, Some(range)))
                 }
-                140 => self.offset_surface(entity, &map),
+                140 => self.offset_surface(entity, &map, points),
                 190 | 192 | 194 | 196 | 198 => self.elementary(entity, &map),
                 _ => Err(entity.unsupported()),
             }
@@ -220,7 +225,7 @@ impl<'a> Geometry<'a> {
     }
 
     /// 140: the surface at a distance on the side of an indicator.
-    fn offset_surface(&self, entity: Entity<'a>, map: &DAffine3) -> Result<Carrier, Fault> {
+    fn offset_surface(&self, entity: Entity<'a>, map: &DAffine3, points: &[DVec3]) -> Result<Carrier, Fault> {
         let id = entity.id();
         let basis = self.surface(entity.pointer(5)?, map)?;
         let basis = match as_cylinder(&basis.surface) {
@@ -237,12 +242,15 @@ impl<'a> Geometry<'a> {
             None if basis.flipped => -1.0,
             None => 1.0,
         };
-        if let Some(surface) = offset(basis.surface.clone(), distance * sign) {
-            return Ok(Carrier { surface, ..basis });
-        }
         let tolerance = self.file.global.resolution;
-        let fitted = brep::offset_surface(&basis.surface, distance * sign, tolerance);
-        let (surface, error) = fitted.map_err(|what| Fault::Value { id, what })?;
+        let at = |d: f64| match offset(basis.surface.clone(), d) {
+            Some(surface) => Ok((surface, 0.0)),
+            None => brep::offset_surface(&basis.surface, d, tolerance).map_err(|what| Fault::Value { id, what }),
+        };
+        let ((surface, error), other) = brep::on_its_side(at, |s| &s.0, (distance * sign, tolerance), points)?;
+        if other {
+            self.note(OTHER_SIDE, id, OTHER_SIDE_HOW);
+        }
         if error > tolerance {
             self.note("surface approximated", id, format!("to {error:.1e} mm"));
         }

@@ -4,12 +4,15 @@
 //!   scope: the file, or a 308                     instances of its parts
 //!     186, 430 ────▶ one part a solid             408: scale, then move, then the matrix
 //!     514, 510 ────▶ one part a shell                  ─▶ the scope of its 308, once more
+//!     150 to 180 ──▶ one Boolean solid each       412, 414: copies of one entity; 184: items with matrices
 //!     143, 144, surfaces ─▶ one open part a group (402) and level
 //! ```
 //!
 //! Blanked entities, annotation and construction are counted and not drawn. The status of an entity that
 //! another one is made of says nothing about the whole: some writers blank them all.
 
+use super::array;
+use super::csg::Expression;
 use super::entity::{Entity, Fault};
 use super::geometry::{FACE_LOST, Geometry};
 use super::solid::Shells;
@@ -29,6 +32,10 @@ pub(super) struct Body {
     pub shells: Shells,
     /// Faces with edges of their own.
     pub sheets: Vec<(Sheet, Option<Colour>)>,
+    /// A Boolean solid, and no faces: its operands of faces are bodies from this number on.
+    pub solid: Option<(Expression, usize)>,
+    /// An operand of a Boolean solid.
+    pub operand: bool,
 }
 
 /// One placed body.
@@ -50,8 +57,14 @@ const MAX_LEVELS: usize = 256;
 /// Largest number of subfigures entered.
 const MAX_VISITS: usize = 1 << 20;
 
+/// Arrays and assemblies within each other at most.
+const MAX_NESTED: usize = 256;
+
 /// Bytes of a path of names after which deeper levels add no more to it.
 const MAX_NAME: usize = 512;
+
+/// The kind of warning that costs a Boolean solid.
+pub(super) const SOLID_LOST: &str = "Boolean solid left out";
 
 /// Reads bodies and their places.
 pub(super) struct Tree<'g, 'a> {
@@ -123,6 +136,11 @@ impl<'g, 'a> Tree<'g, 'a> {
                 186 => used.extend(one(1).into_iter().chain(listed(3, 4, 2))),
                 308 => used.extend(listed(3, 4, 1)),
                 514 => used.extend(listed(1, 2, 2)),
+                180 => {
+                    let items = (0..entity.count(1, 1).unwrap_or(0)).filter_map(|i| entity.integer(2 + i).ok());
+                    used.extend(items.filter_map(|item| u32::try_from(-item).ok()));
+                }
+                412 | 414 => used.extend(one(1)),
                 402 if matches!(entry.form, 1 | 7 | 14 | 15) => {
                     for member in listed(1, 2, 1) {
                         self.groups.entry(member).or_insert(entry.id);
@@ -157,14 +175,68 @@ impl<'g, 'a> Tree<'g, 'a> {
                 break;
             }
             let Ok(entity) = Entity::find(self.geometry.file, member) else { continue };
-            if entity.kind() == 408
-                && self.is_drawn(entity)
-                && let Err(fault) = self.subfigure(entity, transform, name)
-            {
-                self.geometry.note("subfigure left out", member, fault.to_string());
+            if !matches!(entity.kind(), 184 | 408 | 412 | 414) || !self.is_drawn(entity) {
+                continue;
+            }
+            let placed = match entity.kind() {
+                408 => self.subfigure(entity, transform, name).map_err(|fault| ("subfigure left out", fault)),
+                184 => self.assembly(entity, transform, name).map_err(|fault| ("assembly left out", fault)),
+                _ => self.array(entity, transform, name).map_err(|fault| ("array left out", fault)),
+            };
+            if let Err((kind, fault)) = placed {
+                self.geometry.note(kind, member, fault.to_string());
             }
         }
         self.trail.pop();
+    }
+
+    /// 412, 414.
+    fn array(&mut self, entity: Entity<'a>, outer: DAffine3, name: &str) -> Result<(), Fault> {
+        let base = entity.pointer(1)?;
+        let places = array::places(entity, MAX_INSTANCES)?;
+        self.geometry.spend(entity.id(), places.len())?;
+        let own = self.geometry.placed(entity, &DAffine3::IDENTITY)?;
+        for place in places {
+            if self.full() {
+                break;
+            }
+            self.copy(entity.id(), base, outer * self.in_millimetres(own * place), name)?;
+        }
+        Ok(())
+    }
+
+    /// 184: each item with the matrix that stands beside it.
+    fn assembly(&mut self, entity: Entity<'a>, outer: DAffine3, name: &str) -> Result<(), Fault> {
+        let own = self.geometry.placed(entity, &DAffine3::IDENTITY)?;
+        for (item, place) in self.geometry.assembly(entity, &own)? {
+            self.copy(entity.id(), item, outer * self.in_millimetres(place), name)?;
+        }
+        Ok(())
+    }
+
+    fn in_millimetres(&self, mut place: DAffine3) -> DAffine3 {
+        place.translation *= self.geometry.file.global.unit;
+        place
+    }
+
+    /// The entity `#base`, or what the subfigure of that number lists, once more for `#id`.
+    fn copy(&mut self, id: u32, base: u32, transform: DAffine3, name: &str) -> Result<(), Fault> {
+        let sound = transform.is_finite() && transform.matrix3.determinant() != 0.0;
+        sound.then_some(()).ok_or(Fault::Value { id, what: "the placement cannot be inverted" })?;
+        if self.trail.contains(&base) {
+            return Err(Fault::Cycle(base));
+        }
+        let entity = Entity::find(self.geometry.file, base)?;
+        if self.trail.len() >= MAX_NESTED {
+            return Err(Fault::Depth(base));
+        }
+        let members = match entity.kind() {
+            308 => (4..4 + entity.count(3, 1)?).filter_map(|i| entity.optional(i).ok().flatten()).collect(),
+            _ => vec![base],
+        };
+        // the members of an entity that places others are placed by it, not here
+        self.scope(base, &members, transform, name);
+        Ok(())
     }
 
     /// 408.
@@ -233,7 +305,12 @@ impl<'g, 'a> Tree<'g, 'a> {
                 continue;
             }
             match entity.kind() {
-                186 | 430 | 510 | 514 if self.is_drawn(entity) => self.solid(entity),
+                186 | 510 | 514 if self.is_drawn(entity) => self.solid(entity),
+                430 if self.is_drawn(entity) => match self.instance_of(entity) {
+                    Some(150..=184) => self.boolean(entity),
+                    _ => self.solid(entity),
+                },
+                150..=180 if self.is_drawn(entity) => self.boolean(entity),
                 108 if entity.entry.form == 0 => self.not_drawn(entity, "an unbounded surface"),
                 190 | 192 | 194 if !entity.entry.dependent => self.not_drawn(entity, "an unbounded surface"),
                 kind if (matches!(kind, 143 | 144) || SURFACES.contains(&kind)) && self.is_drawn(entity) => {
@@ -246,11 +323,32 @@ impl<'g, 'a> Tree<'g, 'a> {
                     self.sheet(entity, body);
                 }
                 100..=106 | 110 | 112 | 116 | 126 | 130 | 142 => self.not_drawn(entity, "a curve or a point"),
-                150..=184 => self.geometry.note("entity left out", id, entity.unsupported().to_string()),
+                182 => self.geometry.note("entity left out", id, entity.unsupported().to_string()),
                 _ => {}
             }
         }
-        (first..self.bodies.len()).collect()
+        (first..self.bodies.len()).filter(|i| !self.bodies[*i].operand).collect()
+    }
+
+    /// The type of what a 430 places.
+    fn instance_of(&self, entity: Entity<'a>) -> Option<u16> {
+        let of = Entity::find(self.geometry.file, entity.optional(1).ok()??).ok()?;
+        Some(of.kind())
+    }
+
+    /// A primitive, a tree, or an instance of one.
+    fn boolean(&mut self, entity: Entity<'a>) {
+        let unit = DAffine3::from_scale(DVec3::splat(self.geometry.file.global.unit));
+        match self.geometry.expression(entity.id(), &unit) {
+            Ok(mut expression) => {
+                let first = self.bodies.len();
+                let operand = |shells| Body { closed: true, operand: true, shells, ..Body::default() };
+                self.bodies.extend(std::mem::take(&mut expression.shells).into_iter().map(operand));
+                let solid = Some((expression, first));
+                self.bodies.push(Body { solid, ..Body::default() });
+            }
+            Err(fault) => self.geometry.note(SOLID_LOST, entity.id(), fault.to_string()),
+        }
     }
 
     fn not_drawn(&self, entity: Entity<'a>, what: &'static str) {

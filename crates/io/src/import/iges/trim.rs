@@ -51,7 +51,7 @@ impl<'a> Geometry<'a> {
         let entity = Entity::find(self.file, id)?;
         if entity.kind() == 108 {
             // a plane by itself has a curve around it
-            let model = self.segments(entity.pointer(5)?, &self.placed(entity, outer)?)?;
+            let model = closed(self.segments(entity.pointer(5)?, &self.placed(entity, outer)?)?);
             let loops = vec![Trim { model, ..Trim::default() }];
             return Ok(Sheet { id, carrier: self.surface(id, outer)?, loops, natural: false });
         }
@@ -61,12 +61,11 @@ impl<'a> Geometry<'a> {
         self.nested(id, |entity| {
             let map = self.placed(entity, outer)?;
             if entity.kind() == 143 {
-                let carrier = self.surface(entity.pointer(2)?, &map)?;
                 let bounds = 4..4 + entity.count(3, 1)?;
                 let loops = bounds.map(|i| self.boundary(entity.pointer(i)?, &map)).collect::<Result<Vec<_>, _>>()?;
+                let carrier = self.surface_near(entity.pointer(2)?, &map, &ends(&loops))?;
                 return Ok(Sheet { id, carrier, natural: loops.is_empty(), loops });
             }
-            let carrier = self.surface(entity.pointer(1)?, &map)?;
             let outer_loop = entity.integer(2)? != 0;
             let mut loops = Vec::new();
             if outer_loop {
@@ -75,6 +74,7 @@ impl<'a> Geometry<'a> {
             for index in 5..5 + entity.count(3, 1)? {
                 loops.push(self.curve_on_surface(entity.pointer(index)?, &map)?);
             }
+            let carrier = self.surface_near(entity.pointer(1)?, &map, &ends(&loops))?;
             let carrier = if outer_loop { carrier } else { carrier.bounded(id)? };
             Ok(Sheet { id, carrier, loops, natural: !outer_loop })
         })
@@ -85,8 +85,8 @@ impl<'a> Geometry<'a> {
         self.nested(id, |entity| {
             let entity = entity.of_kind(142, "142, a curve on a surface")?;
             let map = self.placed(entity, outer)?;
-            let parameter = entity.optional(3)?.map(|b| self.segments(b, &DAffine3::IDENTITY));
-            let model = entity.optional(4)?.map(|c| self.segments(c, &map));
+            let parameter = entity.optional(3)?.map(|b| self.segments(b, &DAffine3::IDENTITY).map(closed));
+            let model = entity.optional(4)?.map(|c| self.segments(c, &map).map(closed));
             let prefers_parameter = entity.integer(5)? == 1;
             self.either(id, model, parameter, prefers_parameter)
         })
@@ -118,7 +118,7 @@ impl<'a> Geometry<'a> {
             if !in_parameters {
                 trim.parameter.clear();
             }
-            Ok(trim)
+            Ok(Trim { model: closed(trim.model), parameter: closed(trim.parameter), ..trim })
         })
     }
 
@@ -249,6 +249,7 @@ impl Sheet {
             surface: self.carrier.surface.clone(),
             bounds,
             same_sense: !self.carrier.flipped,
+            doubtful: false,
         };
         build_face(&face, &edges, tolerance)
     }
@@ -290,6 +291,25 @@ impl Sheet {
         }
         Ok(Some(Boundary::Edges((from..edges.len()).map(|i| (i, true)).collect())))
     }
+}
+
+/// The ends of the curves in space, which say where the surface is.
+fn ends(loops: &[Trim]) -> Vec<DVec3> {
+    loops.iter().flat_map(|l| &l.model).flat_map(|s| <[DVec3; 2]>::from(s.ends())).collect()
+}
+
+/// Angle up to which an arc that is a loop by itself is a whole turn: its ends are as far apart as those of a loop may be.
+const TURN: f64 = 0.1;
+
+/// The segments of a loop; a single arc whose ends nearly meet is a whole turn.
+fn closed(mut segments: Vec<Segment>) -> Vec<Segment> {
+    if let [only] = &mut segments[..]
+        && matches!(only.curve, CurveGeometry::Circle { .. } | CurveGeometry::Ellipse { .. })
+        && only.end - only.start <= TURN
+    {
+        only.end = only.start + std::f64::consts::TAU;
+    }
+    segments
 }
 
 /// Parameters at which a curve crosses the creases of a surface, to rounding.

@@ -100,7 +100,7 @@ fn parts(
                         report.healed.add(note);
                         warnings.push("face healed", || Place::File, || format!("{}: {note}", id.as_str()));
                     }
-                    let built = BuiltFace { face, notes, deviation: 0.0, gap };
+                    let built = BuiltFace { face, notes, deviation: 0.0, gap, lost: Vec::new() };
                     part.faces.push(report.record(record, built));
                 }
                 Err(why) => {

@@ -315,7 +315,7 @@ impl<'g, 'a> Builder<'g, 'a> {
         if entity.is("CURVE_BOUNDED_SURFACE") {
             return Ok(vec![self.geometry.bounded_surface(entity, &mut self.table)?]);
         }
-        let whole = |surface, same_sense| FaceGeometry { id, surface, bounds: Vec::new(), same_sense };
+        let whole = |surface, same_sense| FaceGeometry { id, surface, bounds: Vec::new(), same_sense, doubtful: false };
         if entity.kinds().any(spline::is_surface) {
             let parts = self.geometry.bspline_surface(entity)?.into_iter();
             return Ok(parts.map(|s| whole(SurfaceGeometry::BSpline(s), true)).collect());

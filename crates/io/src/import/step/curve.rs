@@ -293,7 +293,9 @@ pub(super) fn trim(basis: CurveGeometry, first: f64, last: f64, sense: bool) -> 
         let (a, b) = spline.domain();
         let (first, last) = (first.clamp(a, b), last.clamp(a, b));
         let closed = (spline.point(a) - spline.point(b)).length() <= 1e-9 * (1.0 + spline.point(a).length());
-        if !closed || sense == (first < last) {
+        // one point, as far as points are found on it, is all of a closed curve
+        let around = (first - last).abs() <= 1e-9 * (b - a);
+        if !closed || (!around && sense == (first < last)) {
             return locate::piece(basis, first, last);
         }
         // over the seam: two pieces, in the order in which they are run through

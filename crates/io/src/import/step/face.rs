@@ -67,7 +67,7 @@ impl Geometry<'_> {
             if !same_sense {
                 loops.iter_mut().for_each(reverse);
             }
-            Ok(FaceGeometry { id, surface, bounds: loops, same_sense })
+            Ok(FaceGeometry { id, surface, bounds: loops, same_sense, doubtful: false })
         })
     }
 
@@ -75,7 +75,6 @@ impl Geometry<'_> {
     pub fn bounded_surface(&self, entity: Entity<'_>, table: &mut EdgeTable) -> Result<FaceGeometry, Fault> {
         let id = entity.id();
         let fields = entity.fields("CURVE_BOUNDED_SURFACE", 1)?;
-        let carrier = self.surface(fields.reference(0)?)?;
         let mut bounds = Vec::new();
         for boundary in fields.references(1)? {
             let mut uses = Vec::new();
@@ -91,17 +90,19 @@ impl Geometry<'_> {
                 };
                 uses.push((index, segment.forward));
             }
-            let mut boundary = Boundary::Edges(uses);
-            if carrier.flipped {
-                reverse(&mut boundary);
-            }
-            bounds.push(boundary);
+            bounds.push(Boundary::Edges(uses));
+        }
+        let vertices: Vec<DVec3> = bounds.iter().flat_map(|b| table.vertices(b)).collect();
+        let carrier = self.surface_near(fields.reference(0)?, &vertices)?;
+        if carrier.flipped {
+            bounds.iter_mut().for_each(reverse);
         }
         // .T.: its own border is the outer one, the curves are holes
         if fields.value(2).and_then(Value::flag) == Some(true) {
             bounds.push(Boundary::Natural);
         }
-        Ok(FaceGeometry { id, surface: carrier.surface, bounds, same_sense: !carrier.flipped })
+        let same_sense = !carrier.flipped;
+        Ok(FaceGeometry { id, surface: carrier.surface, bounds, same_sense, doubtful: false })
     }
 
     fn bound(&self, id: u32, table: &mut EdgeTable) -> Result<Boundary, Fault> {

@@ -46,11 +46,13 @@ mod units;
 mod walk;
 
 pub(super) use part21::recognise;
-pub(super) use surface::{as_cylinder, offset};
+pub(super) use surface::{OTHER_SIDE, OTHER_SIDE_HOW, as_cylinder, offset};
 
 use super::external::{Mention, Read};
-use super::{FaceCount, FaceRecord, Import, ImportError, ImportReport, Options, Place, Stage, Warnings, locate};
-use crate::brep::build_face;
+use super::{
+    FaceCount, FaceRecord, Import, ImportError, ImportReport, LOOP_LOST, Options, Place, Stage, Warnings, locate,
+};
+use crate::brep::{build_face, settle};
 use crate::model::{Instance, Model, Part};
 use assembly::Assembly;
 use body::{Body, Looks};
@@ -174,7 +176,12 @@ fn build(
 ) {
     let mut edges = Vec::with_capacity(bodies.len());
     let mut jobs = Vec::with_capacity(bodies.iter().map(|(body, _)| body.faces.len()).sum());
-    for (part, (body, tolerance)) in bodies.into_iter().enumerate() {
+    for (part, (mut body, tolerance)) in bodies.into_iter().enumerate() {
+        let mut faces: Vec<_> = body.faces.iter_mut().map(|(face, _)| face).collect();
+        for (id, note) in settle(&mut body.edges, &mut faces, body.closed, tolerance) {
+            *report.healed.entry(ImportReport::reason(&note)).or_default() += 1;
+            notes.push("edge healed", || places.of(id), note);
+        }
         edges.push(body.edges);
         jobs.extend(body.faces.into_iter().map(|(face, colour)| (part, tolerance, face, colour)));
     }
@@ -197,6 +204,9 @@ fn build(
                 for note in &built.notes {
                     report.healed.add(note);
                     notes.push("face healed", || places.of(id), note.clone());
+                }
+                for why in &built.lost {
+                    notes.push(LOOP_LOST, || places.of(id), why.clone());
                 }
                 model.parts[record.part].faces.push(report.record(record, built));
             }

@@ -69,7 +69,8 @@ impl Geometry<'_> {
         self.surface_near(id, &[])
     }
 
-    /// The surface `#id`; of a spline that breaks, the part that lies nearest to the points.
+    /// The surface `#id`; of a spline that breaks, the part that lies nearest to the points, of an offset the side of its
+    /// basis on which they are.
     pub fn surface_near(&self, id: u32, points: &[DVec3]) -> Result<Carrier, Fault> {
         self.ledger.nested(id, || {
             let entity = self.entity(id)?;
@@ -88,10 +89,10 @@ impl Geometry<'_> {
             let kind = KINDS.iter().copied().rfind(|k| entity.is(k));
             match kind.unwrap_or_default() {
                 "" => Err(Fault::Unsupported { id, kind: entity.name() }),
-                "OFFSET_SURFACE" => self.offset(entity),
+                "OFFSET_SURFACE" => self.offset(entity, points),
                 "RECTANGULAR_TRIMMED_SURFACE" => {
                     let fields = entity.fields("RECTANGULAR_TRIMMED_SURFACE", 1)?;
-                    let basis = self.surface(fields.reference(0)?)?;
+                    let basis = self.surface_near(fields.reference(0)?, points)?;
                     let units = self.parameter_units(&basis.surface);
                     let turn = |axis: usize| (units[axis] == self.units.angle).then_some(TAU);
                     let range = |axis: usize| {
@@ -189,7 +190,7 @@ impl Geometry<'_> {
         Ok(surface.into())
     }
 
-    fn offset(&self, entity: Entity<'_>) -> Result<Carrier, Fault> {
+    fn offset(&self, entity: Entity<'_>, points: &[DVec3]) -> Result<Carrier, Fault> {
         let id = entity.id();
         let fields = entity.fields("OFFSET_SURFACE", 1)?;
         let basis = self.surface(fields.reference(0)?)?;
@@ -198,17 +199,25 @@ impl Geometry<'_> {
             None => basis,
         };
         let distance = fields.real(1)? * self.units.length * if basis.flipped { -1.0 } else { 1.0 };
-        if let Some(surface) = offset(basis.surface.clone(), distance) {
-            return Ok(Carrier { surface, ..basis });
+        let tolerance = self.units.tolerance;
+        let at = |d: f64| match offset(basis.surface.clone(), d) {
+            Some(surface) => Ok((surface, 0.0)),
+            None => brep::offset_surface(&basis.surface, d, tolerance).map_err(|what| Fault::Value { id, what }),
+        };
+        let ((surface, error), other) = brep::on_its_side(at, |s| &s.0, (distance, tolerance), points)?;
+        if other {
+            self.ledger.note(OTHER_SIDE, id, OTHER_SIDE_HOW);
         }
-        let fitted = brep::offset_surface(&basis.surface, distance, self.units.tolerance);
-        let (surface, error) = fitted.map_err(|what| Fault::Value { id, what })?;
-        if error > self.units.tolerance {
+        if error > tolerance {
             self.ledger.note("surface approximated", id, format!("to {error:.1e} mm"));
         }
         Ok(Carrier { surface, ..basis })
     }
 }
+
+/// What is told of an offset whose edges lie on the other side of its basis.
+pub(in crate::import) const OTHER_SIDE: &str = "offset on the other side";
+pub(in crate::import) const OTHER_SIDE_HOW: &str = "its edges lie there, and so it is drawn";
 
 /// The inner part of a torus that meets its axis, in the parameters of the torus: the part of its circle
 /// beyond the axis, turned.

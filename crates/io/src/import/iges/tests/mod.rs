@@ -1,9 +1,11 @@
 //! Hand-made files with exact numbers, damaged files, and the models of a folder.
 
 mod classes;
+mod closing;
 mod damage;
 mod models;
 mod shapes;
+mod solids;
 mod structure;
 
 use crate::import::{Import, iges};

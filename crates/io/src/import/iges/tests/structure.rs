@@ -139,7 +139,7 @@ fn what_is_not_drawn_is_counted() {
         status("00000600", SQUARE),
         status("00000500", "110,0.,0.,0.,1.,0.,0.;"),
         e("108,0.,0.,1.,5.;"),
-        e("150,1.,2.,3.;"),
+        e("182,1,0.,0.,0.;"),
         e(SQUARE),
     ]);
     let found: Vec<_> = i.warnings.iter().map(ToString::to_string).collect();
@@ -149,7 +149,7 @@ fn what_is_not_drawn_is_counted() {
         "t.igs:22: #5: construction not drawn: type 128",
         "t.igs:24: #7: no surface, not drawn: type 110, a curve or a point",
         "t.igs:25: #9: no surface, not drawn: type 108, an unbounded surface",
-        "t.igs:26: #11: entity left out: type 150 form 0 is not supported (#11)",
+        "t.igs:26: #11: entity left out: type 182 form 0 is not supported (#11)",
     ];
     assert_eq!(found, wanted);
     assert_eq!(i.model.face_count(), 1);
