@@ -91,8 +91,8 @@ fn item<'a>(list: &List<'a>, line: usize) -> Result<Item<'a>, Fault> {
     })
 }
 
-/// Rows of a homogeneous matrix.
-fn matrix(words: &[&str]) -> Option<DAffine3> {
+/// Sixteen words: the rows of a homogeneous matrix; `None` for one that is not affine.
+pub(super) fn matrix(words: &[&str]) -> Option<DAffine3> {
     let all: Vec<f64> = words.iter().map(|w| w.parse().ok().filter(|x: &f64| x.is_finite())).collect::<Option<_>>()?;
     let w = all[15];
     if all[12..15] != [0.0; 3] || w == 0.0 {
