@@ -8,9 +8,9 @@ use glam::{DAffine3, DVec3, DVec4};
 use selvedge::construct::shapes::SpurGear;
 use selvedge::construct::subdivide::{ControlMesh, Scheme, subdivide};
 use selvedge::construct::{compatible, loft};
-use selvedge::export;
 use selvedge::model::{Instance, Model};
 use selvedge::spline::{BSpline, Control};
+use selvedge_io::export;
 use std::f64::consts::TAU;
 
 /// A wavy section of `count` control points at height `z`; degrees and knots change from one to the next.

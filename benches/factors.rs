@@ -4,9 +4,9 @@
 //! `cargo bench --features rivals --bench factors -- [PATCHES [SEARCHED]] [MODEL ...]`
 
 use glam::DVec3;
-use selvedge::import;
 use selvedge::model::{Bounds, Camera};
 use selvedge::rivals::factors::{Spread, Way, Ways, of_model, of_random};
+use selvedge_io::import;
 use std::path::Path;
 
 const WAYS: [Way; 10] = [

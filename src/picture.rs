@@ -1,6 +1,6 @@
 //! What a frame is asked for and what it hands back: settings, images, statistics.
 
-use crate::model::Colour;
+use crate::model::{Colour, Images};
 use glam::DVec3;
 use serde::Serialize;
 
@@ -352,6 +352,20 @@ pub struct Picture {
     pub thickness: Vec<f32>,
     /// What the frame cost.
     pub stats: FrameStats,
+}
+
+impl Picture {
+    /// The images that say what each pixel sees: for a judge.
+    pub fn images(&self) -> Images<'_> {
+        Images {
+            size: self.size,
+            depth: &self.depth,
+            face: &self.face,
+            normal: &self.normal,
+            sunlit: &self.sunlit,
+            shadow_deviation: self.stats.shadow_deviation,
+        }
+    }
 }
 
 /// What a frame cost and whether anything was clamped.

@@ -7,7 +7,7 @@ PATH=$PATH:${CARGO_HOME:-$HOME/.cargo}/bin
 
 # After the subcommand: clippy and nextest are programs of their own, and would not see what stands before it.
 linking=(--config tools/shaderc.toml) # how shaderc links on Debian
-flags=("${linking[@]}" --features cli,headless,compile-shaders)
+flags=("${linking[@]}" --workspace --features selvedge/compile-shaders)
 
 # say TEXT: a heading between the outputs of the steps.
 say() { printf '\n== %s\n' "$*" >&2; }

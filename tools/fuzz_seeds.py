@@ -58,7 +58,7 @@ def step_faces(text: str):
 
 
 def step() -> list[str]:
-    seeds = [path.read_text() for path in sorted((ROOT / "src/import/step").rglob("*.step"))]
+    seeds = [path.read_text() for path in sorted((ROOT / "crates/io/src/import/step").rglob("*.step"))]
     seen = set()
     for path in sorted((ROOT / "samples").glob("*.step")):
         for types, text in step_faces(path.read_text()):
@@ -151,8 +151,8 @@ def iges_faces(path: pathlib.Path):
 
 
 def iges() -> list[str]:
-    seeds = [path.read_text() for path in sorted((ROOT / "src/import/iges").rglob("*.igs"))]
-    for path in sorted((ROOT / "src/import/iges/tests").glob("*.rs")):
+    seeds = [path.read_text() for path in sorted((ROOT / "crates/io/src/import/iges").rglob("*.igs"))]
+    for path in sorted((ROOT / "crates/io/src/import/iges/tests").glob("*.rs")):
         for body in path.read_text().split("\nfn ")[1:]:
             entities = [(t, "0") for t in re.findall(r'"(\d{3},[^"{]*;)"', body)]
             if entities:
@@ -167,31 +167,31 @@ def iges() -> list[str]:
 
 
 def obj() -> list:
-    files = [path.read_text() for path in sorted((ROOT / "src/import/obj").rglob("*.obj"))]
-    return files + quoted("src/import/obj") + small(".obj")
+    files = [path.read_text() for path in sorted((ROOT / "crates/io/src/import/obj").rglob("*.obj"))]
+    return files + quoted("crates/io/src/import/obj") + small(".obj")
 
 
 def bv() -> list:
-    return quoted("src/import/bv") + small(".bv")
+    return quoted("crates/io/src/import/bv") + small(".bv")
 
 
 def scad() -> list:
-    return quoted("src/import/scad") + small(".csg")
+    return quoted("crates/io/src/import/scad") + small(".csg")
 
 
 def brlcad() -> list:
-    return quoted("src/import/brlcad") + small(".asc")
+    return quoted("crates/io/src/import/brlcad") + small(".asc")
 
 
 def rhino() -> list:
-    return [path.read_bytes() for path in sorted((ROOT / "src/import/rhino").rglob("*.3dm"))] + small(".3dm")
+    return [path.read_bytes() for path in sorted((ROOT / "crates/io/src/import/rhino").rglob("*.3dm"))] + small(".3dm")
 
 
 def scene() -> list:
     """The gallery, and the texts of the reader's tests; what they leave out is their first line."""
     version = "selvedge = 1\n"
     files = [path.read_text() for path in sorted((ROOT / "samples/gallery").glob("*.toml"))]
-    texts = [text if text.startswith("selvedge") else version + text for text in quoted("src/import/scene") if "=" in text]
+    texts = [text if text.startswith("selvedge") else version + text for text in quoted("crates/io/src/import/scene") if "=" in text]
     return files + texts + small(".toml")
 
 
@@ -199,7 +199,7 @@ def native() -> list[bytes]:
     """What follows the header of converted files."""
     program = pathlib.Path(os.environ.get("SELVEDGE", ROOT / "target/release/selvedge"))
     if not program.exists():
-        sys.exit(f"{program} is missing: cargo build --release --features cli")
+        sys.exit(f"{program} is missing: cargo build --release -p selvedge-cli")
     header, seeds = 25, []
     with tempfile.TemporaryDirectory() as folder:
         for extension, texts in ((".step", step()), (".obj", obj()), (".csg", scad()), (".asc", brlcad())):
@@ -242,15 +242,15 @@ def dictionary(folder: str, words) -> list[str]:
 
 
 FORMATS = {
-    "step": (step, "src/import/step", step_words),
-    "iges": (iges, "src/import/iges", iges_words),
-    "obj": (obj, "src/import/obj", plain_words),
-    "bv": (bv, "src/import/bv", plain_words),
+    "step": (step, "crates/io/src/import/step", step_words),
+    "iges": (iges, "crates/io/src/import/iges", iges_words),
+    "obj": (obj, "crates/io/src/import/obj", plain_words),
+    "bv": (bv, "crates/io/src/import/bv", plain_words),
     "native": (native, "src/model", plain_words),
-    "scad": (scad, "src/import/scad", plain_words),
-    "brlcad": (brlcad, "src/import/brlcad", plain_words),
-    "scene": (scene, "src/import/scene", plain_words),
-    "rhino": (rhino, "src/import/rhino", rhino_words),
+    "scad": (scad, "crates/io/src/import/scad", plain_words),
+    "brlcad": (brlcad, "crates/io/src/import/brlcad", plain_words),
+    "scene": (scene, "crates/io/src/import/scene", plain_words),
+    "rhino": (rhino, "crates/io/src/import/rhino", rhino_words),
 }
 
 

@@ -1,2 +1,2 @@
 #![no_main]
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| selvedge_fuzz::sound(selvedge::import::brlcad(bytes, "fuzz.asc")));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| selvedge_fuzz::sound(selvedge_io::import::brlcad(bytes, "fuzz.asc")));

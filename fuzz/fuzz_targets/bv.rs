@@ -1,2 +1,2 @@
 #![no_main]
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| selvedge_fuzz::sound(selvedge::import::bv(bytes, "fuzz.bv")));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| selvedge_fuzz::sound(selvedge_io::import::bv(bytes, "fuzz.bv")));

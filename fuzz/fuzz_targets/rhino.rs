@@ -1,2 +1,2 @@
 #![no_main]
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| selvedge_fuzz::sound(selvedge::import::rhino(bytes, "fuzz.3dm")));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| selvedge_fuzz::sound(selvedge_io::import::rhino(bytes, "fuzz.3dm")));

@@ -1,2 +1,2 @@
 #![no_main]
-libfuzzer_sys::fuzz_target!(|bytes: &[u8]| selvedge_fuzz::sound(selvedge::import::scene(bytes, "fuzz.toml", None)));
+libfuzzer_sys::fuzz_target!(|bytes: &[u8]| selvedge_fuzz::sound(selvedge_io::import::scene(bytes, "fuzz.toml", None)));

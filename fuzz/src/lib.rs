@@ -1,7 +1,7 @@
 //! What must hold of whatever a file reader gives, be it never so damaged.
 
-use selvedge::import::{Import, ImportError};
-use selvedge::model::native;
+use selvedge_io::import::{Import, ImportError};
+use selvedge_io::native;
 
 /// Panics unless the result is an error that says something, or a model that keeps its invariants: the
 /// engine's own form checks them all when it reads back what it has written.

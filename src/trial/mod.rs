@@ -3,8 +3,7 @@
 
 mod case;
 mod patch;
-mod random;
 
+pub(crate) use crate::math::random::Random;
 pub(crate) use case::Case;
 pub(crate) use patch::{Deviation, Emit, Kind, Trial};
-pub(crate) use random::Random;

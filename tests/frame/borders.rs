@@ -11,7 +11,7 @@ use crate::support::{assert_silent, render, watched, watched_with};
 use glam::DVec3;
 use selvedge::model::{Camera, Model, Projection};
 use selvedge::picture::{SceneSettings, TrimWay};
-use selvedge::reference::{JudgeOptions, Tracer, judge};
+use selvedge_check::{JudgeOptions, Tracer, judge};
 use std::ops::Range;
 
 const SIZE: (u32, u32) = (160, 120);
@@ -37,7 +37,7 @@ fn keeps_it_by(way: TrimWay, model: &Model, views: Range<u32>) {
     for k in views {
         let camera = view(model, k);
         let picture = render(&mut renderer, &camera);
-        let j = judge(&tracer, &camera, &picture, &JudgeOptions::default());
+        let j = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());
         assert_eq!((picture.stats.clamps, j.given_up), (0, 0), "view {k}");
         if j.wrong + j.folds.beyond + j.folds.wrong_depth + j.exact.beyond > 0 {
             faults.push(format!("view {k}: {:?} {:?} {:?}", j.mismatches, j.folds, j.exact));
@@ -86,7 +86,7 @@ fn no_background_where_two_silhouettes_meet() {
     let picture = render(&mut renderer, &camera);
     let column = picture.face.iter().skip(size.0 as usize / 2).step_by(size.0 as usize);
     assert_eq!(column.filter(|&&face| face == 0).count(), 0);
-    let j = judge(&Tracer::new(&model), &camera, &picture, &JudgeOptions::default());
+    let j = judge(&Tracer::new(&model), &camera, &picture.images(), &JudgeOptions::default());
     assert_eq!((j.wrong, j.given_up), (0, 0), "{:?}", j.mismatches);
     assert_silent(renderer);
 }

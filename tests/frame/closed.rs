@@ -6,7 +6,7 @@ use crate::{cages, shapes};
 use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::Picture;
-use selvedge::reference::Tracer;
+use selvedge_check::Tracer;
 
 const SIZE: (u32, u32) = (160, 120);
 

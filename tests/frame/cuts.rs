@@ -7,7 +7,7 @@ use glam::{DAffine3, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Model, Part, Primitive, Solid};
 use selvedge::picture::{FrameSettings, Outputs, SceneSettings, TrimWay};
-use selvedge::reference::{JudgeOptions, Tracer, judge};
+use selvedge_check::{JudgeOptions, Tracer, judge};
 
 /// The exact reference takes its time for splines among Boolean solids.
 const SIZE: (u32, u32) = (72, 48);
@@ -41,7 +41,7 @@ fn right(renderer: &mut HeadlessRenderer, name: &str, whole: &Model, model: &Mod
     let mut wrong = Vec::new();
     for ((view, camera), uncut) in views.into_iter().zip(uncut) {
         let picture = render(renderer, &camera);
-        let j = judge(&tracer, &camera, &picture, &JudgeOptions::default());
+        let j = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());
         if (j.wrong, j.given_up, picture.stats.clamps) != (0, 0, 0) {
             wrong.push(format!("{name}, {view}, {way:?}: {} wrong, {:?}", j.wrong, j.mismatches.first()));
         }
@@ -127,7 +127,7 @@ fn faces_in_the_boundary_stay() {
         renderer.upload(&model).unwrap();
         let camera = perspective(&model, SIZE);
         let picture = render(&mut renderer, &camera);
-        let j = judge(&Tracer::new(&shapes::cube()), &camera, &picture, &JudgeOptions::default());
+        let j = judge(&Tracer::new(&shapes::cube()), &camera, &picture.images(), &JudgeOptions::default());
         assert_eq!(j.wrong, 0, "{text}: {:?}", j.mismatches.first());
     }
     assert_silent(renderer);

@@ -4,7 +4,7 @@ use glam::{DVec2, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::Camera;
 use selvedge::picture::{FrameSettings, Outputs, Picture};
-use selvedge::reference::Tracer;
+use selvedge_check::Tracer;
 
 /// Rays, and smaller pixels, to a pixel's side.
 pub const FINE: u32 = 16;

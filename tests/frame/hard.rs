@@ -6,8 +6,8 @@ use crate::support::{assert_silent, render, watched};
 use glam::{DAffine3, DVec2, DVec3, DVec4};
 use selvedge::model::{Camera, Face, Instance, Model, Projection, SurfaceKind};
 use selvedge::picture::Picture;
-use selvedge::reference::{JudgeOptions, Tracer, judge};
 use selvedge::spline::{Control, SplineError, Surface};
+use selvedge_check::{JudgeOptions, Tracer, judge};
 
 const SIZE: (u32, u32) = (160, 120);
 
@@ -33,7 +33,7 @@ fn draw(model: &Model, camera: &Camera) -> Picture {
     let mut renderer = watched(model);
     let picture = render(&mut renderer, camera);
     assert_eq!(picture.stats.clamps, 0);
-    let j = judge(&Tracer::new(model), camera, &picture, &JudgeOptions::default());
+    let j = judge(&Tracer::new(model), camera, &picture.images(), &JudgeOptions::default());
     assert_eq!((j.wrong, j.given_up), (0, 0), "{:?}", j.mismatches);
     for i in (0..picture.face.len()).filter(|&i| picture.face[i] != 0) {
         let length = picture.normal[i].iter().map(|x| x * x).sum::<f32>().sqrt();

@@ -9,7 +9,7 @@ use selvedge::csg::{Builder, Op};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Solid, SurfaceTable};
 use selvedge::picture::{Picture, Samples, SceneSettings, SolidWay};
-use selvedge::reference::Tracer;
+use selvedge_check::Tracer;
 
 /// A parallel view along y, `height` high, whose middle is `target`.
 fn along_y(target: DVec3, height: f64, size: (u32, u32)) -> Camera {

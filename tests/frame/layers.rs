@@ -8,8 +8,8 @@ use glam::{DVec2, DVec3, DVec4};
 use selvedge::csg::{Builder, Op};
 use selvedge::model::{Camera, Colour, Model, Primitive, Projection, Shape, Solid};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings};
-use selvedge::reference::csg::LayerTracer;
-use selvedge::reference::{JudgeOptions, Tracer, judge};
+use selvedge_check::solids::LayerTracer;
+use selvedge_check::{JudgeOptions, Tracer, judge};
 
 pub const SIZE: (u32, u32) = (160, 120);
 /// Colours of eight bits, one step off: roundings of lit colours and of what is laid over what.
@@ -140,7 +140,7 @@ fn assert_colours(model: &Model, camera: &Camera, picture: &Picture, background:
 
 /// The same as if the faces of clear solids were judged as all others are.
 fn assert_judged(model: &Model, camera: &Camera, picture: &Picture, what: &str) {
-    let j = judge(&Tracer::new(model), camera, picture, &JudgeOptions::default());
+    let j = judge(&Tracer::new(model), camera, &picture.images(), &JudgeOptions::default());
     assert_eq!((j.wrong, j.given_up), (0, 0), "{what}: {:?}", j.mismatches.first());
 }
 

@@ -10,7 +10,7 @@ use crate::support::{assert_silent, orthographic, perspective, render, watched, 
 use glam::DVec2;
 use selvedge::model::{Model, Solid};
 use selvedge::picture::{FrameSettings, Highlight, Outputs, SceneSettings};
-use selvedge::reference::csg::LayerTracer;
+use selvedge_check::solids::LayerTracer;
 
 /// Lengths within solids, and none where there is none. Parts that are closed count, too.
 #[test]

@@ -5,7 +5,7 @@ use crate::support::{assert_silent, orthographic, perspective, render, watched};
 use glam::{DAffine3, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Mesh, Model};
-use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
+use selvedge_check::{JudgeOptions, Judgement, Tracer, judge};
 
 const SIZE: (u32, u32) = (320, 240);
 /// What single precision leaves of a flat normal: corners are off by 2^-24 of the part's size, and the
@@ -30,7 +30,7 @@ fn keeps_the_promise(model: &Model, normal_deg: f64) -> Vec<Judgement> {
 
 fn is_right(tracer: &Tracer, renderer: &mut HeadlessRenderer, camera: &Camera, normal_deg: f64) -> Judgement {
     let picture = render(renderer, camera);
-    let j = judge(tracer, camera, &picture, &JudgeOptions::default());
+    let j = judge(tracer, camera, &picture.images(), &JudgeOptions::default());
     assert_eq!((j.sampled, j.wrong, j.given_up), (u64::from(SIZE.0 * SIZE.1), 0, 0), "{:?}", j.mismatches);
     assert!(j.agree + j.ties > j.sampled * 99 / 100, "only {} pixels agree", j.agree);
     assert!(j.normal_deg.count > 1000 && j.normal_deg.worst < normal_deg, "{:?}", j.normal_deg);

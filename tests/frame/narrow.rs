@@ -5,8 +5,8 @@ use crate::shapes::one;
 use crate::support::{assert_silent, render, watched};
 use glam::{DVec3, DVec4};
 use selvedge::model::{Camera, Face, Model, Projection, SurfaceKind};
-use selvedge::reference::{JudgeOptions, Tracer, judge};
 use selvedge::spline::{Control, Surface};
+use selvedge_check::{JudgeOptions, Tracer, judge};
 
 const SIDE: f64 = 2_000.0;
 
@@ -60,7 +60,7 @@ fn judged_exact(model: &Model, camera: &Camera, regular: u64) {
     let picture = render(&mut renderer, camera);
     assert_silent(renderer);
     let options = JudgeOptions { samples: None, ..JudgeOptions::default() };
-    let j = judge(&Tracer::new(model), camera, &picture, &options);
+    let j = judge(&Tracer::new(model), camera, &picture.images(), &options);
     let exact = &j.exact;
     println!("{:?}, {:?}; {} beyond", exact.depth_px, exact.normal_deg, exact.beyond);
     assert_eq!((j.wrong, exact.beyond), (0, 0), "{:?}", exact.normal_deg);

@@ -6,7 +6,7 @@ use crate::support::{assert_identical, assert_silent, perspective, render, watch
 use glam::{DAffine3, DVec3};
 use selvedge::model::{Camera, Model, Projection};
 use selvedge::picture::{SceneSettings, SolidWay};
-use selvedge::reference::{JudgeOptions, Tracer, judge};
+use selvedge_check::{JudgeOptions, Tracer, judge};
 
 /// The exact reference takes its time for meshes and splines.
 const SIZE: (u32, u32) = (96, 64);
@@ -88,7 +88,7 @@ fn the_camera_stands_within_operands() {
             let (up, projection) = (DVec3::Z, Projection::Perspective { fov_y: 1.0 });
             let camera = Camera { eye, target: DVec3::ZERO, up, projection, depth_range: (near, far), size: SIZE };
             let picture = render(&mut renderer, &camera);
-            let j = judge(&tracer, &camera, &picture, &JudgeOptions::default());
+            let j = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());
             let fault = j.wrong != 0 || picture.stats.clamps != 0;
             wrong.extend(fault.then(|| format!("{k} from {eye}: {} wrong, {:?}", j.wrong, j.mismatches.first())));
         }
@@ -125,7 +125,7 @@ fn lone_meshes() {
     let cameras = [perspective(&model, SIZE), within(DVec3::new(-3.0, 0.1, 0.1)), within(DVec3::new(6.0, 0.1, 1.0))];
     for (camera, sees) in cameras.iter().zip([3, 1, 1]) {
         let picture = render(&mut renderer, camera);
-        let j = judge(&tracer, camera, &picture, &JudgeOptions::default());
+        let j = judge(&tracer, camera, &picture.images(), &JudgeOptions::default());
         assert_eq!((j.wrong, picture.stats.unpaired), (0, 0), "{}: {:?}", camera.eye, j.mismatches.first());
         let seen: std::collections::BTreeSet<u32> = picture.face.iter().copied().filter(|f| *f != 0).collect();
         assert!(seen.len() >= sees, "{seen:?}");
@@ -145,7 +145,7 @@ fn deep_meshes_repeat() {
     let mut renderer = watched(&model);
     let picture = render(&mut renderer, &camera);
     let tracer = Tracer::new(&model);
-    let j = judge(&tracer, &camera, &picture, &JudgeOptions::default());
+    let j = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());
     assert_eq!((j.wrong, picture.stats.clamps, picture.stats.unpaired), (0, 0, 0), "{:?}", j.mismatches.first());
     // 300 walls behind each of a hundred pixels at least
     assert!(picture.stats.fragments > 300 * 100, "{}", picture.stats.fragments);

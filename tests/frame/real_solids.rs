@@ -9,7 +9,7 @@ use glam::{DVec2, DVec3};
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::Picture;
-use selvedge::reference::{JudgeOptions, Tracer, judge};
+use selvedge_check::{JudgeOptions, Tracer, judge};
 use std::path::{Path, PathBuf};
 
 const SIZE: (u32, u32) = (320, 180);
@@ -58,7 +58,7 @@ fn closed_solids_of_real_files_have_no_cracks() {
     let (mut faults, mut solids) = (Vec::new(), 0);
     for path in &paths {
         let name = path.file_name().expect("a file").to_string_lossy();
-        let model = match selvedge::import::open(path) {
+        let model = match selvedge_io::import::open(path) {
             Ok(import) if is_closed(&import.model) => import.model,
             Ok(_) => {
                 eprintln!("{name}: not closed, not judged");
@@ -77,7 +77,7 @@ fn closed_solids_of_real_files_have_no_cracks() {
             let picture = render(&mut renderer, &camera);
             let tie = JudgeOptions::default().tie / times;
             let options = JudgeOptions { tie, listed: usize::MAX, ..JudgeOptions::default() };
-            let j = judge(&tracer, &camera, &picture, &options);
+            let j = judge(&tracer, &camera, &picture.images(), &options);
             let holes = j.mismatches.iter().filter(|m| m.drawn == 0).count();
             let changed = j.wrong - holes as u64 + j.folds.beyond + j.folds.wrong_depth;
             let inside = picture.face.iter().filter(|&&id| id != 0).count();

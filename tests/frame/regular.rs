@@ -4,8 +4,8 @@
 use crate::shapes::borders;
 use crate::support::perspective;
 use glam::{DQuat, Vec3};
-use selvedge::picture::Picture;
-use selvedge::reference::{EXACT_DEPTH_PX, EXACT_NORMAL_DEG, Exactness, JudgeOptions, Tracer, judge};
+
+use selvedge_check::{EXACT_DEPTH_PX, EXACT_NORMAL_DEG, Exactness, JudgeOptions, Tracer, judge};
 
 const SIZE: (u32, u32) = (160, 120);
 
@@ -14,7 +14,8 @@ fn what_is_not_exact_is_told_where_the_surface_is_regular() {
     let model = borders::drum(1.5, 4.0);
     let (tracer, camera) = (Tracer::new(&model), perspective(&model, SIZE));
     let truth = tracer.picture(&camera, &|_| {});
-    let exact = |picture: &Picture| judge(&tracer, &camera, picture, &JudgeOptions::default()).exact;
+    let exact =
+        |picture: &selvedge_check::Picture| judge(&tracer, &camera, &picture.images(), &JudgeOptions::default()).exact;
     let before = exact(&truth);
     assert_eq!(before.beyond, 0);
     assert!(before.depth_px.count > 1000 && before.depth_px.worst < 1e-4, "{before:?}");

@@ -5,7 +5,7 @@ use crate::support::{assert_silent, render, watched};
 use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::Picture;
-use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
+use selvedge_check::{JudgeOptions, Judgement, Tracer, judge};
 use std::path::Path;
 
 /// Small, so that features of a pixel and below are met often.
@@ -16,7 +16,7 @@ const VIEWS: [DVec3; 2] = [DVec3::new(1.0, -1.6, 1.1), DVec3::new(-1.2, -1.0, 0.
 /// A missing sample fails: its absence is not a pass.
 fn sample(name: &str) -> Model {
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples").join(name);
-    selvedge::import::open(&path).unwrap().model
+    selvedge_io::import::open(&path).unwrap().model
 }
 
 fn camera(model: &Model, from: DVec3) -> Camera {
@@ -24,7 +24,7 @@ fn camera(model: &Model, from: DVec3) -> Camera {
 }
 
 fn judged(tracer: &Tracer, camera: &Camera, picture: &Picture) -> Judgement {
-    judge(tracer, camera, picture, &JudgeOptions::default())
+    judge(tracer, camera, &picture.images(), &JudgeOptions::default())
 }
 
 /// Draws both views and asserts the promise: no pixel off by more than half a pixel, no clamp. From the

@@ -11,8 +11,8 @@ use glam::{DAffine3, DQuat, DVec2, DVec3};
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Camera, Model, Primitive, Projection, Solid};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, SolidWay};
-use selvedge::reference::{JudgeOptions, SunJudgement, SunTracer, Tracer, judge, judge_sun};
 use selvedge::renderer::RenderError;
+use selvedge_check::{JudgeOptions, SunJudgement, SunTracer, Tracer, judge, judge_sun};
 
 const SIZE: (u32, u32) = (120, 90);
 /// From the model towards the sun: shadows fall towards the eye.
@@ -94,8 +94,8 @@ fn judged(
     camera: &Camera,
 ) -> Result<(SunJudgement, Picture), String> {
     let picture = render(renderer, camera);
-    let j = judge(tracer, camera, &picture, &JudgeOptions::default());
-    let light = judge_sun(tracer, sun, camera, &picture, &JudgeOptions::default());
+    let j = judge(tracer, camera, &picture.images(), &JudgeOptions::default());
+    let light = judge_sun(tracer, sun, camera, &picture.images(), &JudgeOptions::default());
     if (j.wrong, light.wrong, picture.stats.clamps) != (0, 0, 0) {
         return Err(format!("{} faces wrong, {} clamps, {light:?}", j.wrong, picture.stats.clamps));
     }

@@ -13,7 +13,7 @@ use glam::{DVec2, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings};
-use selvedge::reference::Tracer;
+use selvedge_check::Tracer;
 
 const SIZE: (u32, u32) = (64, 48);
 /// By how much the faces of solids grow over their borders: a quarter of the ring, which is half the tolerance.

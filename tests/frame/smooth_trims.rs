@@ -10,9 +10,9 @@ use glam::{DVec2, DVec3};
 use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, Model, Projection, TrimLoop};
 use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, Samples, SceneSettings, TrimWay};
-use selvedge::reference::Tracer;
 use selvedge::renderer::RenderError;
 use selvedge::spline::{Bezier, Control};
+use selvedge_check::Tracer;
 
 const SIZE: (u32, u32) = (64, 48);
 

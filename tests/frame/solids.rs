@@ -7,7 +7,7 @@ use selvedge::csg::Op;
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Bounds, Camera, Model, Primitive, Projection, Shape, Solid};
 use selvedge::picture::{SceneSettings, SolidWay};
-use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
+use selvedge_check::{JudgeOptions, Judgement, Tracer, judge};
 
 const SIZE: (u32, u32) = (240, 160);
 /// Single precision of a root on a tube a twentieth of its ring, grazed at a cosine of 0.1: a place off by
@@ -26,7 +26,7 @@ fn has_mesh(model: &Model) -> bool {
 /// What is wrong with a picture, or nothing.
 pub fn faults(renderer: &mut HeadlessRenderer, tracer: &Tracer, camera: &Camera, blank: bool) -> Option<String> {
     let picture = render(renderer, camera);
-    let j = judge(tracer, camera, &picture, &JudgeOptions::default());
+    let j = judge(tracer, camera, &picture.images(), &JudgeOptions::default());
     let empty = j.normal_deg.count == 0;
     if (j.wrong, j.given_up) != (0, 0) {
         return Some(format!("{} wrong, {} given up, {:?}", j.wrong, j.given_up, j.mismatches.first()));
@@ -141,7 +141,7 @@ fn rays_without_an_end_are_counted() {
     let camera = perspective(&model, (32, 24));
     let mut renderer = watched(&model);
     let picture = render(&mut renderer, &camera);
-    let j = judge(&Tracer::new(&model), &camera, &picture, &JudgeOptions::default());
+    let j = judge(&Tracer::new(&model), &camera, &picture.images(), &JudgeOptions::default());
     assert!(j.wrong == 0 || picture.stats.clamps > 0, "{} wrong, {:?}", j.wrong, j.mismatches.first());
     assert_silent(renderer);
 }

@@ -11,7 +11,7 @@ use crate::shapes;
 use crate::support::{assert_silent, render, watched};
 use glam::DVec3;
 use selvedge::model::Camera;
-use selvedge::reference::{JudgeOptions, Tracer, judge};
+use selvedge_check::{JudgeOptions, Tracer, judge};
 
 /// Sides seen nearly edge-on, thinner than a pixel at their far ends: none may be drawn beyond its end.
 #[test]
@@ -22,7 +22,7 @@ fn a_face_without_trims_ends_where_its_surface_ends() {
     for from in [DVec3::new(1.0, -1.5, 1.5), DVec3::new(-0.4, -1.0, 0.35), DVec3::new(0.7, 1.0, -0.6)] {
         let camera = Camera::framing(model.bounds(), from, DVec3::Z, 30f64.to_radians(), (480, 360));
         let picture = render(&mut renderer, &camera);
-        let judgement = judge(&tracer, &camera, &picture, &JudgeOptions::default());
+        let judgement = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());
         assert_eq!((judgement.wrong, judgement.given_up), (0, 0), "from {from}: {:?}", judgement.mismatches);
         assert!(picture.stats.doubtful_pixels > 100, "from {from}: nothing was healed");
     }

@@ -4,7 +4,7 @@ use crate::shapes;
 use crate::support::{assert_silent, perspective, watched};
 use selvedge::model::Model;
 use selvedge::picture::{FrameSettings, Outputs};
-use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
+use selvedge_check::{JudgeOptions, Judgement, Tracer, judge};
 
 /// Pictures of the model at each tolerance, every pixel of the face's changes judged by that of `limits`.
 fn judged(model: &Model, tolerances: &[f64], limits: &[f64]) -> Vec<Judgement> {
@@ -14,7 +14,7 @@ fn judged(model: &Model, tolerances: &[f64], limits: &[f64]) -> Vec<Judgement> {
         let settings = FrameSettings { tolerance_px, ..FrameSettings::default() };
         let picture = renderer.render(&camera, &settings, Outputs::ALL).unwrap();
         assert_eq!(picture.stats.clamps, 0);
-        judge(&tracer, &camera, &picture, &JudgeOptions { limit_px, ..JudgeOptions::default() })
+        judge(&tracer, &camera, &picture.images(), &JudgeOptions { limit_px, ..JudgeOptions::default() })
     };
     let all = tolerances.iter().zip(limits).map(one).collect();
     assert_silent(renderer);

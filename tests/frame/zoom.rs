@@ -6,7 +6,7 @@ use crate::support::{assert_identical, assert_silent, render, watched};
 use glam::{DAffine3, DVec2, DVec3};
 use selvedge::model::{Camera, Model, Projection};
 use selvedge::picture::Picture;
-use selvedge::reference::{JudgeOptions, Tracer, judge};
+use selvedge_check::{JudgeOptions, Tracer, judge};
 use std::path::Path;
 
 const SIZE: (u32, u32) = (160, 120);
@@ -54,7 +54,7 @@ fn keeps_the_promise(model: &Model, times: f64) {
             let picture = render(&mut renderer, &camera);
             // what is a tie at the whole model's scale is not one here
             let options = JudgeOptions { tie: 1e-6 / times, ..JudgeOptions::default() };
-            let j = judge(&tracer, &camera, &picture, &options);
+            let j = judge(&tracer, &camera, &picture.images(), &options);
             assert_eq!((j.wrong, j.given_up), (0, 0), "face {face}, {at:?}: {:?}", j.mismatches);
             clamps += picture.stats.clamps;
             seen += picture.face.iter().filter(|id| **id != 0).count();
@@ -67,7 +67,7 @@ fn keeps_the_promise(model: &Model, times: f64) {
 }
 
 fn sample(name: &str) -> Model {
-    selvedge::import::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("samples").join(name)).unwrap().model
+    selvedge_io::import::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("samples").join(name)).unwrap().model
 }
 
 #[test]
@@ -126,7 +126,7 @@ fn an_eye_beside_a_bent_face_is_near_no_more_than_that() {
         let mut camera = Camera { eye, target, ..Camera::framing(model.bounds(), DVec3::X, DVec3::Z, 0.6, SIZE) };
         camera.fit_depth(model.bounds());
         let picture = render(&mut renderer, &camera);
-        let j = judge(&tracer, &camera, &picture, &JudgeOptions::default());
+        let j = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());
         assert_eq!((j.wrong, picture.stats.clamps), (0, 0), "view {k}: {} rows", picture.stats.trim_rows);
         assert!(picture.stats.trim_rows > 0, "view {k}");
     }

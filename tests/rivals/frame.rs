@@ -6,10 +6,10 @@ use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Instance, Model, Projection};
 use selvedge::picture::Sorted;
 use selvedge::picture::{FrameSettings, Outputs, Picture, Rival, SceneSettings, TrimWay};
-use selvedge::reference::{JudgeOptions, Judgement, Tracer, judge};
 use selvedge::renderer::RenderError;
 use selvedge::rivals::pretessellated::pretessellated;
 use selvedge::rivals::{many_holes, texture};
+use selvedge_check::{JudgeOptions, Judgement, Tracer, judge};
 use std::path::Path;
 
 const SIZE: (u32, u32) = (320, 240);
@@ -19,7 +19,7 @@ fn camera(model: &Model) -> Camera {
 }
 
 fn sample(name: &str) -> Model {
-    selvedge::import::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("samples").join(name)).unwrap().model
+    selvedge_io::import::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("samples").join(name)).unwrap().model
 }
 
 fn panel() -> Model {
@@ -45,7 +45,7 @@ fn judged(drawn: &Model, trim: Option<TrimWay>, model: &Model) -> Judgement {
     let picture = renderer.render(&camera, &FrameSettings::default(), Outputs::ALL).unwrap();
     let messages = renderer.shutdown();
     assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
-    judge(&Tracer::new(model), &camera, &picture, &JudgeOptions::default())
+    judge(&Tracer::new(model), &camera, &picture.images(), &JudgeOptions::default())
 }
 
 fn rival(model: &Model, rival: Rival) -> Judgement {
@@ -201,7 +201,7 @@ fn slefes_make_a_picture() {
         let messages = renderer.shutdown();
         assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
         let covered = picture.face.iter().filter(|face| **face != 0).count();
-        let j = judge(&tracer, &camera, &picture, &JudgeOptions::default());
+        let j = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());
         // no promise, but a picture of the model
         assert!(covered > 10_000 && 100 * j.wrong < j.sampled, "{covered} covered, {} of {} wrong", j.wrong, j.sampled);
         picture.stats.triangles

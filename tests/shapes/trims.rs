@@ -10,7 +10,7 @@ use selvedge::model::TrimLoop;
 use selvedge::spline::{BSpline, Bezier, Control};
 
 #[allow(dead_code)]
-#[path = "../trim/shapes.rs"]
+#[path = "../../crates/geometry/tests/trim/shapes.rs"]
 pub mod loops;
 use loops::{at, circle, closed, curve, polygon, rational, rectangle};
 

@@ -11,8 +11,8 @@ use selvedge::construct::{Chain, extruded_solid, lathed_solid};
 use selvedge::csg::Op;
 use selvedge::model::{Camera, Mesh, Model, Part, Primitive, Projection, Solid};
 use selvedge::picture::Picture;
-use selvedge::reference::{JudgeOptions, SunTracer, Tracer, judge_sun};
 use selvedge::spline::BSpline;
+use selvedge_check::{JudgeOptions, SunTracer, Tracer, judge_sun};
 use std::f64::consts::TAU;
 
 /// Number of the ground.
@@ -323,7 +323,7 @@ fn a_carved_pot_is_dark_where_the_sun_does_not_reach() {
     let (tracer, sun) = (Tracer::new(&m), SunTracer::new(&m, towards).unwrap());
     let mut renderer = watched_with(&m, sunny(towards));
     let picture = render(&mut renderer, &camera);
-    let light = judge_sun(&tracer, &sun, &camera, &picture, &JudgeOptions::default());
+    let light = judge_sun(&tracer, &sun, &camera, &picture.images(), &JudgeOptions::default());
     assert_silent(renderer);
     assert!(light.lit > 5000 && light.compared - light.lit > 5000, "{light:?}");
     assert!(light.deviated == 0 && picture.stats.clamps == 0, "{light:?}");
@@ -332,7 +332,7 @@ fn a_carved_pot_is_dark_where_the_sun_does_not_reach() {
     let grazed = |i: usize| DVec3::from(picture.normal[i].map(f64::from)).dot(towards.normalize()) < 1e-3;
     let told = (0..).zip(&picture.sunlit).map(|(i, lit)| *lit && !grazed(i)).collect();
     let seen = Picture { sunlit: told, ..picture.clone() };
-    let rest = judge_sun(&tracer, &sun, &camera, &seen, &JudgeOptions::default());
+    let rest = judge_sun(&tracer, &sun, &camera, &seen.images(), &JudgeOptions::default());
     assert!(light.wrong <= 2 && rest.wrong == 0, "{light:?}, {rest:?}");
 }
 

@@ -1,0 +1,247 @@
+//! `selvedge bench`: what a frame costs, next to how wrong it is.
+//!
+//! Speed without its error says little: some frames of the path are judged against the exact model,
+//! and both stand in the same table.
+//!
+//! Frames are drawn as a viewer draws them: a trim table for all views from about as far is made once, in the warm-up, and
+//! costs those that keep it nothing. A view that stands (`--motion still`) is drawn in turn with every pass, and keeping
+//! what the frame before saw: those rows begin with `kept:`.
+
+use crate::args::{BenchArgs, Motion, Size};
+use crate::progress::during;
+use crate::series::{Gathered, Row};
+use crate::session::{self, Session};
+use crate::{Outcome, edit, output, path, verdict};
+use anyhow::{Context, Result};
+use comfy_table::CellAlignment;
+use selvedge::model::Camera;
+use selvedge::picture::{FrameStats, Outputs};
+use selvedge_check::{Judgement, Tracer};
+use serde::Serialize;
+use std::path::Path;
+use std::time::Instant;
+
+/// Frames before the first measured one: buffers have grown, the driver's pipelines are compiled.
+const WARM_UP_FRAMES: usize = 3;
+/// Pixels judged in each of them, beside those at which the face changes.
+const JUDGED_SAMPLES: usize = 2_000;
+
+/// Everything measured on one model.
+#[derive(Debug, Serialize)]
+struct Report {
+    model: String,
+    faces: usize,
+    face_instances: usize,
+    missing_faces: usize,
+    size: [u32; 2],
+    tolerance_px: f64,
+    device: String,
+    driver: String,
+    rows: Vec<Row>,
+    error: Error,
+}
+
+/// The worst of the judged frames.
+#[derive(Debug, Default, Serialize)]
+struct Error {
+    judged_frames: usize,
+    judged_pixels: u64,
+    wrong_pixels: u64,
+    worst_shift_px: f64,
+    worst_depth: f64,
+    worst_normal_deg: f64,
+}
+
+/// Measures every model; prints a table each and writes them all.
+pub fn run(args: &BenchArgs) -> Result<Outcome> {
+    if args.edit {
+        return edit::run(args);
+    }
+    let mut reports = Vec::new();
+    let mut outcome = Outcome::Good;
+    for model in &args.models {
+        let (report, complained) = measure(args, model)?;
+        output::print(&report.text())?;
+        let clamped = report.rows.iter().any(|r| r.name == CLAMPS && r.largest > 0.0);
+        if complained || clamped || report.error.wrong_pixels > 0 {
+            outcome = Outcome::Broken;
+        }
+        reports.push(report);
+    }
+    if let Some(dir) = &args.out {
+        std::fs::create_dir_all(dir).with_context(|| format!("cannot make {}", dir.display()))?;
+        output::json(&dir.join("bench.json"), &reports)?;
+        csv(&dir.join("bench.csv"), &reports)?;
+    }
+    Ok(outcome)
+}
+
+/// One model along the path; true when the validation layer complained.
+fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
+    let mut import = session::open(model, &Default::default())?;
+    args.cut.apply(&mut import.model)?;
+    let bounds = import.model.bounds();
+    let Size(width, height) = args.size;
+    let size = (width, height);
+    let camera = |index| match args.motion {
+        Motion::Path => path::camera(bounds, size, index, args.frames),
+        Motion::Turn => path::turned(bounds, size, index),
+        Motion::Still => path::turned(bounds, size, 0),
+    };
+    let mut session = Session::smooth(session::opened(&args.frame)?, &args.frame, &import, &args.edges)?;
+    let mut stats = FrameStats::default();
+    let mut gathered = Gathered::default();
+    session.record_all(args.motion == Motion::Still);
+    during(&format!("{}: {} frames", model.display(), args.frames), || -> Result<()> {
+        for _ in 0..WARM_UP_FRAMES {
+            session.render(&camera(0), Outputs::default())?;
+        }
+        for index in 0..args.frames {
+            stats = timed(&mut session, &camera(index), &mut gathered)?;
+            if args.motion == Motion::Still {
+                session.record_all(false);
+                timed(&mut session, &camera(index), &mut gathered)?;
+                session.record_all(true);
+            }
+        }
+        Ok(())
+    })?;
+    let mut error = Error::default();
+    let mut tracer = None;
+    for index in judged(args.frames, args.judged) {
+        let tracer = tracer.get_or_insert_with(|| during("preparing the exact model", || Tracer::new(&import.model)));
+        let camera = camera(index);
+        let picture = session.render(&camera, Outputs::ALL)?;
+        let what = format!("frame {index}");
+        error.add(&verdict::of(tracer, &camera, &picture, JUDGED_SAMPLES, args.frame.tolerance, 1.0, &what));
+    }
+    let report = Report {
+        model: model.display().to_string(),
+        faces: import.model.face_count(),
+        face_instances: import.model.face_instance_count(),
+        missing_faces: import.report.dropped.values().sum(),
+        size: [width, height],
+        tolerance_px: args.frame.tolerance,
+        device: stats.device,
+        driver: stats.driver,
+        rows: gathered.rows(),
+        error,
+    };
+    Ok((report, session.complaints()))
+}
+
+/// One frame, and what it cost.
+fn timed(session: &mut Session, camera: &Camera, gathered: &mut Gathered) -> Result<FrameStats> {
+    let start = Instant::now();
+    let stats = session.render(camera, Outputs::default())?.stats;
+    let took = start.elapsed().as_secs_f64() * 1e3;
+    let row = |name: &str| if stats.kept { format!("kept: {name}") } else { name.to_owned() };
+    gathered.push(&row("wall clock, with read-back"), "ms", took);
+    for pass in &stats.passes {
+        gathered.push(&row(&format!("pass: {}", pass.name)), "ms", pass.gpu_ms);
+    }
+    gathered.push(&row("all passes"), "ms", stats.passes.iter().map(|p| p.gpu_ms).sum());
+    if !stats.kept {
+        if stats.trim_rows > 0 && stats.passes.iter().all(|p| p.name != TRIM_TABLE) {
+            gathered.push(&row(&format!("pass: {TRIM_TABLE}")), "ms", 0.0);
+        }
+        gather(gathered, &stats);
+    }
+    Ok(stats)
+}
+
+const CLAMPS: &str = "clamps";
+/// A table for many views is made once.
+const TRIM_TABLE: &str = "trim table";
+
+/// The counts of a frame.
+fn gather(to: &mut Gathered, stats: &FrameStats) {
+    to.push("triangles", "", stats.triangles as f64);
+    to.push("sub-patches", "", stats.sub_patches as f64);
+    to.push("hidden patches", "", stats.hidden_patches as f64);
+    to.push("trim rows", "", stats.trim_rows as f64);
+    to.push("trim intercepts", "", stats.trim_intercepts as f64);
+    to.push("layers", "", stats.layers as f64);
+    to.push("bands", "", f64::from(stats.bands));
+    to.push(CLAMPS, "", stats.clamps as f64);
+    to.push("retries", "", f64::from(stats.retries));
+    for pool in &stats.pools {
+        to.push(&format!("pool: {}", pool.name), "bytes", pool.bytes as f64);
+    }
+    for list in &stats.solid_bytes {
+        to.push(&format!("solids: {}", list.name), "bytes", list.bytes as f64);
+    }
+}
+
+/// Indices of the frames to judge, spread evenly; each takes much longer than it takes to draw.
+fn judged(frames: usize, most: usize) -> impl Iterator<Item = usize> {
+    let count = most.min(frames);
+    (0..count).map(move |i| i * frames / count)
+}
+
+impl Error {
+    fn add(&mut self, j: &Judgement) {
+        self.judged_frames += 1;
+        self.judged_pixels += j.sampled;
+        self.wrong_pixels += verdict::wrong(j);
+        self.worst_shift_px = self.worst_shift_px.max(verdict::worst_shift_px(j));
+        self.worst_depth = self.worst_depth.max(j.depth_regular.model.worst);
+        self.worst_normal_deg = self.worst_normal_deg.max(j.normal_deg.worst);
+    }
+}
+
+impl Report {
+    fn text(&self) -> String {
+        let mut table = output::table(["", "unit", "median", "95 %", "largest"]);
+        for row in &self.rows {
+            let number = |x: f64| if row.unit == "ms" { format!("{x:.2}") } else { format!("{x:.0}") };
+            let (median, p95, largest) = (number(row.median), number(row.p95), number(row.largest));
+            table.add_row([&row.name, row.unit, &median, &p95, &largest]);
+        }
+        table.column_iter_mut().skip(2).for_each(|c| c.set_cell_alignment(CellAlignment::Right));
+        let Self { model, faces, face_instances, missing_faces, size: [w, h], device, driver, error: e, .. } = self;
+        format!(
+            "{model}: {faces} faces, {face_instances} placed, {missing_faces} missing; {w} x {h} on {device} ({driver})\n{table}\n\
+             error in {} judged frames: {} of {} pixels wrong, worst shift {:.3} px, depth {:.2e} mm, normal {:.3} deg",
+            e.judged_frames, e.wrong_pixels, e.judged_pixels, e.worst_shift_px, e.worst_depth, e.worst_normal_deg
+        )
+    }
+}
+
+/// One line for each quantity of each model; the errors are quantities too.
+fn csv(path: &Path, reports: &[Report]) -> Result<()> {
+    output::file(path, |to| {
+        let mut lines = csv::Writer::from_writer(to);
+        lines.write_record(["model", "quantity", "unit", "median", "p95", "largest", "frames"])?;
+        for Report { model, rows, error: e, .. } in reports {
+            for r in rows {
+                lines.serialize((model, &r.name, r.unit, r.median, r.p95, r.largest, r.frames))?;
+            }
+            let worst = [
+                ("wrong pixels", "", e.wrong_pixels as f64),
+                ("worst shift", "px", e.worst_shift_px),
+                ("worst depth error", "mm", e.worst_depth),
+                ("worst normal error", "deg", e.worst_normal_deg),
+            ];
+            for (name, unit, value) in worst {
+                lines.serialize((model, name, unit, "", "", value, e.judged_frames))?;
+            }
+        }
+        Ok(lines.flush()?)
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn judged_frames_are_distinct_and_within_the_path() {
+        for frames in [1, 2, 3, 5, 24] {
+            assert_eq!(judged(frames, 0).count(), 0);
+            let indices: Vec<usize> = judged(frames, 4).collect();
+            assert_eq!(indices.len(), frames.min(4));
+            assert!(indices.windows(2).all(|w| w[0] < w[1]) && indices.iter().all(|&i| i < frames));
+        }
+    }
+}

@@ -1,0 +1,331 @@
+//! Cameras from the command line, the built-in views, and the camera file for other programs.
+//!
+//! ```text
+//!   whole     the bounding sphere in the picture, from FROM
+//!   close     the same direction, CLOSER times nearer, at the boundary point nearest to the eye; of Boolean
+//!             solids alone, at the nearest of LOOKS x LOOKS rays beside which another face is seen
+//!   grazing   along the largest extent, GRAZING_DEG above the two larger ones
+//! ```
+
+use crate::args::{CameraArgs, Size, Views};
+use anyhow::{Context, Result, bail};
+use glam::{DVec2, DVec3};
+use selvedge::model::{Bounds, Camera, Face, Model, Projection};
+use selvedge_check::{Hit, Tracer};
+use selvedge_io::import::{Import, NamedCamera};
+use serde::Serialize;
+
+/// From the model towards the eye: front, right, a little above; no axis of the model seen edge-on.
+const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
+/// How much nearer the close view is. At six times a 1080p picture shows what 6480 lines would: far
+/// past what a mesh made for the whole view resolves.
+const CLOSER: f64 = 6.0;
+/// Rays along a side of the picture that look for an edge of Boolean solids.
+const LOOKS: usize = 48;
+/// Low enough that a silhouette crosses many surfaces, high enough that a flat model shows its face.
+const GRAZING_DEG: f64 = 8.0;
+
+/// Vertical field of view where nothing is said.
+const FOV_DEG: f64 = 35.0;
+/// Size of a picture where nothing is said.
+const SIZE: Size = Size(1920, 1080);
+
+/// A camera and what it is called in reports.
+#[derive(Clone, Debug)]
+pub struct View {
+    pub name: String,
+    pub camera: Camera,
+}
+
+impl CameraArgs {
+    /// The camera asked for: one of the file's by name, or where the arguments say.
+    pub fn of(&self, import: &Import) -> Result<Camera> {
+        let bounds = import.model.bounds();
+        match self.named(import)? {
+            Some(named) => fitted(named.camera(bounds, self.pixels(import)), bounds),
+            None => self.camera(bounds, self.pixels(import)),
+        }
+    }
+
+    /// The file's camera of the name given; without any word about a camera the one that its picture asks for.
+    fn named<'a>(&self, import: &'a Import) -> Result<Option<&'a NamedCamera>> {
+        let silent = self.eye.is_none() && self.target.is_none() && self.up.is_none();
+        let silent = silent && self.fov.is_none() && self.ortho.is_none();
+        let Some(name) = &self.camera else {
+            return Ok(import.picture.camera.filter(|_| silent).and_then(|i| import.cameras.get(i)));
+        };
+        let found = import.cameras.iter().find(|c| c.name == *name);
+        if found.is_none() {
+            let known: Vec<&str> = import.cameras.iter().map(|c| c.name.as_str()).collect();
+            let known = if known.is_empty() { "none".to_owned() } else { known.join(", ") };
+            bail!("the file has no camera `{name}`; it has {known}");
+        }
+        Ok(found)
+    }
+
+    fn pixels(&self, import: &Import) -> (u32, u32) {
+        let asked = self.size.or(import.picture.size.map(|(w, h)| Size(w, h)));
+        let Size(width, height) = asked.unwrap_or(SIZE);
+        (width, height)
+    }
+
+    /// Where the arguments say; what they do not say frames the model.
+    fn camera(&self, bounds: Bounds, size: (u32, u32)) -> Result<Camera> {
+        let mut camera = self.framed(bounds, FROM, self.up.unwrap_or(DVec3::Z), size);
+        match (self.eye, self.target) {
+            (Some(eye), target) => (camera.eye, camera.target) = (eye, target.unwrap_or(camera.target)),
+            (None, Some(target)) => (camera.eye, camera.target) = (camera.eye + target - camera.target, target),
+            (None, None) => {}
+        }
+        fitted(camera, bounds)
+    }
+
+    /// The built-in views; a camera asked for takes the place of `whole` and is called `given`.
+    pub fn views(&self, views: Views, import: &Import) -> Result<Vec<View>> {
+        let (model, size) = (&import.model, self.pixels(import));
+        let bounds = model.bounds();
+        let whole = self.of(import)?;
+        let wanted = |one| views == one || views == Views::All;
+        let mut list = Vec::new();
+        if wanted(Views::Whole) {
+            let given = self.eye.is_some() || self.target.is_some() || self.named(import)?.is_some();
+            list.push(View { name: if given { "given" } else { "whole" }.to_string(), camera: whole });
+        }
+        if wanted(Views::Close) {
+            list.push(View { name: "close".to_string(), camera: fitted(closer(model, whole, CLOSER), bounds)? });
+        }
+        if wanted(Views::Grazing) {
+            list.push(View { name: "grazing".to_string(), camera: fitted(self.grazing(bounds, size), bounds)? });
+        }
+        Ok(list)
+    }
+
+    /// So many times closer each.
+    pub fn zooms(&self, times: &[f64], import: &Import) -> Result<Vec<View>> {
+        let bounds = import.model.bounds();
+        let whole = self.of(import)?;
+        let view = |&times: &f64| {
+            let mut camera = fitted(closer(&import.model, whole, times), bounds)?;
+            // nothing of interest is nearer than a tenth of the distance
+            let near = (camera.eye - camera.target).length() * 0.1;
+            camera.depth_range.0 = camera.depth_range.0.min(near);
+            Ok(View { name: format!("{times} x"), camera })
+        };
+        times.iter().map(view).collect()
+    }
+
+    fn grazing(&self, bounds: Bounds, size: (u32, u32)) -> Camera {
+        let extent = bounds.max - bounds.min;
+        let mut axes = [0, 1, 2];
+        axes.sort_by(|&a, &b| extent[a].total_cmp(&extent[b]));
+        let (up, along) = (DVec3::AXES[axes[0]], DVec3::AXES[axes[2]]);
+        let (sin, cos) = GRAZING_DEG.to_radians().sin_cos();
+        self.framed(bounds, along * cos + up * sin, up, size)
+    }
+
+    fn framed(&self, bounds: Bounds, from: DVec3, up: DVec3, size: (u32, u32)) -> Camera {
+        let mut camera = Camera::framing(bounds, from, up, self.fov.unwrap_or(FOV_DEG).to_radians(), size);
+        if let Some(height) = self.ortho {
+            camera.projection = Projection::Orthographic { height };
+        }
+        camera
+    }
+}
+
+/// `camera` with a depth range that holds the model, checked.
+fn fitted(mut camera: Camera, bounds: Bounds) -> Result<Camera> {
+    camera.fit_depth(bounds);
+    camera.check().context("the camera shows nothing")?;
+    Ok(camera)
+}
+
+/// `times` closer to the start of the trim curve or the vertex nearest to the eye: certainly in sight, and at
+/// an edge.
+pub fn closer(model: &Model, mut camera: Camera, times: f64) -> Camera {
+    let depth = |p: &DVec3| (*p - camera.eye).dot(camera.axes().2);
+    let nearest = details(model).min_by(|a, b| depth(a).total_cmp(&depth(b)));
+    let Some(detail) = nearest.or_else(|| edge_of_solids(model, &camera)) else { return camera };
+    let back = camera.eye - camera.target;
+    camera.target = detail;
+    match &mut camera.projection {
+        Projection::Perspective { .. } => camera.eye = detail + back / times,
+        Projection::Orthographic { height } => (camera.eye, *height) = (detail + back, *height / times),
+    }
+    camera
+}
+
+/// Starts of trim curves and vertices of the placed parts.
+fn details(model: &Model) -> impl Iterator<Item = DVec3> + '_ {
+    model.instances.iter().flat_map(|instance| {
+        let part = &model.parts[instance.part];
+        let vertices = part.meshes.iter().flat_map(|m| m.positions().iter().copied());
+        let points = part.faces.iter().flat_map(boundary_points).chain(vertices);
+        points.map(|p| instance.transform.transform_point3(p))
+    })
+}
+
+/// The nearest place at which two of the rays over the picture see different faces, or else the nearest that
+/// any of them sees.
+fn edge_of_solids(model: &Model, camera: &Camera) -> Option<DVec3> {
+    let tracer = (!model.solids.is_empty()).then(|| Tracer::new(model))?;
+    let step = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1)) / LOOKS as f64;
+    let ray = |k: usize| DVec2::new((k % LOOKS) as f64 + 0.5, (k / LOOKS) as f64 + 0.5) * step;
+    let mut probe = tracer.probe(camera);
+    let hits: Vec<Option<Hit>> = (0..LOOKS * LOOKS).map(|k| probe.first(ray(k))).collect();
+    let face = |k: usize| hits.get(k).and_then(|h| h.as_ref()).map(|h| h.face);
+    let at_edge = |k: usize| face(k) != face(k + 1) || face(k) != face(k + LOOKS);
+    let nearest = |wanted: &dyn Fn(usize) -> bool| {
+        let seen = hits.iter().enumerate().filter(|(k, _)| wanted(*k)).filter_map(|(_, h)| h.as_ref());
+        seen.min_by(|a, b| a.depth.total_cmp(&b.depth)).map(|h| h.point)
+    };
+    nearest(&at_edge).or_else(|| nearest(&|_| true))
+}
+
+/// Where the trim curves of a face start, in part coordinates; the corners of its domain if it has none.
+fn boundary_points(face: &Face) -> Vec<DVec3> {
+    let grid = face.surface.patches();
+    let ((u0, u1), (v0, v1)) = face.surface.domain();
+    if face.loops.is_empty() {
+        return [(u0, v0), (u1, v0), (u0, v1), (u1, v1)].map(|(u, v)| grid.point(u, v)).to_vec();
+    }
+    let starts = face.loops.iter().flat_map(|l| l.curves().map(|c| c.point(0.0)).collect::<Vec<_>>());
+    starts.map(|uv| grid.point(uv.x, uv.y)).collect()
+}
+
+/// `zoom` times magnified: the eye stays, the angle narrows. From 1 on the picture's middle moves from the
+/// model's to the start of a trim curve: of an open shell to the one nearest to the model's middle, of a
+/// solid to the one nearest to the eye, which is certainly in sight.
+pub fn zoomed(model: &Model, size: (u32, u32), zoom: f64) -> Camera {
+    let bounds = model.bounds();
+    let mut camera = Camera::framing(bounds, FROM, DVec3::Z, 35f64.to_radians(), size);
+    let solid = model.parts.iter().any(|part| part.closed);
+    let from = if solid { camera.eye } else { bounds.centre() };
+    let nearest = |p: &DVec3| p.distance_squared(from);
+    if let Some(detail) = details(model).min_by(|a, b| nearest(a).total_cmp(&nearest(b))) {
+        camera.target = camera.target.lerp(detail, 1.0 - 1.0 / zoom);
+    }
+    if let Projection::Perspective { fov_y } = &mut camera.projection {
+        *fov_y = 2.0 * ((*fov_y * 0.5).tan() / zoom).atan();
+    }
+    camera.fit_depth(bounds);
+    camera
+}
+
+/// A camera as other programs read it.
+#[derive(Debug, Serialize)]
+pub struct CameraFile {
+    eye: [f64; 3],
+    target: [f64; 3],
+    up: [f64; 3],
+    /// Vertical field of view, degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    fovy: Option<f64>,
+    /// Half the height of a parallel view, millimetres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    ortho: Option<f64>,
+    size: [u32; 2],
+}
+
+impl From<&Camera> for CameraFile {
+    fn from(camera: &Camera) -> Self {
+        let (fovy, ortho) = match camera.projection {
+            Projection::Perspective { fov_y } => (Some(fov_y.to_degrees()), None),
+            Projection::Orthographic { height } => (None, Some(height * 0.5)),
+        };
+        Self {
+            eye: camera.eye.into(),
+            target: camera.target.into(),
+            up: camera.up.into(),
+            fovy,
+            ortho,
+            size: camera.size.into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::args::{Cli, Command};
+    use clap::Parser;
+
+    const BOX: Bounds = Bounds { min: DVec3::new(-10.0, -3.0, 0.0), max: DVec3::new(30.0, 3.0, 1.0) };
+
+    fn args(words: &[&str]) -> CameraArgs {
+        let cli = Cli::try_parse_from(["selvedge", "render", "m.step", "-o", "a.png"].iter().chain(words));
+        let Command::Render(args) = cli.expect("parses").command else { panic!("render") };
+        args.camera
+    }
+
+    /// As for a file that asks for nothing.
+    fn framing(words: &[&str]) -> Result<Camera> {
+        let args = args(words);
+        args.camera(BOX, args.pixels(&Import::default()))
+    }
+
+    #[test]
+    fn a_zoom_magnifies_by_its_number() {
+        let model = selvedge::rivals::many_holes(3);
+        let whole = zoomed(&model, (400, 400), 1.0);
+        for zoom in [10.0, 1000.0] {
+            let camera = zoomed(&model, (400, 400), zoom);
+            assert_eq!((camera.check(), camera.eye), (Ok(()), whole.eye));
+            let step = camera.axes().0 * 1e-4;
+            let pixels = |c: &Camera| {
+                let at = |p| c.project(p).expect("in front").0;
+                at(camera.target + step).distance(at(camera.target))
+            };
+            let times = pixels(&camera) / pixels(&whole);
+            assert!((times / zoom - 1.0).abs() < 0.05, "{times} instead of {zoom}"); // another direction, too
+        }
+    }
+
+    fn corners_inside(camera: &Camera) -> bool {
+        let (w, h) = (f64::from(camera.size.0), f64::from(camera.size.1));
+        BOX.corners().iter().all(|&corner| {
+            let (p, depth) = camera.project(corner).expect("in front");
+            let range = camera.depth_range.0..=camera.depth_range.1;
+            (0.0..=w).contains(&p.x) && (0.0..=h).contains(&p.y) && range.contains(&depth)
+        })
+    }
+
+    #[test]
+    fn without_a_camera_all_of_the_model_is_in_the_picture() {
+        assert!(corners_inside(&framing(&[]).expect("camera")));
+        assert!(corners_inside(&framing(&["--size", "100x900"]).expect("camera")));
+    }
+
+    #[test]
+    fn grazing_looks_along_the_largest_extent_from_eight_degrees() {
+        let camera = args(&[]).grazing(BOX, (1920, 1080));
+        let back = (camera.eye - camera.target).normalize();
+        assert!((back.z - 8f64.to_radians().sin()).abs() < 1e-12 && back.y.abs() < 1e-12 && back.x > 0.9);
+        assert!(corners_inside(&camera));
+    }
+
+    #[test]
+    fn an_eye_without_a_target_looks_at_the_middle() {
+        let camera = framing(&["--eye", "0,-90,5"]).expect("camera");
+        assert_eq!((camera.eye, camera.target), (DVec3::new(0.0, -90.0, 5.0), BOX.centre()));
+    }
+
+    #[test]
+    fn the_file_holds_degrees_or_half_the_height() {
+        let text = |words: &[&str]| {
+            let camera = framing(words).expect("camera");
+            serde_json::to_value(CameraFile::from(&camera)).expect("serialises")
+        };
+        let fov = text(&["--fov", "40", "--size", "64x48"]);
+        assert!((fov["fovy"].as_f64().expect("degrees") - 40.0).abs() < 1e-12 && fov.get("ortho").is_none());
+        assert_eq!(fov["size"], serde_json::json!([64, 48]));
+        let ortho = text(&["--ortho", "20"]);
+        assert!(ortho["ortho"] == 10.0 && ortho.get("fovy").is_none());
+    }
+
+    #[test]
+    fn an_impossible_camera_is_refused() {
+        assert!(framing(&["--eye", "1,2,3", "--target", "1,2,3"]).is_err());
+        assert!(framing(&["--eye", "0,0,50", "--target", "0,0,0"]).is_err());
+        assert!(framing(&["--fov", "180"]).is_err());
+    }
+}

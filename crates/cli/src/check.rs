@@ -1,0 +1,112 @@
+//! `selvedge check`: the accuracy promise, tested on the pictures that this machine draws.
+
+use crate::args::CheckArgs;
+use crate::camera::{CameraFile, View};
+use crate::progress::during;
+use crate::session::{self, Session};
+use crate::{Outcome, output, verdict};
+use anyhow::Result;
+use glam::DAffine3;
+use selvedge::picture::{FrameStats, Outputs};
+use selvedge_check::{EXACT_DEPTH_PX, EXACT_NORMAL_DEG, Judgement, SunJudgement, SunTracer, Tracer};
+use serde::Serialize;
+use std::path::{Path, PathBuf};
+
+/// What was found in one view.
+#[derive(Debug, Serialize)]
+struct Verdict {
+    view: String,
+    camera: CameraFile,
+    tolerance_px: f64,
+    kept: bool,
+    judgement: Judgement,
+    sun: Option<SunJudgement>,
+    stats: FrameStats,
+}
+
+/// Draws and judges each view.
+pub fn run(args: &CheckArgs) -> Result<Outcome> {
+    let mut import = session::open(&args.model, &args.subdivide)?;
+    if let Some(by) = args.moved {
+        let by = DAffine3::from_translation(by);
+        import.model.instances.iter_mut().for_each(|i| i.transform = by * i.transform);
+    }
+    args.cut.apply(&mut import.model)?;
+    let views = match args.zoom.as_slice() {
+        [] => args.camera.views(args.views, &import)?,
+        times => args.camera.zooms(times, &import)?,
+    };
+    let mut session = Session::new(&args.frame, &import)?;
+    let tracer = during("preparing the exact model", || Tracer::new(&import.model));
+    let sun = session::sun(&args.frame, &import).map(|towards| SunTracer::new(&import.model, towards)).transpose()?;
+    let tolerance_px = args.frame.tolerance;
+    let mut verdicts = Vec::new();
+    for (index, View { name, camera }) in views.iter().enumerate() {
+        let times = args.zoom.get(index).copied().unwrap_or(1.0);
+        let picture = session.render(camera, Outputs::ALL)?;
+        let judgement = verdict::of(&tracer, camera, &picture, args.samples, tolerance_px, times, name);
+        if let Some(path) = &args.difference {
+            let path = if views.len() > 1 { with_name(path, name) } else { path.clone() };
+            output::png(&path, picture.size, &judgement.paint())?;
+        }
+        let sun = sun.as_ref().map(|sun| verdict::of_sun(&tracer, sun, camera, &picture, args.samples, tolerance_px));
+        let wrong = verdict::wrong(&judgement) + sun.map_or(0, |sun| sun.wrong);
+        let kept = wrong == 0 && picture.stats.clamps == 0;
+        let camera = camera.into();
+        verdicts.push(Verdict { view: name.clone(), camera, tolerance_px, kept, judgement, sun, stats: picture.stats });
+    }
+    output::print(&table(&verdicts, tolerance_px))?;
+    if let Some(missing) = output::missing_faces(&import.report) {
+        output::print(&format!("judged without what the file holds beside: {missing}"))?;
+    }
+    if let Some(path) = &args.json {
+        output::json(path, &verdicts)?;
+    }
+    let complained = session.complaints();
+    Ok(if complained || verdicts.iter().any(|v| !v.kept) { Outcome::Broken } else { Outcome::Good })
+}
+
+fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
+    let wrong = format!("wrong > {tolerance_px} px");
+    let lit = verdicts.iter().any(|v| v.sun.is_some());
+    let light = lit.then_some("light: wrong, deviated, worst shift, px");
+    let beyond = format!("> {EXACT_DEPTH_PX} px, {EXACT_NORMAL_DEG} deg");
+    let regular = ["regular: depth, px: worst, mean", "normal, deg: worst", &beyond, "not regular"];
+    let shape = ["view", "judged", &wrong, "worst shift, px"].into_iter().chain(regular);
+    let mut table = output::table(shape.chain(light).chain(["clamps", "promise"]));
+    for Verdict { view, judgement, sun, stats, kept, .. } in verdicts {
+        let exact = &judgement.exact;
+        let shape = [
+            view.clone(),
+            judgement.sampled.to_string(),
+            verdict::wrong(judgement).to_string(),
+            format!("{:.3}", verdict::worst_shift_px(judgement)),
+            format!("{:.4}, {:.1e}", exact.depth_px.worst, exact.depth_px.mean),
+            format!("{:.4}", exact.normal_deg.worst),
+            exact.beyond.to_string(),
+            exact.irregular.to_string(),
+        ];
+        let light = sun.map(|sun| format!("{}, {}, {:.3}", sun.wrong, sun.deviated, sun.worst_shift_px));
+        let end = [stats.clamps.to_string(), if *kept { "kept" } else { "BROKEN" }.to_string()];
+        table.add_row(shape.into_iter().chain(light).chain(end));
+    }
+    table.to_string()
+}
+
+/// `out.png` becomes `out-close.png`.
+fn with_name(path: &Path, view: &str) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let end = path.extension().map_or(String::new(), |e| format!(".{}", e.to_string_lossy()));
+    path.with_file_name(format!("{stem}-{view}{end}"))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn view_names_go_before_the_extension() {
+        assert_eq!(with_name(Path::new("a/b.c.png"), "close"), Path::new("a/b.c-close.png"));
+        assert_eq!(with_name(Path::new("plain"), "whole"), Path::new("plain-whole"));
+    }
+}

@@ -1,0 +1,89 @@
+//! A sign of life for work that takes longer than a second.
+
+use indicatif::{HumanBytes, ProgressBar, ProgressDrawTarget, ProgressStyle};
+use selvedge_io::import::Stage;
+use std::sync::mpsc;
+use std::thread;
+use std::time::Duration;
+
+/// Nothing is shown before this: short work needs no comment.
+const SILENCE: Duration = Duration::from_secs(1);
+
+/// Work without an end that is known.
+const SPINNER: &str = "{spinner} {msg}";
+/// Work that counts what it has done.
+const COUNTER: &str = "{spinner} {msg}: {human_pos}";
+/// Work that knows how much there is.
+const BAR: &str = "{spinner} {msg} {bar:30} {human_pos} of {human_len}, {eta} left";
+
+/// Runs `work`; past one second `what` turns on standard error, where that is a terminal.
+pub fn during<T>(what: &str, work: impl FnOnce() -> T) -> T {
+    spin(what, SPINNER, |_| work())
+}
+
+/// As [`during`], for work that tells how many things it has done since it last told.
+pub fn counting<T>(what: &str, work: impl FnOnce(&(dyn Fn(u64) + Sync)) -> T) -> T {
+    spin(what, COUNTER, |bar| work(&|done| bar.inc(done)))
+}
+
+/// As [`during`], for an import of `file`: its stages, and a bar while faces are built.
+pub fn importing<T>(file: &str, work: impl FnOnce(&(dyn Fn(Stage) + Sync)) -> T) -> T {
+    spin(&format!("reading {file}"), SPINNER, |bar| work(&|stage| show(bar, file, stage)))
+}
+
+fn show(bar: &ProgressBar, file: &str, stage: Stage) {
+    match stage {
+        Stage::Read { bytes } => bar.set_message(format!("reading {file}, {}", HumanBytes(bytes))),
+        Stage::Parse { bytes } => bar.set_message(format!("parsing {file}, {}", HumanBytes(bytes))),
+        Stage::Faces { built: 0, total } => {
+            bar.set_style(style(BAR));
+            bar.set_message(format!("{file}: faces"));
+            bar.set_length(total as u64);
+        }
+        Stage::Faces { .. } => bar.inc(1),
+    }
+}
+
+fn style(template: &str) -> ProgressStyle {
+    ProgressStyle::with_template(template).expect("the templates above are well formed")
+}
+
+fn spin<T>(what: &str, template: &str, work: impl FnOnce(&ProgressBar) -> T) -> T {
+    let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden()).with_message(what.to_owned());
+    bar.set_style(style(template));
+    let (running, ended) = mpsc::channel::<()>();
+    thread::scope(|scope| {
+        let running = running; // dropped when the work ends, by a panic too
+        scope.spawn(|| {
+            let ended = ended;
+            if ended.recv_timeout(SILENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
+                bar.set_draw_target(ProgressDrawTarget::stderr());
+                bar.enable_steady_tick(Duration::from_millis(100));
+                let _ = ended.recv(); // only ever fails: nothing is sent, the sender is dropped
+                bar.finish_and_clear();
+            }
+        });
+        let result = work(&bar);
+        drop(running);
+        result
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn the_bar_follows_the_stages() {
+        let bar = ProgressBar::with_draw_target(None, ProgressDrawTarget::hidden());
+        show(&bar, "a.step", Stage::Read { bytes: 2048 });
+        assert_eq!(bar.message(), "reading a.step, 2.00 KiB");
+        show(&bar, "a.step", Stage::Parse { bytes: 4096 });
+        assert_eq!(bar.message(), "parsing a.step, 4.00 KiB");
+        // threads may tell out of order; the number of calls counts
+        for built in [0, 2, 1] {
+            show(&bar, "a.step", Stage::Faces { built, total: 7 });
+        }
+        assert_eq!((bar.position(), bar.length()), (2, Some(7)));
+    }
+}

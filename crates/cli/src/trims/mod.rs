@@ -1,0 +1,93 @@
+//! `selvedge trims`: every way to trim side by side, on the same views: time, memory, and how wrong it is.
+//!
+//! ```text
+//!                   over zoom        time, memory, error       of each way at its usual accuracy
+//!   each model  ──  over sizes       time, memory, error
+//!                   over accuracy    time against error        each way's own knob, at one view
+//! ```
+//!
+//! What is measured: `measure`. What comes out: a table on standard output, and into `--out` all of it as
+//! JSON and CSV, and the plots of R. Wu and J. Peters, *Correct resolution rendering of trimmed spline
+//! surfaces*, 2014: time over zoom, time over picture size, memory over zoom; and time over error.
+
+mod fit;
+mod measure;
+mod plot;
+mod report;
+mod way;
+
+pub use way::Way;
+
+use crate::args::{Size, TrimsArgs};
+use crate::camera::zoomed;
+use crate::progress::during;
+use crate::{Outcome, output, session};
+use anyhow::{Context, Result};
+use measure::{Bench, Row, Sweep};
+use selvedge::model::Model;
+use selvedge::rivals::many_holes;
+use selvedge_check::Tracer;
+use std::path::PathBuf;
+use way::Contender;
+
+/// Measures everything; prints and writes it.
+pub fn run(args: &TrimsArgs) -> Result<Outcome> {
+    let mut rows = Vec::new();
+    if args.holes > 0 {
+        let model = many_holes(args.holes);
+        rows.extend(measured(args, &model.name.clone(), model)?);
+    }
+    for path in &models(args) {
+        let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
+        rows.extend(measured(args, &name, session::open(path, &Default::default())?.model)?);
+    }
+    output::print(&report::table(&rows))?;
+    output::print(&fit::text(&rows))?;
+    if let Some(dir) = &args.out {
+        std::fs::create_dir_all(dir).with_context(|| format!("cannot make {}", dir.display()))?;
+        output::json(&dir.join("trims.json"), &rows)?;
+        report::csv(&dir.join("trims.csv"), &rows)?;
+        plot::all(dir, &rows)?;
+    }
+    let broken = rows.iter().any(|row| row.way.promises() && row.error.as_ref().is_some_and(|e| e.wrong > 0));
+    Ok(if broken { Outcome::Broken } else { Outcome::Good })
+}
+
+/// Those that were named; without any, a sample, and two of the folder that `SELVEDGE_MODELS` names: those that
+/// are there.
+fn models(args: &TrimsArgs) -> Vec<PathBuf> {
+    if !args.models.is_empty() {
+        return args.models.clone();
+    }
+    let mut usual = vec![PathBuf::from("samples/panel.step")];
+    if let Some(folder) = std::env::var_os("SELVEDGE_MODELS").map(PathBuf::from) {
+        usual.extend(["nist_pmi_2.stp", "m6_countersunk_screw.step"].map(|name| folder.join(name)));
+    }
+    let (there, missing): (Vec<_>, Vec<_>) = usual.into_iter().partition(|path| path.exists());
+    missing.iter().for_each(|path| tracing::warn!("{} is not there", path.display()));
+    there
+}
+
+/// All sweeps over one model.
+fn measured(args: &TrimsArgs, name: &str, model: Model) -> Result<Vec<Row>> {
+    let tracer = during("preparing the exact model", || Tracer::new(&model));
+    let bench = Bench::new(args, name, &model, &tracer);
+    let mut rows = Vec::new();
+    let Size(width, height) = args.size;
+    let view = |zoom| zoomed(&model, (width, height), zoom);
+    for &way in &args.ways {
+        let mut contender = bench.enter(Contender::usual(way))?;
+        for &zoom in &args.zooms {
+            rows.push(bench.row(&mut contender, Sweep::Zoom, zoom, &view(zoom))?);
+        }
+        for &Size(width, height) in &args.sizes {
+            let camera = zoomed(&model, (width, height), args.zoom);
+            rows.push(bench.row(&mut contender, Sweep::Size, args.zoom, &camera)?);
+        }
+        for knob in Contender::knobs(way).into_iter().filter(|_| !args.no_knobs) {
+            let mut contender = bench.enter(knob)?;
+            rows.push(bench.row(&mut contender, Sweep::Knob, args.zoom, &view(args.zoom))?);
+        }
+    }
+    Ok(rows)
+}

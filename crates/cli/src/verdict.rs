@@ -1,0 +1,56 @@
+//! The accuracy promise, tested on one picture.
+//!
+//! The promise: a pixel shows what the exact model shows at a point at most `tolerance` pixels away.
+//! The judge asks [`selvedge_check`], which intersects rays with the exact surfaces and classifies the
+//! hits against the exact trim curves in double precision, and shares no code with the GPU passes.
+
+use crate::progress::counting;
+use selvedge::model::Camera;
+use selvedge::picture::Picture;
+use selvedge_check::{JudgeOptions, Judgement, SunJudgement, SunTracer, Tracer, judge, judge_sun};
+
+/// Judges about `samples` pixels of a picture, and every one at which the face changes. In a view `times` closer than
+/// the whole model faces that much nearer to each other are told apart.
+pub fn of(
+    tracer: &Tracer,
+    camera: &Camera,
+    picture: &Picture,
+    samples: usize,
+    tolerance: f64,
+    times: f64,
+    what: &str,
+) -> Judgement {
+    counting(&format!("judging {what}, pixels"), |tick| {
+        let options = JudgeOptions {
+            samples: Some(samples),
+            limit_px: tolerance,
+            tie: JudgeOptions::default().tie / times,
+            progress: Some(tick),
+            ..JudgeOptions::default()
+        };
+        judge(tracer, camera, &picture.images(), &options)
+    })
+}
+
+/// Judges the light of about `samples` pixels, and of every one at which it or the face changes.
+pub fn of_sun(
+    tracer: &Tracer,
+    sun: &SunTracer,
+    camera: &Camera,
+    picture: &Picture,
+    samples: usize,
+    tolerance: f64,
+) -> SunJudgement {
+    let options = JudgeOptions { samples: Some(samples), limit_px: tolerance, ..JudgeOptions::default() };
+    judge_sun(tracer, sun, camera, &picture.images(), &options)
+}
+
+/// Pixels that break the promise: the wrong face, or the right face's wrong sheet.
+pub fn wrong(judgement: &Judgement) -> u64 {
+    judgement.wrong + judgement.folds.beyond + judgement.folds.wrong_depth
+}
+
+/// The largest distance at which a pixel is right, of faces and sheets of faces.
+pub fn worst_shift_px(judgement: &Judgement) -> f64 {
+    judgement.worst_shift_px.max(judgement.folds.worst_shift_px)
+}

@@ -1,0 +1,379 @@
+//! The command line: arguments, messages, exit statuses; and scenes through every command, the only ones that draw.
+
+use std::process::{Command, Output};
+
+fn selvedge(arguments: &[&str]) -> Output {
+    Command::new(env!("CARGO_BIN_EXE_selvedge")).args(arguments).output().expect("the binary runs")
+}
+
+fn text(bytes: &[u8]) -> String {
+    String::from_utf8_lossy(bytes).into_owned()
+}
+
+/// Status 2, nothing on standard output, and `message` on standard error.
+#[track_caller]
+fn refused(arguments: &[&str], message: &str) {
+    let output = selvedge(arguments);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(2), "{arguments:?}: {told}");
+    assert!(output.stdout.is_empty(), "{arguments:?}");
+    assert!(told.contains(message), "{arguments:?} should mention {message:?}, says: {told}");
+}
+
+#[test]
+fn help_names_every_command_and_the_exit_statuses() {
+    let help = selvedge(&["--help"]);
+    assert_eq!(help.status.code(), Some(0));
+    let help = text(&help.stdout);
+    let commands = ["render", "info", "check", "bench", "trims", "sweep", "convert"];
+    for word in commands.into_iter().chain(["Exit status: 0 done; 1 a picture breaks"]) {
+        assert!(help.contains(word), "{word} in {help}");
+    }
+    for command in commands {
+        let help = selvedge(&[command, "--help"]);
+        assert_eq!(help.status.code(), Some(0));
+        assert!(text(&help.stdout).contains("Exit status:"), "{command}");
+    }
+}
+
+#[test]
+fn wrong_arguments_are_usage_errors() {
+    refused(&[], "Usage");
+    refused(&["draw", "m.step"], "unrecognized subcommand");
+    refused(&["render", "m.step"], "--output");
+    let render = |more: &[&'static str], message: &str| {
+        refused(&[&["render", "m.step", "-o", "a.png"], more].concat(), message);
+    };
+    render(&["--size", "1920"], "WIDTHxHEIGHT");
+    render(&["--size", "0x10"], "WIDTHxHEIGHT");
+    render(&["--eye", "1,2"], "three finite numbers");
+    render(&["--eye", "1,2,inf"], "three finite numbers");
+    render(&["--fov", "30", "--ortho", "10"], "cannot be used with");
+    render(&["--tolerance", "0.09"], "at least 0.1");
+    render(&["--aov", "colour=c.npy"], "depth, face, uv, normal or thickness");
+    refused(&["check", "m.step", "--samples", "0"], "above 0");
+    refused(&["check", "m.step", "--views", "close", "--eye", "1,2,3"], "cannot be used with");
+    refused(&["check", "m.step", "--zoom", "1e3,0.5"], "from 1 to 1e9");
+    refused(&["check", "m.step", "--zoom", "10", "--views", "close"], "cannot be used with");
+    render(&["--factors", "65"], "a level from 1 to 64");
+    render(&["--section", "1,0,0"], "four finite numbers");
+    render(&["--section", "0,0,0,1"], "all 0");
+    refused(&["bench", "m.step", "--edit", "--section", "1,0,0,0"], "cannot be used with");
+    refused(&["sweep", "m.step", "--sizes", "400"], "WIDTHxHEIGHT");
+    render(&["--camera", "front", "--fov", "30"], "cannot be used with");
+    refused(&["bench"], "MODELS");
+    refused(&["convert", "m.step"], "OUT.selvedge");
+    refused(&["convert", "m.step", "m.xyz"], "m.xyz: writes .selvedge files only");
+}
+
+#[test]
+fn a_missing_file_is_named() {
+    for arguments in [
+        &["info", "no/such/model.step"][..],
+        &["render", "no/such/model.step", "-o", "a.png"],
+        &["check", "no/such/model.step"],
+        &["bench", "no/such/model.step"],
+        &["convert", "no/such/model.step", "m.selvedge"],
+    ] {
+        refused(arguments, "no/such/model.step");
+    }
+}
+
+#[test]
+fn a_file_that_is_no_model_is_an_import_error() {
+    let manifest = concat!(env!("CARGO_MANIFEST_DIR"), "/Cargo.toml");
+    refused(&["info", manifest], "Cargo.toml");
+}
+
+/// What a converted file holds is what the source holds; converting it again gives the same bytes.
+#[test]
+fn a_converted_model_is_the_same_model() {
+    let source = concat!(env!("CARGO_MANIFEST_DIR"), "/../io/src/import/step/tests/good.step");
+    let folder = std::env::temp_dir().join(format!("selvedge-convert-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let (once, twice) = (path("once.selvedge"), path("twice.selvedge"));
+    assert_eq!(selvedge(&["convert", source, &once]).status.code(), Some(0));
+    assert_eq!(selvedge(&["convert", &once, &twice]).status.code(), Some(0));
+    let described = |file: &str| -> serde_json::Value {
+        let mut told: serde_json::Value = serde_json::from_slice(&selvedge(&["info", "--json", file]).stdout).unwrap();
+        // the report and its faces' records are of the file, not of the model
+        told.as_object_mut().unwrap().retain(|key, _| !["report", "face_records"].contains(&key.as_str()));
+        told
+    };
+    assert_eq!(described(&once), described(source));
+    let bytes = [&once, &twice].map(|file| std::fs::read(file).unwrap());
+    std::fs::write(&twice, &bytes[1][..bytes[1].len() - 1]).unwrap();
+    refused(&["info", &twice], "the header says");
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert_eq!(bytes[0], bytes[1]);
+}
+
+/// What Open CASCADE counts in the sample, as samples/README.md says.
+#[test]
+fn info_tells_bodies_faces_and_the_assembly() {
+    let model = concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples/assembly.step");
+    let plain = selvedge(&["info", model]);
+    assert_eq!(plain.status.code(), Some(0));
+    let plain = text(&plain.stdout);
+    let row = |name: &str, numbers: &[&str]| {
+        let line =
+            plain.lines().find(|l| l.trim_start().starts_with(name)).unwrap_or_else(|| panic!("{name}: {plain}"));
+        let found: Vec<_> = line.split_whitespace().filter(|w| w.parse::<usize>().is_ok()).collect();
+        assert_eq!(found, numbers, "{line}");
+    };
+    row("solids", &["9", "23"]);
+    row("faces", &["112", "195"]);
+    row("p-curves, given", &["0"]);
+    for line in ["│  └─ ball_1 x 9", "├─ 14, 17, 20, 23 (4 alike)", "   └─ handle"] {
+        assert!(plain.contains(line), "{line} in {plain}");
+    }
+    let deep = text(&selvedge(&["info", "--deep", model]).stdout);
+    let list = deep.split("every face:").nth(1).unwrap().split("trim curves farthest").next().unwrap();
+    assert_eq!(list.lines().filter(|l| l.trim_start().starts_with('#')).count(), 112);
+    let json: serde_json::Value = serde_json::from_slice(&selvedge(&["info", "--json", model]).stdout).unwrap();
+    let records = json["face_records"].as_array().unwrap();
+    assert_eq!(records.len(), 112);
+    assert!(records.iter().all(|r| r["deviation"].is_number() && r["loops"].is_number() && r["notes"].is_array()));
+    assert_eq!(json["assembly"]["children"].as_array().unwrap().len(), 3);
+    assert_eq!(
+        (&json["report"]["dropped"], &json["report"]["layers"]),
+        (&serde_json::json!({}), &serde_json::json!({}))
+    );
+}
+
+/// Polygons become the smooth surface of their scheme, closed where they are; what cannot be is named with its file.
+#[test]
+fn polygons_are_subdivided() {
+    let folder = std::env::temp_dir().join(format!("selvedge-subdivide-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).to_str().unwrap().to_owned();
+    let (cube, made, step) = (path("cube.obj"), path("cube.selvedge"), path("cube.step"));
+    let vertices: String = (0..8).map(|i| format!("v {} {} {}\n", i & 1, i >> 1 & 1, i >> 2)).collect();
+    std::fs::write(&cube, vertices + "f 1 3 4 2\nf 5 6 8 7\nf 1 2 6 5\nf 3 7 8 4\nf 1 5 7 3\nf 2 4 8 6\n").unwrap();
+    let smooth = ["--subdivide", "catmull-clark", "--within", "0.001"];
+    let output = selvedge(&[&["convert", &cube, &made][..], &smooth].concat());
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let model = selvedge_io::import::open(std::path::Path::new(&made)).unwrap().model;
+    // one step parts the corners; each of the 24 faces has one of them
+    assert!(model.parts[0].closed && model.parts[0].faces.len() == 24);
+    assert_eq!(selvedge(&[&["export", &cube, &step][..], &smooth].concat()).status.code(), Some(0));
+    assert!(std::fs::read_to_string(&step).unwrap().contains("MANIFOLD_SOLID_BREP"));
+    let told = text(&selvedge(&[&["info", &cube][..], &smooth].concat()).stdout);
+    let off = told.lines().find_map(|l| l.strip_prefix("surfaces made: largest distance ")).expect(&told);
+    let off: f64 = off.split_once(" mm from what they stand for").expect(off).0.parse().unwrap();
+    assert!(off > 0.0 && off <= 1e-3, "{told}");
+    assert!(told.contains("subdivision: 8 irregular vertices") && !told.contains("trim curves:"), "{told}");
+    refused(&["info", &cube, "--subdivide", "loop"], "cube.obj: face 0 of the mesh (from 0) is no triangle");
+    refused(&["info", &cube, "--within", "1"], "--subdivide");
+    refused(&["info", &cube, "--subdivide", "loop", "--within", "0"], "a length above 0");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// A ball and a trimmed sheet, small enough to be drawn in a test.
+const SCENE: &str = r##"
+selvedge = 1
+name = "small"
+
+[curve.ring]
+shape = "circle"
+radius = 3
+
+[surface.sheet]
+shape = "plane"
+u = [-8, 8]
+v = [-6, 6]
+border = true
+loops = ["ring"]
+colour = "#4f7fa8"
+
+[solid.ball]
+shape = "sphere"
+radius = 2
+
+[camera.front]
+eye = [0, -30, 30]
+target = [0, 0, 0]
+
+[camera.top]
+from = [0, 0, 1]
+up = [0, 1, 0]
+ortho = true
+
+[picture]
+size = [48, 36]
+camera = "front"
+background = "#102030"
+"##;
+
+/// The ball goes behind the plane y = 0, and shows a cap towards the eye; the sheet is cut open. Then a quarter of
+/// the same within a block of another file.
+#[test]
+fn a_model_is_cut_open() {
+    let folder = std::env::temp_dir().join(format!("selvedge-cut-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let (scene, by, picture) = (path("small.toml"), path("by.csg"), path("a.png"));
+    std::fs::write(&scene, SCENE).unwrap();
+    std::fs::write(
+        &by,
+        "multmatrix([[1,0,0,-9],[0,1,0,0],[0,0,1,-9],[0,0,0,1]]) { cube(size = [18, 9, 18], center = false); }\n",
+    )
+    .unwrap();
+    for cut in [["--section", "0,-1,0,0"], ["--trim-by", &by]] {
+        let draw = [&["render", &scene, "-o", &picture][..], &cut].concat();
+        let output = selvedge(&draw);
+        assert_eq!(output.status.code(), Some(0), "{cut:?}: {}", text(&output.stderr));
+        // the sheet before the plane is gone, behind it it is there
+        let background = [0x10, 0x20, 0x30, 255];
+        assert_eq!(pixel(&picture, 24, 22).1, background, "{cut:?}");
+        assert_ne!(pixel(&picture, 24, 14).1, background, "{cut:?}");
+        assert_ne!(pixel(&picture, 24, 17).1, background, "{cut:?}");
+        let check = selvedge(&[&["check", &scene][..], &cut].concat());
+        assert_eq!(check.status.code(), Some(0), "{cut:?}: {}", text(&check.stdout));
+    }
+    refused(&["render", &scene, "-o", &picture, "--trim-by", &scene], "needs equations");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// The ball's shadow falls on the sheet away from the sun, of the scene or of the command line; the light is judged. That
+/// glass casts none is told.
+#[test]
+fn the_sun_casts_shadows() {
+    let folder = std::env::temp_dir().join(format!("selvedge-sun-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let (scene, picture, camera) = (path("small.toml"), path("a.png"), path("camera.json"));
+    std::fs::write(&scene, format!("{SCENE}sun = [1, 0, 0.25]\n")).unwrap();
+    // left and right of the ball, on the sheet
+    let sides = |more: &[&str]| {
+        let draw = ["render", &scene, "-o", &picture, "--camera", "top", "--size", "96x72", "--camera-out", &camera];
+        let output = selvedge(&[&draw[..], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{more:?}: {}", text(&output.stderr));
+        let clear = more.contains(&"--xray");
+        assert_eq!(text(&output.stderr).contains("cast no shadow"), clear, "{more:?}: {}", text(&output.stderr));
+        let half: serde_json::Value = serde_json::from_slice(&std::fs::read(&camera).unwrap()).unwrap();
+        let scale = 36.0 / half["ortho"].as_f64().unwrap();
+        let bright =
+            |x: f64| pixel(&picture, (48.0 + x * scale) as u32, 36).1[..3].iter().map(|c| u32::from(*c)).sum::<u32>();
+        [-4.0, 4.0].map(bright)
+    };
+    let [left, right] = sides(&[]);
+    assert!(left + 15 < right, "{left} in shade, {right} lit");
+    let [left, right] = sides(&["--sun=-1,0,0.25"]);
+    assert!(right + 15 < left, "{right} in shade, {left} lit");
+    let [left, right] = sides(&["--xray", "#1"]);
+    assert!(left.abs_diff(right) < 15, "{left} and {right} lit");
+    let check = selvedge(&["check", &scene, "--camera", "top"]);
+    let told = text(&check.stdout);
+    assert!(check.status.code() == Some(0) && told.contains("light: wrong") && told.contains(" 0, 0.000"), "{told}");
+    refused(&["render", &scene, "-o", &picture, "--sun", "0,0,0"], "not 0,0,0");
+    std::fs::remove_dir_all(&folder).unwrap();
+}
+
+/// `sweep` writes a row a setting, and beside the bound the smallest level that is off by no more.
+#[test]
+fn sweeps_measure_what_they_are_asked() {
+    let out = std::env::temp_dir().join(format!("selvedge-sweep-{}.csv", std::process::id()));
+    let file = out.to_string_lossy();
+    let sample = concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples/bracket.step");
+    let small = ["--sizes", "160x120", "--frames", "1", "--samples", "200"];
+    let done = |more: &[&str]| {
+        let output = selvedge(&[&["sweep", sample], &small[..], more].concat());
+        assert_eq!(output.status.code(), Some(0), "{more:?}: {}", text(&output.stderr));
+        text(&output.stdout)
+    };
+    let told = done(&["--degrees", "2", "--factors", "bound,slefe,8", "--rate", "--out", &file]);
+    let mut table = csv::Reader::from_path(&out).unwrap();
+    let rows: Vec<std::collections::HashMap<String, String>> = table.deserialize().map(Result::unwrap).collect();
+    std::fs::remove_file(&out).unwrap();
+    let column = |name: &str| rows.iter().map(|row| row[name].as_str()).collect::<Vec<_>>();
+    assert_eq!(column("model"), [["bracket"; 3], ["degree 2"; 3]].concat());
+    assert_eq!(column("factors"), ["bound", "slefe", "8"].repeat(2));
+    // 32 by 32 spans of a face, cut into patches at the middles too
+    assert_eq!(column("patches")[3..], ["4096"; 3]);
+    assert_eq!((column("wrong"), column("clamps")), (vec!["0"; 6], vec!["0"; 6]));
+    assert!(column("deviation_px").iter().all(|px| (0.0..0.5).contains(&px.parse::<f64>().unwrap())), "{rows:?}");
+    // two triangles for each of 8 by 8 cells of each sub-patch that may be seen
+    for row in rows.iter().filter(|row| row["factors"] == "8") {
+        let count = |name: &str| row[name].parse::<u64>().unwrap();
+        assert_eq!(count("triangles"), 128 * count("sub_patches"), "{row:?}");
+    }
+    assert!(told.contains("triangles a second in tessellation and visibility"), "{told}");
+
+    let told = done(&["--against-fixed", "--zooms", "1,4"]);
+    let levels: Vec<&str> = told.lines().filter(|line| line.contains(" bracket ")).collect();
+    assert_eq!(levels.len(), 3, "a row a view and one for all: {told}");
+    refused(&["sweep", sample, "--against-fixed", "--out", &file], "cannot be used with");
+    refused(&["sweep", sample, "--against-fixed", "--factors", "8"], "cannot be used with");
+    refused(&["sweep", sample, "--factors", "slefe10"], "1 to 9 segments");
+    refused(&["check", sample, "--factors", "slefe"], "a level from 1 to 64");
+}
+
+/// Width, height and a pixel of a picture.
+fn pixel(path: &str, x: u32, y: u32) -> ((u32, u32), [u8; 4]) {
+    let file = std::io::BufReader::new(std::fs::File::open(path).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut bytes = vec![0; reader.output_buffer_size().unwrap()];
+    let info = reader.next_frame(&mut bytes).unwrap();
+    let at = 4 * (y * info.width + x) as usize;
+    ((info.width, info.height), bytes[at..at + 4].try_into().unwrap())
+}
+
+#[test]
+fn a_scene_goes_through_every_command() {
+    let folder = std::env::temp_dir().join(format!("selvedge-scenes-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let path = |name: &str| folder.join(name).to_string_lossy().into_owned();
+    let scene = path("small.toml");
+    std::fs::write(&scene, SCENE).unwrap();
+    let done = |arguments: &[&str]| {
+        let output = selvedge(arguments);
+        assert_eq!(output.status.code(), Some(0), "{arguments:?}: {}", text(&output.stderr));
+        text(&output.stdout)
+    };
+
+    let told: serde_json::Value = serde_json::from_str(&done(&["info", "--json", &scene])).unwrap();
+    assert_eq!((&told["name"], &told["faces"]), (&"small".into(), &1.into()));
+    assert_eq!(told["report"]["format"], "selvedge scene 1");
+    assert_eq!(told["boolean_solids"].as_array().unwrap().len(), 1);
+    // at the size of the scene's picture, and at another
+    assert_eq!(
+        (&told["folded_tiles"]["size"], &told["folded_tiles"]["tiles"]),
+        (&serde_json::json!([48, 36]), &9.into())
+    );
+    assert!(done(&["info", &scene, "--size", "320x200"]).contains("folded tiles at 320x200: "), "told of a view");
+    assert_eq!(told["report"]["nodes"], serde_json::json!({ "circle": 1, "plane": 1, "sphere": 1 }));
+
+    // the scene's own picture: its size, its camera, its background in the corner
+    let picture = path("front.png");
+    done(&["render", &scene, "-o", &picture]);
+    assert_eq!(pixel(&picture, 0, 0), ((48, 36), [0x10, 0x20, 0x30, 0xff]));
+    // from above, the ball in the hole leaves a ring of background between 2 and 3 from the middle
+    let above = path("top.png");
+    done(&["render", &scene, "-o", &above, "--camera", "top", "--size", "96x72"]);
+    let (size, middle) = pixel(&above, 48, 36);
+    let camera = path("camera.json");
+    done(&["render", &scene, "-o", &above, "--camera", "top", "--size", "96x72", "--camera-out", &camera]);
+    let half: serde_json::Value = serde_json::from_slice(&std::fs::read(&camera).unwrap()).unwrap();
+    let scale = 36.0 / half["ortho"].as_f64().unwrap(); // pixels a unit
+    let background = [0x10, 0x20, 0x30, 0xff];
+    assert_eq!(size, (96, 72));
+    assert_ne!(middle, background);
+    assert_eq!(pixel(&above, (48.0 + 2.5 * scale) as u32, 36).1, background);
+    assert_ne!(pixel(&above, (48.0 + 4.0 * scale) as u32, 36).1, background);
+
+    let verdict = done(&["check", &scene, "--samples", "500"]);
+    assert!(verdict.contains("given") && verdict.contains("kept"), "{verdict}");
+    refused(&["render", &scene, "-o", &picture, "--camera", "back"], "no camera `back`; it has front, top");
+    done(&["convert", &scene, &path("small.selvedge")]);
+    let again: serde_json::Value = serde_json::from_str(&done(&["info", "--json", &path("small.selvedge")])).unwrap();
+    assert_eq!(again["faces"], told["faces"]);
+    done(&["export", &scene, &path("small.step")]);
+    std::fs::write(&scene, SCENE.replace("radius = 3", "radius = 7")).unwrap();
+    let told = selvedge(&["info", &scene]);
+    std::fs::remove_dir_all(&folder).unwrap();
+    assert_eq!(told.status.code(), Some(2));
+    let told = text(&told.stderr);
+    assert!(told.contains("small.toml:14:10: the loop reaches"), "{told}");
+}

@@ -1,0 +1,23 @@
+//! Trimmed rational B-spline surfaces, Boolean solids and what makes them: plain `f64` data and the mathematics on it,
+//! without a GPU.
+//!
+//! ```text
+//!   math ◀─ spline ◀─ model ◀─ trim
+//!                 csg ◀┘ ▲       ▲
+//!                        └───────┴── construct
+//! ```
+//!
+//! [`model`] says what a renderer draws; [`spline`] and [`trim`] evaluate it; [`csg`] has Boolean expressions;
+//! [`construct`] makes surfaces and solids from curves, data, equations and dimensions.
+#![warn(missing_docs)]
+#![forbid(unsafe_code)]
+
+/// The vectors and matrices of this crate's types.
+pub use glam;
+
+pub mod construct;
+pub mod csg;
+pub mod math;
+pub mod model;
+pub mod spline;
+pub mod trim;

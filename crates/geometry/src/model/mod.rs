@@ -1,0 +1,193 @@
+//! What is drawn: faces, solids, instances. Plain `f64` data, valid by construction.
+//!
+//! ```text
+//!   Model ── parts: [Part]            one rigid body of faces in its own coordinates
+//!         │            ├─ faces: [Face]
+//!         │            │       ├─ surface: Surface      rational B-spline over (u, v)
+//!         │            │       └─ loops:   [TrimLoop]   closed chains of rational Bézier curves in (u, v)
+//!         │            └─ meshes: [Mesh]                what the source gave as facets
+//!         ├─ solids: [Solid]          Boolean: primitives and an expression over them
+//!         └─ instances: [Instance]    part index, transform to model space, colour
+//! ```
+//!
+//! A point of a face's domain belongs to the face when the winding number of its loops around the
+//! point is not zero; a face without loops is its whole surface. Outer loops run counter-clockwise
+//! in `(u, v)`, holes clockwise: the importers see to it, so parity and winding agree.
+//!
+//! Lengths are millimetres where the source file has a unit, else the file's own numbers.
+
+mod camera;
+mod face;
+mod images;
+mod items;
+mod mesh;
+mod section;
+mod solid;
+pub mod srgb;
+mod stored;
+mod xray;
+
+pub use camera::{Camera, CameraError, Projection};
+pub use face::{Face, FaceError, LoopAt, SurfaceKind, TrimLoop};
+pub use images::Images;
+pub use items::Items;
+pub use mesh::{Mesh, MeshError};
+pub use solid::{
+    CarriedFace, Carrier, Lone, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
+    SurfaceTable, outward,
+};
+pub use stored::ModelError;
+pub use xray::UnknownName;
+
+use glam::{DAffine3, DVec3};
+use serde::{Deserialize, Serialize};
+
+/// Red, green, blue, opacity in linear light, each in `[0, 1]`.
+pub type Colour = [f32; 4];
+
+/// Colour of what has none in its source.
+pub const GREY: Colour = [0.262, 0.262, 0.262, 1.0];
+
+/// Everything that one file or scene holds.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "stored::ModelData")]
+pub struct Model {
+    /// The file's or product's name.
+    pub name: String,
+    /// Distinct bodies.
+    pub parts: Vec<Part>,
+    /// Placed bodies; a part without an instance is not drawn.
+    pub instances: Vec<Instance>,
+    /// Boolean solids, in model coordinates; what is drawn is the union of those that are opaque, and each that is seen
+    /// through by itself: [`Model::items`].
+    pub solids: Vec<Solid>,
+    /// Volume within which faces and meshes are drawn: see [`Model::trim_by`]. `None`: everywhere.
+    pub trim: Option<Solid>,
+    /// Length unit of the source, for the record; coordinates are already millimetres.
+    pub unit: String,
+    /// Faces of Boolean solids that are nearer to each other than this share of the solids' diagonal are one face, as
+    /// [`Model::coincidence`] says; `None`: [`SurfaceTable::ROUNDED`].
+    pub coincident: Option<f64>,
+}
+
+/// One body: a closed solid, or an open shell.
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+pub struct Part {
+    /// Name in the source, or empty.
+    pub name: String,
+    /// Its faces.
+    pub faces: Vec<Face>,
+    /// Its facets, where the source has nothing better.
+    pub meshes: Vec<Mesh>,
+    /// The faces (or the meshes) bound a volume and their normals point out of it.
+    pub closed: bool,
+}
+
+/// A part placed in the model.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+pub struct Instance {
+    /// Index into [`Model::parts`].
+    pub part: usize,
+    /// Part coordinates to model coordinates.
+    pub transform: DAffine3,
+    /// Overrides the colours of the faces.
+    pub colour: Option<Colour>,
+    /// Name of the occurrence, or empty.
+    pub name: String,
+}
+
+/// An axis-aligned box; empty when `min > max`.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Bounds {
+    /// Smallest coordinates.
+    pub min: DVec3,
+    /// Largest coordinates.
+    pub max: DVec3,
+}
+
+impl Bounds {
+    /// The box of nothing.
+    pub const EMPTY: Self = Self { min: DVec3::INFINITY, max: DVec3::NEG_INFINITY };
+
+    /// Grown to hold `p`.
+    pub fn with(self, p: DVec3) -> Self {
+        Self { min: self.min.min(p), max: self.max.max(p) }
+    }
+
+    /// Grown to hold `other`.
+    pub fn union(self, other: Self) -> Self {
+        Self { min: self.min.min(other.min), max: self.max.max(other.max) }
+    }
+
+    /// Holds nothing.
+    pub fn is_empty(self) -> bool {
+        !(self.min.cmple(self.max)).all()
+    }
+
+    /// Middle of the box.
+    pub fn centre(self) -> DVec3 {
+        (self.min + self.max) * 0.5
+    }
+
+    /// Length of the diagonal; 0 when empty.
+    pub fn diagonal(self) -> f64 {
+        if self.is_empty() { 0.0 } else { (self.max - self.min).length() }
+    }
+
+    /// The eight corners.
+    pub fn corners(self) -> [DVec3; 8] {
+        std::array::from_fn(|i| {
+            let pick = |bit: usize, lo: f64, hi: f64| if i >> bit & 1 == 0 { lo } else { hi };
+            DVec3::new(
+                pick(0, self.min.x, self.max.x),
+                pick(1, self.min.y, self.max.y),
+                pick(2, self.min.z, self.max.z),
+            )
+        })
+    }
+}
+
+impl Part {
+    /// Box of the trimmed faces (see [`Face::bounds`]) and meshes in part coordinates.
+    pub fn bounds(&self) -> Bounds {
+        let faces = self.faces.iter().map(Face::bounds);
+        faces.chain(self.meshes.iter().map(Mesh::bounds)).fold(Bounds::EMPTY, Bounds::union)
+    }
+}
+
+impl Model {
+    /// Largest share of their diagonal by which faces of Boolean solids may be apart and yet be one face, as
+    /// [`SurfaceTable::new`] has it: [`coincident`](Self::coincident), between [`SurfaceTable::FINEST`] and
+    /// [`SurfaceTable::COARSEST`]; [`SurfaceTable::ROUNDED`] where nothing is said.
+    pub fn coincidence(&self) -> f64 {
+        let said = self.coincident.filter(|share| !share.is_nan());
+        said.map_or(SurfaceTable::ROUNDED, |share| share.clamp(SurfaceTable::FINEST, SurfaceTable::COARSEST))
+    }
+
+    /// Box of all instances in model coordinates.
+    pub fn bounds(&self) -> Bounds {
+        let parts: Vec<Bounds> = self.parts.iter().map(Part::bounds).collect();
+        self.instances
+            .iter()
+            .filter(|i| !parts[i.part].is_empty())
+            .flat_map(|i| parts[i.part].corners().map(|c| i.transform.transform_point3(c)))
+            .chain(
+                self.solids
+                    .iter()
+                    .map(Solid::bounds)
+                    .filter(|b| b.min.is_finite() && b.max.is_finite())
+                    .flat_map(Bounds::corners),
+            )
+            .fold(Bounds::EMPTY, Bounds::with)
+    }
+
+    /// Distinct faces.
+    pub fn face_count(&self) -> usize {
+        self.parts.iter().map(|p| p.faces.len()).sum()
+    }
+
+    /// Placed faces: each instance counts its part's faces.
+    pub fn face_instance_count(&self) -> usize {
+        self.instances.iter().map(|i| self.parts[i.part].faces.len()).sum()
+    }
+}

@@ -1,0 +1,162 @@
+//! A solid: primitives and the expression over them.
+
+mod carrier;
+mod embedded;
+mod lone;
+mod nearby;
+mod operands;
+mod outward;
+mod reach;
+mod shape;
+mod surface;
+#[cfg(test)]
+mod tests;
+
+pub use carrier::Carrier;
+pub use lone::Lone;
+pub(super) use operands::Operands;
+pub use outward::outward;
+pub use shape::{Primitive, Quadric, Shape, ShapeError};
+pub use surface::{CarriedFace, Surface, SurfaceTable};
+
+use super::Bounds;
+use crate::csg::{Builder, Entry, Node, Op, Tree, TreeError};
+use serde::{Deserialize, Serialize};
+
+/// Primitives and a Boolean expression over them. Valid by construction: see [`Solid::new`].
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(try_from = "SolidData")]
+pub struct Solid {
+    pub(super) primitives: Vec<Primitive>,
+    tree: Tree,
+}
+
+/// A solid before its indices are checked.
+#[derive(Deserialize)]
+struct SolidData {
+    primitives: Vec<Primitive>,
+    tree: Tree,
+}
+
+impl TryFrom<SolidData> for Solid {
+    type Error = SolidError;
+
+    fn try_from(data: SolidData) -> Result<Self, SolidError> {
+        Self::new(data.primitives, data.tree)
+    }
+}
+
+/// Why primitives and a tree are not a solid.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[allow(missing_docs)] // the messages say what each field is
+pub enum SolidError {
+    /// A leaf names a primitive that is not there.
+    #[error("a leaf names primitive {primitive} of {count}")]
+    Leaf { primitive: u32, count: usize },
+    /// A primitive that is not one.
+    #[error("primitive {primitive}: {error}")]
+    Shape { primitive: usize, error: ShapeError },
+    /// More primitives than a list of switches can name.
+    #[error("more than {} primitives", Solid::MOST_PRIMITIVES)]
+    TooMany,
+    /// The expression is too large.
+    #[error(transparent)]
+    Tree(#[from] TreeError),
+}
+
+impl Solid {
+    /// Primitives that a solid may have: what fits an entry of a [`Blist`](crate::csg::Blist).
+    pub const MOST_PRIMITIVES: u32 = Entry::PRIMITIVE;
+
+    /// Checks the primitives' dimensions and the leaves' indices.
+    ///
+    /// # Errors
+    /// [`SolidError`] names the first primitive or leaf that is wrong.
+    pub fn new(primitives: Vec<Primitive>, tree: Tree) -> Result<Self, SolidError> {
+        let count = primitives.len();
+        if count > Self::MOST_PRIMITIVES as usize {
+            return Err(SolidError::TooMany);
+        }
+        for (primitive, p) in primitives.iter().enumerate() {
+            p.shape.check().map_err(|error| SolidError::Shape { primitive, error })?;
+        }
+        let missing = tree.leaves().find(|p| *p as usize >= count);
+        match missing {
+            Some(primitive) => Err(SolidError::Leaf { primitive, count }),
+            None => Ok(Self { primitives, tree }),
+        }
+    }
+
+    /// One primitive.
+    ///
+    /// # Errors
+    /// [`SolidError::Shape`].
+    pub fn of(primitive: Primitive) -> Result<Self, SolidError> {
+        Self::new(vec![primitive], Tree::leaf(0))
+    }
+
+    /// The union of `solids`, which is what a model shows of them.
+    ///
+    /// # Errors
+    /// [`SolidError::TooMany`] primitives, or [`SolidError::Tree`].
+    pub fn union(solids: &[Self]) -> Result<Self, SolidError> {
+        Self::joined(Op::Union, solids)
+    }
+
+    /// What is in both.
+    ///
+    /// # Errors
+    /// As [`Solid::union`].
+    pub fn intersection(&self, other: &Self) -> Result<Self, SolidError> {
+        Self::joined(Op::Intersection, &[self.clone(), other.clone()])
+    }
+
+    /// `solids` under one operation: primitives one solid after another, and one tree over them.
+    fn joined(op: Op, solids: &[Self]) -> Result<Self, SolidError> {
+        let mut builder = Builder::new();
+        let mut primitives = Vec::new();
+        let mut roots = Vec::with_capacity(solids.len());
+        for solid in solids {
+            let first = primitives.len() as u32;
+            if primitives.len() + solid.primitives.len() > Self::MOST_PRIMITIVES as usize {
+                return Err(SolidError::TooMany);
+            }
+            primitives.extend_from_slice(&solid.primitives);
+            let mut map = Vec::with_capacity(solid.tree.nodes().len());
+            for node in solid.tree.nodes() {
+                map.push(match *node {
+                    Node::Constant(_) => builder.push(*node),
+                    Node::Leaf(p) => builder.leaf(first + p),
+                    Node::Complement(a) => builder.complement(map[a as usize]),
+                    Node::Pair(op, a, b) => builder.pair(op, map[a as usize], map[b as usize]),
+                });
+            }
+            roots.extend(map.last());
+        }
+        let root = builder.fold(op, roots);
+        Ok(Self { primitives, tree: builder.finish(root)? })
+    }
+
+    /// The primitives that leaves name by index.
+    pub fn primitives(&self) -> &[Primitive] {
+        &self.primitives
+    }
+
+    /// The expression.
+    pub fn tree(&self) -> &Tree {
+        &self.tree
+    }
+
+    /// A box around the solid: boxes of the primitives under the same operations. Infinite where the
+    /// solid may be unbounded.
+    pub fn bounds(&self) -> Bounds {
+        reach::boxes(self).last().expect("a tree has a root").of
+    }
+
+    /// Of each primitive, the box outside which nothing changes where it is taken for the outside, alone or with
+    /// others beyond their own: within [`Primitive::bounds`] and within what all that it is cut with leaves.
+    /// Empty where it never matters, infinite where it may matter everywhere.
+    pub fn reaches(&self) -> Vec<Bounds> {
+        reach::reaches(self)
+    }
+}

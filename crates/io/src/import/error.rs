@@ -1,0 +1,55 @@
+//! Why a file gives no model at all.
+
+/// Every variant names the file; the message says what each field is.
+#[allow(missing_docs)]
+#[derive(Debug, thiserror::Error)]
+pub enum ImportError {
+    /// The operating system or the gzip decoder refused.
+    #[error("{file}: {source}")]
+    Read { file: String, source: std::io::Error },
+    /// Neither content nor extension is one that is read here.
+    #[error("{file}: not a CAD file of a known format")]
+    Format { file: String },
+    /// Offsets are 32 bits wide.
+    #[error("{file}: larger than 4 GiB")]
+    TooLarge { file: String },
+    /// A gzip bomb, or not CAD text.
+    #[error("{file}: gzip data expand to more than {limit} bytes")]
+    Expansion { file: String, limit: u64 },
+    /// The first token is missing.
+    #[error("{file}:1: not STEP: no `ISO-10303-21;` at the start")]
+    NotStep { file: String },
+    /// A header at most, or nothing that could be read as one.
+    #[error("{file}:{line}: the file ends without a DATA section")]
+    NoData { file: String, line: usize },
+    /// No card with `S` or `G` in column 73.
+    #[error("{file}:1: not IGES: column 73 holds no section letter")]
+    NotIges { file: String },
+    /// The standard's other two forms.
+    #[error("{file}:1: IGES in {form} form is not supported: write it as fixed-format ASCII")]
+    IgesForm { file: String, form: &'static str },
+    /// Nothing that could be an entity.
+    #[error("{file}:{line}: the file ends without a directory section")]
+    NoDirectory { file: String, line: usize },
+    /// More than half of the records are not records.
+    #[error("{file}:{line}: gave up: {bad} of the first {seen} records cannot be read")]
+    Nonsense { file: String, line: usize, bad: usize, seen: usize },
+    /// Text or bytes without anything that the format knows.
+    #[error("{file}: holds nothing that is {format}")]
+    Nothing { file: String, format: &'static str },
+    /// Rhino's form, damaged or not built in.
+    #[error("{file}: {why}")]
+    Rhino { file: String, why: String },
+    /// The engine's own form, of another version or damaged.
+    #[error("{file}: {source}")]
+    Native { file: String, source: crate::native::NativeError },
+    /// A scene that is not one.
+    #[error("{file}:{line}:{column}: {message}")]
+    Scene { file: String, line: usize, column: usize, message: String },
+    /// Polygons that are no control mesh of a smooth surface.
+    #[error("{file}: {source}")]
+    Construct { file: String, source: crate::construct::ConstructError },
+    /// Text that is not a Boolean solid's, or a node that has no exact counterpart.
+    #[error("{file}:{line}: {message}")]
+    Solid { file: String, line: usize, message: String },
+}
