@@ -29,7 +29,7 @@ fn one_change_one_message() {
         ("truncated", "4 0} V4", "", "error: t.asc:3: a brace or quote does not close", 0),
         ("truncated", "{l rod}}", "", "error: t.asc:5: a brace or quote does not close", 0),
         ("truncated", "put all", "", "", 8),
-        ("swapped", "{l box}", "{l bux}", "t.asc:5: solid left out: `bux` does not exist", 2),
+        ("swapped", "{l box}", "{l bux}", "t.asc:5: solid left out: `bux` does not exist", 9),
         (
             "swapped",
             "V5 {0 0 4}",
