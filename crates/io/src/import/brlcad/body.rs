@@ -29,8 +29,8 @@ const PARALLEL: f64 = 1e-3;
 pub(super) struct Bodies<'d, 'a> {
     pub to: Assembly,
     database: &'d Database<'a>,
-    /// Shapes of many faces, for all places where a solid is used.
-    made: HashMap<u32, (Shape, DAffine3)>,
+    /// Shapes of many faces, or why there is none: made once, for all places where a solid is used.
+    made: HashMap<u32, Result<(Shape, DAffine3), Fault>>,
 }
 
 impl<'d, 'a> Bodies<'d, 'a> {
@@ -68,13 +68,12 @@ impl<'d, 'a> Bodies<'d, 'a> {
             "arb8" | "arb7" | "arb6" | "arb5" | "arb4" => arb::node(&mut self.to, object, placed, warnings),
             "rpc" | "rhc" | "epa" | "ehy" | "hyp" => quadric::node(&mut self.to, object, placed),
             _ => {
-                // placed again and again, such a shape is made once
-                let made = match self.made.get(&placed.id) {
-                    Some(made) => made.clone(),
-                    None => self.shape(object)?,
-                };
-                self.made.insert(placed.id, made.clone());
-                Ok(self.place(made.0, made.1, placed))
+                if !self.made.contains_key(&placed.id) {
+                    let made = self.shape(object);
+                    self.made.insert(placed.id, made);
+                }
+                let (shape, own) = self.made[&placed.id].clone()?;
+                Ok(self.place(shape, own, placed))
             }
         }
     }

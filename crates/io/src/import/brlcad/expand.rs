@@ -13,7 +13,7 @@ use super::body::Bodies;
 use super::object::{Database, Object};
 use super::tree::Item;
 use crate::csg::Op;
-use crate::import::solid::{Assembly, Placed};
+use crate::import::solid::Placed;
 use crate::import::{Place, Warnings};
 use crate::model::{Colour, Solid};
 use glam::DAffine3;
