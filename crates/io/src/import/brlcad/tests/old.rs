@@ -130,6 +130,11 @@ fn damage_is_told() {
         ("C N", "X N", "t.asc:5: record left out: X N all 0 0 2 0 0 0 0 0 0 0"),
         ("M - ball.s", "M - bell.s", "t.asc:7: solid left out: `bell.s` does not exist"),
         ("M - ball.s", "M ? ball.s", "t.asc:7: solid left out: a member of `all` without operation or matrix"),
+        (
+            "0 0 0 1 0\nM - ball",
+            "0 1e-5 0 1 0\nM - ball",
+            "t.asc:6: solid left out: a member of `all` without operation or matrix",
+        ),
         ("M - ball.s 1 0", "M - ball.s x 0", "t.asc:7: solid left out: a member of `all` without operation or matrix"),
         ("M u box.s", "M u all", "error: t.asc:5: `all` is part of itself"),
         ("S 20", "S 21", "error: t.asc:3: box.s 21: such a solid has no exact counterpart and is not read"),
@@ -150,6 +155,9 @@ fn damage_is_told() {
         }
     }
     assert!(wrong.is_empty(), "{wrong:#?}");
+    // rounding, which no perspective is
+    let rounded = good.replacen("0 0 0 1 0\nM - ball", "0 1e-9 0 1 0\nM - ball", 1);
+    assert!(rounded != good && said(&rounded).is_empty());
     // a union shows what is left of it
     let left = good.replacen("M - ball.s", "M u bell.s", 1);
     assert_eq!(said(&left), ["t.asc:7: solid left out: `bell.s` does not exist"]);
