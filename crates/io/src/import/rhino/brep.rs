@@ -16,8 +16,8 @@ use crate::model::{Colour, Face};
 use crate::spline::{BSpline, Control};
 use glam::{DVec3, DVec4};
 
-/// First bytes of the ids of the class: openNURBS' own, and that under which Rhino writes.
-const IDS: [u32; 2] = [0x60B5_DBC5, 0xF06F_C243];
+/// First bytes of the ids of the class: openNURBS' own, two of older archives, and that of Rhino's modeller.
+const IDS: [u32; 4] = [0x60B5_DBC5, 0x0705_FDEF, 0x2D4C_FEDB, 0xF06F_C243];
 /// Loops outside and inside.
 const OUTER: i32 = 1;
 const INNER: i32 = 2;

@@ -23,6 +23,18 @@ const PLANE: u32 = 0x4ED7_D4DF;
 const REVOLUTION: u32 = 0xA162_20D3;
 const SUM: u32 = 0xC4CD_5359;
 
+/// The id that openNURBS gives to a class: older archives, and Rhino's modeller, know some by another.
+fn known(id: u32) -> u32 {
+    match id {
+        0x5EAF_1119 | 0x76A7_09D5 => NURBS_CURVE,
+        0xEF63_8317 => POLYCURVE,
+        0x4760_C817 | 0xFA4F_D4B5 => NURBS_SURFACE,
+        0x0A84_01B6 => REVOLUTION,
+        0x665F_6331 => SUM,
+        same => same,
+    }
+}
+
 /// Share of a length that is rounding.
 const ROUNDING: f64 = 1e-9;
 
@@ -32,7 +44,7 @@ pub(super) fn curve(class: Class<'_>, range: Option<[f64; 2]>) -> Lost<BSpline<D
     if r.version()?.0 != 1 {
         return Err("a curve of a later version".to_owned());
     }
-    match class.id {
+    match known(class.id) {
         NURBS_CURVE => part(&nurbs_curve(&mut r)?, range),
         LINE => {
             let ends = [r.point()?, r.point()?];
@@ -195,7 +207,7 @@ pub(super) fn surface(class: Class<'_>, scale: f64) -> Lost<Carrier> {
     let mut r = class.data;
     let (major, minor) = r.version()?;
     let large = |p: DVec4| (p.truncate() * scale).extend(p.w);
-    match (class.id, major) {
+    match (known(class.id), major) {
         (NURBS_SURFACE, 1) => {
             let layout = layout(&mut r)?;
             let degrees = (degree(r.int()?)?, degree(r.int()?)?);

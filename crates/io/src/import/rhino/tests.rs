@@ -107,33 +107,37 @@ fn places(first: u32) -> Vec<usize> {
     (0..BLOCKS.len() - 16).filter(is).collect()
 }
 
-/// Bodies' records, read here, hold the same faces as the decoder's bodies.
-#[test]
-fn records_of_bodies_are_read_as_the_decoder_reads_them() {
+/// Bodies by their records.
+fn own(bytes: &[u8]) -> Vec<crate::model::Part> {
     use super::{archive, brep::Brep};
     use cadmpeg_codec_rhino::RhinoCodec;
     use cadmpeg_ir::{Codec, DecodeOptions};
-    let decoded = RhinoCodec.decode(&mut std::io::Cursor::new(BLOCKS), &DecodeOptions::default()).unwrap();
+    let decoded = RhinoCodec.decode(&mut std::io::Cursor::new(bytes), &DecodeOptions::default()).unwrap();
     let (ir, _, source) = decoded.into_parts();
+    let record = |id: &str| {
+        let kept = source.retained_record(id)?;
+        let class = archive::object(bytes, kept.end_offset() - kept.byte_len()).ok().filter(Brep::is)?;
+        let brep = Brep::read(bytes, class, 10.0).unwrap();
+        let faces = (0..brep.len()).map(|k| brep.face(k, 1).unwrap().face).collect();
+        Some(crate::model::Part { faces, closed: brep.closed, ..crate::model::Part::default() })
+    };
+    ir.native_unknowns_iter("rhino").flatten().filter_map(|r| record(r.id.as_str())).collect()
+}
+
+fn shapes(part: &crate::model::Part) -> Vec<[f64; 8]> {
+    part.faces.iter().map(shape).collect()
+}
+
+/// Bodies' records, read here, hold the same faces as the decoder's bodies.
+#[test]
+fn records_of_bodies_are_read_as_the_decoder_reads_them() {
     let whole = rhino(BLOCKS, "blocks.3dm").unwrap();
-    let faces = |part: &crate::model::Part| part.faces.iter().map(shape).collect::<Vec<_>>();
-    let mut compared = 0;
-    for record in ir.native_unknowns_iter("rhino").flatten() {
-        let kept = source.retained_record(record.id.as_str()).unwrap();
-        let Ok(class) = archive::object(BLOCKS, kept.end_offset() - kept.byte_len()) else { continue };
-        if !Brep::is(&class) {
-            continue;
-        }
-        let brep = Brep::read(BLOCKS, class, 10.0).unwrap();
-        let own = crate::model::Part {
-            faces: (0..brep.len()).map(|k| brep.face(k, 1).unwrap().face).collect(),
-            closed: brep.closed,
-            ..crate::model::Part::default()
-        };
-        assert!(own.closed);
+    let bodies = own(BLOCKS);
+    for body in &bodies {
+        assert!(body.closed);
         // uses of a block have their points moved
-        let same = |part: &&crate::model::Part| {
-            let (a, b) = (faces(part), faces(&own));
+        let same = |part: &crate::model::Part| {
+            let (a, b) = (shapes(part), shapes(body));
             let step = if a.is_empty() { 0.0 } else { a[0][0] - b[0][0] };
             let near = |p: &[f64; 8], q: &[f64; 8]| {
                 let along = |k: usize| if k == 0 || k == 3 { step } else { 0.0 };
@@ -141,11 +145,10 @@ fn records_of_bodies_are_read_as_the_decoder_reads_them() {
             };
             a.len() == b.len() && a.iter().zip(&b).all(|(p, q)| near(p, q))
         };
-        assert!(whole.model.parts.iter().any(|p| same(&p)), "{:?}", faces(&own));
-        compared += own.faces.len();
+        assert!(whole.model.parts.iter().any(same), "{:?}", shapes(body));
     }
     // the cylinder, the box of the block, the box that is not shown
-    assert_eq!(compared, 3 + 6 + 6);
+    assert_eq!(bodies.iter().map(|b| b.faces.len()).sum::<usize>(), 3 + 6 + 6);
 }
 
 /// The box of the loops in space, their number, and the sense of a face.
@@ -183,6 +186,19 @@ fn one_bad_surface_costs_one_face() {
         assert_eq!(read.report.face_records.iter().filter(|r| r.kind.is_none()).count(), 1);
     }
     assert!(seen >= 9, "{seen}");
+}
+
+/// Surfaces under the id of Rhino's modeller are the same.
+#[test]
+fn surfaces_under_another_id() {
+    const OTHER: [u8; 16] =
+        [0x17, 0xC8, 0x60, 0x47, 0xE3, 0x0B, 0xD4, 0x11, 0xBF, 0xFE, 0, 0x10, 0x83, 0x01, 0x22, 0xF0];
+    let mut bytes = BLOCKS.to_vec();
+    let all = places(0x4ED7_D4DE);
+    assert!(!all.is_empty());
+    all.iter().for_each(|at| bytes[*at..*at + 16].copy_from_slice(&OTHER));
+    let of = |bytes: &[u8]| own(bytes).iter().map(shapes).collect::<Vec<_>>();
+    assert_eq!(of(&bytes), of(BLOCKS));
 }
 
 /// Every face is read or counted as lost, and nothing panics.
