@@ -340,10 +340,11 @@ pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportEr
     decoded(bytes, name, |text| scad::read(text, name, facets))
 }
 
-/// Reads BRL-CAD's text of solids (`g2asc`, version 5); `name` is the file's name in messages.
+/// Reads BRL-CAD's text of solids (`g2asc`, version 5 and the older 4); `name` is the file's name in messages.
 ///
 /// # Errors
-/// [`ImportError::Solid`] names the line and object that is not read.
+/// [`ImportError::Solid`] names the line of what is no such text, or of the first object that is not read where nothing
+/// else is left.
 pub fn brlcad(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     decoded(bytes, name, |text| brlcad::read(text, name))
 }

@@ -91,11 +91,12 @@ fn item<'a>(list: &List<'a>, line: usize) -> Result<Item<'a>, Fault> {
     })
 }
 
-/// Rows of a homogeneous matrix.
-fn matrix(words: &[&str]) -> Option<DAffine3> {
+/// Sixteen words: the rows of a homogeneous matrix; `None` for one that is not affine.
+pub(super) fn matrix(words: &[&str]) -> Option<DAffine3> {
     let all: Vec<f64> = words.iter().map(|w| w.parse().ok().filter(|x: &f64| x.is_finite())).collect::<Option<_>>()?;
     let w = all[15];
-    if all[12..15] != [0.0; 3] || w == 0.0 {
+    // older databases have the rounding of single precision, here too
+    if w == 0.0 || all[12..15].iter().any(|x| x.abs() > 1e-7 * w.abs()) {
         return None;
     }
     let column = |i: usize| DVec3::new(all[i], all[4 + i], all[8 + i]) / w;

@@ -13,28 +13,6 @@ pub(super) struct Statement<'a> {
     pub words: Vec<&'a str>,
 }
 
-impl<'a> Statement<'a> {
-    /// The word after `key`, from the fourth on.
-    pub fn value(&self, key: &str) -> Option<&'a str> {
-        let pairs = self.words.get(3..)?.chunks_exact(2);
-        pairs.into_iter().find(|p| p[0] == key).map(|p| p[1])
-    }
-
-    pub fn fault(&self, message: impl std::fmt::Display) -> Fault {
-        let name: Vec<&str> = self.words[1..].iter().take(2).copied().collect();
-        Fault::new(self.line, format!("{}: {message}", name.join(" ")))
-    }
-
-    /// `N` finite numbers.
-    pub fn numbers<const N: usize>(&self, key: &str) -> Result<[f64; N], Fault> {
-        let value = self.value(key).ok_or_else(|| self.fault(format!("`{key}` is missing")))?;
-        let all: Option<Vec<f64>> =
-            value.split_whitespace().map(|w| w.parse().ok().filter(|x: &f64| x.is_finite())).collect();
-        let all = all.and_then(|v| v.try_into().ok());
-        all.ok_or_else(|| self.fault(format!("`{key}` is not {N} finite numbers")))
-    }
-}
-
 /// All statements.
 pub(super) fn statements(text: &str) -> Result<Vec<Statement<'_>>, Fault> {
     let (mut all, mut words) = (Vec::new(), Vec::new());

@@ -146,7 +146,7 @@ fn settled(geometry: &Geometry<'_>, bodies: &mut [Body], report: &mut ImportRepo
     for body in bodies {
         let mut faces: Vec<_> = body.shells.faces.iter_mut().map(|(face, _)| face).collect();
         for (id, note) in settle(&mut body.shells.edges, &mut faces, body.closed, geometry.file.global.resolution) {
-            *report.healed.entry(ImportReport::reason(&note)).or_default() += 1;
+            report.healed.add(&note);
             geometry.note("edge healed", id, note);
         }
     }

@@ -29,6 +29,23 @@ pub(super) struct Tables<'i> {
     curves: HashMap<&'i str, &'i Curve>,
 }
 
+/// What a trim runs along in space.
+pub(super) enum Beside {
+    Nothing,
+    /// An edge without a curve that could be compared.
+    Unknown,
+    Curve(BSpline<DVec4>),
+}
+
+/// Curves in `(u, v)` end to end.
+pub(super) type Outline = Vec<(BSpline<DVec3>, Beside)>;
+
+/// A loop.
+pub(super) struct Ring {
+    pub curves: Outline,
+    pub hole: bool,
+}
+
 /// A face and what is to be said of it.
 pub(super) struct Built {
     pub face: Face,
@@ -63,48 +80,36 @@ impl<'i> Tables<'i> {
         let face = self.faces.get(name).ok_or("no such face")?;
         let carrier = self.surfaces.get(face.surface.as_str()).ok_or("no surface")?;
         let geometry = carrier.geometry.solved().ok_or("a surface that is only described")?;
-        let mut notes = Vec::new();
         let mut rings = Vec::new();
-        for ring in face.loops.iter() {
+        for (at, ring) in face.loops.iter().enumerate() {
             let stated = self.loops.get(ring.as_str()).ok_or("no such loop")?;
-            rings.push((self.ring(stated)?, face.loops.role(ring)));
-        }
-        let all = rings.iter().flat_map(|(ring, _)| ring).flat_map(|(curve, _)| curve.points().iter());
-        let (surface, kind, flipped) = spline_of(geometry, all.map(|p| p.point()))?;
-        let grid = surface.patches();
-        let mut loops = Vec::new();
-        let mut gap = 0.0f64;
-        for (at, (ring, role)) in rings.iter().enumerate() {
             // the first loop is the outer one where no role says so
-            let hole = match role {
+            let hole = match face.loops.role(ring) {
                 LoopBoundaryRole::Inner => true,
                 LoopBoundaryRole::Outer => false,
                 LoopBoundaryRole::Unspecified => at > 0,
             };
-            loops.push(close(ring, hole, &grid, &mut notes)?);
-            for (curve, edge) in ring {
-                match edge.and_then(|e| self.edge_curve(e)) {
-                    Some(edge) => gap = gap.max(distance(curve, &grid, &edge)),
-                    None if edge.is_some() => notes.push("a trim whose edge has no spline to compare with".into()),
-                    None => {}
-                }
-            }
+            rings.push(Ring { curves: self.ring(stated)?, hole });
         }
-        notes.extend(crossing_note(&loops));
+        let all = rings.iter().flat_map(|ring| &ring.curves).flat_map(|(curve, _)| curve.points().iter());
+        let (surface, kind, flipped) = spline_of(geometry, all.map(|p| p.point()))?;
         let same_sense = matches!(face.sense, Sense::Forward) != flipped;
         let colour = face.color.map(super::linear);
-        Ok(Built { face: Face { id, kind, surface, loops, same_sense, colour }, notes, gap })
+        built(Face { id, kind, surface, loops: Vec::new(), same_sense, colour }, &rings, Vec::new())
     }
 
     /// The curves of a loop in `(u, v)`, each run as the loop runs, with its edge.
-    fn ring(&self, stated: &Loop) -> Result<Vec<(BSpline<DVec3>, Option<&'i Edge>)>, String> {
+    fn ring(&self, stated: &Loop) -> Result<Outline, String> {
         let mut ring = Vec::new();
         for coedge in stated.coedges() {
             let coedge = self.coedges.get(coedge.as_str()).ok_or("no such trim")?;
-            let edge = self.edges.get(coedge.edge.as_str()).copied();
+            let edge = || match self.edges.get(coedge.edge.as_str()) {
+                None => Beside::Nothing,
+                Some(edge) => self.edge_curve(edge).map_or(Beside::Unknown, Beside::Curve),
+            };
             for used in &coedge.pcurves {
                 let pcurve = self.pcurves.get(used.pcurve.as_str()).ok_or("no such curve in (u, v)")?;
-                ring.extend(splines(&pcurve.geometry)?.into_iter().map(|piece| (piece, edge)));
+                ring.extend(splines(&pcurve.geometry)?.into_iter().map(|piece| (piece, edge())));
             }
         }
         if ring.is_empty() { Err("a loop without curves in (u, v)".into()) } else { Ok(ring) }
@@ -122,6 +127,24 @@ impl<'i> Tables<'i> {
         });
         BSpline::new(nurbs.degree() as usize, nurbs.knots().as_slice().to_vec(), points.collect()).ok()
     }
+}
+
+/// `face` with its loops, closed, and their distance from the edges.
+pub(super) fn built(mut face: Face, rings: &[Ring], mut notes: Vec<String>) -> Result<Built, String> {
+    let grid = face.surface.patches();
+    let mut gap = 0.0f64;
+    for ring in rings {
+        face.loops.push(close(ring, &grid, &mut notes)?);
+        for (curve, edge) in &ring.curves {
+            match edge {
+                Beside::Curve(edge) => gap = gap.max(distance(curve, &grid, edge)),
+                Beside::Unknown => notes.push("a trim whose edge has no spline to compare with".into()),
+                Beside::Nothing => {}
+            }
+        }
+    }
+    notes.extend(crossing_note(&face.loops));
+    Ok(Built { face, notes, gap })
 }
 
 /// The spline of a curve in `(u, v)`: curves joined of several may be torn where those meet, by rounding.
@@ -172,15 +195,10 @@ fn tensor(nurbs: &NurbsSurface) -> Result<Surface, String> {
 }
 
 /// The loop; gaps are closed where the ends are one point in space.
-fn close(
-    ring: &[(BSpline<DVec3>, Option<&Edge>)],
-    hole: bool,
-    grid: &PatchGrid,
-    notes: &mut Vec<String>,
-) -> Result<TrimLoop, String> {
-    let pieces: Vec<Bezier<DVec3>> =
-        ring.iter().flat_map(|(curve, _)| curve.beziers()).map(|span| span.piece).collect();
-    chain(&pieces, hole, notes, |a, b, _| (grid.point(a.x, a.y) - grid.point(b.x, b.y)).length() <= MEET)
+fn close(ring: &Ring, grid: &PatchGrid, notes: &mut Vec<String>) -> Result<TrimLoop, String> {
+    let curves = ring.curves.iter().flat_map(|(curve, _)| curve.beziers());
+    let pieces: Vec<Bezier<DVec3>> = curves.map(|span| span.piece).collect();
+    chain(&pieces, ring.hole, notes, |a, b, _| (grid.point(a.x, a.y) - grid.point(b.x, b.y)).length() <= MEET)
 }
 
 /// Largest distance of the image of a trim from the curve of its edge, at a few of its points.

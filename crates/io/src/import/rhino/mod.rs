@@ -2,19 +2,25 @@
 //!
 //! ```text
 //!   bytes ─cadmpeg─▶ bodies, shells, faces, loops, p-curves ─face─▶ Face      trims are the file's p-curves
+//!                    records of bodies that it refuses ─brep─▶ Face           each by itself
 //!                    tessellations without a body ────────────────▶ Mesh
 //!                    products and their occurrences ──────────────▶ Instance  blocks
 //! ```
 //!
 //! Lengths come in millimetres. A face's trims are the curves in `(u, v)` that the file holds; the distance
 //! of their images from the edges in space, which the file holds too, is reported as the gap. What the
-//! decoder says it lost is among the warnings; objects of hidden layers are read, but not placed.
+//! decoder says it lost is among the warnings; objects of hidden layers are read, but not placed. The decoder leaves out
+//! a whole body for one bad face; such a body is read from its record, which the decoder finds.
 
+mod archive;
+mod brep;
 mod face;
+mod refused;
+mod shape;
 
 use super::{FaceRecord, Import, ImportError, ImportReport, Place, Warnings, colour, facets};
 use crate::brep::BuiltFace;
-use crate::model::{Colour, Instance, Mesh, Model, Part};
+use crate::model::{Colour, Face, Instance, Mesh, Model, Part};
 use cadmpeg_codec_rhino::RhinoCodec;
 use cadmpeg_ir::document::CadIr;
 use cadmpeg_ir::products::{OccurrenceParent, PrototypeReference};
@@ -23,6 +29,7 @@ use cadmpeg_ir::transform::Transform;
 use cadmpeg_ir::{Codec, DecodeOptions};
 use face::{Built, Tables};
 use glam::{DAffine3, DMat3, DVec3};
+use refused::Records;
 use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::Cursor;
 
@@ -37,9 +44,10 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     let failed = |why: String| ImportError::Rhino { file: name.to_owned(), why };
     let decoded = RhinoCodec.decode(&mut Cursor::new(bytes), &DecodeOptions::default());
     let decoded = decoded.map_err(|error| failed(error.to_string()))?;
-    let ir = decoded.ir();
+    let (ir, losses, source) = decoded.into_parts();
+    let ir = &ir;
     let mut warnings = Warnings::new(name);
-    for loss in &decoded.report().losses {
+    for loss in &losses.losses {
         warnings.push("not decoded", || Place::File, || loss.message.clone());
     }
     let mut report = ImportReport { format: "Rhino 3dm".into(), ..ImportReport::default() };
@@ -54,7 +62,10 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     model.name = std::path::Path::new(name).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default();
     let part_of = parts(ir, tolerance, &mut model, &mut report, &mut warnings);
     place(ir, &part_of, &mut model, &mut warnings);
-    meshes(ir, &mut model, &mut warnings);
+    let scale = attribute("millimeters_per_unit").parse().unwrap_or(1.0);
+    let records = Records { bytes, ir, source: &source, scale, tolerance };
+    let read = refused::read(&records, &mut model, &mut report, &mut warnings);
+    meshes(ir, read, &mut model, &mut warnings);
     for (what, count) in [("subdivision surface not read", ir.model.subds.len())] {
         if count > 0 {
             warnings.push(what, || Place::File, || format!("{count} of them"));
@@ -93,20 +104,11 @@ fn parts(
             report.faces += 1;
             let number = report.faces as u32;
             let record = FaceRecord { id: number, part: model.parts.len(), tolerance, ..FaceRecord::default() };
-            match tables.face(id.as_str(), number) {
-                Ok(Built { mut face, notes, gap }) => {
-                    face.colour = face.colour.or(own);
-                    for note in &notes {
-                        report.healed.add(note);
-                        warnings.push("face healed", || Place::File, || format!("{}: {note}", id.as_str()));
-                    }
-                    let built = BuiltFace { face, notes, deviation: 0.0, gap, lost: Vec::new() };
-                    part.faces.push(report.record(record, built));
-                }
-                Err(why) => {
-                    report.dropped.add(&why);
-                    warnings.push("face left out", || Place::File, || format!("{}: {why}", id.as_str()));
-                    lost.push(FaceRecord { notes: vec![why], ..record });
+            let built = tables.face(id.as_str(), number);
+            match kept(built, id.as_str(), own, record, report, warnings) {
+                Ok(face) => part.faces.push(face),
+                Err(record) => {
+                    lost.push(record);
                     part.closed = false;
                 }
             }
@@ -120,6 +122,32 @@ fn parts(
     }
     report.face_records.splice(0..0, lost);
     part_of
+}
+
+/// A face with its record, or the record of one that is left out; `name` is what messages call it.
+fn kept(
+    built: Result<Built, String>,
+    name: &str,
+    colour: Option<Colour>,
+    record: FaceRecord,
+    report: &mut ImportReport,
+    warnings: &mut Warnings,
+) -> Result<Face, FaceRecord> {
+    match built {
+        Ok(Built { mut face, notes, gap }) => {
+            face.colour = face.colour.or(colour);
+            for note in &notes {
+                report.healed.add(note);
+                warnings.push("face healed", || Place::File, || format!("{name}: {note}"));
+            }
+            Ok(report.record(record, BuiltFace { face, notes, deviation: 0.0, gap, lost: Vec::new() }))
+        }
+        Err(why) => {
+            report.dropped.add(&why);
+            warnings.push("face left out", || Place::File, || format!("{name}: {why}"));
+            Err(FaceRecord { notes: vec![why], ..record })
+        }
+    }
 }
 
 /// Bodies where they stand, and those of blocks once for every use of the block.
@@ -169,11 +197,12 @@ fn place(ir: &CadIr, part_of: &HashMap<String, usize>, model: &mut Model, warnin
     }
 }
 
-/// Mesh objects; the meshes with which Rhino draws its bodies are not needed.
-fn meshes(ir: &CadIr, model: &mut Model, warnings: &mut Warnings) {
+/// Mesh objects; the meshes with which Rhino draws its bodies, those `read` besides among them, are not needed.
+fn meshes(ir: &CadIr, read: HashSet<&str>, model: &mut Model, warnings: &mut Warnings) {
     let mut id = model.face_count() as u32;
     // names of bodies end in the number of their object
-    let drawn: HashSet<&str> = ir.model.bodies.iter().filter_map(|b| object(b.id.as_str())).collect();
+    let bodies = ir.model.bodies.iter().filter_map(|b| object(b.id.as_str()));
+    let drawn: HashSet<&str> = bodies.chain(read).collect();
     for mesh in ir.model.tessellations.iter().filter(|t| t.body.is_none() && t.faces.is_empty()) {
         let source = mesh.source_object.as_ref();
         if source.is_some_and(|s| drawn.contains(s.object_id.as_str()))

@@ -97,6 +97,110 @@ fn blocks_meshes_colours_and_units() {
     assert!(read.report.gap < 1e-9, "{:e}", read.report.gap);
 }
 
+/// Class ids as they stand in a file, by what the box and the cylinder are made of.
+const ID_END: [u8; 8] = [0xBF, 0xE5, 0x00, 0x10, 0x83, 0x01, 0x22, 0xF0];
+
+/// Places of the ids of a class that begin with `first`.
+fn places(first: u32) -> Vec<usize> {
+    let start = first.to_le_bytes();
+    let is = |at: &usize| BLOCKS[*at..].starts_with(&start) && BLOCKS.get(at + 8..at + 16) == Some(&ID_END[..]);
+    (0..BLOCKS.len() - 16).filter(is).collect()
+}
+
+/// Bodies by their records.
+fn own(bytes: &[u8]) -> Vec<crate::model::Part> {
+    use super::{archive, brep::Brep};
+    use cadmpeg_codec_rhino::RhinoCodec;
+    use cadmpeg_ir::{Codec, DecodeOptions};
+    let decoded = RhinoCodec.decode(&mut std::io::Cursor::new(bytes), &DecodeOptions::default()).unwrap();
+    let (ir, _, source) = decoded.into_parts();
+    let record = |id: &str| {
+        let kept = source.retained_record(id)?;
+        let class = archive::object(bytes, kept.end_offset() - kept.byte_len()).ok().filter(Brep::is)?;
+        let brep = Brep::read(bytes, class, 10.0).unwrap();
+        let faces = (0..brep.len()).map(|k| brep.face(k, 1).unwrap().face).collect();
+        Some(crate::model::Part { faces, closed: brep.closed, ..crate::model::Part::default() })
+    };
+    ir.native_unknowns_iter("rhino").flatten().filter_map(|r| record(r.id.as_str())).collect()
+}
+
+fn shapes(part: &crate::model::Part) -> Vec<[f64; 8]> {
+    part.faces.iter().map(shape).collect()
+}
+
+/// Bodies' records, read here, hold the same faces as the decoder's bodies.
+#[test]
+fn records_of_bodies_are_read_as_the_decoder_reads_them() {
+    let whole = rhino(BLOCKS, "blocks.3dm").unwrap();
+    let bodies = own(BLOCKS);
+    for body in &bodies {
+        assert!(body.closed);
+        // uses of a block have their points moved
+        let same = |part: &crate::model::Part| {
+            let (a, b) = (shapes(part), shapes(body));
+            let step = if a.is_empty() { 0.0 } else { a[0][0] - b[0][0] };
+            let near = |p: &[f64; 8], q: &[f64; 8]| {
+                let along = |k: usize| if k == 0 || k == 3 { step } else { 0.0 };
+                (0..8).all(|k| (p[k] - q[k] - along(k)).abs() < 1e-9)
+            };
+            a.len() == b.len() && a.iter().zip(&b).all(|(p, q)| near(p, q))
+        };
+        assert!(whole.model.parts.iter().any(same), "{:?}", shapes(body));
+    }
+    // the cylinder, the box of the block, the box that is not shown
+    assert_eq!(bodies.iter().map(|b| b.faces.len()).sum::<usize>(), 3 + 6 + 6);
+}
+
+/// The box of the loops in space, their number, and the sense of a face.
+fn shape(face: &crate::model::Face) -> [f64; 8] {
+    let grid = face.surface.patches();
+    let curves = face.loops.iter().flat_map(|l| l.curves());
+    let points = curves.flat_map(|c| (0..=16).map(move |k| c.point(f64::from(k) / 16.0)));
+    let space = points.map(|p| grid.point(p.x, p.y)).fold(crate::model::Bounds::EMPTY, crate::model::Bounds::with);
+    let (a, b) = (space.min, space.max);
+    [a.x, a.y, a.z, b.x, b.y, b.z, face.loops.len() as f64, f64::from(u8::from(face.same_sense))]
+}
+
+/// The decoder leaves out a body for one bad surface or curve; of its faces all others are shown.
+#[test]
+fn one_bad_surface_costs_one_face() {
+    let names = |read: &crate::import::Import| {
+        read.model.parts.iter().map(|p| (p.name.clone(), p.faces.len())).collect::<Vec<_>>()
+    };
+    let whole = rhino(BLOCKS, "a.3dm").unwrap();
+    let surfaces = [places(0x4ED7_D4DE), places(0x4ED7_D4DF)].concat();
+    assert!(surfaces.len() >= 9, "{surfaces:?}");
+    let mut seen = 0;
+    for at in surfaces {
+        let mut bytes = BLOCKS.to_vec();
+        bytes[at] ^= 0x55;
+        let read = rhino(&bytes, "a.3dm").unwrap();
+        let told = read.warnings.iter().map(ToString::to_string).collect::<Vec<_>>();
+        if names(&read) == names(&whole) {
+            continue;
+        }
+        seen += 1;
+        assert_eq!(read.report.dropped.total(), 1, "{told:?}");
+        assert!(told.iter().any(|w| w.contains("face left out") && w.contains("a surface of class")), "{told:?}");
+        assert!(told.iter().any(|w| w.contains("body read from its record")), "{told:?}");
+        assert_eq!(read.report.face_records.iter().filter(|r| r.kind.is_none()).count(), 1);
+    }
+    assert!(seen >= 9, "{seen}");
+}
+
+/// Surfaces under the id of Rhino's modeller are the same.
+#[test]
+fn surfaces_under_another_id() {
+    const OTHER: [u8; 16] =
+        [0x17, 0xC8, 0x60, 0x47, 0xE3, 0x0B, 0xD4, 0x11, 0xBF, 0xFE, 0, 0x10, 0x83, 0x01, 0x22, 0xF0];
+    let mut bytes = BLOCKS.to_vec();
+    let all = places(0x4ED7_D4DE);
+    assert!(!all.is_empty());
+    all.iter().for_each(|at| bytes[*at..*at + 16].copy_from_slice(&OTHER));
+    let of = |bytes: &[u8]| own(bytes).iter().map(shapes).collect::<Vec<_>>();
+    assert_eq!(of(&bytes), of(BLOCKS));
+}
+
 /// Every face is read or counted as lost, and nothing panics.
 fn sound(bytes: &[u8]) {
     if let Ok(read) = rhino(bytes, "a.3dm") {

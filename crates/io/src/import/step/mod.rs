@@ -179,7 +179,7 @@ fn build(
     for (part, (mut body, tolerance)) in bodies.into_iter().enumerate() {
         let mut faces: Vec<_> = body.faces.iter_mut().map(|(face, _)| face).collect();
         for (id, note) in settle(&mut body.edges, &mut faces, body.closed, tolerance) {
-            *report.healed.entry(ImportReport::reason(&note)).or_default() += 1;
+            report.healed.add(&note);
             notes.push("edge healed", || places.of(id), note);
         }
         edges.push(body.edges);

@@ -1,7 +1,7 @@
 //! Every class of damage with the message that it must have, word for word.
 //!
-//! A Boolean solid is one thing: without a member of it, what is left is another solid. So a fault refuses
-//! the file.
+//! A solid that cannot be read is nothing: what it is taken from goes with it, what it is joined to stays. A fault
+//! that leaves nothing refuses the file.
 
 use super::{BOX, ROD};
 use crate::import::brlcad;
@@ -29,22 +29,22 @@ fn one_change_one_message() {
         ("truncated", "4 0} V4", "", "error: t.asc:3: a brace or quote does not close", 0),
         ("truncated", "{l rod}}", "", "error: t.asc:5: a brace or quote does not close", 0),
         ("truncated", "put all", "", "", 8),
-        ("swapped", "{l box}", "{l bux}", "error: t.asc:5: `bux` does not exist", 0),
+        ("swapped", "{l box}", "{l bux}", "t.asc:5: solid left out: `bux` does not exist", 9),
         (
             "swapped",
             "V5 {0 0 4}",
             "V5 {4 4 4}",
-            "error: t.asc:3: box arb8: faces that are not flat, or no convex solid, are not read",
-            0,
+            "t.asc:3: faces that are not flat: box arb8: corners lie 2.309e0 mm off, and patches are drawn between them",
+            3,
         ),
-        ("swapped", "arb8", "tgc", "error: t.asc:3: box tgc: `V` is missing", 0),
+        ("swapped", "arb8", "tgc", "t.asc:3: solid left out: box tgc: `V` is missing", 2),
         ("cycle", "{l box}", "{l all}", "error: t.asc:5: `two` is part of itself", 0),
         ("cycle", "{l box}", "{l two}", "error: t.asc:5: `two` is part of itself", 0),
         ("huge", "H {0 0 9}", "H {0 0 1e999}", "error: t.asc:4: rod tgc: `H` is not 3 finite numbers", 0),
         ("huge", "H {0 0 9}", "H {0 0 9 9 9 9 9 9}", "error: t.asc:4: rod tgc: `H` is not 3 finite numbers", 0),
         ("NaN", "A {1 0 0}", "A {nan 0 0}", "error: t.asc:4: rod tgc: `A` is not 3 finite numbers", 0),
         ("NaN", "{1 0 0 2 0 1", "{1 0 0 nan 0 1", "error: t.asc:6: tree: not a matrix", 0),
-        ("NaN", "V3 {4 4 0}", "V3 {4 inf 0}", "error: t.asc:3: box arb8: `V3` is not 3 finite numbers", 0),
+        ("NaN", "V3 {4 4 0}", "V3 {4 inf 0}", "t.asc:3: solid left out: box arb8: `V3` is not 3 finite numbers", 2),
         ("type", "A {1 0 0}", "A {one 0 0}", "error: t.asc:4: rod tgc: `A` is not 3 finite numbers", 0),
         ("type", "A {1 0 0}", "A 1", "error: t.asc:4: rod tgc: `A` is not 3 finite numbers", 0),
         ("type", "{1 0 0 2 0 1", "{x 0 0 2 0 1", "error: t.asc:6: tree: `x` with 0 operands is not read", 0),
