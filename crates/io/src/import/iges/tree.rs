@@ -228,7 +228,7 @@ impl<'g, 'a> Tree<'g, 'a> {
         }
         let entity = Entity::find(self.geometry.file, base)?;
         if self.trail.len() >= MAX_NESTED {
-            return Err(Fault::Depth(base));
+            return Err(Fault::Depth(base, MAX_NESTED));
         }
         let members = match entity.kind() {
             308 => (4..4 + entity.count(3, 1)?).filter_map(|i| entity.optional(i).ok().flatten()).collect(),

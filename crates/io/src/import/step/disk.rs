@@ -78,7 +78,7 @@ impl Geometry<'_> {
                 let whole = matches!(surface, SurfaceGeometry::BSpline(_)) || (closed && pieces.len() == 1);
                 let ends = vec![rim(circles[i], true), rim(circles[(i + 1) % circles.len()], false)];
                 let bounds = if whole { Vec::new() } else { ends };
-                faces.push(FaceGeometry { id, surface, bounds, same_sense: out });
+                faces.push(FaceGeometry { id, surface, bounds, same_sense: out, doubtful: false });
             }
             for (rim, circle) in rims.iter_mut().zip([circles[0], circles[circles.len() - 1]]) {
                 rim.push((circle, out));
@@ -88,7 +88,7 @@ impl Geometry<'_> {
             for (rim, (joint, same_sense)) in rims.into_iter().zip([(joints[0], false), (last.ends[1], true)]) {
                 let surface = SurfaceGeometry::Plane { frame: frame(joint.0, joint.1, None) };
                 let bounds = rim.into_iter().map(|circle| Boundary::Edges(vec![circle])).collect();
-                faces.push(FaceGeometry { id, surface, bounds, same_sense });
+                faces.push(FaceGeometry { id, surface, bounds, same_sense, doubtful: false });
             }
         }
         Ok(faces)

@@ -194,8 +194,8 @@ impl Geometry<'_> {
             let surface = SurfaceGeometry::Plane { frame: plane };
             let (moved, _) = Similarity::new(end).surface(surface.clone()).ok_or(fault("a side is not finite"))?;
             let first = bounds.into_iter().map(Boundary::Edges).collect();
-            faces.push(FaceGeometry { id, surface, bounds: first, same_sense: !ahead });
-            faces.push(FaceGeometry { id, surface: moved, bounds: last, same_sense: ahead });
+            faces.push(FaceGeometry { id, surface, bounds: first, same_sense: !ahead, doubtful: false });
+            faces.push(FaceGeometry { id, surface: moved, bounds: last, same_sense: ahead, doubtful: false });
         }
         Ok(faces)
     }
@@ -283,7 +283,7 @@ impl Sweep<'_> {
         };
         // u and v change places between the two surfaces
         let outward = (ahead == same_sense) != around;
-        Some(Some(FaceGeometry { id: self.id, surface, bounds, same_sense: outward }))
+        Some(Some(FaceGeometry { id: self.id, surface, bounds, same_sense: outward, doubtful: false }))
     }
 }
 
