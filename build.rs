@@ -54,14 +54,14 @@ fn make_artefacts(root: &Path, artefacts: &Path) {
     copy_files(&root.join("glsl/spirv"), artefacts);
 }
 
-/// `shaders.rs`: `scan_add.comp.spv` becomes `SCAN_ADD_COMP`. Those of `glsl/rivals` are there with their feature only.
+/// `shaders.rs`: `scan_add.comp.spv` becomes `SCAN_ADD_COMP`. Those of `glsl/baselines` are there with their feature only.
 fn list_shaders(artefacts: &Path) -> String {
     let mut text = String::new();
     for path in files(artefacts).iter().filter(|path| path.extension().is_some_and(|e| e == "spv")) {
         let entry_point = path.file_stem().expect("it has an extension").to_string_lossy();
         let name = entry_point.replace('.', "_").to_uppercase();
         let bytes = fs::metadata(path).map_or_else(|e| panic!("{}: {e}", path.display()), |m| m.len());
-        let only = if entry_point.starts_with("rival_") { "#[cfg(feature = \"rivals\")]\n" } else { "" };
+        let only = if entry_point.starts_with("baseline_") { "#[cfg(feature = \"baselines\")]\n" } else { "" };
         writeln!(
             text,
             "/// `glsl/{entry_point}`\n{only}pub static {name}: &[u32] = &words::<{}>(include_bytes!({path:?}));",
@@ -87,10 +87,20 @@ fn copy_files(from: &Path, to: &Path) {
     }
 }
 
+/// The folders of a folder by name.
+#[cfg(feature = "compile-shaders")]
+fn folders(folder: &Path) -> Vec<PathBuf> {
+    entries(folder).into_iter().filter(|path| path.is_dir()).collect()
+}
+
 /// The files of a folder by name, folders left out.
 fn files(folder: &Path) -> Vec<PathBuf> {
+    entries(folder).into_iter().filter(|path| path.is_file()).collect()
+}
+
+fn entries(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
-    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(|path| path.is_file()).collect();
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     paths.sort();
     paths
 }

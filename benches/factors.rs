@@ -4,8 +4,8 @@
 //! `cargo bench --features rivals --bench factors -- [PATCHES [SEARCHED]] [MODEL ...]`
 
 use glam::DVec3;
+use selvedge::baselines::factors::{Spread, Way, Ways, of_model, of_random};
 use selvedge::model::{Bounds, Camera};
-use selvedge::rivals::factors::{Spread, Way, Ways, of_model, of_random};
 use selvedge_io::import;
 use std::path::Path;
 

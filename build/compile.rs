@@ -1,8 +1,8 @@
 //! Every entry point of `glsl/` by shaderc, twice: unoptimised for its names, optimised to ship.
 
-use crate::{files, reflect, write};
+use crate::{files, folders, reflect, write};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
 /// Compiles `root/glsl` into `artefacts`, with `layout.rs`. The error is shaderc's, with file and line.
 pub fn all(root: &Path, artefacts: &Path) -> Result<(), String> {
@@ -12,7 +12,7 @@ pub fn all(root: &Path, artefacts: &Path) -> Result<(), String> {
     let shipped = options(&glsl, shaderc::OptimizationLevel::Performance)?;
     let mut layouts = reflect::Layouts::new(&root.join("src/abi"))?;
     let mut errors = Vec::new();
-    for path in files(&glsl).into_iter().chain(files(&glsl.join("rivals"))) {
+    for path in entry_points(&glsl) {
         let kind = match path.extension().and_then(|extension| extension.to_str()) {
             Some("comp") => shaderc::ShaderKind::Compute,
             Some("vert") => shaderc::ShaderKind::Vertex,
@@ -40,6 +40,12 @@ pub fn all(root: &Path, artefacts: &Path) -> Result<(), String> {
     }
     write(&artefacts.join("layout.rs"), layouts.assertions()?.as_bytes());
     Ok(())
+}
+
+/// Every file of the folders of `glsl`, one folder a stage, but for what they include.
+fn entry_points(glsl: &Path) -> Vec<PathBuf> {
+    let stages = folders(glsl).into_iter().filter(|folder| !folder.ends_with("include") && !folder.ends_with("spirv"));
+    stages.flat_map(|folder| files(&folder)).collect()
 }
 
 fn options(glsl: &Path, level: shaderc::OptimizationLevel) -> Result<shaderc::CompileOptions<'static>, String> {

@@ -18,7 +18,7 @@
 //!                solid_events    where rays enter Boolean solids; solid_rects to solid_fold came before
 //!                      ▼
 //!                 visibility     tessellate, trim: item and (u, v) per pixel
-//!                      │         patches that lie behind others left out, and asked for: hidden.rs
+//!                      │         patches that lie behind others left out, and asked for: occlusion/
 //!                      ▼
 //!                    heal        pixels that look through a gap between trimmed faces
 //!                      ▼
@@ -36,45 +36,50 @@
 
 use crate::abi::Counters;
 use crate::bindings::Primitives;
-use crate::buffers::{Buffers, TableBuffers};
+use crate::frame::antialiasing::coverage::Coverage;
+use crate::frame::buffers::{Buffers, TableBuffers};
+use crate::frame::common::reset;
+use crate::frame::common::scan;
+use crate::frame::shading::resolve;
+use crate::frame::shading::seen_squares::SeenSquares;
+use crate::frame::tessellation::emit;
+use crate::frame::tessellation::split;
+use crate::frame::visibility::mesh;
+use crate::frame::visibility::patches;
+use crate::frame::visibility::patches::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
 use crate::gpu::{
     Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Texels, Timestamps, barrier,
 };
-use crate::passes::coverage::Coverage;
-use crate::passes::seen_squares::SeenSquares;
-use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
-use crate::passes::{emit, mesh, reset, resolve, scan, split, visibility};
 use crate::picture::TakenWay;
 use crate::scene::{Scene, SceneData, SolidData};
-use divide::DividePass;
-use hidden::HiddenPasses;
-use layers::{Drawing, LayerPasses};
-use samples::{SamplePasses, Scopes};
+use antialiasing::samples::{SamplePasses, Scopes};
+use antialiasing::smooth_trims;
+use occlusion::HiddenPasses;
 use solids::SolidPasses;
 use std::ops::Range;
+use tessellation::divide::DividePass;
+use transparency::{Drawing, LayerPasses};
 use trim::{TrimParts, TrimPasses};
 
-mod bands;
-mod blister;
-mod coverage;
-mod divide;
-mod drawn;
-mod edit;
-mod heal;
-mod hidden;
-mod kept;
-mod layers;
-mod resolved;
-#[cfg(feature = "rivals")]
-mod rival;
-mod samples;
-mod solids;
-mod sun;
-mod table;
-mod trim;
+pub(crate) mod antialiasing;
+#[cfg(feature = "baselines")]
+pub(crate) mod baselines;
+pub(crate) mod buffers;
+pub(crate) mod capacities;
+pub(crate) mod common;
+pub(crate) mod gaps;
+pub(crate) mod occlusion;
+mod reuse;
+pub(crate) mod shading;
+mod shadows;
+pub(crate) mod solids;
+pub(crate) mod tessellation;
+pub(crate) mod transparency;
+pub(crate) mod trim;
+pub(crate) mod visibility;
 
-pub(crate) use hidden::Hiding;
-pub(crate) use samples::ViewBuffers;
+pub(crate) use antialiasing::samples::ViewBuffers;
+pub(crate) use occlusion::Hiding;
 pub(crate) use solids::{Centres, Near};
 
 /// The passes that a scene needs.
@@ -87,10 +92,10 @@ pub(crate) struct Passes {
     hidden: Option<HiddenPasses>,
     trim: Option<TrimPasses>,
     solids: Option<SolidPasses>,
-    visibility: visibility::Visibility,
+    visibility: patches::Visibility,
     /// The same without a trim test, to compare with.
-    #[cfg(feature = "rivals")]
-    untested: Option<visibility::Visibility>,
+    #[cfg(feature = "baselines")]
+    untested: Option<patches::Visibility>,
     mesh: Option<mesh::Mesh>,
     /// Of scenes with patches or meshes.
     squares: Option<SeenSquares>,
@@ -142,10 +147,10 @@ impl Passes {
                         let tessellation = (!data.items.is_empty()).then_some(()).map(tessellation).transpose()?;
                         let mesh = data.has_meshes().then(mesh).transpose()?;
                         let hidden = HiddenPasses::new(device, data)?;
-                        Ok((tessellation, hidden, visibility::Visibility::new(device, kinds)?, mesh))
+                        Ok((tessellation, hidden, patches::Visibility::new(device, kinds)?, mesh))
                     },
                     || {
-                        let resolve = resolved::targets(device, data, formats)?;
+                        let resolve = shading::targets(device, data, formats)?;
                         let samples = SamplePasses::new(device, data, formats)?;
                         let squares = data.has_surfaces().then(|| SeenSquares::new(device)).transpose()?;
                         let scan = scan::Scan::new(device, data.trim_way() == Some(TakenWay::Table))?;
@@ -162,14 +167,14 @@ impl Passes {
             hidden,
             solids: solids?,
             visibility,
-            #[cfg(feature = "rivals")]
-            untested: rival::untested(device, data, kinds)?,
+            #[cfg(feature = "baselines")]
+            untested: baselines::untested(device, data, kinds)?,
             mesh,
             squares,
             resolve,
             samples,
             layers: LayerPasses::new(device, data, formats)?,
-            coverage: coverage::new(device, data, formats)?,
+            coverage: smooth_trims::new(device, data, formats)?,
             trim,
         })
     }
@@ -253,7 +258,7 @@ impl Frame<'_> {
         if let Some(passes) = &self.passes.tessellation {
             times.scope(cmd, "tessellation", || self.tessellation(cmd, passes));
         }
-        #[cfg(feature = "rivals")]
+        #[cfg(feature = "baselines")]
         if let Some(texture) = trim.as_ref().and_then(TrimParts::rival).and_then(|parts| parts.texture()) {
             times.scope(cmd, "trim texture", || texture.record(self, cmd));
         }
@@ -271,7 +276,7 @@ impl Frame<'_> {
             times.scope(cmd, "solids", || self.solid_faces(cmd, &parts));
         }
         let test = trim.as_ref().map_or(Vec::new(), TrimParts::test);
-        #[cfg(feature = "rivals")]
+        #[cfg(feature = "baselines")]
         self.untested(cmd, times);
         times.drawing(cmd, "visibility", || self.visibility(cmd, &test, false));
         if let (Some(parts), Some(tessellation)) = (self.reveals(), &self.passes.tessellation) {
@@ -322,8 +327,8 @@ impl Frame<'_> {
         for counted in table.flat_map(TableBuffers::cleared) {
             cmd.fill(counted, 0);
         }
-        #[cfg(feature = "rivals")]
-        for counted in b.trim.iter().flat_map(|t| &t.texture).flat_map(crate::buffers::TextureBuffers::cleared) {
+        #[cfg(feature = "baselines")]
+        for counted in b.trim.iter().flat_map(|t| &t.texture).flat_map(crate::frame::buffers::TextureBuffers::cleared) {
             cmd.fill(counted, 0);
         }
         if let Some(parts) = self.hidden() {

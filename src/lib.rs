@@ -14,25 +14,27 @@ pub use selvedge_geometry::{construct, csg, math, model, spline, trim};
 extern crate self as selvedge;
 
 pub mod abi;
+#[cfg(feature = "baselines")]
+pub mod baselines;
 mod bindings;
 mod budget;
-mod buffers;
-mod capacities;
+#[cfg(any(test, feature = "baselines"))]
+mod fixtures;
 mod frame;
 pub mod gpu;
 #[cfg(feature = "headless")]
 pub mod headless;
 #[cfg(test)]
 mod parity;
-pub mod passes;
+/// For tests of the Vulkan layer.
+#[doc(hidden)]
+pub mod passes {
+    pub use crate::frame::common::scan;
+}
 pub mod picture;
 pub mod renderer;
-#[cfg(feature = "rivals")]
-pub mod rivals;
 mod scene;
 mod shaders;
-#[cfg(any(test, feature = "rivals"))]
-mod trial;
 pub mod twin;
 
 /// The examples of the README compile.

@@ -68,12 +68,12 @@ pub enum TrimWay {
     /// The loops themselves, as arcs of conics in cells made once: a few of them a pixel.
     Exact,
     /// One to compare with; never chosen, never met by an embedder.
-    #[cfg(feature = "rivals")]
+    #[cfg(feature = "baselines")]
     Rival(Rival),
 }
 
 /// How bisection sorts monotone pieces into bands and cells.
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Sorted {
@@ -83,8 +83,8 @@ pub enum Sorted {
     Tuned,
 }
 
-/// Other ways to trim, each with the number that its accuracy hangs on: see [`crate::rivals`].
-#[cfg(feature = "rivals")]
+/// Other ways to trim, each with the number that its accuracy hangs on: see [`crate::baselines`].
+#[cfg(feature = "baselines")]
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
 #[serde(rename_all = "lowercase")]
 pub enum Rival {
@@ -109,7 +109,7 @@ pub enum Rival {
 pub(crate) enum TakenWay {
     Table,
     Exact,
-    #[cfg(feature = "rivals")]
+    #[cfg(feature = "baselines")]
     Rival(Rival),
 }
 
@@ -118,7 +118,7 @@ impl From<TakenWay> for TrimWay {
         match way {
             TakenWay::Table => Self::Table,
             TakenWay::Exact => Self::Exact,
-            #[cfg(feature = "rivals")]
+            #[cfg(feature = "baselines")]
             TakenWay::Rival(rival) => Self::Rival(rival),
         }
     }
@@ -134,11 +134,11 @@ impl TrimWay {
             Self::Auto => "auto",
             Self::Table => "table",
             Self::Exact => "exact",
-            #[cfg(feature = "rivals")]
+            #[cfg(feature = "baselines")]
             Self::Rival(Rival::Untrimmed) => "untrimmed",
-            #[cfg(feature = "rivals")]
+            #[cfg(feature = "baselines")]
             Self::Rival(Rival::Bisect { .. }) => "bisect",
-            #[cfg(feature = "rivals")]
+            #[cfg(feature = "baselines")]
             Self::Rival(Rival::Texture { .. }) => "texture",
         }
     }
@@ -290,12 +290,12 @@ pub struct SceneSettings {
     /// How to trim.
     pub trim: TrimWay,
     /// Patches are divided by slefes of so many segments, 1 to 9, where [`FrameSettings::levels`] says
-    /// [`Levels::Bound`]: see [`crate::rivals::factors`]. The promise is *not* kept; for comparisons.
-    #[cfg(feature = "rivals")]
+    /// [`Levels::Bound`]: see [`crate::baselines::factors`]. The promise is *not* kept; for comparisons.
+    #[cfg(feature = "baselines")]
     pub slefe_segments: Option<usize>,
     /// Before pass `visibility` the same sub-patches are drawn without a trim test, which nobody sees: pass `visibility
     /// untested` tells what tests cost. Not in scenes with anything but patches, and where nothing is trimmed.
-    #[cfg(feature = "rivals")]
+    #[cfg(feature = "baselines")]
     pub untested: bool,
     /// How to draw Boolean solids.
     pub solids: SolidWay,

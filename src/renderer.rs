@@ -23,13 +23,14 @@ mod slot;
 
 use crate::abi;
 use crate::budget::Budget;
-use crate::buffers::{Buffers, SolidBuffers};
-pub use crate::capacities::TooMany;
-use crate::capacities::{Capacities, Counts, MOST_LEGS};
+use crate::frame::buffers::{Buffers, SolidBuffers};
+pub use crate::frame::capacities::TooMany;
+use crate::frame::capacities::{Capacities, Counts, MOST_LEGS};
+use crate::frame::shading::resolve;
+use crate::frame::transparency::solid_layers;
 use crate::frame::{Frame, Near, Passes, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Texels, Uploads};
 use crate::model::{Camera, CameraError};
-use crate::passes::{resolve, solid_layers};
 use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes};
 pub use crate::scene::{CloseUp, Cut, EditError, UndrawnSolid, Wanted, trim_way};
 use crate::scene::{Scene, SceneData, Write};

@@ -48,8 +48,8 @@ pub static TRIM_TABLE: TrimTest = TrimTest {
     way: "table",
     visibility: VISIBILITY_TABLE_FRAG,
     operand_patch: OPERAND_PATCH_TABLE_FRAG,
-    heal: HEAL_TABLE_COMP,
-    within: Some(Within { visibility: VISIBILITY_TABLE_VOLUME_FRAG, heal: HEAL_TABLE_VOLUME_COMP }),
+    heal: GAP_FILL_TABLE_COMP,
+    within: Some(Within { visibility: VISIBILITY_TABLE_VOLUME_FRAG, heal: GAP_FILL_TABLE_VOLUME_COMP }),
     texels: 4,
 };
 /// Cells with lists of arcs.
@@ -57,40 +57,40 @@ pub static TRIM_EXACT: TrimTest = TrimTest {
     way: "exact",
     visibility: VISIBILITY_EXACT_FRAG,
     operand_patch: OPERAND_PATCH_EXACT_FRAG,
-    heal: HEAL_EXACT_COMP,
-    within: Some(Within { visibility: VISIBILITY_EXACT_VOLUME_FRAG, heal: HEAL_EXACT_VOLUME_COMP }),
+    heal: GAP_FILL_EXACT_COMP,
+    within: Some(Within { visibility: VISIBILITY_EXACT_VOLUME_FRAG, heal: GAP_FILL_EXACT_VOLUME_COMP }),
     texels: 3,
 };
 
 /// No test at all.
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
     way: "untrimmed",
-    visibility: RIVAL_VISIBILITY_UNTRIMMED_FRAG,
-    operand_patch: RIVAL_OPERAND_PATCH_UNTRIMMED_FRAG,
-    heal: RIVAL_HEAL_UNTRIMMED_COMP,
+    visibility: BASELINE_VISIBILITY_UNTRIMMED_FRAG,
+    operand_patch: BASELINE_OPERAND_PATCH_UNTRIMMED_FRAG,
+    heal: BASELINE_GAP_FILL_UNTRIMMED_COMP,
     within: None,
     texels: 0,
 };
 
 /// Bisection of monotone pieces.
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 pub static TRIM_BISECT: TrimTest = TrimTest {
     way: "bisect",
-    visibility: RIVAL_VISIBILITY_BISECT_FRAG,
-    operand_patch: RIVAL_OPERAND_PATCH_BISECT_FRAG,
-    heal: RIVAL_HEAL_BISECT_COMP,
+    visibility: BASELINE_VISIBILITY_BISECT_FRAG,
+    operand_patch: BASELINE_OPERAND_PATCH_BISECT_FRAG,
+    heal: BASELINE_GAP_FILL_BISECT_COMP,
     within: None,
     texels: 6,
 };
 
 /// Trim textures.
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 pub static TRIM_TEXTURE: TrimTest = TrimTest {
     way: "texture",
-    visibility: RIVAL_VISIBILITY_TEXTURE_FRAG,
-    operand_patch: RIVAL_OPERAND_PATCH_TEXTURE_FRAG,
-    heal: RIVAL_HEAL_TEXTURE_COMP,
+    visibility: BASELINE_VISIBILITY_TEXTURE_FRAG,
+    operand_patch: BASELINE_OPERAND_PATCH_TEXTURE_FRAG,
+    heal: BASELINE_GAP_FILL_TEXTURE_COMP,
     within: None,
     texels: 2,
 };

@@ -26,47 +26,57 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("abi", &[]),
     ("twin", &["abi", "math", "spline", "trim", "model"]),
     // for tests and measurements
-    ("trial", &["abi", "budget", "model", "picture", "scene", "spline", "twin"]),
+    ("fixtures", &["abi", "budget", "math", "model", "picture", "scene", "spline", "twin"]),
     // GPU: no geometry
     ("gpu", &[]),
     ("shaders", &[]),
     ("bindings", &["gpu"]),
-    ("passes", &["abi", "bindings", "gpu", "shaders"]),
     // where both meet
-    ("scene", &["abi", "bindings", "csg", "gpu", "math", "spline", "trim", "model", "picture", "rivals"]),
-    ("capacities", &["abi", "gpu", "passes", "picture", "scene"]),
-    ("buffers", &["abi", "capacities", "gpu", "passes", "picture"]),
-    ("frame", &["abi", "bindings", "buffers", "gpu", "passes", "picture", "scene", "shaders"]),
-    ("renderer", &["abi", "budget", "buffers", "capacities", "frame", "gpu", "model", "passes", "picture", "scene"]),
+    ("scene", &["abi", "bindings", "csg", "gpu", "math", "spline", "trim", "model", "picture", "baselines"]),
+    ("frame", &["abi", "bindings", "gpu", "picture", "scene", "shaders"]),
+    ("renderer", &["abi", "budget", "frame", "gpu", "model", "picture", "scene"]),
     ("headless", &["gpu", "model", "picture", "renderer"]),
     // for benchmarks and tests
-    ("rivals", &["abi", "math", "model", "picture", "scene", "spline", "trial", "trim", "twin"]),
+    ("baselines", &["abi", "fixtures", "math", "model", "picture", "scene", "spline", "trim", "twin"]),
 ];
 
 /// Modules that may name Vulkan's types.
-const VULKAN: &[&str] = &["gpu", "scene", "passes", "buffers", "renderer", "headless"];
+const VULKAN: &[&str] = &["gpu", "scene", "frame", "renderer", "headless"];
 /// Modules that may hold `unsafe`: the layer itself, and those that speak for a host or to one.
 const UNSAFE: &[&str] = &["gpu", "renderer", "headless"];
-/// Files beside `gpu` and `headless` that may record barriers: the frame, and the one pass that has steps
-/// of its own.
+/// Files beside `gpu` and `headless` that may record barriers: the frame, the records of its stages, and the one pass
+/// that has steps of its own.
 const BARRIERS: &[&str] = &[
     "src/frame.rs",
-    "src/frame/bands.rs",
-    "src/frame/blister.rs",
-    "src/frame/coverage.rs",
-    "src/frame/drawn.rs",
-    "src/frame/edit.rs",
-    "src/frame/heal.rs",
-    "src/frame/hidden.rs",
-    "src/frame/kept.rs",
-    "src/frame/layers.rs",
-    "src/frame/resolved.rs",
-    "src/frame/rival.rs",
-    "src/frame/samples.rs",
-    "src/frame/solids.rs",
-    "src/frame/sun.rs",
-    "src/frame/table.rs",
-    "src/passes/scan.rs",
+    "src/frame/reuse.rs",
+    "src/frame/antialiasing/samples.rs",
+    "src/frame/antialiasing/smooth_trims.rs",
+    "src/frame/baselines/mod.rs",
+    "src/frame/common/mod.rs",
+    "src/frame/common/scan.rs",
+    "src/frame/gaps/mod.rs",
+    "src/frame/occlusion/mod.rs",
+    "src/frame/shading/mod.rs",
+    "src/frame/shadows/mod.rs",
+    "src/frame/solids/mod.rs",
+    "src/frame/solids/bands.rs",
+    "src/frame/solids/operands.rs",
+    "src/frame/solids/peel.rs",
+    "src/frame/solids/tiles.rs",
+    "src/frame/tessellation/mod.rs",
+    "src/frame/transparency/mod.rs",
+    "src/frame/trim/edit.rs",
+    "src/frame/trim/table.rs",
+    "src/frame/visibility/mod.rs",
+];
+/// Files of a stage's folder that are neither a pass nor a record.
+const NO_PASSES: &[&str] = &[
+    "src/frame/antialiasing/mod.rs",
+    "src/frame/common/room.rs",
+    "src/frame/solids/buffers.rs",
+    "src/frame/solids/lists.rs",
+    "src/frame/tessellation/divide.rs",
+    "src/frame/trim/mod.rs",
 ];
 /// What a library leaves to its host.
 const HOSTS: &[&str] =

@@ -7,10 +7,10 @@
 
 use super::constants::draw_vertices;
 use super::{Loaded, RenderError, Renderer, Retired, asked};
-use crate::capacities::{Capacities, Counts};
 use crate::frame::Passes;
+use crate::frame::capacities::{Capacities, Counts};
+use crate::frame::shading::resolve;
 use crate::model::{LoopAt, Model, TrimLoop};
-use crate::passes::resolve;
 use crate::picture::{SceneSettings, TakenWay, TrimWay};
 use crate::scene::{Cut, SceneData, UndrawnSolid};
 

@@ -14,7 +14,7 @@ use super::trimmed::Trimmed;
 use super::way::taken;
 use crate::abi;
 use crate::model::{Bounds, Instance, Items, Lone, Model, Part, SolidError};
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 use crate::picture::Rival;
 use crate::picture::{Highlight, Samples, SceneSettings, TakenWay};
 use glam::{DAffine3, DMat3, DVec3};
@@ -31,8 +31,8 @@ pub(crate) enum Division {
     /// Bounds on their derivatives.
     #[default]
     Bound,
-    /// Slefes, and the table that the pass reads: `rivals::slefe::words`.
-    #[cfg(feature = "rivals")]
+    /// Slefes, and the table that the pass reads: `baselines::slefe::words`.
+    #[cfg(feature = "baselines")]
     Slefe(Vec<u32>),
 }
 
@@ -76,11 +76,11 @@ pub(crate) struct SceneData {
     /// What edits of loops need, where they may come.
     pub edit: Option<EditScene>,
     /// Of the scene's faces, where they are bisected.
-    #[cfg(feature = "rivals")]
-    pub bisect: crate::rivals::bisect::Bisect,
+    #[cfg(feature = "baselines")]
+    pub bisect: crate::baselines::bisect::Bisect,
     pub division: Division,
     /// Patches are also drawn without a trim test.
-    #[cfg(feature = "rivals")]
+    #[cfg(feature = "baselines")]
     pub untested: bool,
     /// How faces would be trimmed.
     way: Option<TakenWay>,
@@ -127,7 +127,7 @@ impl SceneData {
     }
 
     /// All patches as they are.
-    #[cfg(any(test, feature = "rivals"))]
+    #[cfg(any(test, feature = "baselines"))]
     pub(crate) fn uncut(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
         Self::of(model, model, settings, |_, _| f64::INFINITY)
     }
@@ -191,11 +191,11 @@ impl SceneData {
             edit,
             ..Self::default()
         };
-        #[cfg(feature = "rivals")]
+        #[cfg(feature = "baselines")]
         {
             data.untested = settings.untested;
             if let Some(segments) = settings.slefe_segments {
-                data.division = Division::Slefe(crate::rivals::slefe::words(segments));
+                data.division = Division::Slefe(crate::baselines::slefe::words(segments));
             }
         }
         // cut open, a part has no inside
@@ -233,7 +233,7 @@ impl SceneData {
             if data.link(first) {
                 data.push_cones(first, &normals, 0.5 * bounds[nth].diagonal());
             }
-            #[cfg(feature = "rivals")]
+            #[cfg(feature = "baselines")]
             if let TakenWay::Rival(Rival::Bisect { steps, sorted }) = way {
                 placed.part.faces.iter().for_each(|f| data.bisect.push(f, steps, sorted));
             }

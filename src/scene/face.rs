@@ -11,7 +11,7 @@ use super::flatten::flattened;
 use crate::abi;
 use crate::abi::Side;
 use crate::model::{Face, SurfaceKind, TrimLoop};
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 use crate::picture::Rival;
 use crate::picture::TakenWay;
 use crate::spline::{Bezier, Control, Patch, PatchGrid, SurfacePatch};
@@ -355,7 +355,7 @@ fn needs_curves(way: TakenWay) -> bool {
     match way {
         TakenWay::Table => true,
         TakenWay::Exact => false,
-        #[cfg(feature = "rivals")]
+        #[cfg(feature = "baselines")]
         TakenWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
     }
 }

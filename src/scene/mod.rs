@@ -42,12 +42,12 @@ pub use edit::EditError;
 pub(crate) use edit::{EditTarget, Write};
 #[cfg(test)]
 pub(crate) use exact::ExactData;
-#[cfg(any(test, feature = "rivals"))]
+#[cfg(any(test, feature = "baselines"))]
 pub(crate) use flatten::{Cuts, flattened};
 pub use solids::UndrawnSolid;
 pub(crate) use solids::{Asked, Blister, SolidData};
 pub(crate) use trimmed::TableView;
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 pub(crate) use upload::RivalScene;
 pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, TableScene, Trims};
 pub(crate) use view::{focal_and_slant, seen_by, view};

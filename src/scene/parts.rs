@@ -115,7 +115,7 @@ mod tests {
 
     fn bracket() -> Model {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/bracket.step");
-        crate::import::open(&path).unwrap().model
+        selvedge_io::import::open(&path).unwrap().model
     }
 
     /// The bracket, a shorter one, and both once more with other numbers and colours.

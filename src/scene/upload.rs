@@ -1,12 +1,12 @@
 //! The scene's persistent buffers: only those that its model needs.
 
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 use super::Division;
 use super::solids::Surface;
 use super::{Blister, SceneData, SolidData};
 use crate::bindings::{Placed, Primitives};
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texel, Texels, Uploads};
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 use crate::picture::Rival;
 use crate::picture::TakenWay;
 use ash::vk;
@@ -29,7 +29,7 @@ pub(crate) struct Scene {
     pub instances: Texels,
     pub items: Texels,
     /// What divides patches in place of the bound; `None` where that does.
-    #[cfg(feature = "rivals")]
+    #[cfg(feature = "baselines")]
     pub slefes: Option<Buffer>,
     /// What trimming needs; `None` when no patch is trimmed.
     pub trims: Option<Trims>,
@@ -102,12 +102,12 @@ pub(crate) struct MeshBuffers {
 pub(crate) enum Trims {
     Table(Box<TableScene>),
     Exact(Box<ExactScene>),
-    #[cfg(feature = "rivals")]
+    #[cfg(feature = "baselines")]
     Rival(Box<RivalScene>),
 }
 
 /// What a way to compare with needs.
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 pub(crate) enum RivalScene {
     Untrimmed,
     /// Faces, bands, cells, lists, pieces, points.
@@ -189,7 +189,7 @@ impl Scene {
             face_instances: read_both(&mut uploads, cmd, "face instances", &data.face_instances, Texel::U32x4)?,
             instances: read_both(&mut uploads, cmd, "instances", &data.instances, Texel::U32x4)?,
             items: read_both(&mut uploads, cmd, "items", &data.items, Texel::Words)?,
-            #[cfg(feature = "rivals")]
+            #[cfg(feature = "baselines")]
             slefes: match &data.division {
                 Division::Bound => None,
                 Division::Slefe(table) => Some(persistent(&mut uploads, cmd, "slefes", table)?),
@@ -197,7 +197,7 @@ impl Scene {
             trims: match data.trim_way() {
                 None => None,
                 Some(TakenWay::Table) => Some(Trims::Table(Box::new(table_scene(&mut uploads, cmd, data)?))),
-                #[cfg(feature = "rivals")]
+                #[cfg(feature = "baselines")]
                 Some(TakenWay::Rival(rival)) => {
                     Some(Trims::Rival(Box::new(rival_scene(&mut uploads, cmd, data, rival)?)))
                 }
@@ -293,7 +293,7 @@ fn table_scene(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SceneData) -> R
     })
 }
 
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 fn rival_scene(
     uploads: &mut Uploads,
     cmd: &Commands<'_>,

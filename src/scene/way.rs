@@ -41,7 +41,7 @@ pub(super) fn taken(model: &Model, settings: SceneSettings) -> TakenWay {
     match settings.trim {
         TrimWay::Table => TakenWay::Table,
         TrimWay::Exact => TakenWay::Exact,
-        #[cfg(feature = "rivals")]
+        #[cfg(feature = "baselines")]
         TrimWay::Rival(rival) => TakenWay::Rival(rival),
         TrimWay::Auto if settings.smooth_trims || !suits_table(model) => TakenWay::Exact,
         TrimWay::Auto => TakenWay::Table,
@@ -107,7 +107,7 @@ mod tests {
 
     fn bracket() -> Model {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/bracket.step");
-        crate::import::open(&path).unwrap().model
+        selvedge_io::import::open(&path).unwrap().model
     }
 
     /// Its bodies once more for each place, side by side.

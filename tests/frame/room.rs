@@ -10,9 +10,9 @@ use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings,
 /// Its buffers grow with the view.
 const BY_TABLE: SceneSettings = SceneSettings {
     trim: TrimWay::Table,
-    #[cfg(feature = "rivals")]
+    #[cfg(feature = "baselines")]
     slefe_segments: None,
-    #[cfg(feature = "rivals")]
+    #[cfg(feature = "baselines")]
     untested: false,
     solids: SolidWay::Events,
     editable: false,

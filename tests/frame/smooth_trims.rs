@@ -21,9 +21,9 @@ const SMOOTH: SceneSettings = SceneSettings { smooth_trims: true, ..plain() };
 const fn plain() -> SceneSettings {
     SceneSettings {
         trim: TrimWay::Exact,
-        #[cfg(feature = "rivals")]
+        #[cfg(feature = "baselines")]
         slefe_segments: None,
-        #[cfg(feature = "rivals")]
+        #[cfg(feature = "baselines")]
         untested: false,
         solids: selvedge::picture::SolidWay::Events,
         editable: false,

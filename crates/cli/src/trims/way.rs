@@ -82,7 +82,7 @@ impl Contender {
     pub fn usual(way: Way) -> Self {
         match way {
             Way::Own(way) => Self::Own { way, tolerance_px: 0.5 },
-            Way::Bisect(sorted) => Self::Bisect { steps: selvedge::rivals::bisect::STEPS, sorted },
+            Way::Bisect(sorted) => Self::Bisect { steps: selvedge::baselines::bisect::STEPS, sorted },
             Way::Texture => Self::Texture { eighths: 16 },
             Way::Pretessellated => Self::Pretessellated { deflection: 1e-3 },
         }

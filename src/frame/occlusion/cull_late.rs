@@ -1,0 +1,84 @@
+//! Pass `cull_late`: which patches lie behind what has been drawn, wherever they could be seen.
+//!
+//! ```text
+//!              lies behind                       does not
+//!   drawn      left out of the next frame        stays
+//!   hidden     stays hidden                      drawn now
+//! ```
+//!
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `points`, `items`, `farthest`, `outside`.
+//! Writes: `taus`, `hidden`, `counters`. Twin: `src/twin/occlusion.rs`.
+
+use crate::bindings::with_constants;
+use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
+use crate::shaders;
+
+/// Threads of a workgroup, as in the shader.
+const GROUP: u32 = 64;
+/// `constant_id` of `SCENE_HAS_RATIONAL`.
+const SCENE_HAS_RATIONAL: u32 = 0;
+
+/// The pass.
+pub(crate) struct CullLate {
+    pipeline: Pipeline,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub views: &'a Buffer,
+    pub instances: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub patches: &'a Buffer,
+    pub points: &'a Texels,
+    /// Face instance of each item.
+    pub items: &'a Buffer,
+    /// Of squares, then of tiles, then of blocks.
+    pub farthest: &'a Buffer,
+    pub taus: &'a Buffer,
+    pub hidden: &'a Buffer,
+    /// Of each patch: where nothing of its face is.
+    pub outside: &'a Buffer,
+    /// `hidden`.
+    pub counters: &'a Buffer,
+}
+
+impl CullLate {
+    pub(crate) fn new(device: &Device, rational: bool) -> Result<Self, GpuError> {
+        let mut bindings = with_constants(13);
+        bindings[6] = Binding::Texels;
+        let pipeline = Pipeline::compute(
+            device,
+            &ComputeInfo {
+                name: "cull late",
+                spirv: shaders::CULL_LATE_COMP,
+                bindings: &bindings,
+                push_bytes: 0,
+                constants: &[(SCENE_HAS_RATIONAL, u32::from(rational))],
+            },
+        )?;
+        Ok(Self { pipeline })
+    }
+
+    /// One thread for each of `items`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+        let resources = [
+            b.frame.into(),
+            b.views.into(),
+            b.instances.into(),
+            b.face_instances.into(),
+            b.faces.into(),
+            b.patches.into(),
+            b.points.into(),
+            b.items.into(),
+            b.farthest.into(),
+            b.taus.into(),
+            b.hidden.into(),
+            b.outside.into(),
+            b.counters.into(),
+        ];
+        cmd.bind(&self.pipeline, &resources, &[]);
+        cmd.dispatch(items.div_ceil(GROUP));
+    }
+}
