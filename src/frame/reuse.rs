@@ -1,4 +1,4 @@
-//! The frame's part for what stays from frame to frame: what each pixel sees, and the trim table.
+//! What stays from frame to frame: what each pixel sees, and the trim table.
 //!
 //! ```text
 //!   a new view, an edit, new buffers   ──▶ reset ─▶ trim table ─▶ tessellation ─▶ mesh … heal ─▶ resolve … layers
@@ -21,9 +21,9 @@
 //! Counters begin as they were after what is kept: counts that go on, clamps among them, are those of a whole frame, and
 //! what had no room is told again by every frame that keeps it.
 
+use super::trim::table::Table;
 use super::{COPIED, Frame};
 use crate::abi::Counters;
-use crate::frame::buffers::TableBuffers;
 use crate::gpu::{Access, Buffer, Commands, barrier};
 
 /// Who touches counters before and after.
@@ -34,16 +34,16 @@ fn counted() -> Access {
 impl Frame<'_> {
     /// Records what this view is made of, for frames to come; or takes up what the frame before left.
     pub(super) fn unless_seen(&self, cmd: &Commands<'_>, record: impl FnOnce()) {
-        self.unless_kept(cmd, (self.keeps, &self.buffers.kept_counters), record);
+        self.unless_kept(cmd, (self.keeps, &self.stages.common.kept_counters), record);
     }
 
     /// The same of the trim table, at the beginning of a view: nothing has been counted yet.
-    pub(super) fn unless_made(&self, cmd: &Commands<'_>, table: &TableBuffers, record: impl FnOnce()) {
+    pub(super) fn unless_made(&self, cmd: &Commands<'_>, table: &Table, record: impl FnOnce()) {
         self.unless_kept(cmd, (self.keeps_table, &table.counters), record);
     }
 
     fn unless_kept(&self, cmd: &Commands<'_>, (keeps, kept): (bool, &Buffer), record: impl FnOnce()) {
-        let counters = &self.buffers.counters;
+        let counters = &self.stages.common.counters;
         let bytes = size_of::<Counters>() as u64;
         if keeps {
             barrier::buffers(cmd, &[(counters, counted(), Access::TRANSFER_WRITE)]);

@@ -8,7 +8,8 @@
 use super::constants::draw_vertices;
 use super::{Loaded, RenderError, Renderer, Retired, asked};
 use crate::frame::Passes;
-use crate::frame::capacities::{Capacities, Counts};
+use crate::frame::capacities::Capacities;
+use crate::frame::counts::Counts;
 use crate::frame::shading::resolve;
 use crate::model::{LoopAt, Model, TrimLoop};
 use crate::picture::{SceneSettings, TakenWay, TrimWay};
@@ -108,7 +109,7 @@ impl Renderer {
             capacities: Capacities::first(counts).drawn_by(counts, draw_vertices(&self.device)),
             passes,
             scene: None,
-            buffers: None,
+            stages: None,
             edits: Vec::new(),
             known: None,
             kept,

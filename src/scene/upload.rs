@@ -17,7 +17,7 @@ use std::ops::Range;
 pub(crate) struct Scene {
     pub patches: Texels,
     /// Where nothing of their faces is; `None` where they are not asked whether they lie behind others.
-    pub outside: Option<Buffer>,
+    outside: Option<Buffer>,
     /// Of the normals of each patch; `None` where no part is closed without trims.
     pub cones: Option<Buffer>,
     /// Homogeneous control points, and fine nets.
@@ -30,7 +30,7 @@ pub(crate) struct Scene {
     pub items: Texels,
     /// What divides patches in place of the bound; `None` where that does.
     #[cfg(feature = "baselines")]
-    pub slefes: Option<Buffer>,
+    slefes: Option<Buffer>,
     /// What trimming needs; `None` when no patch is trimmed.
     pub trims: Option<Trims>,
     /// Boolean solids; `None` when there are none.
@@ -158,6 +158,39 @@ impl Volume {
 }
 
 impl Scene {
+    /// Where nothing of each patch's face is.
+    ///
+    /// # Panics
+    /// In a scene without occlusion culling.
+    pub(crate) fn outside(&self) -> &Buffer {
+        self.outside.as_ref().expect("scenes with occlusion culling have it")
+    }
+
+    /// What divides patches in place of the bound.
+    ///
+    /// # Panics
+    /// In a scene that the bound divides.
+    #[cfg(feature = "baselines")]
+    pub(crate) fn slefes(&self) -> &Buffer {
+        self.slefes.as_ref().expect("scenes that slefes divide have them")
+    }
+
+    /// What the trim table is made of, in scenes that it trims.
+    pub(crate) fn table(&self) -> Option<&TableScene> {
+        if let Some(Trims::Table(trims)) = &self.trims { Some(trims) } else { None }
+    }
+
+    /// What the exact trim test reads, in scenes that it trims.
+    pub(crate) fn exact(&self) -> Option<&ExactScene> {
+        if let Some(Trims::Exact(trims)) = &self.trims { Some(trims) } else { None }
+    }
+
+    /// What a way to compare with needs, in scenes that it trims.
+    #[cfg(feature = "baselines")]
+    pub(crate) fn rival(&self) -> Option<&RivalScene> {
+        if let Some(Trims::Rival(trims)) = &self.trims { Some(trims) } else { None }
+    }
+
     /// Its patches, seen so.
     pub(crate) fn placed<'a>(&'a self, views: &'a Texels) -> Placed<'a> {
         Placed {

@@ -15,22 +15,25 @@
 //! than a thousandth. Boxes are looked for a pixel beyond the picture, of which borders take half, and `spread_px`
 //! around centres.
 
+use super::average;
 use crate::abi::Counters;
-use crate::frame::antialiasing::average;
-use crate::frame::shading::resolve;
-use crate::frame::{Drawing, Frame, shading};
+use crate::frame::Frame;
+use crate::frame::common::room::{DRAWN_AND_READ, Room};
+use crate::frame::shading::{self, resolve};
+use crate::frame::transparency::Drawing;
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, Texels, Timestamps, barrier};
 use crate::picture::Samples;
 use crate::scene::SceneData;
 use std::mem::offset_of;
+use std::sync::Arc;
 
 /// The passes of scenes whose pixels have several samples.
-pub(crate) struct SamplePasses {
+pub(crate) struct Passes {
     resolve: resolve::Resolve,
     average: average::Average,
 }
 
-impl SamplePasses {
+impl Passes {
     /// `None` when pixels have one sample.
     pub(crate) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<Self>, GpuError> {
         if data.samples == Samples::One {
@@ -44,6 +47,13 @@ impl SamplePasses {
         let resolve = resolve::Resolve::new(device, into, sums, shading::kinds(data))?;
         Ok(Some(Self { resolve, average: average::Average::new(device, formats.colour)? }))
     }
+}
+
+/// The stage.
+pub(crate) struct MoreSamples {
+    passes: Arc<Passes>,
+    /// The sum of the samples' colours.
+    sum: Image,
 }
 
 /// A view besides the pixels' centres, written by the host.
@@ -75,77 +85,84 @@ impl<'t> Scopes<'t> {
     }
 }
 
-impl Frame<'_> {
+impl MoreSamples {
+    pub(crate) fn new(room: &Room<'_>, passes: &Arc<Passes>) -> Result<Self, GpuError> {
+        let sum = room.image("sum of samples", average::SUM_FORMAT, DRAWN_AND_READ)?;
+        Ok(Self { passes: Arc::clone(passes), sum })
+    }
+
     /// Every sample, their mean, and what the centres see.
-    pub(crate) fn record_samples(&self, cmd: &Commands<'_>, times: &mut Timestamps, passes: &SamplePasses) {
-        let Some(sum) = &self.buffers.sum else { unreachable!("made with the passes") };
-        let Some((first, others)) = self.samples.split_first() else { unreachable!("written by the host") };
-        let keep = matches!(self.colour[0].load, Load::Keep);
+    pub(crate) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut Timestamps) {
+        let Self { passes, sum } = self;
         barrier::images(cmd, &[(sum, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE)]);
         let into = |load| [Attachment { image: sum, load }];
-        let cleared = into(Load::ColourF32([0.0; 4]));
-        let (constants, views) = (&first.constants, &first.views);
-        let sample = Frame { constants, views, colour: &cleared, ..*self };
-        sample.draw(cmd, &mut Scopes::of(times), (Some(&passes.resolve), Drawing::Sample), 0);
-        let added = into(Load::Keep);
+        let (cleared, added) = (into(Load::ColourF32([0.0; 4])), into(Load::Keep));
+        let by = (Some(&passes.resolve), Drawing::Sample);
+        let mut samples = frame.samples.iter();
+        if let Some(ViewBuffers { constants, views }) = samples.next() {
+            let first = Frame { constants, views, colour: &cleared, ..*frame };
+            draw(&first, cmd, &mut Scopes::of(times), by, 0);
+        }
         times.scope(cmd, "more samples", || {
-            for (nth, ViewBuffers { constants, views }) in (1..).zip(others) {
-                let sample = Frame { constants, views, colour: &added, ..*self };
-                sample.begin_again(cmd, sum);
-                sample.draw(cmd, &mut Scopes(None), (Some(&passes.resolve), Drawing::Sample), nth);
+            for (nth, ViewBuffers { constants, views }) in (1..).zip(samples) {
+                let sample = Frame { constants, views, colour: &added, ..*frame };
+                begin_again(&sample, cmd, sum);
+                draw(&sample, cmd, &mut Scopes(None), by, nth);
             }
         });
         barrier::images(cmd, &[(sum, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);
+        let keep = matches!(frame.colour[0].load, Load::Keep);
         let load = if keep { Load::Keep } else { Load::ColourF32([0.0; 4]) };
-        let colour = Attachment { load, ..self.colour[0] };
+        let colour = Attachment { load, ..frame.colour[0] };
         times.scope(cmd, "average", || {
-            passes.average.record(cmd, &average::Bindings { frame: self.constants, sum }, colour);
+            passes.average.record(cmd, &average::Bindings { frame: frame.constants, sum }, colour);
         });
-        if let Some(resolve) = &self.passes.resolve {
+        if let Some(resolve) = frame.stages.shading.resolve() {
             // the colour is there already
-            let mut colour = self.colour.to_vec();
+            let mut colour = frame.colour.to_vec();
             colour[0].load = Load::Keep;
-            let centre = Frame { colour: &colour, ..*self };
+            let centre = Frame { colour: &colour, ..*frame };
             times.scope(cmd, "centre sample", || {
-                centre.begin_again(cmd, self.colour[0].image);
-                centre.draw(cmd, &mut Scopes(None), (Some(resolve), Drawing::Beside), self.samples.len() as u64);
+                begin_again(&centre, cmd, frame.colour[0].image);
+                let nth = frame.samples.len() as u64;
+                draw(&centre, cmd, &mut Scopes(None), (Some(resolve), Drawing::Beside), nth);
             });
         }
     }
+}
 
-    /// What is seen, from the patches and the trim table, and resolved.
-    fn draw(
-        &self,
-        cmd: &Commands<'_>,
-        times: &mut Scopes<'_>,
-        (resolve, drawing): (Option<&resolve::Resolve>, Drawing),
-        nth: u64,
-    ) {
-        self.see(cmd, times);
-        self.show(cmd, times, (resolve, drawing), nth);
-    }
+/// What is seen, from the patches and the trim table, and resolved.
+fn draw(
+    frame: &Frame<'_>,
+    cmd: &Commands<'_>,
+    times: &mut Scopes<'_>,
+    by: (Option<&resolve::Resolve>, Drawing),
+    nth: u64,
+) {
+    frame.see(cmd, times);
+    frame.show(cmd, times, by, nth);
+}
 
-    /// Before the view is drawn once more, into `colour` again: what one drawing counts is cleared, what the patches
-    /// and the trim table are stays.
-    fn begin_again(&self, cmd: &Commands<'_>, colour: &Image) {
-        let counters = &self.buffers.counters;
-        self.wait(cmd);
-        let counted = [
-            offset_of!(Counters, doubts),
-            offset_of!(Counters, contacts),
-            offset_of!(Counters, overlaps),
-            offset_of!(Counters, tile_leaves),
-            offset_of!(Counters, fragments),
-            offset_of!(Counters, mended),
-            offset_of!(Counters, unpaired),
-        ];
-        for at in counted {
-            cmd.fill_word(counters, (at / size_of::<u32>()) as u64, 0);
-        }
-        let cleared = Access { layout: Access::COMPUTE_WRITE.layout, ..Access::TRANSFER_WRITE };
-        barrier::buffers(cmd, &[(counters, cleared, Access::COMPUTE_WRITE | Access::INDIRECT_READ)]);
-        let again = [(colour, Access::COLOUR_WRITE, Access::COLOUR_WRITE)];
-        let hidden = self.depth.map(|depth| (depth.image, Access::DEPTH_WRITE, Access::DEPTH_WRITE));
-        barrier::images(cmd, &again.into_iter().chain(hidden).collect::<Vec<_>>());
+/// Before the view is drawn once more, into `colour` again: what one drawing counts is cleared, what the patches
+/// and the trim table are stays.
+fn begin_again(frame: &Frame<'_>, cmd: &Commands<'_>, colour: &Image) {
+    let counters = &frame.stages.common.counters;
+    frame.wait(cmd);
+    let counted = [
+        offset_of!(Counters, doubts),
+        offset_of!(Counters, contacts),
+        offset_of!(Counters, overlaps),
+        offset_of!(Counters, tile_leaves),
+        offset_of!(Counters, fragments),
+        offset_of!(Counters, mended),
+        offset_of!(Counters, unpaired),
+    ];
+    for at in counted {
+        cmd.fill_word(counters, (at / size_of::<u32>()) as u64, 0);
     }
+    let cleared = Access { layout: Access::COMPUTE_WRITE.layout, ..Access::TRANSFER_WRITE };
+    barrier::buffers(cmd, &[(counters, cleared, Access::COMPUTE_WRITE | Access::INDIRECT_READ)]);
+    let again = [(colour, Access::COLOUR_WRITE, Access::COLOUR_WRITE)];
+    let hidden = frame.depth.map(|depth| (depth.image, Access::DEPTH_WRITE, Access::DEPTH_WRITE));
+    barrier::images(cmd, &again.into_iter().chain(hidden).collect::<Vec<_>>());
 }

@@ -1,4 +1,4 @@
-//! The frame's part for ways to trim that only benchmarks and tests use: see `src/baselines`.
+//! Ways to trim that only benchmarks and tests use: see `src/baselines`.
 //!
 //! ```text
 //!   cells ──density──▶ face speeds ──sizes──(scan)──▶ starts      textures only; the others have no pass
@@ -11,35 +11,35 @@
 pub(crate) mod slefe;
 pub(crate) mod texture;
 
-use super::antialiasing::samples::Scopes;
+use super::common::room::Room;
+use super::trim::density;
+use super::visibility::patches;
 use super::{Frame, WRITE_TO_READ, WRITE_TO_WRITE};
-use crate::frame::buffers::TextureBuffers;
-use crate::frame::trim::density;
-use crate::frame::visibility::patches;
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, barrier};
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, Texel, Texels, Timestamps, barrier};
 use crate::picture::Rival;
-use crate::scene::{RivalScene, SceneData, TableScene};
+use crate::scene::{RivalScene, Scene, SceneData, TableScene};
 use crate::shaders::{TRIM_BISECT, TRIM_TEXTURE, TRIM_UNTRIMMED, TrimTest};
+use std::sync::Arc;
 
 /// The passes of such a way.
-pub(super) enum RivalPasses {
+pub(crate) enum Passes {
     Untrimmed,
     Bisect,
-    Texture(Box<TexturePasses>),
+    Texture(Arc<TexturePasses>),
 }
 
 /// The passes of trim textures.
-pub(super) struct TexturePasses {
+pub(crate) struct TexturePasses {
     density: density::Density,
     texture: texture::BaselineTexture,
 }
 
-impl RivalPasses {
+impl Passes {
     pub(super) fn new(device: &Device, rival: Rival) -> Result<Self, GpuError> {
         Ok(match rival {
             Rival::Untrimmed => Self::Untrimmed,
             Rival::Bisect { .. } => Self::Bisect,
-            Rival::Texture { .. } => Self::Texture(Box::new(TexturePasses {
+            Rival::Texture { .. } => Self::Texture(Arc::new(TexturePasses {
                 density: density::Density::new(device, false)?,
                 texture: texture::BaselineTexture::new(device)?,
             })),
@@ -55,43 +55,59 @@ impl RivalPasses {
     }
 }
 
-/// What such a way works on.
-#[derive(Clone, Copy)]
-pub(super) struct RivalParts<'a> {
-    pub passes: &'a RivalPasses,
-    pub scene: &'a RivalScene,
-    pub buffers: Option<&'a TextureBuffers>,
+/// Such a way, with its buffers.
+pub(crate) enum Trim {
+    Untrimmed,
+    Bisect,
+    Texture(Box<Textures>),
 }
 
-/// What trim textures are made of and with.
-pub(super) struct TextureParts<'a> {
-    passes: &'a TexturePasses,
-    scene: &'a TableScene,
-    knob: &'a Buffer,
-    buffers: &'a TextureBuffers,
+/// Trim textures and what leads to them.
+pub(crate) struct Textures {
+    passes: Arc<TexturePasses>,
+    strip_heights: Buffer,
+    face_speeds: Buffer,
+    words: Buffer,
+    starts: Buffer,
+    places: Texels,
+    /// As large as the capacity of intercepts.
+    texels: Texels,
 }
 
-impl<'a> RivalParts<'a> {
+impl Trim {
+    pub(super) fn new(room: &Room<'_>, passes: &Passes) -> Result<Self, GpuError> {
+        Ok(match passes {
+            Passes::Untrimmed => Self::Untrimmed,
+            Passes::Bisect => Self::Bisect,
+            Passes::Texture(passes) => Self::Texture(Box::new(Textures::new(room, passes)?)),
+        })
+    }
+
+    /// Clears what the passes count.
+    pub(super) fn begin(&self, cmd: &Commands<'_>) {
+        if let Self::Texture(textures) = self {
+            textures.counted().into_iter().for_each(|buffer| cmd.fill(buffer, 0));
+        }
+    }
+
+    /// Makes the textures, where there are some.
+    pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut Timestamps) {
+        if let (Self::Texture(textures), Some(RivalScene::Texture(scene, knob))) = (self, frame.scene.rival()) {
+            times.scope(cmd, "trim texture", || textures.record(frame, cmd, (scene, knob)));
+        }
+    }
+
     /// What the test reads, in its order.
-    pub(super) fn test(&self) -> Vec<Resource<'a>> {
-        match (self.scene, self.buffers) {
-            (RivalScene::Bisect(buffers), _) => buffers.iter().map(Resource::from).collect(),
-            (RivalScene::Texture(..), Some(b)) => vec![Resource::from(&b.places), Resource::from(&b.texels)],
+    pub(super) fn test<'a>(&'a self, scene: &'a Scene) -> Vec<Resource<'a>> {
+        match (self, scene.rival()) {
+            (Self::Texture(t), _) => vec![Resource::from(&t.places), Resource::from(&t.texels)],
+            (Self::Bisect, Some(RivalScene::Bisect(buffers))) => buffers.iter().map(Resource::from).collect(),
             _ => Vec::new(),
         }
     }
-
-    pub(super) fn texture(self) -> Option<TextureParts<'a>> {
-        match (self.passes, self.scene, self.buffers) {
-            (RivalPasses::Texture(passes), RivalScene::Texture(scene, knob), Some(buffers)) => {
-                Some(TextureParts { passes, scene, knob, buffers })
-            }
-            _ => None,
-        }
-    }
 }
 
-/// Pass `visibility` without a test; `None` where nobody asked for it, or there is none to leave out.
+/// Pass `visibility` without a test; `None` where it is not asked for, or there is none to leave out.
 pub(super) fn untested(
     device: &Device,
     data: &SceneData,
@@ -103,47 +119,54 @@ pub(super) fn untested(
     made.then(|| patches::Visibility::new(device, kinds)).transpose()
 }
 
-impl Frame<'_> {
-    /// Draws the patches without a test, where that is asked for.
-    pub(super) fn untested(&self, cmd: &Commands<'_>, times: &mut Scopes<'_>) {
-        let Some(pass) = &self.passes.untested else { return };
-        times.scope(cmd, "visibility untested", || self.patches(cmd, pass, &[], false));
-        let b = self.buffers;
-        let (colour, depth) = (Access::COLOUR_WRITE, Access::DEPTH_WRITE);
-        barrier::images(cmd, &[(&b.visibility, colour, colour), (&b.depth, depth, depth)]);
+impl Textures {
+    fn new(room: &Room<'_>, passes: &Arc<TexturePasses>) -> Result<Self, GpuError> {
+        let counts = room.counts;
+        Ok(Self {
+            passes: Arc::clone(passes),
+            strip_heights: room.words("trim strip heights", counts.bays)?,
+            face_speeds: room.words("trim face speeds", 2 * counts.face_instances)?,
+            words: room.words("trim texture sizes", counts.face_instances)?,
+            starts: room.words("trim texture starts", counts.face_instances + 1)?,
+            places: room.texels::<[u32; 4]>("trim texture places", counts.bays, Texel::U32x4)?,
+            texels: room.texels::<u32>("trim texels", room.capacities.intercepts, Texel::Words)?,
+        })
     }
-}
 
-impl TextureParts<'_> {
+    /// Zero when the frame begins.
+    fn counted(&self) -> [&Buffer; 3] {
+        [&self.strip_heights, &self.face_speeds, &self.texels]
+    }
+
     /// Records the passes; what the trim test reads is then ready for it.
-    pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
-        let (s, b, t) = (frame.scene, frame.buffers, self.buffers);
+    fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, (scene, knob): (&TableScene, &Buffer)) {
+        let (s, b, t, counts) = (frame.scene, &frame.stages.common, self, frame.counts);
         let (w, r) = WRITE_TO_READ;
         let (w1, w2) = WRITE_TO_WRITE;
         let cleared = (Access::TRANSFER_WRITE, Access::COMPUTE_WRITE);
-        barrier::buffers(cmd, &t.cleared().map(|buffer| (buffer, cleared.0, cleared.1)));
+        barrier::buffers(cmd, &t.counted().map(|buffer| (buffer, cleared.0, cleared.1)));
         let density = density::Bindings {
             frame: frame.constants,
             views: frame.views,
             instances: &s.instances,
             face_instances: &s.face_instances,
             faces: &s.faces,
-            cells: &self.scene.cells,
-            cell_items: &self.scene.cell_items,
+            cells: &scene.cells,
+            cell_items: &scene.cell_items,
             strip_heights: &t.strip_heights,
             face_speeds: &t.face_speeds,
             seen_bays: None,
         };
-        self.passes.density.record(cmd, &density, b.counts.cells);
+        self.passes.density.record(cmd, &density, counts.cells);
         barrier::buffers(cmd, &[(&t.face_speeds, w, r), (&b.counters, w1, w2)]);
         let bindings = texture::Bindings {
-            knob: self.knob,
+            knob,
             frame: frame.constants,
             face_instances: &s.face_instances,
             faces: &s.faces,
-            curves: &self.scene.curves,
-            curve_points: &self.scene.curve_points,
-            curve_items: &self.scene.curve_items,
+            curves: &scene.curves,
+            curve_points: &scene.curve_points,
+            curve_items: &scene.curve_items,
             face_speeds: &t.face_speeds,
             words: &t.words,
             starts: &t.starts,
@@ -151,12 +174,12 @@ impl TextureParts<'_> {
             texels: &t.texels,
             counters: &b.counters,
         };
-        let (p, placed) = (&self.passes.texture, b.counts.face_instances);
+        let (p, placed) = (&self.passes.texture, counts.face_instances);
         p.sizes(cmd, &bindings, placed);
         barrier::buffers(cmd, &[(&t.words, w, r), (&b.counters, w1, w2)]);
-        frame.scan(cmd, &t.words, &t.starts, placed);
+        b.scan(cmd, &t.words, &t.starts, placed);
         barrier::buffers(cmd, &[(&t.starts, w, r)]);
-        p.flip(cmd, &bindings, b.counts.curves);
+        p.flip(cmd, &bindings, counts.curves);
         barrier::buffers(cmd, &[(&t.texels, w1, w2), (&b.counters, w, r)]);
         p.fill(cmd, &bindings, placed);
         let tested = Access::FRAGMENT_READ | Access::COMPUTE_READ;

@@ -50,6 +50,9 @@ const BEHIND: u32 = 18;
 /// Format of what is behind layers, and of what pass `coverage` mixes: linear colour and depth.
 pub(crate) const BEHIND_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
 
+/// Depth in `behind` where nothing is, as in `resolved.glsl`.
+pub(crate) const UNSEEN: f32 = 3.0e38;
+
 /// The pass: a pipeline for each kind of thing that the scene has.
 pub(crate) struct Resolve {
     /// Samples that see nothing, where those of a pixel are added up: one cleared to it would have it under what it sees.

@@ -1,4 +1,4 @@
-//! The frame's part for the sun: what passes that light points read of it.
+//! The sun: what passes that light points read of it.
 
 use super::{Frame, WRITE_TO_READ};
 use crate::bindings::{Primitives, SUN_BINDINGS};
@@ -20,12 +20,12 @@ impl<'a> Frame<'a> {
         let facets = of(|s| s.facets.as_ref(), quads);
         let parts = self.sun_parts.unwrap_or(points);
         let nobody = Primitives { leaves: sun, leaf_surfaces: words, surfaces: points, surface_places: points };
-        let solids = self.scene.solids.as_ref().zip(self.centres);
-        let (casters, middles) =
-            solids.map_or((nobody, sun), |(s, centres)| (s.primitives(centres.surfaces), centres.leaves));
+        let (casters, middles) = self
+            .solids()
+            .map_or((nobody, sun), |solids| (solids.scene.primitives(solids.centres.surfaces), solids.centres.leaves));
         let stored = [sun, tiles, leaves].map(Resource::from);
         let fetched = [triangles, lists, facets, parts].map(Resource::from);
-        let last = [middles, &self.buffers.counters].map(Resource::from);
+        let last = [middles, &self.stages.common.counters].map(Resource::from);
         let mut all = stored.into_iter().chain(fetched).chain(casters.resources()).chain(last);
         Some(std::array::from_fn(|_| all.next().expect("as many as SUN_BINDINGS")))
     }
@@ -34,7 +34,7 @@ impl<'a> Frame<'a> {
     pub(super) fn under_sun(&self, cmd: &Commands<'_>, draw: impl FnOnce(Option<&[Resource<'_>; SUN_BINDINGS.len()]>)) {
         let bindings = self.sun_bindings();
         let counted = WRITE_TO_READ.0 | Access::INDIRECT_READ;
-        let counters = &self.buffers.counters;
+        let counters = &self.stages.common.counters;
         if bindings.is_some() {
             barrier::buffers(cmd, &[(counters, counted, Access::FRAGMENT_WRITE)]);
         }

@@ -1,4 +1,4 @@
-//! The frame's part for bands of rows of tiles: whose lists are made at a time.
+//! Bands of rows of tiles: whose lists are made at a time.
 //!
 //! ```text
 //!   one band     lists ─▶ solid_events                    …  resolve ─▶ solid_layers
@@ -6,10 +6,10 @@
 //!                lists ─▶ solid_events, rows 32 to 63                   lists ─▶ solid_layers, rows 32 to 63
 //! ```
 
-use super::SolidParts;
+use super::Solids;
 use crate::abi;
 use crate::frame::{Frame, WRITE_TO_READ};
-use crate::gpu::{Access, Commands, barrier};
+use crate::gpu::{Access, Buffer, Commands, barrier};
 use std::mem::offset_of;
 use std::ops::Range;
 
@@ -36,9 +36,9 @@ const CLEARED: Access = Access { layout: Access::COMPUTE_READ.layout, ..Access::
 
 impl Frame<'_> {
     /// From the top down.
-    pub(crate) fn bands(&self, parts: &SolidParts<'_>) -> impl Iterator<Item = Band> + use<> {
-        let height = self.buffers.visibility.size().1;
-        let each = parts.buffers.band_rows * abi::TILE;
+    pub(crate) fn bands(&self) -> impl Iterator<Item = Band> + use<> {
+        let height = self.stages.visibility.image.size().1;
+        let each = self.stages.solids.as_ref().map_or(height, |solids| solids.band_rows * abi::TILE);
         (0..height)
             .step_by(each as usize)
             .map(move |top| Band { rows: top..(top + each).min(height), is_whole: each >= height })
@@ -46,19 +46,21 @@ impl Frame<'_> {
 
     /// Its tiles, numbered through the picture.
     pub(crate) fn tiles_of(&self, band: &Band) -> Range<u32> {
-        let across = self.buffers.visibility.size().0.div_ceil(abi::TILE);
+        let across = self.stages.visibility.image.size().0.div_ceil(abi::TILE);
         across * (band.rows.start / abi::TILE)..across * band.rows.end.div_ceil(abi::TILE)
     }
 
     /// Tells the passes where the band is, and gives them the lists of the one before.
-    pub(crate) fn begin_band(&self, cmd: &Commands<'_>, parts: &SolidParts<'_>, band: &Band) {
+    pub(crate) fn begin_band(&self, cmd: &Commands<'_>, solids: &Solids, band: &Band) {
         if band.is_whole {
             return;
         }
         let w = WRITE_TO_READ.0;
-        let (tiles, fragments) = (&parts.buffers.tiles, &parts.buffers.fragments);
-        let lists = tiles.iter().flat_map(|t| [&t.tile_counts, &t.tile_starts, &t.tile_leaves, &t.tile_entries]);
-        let mut before: Vec<_> = lists.map(|list| (list, readers(), w)).collect();
+        let (tiles, fragments) = (solids.tiles(), solids.fragments());
+        let lists = tiles.into_iter();
+        let lists: Vec<&Buffer> =
+            lists.flat_map(|t| [&t.tile_counts, &t.tile_starts, &t.tile_leaves, &t.tile_entries]).collect();
+        let mut before: Vec<_> = lists.into_iter().map(|list| (list, readers(), w)).collect();
         before.push((self.constants, of_constants(), CLEARED));
         if let Some(f) = fragments {
             before.push((&f.counts, readers() | CLEARED, CLEARED));
@@ -73,7 +75,7 @@ impl Frame<'_> {
 
     /// Before the lists of all bands are made once more: what they count begins again.
     pub(crate) fn count_bands_again(&self, cmd: &Commands<'_>) {
-        let counters = &self.buffers.counters;
+        let counters = &self.stages.common.counters;
         let counted = Access::COMPUTE_WRITE | Access::INDIRECT_READ;
         barrier::buffers(cmd, &[(counters, counted, CLEARED)]);
         let sums = [

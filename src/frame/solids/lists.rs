@@ -13,8 +13,8 @@
 //! guess is by the mean of all rows, which the densest rows may exceed; the second is by the row with most, and holds.
 
 use crate::abi::{Fragment, TILE, TileLeaf};
-use crate::frame::capacities::{SMALLER, TooMany};
 use crate::frame::common::scan;
+use crate::frame::counts::{SMALLER, TooMany};
 use crate::gpu::Buffer;
 
 /// Rows of tiles in the only band.
@@ -174,7 +174,8 @@ impl Lists {
 mod tests {
     use super::*;
     use crate::abi::Counters;
-    use crate::frame::capacities::{Capacities, Counts};
+    use crate::frame::capacities::Capacities;
+    use crate::frame::counts::Counts;
 
     const LISTS: Lists =
         Lists { size: (160, 120), has_fragments: true, limits: Limits { range: 1 << 27, budget: 60_000 } };

@@ -1,4 +1,4 @@
-//! The frame's part for way `blister`: layer after layer, until no pixel needs another.
+//! Way `blister`: layer after layer, until no pixel needs another.
 //!
 //! ```text
 //!   a camera in doubt of being within:  layer = the near plane ─ask─▶ pixels outside are found
@@ -12,8 +12,8 @@
 //! recorded again.
 
 use super::SolidParts;
+use super::buffers::LayerImages;
 use crate::frame::Frame;
-use crate::frame::buffers::LayerImages;
 use crate::frame::solids::blister::{Bindings, Blister, Layer, MeshBindings, Peel};
 use crate::gpu::{Access, Attachment, Commands, Image, Load, barrier};
 use crate::scene::{self, Asked};
@@ -42,37 +42,37 @@ const DRAWN: Access = Access::COLOUR_WRITE;
 const READ: Access = Access::FRAGMENT_READ;
 const NOTHING: Load = Load::ColourU32([0; 4]);
 
-impl Frame<'_> {
+impl SolidParts<'_> {
     /// The faces of the solids, into the visibility image and depth.
-    pub(crate) fn blister(
+    pub(super) fn peel(
         &self,
+        frame: &Frame<'_>,
         cmd: &Commands<'_>,
-        solids: &SolidParts<'_>,
-        pass: &Blister,
+        (pass, images): (&Blister, &LayerImages),
         (colour, depth): (Attachment<'_>, Attachment<'_>),
     ) {
-        let Some(parts) = self.blister_parts(solids, pass) else { return };
-        let images = parts.images;
+        let Some(parts) = self.peeled(frame, pass, images) else { return };
         let tested = |image| (image, Access::DEPTH_WRITE.discarded(), Access::DEPTH_WRITE);
         barrier::images(cmd, &[tested(&images.depth), tested(&images.stencil)]);
-        let counters = &self.buffers.counters;
+        let counters = &frame.stages.common.counters;
         barrier::buffers(cmd, &[(counters, Access::COMPUTE_WRITE, Access::FRAGMENT_WRITE)]);
         let near = &images.layers[1];
-        clear(cmd, near, Load::ColourU32([1, self.near.depth.to_bits(), 0, 0]));
+        clear(cmd, near, Load::ColourU32([1, frame.near.depth.to_bits(), 0, 0]));
         clear(cmd, &images.found, NOTHING);
-        if self.near.may_cut {
+        if frame.near.may_cut {
             parts.ask(cmd, near, Search::Outside, 0);
-            self.search(cmd, &parts, near, Search::Outside);
-            self.search(cmd, &parts, &images.found, Search::Inside);
+            parts.search(frame, cmd, near, Search::Outside);
+            parts.search(frame, cmd, &images.found, Search::Inside);
         } else {
-            self.search(cmd, &parts, near, Search::Inside);
+            parts.search(frame, cmd, near, Search::Inside);
         }
         parts.pass.show(cmd, &parts.bindings, &images.found, (colour, depth));
         barrier::buffers(cmd, &[(counters, Access::FRAGMENT_WRITE, Access::COMPUTE_WRITE)]);
     }
 
-    fn blister_parts<'b>(&'b self, solids: &SolidParts<'b>, pass: &'b Blister) -> Option<Parts<'b>> {
-        let (s, t) = (solids.scene, solids.buffers);
+    /// `None` where the scene was made for another way.
+    fn peeled<'b>(&'b self, frame: &'b Frame<'_>, pass: &'b Blister, images: &'b LayerImages) -> Option<Parts<'b>> {
+        let s = self.scene;
         let (scene, order) = s.blister.as_ref()?;
         let mut shells: Vec<Vec<(u32, Range<u32>)>> = Vec::new();
         for (instance, mesh) in (0..).zip(&scene.meshes) {
@@ -81,49 +81,49 @@ impl Frame<'_> {
             shells[shell].push((instance, mesh.corners.clone()));
         }
         let bindings = Bindings {
-            frame: self.constants,
-            primitives: s.primitives(solids.centres.surfaces),
-            rects: &t.rects,
+            frame: frame.constants,
+            primitives: s.primitives(self.centres.surfaces),
+            rects: &self.stage.rect_buffer,
             order,
-            counters: &self.buffers.counters,
+            counters: &frame.stages.common.counters,
             meshes: s.shells.as_ref().map(|m| MeshBindings {
-                views: self.views,
+                views: frame.views,
                 meshes: &m.meshes,
                 triangles: &m.triangles,
                 positions: &m.positions,
                 planes: &m.planes,
             }),
-            tiles: t.tiles.as_ref().map(|t| (&t.tile_starts, &t.tile_leaves, &t.tile_entries)),
+            tiles: self.stage.tiles().map(|t| (&t.tile_starts, &t.tile_leaves, &t.tile_entries)),
         };
-        Some(Parts { pass, scene, bindings, images: t.layers.as_ref()?, shells })
-    }
-
-    /// Peels from the layer `start` on: for the inside, from where the search for the outside left `found`.
-    fn search(&self, cmd: &Commands<'_>, parts: &Parts<'_>, start: &Image, search: Search) {
-        let images = parts.images;
-        for k in 0..self.layers {
-            let [image, other] = if k % 2 == 0 { [0, 1] } else { [1, 0] }.map(|i| &images.layers[i]);
-            let before = if k == 0 { start } else { other };
-            let first = k == 0 && search == Search::Inside;
-            let covers = first && !self.near.may_cut && parts.scene.covered;
-            let again = first && self.near.may_cut;
-            parts.peel(cmd, Layer { before, image, found: &images.found }, search, (again, covers));
-            if again {
-                clear(cmd, &images.found, NOTHING);
-            }
-            parts.ask(cmd, image, search, k + 1);
-        }
-        // whoever waits still wants more layers than there are
-        let last = &images.layers[(self.layers as usize + 1) % 2];
-        let stencil = Attachment { image: &images.stencil, load: Load::Keep };
-        barrier::images(cmd, &[(&images.stencil, Access::DEPTH_WRITE, Access::DEPTH_WRITE)]);
-        cmd.rendering_stencil(last.size(), &[], stencil, || {
-            parts.pass.wait(cmd, &parts.bindings, last, self.layers + 1);
-        });
+        Some(Parts { pass, scene, bindings, images, shells })
     }
 }
 
 impl Parts<'_> {
+    /// Peels from the layer `start` on: for the inside, from where the search for the outside left `found`.
+    fn search(&self, frame: &Frame<'_>, cmd: &Commands<'_>, start: &Image, search: Search) {
+        let images = self.images;
+        for k in 0..frame.capacities.layers {
+            let [image, other] = if k % 2 == 0 { [0, 1] } else { [1, 0] }.map(|i| &images.layers[i]);
+            let before = if k == 0 { start } else { other };
+            let first = k == 0 && search == Search::Inside;
+            let covers = first && !frame.near.may_cut && self.scene.covered;
+            let again = first && frame.near.may_cut;
+            self.peel(cmd, Layer { before, image, found: &images.found }, search, (again, covers));
+            if again {
+                clear(cmd, &images.found, NOTHING);
+            }
+            self.ask(cmd, image, search, k + 1);
+        }
+        // whoever waits still wants more layers than there are
+        let last = &images.layers[(frame.capacities.layers as usize + 1) % 2];
+        let stencil = Attachment { image: &images.stencil, load: Load::Keep };
+        barrier::images(cmd, &[(&images.stencil, Access::DEPTH_WRITE, Access::DEPTH_WRITE)]);
+        cmd.rendering_stencil(last.size(), &[], stencil, || {
+            self.pass.wait(cmd, &self.bindings, last, frame.capacities.layers + 1);
+        });
+    }
+
     fn peel(&self, cmd: &Commands<'_>, layer: Layer<'_>, search: Search, (unlocks, covers): (bool, bool)) {
         let depth = &self.images.depth;
         barrier::images(

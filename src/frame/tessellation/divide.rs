@@ -5,18 +5,18 @@ use crate::frame::Frame;
 #[cfg(feature = "baselines")]
 use crate::frame::baselines::slefe;
 use crate::frame::tessellation::bound;
-use crate::gpu::{Commands, Device, GpuError};
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::scene::{Division, SceneData};
 
 /// The pass of a scene.
-pub(crate) enum DividePass {
+pub(super) enum DividePass {
     Bound(bound::Bound),
     #[cfg(feature = "baselines")]
     Slefe(slefe::BaselineSlefe),
 }
 
 impl DividePass {
-    pub(crate) fn new(device: &Device, data: &SceneData) -> Result<Self, GpuError> {
+    pub(super) fn new(device: &Device, data: &SceneData) -> Result<Self, GpuError> {
         let cones = !data.cones.is_empty();
         Ok(match data.division {
             Division::Bound => Self::Bound(bound::Bound::new(device, cones)?),
@@ -26,8 +26,8 @@ impl DividePass {
     }
 
     /// Writes `taus`, and counts clamps.
-    pub(crate) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
-        let (s, b) = (frame.scene, frame.buffers);
+    pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, taus: &Buffer) {
+        let s = frame.scene;
         let bounded = Bounded {
             frame: frame.constants,
             views: frame.views,
@@ -36,18 +36,17 @@ impl DividePass {
             faces: &s.faces,
             patches: &s.patches,
             items: &s.items,
-            taus: &b.taus,
-            counters: &b.counters,
+            taus,
+            counters: &frame.stages.common.counters,
             cones: s.cones.as_ref(),
             points: &s.points,
         };
         match self {
-            Self::Bound(pass) => pass.record(cmd, &bounded, b.counts.items),
+            Self::Bound(pass) => pass.record(cmd, &bounded, frame.counts.items),
             #[cfg(feature = "baselines")]
             Self::Slefe(pass) => {
-                let Some(slefes) = &s.slefes else { unreachable!("made with the pass") };
-                let bindings = slefe::Bindings { bounded, slefes };
-                pass.record(cmd, &bindings, b.counts.items);
+                let bindings = slefe::Bindings { bounded, slefes: s.slefes() };
+                pass.record(cmd, &bindings, frame.counts.items);
             }
         }
     }

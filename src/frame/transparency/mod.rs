@@ -1,4 +1,4 @@
-//! The frame's part for what is seen through, and for lengths within solids.
+//! What is seen through, and lengths within solids.
 //!
 //! ```text
 //!   resolve ──▶ behind ─┐
@@ -9,17 +9,20 @@
 
 pub(crate) mod solid_layers;
 
+use super::antialiasing::average;
+use super::common::room::{DRAWN_AND_READ, Room};
+use super::shading::resolve;
+use super::solids::SolidParts;
 use super::solids::bands::Band;
 use super::{Frame, WRITE_TO_READ};
-use crate::frame::antialiasing::average;
-use crate::frame::shading::resolve;
-use crate::frame::transparency::solid_layers::{Bindings, For, Kinds, SolidLayers};
-use crate::gpu::{Access, Attachment, Commands, Device, GpuError, Load, barrier};
+use crate::gpu::{Access, Attachment, Commands, Device, GpuError, Image, Load, barrier};
 use crate::picture::Samples;
 use crate::scene::SceneData;
+use solid_layers::{Bindings, For, Kinds, SolidLayers};
+use std::sync::Arc;
 
 /// The passes of scenes whose rays are followed through solids.
-pub(super) struct LayerPasses {
+pub(crate) struct Passes {
     /// Into the host's colour, or each of a pixel's samples.
     colour: Option<SolidLayers>,
     first: Option<SolidLayers>,
@@ -37,7 +40,7 @@ pub(super) enum Drawing {
     Beside,
 }
 
-impl LayerPasses {
+impl Passes {
     /// `None` when nothing is followed.
     pub(super) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<Self>, GpuError> {
         let Some(surfaces) = data.solids.kinds().filter(|_| data.solids.is_followed()) else { return Ok(None) };
@@ -65,93 +68,108 @@ impl LayerPasses {
             thickness: data.thickness.then(|| make(For::Thickness)).transpose()?,
         }))
     }
-
-    /// Something is drawn in layers, so that pass `resolve` draws what lies behind them.
-    pub(super) fn is_layered(&self) -> bool {
-        self.colour.is_some()
-    }
 }
 
-impl<'a> Frame<'a> {
+/// The stage.
+pub(crate) struct Transparency {
+    passes: Arc<Passes>,
+    /// What is seen behind layers: linear colour and depth.
+    pub behind: Image,
+}
+
+impl Transparency {
+    pub(super) fn new(room: &Room<'_>, passes: &Arc<Passes>) -> Result<Self, GpuError> {
+        let behind = room.image("behind layers", resolve::BEHIND_FORMAT, DRAWN_AND_READ)?;
+        Ok(Self { passes: Arc::clone(passes), behind })
+    }
+
+    /// What pass `resolve` draws into where something is drawn in layers before it.
+    pub(super) fn behind_layers(&self) -> Option<&Image> {
+        self.passes.colour.as_ref().map(|_| &self.behind)
+    }
+
     /// Layers over what pass `resolve` drew, and lengths within solids. Where lists are those of one band, they are
     /// made again.
-    pub(super) fn layers(&self, cmd: &Commands<'_>, passes: &LayerPasses, drawing: Drawing) {
-        let (Some(parts), Some(behind)) = (self.solids(), &self.buffers.behind) else {
-            unreachable!("made with the passes")
-        };
-        barrier::images(cmd, &[(behind, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);
+    pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, solids: &SolidParts<'_>, drawing: Drawing) {
+        barrier::images(cmd, &[(&self.behind, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);
         let mut counted_again = false;
-        for band in self.bands(&parts) {
+        for band in frame.bands() {
             if !band.is_whole {
                 if !std::mem::replace(&mut counted_again, true) {
-                    self.count_bands_again(cmd);
+                    frame.count_bands_again(cmd);
                 }
-                self.solid_lists(cmd, &parts, &band);
+                solids.lists(frame, cmd, &band);
             }
-            self.layers_of(cmd, passes, drawing, &band);
+            self.band(frame, cmd, (solids, drawing), &band);
         }
     }
 
-    fn layers_of(&self, cmd: &Commands<'_>, passes: &LayerPasses, drawing: Drawing, band: &Band) {
-        let (b, s) = (self.buffers, self.scene);
-        let (Some(parts), Some(behind)) = (self.solids(), &b.behind) else { unreachable!("made with the passes") };
-        let (solid, solids, centres) = parts.followed();
-        let Some(tiles) = &solids.tiles else { unreachable!("made with the passes") };
+    fn band(&self, frame: &Frame<'_>, cmd: &Commands<'_>, (solids, drawing): (&SolidParts<'_>, Drawing), band: &Band) {
+        let (c, s, passes) = (&frame.stages.common, frame.scene, &self.passes);
+        // a ray is followed where it is known what its tile sees
+        let Some(tiles) = solids.stage.tiles() else { return };
         let bindings = Bindings {
-            frame: self.constants,
-            primitives: solid.primitives(centres.surfaces),
-            leaf_centres: centres.leaves,
+            frame: frame.constants,
+            primitives: solids.scene.primitives(solids.centres.surfaces),
+            leaf_centres: solids.centres.leaves,
             tile_starts: &tiles.tile_starts,
             tile_leaves: &tiles.tile_leaves,
-            fragments: solids.fragments.as_ref().map(|f| (&f.starts, &f.counts, &f.all)),
-            counters: &b.counters,
-            behind,
-            views: self.views,
+            fragments: solids.stage.fragments().map(|f| (&f.starts, &f.counts, &f.all)),
+            counters: &c.counters,
+            behind: &self.behind,
+            views: frame.views,
             face_instances: &s.face_instances,
             faces: &s.faces,
             patches: &s.patches,
             items: &s.items,
             points: &s.points,
             instances: &s.instances,
-            sun: self.sun_bindings(),
-            shells: solid.shells.as_ref().map(|m| [&m.meshes, &m.triangles, &m.positions, &m.planes]),
+            sun: frame.sun_bindings(),
+            shells: solids.scene.shells.as_ref().map(|m| [&m.meshes, &m.triangles, &m.positions, &m.planes]),
         };
-        let (w, _) = WRITE_TO_READ;
+        let w = WRITE_TO_READ.0;
         let rows = || band.rows.clone();
-        barrier::buffers(cmd, &[(&b.counters, w | Access::INDIRECT_READ, Access::FRAGMENT_WRITE)]);
-        let kept = |a: &Attachment<'a>| Attachment { load: Load::Keep, ..*a };
-        let depth = self.depth.as_ref().map(kept);
+        barrier::buffers(cmd, &[(&c.counters, w | Access::INDIRECT_READ, Access::FRAGMENT_WRITE)]);
+        let depth = frame.depth.as_ref().map(kept);
         if let Some(pass) = passes.colour.as_ref().filter(|_| drawing != Drawing::Beside) {
-            self.drawn_again(cmd);
+            drawn_again(frame, cmd);
             // colours are laid over what is there
-            let load = match self.colour[0].load {
+            let load = match frame.colour[0].load {
                 Load::Discard => Load::ColourF32([0.0; 4]),
                 load => load,
             };
-            pass.record(cmd, &bindings, &[Attachment { load, ..self.colour[0] }], depth, rows());
+            pass.record(cmd, &bindings, &[Attachment { load, ..frame.colour[0] }], depth, rows());
         }
         if let Some(pass) = passes.first.as_ref().filter(|_| drawing != Drawing::Sample) {
-            self.drawn_again(cmd);
-            let all: Vec<_> = self.colour.iter().map(kept).collect();
+            drawn_again(frame, cmd);
+            let all: Vec<_> = frame.colour.iter().map(kept).collect();
             pass.record(cmd, &bindings, &all, depth, rows());
         }
-        if let (Some(pass), Some(target)) = (&passes.thickness, self.thickness.filter(|_| drawing != Drawing::Sample)) {
+        if let (Some(pass), Some(target)) = (&passes.thickness, frame.thickness.filter(|_| drawing != Drawing::Sample))
+        {
             barrier::images(cmd, &[(target.image, Access::COLOUR_WRITE, Access::COLOUR_WRITE)]);
             pass.record(cmd, &bindings, &[target], None, rows());
         }
-        barrier::buffers(cmd, &[(&b.counters, Access::FRAGMENT_WRITE, w | Access::INDIRECT_READ)]);
+        barrier::buffers(cmd, &[(&c.counters, Access::FRAGMENT_WRITE, w | Access::INDIRECT_READ)]);
     }
+}
 
-    /// The targets are drawn into once more.
-    fn drawn_again(&self, cmd: &Commands<'_>) {
-        let colour = self.colour.iter().map(|a| (a.image, Access::COLOUR_WRITE, Access::COLOUR_WRITE));
-        let depth = self.depth.iter().map(|a| (a.image, Access::DEPTH_WRITE, Access::DEPTH_WRITE));
-        barrier::images(cmd, &colour.chain(depth).collect::<Vec<_>>());
-    }
+/// The same attachment, with what is there.
+fn kept<'a>(attachment: &Attachment<'a>) -> Attachment<'a> {
+    Attachment { load: Load::Keep, ..*attachment }
+}
 
+/// The targets are drawn into once more.
+fn drawn_again(frame: &Frame<'_>, cmd: &Commands<'_>) {
+    let colour = frame.colour.iter().map(|a| (a.image, Access::COLOUR_WRITE, Access::COLOUR_WRITE));
+    let depth = frame.depth.iter().map(|a| (a.image, Access::DEPTH_WRITE, Access::DEPTH_WRITE));
+    barrier::images(cmd, &colour.chain(depth).collect::<Vec<_>>());
+}
+
+impl Frame<'_> {
     /// No ray is within a solid where there is none.
     pub(super) fn no_thickness(&self, cmd: &Commands<'_>) {
-        if let Some(target) = self.thickness.filter(|_| self.passes.layers.is_none()) {
+        if let Some(target) = self.thickness.filter(|_| self.stages.transparency.is_none()) {
             cmd.rendering(target.image.size(), &[target], None, || {});
         }
     }

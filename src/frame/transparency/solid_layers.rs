@@ -41,8 +41,6 @@ const SOLIDS_HAVE_PATCHES: u32 = 17;
 
 /// Format of the image of thickness.
 pub(crate) const THICKNESS_FORMAT: vk::Format = vk::Format::R32_SFLOAT;
-/// Depth in `behind` where nothing is, as in `resolved.glsl`.
-pub(crate) const UNSEEN: f32 = 3.0e38;
 
 /// What rays are followed for: a pipeline each.
 #[derive(Clone, Copy, Debug)]

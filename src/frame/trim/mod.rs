@@ -1,13 +1,13 @@
-//! The ways to trim, as the frame sees them.
+//! The ways to trim.
 //!
 //! ```text
 //!   way      scene buffers   buffers of the frame   passes before the draw     what the test reads
-//!   table    TableScene      TableBuffers           table.rs: density … sort   TableParts::test
-//!   exact    ExactScene      none                   none                       its buffers
+//!   table    TableScene      table::Buffers         table.rs: density … sort   those
+//!   exact    ExactScene      none                   none                       the scene's
 //! ```
 //!
 //! A scene uses one way; the others' passes, pipelines and buffers do not exist. Whatever the way, its
-//! test is compiled into the passes `visibility` and `heal` ([`TrimTest`](crate::shaders::TrimTest)).
+//! test is compiled into the passes `visibility` and `gap_fill` ([`TrimTest`](crate::shaders::TrimTest)).
 
 pub(crate) mod carry;
 pub(crate) mod cross;
@@ -17,127 +17,99 @@ pub(crate) mod lines;
 pub(crate) mod segments;
 pub(crate) mod sizes;
 pub(crate) mod sort;
-mod table;
+pub(super) mod table;
 
 use super::Frame;
 #[cfg(feature = "baselines")]
-use super::baselines::{RivalParts, RivalPasses};
-use crate::frame::buffers::TrimBuffers;
-use crate::frame::gaps::gap_fill;
-use crate::gpu::{Device, GpuError, Resource};
+use super::baselines;
+use super::common::room::Room;
+use crate::gpu::{Commands, Device, GpuError, Resource, Timestamps};
 use crate::picture::TakenWay;
-use crate::scene::{ExactScene, SceneData, SolidData, Trims};
+use crate::scene::{ExactScene, SceneData};
 use crate::shaders::{TRIM_EXACT, TRIM_TABLE, TrimTest};
-use table::{TableParts, TablePasses};
+use std::sync::Arc;
+use table::Table;
 
-/// The passes of the way that the scene uses, and `heal`.
-pub(super) struct TrimPasses {
-    way: Way,
-    pub heal: gap_fill::GapFill,
-}
-
-enum Way {
-    Table(Box<TablePasses>),
+/// The passes of the way that the scene uses.
+pub(crate) enum Passes {
+    Table(Arc<table::Passes>),
     Exact,
     #[cfg(feature = "baselines")]
-    Rival(RivalPasses),
+    Baseline(Arc<baselines::Passes>),
 }
 
-impl TrimPasses {
+impl Passes {
     /// `None` when no patch is trimmed.
     pub(super) fn new(device: &Device, data: &SceneData) -> Result<Option<Self>, GpuError> {
-        let Some(way) = data.trim_way() else { return Ok(None) };
-        let way = match way {
-            TakenWay::Table => {
-                Way::Table(Box::new(TablePasses::new(device, !data.wide_strips.is_empty(), data.has_operands)?))
-            }
-            TakenWay::Exact => Way::Exact,
+        Ok(match data.trim_way() {
+            None => None,
+            Some(TakenWay::Table) => Some(Self::Table(Arc::new(table::Passes::new(device, data)?))),
+            Some(TakenWay::Exact) => Some(Self::Exact),
             #[cfg(feature = "baselines")]
-            TakenWay::Rival(rival) => Way::Rival(RivalPasses::new(device, rival)?),
-        };
-        let others = data.has_meshes() || data.solids.kinds().is_some();
-        let volume = data.volume.as_ref().and_then(SolidData::kinds);
-        let heal = gap_fill::GapFill::new(device, way.test(), (data.has_rational, others), volume)?;
-        Ok(Some(Self { way, heal }))
+            Some(TakenWay::Rival(rival)) => Some(Self::Baseline(Arc::new(baselines::Passes::new(device, rival)?))),
+        })
     }
 
     pub(super) fn test(&self) -> &'static TrimTest {
-        self.way.test()
-    }
-}
-
-impl Way {
-    fn test(&self) -> &'static TrimTest {
         match self {
             Self::Table(_) => &TRIM_TABLE,
             Self::Exact => &TRIM_EXACT,
             #[cfg(feature = "baselines")]
-            Self::Rival(passes) => passes.test(),
+            Self::Baseline(passes) => passes.test(),
         }
     }
 }
 
-/// What trimming works on in one frame.
-pub(super) struct TrimParts<'a> {
-    pub passes: &'a TrimPasses,
-    pub buffers: &'a TrimBuffers,
-    way: Parts<'a>,
-}
-
-enum Parts<'a> {
-    Table(TableParts<'a>),
-    Exact(&'a ExactScene),
+/// The stage.
+pub(crate) enum Trim {
+    Table(Box<Table>),
+    Exact,
     #[cfg(feature = "baselines")]
-    Rival(RivalParts<'a>),
+    Baseline(Box<baselines::Trim>),
 }
 
-impl<'a> Frame<'a> {
-    /// `None` when no patch is trimmed.
-    pub(super) fn trim(&self) -> Option<TrimParts<'a>> {
-        let passes = self.passes.trim.as_ref()?;
-        let (scene, buffers) = (self.scene.trims.as_ref()?, self.buffers.trim.as_ref()?);
-        let way = match (&passes.way, scene) {
-            (Way::Table(passes), Trims::Table(scene)) => {
-                Parts::Table(TableParts { passes, scene, buffers: buffers.table.as_ref()? })
-            }
+impl Trim {
+    pub(super) fn new(room: &Room<'_>, passes: &Passes) -> Result<Self, GpuError> {
+        Ok(match passes {
+            Passes::Table(passes) => Self::Table(Box::new(Table::new(room, passes)?)),
+            Passes::Exact => Self::Exact,
             #[cfg(feature = "baselines")]
-            (Way::Rival(passes), Trims::Rival(scene)) => {
-                Parts::Rival(RivalParts { passes, scene, buffers: buffers.texture.as_ref() })
-            }
-            (Way::Exact, Trims::Exact(scene)) => Parts::Exact(scene),
-            _ => unreachable!("passes and buffers are made for one way"),
-        };
-        Some(TrimParts { passes, buffers, way })
+            Passes::Baseline(passes) => Self::Baseline(Box::new(baselines::Trim::new(room, passes)?)),
+        })
     }
-}
 
-impl<'a> TrimParts<'a> {
-    /// The table's passes, where the scene is trimmed by table.
-    pub(super) fn table(&self) -> Option<TableParts<'a>> {
-        match self.way {
-            Parts::Table(parts) => Some(parts),
-            Parts::Exact(_) => None,
+    /// Clears what the passes before the draw count.
+    pub(super) fn begin(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        match self {
+            Self::Table(table) => table.begin(frame, cmd),
+            Self::Exact => {}
             #[cfg(feature = "baselines")]
-            Parts::Rival(_) => None,
+            Self::Baseline(trim) => trim.begin(cmd),
         }
     }
 
-    /// A way to compare with, where the scene is trimmed so.
+    /// The u-intercept table, where the scene is trimmed by it and the frame before has left none.
+    pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut Timestamps) {
+        if let Self::Table(table) = self {
+            frame.unless_made(cmd, table, || times.scope(cmd, "trim table", || table.record(frame, cmd)));
+        }
+    }
+
+    /// Trim textures, where the scene is trimmed by them: after patches are divided.
     #[cfg(feature = "baselines")]
-    pub(super) fn rival(&self) -> Option<RivalParts<'a>> {
-        match self.way {
-            Parts::Rival(parts) => Some(parts),
-            _ => None,
+    pub(super) fn record_baseline(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut Timestamps) {
+        if let Self::Baseline(trim) = self {
+            trim.record(frame, cmd, times);
         }
     }
 
     /// What the trim test reads, in its order.
-    pub(super) fn test(&self) -> Vec<Resource<'a>> {
-        match self.way {
-            Parts::Table(parts) => parts.test(),
-            Parts::Exact(s) => s.all().map(Resource::from).to_vec(),
+    pub(super) fn test<'a>(&'a self, frame: &Frame<'a>) -> Vec<Resource<'a>> {
+        match self {
+            Self::Table(table) => table.test(),
+            Self::Exact => frame.scene.exact().into_iter().flat_map(ExactScene::all).map(Resource::from).collect(),
             #[cfg(feature = "baselines")]
-            Parts::Rival(parts) => parts.test(),
+            Self::Baseline(trim) => trim.test(frame.scene),
         }
     }
 }
