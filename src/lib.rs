@@ -13,8 +13,12 @@ pub use selvedge_geometry::{construct, csg, math, model, spline, trim};
 #[cfg(test)]
 extern crate self as selvedge;
 
+/// For tests: what passes read and write.
+#[doc(hidden)]
 pub mod abi;
+/// Other ways to trim and to divide, for comparisons: no part of what a host uses.
 #[cfg(feature = "baselines")]
+#[doc(hidden)]
 pub mod baselines;
 mod bindings;
 mod budget;
@@ -35,6 +39,8 @@ pub mod picture;
 pub mod renderer;
 mod scene;
 mod shaders;
+/// For tests: what passes compute, on the CPU.
+#[doc(hidden)]
 pub mod twin;
 
 /// The examples of the README compile.

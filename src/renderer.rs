@@ -27,12 +27,12 @@ use crate::frame::capacities::Capacities;
 use crate::frame::counts::Counts;
 pub use crate::frame::counts::TooMany;
 use crate::frame::shading::resolve;
-use crate::frame::transparency::solid_layers;
 use crate::frame::solids::Solids;
+use crate::frame::transparency::solid_layers;
 use crate::frame::{Frame, Near, Passes, Stages, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Texels, Uploads};
 use crate::model::{Camera, CameraError};
-use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes};
+use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, TakenWay};
 pub use crate::scene::{CloseUp, Cut, EditError, UndrawnSolid, Wanted, trim_way};
 use crate::scene::{Scene, SceneData, Write};
 use ash::vk;
@@ -363,7 +363,7 @@ impl Renderer {
         let stats = FrameStats {
             passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
             kept: slot.kept,
-            trim: self.loaded.as_ref().and_then(|l| l.counts.trim).map(Into::into),
+            trim: self.loaded.as_ref().and_then(|l| l.counts.trim).and_then(TakenWay::reported),
             patches: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.items)),
             triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
             sub_patches: u64::from(c.plain) + u64::from(c.trimmed),

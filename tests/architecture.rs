@@ -21,7 +21,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // selvedge-check: Cargo says it all
     ("check", &[]),
     // the engine: what knows no GPU
-    ("picture", &["model"]),
+    ("picture", &["baselines", "model"]),
     ("budget", &[]),
     ("abi", &[]),
     ("twin", &["abi", "math", "spline", "trim", "model"]),
@@ -33,9 +33,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("bindings", &["gpu"]),
     // where both meet
     ("scene", &["abi", "bindings", "csg", "gpu", "math", "spline", "trim", "model", "picture", "baselines"]),
-    ("frame", &["abi", "bindings", "gpu", "picture", "scene", "shaders"]),
+    ("frame", &["abi", "baselines", "bindings", "gpu", "picture", "scene", "shaders"]),
     ("renderer", &["abi", "budget", "frame", "gpu", "model", "picture", "scene"]),
-    ("headless", &["gpu", "model", "picture", "renderer"]),
+    ("headless", &["baselines", "gpu", "model", "picture", "renderer", "scene"]),
     // for benchmarks and tests
     ("baselines", &["abi", "fixtures", "math", "model", "picture", "scene", "spline", "trim", "twin"]),
 ];

@@ -17,8 +17,8 @@
 //! lies between two cells is told as a whole. The shader is `glsl/include/baselines/bisect.glsl`, its twin is
 //! [`Bisect::contains`].
 
+use super::Sorted;
 use crate::model::{Face, TrimLoop};
-use crate::picture::Sorted;
 use crate::spline::{Bezier, Control};
 use crate::trim::monotone_pieces;
 use bytemuck::{Pod, Zeroable};

@@ -11,15 +11,16 @@
 //! | [`factors`] | several bounds behind one interface, [`slefe`]s among them | cuts, segments, level |
 //!
 //! Each is written as its source says, and tuned where that leaves room, so that a comparison is worth
-//! something. What ways to trim need on the GPU hangs on the same seam as the engine's own
-//! ([`TrimWay::Rival`](crate::picture::TrimWay)), behind the feature `baselines`. One way to divide is there, too:
-//! [`SceneSettings::slefe_segments`](crate::picture::SceneSettings::slefe_segments).
+//! something. What they need on the GPU hangs on the same seam as the engine's own ways, behind the feature `baselines`:
+//! [`SceneOptions`] beside a host's settings say what a scene is made by.
 
 pub mod bisect;
 pub mod factors;
 mod holes;
+mod options;
 pub mod pretessellated;
 pub mod slefe;
 pub mod texture;
 
 pub use holes::many_holes;
+pub use options::{SceneOptions, Sorted, TrimMethod};

@@ -13,12 +13,12 @@
 //! Tuned beyond the source: 32 texels a word, which is the least memory that an exact answer a texel can
 //! take, and one pass along the rows instead of the runs' overdraw. Off by half a texel in u and in v, and by
 //! a sixteenth for the chords. A texture larger than the device binds does not fit, and no frame is drawn:
-//! [`GpuError::TooLarge`](crate::gpu::GpuError::TooLarge). Passes: `src/passes/rival_texture.rs`.
+//! [`GpuError::TooLarge`](crate::gpu::GpuError::TooLarge). Passes: `src/frame/baselines/texture.rs`.
 
+use super::{SceneOptions, TrimMethod};
 use crate::abi::Frame;
 use crate::model::{Camera, Model};
-use crate::picture::{Rival, SceneSettings, TrimWay};
-use crate::scene::{SceneData, UndrawnSolid, seen_by, view};
+use crate::scene::{SceneData, SceneRequest, UndrawnSolid, seen_by, view};
 use crate::twin;
 
 /// Bytes that all textures take in a view, had they room: what the passes count, without their limits.
@@ -26,8 +26,8 @@ use crate::twin;
 /// # Errors
 /// The model cannot be drawn at all.
 pub fn wanted_bytes(model: &Model, camera: &Camera, eighths: u32) -> Result<f64, UndrawnSolid> {
-    let way = TrimWay::Rival(Rival::Texture { eighths });
-    let data = SceneData::new(model, SceneSettings { trim: way, ..SceneSettings::default() })?;
+    let baseline = SceneOptions { trim: Some(TrimMethod::Texture { eighths }), ..SceneOptions::default() };
+    let data = SceneData::new(model, SceneRequest { baseline, ..SceneRequest::default() })?;
     let frame = Frame { cell_count: data.cell_items.len() as u32, bay_count: data.bay_count, ..Frame::default() };
     let frame = seen_by(camera, frame);
     let pixels = camera.pixel_matrix();

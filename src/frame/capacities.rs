@@ -9,8 +9,6 @@
 use super::counts::{Counts, EXACT, MOST_GROUPS, SMALLER, TooMany};
 use super::solids::lists::{Entries, Lists, WHOLE};
 use crate::abi::{BLOCK, Counters, Doubt, SubPatch, TILE, TileLeaf};
-#[cfg(feature = "baselines")]
-use crate::picture::Rival;
 use crate::picture::TakenWay;
 
 /// In a view of the whole scene, where most items are a sub-patch of few segments.
@@ -59,7 +57,7 @@ impl Capacities {
     pub(crate) fn first(counts: Counts) -> Self {
         let trimmed = u32::from(counts.trim.is_some());
         let table = u32::from(counts.trim == Some(TakenWay::Table));
-        let counted = table.max(u32::from(counts.trim.is_some_and(is_texture)));
+        let counted = table.max(u32::from(counts.trim.is_some_and(TakenWay::is_texture)));
         Self {
             sub_patches: counts.items.saturating_add(256),
             draws: 256,
@@ -241,15 +239,6 @@ impl Capacities {
             },
             legs: self.legs(c, size, range)?,
         })
-    }
-}
-
-/// The way draws textures.
-pub(crate) fn is_texture(way: TakenWay) -> bool {
-    match way {
-        TakenWay::Table | TakenWay::Exact => false,
-        #[cfg(feature = "baselines")]
-        TakenWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
     }
 }
 

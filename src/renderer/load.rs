@@ -13,7 +13,7 @@ use crate::frame::counts::Counts;
 use crate::frame::shading::resolve;
 use crate::model::{LoopAt, Model, TrimLoop};
 use crate::picture::{SceneSettings, TakenWay, TrimWay};
-use crate::scene::{Cut, SceneData, UndrawnSolid};
+use crate::scene::{Cut, SceneData, SceneRequest, UndrawnSolid};
 
 /// What a scene is made of: a model, or what was cut out of it for a view.
 #[derive(Clone, Copy)]
@@ -23,7 +23,7 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    fn data(self, settings: SceneSettings) -> Result<SceneData, UndrawnSolid> {
+    fn data(self, settings: SceneRequest) -> Result<SceneData, UndrawnSolid> {
         match self.cut {
             None => SceneData::new(self.whole, settings),
             Some(cut) => SceneData::cut_from(self.whole, cut, settings),
@@ -35,11 +35,11 @@ impl Source<'_> {
 pub(super) struct Kept {
     whole: Model,
     cut: Option<Cut>,
-    settings: SceneSettings,
+    settings: SceneRequest,
 }
 
 impl Kept {
-    fn new(of: Source<'_>, settings: SceneSettings) -> Self {
+    fn new(of: Source<'_>, settings: SceneRequest) -> Self {
         // of a whole model only shadows are asked for beside what was cut out of it
         let whole = if of.cut.is_none() || settings.sun.is_some() { of.whole.clone() } else { Model::default() };
         Self { whole, cut: of.cut.cloned(), settings }
@@ -66,7 +66,7 @@ impl Renderer {
     /// # Errors
     /// As [`upload`](Self::upload).
     pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), RenderError> {
-        self.load(Source { whole: model, cut: None }, settings)
+        self.upload_request(model, settings.into())
     }
 
     /// As [`upload_with`](Self::upload_with), of what [`CloseUp`](super::CloseUp) cut out of a model for a view: shadows
@@ -75,7 +75,7 @@ impl Renderer {
     /// # Errors
     /// As [`upload`](Self::upload).
     pub fn upload_cut(&mut self, whole: &Model, cut: &Cut, settings: SceneSettings) -> Result<(), RenderError> {
-        self.load(Source { whole, cut: Some(cut) }, settings)
+        self.upload_cut_request(whole, cut, settings.into())
     }
 
     /// The same model once more, trimmed exactly: the table has no room for a view of it.
@@ -83,11 +83,26 @@ impl Renderer {
         let Some(kept) = self.loaded.as_mut().and_then(|loaded| loaded.kept.take()) else { return Ok(()) };
         let Kept { whole, cut, settings } = &*kept;
         let of = Source { whole, cut: cut.as_ref() };
-        self.load(of, SceneSettings { trim: TrimWay::Exact, ..*settings })
+        self.load(of, settings.exact())
     }
 
-    fn load(&mut self, of: Source<'_>, settings: SceneSettings) -> Result<(), RenderError> {
-        asked::check_sun(settings)?;
+    /// As [`upload_with`](Self::upload_with).
+    pub(crate) fn upload_request(&mut self, model: &Model, request: SceneRequest) -> Result<(), RenderError> {
+        self.load(Source { whole: model, cut: None }, request)
+    }
+
+    /// As [`upload_cut`](Self::upload_cut).
+    pub(crate) fn upload_cut_request(
+        &mut self,
+        whole: &Model,
+        cut: &Cut,
+        request: SceneRequest,
+    ) -> Result<(), RenderError> {
+        self.load(Source { whole, cut: Some(cut) }, request)
+    }
+
+    fn load(&mut self, of: Source<'_>, settings: SceneRequest) -> Result<(), RenderError> {
+        asked::check_sun(*settings)?;
         let mut data = of.data(settings)?;
         if settings.smooth_trims {
             asked::check_smooth_trims(&data, settings)?;
@@ -95,7 +110,7 @@ impl Renderer {
         let may_change = settings.trim == TrimWay::Auto && data.trim_way() == Some(TakenWay::Table);
         let mut kept = may_change.then(|| Box::new(Kept::new(of, settings)));
         if may_change && Counts::of(&data).check().is_err() {
-            data = of.data(SceneSettings { trim: TrimWay::Exact, ..settings })?;
+            data = of.data(settings.exact())?;
             kept = None;
         }
         let counts = Counts::of(&data);

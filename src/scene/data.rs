@@ -8,14 +8,13 @@ use super::face::{Body, Cuts, FaceData, Trimming, pack_colour};
 use super::link::link;
 use super::mesh::Meshes;
 use super::parts::{PlacedPart, each_made};
+use super::request::SceneRequest;
 use super::solids::{Lists, SolidData, UndrawnSolid};
 use super::sun::SunData;
 use super::trimmed::Trimmed;
 use super::way::taken;
 use crate::abi;
 use crate::model::{Bounds, Instance, Items, Lone, Model, Part, SolidError};
-#[cfg(feature = "baselines")]
-use crate::picture::Rival;
 use crate::picture::{Highlight, Samples, SceneSettings, TakenWay};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
@@ -115,28 +114,29 @@ pub(crate) struct SceneData {
 }
 
 impl SceneData {
-    pub(crate) fn new(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
+    pub(crate) fn new(model: &Model, request: impl Into<SceneRequest>) -> Result<Self, UndrawnSolid> {
+        let request = request.into();
         // edits would change where cuts pay
-        let extent = if settings.editable { f64::INFINITY } else { model.bounds().diagonal() };
-        Self::of(model, model, settings, |_, scale| extent / scale)
+        let extent = if request.editable { f64::INFINITY } else { model.bounds().diagonal() };
+        Self::of(model, model, request, |_, scale| extent / scale)
     }
 
     /// Of what close views see of a model, cut out of it: shadows are those of the whole.
-    pub(crate) fn cut_from(whole: &Model, cut: &Cut, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        Self::of(whole, &cut.model, settings, |part, _| cut.extents[part])
+    pub(crate) fn cut_from(whole: &Model, cut: &Cut, request: impl Into<SceneRequest>) -> Result<Self, UndrawnSolid> {
+        Self::of(whole, &cut.model, request.into(), |part, _| cut.extents[part])
     }
 
     /// All patches as they are.
     #[cfg(any(test, feature = "baselines"))]
     pub(crate) fn uncut(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        Self::of(model, model, settings, |_, _| f64::INFINITY)
+        Self::of(model, model, settings.into(), |_, _| f64::INFINITY)
     }
 
     /// `extent`: of a part, whose largest copy is so many times as large; see [`Trimming`].
     fn of(
         whole: &Model,
         model: &Model,
-        settings: SceneSettings,
+        settings: SceneRequest,
         extent: impl Fn(usize, f64) -> f64,
     ) -> Result<Self, UndrawnSolid> {
         let way = taken(model, settings);
@@ -193,8 +193,8 @@ impl SceneData {
         };
         #[cfg(feature = "baselines")]
         {
-            data.untested = settings.untested;
-            if let Some(segments) = settings.slefe_segments {
+            data.untested = settings.baseline.untested;
+            if let Some(segments) = settings.baseline.slefe_segments {
                 data.division = Division::Slefe(crate::baselines::slefe::words(segments));
             }
         }
@@ -234,7 +234,7 @@ impl SceneData {
                 data.push_cones(first, &normals, 0.5 * bounds[nth].diagonal());
             }
             #[cfg(feature = "baselines")]
-            if let TakenWay::Rival(Rival::Bisect { steps, sorted }) = way {
+            if let TakenWay::Baseline(crate::baselines::TrimMethod::Bisect { steps, sorted }) = way {
                 placed.part.faces.iter().for_each(|f| data.bisect.push(f, steps, sorted));
             }
         });

@@ -29,6 +29,7 @@ mod link;
 mod mesh;
 mod nearby;
 mod parts;
+mod request;
 mod solids;
 mod sun;
 mod trimmed;
@@ -44,11 +45,12 @@ pub(crate) use edit::{EditTarget, Write};
 pub(crate) use exact::ExactData;
 #[cfg(any(test, feature = "baselines"))]
 pub(crate) use flatten::{Cuts, flattened};
+pub(crate) use request::SceneRequest;
 pub use solids::UndrawnSolid;
 pub(crate) use solids::{Asked, Blister, SolidData};
 pub(crate) use trimmed::TableView;
 #[cfg(feature = "baselines")]
-pub(crate) use upload::RivalScene;
+pub(crate) use upload::BaselineScene;
 pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, TableScene, Trims};
 pub(crate) use view::{focal_and_slant, seen_by, view};
 pub use way::trim_way;

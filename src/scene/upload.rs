@@ -4,10 +4,10 @@
 use super::Division;
 use super::solids::Surface;
 use super::{Blister, SceneData, SolidData};
+#[cfg(feature = "baselines")]
+use crate::baselines::TrimMethod;
 use crate::bindings::{Placed, Primitives};
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texel, Texels, Uploads};
-#[cfg(feature = "baselines")]
-use crate::picture::Rival;
 use crate::picture::TakenWay;
 use ash::vk;
 use bytemuck::Pod;
@@ -103,12 +103,12 @@ pub(crate) enum Trims {
     Table(Box<TableScene>),
     Exact(Box<ExactScene>),
     #[cfg(feature = "baselines")]
-    Rival(Box<RivalScene>),
+    Baseline(Box<BaselineScene>),
 }
 
 /// What a way to compare with needs.
 #[cfg(feature = "baselines")]
-pub(crate) enum RivalScene {
+pub(crate) enum BaselineScene {
     Untrimmed,
     /// Faces, bands, cells, lists, pieces, points.
     Bisect([Texels; 6]),
@@ -187,8 +187,8 @@ impl Scene {
 
     /// What a way to compare with needs, in scenes that it trims.
     #[cfg(feature = "baselines")]
-    pub(crate) fn rival(&self) -> Option<&RivalScene> {
-        if let Some(Trims::Rival(trims)) = &self.trims { Some(trims) } else { None }
+    pub(crate) fn baseline(&self) -> Option<&BaselineScene> {
+        if let Some(Trims::Baseline(trims)) = &self.trims { Some(trims) } else { None }
     }
 
     /// Its patches, seen so.
@@ -231,8 +231,8 @@ impl Scene {
                 None => None,
                 Some(TakenWay::Table) => Some(Trims::Table(Box::new(table_scene(&mut uploads, cmd, data)?))),
                 #[cfg(feature = "baselines")]
-                Some(TakenWay::Rival(rival)) => {
-                    Some(Trims::Rival(Box::new(rival_scene(&mut uploads, cmd, data, rival)?)))
+                Some(TakenWay::Baseline(method)) => {
+                    Some(Trims::Baseline(Box::new(baseline_scene(&mut uploads, cmd, data, method)?)))
                 }
                 Some(TakenWay::Exact) => Some(Trims::Exact(Box::new(ExactScene {
                     faces: texels(&mut uploads, cmd, "trim faces", &data.exact.faces, Texel::U32x4)?,
@@ -327,17 +327,17 @@ fn table_scene(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SceneData) -> R
 }
 
 #[cfg(feature = "baselines")]
-fn rival_scene(
+fn baseline_scene(
     uploads: &mut Uploads,
     cmd: &Commands<'_>,
     data: &SceneData,
-    rival: Rival,
-) -> Result<RivalScene, GpuError> {
-    Ok(match rival {
-        Rival::Untrimmed => RivalScene::Untrimmed,
-        Rival::Bisect { .. } => {
+    method: TrimMethod,
+) -> Result<BaselineScene, GpuError> {
+    Ok(match method {
+        TrimMethod::Untrimmed => BaselineScene::Untrimmed,
+        TrimMethod::Bisect { .. } => {
             let b = &data.bisect;
-            RivalScene::Bisect([
+            BaselineScene::Bisect([
                 texels(uploads, cmd, "trim bisect faces", &b.faces, Texel::Words)?,
                 texels(uploads, cmd, "trim bisect bands", &b.bands, Texel::U32x2)?,
                 texels(uploads, cmd, "trim bisect cells", &b.cells, Texel::U32x4)?,
@@ -346,10 +346,10 @@ fn rival_scene(
                 texels(uploads, cmd, "trim bisect points", &b.points, Texel::Numbers)?,
             ])
         }
-        Rival::Texture { eighths } => {
+        TrimMethod::Texture { eighths } => {
             let knob = [(eighths as f32 / 8.0).to_bits(), data.face_instances.len() as u32];
             let knob = persistent(uploads, cmd, "trim texture knob", &knob)?;
-            RivalScene::Texture(table_scene(uploads, cmd, data)?, knob)
+            BaselineScene::Texture(table_scene(uploads, cmd, data)?, knob)
         }
     })
 }

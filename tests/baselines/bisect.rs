@@ -1,10 +1,10 @@
 //! Bisection of monotone pieces against exact winding numbers.
 
 use glam::{DVec2, Vec2};
+use selvedge::baselines::Sorted;
 use selvedge::baselines::bisect::{Bisect, STEPS};
 use selvedge::baselines::many_holes;
 use selvedge::model::{Face, Model, TrimLoop};
-use selvedge::picture::Sorted;
 use selvedge::spline::Bezier;
 use selvedge::trim::LoopIndex;
 

@@ -1,13 +1,12 @@
-//! Frames trimmed by each rival against the exact reference, watched by the validation layers.
+//! Frames trimmed by each baseline against the exact reference, watched by the validation layers.
 
 use glam::{DAffine3, DVec3};
 use selvedge::baselines::pretessellated::pretessellated;
-use selvedge::baselines::{many_holes, texture};
+use selvedge::baselines::{SceneOptions, Sorted, TrimMethod, many_holes, texture};
 use selvedge::gpu::GpuError;
 use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Instance, Model, Projection};
-use selvedge::picture::Sorted;
-use selvedge::picture::{FrameSettings, Outputs, Picture, Rival, SceneSettings, TrimWay};
+use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings, TrimWay};
 use selvedge::renderer::RenderError;
 use selvedge_check::{JudgeOptions, Judgement, Tracer, judge};
 use std::path::Path;
@@ -26,21 +25,40 @@ fn panel() -> Model {
     sample("panel.step")
 }
 
-fn watched(model: &Model, trim: TrimWay) -> HeadlessRenderer {
-    watched_with(model, SceneSettings { trim, ..SceneSettings::default() })
+/// A way to trim, the engine's own or one to compare with.
+#[derive(Clone, Copy, Debug)]
+enum Way {
+    Own(TrimWay),
+    Baseline(TrimMethod),
 }
 
-fn watched_with(model: &Model, settings: SceneSettings) -> HeadlessRenderer {
+impl Way {
+    fn settings(self) -> SceneSettings {
+        let Self::Own(trim) = self else { return SceneSettings::default() };
+        SceneSettings { trim, ..SceneSettings::default() }
+    }
+
+    fn options(self) -> SceneOptions {
+        let trim = if let Self::Baseline(method) = self { Some(method) } else { None };
+        SceneOptions { trim, ..SceneOptions::default() }
+    }
+}
+
+fn watched(model: &Model, way: Way) -> HeadlessRenderer {
+    watched_with(model, way.settings(), way.options())
+}
+
+fn watched_with(model: &Model, settings: SceneSettings, baseline: SceneOptions) -> HeadlessRenderer {
     let options = HeadlessOptions { device: None, validation: true };
     let mut renderer =
         HeadlessRenderer::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"));
-    renderer.upload_with(model, settings).unwrap();
+    renderer.upload_baseline(model, settings, baseline).unwrap();
     renderer
 }
 
 /// Draws `drawn` and judges it against `model`: every pixel.
-fn judged(drawn: &Model, trim: TrimWay, model: &Model) -> Judgement {
-    let mut renderer = watched(drawn, trim);
+fn judged(drawn: &Model, way: Way, model: &Model) -> Judgement {
+    let mut renderer = watched(drawn, way);
     let camera = camera(model);
     let picture = renderer.render(&camera, &FrameSettings::default(), Outputs::ALL).unwrap();
     let messages = renderer.shutdown();
@@ -48,26 +66,26 @@ fn judged(drawn: &Model, trim: TrimWay, model: &Model) -> Judgement {
     judge(&Tracer::new(model), &camera, &picture.images(), &JudgeOptions::default())
 }
 
-fn rival(model: &Model, rival: Rival) -> Judgement {
-    judged(model, TrimWay::Rival(rival), model)
+fn baseline(model: &Model, method: TrimMethod) -> Judgement {
+    judged(model, Way::Baseline(method), model)
 }
 
 #[test]
 fn bisection_keeps_half_a_pixel_and_one_step_does_not() {
     for model in [many_holes(6), panel()] {
         for sorted in [Sorted::Source, Sorted::Tuned] {
-            let j = rival(&model, Rival::Bisect { steps: 16, sorted });
+            let j = baseline(&model, TrimMethod::Bisect { steps: 16, sorted });
             assert_eq!(j.wrong, 0, "{}, {sorted:?}: {:?}", model.name, j.mismatches);
         }
     }
     // holes of 20 pixels, whose quarters become chords that bulge by a third of the radius
-    let j = rival(&many_holes(6), Rival::Bisect { steps: 0, sorted: Sorted::Tuned });
+    let j = baseline(&many_holes(6), TrimMethod::Bisect { steps: 0, sorted: Sorted::Tuned });
     assert!(j.wrong > 100 && j.worst_shift_px > 1.0, "{} wrong, {} px", j.wrong, j.worst_shift_px);
 }
 
 /// Whatever the way: a comparison in which some draw what lies behind would be of that, not of trims.
 #[test]
-fn rivals_leave_out_what_lies_behind() {
+fn baselines_leave_out_what_lies_behind() {
     let one = sample("bracket.step");
     let mut model = Model { instances: Vec::new(), ..one.clone() };
     // away from the eye
@@ -81,16 +99,17 @@ fn rivals_leave_out_what_lies_behind() {
     }
     // the first one fills the picture
     let camera = Camera { depth_range: (camera(&one).depth_range.0, 1e4), ..camera(&one) };
-    let mut renderer = watched(&model, TrimWay::Auto);
-    let mut left_out = |trim| {
-        renderer.upload_with(&model, SceneSettings { trim, ..SceneSettings::default() }).unwrap();
+    let mut renderer = watched(&model, Way::Own(TrimWay::Auto));
+    let mut left_out = |way: Way| {
+        renderer.upload_baseline(&model, way.settings(), way.options()).unwrap();
         let settings = FrameSettings { all_passes: true, ..FrameSettings::default() };
         let mut draw = || renderer.render(&camera, &settings, Outputs::default()).unwrap().stats;
         [draw(), draw(), draw()].map(|stats| stats.hidden_patches)
     };
     let sorted = Sorted::Tuned;
-    let rivals = [Rival::Untrimmed, Rival::Bisect { steps: 16, sorted }, Rival::Texture { eighths: 16 }];
-    let ways = rivals.map(TrimWay::Rival).into_iter().chain(TrimWay::ALL.iter().copied());
+    let methods =
+        [TrimMethod::Untrimmed, TrimMethod::Bisect { steps: 16, sorted }, TrimMethod::Texture { eighths: 16 }];
+    let ways = methods.map(Way::Baseline).into_iter().chain(TrimWay::ALL.iter().map(|way| Way::Own(*way)));
     for way in ways {
         // the second frame asks, and the third is told
         let [first, _, third] = left_out(way);
@@ -103,11 +122,11 @@ fn rivals_leave_out_what_lies_behind() {
 #[test]
 fn textures_are_off_by_half_a_texel_each_way() {
     for model in [many_holes(6), panel()] {
-        let j = rival(&model, Rival::Texture { eighths: 16 });
+        let j = baseline(&model, TrimMethod::Texture { eighths: 16 });
         assert_eq!(j.wrong, 0, "{}: {:?}", model.name, j.mismatches);
     }
     // four pixels a texel: up to two pixels each way, but the density is a bound, and mostly finer
-    let j = rival(&many_holes(6), Rival::Texture { eighths: 2 });
+    let j = baseline(&many_holes(6), TrimMethod::Texture { eighths: 2 });
     assert!(j.wrong > 100 && j.worst_shift_px > 0.7, "{} wrong, {} px", j.wrong, j.worst_shift_px);
 }
 
@@ -120,9 +139,9 @@ fn meshes_are_off_by_their_deflection() {
         let (mesh, made) = pretessellated(&model, 0.4 * pixel);
         // what still bulges after the last round is told; a triangle in a thousand does not show
         assert_eq!((made.missing, 1000 * made.beyond / made.triangles), (0, 0));
-        let j = judged(&mesh, TrimWay::Auto, &model);
+        let j = judged(&mesh, Way::Own(TrimWay::Auto), &model);
         assert_eq!(j.wrong, 0, "{}: {:?}", model.name, j.mismatches);
-        let j = judged(&pretessellated(&model, 4.0 * pixel).0, TrimWay::Auto, &model);
+        let j = judged(&pretessellated(&model, 4.0 * pixel).0, Way::Own(TrimWay::Auto), &model);
         assert!(j.wrong > 10 && j.worst_shift_px > 0.7, "{} wrong, {} px", j.wrong, j.worst_shift_px);
     }
 }
@@ -132,18 +151,19 @@ fn meshes_are_off_by_their_deflection() {
 fn patches_drawn_without_a_test_are_not_seen() {
     let model = panel();
     let settings = FrameSettings::default();
-    for trim in [TrimWay::Table, TrimWay::Exact, TrimWay::Rival(Rival::Bisect { steps: 16, sorted: Sorted::Tuned })] {
-        let mut renderer = watched(&model, trim);
+    let bisect = TrimMethod::Bisect { steps: 16, sorted: Sorted::Tuned };
+    for way in [Way::Own(TrimWay::Table), Way::Own(TrimWay::Exact), Way::Baseline(bisect)] {
+        let mut renderer = watched(&model, way);
         let mut draw = |untested| {
-            renderer.upload_with(&model, SceneSettings { trim, untested, ..SceneSettings::default() }).unwrap();
+            renderer.upload_baseline(&model, way.settings(), SceneOptions { untested, ..way.options() }).unwrap();
             renderer.render(&camera(&model), &settings, Outputs::ALL).unwrap()
         };
         let (alone, beside) = (draw(false), draw(true));
         let untested =
             |picture: &Picture| picture.stats.passes.iter().filter(|p| p.name == "visibility untested").count();
-        assert_eq!((untested(&alone), untested(&beside)), (0, 1), "{trim:?}");
-        assert_eq!((&alone.colour, &alone.depth), (&beside.colour, &beside.depth), "{trim:?}");
-        assert_eq!(alone.stats.triangles, beside.stats.triangles, "{trim:?}");
+        assert_eq!((untested(&alone), untested(&beside)), (0, 1), "{way:?}");
+        assert_eq!((&alone.colour, &alone.depth), (&beside.colour, &beside.depth), "{way:?}");
+        assert_eq!(alone.stats.triangles, beside.stats.triangles, "{way:?}");
         let messages = renderer.shutdown();
         assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
     }
@@ -152,15 +172,14 @@ fn patches_drawn_without_a_test_are_not_seen() {
 /// A frame without a test is what the harness calls wrong.
 #[test]
 fn a_frame_that_is_not_trimmed_is_wrong() {
-    let j = rival(&many_holes(6), Rival::Untrimmed);
+    let j = baseline(&many_holes(6), TrimMethod::Untrimmed);
     assert!(j.wrong > 1000, "{}", j.wrong);
 }
 
 #[test]
 fn a_texture_beyond_the_device_is_told_and_the_next_view_drawn() {
     let model = many_holes(3);
-    let trim = TrimWay::Rival(Rival::Texture { eighths: 16 });
-    let mut renderer = watched(&model, trim);
+    let mut renderer = watched(&model, Way::Baseline(TrimMethod::Texture { eighths: 16 }));
     let whole = camera(&model);
     // at the border of a hole; closer still, the face would be cut to the view
     let face = model.parts[0].faces.iter().max_by_key(|face| face.loops.len()).unwrap();
@@ -191,11 +210,12 @@ fn slefes_make_a_picture() {
     let camera = camera(&model);
     let tracer = Tracer::new(&model);
     let drawn = [None, Some(3), Some(9)].map(|slefe_segments| {
-        let mut renderer = watched_with(&model, SceneSettings { slefe_segments, ..SceneSettings::default() });
+        let mut renderer =
+            watched_with(&model, SceneSettings::default(), SceneOptions { slefe_segments, ..SceneOptions::default() });
         let picture = renderer.render(&camera, &FrameSettings::default(), Outputs::ALL).unwrap();
         let has = |name: &str| renderer.objects().iter().any(|object| object == name);
         let expected = [slefe_segments.is_none(), slefe_segments.is_some(), slefe_segments.is_some()];
-        assert_eq!(["bound", "rival slefe", "slefes"].map(has), expected, "{:?}", renderer.objects());
+        assert_eq!(["bound", "baseline slefe", "slefes"].map(has), expected, "{:?}", renderer.objects());
         let messages = renderer.shutdown();
         assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
         let covered = picture.face.iter().filter(|face| **face != 0).count();

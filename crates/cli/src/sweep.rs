@@ -21,6 +21,7 @@ use crate::progress::during;
 use crate::{Outcome, output, session, verdict};
 use anyhow::{Result, bail};
 use glam::{DAffine3, DVec3};
+use selvedge::baselines::SceneOptions;
 use selvedge::baselines::factors::Seen;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Model};
@@ -132,7 +133,8 @@ fn renderers(args: &SweepArgs, model: &Model) -> Result<Renderers> {
     let scenes: BTreeSet<_> = args.factors.iter().map(|divided| divided.slefe_segments()).collect();
     let uploaded = |slefe_segments| {
         let mut renderer = renderer(args)?;
-        renderer.upload_with(model, SceneSettings { slefe_segments, ..SceneSettings::default() })?;
+        let divided = SceneOptions { slefe_segments, ..SceneOptions::default() };
+        renderer.upload_baseline(model, SceneSettings::default(), divided)?;
         Ok((slefe_segments, renderer))
     };
     scenes.into_iter().map(uploaded).collect()

@@ -44,7 +44,7 @@ pub enum Way {
         /// Pieces along a side.
         cuts: usize,
     },
-    /// Projected slefe boxes. On the GPU: pass `rival_slefe`.
+    /// Projected slefe boxes. On the GPU: pass `baseline_slefe`.
     Ipass {
         /// Of the slefe.
         segments: usize,

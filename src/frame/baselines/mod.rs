@@ -15,9 +15,9 @@ use super::common::room::Room;
 use super::trim::density;
 use super::visibility::patches;
 use super::{Frame, WRITE_TO_READ, WRITE_TO_WRITE};
+use crate::baselines::TrimMethod;
 use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, Texel, Texels, Timestamps, barrier};
-use crate::picture::Rival;
-use crate::scene::{RivalScene, Scene, SceneData, TableScene};
+use crate::scene::{BaselineScene, Scene, SceneData, TableScene};
 use crate::shaders::{TRIM_BISECT, TRIM_TEXTURE, TRIM_UNTRIMMED, TrimTest};
 use std::sync::Arc;
 
@@ -35,11 +35,11 @@ pub(crate) struct TexturePasses {
 }
 
 impl Passes {
-    pub(super) fn new(device: &Device, rival: Rival) -> Result<Self, GpuError> {
-        Ok(match rival {
-            Rival::Untrimmed => Self::Untrimmed,
-            Rival::Bisect { .. } => Self::Bisect,
-            Rival::Texture { .. } => Self::Texture(Arc::new(TexturePasses {
+    pub(super) fn new(device: &Device, method: TrimMethod) -> Result<Self, GpuError> {
+        Ok(match method {
+            TrimMethod::Untrimmed => Self::Untrimmed,
+            TrimMethod::Bisect { .. } => Self::Bisect,
+            TrimMethod::Texture { .. } => Self::Texture(Arc::new(TexturePasses {
                 density: density::Density::new(device, false)?,
                 texture: texture::BaselineTexture::new(device)?,
             })),
@@ -92,16 +92,16 @@ impl Trim {
 
     /// Makes the textures, where there are some.
     pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut Timestamps) {
-        if let (Self::Texture(textures), Some(RivalScene::Texture(scene, knob))) = (self, frame.scene.rival()) {
+        if let (Self::Texture(textures), Some(BaselineScene::Texture(scene, knob))) = (self, frame.scene.baseline()) {
             times.scope(cmd, "trim texture", || textures.record(frame, cmd, (scene, knob)));
         }
     }
 
     /// What the test reads, in its order.
     pub(super) fn test<'a>(&'a self, scene: &'a Scene) -> Vec<Resource<'a>> {
-        match (self, scene.rival()) {
+        match (self, scene.baseline()) {
             (Self::Texture(t), _) => vec![Resource::from(&t.places), Resource::from(&t.texels)],
-            (Self::Bisect, Some(RivalScene::Bisect(buffers))) => buffers.iter().map(Resource::from).collect(),
+            (Self::Bisect, Some(BaselineScene::Bisect(buffers))) => buffers.iter().map(Resource::from).collect(),
             _ => Vec::new(),
         }
     }

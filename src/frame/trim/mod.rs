@@ -46,7 +46,7 @@ impl Passes {
             Some(TakenWay::Table) => Some(Self::Table(Arc::new(table::Passes::new(device, data)?))),
             Some(TakenWay::Exact) => Some(Self::Exact),
             #[cfg(feature = "baselines")]
-            Some(TakenWay::Rival(rival)) => Some(Self::Baseline(Arc::new(baselines::Passes::new(device, rival)?))),
+            Some(TakenWay::Baseline(method)) => Some(Self::Baseline(Arc::new(baselines::Passes::new(device, method)?))),
         })
     }
 
