@@ -1,7 +1,7 @@
 //! GLSL to SPIR-V, and the layouts of the structs that Rust and GLSL share.
 //!
 //! ```text
-//!   feature compile-shaders          glsl/*.comp …  ──shaderc──▶  OUT_DIR/spirv/*.spv, layout.rs
+//!   feature compile-shaders          glsl/*.comp …  ──shaderc──▶  OUT_DIR/spirv/*.spv, layout.rs, interfaces.rs
 //!   otherwise (what embedders get)   glsl/spirv/    ──copied───▶  the same
 //!                                                                 OUT_DIR/shaders.rs
 //! ```
@@ -17,6 +17,9 @@ use std::{env, fs};
 #[cfg(feature = "compile-shaders")]
 #[path = "build/compile.rs"]
 mod compile;
+#[cfg(feature = "compile-shaders")]
+#[path = "build/interface.rs"]
+mod interface;
 #[cfg(feature = "compile-shaders")]
 #[path = "build/reflect.rs"]
 mod reflect;
@@ -62,12 +65,14 @@ fn list_shaders(artefacts: &Path) -> String {
         let name = entry_point.replace('.', "_").to_uppercase();
         let bytes = fs::metadata(path).map_or_else(|e| panic!("{}: {e}", path.display()), |m| m.len());
         let only = if entry_point.starts_with("baseline_") { "#[cfg(feature = \"baselines\")]\n" } else { "" };
-        writeln!(
-            text,
-            "/// `glsl/{entry_point}`\n{only}pub static {name}: &[u32] = &words::<{}>(include_bytes!({path:?}));",
-            bytes / 4
-        )
-        .expect("writing to a string");
+        let words = format!("&words::<{}>(include_bytes!({path:?}))", bytes / 4);
+        let (kind, value) = if entry_point.ends_with(".comp") {
+            ("Compute", format!("Compute {{ words: {words}, interface: interfaces::{name} }}"))
+        } else {
+            ("&[u32]", words)
+        };
+        writeln!(text, "/// `glsl/{entry_point}`\n{only}pub static {name}: {kind} = {value};")
+            .expect("writing to a string");
     }
     text
 }

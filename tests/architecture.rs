@@ -29,7 +29,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("fixtures", &["abi", "budget", "math", "model", "picture", "scene", "spline", "twin"]),
     // GPU: no geometry
     ("gpu", &[]),
-    ("shaders", &[]),
+    ("shaders", &["gpu"]),
     ("bindings", &["gpu"]),
     // where both meet
     ("scene", &["abi", "bindings", "csg", "gpu", "math", "spline", "trim", "model", "picture", "baselines"]),
@@ -72,6 +72,7 @@ const RECORDS: &[&str] = &[
 /// Files of a stage's folder that are neither a pass nor a record.
 const NO_PASSES: &[&str] = &[
     "src/frame/antialiasing/mod.rs",
+    "src/frame/common/kernel.rs",
     "src/frame/common/room.rs",
     "src/frame/solids/buffers.rs",
     "src/frame/solids/lists.rs",
@@ -157,8 +158,8 @@ impl Source {
         }
         if self.is_pass() {
             for beside in ["crate::frame::", "super::"] {
-                // what a pass draws into or reads may be another's to name
-                if self.code.lines().any(|line| line.contains(beside) && !line.trim_end().ends_with("_FORMAT;")) {
+                let uses = |line: &str| line.contains(beside) && !line.contains("crate::frame::common::");
+                if self.code.lines().any(uses) {
                     complain("a pass may not use another".to_owned());
                 }
             }

@@ -14,12 +14,13 @@
 //! `taus`, `counters`. The same in `f64`: `Way::Ipass` of `src/baselines/factors`.
 
 use crate::bindings::Bounded;
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
 
 /// The pass.
 pub(crate) struct BaselineSlefe {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -32,25 +33,13 @@ pub(crate) struct Bindings<'a> {
 impl BaselineSlefe {
     /// `cones`: some closed part has no trims.
     pub(crate) fn new(device: &Device, cones: bool) -> Result<Self, GpuError> {
-        let mut bindings = Bounded::bindings();
-        bindings.push(Binding::Storage);
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "baseline slefe",
-                spirv: shaders::BASELINE_SLEFE_COMP,
-                bindings: &bindings,
-                push_bytes: 0,
-                constants: &Bounded::constants(cones),
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "baseline slefe", &shaders::BASELINE_SLEFE_COMP, &Bounded::constants(cones))?;
+        Ok(Self { kernel })
     }
 
     /// One thread for each of `items`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
         let resources = [b.bounded.resources().as_slice(), &[b.slefes.into()]].concat();
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(items.div_ceil(Bounded::GROUP));
+        self.kernel.record(cmd, &resources, items);
     }
 }

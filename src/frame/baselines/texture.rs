@@ -8,20 +8,18 @@
 //! Writes: `sizes`: `words`, `counters`; `flip`: `texels`, `counters`; `fill`: `texels`, `places`. Barriers
 //! between the steps are the caller's. What the method is: `src/baselines/texture.rs`.
 
-use crate::bindings::with_texels;
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Resource, Texels};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Resource, Texels};
 use crate::shaders;
 
-/// Threads of a workgroup of the first step.
-const GROUP: u32 = 64;
 /// Workgroups that share the rows of one face in the third step.
 const ROW_GROUPS: u32 = 16;
 
 /// The steps.
 pub(crate) struct BaselineTexture {
-    sizes: Pipeline,
-    flip: Pipeline,
-    fill: Pipeline,
+    sizes: Kernel,
+    flip: Kernel,
+    fill: Kernel,
 }
 
 /// Of all steps.
@@ -43,20 +41,17 @@ pub(crate) struct Bindings<'a> {
 
 impl BaselineTexture {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let pipeline = |name, spirv, bindings: &[Binding]| {
-            Pipeline::compute(device, &ComputeInfo { name, spirv, bindings, push_bytes: 0, constants: &[] })
-        };
+        let kernel = |name, shader| Kernel::new(device, name, shader, &[]);
         Ok(Self {
-            sizes: pipeline("baseline texture (sizes)", shaders::BASELINE_TEXTURE_SIZES_COMP, &[Binding::Storage; 4])?,
-            flip: pipeline("baseline texture (flip)", shaders::BASELINE_TEXTURE_FLIP_COMP, &with_texels(2..7, 11))?,
-            fill: pipeline("baseline texture (fill)", shaders::BASELINE_TEXTURE_FILL_COMP, &[Binding::Storage; 8])?,
+            sizes: kernel("baseline texture (sizes)", &shaders::BASELINE_TEXTURE_SIZES_COMP)?,
+            flip: kernel("baseline texture (flip)", &shaders::BASELINE_TEXTURE_FLIP_COMP)?,
+            fill: kernel("baseline texture (fill)", &shaders::BASELINE_TEXTURE_FILL_COMP)?,
         })
     }
 
     /// Words of each of `placed` faces.
     pub(crate) fn sizes(&self, cmd: &Commands<'_>, b: &Bindings<'_>, placed: u32) {
-        cmd.bind(&self.sizes, &[b.knob, b.face_speeds, b.words, b.counters].map(Into::into), &[]);
-        cmd.dispatch(placed.div_ceil(GROUP));
+        self.sizes.record(cmd, &[b.knob, b.face_speeds, b.words, b.counters].map(Into::into), placed);
     }
 
     /// Flips along each of `curves`.
@@ -74,16 +69,14 @@ impl BaselineTexture {
             b.texels.into(),
             b.counters.into(),
         ];
-        cmd.bind(&self.flip, &resources, &[]);
-        cmd.dispatch_grid(grid(curves, 1));
+        self.flip.record_grid(cmd, &resources, grid(curves, 1));
     }
 
     /// Parities along the rows of each of `placed` faces.
     pub(crate) fn fill(&self, cmd: &Commands<'_>, b: &Bindings<'_>, placed: u32) {
         let resources =
             [b.knob, b.face_speeds, b.starts, b.texels, b.counters, &**b.face_instances, &**b.faces, b.places];
-        cmd.bind(&self.fill, &resources.map(Into::into), &[]);
-        cmd.dispatch_grid(grid(placed, ROW_GROUPS));
+        self.fill.record_grid(cmd, &resources.map(Into::into), grid(placed, ROW_GROUPS));
     }
 }
 

@@ -1,5 +1,6 @@
 //! What several stages have in common: counters that begin at 0, prefix sums, and the draws of sub-patches.
 
+pub(crate) mod kernel;
 pub(crate) mod reset;
 pub(crate) mod room;
 pub mod scan;

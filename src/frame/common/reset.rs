@@ -10,19 +10,13 @@
 //! Reads: `frame`. Writes: `draws`, `counters`.
 //! Twin: `src/twin/reset.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
-
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
-
-/// `constant_id` of `DRAWS_ONLY`.
-const DRAWS_ONLY: u32 = 1;
 
 /// The pass.
 pub(crate) struct Reset {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -38,23 +32,18 @@ pub(crate) struct Bindings<'a> {
 impl Reset {
     /// `draws_only`: the other counters stay.
     pub(crate) fn new(device: &Device, draws_only: bool) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
+        let kernel = Kernel::new(
             device,
-            &ComputeInfo {
-                name: if draws_only { "reset (draws)" } else { "reset" },
-                spirv: shaders::RESET_COMP,
-                bindings: &with_constants(3),
-                push_bytes: 0,
-                constants: &[(DRAWS_ONLY, u32::from(draws_only))],
-            },
+            if draws_only { "reset (draws)" } else { "reset" },
+            &shaders::RESET_COMP,
+            &[("DRAWS_ONLY", u32::from(draws_only))],
         )?;
-        Ok(Self { pipeline })
+        Ok(Self { kernel })
     }
 
     /// One thread for each of `threads`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, threads: u32) {
         let resources = [b.frame, b.draws, b.counters].map(Into::into);
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(threads.div_ceil(GROUP));
+        self.kernel.record(cmd, &resources, threads);
     }
 }

@@ -21,7 +21,8 @@
 //! Hillis, G. L. Steele, *Data Parallel Algorithms*, 1986, for the scan within a workgroup.
 
 use crate::abi::ScanParams;
-use crate::gpu::{Access, Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, barrier};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
 use crate::shaders;
 
 /// Elements that one workgroup scans.
@@ -79,33 +80,22 @@ pub struct Scan {
 
 #[derive(Debug)]
 struct Steps {
-    blocks: Pipeline,
-    sums: Pipeline,
-    add: Pipeline,
+    blocks: Kernel,
+    sums: Kernel,
+    add: Kernel,
 }
 
 impl Steps {
     fn new(device: &Device, count_on_gpu: bool) -> Result<Self, GpuError> {
-        let step = |name, spirv| {
-            Pipeline::compute(
-                device,
-                &ComputeInfo {
-                    name,
-                    spirv,
-                    bindings: &[Binding::Storage; 5],
-                    push_bytes: size_of::<ScanParams>() as u32,
-                    constants: &[(0, count_on_gpu as u32)],
-                },
-            )
-        };
+        let step = |name, shader| Kernel::new(device, name, shader, &[("COUNT_ON_GPU", u32::from(count_on_gpu))]);
         let [blocks, sums, add] = match count_on_gpu {
             false => ["scan blocks", "scan sums", "scan add"],
             true => ["scan blocks (counted)", "scan sums (counted)", "scan add (counted)"],
         };
         Ok(Self {
-            blocks: step(blocks, shaders::SCAN_BLOCKS_COMP)?,
-            sums: step(sums, shaders::SCAN_SUMS_COMP)?,
-            add: step(add, shaders::SCAN_ADD_COMP)?,
+            blocks: step(blocks, &shaders::SCAN_BLOCKS_COMP)?,
+            sums: step(sums, &shaders::SCAN_SUMS_COMP)?,
+            add: step(add, &shaders::SCAN_ADD_COMP)?,
         })
     }
 }
@@ -141,7 +131,7 @@ impl Scan {
         }
         let params = ScanParams { count: most, count_index, total_index };
         let resources = [values, offsets, sums, total, counts].map(Into::into);
-        let bind = |step| cmd.bind(step, &resources, bytemuck::bytes_of(&params));
+        let bind = |step: &Kernel| step.bind(cmd, &resources, bytemuck::bytes_of(&params));
         let dispatch = || match count {
             Count::Host(count) => cmd.dispatch(block_count(count)),
             Count::Gpu { arguments, offset, .. } => cmd.dispatch_indirect(arguments, offset),

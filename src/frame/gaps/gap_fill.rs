@@ -14,29 +14,19 @@
 //! `counters`, and the mark in the visibility image; `record`: `doubts`; `show`: the visibility image. All of them at
 //! doubtful pixels only.
 
-use crate::bindings::{PRIMITIVES, Placed, Primitives, with_constants, with_placed};
-use crate::gpu::{
-    Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Resource, Sampler, Texels,
-};
+use crate::bindings::{Placed, Primitives};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource, Sampler, Texels};
 use crate::shaders::{self, TrimTest};
 use ash::vk;
 
 /// Columns and rows of the picture that a workgroup of the first step looks for doubtful pixels in.
 const PART: [u32; 2] = [62, 30];
-/// `constant_id` of `SCENE_HAS_RATIONAL`.
-const SCENE_HAS_RATIONAL: u32 = 0;
-
-/// `constant_id` of `SCENE_HAS_OTHERS`.
-const SCENE_HAS_OTHERS: u32 = 4;
-
-/// `constant_id` of `SOLIDS_HAVE`.
-const SOLIDS_HAVE: u32 = 5;
-
 /// The pass, in its three steps.
 pub(crate) struct GapFill {
-    find: Pipeline,
-    heal: Pipeline,
-    show: Pipeline,
+    find: Kernel,
+    fill: Kernel,
+    write: Kernel,
     nearest: Sampler,
 }
 
@@ -92,35 +82,21 @@ impl GapFill {
         (rational, others): (bool, bool),
         volume: Option<u32>,
     ) -> Result<Self, GpuError> {
-        let mut find = with_constants(7);
-        find[1] = Binding::StorageImage;
-        find[5] = Binding::Sampled;
-        find[6] = Binding::Texels;
-        let mut show = with_constants(4);
-        show[1] = Binding::StorageImage;
-        let mut heal = with_placed(15);
-        heal.extend(vec![Binding::Texels; test.texels]);
-        heal.extend(PRIMITIVES.iter().filter(|_| volume.is_some()));
-        heal[7] = Binding::StorageImage;
-        heal[10] = Binding::Texels;
-        heal[11] = Binding::StorageImage;
         let weights = if rational { "rational" } else { "polynomial" };
-        let pipeline = |name: &str, spirv, bindings: &[Binding]| {
-            let constants = &[
-                (SCENE_HAS_RATIONAL, u32::from(rational)),
-                (SCENE_HAS_OTHERS, u32::from(others)),
-                (SOLIDS_HAVE, volume.unwrap_or_default()),
-            ];
-            Pipeline::compute(device, &ComputeInfo { name, spirv, bindings, push_bytes: 0, constants })
+        let constants = [
+            ("SCENE_HAS_RATIONAL", u32::from(rational)),
+            ("SCENE_HAS_OTHERS", u32::from(others)),
+            ("SOLIDS_HAVE", volume.unwrap_or_default()),
+        ];
+        let (fill, within, constants) = match test.within.filter(|_| volume.is_some()) {
+            Some(within) => (within.gap_fill, ", within a volume", &constants[..]),
+            None => (test.gap_fill, "", &constants[..2]),
         };
-        let (second, within) = match test.within.filter(|_| volume.is_some()) {
-            Some(within) => (within.heal, ", within a volume"),
-            None => (test.heal, ""),
-        };
+        let name = format!("gap fill ({}, {weights}{within})", test.way);
         Ok(Self {
-            find: pipeline("gap fill (find)", shaders::GAP_FIND_COMP, &find)?,
-            heal: pipeline(&format!("gap fill ({}, {weights}{within})", test.way), second, &heal)?,
-            show: pipeline("gap fill (show)", shaders::GAP_WRITE_COMP, &show)?,
+            find: Kernel::new(device, "gap find", &shaders::GAP_FIND_COMP, &[])?,
+            fill: Kernel::new(device, &name, fill, constants)?,
+            write: Kernel::new(device, "gap write", &shaders::GAP_WRITE_COMP, &[])?,
             nearest: Sampler::new(device, vk::Filter::NEAREST)?,
         })
     }
@@ -137,8 +113,7 @@ impl GapFill {
             Resource::Sampled(b.depth, &self.nearest),
             b.rings.into(),
         ];
-        cmd.bind(&self.find, &resources, &[]);
-        cmd.dispatch_grid([width.div_ceil(PART[0]), height.div_ceil(PART[1]), 1]);
+        self.find.record_grid(cmd, &resources, [width.div_ceil(PART[0]), height.div_ceil(PART[1]), 1]);
     }
 
     /// One thread a doubtful pixel.
@@ -166,13 +141,15 @@ impl GapFill {
             .chain(trim)
             .chain(volume)
             .collect();
-        cmd.bind(&self.heal, &resources, &[]);
-        cmd.dispatch_indirect(b.dispatch, 0);
+        self.fill.record_indirect(cmd, &resources, (b.dispatch, 0));
     }
 
     /// One thread a doubtful pixel, as in the second step, whose bindings these are.
     pub(crate) fn show(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
-        cmd.bind(&self.show, &[b.frame.into(), b.visibility.into(), b.doubts.into(), b.counters.into()], &[]);
-        cmd.dispatch_indirect(b.dispatch, 0);
+        self.write.record_indirect(
+            cmd,
+            &[b.frame.into(), b.visibility.into(), b.doubts.into(), b.counters.into()],
+            (b.dispatch, 0),
+        );
     }
 }

@@ -3,16 +3,13 @@
 //!
 //! Reads: `frame`, `hidden`. Writes: `taus`, `counters`. Twin: `src/twin/occlusion.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
-
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
 
 /// The pass.
 pub(crate) struct CullEarly {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -27,23 +24,13 @@ pub(crate) struct Bindings<'a> {
 
 impl CullEarly {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "cull early",
-                spirv: shaders::CULL_EARLY_COMP,
-                bindings: &with_constants(4),
-                push_bytes: 0,
-                constants: &[],
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "cull early", &shaders::CULL_EARLY_COMP, &[])?;
+        Ok(Self { kernel })
     }
 
     /// One thread for each of `items`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
         let resources = [b.frame, b.hidden, b.taus, b.counters].map(Into::into);
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(items.div_ceil(GROUP));
+        self.kernel.record(cmd, &resources, items);
     }
 }

@@ -9,18 +9,13 @@
 //! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `points`, `items`, `farthest`, `outside`.
 //! Writes: `taus`, `hidden`, `counters`. Twin: `src/twin/occlusion.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
 use crate::shaders;
-
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
-/// `constant_id` of `SCENE_HAS_RATIONAL`.
-const SCENE_HAS_RATIONAL: u32 = 0;
 
 /// The pass.
 pub(crate) struct CullLate {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -46,19 +41,9 @@ pub(crate) struct Bindings<'a> {
 
 impl CullLate {
     pub(crate) fn new(device: &Device, rational: bool) -> Result<Self, GpuError> {
-        let mut bindings = with_constants(13);
-        bindings[6] = Binding::Texels;
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "cull late",
-                spirv: shaders::CULL_LATE_COMP,
-                bindings: &bindings,
-                push_bytes: 0,
-                constants: &[(SCENE_HAS_RATIONAL, u32::from(rational))],
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel =
+            Kernel::new(device, "cull late", &shaders::CULL_LATE_COMP, &[("SCENE_HAS_RATIONAL", u32::from(rational))])?;
+        Ok(Self { kernel })
     }
 
     /// One thread for each of `items`.
@@ -78,7 +63,6 @@ impl CullLate {
             b.outside.into(),
             b.counters.into(),
         ];
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(items.div_ceil(GROUP));
+        self.kernel.record(cmd, &resources, items);
     }
 }

@@ -4,13 +4,14 @@
 //! Reads: `frame`, the depth image. Writes: `depth_pyramid`. Twin: `src/twin/occlusion.rs`.
 
 use crate::abi::{BLOCK, TILE};
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline, Resource, Sampler};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource, Sampler};
 use crate::shaders;
 use ash::vk;
 
 /// The pass.
 pub(crate) struct DepthPyramid {
-    pipeline: Pipeline,
+    kernel: Kernel,
     nearest: Sampler,
 }
 
@@ -24,24 +25,18 @@ pub(crate) struct Bindings<'a> {
 
 impl DepthPyramid {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "depth pyramid",
-                spirv: shaders::DEPTH_PYRAMID_COMP,
-                bindings: &[Binding::Uniform, Binding::Sampled, Binding::Storage],
-                push_bytes: 0,
-                constants: &[],
-            },
-        )?;
-        Ok(Self { pipeline, nearest: Sampler::new(device, vk::Filter::NEAREST)? })
+        let kernel = Kernel::new(device, "depth pyramid", &shaders::DEPTH_PYRAMID_COMP, &[])?;
+        Ok(Self { kernel, nearest: Sampler::new(device, vk::Filter::NEAREST)? })
     }
 
     /// One workgroup for each block of tiles.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
         let (width, height) = b.depth.size();
         let blocks = |pixels: u32| pixels.div_ceil(TILE * BLOCK);
-        cmd.bind(&self.pipeline, &[b.frame.into(), Resource::Sampled(b.depth, &self.nearest), b.farthest.into()], &[]);
-        cmd.dispatch_grid([blocks(width), blocks(height), 1]);
+        self.kernel.record_grid(
+            cmd,
+            &[b.frame.into(), Resource::Sampled(b.depth, &self.nearest), b.farthest.into()],
+            [blocks(width), blocks(height), 1],
+        );
     }
 }

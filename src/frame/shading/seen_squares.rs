@@ -3,12 +3,13 @@
 //! Reads: `frame`, the visibility images. Writes: `seen_squares`. Twin: `src/twin/squares.rs`.
 
 use crate::abi::{BLOCK, TILE};
-use crate::gpu::{Binding, Buffer, Commands, ComputeInfo, Device, GpuError, Image, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Image};
 use crate::shaders;
 
 /// The pass.
 pub(crate) struct SeenSquares {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers and images, in binding order.
@@ -23,25 +24,18 @@ pub(crate) struct Bindings<'a> {
 
 impl SeenSquares {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let bindings = [Binding::Uniform, Binding::StorageImage, Binding::StorageImage, Binding::Storage];
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "seen squares",
-                spirv: shaders::SEEN_SQUARES_COMP,
-                bindings: &bindings,
-                push_bytes: 0,
-                constants: &[],
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "seen squares", &shaders::SEEN_SQUARES_COMP, &[])?;
+        Ok(Self { kernel })
     }
 
     /// One workgroup for each block of tiles.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
         let (width, height) = b.visibility.size();
         let blocks = |pixels: u32| pixels.div_ceil(TILE * BLOCK);
-        cmd.bind(&self.pipeline, &[b.frame.into(), b.visibility.into(), b.others.into(), b.squares.into()], &[]);
-        cmd.dispatch_grid([blocks(width), blocks(height), 1]);
+        self.kernel.record_grid(
+            cmd,
+            &[b.frame.into(), b.visibility.into(), b.others.into(), b.squares.into()],
+            [blocks(width), blocks(height), 1],
+        );
     }
 }

@@ -7,17 +7,14 @@
 //! Reads: everything that `Bindings` names but what it writes. Writes: `counts`, `fragments`, `counters`.
 //! Twin: `src/twin/operand_sort.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
 use std::ops::Range;
 
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
-
 /// The pass.
 pub(crate) struct OperandSort {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -36,17 +33,8 @@ pub(crate) struct Bindings<'a> {
 
 impl OperandSort {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "operand sort",
-                spirv: shaders::OPERAND_SORT_COMP,
-                bindings: &with_constants(8),
-                push_bytes: 8,
-                constants: &[],
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "operand sort", &shaders::OPERAND_SORT_COMP, &[])?;
+        Ok(Self { kernel })
     }
 
     /// One thread a pixel of these columns of the picture, and rows of the band: where there may be fragments. The first
@@ -58,7 +46,7 @@ impl OperandSort {
         let solid = [b.frame, b.leaves, b.leaf_centres, b.shell_leaves];
         let lists = [b.starts, b.counts, b.fragments, b.counters];
         let resources: Vec<_> = solid.into_iter().chain(lists).map(Into::into).collect();
-        cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&[columns.start, rows.start]));
-        cmd.dispatch_grid([(columns.end - columns.start).div_ceil(GROUP), rows.end - rows.start, 1]);
+        self.kernel.bind(cmd, &resources, bytemuck::bytes_of(&[columns.start, rows.start]));
+        self.kernel.dispatch_rows(cmd, [columns.end - columns.start, rows.end - rows.start]);
     }
 }

@@ -2,20 +2,14 @@
 //!
 //! Reads: `frame`, `rects`, `starts`. Writes: `counts`, then `leaves`, in Blist order.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
-
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
-
-/// `constant_id` of `LISTS`.
-const LISTS: u32 = 6;
 
 /// The pass.
 pub(crate) struct SolidBlocks {
-    count: Pipeline,
-    list: Pipeline,
+    count: Kernel,
+    list: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -29,17 +23,8 @@ pub(crate) struct Bindings<'a> {
 
 impl SolidBlocks {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let pipeline = |name, lists| {
-            let info = ComputeInfo {
-                name,
-                spirv: shaders::SOLID_BLOCKS_COMP,
-                bindings: &with_constants(5),
-                push_bytes: 0,
-                constants: &[(LISTS, lists)],
-            };
-            Pipeline::compute(device, &info)
-        };
-        Ok(Self { count: pipeline("solid blocks (count)", 0)?, list: pipeline("solid blocks (list)", 1)? })
+        let kernel = |name, lists| Kernel::new(device, name, &shaders::SOLID_BLOCKS_COMP, &[("LISTS", lists)]);
+        Ok(Self { count: kernel("solid blocks (count)", 0)?, list: kernel("solid blocks (list)", 1)? })
     }
 
     /// One thread for each of `runs` of leaves of all blocks.
@@ -53,8 +38,7 @@ impl SolidBlocks {
     }
 }
 
-fn record(cmd: &Commands<'_>, pipeline: &Pipeline, b: &Bindings<'_>, runs: u32) {
+fn record(cmd: &Commands<'_>, kernel: &Kernel, b: &Bindings<'_>, runs: u32) {
     let resources = [b.frame, b.rects, b.counts, b.starts, b.leaves].map(Into::into);
-    cmd.bind(pipeline, &resources, &[]);
-    cmd.dispatch(runs.div_ceil(GROUP));
+    kernel.record(cmd, &resources, runs);
 }

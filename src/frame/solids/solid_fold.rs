@@ -4,16 +4,13 @@
 //! whose loops a driver ended.
 //! Twin: `src/twin/solid_fold.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
-
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
 
 /// The pass.
 pub(crate) struct SolidFold {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -29,23 +26,13 @@ pub(crate) struct Bindings<'a> {
 
 impl SolidFold {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "solid fold",
-                spirv: shaders::SOLID_FOLD_COMP,
-                bindings: &with_constants(6),
-                push_bytes: 0,
-                constants: &[],
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "solid fold", &shaders::SOLID_FOLD_COMP, &[])?;
+        Ok(Self { kernel })
     }
 
     /// One thread for each of `tiles`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, tiles: u32) {
         let resources = [b.frame, b.leaves, b.tile_starts, b.tile_leaves, b.tile_entries, b.counters].map(Into::into);
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(tiles.div_ceil(GROUP));
+        self.kernel.record(cmd, &resources, tiles);
     }
 }

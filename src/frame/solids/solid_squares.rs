@@ -2,16 +2,13 @@
 //!
 //! Reads: `frame`, `tile_entries`. Writes: `tile_squares`. Twin: `src/twin/squares.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
-
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
 
 /// The pass.
 pub(crate) struct SolidSquares {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -25,22 +22,12 @@ pub(crate) struct Bindings<'a> {
 
 impl SolidSquares {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "solid squares",
-                spirv: shaders::SOLID_SQUARES_COMP,
-                bindings: &with_constants(3),
-                push_bytes: 0,
-                constants: &[],
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "solid squares", &shaders::SOLID_SQUARES_COMP, &[])?;
+        Ok(Self { kernel })
     }
 
     /// One thread for each of `tiles`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, tiles: u32) {
-        cmd.bind(&self.pipeline, &[b.frame, b.tile_entries, b.tile_squares].map(Into::into), &[]);
-        cmd.dispatch(tiles.div_ceil(GROUP));
+        self.kernel.record(cmd, &[b.frame, b.tile_entries, b.tile_squares].map(Into::into), tiles);
     }
 }

@@ -3,20 +3,14 @@
 //! Reads: `frame`, `rects`, `block_starts`, `block_leaves`, `starts`. Writes: `counts`, then `leaves`, in
 //! Blist order; `counters`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
-
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
-
-/// `constant_id` of `LISTS`.
-const LISTS: u32 = 6;
 
 /// The pass.
 pub(crate) struct SolidTiles {
-    count: Pipeline,
-    list: Pipeline,
+    count: Kernel,
+    list: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -34,17 +28,8 @@ pub(crate) struct Bindings<'a> {
 
 impl SolidTiles {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let pipeline = |name, lists| {
-            let info = ComputeInfo {
-                name,
-                spirv: shaders::SOLID_TILES_COMP,
-                bindings: &with_constants(8),
-                push_bytes: 0,
-                constants: &[(LISTS, lists)],
-            };
-            Pipeline::compute(device, &info)
-        };
-        Ok(Self { count: pipeline("solid tiles (count)", 0)?, list: pipeline("solid tiles (list)", 1)? })
+        let kernel = |name, lists| Kernel::new(device, name, &shaders::SOLID_TILES_COMP, &[("LISTS", lists)]);
+        Ok(Self { count: kernel("solid tiles (count)", 0)?, list: kernel("solid tiles (list)", 1)? })
     }
 
     /// One thread for each of `tiles`.
@@ -58,9 +43,8 @@ impl SolidTiles {
     }
 }
 
-fn record(cmd: &Commands<'_>, pipeline: &Pipeline, b: &Bindings<'_>, tiles: u32) {
+fn record(cmd: &Commands<'_>, kernel: &Kernel, b: &Bindings<'_>, tiles: u32) {
     let resources =
         [b.frame, b.rects, b.block_starts, b.block_leaves, b.counts, b.starts, b.leaves, b.counters].map(Into::into);
-    cmd.bind(pipeline, &resources, &[]);
-    cmd.dispatch(tiles.div_ceil(GROUP));
+    kernel.record(cmd, &resources, tiles);
 }

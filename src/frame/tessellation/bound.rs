@@ -14,33 +14,24 @@
 //! Twin: `src/twin/bound.rs`.
 
 use crate::bindings::Bounded;
-use crate::gpu::{Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Commands, Device, GpuError};
 use crate::shaders;
 
 /// The pass.
 pub(crate) struct Bound {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 impl Bound {
     /// `cones`: some closed part has no trims.
     pub(crate) fn new(device: &Device, cones: bool) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "bound",
-                spirv: shaders::BOUND_COMP,
-                bindings: &Bounded::bindings(),
-                push_bytes: 0,
-                constants: &Bounded::constants(cones),
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "bound", &shaders::BOUND_COMP, &Bounded::constants(cones))?;
+        Ok(Self { kernel })
     }
 
     /// One thread for each of `items`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bounded<'_>, items: u32) {
-        cmd.bind(&self.pipeline, &b.resources(), &[]);
-        cmd.dispatch(items.div_ceil(Bounded::GROUP));
+        self.kernel.record(cmd, &b.resources(), items);
     }
 }

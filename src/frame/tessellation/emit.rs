@@ -8,16 +8,13 @@
 //! Reads: `frame`, `factors`, `sub_patch_starts`, `vertex_starts`. Writes: `sub_patches`, `draws`, `counters`.
 //! Twin: `src/twin/emit.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
-
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
 
 /// The pass.
 pub(crate) struct Emit {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -36,24 +33,14 @@ pub(crate) struct Bindings<'a> {
 
 impl Emit {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "emit",
-                spirv: shaders::EMIT_COMP,
-                bindings: &with_constants(7),
-                push_bytes: 0,
-                constants: &[],
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "emit", &shaders::EMIT_COMP, &[])?;
+        Ok(Self { kernel })
     }
 
     /// One thread for each of `items`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
         let resources = [b.frame, b.factors, b.sub_patch_starts, b.vertex_starts, b.sub_patches, b.draws, b.counters]
             .map(Into::into);
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(items.div_ceil(GROUP));
+        self.kernel.record(cmd, &resources, items);
     }
 }

@@ -13,16 +13,13 @@
 //! Reads: `frame`, `face_instances`, `faces`, `patches`, `items`, `taus`, `links`. Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
 //! Twin: `src/twin/split.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
-
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
 
 /// The pass.
 pub(crate) struct Split {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -46,17 +43,13 @@ pub(crate) struct Bindings<'a> {
 impl Split {
     /// `linked`: faces share sides.
     pub(crate) fn new(device: &Device, linked: bool) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
+        let kernel = Kernel::new(
             device,
-            &ComputeInfo {
-                name: if linked { "split (linked)" } else { "split" },
-                spirv: if linked { shaders::SPLIT_LINKED_COMP } else { shaders::SPLIT_COMP },
-                bindings: &with_constants(10)[..if linked { 10 } else { 9 }],
-                push_bytes: 0,
-                constants: &[],
-            },
+            if linked { "split (linked)" } else { "split" },
+            if linked { &shaders::SPLIT_LINKED_COMP } else { &shaders::SPLIT_COMP },
+            &[],
         )?;
-        Ok(Self { pipeline })
+        Ok(Self { kernel })
     }
 
     /// One thread for each of `items`.
@@ -73,7 +66,6 @@ impl Split {
             b.vertex_counts,
         ];
         let resources: Vec<_> = resources.into_iter().chain(b.links).map(Into::into).collect();
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(items.div_ceil(GROUP));
+        self.kernel.record(cmd, &resources, items);
     }
 }

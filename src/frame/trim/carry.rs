@@ -9,13 +9,13 @@
 //!
 //! Reads: `frame`, `strips`, `wide_strips`. Writes: `row_windings`. Twin: `src/twin/carry.rs`.
 
-use crate::bindings::with_texels;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
 use crate::shaders;
 
 /// The pass.
 pub(crate) struct Carry {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -29,23 +29,13 @@ pub(crate) struct Bindings<'a> {
 
 impl Carry {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "carry",
-                spirv: shaders::CARRY_COMP,
-                bindings: &with_texels(1..2, 4),
-                push_bytes: 0,
-                constants: &[],
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "carry", &shaders::CARRY_COMP, &[])?;
+        Ok(Self { kernel })
     }
 
     /// One workgroup for each of `wide_strips`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, wide_strips: u32) {
         let resources = [b.frame.into(), b.strips.into(), b.wide_strips.into(), b.row_windings.into()];
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(wide_strips);
+        self.kernel.record_grid(cmd, &resources, [wide_strips, 1, 1]);
     }
 }

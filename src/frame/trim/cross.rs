@@ -11,21 +11,14 @@
 //! counting and again after inserting),
 //! `intercepts`, `border_cells` and `row_windings` (zero before counting). Twin: `src/twin/cross.rs`.
 
-use crate::bindings::with_texels;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
 use crate::shaders;
-
-/// `constant_id` of `INSERT`.
-const INSERT: u32 = 1;
-/// `constant_id` of `SCENE_HAS_BAYS`.
-const SCENE_HAS_BAYS: u32 = 2;
-/// `constant_id` of `MARKS_BORDERS`.
-const MARKS_BORDERS: u32 = 3;
 
 /// The pass, in its two roles.
 pub(crate) struct Cross {
-    count: Pipeline,
-    insert: Pipeline,
+    count: Kernel,
+    insert: Kernel,
 }
 
 /// Its buffers, in binding order, and the dispatches.
@@ -52,23 +45,11 @@ pub(crate) struct Bindings<'a> {
 impl Cross {
     /// `bays`: strips of some face have several bays. `marks`: where curves pass is asked for.
     pub(crate) fn new(device: &Device, bays: bool, marks: bool) -> Result<Self, GpuError> {
-        let pipeline = |name, insert: bool| {
-            Pipeline::compute(
-                device,
-                &ComputeInfo {
-                    name,
-                    spirv: shaders::CROSS_COMP,
-                    bindings: &with_texels(1..9, 13),
-                    push_bytes: 0,
-                    constants: &[
-                        (INSERT, u32::from(insert)),
-                        (SCENE_HAS_BAYS, u32::from(bays)),
-                        (MARKS_BORDERS, u32::from(marks)),
-                    ],
-                },
-            )
+        let kernel = |name, insert: bool| {
+            let roles = [("INSERT", insert), ("SCENE_HAS_BAYS", bays), ("MARKS_BORDERS", marks)];
+            Kernel::new(device, name, &shaders::CROSS_COMP, &roles.map(|(name, flag)| (name, u32::from(flag))))
         };
-        Ok(Self { count: pipeline("cross (count)", false)?, insert: pipeline("cross (insert)", true)? })
+        Ok(Self { count: kernel("cross (count)", false)?, insert: kernel("cross (insert)", true)? })
     }
 
     /// Counts the intercepts of each row.
@@ -81,7 +62,7 @@ impl Cross {
         Self::record(cmd, &self.insert, b);
     }
 
-    fn record(cmd: &Commands<'_>, pipeline: &Pipeline, b: &Bindings<'_>) {
+    fn record(cmd: &Commands<'_>, kernel: &Kernel, b: &Bindings<'_>) {
         let resources = [
             b.frame.into(),
             b.face_instances.into(),
@@ -98,7 +79,6 @@ impl Cross {
             // not written where there are none
             b.row_windings.unwrap_or(b.frame).into(),
         ];
-        cmd.bind(pipeline, &resources, &[]);
-        cmd.dispatch_indirect(b.dispatches, 0);
+        kernel.record_indirect(cmd, &resources, (b.dispatches, 0));
     }
 }

@@ -9,19 +9,13 @@
 //! `seen_bays`. `frame` and `views` are those of what the table is made of: this view, or a wider one that serves those from near
 //! by (`src/scene/nearby.rs`). Twin: `src/twin/density.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
-
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
-
-/// `constant_id` of `SCENE_HAS_BAYS`.
-const SCENE_HAS_BAYS: u32 = 1;
 
 /// The pass.
 pub(crate) struct Density {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -45,17 +39,8 @@ pub(crate) struct Bindings<'a> {
 impl Density {
     /// `bays`: strips of some face have several bays.
     pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "density",
-                spirv: shaders::DENSITY_COMP,
-                bindings: &with_constants(10),
-                push_bytes: 0,
-                constants: &[(SCENE_HAS_BAYS, u32::from(bays))],
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "density", &shaders::DENSITY_COMP, &[("SCENE_HAS_BAYS", u32::from(bays))])?;
+        Ok(Self { kernel })
     }
 
     /// One thread for each of `cells`.
@@ -74,7 +59,6 @@ impl Density {
             b.seen_bays.unwrap_or(b.frame),
         ]
         .map(Into::into);
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(cells.div_ceil(GROUP));
+        self.kernel.record(cmd, &resources, cells);
     }
 }

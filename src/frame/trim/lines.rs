@@ -3,19 +3,13 @@
 //! Reads: `frame`, `strip_heights`. Writes: `strip_counts`, `counters`.
 //! Twin: `src/twin/lines.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
-
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
-
-/// `constant_id` of `SCENE_HAS_BAYS`.
-const SCENE_HAS_BAYS: u32 = 1;
 
 /// The pass.
 pub(crate) struct Lines {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -32,17 +26,8 @@ pub(crate) struct Bindings<'a> {
 impl Lines {
     /// `bays`: strips of some face have several bays.
     pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "lines",
-                spirv: shaders::LINES_COMP,
-                bindings: &with_constants(5),
-                push_bytes: 0,
-                constants: &[(SCENE_HAS_BAYS, u32::from(bays))],
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "lines", &shaders::LINES_COMP, &[("SCENE_HAS_BAYS", u32::from(bays))])?;
+        Ok(Self { kernel })
     }
 
     /// One thread for each of `bays`.
@@ -50,7 +35,6 @@ impl Lines {
         // not read where there are none
         let seen_bays = b.seen_bays.unwrap_or(b.frame);
         let resources = [b.frame, b.strip_heights, b.strip_counts, b.counters, seen_bays].map(Into::into);
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(bays.div_ceil(GROUP));
+        self.kernel.record(cmd, &resources, bays);
     }
 }

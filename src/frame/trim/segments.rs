@@ -8,19 +8,13 @@
 //! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_items`, `strip_starts`, `face_speeds`. Writes: `segment_counts`.
 //! Twin: `src/twin/segments.rs`.
 
-use crate::bindings::with_texels;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
 use crate::shaders;
-
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
-
-/// `constant_id` of `SCENE_HAS_BAYS`.
-const SCENE_HAS_BAYS: u32 = 1;
 
 /// The pass.
 pub(crate) struct Segments {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -40,17 +34,8 @@ pub(crate) struct Bindings<'a> {
 impl Segments {
     /// `bays`: strips of some face have several bays.
     pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "segments",
-                spirv: shaders::SEGMENTS_COMP,
-                bindings: &with_texels(1..6, 9),
-                push_bytes: 0,
-                constants: &[(SCENE_HAS_BAYS, u32::from(bays))],
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "segments", &shaders::SEGMENTS_COMP, &[("SCENE_HAS_BAYS", u32::from(bays))])?;
+        Ok(Self { kernel })
     }
 
     /// One thread for each of `curves`.
@@ -67,7 +52,6 @@ impl Segments {
             // not read where there are none
             b.seen_bays.unwrap_or(b.frame).into(),
         ];
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(curves.div_ceil(GROUP));
+        self.kernel.record(cmd, &resources, curves);
     }
 }

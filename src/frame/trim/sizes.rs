@@ -4,19 +4,13 @@
 //! Reads: `frame`, `strip_starts`, `segment_starts`. Writes: `dispatches`, `strips`, `counters`.
 //! Twin: `src/twin/sizes.rs`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
 use crate::shaders;
-
-/// Threads of a workgroup, as in the shader.
-const GROUP: u32 = 64;
-
-/// `constant_id` of `SCENE_HAS_BAYS`.
-const SCENE_HAS_BAYS: u32 = 1;
 
 /// The pass.
 pub(crate) struct Sizes {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order.
@@ -36,17 +30,8 @@ pub(crate) struct Bindings<'a> {
 impl Sizes {
     /// `bays`: strips of some face have several bays.
     pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "sizes",
-                spirv: shaders::SIZES_COMP,
-                bindings: &with_constants(7),
-                push_bytes: 0,
-                constants: &[(SCENE_HAS_BAYS, u32::from(bays))],
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "sizes", &shaders::SIZES_COMP, &[("SCENE_HAS_BAYS", u32::from(bays))])?;
+        Ok(Self { kernel })
     }
 
     /// One thread for each of `bays`.
@@ -55,7 +40,6 @@ impl Sizes {
         let seen_bays = b.seen_bays.unwrap_or(b.frame);
         let resources = [b.frame, b.strip_starts, b.segment_starts, b.dispatches, b.strips, b.counters, seen_bays];
         let resources = resources.map(Into::into);
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch(bays.div_ceil(GROUP));
+        self.kernel.record(cmd, &resources, bays);
     }
 }

@@ -8,16 +8,13 @@
 //! Reads: `frame`, `row_starts`, `row_total`, `row_windings`, `dispatches`. Writes: `rows` (of each its first
 //! flip, and its number of flips twice, 1 more where it begins inside), `intercepts`, `counters`. Twin: `src/twin/sort.rs`.
 
-use crate::bindings::with_texels;
-use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Texels};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
 use crate::shaders;
-
-/// `constant_id` of `SCENE_HAS_BAYS`.
-const SCENE_HAS_BAYS: u32 = 1;
 
 /// The pass.
 pub(crate) struct Sort {
-    pipeline: Pipeline,
+    kernel: Kernel,
 }
 
 /// Its buffers, in binding order, and the dispatches.
@@ -39,17 +36,8 @@ pub(crate) struct Bindings<'a> {
 impl Sort {
     /// `bays`: strips of some face have several bays.
     pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::compute(
-            device,
-            &ComputeInfo {
-                name: "sort",
-                spirv: shaders::SORT_COMP,
-                bindings: &with_texels(1..2, 7),
-                push_bytes: 0,
-                constants: &[(SCENE_HAS_BAYS, u32::from(bays))],
-            },
-        )?;
-        Ok(Self { pipeline })
+        let kernel = Kernel::new(device, "sort", &shaders::SORT_COMP, &[("SCENE_HAS_BAYS", u32::from(bays))])?;
+        Ok(Self { kernel })
     }
 
     /// One thread a row.
@@ -64,7 +52,6 @@ impl Sort {
             // not read where there are none
             b.row_windings.unwrap_or(b.frame).into(),
         ];
-        cmd.bind(&self.pipeline, &resources, &[]);
-        cmd.dispatch_indirect(b.dispatches, size_of::<[u32; 3]>() as u64);
+        self.kernel.record_indirect(cmd, &resources, (b.dispatches, size_of::<[u32; 3]>() as u64));
     }
 }
