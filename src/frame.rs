@@ -108,7 +108,6 @@ pub(crate) struct Frame<'a> {
 }
 
 const WRITE_TO_READ: (Access, Access) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);
-const WRITE_TO_WRITE: (Access, Access) = (Access::COMPUTE_WRITE, Access::COMPUTE_WRITE);
 
 /// A copy's source, among buffer accesses, which have no layout of their own.
 const COPIED: Access = Access { layout: Access::COMPUTE_READ.layout, ..Access::TRANSFER_READ };

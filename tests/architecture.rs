@@ -171,7 +171,7 @@ impl Source {
             complain("`unsafe`".to_owned());
         }
         let barriers = ["gpu", "headless"].contains(&module) || RECORDS.contains(&self.path.as_str());
-        if !barriers && self.code.contains("barrier::") {
+        if !barriers && ["barrier::", "cmd.after("].iter().any(|name| self.code.contains(name)) {
             complain("barriers between passes stand in the records of src/frame".to_owned());
         }
         for forbidden in HOSTS.iter().filter(|f| self.code.contains(**f)) {

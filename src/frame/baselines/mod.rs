@@ -14,7 +14,7 @@ pub(crate) mod texture;
 use super::common::room::Room;
 use super::trim::density;
 use super::visibility::patches;
-use super::{Frame, WRITE_TO_READ, WRITE_TO_WRITE};
+use super::{Frame, WRITE_TO_READ};
 use crate::baselines::TrimMethod;
 use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, Texel, Texels, Timestamps, barrier};
 use crate::scene::{BaselineScene, Scene, SceneData, TableScene};
@@ -142,7 +142,6 @@ impl Textures {
     fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, (scene, knob): (&TableScene, &Buffer)) {
         let (s, b, t, counts) = (frame.scene, &frame.stages.common, self, frame.counts);
         let (w, r) = WRITE_TO_READ;
-        let (w1, w2) = WRITE_TO_WRITE;
         let cleared = (Access::TRANSFER_WRITE, Access::COMPUTE_WRITE);
         barrier::buffers(cmd, &t.counted().map(|buffer| (buffer, cleared.0, cleared.1)));
         let density = density::Bindings {
@@ -158,7 +157,7 @@ impl Textures {
             seen_bays: None,
         };
         self.passes.density.record(cmd, &density, counts.cells);
-        barrier::buffers(cmd, &[(&t.face_speeds, w, r), (&b.counters, w1, w2)]);
+        cmd.after(w, r | w);
         let bindings = texture::Bindings {
             knob,
             frame: frame.constants,
@@ -176,13 +175,13 @@ impl Textures {
         };
         let (p, placed) = (&self.passes.texture, counts.face_instances);
         p.sizes(cmd, &bindings, placed);
-        barrier::buffers(cmd, &[(&t.words, w, r), (&b.counters, w1, w2)]);
+        cmd.after(w, r | w);
         b.scan(cmd, &t.words, &t.starts, placed);
-        barrier::buffers(cmd, &[(&t.starts, w, r)]);
+        cmd.after(w, r);
         p.flip(cmd, &bindings, counts.curves);
-        barrier::buffers(cmd, &[(&t.texels, w1, w2), (&b.counters, w, r)]);
+        cmd.after(w, w | r);
         p.fill(cmd, &bindings, placed);
         let tested = Access::FRAGMENT_READ | Access::COMPUTE_READ;
-        barrier::buffers(cmd, &[(&t.texels, w, tested), (&t.places, w, tested), (&b.counters, r, w)]);
+        cmd.after(w, tested | w);
     }
 }

@@ -7,7 +7,7 @@ pub mod scan;
 
 use super::Frame;
 use crate::abi::Counters;
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError};
 use crate::picture::TakenWay;
 use crate::scene::SceneData;
 use ash::vk;
@@ -55,13 +55,13 @@ impl Common {
         let bindings = reset::Bindings { frame: frame.constants, draws: &self.draws, counters: &self.counters };
         self.passes.reset.record(cmd, &bindings, 2 * frame.capacities.draws);
         let w = Access::COMPUTE_WRITE;
-        barrier::buffers(cmd, &[(&self.draws, w, w), (&self.counters, w, w)]);
+        cmd.after(w, w);
     }
 
     /// One prefix sum; the total follows the last start.
     pub(super) fn scan(&self, cmd: &Commands<'_>, counts: &Buffer, starts: &Buffer, count: u32) {
         let (sums, w) = (&self.sums, Access::COMPUTE_WRITE);
-        barrier::buffers(cmd, &[(sums, w, w)]);
+        cmd.after(w, w);
         let bindings = scan::Bindings { values: counts, offsets: starts, sums, total: starts, total_index: count };
         self.passes.scan.record(cmd, scan::Count::Host(count), &bindings);
     }

@@ -74,10 +74,7 @@ impl Gaps {
         };
         self.passes.find(cmd, &find);
         barrier::images(cmd, &[(&v.image, w, r)]);
-        barrier::buffers(
-            cmd,
-            &[(&self.candidates, w, w), (&c.counters, w, r), (&self.dispatch, w, Access::INDIRECT_READ)],
-        );
+        cmd.after(w, w | r | Access::INDIRECT_READ);
         let fill = gap_fill::Bindings {
             frame: frame.constants,
             placed: s.placed(frame.views),
@@ -99,7 +96,7 @@ impl Gaps {
         };
         self.passes.record(cmd, &fill);
         barrier::images(cmd, &[(&v.image, r, w)]);
-        barrier::buffers(cmd, &[(&self.candidates, w, r)]);
+        cmd.after(w, r);
         self.passes.show(cmd, &fill);
     }
 }

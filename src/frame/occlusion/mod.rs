@@ -20,7 +20,7 @@ pub(crate) mod depth_pyramid;
 
 use super::common::reset;
 use super::common::room::Room;
-use super::{Frame, WRITE_TO_READ, WRITE_TO_WRITE};
+use super::{Frame, WRITE_TO_READ};
 use crate::abi::{BLOCK, SQUARE, TILE};
 use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, barrier};
 use crate::scene::SceneData;
@@ -96,7 +96,7 @@ impl Occlusion {
         barrier::buffers(cmd, &[(taus, w, w), (&self.hidden, cleared | w, r), (counters, w, w)]);
         let bindings = cull_early::Bindings { frame: frame.constants, hidden: &self.hidden, taus, counters };
         self.passes.cull_early.record(cmd, &bindings, frame.counts.items);
-        barrier::buffers(cmd, &[(counters, w, w)]);
+        cmd.after(w, w);
     }
 
     /// This frame tests what lies behind what it draws.
@@ -111,13 +111,10 @@ impl Occlusion {
         let taus = &frame.stages.tessellation.taus;
         let (w, r) = WRITE_TO_READ;
         barrier::images(cmd, &[(&v.depth, Access::DEPTH_WRITE, r)]);
-        barrier::buffers(cmd, &[(&self.farthest, r, w)]);
+        cmd.after(r, w);
         let pyramid = depth_pyramid::Bindings { frame: frame.constants, depth: &v.depth, farthest: &self.farthest };
         self.passes.depth_pyramid.record(cmd, &pyramid);
-        barrier::buffers(
-            cmd,
-            &[(&self.farthest, w, r), (taus, r, w), (&self.hidden, r, w), (&c.counters, Access::INDIRECT_READ, w)],
-        );
+        cmd.after(w | Access::INDIRECT_READ, r | w);
         let bindings = cull_late::Bindings {
             frame: frame.constants,
             views: frame.views,
@@ -136,15 +133,14 @@ impl Occlusion {
         self.passes.cull_late.record(cmd, &bindings, frame.counts.items);
         barrier::images(cmd, &[(&v.depth, r, Access::DEPTH_WRITE)]);
         if frame.hiding != Hiding::Moved {
-            barrier::buffers(cmd, &[(&c.counters, w, Access::INDIRECT_READ)]);
+            cmd.after(w, Access::INDIRECT_READ);
             return;
         }
         barrier::images(cmd, &[(&v.image, Access::COLOUR_WRITE, Access::COLOUR_WRITE)]);
-        let (w1, w2) = WRITE_TO_WRITE;
-        barrier::buffers(cmd, &[(&c.draws, Access::INDIRECT_READ, w), (&c.counters, w1, w2)]);
+        cmd.after(Access::INDIRECT_READ | w, w);
         let draws = reset::Bindings { frame: frame.constants, draws: &c.draws, counters: &c.counters };
         self.passes.reset.record(cmd, &draws, 2 * frame.capacities.draws);
-        barrier::buffers(cmd, &[(&c.draws, w1, w2), (&c.counters, w1, w2)]);
+        cmd.after(w, w);
         frame.stages.tessellation.begin_again(cmd);
         frame.stages.tessellation.split(frame, cmd);
         frame.stages.visibility.patches(frame, cmd, test, true);

@@ -4,9 +4,9 @@ pub(crate) mod resolve;
 pub(crate) mod seen_squares;
 
 use super::common::room::Room;
-use super::{Frame, WRITE_TO_READ, solids};
+use super::{Frame, solids};
 use crate::abi::TILE;
-use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, barrier};
+use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load};
 use crate::picture::Samples;
 use crate::scene::SceneData;
 use seen_squares::SeenSquares;
@@ -138,7 +138,7 @@ impl Shading {
             squares: buffer,
         };
         pass.record(cmd, &bindings);
-        barrier::buffers(cmd, &[(buffer, WRITE_TO_READ.0, Access::VERTEX_READ)]);
+        cmd.after(Access::COMPUTE_WRITE, Access::VERTEX_READ);
     }
 }
 

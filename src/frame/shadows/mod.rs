@@ -2,7 +2,7 @@
 
 use super::{Frame, WRITE_TO_READ};
 use crate::bindings::{Primitives, SUN_BINDINGS};
-use crate::gpu::{Access, Commands, Resource, Texels, barrier};
+use crate::gpu::{Access, Commands, Resource, Texels};
 use crate::scene::SunTiles;
 
 impl<'a> Frame<'a> {
@@ -34,13 +34,12 @@ impl<'a> Frame<'a> {
     pub(super) fn under_sun(&self, cmd: &Commands<'_>, draw: impl FnOnce(Option<&[Resource<'_>; SUN_BINDINGS.len()]>)) {
         let bindings = self.sun_bindings();
         let counted = WRITE_TO_READ.0 | Access::INDIRECT_READ;
-        let counters = &self.stages.common.counters;
         if bindings.is_some() {
-            barrier::buffers(cmd, &[(counters, counted, Access::FRAGMENT_WRITE)]);
+            cmd.after(counted, Access::FRAGMENT_WRITE);
         }
         draw(bindings.as_ref());
         if bindings.is_some() {
-            barrier::buffers(cmd, &[(counters, Access::FRAGMENT_WRITE, counted)]);
+            cmd.after(Access::FRAGMENT_WRITE, counted);
         }
     }
 }

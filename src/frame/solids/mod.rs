@@ -211,7 +211,7 @@ impl<'a> SolidParts<'a> {
             rects: &stage.rect_buffer,
         };
         stage.rects.record(cmd, &rects, frame.counts.leaves);
-        barrier::buffers(cmd, &[(&stage.rect_buffer, w, r | Access::VERTEX_READ)]);
+        cmd.after(w, r | Access::VERTEX_READ);
 
         if let Some(tiles) = stage.tiles() {
             tiles.blocks(frame, cmd, self);
@@ -260,9 +260,9 @@ impl<'a> SolidParts<'a> {
                     order,
                     counters,
                 };
-                barrier::buffers(cmd, &[(counters, w, Access::FRAGMENT_WRITE)]);
+                cmd.after(w, Access::FRAGMENT_WRITE);
                 pass.record(cmd, &bindings, (colour, depth), *drawn);
-                barrier::buffers(cmd, &[(counters, Access::FRAGMENT_WRITE, w)]);
+                cmd.after(Access::FRAGMENT_WRITE, w);
             }
             Way::Events(pass, tiles) => {
                 let bindings = solid_events::Bindings {
@@ -280,10 +280,10 @@ impl<'a> SolidParts<'a> {
                     tile_squares: &tiles.tile_squares,
                     halts: stage.halts.as_ref(),
                 };
-                barrier::buffers(cmd, &[(counters, w, Access::FRAGMENT_WRITE)]);
+                cmd.after(w, Access::FRAGMENT_WRITE);
                 let uv = stage.operand_uv.as_ref().map(|image| Attachment { image, load: Load::Discard });
                 legs(frame, cmd, (pass, &bindings), (colour, uv, depth), band);
-                barrier::buffers(cmd, &[(counters, Access::FRAGMENT_WRITE, w)]);
+                cmd.after(Access::FRAGMENT_WRITE, w);
             }
         }
         v.drawn_again(cmd, seen);
@@ -330,12 +330,12 @@ fn legs(
         Attachment { load: Load::Keep, ..depth },
     );
     for nth in 0..of {
-        if let Some(halts) = bindings.halts {
+        if bindings.halts.is_some() {
             // by the leg before, of this band or another, or of another sample
-            barrier::buffers(cmd, &[(halts, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
+            cmd.after(Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE);
         }
         if nth > 0 {
-            barrier::buffers(cmd, &[(bindings.counters, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
+            cmd.after(Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE);
             barrier::images(cmd, &drawn);
         }
         let leg = solid_events::Leg { nth, of, is_most: of >= super::capacities::MOST_LEGS };

@@ -104,11 +104,11 @@ impl Operands {
             ],
         );
         rastered(false);
-        barrier::buffers(cmd, &[(&f.counts, drawn, r), (&f.starts, followed, w), (&f.all, drawn, drawn)]);
+        cmd.after(drawn | followed, r | w | drawn);
         c.scan(cmd, &f.counts, &f.starts, size.0 * rows().len() as u32);
-        barrier::buffers(cmd, &[(&f.counts, r, drawn), (&f.starts, w, Access::FRAGMENT_READ | r)]);
+        cmd.after(w, drawn | Access::FRAGMENT_READ | r);
         rastered(true);
-        barrier::buffers(cmd, &[(&f.counts, drawn, w), (&f.all, drawn, w), (&c.counters, Access::INDIRECT_READ, w)]);
+        cmd.after(drawn | Access::INDIRECT_READ, w);
         let sort = operand_sort::Bindings {
             frame: frame.constants,
             leaves: &solids.scene.leaves,
@@ -123,9 +123,6 @@ impl Operands {
         let first = (seen.start / TILE * TILE).max(band.rows.start);
         let part = first - band.rows.start..seen.end.min(band.rows.end).max(first) - band.rows.start;
         passes.sort.record(cmd, &sort, columns, part);
-        barrier::buffers(
-            cmd,
-            &[(&f.counts, w, Access::FRAGMENT_READ), (&f.all, w, Access::FRAGMENT_READ), (&c.counters, w, w)],
-        );
+        cmd.after(w, Access::FRAGMENT_READ | w);
     }
 }

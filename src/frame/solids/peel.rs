@@ -54,8 +54,7 @@ impl SolidParts<'_> {
         let Some(parts) = self.peeled(frame, pass, images) else { return };
         let tested = |image| (image, Access::DEPTH_WRITE.discarded(), Access::DEPTH_WRITE);
         barrier::images(cmd, &[tested(&images.depth), tested(&images.stencil)]);
-        let counters = &frame.stages.common.counters;
-        barrier::buffers(cmd, &[(counters, Access::COMPUTE_WRITE, Access::FRAGMENT_WRITE)]);
+        cmd.after(Access::COMPUTE_WRITE, Access::FRAGMENT_WRITE);
         let near = &images.layers[1];
         clear(cmd, near, Load::ColourU32([1, frame.near.depth.to_bits(), 0, 0]));
         clear(cmd, &images.found, NOTHING);
@@ -67,7 +66,7 @@ impl SolidParts<'_> {
             parts.search(frame, cmd, near, Search::Inside);
         }
         parts.pass.show(cmd, &parts.bindings, &images.found, (colour, depth));
-        barrier::buffers(cmd, &[(counters, Access::FRAGMENT_WRITE, Access::COMPUTE_WRITE)]);
+        cmd.after(Access::FRAGMENT_WRITE, Access::COMPUTE_WRITE);
     }
 
     /// `None` where the scene was made for another way.

@@ -5,7 +5,7 @@ use super::{SolidParts, solid_blocks, solid_fold, solid_squares, solid_tiles};
 use crate::abi::{BLOCK, LEAF_RUN, TILE, TileLeaf};
 use crate::frame::common::room::Room;
 use crate::frame::{Frame, WRITE_TO_READ};
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Texel, Texels, barrier};
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Texel, Texels};
 use std::sync::Arc;
 
 /// The passes.
@@ -82,11 +82,11 @@ impl Tiles {
         };
         let pass = &self.passes.blocks;
         pass.count(cmd, &blocks, self.runs);
-        barrier::buffers(cmd, &[(&self.block_counts, w, r), (&self.block_starts, r, w)]);
+        cmd.after(w, r | w);
         frame.stages.common.scan(cmd, &self.block_counts, &self.block_starts, self.runs);
-        barrier::buffers(cmd, &[(&self.block_starts, w, r), (&self.block_counts, r, w)]);
+        cmd.after(w, r | w);
         pass.list(cmd, &blocks, self.runs);
-        barrier::buffers(cmd, &[(&self.block_leaves, w, r)]);
+        cmd.after(w, r);
     }
 
     /// Which leaves each tile of a band sees, and their Blist.
@@ -105,13 +105,13 @@ impl Tiles {
             leaves: &t.tile_leaves,
             counters,
         };
-        barrier::buffers(cmd, &[(counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, w)]);
+        cmd.after(Access::COMPUTE_WRITE | Access::INDIRECT_READ, w);
         p.tiles.count(cmd, &tiles, count);
-        barrier::buffers(cmd, &[(&t.tile_counts, w, r), (&t.tile_starts, r, w), (counters, w, w)]);
+        cmd.after(w, r | w);
         frame.stages.common.scan(cmd, &t.tile_counts, &t.tile_starts, count);
-        barrier::buffers(cmd, &[(&t.tile_starts, w, r), (&t.tile_counts, r, w)]);
+        cmd.after(w, r | w);
         p.tiles.list(cmd, &tiles, count);
-        barrier::buffers(cmd, &[(&t.tile_leaves, w, w), (counters, w, w)]);
+        cmd.after(w, w);
 
         let fold = solid_fold::Bindings {
             frame: frame.constants,
@@ -122,21 +122,13 @@ impl Tiles {
             counters,
         };
         p.fold.record(cmd, &fold, count);
-        barrier::buffers(cmd, &[(counters, w, w), (&t.tile_entries, w, r), (&t.tile_squares, Access::VERTEX_READ, w)]);
+        cmd.after(w | Access::VERTEX_READ, w | r);
         let squares = solid_squares::Bindings {
             frame: frame.constants,
             tile_entries: &t.tile_entries,
             tile_squares: &t.tile_squares,
         };
         p.squares.record(cmd, &squares, count);
-        barrier::buffers(
-            cmd,
-            &[
-                (&t.tile_squares, w, Access::VERTEX_READ),
-                (&t.tile_starts, w, Access::FRAGMENT_READ),
-                (&t.tile_leaves, w, Access::FRAGMENT_READ),
-                (&t.tile_entries, w, Access::FRAGMENT_READ),
-            ],
-        );
+        cmd.after(w, Access::VERTEX_READ | Access::FRAGMENT_READ);
     }
 }

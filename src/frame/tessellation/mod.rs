@@ -15,7 +15,7 @@ pub(crate) mod split;
 use super::common::room::Room;
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::{Factors, SubPatch};
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError};
 use crate::scene::SceneData;
 use divide::DividePass;
 use std::sync::Arc;
@@ -77,7 +77,7 @@ impl Tessellation {
         if let Some(occlusion) = &frame.stages.occlusion {
             occlusion.cull_early(frame, cmd);
         }
-        barrier::buffers(cmd, &[(&self.taus, w, r)]);
+        cmd.after(w, r);
         self.split(frame, cmd);
     }
 
@@ -100,14 +100,11 @@ impl Tessellation {
             links: s.links.as_ref(),
         };
         p.split.record(cmd, &split, items);
-        barrier::buffers(cmd, &[(&self.sub_patch_counts, w, r), (&self.vertex_counts, w, r)]);
+        cmd.after(w, r);
 
         c.scan(cmd, &self.sub_patch_counts, &self.sub_patch_starts, 2 * items);
         c.scan(cmd, &self.vertex_counts, &self.vertex_starts, 2 * items);
-        barrier::buffers(
-            cmd,
-            &[(&self.sub_patch_starts, w, r), (&self.vertex_starts, w, r), (&self.factors, w, r), (&c.counters, w, w)],
-        );
+        cmd.after(w, r | w);
 
         let emit = emit::Bindings {
             frame: frame.constants,
@@ -119,31 +116,12 @@ impl Tessellation {
             counters: &c.counters,
         };
         p.emit.record(cmd, &emit, items);
-        barrier::buffers(
-            cmd,
-            &[
-                (&self.factors, w, Access::VERTEX_READ),
-                (&self.sub_patches, w, Access::VERTEX_READ),
-                (&c.draws, w, Access::INDIRECT_READ),
-                (&c.counters, w, w),
-            ],
-        );
+        cmd.after(w, Access::VERTEX_READ | Access::INDIRECT_READ | w);
     }
 
     /// Before patches are divided a second time: what was read of the first is read no more.
     pub(super) fn begin_again(&self, cmd: &Commands<'_>) {
         let (w, r) = WRITE_TO_READ;
-        barrier::buffers(
-            cmd,
-            &[
-                (&self.taus, w, r),
-                (&self.factors, Access::VERTEX_READ | r, w),
-                (&self.sub_patches, Access::VERTEX_READ, w),
-                (&self.sub_patch_counts, r, w),
-                (&self.vertex_counts, r, w),
-                (&self.sub_patch_starts, r, w),
-                (&self.vertex_starts, r, w),
-            ],
-        );
+        cmd.after(w | Access::VERTEX_READ, r | w);
     }
 }

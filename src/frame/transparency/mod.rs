@@ -129,7 +129,7 @@ impl Transparency {
         };
         let w = WRITE_TO_READ.0;
         let rows = || band.rows.clone();
-        barrier::buffers(cmd, &[(&c.counters, w | Access::INDIRECT_READ, Access::FRAGMENT_WRITE)]);
+        cmd.after(w | Access::INDIRECT_READ, Access::FRAGMENT_WRITE);
         let depth = frame.depth.as_ref().map(kept);
         if let Some(pass) = passes.colour.as_ref().filter(|_| drawing != Drawing::Beside) {
             drawn_again(frame, cmd);
@@ -150,7 +150,7 @@ impl Transparency {
             barrier::images(cmd, &[(target.image, Access::COLOUR_WRITE, Access::COLOUR_WRITE)]);
             pass.record(cmd, &bindings, &[target], None, rows());
         }
-        barrier::buffers(cmd, &[(&c.counters, Access::FRAGMENT_WRITE, w | Access::INDIRECT_READ)]);
+        cmd.after(Access::FRAGMENT_WRITE, w | Access::INDIRECT_READ);
     }
 }
 

@@ -160,10 +160,7 @@ impl Table {
             seen_bays,
         };
         p.density.record(cmd, &density, counts.cells);
-        barrier::buffers(cmd, &[(&t.strip_heights, w, r), (&t.face_speeds, w, r)]);
-        if let Some(seen) = seen_bays {
-            barrier::buffers(cmd, &[(seen, w, r)]);
-        }
+        cmd.after(w, r);
 
         let lines = lines::Bindings {
             frame: frame.constants,
@@ -173,9 +170,9 @@ impl Table {
             seen_bays,
         };
         p.lines.record(cmd, &lines, counts.bays);
-        barrier::buffers(cmd, &[(&t.strip_counts, w, r), (&b.counters, w, w)]);
+        cmd.after(w, r | w);
         b.scan(cmd, &t.strip_counts, &t.strip_starts, counts.bays);
-        barrier::buffers(cmd, &[(&t.strip_starts, w, r)]);
+        cmd.after(w, r);
 
         let segments = segments::Bindings {
             frame: frame.constants,
@@ -189,9 +186,9 @@ impl Table {
             seen_bays,
         };
         p.segments.record(cmd, &segments, counts.curves);
-        barrier::buffers(cmd, &[(&t.segment_counts, w, r)]);
+        cmd.after(w, r);
         b.scan(cmd, &t.segment_counts, &t.segment_starts, counts.curves);
-        barrier::buffers(cmd, &[(&t.segment_starts, w, r)]);
+        cmd.after(w, r);
 
         let sizes = sizes::Bindings {
             frame: frame.constants,
@@ -203,7 +200,7 @@ impl Table {
             seen_bays,
         };
         p.sizes.record(cmd, &sizes, counts.bays);
-        barrier::buffers(cmd, &[(&t.dispatches, w, Access::INDIRECT_READ), (&t.strips, w, r), (&b.counters, w, w)]);
+        cmd.after(w, Access::INDIRECT_READ | r | w);
 
         let cross = cross::Bindings {
             frame: frame.constants,
@@ -222,7 +219,7 @@ impl Table {
             dispatches: &t.dispatches,
         };
         p.cross.count(cmd, &cross);
-        barrier::buffers(cmd, &[(&t.rows, w, r), (&t.row_starts, r, w), (&b.sums, w, w)]);
+        cmd.after(w, r | w);
         let word = |offset: usize| (offset / size_of::<u32>()) as u32;
         b.passes.scan.record(
             cmd,
@@ -241,16 +238,16 @@ impl Table {
                 total_index: 0,
             },
         );
-        barrier::buffers(cmd, &[(&t.row_starts, w, r), (&t.row_total, w, r), (&t.rows, r, w), (&b.counters, r, w)]);
+        cmd.after(w, r | w);
         if let (Some(bays), Some(wide_strips)) = (&t.bays, &trims.wide_strips) {
             let row_windings = &bays.row_windings;
-            barrier::buffers(cmd, &[(row_windings, w, Access::COMPUTE_READ | Access::COMPUTE_WRITE)]);
+            cmd.after(w, Access::COMPUTE_READ | Access::COMPUTE_WRITE);
             let bindings = carry::Bindings { frame: frame.constants, strips: &t.strips, wide_strips, row_windings };
             bays.carry.record(cmd, &bindings, counts.wide_strips);
-            barrier::buffers(cmd, &[(row_windings, w, r)]);
+            cmd.after(w, r);
         }
         p.cross.insert(cmd, &cross);
-        barrier::buffers(cmd, &[(&t.intercepts, w, w), (&t.rows, w, w)]);
+        cmd.after(w, w);
 
         let sort = sort::Bindings {
             frame: frame.constants,
@@ -263,14 +260,6 @@ impl Table {
             dispatches: &t.dispatches,
         };
         p.sort.record(cmd, &sort);
-        barrier::buffers(
-            cmd,
-            &[
-                (&t.strips, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
-                (&t.rows, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
-                (&t.intercepts, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
-                (&t.border_cells, w, Access::FRAGMENT_READ | Access::COMPUTE_READ),
-            ],
-        );
+        cmd.after(w, Access::FRAGMENT_READ | Access::COMPUTE_READ);
     }
 }

@@ -136,7 +136,7 @@ impl Visibility {
         let (s, stages) = (frame.scene, frame.stages);
         let (c, t) = (&stages.common, &stages.tessellation);
         let rings = stages.gaps.as_ref().map(|gaps| &gaps.rings);
-        barrier::buffers(cmd, &[(&c.counters, Access::COMPUTE_WRITE, Access::INDIRECT_READ)]);
+        cmd.after(Access::COMPUTE_WRITE, Access::INDIRECT_READ);
         if let Some(rings) = rings {
             let before = if again { Access::FRAGMENT_WRITE } else { Access::TRANSFER_WRITE };
             barrier::buffers(cmd, &[(rings, before, Access::FRAGMENT_WRITE)]);
