@@ -1,7 +1,7 @@
 //! GLSL to SPIR-V, and the layouts of the structs that Rust and GLSL share.
 //!
 //! ```text
-//!   feature compile-shaders          glsl/*.comp …  ──shaderc──▶  OUT_DIR/spirv/*.spv, layout.rs
+//!   feature compile-shaders          glsl/*.comp …  ──shaderc──▶  OUT_DIR/spirv/*.spv, layout.rs, interfaces.rs
 //!   otherwise (what embedders get)   glsl/spirv/    ──copied───▶  the same
 //!                                                                 OUT_DIR/shaders.rs
 //! ```
@@ -17,6 +17,9 @@ use std::{env, fs};
 #[cfg(feature = "compile-shaders")]
 #[path = "build/compile.rs"]
 mod compile;
+#[cfg(feature = "compile-shaders")]
+#[path = "build/interface.rs"]
+mod interface;
 #[cfg(feature = "compile-shaders")]
 #[path = "build/reflect.rs"]
 mod reflect;
@@ -54,20 +57,22 @@ fn make_artefacts(root: &Path, artefacts: &Path) {
     copy_files(&root.join("glsl/spirv"), artefacts);
 }
 
-/// `shaders.rs`: `scan_add.comp.spv` becomes `SCAN_ADD_COMP`. Those of `glsl/rivals` are there with their feature only.
+/// `shaders.rs`: `scan_add.comp.spv` becomes `SCAN_ADD_COMP`. Those of `glsl/baselines` are there with their feature only.
 fn list_shaders(artefacts: &Path) -> String {
     let mut text = String::new();
     for path in files(artefacts).iter().filter(|path| path.extension().is_some_and(|e| e == "spv")) {
         let entry_point = path.file_stem().expect("it has an extension").to_string_lossy();
         let name = entry_point.replace('.', "_").to_uppercase();
         let bytes = fs::metadata(path).map_or_else(|e| panic!("{}: {e}", path.display()), |m| m.len());
-        let only = if entry_point.starts_with("rival_") { "#[cfg(feature = \"rivals\")]\n" } else { "" };
-        writeln!(
-            text,
-            "/// `glsl/{entry_point}`\n{only}pub static {name}: &[u32] = &words::<{}>(include_bytes!({path:?}));",
-            bytes / 4
-        )
-        .expect("writing to a string");
+        let only = if entry_point.starts_with("baseline_") { "#[cfg(feature = \"baselines\")]\n" } else { "" };
+        let words = format!("&words::<{}>(include_bytes!({path:?}))", bytes / 4);
+        let (kind, value) = if entry_point.ends_with(".comp") {
+            ("Compute", format!("Compute {{ words: {words}, interface: interfaces::{name} }}"))
+        } else {
+            ("&[u32]", words)
+        };
+        writeln!(text, "/// `glsl/{entry_point}`\n{only}pub static {name}: {kind} = {value};")
+            .expect("writing to a string");
     }
     text
 }
@@ -87,10 +92,20 @@ fn copy_files(from: &Path, to: &Path) {
     }
 }
 
+/// The folders of a folder by name.
+#[cfg(feature = "compile-shaders")]
+fn folders(folder: &Path) -> Vec<PathBuf> {
+    entries(folder).into_iter().filter(|path| path.is_dir()).collect()
+}
+
 /// The files of a folder by name, folders left out.
 fn files(folder: &Path) -> Vec<PathBuf> {
+    entries(folder).into_iter().filter(|path| path.is_file()).collect()
+}
+
+fn entries(folder: &Path) -> Vec<PathBuf> {
     let entries = fs::read_dir(folder).unwrap_or_else(|e| panic!("{}: {e}", folder.display()));
-    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).filter(|path| path.is_file()).collect();
+    let mut paths: Vec<PathBuf> = entries.flatten().map(|entry| entry.path()).collect();
     paths.sort();
     paths
 }

@@ -1,11 +1,11 @@
 //! Ways to choose tessellation factors, on random patches and on models: how often each breaks half a pixel, and how
 //! much finer than needed it divides.
 //!
-//! `cargo bench --features rivals --bench factors -- [PATCHES [SEARCHED]] [MODEL ...]`
+//! `cargo bench --features baselines --bench factors -- [PATCHES [SEARCHED]] [MODEL ...]`
 
 use glam::DVec3;
+use selvedge::baselines::factors::{Spread, Way, Ways, of_model, of_random};
 use selvedge::model::{Bounds, Camera};
-use selvedge::rivals::factors::{Spread, Way, Ways, of_model, of_random};
 use selvedge_io::import;
 use std::path::Path;
 

@@ -1,18 +1,19 @@
 //! Every entry point of `glsl/` by shaderc, twice: unoptimised for its names, optimised to ship.
 
-use crate::{files, reflect, write};
+use crate::{files, folders, interface, reflect, write};
 use std::fs;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Compiles `root/glsl` into `artefacts`, with `layout.rs`. The error is shaderc's, with file and line.
+/// Compiles `root/glsl` into `artefacts`, with `layout.rs` and `interfaces.rs`. The error is shaderc's, with file and line.
 pub fn all(root: &Path, artefacts: &Path) -> Result<(), String> {
     let glsl = root.join("glsl");
     let compiler = shaderc::Compiler::new().map_err(|e| format!("shaderc does not start: {e}"))?;
     let reflected = options(&glsl, shaderc::OptimizationLevel::Zero)?;
     let shipped = options(&glsl, shaderc::OptimizationLevel::Performance)?;
     let mut layouts = reflect::Layouts::new(&root.join("src/abi"))?;
+    let mut interfaces = String::from("// Written by build.rs from the shaders: what they need of their pipelines.\n");
     let mut errors = Vec::new();
-    for path in files(&glsl).into_iter().chain(files(&glsl.join("rivals"))) {
+    for path in entry_points(&glsl) {
         let kind = match path.extension().and_then(|extension| extension.to_str()) {
             Some("comp") => shaderc::ShaderKind::Compute,
             Some("vert") => shaderc::ShaderKind::Vertex,
@@ -26,7 +27,12 @@ pub fn all(root: &Path, artefacts: &Path) -> Result<(), String> {
         let compile =
             |options| compiler.compile_into_spirv(&source, kind, &format!("glsl/{name}"), "main", Some(options));
         match compile(&reflected) {
-            Ok(module) => layouts.add(&name, module.as_binary())?,
+            Ok(module) => {
+                layouts.add(&name, module.as_binary())?;
+                if kind == shaderc::ShaderKind::Compute {
+                    interfaces.push_str(&interface::of_compute(&name, module.as_binary())?);
+                }
+            }
             Err(error) => {
                 errors.push(error.to_string());
                 continue;
@@ -38,8 +44,15 @@ pub fn all(root: &Path, artefacts: &Path) -> Result<(), String> {
     if !errors.is_empty() {
         return Err(errors.join("\n"));
     }
+    write(&artefacts.join("interfaces.rs"), interfaces.as_bytes());
     write(&artefacts.join("layout.rs"), layouts.assertions()?.as_bytes());
     Ok(())
+}
+
+/// Every file of the folders of `glsl`, one folder a stage, but for what they include.
+fn entry_points(glsl: &Path) -> Vec<PathBuf> {
+    let stages = folders(glsl).into_iter().filter(|folder| !folder.ends_with("include") && !folder.ends_with("spirv"));
+    stages.flat_map(|folder| files(&folder)).collect()
 }
 
 fn options(glsl: &Path, level: shaderc::OptimizationLevel) -> Result<shaderc::CompileOptions<'static>, String> {

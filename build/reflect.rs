@@ -123,8 +123,8 @@ enum Type {
 
 /// What layouts need of a module.
 #[derive(Default)]
-struct Module {
-    names: HashMap<u32, String>,
+pub struct Module {
+    pub names: HashMap<u32, String>,
     member_names: HashMap<(u32, u32), String>,
     offsets: HashMap<(u32, u32), u32>,
     matrix_strides: HashMap<(u32, u32), u32>,
@@ -135,16 +135,9 @@ struct Module {
 }
 
 impl Module {
-    fn parse(words: &[u32]) -> Self {
+    pub fn parse(words: &[u32]) -> Self {
         let mut module = Self::default();
-        // The header has five words; the first of an instruction holds its length and opcode.
-        let mut rest = &words[5.min(words.len())..];
-        while let Some(&first) = rest.first() {
-            let (op, length) = (first as u16, (first >> 16) as usize);
-            let Some(instruction) = rest.get(..length.max(1)) else { break };
-            rest = &rest[instruction.len()..];
-            module.read(op, &instruction[1..]);
-        }
+        instructions(words, |op, operands| module.read(op, operands));
         module
     }
 
@@ -208,6 +201,11 @@ impl Module {
         Some(size)
     }
 
+    /// Bytes of a type.
+    pub fn bytes(&self, id: u32) -> Option<u32> {
+        Some(self.size(id, None)?.bytes)
+    }
+
     fn size(&self, id: u32, matrix_stride: Option<u32>) -> Option<Size> {
         if let Some(members) = self.structs.get(&id) {
             return self.struct_size(id, members);
@@ -227,6 +225,18 @@ impl Module {
                 Size { bytes: stride * self.constants.get(&length)?, align: self.size(of, matrix_stride)?.align }
             }
         })
+    }
+}
+
+/// Every instruction's opcode and operands.
+pub fn instructions(words: &[u32], mut read: impl FnMut(u16, &[u32])) {
+    // The header has five words; the first of an instruction holds its length and opcode.
+    let mut rest = &words[5.min(words.len())..];
+    while let Some(&first) = rest.first() {
+        let (op, length) = (first as u16, (first >> 16) as usize);
+        let Some(instruction) = rest.get(..length.max(1)) else { break };
+        rest = &rest[instruction.len()..];
+        read(op, &instruction[1..]);
     }
 }
 

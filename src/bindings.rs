@@ -71,17 +71,9 @@ pub(crate) struct Bounded<'a> {
 }
 
 impl<'a> Bounded<'a> {
-    /// Threads of a workgroup, as in the shader.
-    pub(crate) const GROUP: u32 = 64;
-
-    /// What they are.
-    pub(crate) fn bindings() -> Vec<Binding> {
-        with_texels(10..11, 11)
-    }
-
-    /// `constant_id` of `SCENE_HAS_CONES`, and its value.
-    pub(crate) fn constants(cones: bool) -> [(u32, u32); 1] {
-        [(1, u32::from(cones))]
+    /// The shaders' constants.
+    pub(crate) fn constants(cones: bool) -> [(&'static str, u32); 1] {
+        [("SCENE_HAS_CONES", u32::from(cones))]
     }
 
     /// In binding order.

@@ -1,4 +1,5 @@
-//! The frame as prose: the passes in order, and every barrier between them.
+//! The frame as prose: the stages in order. Each stage has a folder: its passes, its buffers, and its record, with every
+//! barrier between them.
 //!
 //! ```text
 //!                 view, instances
@@ -18,9 +19,9 @@
 //!                solid_events    where rays enter Boolean solids; solid_rects to solid_fold came before
 //!                      ▼
 //!                 visibility     tessellate, trim: item and (u, v) per pixel
-//!                      │         patches that lie behind others left out, and asked for: hidden.rs
+//!                      │         patches that lie behind others left out, and asked for: occlusion/
 //!                      ▼
-//!                    heal        pixels that look through a gap between trimmed faces
+//!                    gaps        pixels that look through a gap between trimmed faces
 //!                      ▼
 //!               seen_squares     tiles that see a patch or a mesh
 //!                  resolve       exact point and normal per pixel, light ──▶ the host's targets
@@ -28,159 +29,53 @@
 //!                 coverage       scenes with smooth trims: pixels at borders, mixed of what resolve drew
 //!               solid_layers     scenes with something to see through: its faces, over what resolve drew
 //!
-//!  from mesh on once for each of a pixel's samples, where there are several: samples.rs
-//!  nothing above seen_squares, or mesh where there are several samples, where the frame before had this view: kept.rs
-//!  lists of solid_events and solid_layers band by band, where they are too large: bands.rs
-//!  resolve and solid_layers ask the sun's tiles, in scenes with a sun: sun.rs
+//!  from mesh on once for each of a pixel's samples, where there are several: antialiasing/samples.rs
+//!  nothing above seen_squares, or mesh where there are several samples, where the frame before had this view: reuse.rs
+//!  lists of solid_events and solid_layers band by band, where they are too large: solids/bands.rs
+//!  resolve and solid_layers ask the sun's tiles, in scenes with a sun: shadows/
 //! ```
 
 use crate::abi::Counters;
 use crate::bindings::Primitives;
-use crate::buffers::{Buffers, TableBuffers};
-use crate::gpu::{
-    Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, ReadBack, Texels, Timestamps, barrier,
-};
-use crate::passes::coverage::Coverage;
-use crate::passes::seen_squares::SeenSquares;
-use crate::passes::visibility::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT};
-use crate::passes::{emit, mesh, reset, resolve, scan, split, visibility};
-use crate::picture::TakenWay;
-use crate::scene::{Scene, SceneData, SolidData};
-use divide::DividePass;
-use hidden::HiddenPasses;
-use layers::{Drawing, LayerPasses};
-use samples::{SamplePasses, Scopes};
-use solids::SolidPasses;
+use crate::gpu::{Access, Attachment, Buffer, Commands, Image, Load, ReadBack, Resource, Texels, Timestamps, barrier};
+use crate::scene::Scene;
+use antialiasing::samples::Scopes;
+use capacities::Capacities;
+use counts::Counts;
+use shading::resolve;
 use std::ops::Range;
-use trim::{TrimParts, TrimPasses};
+use transparency::Drawing;
 
-mod bands;
-mod blister;
-mod coverage;
-mod divide;
-mod drawn;
-mod edit;
-mod heal;
-mod hidden;
-mod kept;
-mod layers;
-mod resolved;
-#[cfg(feature = "rivals")]
-mod rival;
-mod samples;
-mod solids;
-mod sun;
-mod table;
-mod trim;
+pub(crate) mod antialiasing;
+#[cfg(feature = "baselines")]
+pub(crate) mod baselines;
+pub(crate) mod capacities;
+pub(crate) mod common;
+pub(crate) mod counts;
+pub(crate) mod gaps;
+pub(crate) mod occlusion;
+mod reuse;
+pub(crate) mod shading;
+mod shadows;
+pub(crate) mod solids;
+mod stages;
+pub(crate) mod tessellation;
+pub(crate) mod transparency;
+pub(crate) mod trim;
+pub(crate) mod visibility;
 
-pub(crate) use hidden::Hiding;
-pub(crate) use samples::ViewBuffers;
+pub(crate) use antialiasing::samples::ViewBuffers;
+pub(crate) use occlusion::Hiding;
 pub(crate) use solids::{Centres, Near};
-
-/// The passes that a scene needs.
-pub(crate) struct Passes {
-    reset: reset::Reset,
-    scan: scan::Scan,
-    /// Of scenes with patches.
-    tessellation: Option<TessellationPasses>,
-    /// Of scenes in which patches may lie behind others.
-    hidden: Option<HiddenPasses>,
-    trim: Option<TrimPasses>,
-    solids: Option<SolidPasses>,
-    visibility: visibility::Visibility,
-    /// The same without a trim test, to compare with.
-    #[cfg(feature = "rivals")]
-    untested: Option<visibility::Visibility>,
-    mesh: Option<mesh::Mesh>,
-    /// Of scenes with patches or meshes.
-    squares: Option<SeenSquares>,
-    /// Into the host's targets; `None` where they are but a colour, made of samples.
-    resolve: Option<resolve::Resolve>,
-    samples: Option<SamplePasses>,
-    layers: Option<LayerPasses>,
-    /// Of scenes whose trims are smoothed.
-    coverage: Option<Coverage>,
-}
-
-/// Those that say how finely each patch is drawn.
-struct TessellationPasses {
-    divide: DividePass,
-    split: split::Split,
-    emit: emit::Emit,
-}
-
-impl Passes {
-    pub(crate) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Self, GpuError> {
-        let trim = TrimPasses::new(device, data)?;
-        let test = trim.as_ref().map(TrimPasses::test);
-        let volume = data.volume.as_ref().and_then(SolidData::kinds);
-        let kinds = Kinds {
-            rational: data.has_rational,
-            plain: data.has_plain,
-            linked: !data.links.is_empty(),
-            trimmed: test,
-            bays: !data.wide_strips.is_empty(),
-            operands: data.has_operands,
-            volume,
-        };
-        let tessellation = |()| {
-            Ok(TessellationPasses {
-                divide: DividePass::new(device, data)?,
-                split: split::Split::new(device, !data.links.is_empty())?,
-                emit: emit::Emit::new(device)?,
-            })
-        };
-        let outward = data.meshes.draws.len() - data.meshes.outward;
-        let meshes = mesh::Kinds { both: data.meshes.outward > 0, outward: outward > 0, volume };
-        let mesh = || mesh::Mesh::new(device, (VISIBILITY_FORMAT, DEPTH_FORMAT), meshes);
-        // a driver takes milliseconds for each pipeline, and as many threads as ask it
-        let (solids, (faces, pictures)) = rayon::join(
-            || SolidPasses::new(device, data, test),
-            || {
-                rayon::join(
-                    || {
-                        let tessellation = (!data.items.is_empty()).then_some(()).map(tessellation).transpose()?;
-                        let mesh = data.has_meshes().then(mesh).transpose()?;
-                        let hidden = HiddenPasses::new(device, data)?;
-                        Ok((tessellation, hidden, visibility::Visibility::new(device, kinds)?, mesh))
-                    },
-                    || {
-                        let resolve = resolved::targets(device, data, formats)?;
-                        let samples = SamplePasses::new(device, data, formats)?;
-                        let squares = data.has_surfaces().then(|| SeenSquares::new(device)).transpose()?;
-                        let scan = scan::Scan::new(device, data.trim_way() == Some(TakenWay::Table))?;
-                        Ok((resolve, samples, squares, reset::Reset::new(device, false)?, scan))
-                    },
-                )
-            },
-        );
-        let ((tessellation, hidden, visibility, mesh), (resolve, samples, squares, reset, scan)) = (faces?, pictures?);
-        Ok(Self {
-            reset,
-            scan,
-            tessellation,
-            hidden,
-            solids: solids?,
-            visibility,
-            #[cfg(feature = "rivals")]
-            untested: rival::untested(device, data, kinds)?,
-            mesh,
-            squares,
-            resolve,
-            samples,
-            layers: LayerPasses::new(device, data, formats)?,
-            coverage: coverage::new(device, data, formats)?,
-            trim,
-        })
-    }
-}
+pub(crate) use stages::{Passes, Stages};
 
 /// Everything that one frame touches.
 #[derive(Clone, Copy)]
 pub(crate) struct Frame<'a> {
-    pub passes: &'a Passes,
+    pub stages: &'a Stages,
     pub scene: &'a Scene,
-    pub buffers: &'a Buffers,
+    pub counts: Counts,
+    pub capacities: Capacities,
     /// This slot's constants and transforms, written by the host.
     pub constants: &'a Buffer,
     pub views: &'a Texels,
@@ -197,11 +92,6 @@ pub(crate) struct Frame<'a> {
     pub keeps_table: bool,
     /// Columns and rows of the pixels that operands without equations may be in.
     pub shell_pixels: &'a [Range<u32>; 2],
-    /// That way `blister` peels.
-    pub layers: u32,
-    /// Of each ray of way `events`; a frame may not ask for more.
-    pub legs: u32,
-    pub legs_are_most: bool,
     /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.
     pub volume_places: Option<&'a Texels>,
     /// Where the sun is, in a scene that has one.
@@ -218,26 +108,38 @@ pub(crate) struct Frame<'a> {
 }
 
 const WRITE_TO_READ: (Access, Access) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);
-const WRITE_TO_WRITE: (Access, Access) = (Access::COMPUTE_WRITE, Access::COMPUTE_WRITE);
 
 /// A copy's source, among buffer accesses, which have no layout of their own.
 const COPIED: Access = Access { layout: Access::COMPUTE_READ.layout, ..Access::TRANSFER_READ };
+
+impl<'a> Frame<'a> {
+    /// What the trim test reads, in its order; nothing where no patch is trimmed.
+    fn trim_test(&self) -> Vec<Resource<'a>> {
+        self.stages.trim.as_ref().map_or_else(Vec::new, |trim| trim.test(self))
+    }
+
+    /// What tests against the volume that trims the scene read, `None` without one.
+    fn volume(&self) -> Option<Primitives<'a>> {
+        let volume = self.scene.volume.as_ref()?;
+        Some(volume.primitives(self.volume_places?))
+    }
+}
 
 impl Frame<'_> {
     /// Records the whole frame.
     pub(crate) fn record(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
         self.wait(cmd);
-        match &self.passes.samples {
-            Some(passes) => {
+        match &self.stages.samples {
+            Some(samples) => {
                 self.unless_seen(cmd, || self.make(cmd, times));
-                self.record_samples(cmd, times, passes);
+                samples.record(self, cmd, times);
             }
             None => {
                 self.unless_seen(cmd, || {
                     self.make(cmd, times);
                     self.see(cmd, &mut Scopes::of(times));
                 });
-                self.show(cmd, &mut Scopes::of(times), (self.passes.resolve.as_ref(), Drawing::Whole), 0);
+                self.show(cmd, &mut Scopes::of(times), (self.stages.shading.resolve(), Drawing::Whole), 0);
             }
         }
         self.no_thickness(cmd);
@@ -245,45 +147,44 @@ impl Frame<'_> {
 
     /// What is drawn from: the trim table, and patches divided.
     fn make(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
+        let stages = self.stages;
         self.begin(cmd);
-        let trim = self.trim();
-        if let Some(table) = trim.as_ref().and_then(TrimParts::table) {
-            self.unless_made(cmd, table.buffers, || times.scope(cmd, "trim table", || table.record(self, cmd)));
+        if let Some(trim) = &stages.trim {
+            trim.record(self, cmd, times);
         }
-        if let Some(passes) = &self.passes.tessellation {
-            times.scope(cmd, "tessellation", || self.tessellation(cmd, passes));
+        if self.counts.items > 0 {
+            times.scope(cmd, "tessellation", || stages.tessellation.record(self, cmd));
         }
-        #[cfg(feature = "rivals")]
-        if let Some(texture) = trim.as_ref().and_then(TrimParts::rival).and_then(|parts| parts.texture()) {
-            times.scope(cmd, "trim texture", || texture.record(self, cmd));
+        #[cfg(feature = "baselines")]
+        if let Some(trim) = &stages.trim {
+            trim.record_baseline(self, cmd, times);
         }
     }
 
     /// What each pixel sees, from the patches and the trim table.
     fn see(&self, cmd: &Commands<'_>, times: &mut Scopes<'_>) {
-        let trim = self.trim();
+        let stages = self.stages;
+        let test = self.trim_test();
         self.clear(cmd);
-        self.begin_images(cmd);
-        if let (Some(pass), Some(meshes)) = (&self.passes.mesh, &self.scene.meshes) {
-            times.drawing(cmd, "mesh", || self.mesh(cmd, pass, meshes));
+        if let Some(meshes) = &self.scene.meshes {
+            times.drawing(cmd, "mesh", || stages.visibility.meshes(self, cmd, meshes));
         }
-        if let Some(parts) = self.solids() {
-            times.scope(cmd, "solids", || self.solid_faces(cmd, &parts));
+        if let Some(solids) = self.solids() {
+            times.scope(cmd, "solids", || solids.record(self, cmd));
         }
-        let test = trim.as_ref().map_or(Vec::new(), TrimParts::test);
-        #[cfg(feature = "rivals")]
-        self.untested(cmd, times);
-        times.drawing(cmd, "visibility", || self.visibility(cmd, &test, false));
-        if let (Some(parts), Some(tessellation)) = (self.reveals(), &self.passes.tessellation) {
-            times.drawing(cmd, "reveal", || parts.reveal(self, cmd, tessellation, &test));
+        #[cfg(feature = "baselines")]
+        stages.visibility.untested(self, cmd, times);
+        times.drawing(cmd, "visibility", || stages.visibility.patches(self, cmd, &test, false));
+        if let Some(occlusion) = stages.occlusion.as_ref().filter(|occlusion| occlusion.tests(self)) {
+            times.drawing(cmd, "reveal", || occlusion.cull_late(self, cmd, &test));
         }
         let mut drawn = Access::COLOUR_WRITE;
-        if let Some(parts) = &trim {
-            times.scope(cmd, "heal", || self.heal(cmd, parts, &test));
+        if let Some(gaps) = &stages.gaps {
+            times.scope(cmd, "heal", || gaps.record(self, cmd, &test));
             drawn = Access::COMPUTE_WRITE;
         }
         let read = Access::COMPUTE_READ | Access::FRAGMENT_READ;
-        barrier::images(cmd, &[(&self.buffers.visibility, drawn, read)]);
+        barrier::images(cmd, &[(&stages.visibility.image, drawn, read)]);
     }
 
     /// What is seen, resolved into `self.colour` and `self.depth`; the `nth` time in this frame.
@@ -294,45 +195,35 @@ impl Frame<'_> {
         (resolve, drawing): (Option<&resolve::Resolve>, Drawing),
         nth: u64,
     ) {
-        let b = self.buffers;
-        for image in b.behind.iter().chain(&b.resolved) {
+        let stages = self.stages;
+        let behind = stages.transparency.iter().map(|layers| &layers.behind);
+        for image in behind.chain(stages.smooth_trims.iter().map(|trims| &trims.resolved)) {
             barrier::images(cmd, &[(image, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE)]);
         }
         if let Some(pass) = resolve {
-            times.scope(cmd, "resolve", || {
-                self.seen_squares(cmd);
-                self.resolve(cmd, pass);
-            });
+            times.scope(cmd, "resolve", || stages.shading.record(self, cmd, pass));
         }
-        if let Some(pass) = &self.passes.coverage {
-            let test = self.trim().as_ref().map_or(Vec::new(), TrimParts::test);
-            times.scope(cmd, "coverage", || self.coverage(cmd, pass, &test));
+        if let Some(smooth_trims) = &stages.smooth_trims {
+            times.scope(cmd, "coverage", || smooth_trims.record(self, cmd, &self.trim_test()));
         }
-        if let Some(passes) = &self.passes.layers {
-            times.scope(cmd, "layers", || self.layers(cmd, passes, drawing));
+        if let (Some(layers), Some(solids)) = (&stages.transparency, self.solids()) {
+            times.scope(cmd, "layers", || layers.record(self, cmd, &solids, drawing));
         }
-        barrier::buffers(cmd, &[(&b.counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, COPIED)]);
-        self.counters.record_nth(cmd, &b.counters, size_of::<Counters>() as u64, nth);
+        let counters = &stages.common.counters;
+        barrier::buffers(cmd, &[(counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, COPIED)]);
+        self.counters.record_nth(cmd, counters, size_of::<Counters>() as u64, nth);
     }
 
     /// Clears what the passes count that make what is drawn from.
     fn begin(&self, cmd: &Commands<'_>) {
-        let b = self.buffers;
-        let table = b.trim.iter().flat_map(|t| &t.table).filter(|_| !self.keeps_table);
-        for counted in table.flat_map(TableBuffers::cleared) {
-            cmd.fill(counted, 0);
+        let stages = self.stages;
+        if let Some(trim) = &stages.trim {
+            trim.begin(self, cmd);
         }
-        #[cfg(feature = "rivals")]
-        for counted in b.trim.iter().flat_map(|t| &t.texture).flat_map(crate::buffers::TextureBuffers::cleared) {
-            cmd.fill(counted, 0);
+        if let Some(occlusion) = &stages.occlusion {
+            occlusion.begin(self, cmd);
         }
-        if let Some(parts) = self.hidden() {
-            parts.begin(cmd, self.hiding);
-        }
-        let r = reset::Bindings { frame: self.constants, draws: &b.draws, counters: &b.counters };
-        self.passes.reset.record(cmd, &r, 2 * b.capacities.draws);
-        let (w, w2) = WRITE_TO_WRITE;
-        barrier::buffers(cmd, &[(&b.draws, w, w2), (&b.counters, w, w2)]);
+        stages.common.reset(self, cmd);
     }
 
     /// The transient buffers may still be read by what was drawn before.
@@ -344,102 +235,15 @@ impl Frame<'_> {
         barrier::memory(cmd, before | transfer, Access::COMPUTE_WRITE | clear);
     }
 
-    /// Clears what each drawing counts.
+    /// Clears what each drawing counts, and its images.
     fn clear(&self, cmd: &Commands<'_>) {
-        let b = self.buffers;
-        if let Some(t) = &b.trim {
-            cmd.fill(&t.heal_dispatch, 0);
-            cmd.fill(&t.rings, 0);
+        if let Some(gaps) = &self.stages.gaps {
+            gaps.clear(cmd);
         }
-        if let Some(f) = b.solids.as_ref().and_then(|s| s.fragments.as_ref()) {
-            cmd.fill(&f.counts, 0);
+        if let Some(solids) = &self.stages.solids {
+            solids.begin(cmd);
         }
-    }
-
-    fn tessellation(&self, cmd: &Commands<'_>, p: &TessellationPasses) {
-        let (w, r) = WRITE_TO_READ;
-        p.divide.record(self, cmd);
-        if let Some(parts) = self.hidden() {
-            parts.hide(self, cmd);
-        }
-        barrier::buffers(cmd, &[(&self.buffers.taus, w, r)]);
-        self.divide(cmd, p);
-    }
-
-    /// Patches into sub-patches, and what draws those that are to be drawn.
-    fn divide(&self, cmd: &Commands<'_>, p: &TessellationPasses) {
-        let (s, b) = (self.scene, self.buffers);
-        let items = b.counts.items;
-        let (w, r) = WRITE_TO_READ;
-        let split = split::Bindings {
-            frame: self.constants,
-            face_instances: &s.face_instances,
-            faces: &s.faces,
-            patches: &s.patches,
-            items: &s.items,
-            taus: &b.taus,
-            factors: &b.factors,
-            sub_patch_counts: &b.sub_patch_counts,
-            vertex_counts: &b.vertex_counts,
-            links: s.links.as_ref(),
-        };
-        p.split.record(cmd, &split, items);
-        barrier::buffers(cmd, &[(&b.sub_patch_counts, w, r), (&b.vertex_counts, w, r)]);
-
-        self.scan(cmd, &b.sub_patch_counts, &b.sub_patch_starts, 2 * items);
-        self.scan(cmd, &b.vertex_counts, &b.vertex_starts, 2 * items);
-        barrier::buffers(
-            cmd,
-            &[(&b.sub_patch_starts, w, r), (&b.vertex_starts, w, r), (&b.factors, w, r), (&b.counters, w, w)],
-        );
-
-        let emit = emit::Bindings {
-            frame: self.constants,
-            factors: &b.factors,
-            sub_patch_starts: &b.sub_patch_starts,
-            vertex_starts: &b.vertex_starts,
-            sub_patches: &b.sub_patches,
-            draws: &b.draws,
-            counters: &b.counters,
-        };
-        p.emit.record(cmd, &emit, items);
-        barrier::buffers(
-            cmd,
-            &[
-                (&b.factors, w, Access::VERTEX_READ),
-                (&b.sub_patches, w, Access::VERTEX_READ),
-                (&b.draws, w, Access::INDIRECT_READ),
-                (&b.counters, w, w),
-            ],
-        );
-    }
-
-    /// One prefix sum; the total follows the last start.
-    fn scan(&self, cmd: &Commands<'_>, counts: &Buffer, starts: &Buffer, count: u32) {
-        let sums = &self.buffers.sums;
-        barrier::buffers(cmd, &[(sums, WRITE_TO_WRITE.0, WRITE_TO_WRITE.1)]);
-        let bindings = scan::Bindings { values: counts, offsets: starts, sums, total: starts, total_index: count };
-        self.passes.scan.record(cmd, scan::Count::Host(count), &bindings);
-    }
-
-    /// The images were read by the frame before; their contents go.
-    fn begin_images(&self, cmd: &Commands<'_>) {
-        let b = self.buffers;
-        let read = (Access::COMPUTE_READ | Access::FRAGMENT_READ).discarded();
-        let others = b.others.iter().map(|image| (image, read, Access::COLOUR_WRITE));
-        let fixed = [
-            (&b.visibility, read, Access::COLOUR_WRITE),
-            (&b.depth, Access::DEPTH_WRITE.discarded() | Access::COMPUTE_READ.discarded(), Access::DEPTH_WRITE),
-        ];
-        let operand_uv = b.solids.iter().flat_map(|s| &s.operand_uv);
-        let operand_uv = operand_uv.map(|image| (image, read, Access::COLOUR_WRITE));
-        barrier::images(cmd, &fixed.into_iter().chain(others).chain(operand_uv).collect::<Vec<_>>());
-    }
-
-    /// What tests against the volume that trims the scene read, `None` without one.
-    fn volume(&self) -> Option<Primitives<'_>> {
-        let volume = self.scene.volume.as_ref().zip(self.volume_places);
-        volume.map(|(v, places)| v.primitives(places))
+        self.stages.visibility.begin(cmd);
     }
 }
 

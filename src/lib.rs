@@ -13,26 +13,34 @@ pub use selvedge_geometry::{construct, csg, math, model, spline, trim};
 #[cfg(test)]
 extern crate self as selvedge;
 
+/// For tests: what passes read and write.
+#[doc(hidden)]
 pub mod abi;
+/// Other ways to trim and to divide, for comparisons: no part of what a host uses.
+#[cfg(feature = "baselines")]
+#[doc(hidden)]
+pub mod baselines;
 mod bindings;
 mod budget;
-mod buffers;
-mod capacities;
+#[cfg(any(test, feature = "baselines"))]
+mod fixtures;
 mod frame;
 pub mod gpu;
 #[cfg(feature = "headless")]
 pub mod headless;
 #[cfg(test)]
 mod parity;
-pub mod passes;
+/// For tests of the Vulkan layer.
+#[doc(hidden)]
+pub mod passes {
+    pub use crate::frame::common::scan;
+}
 pub mod picture;
 pub mod renderer;
-#[cfg(feature = "rivals")]
-pub mod rivals;
 mod scene;
 mod shaders;
-#[cfg(any(test, feature = "rivals"))]
-mod trial;
+/// For tests: what passes compute, on the CPU.
+#[doc(hidden)]
 pub mod twin;
 
 /// The examples of the README compile.

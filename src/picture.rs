@@ -67,43 +67,6 @@ pub enum TrimWay {
     Table,
     /// The loops themselves, as arcs of conics in cells made once: a few of them a pixel.
     Exact,
-    /// One to compare with; never chosen, never met by an embedder.
-    #[cfg(feature = "rivals")]
-    Rival(Rival),
-}
-
-/// How bisection sorts monotone pieces into bands and cells.
-#[cfg(feature = "rivals")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
-pub enum Sorted {
-    /// A band ends at every end of a piece; cells hold pieces whose boxes overlap.
-    Source,
-    /// Fewer bands; cells hold pieces whose boxes within the band overlap.
-    Tuned,
-}
-
-/// Other ways to trim, each with the number that its accuracy hangs on: see [`crate::rivals`].
-#[cfg(feature = "rivals")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
-pub enum Rival {
-    /// No test: what a frame costs before it is trimmed.
-    Untrimmed,
-    /// Monotone pieces, bisected in every pixel.
-    Bisect {
-        /// Most steps.
-        steps: u32,
-        /// How they are sorted.
-        sorted: Sorted,
-    },
-    /// A texture of one bit a texel for each face.
-    Texture {
-        /// Eighths of a texel to a pixel.
-        eighths: u32,
-    },
 }
 
 /// The way that a scene is trimmed: what [`TrimWay::Auto`] has settled for, too.
@@ -111,17 +74,38 @@ pub enum Rival {
 pub(crate) enum TakenWay {
     Table,
     Exact,
-    #[cfg(feature = "rivals")]
-    Rival(Rival),
+    /// One to compare with.
+    #[cfg(feature = "baselines")]
+    Baseline(crate::baselines::TrimMethod),
 }
 
-impl From<TakenWay> for TrimWay {
-    fn from(way: TakenWay) -> Self {
-        match way {
-            TakenWay::Table => Self::Table,
-            TakenWay::Exact => Self::Exact,
-            #[cfg(feature = "rivals")]
-            TakenWay::Rival(rival) => Self::Rival(rival),
+impl TakenWay {
+    /// As a host knows it; `None` for a way to compare with.
+    pub(crate) fn reported(self) -> Option<TrimWay> {
+        match self {
+            Self::Table => Some(TrimWay::Table),
+            Self::Exact => Some(TrimWay::Exact),
+            #[cfg(feature = "baselines")]
+            Self::Baseline(_) => None,
+        }
+    }
+
+    /// As in messages.
+    pub(crate) fn name(self) -> &'static str {
+        match self {
+            Self::Table => TrimWay::Table.name(),
+            Self::Exact => TrimWay::Exact.name(),
+            #[cfg(feature = "baselines")]
+            Self::Baseline(method) => method.name(),
+        }
+    }
+
+    /// By trim textures, which are made of curves as the table is.
+    pub(crate) fn is_texture(self) -> bool {
+        match self {
+            Self::Table | Self::Exact => false,
+            #[cfg(feature = "baselines")]
+            Self::Baseline(method) => matches!(method, crate::baselines::TrimMethod::Texture { .. }),
         }
     }
 }
@@ -136,12 +120,6 @@ impl TrimWay {
             Self::Auto => "auto",
             Self::Table => "table",
             Self::Exact => "exact",
-            #[cfg(feature = "rivals")]
-            Self::Rival(Rival::Untrimmed) => "untrimmed",
-            #[cfg(feature = "rivals")]
-            Self::Rival(Rival::Bisect { .. }) => "bisect",
-            #[cfg(feature = "rivals")]
-            Self::Rival(Rival::Texture { .. }) => "texture",
         }
     }
 }
@@ -293,14 +271,6 @@ impl Default for Highlight {
 pub struct SceneSettings {
     /// How to trim.
     pub trim: TrimWay,
-    /// Patches are divided by slefes of so many segments, 1 to 9, where [`FrameSettings::levels`] says
-    /// [`Levels::Bound`]: see [`crate::rivals::factors`]. The promise is *not* kept; for comparisons.
-    #[cfg(feature = "rivals")]
-    pub slefe_segments: Option<usize>,
-    /// Before pass `visibility` the same sub-patches are drawn without a trim test, which nobody sees: pass `visibility
-    /// untested` tells what tests cost. Not in scenes with anything but patches, and where nothing is trimmed.
-    #[cfg(feature = "rivals")]
-    pub untested: bool,
     /// How to draw Boolean solids.
     pub solids: SolidWay,
     /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover or grow into, and time,

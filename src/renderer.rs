@@ -23,14 +23,16 @@ mod slot;
 
 use crate::abi;
 use crate::budget::Budget;
-use crate::buffers::{Buffers, SolidBuffers};
-pub use crate::capacities::TooMany;
-use crate::capacities::{Capacities, Counts, MOST_LEGS};
-use crate::frame::{Frame, Near, Passes, target};
+use crate::frame::capacities::Capacities;
+use crate::frame::counts::Counts;
+pub use crate::frame::counts::TooMany;
+use crate::frame::shading::resolve;
+use crate::frame::solids::Solids;
+use crate::frame::transparency::solid_layers;
+use crate::frame::{Frame, Near, Passes, Stages, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Texels, Uploads};
 use crate::model::{Camera, CameraError};
-use crate::passes::{resolve, solid_layers};
-use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes};
+use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, TakenWay};
 pub use crate::scene::{CloseUp, Cut, EditError, UndrawnSolid, Wanted, trim_way};
 use crate::scene::{Scene, SceneData, Write};
 use ash::vk;
@@ -142,7 +144,7 @@ struct Loaded {
     capacities: Capacities,
     passes: Passes,
     scene: Option<Scene>,
-    buffers: Option<Buffers>,
+    stages: Option<Stages>,
     /// Edits that the next frame copies.
     edits: Vec<Write>,
     /// What the frame before left; `None`: its buffers are gone.
@@ -153,19 +155,18 @@ struct Loaded {
 
 impl Loaded {
     fn bands(&self) -> u32 {
-        let solids = self.buffers.as_ref().filter(|_| self.counts.events);
-        solids.map_or(0, |b| b.visibility.size().1.div_ceil(abi::TILE).div_ceil(self.capacities.band_rows))
+        let stages = self.stages.as_ref().filter(|_| self.counts.events);
+        stages.map_or(0, |s| s.size().1.div_ceil(abi::TILE).div_ceil(self.capacities.band_rows))
     }
 
     fn solid_bytes(&self) -> Vec<PoolBytes> {
-        let solids = self.buffers.as_ref().and_then(|b| b.solids.as_ref());
-        solids.map_or_else(Vec::new, SolidBuffers::bytes)
+        self.stages.as_ref().and_then(Stages::solids).map_or_else(Vec::new, Solids::bytes)
     }
 }
 
 #[allow(dead_code)] // held for their drop
 enum Retired {
-    Buffers(Box<Buffers>),
+    Stages(Box<Stages>),
     Loaded(Box<Loaded>),
     Uploads(Uploads),
     Buffer(Buffer),
@@ -295,7 +296,7 @@ impl Renderer {
             slot.retired.push(Retired::Uploads(uploads));
             loaded.edits.clear();
         }
-        let (Some(scene), Some(buffers), Some(views)) = (&loaded.scene, &loaded.buffers, &slot.views) else {
+        let (Some(scene), Some(stages), Some(views)) = (&loaded.scene, &loaded.stages, &slot.views) else {
             unreachable!("made above")
         };
         let keep = input.settings.background.is_none();
@@ -312,9 +313,10 @@ impl Renderer {
         };
         let shell_pixels = loaded.data.solids.shell_pixels(input.camera);
         let frame = Frame {
-            passes: &loaded.passes,
+            stages,
             scene,
-            buffers,
+            counts: loaded.counts,
+            capacities: loaded.capacities,
             constants: &slot.constants,
             views,
             samples: &slot.samples,
@@ -325,9 +327,6 @@ impl Renderer {
             keeps: known.keeps,
             keeps_table: known.keeps_table,
             shell_pixels: &shell_pixels,
-            layers: loaded.capacities.layers,
-            legs: loaded.capacities.legs,
-            legs_are_most: loaded.capacities.legs >= MOST_LEGS,
             volume_places: slot.centres.volume(),
             sun: slot.centres.sun(),
             sun_parts: slot.centres.sun_parts(),
@@ -364,7 +363,7 @@ impl Renderer {
         let stats = FrameStats {
             passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
             kept: slot.kept,
-            trim: self.loaded.as_ref().and_then(|l| l.counts.trim).map(Into::into),
+            trim: self.loaded.as_ref().and_then(|l| l.counts.trim).and_then(TakenWay::reported),
             patches: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.items)),
             triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
             sub_patches: u64::from(c.plain) + u64::from(c.trimmed),
@@ -431,17 +430,17 @@ impl Renderer {
             _ => loaded.capacities,
         };
         let capacities = capacities.for_picture(loaded.counts, size, range)?;
-        let fits = |b: &Buffers| b.visibility.size() == size && b.capacities.takes_as_much(capacities);
-        let fits = loaded.buffers.as_ref().is_some_and(fits);
-        let made = (!fits).then(|| Buffers::new(&self.device, loaded.counts, capacities, size)).transpose()?;
+        let suffice = loaded.stages.as_ref().is_some_and(|stages| stages.suffice(capacities, size));
+        let make = || Stages::new(&self.device, &loaded.passes, loaded.counts, capacities, size);
+        let made = (!suffice).then(make).transpose()?;
         // layers of faces are recorded, not stored: more of them may be seen in the same buffers
         if made.is_some() || loaded.capacities != capacities {
             loaded.known = None;
         }
         // only now: a view that needs more than there is must not spoil the next one
         loaded.capacities = capacities;
-        if let Some(old) = made.and_then(|made| loaded.buffers.replace(made)) {
-            self.retire(Retired::Buffers(Box::new(old)));
+        if let Some(old) = made.and_then(|made| loaded.stages.replace(made)) {
+            self.retire(Retired::Stages(Box::new(old)));
         }
         Ok(())
     }

@@ -2,6 +2,8 @@
 //!
 //! Compiled by `build.rs`, or committed in `glsl/spirv/`; see there.
 
+use crate::gpu::Binding;
+
 /// Little-endian words, for Vulkan's alignment.
 const fn words<const COUNT: usize>(bytes: &[u8]) -> [u32; COUNT] {
     let (chunks, []) = bytes.as_chunks::<4>() else { panic!("SPIR-V is made of 4-byte words") };
@@ -17,6 +19,34 @@ const fn words<const COUNT: usize>(bytes: &[u8]) -> [u32; COUNT] {
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
+/// A compute shader, and what it needs of its pipeline.
+#[derive(Debug)]
+pub struct Compute {
+    /// The SPIR-V.
+    pub words: &'static [u32],
+    /// Read out of it.
+    pub interface: Interface,
+}
+
+/// What a shader needs of its pipeline.
+#[derive(Debug)]
+pub struct Interface {
+    /// Threads of a workgroup.
+    pub group: [u32; 3],
+    /// Bytes of the push constants.
+    pub push_bytes: u32,
+    /// From binding 0 on.
+    pub bindings: &'static [Binding],
+    /// Names and ids of the specialisation constants.
+    pub constants: &'static [(&'static str, u32)],
+}
+
+/// Of every compute shader.
+mod interfaces {
+    use super::{Binding, Interface};
+    include!(concat!(env!("OUT_DIR"), "/spirv/interfaces.rs"));
+}
+
 /// One way to trim, as the passes know it that ask: `glsl/include/trim.glsl`.
 #[derive(Clone, Copy, Debug)]
 pub struct TrimTest {
@@ -26,8 +56,8 @@ pub struct TrimTest {
     pub visibility: &'static [u32],
     /// Fragment shader of pass `operand_patch`.
     pub operand_patch: &'static [u32],
-    /// Second step of pass `heal`.
-    pub heal: &'static [u32],
+    /// Pass `gap_fill`.
+    pub gap_fill: &'static Compute,
     /// Both again, within a volume that trims the scene; `None`: the way draws no such scene.
     pub within: Option<Within>,
     /// Buffers of the test, read as texels; they follow the bindings of the pass.
@@ -39,8 +69,8 @@ pub struct TrimTest {
 pub struct Within {
     /// Fragment shader of pass `visibility`.
     pub visibility: &'static [u32],
-    /// Second step of pass `heal`.
-    pub heal: &'static [u32],
+    /// Pass `gap_fill`.
+    pub gap_fill: &'static Compute,
 }
 
 /// The u-intercept table.
@@ -48,8 +78,8 @@ pub static TRIM_TABLE: TrimTest = TrimTest {
     way: "table",
     visibility: VISIBILITY_TABLE_FRAG,
     operand_patch: OPERAND_PATCH_TABLE_FRAG,
-    heal: HEAL_TABLE_COMP,
-    within: Some(Within { visibility: VISIBILITY_TABLE_VOLUME_FRAG, heal: HEAL_TABLE_VOLUME_COMP }),
+    gap_fill: &GAP_FILL_TABLE_COMP,
+    within: Some(Within { visibility: VISIBILITY_TABLE_VOLUME_FRAG, gap_fill: &GAP_FILL_TABLE_VOLUME_COMP }),
     texels: 4,
 };
 /// Cells with lists of arcs.
@@ -57,40 +87,40 @@ pub static TRIM_EXACT: TrimTest = TrimTest {
     way: "exact",
     visibility: VISIBILITY_EXACT_FRAG,
     operand_patch: OPERAND_PATCH_EXACT_FRAG,
-    heal: HEAL_EXACT_COMP,
-    within: Some(Within { visibility: VISIBILITY_EXACT_VOLUME_FRAG, heal: HEAL_EXACT_VOLUME_COMP }),
+    gap_fill: &GAP_FILL_EXACT_COMP,
+    within: Some(Within { visibility: VISIBILITY_EXACT_VOLUME_FRAG, gap_fill: &GAP_FILL_EXACT_VOLUME_COMP }),
     texels: 3,
 };
 
 /// No test at all.
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
     way: "untrimmed",
-    visibility: RIVAL_VISIBILITY_UNTRIMMED_FRAG,
-    operand_patch: RIVAL_OPERAND_PATCH_UNTRIMMED_FRAG,
-    heal: RIVAL_HEAL_UNTRIMMED_COMP,
+    visibility: BASELINE_VISIBILITY_UNTRIMMED_FRAG,
+    operand_patch: BASELINE_OPERAND_PATCH_UNTRIMMED_FRAG,
+    gap_fill: &BASELINE_GAP_FILL_UNTRIMMED_COMP,
     within: None,
     texels: 0,
 };
 
 /// Bisection of monotone pieces.
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 pub static TRIM_BISECT: TrimTest = TrimTest {
     way: "bisect",
-    visibility: RIVAL_VISIBILITY_BISECT_FRAG,
-    operand_patch: RIVAL_OPERAND_PATCH_BISECT_FRAG,
-    heal: RIVAL_HEAL_BISECT_COMP,
+    visibility: BASELINE_VISIBILITY_BISECT_FRAG,
+    operand_patch: BASELINE_OPERAND_PATCH_BISECT_FRAG,
+    gap_fill: &BASELINE_GAP_FILL_BISECT_COMP,
     within: None,
     texels: 6,
 };
 
 /// Trim textures.
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 pub static TRIM_TEXTURE: TrimTest = TrimTest {
     way: "texture",
-    visibility: RIVAL_VISIBILITY_TEXTURE_FRAG,
-    operand_patch: RIVAL_OPERAND_PATCH_TEXTURE_FRAG,
-    heal: RIVAL_HEAL_TEXTURE_COMP,
+    visibility: BASELINE_VISIBILITY_TEXTURE_FRAG,
+    operand_patch: BASELINE_OPERAND_PATCH_TEXTURE_FRAG,
+    gap_fill: &BASELINE_GAP_FILL_TEXTURE_COMP,
     within: None,
     texels: 2,
 };
@@ -101,13 +131,13 @@ mod tests {
 
     #[test]
     fn a_shader_begins_with_the_magic_number_and_is_whole() {
-        assert_eq!(SCAN_ADD_COMP[0], 0x0723_0203);
+        assert_eq!(SCAN_ADD_COMP.words[0], 0x0723_0203);
         // Walking the instructions by their lengths ends exactly at the last word.
         let mut at = 5;
-        while at < SCAN_ADD_COMP.len() {
-            at += (SCAN_ADD_COMP[at] >> 16) as usize;
+        while at < SCAN_ADD_COMP.words.len() {
+            at += (SCAN_ADD_COMP.words[at] >> 16) as usize;
         }
-        assert_eq!(at, SCAN_ADD_COMP.len());
+        assert_eq!(at, SCAN_ADD_COMP.words.len());
     }
 
     /// What embedders get is what the sources say. After a change: `tools/shaders`.

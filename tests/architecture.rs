@@ -21,52 +21,63 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // selvedge-check: Cargo says it all
     ("check", &[]),
     // the engine: what knows no GPU
-    ("picture", &["model"]),
+    ("picture", &["baselines", "model"]),
     ("budget", &[]),
     ("abi", &[]),
     ("twin", &["abi", "math", "spline", "trim", "model"]),
     // for tests and measurements
-    ("trial", &["abi", "budget", "model", "picture", "scene", "spline", "twin"]),
+    ("fixtures", &["abi", "budget", "math", "model", "picture", "scene", "spline", "twin"]),
     // GPU: no geometry
     ("gpu", &[]),
-    ("shaders", &[]),
+    ("shaders", &["gpu"]),
     ("bindings", &["gpu"]),
-    ("passes", &["abi", "bindings", "gpu", "shaders"]),
     // where both meet
-    ("scene", &["abi", "bindings", "csg", "gpu", "math", "spline", "trim", "model", "picture", "rivals"]),
-    ("capacities", &["abi", "gpu", "passes", "picture", "scene"]),
-    ("buffers", &["abi", "capacities", "gpu", "passes", "picture"]),
-    ("frame", &["abi", "bindings", "buffers", "gpu", "passes", "picture", "scene", "shaders"]),
-    ("renderer", &["abi", "budget", "buffers", "capacities", "frame", "gpu", "model", "passes", "picture", "scene"]),
-    ("headless", &["gpu", "model", "picture", "renderer"]),
+    ("scene", &["abi", "bindings", "csg", "gpu", "math", "spline", "trim", "model", "picture", "baselines"]),
+    ("frame", &["abi", "baselines", "bindings", "gpu", "picture", "scene", "shaders"]),
+    ("renderer", &["abi", "budget", "frame", "gpu", "model", "picture", "scene"]),
+    ("headless", &["baselines", "gpu", "model", "picture", "renderer", "scene"]),
     // for benchmarks and tests
-    ("rivals", &["abi", "math", "model", "picture", "scene", "spline", "trial", "trim", "twin"]),
+    ("baselines", &["abi", "fixtures", "math", "model", "picture", "scene", "spline", "trim", "twin"]),
 ];
 
 /// Modules that may name Vulkan's types.
-const VULKAN: &[&str] = &["gpu", "scene", "passes", "buffers", "renderer", "headless"];
+const VULKAN: &[&str] = &["gpu", "scene", "frame", "renderer", "headless"];
 /// Modules that may hold `unsafe`: the layer itself, and those that speak for a host or to one.
 const UNSAFE: &[&str] = &["gpu", "renderer", "headless"];
-/// Files beside `gpu` and `headless` that may record barriers: the frame, and the one pass that has steps
-/// of its own.
-const BARRIERS: &[&str] = &[
+/// Files beside `gpu` and `headless` that may record barriers: the frame, the records of its stages, and the one pass
+/// that has steps of its own.
+const RECORDS: &[&str] = &[
     "src/frame.rs",
-    "src/frame/bands.rs",
-    "src/frame/blister.rs",
-    "src/frame/coverage.rs",
-    "src/frame/drawn.rs",
-    "src/frame/edit.rs",
-    "src/frame/heal.rs",
-    "src/frame/hidden.rs",
-    "src/frame/kept.rs",
-    "src/frame/layers.rs",
-    "src/frame/resolved.rs",
-    "src/frame/rival.rs",
-    "src/frame/samples.rs",
-    "src/frame/solids.rs",
-    "src/frame/sun.rs",
-    "src/frame/table.rs",
-    "src/passes/scan.rs",
+    "src/frame/reuse.rs",
+    "src/frame/antialiasing/samples.rs",
+    "src/frame/antialiasing/smooth_trims.rs",
+    "src/frame/baselines/mod.rs",
+    "src/frame/common/mod.rs",
+    "src/frame/common/scan.rs",
+    "src/frame/gaps/mod.rs",
+    "src/frame/occlusion/mod.rs",
+    "src/frame/shading/mod.rs",
+    "src/frame/shadows/mod.rs",
+    "src/frame/solids/mod.rs",
+    "src/frame/solids/bands.rs",
+    "src/frame/solids/operands.rs",
+    "src/frame/solids/peel.rs",
+    "src/frame/solids/tiles.rs",
+    "src/frame/tessellation/mod.rs",
+    "src/frame/transparency/mod.rs",
+    "src/frame/trim/edit.rs",
+    "src/frame/trim/table.rs",
+    "src/frame/visibility/mod.rs",
+];
+/// Files of a stage's folder that are neither a pass nor a record.
+const NO_PASSES: &[&str] = &[
+    "src/frame/antialiasing/mod.rs",
+    "src/frame/common/kernel.rs",
+    "src/frame/common/room.rs",
+    "src/frame/solids/buffers.rs",
+    "src/frame/solids/lists.rs",
+    "src/frame/tessellation/divide.rs",
+    "src/frame/trim/mod.rs",
 ];
 /// What a library leaves to its host.
 const HOSTS: &[&str] =
@@ -124,6 +135,13 @@ impl Source {
         self.code.split("crate::").skip(1).map(|rest| &rest[..name(rest)]).collect()
     }
 
+    /// A pass, in the folder of its stage.
+    fn is_pass(&self) -> bool {
+        let of_stage = self.path.strip_prefix("src/frame/").is_some_and(|within| within.contains('/'));
+        let path = self.path.as_str();
+        of_stage && !RECORDS.contains(&path) && !NO_PASSES.contains(&path) || path == "src/frame/common/scan.rs"
+    }
+
     /// Everything that is wrong with it.
     fn complaints(&self) -> Vec<String> {
         let mut all = Vec::new();
@@ -138,9 +156,10 @@ impl Source {
                 }
             }
         }
-        if module == "passes" && !self.path.ends_with("mod.rs") {
-            for beside in ["crate::passes", "super::"] {
-                if self.code.contains(beside) {
+        if self.is_pass() {
+            for beside in ["crate::frame::", "super::"] {
+                let uses = |line: &str| line.contains(beside) && !line.contains("crate::frame::common::");
+                if self.code.lines().any(uses) {
                     complain("a pass may not use another".to_owned());
                 }
             }
@@ -151,9 +170,9 @@ impl Source {
         if !UNSAFE.contains(&module) && self.code.contains("unsafe ") {
             complain("`unsafe`".to_owned());
         }
-        let barriers = ["gpu", "headless"].contains(&module) || BARRIERS.contains(&self.path.as_str());
-        if !barriers && self.code.contains("barrier::") {
-            complain("barriers between passes stand in src/frame.rs".to_owned());
+        let barriers = ["gpu", "headless"].contains(&module) || RECORDS.contains(&self.path.as_str());
+        if !barriers && ["barrier::", "cmd.after("].iter().any(|name| self.code.contains(name)) {
+            complain("barriers between passes stand in the records of src/frame".to_owned());
         }
         for forbidden in HOSTS.iter().filter(|f| self.code.contains(**f)) {
             complain(format!("`{forbidden}` is the host's"));
@@ -204,9 +223,9 @@ fn a_forbidden_use_is_seen() {
     );
     assert_eq!(complaints("crates/geometry/src/trim/new.rs", "use crate::gpu::Buffer;\n"), 1);
     assert_eq!(complaints("src/gpu/new.rs", "fn f(m: &crate::model::Model) {}\n"), 1);
-    assert_eq!(complaints("src/passes/new.rs", "use super::scan;\n"), 1);
-    assert_eq!(complaints("src/passes/new.rs", "fn f() { barrier::memory(cmd, a, b) }\n"), 1);
-    assert_eq!(complaints("src/passes/new.rs", "fn f() { unsafe { g() } }\n"), 1);
+    assert_eq!(complaints("src/frame/gaps/new.rs", "use super::scan;\n"), 1);
+    assert_eq!(complaints("src/frame/gaps/new.rs", "fn f() { barrier::memory(cmd, a, b) }\n"), 1);
+    assert_eq!(complaints("src/frame/gaps/new.rs", "fn f() { unsafe { g() } }\n"), 1);
     assert_eq!(complaints("crates/geometry/src/spline/new.rs", "use ash::vk;\n"), 1);
     assert_eq!(
         complaints("crates/io/src/import/new.rs", "println!(\"read\");\n#[cfg(test)]\nmod tests { println!() }\n"),

@@ -1,4 +1,4 @@
-// Whether a patch lies behind what has been drawn. Twin: src/twin/hidden.rs, which derives it.
+// Whether a patch lies behind what has been drawn. Twin: src/twin/occlusion.rs, which derives it.
 //
 //   ┌────┬────┬────┐   a patch is cut in cells of some CELL_PX; every triangle of a cell lies within `off` of what is
 //   │    │    │    │   bilinear through its corners. So it is seen within the corners' pixels, and a few more, and
@@ -8,7 +8,7 @@
 #ifndef BEHIND_GLSL
 #define BEHIND_GLSL
 
-#include "farthest.glsl"
+#include "depth_pyramid.glsl"
 #include "push.glsl"
 
 const float CELL_PX = 32.0;

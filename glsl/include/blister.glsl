@@ -1,4 +1,4 @@
-// Layers of faces, peeled off one by one: what the passes of `blister` share. Twin: src/passes/blister.rs.
+// Layers of faces, peeled off one by one: what the passes of `blister` share. Twin: src/frame/solids/blister.rs.
 //
 //   layer   the nearest face behind the layer before, of any primitive:
 //           word of visible.glsl, 0 where there is none │ depth, a float

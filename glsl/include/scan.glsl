@@ -1,4 +1,4 @@
-// Exclusive prefix sums: what the three steps share. Figure and contract: src/passes/scan.rs.
+// Exclusive prefix sums: what the three steps share. Figure and contract: src/frame/common/scan.rs.
 
 #include "abi/scan.glsl"
 

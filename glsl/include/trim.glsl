@@ -47,9 +47,9 @@ uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
 }
 #endif
 
-// Ways to compare with: src/rivals.
+// Ways to compare with: src/baselines.
 #ifdef TRIM_BY_BISECT
-#include "rivals/bisect.glsl"
+#include "baselines/bisect.glsl"
 #endif
 
 #ifdef TRIM_BY_UNTRIMMED
@@ -59,7 +59,7 @@ bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
 #endif
 
 #ifdef TRIM_BY_TEXTURE
-#include "rivals/texture.glsl"
+#include "baselines/texture.glsl"
 #include "words.glsl"
 layout(binding = TRIM_BINDING + 0) uniform usamplerBuffer texture_places;
 layout(binding = TRIM_BINDING + 1) uniform usamplerBuffer texels;

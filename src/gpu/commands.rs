@@ -1,6 +1,6 @@
 //! Recording into a command buffer of the host's.
 
-use super::{Access, Attachment, Buffer, Device, Image, Pipeline, Resource, push};
+use super::{Access, Attachment, Buffer, Device, Image, Pipeline, Resource, barrier, push};
 use ash::vk;
 use std::ffi::CString;
 use std::ops::Range;
@@ -33,6 +33,12 @@ impl<'a> Commands<'a> {
     /// The Vulkan command buffer.
     pub fn raw(&self) -> vk::CommandBuffer {
         self.raw
+    }
+
+    /// Orders what was done to buffers before what is done to them next. Images have
+    /// [`barrier::images`], which change their layouts, too.
+    pub fn after(&self, before: Access, next: Access) {
+        barrier::memory(self, before, next);
     }
 
     /// Binds a pipeline with its resources in binding order and its push constants.

@@ -5,6 +5,7 @@ use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, Rea
 use crate::model::{Camera, LoopAt, Model, TrimLoop};
 use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
 use crate::renderer::{CloseUp, EditError, FrameInput, RenderError, Renderer, TargetFormats, Targets, Wanted};
+use crate::scene::SceneRequest;
 use ash::vk;
 use bytemuck::Pod;
 use std::mem::ManuallyDrop;
@@ -23,7 +24,7 @@ pub struct HeadlessRenderer {
     targets: ManuallyDrop<Option<TargetImages>>,
     device: ManuallyDrop<HeadlessDevice>,
     aovs: bool,
-    model: Option<(Arc<Model>, SceneSettings)>,
+    model: Option<(Arc<Model>, SceneRequest)>,
     close_up: CloseUp,
 }
 
@@ -78,9 +79,33 @@ impl HeadlessRenderer {
         settings: SceneSettings,
         told: &(dyn Fn(usize) + Sync),
     ) -> Result<(), HeadlessError> {
+        self.upload_request(model, settings.into(), told)
+    }
+
+    /// As [`upload_with`](Self::upload_with), with what is to be compared with in the engine's place.
+    ///
+    /// # Errors
+    /// [`HeadlessError::Gpu`].
+    #[cfg(feature = "baselines")]
+    #[doc(hidden)]
+    pub fn upload_baseline(
+        &mut self,
+        model: &Model,
+        settings: SceneSettings,
+        baseline: crate::baselines::SceneOptions,
+    ) -> Result<(), HeadlessError> {
+        self.upload_request(Arc::new(model.clone()), SceneRequest { settings, baseline }, &|_| ())
+    }
+
+    fn upload_request(
+        &mut self,
+        model: Arc<Model>,
+        request: SceneRequest,
+        told: &(dyn Fn(usize) + Sync),
+    ) -> Result<(), HeadlessError> {
         self.close_up = CloseUp::new(&model);
-        let (model, _) = self.model.insert((model, settings));
-        Ok(self.renderer.upload_telling(model, settings, told)?)
+        let (model, _) = self.model.insert((model, request));
+        Ok(self.renderer.upload_request(model, request, told)?)
     }
 
     /// Replaces a trim loop of the model, which was uploaded as editable; see [`Renderer::edit_loop`].
@@ -188,12 +213,12 @@ impl HeadlessRenderer {
         let aovs = Outputs { thickness: false, ..outputs } != Outputs::default();
         let followed = self.model.as_ref().is_some_and(|(_, settings)| settings.thickness);
         if let Some((_, settings)) = self.model.as_mut().filter(|_| thickness) {
-            settings.thickness = true;
+            settings.settings.thickness = true;
         }
         if aovs != self.aovs || thickness && !followed {
             let mut renderer = Renderer::on(self.device.device(), formats(aovs), 1)?;
             let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
-            renderer.upload_with(model, *settings)?;
+            renderer.upload_request(model, *settings)?;
             *self.renderer = renderer;
             self.aovs = aovs;
             self.close_up = CloseUp::new(model);
@@ -215,8 +240,8 @@ impl HeadlessRenderer {
         let wanted = if whole { Wanted::Same } else { self.close_up.of(model, camera) };
         let uploaded = match &wanted {
             Wanted::Same => Ok(()),
-            Wanted::Whole => self.renderer.upload_with(model, *settings),
-            Wanted::Cut(near) => self.renderer.upload_cut(model, near, *settings),
+            Wanted::Whole => self.renderer.upload_request(model, *settings),
+            Wanted::Cut(near) => self.renderer.upload_cut_request(model, near, *settings),
         };
         if uploaded.is_err() {
             self.close_up.forget();

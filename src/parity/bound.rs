@@ -5,8 +5,8 @@ use super::harness::{Gpu, Mismatch, SceneBuffers, halves, same};
 use super::shapes::cases;
 use super::{Case, cages};
 use crate::abi::{Counters, FACE_SAME_SENSE};
+use crate::frame::tessellation::bound::Bound;
 use crate::model::{Camera, Projection};
-use crate::passes::bound::Bound;
 use crate::twin;
 use glam::{DAffine3, DVec3};
 

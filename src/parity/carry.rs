@@ -4,8 +4,8 @@ use super::Case;
 use super::chain::Chain;
 use super::harness::{Gpu, Mismatch, same};
 use super::shapes::cases;
+use crate::frame::trim::carry::{Bindings, Carry};
 use crate::gpu::Texel;
-use crate::passes::carry::{Bindings, Carry};
 use crate::twin;
 
 fn compare(gpu: &Gpu, case: &Case, chain: &Chain, given: &[i32], expected: &[i32]) -> Result<(), Mismatch> {

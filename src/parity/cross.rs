@@ -5,8 +5,8 @@ use super::Case;
 use super::chain::{Chain, UNTOUCHED};
 use super::harness::{Gpu, Mismatch, SceneBuffers, floats, same};
 use super::shapes::cases;
+use crate::frame::trim::cross::{Bindings, Cross};
 use crate::gpu::Texel;
-use crate::passes::cross::{Bindings, Cross};
 use crate::twin::sort::from_ordered;
 
 /// What the pass leaves.

@@ -3,7 +3,7 @@
 use super::Case;
 use super::harness::{Gpu, Mismatch, SceneBuffers, floats, same};
 use super::shapes::cases;
-use crate::passes::density::{Bindings, Density};
+use crate::frame::trim::density::{Bindings, Density};
 use crate::twin;
 
 fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {

@@ -4,7 +4,7 @@ use super::chain::{Chain, UNTOUCHED_SUB_PATCH};
 use super::harness::{Gpu, Mismatch, same};
 use super::shapes::cases;
 use crate::abi::{Counters, Frame};
-use crate::passes::emit::{Bindings, Emit};
+use crate::frame::tessellation::emit::{Bindings, Emit};
 use crate::twin;
 
 fn compare(gpu: &Gpu, frame: &Frame, given: &Chain, expected: &Chain) -> Result<(), Mismatch> {

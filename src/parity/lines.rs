@@ -4,7 +4,7 @@ use super::chain::{Chain, UNTOUCHED};
 use super::harness::{Gpu, Mismatch, counts, same};
 use super::shapes::cases;
 use crate::abi::{Counters, Frame};
-use crate::passes::lines::{Bindings, Lines};
+use crate::frame::trim::lines::{Bindings, Lines};
 use crate::twin;
 
 fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: &[f32], expected: &[f32]) -> Result<(), Mismatch> {

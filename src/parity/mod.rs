@@ -24,9 +24,11 @@ use crate::{abi, spline::Patch};
 #[cfg(feature = "headless")]
 use glam::DVec4;
 
-pub(crate) use crate::trial::{Case, Random};
+pub(crate) use crate::fixtures::{Case, Random};
 pub(crate) use shapes::{placed, untrimmed};
 
+#[cfg(all(feature = "headless", feature = "baselines"))]
+mod baseline_slefe;
 #[cfg(feature = "headless")]
 mod bound;
 #[cfg(feature = "headless")]
@@ -42,15 +44,13 @@ mod frame;
 #[cfg(feature = "headless")]
 mod harness;
 #[cfg(feature = "headless")]
-mod hidden;
-#[cfg(feature = "headless")]
 mod lines;
+#[cfg(feature = "headless")]
+mod occlusion;
 #[cfg(feature = "headless")]
 mod operand_sort;
 #[cfg(feature = "headless")]
 mod reset;
-#[cfg(all(feature = "headless", feature = "rivals"))]
-mod rival_slefe;
 #[cfg(feature = "headless")]
 mod segments;
 #[cfg(feature = "headless")]

@@ -3,7 +3,7 @@
 use super::Random;
 use super::harness::{Gpu, Mismatch, same};
 use crate::abi::{Counters, FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_RING, Fragment, Frame, Leaf};
-use crate::passes::operand_sort::{Bindings, OperandSort};
+use crate::frame::solids::operand_sort::{Bindings, OperandSort};
 use crate::twin::operand_sort::{Shells, operand_sort};
 
 const WIDTH: u32 = 70;

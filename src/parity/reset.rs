@@ -4,7 +4,7 @@ use super::chain::UNTOUCHED;
 use super::harness::{Gpu, Mismatch, same};
 use super::shapes::cases;
 use crate::abi::{Counters, Frame};
-use crate::passes::reset::{Bindings, Reset};
+use crate::frame::common::reset::{Bindings, Reset};
 use crate::twin;
 use crate::twin::emit::Draw;
 

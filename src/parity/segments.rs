@@ -4,8 +4,8 @@ use super::Case;
 use super::chain::{Chain, UNTOUCHED};
 use super::harness::{Gpu, Mismatch, SceneBuffers, counts};
 use super::shapes::cases;
+use crate::frame::trim::segments::{Bindings, Segments};
 use crate::gpu::Texel;
-use crate::passes::segments::{Bindings, Segments};
 use crate::twin;
 
 fn compare(gpu: &Gpu, given: &Case, expected: &Case, chain: &Chain) -> Result<(), Mismatch> {

@@ -4,7 +4,7 @@ use super::chain::{Chain, UNTOUCHED};
 use super::harness::{Gpu, Mismatch, same};
 use super::shapes::cases;
 use crate::abi::{Counters, Frame};
-use crate::passes::sizes::{Bindings, Sizes};
+use crate::frame::trim::sizes::{Bindings, Sizes};
 use crate::twin;
 
 fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: [&[u32]; 2], expected: [&[u32]; 2]) -> Result<(), Mismatch> {

@@ -3,7 +3,8 @@
 use super::Random;
 use super::harness::{Gpu, Mismatch, same};
 use crate::abi::{Counters, Frame, Rect, TileLeaf};
-use crate::passes::{solid_blocks, solid_tiles};
+use crate::frame::solids::solid_blocks;
+use crate::frame::solids::solid_tiles;
 use crate::twin;
 
 const UNTOUCHED: u32 = 0xabcd_1234;

@@ -5,8 +5,8 @@ use super::chain::Chain;
 use super::harness::{Gpu, Mismatch, same};
 use super::shapes::cases;
 use crate::abi::{Counters, Frame};
+use crate::frame::trim::sort::{Bindings, Sort};
 use crate::gpu::{Buffer, Texel};
-use crate::passes::sort::{Bindings, Sort};
 use crate::twin;
 use crate::twin::cross::ordered_bits;
 

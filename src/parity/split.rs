@@ -5,8 +5,8 @@ use super::harness::{Gpu, Mismatch, SceneBuffers, same};
 use super::shapes::cases;
 use super::{Case, Random, cages};
 use crate::abi::Factors;
+use crate::frame::tessellation::split::{Bindings, Split};
 use crate::model::Camera;
-use crate::passes::split::{Bindings, Split};
 use crate::twin;
 use glam::DVec3;
 

@@ -4,10 +4,10 @@ use super::harness::{Gpu, Mismatch, same};
 use super::shapes::cases;
 use super::{Case, Random};
 use crate::abi::{MeshInstance, TILE};
+use crate::frame::shading::seen_squares::{Bindings, SeenSquares};
+use crate::frame::visibility::mesh::{self, Mesh};
+use crate::frame::visibility::patches::{DEPTH_FORMAT, VISIBILITY_FORMAT};
 use crate::gpu::{Access, Attachment, Image, ImageInfo, Load, Pool, ReadBack, barrier};
-use crate::passes::mesh::{self, Mesh};
-use crate::passes::seen_squares::{Bindings, SeenSquares};
-use crate::passes::visibility::{DEPTH_FORMAT, VISIBILITY_FORMAT};
 use crate::twin::squares::seen_squares;
 use ash::vk;
 

@@ -2,15 +2,17 @@
 
 use super::RenderError;
 use crate::picture::{Samples, SceneSettings, TrimWay};
-use crate::scene::SceneData;
+use crate::scene::{SceneData, SceneRequest};
 
 /// Nothing is asked for that smooth trims do not go with.
-pub(super) fn check_smooth_trims(data: &SceneData, settings: SceneSettings) -> Result<(), RenderError> {
+pub(super) fn check_smooth_trims(data: &SceneData, settings: SceneRequest) -> Result<(), RenderError> {
     let refused = match settings.trim {
         _ if settings.samples != Samples::One => Some("several samples a pixel, which smooth them, too"),
         _ if data.is_layered => Some("something to see through, or to mark"),
+        #[cfg(feature = "baselines")]
+        _ if settings.baseline.trim.is_some() => Some("another way to trim than `exact`"),
         TrimWay::Auto | TrimWay::Exact => None,
-        _ => Some("another way to trim than `exact`"),
+        TrimWay::Table => Some("another way to trim than `exact`"),
     };
     refused.map_or(Ok(()), |what| Err(RenderError::SmoothTrims(what)))
 }

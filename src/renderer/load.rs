@@ -7,12 +7,13 @@
 
 use super::constants::draw_vertices;
 use super::{Loaded, RenderError, Renderer, Retired, asked};
-use crate::capacities::{Capacities, Counts};
 use crate::frame::Passes;
+use crate::frame::capacities::Capacities;
+use crate::frame::counts::Counts;
+use crate::frame::shading::resolve;
 use crate::model::{LoopAt, Model, TrimLoop};
-use crate::passes::resolve;
 use crate::picture::{SceneSettings, TakenWay, TrimWay};
-use crate::scene::{Cut, SceneData, Told, UndrawnSolid};
+use crate::scene::{Cut, SceneData, SceneRequest, Told, UndrawnSolid};
 
 /// What a scene is made of: a model, or what was cut out of it for a view.
 #[derive(Clone, Copy)]
@@ -23,7 +24,7 @@ struct Source<'a> {
 }
 
 impl Source<'_> {
-    fn data(self, settings: SceneSettings) -> Result<SceneData, UndrawnSolid> {
+    fn data(self, settings: SceneRequest) -> Result<SceneData, UndrawnSolid> {
         match self.cut {
             None => SceneData::telling(self.whole, settings, self.told),
             Some(cut) => SceneData::cut_from(self.whole, cut, settings),
@@ -35,11 +36,11 @@ impl Source<'_> {
 pub(super) struct Kept {
     whole: Model,
     cut: Option<Cut>,
-    settings: SceneSettings,
+    settings: SceneRequest,
 }
 
 impl Kept {
-    fn new(of: Source<'_>, settings: SceneSettings) -> Self {
+    fn new(of: Source<'_>, settings: SceneRequest) -> Self {
         // of a whole model only shadows are asked for beside what was cut out of it
         let whole = if of.cut.is_none() || settings.sun.is_some() { of.whole.clone() } else { Model::default() };
         Self { whole, cut: of.cut.cloned(), settings }
@@ -81,7 +82,7 @@ impl Renderer {
         settings: SceneSettings,
         told: &(dyn Fn(usize) + Sync),
     ) -> Result<(), RenderError> {
-        self.load(Source { whole: model, cut: None, told }, settings)
+        self.upload_request(model, settings.into(), told)
     }
 
     /// As [`upload_with`](Self::upload_with), of what [`CloseUp`](super::CloseUp) cut out of a model for a view: shadows
@@ -90,7 +91,7 @@ impl Renderer {
     /// # Errors
     /// As [`upload`](Self::upload).
     pub fn upload_cut(&mut self, whole: &Model, cut: &Cut, settings: SceneSettings) -> Result<(), RenderError> {
-        self.load(Source { whole, cut: Some(cut), told: &|_| () }, settings)
+        self.upload_cut_request(whole, cut, settings.into())
     }
 
     /// The same model once more, trimmed exactly: the table has no room for a view of it.
@@ -98,11 +99,31 @@ impl Renderer {
         let Some(kept) = self.loaded.as_mut().and_then(|loaded| loaded.kept.take()) else { return Ok(()) };
         let Kept { whole, cut, settings } = &*kept;
         let of = Source { whole, cut: cut.as_ref(), told: &|_| () };
-        self.load(of, SceneSettings { trim: TrimWay::Exact, ..*settings })
+        self.load(of, settings.exact())
     }
 
-    fn load(&mut self, of: Source<'_>, settings: SceneSettings) -> Result<(), RenderError> {
-        asked::check_sun(settings)?;
+    /// As [`upload_telling`](Self::upload_telling).
+    pub(crate) fn upload_request(
+        &mut self,
+        model: &Model,
+        request: SceneRequest,
+        told: Told<'_>,
+    ) -> Result<(), RenderError> {
+        self.load(Source { whole: model, cut: None, told }, request)
+    }
+
+    /// As [`upload_cut`](Self::upload_cut).
+    pub(crate) fn upload_cut_request(
+        &mut self,
+        whole: &Model,
+        cut: &Cut,
+        request: SceneRequest,
+    ) -> Result<(), RenderError> {
+        self.load(Source { whole, cut: Some(cut), told: &|_| () }, request)
+    }
+
+    fn load(&mut self, of: Source<'_>, settings: SceneRequest) -> Result<(), RenderError> {
+        asked::check_sun(*settings)?;
         let mut data = of.data(settings)?;
         if settings.smooth_trims {
             asked::check_smooth_trims(&data, settings)?;
@@ -110,7 +131,7 @@ impl Renderer {
         let may_change = settings.trim == TrimWay::Auto && data.trim_way() == Some(TakenWay::Table);
         let too_many = Counts::of(&data).check().err().filter(|too_many| may_change && too_many.is_of_table());
         if too_many.is_some() {
-            data = of.data(SceneSettings { trim: TrimWay::Exact, ..settings })?;
+            data = of.data(settings.exact())?;
         }
         let kept = (may_change && too_many.is_none()).then(|| Box::new(Kept::new(of, settings)));
         let counts = Counts::of(&data);
@@ -124,7 +145,7 @@ impl Renderer {
             capacities: Capacities::first(counts).drawn_by(counts, draw_vertices(&self.device)),
             passes,
             scene: None,
-            buffers: None,
+            stages: None,
             edits: Vec::new(),
             known: None,
             kept,

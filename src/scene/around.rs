@@ -84,7 +84,7 @@ impl Ball {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trial::Random;
+    use crate::fixtures::Random;
 
     fn ball() -> Ball {
         Ball { centre: DVec3::new(3.0, -1.0, 2.0), radius: 5.0 }

@@ -8,14 +8,13 @@ use super::face::{Body, Cuts, FaceData, Trimming, pack_colour};
 use super::link::link;
 use super::mesh::Meshes;
 use super::parts::{PlacedPart, Told, each_made};
+use super::request::SceneRequest;
 use super::solids::{Lists, SolidData, UndrawnSolid};
 use super::sun::SunData;
 use super::trimmed::Trimmed;
 use super::way::taken;
 use crate::abi;
 use crate::model::{Bounds, Instance, Items, Lone, Model, Part, SolidError};
-#[cfg(feature = "rivals")]
-use crate::picture::Rival;
 use crate::picture::{Highlight, Samples, SceneSettings, TakenWay};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
@@ -31,8 +30,8 @@ pub(crate) enum Division {
     /// Bounds on their derivatives.
     #[default]
     Bound,
-    /// Slefes, and the table that the pass reads: `rivals::slefe::words`.
-    #[cfg(feature = "rivals")]
+    /// Slefes, and the table that the pass reads: `baselines::slefe::words`.
+    #[cfg(feature = "baselines")]
     Slefe(Vec<u32>),
 }
 
@@ -76,11 +75,11 @@ pub(crate) struct SceneData {
     /// What edits of loops need, where they may come.
     pub edit: Option<EditScene>,
     /// Of the scene's faces, where they are bisected.
-    #[cfg(feature = "rivals")]
-    pub bisect: crate::rivals::bisect::Bisect,
+    #[cfg(feature = "baselines")]
+    pub bisect: crate::baselines::bisect::Bisect,
     pub division: Division,
     /// Patches are also drawn without a trim test.
-    #[cfg(feature = "rivals")]
+    #[cfg(feature = "baselines")]
     pub untested: bool,
     /// How faces would be trimmed.
     way: Option<TakenWay>,
@@ -115,34 +114,34 @@ pub(crate) struct SceneData {
 }
 
 impl SceneData {
-    #[cfg(any(test, feature = "rivals"))]
-    pub(crate) fn new(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        Self::telling(model, settings, &|_| ())
+    #[cfg(any(test, feature = "baselines"))]
+    pub(crate) fn new(model: &Model, request: impl Into<SceneRequest>) -> Result<Self, UndrawnSolid> {
+        Self::telling(model, request.into(), &|_| ())
     }
 
     /// Of a model; `told` of its faces as they are made.
-    pub(crate) fn telling(model: &Model, settings: SceneSettings, told: Told<'_>) -> Result<Self, UndrawnSolid> {
+    pub(crate) fn telling(model: &Model, request: SceneRequest, told: Told<'_>) -> Result<Self, UndrawnSolid> {
         // edits would change where cuts pay
-        let extent = if settings.editable { f64::INFINITY } else { model.control_bounds().diagonal() };
-        Self::of(model, model, (settings, told), |_, scale| extent / scale)
+        let extent = if request.editable { f64::INFINITY } else { model.control_bounds().diagonal() };
+        Self::of(model, model, (request, told), |_, scale| extent / scale)
     }
 
     /// Of what close views see of a model, cut out of it: shadows are those of the whole.
-    pub(crate) fn cut_from(whole: &Model, cut: &Cut, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        Self::of(whole, &cut.model, (settings, &|_| ()), |part, _| cut.extents[part])
+    pub(crate) fn cut_from(whole: &Model, cut: &Cut, request: impl Into<SceneRequest>) -> Result<Self, UndrawnSolid> {
+        Self::of(whole, &cut.model, (request.into(), &|_| ()), |part, _| cut.extents[part])
     }
 
     /// All patches as they are.
-    #[cfg(any(test, feature = "rivals"))]
+    #[cfg(any(test, feature = "baselines"))]
     pub(crate) fn uncut(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        Self::of(model, model, (settings, &|_| ()), |_, _| f64::INFINITY)
+        Self::of(model, model, (settings.into(), &|_| ()), |_, _| f64::INFINITY)
     }
 
     /// `extent`: of a part, whose largest copy is so many times as large; see [`Trimming`].
     fn of(
         whole: &Model,
         model: &Model,
-        (settings, told): (SceneSettings, Told<'_>),
+        (settings, told): (SceneRequest, Told<'_>),
         extent: impl Fn(usize, f64) -> f64,
     ) -> Result<Self, UndrawnSolid> {
         let way = taken(model, settings);
@@ -197,11 +196,11 @@ impl SceneData {
             edit,
             ..Self::default()
         };
-        #[cfg(feature = "rivals")]
+        #[cfg(feature = "baselines")]
         {
-            data.untested = settings.untested;
-            if let Some(segments) = settings.slefe_segments {
-                data.division = Division::Slefe(crate::rivals::slefe::words(segments));
+            data.untested = settings.baseline.untested;
+            if let Some(segments) = settings.baseline.slefe_segments {
+                data.division = Division::Slefe(crate::baselines::slefe::words(segments));
             }
         }
         // cut open, a part has no inside
@@ -239,8 +238,8 @@ impl SceneData {
             if data.link(first) {
                 data.push_cones(first, &normals, 0.5 * bounds[nth].diagonal());
             }
-            #[cfg(feature = "rivals")]
-            if let TakenWay::Rival(Rival::Bisect { steps, sorted }) = way {
+            #[cfg(feature = "baselines")]
+            if let TakenWay::Baseline(crate::baselines::TrimMethod::Bisect { steps, sorted }) = way {
                 placed.part.faces.iter().for_each(|f| data.bisect.push(f, steps, sorted));
             }
         });

@@ -11,8 +11,6 @@ use super::flatten::flattened;
 use crate::abi;
 use crate::abi::Side;
 use crate::model::{Face, SurfaceKind, TrimLoop};
-#[cfg(feature = "rivals")]
-use crate::picture::Rival;
 use crate::picture::TakenWay;
 use crate::spline::{Bezier, Control, Patch, PatchGrid, SurfacePatch};
 use crate::trim::{ExactTrim, LoopIndex, RectSide, chord_bend};
@@ -352,12 +350,7 @@ pub(super) fn pack_colour(c: crate::model::Colour) -> u32 {
 
 /// The way is made of curves and cells in every view.
 fn needs_curves(way: TakenWay) -> bool {
-    match way {
-        TakenWay::Table => true,
-        TakenWay::Exact => false,
-        #[cfg(feature = "rivals")]
-        TakenWay::Rival(rival) => matches!(rival, Rival::Texture { .. }),
-    }
+    way == TakenWay::Table || way.is_texture()
 }
 
 /// Of each patch at the loops, a bit for each of [`abi::OUTSIDE_CELLS`] cells along u and along v, rows of them from the

@@ -29,6 +29,7 @@ mod link;
 mod mesh;
 mod nearby;
 mod parts;
+mod request;
 mod solids;
 mod sun;
 mod trimmed;
@@ -42,14 +43,15 @@ pub use edit::EditError;
 pub(crate) use edit::{EditTarget, Write};
 #[cfg(test)]
 pub(crate) use exact::ExactData;
-#[cfg(any(test, feature = "rivals"))]
+#[cfg(any(test, feature = "baselines"))]
 pub(crate) use flatten::{Cuts, flattened};
 pub(crate) use parts::Told;
+pub(crate) use request::SceneRequest;
 pub use solids::UndrawnSolid;
 pub(crate) use solids::{Asked, Blister, SolidData};
 pub(crate) use trimmed::TableView;
-#[cfg(feature = "rivals")]
-pub(crate) use upload::RivalScene;
+#[cfg(feature = "baselines")]
+pub(crate) use upload::BaselineScene;
 pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, TableScene, Trims};
 pub(crate) use view::{focal_and_slant, seen_by, view};
 pub use way::trim_way;

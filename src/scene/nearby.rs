@@ -235,7 +235,7 @@ impl Sight {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trial::Random;
+    use crate::fixtures::Random;
 
     const MARGIN_PX: f64 = 1.25;
 

@@ -19,7 +19,7 @@ use super::face::pack_colour;
 use crate::abi;
 use crate::csg::Blist;
 use crate::model::{Bounds, Items, Primitive, Shape, Solid, SolidError, SurfaceTable};
-use crate::picture::{SolidWay, TakenWay, TrimWay};
+use crate::picture::{SolidWay, TakenWay};
 pub(crate) use blister::{Asked, Blister};
 use glam::DVec3;
 pub(super) use shell::Operand;
@@ -325,7 +325,7 @@ impl SolidData {
     /// The volume that trims a scene; `None` when it is everywhere.
     pub(super) fn volume(volume: &Solid, coincidence: f64, way: TakenWay) -> Result<Option<Self>, UndrawnSolid> {
         if !matches!(way, TakenWay::Table | TakenWay::Exact) {
-            return Err(UndrawnSolid::VolumeBy(TrimWay::from(way).name()));
+            return Err(UndrawnSolid::VolumeBy(way.name()));
         }
         if volume.tree().fold(|_| None).as_constant() == Some(true) {
             return Ok(None);

@@ -1,13 +1,13 @@
 //! The scene's persistent buffers: only those that its model needs.
 
-#[cfg(feature = "rivals")]
+#[cfg(feature = "baselines")]
 use super::Division;
 use super::solids::Surface;
 use super::{Blister, SceneData, SolidData};
+#[cfg(feature = "baselines")]
+use crate::baselines::TrimMethod;
 use crate::bindings::{Placed, Primitives};
 use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texel, Texels, Uploads};
-#[cfg(feature = "rivals")]
-use crate::picture::Rival;
 use crate::picture::TakenWay;
 use ash::vk;
 use bytemuck::Pod;
@@ -17,7 +17,7 @@ use std::ops::Range;
 pub(crate) struct Scene {
     pub patches: Texels,
     /// Where nothing of their faces is; `None` where they are not asked whether they lie behind others.
-    pub outside: Option<Buffer>,
+    outside: Option<Buffer>,
     /// Of the normals of each patch; `None` where no part is closed without trims.
     pub cones: Option<Buffer>,
     /// Homogeneous control points, and fine nets.
@@ -29,8 +29,8 @@ pub(crate) struct Scene {
     pub instances: Texels,
     pub items: Texels,
     /// What divides patches in place of the bound; `None` where that does.
-    #[cfg(feature = "rivals")]
-    pub slefes: Option<Buffer>,
+    #[cfg(feature = "baselines")]
+    slefes: Option<Buffer>,
     /// What trimming needs; `None` when no patch is trimmed.
     pub trims: Option<Trims>,
     /// Boolean solids; `None` when there are none.
@@ -102,13 +102,13 @@ pub(crate) struct MeshBuffers {
 pub(crate) enum Trims {
     Table(Box<TableScene>),
     Exact(Box<ExactScene>),
-    #[cfg(feature = "rivals")]
-    Rival(Box<RivalScene>),
+    #[cfg(feature = "baselines")]
+    Baseline(Box<BaselineScene>),
 }
 
 /// What a way to compare with needs.
-#[cfg(feature = "rivals")]
-pub(crate) enum RivalScene {
+#[cfg(feature = "baselines")]
+pub(crate) enum BaselineScene {
     Untrimmed,
     /// Faces, bands, cells, lists, pieces, points.
     Bisect([Texels; 6]),
@@ -158,6 +158,39 @@ impl Volume {
 }
 
 impl Scene {
+    /// Where nothing of each patch's face is.
+    ///
+    /// # Panics
+    /// In a scene without occlusion culling.
+    pub(crate) fn outside(&self) -> &Buffer {
+        self.outside.as_ref().expect("scenes with occlusion culling have it")
+    }
+
+    /// What divides patches in place of the bound.
+    ///
+    /// # Panics
+    /// In a scene that the bound divides.
+    #[cfg(feature = "baselines")]
+    pub(crate) fn slefes(&self) -> &Buffer {
+        self.slefes.as_ref().expect("scenes that slefes divide have them")
+    }
+
+    /// What the trim table is made of, in scenes that it trims.
+    pub(crate) fn table(&self) -> Option<&TableScene> {
+        if let Some(Trims::Table(trims)) = &self.trims { Some(trims) } else { None }
+    }
+
+    /// What the exact trim test reads, in scenes that it trims.
+    pub(crate) fn exact(&self) -> Option<&ExactScene> {
+        if let Some(Trims::Exact(trims)) = &self.trims { Some(trims) } else { None }
+    }
+
+    /// What a way to compare with needs, in scenes that it trims.
+    #[cfg(feature = "baselines")]
+    pub(crate) fn baseline(&self) -> Option<&BaselineScene> {
+        if let Some(Trims::Baseline(trims)) = &self.trims { Some(trims) } else { None }
+    }
+
     /// Its patches, seen so.
     pub(crate) fn placed<'a>(&'a self, views: &'a Texels) -> Placed<'a> {
         Placed {
@@ -189,7 +222,7 @@ impl Scene {
             face_instances: read_both(&mut uploads, cmd, "face instances", &data.face_instances, Texel::U32x4)?,
             instances: read_both(&mut uploads, cmd, "instances", &data.instances, Texel::U32x4)?,
             items: read_both(&mut uploads, cmd, "items", &data.items, Texel::Words)?,
-            #[cfg(feature = "rivals")]
+            #[cfg(feature = "baselines")]
             slefes: match &data.division {
                 Division::Bound => None,
                 Division::Slefe(table) => Some(persistent(&mut uploads, cmd, "slefes", table)?),
@@ -197,9 +230,9 @@ impl Scene {
             trims: match data.trim_way() {
                 None => None,
                 Some(TakenWay::Table) => Some(Trims::Table(Box::new(table_scene(&mut uploads, cmd, data)?))),
-                #[cfg(feature = "rivals")]
-                Some(TakenWay::Rival(rival)) => {
-                    Some(Trims::Rival(Box::new(rival_scene(&mut uploads, cmd, data, rival)?)))
+                #[cfg(feature = "baselines")]
+                Some(TakenWay::Baseline(method)) => {
+                    Some(Trims::Baseline(Box::new(baseline_scene(&mut uploads, cmd, data, method)?)))
                 }
                 Some(TakenWay::Exact) => Some(Trims::Exact(Box::new(ExactScene {
                     faces: texels(&mut uploads, cmd, "trim faces", &data.exact.faces, Texel::U32x4)?,
@@ -293,18 +326,18 @@ fn table_scene(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SceneData) -> R
     })
 }
 
-#[cfg(feature = "rivals")]
-fn rival_scene(
+#[cfg(feature = "baselines")]
+fn baseline_scene(
     uploads: &mut Uploads,
     cmd: &Commands<'_>,
     data: &SceneData,
-    rival: Rival,
-) -> Result<RivalScene, GpuError> {
-    Ok(match rival {
-        Rival::Untrimmed => RivalScene::Untrimmed,
-        Rival::Bisect { .. } => {
+    method: TrimMethod,
+) -> Result<BaselineScene, GpuError> {
+    Ok(match method {
+        TrimMethod::Untrimmed => BaselineScene::Untrimmed,
+        TrimMethod::Bisect { .. } => {
             let b = &data.bisect;
-            RivalScene::Bisect([
+            BaselineScene::Bisect([
                 texels(uploads, cmd, "trim bisect faces", &b.faces, Texel::Words)?,
                 texels(uploads, cmd, "trim bisect bands", &b.bands, Texel::U32x2)?,
                 texels(uploads, cmd, "trim bisect cells", &b.cells, Texel::U32x4)?,
@@ -313,10 +346,10 @@ fn rival_scene(
                 texels(uploads, cmd, "trim bisect points", &b.points, Texel::Numbers)?,
             ])
         }
-        Rival::Texture { eighths } => {
+        TrimMethod::Texture { eighths } => {
             let knob = [(eighths as f32 / 8.0).to_bits(), data.face_instances.len() as u32];
             let knob = persistent(uploads, cmd, "trim texture knob", &knob)?;
-            RivalScene::Texture(table_scene(uploads, cmd, data)?, knob)
+            BaselineScene::Texture(table_scene(uploads, cmd, data)?, knob)
         }
     })
 }

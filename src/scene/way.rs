@@ -14,6 +14,7 @@
 use super::around::Ball;
 use super::cells::strips;
 use super::data::stretch;
+use super::request::SceneRequest;
 use crate::abi;
 use crate::model::{Face, Mesh, Model, Part, Shape};
 use crate::picture::{SceneSettings, TakenWay, TrimWay};
@@ -34,16 +35,18 @@ const CHORDS: u32 = 4;
 pub fn trim_way(model: &Model, settings: SceneSettings) -> Option<TrimWay> {
     let bodies = model.parts.iter().chain(operands(model).map(|(part, _)| part));
     let is_trimmed = bodies.flat_map(|part| &part.faces).any(|face| !face.loops.is_empty());
-    is_trimmed.then(|| taken(model, settings).into())
+    is_trimmed.then(|| taken(model, settings.into()))?.reported()
 }
 
 /// The way that is asked for, or suits the model.
-pub(super) fn taken(model: &Model, settings: SceneSettings) -> TakenWay {
+pub(super) fn taken(model: &Model, settings: SceneRequest) -> TakenWay {
+    #[cfg(feature = "baselines")]
+    if let Some(method) = settings.baseline.trim {
+        return TakenWay::Baseline(method);
+    }
     match settings.trim {
         TrimWay::Table => TakenWay::Table,
         TrimWay::Exact => TakenWay::Exact,
-        #[cfg(feature = "rivals")]
-        TrimWay::Rival(rival) => TakenWay::Rival(rival),
         TrimWay::Auto if settings.smooth_trims || !suits_table(model) => TakenWay::Exact,
         TrimWay::Auto => TakenWay::Table,
     }

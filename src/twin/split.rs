@@ -27,7 +27,7 @@
 //! times, with up to 25 times the deviation. It costs a third more segments along the axis on average, a
 //! patch without neighbours along it nothing.
 
-use super::hidden::is_drawn;
+use super::occlusion::is_drawn;
 use super::{MAX_FACTOR, MAX_SPLIT, Scene};
 use crate::abi::{FACE_CLOSED_U, FACE_CLOSED_V, Factors, Frame, Side};
 

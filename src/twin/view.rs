@@ -125,7 +125,7 @@ pub fn far_of(face: &Face, frame: &Frame) -> f32 {
 #[cfg(test)]
 mod tests {
     use super::*;
-    use crate::trial::Random;
+    use crate::fixtures::Random;
     use glam::{DMat3, DVec3};
 
     const SIZE: [f32; 2] = [640.0, 360.0];

@@ -26,7 +26,7 @@ fn is_of_trimming(name: &str) -> bool {
     name.starts_with("trim")
         || name.contains("(table")
         || name.contains("(exact")
-        || name.starts_with("heal")
+        || name.starts_with("gap")
         || TRIM_PASSES.iter().any(|pass| name.starts_with(pass))
 }
 
@@ -35,12 +35,19 @@ fn only_a_trimmed_scene_has_what_its_way_to_trim_needs() {
     // the table's buffers, the scene's curves, and a pipeline for each pass
     has_what_it_needs(
         TrimWay::Table,
-        &["trim intercepts", "trim curves", "cross (count)", "scan add (counted)", "visibility (table", "heal (table"],
-        &["trim arcs", "visibility (exact", "heal (exact"],
+        &[
+            "trim intercepts",
+            "trim curves",
+            "cross (count)",
+            "scan add (counted)",
+            "visibility (table",
+            "gap fill (table",
+        ],
+        &["trim arcs", "visibility (exact", "gap fill (exact"],
     );
     has_what_it_needs(
         TrimWay::Exact,
-        &["trim arcs", "visibility (exact", "heal (exact"],
+        &["trim arcs", "visibility (exact", "gap fill (exact"],
         &[
             "trim intercepts",
             "trim curves",
@@ -49,7 +56,7 @@ fn only_a_trimmed_scene_has_what_its_way_to_trim_needs() {
             "sort",
             "density",
             "visibility (table",
-            "heal (table",
+            "gap fill (table",
         ],
     );
 }
@@ -93,7 +100,7 @@ fn only_a_scene_with_meshes_has_what_they_need() {
 #[test]
 fn only_a_scene_of_many_patches_knows_which_lie_behind_others() {
     let of_hiding = ["hidden patches", "farthest depths", "patches outside"];
-    let passes = ["hide", "farthest", "reveal", "reset (draws)"];
+    let passes = ["cull early", "depth pyramid", "cull late", "reset (draws)"];
     let is_of_hiding = |name: &str| of_hiding.contains(&name) || passes.contains(&name);
     // four treads have 24 patches, all of the stair 144
     let (mut few, many) = (shapes::stair(), shapes::stair());

@@ -10,10 +10,6 @@ use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings,
 /// Its buffers grow with the view.
 const BY_TABLE: SceneSettings = SceneSettings {
     trim: TrimWay::Table,
-    #[cfg(feature = "rivals")]
-    slefe_segments: None,
-    #[cfg(feature = "rivals")]
-    untested: false,
     solids: SolidWay::Events,
     editable: false,
     samples: Samples::One,

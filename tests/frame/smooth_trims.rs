@@ -21,10 +21,6 @@ const SMOOTH: SceneSettings = SceneSettings { smooth_trims: true, ..plain() };
 const fn plain() -> SceneSettings {
     SceneSettings {
         trim: TrimWay::Exact,
-        #[cfg(feature = "rivals")]
-        slefe_segments: None,
-        #[cfg(feature = "rivals")]
-        untested: false,
         solids: selvedge::picture::SolidWay::Events,
         editable: false,
         samples: Samples::One,

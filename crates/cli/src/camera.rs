@@ -274,7 +274,7 @@ mod tests {
 
     #[test]
     fn a_zoom_magnifies_by_its_number() {
-        let model = selvedge::rivals::many_holes(3);
+        let model = selvedge::baselines::many_holes(3);
         let whole = zoomed(&model, (400, 400), 1.0);
         for zoom in [10.0, 1000.0] {
             let camera = zoomed(&model, (400, 400), zoom);

@@ -22,10 +22,11 @@ use crate::target::{self, CSV, Target};
 use crate::{Outcome, output, session, verdict};
 use anyhow::{Result, bail};
 use glam::{DAffine3, DVec3};
+use selvedge::baselines::SceneOptions;
+use selvedge::baselines::factors::Seen;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameSettings, FrameStats, Outputs, SceneSettings};
-use selvedge::rivals::factors::Seen;
 use selvedge_check::Tracer;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
@@ -137,7 +138,8 @@ fn renderers(args: &SweepArgs, model: &Model) -> Result<Renderers> {
     let scenes: BTreeSet<_> = args.factors.iter().map(|divided| divided.slefe_segments()).collect();
     let uploaded = |slefe_segments| {
         let mut renderer = renderer(args)?;
-        renderer.upload_with(model, SceneSettings { slefe_segments, ..SceneSettings::default() })?;
+        let divided = SceneOptions { slefe_segments, ..SceneOptions::default() };
+        renderer.upload_baseline(model, SceneSettings::default(), divided)?;
         Ok((slefe_segments, renderer))
     };
     scenes.into_iter().map(uploaded).collect()

@@ -1,7 +1,7 @@
 use super::*;
+use crate::fixtures::Random;
 use crate::model::{Projection, SurfaceKind};
 use crate::spline::{Bezier, Control, Surface};
-use crate::trial::Random;
 use glam::DAffine3;
 
 /// Three cubic curves around, from random points.

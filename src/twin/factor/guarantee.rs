@@ -1,7 +1,7 @@
-//! The guarantee of [`factor`](super) put to the test, see [`trial`](crate::trial). `cargo bench --bench factors
-//! --features rivals` does so with as many patches as one likes, and compares other ways.
+//! The guarantee of [`factor`](super) put to the test, see [`trial`](crate::fixtures). `cargo bench --bench factors
+//! --features baselines` does so with as many patches as one likes, and compares other ways.
 
-use crate::trial::{Emit, Kind, Trial};
+use crate::fixtures::{Emit, Kind, Trial};
 use crate::twin::bound::DEPTH_SHARE;
 use rayon::prelude::*;
 

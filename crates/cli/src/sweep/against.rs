@@ -13,9 +13,9 @@ use crate::args::{Size, SweepArgs};
 use crate::progress::during;
 use crate::{Outcome, output};
 use anyhow::Result;
+use selvedge::baselines::factors::{Seen, Way};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameStats, Levels};
-use selvedge::rivals::factors::{Seen, Way};
 
 /// Where no level suffices, this one is drawn.
 const FINEST: u32 = 64;

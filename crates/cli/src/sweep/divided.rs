@@ -1,9 +1,9 @@
 //! The ways to divide patches that are put side by side.
 
 use crate::args::Factors;
+use selvedge::baselines::factors::Way;
+use selvedge::baselines::slefe;
 use selvedge::picture::Levels;
-use selvedge::rivals::factors::Way;
-use selvedge::rivals::slefe;
 use std::fmt;
 use std::str::FromStr;
 

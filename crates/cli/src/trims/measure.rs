@@ -16,12 +16,12 @@ use crate::progress::during;
 use crate::verdict;
 use anyhow::Result;
 use glam::DQuat;
+use selvedge::baselines::{SceneOptions, pretessellated::pretessellated, texture};
 use selvedge::gpu::GpuError;
 use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Model};
-use selvedge::picture::{FrameSettings, FrameStats, Outputs, SceneSettings, TrimWay};
+use selvedge::picture::{FrameSettings, FrameStats, Outputs};
 use selvedge::renderer::RenderError;
-use selvedge::rivals::{pretessellated::pretessellated, texture};
 use selvedge_check::Tracer;
 use serde::Serialize;
 use std::time::Instant;
@@ -111,10 +111,11 @@ impl<'a> Bench<'a> {
         Self { args, name, model, tracer }
     }
 
-    fn renderer(&self, model: &Model, trim: TrimWay, untested: bool) -> Result<HeadlessRenderer> {
+    fn renderer(&self, model: &Model, contender: Contender, untested: bool) -> Result<HeadlessRenderer> {
         let options = HeadlessOptions { device: self.args.device.clone(), validation: false };
         let mut renderer = HeadlessRenderer::new(&options)?;
-        renderer.upload_with(model, SceneSettings { trim, untested, ..SceneSettings::default() })?;
+        let (settings, options) = contender.scene();
+        renderer.upload_baseline(model, settings, SceneOptions { untested, ..options })?;
         Ok(renderer)
     }
 
@@ -134,9 +135,9 @@ impl<'a> Bench<'a> {
             _ => None,
         };
         let model = mesh.as_ref().unwrap_or(self.model);
-        let timed = during(&what, || self.renderer(model, contender.trim(), true))?;
+        let timed = during(&what, || self.renderer(model, contender, true))?;
         let prepare_ms = start.elapsed().as_secs_f64() * 1e3;
-        Ok(Entered { contender, prepare_ms, timed, judged: self.renderer(model, contender.trim(), false)? })
+        Ok(Entered { contender, prepare_ms, timed, judged: self.renderer(model, contender, false)? })
     }
 
     /// Measures and judges one view.
@@ -272,7 +273,7 @@ fn cost(stats: &FrameStats, turning: &FrameStats, objects: Vec<(String, u64)>) -
 fn is_for_trims(way: Way, object: &str) -> bool {
     match way {
         Way::Pretessellated => object.starts_with("mesh"),
-        _ => object.starts_with("trim") && object != "trim doubts",
+        _ => object.starts_with("trim"),
     }
 }
 
@@ -280,6 +281,7 @@ fn is_for_trims(way: Way, object: &str) -> bool {
 mod tests {
     use super::*;
     use selvedge::picture::PassTime;
+    use selvedge::picture::TrimWay;
 
     #[test]
     fn trim_time_is_own_passes_and_the_difference() {
@@ -297,7 +299,7 @@ mod tests {
     #[test]
     fn objects_of_trims() {
         let table = Way::Own(TrimWay::Table);
-        assert!(is_for_trims(table, "trim intercepts") && !is_for_trims(table, "trim doubts"));
+        assert!(is_for_trims(table, "trim intercepts") && !is_for_trims(table, "gap candidates"));
         assert!(!is_for_trims(table, "visibility") && is_for_trims(Way::Pretessellated, "mesh positions"));
     }
 }

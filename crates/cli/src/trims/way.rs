@@ -1,7 +1,7 @@
 //! The ways to trim and their knobs.
 
-use selvedge::picture::Sorted;
-use selvedge::picture::{Rival, TrimWay};
+use selvedge::baselines::{SceneOptions, Sorted, TrimMethod};
+use selvedge::picture::{SceneSettings, TrimWay};
 use serde::Serialize;
 use std::fmt;
 use std::str::FromStr;
@@ -17,12 +17,13 @@ pub enum Way {
 }
 
 /// Ways to compare with.
-const RIVALS: [Way; 4] = [Way::Bisect(Sorted::Source), Way::Bisect(Sorted::Tuned), Way::Texture, Way::Pretessellated];
+const BASELINES: [Way; 4] =
+    [Way::Bisect(Sorted::Source), Way::Bisect(Sorted::Tuned), Way::Texture, Way::Pretessellated];
 
 impl Way {
     /// Every way, the engine's own first.
     pub fn all() -> Vec<Self> {
-        TrimWay::ALL.iter().map(|way| Self::Own(*way)).chain(RIVALS).collect()
+        TrimWay::ALL.iter().map(|way| Self::Own(*way)).chain(BASELINES).collect()
     }
 
     /// As in command lines and tables.
@@ -82,7 +83,7 @@ impl Contender {
     pub fn usual(way: Way) -> Self {
         match way {
             Way::Own(way) => Self::Own { way, tolerance_px: 0.5 },
-            Way::Bisect(sorted) => Self::Bisect { steps: selvedge::rivals::bisect::STEPS, sorted },
+            Way::Bisect(sorted) => Self::Bisect { steps: selvedge::baselines::bisect::STEPS, sorted },
             Way::Texture => Self::Texture { eighths: 16 },
             Way::Pretessellated => Self::Pretessellated { deflection: 1e-3 },
         }
@@ -113,12 +114,13 @@ impl Contender {
     }
 
     /// What trims its scene; a mesh has nothing to trim.
-    pub fn trim(self) -> TrimWay {
+    pub fn scene(self) -> (SceneSettings, SceneOptions) {
+        let baseline = |method| SceneOptions { trim: Some(method), ..SceneOptions::default() };
         match self {
-            Self::Own { way, .. } => way,
-            Self::Bisect { steps, sorted } => TrimWay::Rival(Rival::Bisect { steps, sorted }),
-            Self::Texture { eighths } => TrimWay::Rival(Rival::Texture { eighths }),
-            Self::Pretessellated { .. } => TrimWay::Auto,
+            Self::Own { way, .. } => (SceneSettings { trim: way, ..Default::default() }, SceneOptions::default()),
+            Self::Bisect { steps, sorted } => (Default::default(), baseline(TrimMethod::Bisect { steps, sorted })),
+            Self::Texture { eighths } => (Default::default(), baseline(TrimMethod::Texture { eighths })),
+            Self::Pretessellated { .. } => Default::default(),
         }
     }
 

@@ -1,0 +1,20 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `hide`: patches that lay behind others in the frame before are not drawn, unless pass `reveal` finds that
+// they may be seen. One thread an item. Twin: src/twin/occlusion.rs.
+#include "scene.glsl"
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Hidden { uint hidden[]; };
+layout(scalar, binding = 2) buffer Taus { uint taus[]; };
+layout(scalar, binding = 3) buffer CountersBuffer { Counters counters; };
+
+void main() {
+    uint item = gl_GlobalInvocationID.x;
+    if (item >= frame.item_count || taus[item] == 0u) return;
+    if (hidden[item] == 0u) return;
+    taus[item] |= TAU_HIDDEN;
+    atomicAdd(counters.hidden, 1u);
+}

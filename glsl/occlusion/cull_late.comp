@@ -1,0 +1,44 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `reveal`: which patches lie behind what has been drawn, wherever they could be seen. Those that do not, and
+// were left out by pass `hide`, are drawn now; those that do are left out of the next frame's first drawing. One
+// thread an item. Twin: src/twin/occlusion.rs.
+#include "scene.glsl"
+#include "view.glsl"
+#include "tiles.glsl"
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
+layout(scalar, binding = 3) readonly buffer FaceInstances { FaceInstance face_instances[]; };
+layout(scalar, binding = 4) readonly buffer Faces { Face faces[]; };
+layout(scalar, binding = 5) readonly buffer Patches { Patch patches[]; };
+layout(binding = 6) uniform samplerBuffer points;
+layout(scalar, binding = 7) readonly buffer Items { uint item_face_instance[]; };
+layout(scalar, binding = 8) readonly buffer Farthest { float farthest[]; };
+layout(scalar, binding = 9) buffer Taus { uint taus[]; };
+layout(scalar, binding = 10) writeonly buffer Hidden { uint hidden[]; };
+layout(scalar, binding = 11) readonly buffer Outside { uvec2 outside[]; }; // of each patch, behind.glsl
+layout(scalar, binding = 12) buffer CountersBuffer { Counters counters; };
+
+#include "patch.glsl"
+#include "behind.glsl"
+
+void main() {
+    uint item = gl_GlobalInvocationID.x;
+    if (item >= frame.item_count) return;
+    uint tau = taus[item];
+    if (tau == 0u) {
+        hidden[item] = 0u;
+        return;
+    }
+    FaceInstance fi = face_instances[item_face_instance[item]];
+    uint index = faces[fi.face].first_patch + item - fi.first_item;
+    bool is_hidden = lies_behind(patches[index], views[fi.instance], instances[fi.instance].scale, tau, outside[index]);
+    hidden[item] = is_hidden ? 1u : 0u;
+    bool appears = (tau & TAU_HIDDEN) != 0u && !is_hidden;
+    taus[item] = appears ? tau & ~TAU_HIDDEN : tau | TAU_HIDDEN;
+    if (appears) atomicAdd(counters.hidden, 0xffffffffu);
+}

@@ -1,0 +1,45 @@
+//! Pass `baseline_slefe`, in place of `bound`: patches are divided by slefes, in scenes that ask for it.
+//!
+//! ```text
+//!    box of the patch ──▶ outside the picture, turned away? ──▶ tau = 0   as in pass `bound`
+//!         │
+//!         ▼
+//!    slefe boxes of the net ──▶ largest extent e in pixels ──▶ tau = m sqrt(e / deviation), in both directions
+//! ```
+//!
+//! Degrees above the table's, and boxes that reach the near plane, have no answer: a clamp. Weights are left out of
+//! account, as in the source.
+//!
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `items`, `cones`, `points`, `slefes`. Writes:
+//! `taus`, `counters`. The same in `f64`: `Way::Ipass` of `src/baselines/factors`.
+
+use crate::bindings::Bounded;
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct BaselineSlefe {
+    kernel: Kernel,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub bounded: Bounded<'a>,
+    /// Segments, and bounds of the basis functions on them.
+    pub slefes: &'a Buffer,
+}
+
+impl BaselineSlefe {
+    /// `cones`: some closed part has no trims.
+    pub(crate) fn new(device: &Device, cones: bool) -> Result<Self, GpuError> {
+        let kernel = Kernel::new(device, "baseline slefe", &shaders::BASELINE_SLEFE_COMP, &Bounded::constants(cones))?;
+        Ok(Self { kernel })
+    }
+
+    /// One thread for each of `items`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+        let resources = [b.bounded.resources().as_slice(), &[b.slefes.into()]].concat();
+        self.kernel.record(cmd, &resources, items);
+    }
+}

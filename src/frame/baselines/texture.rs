@@ -1,0 +1,87 @@
+//! Trim textures: one bit a texel for each placed face that is seen, at the resolution of this view.
+//!
+//! ```text
+//!   face speeds ──sizes──▶ words ──(prefix sum)──▶ starts
+//!   curves ──flip──▶ a bit where a row meets a curve ──fill──▶ parity of the bits up to each texel
+//! ```
+//!
+//! Writes: `sizes`: `words`, `counters`; `flip`: `texels`, `counters`; `fill`: `texels`, `places`. Barriers
+//! between the steps are the caller's. What the method is: `src/baselines/texture.rs`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Resource, Texels};
+use crate::shaders;
+
+/// Workgroups that share the rows of one face in the third step.
+const ROW_GROUPS: u32 = 16;
+
+/// The steps.
+pub(crate) struct BaselineTexture {
+    sizes: Kernel,
+    flip: Kernel,
+    fill: Kernel,
+}
+
+/// Of all steps.
+pub(crate) struct Bindings<'a> {
+    pub knob: &'a Buffer,
+    pub frame: &'a Buffer,
+    pub face_instances: &'a Texels,
+    pub faces: &'a Texels,
+    pub curves: &'a Texels,
+    pub curve_points: &'a Texels,
+    pub curve_items: &'a Texels,
+    pub face_speeds: &'a Buffer,
+    pub words: &'a Buffer,
+    pub starts: &'a Buffer,
+    pub places: &'a Buffer,
+    pub texels: &'a Buffer,
+    pub counters: &'a Buffer,
+}
+
+impl BaselineTexture {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let kernel = |name, shader| Kernel::new(device, name, shader, &[]);
+        Ok(Self {
+            sizes: kernel("baseline texture (sizes)", &shaders::BASELINE_TEXTURE_SIZES_COMP)?,
+            flip: kernel("baseline texture (flip)", &shaders::BASELINE_TEXTURE_FLIP_COMP)?,
+            fill: kernel("baseline texture (fill)", &shaders::BASELINE_TEXTURE_FILL_COMP)?,
+        })
+    }
+
+    /// Words of each of `placed` faces.
+    pub(crate) fn sizes(&self, cmd: &Commands<'_>, b: &Bindings<'_>, placed: u32) {
+        self.sizes.record(cmd, &[b.knob, b.face_speeds, b.words, b.counters].map(Into::into), placed);
+    }
+
+    /// Flips along each of `curves`.
+    pub(crate) fn flip(&self, cmd: &Commands<'_>, b: &Bindings<'_>, curves: u32) {
+        let resources: [Resource<'_>; 11] = [
+            b.frame.into(),
+            b.knob.into(),
+            b.face_instances.into(),
+            b.faces.into(),
+            b.curves.into(),
+            b.curve_points.into(),
+            b.curve_items.into(),
+            b.face_speeds.into(),
+            b.starts.into(),
+            b.texels.into(),
+            b.counters.into(),
+        ];
+        self.flip.record_grid(cmd, &resources, grid(curves, 1));
+    }
+
+    /// Parities along the rows of each of `placed` faces.
+    pub(crate) fn fill(&self, cmd: &Commands<'_>, b: &Bindings<'_>, placed: u32) {
+        let resources =
+            [b.knob, b.face_speeds, b.starts, b.texels, b.counters, &**b.face_instances, &**b.faces, b.places];
+        self.fill.record_grid(cmd, &resources.map(Into::into), grid(placed, ROW_GROUPS));
+    }
+}
+
+/// So many columns of workgroups, folded into the third dimension beyond what every device has in the first.
+fn grid(columns: u32, rows: u32) -> [u32; 3] {
+    const MOST: u32 = 65_535;
+    [columns.min(MOST), rows, columns.div_ceil(MOST)]
+}

@@ -1,0 +1,72 @@
+//! A compute pipeline that knows from its shader what it needs: bindings, workgroups, constants.
+
+use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Resource};
+use crate::shaders::Compute;
+
+/// The pipeline of one compute shader.
+#[derive(Debug)]
+pub(crate) struct Kernel {
+    pipeline: Pipeline,
+    group: [u32; 3],
+}
+
+impl Kernel {
+    /// `constants`: specialisation constants by name; a flag is 0 or 1.
+    ///
+    /// # Panics
+    /// When the shader has no constant of a name.
+    pub(crate) fn new(
+        device: &Device,
+        name: &str,
+        shader: &Compute,
+        constants: &[(&str, u32)],
+    ) -> Result<Self, GpuError> {
+        let of_shader = &shader.interface;
+        let id = |wanted: &str| {
+            let found = of_shader.constants.iter().find(|(name, _)| *name == wanted);
+            found.unwrap_or_else(|| panic!("`{name}` has no constant `{wanted}`")).1
+        };
+        let constants: Vec<_> = constants.iter().map(|(name, value)| (id(name), *value)).collect();
+        let info = ComputeInfo {
+            name,
+            spirv: shader.words,
+            bindings: of_shader.bindings,
+            push_bytes: of_shader.push_bytes,
+            constants: &constants,
+        };
+        Ok(Self { pipeline: Pipeline::compute(device, &info)?, group: of_shader.group })
+    }
+
+    /// Binds the pipeline, with its resources in binding order and its push constants.
+    pub(crate) fn bind(&self, cmd: &Commands<'_>, resources: &[Resource<'_>], push_constants: &[u8]) {
+        cmd.bind(&self.pipeline, resources, push_constants);
+    }
+
+    /// As many workgroups as `threads` need, in x.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, resources: &[Resource<'_>], threads: u32) {
+        self.bind(cmd, resources, &[]);
+        cmd.dispatch(threads.div_ceil(self.group[0]));
+    }
+
+    /// For the pipeline bound last: a row of workgroups for each of so many rows of threads.
+    pub(crate) fn dispatch_rows(&self, cmd: &Commands<'_>, [threads, rows]: [u32; 2]) {
+        cmd.dispatch_grid([threads.div_ceil(self.group[0]), rows, 1]);
+    }
+
+    /// A grid of workgroups.
+    pub(crate) fn record_grid(&self, cmd: &Commands<'_>, resources: &[Resource<'_>], groups: [u32; 3]) {
+        self.bind(cmd, resources, &[]);
+        cmd.dispatch_grid(groups);
+    }
+
+    /// The grid that stands at `offset` bytes of `arguments`.
+    pub(crate) fn record_indirect(
+        &self,
+        cmd: &Commands<'_>,
+        resources: &[Resource<'_>],
+        (arguments, offset): (&Buffer, u64),
+    ) {
+        self.bind(cmd, resources, &[]);
+        cmd.dispatch_indirect(arguments, offset);
+    }
+}

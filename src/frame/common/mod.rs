@@ -1,0 +1,68 @@
+//! What several stages have in common: counters that begin at 0, prefix sums, and the draws of sub-patches.
+
+pub(crate) mod kernel;
+pub(crate) mod reset;
+pub(crate) mod room;
+pub mod scan;
+
+use super::Frame;
+use crate::abi::Counters;
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError};
+use crate::picture::TakenWay;
+use crate::scene::SceneData;
+use ash::vk;
+use room::Room;
+use std::sync::Arc;
+
+/// The passes.
+pub(crate) struct Passes {
+    reset: reset::Reset,
+    pub(super) scan: scan::Scan,
+}
+
+impl Passes {
+    pub(super) fn new(device: &Device, data: &SceneData) -> Result<Self, GpuError> {
+        let scan = scan::Scan::new(device, data.trim_way() == Some(TakenWay::Table))?;
+        Ok(Self { reset: reset::Reset::new(device, false)?, scan })
+    }
+}
+
+/// The passes, and what they and all stages count in.
+pub(crate) struct Common {
+    pub(super) passes: Arc<Passes>,
+    /// Plain draws of sub-patches, then trimmed ones.
+    pub draws: Buffer,
+    pub counters: Buffer,
+    /// What they were when all that a still camera keeps was there; from frame to frame.
+    pub kept_counters: Buffer,
+    pub sums: Buffer,
+}
+
+impl Common {
+    /// `scanned`: elements of the longest prefix sum.
+    pub(super) fn new(room: &Room<'_>, passes: &Arc<Passes>, scanned: u32) -> Result<Self, GpuError> {
+        Ok(Self {
+            passes: Arc::clone(passes),
+            draws: room.indirect::<vk::DrawIndirectCommand>("draws", 2 * room.capacities.draws)?,
+            counters: room.indirect::<Counters>("counters", 1)?,
+            kept_counters: room.structs::<Counters>("kept counters", 1)?,
+            sums: room.words("scan sums", scan::block_count(scanned))?,
+        })
+    }
+
+    /// No draws, and nothing is counted.
+    pub(super) fn reset(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        let bindings = reset::Bindings { frame: frame.constants, draws: &self.draws, counters: &self.counters };
+        self.passes.reset.record(cmd, &bindings, 2 * frame.capacities.draws);
+        let w = Access::COMPUTE_WRITE;
+        cmd.after(w, w);
+    }
+
+    /// One prefix sum; the total follows the last start.
+    pub(super) fn scan(&self, cmd: &Commands<'_>, counts: &Buffer, starts: &Buffer, count: u32) {
+        let (sums, w) = (&self.sums, Access::COMPUTE_WRITE);
+        cmd.after(w, w);
+        let bindings = scan::Bindings { values: counts, offsets: starts, sums, total: starts, total_index: count };
+        self.passes.scan.record(cmd, scan::Count::Host(count), &bindings);
+    }
+}

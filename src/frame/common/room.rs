@@ -1,0 +1,67 @@
+//! Makes the transient buffers and images of the stages, sized by scene, picture and view.
+
+use crate::abi::TILE;
+use crate::frame::capacities::Capacities;
+use crate::frame::counts::Counts;
+use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Image, ImageInfo, Pool, Texel, Texels};
+use ash::vk;
+
+/// What there must be room for.
+#[derive(Clone, Copy)]
+pub(crate) struct Room<'a> {
+    pub device: &'a Device,
+    pub counts: Counts,
+    pub capacities: Capacities,
+    /// Of the picture.
+    pub size: (u32, u32),
+}
+
+/// Images that passes draw into, and read as storage images.
+pub(crate) const DRAWN_AND_READ: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
+    vk::ImageUsageFlags::COLOR_ATTACHMENT.as_raw() | vk::ImageUsageFlags::STORAGE.as_raw(),
+);
+
+impl Room<'_> {
+    /// `n` words.
+    pub(crate) fn words(&self, name: &str, n: u32) -> Result<Buffer, GpuError> {
+        self.structs::<u32>(name, n)
+    }
+
+    /// `n` structs.
+    pub(crate) fn structs<T>(&self, name: &str, n: u32) -> Result<Buffer, GpuError> {
+        Buffer::storage(self.device, Pool::Transient, name, u64::from(n) * size_of::<T>() as u64)
+    }
+
+    /// `n` structs of indirect commands.
+    pub(crate) fn indirect<T>(&self, name: &str, n: u32) -> Result<Buffer, GpuError> {
+        Buffer::indirect(self.device, Pool::Transient, name, u64::from(n) * size_of::<T>() as u64)
+    }
+
+    /// `n` structs or words, written as such and read as texels.
+    pub(crate) fn texels<T>(&self, name: &str, n: u32, texel: Texel) -> Result<Texels, GpuError> {
+        let usage = Buffer::STORAGE | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
+        let bytes = u64::from(n) * size_of::<T>() as u64;
+        let info = BufferInfo { name, bytes, usage, pool: Pool::Transient, home: Home::Device };
+        Texels::new(self.device, Buffer::new(self.device, &info)?, texel)
+    }
+
+    /// An image of the picture's size.
+    pub(crate) fn image(&self, name: &str, format: vk::Format, usage: vk::ImageUsageFlags) -> Result<Image, GpuError> {
+        Image::new(self.device, &ImageInfo { name, size: self.size, format, usage, pool: Pool::Transient })
+    }
+
+    /// Squares of `side` pixels that cover the picture.
+    pub(crate) fn squares(&self, side: u32) -> u32 {
+        self.size.0.div_ceil(side) * self.size.1.div_ceil(side)
+    }
+
+    /// Rows of tiles of which the lists of Boolean solids are made at a time.
+    pub(crate) fn band_rows(&self) -> u32 {
+        self.capacities.band_rows.min(self.size.1.div_ceil(TILE))
+    }
+
+    /// Pixels of so many rows.
+    pub(crate) fn band_pixels(&self) -> u32 {
+        self.size.0 * (self.band_rows() * TILE).min(self.size.1)
+    }
+}

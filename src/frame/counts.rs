@@ -1,0 +1,156 @@
+//! What the scene has, and whether it can be counted.
+
+use super::solids::lists::{Limits, Lists};
+use crate::picture::{Samples, TakenWay};
+use crate::scene::SceneData;
+
+/// What the scene has, per placed face.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub(crate) struct Counts {
+    pub items: u32,
+    pub cells: u32,
+    pub bays: u32,
+    /// v-strips with several.
+    pub wide_strips: u32,
+    pub curves: u32,
+    pub face_instances: u32,
+    /// Patches may lie behind others.
+    pub hides: bool,
+    /// Patches or meshes are seen themselves.
+    pub has_surfaces: bool,
+    /// Leaves of Boolean solids.
+    pub leaves: u32,
+    /// Operands of theirs without equations.
+    pub shells: u32,
+    /// Patches bound some of those.
+    pub operand_patches: bool,
+    /// [`SolidWay::Blister`](crate::picture::SolidWay::Blister) draws the solids.
+    pub blister: bool,
+    /// [`SolidWay::Events`](crate::picture::SolidWay::Events) does, and where lists are too large, band by band.
+    pub events: bool,
+    /// Most bytes of the lists of events: [`SceneSettings::solid_budget`](crate::picture::SceneSettings::solid_budget).
+    pub solid_budget: Option<u64>,
+    pub triangles: u32,
+    /// Of leaves with equations; with the triangles of the others.
+    pub leaf_sides: u32,
+    pub sides: u32,
+    pub mesh_instances: u32,
+    /// How faces are trimmed, where some are.
+    pub trim: Option<TakenWay>,
+    /// Of each pixel.
+    pub samples: Samples,
+    /// Pass `coverage` mixes pixels at the borders of trimmed faces.
+    pub smooths_trims: bool,
+    /// The first leaf of items that rays are followed through; there are some.
+    pub followed_leaf: u32,
+    pub is_followed: bool,
+    /// Lengths within solids are wanted.
+    pub thickness: bool,
+    /// Instances drawn opaque because they are not closed.
+    pub open: u32,
+    /// What casts no shadow in a scene with a sun.
+    pub shadowless: u32,
+}
+
+impl Counts {
+    pub(crate) fn of(data: &SceneData) -> Self {
+        let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        Self {
+            items: data.items.len() as u32,
+            cells: data.cell_items.len() as u32,
+            bays: data.bay_count,
+            wide_strips: count(data.wide_strips.len()),
+            curves: data.curve_items.len() as u32,
+            face_instances: data.face_instances.len() as u32,
+            hides: data.hides(),
+            has_surfaces: data.has_surfaces(),
+            leaves: data.solids.leaves.len() as u32,
+            shells: data.solids.shell_leaves.len() as u32,
+            operand_patches: data.has_operands,
+            blister: data.solids.blister.is_some(),
+            events: data.solids.is_by_events(),
+            solid_budget: data.solid_budget,
+            triangles: count(data.meshes.triangles.len().max(data.meshes.positions.len() / 3)),
+            leaf_sides: count(data.solids.leaf_surfaces.len()),
+            sides: count(data.solids.leaf_surfaces.len() + data.solids.operand_triangles.len()),
+            mesh_instances: count(data.meshes.instances.len()),
+            trim: data.trim_way(),
+            samples: data.samples,
+            smooths_trims: data.smooths_trims(),
+            followed_leaf: data.solids.followed,
+            is_followed: data.solids.is_followed(),
+            thickness: data.thickness,
+            open: count(data.open),
+            shadowless: count(data.shadowless),
+        }
+    }
+
+    /// Where rays cross operands is stored.
+    pub(crate) fn has_fragments(self) -> bool {
+        self.shells > 0 && !self.blister
+    }
+
+    /// What the lists of events may take where one storage buffer has `range` bytes.
+    pub(crate) fn limits(self, range: u32) -> Limits {
+        Limits { range, budget: self.solid_budget.unwrap_or(u64::MAX) }
+    }
+
+    pub(crate) fn lists(self, size: (u32, u32), range: u32) -> Lists {
+        Lists { size, has_fragments: self.has_fragments(), limits: self.limits(range) }
+    }
+
+    /// Whether one dispatch covers each of them, and numbers tell them apart.
+    pub(crate) fn check(self) -> Result<(), TooMany> {
+        let all = [
+            ("patches", self.items, MOST_THREADS, FEWER_PARTS),
+            ("cells", self.cells, MOST_THREADS, EXACT),
+            ("bays of v-strips", self.bays, MOST_THREADS, EXACT),
+            ("v-strips with several bays", self.wide_strips, MOST_GROUPS, EXACT),
+            ("curves", self.curves, MOST_THREADS, EXACT),
+            ("triangles", self.triangles, MOST_TRIANGLES, "draw fewer of the meshes, or coarser ones"),
+            ("primitives", self.leaves, MOST_THREADS, FEWER_SOLIDS),
+            ("placed meshes", self.mesh_instances, MOST_SEEN, FEWER_PARTS),
+            ("sides of primitives", self.sides, MOST_SEEN, FEWER_SOLIDS),
+        ];
+        match all.into_iter().find(|(_, count, most, _)| count > most) {
+            Some((what, count, most, help)) => Err(TooMany { what, count, most, help }),
+            None => Ok(()),
+        }
+    }
+}
+
+/// The model, or what a view needs of it, is more than the engine counts.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("{count} {what} are too many: at most {most} can be drawn; {help}")]
+pub struct TooMany {
+    /// What there is too much of.
+    pub what: &'static str,
+    /// How many there are.
+    pub count: u32,
+    /// How many there may be.
+    pub most: u32,
+    /// What to ask for in its place.
+    pub help: &'static str,
+}
+
+impl TooMany {
+    /// It is the trim table that has no room: the exact way needs none.
+    pub(crate) fn is_of_table(&self) -> bool {
+        self.help == EXACT
+    }
+}
+
+/// [`TooMany::help`].
+pub(super) const EXACT: &str = "trim by the way `exact`, or by `auto`, which takes it where the other has no room";
+const FEWER_PARTS: &str = "draw fewer parts at once, or place fewer copies";
+const FEWER_SOLIDS: &str = "draw fewer of the Boolean solids at once";
+pub(super) const SMALLER: &str = "draw a smaller picture";
+
+/// Workgroups of a dispatch that every device takes.
+pub(super) const MOST_GROUPS: u32 = 65_535;
+/// Threads of one dispatch of the passes over what the scene has, 64 to a workgroup.
+pub(super) const MOST_THREADS: u32 = MOST_GROUPS * 64;
+/// Triangles whose corners, and vertices whose coordinates, have numbers of 32 bits.
+pub(super) const MOST_TRIANGLES: u32 = u32::MAX / 3;
+/// What the bits of the visibility image tell apart.
+pub(super) const MOST_SEEN: u32 = 1 << 29;

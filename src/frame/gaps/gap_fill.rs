@@ -1,0 +1,155 @@
+//! Pass `gap_fill`: pixels that look through a gap between two faces get the face that belongs there.
+//!
+//! ```text
+//!   visibility image, rings ──find──▶ list of doubtful pixels ──record──▶ who is seen there ──show──▶ visibility image
+//!
+//!        ┌───┬───┬───┐     asks the faces of the neighbours, on their exact surfaces at the pixel's
+//!        │ A │ A │ B │     centre, which of them is there; the rules stand in glsl/include/gap_fill.glsl
+//!        ├───┼───┼───┤
+//!        │ A │ ? │ B │     a gap is narrower than the trim table's error, so a neighbour knows
+//!        └───┴───┴───┘
+//! ```
+//!
+//! Reads: everything that the bindings name but what it writes. Writes: `find`: `doubts`, `dispatch`,
+//! `counters`, and the mark in the visibility image; `record`: `doubts`; `show`: the visibility image. All of them at
+//! doubtful pixels only.
+
+use crate::bindings::{Placed, Primitives};
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource, Sampler, Texels};
+use crate::shaders::{self, TrimTest};
+use ash::vk;
+
+/// Columns and rows of the picture that a workgroup of the first step looks for doubtful pixels in.
+const PART: [u32; 2] = [62, 30];
+/// The pass, in its three steps.
+pub(crate) struct GapFill {
+    find: Kernel,
+    fill: Kernel,
+    write: Kernel,
+    nearest: Sampler,
+}
+
+/// Of the first step, in binding order.
+pub(crate) struct DoubtBindings<'a> {
+    pub frame: &'a Buffer,
+    pub visibility: &'a Image,
+    pub doubts: &'a Buffer,
+    /// Of the second step; zero before.
+    pub dispatch: &'a Buffer,
+    pub counters: &'a Buffer,
+    pub depth: &'a Image,
+    pub rings: &'a Texels,
+}
+
+/// Of the second step, in binding order, and its dispatch.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub placed: Placed<'a>,
+    pub visibility: &'a Image,
+    pub doubts: &'a Buffer,
+    pub counters: &'a Buffer,
+    pub instances: &'a Texels,
+    /// What is no patch; `None` where the scene has nothing else.
+    pub others: Option<Others<'a>>,
+    /// What the trim test reads, in its order.
+    pub trim: &'a [Resource<'a>],
+    /// The volume that trims the scene; `None` where there is none.
+    pub volume: Option<Primitives<'a>>,
+    pub dispatch: &'a Buffer,
+}
+
+/// What is no patch, in binding order.
+pub(crate) struct Others<'a> {
+    pub seen: &'a Image,
+    /// `None` where the scene has no mesh.
+    pub meshes: Option<Meshes<'a>>,
+}
+
+/// Triangles, and where they are placed.
+pub(crate) struct Meshes<'a> {
+    pub instances: &'a Buffer,
+    pub triangles: &'a Buffer,
+    pub positions: &'a Buffer,
+}
+
+impl GapFill {
+    /// `test`: how faces are trimmed; `others`: the scene has things that are no patches; `volume`: one trims the
+    /// scene, and its most general kind of surface.
+    pub(crate) fn new(
+        device: &Device,
+        test: &TrimTest,
+        (rational, others): (bool, bool),
+        volume: Option<u32>,
+    ) -> Result<Self, GpuError> {
+        let weights = if rational { "rational" } else { "polynomial" };
+        let constants = [
+            ("SCENE_HAS_RATIONAL", u32::from(rational)),
+            ("SCENE_HAS_OTHERS", u32::from(others)),
+            ("SOLIDS_HAVE", volume.unwrap_or_default()),
+        ];
+        let (fill, within, constants) = match test.within.filter(|_| volume.is_some()) {
+            Some(within) => (within.gap_fill, ", within a volume", &constants[..]),
+            None => (test.gap_fill, "", &constants[..2]),
+        };
+        let name = format!("gap fill ({}, {weights}{within})", test.way);
+        Ok(Self {
+            find: Kernel::new(device, "gap find", &shaders::GAP_FIND_COMP, &[])?,
+            fill: Kernel::new(device, &name, fill, constants)?,
+            write: Kernel::new(device, "gap write", &shaders::GAP_WRITE_COMP, &[])?,
+            nearest: Sampler::new(device, vk::Filter::NEAREST)?,
+        })
+    }
+
+    /// Lists the doubtful pixels.
+    pub(crate) fn find(&self, cmd: &Commands<'_>, b: &DoubtBindings<'_>) {
+        let (width, height) = b.visibility.size();
+        let resources = [
+            b.frame.into(),
+            b.visibility.into(),
+            b.doubts.into(),
+            b.dispatch.into(),
+            b.counters.into(),
+            Resource::Sampled(b.depth, &self.nearest),
+            b.rings.into(),
+        ];
+        self.find.record_grid(cmd, &resources, [width.div_ceil(PART[0]), height.div_ceil(PART[1]), 1]);
+    }
+
+    /// One thread a doubtful pixel.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
+        // the shader has these bindings in every scene, and reads them only where there are others
+        let seen = b.others.as_ref().map_or(b.visibility, |o| o.seen);
+        let none = Meshes { instances: b.frame, triangles: b.frame, positions: b.frame };
+        let meshes = b.others.as_ref().and_then(|o| o.meshes.as_ref()).unwrap_or(&none);
+        let resources = [
+            b.visibility.into(),
+            b.doubts.into(),
+            b.counters.into(),
+            b.instances.into(),
+            seen.into(),
+            meshes.instances.into(),
+            meshes.triangles.into(),
+            meshes.positions.into(),
+        ];
+        let trim = b.trim.iter().copied();
+        let volume = b.volume.iter().flat_map(Primitives::resources);
+        let resources: Vec<_> = [b.frame.into()]
+            .into_iter()
+            .chain(b.placed.resources())
+            .chain(resources)
+            .chain(trim)
+            .chain(volume)
+            .collect();
+        self.fill.record_indirect(cmd, &resources, (b.dispatch, 0));
+    }
+
+    /// One thread a doubtful pixel, as in the second step, whose bindings these are.
+    pub(crate) fn show(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
+        self.write.record_indirect(
+            cmd,
+            &[b.frame.into(), b.visibility.into(), b.doubts.into(), b.counters.into()],
+            (b.dispatch, 0),
+        );
+    }
+}

@@ -1,0 +1,102 @@
+//! Gaps between trimmed faces: pixels that may look through one are listed, and get the face that belongs there.
+//!
+//! ```text
+//!   visibility, rings ──gap_find──▶ candidates ──gap_fill──▶ who is seen there ──gap_write──▶ visibility
+//! ```
+
+pub(crate) mod gap_fill;
+
+use super::common::room::Room;
+use super::{Frame, WRITE_TO_READ};
+use crate::abi::Doubt;
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, Texel, Texels, barrier};
+use crate::scene::{SceneData, SolidData};
+use crate::shaders::TrimTest;
+use std::sync::Arc;
+
+/// The passes of scenes with trims, whose test is `test`.
+pub(super) fn passes(device: &Device, data: &SceneData, test: &TrimTest) -> Result<gap_fill::GapFill, GpuError> {
+    let others = data.has_meshes() || data.solids.kinds().is_some();
+    let volume = data.volume.as_ref().and_then(SolidData::kinds);
+    gap_fill::GapFill::new(device, test, (data.has_rational, others), volume)
+}
+
+/// The stage.
+pub(crate) struct Gaps {
+    passes: Arc<gap_fill::GapFill>,
+    /// How near the nearest ring comes, a word a pixel.
+    pub rings: Texels,
+    candidates: Buffer,
+    dispatch: Buffer,
+}
+
+impl Gaps {
+    pub(super) fn new(room: &Room<'_>, passes: &Arc<gap_fill::GapFill>) -> Result<Self, GpuError> {
+        Ok(Self {
+            passes: Arc::clone(passes),
+            rings: room.texels::<u32>("trim rings", room.size.0 * room.size.1, Texel::Numbers)?,
+            candidates: room.structs::<Doubt>("gap candidates", room.capacities.doubts)?,
+            dispatch: room.indirect::<[u32; 3]>("gap dispatch", 1)?,
+        })
+    }
+
+    /// Before each drawing.
+    pub(super) fn clear(&self, cmd: &Commands<'_>) {
+        cmd.fill(&self.dispatch, 0);
+        cmd.fill(&self.rings, 0);
+    }
+
+    /// Pixels that look through a gap between faces get the face that belongs there.
+    pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, test: &[Resource<'_>]) {
+        let (s, c, v) = (frame.scene, &frame.stages.common, &frame.stages.visibility);
+        let (w, r) = WRITE_TO_READ;
+        barrier::images(cmd, &[(&v.image, Access::COLOUR_WRITE, w), (&v.depth, Access::DEPTH_WRITE, r)]);
+        if let Some(others) = &v.others {
+            barrier::images(cmd, &[(others, Access::COLOUR_WRITE, Access::COMPUTE_READ | Access::FRAGMENT_READ)]);
+        }
+        let cleared = Access { layout: w.layout, ..Access::TRANSFER_WRITE };
+        barrier::buffers(
+            cmd,
+            &[
+                (&self.rings, Access::FRAGMENT_WRITE, r),
+                (&c.counters, Access::INDIRECT_READ, w),
+                (&self.dispatch, cleared, w),
+            ],
+        );
+        let find = gap_fill::DoubtBindings {
+            frame: frame.constants,
+            visibility: &v.image,
+            doubts: &self.candidates,
+            dispatch: &self.dispatch,
+            counters: &c.counters,
+            depth: &v.depth,
+            rings: &self.rings,
+        };
+        self.passes.find(cmd, &find);
+        barrier::images(cmd, &[(&v.image, w, r)]);
+        cmd.after(w, w | r | Access::INDIRECT_READ);
+        let fill = gap_fill::Bindings {
+            frame: frame.constants,
+            placed: s.placed(frame.views),
+            visibility: &v.image,
+            doubts: &self.candidates,
+            counters: &c.counters,
+            instances: &s.instances,
+            others: v.others.as_ref().map(|seen| gap_fill::Others {
+                seen,
+                meshes: s.meshes.as_ref().map(|m| gap_fill::Meshes {
+                    instances: &m.instances,
+                    triangles: &m.triangles,
+                    positions: &m.positions,
+                }),
+            }),
+            trim: test,
+            volume: frame.volume(),
+            dispatch: &self.dispatch,
+        };
+        self.passes.record(cmd, &fill);
+        barrier::images(cmd, &[(&v.image, r, w)]);
+        cmd.after(w, r);
+        self.passes.show(cmd, &fill);
+    }
+}

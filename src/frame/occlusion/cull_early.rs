@@ -1,0 +1,36 @@
+//! Pass `cull_early`: patches that lay behind others in the frame before are not drawn, unless pass
+//! [`cull_late`](super::cull_late) finds that they may be seen.
+//!
+//! Reads: `frame`, `hidden`. Writes: `taus`, `counters`. Twin: `src/twin/occlusion.rs`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct CullEarly {
+    kernel: Kernel,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    /// Of each item: whether it lay behind others.
+    pub hidden: &'a Buffer,
+    pub taus: &'a Buffer,
+    /// `hidden`.
+    pub counters: &'a Buffer,
+}
+
+impl CullEarly {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let kernel = Kernel::new(device, "cull early", &shaders::CULL_EARLY_COMP, &[])?;
+        Ok(Self { kernel })
+    }
+
+    /// One thread for each of `items`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+        let resources = [b.frame, b.hidden, b.taus, b.counters].map(Into::into);
+        self.kernel.record(cmd, &resources, items);
+    }
+}

@@ -1,0 +1,68 @@
+//! Pass `cull_late`: which patches lie behind what has been drawn, wherever they could be seen.
+//!
+//! ```text
+//!              lies behind                       does not
+//!   drawn      left out of the next frame        stays
+//!   hidden     stays hidden                      drawn now
+//! ```
+//!
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `points`, `items`, `farthest`, `outside`.
+//! Writes: `taus`, `hidden`, `counters`. Twin: `src/twin/occlusion.rs`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct CullLate {
+    kernel: Kernel,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub views: &'a Buffer,
+    pub instances: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub patches: &'a Buffer,
+    pub points: &'a Texels,
+    /// Face instance of each item.
+    pub items: &'a Buffer,
+    /// Of squares, then of tiles, then of blocks.
+    pub farthest: &'a Buffer,
+    pub taus: &'a Buffer,
+    pub hidden: &'a Buffer,
+    /// Of each patch: where nothing of its face is.
+    pub outside: &'a Buffer,
+    /// `hidden`.
+    pub counters: &'a Buffer,
+}
+
+impl CullLate {
+    pub(crate) fn new(device: &Device, rational: bool) -> Result<Self, GpuError> {
+        let kernel =
+            Kernel::new(device, "cull late", &shaders::CULL_LATE_COMP, &[("SCENE_HAS_RATIONAL", u32::from(rational))])?;
+        Ok(Self { kernel })
+    }
+
+    /// One thread for each of `items`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+        let resources = [
+            b.frame.into(),
+            b.views.into(),
+            b.instances.into(),
+            b.face_instances.into(),
+            b.faces.into(),
+            b.patches.into(),
+            b.points.into(),
+            b.items.into(),
+            b.farthest.into(),
+            b.taus.into(),
+            b.hidden.into(),
+            b.outside.into(),
+            b.counters.into(),
+        ];
+        self.kernel.record(cmd, &resources, items);
+    }
+}

@@ -1,0 +1,161 @@
+//! Where each kind of thing is seen, and its exact point, normal and light: into the host's targets, or what is mixed later.
+
+pub(crate) mod resolve;
+pub(crate) mod seen_squares;
+
+use super::common::room::Room;
+use super::{Frame, solids};
+use crate::abi::TILE;
+use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load};
+use crate::picture::Samples;
+use crate::scene::SceneData;
+use seen_squares::SeenSquares;
+use std::sync::Arc;
+
+/// The passes.
+pub(crate) struct Passes {
+    /// Into the host's targets; `None` where they are but a colour, made of samples.
+    resolve: Option<resolve::Resolve>,
+    /// Of scenes with patches or meshes.
+    squares: Option<Arc<SeenSquares>>,
+}
+
+impl Passes {
+    pub(super) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Self, GpuError> {
+        Ok(Self {
+            resolve: targets(device, data, formats)?,
+            squares: data.has_surfaces().then(|| SeenSquares::new(device)).transpose()?.map(Arc::new),
+        })
+    }
+}
+
+/// What the scene asks of the pass.
+pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
+    resolve::Kinds {
+        patches: data.has_patches,
+        rational: data.has_rational,
+        pieces: data.has_pieces,
+        fine: data.has_fine,
+        meshes: data.has_meshes(),
+        solids: data.solids.kinds().map(|surfaces| resolve::SolidKinds {
+            surfaces,
+            tiles: solids::has_tiles(data),
+            shells: !data.solids.shell_leaves.is_empty(),
+        }),
+        operands: data.has_operands,
+        sun: data.sun.is_some(),
+    }
+}
+
+/// The pass into the host's targets; `None` where samples make all of them.
+fn targets(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<resolve::Resolve>, GpuError> {
+    let beside = formats.aovs || formats.depth.is_some() || data.thickness;
+    let into = match data.samples {
+        Samples::One if data.smooths_trims() => resolve::Destination::Unmixed,
+        Samples::One if data.is_layered => resolve::Destination::Behind { writes_depth: true },
+        Samples::One => resolve::Destination::Targets,
+        Samples::Four | Samples::Eight if !beside => return Ok(None),
+        Samples::Four | Samples::Eight if data.is_layered => resolve::Destination::Behind { writes_depth: true },
+        Samples::Four | Samples::Eight => resolve::Destination::AllButColour,
+    };
+    resolve::Resolve::new(device, into, formats, kinds(data)).map(Some)
+}
+
+/// Depth, face, (u, v) and normal where nothing is seen.
+const NOWHERE: [Load; 4] = [
+    Load::ColourF32([f32::INFINITY; 4]),
+    Load::ColourU32([0; 4]),
+    Load::ColourF32([f32::NAN; 4]),
+    Load::ColourF32([0.0; 4]),
+];
+
+/// The stage.
+pub(crate) struct Shading {
+    passes: Arc<Passes>,
+    squares: Option<Squares>,
+}
+
+/// Tiles that see a patch or a mesh.
+struct Squares {
+    pass: Arc<SeenSquares>,
+    buffer: Buffer,
+}
+
+impl Shading {
+    pub(super) fn new(room: &Room<'_>, passes: &Arc<Passes>) -> Result<Self, GpuError> {
+        let squares = |pass: &Arc<SeenSquares>| {
+            let buffer = room.words("seen squares", room.squares(TILE))?;
+            Ok::<_, GpuError>(Squares { pass: Arc::clone(pass), buffer })
+        };
+        Ok(Self { passes: Arc::clone(passes), squares: passes.squares.as_ref().map(squares).transpose()? })
+    }
+
+    /// The pass into the host's targets; `None` where samples make all of them.
+    pub(super) fn resolve(&self) -> Option<&resolve::Resolve> {
+        self.passes.resolve.as_ref()
+    }
+
+    /// By `pass`, what is seen, into the frame's targets.
+    pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, pass: &resolve::Resolve) {
+        self.find_squares(frame, cmd);
+        let (s, v) = (frame.scene, &frame.stages.visibility);
+        let bindings = resolve::Bindings {
+            frame: frame.constants,
+            placed: s.placed(frame.views),
+            instances: &s.instances,
+            visibility: &v.image,
+            others: v.of_others(),
+            squares: self.squares.as_ref().map(|squares| {
+                let (width, height) = v.image.size();
+                (width.div_ceil(TILE) * height.div_ceil(TILE), &squares.buffer)
+            }),
+        };
+        let meshes = s.meshes.as_ref().map(|m| resolve::MeshBindings {
+            frame: frame.constants,
+            views: frame.views,
+            instances: &s.instances,
+            mesh_instances: &m.instances,
+            meshes: &m.meshes,
+            triangles: &m.triangles,
+            positions: &m.positions,
+            normals: &m.normals,
+            visibility: &v.image,
+            others: v.of_others(),
+        });
+        let solids = frame.solids().map(|parts| parts.resolve(frame));
+        let kinds = (meshes.as_ref(), solids.as_ref());
+        frame.under_sun(cmd, |sun| pass.record(cmd, &bindings, kinds, sun, &frame.resolved_into(), frame.depth));
+    }
+
+    /// Where pass `resolve` looks for patches and meshes.
+    fn find_squares(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        let Some(Squares { pass, buffer }) = &self.squares else { return };
+        let v = &frame.stages.visibility;
+        let bindings = seen_squares::Bindings {
+            frame: frame.constants,
+            visibility: &v.image,
+            others: v.of_others(),
+            squares: buffer,
+        };
+        pass.record(cmd, &bindings);
+        cmd.after(Access::COMPUTE_WRITE, Access::VERTEX_READ);
+    }
+}
+
+impl<'a> Frame<'a> {
+    /// What pass `resolve` draws into, cleared to what is where nothing is seen, unless the host keeps its picture.
+    fn resolved_into(&self) -> Vec<Attachment<'a>> {
+        let nowhere = [Load::ColourF32(self.background)].into_iter().chain(NOWHERE);
+        let cleared = |(attachment, nowhere): (&Attachment<'a>, Load)| match attachment.load {
+            Load::Discard => Attachment { load: nowhere, ..*attachment },
+            _ => *attachment,
+        };
+        let mut into: Vec<_> = self.colour.iter().zip(nowhere).map(cleared).collect();
+        let behind = self.stages.transparency.as_ref().and_then(|layers| layers.behind_layers());
+        let unmixed = self.stages.smooth_trims.as_ref().map(|trims| &trims.resolved);
+        if let Some(image) = behind.or(unmixed) {
+            into[0] = Attachment { image, load: Load::ColourF32([0.0, 0.0, 0.0, resolve::UNSEEN]) };
+        }
+        into
+    }
+}

@@ -1,0 +1,340 @@
+//! Pass `resolve`: the exact surface at each pixel's centre, its normal, and light.
+//!
+//! ```text
+//!   item, (u, v) of the triangle ──Newton──▶ (u, v) whose exact point projects to the pixel's centre
+//!   triangle of a mesh ──plane──▶   │
+//!   side of a Boolean solid ─────▶  │        a pipeline for each kind of thing: each leaves the others'
+//!   nothing ──clear─────────────▶   │        pixels alone; with a sun each asks whether it reaches the point.
+//!                                   │        Drawn over the tiles that may see it
+//!                                   ├──▶ colour, depth into the host's targets
+//!                                   └──▶ depth, face, (u, v), normal images, when asked for
+//! ```
+//!
+//! Reads: everything that `Bindings` names. Writes: the targets.
+
+use crate::abi;
+use crate::bindings::{Placed, Primitives, SUN_BINDINGS, with_constants, with_placed, with_primitives};
+use crate::gpu::{
+    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
+    Pipeline, Resource, Texels,
+};
+use crate::shaders;
+use ash::vk;
+
+/// Formats of the images of depth, face, (u, v) and normal.
+pub(crate) const AOV_FORMATS: [vk::Format; 4] =
+    [vk::Format::R32_SFLOAT, vk::Format::R32_UINT, vk::Format::R32G32_SFLOAT, vk::Format::R32G32B32A32_SFLOAT];
+
+/// `constant_id` of `SCENE_HAS_RATIONAL`.
+const SCENE_HAS_RATIONAL: u32 = 0;
+/// `constant_id` of `SCENE_HAS_PIECES`.
+const SCENE_HAS_PIECES: u32 = 19;
+
+/// `constant_id` of `SCENE_HAS_FINE`.
+const SCENE_HAS_FINE: u32 = 20;
+/// `constant_id` of `HAS_AOVS`.
+const HAS_AOVS: u32 = 3;
+
+/// `constant_id` of `SCENE_HAS_OTHERS`.
+const SCENE_HAS_OTHERS: u32 = 4;
+
+/// `constant_id` of `SOLIDS_HAVE`.
+const SOLIDS_HAVE: u32 = 5;
+
+/// `constant_id` of `SOLIDS_HAVE_SHELLS`.
+const SOLIDS_HAVE_SHELLS: u32 = 13;
+
+/// `constant_id` of `BEHIND`.
+const BEHIND: u32 = 18;
+
+/// Format of what is behind layers, and of what pass `coverage` mixes: linear colour and depth.
+pub(crate) const BEHIND_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
+
+/// Depth in `behind` where nothing is, as in `resolved.glsl`.
+pub(crate) const UNSEEN: f32 = 3.0e38;
+
+/// The pass: a pipeline for each kind of thing that the scene has.
+pub(crate) struct Resolve {
+    /// Samples that see nothing, where those of a pixel are added up: one cleared to it would have it under what it sees.
+    background: Option<Pipeline>,
+    patches: Option<Pipeline>,
+    meshes: Option<Pipeline>,
+    solids: Option<Pipeline>,
+    operands: Option<Pipeline>,
+}
+
+/// What the scene asks of the pass.
+#[derive(Clone, Copy)]
+pub(crate) struct Kinds {
+    /// Beside those that bound operands.
+    pub patches: bool,
+    pub rational: bool,
+    /// Some patches do not go on as those beside them would.
+    pub pieces: bool,
+    /// Some patch has a fine net.
+    pub fine: bool,
+    pub meshes: bool,
+    /// Boolean ones.
+    pub solids: Option<SolidKinds>,
+    /// Patches bound operands of Boolean solids.
+    pub operands: bool,
+    /// The key light is a sun.
+    pub sun: bool,
+}
+
+/// The fragment shaders of a scene, one for each kind of thing.
+struct Shaders {
+    patches: &'static [u32],
+    meshes: &'static [u32],
+    solids: &'static [u32],
+    operands: &'static [u32],
+    /// In the pipelines' names.
+    light: &'static str,
+}
+
+const STUDIO: Shaders = Shaders {
+    patches: shaders::RESOLVE_FRAG,
+    meshes: shaders::RESOLVE_MESH_FRAG,
+    solids: shaders::RESOLVE_SOLID_FRAG,
+    operands: shaders::RESOLVE_OPERAND_FRAG,
+    light: "",
+};
+
+const SUN: Shaders = Shaders {
+    patches: shaders::RESOLVE_SUN_FRAG,
+    meshes: shaders::RESOLVE_MESH_SUN_FRAG,
+    solids: shaders::RESOLVE_SOLID_SUN_FRAG,
+    operands: shaders::RESOLVE_OPERAND_SUN_FRAG,
+    light: ", sun",
+};
+
+/// What Boolean solids ask of the pass.
+#[derive(Clone, Copy)]
+pub(crate) struct SolidKinds {
+    /// The most general kind of their surfaces: `abi::SURFACE_*`.
+    pub surfaces: u32,
+    /// It is known which tiles may see them.
+    pub tiles: bool,
+    /// Some of their operands have no equations.
+    pub shells: bool,
+}
+
+/// Formats that the host draws into.
+#[derive(Clone, Copy)]
+pub(crate) struct Formats {
+    pub colour: vk::Format,
+    pub depth: Option<vk::Format>,
+    pub aovs: bool,
+}
+
+/// Where the picture goes.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) enum Destination {
+    /// The host's targets.
+    Targets,
+    /// The sum of a pixel's samples, of the colour's format. The host's depth hides what is behind it, and stays.
+    Sum,
+    /// The host's targets but for the colour, which is made of samples.
+    AllButColour,
+    /// What is behind layers, in the colour's place.
+    Behind {
+        /// Of the host's target.
+        writes_depth: bool,
+    },
+    /// What pass `coverage` mixes, in the colour's place: as what is behind layers.
+    Unmixed,
+}
+
+/// Buffers and images for patches, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub placed: Placed<'a>,
+    pub instances: &'a Texels,
+    pub visibility: &'a Image,
+    /// The visibility image again where the scene has no trims, or nothing but patches.
+    pub others: &'a Image,
+    /// How many tiles the picture has, and the squares of them that see a patch or a mesh; `None` in scenes without.
+    pub squares: Option<(u32, &'a Buffer)>,
+}
+
+/// Buffers and images for meshes, in binding order; `squares` of [`Bindings`] follow.
+pub(crate) struct MeshBindings<'a> {
+    pub frame: &'a Buffer,
+    pub views: &'a Buffer,
+    pub instances: &'a Buffer,
+    pub mesh_instances: &'a Buffer,
+    pub meshes: &'a Buffer,
+    pub triangles: &'a Buffer,
+    pub positions: &'a Buffer,
+    pub normals: &'a Buffer,
+    pub visibility: &'a Image,
+    /// The visibility image again where the scene has no trims.
+    pub others: &'a Image,
+}
+
+/// Buffers and image for Boolean solids, in binding order.
+pub(crate) struct SolidBindings<'a> {
+    pub frame: &'a Buffer,
+    pub primitives: Primitives<'a>,
+    pub visibility: &'a Image,
+    /// The visibility image again where the scene has no trims.
+    pub others: &'a Image,
+    /// How many tiles the picture has, and the squares of them that may see a solid; `None` where nobody asked.
+    pub tiles: Option<(u32, &'a Buffer)>,
+    /// (u, v) of spline faces that bound operands.
+    pub operand_uv: Option<&'a Image>,
+    /// `None` where every operand has equations.
+    pub shells: Option<ShellBindings<'a>>,
+}
+
+/// Of meshes that bound operands, in binding order.
+pub(crate) struct ShellBindings<'a> {
+    pub instances: &'a Buffer,
+    pub meshes: &'a Buffer,
+    pub triangles: &'a Buffer,
+    pub positions: &'a Buffer,
+    /// Surfaces in whose planes triangles lie.
+    pub planes: &'a Buffer,
+    pub views: &'a Buffer,
+}
+
+impl Resolve {
+    pub(crate) fn new(device: &Device, into: Destination, formats: Formats, kinds: Kinds) -> Result<Self, GpuError> {
+        let (format, blend, of_samples) = match into {
+            Destination::Targets => (formats.colour, Blend::Replace, ""),
+            Destination::Sum => (formats.colour, Blend::Add, ", samples"),
+            Destination::AllButColour => (formats.colour, Blend::Leave, ", beside samples"),
+            Destination::Behind { writes_depth: true } => (BEHIND_FORMAT, Blend::Replace, ", behind layers"),
+            Destination::Behind { writes_depth: false } => (BEHIND_FORMAT, Blend::Replace, ", behind layers, samples"),
+            Destination::Unmixed => (BEHIND_FORMAT, Blend::Replace, ", smooth trims"),
+        };
+        let mut colour = vec![ColourTarget { format, blend }];
+        if formats.aovs {
+            colour.extend(AOV_FORMATS.map(|format| ColourTarget { format, blend: Blend::Replace }));
+        }
+        let mut bindings = with_placed(10);
+        bindings[7] = Binding::Texels;
+        bindings[8] = Binding::StorageImage;
+        let of = if kinds.sun { SUN } else { STUDIO };
+        let over = |vertex, name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
+            Pipeline::graphics(
+                device,
+                &GraphicsInfo {
+                    name: &format!("resolve ({name}{of_samples}{})", of.light),
+                    stages: &[(vk::ShaderStageFlags::VERTEX, vertex), (vk::ShaderStageFlags::FRAGMENT, fragment)],
+                    bindings,
+                    push_bytes: 0,
+                    constants,
+                    topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+                    patch_points: 0,
+                    cull: vk::CullModeFlags::NONE,
+                    front: vk::FrontFace::COUNTER_CLOCKWISE,
+                    colour: &colour,
+                    depth: formats.depth.map(|format| DepthTest {
+                        format,
+                        compare: vk::CompareOp::GREATER_OR_EQUAL,
+                        write: !matches!(into, Destination::Sum | Destination::Behind { writes_depth: false }),
+                    }),
+                    stencil: None,
+                },
+            )
+        };
+        let aovs = (HAS_AOVS, u32::from(formats.aovs));
+        let behind = (BEHIND, u32::from(matches!(into, Destination::Behind { .. } | Destination::Unmixed)));
+        let surfaces = (SOLIDS_HAVE, kinds.solids.map_or(abi::SURFACE_PLANE, |s| s.surfaces));
+        // what is lit: solids, and with a sun whatever they may shade
+        let lit = |vertex, name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
+            let constants = [constants, &[aovs, behind, surfaces]].concat();
+            let sun: &[_] = if kinds.sun { &SUN_BINDINGS } else { &[] };
+            over(vertex, name, fragment, &[bindings, sun].concat(), &constants)
+        };
+        let mut of_mesh = with_constants(11);
+        of_mesh[8..10].fill(Binding::StorageImage);
+        let mesh = |()| lit(shaders::RESOLVE_SEEN_MESH_VERT, "mesh", of.meshes, &of_mesh, &[]);
+        let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
+        let mut of_solid = with_primitives::<14>(1);
+        of_solid[5..7].fill(Binding::StorageImage);
+        let solid = |solid: SolidKinds| {
+            let vertex = if solid.tiles { shaders::RESOLVE_SOLID_VERT } else { shaders::RESOLVE_VERT };
+            lit(vertex, "solid", of.solids, &of_solid, &[(SOLIDS_HAVE_SHELLS, u32::from(solid.shells))])
+        };
+        let solids = kinds.solids.map(solid).transpose()?;
+        let mut of_operand = with_placed(11);
+        of_operand[7] = Binding::Texels;
+        of_operand[8..].fill(Binding::StorageImage);
+        let rational = (SCENE_HAS_RATIONAL, u32::from(kinds.rational));
+        let pieces = (SCENE_HAS_PIECES, u32::from(kinds.pieces));
+        let fine = (SCENE_HAS_FINE, u32::from(kinds.fine));
+        let operand = |()| lit(shaders::RESOLVE_VERT, "operand", of.operands, &of_operand, &[rational, pieces, fine]);
+        let operands = kinds.operands.then_some(()).map(operand).transpose()?;
+        let patch = |()| {
+            let weights = if kinds.rational { "rational" } else { "polynomial" };
+            let others = (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some()));
+            let constants = [rational, pieces, fine, others];
+            lit(shaders::RESOLVE_SEEN_VERT, weights, of.patches, &bindings, &constants)
+        };
+        let patches = kinds.patches.then_some(()).map(patch).transpose()?;
+        let of_background = [Binding::Uniform, Binding::StorageImage, Binding::StorageImage];
+        let unseen =
+            |()| over(shaders::RESOLVE_VERT, "background", shaders::RESOLVE_BACKGROUND_FRAG, &of_background, &[]);
+        let background = (into == Destination::Sum).then_some(()).map(unseen).transpose()?;
+        Ok(Self { background, patches, meshes, solids, operands })
+    }
+
+    /// Over the tiles that see a patch or a mesh, or may see a Boolean solid, for those; into what `colour` and `depth`
+    /// are cleared to, or keep. `sun`: what [`Kinds::sun`] asks for.
+    pub(crate) fn record(
+        &self,
+        cmd: &Commands<'_>,
+        b: &Bindings<'_>,
+        (meshes, solids): (Option<&MeshBindings<'_>>, Option<&SolidBindings<'_>>),
+        sun: Option<&[Resource<'_>; SUN_BINDINGS.len()]>,
+        colour: &[Attachment<'_>],
+        depth: Option<Attachment<'_>>,
+    ) {
+        let size = b.visibility.size();
+        let bind = |pipeline: &Pipeline, resources: Vec<Resource<'_>>| {
+            let sun = sun.into_iter().flatten().copied();
+            cmd.bind(pipeline, &resources.into_iter().chain(sun).collect::<Vec<_>>(), &[]);
+        };
+        cmd.rendering(size, colour, depth, || {
+            let patches = || [b.frame.into()].into_iter().chain(b.placed.resources());
+            let rest = [b.instances.into(), b.visibility.into()];
+            if let Some(pipeline) = &self.background {
+                cmd.bind(pipeline, &[b.frame.into(), b.visibility.into(), b.others.into()], &[]);
+                cmd.draw(3, 0, 1);
+            }
+            if let (Some(pipeline), Some((count, squares))) = (&self.patches, b.squares) {
+                bind(pipeline, patches().chain(rest).chain([squares.into()]).collect());
+                cmd.draw_instances(0..6, 0..count);
+            }
+            if let (Some(pipeline), Some(m), Some((count, squares))) = (&self.meshes, meshes, b.squares) {
+                let placed = [m.frame, m.views, m.instances, m.mesh_instances, m.meshes].map(Into::into);
+                let shape = [m.triangles, m.positions, m.normals].map(Into::into);
+                let images = [m.visibility.into(), m.others.into(), squares.into()];
+                bind(pipeline, placed.into_iter().chain(shape).chain(images).collect());
+                cmd.draw_instances(0..6, 0..count);
+            }
+            if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
+                // the shaders have these bindings in every scene, and read them only where there are tiles, or shells
+                let squares = s.tiles.map_or(s.frame, |(_, squares)| squares);
+                let shells = s
+                    .shells
+                    .as_ref()
+                    .map_or([s.frame; 6], |m| [m.instances, m.meshes, m.triangles, m.positions, m.planes, m.views]);
+                let images = [s.visibility.into(), s.others.into(), squares.into()];
+                let primitives = [s.frame.into()].into_iter().chain(s.primitives.resources());
+                bind(pipeline, primitives.chain(images).chain(shells.map(Into::into)).collect());
+                match s.tiles {
+                    Some((count, _)) => cmd.draw_instances(0..6, 0..count),
+                    None => cmd.draw(3, 0, 1),
+                }
+                if let (Some(pipeline), Some(uv)) = (&self.operands, s.operand_uv) {
+                    let images = [s.others.into(), uv.into()];
+                    bind(pipeline, patches().chain(rest).chain(images).collect());
+                    cmd.draw(3, 0, 1);
+                }
+            }
+        });
+    }
+}

@@ -1,0 +1,92 @@
+//! Bands of rows of tiles: whose lists are made at a time.
+//!
+//! ```text
+//!   one band     lists ─▶ solid_events                    …  resolve ─▶ solid_layers
+//!   several      lists ─▶ solid_events, rows 0 to 31      …  resolve ─▶ lists ─▶ solid_layers, rows 0 to 31
+//!                lists ─▶ solid_events, rows 32 to 63                   lists ─▶ solid_layers, rows 32 to 63
+//! ```
+
+use super::Solids;
+use crate::abi;
+use crate::frame::{Frame, WRITE_TO_READ};
+use crate::gpu::{Access, Buffer, Commands, barrier};
+use std::mem::offset_of;
+use std::ops::Range;
+
+/// Rows of pixels whose lists are made at a time.
+#[derive(Clone, Debug)]
+pub(crate) struct Band {
+    pub rows: Range<u32>,
+    /// There is no other.
+    pub is_whole: bool,
+}
+
+/// Who reads lists.
+fn readers() -> Access {
+    Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ
+}
+
+/// Who reads constants, which also stand in for lists that a scene has not: nobody reads those, but they are bound.
+fn of_constants() -> Access {
+    Access::UNIFORM_READ | readers()
+}
+
+/// A clearing, among buffer accesses, which have no layout of their own.
+const CLEARED: Access = Access { layout: Access::COMPUTE_READ.layout, ..Access::TRANSFER_WRITE };
+
+impl Frame<'_> {
+    /// From the top down.
+    pub(crate) fn bands(&self) -> impl Iterator<Item = Band> + use<> {
+        let height = self.stages.visibility.image.size().1;
+        let each = self.stages.solids.as_ref().map_or(height, |solids| solids.band_rows * abi::TILE);
+        (0..height)
+            .step_by(each as usize)
+            .map(move |top| Band { rows: top..(top + each).min(height), is_whole: each >= height })
+    }
+
+    /// Its tiles, numbered through the picture.
+    pub(crate) fn tiles_of(&self, band: &Band) -> Range<u32> {
+        let across = self.stages.visibility.image.size().0.div_ceil(abi::TILE);
+        across * (band.rows.start / abi::TILE)..across * band.rows.end.div_ceil(abi::TILE)
+    }
+
+    /// Tells the passes where the band is, and gives them the lists of the one before.
+    pub(crate) fn begin_band(&self, cmd: &Commands<'_>, solids: &Solids, band: &Band) {
+        if band.is_whole {
+            return;
+        }
+        let w = WRITE_TO_READ.0;
+        let (tiles, fragments) = (solids.tiles(), solids.fragments());
+        let lists = tiles.into_iter();
+        let lists: Vec<&Buffer> =
+            lists.flat_map(|t| [&t.tile_counts, &t.tile_starts, &t.tile_leaves, &t.tile_entries]).collect();
+        let mut before: Vec<_> = lists.into_iter().map(|list| (list, readers(), w)).collect();
+        before.push((self.constants, of_constants(), CLEARED));
+        if let Some(f) = fragments {
+            before.push((&f.counts, readers() | CLEARED, CLEARED));
+        }
+        barrier::buffers(cmd, &before);
+        cmd.fill_word(self.constants, (offset_of!(abi::Frame, band_top) / size_of::<u32>()) as u64, band.rows.start);
+        if let Some(f) = fragments {
+            cmd.fill(&f.counts, 0);
+        }
+        barrier::buffers(cmd, &[(self.constants, CLEARED, of_constants())]);
+    }
+
+    /// Before the lists of all bands are made once more: what they count begins again.
+    pub(crate) fn count_bands_again(&self, cmd: &Commands<'_>) {
+        let counters = &self.stages.common.counters;
+        let counted = Access::COMPUTE_WRITE | Access::INDIRECT_READ;
+        barrier::buffers(cmd, &[(counters, counted, CLEARED)]);
+        let sums = [
+            offset_of!(abi::Counters, tile_leaves),
+            offset_of!(abi::Counters, fragments),
+            offset_of!(abi::Counters, mended),
+            offset_of!(abi::Counters, unpaired),
+        ];
+        for at in sums {
+            cmd.fill_word(counters, (at / size_of::<u32>()) as u64, 0);
+        }
+        barrier::buffers(cmd, &[(counters, CLEARED, counted)]);
+    }
+}

@@ -1,0 +1,52 @@
+//! Pass `operand_sort`: the fragments of each pixel in order, entering and leaving in turn.
+//!
+//! ```text
+//!   E2 L1 E1 L2 e1 ──by shell, by depth──▶ E1 e1 L1 │ E2 L2 ──what follows in turn──▶ E1 L1 │ E2 L2
+//! ```
+//!
+//! Reads: everything that `Bindings` names but what it writes. Writes: `counts`, `fragments`, `counters`.
+//! Twin: `src/twin/operand_sort.rs`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
+use crate::shaders;
+use std::ops::Range;
+
+/// The pass.
+pub(crate) struct OperandSort {
+    kernel: Kernel,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub leaves: &'a Buffer,
+    /// Model axes, seen from the eye.
+    pub leaf_centres: &'a Buffer,
+    /// A leaf of each shell.
+    pub shell_leaves: &'a Buffer,
+    pub starts: &'a Buffer,
+    pub counts: &'a Buffer,
+    pub fragments: &'a Buffer,
+    pub counters: &'a Buffer,
+}
+
+impl OperandSort {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let kernel = Kernel::new(device, "operand sort", &shaders::OPERAND_SORT_COMP, &[])?;
+        Ok(Self { kernel })
+    }
+
+    /// One thread a pixel of these columns of the picture, and rows of the band: where there may be fragments. The first
+    /// row is that of a tile.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, columns: Range<u32>, rows: Range<u32>) {
+        if columns.is_empty() || rows.is_empty() {
+            return;
+        }
+        let solid = [b.frame, b.leaves, b.leaf_centres, b.shell_leaves];
+        let lists = [b.starts, b.counts, b.fragments, b.counters];
+        let resources: Vec<_> = solid.into_iter().chain(lists).map(Into::into).collect();
+        self.kernel.bind(cmd, &resources, bytemuck::bytes_of(&[columns.start, rows.start]));
+        self.kernel.dispatch_rows(cmd, [columns.end - columns.start, rows.end - rows.start]);
+    }
+}

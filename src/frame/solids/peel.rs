@@ -1,0 +1,184 @@
+//! Way `blister`: layer after layer, until no pixel needs another.
+//!
+//! ```text
+//!   a camera in doubt of being within:  layer = the near plane ─ask─▶ pixels outside are found
+//!                                       peel what ends, ask, …        and the others where they get outside
+//!                                          │ found
+//!                                          ▼
+//!   layer before = that, or the near plane; peel what begins, ask, lock, …      ──▶ found ──▶ visibility, depth
+//! ```
+//!
+//! As many layers are recorded as the frame before needed, and one that finds nothing; a frame that needs more is
+//! recorded again.
+
+use super::SolidParts;
+use super::buffers::LayerImages;
+use crate::frame::Frame;
+use crate::frame::solids::blister::{Bindings, Blister, Layer, MeshBindings, Peel};
+use crate::gpu::{Access, Attachment, Commands, Image, Load, barrier};
+use crate::scene::{self, Asked};
+use std::ops::Range;
+
+/// Everything that a layer needs.
+struct Parts<'a> {
+    pass: &'a Blister,
+    scene: &'a scene::Blister,
+    bindings: Bindings<'a>,
+    images: &'a LayerImages,
+    /// Instance and corners of each mesh, by operand.
+    shells: Vec<Vec<(u32, Range<u32>)>>,
+}
+
+/// What is looked for.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Search {
+    /// Where rays that begin within the solid get out of it.
+    Outside,
+    /// Where rays enter it.
+    Inside,
+}
+
+const DRAWN: Access = Access::COLOUR_WRITE;
+const READ: Access = Access::FRAGMENT_READ;
+const NOTHING: Load = Load::ColourU32([0; 4]);
+
+impl SolidParts<'_> {
+    /// The faces of the solids, into the visibility image and depth.
+    pub(super) fn peel(
+        &self,
+        frame: &Frame<'_>,
+        cmd: &Commands<'_>,
+        (pass, images): (&Blister, &LayerImages),
+        (colour, depth): (Attachment<'_>, Attachment<'_>),
+    ) {
+        let Some(parts) = self.peeled(frame, pass, images) else { return };
+        let tested = |image| (image, Access::DEPTH_WRITE.discarded(), Access::DEPTH_WRITE);
+        barrier::images(cmd, &[tested(&images.depth), tested(&images.stencil)]);
+        cmd.after(Access::COMPUTE_WRITE, Access::FRAGMENT_WRITE);
+        let near = &images.layers[1];
+        clear(cmd, near, Load::ColourU32([1, frame.near.depth.to_bits(), 0, 0]));
+        clear(cmd, &images.found, NOTHING);
+        if frame.near.may_cut {
+            parts.ask(cmd, near, Search::Outside, 0);
+            parts.search(frame, cmd, near, Search::Outside);
+            parts.search(frame, cmd, &images.found, Search::Inside);
+        } else {
+            parts.search(frame, cmd, near, Search::Inside);
+        }
+        parts.pass.show(cmd, &parts.bindings, &images.found, (colour, depth));
+        cmd.after(Access::FRAGMENT_WRITE, Access::COMPUTE_WRITE);
+    }
+
+    /// `None` where the scene was made for another way.
+    fn peeled<'b>(&'b self, frame: &'b Frame<'_>, pass: &'b Blister, images: &'b LayerImages) -> Option<Parts<'b>> {
+        let s = self.scene;
+        let (scene, order) = s.blister.as_ref()?;
+        let mut shells: Vec<Vec<(u32, Range<u32>)>> = Vec::new();
+        for (instance, mesh) in (0..).zip(&scene.meshes) {
+            let shell = mesh.shell as usize;
+            shells.resize(shells.len().max(shell + 1), Vec::new());
+            shells[shell].push((instance, mesh.corners.clone()));
+        }
+        let bindings = Bindings {
+            frame: frame.constants,
+            primitives: s.primitives(self.centres.surfaces),
+            rects: &self.stage.rect_buffer,
+            order,
+            counters: &frame.stages.common.counters,
+            meshes: s.shells.as_ref().map(|m| MeshBindings {
+                views: frame.views,
+                meshes: &m.meshes,
+                triangles: &m.triangles,
+                positions: &m.positions,
+                planes: &m.planes,
+            }),
+            tiles: self.stage.tiles().map(|t| (&t.tile_starts, &t.tile_leaves, &t.tile_entries)),
+        };
+        Some(Parts { pass, scene, bindings, images, shells })
+    }
+}
+
+impl Parts<'_> {
+    /// Peels from the layer `start` on: for the inside, from where the search for the outside left `found`.
+    fn search(&self, frame: &Frame<'_>, cmd: &Commands<'_>, start: &Image, search: Search) {
+        let images = self.images;
+        for k in 0..frame.capacities.layers {
+            let [image, other] = if k % 2 == 0 { [0, 1] } else { [1, 0] }.map(|i| &images.layers[i]);
+            let before = if k == 0 { start } else { other };
+            let first = k == 0 && search == Search::Inside;
+            let covers = first && !frame.near.may_cut && self.scene.covered;
+            let again = first && frame.near.may_cut;
+            self.peel(cmd, Layer { before, image, found: &images.found }, search, (again, covers));
+            if again {
+                clear(cmd, &images.found, NOTHING);
+            }
+            self.ask(cmd, image, search, k + 1);
+        }
+        // whoever waits still wants more layers than there are
+        let last = &images.layers[(frame.capacities.layers as usize + 1) % 2];
+        let stencil = Attachment { image: &images.stencil, load: Load::Keep };
+        barrier::images(cmd, &[(&images.stencil, Access::DEPTH_WRITE, Access::DEPTH_WRITE)]);
+        cmd.rendering_stencil(last.size(), &[], stencil, || {
+            self.pass.wait(cmd, &self.bindings, last, frame.capacities.layers + 1);
+        });
+    }
+
+    fn peel(&self, cmd: &Commands<'_>, layer: Layer<'_>, search: Search, (unlocks, covers): (bool, bool)) {
+        let depth = &self.images.depth;
+        barrier::images(
+            cmd,
+            &[(layer.image, READ.discarded(), DRAWN), (depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],
+        );
+        let peel = |adds, takes_away| {
+            let (begins, ends) = if search == Search::Inside { (adds, takes_away) } else { (takes_away, adds) };
+            Peel { entries: begins, exits: ends, unlocks }
+        };
+        let leaves = if covers { &self.scene.cover } else { &self.scene.all };
+        let meshes = (0..).zip(&self.scene.meshes).filter(|(_, mesh)| mesh.covers || !covers);
+        let meshes: Vec<_> =
+            meshes.map(|(i, mesh)| (i, mesh.corners.clone(), peel(mesh.adds, mesh.takes_away))).collect();
+        let attachments =
+            (Attachment { image: layer.image, load: NOTHING }, Attachment { image: depth, load: Load::Depth(1.0) });
+        let (colour, depth) = attachments;
+        self.pass.peel(cmd, &self.bindings, (layer, colour, depth), (leaves.clone(), peel(true, false)), &meshes);
+        barrier::images(cmd, &[(layer.image, DRAWN, READ)]);
+    }
+
+    /// Which of the layer's faces are the ones looked for. `nth`: 1 for the first that was peeled; a walk from its
+    /// beginning clears the stencil.
+    fn ask(&self, cmd: &Commands<'_>, layer: &Image, search: Search, nth: u32) {
+        let Parts { pass, scene, images, .. } = self;
+        let stencil = &images.stencil;
+        let again = (stencil, Access::DEPTH_WRITE, Access::DEPTH_WRITE);
+        barrier::images(cmd, &[again]);
+        let begins = nth == 0 || (nth == 1 && search == Search::Inside);
+        let load = if begins { Load::Depth(0.0) } else { Load::Keep };
+        cmd.rendering_stencil(layer.size(), &[], Attachment { image: stencil, load }, || {
+            pass.wait(cmd, &self.bindings, layer, nth);
+            for s in &scene.switches {
+                match s.asked {
+                    Asked::Leaf(place) => pass.within(cmd, &self.bindings, layer, place, s.name),
+                    Asked::Shell(shell) => {
+                        let meshes = self.shells.get(shell as usize).into_iter().flatten();
+                        pass.within_meshes(cmd, &self.bindings, layer, meshes, s.name);
+                    }
+                }
+                pass.turn(cmd, s.name, s.within, s.without);
+            }
+        });
+        let Some(end) = (if search == Search::Inside { scene.inside } else { scene.outside }) else { return };
+        let found = &images.found;
+        barrier::images(cmd, &[again, (found, READ, DRAWN)]);
+        let (colour, stencil) =
+            (Attachment { image: found, load: Load::Keep }, Attachment { image: stencil, load: Load::Keep });
+        cmd.rendering_stencil(layer.size(), &[colour], stencil, || pass.lock(cmd, layer, end));
+        barrier::images(cmd, &[(found, DRAWN, READ)]);
+    }
+}
+
+/// Fills an image that is read between draws.
+fn clear(cmd: &Commands<'_>, image: &Image, load: Load) {
+    barrier::images(cmd, &[(image, READ.discarded(), DRAWN)]);
+    cmd.rendering(image.size(), &[Attachment { image, load }], None, || ());
+    barrier::images(cmd, &[(image, DRAWN, READ)]);
+}

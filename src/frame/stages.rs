@@ -1,0 +1,139 @@
+//! What a scene needs of each stage: its passes, made with the scene; and with them its buffers, made for pictures of one
+//! size.
+
+use super::antialiasing::coverage::Coverage;
+use super::antialiasing::samples::{self, MoreSamples};
+use super::antialiasing::smooth_trims::{self, SmoothTrims};
+use super::capacities::Capacities;
+use super::common::room::Room;
+use super::common::{self, Common};
+use super::counts::Counts;
+use super::gaps::gap_fill::GapFill;
+use super::gaps::{self, Gaps};
+use super::occlusion::{self, Occlusion};
+use super::shading::{self, Shading, resolve};
+use super::solids::{self, Solids};
+use super::tessellation::{self, Tessellation};
+use super::transparency::{self, Transparency};
+use super::trim::{self, Trim};
+use super::visibility::{self, Visibility};
+use crate::gpu::{Device, GpuError};
+use crate::scene::SceneData;
+use std::sync::Arc;
+
+/// The passes of the stages that a scene needs. They stay while the picture's size changes.
+pub(crate) struct Passes {
+    common: Arc<common::Passes>,
+    tessellation: Option<Arc<tessellation::Passes>>,
+    occlusion: Option<Arc<occlusion::Passes>>,
+    trim: Option<trim::Passes>,
+    gaps: Option<Arc<GapFill>>,
+    solids: Option<solids::Passes>,
+    visibility: Arc<visibility::Passes>,
+    shading: Arc<shading::Passes>,
+    samples: Option<Arc<samples::Passes>>,
+    transparency: Option<Arc<transparency::Passes>>,
+    smooth_trims: Option<Arc<Coverage>>,
+}
+
+impl Passes {
+    pub(crate) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Self, GpuError> {
+        let trim = trim::Passes::new(device, data)?;
+        let test = trim.as_ref().map(trim::Passes::test);
+        // a driver takes milliseconds for each pipeline, and as many threads as ask it
+        let (solids, (patches, pictures)) = rayon::join(
+            || solids::Passes::new(device, data, test),
+            || {
+                rayon::join(
+                    || {
+                        let tessellation = tessellation::Passes::new(device, data)?;
+                        let occlusion = occlusion::Passes::new(device, data)?;
+                        Ok((tessellation, occlusion, visibility::Passes::new(device, data, test)?))
+                    },
+                    || {
+                        let shading = shading::Passes::new(device, data, formats)?;
+                        let samples = samples::Passes::new(device, data, formats)?;
+                        Ok((shading, samples, common::Passes::new(device, data)?))
+                    },
+                )
+            },
+        );
+        let ((tessellation, occlusion, visibility), (shading, samples, common)) = (patches?, pictures?);
+        Ok(Self {
+            common: Arc::new(common),
+            tessellation: tessellation.map(Arc::new),
+            occlusion: occlusion.map(Arc::new),
+            gaps: test.map(|test| gaps::passes(device, data, test)).transpose()?.map(Arc::new),
+            trim,
+            solids: solids?,
+            visibility: Arc::new(visibility),
+            shading: Arc::new(shading),
+            samples: samples.map(Arc::new),
+            transparency: transparency::Passes::new(device, data, formats)?.map(Arc::new),
+            smooth_trims: smooth_trims::pass(device, data, formats)?.map(Arc::new),
+        })
+    }
+}
+
+/// The stages of a frame: those that the scene needs, for pictures of one size.
+pub(crate) struct Stages {
+    /// What they were made for.
+    capacities: Capacities,
+    size: (u32, u32),
+    pub(super) common: Common,
+    pub(super) tessellation: Tessellation,
+    pub(super) occlusion: Option<Occlusion>,
+    pub(super) trim: Option<Trim>,
+    pub(super) gaps: Option<Gaps>,
+    pub(super) solids: Option<Solids>,
+    pub(super) visibility: Visibility,
+    pub(super) shading: Shading,
+    pub(super) transparency: Option<Transparency>,
+    pub(super) samples: Option<MoreSamples>,
+    pub(super) smooth_trims: Option<SmoothTrims>,
+}
+
+impl Stages {
+    pub(crate) fn new(
+        device: &Device,
+        passes: &Passes,
+        counts: Counts,
+        capacities: Capacities,
+        size: (u32, u32),
+    ) -> Result<Self, GpuError> {
+        let room = &Room { device, counts, capacities, size };
+        let scanned = [2 * counts.items, counts.bays, counts.curves, counts.face_instances, capacities.rows];
+        let scanned = scanned.into_iter().fold(solids::buffers::scanned(room), u32::max);
+        let p = passes;
+        Ok(Self {
+            capacities,
+            size,
+            common: Common::new(room, &p.common, scanned)?,
+            tessellation: Tessellation::new(room, p.tessellation.as_ref())?,
+            occlusion: p.occlusion.as_ref().map(|p| Occlusion::new(room, p)).transpose()?,
+            trim: p.trim.as_ref().map(|p| Trim::new(room, p)).transpose()?,
+            gaps: p.gaps.as_ref().map(|p| Gaps::new(room, p)).transpose()?,
+            solids: p.solids.as_ref().map(|p| Solids::new(room, p)).transpose()?,
+            visibility: Visibility::new(room, &p.visibility)?,
+            shading: Shading::new(room, &p.shading)?,
+            transparency: p.transparency.as_ref().map(|p| Transparency::new(room, p)).transpose()?,
+            samples: p.samples.as_ref().map(|p| MoreSamples::new(room, p)).transpose()?,
+            smooth_trims: p.smooth_trims.as_ref().map(|p| SmoothTrims::new(room, p)).transpose()?,
+        })
+    }
+
+    /// They suffice for a picture of this size.
+    pub(crate) fn suffice(&self, capacities: Capacities, size: (u32, u32)) -> bool {
+        self.size == size && self.capacities.takes_as_much(capacities)
+    }
+
+    /// Of the picture.
+    pub(crate) fn size(&self) -> (u32, u32) {
+        self.size
+    }
+
+    /// Boolean solids, where the scene has some.
+    pub(crate) fn solids(&self) -> Option<&Solids> {
+        self.solids.as_ref()
+    }
+}

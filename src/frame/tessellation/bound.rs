@@ -1,0 +1,37 @@
+//! Pass `bound`: which patches can be seen, and how finely each must be divided.
+//!
+//! ```text
+//!    box of the patch ──▶ outside the picture? all of it turned away? ──▶ tau = 0
+//!         │
+//!         ▼ smallest W of its control points
+//!    second derivatives x pixels per unit ──▶ (tau_u, tau_v), the guaranteed factor
+//! ```
+//!
+//! The factor is derived in [`twin::factor`](crate::twin::factor).
+//!
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `patches`, `items`, `cones`, `points`. Writes:
+//! `taus`, `counters`.
+//! Twin: `src/twin/bound.rs`.
+
+use crate::bindings::Bounded;
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Commands, Device, GpuError};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct Bound {
+    kernel: Kernel,
+}
+
+impl Bound {
+    /// `cones`: some closed part has no trims.
+    pub(crate) fn new(device: &Device, cones: bool) -> Result<Self, GpuError> {
+        let kernel = Kernel::new(device, "bound", &shaders::BOUND_COMP, &Bounded::constants(cones))?;
+        Ok(Self { kernel })
+    }
+
+    /// One thread for each of `items`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bounded<'_>, items: u32) {
+        self.kernel.record(cmd, &b.resources(), items);
+    }
+}

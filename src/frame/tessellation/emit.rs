@@ -1,0 +1,46 @@
+//! Pass `emit`: the list of sub-patches and the draws that cover it.
+//!
+//! ```text
+//!    vertices before an item  0 ..... draw_vertices ..... 2 draw_vertices ....
+//!    draw that gets it        |   0   |        1         |        2
+//! ```
+//!
+//! Reads: `frame`, `factors`, `sub_patch_starts`, `vertex_starts`. Writes: `sub_patches`, `draws`, `counters`.
+//! Twin: `src/twin/emit.rs`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct Emit {
+    kernel: Kernel,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub factors: &'a Buffer,
+    /// Sums of the counts, one more than there are.
+    pub sub_patch_starts: &'a Buffer,
+    /// Likewise.
+    pub vertex_starts: &'a Buffer,
+    /// The list.
+    pub sub_patches: &'a Buffer,
+    pub draws: &'a Buffer,
+    pub counters: &'a Buffer,
+}
+
+impl Emit {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let kernel = Kernel::new(device, "emit", &shaders::EMIT_COMP, &[])?;
+        Ok(Self { kernel })
+    }
+
+    /// One thread for each of `items`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+        let resources = [b.frame, b.factors, b.sub_patch_starts, b.vertex_starts, b.sub_patches, b.draws, b.counters]
+            .map(Into::into);
+        self.kernel.record(cmd, &resources, items);
+    }
+}

@@ -1,0 +1,127 @@
+//! How finely each patch is divided, and the sub-patches and draws that follow.
+//!
+//! ```text
+//!   bound    tau per patch ──occlusion::cull_early──▶ 0 for what lay behind others
+//!   split    segments per side
+//!     │(scan) sub-patches, vertices
+//!   emit     list and draws
+//! ```
+
+pub(crate) mod bound;
+mod divide;
+pub(crate) mod emit;
+pub(crate) mod split;
+
+use super::common::room::Room;
+use super::{Frame, WRITE_TO_READ};
+use crate::abi::{Factors, SubPatch};
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError};
+use crate::scene::SceneData;
+use divide::DividePass;
+use std::sync::Arc;
+
+/// The passes.
+pub(crate) struct Passes {
+    divide: DividePass,
+    split: split::Split,
+    emit: emit::Emit,
+}
+
+impl Passes {
+    /// `None` in a scene without patches.
+    pub(super) fn new(device: &Device, data: &SceneData) -> Result<Option<Self>, GpuError> {
+        if data.items.is_empty() {
+            return Ok(None);
+        }
+        Ok(Some(Self {
+            divide: DividePass::new(device, data)?,
+            split: split::Split::new(device, !data.links.is_empty())?,
+            emit: emit::Emit::new(device)?,
+        }))
+    }
+}
+
+/// The stage. Its lists are bound by whatever draws patches; in a scene without patches they are empty, and there are no
+/// passes.
+pub(crate) struct Tessellation {
+    passes: Option<Arc<Passes>>,
+    pub taus: Buffer,
+    pub factors: Buffer,
+    pub sub_patches: Buffer,
+    sub_patch_counts: Buffer,
+    sub_patch_starts: Buffer,
+    vertex_counts: Buffer,
+    vertex_starts: Buffer,
+}
+
+impl Tessellation {
+    pub(super) fn new(room: &Room<'_>, passes: Option<&Arc<Passes>>) -> Result<Self, GpuError> {
+        let n = room.counts.items;
+        Ok(Self {
+            passes: passes.cloned(),
+            taus: room.words("taus", n)?,
+            factors: room.structs::<Factors>("factors", n)?,
+            sub_patches: room.structs::<SubPatch>("sub-patches", room.capacities.sub_patches)?,
+            sub_patch_counts: room.words("sub-patch counts", 2 * n)?,
+            sub_patch_starts: room.words("sub-patch starts", 2 * n + 1)?,
+            vertex_counts: room.words("vertex counts", 2 * n)?,
+            vertex_starts: room.words("vertex starts", 2 * n + 1)?,
+        })
+    }
+
+    /// Divides every patch that may be seen.
+    pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        let Some(passes) = &self.passes else { return };
+        let (w, r) = WRITE_TO_READ;
+        passes.divide.record(frame, cmd, &self.taus);
+        if let Some(occlusion) = &frame.stages.occlusion {
+            occlusion.cull_early(frame, cmd);
+        }
+        cmd.after(w, r);
+        self.split(frame, cmd);
+    }
+
+    /// Patches into sub-patches, and what draws those that are to be drawn.
+    pub(super) fn split(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        let Some(p) = &self.passes else { return };
+        let (s, c) = (frame.scene, &frame.stages.common);
+        let items = frame.counts.items;
+        let (w, r) = WRITE_TO_READ;
+        let split = split::Bindings {
+            frame: frame.constants,
+            face_instances: &s.face_instances,
+            faces: &s.faces,
+            patches: &s.patches,
+            items: &s.items,
+            taus: &self.taus,
+            factors: &self.factors,
+            sub_patch_counts: &self.sub_patch_counts,
+            vertex_counts: &self.vertex_counts,
+            links: s.links.as_ref(),
+        };
+        p.split.record(cmd, &split, items);
+        cmd.after(w, r);
+
+        c.scan(cmd, &self.sub_patch_counts, &self.sub_patch_starts, 2 * items);
+        c.scan(cmd, &self.vertex_counts, &self.vertex_starts, 2 * items);
+        cmd.after(w, r | w);
+
+        let emit = emit::Bindings {
+            frame: frame.constants,
+            factors: &self.factors,
+            sub_patch_starts: &self.sub_patch_starts,
+            vertex_starts: &self.vertex_starts,
+            sub_patches: &self.sub_patches,
+            draws: &c.draws,
+            counters: &c.counters,
+        };
+        p.emit.record(cmd, &emit, items);
+        cmd.after(w, Access::VERTEX_READ | Access::INDIRECT_READ | w);
+    }
+
+    /// Before patches are divided a second time: what was read of the first is read no more.
+    pub(super) fn begin_again(&self, cmd: &Commands<'_>) {
+        let (w, r) = WRITE_TO_READ;
+        cmd.after(w | Access::VERTEX_READ, r | w);
+    }
+}

@@ -1,0 +1,71 @@
+//! Pass `split`: one number of segments per shared side, and enough sub-patches that none exceeds the
+//! hardware's factor of 64.
+//!
+//! ```text
+//!         A (tau 100, 2 sub-patches)        B (tau 30)
+//!    ┌───────────┬───────────┐
+//!    │    64     │    64     │      the side that A and B share gets 128 segments, seen from
+//!    ├───────────┴───────────┤      both, so B is cut in two as well: 64 + 64
+//!    │    64     │    64     │
+//!    └───────────┴───────────┘
+//! ```
+//!
+//! Reads: `frame`, `face_instances`, `faces`, `patches`, `items`, `taus`, `links`. Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
+//! Twin: `src/twin/split.rs`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct Split {
+    kernel: Kernel,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub patches: &'a Buffer,
+    pub items: &'a Buffer,
+    pub taus: &'a Buffer,
+    /// [`Factors`](crate::abi::Factors) per item.
+    pub factors: &'a Buffer,
+    /// Per item: plain, then trimmed.
+    pub sub_patch_counts: &'a Buffer,
+    /// Likewise.
+    pub vertex_counts: &'a Buffer,
+    /// Sides that faces share; in scenes where they do.
+    pub links: Option<&'a Buffer>,
+}
+
+impl Split {
+    /// `linked`: faces share sides.
+    pub(crate) fn new(device: &Device, linked: bool) -> Result<Self, GpuError> {
+        let kernel = Kernel::new(
+            device,
+            if linked { "split (linked)" } else { "split" },
+            if linked { &shaders::SPLIT_LINKED_COMP } else { &shaders::SPLIT_COMP },
+            &[],
+        )?;
+        Ok(Self { kernel })
+    }
+
+    /// One thread for each of `items`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
+        let resources = [
+            b.frame,
+            b.face_instances,
+            b.faces,
+            b.patches,
+            b.items,
+            b.taus,
+            b.factors,
+            b.sub_patch_counts,
+            b.vertex_counts,
+        ];
+        let resources: Vec<_> = resources.into_iter().chain(b.links).map(Into::into).collect();
+        self.kernel.record(cmd, &resources, items);
+    }
+}

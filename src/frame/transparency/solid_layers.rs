@@ -1,0 +1,209 @@
+//! Pass `solid_layers`: the pixel's ray, followed through solids that are told apart.
+//!
+//! ```text
+//!   behind (what pass `resolve` saw) ──┐
+//!   leaves of the tile, item by item ──┴──▶ layers, front to back ──▶ colour, over what is behind
+//!                                                                 ├─▶ images of the first of them
+//!                                                                 └─▶ length within solids
+//! ```
+//!
+//! Reads: everything that `Bindings` names. Writes: the targets; of the counters `clamps`, `contacts` and `overlaps`.
+//! Needs no storage per pixel beside `behind` and the fragments of operands without equations.
+
+use crate::bindings::{Primitives, SUN_BINDINGS, SUN_OWN, with_primitives};
+use crate::gpu::{
+    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
+    Pipeline, Resource, Texels,
+};
+use crate::shaders;
+use ash::vk;
+use std::ops::Range;
+
+/// `constant_id` of `SCENE_HAS_RATIONAL`.
+const SCENE_HAS_RATIONAL: u32 = 0;
+/// `constant_id` of `SCENE_HAS_PIECES`.
+const SCENE_HAS_PIECES: u32 = 19;
+
+/// `constant_id` of `SCENE_HAS_FINE`.
+const SCENE_HAS_FINE: u32 = 20;
+/// `constant_id` of `HAS_AOVS`.
+const HAS_AOVS: u32 = 3;
+/// `constant_id` of `SOLIDS_HAVE`.
+const SOLIDS_HAVE: u32 = 5;
+/// `constant_id` of `SOLIDS_HAVE_SHELLS`.
+const SOLIDS_HAVE_SHELLS: u32 = 13;
+/// `constant_id` of `FOLLOWED_FOR`.
+const FOLLOWED_FOR: u32 = 15;
+/// `constant_id` of `MARKS`.
+const MARKS: u32 = 16;
+/// `constant_id` of `SOLIDS_HAVE_PATCHES`.
+const SOLIDS_HAVE_PATCHES: u32 = 17;
+
+/// Format of the image of thickness.
+pub(crate) const THICKNESS_FORMAT: vk::Format = vk::Format::R32_SFLOAT;
+
+/// What rays are followed for: a pipeline each.
+#[derive(Clone, Copy, Debug)]
+pub(crate) enum For {
+    /// The colour, laid over the target.
+    Colour(vk::Format),
+    /// The colour, added to the sum of a pixel's samples.
+    Sample(vk::Format),
+    /// Beside the colour's target, which stays, those of the images `aovs`; and the host's depth.
+    First { colour: vk::Format, aovs: &'static [vk::Format] },
+    /// The length within solids, its only target.
+    Thickness,
+}
+
+/// What the scene has.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Kinds {
+    /// The most general kind of surface: `abi::SURFACE_*`.
+    pub surfaces: u32,
+    /// Some operand has no equations.
+    pub shells: bool,
+    /// Some of those are spline parts, some with unequal weights.
+    pub patches: bool,
+    pub rational: bool,
+    /// Some patches do not go on as those beside them would.
+    pub pieces: bool,
+    /// Some patch of theirs has a fine net.
+    pub fine: bool,
+    /// Linear colour and opacity of contacts and overlaps, where they are wanted.
+    pub marks: Option<[[f32; 4]; 2]>,
+    /// The key light is a sun.
+    pub sun: bool,
+}
+
+/// The pass.
+pub(crate) struct SolidLayers {
+    pipeline: Pipeline,
+    marks: [[f32; 4]; 2],
+    sun: bool,
+}
+
+/// Its buffers and image, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub primitives: Primitives<'a>,
+    /// Model axes, seen from the eye.
+    pub leaf_centres: &'a Buffer,
+    pub tile_starts: &'a Buffer,
+    pub tile_leaves: &'a Texels,
+    /// Where rays cross operands without equations: starts, counts, all; `None` where there are none.
+    pub fragments: Option<(&'a Buffer, &'a Buffer, &'a Texels)>,
+    pub counters: &'a Buffer,
+    pub behind: &'a Image,
+    pub views: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub patches: &'a Buffer,
+    pub items: &'a Buffer,
+    pub points: &'a Texels,
+    pub instances: &'a Buffer,
+    /// What [`Kinds::sun`] asks for.
+    pub sun: Option<[Resource<'a>; SUN_BINDINGS.len()]>,
+    /// Of meshes that bound operands: meshes, triangles, positions, planes; `None` where there are none.
+    pub shells: Option<[&'a Buffer; 4]>,
+}
+
+impl SolidLayers {
+    /// `depth`: of the host's target. What is hidden behind it stays so; only [`For::First`] writes it.
+    pub(crate) fn new(
+        device: &Device,
+        purpose: For,
+        depth: Option<vk::Format>,
+        kinds: Kinds,
+    ) -> Result<Self, GpuError> {
+        let target = |format, blend| ColourTarget { format, blend };
+        let (number, name, colour) = match purpose {
+            For::Colour(format) => (0, "colour", vec![target(format, Blend::Over)]),
+            For::Sample(format) => (0, "sample", vec![target(format, Blend::Add)]),
+            For::First { colour, aovs } => {
+                let aovs = aovs.iter().map(|format| target(*format, Blend::Replace));
+                (1, "first", std::iter::once(target(colour, Blend::Leave)).chain(aovs).collect())
+            }
+            For::Thickness => (2, "thickness", vec![target(THICKNESS_FORMAT, Blend::Replace)]),
+        };
+        // lengths within solids are in no light
+        let sun = kinds.sun && number != 2;
+        let mut bindings = with_primitives::<24>(1).to_vec();
+        (bindings[7], bindings[10]) = (Binding::Texels, Binding::Texels);
+        bindings[12] = Binding::StorageImage;
+        bindings[18] = Binding::Texels;
+        bindings.extend(SUN_BINDINGS.iter().take(if sun { SUN_OWN } else { 0 }));
+        let marks = kinds.marks.filter(|_| number == 0);
+        let writes = matches!(purpose, For::First { .. });
+        let pipeline = Pipeline::graphics(
+            device,
+            &GraphicsInfo {
+                name: &format!("solid layers ({name})"),
+                stages: &[
+                    (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
+                    (
+                        vk::ShaderStageFlags::FRAGMENT,
+                        if sun { shaders::SOLID_LAYERS_SUN_FRAG } else { shaders::SOLID_LAYERS_FRAG },
+                    ),
+                ],
+                bindings: &bindings,
+                push_bytes: size_of::<[[f32; 4]; 2]>() as u32,
+                constants: &[
+                    (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
+                    (SCENE_HAS_PIECES, u32::from(kinds.pieces)),
+                    (SCENE_HAS_FINE, u32::from(kinds.fine)),
+                    (HAS_AOVS, u32::from(writes)),
+                    (SOLIDS_HAVE, kinds.surfaces),
+                    (SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),
+                    (FOLLOWED_FOR, number),
+                    (MARKS, u32::from(marks.is_some())),
+                    (SOLIDS_HAVE_PATCHES, u32::from(kinds.patches)),
+                ],
+                topology: vk::PrimitiveTopology::TRIANGLE_LIST,
+                patch_points: 0,
+                cull: vk::CullModeFlags::NONE,
+                front: vk::FrontFace::COUNTER_CLOCKWISE,
+                colour: &colour,
+                depth: depth.filter(|_| number != 2).map(|format| DepthTest {
+                    format,
+                    compare: vk::CompareOp::GREATER_OR_EQUAL,
+                    write: writes,
+                }),
+                stencil: None,
+            },
+        )?;
+        Ok(Self { pipeline, marks: marks.unwrap_or_default(), sun })
+    }
+
+    /// One triangle over these rows of the targets.
+    pub(crate) fn record(
+        &self,
+        cmd: &Commands<'_>,
+        b: &Bindings<'_>,
+        colour: &[Attachment<'_>],
+        depth: Option<Attachment<'_>>,
+        rows: Range<u32>,
+    ) {
+        // the shader has these bindings in every scene, and reads them only where there are shells
+        let (starts, counts, fragments) = b.fragments.unwrap_or((b.frame, b.frame, b.tile_leaves));
+        let shells = b.shells.unwrap_or([b.frame; 4]);
+        let placed = [b.views, b.face_instances, b.faces, b.patches, b.items];
+        let tiles: [Resource<'_>; 3] = [b.leaf_centres.into(), b.tile_starts.into(), b.tile_leaves.into()];
+        let fragments: [Resource<'_>; 3] = [starts.into(), counts.into(), fragments.into()];
+        let sun = b.sun.filter(|_| self.sun);
+        let resources: Vec<_> = [b.frame.into()]
+            .into_iter()
+            .chain(b.primitives.resources())
+            .chain(tiles)
+            .chain(fragments)
+            .chain([b.counters.into(), b.behind.into()])
+            .chain(placed.into_iter().map(Into::into))
+            .chain([b.points.into(), b.instances.into()])
+            .chain(shells.into_iter().map(Into::into))
+            .chain(sun.into_iter().flat_map(|s| s.into_iter().take(SUN_OWN)))
+            .collect();
+        cmd.rendering_rows((b.behind.size(), rows), colour, depth, || {
+            cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&self.marks));
+            cmd.draw(3, 0, 1);
+        });
+    }
+}

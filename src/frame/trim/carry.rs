@@ -1,0 +1,41 @@
+//! Pass `carry`: the winding number that each row of a strip with several bays begins with: what crosses its scan line in
+//! the bays before.
+//!
+//! ```text
+//!   bay               0     1     2     3
+//!   crossings add up  +1    0     -1    0      as pass `cross` counted them
+//!   begins with        0    1     1     0
+//! ```
+//!
+//! Reads: `frame`, `strips`, `wide_strips`. Writes: `row_windings`. Twin: `src/twin/carry.rs`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct Carry {
+    kernel: Kernel,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub strips: &'a Texels,
+    /// Bay items of the strips with several bays.
+    pub wide_strips: &'a Buffer,
+    pub row_windings: &'a Buffer,
+}
+
+impl Carry {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        let kernel = Kernel::new(device, "carry", &shaders::CARRY_COMP, &[])?;
+        Ok(Self { kernel })
+    }
+
+    /// One workgroup for each of `wide_strips`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, wide_strips: u32) {
+        let resources = [b.frame.into(), b.strips.into(), b.wide_strips.into(), b.row_windings.into()];
+        self.kernel.record_grid(cmd, &resources, [wide_strips, 1, 1]);
+    }
+}

@@ -1,0 +1,84 @@
+//! Pass `cross`: every linear segment of a trim curve meets every scan line that it crosses.
+//!
+//! ```text
+//!   count    row_counts[row] += 1, border cells marked           one thread a segment, as many
+//!   (scan)   row_starts = sums                                   as pass `sizes` found
+//!   insert   intercepts[row_starts[row] + place] = u, direction
+//! ```
+//!
+//! Reads: `frame`, `face_instances`, `faces`, `curves`, `curve_points`, `curve_items`, `strips`,
+//! `segment_starts`, `row_starts`, `dispatches`. Writes: `row_counts` (zero before
+//! counting and again after inserting),
+//! `intercepts`, `border_cells` and `row_windings` (zero before counting). Twin: `src/twin/cross.rs`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
+use crate::shaders;
+
+/// The pass, in its two roles.
+pub(crate) struct Cross {
+    count: Kernel,
+    insert: Kernel,
+}
+
+/// Its buffers, in binding order, and the dispatches.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub face_instances: &'a Texels,
+    pub faces: &'a Texels,
+    pub curves: &'a Texels,
+    pub curve_points: &'a Texels,
+    pub curve_items: &'a Texels,
+    pub strips: &'a Texels,
+    pub segment_starts: &'a Texels,
+    pub row_starts: &'a Texels,
+    pub row_counts: &'a Buffer,
+    pub intercepts: &'a Buffer,
+    /// `glsl/include/border_cells.glsl`.
+    pub border_cells: &'a Buffer,
+    /// What crosses each row adds up to, where strips have several bays.
+    pub row_windings: Option<&'a Buffer>,
+    /// Written by pass `sizes`; this pass's is the first.
+    pub dispatches: &'a Buffer,
+}
+
+impl Cross {
+    /// `bays`: strips of some face have several bays. `marks`: where curves pass is asked for.
+    pub(crate) fn new(device: &Device, bays: bool, marks: bool) -> Result<Self, GpuError> {
+        let kernel = |name, insert: bool| {
+            let roles = [("INSERT", insert), ("SCENE_HAS_BAYS", bays), ("MARKS_BORDERS", marks)];
+            Kernel::new(device, name, &shaders::CROSS_COMP, &roles.map(|(name, flag)| (name, u32::from(flag))))
+        };
+        Ok(Self { count: kernel("cross (count)", false)?, insert: kernel("cross (insert)", true)? })
+    }
+
+    /// Counts the intercepts of each row.
+    pub(crate) fn count(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
+        Self::record(cmd, &self.count, b);
+    }
+
+    /// Writes them.
+    pub(crate) fn insert(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
+        Self::record(cmd, &self.insert, b);
+    }
+
+    fn record(cmd: &Commands<'_>, kernel: &Kernel, b: &Bindings<'_>) {
+        let resources = [
+            b.frame.into(),
+            b.face_instances.into(),
+            b.faces.into(),
+            b.curves.into(),
+            b.curve_points.into(),
+            b.curve_items.into(),
+            b.strips.into(),
+            b.segment_starts.into(),
+            b.row_starts.into(),
+            b.row_counts.into(),
+            b.intercepts.into(),
+            b.border_cells.into(),
+            // not written where there are none
+            b.row_windings.unwrap_or(b.frame).into(),
+        ];
+        kernel.record_indirect(cmd, &resources, (b.dispatches, 0));
+    }
+}

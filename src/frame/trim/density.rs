@@ -1,0 +1,64 @@
+//! Pass `density`: pixels that each v-strip of a trimmed face can cover.
+//!
+//! ```text
+//!    cell = part of a patch in a bay of a strip:   |S_v| x pixels per unit / strips  = height_px
+//!    strip height = largest of its visible cells; 0 when none is visible
+//! ```
+//!
+//! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `cells`, `cell_items`. Writes: `strip_heights`, `face_speeds`,
+//! `seen_bays`. `frame` and `views` are those of what the table is made of: this view, or a wider one that serves those from near
+//! by (`src/scene/nearby.rs`). Twin: `src/twin/density.rs`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct Density {
+    kernel: Kernel,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub views: &'a Buffer,
+    pub instances: &'a Buffer,
+    pub face_instances: &'a Buffer,
+    pub faces: &'a Buffer,
+    pub cells: &'a Buffer,
+    /// Face instance of each cell.
+    pub cell_items: &'a Buffer,
+    /// Float bits, zero before.
+    pub strip_heights: &'a Buffer,
+    /// Float bits of pixels per unit u, v; zero before.
+    pub face_speeds: &'a Buffer,
+    /// A bit for each bay of a strip, where strips have several; zero before.
+    pub seen_bays: Option<&'a Buffer>,
+}
+
+impl Density {
+    /// `bays`: strips of some face have several bays.
+    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
+        let kernel = Kernel::new(device, "density", &shaders::DENSITY_COMP, &[("SCENE_HAS_BAYS", u32::from(bays))])?;
+        Ok(Self { kernel })
+    }
+
+    /// One thread for each of `cells`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, cells: u32) {
+        let resources = [
+            b.frame,
+            b.views,
+            b.instances,
+            b.face_instances,
+            b.faces,
+            b.cells,
+            b.cell_items,
+            b.strip_heights,
+            b.face_speeds,
+            // neither read nor written then
+            b.seen_bays.unwrap_or(b.frame),
+        ]
+        .map(Into::into);
+        self.kernel.record(cmd, &resources, cells);
+    }
+}

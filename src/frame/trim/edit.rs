@@ -1,0 +1,38 @@
+//! Edits of trim loops, before everything else of a frame.
+//!
+//! ```text
+//!   frames before ──read──▶ patches, curves, arcs and what sorts them ◀──copies of what was edited
+//! ```
+
+use crate::frame::Frame;
+use crate::gpu::{Access, Buffer, Commands, GpuError, Uploads, barrier};
+use crate::scene::{EditTarget, Scene, Trims, Write};
+
+impl Frame<'_> {
+    /// Records the copies. The returned [`Uploads`] must live until the GPU has made them.
+    pub(crate) fn edit(cmd: &Commands<'_>, scene: &Scene, writes: &[Write]) -> Result<Uploads, GpuError> {
+        let mut uploads = Uploads::new();
+        let reads = Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ;
+        let copied = Access { layout: reads.layout, ..Access::TRANSFER_WRITE };
+        barrier::memory(cmd, reads, copied);
+        for write in writes {
+            if let Some(target) = target(scene, write.to) {
+                uploads.write(cmd, target, write.offset, &write.bytes)?;
+            }
+        }
+        uploads.finish(cmd, reads);
+        Ok(uploads)
+    }
+}
+
+/// `None` where another way trims than the one that the edit was made for: never.
+fn target(scene: &Scene, to: EditTarget) -> Option<&Buffer> {
+    match (to, scene.trims.as_ref()?) {
+        (EditTarget::Patches, _) => Some(&scene.patches),
+        (EditTarget::Cells, Trims::Table(trims)) => Some(&trims.cells),
+        (EditTarget::Curves, Trims::Table(trims)) => Some(&trims.curves),
+        (EditTarget::CurvePoints, Trims::Table(trims)) => Some(&trims.curve_points),
+        (EditTarget::Exact(array), Trims::Exact(trims)) => Some(*trims.all().get(array)?),
+        _ => None,
+    }
+}

@@ -1,0 +1,40 @@
+//! Pass `lines`: scan lines of each v-strip, `mu = ceil(height / spacing)`.
+//!
+//! Reads: `frame`, `strip_heights`. Writes: `strip_counts`, `counters`.
+//! Twin: `src/twin/lines.rs`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct Lines {
+    kernel: Kernel,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub strip_heights: &'a Buffer,
+    pub strip_counts: &'a Buffer,
+    /// `clamps`.
+    pub counters: &'a Buffer,
+    /// A bit for each bay of a strip, where strips have several.
+    pub seen_bays: Option<&'a Buffer>,
+}
+
+impl Lines {
+    /// `bays`: strips of some face have several bays.
+    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
+        let kernel = Kernel::new(device, "lines", &shaders::LINES_COMP, &[("SCENE_HAS_BAYS", u32::from(bays))])?;
+        Ok(Self { kernel })
+    }
+
+    /// One thread for each of `bays`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, bays: u32) {
+        // not read where there are none
+        let seen_bays = b.seen_bays.unwrap_or(b.frame);
+        let resources = [b.frame, b.strip_heights, b.strip_counts, b.counters, seen_bays].map(Into::into);
+        self.kernel.record(cmd, &resources, bays);
+    }
+}

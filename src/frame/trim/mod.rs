@@ -1,0 +1,115 @@
+//! The ways to trim.
+//!
+//! ```text
+//!   way      scene buffers   buffers of the frame   passes before the draw     what the test reads
+//!   table    TableScene      table::Buffers         table.rs: density … sort   those
+//!   exact    ExactScene      none                   none                       the scene's
+//! ```
+//!
+//! A scene uses one way; the others' passes, pipelines and buffers do not exist. Whatever the way, its
+//! test is compiled into the passes `visibility` and `gap_fill` ([`TrimTest`](crate::shaders::TrimTest)).
+
+pub(crate) mod carry;
+pub(crate) mod cross;
+pub(crate) mod density;
+mod edit;
+pub(crate) mod lines;
+pub(crate) mod segments;
+pub(crate) mod sizes;
+pub(crate) mod sort;
+pub(super) mod table;
+
+use super::Frame;
+#[cfg(feature = "baselines")]
+use super::baselines;
+use super::common::room::Room;
+use crate::gpu::{Commands, Device, GpuError, Resource, Timestamps};
+use crate::picture::TakenWay;
+use crate::scene::{ExactScene, SceneData};
+use crate::shaders::{TRIM_EXACT, TRIM_TABLE, TrimTest};
+use std::sync::Arc;
+use table::Table;
+
+/// The passes of the way that the scene uses.
+pub(crate) enum Passes {
+    Table(Arc<table::Passes>),
+    Exact,
+    #[cfg(feature = "baselines")]
+    Baseline(Arc<baselines::Passes>),
+}
+
+impl Passes {
+    /// `None` when no patch is trimmed.
+    pub(super) fn new(device: &Device, data: &SceneData) -> Result<Option<Self>, GpuError> {
+        Ok(match data.trim_way() {
+            None => None,
+            Some(TakenWay::Table) => Some(Self::Table(Arc::new(table::Passes::new(device, data)?))),
+            Some(TakenWay::Exact) => Some(Self::Exact),
+            #[cfg(feature = "baselines")]
+            Some(TakenWay::Baseline(method)) => Some(Self::Baseline(Arc::new(baselines::Passes::new(device, method)?))),
+        })
+    }
+
+    pub(super) fn test(&self) -> &'static TrimTest {
+        match self {
+            Self::Table(_) => &TRIM_TABLE,
+            Self::Exact => &TRIM_EXACT,
+            #[cfg(feature = "baselines")]
+            Self::Baseline(passes) => passes.test(),
+        }
+    }
+}
+
+/// The stage.
+pub(crate) enum Trim {
+    Table(Box<Table>),
+    Exact,
+    #[cfg(feature = "baselines")]
+    Baseline(Box<baselines::Trim>),
+}
+
+impl Trim {
+    pub(super) fn new(room: &Room<'_>, passes: &Passes) -> Result<Self, GpuError> {
+        Ok(match passes {
+            Passes::Table(passes) => Self::Table(Box::new(Table::new(room, passes)?)),
+            Passes::Exact => Self::Exact,
+            #[cfg(feature = "baselines")]
+            Passes::Baseline(passes) => Self::Baseline(Box::new(baselines::Trim::new(room, passes)?)),
+        })
+    }
+
+    /// Clears what the passes before the draw count.
+    pub(super) fn begin(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        match self {
+            Self::Table(table) => table.begin(frame, cmd),
+            Self::Exact => {}
+            #[cfg(feature = "baselines")]
+            Self::Baseline(trim) => trim.begin(cmd),
+        }
+    }
+
+    /// The u-intercept table, where the scene is trimmed by it and the frame before has left none.
+    pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut Timestamps) {
+        if let Self::Table(table) = self {
+            frame.unless_made(cmd, table, || times.scope(cmd, "trim table", || table.record(frame, cmd)));
+        }
+    }
+
+    /// Trim textures, where the scene is trimmed by them: after patches are divided.
+    #[cfg(feature = "baselines")]
+    pub(super) fn record_baseline(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut Timestamps) {
+        if let Self::Baseline(trim) = self {
+            trim.record(frame, cmd, times);
+        }
+    }
+
+    /// What the trim test reads, in its order.
+    pub(super) fn test<'a>(&'a self, frame: &Frame<'a>) -> Vec<Resource<'a>> {
+        match self {
+            Self::Table(table) => table.test(),
+            Self::Exact => frame.scene.exact().into_iter().flat_map(ExactScene::all).map(Resource::from).collect(),
+            #[cfg(feature = "baselines")]
+            Self::Baseline(trim) => trim.test(frame.scene),
+        }
+    }
+}

@@ -1,0 +1,45 @@
+//! Pass `sizes`: where the rows of each v-strip are; rows and segments of the whole trim table, and the dispatches that
+//! follow from them.
+//!
+//! Reads: `frame`, `strip_starts`, `segment_starts`. Writes: `dispatches`, `strips`, `counters`.
+//! Twin: `src/twin/sizes.rs`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct Sizes {
+    kernel: Kernel,
+}
+
+/// Its buffers, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub strip_starts: &'a Buffer,
+    pub segment_starts: &'a Buffer,
+    /// Of passes cross and sort.
+    pub dispatches: &'a Buffer,
+    /// Where the rows of each are, at its first bay.
+    pub strips: &'a Buffer,
+    pub counters: &'a Buffer,
+    /// A bit for each bay of a strip, where strips have several.
+    pub seen_bays: Option<&'a Buffer>,
+}
+
+impl Sizes {
+    /// `bays`: strips of some face have several bays.
+    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
+        let kernel = Kernel::new(device, "sizes", &shaders::SIZES_COMP, &[("SCENE_HAS_BAYS", u32::from(bays))])?;
+        Ok(Self { kernel })
+    }
+
+    /// One thread for each of `bays`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, bays: u32) {
+        // not read where there are none
+        let seen_bays = b.seen_bays.unwrap_or(b.frame);
+        let resources = [b.frame, b.strip_starts, b.segment_starts, b.dispatches, b.strips, b.counters, seen_bays];
+        let resources = resources.map(Into::into);
+        self.kernel.record(cmd, &resources, bays);
+    }
+}

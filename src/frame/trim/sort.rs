@@ -1,0 +1,57 @@
+//! Pass `sort`: each row in order of u, reduced to the places where inside and outside change.
+//!
+//! ```text
+//!   intercepts   ↑  ↑  ↓  ↑  ↓  ↓        winding   0 1 2 1 2 1 0
+//!   flips        |              |        inside    0 1 1 1 1 1 0
+//! ```
+//!
+//! Reads: `frame`, `row_starts`, `row_total`, `row_windings`, `dispatches`. Writes: `rows` (of each its first
+//! flip, and its number of flips twice, 1 more where it begins inside), `intercepts`, `counters`. Twin: `src/twin/sort.rs`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct Sort {
+    kernel: Kernel,
+}
+
+/// Its buffers, in binding order, and the dispatches.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub row_starts: &'a Texels,
+    /// Intercepts of all rows.
+    pub row_total: &'a Buffer,
+    /// Two words a row.
+    pub rows: &'a Buffer,
+    pub intercepts: &'a Buffer,
+    pub counters: &'a Buffer,
+    /// What each row begins with, where strips have several bays.
+    pub row_windings: Option<&'a Buffer>,
+    /// Written by pass `sizes`; this pass's is the second.
+    pub dispatches: &'a Buffer,
+}
+
+impl Sort {
+    /// `bays`: strips of some face have several bays.
+    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
+        let kernel = Kernel::new(device, "sort", &shaders::SORT_COMP, &[("SCENE_HAS_BAYS", u32::from(bays))])?;
+        Ok(Self { kernel })
+    }
+
+    /// One thread a row.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
+        let resources = [
+            b.frame.into(),
+            b.row_starts.into(),
+            b.row_total.into(),
+            b.rows.into(),
+            b.intercepts.into(),
+            b.counters.into(),
+            // not read where there are none
+            b.row_windings.unwrap_or(b.frame).into(),
+        ];
+        self.kernel.record_indirect(cmd, &resources, (b.dispatches, size_of::<[u32; 3]>() as u64));
+    }
+}

@@ -1,0 +1,163 @@
+//! What each pixel sees: triangles of meshes, then patches before them. Boolean solids are drawn between the two by a stage
+//! of their own.
+
+pub(crate) mod mesh;
+pub(crate) mod patches;
+
+use super::Frame;
+use super::common::room::{DRAWN_AND_READ, Room};
+use crate::gpu::{Access, Attachment, Commands, Device, GpuError, Image, Load, Resource, barrier};
+use crate::scene::{MeshBuffers, SceneData, SolidData};
+use crate::shaders::TrimTest;
+use ash::vk;
+use patches::{DEPTH_FORMAT, Kinds, VISIBILITY_FORMAT, Visibility as PatchPass};
+use std::sync::Arc;
+
+/// The passes.
+pub(crate) struct Passes {
+    patches: PatchPass,
+    mesh: mesh::Mesh,
+    /// The patches without a trim test, to compare with.
+    #[cfg(feature = "baselines")]
+    untested: Option<PatchPass>,
+}
+
+impl Passes {
+    /// `test`: how faces are trimmed, where some are.
+    pub(super) fn new(device: &Device, data: &SceneData, test: Option<&TrimTest>) -> Result<Self, GpuError> {
+        let volume = data.volume.as_ref().and_then(SolidData::kinds);
+        let kinds = Kinds {
+            rational: data.has_rational,
+            plain: data.has_plain,
+            linked: !data.links.is_empty(),
+            trimmed: test,
+            bays: !data.wide_strips.is_empty(),
+            operands: data.has_operands,
+            volume,
+        };
+        let outward = data.meshes.draws.len() - data.meshes.outward;
+        let meshes = mesh::Kinds { both: data.meshes.outward > 0, outward: outward > 0, volume };
+        Ok(Self {
+            patches: PatchPass::new(device, kinds)?,
+            mesh: mesh::Mesh::new(device, (VISIBILITY_FORMAT, DEPTH_FORMAT), meshes)?,
+            #[cfg(feature = "baselines")]
+            untested: super::baselines::untested(device, data, kinds)?,
+        })
+    }
+}
+
+/// The stage: its passes and images.
+pub(crate) struct Visibility {
+    passes: Arc<Passes>,
+    /// Patch instance and (u, v), or what is no patch.
+    pub image: Image,
+    /// What is no patch, where gap filling needs it apart.
+    pub others: Option<Image>,
+    pub depth: Image,
+}
+
+impl Visibility {
+    pub(super) fn new(room: &Room<'_>, passes: &Arc<Passes>) -> Result<Self, GpuError> {
+        let counts = room.counts;
+        let sampled = if counts.trim.is_some() || counts.hides {
+            vk::ImageUsageFlags::SAMPLED
+        } else {
+            vk::ImageUsageFlags::empty()
+        };
+        let apart = counts.trim.is_some() && (counts.mesh_instances > 0 || counts.leaves > 0);
+        let others = || room.image("visibility of others", VISIBILITY_FORMAT, DRAWN_AND_READ);
+        Ok(Self {
+            passes: Arc::clone(passes),
+            image: room.image("visibility", VISIBILITY_FORMAT, DRAWN_AND_READ)?,
+            others: apart.then(others).transpose()?,
+            depth: room.image(
+                "visibility depth",
+                DEPTH_FORMAT,
+                vk::ImageUsageFlags::DEPTH_STENCIL_ATTACHMENT | sampled,
+            )?,
+        })
+    }
+
+    /// Where what is no patch is drawn.
+    pub(super) fn of_others(&self) -> &Image {
+        self.others.as_ref().unwrap_or(&self.image)
+    }
+
+    /// The images were read by the frame before; their contents go.
+    pub(super) fn begin(&self, cmd: &Commands<'_>) {
+        let read = (Access::COMPUTE_READ | Access::FRAGMENT_READ).discarded();
+        let others = self.others.iter().map(|image| (image, read, Access::COLOUR_WRITE));
+        let tested = Access::DEPTH_WRITE.discarded() | Access::COMPUTE_READ.discarded();
+        let fixed = [(&self.image, read, Access::COLOUR_WRITE), (&self.depth, tested, Access::DEPTH_WRITE)];
+        barrier::images(cmd, &fixed.into_iter().chain(others).collect::<Vec<_>>());
+    }
+
+    /// Meshes first: what hides them may be in doubt.
+    pub(super) fn meshes(&self, frame: &Frame<'_>, cmd: &Commands<'_>, m: &MeshBuffers) {
+        let bindings = mesh::Bindings {
+            frame: frame.constants,
+            views: frame.views,
+            mesh_instances: &m.instances,
+            triangles: &m.triangles,
+            positions: &m.positions,
+            volume: frame.volume(),
+        };
+        let seen = self.of_others();
+        self.passes.mesh.record(cmd, &bindings, (seen, &self.depth), &m.draws, m.outward);
+        self.drawn_again(cmd, seen);
+    }
+
+    /// Orders what was drawn into `seen` and the depth before what is drawn next.
+    pub(super) fn drawn_again(&self, cmd: &Commands<'_>, seen: &Image) {
+        let (colour, depth) = (Access::COLOUR_WRITE, Access::DEPTH_WRITE);
+        barrier::images(cmd, &[(seen, colour, colour), (&self.depth, depth, depth)]);
+    }
+
+    /// The patches, with the trim test of the scene. `again`: over what was drawn before.
+    pub(super) fn patches(&self, frame: &Frame<'_>, cmd: &Commands<'_>, test: &[Resource<'_>], again: bool) {
+        self.patches_by(&self.passes.patches, frame, cmd, (test, again));
+    }
+
+    /// The patches without a test, into images that are cleared again: for what tests cost.
+    #[cfg(feature = "baselines")]
+    pub(super) fn untested(&self, frame: &Frame<'_>, cmd: &Commands<'_>, times: &mut super::Scopes<'_>) {
+        let Some(pass) = &self.passes.untested else { return };
+        times.scope(cmd, "visibility untested", || self.patches_by(pass, frame, cmd, (&[], false)));
+        self.drawn_again(cmd, &self.image);
+    }
+
+    fn patches_by(
+        &self,
+        pass: &PatchPass,
+        frame: &Frame<'_>,
+        cmd: &Commands<'_>,
+        (test, again): (&[Resource<'_>], bool),
+    ) {
+        let (s, stages) = (frame.scene, frame.stages);
+        let (c, t) = (&stages.common, &stages.tessellation);
+        let rings = stages.gaps.as_ref().map(|gaps| &gaps.rings);
+        cmd.after(Access::COMPUTE_WRITE, Access::INDIRECT_READ);
+        if let Some(rings) = rings {
+            let before = if again { Access::FRAGMENT_WRITE } else { Access::TRANSFER_WRITE };
+            barrier::buffers(cmd, &[(rings, before, Access::FRAGMENT_WRITE)]);
+        }
+        let bindings = patches::Bindings {
+            frame: frame.constants,
+            placed: s.placed(frame.views),
+            factors: &t.factors,
+            sub_patches: &t.sub_patches,
+            instances: &s.instances,
+            rings: rings.map(|rings| &**rings),
+            trim: test,
+            volume: frame.volume(),
+            links: s.links.as_ref(),
+            draws: &c.draws,
+            counters: &c.counters,
+        };
+        let drawn = again || s.meshes.is_some() || s.solids.is_some();
+        let colour = if again || drawn && self.others.is_none() { Load::Keep } else { Load::ColourU32([0; 4]) };
+        let visibility = Attachment { image: &self.image, load: colour };
+        let depth = Attachment { image: &self.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
+        pass.record(cmd, &bindings, (visibility, depth), frame.capacities.draws);
+    }
+}

@@ -1,0 +1,183 @@
+//! Parity of the passes `hide` and `farthest`: exact; of `reveal`: what the twin says in double precision with some slack,
+//! and without as much.
+
+use super::harness::{Gpu, Mismatch, SceneBuffers, same};
+use super::shapes::model_and_cameras;
+use super::squares::drawn;
+use super::{Case, Random};
+use crate::abi::{Counters, SQUARE};
+use crate::frame::occlusion::cull_early;
+use crate::frame::occlusion::cull_late;
+use crate::frame::occlusion::depth_pyramid;
+use crate::model::Camera;
+use crate::twin;
+use crate::twin::occlusion::{Farthest, TAU_HIDDEN, is_drawn, lies_behind};
+use glam::{DAffine3, DVec3};
+
+/// Of a pixel, and a thousandth of it of depths: some roundings of single precision in pixels of pictures this large.
+const SLACK: f64 = 0.02;
+
+/// The model of the other parities six times, one behind the other, and its cameras.
+fn crowd() -> Vec<Case> {
+    let (mut model, cameras) = model_and_cameras();
+    let instances = model.instances.clone();
+    for k in 1..6 {
+        let behind = DAffine3::from_translation(DVec3::new(-9.0, 18.0, -13.5) * f64::from(k));
+        let placed = instances.iter().map(|i| crate::model::Instance { transform: behind * i.transform, ..i.clone() });
+        model.instances.extend(placed);
+    }
+    let far = |camera: Camera| Camera { depth_range: (camera.depth_range.0, 1000.0), ..camera };
+    cameras.into_iter().map(|camera| Case::new(&model, &far(camera), 0.5)).collect()
+}
+
+fn taus(case: &Case) -> Vec<u32> {
+    twin::bound::bound(&case.frame, &case.scene(), &mut Counters::default())
+}
+
+fn compare_hide(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<(), Mismatch> {
+    let n = case.data.items.len();
+    let s = SceneBuffers::new(gpu, case);
+    let mut twin_taus = taus(case);
+    let (hidden, taus) = (gpu.upload("hidden", given), gpu.upload("taus", &twin_taus));
+    let counters = gpu.upload("counters", &[Counters::default()]);
+    let pass = cull_early::CullEarly::new(gpu.device()).unwrap();
+    let bindings = cull_early::Bindings { frame: &s.frame, hidden: &hidden, taus: &taus, counters: &counters };
+    gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
+    let marked = twin::occlusion::hide(expected, &mut twin_taus);
+    same("taus", &gpu.read(&taus, n), &twin_taus)?;
+    same("counters", &gpu.read(&counters, 1), &[Counters { hidden: marked, ..Counters::default() }])
+}
+
+#[test]
+fn parity_of_hide_is_exact_and_sees_a_difference() {
+    let gpu = Gpu::new();
+    let case = &crowd()[0];
+    let mut random = Random::new(9);
+    let hidden: Vec<u32> = case.data.items.iter().map(|_| u32::from(random.integer(0, 3) > 0)).collect();
+    compare_hide(&gpu, case, &hidden, &hidden).unwrap();
+    let mut other = hidden.clone();
+    let seen = taus(case).iter().position(|tau| *tau != 0).unwrap();
+    other[seen] ^= 1;
+    let mismatch = compare_hide(&gpu, case, &other, &hidden).unwrap_err();
+    assert_eq!((mismatch.buffer, mismatch.index), ("taus", seen));
+    gpu.finish();
+}
+
+/// The pass over triangles that are drawn; `change`: of what the twin gets.
+fn compare_farthest(gpu: &Gpu, case: &Case, change: impl FnOnce(&mut [f32])) -> Result<Farthest, Mismatch> {
+    let size = (case.frame.size[0] as u32, case.frame.size[1] as u32);
+    assert!(!(size.0.is_multiple_of(SQUARE) && size.1.is_multiple_of(SQUARE)), "some squares are cut off: {size:?}");
+    let mut picture = drawn(gpu, case, &mut Random::new(3), 40, size);
+    change(&mut picture.depths);
+    let twin = Farthest::new(size.into(), &picture.depths);
+    let out = gpu.upload("farthest", &vec![9.0f32; twin.depths.len()]);
+    let frame = gpu.upload("frame", &[case.frame]);
+    let pass = depth_pyramid::DepthPyramid::new(gpu.device()).unwrap();
+    gpu.run(|cmd| {
+        pass.record(cmd, &depth_pyramid::Bindings { frame: &frame, depth: &picture.depth, farthest: &out });
+    });
+    same("farthest", &gpu.read(&out, twin.depths.len()), &twin.depths)?;
+    Ok(twin)
+}
+
+/// A picture whose last squares, tiles and blocks are cut off by its end.
+fn cut_off(case: &Case) -> Case {
+    let mut case = case.clone();
+    case.frame.size = [477.0, 359.0];
+    case
+}
+
+#[test]
+fn parity_of_farthest_is_exact_and_sees_a_difference() {
+    let gpu = Gpu::new();
+    let case = cut_off(&crowd()[0]);
+    let twin = compare_farthest(&gpu, &case, |_| {}).unwrap();
+    assert!(twin.depths.contains(&0.0) && twin.depths.iter().any(|d| *d > 0.0));
+    let at = 100 * 477 + 200;
+    compare_farthest(&gpu, &case, |depths| depths[at] = -1.0).unwrap_err();
+    gpu.finish();
+}
+
+/// The pass, against the twin with and without slack; how many items lie behind, and how many of those that are seen do not.
+fn compare_reveal(gpu: &Gpu, case: &Case, given: &Farthest, expected: &Farthest) -> Result<(usize, usize), Mismatch> {
+    let n = case.data.items.len();
+    let s = SceneBuffers::new(gpu, case);
+    let mut old = taus(case);
+    // every third was left out before
+    old.iter_mut().step_by(3).filter(|tau| **tau != 0).for_each(|tau| *tau |= TAU_HIDDEN);
+    let farthest = gpu.upload("farthest", &given.depths);
+    let (taus, hidden) = (gpu.upload("taus", &old), gpu.upload("hidden", &vec![7u32; n]));
+    let outside = gpu.upload("outside", &case.data.outside);
+    let counters = gpu.upload("counters", &[Counters { hidden: 1000, ..Counters::default() }]);
+    let pass = cull_late::CullLate::new(gpu.device(), case.data.has_rational).unwrap();
+    let bindings = cull_late::Bindings {
+        frame: &s.frame,
+        views: &s.views,
+        instances: &s.instances,
+        face_instances: &s.face_instances,
+        faces: &s.faces,
+        patches: &s.patches,
+        points: &s.points,
+        items: &s.items,
+        farthest: &farthest,
+        taus: &taus,
+        hidden: &hidden,
+        outside: &outside,
+        counters: &counters,
+    };
+    gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
+    let on_gpu: Vec<u32> = gpu.read(&hidden, n);
+    let twin = |item: usize, slack: f64| {
+        old[item] != 0 && lies_behind(&case.frame, &case.scene(), item, old[item], expected, slack)
+    };
+    let is_wrong = |(item, &behind): (usize, &u32)| if behind == 1 { !twin(item, -SLACK) } else { twin(item, SLACK) };
+    if let Some((index, behind)) = on_gpu.iter().enumerate().find(|found| is_wrong(*found)) {
+        return Err(Mismatch { buffer: "hidden", index, values: format!("GPU {behind}") });
+    }
+    let told: Vec<_> =
+        old.iter().zip(&on_gpu).map(|(tau, behind)| twin::occlusion::reveal(*tau, *behind == 1)).collect();
+    same("hidden", &on_gpu, &told.iter().map(|t| t.1).collect::<Vec<_>>())?;
+    same("taus", &gpu.read(&taus, n), &told.iter().map(|t| t.0).collect::<Vec<_>>())?;
+    let left = 1000 - told.iter().filter(|t| t.2).count() as u32;
+    same("counters", &gpu.read(&counters, 1), &[Counters { hidden: left, ..Counters::default() }])?;
+    let behind = on_gpu.iter().filter(|behind| **behind == 1).count();
+    Ok((behind, old.iter().filter(|tau| is_drawn(**tau & !TAU_HIDDEN)).count() - behind))
+}
+
+/// Depths of a picture of the case's size that sees a wall, with a hole in it.
+fn wall(case: &Case, depth: f32) -> Farthest {
+    let size = case.frame.size.map(|x| x as u32);
+    let hole = |i: u32| (i % size[0]).abs_diff(size[0] / 2) < 20 && (i / size[0]).abs_diff(size[1] / 2) < 9;
+    let depths: Vec<f32> = (0..size[0] * size[1]).map(|i| if hole(i) { 0.0 } else { depth }).collect();
+    Farthest::new(size, &depths)
+}
+
+#[test]
+fn parity_of_reveal() {
+    let gpu = Gpu::new();
+    let (mut behind, mut before) = (0, 0);
+    for case in crowd() {
+        // reversed depths of walls between the first of the crowd and the last
+        let range = case.frame.far - case.frame.near;
+        for share in [0.02, 0.05, 0.08, 0.1, 0.2] {
+            let z = case.frame.near + share * range;
+            let scale = if case.frame.perspective != 0 { case.frame.near / z } else { 1.0 };
+            let wall = wall(&case, (case.frame.far - z) / range * scale);
+            let (more_behind, more_before) = compare_reveal(&gpu, &case, &wall, &wall).unwrap();
+            (behind, before) = (behind + more_behind, before + more_before);
+        }
+    }
+    assert!(behind > 100 && before > 100, "{behind} behind, {before} not");
+    gpu.finish();
+}
+
+#[test]
+fn a_difference_of_reveal_is_seen() {
+    let gpu = Gpu::new();
+    let case = &crowd()[0];
+    let (near, nothing) = (wall(case, 1.0), wall(case, 0.0));
+    compare_reveal(&gpu, case, &near, &near).unwrap();
+    assert_eq!(compare_reveal(&gpu, case, &near, &nothing).unwrap_err().buffer, "hidden");
+    assert_eq!(compare_reveal(&gpu, case, &nothing, &near).unwrap_err().buffer, "hidden");
+    gpu.finish();
+}
