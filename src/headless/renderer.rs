@@ -218,7 +218,7 @@ impl HeadlessRenderer {
         if aovs != self.aovs || thickness && !followed {
             let mut renderer = Renderer::on(self.device.device(), formats(aovs), 1)?;
             let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
-            renderer.upload_request(model, *settings)?;
+            renderer.upload_request(model, *settings, &|_| ())?;
             *self.renderer = renderer;
             self.aovs = aovs;
             self.close_up = CloseUp::new(model);
@@ -240,7 +240,7 @@ impl HeadlessRenderer {
         let wanted = if whole { Wanted::Same } else { self.close_up.of(model, camera) };
         let uploaded = match &wanted {
             Wanted::Same => Ok(()),
-            Wanted::Whole => self.renderer.upload_request(model, *settings),
+            Wanted::Whole => self.renderer.upload_request(model, *settings, &|_| ()),
             Wanted::Cut(near) => self.renderer.upload_cut_request(model, near, *settings),
         };
         if uploaded.is_err() {

@@ -49,8 +49,8 @@ pub use obj::cage::Cage;
 pub(crate) use progress::FaceCount;
 pub use progress::{Options, Stage};
 pub use reasons::Reasons;
-pub use report::{FaceRecord, ImportReport, Place, Warning};
 pub(crate) use report::{FACE_LOST, LOOP_LOST, Warnings};
+pub use report::{FaceRecord, ImportReport, Place, Warning};
 pub use scad::Facets;
 pub use subdivided::open_subdivided;
 pub use summary::{Summary, Tally};
@@ -184,12 +184,7 @@ impl Format {
 
 /// Reads what has been loaded, and what it leaves to other files; data and materials are looked for in `folder`, if there
 /// is one.
-fn read(
-    bytes: &[u8],
-    name: &str,
-    folder: Option<&Path>,
-    options: &Options<'_>,
-) -> Result<external::Read, ImportError> {
+fn read(bytes: &[u8], name: &str, folder: Option<&Path>, options: &Options<'_>) -> Result<external::Read, ImportError> {
     options.tell(Stage::Parse { bytes: bytes.len() as u64 });
     let mut mentions = Vec::new();
     // what is no text, or counts its bytes, is not decoded

@@ -36,7 +36,9 @@ impl Edges {
     /// The face, and how far its trims may be off.
     fn face(&self, surface: SurfaceGeometry, bounds: Vec<Vec<(usize, bool)>>) -> (Face, f64) {
         let bounds = bounds.into_iter().map(Boundary::Edges).collect();
-        let built = build_face(&FaceGeometry { id: 7, surface, bounds, same_sense: true }, &self.0, 1e-6).unwrap();
+        let built =
+            build_face(&FaceGeometry { id: 7, surface, bounds, same_sense: true, doubtful: false }, &self.0, 1e-6)
+                .unwrap();
         (built.face, built.deviation)
     }
 }
