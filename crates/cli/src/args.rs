@@ -67,7 +67,8 @@ pub struct EdgeArgs {
 
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
+    /// .toml, or .3dm with the feature rhino
     pub model: PathBuf,
     #[command(flatten)]
     pub subdivide: SubdivideArgs,
@@ -97,7 +98,8 @@ pub struct RenderArgs {
 
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
+    /// .toml, or .3dm with the feature rhino
     pub model: PathBuf,
     #[command(flatten)]
     pub subdivide: SubdivideArgs,
@@ -124,7 +126,8 @@ pub struct ExportArgs {
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
+    /// .toml, or .3dm with the feature rhino
     pub model: PathBuf,
     #[command(flatten)]
     pub subdivide: SubdivideArgs,
@@ -157,7 +160,8 @@ pub struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub struct BenchArgs {
-    /// The models: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, scenes .toml, or .3dm with the feature rhino
+    /// The models: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, scenes
+    /// .toml, or .3dm with the feature rhino
     #[arg(required = true)]
     pub models: Vec<PathBuf>,
     /// Measured frames for each model, after the warm-up
@@ -278,7 +282,8 @@ pub struct TrimsArgs {
 
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
+    /// .toml, or .3dm with the feature rhino
     pub model: PathBuf,
     #[command(flatten)]
     pub subdivide: SubdivideArgs,
@@ -384,6 +389,9 @@ pub struct SubdivideArgs {
     /// it
     #[arg(long, value_name = "LENGTH", requires = "subdivide", value_parser = length)]
     pub within: Option<f64>,
+    /// Give every round solid of an OpenSCAD file the facets that OpenSCAD gives it
+    #[arg(long)]
+    pub as_openscad: bool,
 }
 
 /// Schemes of subdivision.

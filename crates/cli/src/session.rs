@@ -1,14 +1,14 @@
 //! A model read and a renderer opened, with everything worth knowing told on standard error.
 
 use crate::args::{EdgeArgs, FrameArgs, SubdivideArgs};
-use crate::output;
 use crate::progress::{during, importing};
+use crate::{openscad, output};
 use anyhow::Result;
 use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, TrimLoop};
 use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, SceneSettings};
-use selvedge_io::import::{self, Import};
+use selvedge_io::import::{self, Facets, Import};
 use std::path::Path;
 use std::time::Instant;
 
@@ -22,9 +22,14 @@ pub fn open(path: &Path, subdivide: &SubdivideArgs) -> Result<Import> {
         tracing::info!("{faces} faces within {off:.2e} mm of the limit surface");
         return Ok(import);
     }
-    let import = importing(&path.display().to_string(), |tell| {
-        import::open_with(path, &import::Options { progress: Some(tell) })
-    })?;
+    let facets = if subdivide.as_openscad { Facets::AsWritten } else { Facets::Round };
+    let import = if openscad::is_program(path) {
+        during("running openscad", || openscad::open(path, facets))?
+    } else {
+        importing(&path.display().to_string(), |tell| {
+            import::open_with(path, &import::Options { progress: Some(tell), facets })
+        })?
+    };
     tracing::info!("read {} in {:.1?}", path.display(), start.elapsed());
     output::warnings(&import);
     Ok(import)

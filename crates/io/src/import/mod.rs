@@ -4,6 +4,7 @@
 //!   path ──read, gunzip──▶ bytes ──format by content──▶ step, iges ───┬─▶ Import { model, warnings, report }
 //!                                                    ├▶ obj, bv ─────┤
 //!                                                    ├▶ rhino ───────┤
+//!                                                    ├▶ meshes ──────┤  STL, OFF, PLY, 3MF, AMF, glTF
 //!                                                    ├▶ scad, brlcad ┤  Boolean solids
 //!                                                    ├▶ scene ───────┤  by the file's name
 //!                                                    └▶ native ──────┘
@@ -22,6 +23,8 @@ mod error;
 mod facets;
 mod iges;
 mod locate;
+#[cfg(feature = "meshes")]
+mod meshes;
 mod native;
 mod obj;
 mod parts;
@@ -115,7 +118,7 @@ pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportErr
     } else if named(&[".selvedge", ".selvedge.gz"]) {
         native(&bytes, &name)
     } else if named(&[".csg", ".csg.gz"]) {
-        scad(&bytes, &name, Facets::Round)
+        scad::read(text_of(&bytes, &name)?, &name, options.facets, path.parent())
     } else if named(&[".asc", ".asc.gz"]) {
         brlcad(&bytes, &name)
     } else if named(&[".bv", ".bv.gz"]) {
@@ -124,17 +127,51 @@ pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportErr
         scene(&bytes, &name, path.parent())
     } else if named(&[".obj", ".obj.gz"]) {
         obj(&bytes, &name, path.parent())
+    } else if let Some(ending) = MESHES.into_iter().find(|e| named(&[&format!(".{e}"), &format!(".{e}.gz")])) {
+        mesh(&bytes, &name, ending, path.parent())
     } else if scad::recognise(text) {
-        scad(&bytes, &name, Facets::Round)
+        scad::read(text, &name, options.facets, path.parent())
     } else if brlcad::recognise(text) {
         brlcad(&bytes, &name)
     } else if bv::recognise(&bytes) {
         bv(&bytes, &name)
     } else if obj::recognise(&bytes) {
         obj(&bytes, &name, path.parent())
+    } else if let Some(ending) = recognise_mesh(&bytes) {
+        mesh(&bytes, &name, ending, path.parent())
     } else {
         Err(ImportError::Format { file: name })
     }
+}
+
+/// Endings of files of triangles.
+const MESHES: [&str; 7] = ["stl", "off", "ply", "3mf", "amf", "gltf", "glb"];
+
+#[cfg(feature = "meshes")]
+use meshes::recognise as recognise_mesh;
+
+#[cfg(not(feature = "meshes"))]
+fn recognise_mesh(_: &[u8]) -> Option<&'static str> {
+    None
+}
+
+/// Reads a file of triangles: `ending` is one of `stl`, `off`, `ply`, `3mf`, `amf`, `gltf`, `glb`; buffers of glTF are
+/// looked for in `folder`, if there is one.
+///
+/// # Errors
+/// [`ImportError::Mesh`] says where the file is damaged, or that the library was built without the feature `meshes`.
+pub fn mesh(bytes: &[u8], name: &str, ending: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
+    #[cfg(feature = "meshes")]
+    return meshes::read(bytes, name, ending, folder);
+    #[cfg(not(feature = "meshes"))]
+    return Err(ImportError::Mesh {
+        file: name.to_owned(),
+        message: format!(
+            "{} bytes of .{ending}{}, for which the feature `meshes` is not built in",
+            bytes.len(),
+            folder.map(|f| format!(" in {}", f.display())).unwrap_or_default()
+        ),
+    });
 }
 
 /// The bytes of a file, gzip undone.
@@ -259,9 +296,9 @@ pub fn iges(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 /// Reads OpenSCAD's flattened solids (`openscad -o x.csg`); `name` is the file's name in messages.
 ///
 /// # Errors
-/// [`ImportError::Solid`] names the line and node that is not read: hulls, Minkowski sums, text, ...
+/// [`ImportError::Solid`] names the line of what is no such text. A node that cannot be made is left out with a warning.
 pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportError> {
-    scad::read(text(bytes, name)?, name, facets)
+    scad::read(text_of(bytes, name)?, name, facets, Path::new(name).parent())
 }
 
 /// Reads BRL-CAD's text of solids (`g2asc`, version 5); `name` is the file's name in messages.
@@ -269,10 +306,10 @@ pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportEr
 /// # Errors
 /// [`ImportError::Solid`] names the line and object that is not read.
 pub fn brlcad(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
-    brlcad::read(text(bytes, name)?, name)
+    brlcad::read(text_of(bytes, name)?, name)
 }
 
-fn text<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, ImportError> {
+fn text_of<'a>(bytes: &'a [u8], name: &str) -> Result<&'a str, ImportError> {
     std::str::from_utf8(bytes).map_err(|e| {
         let line = 1 + bytes[..e.valid_up_to()].iter().filter(|b| **b == b'\n').count();
         ImportError::Solid { file: name.to_owned(), line, message: "not UTF-8 text".to_owned() }

@@ -5,6 +5,7 @@
 //!            from one thread      from any thread, in any order
 //! ```
 
+use super::Facets;
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -36,11 +37,14 @@ pub struct Options<'a> {
     /// Called at the beginning of each stage and after every face, from several threads: it should
     /// return at once.
     pub progress: Option<&'a (dyn Fn(Stage) + Sync)>,
+    /// Whether round solids of OpenSCAD's files are round.
+    pub facets: Facets,
 }
 
 impl fmt::Debug for Options<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        f.debug_struct("Options").field("progress", &self.progress.map(|_| "Fn(Stage)")).finish()
+        let progress = self.progress.map(|_| "Fn(Stage)");
+        f.debug_struct("Options").field("progress", &progress).field("facets", &self.facets).finish()
     }
 }
 
@@ -86,7 +90,7 @@ mod tests {
         let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/bracket.step");
         let stages = Mutex::new(Vec::new());
         let tell = |stage| stages.lock().unwrap().push(stage);
-        let import = open_with(&path, &Options { progress: Some(&tell) }).unwrap();
+        let import = open_with(&path, &Options { progress: Some(&tell), ..Options::default() }).unwrap();
         let bytes = std::fs::metadata(&path).unwrap().len();
         let stages = stages.into_inner().unwrap();
         let total = import.report.faces;
