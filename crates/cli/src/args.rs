@@ -71,8 +71,8 @@ pub struct EdgeArgs {
 
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino;
-    /// `-` is standard input
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
+    /// .toml, or .3dm with the feature rhino; `-` is standard input
     pub model: PathBuf,
     #[command(flatten)]
     pub read: ReadArgs,
@@ -104,7 +104,8 @@ pub struct RenderArgs {
 
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
+    /// .toml, or .3dm with the feature rhino
     pub model: PathBuf,
     #[command(flatten)]
     pub read: ReadArgs,
@@ -135,7 +136,8 @@ pub struct ExportArgs {
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
+    /// .toml, or .3dm with the feature rhino
     pub model: PathBuf,
     #[command(flatten)]
     pub read: ReadArgs,
@@ -170,7 +172,8 @@ pub struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub struct BenchArgs {
-    /// The models: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, scenes .toml, or .3dm with the feature rhino
+    /// The models: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, scenes
+    /// .toml, or .3dm with the feature rhino
     #[arg(required = true)]
     pub models: Vec<PathBuf>,
     #[command(flatten)]
@@ -297,7 +300,8 @@ pub struct TrimsArgs {
 
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
-    /// The model: STEP, IGES, OBJ, BezierView .bv, .csg, .asc, .selvedge, a scene .toml, or .3dm with the feature rhino
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
+    /// .toml, or .3dm with the feature rhino
     pub model: PathBuf,
     #[command(flatten)]
     pub read: ReadArgs,

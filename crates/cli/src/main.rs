@@ -20,6 +20,7 @@ mod edit;
 mod export;
 mod info;
 mod npy;
+mod openscad;
 mod output;
 mod path;
 mod progress;

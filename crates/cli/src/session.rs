@@ -2,13 +2,13 @@
 
 use crate::args::{EdgeArgs, FrameArgs, ReadArgs, SubdivideArgs};
 use crate::progress::{advancing, during, importing};
-use crate::{camera, output, target};
+use crate::{camera, openscad, output, target};
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, Model, TrimLoop};
 use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, SceneSettings};
-use selvedge_io::import::{self, Folders, Import, ImportError, Options, Stage};
+use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
@@ -25,7 +25,11 @@ pub fn open(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Result<I
 pub fn described(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Result<Import> {
     let start = Instant::now();
     let name = named(path);
-    let import = importing(&name, |tell| imported(path, &name, read, subdivide, tell))?;
+    let import = if openscad::is_program(path) {
+        during("running openscad", || openscad::open(path, facets(subdivide)))?
+    } else {
+        importing(&name, |tell| imported(path, &name, read, subdivide, tell))?
+    };
     tracing::info!("read {name} in {:.1?}", start.elapsed());
     if subdivide.subdivide.is_some() {
         let (faces, off) = (import.report.faces, import.report.made);
@@ -33,6 +37,10 @@ pub fn described(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Res
     }
     output::warnings(&import);
     Ok(import)
+}
+
+fn facets(subdivide: &SubdivideArgs) -> Facets {
+    if subdivide.as_openscad { Facets::AsWritten } else { Facets::Round }
 }
 
 /// The file as messages name it.
@@ -48,7 +56,12 @@ fn imported(
     tell: &(dyn Fn(Stage) + Sync),
 ) -> Result<Import> {
     let folders = Folders::new(read.search.clone());
-    let options = Options { progress: Some(tell), most_bytes: Some(read.most_bytes()), files: Some(&folders) };
+    let options = Options {
+        progress: Some(tell),
+        most_bytes: Some(read.most_bytes()),
+        files: Some(&folders),
+        facets: facets(subdivide),
+    };
     let import = match subdivide.subdivide {
         Some(_) if target::is_standard(path) => bail!("--subdivide reads a file, not standard input"),
         Some(smooth) => import::open_subdivided(path, smooth.scheme(), subdivide.within, &options),

@@ -48,6 +48,9 @@ pub struct SubdivideArgs {
     /// it
     #[arg(long, value_name = "LENGTH", requires = "subdivide", value_parser = length)]
     pub within: Option<f64>,
+    /// Give every round solid of an OpenSCAD file the facets that OpenSCAD gives it
+    #[arg(long)]
+    pub as_openscad: bool,
 }
 
 /// Schemes of subdivision.

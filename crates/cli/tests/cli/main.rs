@@ -223,3 +223,32 @@ fn pixel(path: &str, x: u32, y: u32) -> ((u32, u32), [u8; 4]) {
     let at = 4 * (y * info.width + x) as usize;
     ((info.width, info.height), bytes[at..at + 4].try_into().unwrap())
 }
+
+/// A program of OpenSCAD's is run by the `openscad` that is on the path: here, one that is not there, one that fails, and
+/// one that writes a solid.
+#[test]
+#[cfg(unix)]
+fn openscad_runs_its_programs() {
+    use std::os::unix::fs::PermissionsExt;
+    let folder = std::env::temp_dir().join(format!("selvedge-openscad-{}", std::process::id()));
+    std::fs::create_dir_all(&folder).unwrap();
+    let model = folder.join("a.scad");
+    std::fs::write(&model, "cube(2);").unwrap();
+    let run = |script: Option<&str>| {
+        let program = folder.join("openscad");
+        if let Some(script) = script {
+            std::fs::write(&program, format!("#!/bin/sh\n{script}\n")).unwrap();
+            std::fs::set_permissions(&program, std::fs::Permissions::from_mode(0o755)).unwrap();
+        }
+        let output = Command::new(env!("CARGO_BIN_EXE_selvedge")).arg("info").arg(&model).env("PATH", &folder).output();
+        let output = output.unwrap();
+        (output.status.code(), text(&output.stdout), text(&output.stderr))
+    };
+    let (status, _, told) = run(None);
+    assert!(status == Some(2) && told.contains("apt install openscad"), "{told}");
+    let (status, _, told) = run(Some("echo 'ERROR: Parser error' >&2; exit 1"));
+    assert!(status == Some(2) && told.contains("openscad failed") && told.contains("Parser error"), "{told}");
+    let (status, out, told) = run(Some("echo 'WARNING: odd' >&2; echo 'cube(size = [2, 3, 4], center = false);'"));
+    assert!(status == Some(0) && out.contains("2 x 3 x 4") && told.contains("odd"), "{out} {told}");
+    std::fs::remove_dir_all(&folder).unwrap();
+}

@@ -52,7 +52,10 @@ pub enum ImportError {
     /// Polygons that are no control mesh of a smooth surface.
     #[error("{file}: {source}")]
     Construct { file: String, source: crate::construct::ConstructError },
-    /// Text that is not a Boolean solid's, or a node that has no exact counterpart.
+    /// Triangles, damaged or not built in; the file's name has the line, where there are lines.
+    #[error("{file}: {message}")]
+    Mesh { file: String, message: String },
+    /// Text that is not a Boolean solid's.
     #[error("{file}:{line}: {message}")]
     Solid { file: String, line: usize, message: String },
 }

@@ -36,8 +36,24 @@ pub(super) fn triangulate(corners: &[DVec3]) -> Vec<[u32; 3]> {
     let mut ears = Vec::new();
     earcut::Earcut::new().earcut(corners.iter().map(|&p| flat(p, normal)), &[], &mut ears);
     let ears: Vec<[u32; 3]> = ears.chunks_exact(3).map(|t: &[u32]| [t[0], t[1], t[2]]).collect();
-    let ears = with_dropped(ears, count);
+    let next: Vec<u32> = (0..count as u32).map(|i| (i + 1) % count as u32).collect();
+    let ears = with_dropped(ears, &next);
     if ears.len() == count - 2 { ears } else { fan() }
+}
+
+/// Triangles of an outline in the plane, counter-clockwise, with its holes, clockwise: places in the corners of all of
+/// them, one after the other. Every side is a side of one triangle where no outline touches another.
+#[cfg(feature = "scad-facets")]
+pub(super) fn triangulate_flat(outlines: &[Vec<DVec2>]) -> Vec<[u32; 3]> {
+    let (mut next, mut holes) = (Vec::new(), Vec::new());
+    for outline in outlines {
+        let (first, count) = (next.len() as u32, outline.len() as u32);
+        holes.push(first);
+        next.extend((0..count).map(|i| first + (i + 1) % count));
+    }
+    let mut ears: Vec<u32> = Vec::new();
+    earcut::Earcut::new().earcut(outlines.iter().flatten().map(DVec2::to_array), &holes[1..], &mut ears);
+    with_dropped(ears.chunks_exact(3).map(|t| [t[0], t[1], t[2]]).collect(), &next)
 }
 
 /// The plane that shows most of the polygon, seen from the side on which it runs counter-clockwise.
@@ -53,11 +69,12 @@ fn flat(p: DVec3, normal: DVec3) -> [f64; 2] {
     if facing < 0.0 { [-q.x, q.y] } else { [q.x, q.y] }
 }
 
-/// Splits the triangles whose side passes over corners that no triangle has.
-fn with_dropped(triangles: Vec<[u32; 3]>, count: usize) -> Vec<[u32; 3]> {
+/// Splits the triangles whose side passes over corners that no triangle has; `following`: the next corner of each.
+fn with_dropped(triangles: Vec<[u32; 3]>, following: &[u32]) -> Vec<[u32; 3]> {
+    let count = following.len();
     let mut used = vec![false; count];
     triangles.iter().flatten().for_each(|&c| used[c as usize] = true);
-    let next = |i: u32| (i + 1) % count as u32;
+    let next = |i: u32| following[i as usize];
     let mut all = Vec::with_capacity(count);
     let mut waiting: Vec<_> = triangles;
     waiting.reverse();

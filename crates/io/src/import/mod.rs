@@ -4,6 +4,7 @@
 //!   path ──source──▶ bytes ──format by content, name──▶ step, iges ───┬─▶ Import { model, warnings, report }
 //!                                                    ├▶ obj, bv ─────┤
 //!                                                    ├▶ rhino ───────┤
+//!                                                    ├▶ meshes ──────┤  STL, OFF, PLY, 3MF, AMF, glTF
 //!                                                    ├▶ scad, brlcad ┤  Boolean solids
 //!                                                    ├▶ scene ───────┤  by the file's name
 //!                                                    └▶ native ──────┘
@@ -24,6 +25,8 @@ mod external;
 mod facets;
 mod iges;
 mod locate;
+#[cfg(feature = "meshes")]
+mod meshes;
 mod native;
 mod obj;
 mod parts;
@@ -127,6 +130,8 @@ enum Format {
     Bv,
     Scene,
     Obj,
+    /// By the ending that says so.
+    Mesh(&'static str),
 }
 
 impl Format {
@@ -138,6 +143,10 @@ impl Format {
             (Self::Iges, iges::recognise),
         ];
         known.iter().find(|(_, recognise)| recognise(bytes)).map(|(format, _)| *format)
+    }
+
+    fn named_mesh(file: &str) -> Option<Self> {
+        MESHES.into_iter().find(|ending| file.rsplit('.').next() == Some(ending)).map(Self::Mesh)
     }
 
     /// By the beginning of the content where it is certain, else by the name, else by what the content looks like.
@@ -168,6 +177,9 @@ impl Format {
         if let Some((_, format)) = NAMED.iter().find(|(ending, _)| file.ends_with(ending)) {
             return Some(*format);
         }
+        if let Some(mesh) = Self::named_mesh(file) {
+            return Some(mesh);
+        }
         if scad::recognise(text) {
             Some(Self::Scad)
         } else if brlcad::recognise(text) {
@@ -177,7 +189,7 @@ impl Format {
         } else if obj::recognise(text.as_bytes()) {
             Some(Self::Obj)
         } else {
-            None
+            recognise_mesh(bytes).map(Self::Mesh)
         }
     }
 }
@@ -188,10 +200,12 @@ fn read(bytes: &[u8], name: &str, folder: Option<&Path>, options: &Options<'_>) 
     options.tell(Stage::Parse { bytes: bytes.len() as u64 });
     let mut mentions = Vec::new();
     // what is no text, or counts its bytes, is not decoded
-    let is_text = Format::certain(bytes).is_none();
-    let text = if is_text { text::utf8(bytes) } else { text::Text::default() };
+    let lower = name.to_ascii_lowercase();
+    let mesh_by_name = Format::named_mesh(lower.strip_suffix(".gz").unwrap_or(&lower));
+    let text = if Format::certain(bytes).or(mesh_by_name).is_none() { text::utf8(bytes) } else { text::Text::default() };
     let utf8 = text.text.as_bytes();
-    let mut import = match Format::of(&text.text, bytes, name) {
+    let format = Format::of(&text.text, bytes, name);
+    let mut import = match format {
         Some(Format::Native) => native(bytes, name)?,
         Some(Format::Rhino) => rhino(bytes, name)?,
         Some(Format::Iges) => iges(bytes, name)?,
@@ -200,14 +214,17 @@ fn read(bytes: &[u8], name: &str, folder: Option<&Path>, options: &Options<'_>) 
             (import, mentions) = step::read(utf8, name, options)?;
             import
         }
-        Some(Format::Scad) => scad(utf8, name, Facets::Round)?,
+        Some(Format::Scad) => scad::read(&text.text, name, options.facets, folder)?,
         Some(Format::Brlcad) => brlcad(utf8, name)?,
         Some(Format::Bv) => bv(utf8, name)?,
         Some(Format::Scene) => scene(bytes, name, folder)?,
         Some(Format::Obj) => obj(utf8, name, folder)?,
+        Some(Format::Mesh(ending)) => mesh(bytes, name, ending, folder)?,
         None => return Err(ImportError::Format { file: name.to_owned() }),
     };
-    text.tell(name, &mut import);
+    if !matches!(format, Some(Format::Mesh(_))) {
+        text.tell(name, &mut import);
+    }
     Ok((import, mentions))
 }
 
@@ -221,6 +238,36 @@ fn decoded(
     let mut import = read(&text.text)?;
     text.tell(name, &mut import);
     Ok(import)
+}
+
+/// Endings of files of triangles.
+const MESHES: [&str; 7] = ["stl", "off", "ply", "3mf", "amf", "gltf", "glb"];
+
+#[cfg(feature = "meshes")]
+use meshes::recognise as recognise_mesh;
+
+#[cfg(not(feature = "meshes"))]
+fn recognise_mesh(_: &[u8]) -> Option<&'static str> {
+    None
+}
+
+/// Reads a file of triangles: `ending` is one of `stl`, `off`, `ply`, `3mf`, `amf`, `gltf`, `glb`; buffers of glTF are
+/// looked for in `folder`, if there is one.
+///
+/// # Errors
+/// [`ImportError::Mesh`] says where the file is damaged, or that the library was built without the feature `meshes`.
+pub fn mesh(bytes: &[u8], name: &str, ending: &str, folder: Option<&Path>) -> Result<Import, ImportError> {
+    #[cfg(feature = "meshes")]
+    return meshes::read(bytes, name, ending, folder);
+    #[cfg(not(feature = "meshes"))]
+    return Err(ImportError::Mesh {
+        file: name.to_owned(),
+        message: format!(
+            "{} bytes of .{ending}{}, for which the feature `meshes` is not built in",
+            bytes.len(),
+            folder.map(|f| format!(" in {}", f.display())).unwrap_or_default()
+        ),
+    });
 }
 
 /// Reads ISO 10303-21 text (STEP AP203, AP214, AP242); `name` is the file's name in messages.
@@ -330,9 +377,9 @@ pub fn iges(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
 /// Reads OpenSCAD's flattened solids (`openscad -o x.csg`); `name` is the file's name in messages.
 ///
 /// # Errors
-/// [`ImportError::Solid`] names the line and node that is not read: hulls, Minkowski sums, text, ...
+/// [`ImportError::Solid`] names the line of what is no such text. A node that cannot be made is left out with a warning.
 pub fn scad(bytes: &[u8], name: &str, facets: Facets) -> Result<Import, ImportError> {
-    decoded(bytes, name, |text| scad::read(text, name, facets))
+    decoded(bytes, name, |text| scad::read(text, name, facets, Path::new(name).parent()))
 }
 
 /// Reads BRL-CAD's text of solids (`g2asc`, version 5 and the older 4); `name` is the file's name in messages.

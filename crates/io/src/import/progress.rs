@@ -5,7 +5,7 @@
 //!            from one thread; both of STEP alone                  from any thread, in any order
 //! ```
 
-use super::Files;
+use super::{Facets, Files};
 use std::fmt;
 use std::sync::atomic::{AtomicUsize, Ordering};
 
@@ -56,13 +56,19 @@ pub struct Options<'a> {
     /// Where to look for files that others name, parts of an assembly; without it they are left out and named.
     /// [`Folders`](super::Folders) looks on a disk.
     pub files: Option<&'a dyn Files>,
+    /// Whether round solids of OpenSCAD's files are round.
+    pub facets: Facets,
 }
 
 impl fmt::Debug for Options<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         let (progress, files) = (self.progress.map(|_| "Fn(Stage)"), self.files.map(|_| "Files"));
-        let mut shown = f.debug_struct("Options");
-        shown.field("progress", &progress).field("most_bytes", &self.most_bytes).field("files", &files).finish()
+        f.debug_struct("Options")
+            .field("progress", &progress)
+            .field("most_bytes", &self.most_bytes)
+            .field("files", &files)
+            .field("facets", &self.facets)
+            .finish()
     }
 }
 

@@ -7,6 +7,7 @@
 
 use super::Fault;
 use super::lex::{Lexer, Token};
+use glam::DVec2;
 
 /// A value; lists may nest [`MOST_NESTED`] deep.
 #[derive(Clone, Debug, PartialEq)]
@@ -14,7 +15,8 @@ pub(super) enum Value {
     Undefined,
     Flag(bool),
     Number(f64),
-    Text,
+    /// Escapes undone.
+    Text(String),
     List(Vec<Value>),
 }
 
@@ -49,6 +51,11 @@ impl<'a> Args<'a> {
             }
         }
         Ok(Self { node, line, all })
+    }
+
+    /// Of no node.
+    pub fn none() -> Self {
+        Self { node: "", line: 1, all: Vec::new() }
     }
 
     pub fn fault(&self, message: impl std::fmt::Display) -> Fault {
@@ -109,6 +116,14 @@ impl<'a> Args<'a> {
         rows.ok_or_else(|| self.fault(format!("`{name}` are not lists of indices below {count}")))
     }
 
+    /// The outlines of `polygon(points, paths)`.
+    pub fn outlines(&self) -> Result<Vec<Vec<DVec2>>, Fault> {
+        let points: Vec<DVec2> = self.points("points")?.into_iter().map(DVec2::from_array).collect();
+        let paths = self.indices("paths", points.len())?;
+        let along = |path: &Vec<u32>| path.iter().map(|i| points[*i as usize]).collect();
+        Ok(if paths.is_empty() { vec![points.clone()] } else { paths.iter().map(along).collect() })
+    }
+
     /// `$fn`, 0 where it says nothing.
     pub fn fragments(&self) -> f64 {
         self.number("$fn", 0.0).unwrap_or(0.0)
@@ -133,11 +148,33 @@ impl Value {
     }
 }
 
+/// A text without the escapes of OpenSCAD; others stay as they are.
+fn unescaped(text: &str) -> String {
+    let mut plain = String::with_capacity(text.len());
+    let mut rest = text.chars();
+    while let Some(c) = rest.next() {
+        let escape = (c == '\\').then(|| rest.clone().next()).flatten();
+        let meant = match escape {
+            Some('n') => '\n',
+            Some('t') => '\t',
+            Some('r') => '\r',
+            Some(c @ ('"' | '\\')) => c,
+            _ => {
+                plain.push(c);
+                continue;
+            }
+        };
+        rest.next();
+        plain.push(meant);
+    }
+    plain
+}
+
 /// The value that begins with `token`.
 fn value<'a>(lexer: &mut Lexer<'a>, token: Token<'a>, line: usize, depth: usize) -> Result<Value, Fault> {
     Ok(match token {
         Token::Number(x) => Value::Number(x),
-        Token::Text(_) => Value::Text,
+        Token::Text(text) => Value::Text(unescaped(text)),
         Token::Name("true") => Value::Flag(true),
         Token::Name("false") => Value::Flag(false),
         Token::Name("undef") => Value::Undefined,

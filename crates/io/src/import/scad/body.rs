@@ -1,13 +1,14 @@
-//! Leaves: solids, 2-D shapes and how they are lifted; everything that is refused.
+//! Leaves: solids, 2-D shapes and how they are lifted.
 //!
 //! ```text
 //!   cube sphere cylinder polyhedron ──▶ Assembly
 //!   square circle polygon ──Lift of the extrusion around──▶ Assembly
-//!   hull minkowski text ...  ──▶ refused by name
+//!   text import surface ──facets──▶ Assembly
 //! ```
 
 use super::args::Args;
 use super::flat::{self, Lift, Plate};
+use super::frame::Made;
 use super::twist::Twist;
 use super::{Context, Facets, Fault, Reader, convex};
 use crate::csg::Op;
@@ -19,20 +20,8 @@ use glam::{DAffine3, DVec2, DVec3};
 pub(super) const SOLIDS: [&str; 4] = ["cube", "sphere", "cylinder", "polyhedron"];
 /// Leaves in the plane.
 const FLAT: [&str; 3] = ["square", "circle", "polygon"];
-/// What OpenSCAD knows and has no exact counterpart here.
-const REFUSED: [&str; 11] = [
-    "hull",
-    "minkowski",
-    "resize",
-    "import",
-    "surface",
-    "roof",
-    "text",
-    "offset",
-    "projection",
-    "fill",
-    "dxf_linear_extrude",
-];
+/// Leaves that are made of facets.
+const OF_FACETS: [&str; 3] = ["text", "import", "surface"];
 /// `$fn` below this is a shape and not a resolution.
 const LOW: f64 = 13.0;
 /// More segments than this are as good as round.
@@ -42,21 +31,36 @@ const MOST_SEGMENTS: f64 = 360.0;
 pub(super) type Wedge = (Op, Vec<Plane>);
 
 impl Reader<'_> {
-    /// A node without children that matter; `None` for what is no solid.
-    pub(super) fn leaf(&mut self, inside: &Context, args: &Args<'_>) -> Result<Option<u32>, Fault> {
+    /// A node without children that matter.
+    pub(super) fn leaf(&mut self, inside: &Context, args: &Args<'_>) -> Result<Made<u32>, Fault> {
         let placed = Placed { transform: inside.transform, colour: inside.colour, id: self.count };
-        if REFUSED.contains(&args.node) {
-            return Err(args.fault("such a node has no exact solid and is not read"));
+        if OF_FACETS.contains(&args.node) {
+            let shape = self.facet_leaf(args)?;
+            return self.placed(args, inside, shape);
         }
-        match (inside.lift, SOLIDS.contains(&args.node), FLAT.contains(&args.node)) {
-            (_, false, false) => return Err(args.fault("such a node is not known")),
-            (Some(_), true, _) => {
+        let flat = FLAT.contains(&args.node);
+        if !flat && !SOLIDS.contains(&args.node) {
+            return Err(args.fault("such a node is not known"));
+        }
+        if !self.fits(args, inside, flat, &placed) {
+            return Ok(Made::Empty);
+        }
+        Ok(Made::Is(match inside.lift {
+            Some(lift) => self.flat(args, lift, inside, placed)?,
+            None => self.body(args, placed)?,
+        }))
+    }
+
+    /// Whether what is flat, or solid, has a place here, and matrices that leave it its volume; a warning otherwise.
+    pub(super) fn fits(&mut self, args: &Args<'_>, inside: &Context, flat: bool, placed: &Placed) -> bool {
+        match (inside.lift, flat) {
+            (Some(_), false) => {
                 self.warn("solid left out", args, || format!("`{}` inside an extrusion", args.node));
-                return Ok(None);
+                return false;
             }
-            (None, _, true) => {
+            (None, true) => {
                 self.warn("2-D shape left out", args, || format!("`{}` outside of an extrusion", args.node));
-                return Ok(None);
+                return false;
             }
             _ => {}
         }
@@ -66,16 +70,13 @@ impl Reader<'_> {
             self.warn("empty solid", args, || {
                 format!("the matrices around `{}` flatten it, or are not finite", args.node)
             });
-            return Ok(Some(self.assembly.nothing()));
+            return false;
         }
-        if let Some(lift) = inside.lift {
-            return self.flat(args, lift, inside, placed).map(Some);
-        }
-        self.body(args, placed).map(Some)
+        true
     }
 
     /// Dimensions that make a solid; a warning otherwise.
-    fn usable(&mut self, args: &Args<'_>, sizes: &[f64]) -> bool {
+    pub(super) fn usable(&mut self, args: &Args<'_>, sizes: &[f64]) -> bool {
         let wrong = sizes.iter().find(|x| !x.is_finite() || **x < 0.0);
         if let Some(x) = wrong {
             self.warn("empty solid", args, || format!("`{}` has the dimension {x}", args.node));
@@ -155,10 +156,7 @@ impl Reader<'_> {
                 plate.outlines(args, &[vec![min, DVec2::new(max.x, min.y), max, DVec2::new(min.x, max.y)]])
             }
             _ => {
-                let points: Vec<DVec2> = args.points("points")?.into_iter().map(DVec2::from_array).collect();
-                let paths = args.indices("paths", points.len())?;
-                let along = |path: &Vec<u32>| path.iter().map(|i| points[*i as usize]).collect();
-                let outlines = if paths.is_empty() { vec![points.clone()] } else { paths.iter().map(along).collect() };
+                let outlines = args.outlines()?;
                 plate.outlines(args, &outlines)
             }
         }
@@ -169,17 +167,18 @@ impl Reader<'_> {
         if args.node == "rotate_extrude" {
             let angle = args.number("angle", 360.0)?;
             let segments = self.segments(args, f64::INFINITY);
-            if segments.is_some() && angle.abs() < 360.0 {
-                return Err(args.fault("an angle below 360 with a low $fn is not read"));
+            let part = angle.is_finite() && angle.abs() < 360.0;
+            if !part {
+                return Ok((Lift::Round { segments, part }, None));
             }
-            if !angle.is_finite() || angle.abs() >= 360.0 {
-                return Ok((Lift::Round { segments }, None));
+            if let Some(segments) = segments {
+                return Ok((Lift::Sector { angle, segments }, None));
             }
             let (s, c) = angle.abs().to_radians().sin_cos();
             let mirror = if angle < 0.0 { -1.0 } else { 1.0 };
             let planes = vec![(DVec3::NEG_Y * mirror, 0.0), (DVec3::new(-s, c * mirror, 0.0), 0.0)];
             let op = if angle.abs() <= 180.0 { Op::Intersection } else { Op::Union };
-            return Ok((Lift::Round { segments }, Some((op, planes))));
+            return Ok((Lift::Round { segments, part }, Some((op, planes))));
         }
         let height = args.number("height", 100.0)?;
         let [scale, other] = args.vector::<2>("scale", 1.0)?;

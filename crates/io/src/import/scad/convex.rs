@@ -10,6 +10,7 @@
 
 use super::Fault;
 use super::args::Args;
+use crate::import::facets::triangulate;
 use crate::import::solid::{Assembly, Placed, Plane, around};
 use crate::model::{Bounds, Mesh, Shape};
 use glam::DVec3;
@@ -77,8 +78,11 @@ pub(super) fn polyhedron(to: &mut Assembly, placed: &Placed, args: &Args<'_>) ->
         let corners = faces.iter().flatten().map(|i| points[*i as usize]);
         return Ok(to.half_spaces(around(corners), &planes, placed));
     }
-    let fan = |f: &Vec<u32>| (1..f.len() - 1).map(|i| [f[0], f[i], f[i + 1]]).collect::<Vec<_>>();
-    let triangles = faces.iter().flat_map(fan).collect();
+    let cut = |f: &Vec<u32>| {
+        let corners: Vec<DVec3> = f.iter().map(|i| points[*i as usize]).collect();
+        triangulate(&corners).into_iter().map(|t| t.map(|i| f[i as usize])).collect::<Vec<_>>()
+    };
+    let triangles = faces.iter().flat_map(cut).collect();
     let mesh = Mesh::new(placed.id, points, triangles, Vec::new()).map_err(|e| args.fault(e))?;
     Ok(to.add(Shape::Mesh(Arc::new(mesh)), placed))
 }
@@ -95,7 +99,7 @@ pub(super) fn is_inverted(args: &Args<'_>) -> Result<bool, Fault> {
 }
 
 /// Whether every edge is run through once each way.
-fn closed(faces: &[Vec<u32>]) -> Result<(), &'static str> {
+pub(super) fn closed(faces: &[Vec<u32>]) -> Result<(), &'static str> {
     let mut balance: HashMap<(u32, u32), i32> = HashMap::new();
     for face in faces {
         for (i, &a) in face.iter().enumerate() {

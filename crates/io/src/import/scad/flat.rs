@@ -8,6 +8,7 @@
 //!                              without other cones (edges that look to the axis)
 //! ```
 //!
+//! Outlines that cross themselves are first put right by `facets`.
 //! What turns while it rises has no such form: `twist` makes the facets that OpenSCAD makes.
 
 use super::args::Args;
@@ -17,9 +18,12 @@ use super::{Fault, convex};
 use crate::csg::Op;
 use crate::import::solid::{Assembly, Placed, Plane};
 use crate::model::{Bounds, Shape};
-use glam::{DAffine2, DAffine3, DMat3, DVec2, DVec3};
-use std::f64::consts::TAU;
+use glam::{DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3};
+use std::f64::consts::{PI, TAU};
 use std::sync::Arc;
+
+/// Relative difference of lengths that is rounding: numbers carry six digits.
+const ROUNDING: f64 = 1e-5;
 
 /// How a plane becomes space.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,9 +31,18 @@ pub(super) enum Lift {
     /// Along z from `base`; the upper end is scaled about the origin.
     Linear { base: f64, height: f64, scale: f64 },
     /// x becomes the distance from the z axis, y becomes z; in segments where few are asked for.
-    Round { segments: Option<u32> },
+    /// `part`: not all around.
+    Round { segments: Option<u32>, part: bool },
+    /// As `Round`, by an angle in degrees and in segments: facets, as OpenSCAD makes them.
+    Sector { angle: f64, segments: u32 },
     /// Along z, turned and scaled: facets, as OpenSCAD makes them.
     Twisted(Twist),
+}
+
+/// What a matrix does to the plane.
+pub(super) fn in_plane(m: &DAffine3) -> DAffine2 {
+    let matrix2 = DMat2::from_cols(m.matrix3.x_axis.truncate(), m.matrix3.y_axis.truncate());
+    DAffine2 { matrix2, translation: m.translation.truncate() }
 }
 
 /// Where 2-D shapes go.
@@ -47,7 +60,9 @@ impl Plate<'_> {
     /// `circle(r)`.
     pub fn circle(&mut self, args: &Args<'_>, radius: f64, segments: Option<u32>) -> Result<u32, Fault> {
         let segments = match self.lift {
-            Lift::Twisted(_) => Some(args.segments(radius).min(MOST_POINTS as f64 + 1.0) as u32),
+            Lift::Twisted(_) | Lift::Sector { .. } => Some(self.fragments(args, radius)),
+            Lift::Round { segments: Some(_), .. } => Some(self.fragments(args, radius)),
+            Lift::Round { segments: None, .. } if !self.is_turned_circle() => Some(self.fragments(args, radius)),
             Lift::Linear { .. } | Lift::Round { .. } => segments,
         };
         if let Some(n) = segments {
@@ -67,28 +82,36 @@ impl Plate<'_> {
                     if scale == 1.0 { straight } else { Shape::Cone { bottom: radius, top: radius * scale, height } };
                 Ok(self.to.add(shape, &placed))
             }
-            Lift::Round { segments } => {
-                let (x, y) = (m.x_axis.length(), m.y_axis.length());
-                let (minor, major) = (radius * x, centre.x.abs());
-                let rounding = 1e-5; // six digits
-                if segments.is_some() {
-                    return Err(args.fault("a round profile in rotate_extrude with a low $fn is not read"));
-                }
-                if (x - y).abs() > rounding * x || m.x_axis.dot(m.y_axis).abs() > rounding * x * y {
-                    return Err(args.fault("a stretched circle in rotate_extrude is not read"));
-                }
-                if major < minor * (1.0 - rounding) {
+            Lift::Round { .. } => {
+                let (minor, major) = (radius * m.x_axis.length(), centre.x.abs());
+                if major < minor * (1.0 - ROUNDING) {
                     return Err(args.fault("a circle across the axis of rotate_extrude is not read"));
                 }
                 placed.transform *= DAffine3::from_translation(DVec3::Z * centre.y);
                 Ok(self.to.add(Shape::Torus { major, minor }, &placed))
             }
-            Lift::Twisted(_) => unreachable!("its circles have segments"),
+            Lift::Sector { .. } | Lift::Twisted(_) => unreachable!("their circles have segments"),
         }
+    }
+
+    fn fragments(&self, args: &Args<'_>, radius: f64) -> u32 {
+        args.segments(radius).min(MOST_POINTS as f64 + 1.0) as u32
+    }
+
+    /// Circles stay circles.
+    fn is_turned_circle(&self) -> bool {
+        let (x, y) = (self.plane.matrix2.x_axis, self.plane.matrix2.y_axis);
+        let size = x.length() * y.length();
+        (x.length() - y.length()).abs() <= ROUNDING * x.length() && x.dot(y).abs() <= ROUNDING * size
     }
 
     /// Outlines: later ones are holes of the first where they lie in it, else the parity decides.
     pub fn outlines(&mut self, args: &Args<'_>, outlines: &[Vec<DVec2>]) -> Result<u32, Fault> {
+        self.simple(args, outlines).or_else(|fault| self.crossed(args, outlines, fault))
+    }
+
+    /// The same of outlines that neither cross nor touch themselves.
+    pub fn simple(&mut self, args: &Args<'_>, outlines: &[Vec<DVec2>]) -> Result<u32, Fault> {
         let moved = |o: &Vec<DVec2>| o.iter().map(|p| self.plane.transform_point2(*p)).collect::<Vec<_>>();
         let outlines: Vec<Vec<DVec2>> = outlines.iter().map(moved).collect();
         let outlines = outlines.iter().map(|o| self.one_side(args, o)).collect::<Result<Vec<_>, _>>()?;
@@ -112,13 +135,12 @@ impl Plate<'_> {
 
     /// For turning: the outline on the positive side of the axis.
     fn one_side(&self, args: &Args<'_>, outline: &[DVec2]) -> Result<Vec<DVec2>, Fault> {
-        if !matches!(self.lift, Lift::Round { .. }) {
-            return Ok(outline.to_vec());
-        }
+        let Lift::Round { part, .. } = self.lift else { return Ok(outline.to_vec()) };
         let (low, high) = outline.iter().fold((0.0_f64, 0.0_f64), |(l, h), p| (l.min(p.x), h.max(p.x)));
-        let rounding = 1e-5 * (high - low);
+        let rounding = ROUNDING * (high - low);
         match (low < -rounding, high > rounding) {
             (true, true) => Err(args.fault("an outline across the axis of rotate_extrude is not read")),
+            (true, false) if part => Err(args.fault("an outline at negative x is not turned by a part of a circle")),
             (true, false) => Ok(outline.iter().map(|p| DVec2::new((-p.x).max(0.0), p.y)).collect()),
             _ => Ok(outline.iter().map(|p| DVec2::new(p.x.max(0.0), p.y)).collect()),
         }
@@ -128,11 +150,14 @@ impl Plate<'_> {
     fn piece(&mut self, args: &Args<'_>, piece: &Piece, pocket: bool) -> Result<u32, Fault> {
         let whole = match self.lift {
             Lift::Linear { base, height, scale } => self.prism(piece, base, height, scale),
-            Lift::Round { segments } => self.turned(piece, segments),
+            Lift::Round { segments, .. } => self.turned(piece, segments),
             Lift::Twisted(Twist { height: 0.0, .. }) => self.to.nothing(),
             Lift::Twisted(twist) => {
                 let mesh = twist.mesh(args, self.placed.id, piece, pocket)?;
                 self.to.add(Shape::Mesh(Arc::new(mesh)), &self.placed)
+            }
+            Lift::Sector { .. } => {
+                return Err(args.fault("facets need the feature `scad-facets`, which is not built in"));
             }
         };
         piece.pockets.iter().try_fold(whole, |rest, inner| {
@@ -200,6 +225,10 @@ impl Plate<'_> {
     fn cone(&mut self, (z0, bottom): (f64, f64), (z1, top): (f64, f64), segments: Option<u32>) -> u32 {
         let mut placed = self.placed;
         placed.transform *= DAffine3::from_translation(DVec3::Z * z0);
+        if segments.is_some_and(|n| n % 2 == 1) {
+            // OpenSCAD's first corner lies opposite to the x axis
+            placed.transform *= DAffine3::from_rotation_z(PI);
+        }
         round(self.to, &placed, [bottom, top], z1 - z0, segments)
     }
 }

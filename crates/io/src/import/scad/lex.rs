@@ -20,7 +20,7 @@ pub(super) enum Token<'a> {
 }
 
 /// Cuts text into words.
-#[derive(Debug)]
+#[derive(Clone, Debug)]
 pub(super) struct Lexer<'a> {
     text: &'a str,
     at: usize,
@@ -32,6 +32,11 @@ pub(super) struct Lexer<'a> {
 impl<'a> Lexer<'a> {
     pub fn new(text: &'a str) -> Self {
         Self { text, at: 0, line: 1, next: None }
+    }
+
+    /// How many bytes have been looked at.
+    pub fn place(&self) -> usize {
+        self.at
     }
 
     /// The next word and its line.

@@ -11,14 +11,23 @@
 //!
 //! Circles, balls and cylinders are round unless few segments are asked for: `0 < $fn < 13` is a choice of
 //! shape (a nut) and gives exactly those facets; [`Facets::AsWritten`] gives the facets of every one.
-//! An extrusion that turns has the facets of OpenSCAD, and so have its circles.
-//! Nodes that have no counterpart refuse the whole file by name and line: with one operand missing,
-//! a Boolean solid is another one. Nesting is bounded by memory alone.
+//! An extrusion that turns has the facets of OpenSCAD, and so have its circles, and whatever stands inside of a hull, a
+//! Minkowski sum, an offset, a projection (`facets`).
+//!
+//! A node that cannot be made is left out, named with its line. So is a difference whose first operand is left out, and
+//! a Minkowski sum of which any operand is; other nodes are made of what is left. A node that is nothing counts: nothing
+//! without something is nothing, and nothing has nothing in common with anything. Nesting is bounded by memory alone.
 
 mod args;
 mod body;
 mod convex;
+#[cfg(feature = "scad-facets")]
+mod facets;
+#[cfg(not(feature = "scad-facets"))]
+#[path = "without_facets.rs"]
+mod facets;
 mod flat;
+mod frame;
 mod lex;
 mod polygon;
 #[cfg(test)]
@@ -32,9 +41,12 @@ use crate::csg::Op;
 use crate::model::{Colour, Model};
 use args::{Args, Value};
 pub(super) use convex::planes;
+use facets::{Budget, Gather};
 use flat::Lift;
-use glam::{DAffine2, DAffine3, DMat2, DMat3, DVec2, DVec3};
+use frame::{Frame, Made, Outcome};
+use glam::{DAffine2, DAffine3, DMat3, DVec3};
 use lex::{Lexer, Token};
+use std::path::Path;
 
 /// Whether round solids are round.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -68,24 +80,20 @@ struct Context {
     lift: Option<Lift>,
     /// 2-D coordinates to those that are lifted.
     plane: DAffine2,
+    /// Inside a node that is made of facets.
+    facets: bool,
     /// Inside what is left out: read for its grammar only.
     skipped: bool,
 }
 
-const TOP: Context =
-    Context { transform: DAffine3::IDENTITY, colour: None, lift: None, plane: DAffine2::IDENTITY, skipped: false };
-
-/// A node whose children are being read.
-struct Frame {
-    op: Op,
-    inside: Context,
-    /// Its children so far.
-    sum: Option<u32>,
-    /// Meets the sum in the end.
-    cut: Option<u32>,
-    /// `!`
-    root: bool,
-}
+const TOP: Context = Context {
+    transform: DAffine3::IDENTITY,
+    colour: None,
+    lift: None,
+    plane: DAffine2::IDENTITY,
+    facets: false,
+    skipped: false,
+};
 
 /// Whether the text begins as such a file does.
 pub(super) fn recognise(text: &str) -> bool {
@@ -93,7 +101,9 @@ pub(super) fn recognise(text: &str) -> bool {
     while matches!(lexer.peek(), Ok(Token::Sign(b'%' | b'#' | b'!' | b'*'))) {
         let _ = lexer.take();
     }
-    let known = |name: &str| body::SOLIDS.contains(&name) || UNIONS.contains(&name) || OTHERS.contains(&name);
+    let known = |name: &str| {
+        body::SOLIDS.contains(&name) || UNIONS.contains(&name) || OTHERS.contains(&name) || Gather::needs(name)
+    };
     matches!(lexer.take(), Ok((Token::Name(name), _)) if known(name)) && matches!(lexer.accept(b'('), Ok(true))
 }
 
@@ -103,16 +113,21 @@ const UNIONS: [&str; 5] = ["group", "union", "color", "multmatrix", "render"];
 const OTHERS: [&str; 4] = ["difference", "intersection", "linear_extrude", "rotate_extrude"];
 
 /// Reads flattened text; `name` is the file's name in messages.
-pub(super) fn read(text: &str, name: &str, facets: Facets) -> Result<Import, ImportError> {
+/// Files that it names are looked for in `folder`.
+pub(super) fn read(text: &str, name: &str, facets: Facets, folder: Option<&Path>) -> Result<Import, ImportError> {
     let mut reader = Reader {
         lexer: Lexer::new(text),
         facets,
+        folder,
         assembly: Assembly::default(),
         warnings: Warnings::new(name),
         report: ImportReport { format: "OpenSCAD csg".to_owned(), ..ImportReport::default() },
         count: 0,
         root: None,
         triangles: twist::MOST_TRIANGLES,
+        budget: Budget::default(),
+        muted: 0,
+        again: MOST_AGAIN,
     };
     let failed = |fault: Fault| ImportError::Solid { file: name.to_owned(), line: fault.line, message: fault.message };
     let sum = reader.file().map_err(failed)?;
@@ -129,6 +144,7 @@ pub(super) fn read(text: &str, name: &str, facets: Facets) -> Result<Import, Imp
 struct Reader<'a> {
     lexer: Lexer<'a>,
     facets: Facets,
+    folder: Option<&'a Path>,
     assembly: Assembly,
     warnings: Warnings,
     report: ImportReport,
@@ -137,13 +153,21 @@ struct Reader<'a> {
     root: Option<u32>,
     /// That extrusions which turn may still have.
     triangles: f64,
+    /// What facets may still cost.
+    budget: Budget,
+    /// Nodes around that will be read again: what is told then is not told now.
+    muted: usize,
+    /// Characters that may still be read again.
+    again: usize,
 }
+
+/// Characters that are read twice, for the box of what is resized.
+const MOST_AGAIN: usize = 1 << 30;
 
 impl<'a> Reader<'a> {
     /// All nodes; their union.
     fn file(&mut self) -> Result<Option<u32>, Fault> {
-        let frame = |op, inside| Frame { op, inside, sum: None, cut: None, root: false };
-        let mut stack = vec![frame(Op::Union, TOP)];
+        let mut stack = vec![Frame::new(Args::none(), TOP)];
         loop {
             let mut mods = [false; 4];
             while let Token::Sign(sign) = *self.lexer.peek()? {
@@ -153,31 +177,39 @@ impl<'a> Reader<'a> {
             }
             let (token, line) = self.lexer.take()?;
             let inside = stack.last().expect("the file's own frame").inside;
-            let (name, args) = match token {
+            let args = match token {
                 Token::End if stack.len() == 1 => return Ok(stack.pop().and_then(|f| f.sum)),
                 Token::End => {
                     return Err(Fault::new(line, format!("the file ends {} `}}` too early", stack.len() - 1)));
                 }
                 Token::Sign(b'}') if stack.len() > 1 => {
-                    let done = stack.pop().expect("longer than 1");
-                    let parent = stack.last_mut().expect("the file's own frame");
-                    self.close(done, parent);
+                    let mut done = stack.pop().expect("longer than 1");
+                    if let Some(frame) = self.read_again(&mut done) {
+                        self.lexer.expect(b'{')?;
+                        stack.push(frame);
+                    } else {
+                        self.close(done, stack.last_mut().expect("the file's own frame"));
+                    }
                     continue;
                 }
                 Token::Sign(b';') => continue,
                 Token::Name(name) => {
                     self.lexer.expect(b'(')?;
-                    (name, Args::read(&mut self.lexer, name, line)?)
+                    Args::read(&mut self.lexer, name, line)?
                 }
                 other => return Err(Fault::new(line, format!("a node expected, not {}", other.name()))),
             };
             self.count = self.count.saturating_add(1);
             let inside = self.modified(inside, mods, &args);
-            let mut made = frame(Op::Union, inside);
+            let mut made = Frame::new(args, inside);
             made.root = mods[2] && !inside.skipped;
             if !inside.skipped {
-                *self.report.nodes.entry(name.to_owned()).or_default() += 1;
-                self.enter(&mut made, &args)?;
+                if self.muted == 0 {
+                    *self.report.nodes.entry(made.args.node.to_owned()).or_default() += 1;
+                }
+                if let Err(fault) = self.enter(&mut made) {
+                    self.left_out(&mut made, fault);
+                }
             }
             if self.lexer.accept(b'{')? {
                 stack.push(made);
@@ -198,7 +230,7 @@ impl<'a> Reader<'a> {
             return inside;
         }
         for (set, name) in [(background, "%"), (highlight, "#"), (root, "!"), (disabled, "*")] {
-            if set {
+            if set && self.muted == 0 {
                 *self.report.nodes.entry(name.to_owned()).or_default() += 1;
             }
         }
@@ -213,8 +245,11 @@ impl<'a> Reader<'a> {
     }
 
     /// Makes what the node itself is.
-    fn enter(&mut self, frame: &mut Frame, args: &Args<'a>) -> Result<(), Fault> {
-        let inside = &mut frame.inside;
+    fn enter(&mut self, frame: &mut Frame<'a>) -> Result<(), Fault> {
+        let (inside, args) = (&mut frame.inside, &frame.args);
+        if inside.facets || Gather::needs(args.node) {
+            return self.enter_facets(frame);
+        }
         match args.node {
             "group" | "union" | "render" => {}
             "difference" => frame.op = Op::Difference,
@@ -224,9 +259,7 @@ impl<'a> Reader<'a> {
                 if inside.lift.is_none() {
                     inside.transform *= m;
                 } else {
-                    let xy = |v: DVec3| DVec2::new(v.x, v.y);
-                    let matrix2 = DMat2::from_cols(xy(m.matrix3.x_axis), xy(m.matrix3.y_axis));
-                    inside.plane *= DAffine2 { matrix2, translation: xy(m.translation) };
+                    inside.plane *= flat::in_plane(&m);
                 }
             }
             "color" => inside.colour = inside.colour.or(colour(args)), // the outermost wins
@@ -239,28 +272,122 @@ impl<'a> Reader<'a> {
                 let placed = Placed { transform: inside.transform, colour: inside.colour, id: self.count };
                 frame.cut = wedge.map(|planes| self.wedge(&planes, &placed));
             }
-            _ => frame.sum = self.leaf(inside, args)?,
+            _ => {
+                let made = self.leaf(inside, args)?;
+                frame.leaf(Outcome::Node(made));
+            }
         }
         Ok(())
     }
 
+    /// The same where facets are asked for.
+    fn enter_facets(&mut self, frame: &mut Frame<'a>) -> Result<(), Fault> {
+        let args = &frame.args;
+        let (op, mut matrix_of, mut lift) = match args.node {
+            "difference" => (Op::Difference, None, None),
+            "intersection" => (Op::Intersection, None, None),
+            _ => (Op::Union, None, None),
+        };
+        match args.node {
+            "multmatrix" => matrix_of = Some(matrix(args)?),
+            "linear_extrude" => lift = Some(self.lift(args)?.0),
+            name if UNIONS.contains(&name) || OTHERS.contains(&name) || Gather::needs(name) => {}
+            _ => {
+                let made = self.facet_leaf(args)?;
+                frame.leaf(Outcome::Shape(made));
+                return Ok(());
+            }
+        }
+        frame.gather = Some(Box::new(Gather::new(args, op, matrix_of, lift)?));
+        if args.node == "resize" && !frame.inside.facets {
+            // its box is that of facets; what it shows is read again, and exact
+            frame.start = Some(Box::new((self.lexer.clone(), self.count)));
+            self.muted += 1;
+        }
+        frame.inside.facets = true;
+        Ok(())
+    }
+
+    /// The frame of a node that is to be read once more, now that its size is known.
+    fn read_again(&mut self, done: &mut Frame<'a>) -> Option<Frame<'a>> {
+        let (start, count) = *done.start.take()?;
+        self.muted -= 1;
+        let length = self.lexer.place().saturating_sub(start.place());
+        let scale = done.gather.as_ref().and_then(|g| g.scale());
+        if self.again < length {
+            self.warn("resized in facets", &done.args, || "too much is resized to be read once more".to_owned());
+            return None;
+        }
+        let scale = scale?;
+        self.again -= length;
+        self.lexer = start;
+        self.count = count;
+        let mut inside = Context { facets: false, ..done.inside };
+        if inside.lift.is_none() {
+            inside.transform *= DAffine3::from_scale(scale);
+        } else {
+            inside.plane *= DAffine2::from_scale(scale.truncate());
+        }
+        let mut frame = Frame::new(std::mem::replace(&mut done.args, Args::none()), inside);
+        frame.root = done.root;
+        Some(frame)
+    }
+
     /// Hands a finished node to its parent.
-    fn close(&mut self, done: Frame, parent: &mut Frame) {
-        let Some(mut node) = done.sum else { return };
-        if let Some(cut) = done.cut {
-            node = self.assembly.nodes.pair(Op::Intersection, node, cut);
+    fn close(&mut self, mut done: Frame<'a>, parent: &mut Frame<'a>) {
+        if done.is_absent() {
+            return;
         }
+        if done.start.take().is_some() {
+            self.muted -= 1; // it has no children
+        }
+        let outcome = match self.finish(&mut done) {
+            Ok(outcome) => outcome,
+            Err(fault) => {
+                self.left_out(&mut done, fault);
+                if parent.gather.is_some() { Outcome::Shape(Made::Lost) } else { Outcome::Node(Made::Lost) }
+            }
+        };
         if done.root {
-            self.root.get_or_insert(node);
+            if let Outcome::Node(Made::Is(node)) = outcome {
+                self.root.get_or_insert(node);
+            }
+            return;
         }
-        parent.sum = Some(match parent.sum {
-            Some(sum) => self.assembly.nodes.pair(parent.op, sum, node),
-            None => node,
-        });
+        parent.add(outcome, &mut self.assembly);
+    }
+
+    /// What a node has become, as its parent takes it.
+    fn finish(&mut self, done: &mut Frame<'a>) -> Result<Outcome, Fault> {
+        let Some(gather) = done.gather.take() else { return Ok(done.outcome(&mut self.assembly)) };
+        let strangers = gather.strangers();
+        if strangers > 0 {
+            self.warn("mixed dimensions", &done.args, || {
+                format!(
+                    "`{}`: {strangers} children are left out, flat among solids or solid among flat",
+                    done.args.node
+                )
+            });
+        }
+        let shape = gather.finish(&mut self.budget).map_err(|what| done.args.fault(what))?;
+        if done.within_facets {
+            return Ok(Outcome::Shape(shape));
+        }
+        Ok(Outcome::Node(self.placed(&done.args, &done.inside, shape)?))
+    }
+
+    /// Names a node that cannot be made; its children are read for their grammar only.
+    fn left_out(&mut self, frame: &mut Frame<'a>, fault: Fault) {
+        if self.muted == 0 {
+            self.warnings.push("left out", || Place::Line(fault.line), || fault.message);
+        }
+        frame.lose();
     }
 
     fn warn(&mut self, kind: &'static str, args: &Args<'_>, message: impl FnOnce() -> String) {
-        self.warnings.push(kind, || Place::Line(args.line), message);
+        if self.muted == 0 {
+            self.warnings.push(kind, || Place::Line(args.line), message);
+        }
     }
 }
 

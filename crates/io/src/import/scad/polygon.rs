@@ -42,14 +42,18 @@ pub(super) fn cut(points: &[DVec2]) -> Result<Option<Piece>, String> {
         outline.pop();
     }
     let area: f64 = (0..outline.len()).map(|i| outline[i].perp_dot(outline[(i + 1) % outline.len()])).sum();
-    if outline.len() < 3 || area == 0.0 {
+    if outline.len() < 3 {
+        return Ok(None);
+    }
+    // also where its lobes are of one size, so that it has no area
+    if crosses(&outline) {
+        return Err("an outline that crosses itself".to_owned());
+    }
+    if area == 0.0 {
         return Ok(None);
     }
     if area < 0.0 {
         outline.reverse();
-    }
-    if crosses(&outline) {
-        return Err("an outline that crosses itself".to_owned());
     }
     piece(&outline, false, 0)
 }

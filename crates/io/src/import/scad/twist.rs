@@ -11,6 +11,8 @@
 
 use super::Fault;
 use super::args::Args;
+#[cfg(feature = "scad-facets")]
+use super::facets::{Region, Sweep, Triangles};
 use super::polygon::Piece;
 use crate::model::Mesh;
 use glam::{DVec2, DVec3};
@@ -96,18 +98,39 @@ impl Twist {
         fine.max(turn / 120.0).ceil().max(1.0)
     }
 
+    /// Place of a corner in one of `slices + 1` rings.
+    fn at(&self, ring: u32, slices: f64, p: DVec2) -> DVec3 {
+        let share = f64::from(ring) / slices;
+        let scale = DVec2::ONE.lerp(self.scale, share);
+        (scale * DVec2::from_angle(-(self.degrees * share).to_radians()).rotate(p))
+            .extend(self.base + self.height * share)
+    }
+
+    /// The solid over a region.
+    #[cfg(feature = "scad-facets")]
+    pub fn swept(&self, region: &Region) -> Result<Triangles, String> {
+        let corners: Vec<DVec2> = region.corners().collect();
+        let slices = self.count(corners.iter());
+        if slices * corners.len() as f64 > MOST_TRIANGLES {
+            return Err(format!("{slices} slices of {} corners are too many", corners.len()));
+        }
+        let along = |[p1, q1, p2, q2]: [DVec3; 4]| {
+            let apart = |a: DVec3, b: DVec3| a.truncate().distance(b.truncate());
+            let (up, down) = (apart(p1, q2), apart(q1, p2));
+            let alike = (up - down).abs() <= 0.5 * AS_LONG * (up + down);
+            if alike { self.degrees > 0.0 } else { up < down }
+        };
+        let at = |ring: u32, p: DVec2| self.at(ring, slices, p);
+        Ok(Sweep { rings: slices as u32 + 1, around: false, at: &at, along: &along }.mesh(region))
+    }
+
     /// The solid over a convex piece of an outline; after [`cut_for`](Self::cut_for). `pocket`: the outline runs along
     /// the piece clockwise, but for the lid.
     pub fn mesh(&self, args: &Args<'_>, id: u32, piece: &Piece, pocket: bool) -> Result<Mesh, Fault> {
         let hull = &piece.hull;
         let (n, slices) = (hull.len() as u32, self.count(hull.iter()));
         let rings = slices as u32;
-        let at = |ring: u32, p: DVec2| {
-            let share = f64::from(ring) / slices;
-            let scale = DVec2::ONE.lerp(self.scale, share);
-            (scale * DVec2::from_angle(-(self.degrees * share).to_radians()).rotate(p))
-                .extend(self.base + self.height * share)
-        };
+        let at = |ring: u32, p: DVec2| self.at(ring, slices, p);
         let pointed = self.scale == DVec2::ZERO;
         let mut points: Vec<DVec3> = (0..=rings).flat_map(|ring| hull.iter().map(move |p| at(ring, *p))).collect();
         if pointed {

@@ -1,7 +1,7 @@
 //! Every class of damage with the message that it must have, word for word.
 //!
-//! A Boolean solid is one thing: without a node of it, what is left is another solid. So a fault refuses the
-//! file, and only what is empty by its own numbers is told and left out.
+//! Text that is not the format's refuses the file. A node whose values are wrong is left out, and so is a difference that
+//! it is the first operand of.
 
 use crate::import::{Facets, scad};
 
@@ -33,22 +33,22 @@ fn one_change_one_message() {
             "swapped",
             "[0, 3, 1]",
             "[0, 3, 4]",
-            "error: t.csg:7: polyhedron: `faces` are not lists of indices below 4",
-            0,
+            "t.csg:7: left out: polyhedron: `faces` are not lists of indices below 4",
+            6,
         ),
         (
             "swapped",
             "[0, 3, 1]",
             "[0, 1, 3]",
-            "error: t.csg:7: polyhedron: the faces do not close, so there is no inside",
-            0,
+            "t.csg:7: left out: polyhedron: the faces do not close, so there is no inside",
+            6,
         ),
         (
             "swapped",
             "paths = undef",
             "paths = [[0, 1, 7]]",
-            "error: t.csg:10: polygon: `paths` are not lists of indices below 3",
-            0,
+            "t.csg:10: left out: polygon: `paths` are not lists of indices below 3",
+            7,
         ),
         ("swapped", "}\n\tmult", "mult", "error: t.csg:12: the file ends 1 `}` too early", 0),
         ("huge", "$fn = 0, $fa = 12, $fs = 2, r", "$fn = 1e9, $fa = 12, $fs = 2, r", "", 11),
@@ -56,8 +56,8 @@ fn one_change_one_message() {
             "huge",
             "[0, 3, 1]",
             "[0, 3, 4294967297]",
-            "error: t.csg:7: polyhedron: `faces` are not lists of indices below 4",
-            0,
+            "t.csg:7: left out: polyhedron: `faces` are not lists of indices below 4",
+            6,
         ),
         ("huge", "r = 2.5", "r = 1e308", "", 11),
         ("NaN", "r = 2.5", "r = nan", "t.csg:4: empty solid: `sphere` has the dimension NaN", 10),
@@ -72,27 +72,27 @@ fn one_change_one_message() {
             "NaN",
             "[0, 0, 1]], faces",
             "[0, 0, inf]], faces",
-            "error: t.csg:7: polyhedron: `points` are not points of 3 finite numbers",
-            0,
+            "t.csg:7: left out: polyhedron: `points` are not points of 3 finite numbers",
+            6,
         ),
         (
             "NaN",
             "[3, 0], [0, 3]",
             "[3, 0], [nan, 3]",
-            "error: t.csg:10: polygon: `points` are not points of 2 finite numbers",
-            0,
+            "t.csg:10: left out: polygon: `points` are not points of 2 finite numbers",
+            7,
         ),
-        ("type", "r = 2.5", "r = true", "error: t.csg:4: sphere: `r` is not a number", 0),
-        ("type", "r = 2.5", "r = [1, 2]", "error: t.csg:4: sphere: `r` is not a number", 0),
-        ("type", "[4, 4, 4]", "\"4\"", "error: t.csg:3: cube: `size` is not 3 numbers", 0),
+        ("type", "r = 2.5", "r = true", "t.csg:4: left out: sphere: `r` is not a number", 10),
+        ("type", "r = 2.5", "r = [1, 2]", "t.csg:4: left out: sphere: `r` is not a number", 10),
+        ("type", "[4, 4, 4]", "\"4\"", "t.csg:3: left out: cube: `size` is not 3 numbers", 9),
         (
             "type",
             "[0, 3, 1]",
             "[0, 3, \"1\"]",
-            "error: t.csg:7: polyhedron: `faces` are not lists of indices below 4",
-            0,
+            "t.csg:7: left out: polyhedron: `faces` are not lists of indices below 4",
+            6,
         ),
-        ("type", "[1, 0, 0, 5]", "5", "error: t.csg:6: multmatrix: not a matrix of 4 rows of 4 numbers", 0),
+        ("type", "[1, 0, 0, 5]", "5", "t.csg:6: left out: multmatrix: not a matrix of 4 rows of 4 numbers", 6),
         ("type", "sphere", "7", "error: t.csg:4: a node expected, not `7`", 0),
     ] {
         let at = GOOD.find(from).unwrap_or_else(|| panic!("{from}"));
@@ -105,13 +105,18 @@ fn one_change_one_message() {
     assert!(wrong.is_empty(), "{wrong:#?}");
 }
 
-/// A file that would read itself is not read at all.
+/// A file is no solid that another one could take in, so none reads itself.
 #[test]
+#[cfg(feature = "scad-facets")]
 fn cycles() {
-    assert_eq!(
-        first("group() { import(file = \"t.csg\"); }"),
-        ("error: t.csg:1: import: such a node has no exact solid and is not read".to_owned(), 0)
-    );
+    let path = std::env::temp_dir().join(format!("selvedge-cycle-{}.csg", std::process::id()));
+    let name = path.file_name().unwrap().to_string_lossy().into_owned();
+    let text = format!("group() {{ import(file = \"{name}\"); }} cube();");
+    std::fs::write(&path, &text).unwrap();
+    let read = scad(text.as_bytes(), &path.display().to_string(), Facets::Round).unwrap();
+    std::fs::remove_file(&path).unwrap();
+    assert!(read.warnings[0].message.contains("a kind of file that is not imported"), "{:?}", read.warnings);
+    assert_eq!(read.model.solids[0].primitives().len(), 1);
 }
 
 #[test]

@@ -1,0 +1,70 @@
+//! `import(file)` and `surface(file)`: files beside the one that names them.
+
+use super::solid::Triangles;
+use super::{Body, Region, Shape, drawing, relief};
+use crate::import::meshes;
+use crate::import::scad::Fault;
+use crate::import::scad::args::{Args, Value};
+use glam::{DAffine2, DVec2};
+use std::path::Path;
+
+/// Bytes of a file that is taken in.
+const MOST_BYTES: u64 = 1 << 30;
+
+/// What a file holds, and what of it is left out.
+pub(super) fn read(args: &Args<'_>, folder: Option<&Path>) -> Result<(Shape, Vec<String>), Fault> {
+    let Some(Value::Text(file)) = args.get("file").filter(|v| !matches!(v, Value::Text(t) if t.is_empty())) else {
+        return Err(args.fault("no file is named"));
+    };
+    let path = folder.map_or_else(|| Path::new(file).to_path_buf(), |f| f.join(file));
+    let wrong = |what: String| args.fault(format!("{file}: {what}"));
+    let found = std::fs::metadata(&path).map_err(|e| wrong(e.to_string()))?;
+    if !found.is_file() || found.len() > MOST_BYTES {
+        return Err(wrong(format!("no file of at most {MOST_BYTES} bytes")));
+    }
+    let bytes = std::fs::read(&path).map_err(|e| wrong(e.to_string()))?;
+    if args.node == "surface" {
+        let relief = relief::read(&bytes, args.flag("invert")).map_err(wrong)?;
+        return Ok((Shape::Solid(Body::mesh(relief.mesh(args.flag("center")))), Vec::new()));
+    }
+    let ending = path.extension().and_then(|e| e.to_str()).unwrap_or_default().to_ascii_lowercase();
+    match ending.as_str() {
+        "svg" => {
+            let dpi = args.number("dpi", 72.0)?;
+            if !(1e-3..=1e6).contains(&dpi) {
+                return Err(args.fault(format!("{dpi} dots an inch")));
+            }
+            let region = drawing::svg(&bytes, dpi, args.segments(10.0), args.flag("center")).map_err(wrong)?;
+            Ok((placed(args, &region)?, Vec::new()))
+        }
+        "dxf" => {
+            let layer = match args.get("layer") {
+                Some(Value::Text(layer)) => layer.as_str(),
+                _ => "",
+            };
+            let (region, notes) = drawing::dxf(&bytes, layer, |r| args.segments(r)).map_err(wrong)?;
+            let notes = notes.into_iter().map(|n| format!("{file}: {n}")).collect();
+            Ok((placed(args, &region)?, notes))
+        }
+        "stl" | "off" | "3mf" | "amf" => {
+            let pieces = meshes::pieces(&bytes, &ending).map_err(wrong)?;
+            let mut body = Body::default();
+            for (points, triangles) in pieces {
+                body = Body::union(vec![body, Body::mesh(Triangles::welded(&points, triangles).outwards())]);
+            }
+            Ok((Shape::Solid(body), Vec::new()))
+        }
+        _ => Err(wrong("a kind of file that is not imported: STL, OFF, 3MF, AMF, SVG and DXF are".to_owned())),
+    }
+}
+
+/// `origin` is moved to the origin, then scaled.
+fn placed(args: &Args<'_>, region: &Region) -> Result<Shape, Fault> {
+    let scale = args.number("scale", 1.0)?;
+    let origin = DVec2::from_array(args.vector::<2>("origin", 0.0)?);
+    if !scale.is_finite() || !origin.is_finite() {
+        return Err(args.fault("a scale or origin that is not finite"));
+    }
+    let map = DAffine2::from_scale(DVec2::splat(scale)) * DAffine2::from_translation(-origin);
+    Ok(Shape::Flat(region.moved(&map)))
+}

@@ -1,0 +1,62 @@
+//! What depends on facets: nodes whose result is that of their children's corners, not of their surfaces.
+//!
+//! ```text
+//!   hull minkowski projection offset resize fill text import surface
+//!        │ children, evaluated here: circles, balls and cylinders of as many sides as OpenSCAD gives them
+//!        ▼
+//!   Shape: Region (i_overlay) or Body (convex cells, meshes) ──placed──▶ Assembly: half-spaces, meshes
+//! ```
+//!
+//! Inside of such a node every node is evaluated at once, when its last child is known; outside, solids stay exact.
+
+mod cells;
+mod drawing;
+mod file;
+mod gather;
+mod hull;
+mod leaf;
+mod place;
+mod region;
+mod relief;
+mod solid;
+#[cfg(test)]
+mod tests;
+mod text;
+
+pub(super) use gather::Gather;
+pub(super) use region::Region;
+pub(super) use solid::{Body, Sweep, Triangles};
+
+/// What a node is.
+#[derive(Clone, Debug)]
+pub(super) enum Shape {
+    Flat(Region),
+    Solid(Body),
+}
+
+/// How much work is left: facets that are cut, pairs of corners that are summed. One for a file.
+#[derive(Debug)]
+pub(super) struct Budget(usize);
+
+impl Default for Budget {
+    fn default() -> Self {
+        Self(50_000_000)
+    }
+}
+
+impl Budget {
+    /// Takes a share; fails when nothing is left.
+    fn spend(&mut self, share: usize) -> Result<(), String> {
+        self.0 = self.0.saturating_sub(share);
+        if self.0 > 0 { Ok(()) } else { Err("more facets than can be put together".to_owned()) }
+    }
+}
+
+impl Shape {
+    pub fn is_empty(&self) -> bool {
+        match self {
+            Self::Flat(region) => region.is_empty(),
+            Self::Solid(body) => body.is_empty(),
+        }
+    }
+}
