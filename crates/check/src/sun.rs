@@ -162,7 +162,7 @@ pub fn judge_sun(
     let fits = picture.size == camera.size && picture.face.len() == pixels && picture.sunlit.len() == pixels;
     assert!(fits, "the picture has the camera's size, faces and light");
     let lit: Vec<u32> = picture.sunlit.iter().map(|lit| u32::from(*lit)).collect();
-    let mut sampled = samples(picture.size, &picture.face, options.samples);
+    let mut sampled = samples(picture.size, picture.face, options.samples);
     sampled.extend(samples(picture.size, &lit, options.samples));
     sampled.sort_unstable();
     sampled.dedup();

@@ -109,7 +109,7 @@ pub fn judge(tracer: &Tracer, camera: &Camera, picture: &Images<'_>, options: &J
     let pixels = picture.size.0 as usize * picture.size.1 as usize;
     assert!(picture.size == camera.size && picture.face.len() == pixels, "picture and camera differ in size");
     let bench = Bench { camera, picture, slack: options.tie * tracer.bounds().diagonal(), limit: options.limit_px };
-    let sampled = samples(picture.size, &picture.face, options.samples);
+    let sampled = samples(picture.size, picture.face, options.samples);
     let progress = |done: usize| {
         if let Some(call) = options.progress {
             call(done as u64);

@@ -202,7 +202,8 @@ fn read(bytes: &[u8], name: &str, folder: Option<&Path>, options: &Options<'_>) 
     // what is no text, or counts its bytes, is not decoded
     let lower = name.to_ascii_lowercase();
     let mesh_by_name = Format::named_mesh(lower.strip_suffix(".gz").unwrap_or(&lower));
-    let text = if Format::certain(bytes).or(mesh_by_name).is_none() { text::utf8(bytes) } else { text::Text::default() };
+    let text =
+        if Format::certain(bytes).or(mesh_by_name).is_none() { text::utf8(bytes) } else { text::Text::default() };
     let utf8 = text.text.as_bytes();
     let format = Format::of(&text.text, bytes, name);
     let mut import = match format {
