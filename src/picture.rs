@@ -2,7 +2,6 @@
 
 use crate::model::{Colour, Images};
 use glam::DVec3;
-use serde::Serialize;
 
 /// What the caller decides about a frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -53,9 +52,10 @@ impl Levels {
 }
 
 /// How pixels on trimmed patches are told from those that the loops cut away. All ways draw the same
-/// picture within [`FrameSettings::tolerance_px`]; `docs/trimming.md` tells what each costs.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
+/// picture within [`FrameSettings::tolerance_px`]; `docs/design/trimming.md` tells what each costs.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum TrimWay {
     /// [`Table`](Self::Table) for scenes that are expected to need few scan lines, [`Exact`](Self::Exact) for the others:
     /// [`renderer::trim_way`](crate::renderer::trim_way) tells which, and [`FrameStats::trim`] which one drew a frame.
@@ -74,8 +74,9 @@ pub enum TrimWay {
 
 /// How bisection sorts monotone pieces into bands and cells.
 #[cfg(feature = "rivals")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Sorted {
     /// A band ends at every end of a piece; cells hold pieces whose boxes overlap.
     Source,
@@ -85,8 +86,9 @@ pub enum Sorted {
 
 /// Other ways to trim, each with the number that its accuracy hangs on: see [`crate::rivals`].
 #[cfg(feature = "rivals")]
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Rival {
     /// No test: what a frame costs before it is trimmed.
     Untrimmed,
@@ -160,8 +162,9 @@ pub struct UnknownTrimWay(String);
 
 /// How Boolean solids are drawn. All ways draw the same picture, bit for bit, but where [`Blister`](Self::Blister)
 /// says otherwise.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum SolidWay {
     /// One ray a pixel, followed from event to event until it enters the solid.
     #[default]
@@ -208,8 +211,9 @@ pub struct UnknownSolidWay(String);
 ///
 /// The mean is of linear colours, each clamped to what the target holds. The images beside the colour, and the
 /// host's depth, hold what is seen at the pixel's centre, whatever the number.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash, Serialize)]
-#[serde(rename_all = "lowercase")]
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum Samples {
     /// One, at the centre.
     #[default]
@@ -395,7 +399,8 @@ impl Picture {
 }
 
 /// What a frame cost and whether anything was clamped.
-#[derive(Clone, Debug, Default, PartialEq, Serialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FrameStats {
     /// Name and GPU time in milliseconds of each pass, in order. Where pixels have several samples, passes are those of
     /// the first one; the others are `more samples`, and what is no colour is `centre sample`.
@@ -473,7 +478,8 @@ pub struct FrameStats {
 }
 
 /// GPU time of one pass.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PassTime {
     /// The pass, as in `ARCHITECTURE.md`.
     pub name: String,
@@ -482,7 +488,8 @@ pub struct PassTime {
 }
 
 /// Bytes in one pool.
-#[derive(Clone, Debug, PartialEq, Serialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct PoolBytes {
     /// `persistent`, `ring` or `transient`.
     pub name: String,

@@ -8,7 +8,7 @@
 //      2 ●─────────● 3
 //
 // What lies beyond the list's box, a quarter of a cell around it, is not told: to ask in other cells takes a loop around the
-// loop of arcs, which costs half of everything even where it ends after one round (docs/speed.md). A front that is not
+// loop of arcs, which costs half of everything even where it ends after one round. A front that is not
 // told of a border does not grow to it: the gap is found by the back behind it, as wider ones are. Else what is not told
 // counts as a border, and pass `heal` looks closer; but a solid's back that is there is drawn, since it is doubtful itself.
 #ifndef BORDER_ARCS_GLSL

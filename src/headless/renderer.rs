@@ -8,6 +8,7 @@ use crate::renderer::{CloseUp, EditError, FrameInput, RenderError, Renderer, Tar
 use ash::vk;
 use bytemuck::Pod;
 use std::mem::ManuallyDrop;
+use std::sync::Arc;
 
 /// Colour is rendered to 8 bits, encoded by the format.
 const COLOUR_FORMAT: vk::Format = vk::Format::R8G8B8A8_SRGB;
@@ -22,7 +23,7 @@ pub struct HeadlessRenderer {
     targets: ManuallyDrop<Option<TargetImages>>,
     device: ManuallyDrop<HeadlessDevice>,
     aovs: bool,
-    model: Option<(Model, SceneSettings)>,
+    model: Option<(Arc<Model>, SceneSettings)>,
     close_up: CloseUp,
 }
 
@@ -64,9 +65,22 @@ impl HeadlessRenderer {
     /// # Errors
     /// [`HeadlessError::Gpu`].
     pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), HeadlessError> {
-        self.model = Some((model.clone(), settings));
-        self.close_up = CloseUp::new(model);
-        Ok(self.renderer.upload_with(model, settings)?)
+        self.upload_shared(Arc::new(model.clone()), settings, &|_| ())
+    }
+
+    /// The same of a model that is not copied; `told` as in [`Renderer::upload_telling`].
+    ///
+    /// # Errors
+    /// [`HeadlessError::Gpu`].
+    pub fn upload_shared(
+        &mut self,
+        model: Arc<Model>,
+        settings: SceneSettings,
+        told: &(dyn Fn(usize) + Sync),
+    ) -> Result<(), HeadlessError> {
+        self.close_up = CloseUp::new(&model);
+        let (model, _) = self.model.insert((model, settings));
+        Ok(self.renderer.upload_telling(model, settings, told)?)
     }
 
     /// Replaces a trim loop of the model, which was uploaded as editable; see [`Renderer::edit_loop`].
@@ -79,7 +93,7 @@ impl HeadlessRenderer {
     pub fn edit_loop(&mut self, at: LoopAt, new: &TrimLoop) -> Result<(), EditError> {
         self.renderer.edit_loop(at, new)?;
         if let Some((model, _)) = &mut self.model {
-            model.parts[at.part].faces[at.face].loops[at.trim_loop] = new.clone();
+            Arc::make_mut(model).parts[at.part].faces[at.face].loops[at.trim_loop] = new.clone();
         }
         Ok(())
     }

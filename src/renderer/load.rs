@@ -12,19 +12,20 @@ use crate::frame::Passes;
 use crate::model::{LoopAt, Model, TrimLoop};
 use crate::passes::resolve;
 use crate::picture::{SceneSettings, TakenWay, TrimWay};
-use crate::scene::{Cut, SceneData, UndrawnSolid};
+use crate::scene::{Cut, SceneData, Told, UndrawnSolid};
 
 /// What a scene is made of: a model, or what was cut out of it for a view.
 #[derive(Clone, Copy)]
 struct Source<'a> {
     whole: &'a Model,
     cut: Option<&'a Cut>,
+    told: Told<'a>,
 }
 
 impl Source<'_> {
     fn data(self, settings: SceneSettings) -> Result<SceneData, UndrawnSolid> {
         match self.cut {
-            None => SceneData::new(self.whole, settings),
+            None => SceneData::telling(self.whole, settings, self.told),
             Some(cut) => SceneData::cut_from(self.whole, cut, settings),
         }
     }
@@ -65,7 +66,21 @@ impl Renderer {
     /// # Errors
     /// As [`upload`](Self::upload).
     pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), RenderError> {
-        self.load(Source { whole: model, cut: None }, settings)
+        self.upload_telling(model, settings, &|_| ())
+    }
+
+    /// As [`upload_with`](Self::upload_with); `told` hears from several threads, in no order, how many more faces of placed
+    /// parts are ready.
+    ///
+    /// # Errors
+    /// As [`upload`](Self::upload).
+    pub fn upload_telling(
+        &mut self,
+        model: &Model,
+        settings: SceneSettings,
+        told: &(dyn Fn(usize) + Sync),
+    ) -> Result<(), RenderError> {
+        self.load(Source { whole: model, cut: None, told }, settings)
     }
 
     /// As [`upload_with`](Self::upload_with), of what [`CloseUp`](super::CloseUp) cut out of a model for a view: shadows
@@ -74,14 +89,14 @@ impl Renderer {
     /// # Errors
     /// As [`upload`](Self::upload).
     pub fn upload_cut(&mut self, whole: &Model, cut: &Cut, settings: SceneSettings) -> Result<(), RenderError> {
-        self.load(Source { whole, cut: Some(cut) }, settings)
+        self.load(Source { whole, cut: Some(cut), told: &|_| () }, settings)
     }
 
     /// The same model once more, trimmed exactly: the table has no room for a view of it.
     pub(super) fn load_exact(&mut self) -> Result<(), RenderError> {
         let Some(kept) = self.loaded.as_mut().and_then(|loaded| loaded.kept.take()) else { return Ok(()) };
         let Kept { whole, cut, settings } = &*kept;
-        let of = Source { whole, cut: cut.as_ref() };
+        let of = Source { whole, cut: cut.as_ref(), told: &|_| () };
         self.load(of, SceneSettings { trim: TrimWay::Exact, ..*settings })
     }
 

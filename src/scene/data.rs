@@ -7,7 +7,7 @@ use super::exact::ExactData;
 use super::face::{Body, Cuts, FaceData, Trimming, pack_colour};
 use super::link::link;
 use super::mesh::Meshes;
-use super::parts::{PlacedPart, each_made};
+use super::parts::{PlacedPart, Told, each_made};
 use super::solids::{Lists, SolidData, UndrawnSolid};
 use super::sun::SunData;
 use super::trimmed::Trimmed;
@@ -115,28 +115,34 @@ pub(crate) struct SceneData {
 }
 
 impl SceneData {
+    #[cfg(any(test, feature = "rivals"))]
     pub(crate) fn new(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
+        Self::telling(model, settings, &|_| ())
+    }
+
+    /// Of a model; `told` of its faces as they are made.
+    pub(crate) fn telling(model: &Model, settings: SceneSettings, told: Told<'_>) -> Result<Self, UndrawnSolid> {
         // edits would change where cuts pay
-        let extent = if settings.editable { f64::INFINITY } else { model.bounds().diagonal() };
-        Self::of(model, model, settings, |_, scale| extent / scale)
+        let extent = if settings.editable { f64::INFINITY } else { model.control_bounds().diagonal() };
+        Self::of(model, model, (settings, told), |_, scale| extent / scale)
     }
 
     /// Of what close views see of a model, cut out of it: shadows are those of the whole.
     pub(crate) fn cut_from(whole: &Model, cut: &Cut, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        Self::of(whole, &cut.model, settings, |part, _| cut.extents[part])
+        Self::of(whole, &cut.model, (settings, &|_| ()), |part, _| cut.extents[part])
     }
 
     /// All patches as they are.
     #[cfg(any(test, feature = "rivals"))]
     pub(crate) fn uncut(model: &Model, settings: SceneSettings) -> Result<Self, UndrawnSolid> {
-        Self::of(model, model, settings, |_, _| f64::INFINITY)
+        Self::of(model, model, (settings, &|_| ()), |_, _| f64::INFINITY)
     }
 
     /// `extent`: of a part, whose largest copy is so many times as large; see [`Trimming`].
     fn of(
         whole: &Model,
         model: &Model,
-        settings: SceneSettings,
+        (settings, told): (SceneSettings, Told<'_>),
         extent: impl Fn(usize, f64) -> f64,
     ) -> Result<Self, UndrawnSolid> {
         let way = taken(model, settings);
@@ -209,7 +215,7 @@ impl SceneData {
         let mut first_faces = Vec::with_capacity(model.parts.len());
         let mut origins = Vec::with_capacity(model.parts.len());
         let mut placed = Vec::with_capacity(model.parts.len());
-        let bounds: Vec<Bounds> = model.parts.par_iter().map(Part::bounds).collect();
+        let bounds: Vec<Bounds> = model.parts.par_iter().map(Part::control_bounds).collect();
         for (nth, ((part, bounds), scale)) in model.parts.iter().zip(&bounds).zip(scales).enumerate() {
             let origin = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
             origins.push(origin);
@@ -225,7 +231,7 @@ impl SceneData {
             let trim = Trimming { extent, ..trim };
             placed.push(PlacedPart { number: nth, part, origin, body, trim, cuts: Cuts::of(&part.faces) });
         }
-        each_made(&placed, |placed, faces| {
+        each_made(&placed, told, |placed, faces| {
             let (nth, first) = (placed.number, data.faces.len());
             first_faces.resize(nth + 1, first);
             let normals: Vec<Normals> = faces.iter().flat_map(|f| &f.normals).copied().collect();

@@ -44,6 +44,7 @@ pub(crate) use edit::{EditTarget, Write};
 pub(crate) use exact::ExactData;
 #[cfg(any(test, feature = "rivals"))]
 pub(crate) use flatten::{Cuts, flattened};
+pub(crate) use parts::Told;
 pub use solids::UndrawnSolid;
 pub(crate) use solids::{Asked, Blister, SolidData};
 pub(crate) use trimmed::TableView;

@@ -14,6 +14,9 @@ use std::collections::HashMap;
 /// Faces that are made before they are handed on: work for all threads, and little memory beside that of a large scene.
 const BATCH: usize = 4096;
 
+/// Whoever waits for a scene: how many more faces are done. Called from several threads, in no order.
+pub(crate) type Told<'a> = &'a (dyn Fn(usize) + Sync);
+
 /// A part, and what else its faces are made from.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct PlacedPart<'a> {
@@ -27,9 +30,14 @@ pub(super) struct PlacedPart<'a> {
 }
 
 impl PlacedPart<'_> {
-    fn made(&self) -> Vec<FaceData> {
+    fn made(&self, told: Told<'_>) -> Vec<FaceData> {
         let Self { part, origin, body, trim, cuts, .. } = *self;
-        part.faces.par_iter().map(|face| FaceData::new(face, origin, body, trim, cuts)).collect()
+        let made = |face| {
+            let made = FaceData::new(face, origin, body, trim, cuts);
+            told(1);
+            made
+        };
+        part.faces.par_iter().map(made).collect()
     }
 
     /// Faces of a part that is like this one, with this one's numbers and colours.
@@ -70,8 +78,12 @@ fn alike(parts: &[PlacedPart<'_>]) -> Vec<usize> {
     parts.iter().enumerate().map(first).collect()
 }
 
-/// Makes the faces of all parts and hands each part's on, in order.
-pub(super) fn each_made(parts: &[PlacedPart<'_>], mut take: impl FnMut(&PlacedPart<'_>, Vec<FaceData>)) {
+/// Makes the faces of all parts and hands each part's on, in order; `told` of each number of faces as they are done.
+pub(super) fn each_made(
+    parts: &[PlacedPart<'_>],
+    told: Told<'_>,
+    mut take: impl FnMut(&PlacedPart<'_>, Vec<FaceData>),
+) {
     let like = alike(parts);
     let mut to_come = vec![0usize; parts.len()];
     like.iter().enumerate().filter(|(n, first)| n != *first).for_each(|(_, &first)| to_come[first] += 1);
@@ -85,7 +97,7 @@ pub(super) fn each_made(parts: &[PlacedPart<'_>], mut take: impl FnMut(&PlacedPa
             room
         });
         let end = start + some.count();
-        let made: Vec<_> = (start..end).into_par_iter().map(|n| (like[n] == n).then(|| parts[n].made())).collect();
+        let made: Vec<_> = (start..end).into_par_iter().map(|n| (like[n] == n).then(|| parts[n].made(told))).collect();
         for (n, made) in (start..end).zip(made) {
             let first = like[n];
             let faces = match made {
@@ -97,6 +109,7 @@ pub(super) fn each_made(parts: &[PlacedPart<'_>], mut take: impl FnMut(&PlacedPa
                 None => {
                     to_come[first] -= 1;
                     let faces = if to_come[first] > 0 { kept.get(&first).cloned() } else { kept.remove(&first) };
+                    told(parts[n].part.faces.len());
                     parts[n].named(faces.expect("it is kept for those that are like it"))
                 }
             };
@@ -112,10 +125,11 @@ mod tests {
     use crate::model::Model;
     use crate::picture::TakenWay;
     use bytemuck::{bytes_of, cast_slice};
+    use std::sync::atomic::{AtomicUsize, Ordering};
 
     fn bracket() -> Model {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/bracket.step");
-        crate::import::open(&path).unwrap().model
+        selvedge_io::import::open(&path).unwrap().model
     }
 
     /// The bracket, a shorter one, and both once more with other numbers and colours.
@@ -147,10 +161,14 @@ mod tests {
             let model = pairs();
             let parts: Vec<_> = model.parts.iter().map(|part| placed(part, way)).collect();
             let mut taken = 0;
-            each_made(&parts, |part, faces| {
+            let told = AtomicUsize::new(0);
+            let tell = |n| {
+                let _ = told.fetch_add(n, Ordering::Relaxed);
+            };
+            each_made(&parts, &tell, |part, faces| {
                 assert!(std::ptr::eq(part.part, parts[taken].part), "in order");
                 taken += 1;
-                let own = part.made();
+                let own = part.made(&|_| ());
                 assert_eq!(faces.len(), own.len());
                 for (a, b) in faces.iter().zip(&own) {
                     assert_eq!(bytes_of(&a.face), bytes_of(&b.face));
@@ -162,6 +180,7 @@ mod tests {
                 }
             });
             assert_eq!(taken, 5);
+            assert_eq!(told.into_inner(), model.face_count());
         }
     }
 

@@ -71,7 +71,7 @@ fn points(model: &Model) -> usize {
 
 /// That the trim table of a picture of the whole scene has, about.
 fn rows(model: &Model) -> f64 {
-    let Some(ball) = Ball::around(model.bounds()) else { return 0.0 };
+    let Some(ball) = Ball::around(model.control_bounds()) else { return 0.0 };
     let lines_a_unit = PICTURE_PX / (2.0 * ball.radius) / ROW_PX;
     let of_part = |part: &Part| {
         let faces = part.faces.par_iter().filter(|face| !face.loops.is_empty());
@@ -107,7 +107,7 @@ mod tests {
 
     fn bracket() -> Model {
         let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/bracket.step");
-        crate::import::open(&path).unwrap().model
+        selvedge_io::import::open(&path).unwrap().model
     }
 
     /// Its bodies once more for each place, side by side.

@@ -62,7 +62,7 @@ impl SunTracer {
         let casters = SolidTracer::new(&Solid::union(&opaque)?, model.coincidence())?;
         let casts = model.trim.is_none() && !model.instances.is_empty();
         let parts = casts.then(|| Tracer::new(&Model { solids: Vec::new(), ..model.clone() }));
-        let bounds = model.bounds().union(casters.bounds());
+        let bounds = model.control_bounds().union(casters.bounds());
         Ok(Self {
             casters: (!opaque.is_empty()).then_some(casters),
             parts,

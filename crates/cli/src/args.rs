@@ -1,19 +1,23 @@
 //! What the command line accepts, checked before anything is opened.
 
+mod read;
+
+pub use read::{ReadArgs, SubdivideArgs};
+
 use crate::cut::CutArgs;
 use crate::sweep::Divided;
 use crate::trims::Way;
-use crate::values::{at_least_one, direction, length, mebibytes, times, tolerance, vector, zoom};
+use crate::values::{at_least_one, direction, mebibytes, times, tolerance, vector, zoom};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
-use selvedge::construct::subdivide::Scheme;
 use selvedge::picture::{Levels, Samples, SolidWay, TrimWay};
 use std::path::PathBuf;
 use std::str::FromStr;
 
 /// Told at the end of every help text.
-const STATUSES: &str = "Exit status: 0 done; 1 a picture breaks the accuracy promise; 2 wrong usage, or a file that \
-                        cannot be read or written; 3 no usable Vulkan device, or the device failed.";
+const STATUSES: &str = "Exit status: 0 done; 1 a picture breaks the accuracy promise; 2 wrong usage, a file that cannot \
+                        be read or written or of which nothing can be drawn, or with --strict not all of it; 3 no usable \
+                        Vulkan device, or the device failed.";
 
 /// Draws trimmed spline surfaces exactly, at the resolution of the picture.
 #[derive(Debug, Parser)]
@@ -68,13 +72,15 @@ pub struct EdgeArgs {
 #[derive(Debug, Args)]
 pub struct RenderArgs {
     /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
-    /// .toml, or .3dm with the feature rhino
+    /// .toml, or .3dm with the feature rhino; `-` is standard input
     pub model: PathBuf,
+    #[command(flatten)]
+    pub read: ReadArgs,
     #[command(flatten)]
     pub subdivide: SubdivideArgs,
     #[command(flatten)]
     pub cut: CutArgs,
-    /// PNG file to write
+    /// PNG file to write; `-` is standard output, here and wherever one file is written
     #[arg(short, long, value_name = "OUT.png")]
     pub output: PathBuf,
     #[command(flatten)]
@@ -102,6 +108,8 @@ pub struct InfoArgs {
     /// .toml, or .3dm with the feature rhino
     pub model: PathBuf,
     #[command(flatten)]
+    pub read: ReadArgs,
+    #[command(flatten)]
     pub subdivide: SubdivideArgs,
     #[command(flatten)]
     pub camera: CameraArgs,
@@ -118,6 +126,8 @@ pub struct ExportArgs {
     /// The model, as for `render`
     pub model: PathBuf,
     #[command(flatten)]
+    pub read: ReadArgs,
+    #[command(flatten)]
     pub subdivide: SubdivideArgs,
     /// STEP file to write
     #[arg(value_name = "OUT.step")]
@@ -129,6 +139,8 @@ pub struct CheckArgs {
     /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
     /// .toml, or .3dm with the feature rhino
     pub model: PathBuf,
+    #[command(flatten)]
+    pub read: ReadArgs,
     #[command(flatten)]
     pub subdivide: SubdivideArgs,
     #[command(flatten)]
@@ -164,6 +176,8 @@ pub struct BenchArgs {
     /// .toml, or .3dm with the feature rhino
     #[arg(required = true)]
     pub models: Vec<PathBuf>,
+    #[command(flatten)]
+    pub read: ReadArgs,
     /// Measured frames for each model, after the warm-up
     #[arg(long, value_name = "N", default_value_t = 24, value_parser = at_least_one)]
     pub frames: usize,
@@ -196,6 +210,8 @@ pub struct SweepArgs {
     /// The models: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
     #[arg(required_unless_present = "degrees")]
     pub models: Vec<PathBuf>,
+    #[command(flatten)]
+    pub read: ReadArgs,
     /// Also a wavy sheet of 1024 patches of each of these degrees
     #[arg(long, value_name = "LIST", value_parser = clap::value_parser!(u8).range(1..=9), value_delimiter = ',')]
     pub degrees: Vec<u8>,
@@ -245,6 +261,8 @@ pub struct TrimsArgs {
     /// feature rhino. Without any: samples/panel.step, and nist_pmi_2.stp and m6_countersunk_screw.step in the folder
     /// that SELVEDGE_MODELS names, those that are there
     pub models: Vec<PathBuf>,
+    #[command(flatten)]
+    pub read: ReadArgs,
     /// Holes along each side of the generated face; 0 leaves it out
     #[arg(long, value_name = "N", default_value_t = 100)]
     pub holes: usize,
@@ -286,8 +304,10 @@ pub struct ConvertArgs {
     /// .toml, or .3dm with the feature rhino
     pub model: PathBuf,
     #[command(flatten)]
+    pub read: ReadArgs,
+    #[command(flatten)]
     pub subdivide: SubdivideArgs,
-    /// File to write; its extension chooses the form: .selvedge is the engine's own, bit for bit
+    /// File to write, in the engine's own form, bit for bit
     #[arg(value_name = "OUT.selvedge")]
     pub output: PathBuf,
 }
@@ -375,39 +395,6 @@ impl std::fmt::Display for Factors {
         match self.0 {
             Levels::Bound => f.write_str("bound"),
             Levels::Fixed(level) => write!(f, "{level}"),
-        }
-    }
-}
-
-/// What becomes of polygons.
-#[derive(Debug, Default, Args)]
-pub struct SubdivideArgs {
-    /// Read an OBJ file's polygons as the control mesh of a smooth surface
-    #[arg(long, value_enum, value_name = "SCHEME")]
-    pub subdivide: Option<Smooth>,
-    /// Largest distance of the faces from that surface, in the file's units; a hundred-thousandth of the size without
-    /// it
-    #[arg(long, value_name = "LENGTH", requires = "subdivide", value_parser = length)]
-    pub within: Option<f64>,
-    /// Give every round solid of an OpenSCAD file the facets that OpenSCAD gives it
-    #[arg(long)]
-    pub as_openscad: bool,
-}
-
-/// Schemes of subdivision.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Smooth {
-    /// Any polygons, bicubic patches
-    CatmullClark,
-    /// Triangles, quartic patches
-    Loop,
-}
-
-impl Smooth {
-    pub fn scheme(self) -> Scheme {
-        match self {
-            Self::CatmullClark => Scheme::CatmullClark,
-            Self::Loop => Scheme::Loop,
         }
     }
 }

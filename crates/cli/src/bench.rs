@@ -11,14 +11,15 @@ use crate::args::{BenchArgs, Motion, Size};
 use crate::progress::during;
 use crate::series::{Gathered, Row};
 use crate::session::{self, Session};
+use crate::target::{self, CSV, JSON};
 use crate::{Outcome, edit, output, path, verdict};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use comfy_table::CellAlignment;
 use selvedge::model::Camera;
 use selvedge::picture::{FrameStats, Outputs};
 use selvedge_check::{Judgement, Tracer};
 use serde::Serialize;
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::time::Instant;
 
 /// Frames before the first measured one: buffers have grown, the driver's pipelines are compiled.
@@ -57,6 +58,10 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
     if args.edit {
         return edit::run(args);
     }
+    if let Some(dir) = &args.out {
+        let files = [("bench.json", JSON), ("bench.csv", CSV)];
+        target::folder(&inputs(args), dir, files.map(|(name, form)| (name.to_owned(), form)))?;
+    }
     let mut reports = Vec::new();
     let mut outcome = Outcome::Good;
     for model in &args.models {
@@ -69,17 +74,21 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         reports.push(report);
     }
     if let Some(dir) = &args.out {
-        std::fs::create_dir_all(dir).with_context(|| format!("cannot make {}", dir.display()))?;
         output::json(&dir.join("bench.json"), &reports)?;
         csv(&dir.join("bench.csv"), &reports)?;
     }
     Ok(outcome)
 }
 
+/// The files that are read.
+pub fn inputs(args: &BenchArgs) -> Vec<&Path> {
+    args.models.iter().map(PathBuf::as_path).chain(args.cut.trim_by.as_deref()).collect()
+}
+
 /// One model along the path; true when the validation layer complained.
 fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
-    let mut import = session::open(model, &Default::default())?;
-    args.cut.apply(&mut import.model)?;
+    let mut import = session::open(model, &args.read, &Default::default())?;
+    args.cut.apply(&mut import.model, &args.read)?;
     let bounds = import.model.bounds();
     let Size(width, height) = args.size;
     let size = (width, height);
@@ -94,7 +103,10 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
     session.record_all(args.motion == Motion::Still);
     during(&format!("{}: {} frames", model.display(), args.frames), || -> Result<()> {
         for _ in 0..WARM_UP_FRAMES {
-            session.render(&camera(0), Outputs::default())?;
+            let picture = session.render(&camera(0), Outputs::default())?;
+            if !session.shows(&camera(0), &picture)? {
+                session.blank(model, &import.model, size, &args.read)?;
+            }
         }
         for index in 0..args.frames {
             stats = timed(&mut session, &camera(index), &mut gathered)?;
@@ -119,7 +131,7 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         model: model.display().to_string(),
         faces: import.model.face_count(),
         face_instances: import.model.face_instance_count(),
-        missing_faces: import.report.dropped.values().sum(),
+        missing_faces: import.report.dropped.total(),
         size: [width, height],
         tolerance_px: args.frame.tolerance,
         device: stats.device,
@@ -210,7 +222,7 @@ impl Report {
 
 /// One line for each quantity of each model; the errors are quantities too.
 fn csv(path: &Path, reports: &[Report]) -> Result<()> {
-    output::file(path, |to| {
+    target::write(path, |to| {
         let mut lines = csv::Writer::from_writer(to);
         lines.write_record(["model", "quantity", "unit", "median", "p95", "largest", "frames"])?;
         for Report { model, rows, error: e, .. } in reports {

@@ -40,7 +40,11 @@ pub struct View {
 impl CameraArgs {
     /// The camera asked for: one of the file's by name, or where the arguments say.
     pub fn of(&self, import: &Import) -> Result<Camera> {
-        let bounds = import.model.bounds();
+        self.over(import.model.bounds(), import)
+    }
+
+    /// The same, of a model with this box.
+    fn over(&self, bounds: Bounds, import: &Import) -> Result<Camera> {
         match self.named(import)? {
             Some(named) => fitted(named.camera(bounds, self.pixels(import)), bounds),
             None => self.camera(bounds, self.pixels(import)),
@@ -84,7 +88,7 @@ impl CameraArgs {
     pub fn views(&self, views: Views, import: &Import) -> Result<Vec<View>> {
         let (model, size) = (&import.model, self.pixels(import));
         let bounds = model.bounds();
-        let whole = self.of(import)?;
+        let whole = self.over(bounds, import)?;
         let wanted = |one| views == one || views == Views::All;
         let mut list = Vec::new();
         if wanted(Views::Whole) {
@@ -103,7 +107,7 @@ impl CameraArgs {
     /// So many times closer each.
     pub fn zooms(&self, times: &[f64], import: &Import) -> Result<Vec<View>> {
         let bounds = import.model.bounds();
-        let whole = self.of(import)?;
+        let whole = self.over(bounds, import)?;
         let view = |&times: &f64| {
             let mut camera = fitted(closer(&import.model, whole, times), bounds)?;
             // nothing of interest is nearer than a tenth of the distance
@@ -130,6 +134,11 @@ impl CameraArgs {
         }
         camera
     }
+}
+
+/// All of the model in the picture, whatever is asked for.
+pub fn whole(bounds: Bounds, size: (u32, u32)) -> Camera {
+    Camera::framing(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size)
 }
 
 /// `camera` with a depth range that holds the model, checked.

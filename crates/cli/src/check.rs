@@ -4,6 +4,7 @@ use crate::args::CheckArgs;
 use crate::camera::{CameraFile, View};
 use crate::progress::during;
 use crate::session::{self, Session};
+use crate::target::{self, JSON, PNG, Target};
 use crate::{Outcome, output, verdict};
 use anyhow::Result;
 use glam::DAffine3;
@@ -19,6 +20,8 @@ struct Verdict {
     camera: CameraFile,
     tolerance_px: f64,
     kept: bool,
+    /// Some pixel shows the model: else nothing was there to be judged.
+    seen: bool,
     judgement: Judgement,
     sun: Option<SunJudgement>,
     stats: FrameStats,
@@ -26,16 +29,25 @@ struct Verdict {
 
 /// Draws and judges each view.
 pub fn run(args: &CheckArgs) -> Result<Outcome> {
-    let mut import = session::open(&args.model, &args.subdivide)?;
+    let inputs = args.cut.inputs(&args.model);
+    let json = args.json.iter().map(|path| Target::new(path, JSON));
+    let difference = args.difference.iter().map(|path| Target::new(path, PNG));
+    target::check(&inputs, &difference.chain(json.clone()).collect::<Vec<_>>())?;
+    let mut import = session::open(&args.model, &args.read, &args.subdivide)?;
+    let missing = Some(import.summary()).filter(|summary| !summary.is_complete());
     if let Some(by) = args.moved {
         let by = DAffine3::from_translation(by);
         import.model.instances.iter_mut().for_each(|i| i.transform = by * i.transform);
     }
-    args.cut.apply(&mut import.model)?;
+    args.cut.apply(&mut import.model, &args.read)?;
     let views = match args.zoom.as_slice() {
         [] => args.camera.views(args.views, &import)?,
         times => args.camera.zooms(times, &import)?,
     };
+    let pictures: Vec<PathBuf> = args.difference.iter().flat_map(|path| differences(path, &views)).collect();
+    let outputs: Vec<_> = pictures.iter().map(|path| Target::new(path, PNG)).chain(json).collect();
+    target::check(&inputs, &outputs)?;
+    target::check_read(&import, &outputs)?;
     let mut session = Session::new(&args.frame, &import)?;
     let tracer = during("preparing the exact model", || Tracer::new(&import.model));
     let sun = session::sun(&args.frame, &import).map(|towards| SunTracer::new(&import.model, towards)).transpose()?;
@@ -45,22 +57,29 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
         let times = args.zoom.get(index).copied().unwrap_or(1.0);
         let picture = session.render(camera, Outputs::ALL)?;
         let judgement = verdict::of(&tracer, camera, &picture, args.samples, tolerance_px, times, name);
-        if let Some(path) = &args.difference {
-            let path = if views.len() > 1 { with_name(path, name) } else { path.clone() };
-            output::png(&path, picture.size, &judgement.paint())?;
+        if let Some(path) = pictures.get(index) {
+            output::png(path, picture.size, &judgement.paint())?;
         }
         let sun = sun.as_ref().map(|sun| verdict::of_sun(&tracer, sun, camera, &picture, args.samples, tolerance_px));
         let wrong = verdict::wrong(&judgement) + sun.map_or(0, |sun| sun.wrong);
         let kept = wrong == 0 && picture.stats.clamps == 0;
-        let camera = camera.into();
-        verdicts.push(Verdict { view: name.clone(), camera, tolerance_px, kept, judgement, sun, stats: picture.stats });
+        let (camera, seen, stats) = (camera.into(), session::shows(&picture), picture.stats);
+        verdicts.push(Verdict { view: name.clone(), camera, tolerance_px, kept, seen, judgement, sun, stats });
     }
-    output::print(&table(&verdicts, tolerance_px))?;
-    if let Some(missing) = output::missing_faces(&import.report) {
-        output::print(&format!("judged without what the file holds beside: {missing}"))?;
+    let told = |text: &str| output::print_beside(text, pictures.iter().chain(&args.json));
+    told(&table(&verdicts, tolerance_px))?;
+    if let Some(missing) = missing {
+        told(&format!("judged without what the file holds beside: {missing}"))?;
     }
     if let Some(path) = &args.json {
         output::json(path, &verdicts)?;
+    }
+    let blank = |v: &&Verdict| v.kept && !v.seen;
+    if verdicts.iter().all(|v| blank(&v)) {
+        session.blank(&args.model, &import.model, views[0].camera.size, &args.read)?;
+    }
+    for Verdict { view, .. } in verdicts.iter().filter(blank) {
+        tracing::warn!("view {view}: no pixel shows anything of the model: nothing was judged");
     }
     let complained = session.complaints();
     Ok(if complained || verdicts.iter().any(|v| !v.kept) { Outcome::Broken } else { Outcome::Good })
@@ -74,7 +93,7 @@ fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
     let regular = ["regular: depth, px: worst, mean", "normal, deg: worst", &beyond, "not regular"];
     let shape = ["view", "judged", &wrong, "worst shift, px"].into_iter().chain(regular);
     let mut table = output::table(shape.chain(light).chain(["clamps", "promise"]));
-    for Verdict { view, judgement, sun, stats, kept, .. } in verdicts {
+    for Verdict { view, judgement, sun, stats, kept, seen, .. } in verdicts {
         let exact = &judgement.exact;
         let shape = [
             view.clone(),
@@ -87,10 +106,24 @@ fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
             exact.irregular.to_string(),
         ];
         let light = sun.map(|sun| format!("{}, {}, {:.3}", sun.wrong, sun.deviated, sun.worst_shift_px));
-        let end = [stats.clamps.to_string(), if *kept { "kept" } else { "BROKEN" }.to_string()];
+        let promise = match (kept, seen) {
+            (true, true) => "kept",
+            (true, false) => "nothing seen",
+            (false, _) => "BROKEN",
+        };
+        let end = [stats.clamps.to_string(), promise.to_string()];
         table.add_row(shape.into_iter().chain(light).chain(end));
     }
     table.to_string()
+}
+
+/// The picture of the verdicts of each view; of several, each with the view's name. Several to `-` are one too many.
+fn differences(path: &Path, views: &[View]) -> Vec<PathBuf> {
+    let named = |view: &View| match views.len() > 1 && !target::is_standard(path) {
+        true => with_name(path, &view.name),
+        false => path.to_owned(),
+    };
+    views.iter().map(named).collect()
 }
 
 /// `out.png` becomes `out-close.png`.

@@ -1,11 +1,12 @@
 //! A model cut open or seen through before it is drawn: `--section`, `--trim-by`, `--xray`.
 
+use crate::args::ReadArgs;
 use crate::session;
 use anyhow::{Context, Result, bail};
 use clap::Args;
 use glam::DVec3;
 use selvedge::model::{Model, Solid};
-use std::path::PathBuf;
+use std::path::{Path, PathBuf};
 use std::str::FromStr;
 
 /// How the model is cut open.
@@ -72,13 +73,18 @@ impl FromStr for Plane {
 }
 
 impl CutArgs {
+    /// The files that are read: the model's, and the one that trims it.
+    pub fn inputs<'p>(&'p self, model: &'p Path) -> Vec<&'p Path> {
+        std::iter::once(model).chain(self.trim_by.as_deref()).collect()
+    }
+
     /// Cuts the model.
-    pub fn apply(&self, model: &mut Model) -> Result<()> {
+    pub fn apply(&self, model: &mut Model, read: &ReadArgs) -> Result<()> {
         for Xray { name, opacity } in &self.xray {
             model.xray(&[name], *opacity).context("--xray")?;
         }
         if let Some(path) = &self.trim_by {
-            let by = session::open(path, &Default::default())?.model;
+            let by = session::open(path, read, &Default::default())?.model;
             let told = || path.display().to_string();
             if !by.instances.is_empty() {
                 bail!("{}: holds parts, and a volume that trims needs equations", told());
@@ -91,6 +97,9 @@ impl CutArgs {
         }
         for plane in &self.section {
             *model = model.section(plane.normal, plane.offset)?;
+        }
+        if model.bounds().is_empty() {
+            bail!("what cuts the model open leaves nothing of it");
         }
         Ok(())
     }

@@ -7,8 +7,9 @@ use crate::args::{BenchArgs, Size};
 use crate::progress::during;
 use crate::series::{Gathered, Row};
 use crate::session::{self, Session};
-use crate::{Outcome, output, path};
-use anyhow::{Context, Result, bail};
+use crate::target::{self, JSON};
+use crate::{Outcome, bench, output, path};
+use anyhow::{Result, bail};
 use glam::DVec2;
 use selvedge::model::{LoopAt, Model, TrimLoop};
 use selvedge::picture::Outputs;
@@ -40,6 +41,9 @@ struct Report {
 
 /// Drags a loop of every model; prints a table each and writes them all.
 pub fn run(args: &BenchArgs) -> Result<Outcome> {
+    if let Some(dir) = &args.out {
+        target::folder(&bench::inputs(args), dir, [("edit.json".to_owned(), JSON)])?;
+    }
     let mut reports = Vec::new();
     let mut complained = false;
     for model in &args.models {
@@ -49,14 +53,13 @@ pub fn run(args: &BenchArgs) -> Result<Outcome> {
         reports.push(report);
     }
     if let Some(dir) = &args.out {
-        std::fs::create_dir_all(dir).with_context(|| format!("cannot make {}", dir.display()))?;
         output::json(&dir.join("edit.json"), &reports)?;
     }
     Ok(if complained { Outcome::Broken } else { Outcome::Good })
 }
 
 fn drag(args: &BenchArgs, path: &Path) -> Result<(Report, bool)> {
-    let mut import = session::open(path, &Default::default())?;
+    let mut import = session::open(path, &args.read, &Default::default())?;
     let Some(at) = busiest(&import.model) else { bail!("{}: no face has a loop", path.display()) };
     let Size(width, height) = args.size;
     let camera = path::camera(import.model.bounds(), (width, height), 0, FRAMES);

@@ -1,19 +1,23 @@
 //! `selvedge export`: a model as a STEP file.
 
 use crate::args::ExportArgs;
+use crate::target::{self, STEP, Target};
 use crate::{Outcome, session};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use selvedge_io::export;
-use std::fs::File;
-use std::io::{BufWriter, Write};
 
 /// Reads the model and writes the file.
 pub fn run(args: &ExportArgs) -> Result<Outcome> {
-    let model = session::open(&args.model, &args.subdivide)?.model;
-    let name = || args.output.display().to_string();
-    let mut out = BufWriter::new(File::create(&args.output).with_context(name)?);
-    let warnings = export::step(&model, &mut out).with_context(name)?;
-    out.flush().with_context(name)?;
+    let output = [Target::new(&args.output, STEP)];
+    target::check(&[&args.model], &output)?;
+    let import = session::open(&args.model, &args.read, &args.subdivide)?;
+    target::check_read(&import, &output)?;
+    let model = import.model;
+    let mut warnings = Vec::new();
+    target::write(&args.output, |mut to| {
+        warnings = export::step(&model, &mut to)?;
+        Ok(())
+    })?;
     if model.trim.is_some() {
         tracing::warn!("the faces are written whole: the form cannot say that a volume trims them");
     }

@@ -28,6 +28,7 @@ mod render;
 mod series;
 mod session;
 mod sweep;
+mod target;
 mod trims;
 mod values;
 mod verdict;

@@ -1,35 +1,30 @@
-//! Files and text that every command writes.
+//! What every command writes: results, JSON, pictures, warnings.
 
-use anyhow::{Context, Result};
+use crate::target;
+use anyhow::Result;
 use comfy_table::{Table, TableComponent, presets};
 use selvedge::picture::FrameStats;
-use selvedge_io::import::{Import, ImportReport};
+use selvedge_io::import::Import;
 use serde::Serialize;
-use std::fs::File;
-use std::io::{self, BufWriter, Write};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 
-/// Prints results. A reader that went away (`selvedge info m.step | head`) is no error.
+/// Prints results.
 pub fn print(text: &str) -> Result<()> {
-    match writeln!(io::stdout().lock(), "{text}") {
-        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
-        result => result.context("standard output"),
-    }
+    target::standard(format!("{text}\n").as_bytes())
 }
 
-/// Creates `path`, lets `fill` write to it, and names it when either fails.
-pub fn file(path: &Path, fill: impl FnOnce(&mut BufWriter<File>) -> Result<()>) -> Result<()> {
-    let write = || -> Result<()> {
-        let mut to = BufWriter::new(File::create(path)?);
-        fill(&mut to)?;
-        Ok(to.flush()?)
-    };
-    write().with_context(|| format!("cannot write {}", path.display()))
+/// The same, to standard error where one of the files goes to standard output.
+pub fn print_beside<'p>(text: &str, mut files: impl Iterator<Item = &'p PathBuf>) -> Result<()> {
+    if files.any(|path| target::is_standard(path)) {
+        eprintln!("{text}");
+        return Ok(());
+    }
+    print(text)
 }
 
 /// `value` as readable JSON.
 pub fn json(path: &Path, value: &impl Serialize) -> Result<()> {
-    file(path, |to| {
+    target::write(path, |to| {
         serde_json::to_writer_pretty(&mut *to, value)?;
         Ok(writeln!(to)?)
     })
@@ -37,7 +32,7 @@ pub fn json(path: &Path, value: &impl Serialize) -> Result<()> {
 
 /// sRGB colour and opacity, row 0 on top.
 pub fn png(path: &Path, (width, height): (u32, u32), pixels: &[[u8; 4]]) -> Result<()> {
-    file(path, |to| {
+    target::write(path, |to| {
         let mut encoder = png::Encoder::new(to, width, height);
         encoder.set_color(png::ColorType::Rgba);
         encoder.set_depth(png::BitDepth::Eight);
@@ -59,20 +54,10 @@ pub fn table<'a>(header: impl IntoIterator<Item = &'a str>) -> Table {
     table
 }
 
-/// Faces of the file that the model lacks, and why; `None` when it is complete.
-pub fn missing_faces(report: &ImportReport) -> Option<String> {
-    let missing: usize = report.dropped.values().sum();
-    let reasons: Vec<String> = report.dropped.iter().map(|(why, n)| format!("{n} x {why}")).collect();
-    (missing > 0).then(|| format!("{missing} of {} faces are missing: {}", report.faces, reasons.join(", ")))
-}
-
-/// Tells what the importer warns of (it bounds their number and counts the rest), then what is missing.
+/// Tells what the importer warns of: it bounds their number and counts the rest.
 pub fn warnings(import: &Import) {
     for warning in &import.warnings {
         tracing::warn!("{warning}");
-    }
-    if let Some(missing) = missing_faces(&import.report) {
-        tracing::warn!("{missing}");
     }
 }
 

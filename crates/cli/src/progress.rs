@@ -16,6 +16,9 @@ const COUNTER: &str = "{spinner} {msg}: {human_pos}";
 /// Work that knows how much there is.
 const BAR: &str = "{spinner} {msg} {bar:30} {human_pos} of {human_len}, {eta} left";
 
+/// The same of bytes.
+const BYTES: &str = "{spinner} {msg} {bar:30} {bytes} of {total_bytes}, {eta} left";
+
 /// Runs `work`; past one second `what` turns on standard error, where that is a terminal.
 pub fn during<T>(what: &str, work: impl FnOnce() -> T) -> T {
     spin(what, SPINNER, |_| work())
@@ -26,7 +29,15 @@ pub fn counting<T>(what: &str, work: impl FnOnce(&(dyn Fn(u64) + Sync)) -> T) ->
     spin(what, COUNTER, |bar| work(&|done| bar.inc(done)))
 }
 
-/// As [`during`], for an import of `file`: its stages, and a bar while faces are built.
+/// As [`during`], for work that tells how many of so many things it has done since it last told.
+pub fn advancing<T>(what: &str, total: usize, work: impl FnOnce(&(dyn Fn(usize) + Sync)) -> T) -> T {
+    spin(what, BAR, |bar| {
+        bar.set_length(total as u64);
+        work(&|done| bar.inc(done as u64))
+    })
+}
+
+/// As [`during`], for an import of `file`: its stages, each with a bar where it is known how much there is.
 pub fn importing<T>(file: &str, work: impl FnOnce(&(dyn Fn(Stage) + Sync)) -> T) -> T {
     spin(&format!("reading {file}"), SPINNER, |bar| work(&|stage| show(bar, file, stage)))
 }
@@ -35,13 +46,25 @@ fn show(bar: &ProgressBar, file: &str, stage: Stage) {
     match stage {
         Stage::Read { bytes } => bar.set_message(format!("reading {file}, {}", HumanBytes(bytes))),
         Stage::Parse { bytes } => bar.set_message(format!("parsing {file}, {}", HumanBytes(bytes))),
-        Stage::Faces { built: 0, total } => {
-            bar.set_style(style(BAR));
-            bar.set_message(format!("{file}: faces"));
-            bar.set_length(total as u64);
+        Stage::Records { read, bytes } => {
+            if bar.length() != Some(bytes) {
+                begin(bar, BYTES, format!("{file}: records"), bytes);
+            }
+            bar.set_position(read);
         }
+        Stage::Bodies { mapped: 0, total } => begin(bar, BAR, format!("{file}: bodies"), total as u64),
+        Stage::Bodies { mapped, .. } => bar.set_position(mapped as u64),
+        Stage::Faces { built: 0, total } => begin(bar, BAR, format!("{file}: faces"), total as u64),
         Stage::Faces { .. } => bar.inc(1),
     }
+}
+
+/// A bar of a stage that begins.
+fn begin(bar: &ProgressBar, template: &str, message: String, length: u64) {
+    bar.set_style(style(template));
+    bar.set_message(message);
+    bar.set_length(length);
+    bar.set_position(0);
 }
 
 fn style(template: &str) -> ProgressStyle {
@@ -80,6 +103,14 @@ mod tests {
         assert_eq!(bar.message(), "reading a.step, 2.00 KiB");
         show(&bar, "a.step", Stage::Parse { bytes: 4096 });
         assert_eq!(bar.message(), "parsing a.step, 4.00 KiB");
+        for read in [1024, 4096] {
+            show(&bar, "a.step", Stage::Records { read, bytes: 4096 });
+            assert_eq!((bar.position(), bar.length()), (read, Some(4096)));
+        }
+        for mapped in [0, 2] {
+            show(&bar, "a.step", Stage::Bodies { mapped, total: 3 });
+            assert_eq!((bar.position(), bar.length()), (mapped as u64, Some(3)));
+        }
         // threads may tell out of order; the number of calls counts
         for built in [0, 2, 1] {
             show(&bar, "a.step", Stage::Faces { built, total: 7 });

@@ -3,38 +3,57 @@
 use crate::args::{Aov, Image, RenderArgs};
 use crate::camera::CameraFile;
 use crate::session::{self, Session};
+use crate::target::{self, JSON, NPY, PNG, Target};
 use crate::{Outcome, npy, output};
 use anyhow::Result;
+use selvedge::model::Camera;
 use selvedge::picture::{Outputs, Picture};
+use std::sync::Arc;
 
 /// Draws the picture and writes every file asked for.
 pub fn run(args: &RenderArgs) -> Result<Outcome> {
-    let (import, device) = rayon::join(|| session::open(&args.model, &args.subdivide), || session::device(&args.frame));
+    let outputs = outputs(args);
+    target::check(&args.cut.inputs(&args.model), &outputs)?;
+    let (import, device) =
+        rayon::join(|| session::open(&args.model, &args.read, &args.subdivide), || session::device(&args.frame));
     let mut import = import?;
-    args.cut.apply(&mut import.model)?;
+    target::check_read(&import, &outputs)?;
+    args.cut.apply(&mut import.model, &args.read)?;
     let camera = args.camera.of(&import)?;
-    if let Some(path) = &args.camera_out {
-        output::json(path, &CameraFile::from(&camera))?;
-    }
-    let mut session = Session::smooth(device?, &args.frame, &import, &args.edges)?;
+    // the renderer shares it: large models are there once
+    let model = Arc::new(std::mem::take(&mut import.model));
+    let mut session = Session::of_one(device?, &args.frame, &import, &model, &args.edges)?;
     let picture = session.render(&camera, wanted(&args.aov))?;
     if args.frame.highlight {
         let stats = &picture.stats;
         tracing::warn!("{} pixels show contact, {} overlap", stats.contact_pixels, stats.overlap_pixels);
     }
+    if !session.shows(&camera, &picture)? {
+        session.blank(&args.model, &model, camera.size, &args.read)?;
+    }
     let gpu_ms: f64 = picture.stats.passes.iter().map(|p| p.gpu_ms).sum();
-    tracing::info!("{gpu_ms:.1} ms in {} passes on {}", picture.stats.passes.len(), picture.stats.device);
+    let trimmed = picture.stats.trim.map_or(String::new(), |way| format!(", trimmed by way {}", way.name()));
+    tracing::info!("{gpu_ms:.1} ms in {} passes on {}{trimmed}", picture.stats.passes.len(), picture.stats.device);
     // to close a device takes about as long as to write a picture
-    let (written, complained) = rayon::join(|| write_all(args, &picture), || session.close());
+    let (written, complained) = rayon::join(|| write_all(args, &camera, &picture), || session.close());
     written?;
     Ok(if complained { Outcome::Broken } else { Outcome::Good })
 }
 
-fn write_all(args: &RenderArgs, picture: &Picture) -> Result<()> {
+/// Every file that is written.
+fn outputs(args: &RenderArgs) -> Vec<Target> {
+    let picture = Target::new(&args.output, PNG);
+    let images = args.aov.iter().map(|aov| Target::new(&aov.file, NPY));
+    let told = args.stats.iter().chain(&args.camera_out).map(|path| Target::new(path, JSON));
+    std::iter::once(picture).chain(images).chain(told).collect()
+}
+
+fn write_all(args: &RenderArgs, camera: &Camera, picture: &Picture) -> Result<()> {
     output::png(&args.output, picture.size, &picture.colour)?;
     for aov in &args.aov {
         write(aov, picture)?;
     }
+    args.camera_out.iter().try_for_each(|path| output::json(path, &CameraFile::from(camera)))?;
     args.stats.iter().try_for_each(|path| output::json(path, &picture.stats))
 }
 
@@ -51,13 +70,13 @@ fn wanted(aovs: &[Aov]) -> Outputs {
 
 fn write(aov: &Aov, picture: &Picture) -> Result<()> {
     let (width, height) = (picture.size.0 as usize, picture.size.1 as usize);
-    output::file(&aov.file, |to| {
+    target::write(&aov.file, |mut to| {
         match aov.image {
-            Image::Depth => npy::write(to, &[height, width], &picture.depth)?,
-            Image::Face => npy::write(to, &[height, width], &picture.face)?,
-            Image::Uv => npy::write(to, &[height, width, 2], picture.uv.as_flattened())?,
-            Image::Normal => npy::write(to, &[height, width, 3], picture.normal.as_flattened())?,
-            Image::Thickness => npy::write(to, &[height, width], &picture.thickness)?,
+            Image::Depth => npy::write(&mut to, &[height, width], &picture.depth)?,
+            Image::Face => npy::write(&mut to, &[height, width], &picture.face)?,
+            Image::Uv => npy::write(&mut to, &[height, width, 2], picture.uv.as_flattened())?,
+            Image::Normal => npy::write(&mut to, &[height, width, 3], picture.normal.as_flattened())?,
+            Image::Thickness => npy::write(&mut to, &[height, width], &picture.thickness)?,
         }
         Ok(())
     })

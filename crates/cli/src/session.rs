@@ -1,43 +1,96 @@
 //! A model read and a renderer opened, with everything worth knowing told on standard error.
 
-use crate::args::{EdgeArgs, FrameArgs, SubdivideArgs};
-use crate::progress::{during, importing};
-use crate::{openscad, output};
-use anyhow::Result;
+use crate::args::{EdgeArgs, FrameArgs, ReadArgs, SubdivideArgs};
+use crate::progress::{advancing, during, importing};
+use crate::{camera, openscad, output, target};
+use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
-use selvedge::model::{Camera, LoopAt, TrimLoop};
+use selvedge::model::{Camera, LoopAt, Model, TrimLoop};
 use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, SceneSettings};
-use selvedge_io::import::{self, Facets, Import};
+use selvedge_io::import::{self, Facets, Import, ImportError, Options, Stage};
+use std::io;
 use std::path::Path;
+use std::sync::Arc;
 use std::time::Instant;
 
-/// Reads a file, its polygons as `subdivide` says, and tells its warnings.
-pub fn open(path: &Path, subdivide: &SubdivideArgs) -> Result<Import> {
+/// Reads a file that has something to draw, its polygons as `subdivide` says, and tells its warnings.
+pub fn open(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Result<Import> {
+    let import = described(path, read, subdivide)?;
+    judge(path, &import, read)?;
+    Ok(import)
+}
+
+/// Reads a file, whether or not there is anything to draw in it.
+pub fn described(path: &Path, read: &ReadArgs, subdivide: &SubdivideArgs) -> Result<Import> {
     let start = Instant::now();
-    if let Some(smooth) = subdivide.subdivide {
-        let import = import::open_subdivided(path, smooth.scheme(), subdivide.within)?;
-        tracing::info!("read {} in {:.1?}", path.display(), start.elapsed());
+    let name = named(path);
+    let import = importing(&name, |tell| imported(path, &name, read, subdivide, tell))?;
+    tracing::info!("read {name} in {:.1?}", start.elapsed());
+    if subdivide.subdivide.is_some() {
         let (faces, off) = (import.report.faces, import.report.made);
         tracing::info!("{faces} faces within {off:.2e} mm of the limit surface");
-        return Ok(import);
     }
-    let facets = if subdivide.as_openscad { Facets::AsWritten } else { Facets::Round };
-    let import = if openscad::is_program(path) {
-        during("running openscad", || openscad::open(path, facets))?
-    } else {
-        importing(&path.display().to_string(), |tell| {
-            import::open_with(path, &import::Options { progress: Some(tell), facets })
-        })?
-    };
-    tracing::info!("read {} in {:.1?}", path.display(), start.elapsed());
     output::warnings(&import);
     Ok(import)
+}
+
+/// The file as messages name it.
+fn named(path: &Path) -> String {
+    if target::is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
+}
+
+fn imported(
+    path: &Path,
+    name: &str,
+    read: &ReadArgs,
+    subdivide: &SubdivideArgs,
+    tell: &(dyn Fn(Stage) + Sync),
+) -> Result<Import> {
+    let facets = if subdivide.as_openscad { Facets::AsWritten } else { Facets::Round };
+    let options = Options { progress: Some(tell), most_bytes: Some(read.most_bytes()), facets };
+    if subdivide.subdivide.is_none() && openscad::is_program(path) {
+        return openscad::open(path, facets);
+    }
+    let import = match subdivide.subdivide {
+        Some(_) if target::is_standard(path) => bail!("--subdivide reads a file, not standard input"),
+        Some(smooth) => import::open_subdivided(path, smooth.scheme(), subdivide.within, &options),
+        None if target::is_standard(path) => import::read_from(&mut io::stdin().lock(), name, &options),
+        None => import::open_with(path, &options),
+    };
+    match import {
+        Err(error @ (ImportError::TooLarge { .. } | ImportError::Expansion { .. })) => {
+            Err(error).context("more than --limit-mib allows")
+        }
+        import => Ok(import?),
+    }
+}
+
+/// Refuses a file of which nothing can be drawn, and with `--strict` one of which anything is left out; else tells what.
+pub fn judge(path: &Path, import: &Import, read: &ReadArgs) -> Result<()> {
+    let summary = import.summary();
+    let told = format!("{}: {summary}", named(path));
+    if summary.draws_nothing() {
+        bail!("{told}");
+    }
+    if summary.is_complete() {
+        return Ok(());
+    }
+    if read.strict {
+        bail!("--strict: {told}");
+    }
+    tracing::warn!("{told}");
+    Ok(())
 }
 
 /// The direction towards the sun, where one is asked for.
 pub fn sun(args: &FrameArgs, import: &Import) -> Option<DVec3> {
     args.sun.or(import.picture.sun)
+}
+
+/// Whether any pixel shows the model, by the image of faces.
+pub fn shows(picture: &Picture) -> bool {
+    picture.face.iter().any(|face| *face != 0)
 }
 
 /// A renderer that holds one model.
@@ -59,27 +112,49 @@ pub fn device(args: &FrameArgs) -> Result<HeadlessRenderer> {
 impl Session {
     /// Opens the device and hands it the model.
     pub fn new(args: &FrameArgs, import: &Import) -> Result<Self> {
-        Self::with(opened(args)?, args, import, SceneSettings::default())
+        Self::with(opened(args)?, args, import, SceneSettings::default(), Arc::new(import.model.clone()))
     }
 
     /// The same with smooth edges, on a device that is open.
     pub fn smooth(on: HeadlessRenderer, args: &FrameArgs, import: &Import, edges: &EdgeArgs) -> Result<Self> {
         let EdgeArgs { samples, smooth_trims } = *edges;
-        Self::with(on, args, import, SceneSettings { samples, smooth_trims, ..SceneSettings::default() })
+        let scene = SceneSettings { samples, smooth_trims, ..SceneSettings::default() };
+        Self::with(on, args, import, scene, Arc::new(import.model.clone()))
+    }
+
+    /// The same of a model that the renderer shares: the import's own is not looked at.
+    pub fn of_one(
+        on: HeadlessRenderer,
+        args: &FrameArgs,
+        import: &Import,
+        model: &Arc<Model>,
+        edges: &EdgeArgs,
+    ) -> Result<Self> {
+        let EdgeArgs { samples, smooth_trims } = *edges;
+        let scene = SceneSettings { samples, smooth_trims, ..SceneSettings::default() };
+        Self::with(on, args, import, scene, Arc::clone(model))
     }
 
     /// The same with a model whose loops may be edited.
     pub fn editable(args: &FrameArgs, import: &Import) -> Result<Self> {
-        Self::with(opened(args)?, args, import, SceneSettings { editable: true, ..SceneSettings::default() })
+        let scene = SceneSettings { editable: true, ..SceneSettings::default() };
+        Self::with(opened(args)?, args, import, scene, Arc::new(import.model.clone()))
     }
 
-    fn with(mut renderer: HeadlessRenderer, args: &FrameArgs, import: &Import, scene: SceneSettings) -> Result<Self> {
+    fn with(
+        mut renderer: HeadlessRenderer,
+        args: &FrameArgs,
+        import: &Import,
+        scene: SceneSettings,
+        model: Arc<Model>,
+    ) -> Result<Self> {
         let highlight = args.highlight.then(Highlight::default);
         let sun = sun(args, import);
         let (trim, solids) = (args.trim, args.solids);
         let solid_budget = args.solid_budget.map(|mebibytes| (mebibytes * f64::from(1 << 20)) as u64);
         let scene = SceneSettings { trim, solids, highlight, sun, solid_budget, ..scene };
-        during("uploading the model", || renderer.upload_with(&import.model, scene))?;
+        let faces = model.face_count();
+        advancing("preparing faces", faces, |told| renderer.upload_shared(model, scene, told))?;
         let mut settings =
             FrameSettings { tolerance_px: args.tolerance, levels: args.factors.0, ..FrameSettings::default() };
         settings.background = import.picture.background.or(settings.background);
@@ -91,6 +166,36 @@ impl Session {
         let picture = during("drawing", || self.renderer.render(camera, &self.settings, outputs))?;
         output::clamps(&picture.stats);
         Ok(picture)
+    }
+
+    /// Whether any pixel of the picture shows the model.
+    pub fn shows(&mut self, camera: &Camera, picture: &Picture) -> Result<bool> {
+        // the background has one colour
+        if picture.colour.windows(2).any(|pair| pair[0] != pair[1]) {
+            return Ok(true);
+        }
+        let faces = Outputs { face: true, ..Outputs::default() };
+        Ok(shows(&self.renderer.render(camera, &self.settings, faces)?))
+    }
+
+    /// Refuses a model of which a picture of all of it shows nothing; else the camera looks past it, which is told, or with
+    /// `--strict` refused. For pictures that show nothing.
+    pub fn blank(&mut self, path: &Path, model: &Model, size: (u32, u32), read: &ReadArgs) -> Result<()> {
+        let camera = camera::whole(model.bounds(), size);
+        let picture = self.render(&camera, Outputs { face: true, ..Outputs::default() })?;
+        if !shows(&picture) {
+            let why = match picture.stats.clamps {
+                0 => "its solids and what cuts it open leave no surface, or none at the centre of any pixel".to_owned(),
+                clamps => format!("{clamps} parts of the picture were not followed to their ends"),
+            };
+            bail!("{}: nothing is seen with all of it in the picture: {why}", named(path));
+        }
+        let told = format!("{}: no pixel shows anything of it: the camera looks past it", named(path));
+        if read.strict {
+            bail!("--strict: {told}");
+        }
+        tracing::warn!("{told}");
+        Ok(())
     }
 
     /// From now on every pass is recorded in every frame, or what a standing view keeps is not.

@@ -18,6 +18,7 @@ mod sheet;
 use crate::args::{Size, SubdivideArgs, SweepArgs};
 use crate::camera::closer;
 use crate::progress::during;
+use crate::target::{self, CSV, Target};
 use crate::{Outcome, output, session, verdict};
 use anyhow::{Result, bail};
 use glam::{DAffine3, DVec3};
@@ -28,6 +29,7 @@ use selvedge::rivals::factors::Seen;
 use selvedge_check::Tracer;
 use serde::Serialize;
 use std::collections::{BTreeMap, BTreeSet};
+use std::path::{Path, PathBuf};
 
 pub use divided::Divided;
 
@@ -73,6 +75,8 @@ type Renderers = BTreeMap<Option<usize>, HeadlessRenderer>;
 
 /// Sweeps every model.
 pub fn run(args: &SweepArgs) -> Result<Outcome> {
+    let inputs: Vec<&Path> = args.models.iter().map(PathBuf::as_path).collect();
+    target::check(&inputs, &args.out.iter().map(|path| Target::new(path, CSV)).collect::<Vec<_>>())?;
     let models = models(args)?;
     if args.against_fixed {
         return against::run(args, &models);
@@ -94,12 +98,13 @@ pub fn run(args: &SweepArgs) -> Result<Outcome> {
             }
         }
     }
-    output::print(&format!("{device}\n{}\n{}", table(&rows), growth::told(&rows)))?;
+    let told = |text: &str| output::print_beside(text, args.out.iter());
+    told(&format!("{device}\n{}\n{}", table(&rows), growth::told(&rows)))?;
     if args.rate {
-        output::print(&rate::told(args, &rows)?)?;
+        told(&rate::told(args, &rows)?)?;
     }
     if let Some(path) = &args.out {
-        output::file(path, |to| {
+        target::write(path, |to| {
             let mut lines = csv::Writer::from_writer(to);
             rows.iter().try_for_each(|row| lines.serialize(row))?;
             Ok(lines.flush()?)
@@ -112,7 +117,7 @@ pub fn run(args: &SweepArgs) -> Result<Outcome> {
 fn models(args: &SweepArgs) -> Result<Vec<(String, Model)>> {
     let mut models = Vec::new();
     for file in &args.models {
-        let import = session::open(file, &SubdivideArgs::default())?;
+        let import = session::open(file, &args.read, &SubdivideArgs::default())?;
         if import.model.trim.is_some() {
             bail!("{}: a volume trims it, and would not go with the copies", file.display());
         }

@@ -178,7 +178,7 @@ impl CloseUp {
     pub fn new(model: &Model) -> Self {
         let known = |face: &Face| Known { bounds: face.surface.bounds(), cut: None };
         let faces = model.parts.iter().map(|part| part.faces.iter().map(known).collect()).collect();
-        Self { faces, ball: Ball::around(model.bounds()), held: Some(Held::Whole) }
+        Self { faces, ball: Ball::around(model.control_bounds()), held: Some(Held::Whole) }
     }
 
     /// What to upload for this view of `model`, the one that this was made for, in place of what was told last.

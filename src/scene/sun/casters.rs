@@ -142,7 +142,7 @@ impl Casters {
             let part = &model.expect("it has instances").parts[instance.part];
             let (sheet, bounds) = *known[instance.part].get_or_insert_with(|| {
                 sheets.push(Sheet::of_part(part));
-                (sheets.len() - 1, part.bounds())
+                (sheets.len() - 1, part.control_bounds())
             });
             if !bounds.is_empty() {
                 let transform = instance.transform;

@@ -16,7 +16,9 @@ use crate::args::InfoArgs;
 use crate::{Outcome, output, session};
 use anyhow::Result;
 use selvedge::model::{Mesh, Model, Part, SurfaceKind};
-use selvedge_io::import::{FaceRecord, Import, ImportReport};
+use selvedge::picture::{SceneSettings, TrimWay};
+use selvedge::renderer::trim_way;
+use selvedge_io::import::{FaceRecord, Import, ImportReport, Summary};
 use serde::Serialize;
 use solids::SolidRow;
 use std::collections::BTreeMap;
@@ -45,7 +47,11 @@ struct Info<'a> {
     assembly: Node<'a>,
     /// Millimetres; absent for an empty model.
     bounds: Option<[[f64; 3]; 2]>,
+    /// How its faces are trimmed unless `--trim` says otherwise; absent where none needs it.
+    trim: Option<&'static str>,
     warnings: Vec<String>,
+    /// What the file states, what of it is drawn, and why the rest is not.
+    summary: Summary,
     report: &'a ImportReport,
     /// Every face of the file: `deviation` and `gap` in millimetres, why it was healed or left out.
     face_records: &'a [FaceRecord],
@@ -82,19 +88,20 @@ struct PartRow<'a> {
 
 /// Reads the model and prints what it holds.
 pub fn run(args: &InfoArgs) -> Result<Outcome> {
-    let import = session::open(&args.model, &args.subdivide)?;
+    let import = session::described(&args.model, &args.read, &args.subdivide)?;
     let mut info = Info::new(&import);
     if !import.model.solids.is_empty() && info.bounds.is_some() {
         info.folded_tiles = Tiles::new(&import.model, &args.camera.of(&import)?);
     }
     if args.json {
         output::print(&serde_json::to_string_pretty(&info)?)?;
-        return Ok(Outcome::Good);
+    } else {
+        output::print(&info.text())?;
+        if args.deep {
+            output::print(&deep::text(info.face_records))?;
+        }
     }
-    output::print(&info.text())?;
-    if args.deep {
-        output::print(&deep::text(info.face_records))?;
-    }
+    session::judge(&args.model, &import, &args.read)?;
     Ok(Outcome::Good)
 }
 
@@ -123,7 +130,9 @@ impl<'a> Info<'a> {
             folded_tiles: None,
             assembly: Node::new(model),
             bounds: (!bounds.is_empty()).then(|| [bounds.min.into(), bounds.max.into()]),
+            trim: trim_way(model, SceneSettings::default()).map(TrimWay::name),
             warnings: import.warnings.iter().map(ToString::to_string).collect(),
+            summary: import.summary(),
             report: &import.report,
             face_records: &import.report.face_records,
             parts,

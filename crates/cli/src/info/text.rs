@@ -28,6 +28,7 @@ impl Info<'_> {
         let mut lines = vec![format!("{}; source unit {}; box {bounds}", self.name, self.unit)];
         let writer = if report.written_by.is_empty() { String::new() } else { format!(", by {}", report.written_by) };
         lines.push(format!("{}{writer}", report.format));
+        lines.extend(self.trim.map(|way| format!("faces are trimmed by the way `{way}`")));
         lines.join("\n")
     }
 
@@ -84,18 +85,22 @@ impl Info<'_> {
         if report.irregular > 0 {
             lines.push(format!("subdivision: {} irregular vertices", report.irregular));
         }
-        let mut list = |what: &str, counts: &BTreeMap<String, usize>| {
+        let mut list = |what: &str, counts: Vec<(String, usize)>| {
             if !counts.is_empty() {
-                let total: usize = counts.values().sum();
+                let total: usize = counts.iter().map(|(_, n)| n).sum();
                 lines.push(format!("{what}: {total}"));
                 lines.extend(counts.iter().map(|(name, n)| format!("  {n} x {name}")));
             }
         };
-        list("faces left out", &report.dropped);
-        list("healed", &report.healed);
-        list("not drawn", &report.ignored);
-        list("layers, items on them", &report.layers);
-        list("warnings", &report.warnings);
+        let named = |counts: &BTreeMap<String, usize>| counts.iter().map(|(name, n)| (name.clone(), *n)).collect();
+        list("faces left out", report.dropped.iter().collect());
+        for (kind, reasons) in &report.left_out {
+            list(kind, reasons.iter().collect());
+        }
+        list("healed", report.healed.iter().collect());
+        list("not drawn", named(&report.ignored));
+        list("layers, items on them", named(&report.layers));
+        list("warnings", named(&report.warnings));
         if !report.external_files.is_empty() {
             lines.push(format!("other files named, not read: {}", report.external_files.join(", ")));
         }

@@ -21,8 +21,9 @@ pub use way::Way;
 use crate::args::{Size, TrimsArgs};
 use crate::camera::zoomed;
 use crate::progress::during;
+use crate::target::{self, CSV, JSON};
 use crate::{Outcome, output, session};
-use anyhow::{Context, Result};
+use anyhow::Result;
 use measure::{Bench, Row, Sweep};
 use selvedge::model::Model;
 use selvedge::rivals::many_holes;
@@ -32,19 +33,23 @@ use way::Contender;
 
 /// Measures everything; prints and writes it.
 pub fn run(args: &TrimsArgs) -> Result<Outcome> {
+    let paths = models(args);
+    if let Some(dir) = &args.out {
+        let tables = [("trims.json".to_owned(), JSON), ("trims.csv".to_owned(), CSV)];
+        target::folder(&paths.iter().map(PathBuf::as_path).collect::<Vec<_>>(), dir, tables)?;
+    }
     let mut rows = Vec::new();
     if args.holes > 0 {
         let model = many_holes(args.holes);
         rows.extend(measured(args, &model.name.clone(), model)?);
     }
-    for path in &models(args) {
+    for path in &paths {
         let name = path.file_stem().unwrap_or_default().to_string_lossy().into_owned();
-        rows.extend(measured(args, &name, session::open(path, &Default::default())?.model)?);
+        rows.extend(measured(args, &name, session::open(path, &args.read, &Default::default())?.model)?);
     }
     output::print(&report::table(&rows))?;
     output::print(&fit::text(&rows))?;
     if let Some(dir) = &args.out {
-        std::fs::create_dir_all(dir).with_context(|| format!("cannot make {}", dir.display()))?;
         output::json(&dir.join("trims.json"), &rows)?;
         report::csv(&dir.join("trims.csv"), &rows)?;
         plot::all(dir, &rows)?;

@@ -9,7 +9,8 @@
 
 use super::measure::{Row, Sweep};
 use super::way::Way;
-use anyhow::{Context, Result};
+use crate::target;
+use anyhow::Result;
 use plotters::prelude::*;
 use std::ops::Range;
 use std::path::Path;
@@ -79,7 +80,9 @@ pub fn all(dir: &Path, rows: &[Row]) -> Result<()> {
     for model in models {
         for plot in &PLOTS {
             let path = dir.join(format!("{}-{}.svg", model.replace([' ', '/'], "_"), plot.file));
-            draw(&path, model, plot, rows).with_context(|| format!("cannot write {}", path.display()))?;
+            if let Some(text) = draw(model, plot, rows)? {
+                target::write(&path, |to| Ok(to.write_all(text.as_bytes())?))?;
+            }
         }
     }
     Ok(())
@@ -106,14 +109,16 @@ fn decades(values: impl Iterator<Item = f64>) -> Range<f64> {
     from..to.max(10.0 * from)
 }
 
-fn draw(path: &Path, model: &str, plot: &Plot<'_>, rows: &[Row]) -> Result<()> {
+/// The text of a plot, if there is anything to plot.
+fn draw(model: &str, plot: &Plot<'_>, rows: &[Row]) -> Result<Option<String>> {
     let lines = lines(model, plot, rows);
     if lines.is_empty() {
-        return Ok(());
+        return Ok(None);
     }
+    let mut text = String::new();
     let points = || lines.iter().flat_map(|(_, points)| points);
     let (x, y) = (decades(points().map(|p| p.0)), decades(points().map(|p| p.1)));
-    let area = SVGBackend::new(path, SIZE).into_drawing_area();
+    let area = SVGBackend::with_string(&mut text, SIZE).into_drawing_area();
     area.fill(&WHITE)?;
     let mut chart = ChartBuilder::on(&area)
         .caption(format!("{model}: {}", plot.title), ("sans-serif", 16))
@@ -141,7 +146,9 @@ fn draw(path: &Path, model: &str, plot: &Plot<'_>, rows: &[Row]) -> Result<()> {
         .border_style(BLACK.mix(0.2))
         .draw()?;
     area.present()?;
-    Ok(())
+    drop(chart);
+    drop(area);
+    Ok(Some(text))
 }
 
 #[cfg(test)]

@@ -1,7 +1,7 @@
 //! The measurements as a table and as CSV.
 
 use super::measure::{Row, Sweep};
-use crate::output;
+use crate::{output, target};
 use anyhow::Result;
 use comfy_table::CellAlignment;
 use indicatif::HumanBytes;
@@ -64,7 +64,7 @@ pub fn sweep(sweep: Sweep) -> &'static str {
 
 /// The same without the passes and objects, which the JSON has; empty where the device had no room.
 pub fn csv(path: &Path, rows: &[Row]) -> Result<()> {
-    output::file(path, |to| {
+    target::write(path, |to| {
         let mut lines = csv::Writer::from_writer(to);
         lines.write_record([
             "model",

@@ -11,10 +11,12 @@
 //!
 //! [`Builder`] takes nodes in any order and may share them; [`Builder::finish`] makes the [`Tree`].
 
-use serde::{Deserialize, Serialize};
+#[cfg(feature = "serde")]
+use serde::Deserialize;
 
 /// A Boolean operation on two solids.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Op {
     /// `L+R`: in either.
     Union,
@@ -39,7 +41,8 @@ impl Op {
 }
 
 /// One node; children are indices of nodes that stand before it.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Node {
     /// No point (`false`) or every point (`true`).
     Constant(bool),
@@ -194,18 +197,21 @@ impl Builder {
 
 /// A Boolean expression in postfix order; see the module's figure. Every node has one parent but the
 /// last, which has none.
-#[derive(Clone, Debug, PartialEq, Eq, Hash, Serialize, Deserialize)]
-#[serde(try_from = "TreeData")]
+#[derive(Clone, Debug, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "TreeData"))]
 pub struct Tree {
     nodes: Vec<Node>,
 }
 
 /// A tree before its nodes are checked.
+#[cfg(feature = "serde")]
 #[derive(Deserialize)]
 struct TreeData {
     nodes: Vec<Node>,
 }
 
+#[cfg(feature = "serde")]
 impl TryFrom<TreeData> for Tree {
     type Error = TreeError;
 

@@ -3,10 +3,12 @@
 use super::{Bounds, Colour};
 use crate::spline::{Bezier, Control, MAX_DEGREE, Surface};
 use glam::{DVec2, DVec3};
-use serde::{Deserialize, Serialize};
+#[cfg(feature = "serde")]
+use serde::Deserialize;
 
 /// What a surface was in its source, before it became a rational B-spline.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 #[allow(missing_docs)]
 pub enum SurfaceKind {
     Plane,
@@ -24,8 +26,9 @@ pub enum SurfaceKind {
 ///
 /// Control points are homogeneous, `(w u, w v, w)`. The end of each curve is the start of the next,
 /// bit for bit, the last one's the first one's: [`TrimLoop::new`] sees to it.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "LoopData")]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "LoopData"))]
 pub struct TrimLoop {
     curves: Vec<Vec<DVec3>>,
 }
@@ -42,8 +45,9 @@ pub struct LoopAt {
 }
 
 /// One face.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "super::stored::FaceData")]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "super::stored::FaceData"))]
 pub struct Face {
     /// Number in the source, written to the face-id image; for STEP `#123` is 123. Never 0.
     pub id: u32,
@@ -81,6 +85,7 @@ pub enum FaceError {
 }
 
 /// What is stored of a [`TrimLoop`], before it is checked.
+#[cfg(feature = "serde")]
 #[derive(Deserialize)]
 struct LoopData {
     curves: Vec<Vec<DVec3>>,
@@ -90,6 +95,7 @@ struct LoopData {
 /// backwards meets itself within the rounding of a division by the weight.
 const STORED_GAP: f64 = 4.0 * f64::EPSILON;
 
+#[cfg(feature = "serde")]
 impl TryFrom<LoopData> for TrimLoop {
     type Error = FaceError;
 
@@ -220,9 +226,9 @@ impl TrimLoop {
 }
 
 impl Face {
-    /// A box that contains the trimmed face: control points of the part of the surface that its
-    /// loops can reach.
-    pub fn bounds(&self) -> Bounds {
+    /// Box of the control points of the part of the surface that its loops can reach: it contains the trimmed face, and
+    /// may be much larger than it. How far the face reaches is [`Face::bounds`].
+    pub fn control_bounds(&self) -> Bounds {
         let (lo, hi) = self
             .loops
             .iter()

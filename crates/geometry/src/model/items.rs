@@ -120,7 +120,7 @@ impl Model {
             let part = &self.parts[instance.part];
             let (opaque, closed) = (instance.is_opaque(part), part.closed && self.trim.is_none());
             items.open += usize::from(!opaque && !closed);
-            if !closed || opaque && !all || part.bounds().is_empty() {
+            if !closed || opaque && !all || part.control_bounds().is_empty() {
                 continue;
             }
             let part = shared[instance.part].get_or_insert_with(|| Arc::new(part.clone()));

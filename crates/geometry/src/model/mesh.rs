@@ -8,11 +8,13 @@
 
 use super::{Bounds, Colour};
 use glam::DVec3;
-use serde::{Deserialize, Serialize};
+#[cfg(feature = "serde")]
+use serde::Deserialize;
 
 /// Triangles that share vertices. Valid by construction: see [`Mesh::new`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "MeshData")]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "MeshData"))]
 pub struct Mesh {
     /// Number in the source, written to the face-id image. Never 0.
     pub id: u32,
@@ -39,6 +41,7 @@ pub enum MeshError {
 }
 
 /// What is stored of a [`Mesh`], before it is checked.
+#[cfg(feature = "serde")]
 #[derive(Deserialize)]
 struct MeshData {
     id: u32,
@@ -48,6 +51,7 @@ struct MeshData {
     normals: Vec<[DVec3; 3]>,
 }
 
+#[cfg(feature = "serde")]
 impl TryFrom<MeshData> for Mesh {
     type Error = MeshError;
 

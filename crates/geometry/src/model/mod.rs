@@ -24,6 +24,7 @@ mod mesh;
 mod section;
 mod solid;
 pub mod srgb;
+#[cfg(feature = "serde")]
 mod stored;
 mod xray;
 
@@ -32,15 +33,16 @@ pub use face::{Face, FaceError, LoopAt, SurfaceKind, TrimLoop};
 pub use images::Images;
 pub use items::Items;
 pub use mesh::{Mesh, MeshError};
+pub(crate) use solid::{Boxes, meet};
 pub use solid::{
     CarriedFace, Carrier, Lone, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
     SurfaceTable, outward,
 };
+#[cfg(feature = "serde")]
 pub use stored::ModelError;
 pub use xray::UnknownName;
 
 use glam::{DAffine3, DVec3};
-use serde::{Deserialize, Serialize};
 
 /// Red, green, blue, opacity in linear light, each in `[0, 1]`.
 pub type Colour = [f32; 4];
@@ -49,8 +51,9 @@ pub type Colour = [f32; 4];
 pub const GREY: Colour = [0.262, 0.262, 0.262, 1.0];
 
 /// Everything that one file or scene holds.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "stored::ModelData")]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "stored::ModelData"))]
 pub struct Model {
     /// The file's or product's name.
     pub name: String,
@@ -71,7 +74,8 @@ pub struct Model {
 }
 
 /// One body: a closed solid, or an open shell.
-#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Part {
     /// Name in the source, or empty.
     pub name: String,
@@ -84,7 +88,8 @@ pub struct Part {
 }
 
 /// A part placed in the model.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Instance {
     /// Index into [`Model::parts`].
     pub part: usize,
@@ -148,9 +153,10 @@ impl Bounds {
 }
 
 impl Part {
-    /// Box of the trimmed faces (see [`Face::bounds`]) and meshes in part coordinates.
-    pub fn bounds(&self) -> Bounds {
-        let faces = self.faces.iter().map(Face::bounds);
+    /// Box of the control points of its faces (see [`Face::control_bounds`]) and of its meshes, part coordinates: it
+    /// contains the part, and costs little.
+    pub fn control_bounds(&self) -> Bounds {
+        let faces = self.faces.iter().map(Face::control_bounds);
         faces.chain(self.meshes.iter().map(Mesh::bounds)).fold(Bounds::EMPTY, Bounds::union)
     }
 }
@@ -164,9 +170,10 @@ impl Model {
         said.map_or(SurfaceTable::ROUNDED, |share| share.clamp(SurfaceTable::FINEST, SurfaceTable::COARSEST))
     }
 
-    /// Box of all instances in model coordinates.
-    pub fn bounds(&self) -> Bounds {
-        let parts: Vec<Bounds> = self.parts.iter().map(Part::bounds).collect();
+    /// Box of the placed boxes of all parts' [control points](Part::control_bounds) and of the solids, model coordinates:
+    /// it contains the model, and may be much larger than it. How far the model reaches is [`Model::bounds`].
+    pub fn control_bounds(&self) -> Bounds {
+        let parts: Vec<Bounds> = self.parts.iter().map(Part::control_bounds).collect();
         self.instances
             .iter()
             .filter(|i| !parts[i.part].is_empty())

@@ -91,7 +91,7 @@ impl Model {
         let mut open = false;
         for instance in &self.instances {
             let part = &self.parts[instance.part];
-            let bounds = part.bounds();
+            let bounds = part.control_bounds();
             if bounds.is_empty() {
                 continue;
             }

@@ -2,7 +2,8 @@
 
 use super::spare::{spare, without};
 use super::{Bezier, Control, MAX_DEGREE, Span};
-use serde::{Deserialize, Serialize};
+#[cfg(feature = "serde")]
+use serde::Deserialize;
 
 /// Why a spline is not one.
 #[allow(missing_docs)] // the messages say what each field is
@@ -38,8 +39,9 @@ pub enum SplineError {
 ///
 /// Invariants, established by [`BSpline::new`]: `knots.len() == points.len() + degree + 1`, knots
 /// non-decreasing and finite, interior multiplicity at most the degree, weights positive.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "BSplineData<P>", bound(deserialize = "P: Control + Deserialize<'de>"))]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "BSplineData<P>", bound(deserialize = "P: Control + Deserialize<'de>")))]
 pub struct BSpline<P> {
     pub(super) degree: usize,
     pub(super) knots: Vec<f64>,
@@ -47,6 +49,7 @@ pub struct BSpline<P> {
 }
 
 /// What is stored of a [`BSpline`], before it is checked.
+#[cfg(feature = "serde")]
 #[derive(Deserialize)]
 struct BSplineData<P> {
     degree: usize,
@@ -54,6 +57,7 @@ struct BSplineData<P> {
     points: Vec<P>,
 }
 
+#[cfg(feature = "serde")]
 impl<P: Control> TryFrom<BSplineData<P>> for BSpline<P> {
     type Error = SplineError;
 

@@ -42,6 +42,7 @@ pub use bezier::{Bezier, Span};
 pub use bspline::{BSpline, SplineError};
 pub use derivative_bound::DerivativeBound;
 pub use differential::{Curvature, Jet2};
+pub(crate) use net::Net;
 pub use normal_cone::NormalCone;
 pub use patch::{Jet, Patch};
 pub use surface::{PatchGrid, Surface, SurfacePatch};

@@ -8,7 +8,7 @@
 //! Source: products from G. Farin, *Curves and Surfaces for CAGD*, 2002, section 6.10.
 
 use super::{Control, Patch, binomial};
-use glam::{DVec3, DVec4};
+use glam::{DVec2, DVec3, DVec4};
 use std::ops::{Add, Mul, Sub};
 
 /// `P` and `w`. Derivatives do not change when the surface is moved; moved to the origin, less cancels.
@@ -22,18 +22,19 @@ pub(super) fn nets(patch: &Patch) -> (Net<DVec3>, Net<f64>) {
 
 /// A tensor-product Bernstein polynomial, `u` fastest.
 #[derive(Clone)]
-pub(super) struct Net<T> {
+pub(crate) struct Net<T> {
     pub n: usize,
     pub k: usize,
     values: Vec<T>,
 }
 
 /// What a net has for coefficients.
-pub(super) trait Value:
+pub(crate) trait Value:
     Copy + Default + Add<Output = Self> + Sub<Output = Self> + Mul<f64, Output = Self>
 {
 }
 impl Value for f64 {}
+impl Value for DVec2 {}
 impl Value for DVec3 {}
 
 impl<T: Value> Net<T> {

@@ -4,14 +4,16 @@ use super::bspline::{Cuts, SplineError, check_knots, check_points};
 use super::spare::{spare, without};
 use super::{Jet, Patch};
 use glam::{DVec3, DVec4};
-use serde::{Deserialize, Serialize};
+#[cfg(feature = "serde")]
+use serde::Deserialize;
 
 /// A rational B-spline surface.
 ///
 /// `points[j * count_u + i]` is `P_ij`, `i` along `u`. The invariants of
 /// [`BSpline`](super::BSpline) hold in both directions.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "SurfaceData")]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "SurfaceData"))]
 pub struct Surface {
     degree_u: usize,
     degree_v: usize,
@@ -21,6 +23,7 @@ pub struct Surface {
 }
 
 /// What is stored of a [`Surface`], before it is checked.
+#[cfg(feature = "serde")]
 #[derive(Deserialize)]
 struct SurfaceData {
     degree_u: usize,
@@ -30,6 +33,7 @@ struct SurfaceData {
     points: Vec<DVec4>,
 }
 
+#[cfg(feature = "serde")]
 impl TryFrom<SurfaceData> for Surface {
     type Error = SplineError;
 

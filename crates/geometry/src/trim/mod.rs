@@ -22,13 +22,19 @@
 //! | [`LoopIndex`] | winding number, rectangle class, distance: exact curves | `O(log n)` |
 //! | [`TrimTable`] | in or out, by scan line, the way the GPU does | one binary search |
 //! | [`ExactTrim`] | winding number in single precision, as the GPU does without a table | a few arcs |
+//! | [`Face::bounds`], [`Part::bounds`], [`Model::bounds`] | how far the kept points reach | branch and bound |
 //! | [`crossing`] | whether loops cross | nearly linear |
 //! | [`chord_bend, segment_count`] | how many chords stay within a tolerance | closed form |
 //!
 //! Sources: R. Wu, J. Peters, *Correct resolution rendering of trimmed spline surfaces*, 2014 (the
 //! table and the half-open segments); A. Schollmeyer, B. Fröhlich, *Direct trimming of NURBS
 //! surfaces on the GPU*, 2009 (bi-monotone pieces).
+//!
+//! [`Face::bounds`]: crate::model::Face::bounds
+//! [`Part::bounds`]: crate::model::Part::bounds
+//! [`Model::bounds`]: crate::model::Model::bounds
 
+mod bounds;
 mod classify;
 mod crossing;
 mod distance;
@@ -38,6 +44,7 @@ mod piece;
 mod table;
 mod winding;
 
+pub use bounds::{ANALYTIC, OTHER};
 pub use classify::RectSide;
 pub use crossing::{Crossing, crossing};
 pub use exact::{AT_HIGH, AT_LOW, Cell, Entry, ExactTrim, MARGIN};

@@ -1,5 +1,6 @@
 //! The trim test against exact answers, brute force and stated bounds.
 
+mod bounds;
 mod check;
 mod flatten;
 mod hard_crossings;

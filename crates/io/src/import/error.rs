@@ -10,9 +10,12 @@ pub enum ImportError {
     /// Neither content nor extension is one that is read here.
     #[error("{file}: not a CAD file of a known format")]
     Format { file: String },
-    /// Offsets are 32 bits wide.
-    #[error("{file}: larger than 4 GiB")]
-    TooLarge { file: String },
+    /// More than [`Options::most_bytes`](super::Options::most_bytes) allows.
+    #[error("{file}: larger than {limit} bytes, the most that is read")]
+    TooLarge { file: String, limit: u64 },
+    /// Not a file, or nothing that ever ends.
+    #[error("{file}: {what}")]
+    NoFile { file: String, what: &'static str },
     /// A gzip bomb, or not CAD text.
     #[error("{file}: gzip data expand to more than {limit} bytes")]
     Expansion { file: String, limit: u64 },

@@ -1,17 +1,18 @@
 //! CAD files in, [`Model`]s out.
 //!
 //! ```text
-//!   path ──read, gunzip──▶ bytes ──format by content──▶ step, iges ───┬─▶ Import { model, warnings, report }
+//!   path ──source──▶ bytes ──format by content, name──▶ step, iges ───┬─▶ Import { model, warnings, report }
 //!                                                    ├▶ obj, bv ─────┤
 //!                                                    ├▶ rhino ───────┤
-//!                                                    ├▶ meshes ──────┤  STL, OFF, PLY, 3MF, AMF, glTF
 //!                                                    ├▶ scad, brlcad ┤  Boolean solids
+//!                                                    ├▶ meshes ──────┤  STL, OFF, PLY, 3MF, AMF, glTF
 //!                                                    ├▶ scene ───────┤  by the file's name
 //!                                                    └▶ native ──────┘
 //! ```
 //!
 //! A file that is not what it claims to be is an [`ImportError`]. Everything smaller (a bad record, a
-//! face that cannot be built) is left out, and a [`Warning`] names the file and the line or entity.
+//! face that cannot be built) is left out, and a [`Warning`] names the file and the line or entity;
+//! [`Import::summary`] counts what is there and what is not.
 //! Time and memory are bounded by a multiple of the file's size, whatever its content.
 
 mod brlcad;
@@ -29,6 +30,7 @@ mod native;
 mod obj;
 mod parts;
 mod progress;
+mod reasons;
 mod report;
 #[cfg(feature = "rhino")]
 mod rhino;
@@ -36,23 +38,25 @@ mod scad;
 #[cfg(feature = "scene")]
 mod scene;
 mod solid;
+mod source;
 mod step;
 mod subdivided;
+mod summary;
 
 pub use camera::{Lens, NamedCamera, PictureSettings, Stance};
 pub use error::ImportError;
 pub use obj::cage::Cage;
 pub(crate) use progress::FaceCount;
 pub use progress::{Options, Stage};
-pub(crate) use report::Warnings;
+pub use reasons::Reasons;
+pub(crate) use report::{FACE_LOST, Warnings};
 pub use report::{FaceRecord, ImportReport, Place, Warning};
 pub use scad::Facets;
 pub use subdivided::open_subdivided;
+pub use summary::{Summary, Tally};
 
 use crate::model::Model;
-use rayon::prelude::*;
-use std::fs::File;
-use std::io::{Read, Seek, SeekFrom};
+use std::io::Read;
 use std::path::Path;
 
 /// What a file held.
@@ -70,15 +74,8 @@ pub struct Import {
     pub picture: PictureSettings,
 }
 
-/// A gzip stream may expand by this factor at most. STEP text shrinks 4 to 12 times; deflate itself
-/// cannot exceed 1032.
-const MAX_EXPANSION: u64 = 100;
-
 /// How Rhino's files begin.
 const RHINO: &[u8] = b"3D Geometry File Format ";
-
-/// Expansion that is always allowed, whatever the factor.
-const FREE_EXPANSION: u64 = 1 << 20;
 
 /// Reads a file; the format is chosen by its content. Gzip (`.stpz`, `.step.gz`) is undone first.
 ///
@@ -94,58 +91,108 @@ pub fn open(path: &Path) -> Result<Import, ImportError> {
 /// As [`open`].
 pub fn open_with(path: &Path, options: &Options<'_>) -> Result<Import, ImportError> {
     let name = path.display().to_string();
-    let bytes = load(path, &name, options)?;
-    options.tell(Stage::Parse { bytes: bytes.len() as u64 });
-    if native::recognise(&bytes) {
-        return native(&bytes, &name);
-    }
-    if step::recognise(&bytes) {
-        return step::read(&bytes, &name, options);
-    }
-    if iges::recognise(&bytes) {
-        return iges(&bytes, &name);
-    }
-    if bytes.starts_with(RHINO) {
-        return rhino(&bytes, &name);
-    }
-    let file = path.file_name().and_then(|f| f.to_str()).map(str::to_ascii_lowercase).unwrap_or_default();
-    let named = |all: &[&str]| all.iter().any(|e| file.ends_with(e));
-    let text = std::str::from_utf8(&bytes).unwrap_or_default();
-    if named(&[".stp", ".step", ".p21", ".stpz", ".stp.gz", ".step.gz"]) {
-        Err(ImportError::NotStep { file: name })
-    } else if named(&[".igs", ".iges", ".igs.gz", ".iges.gz"]) {
-        Err(ImportError::NotIges { file: name })
-    } else if named(&[".selvedge", ".selvedge.gz"]) {
-        native(&bytes, &name)
-    } else if named(&[".csg", ".csg.gz"]) {
-        scad::read(text_of(&bytes, &name)?, &name, options.facets, path.parent())
-    } else if named(&[".asc", ".asc.gz"]) {
-        brlcad(&bytes, &name)
-    } else if named(&[".bv", ".bv.gz"]) {
-        bv(&bytes, &name)
-    } else if named(&[".toml", ".toml.gz"]) {
-        scene(&bytes, &name, path.parent())
-    } else if named(&[".obj", ".obj.gz"]) {
-        obj(&bytes, &name, path.parent())
-    } else if let Some(ending) = MESHES.into_iter().find(|e| named(&[&format!(".{e}"), &format!(".{e}.gz")])) {
-        mesh(&bytes, &name, ending, path.parent())
-    } else if scad::recognise(text) {
-        scad::read(text, &name, options.facets, path.parent())
-    } else if brlcad::recognise(text) {
-        brlcad(&bytes, &name)
-    } else if bv::recognise(&bytes) {
-        bv(&bytes, &name)
-    } else if obj::recognise(&bytes) {
-        obj(&bytes, &name, path.parent())
-    } else if let Some(ending) = recognise_mesh(&bytes) {
-        mesh(&bytes, &name, ending, path.parent())
-    } else {
-        Err(ImportError::Format { file: name })
+    let bytes = source::load(path, &name, options)?;
+    read(&bytes, &name, path.parent(), options)
+}
+
+/// Reads a stream to its end, as [`open_with`]; `name` stands for it in messages, and its ending tells the format where
+/// the content does not. Other files that it names are not found.
+///
+/// # Errors
+/// As [`open`].
+pub fn read_from(stream: &mut dyn Read, name: &str, options: &Options<'_>) -> Result<Import, ImportError> {
+    let known = |beginning: &[u8]| Format::of(beginning, name).is_some();
+    let bytes = source::drain(stream, name, options.most_bytes(), known)?;
+    read(&bytes, name, None, options)
+}
+
+/// What is read here.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Format {
+    Native,
+    Step,
+    Iges,
+    Rhino,
+    Scad,
+    Brlcad,
+    Bv,
+    Scene,
+    Obj,
+    /// Triangles, by the ending of the form's name.
+    Mesh(&'static str),
+}
+
+impl Format {
+    /// By the beginning of the content where it is certain, else by the name, else by what the content looks like.
+    fn of(bytes: &[u8], name: &str) -> Option<Self> {
+        let certain: [(Self, fn(&[u8]) -> bool); 4] = [
+            (Self::Native, native::recognise),
+            (Self::Step, step::recognise),
+            (Self::Iges, iges::recognise),
+            (Self::Rhino, |bytes| bytes.starts_with(RHINO)),
+        ];
+        if let Some((format, _)) = certain.iter().find(|(_, recognise)| recognise(bytes)) {
+            return Some(*format);
+        }
+        const NAMED: [(&str, Format); 19] = [
+            (".stp", Format::Step),
+            (".step", Format::Step),
+            (".p21", Format::Step),
+            (".stpz", Format::Step),
+            (".igs", Format::Iges),
+            (".iges", Format::Iges),
+            (".selvedge", Format::Native),
+            (".csg", Format::Scad),
+            (".asc", Format::Brlcad),
+            (".bv", Format::Bv),
+            (".toml", Format::Scene),
+            (".obj", Format::Obj),
+            (".stl", Format::Mesh("stl")),
+            (".off", Format::Mesh("off")),
+            (".ply", Format::Mesh("ply")),
+            (".3mf", Format::Mesh("3mf")),
+            (".amf", Format::Mesh("amf")),
+            (".gltf", Format::Mesh("gltf")),
+            (".glb", Format::Mesh("glb")),
+        ];
+        let file = name.to_ascii_lowercase();
+        let file = file.strip_suffix(".gz").unwrap_or(&file);
+        if let Some((_, format)) = NAMED.iter().find(|(ending, _)| file.ends_with(ending)) {
+            return Some(*format);
+        }
+        let text =
+            std::str::from_utf8(bytes).or_else(|e| std::str::from_utf8(&bytes[..e.valid_up_to()])).unwrap_or_default();
+        if scad::recognise(text) {
+            Some(Self::Scad)
+        } else if brlcad::recognise(text) {
+            Some(Self::Brlcad)
+        } else if bv::recognise(bytes) {
+            Some(Self::Bv)
+        } else if obj::recognise(bytes) {
+            Some(Self::Obj)
+        } else {
+            recognise_mesh(bytes).map(Self::Mesh)
+        }
     }
 }
 
-/// Endings of files of triangles.
-const MESHES: [&str; 7] = ["stl", "off", "ply", "3mf", "amf", "gltf", "glb"];
+/// Reads what has been loaded; other files are looked for in `folder`, if there is one.
+fn read(bytes: &[u8], name: &str, folder: Option<&Path>, options: &Options<'_>) -> Result<Import, ImportError> {
+    options.tell(Stage::Parse { bytes: bytes.len() as u64 });
+    match Format::of(bytes, name) {
+        Some(Format::Native) => native(bytes, name),
+        Some(Format::Step) => step::read(bytes, name, options),
+        Some(Format::Iges) => iges(bytes, name),
+        Some(Format::Rhino) => rhino(bytes, name),
+        Some(Format::Scad) => scad::read(text_of(bytes, name)?, name, options.facets, folder),
+        Some(Format::Brlcad) => brlcad(bytes, name),
+        Some(Format::Bv) => bv(bytes, name),
+        Some(Format::Scene) => scene(bytes, name, folder),
+        Some(Format::Obj) => obj(bytes, name, folder),
+        Some(Format::Mesh(ending)) => mesh(bytes, name, ending, folder),
+        None => Err(ImportError::Format { file: name.to_owned() }),
+    }
+}
 
 #[cfg(feature = "meshes")]
 use meshes::recognise as recognise_mesh;
@@ -172,32 +219,6 @@ pub fn mesh(bytes: &[u8], name: &str, ending: &str, folder: Option<&Path>) -> Re
             folder.map(|f| format!(" in {}", f.display())).unwrap_or_default()
         ),
     });
-}
-
-/// The bytes of a file, gzip undone.
-fn load(path: &Path, name: &str, options: &Options<'_>) -> Result<Vec<u8>, ImportError> {
-    let unreadable = |source| ImportError::Read { file: name.to_owned(), source };
-    let found = std::fs::metadata(path).map_err(unreadable)?;
-    let size = found.len();
-    if size > u64::from(u32::MAX) {
-        return Err(ImportError::TooLarge { file: name.to_owned() });
-    }
-    options.tell(Stage::Read { bytes: size });
-    let bytes = if found.is_file() && size > 0 { read_apart(path, size as usize) } else { std::fs::read(path) };
-    let bytes = bytes.map_err(unreadable)?;
-    if bytes.starts_with(&[0x1f, 0x8b]) { inflate(&bytes, name) } else { Ok(bytes) }
-}
-
-/// A file's first `size` bytes: to give memory to what is read takes about as long as to copy it, so several threads do.
-fn read_apart(path: &Path, size: usize) -> std::io::Result<Vec<u8>> {
-    const SHARE: usize = 1 << 20;
-    let mut bytes = vec![0; size];
-    bytes.par_chunks_mut(SHARE).enumerate().try_for_each(|(k, share)| {
-        let mut file = File::open(path)?;
-        file.seek(SeekFrom::Start((k * SHARE) as u64))?;
-        file.read_exact(share)
-    })?;
-    Ok(bytes)
 }
 
 /// Reads ISO 10303-21 text (STEP AP203, AP214, AP242); `name` is the file's name in messages.
@@ -257,9 +278,9 @@ pub fn cages(bytes: &[u8], name: &str) -> Result<Vec<Cage>, ImportError> {
 ///
 /// # Errors
 /// As [`cages`], and when the file cannot be read.
-pub fn open_cages(path: &Path) -> Result<Vec<Cage>, ImportError> {
+pub fn open_cages(path: &Path, options: &Options<'_>) -> Result<Vec<Cage>, ImportError> {
     let name = path.display().to_string();
-    cages(&load(path, &name, &Options::default())?, &name)
+    cages(&source::load(path, &name, options)?, &name)
 }
 
 /// Reads a BezierView `.bv` file.
@@ -321,55 +342,9 @@ fn stem(file: &str) -> String {
     Path::new(file).file_stem().map(|s| s.to_string_lossy().into_owned()).unwrap_or_default()
 }
 
-/// Undoes gzip; output is bounded by [`MAX_EXPANSION`].
-fn inflate(bytes: &[u8], name: &str) -> Result<Vec<u8>, ImportError> {
-    let limit = (bytes.len() as u64 * MAX_EXPANSION + FREE_EXPANSION).min(u64::from(u32::MAX));
-    let mut text = Vec::new();
-    flate2::read::MultiGzDecoder::new(bytes)
-        .take(limit + 1)
-        .read_to_end(&mut text)
-        .map_err(|source| ImportError::Read { file: name.to_owned(), source })?;
-    if text.len() as u64 > limit {
-        return Err(ImportError::Expansion { file: name.to_owned(), limit });
-    }
-    Ok(text)
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;
-    use std::io::Write;
-
-    fn gzip(text: &[u8]) -> Vec<u8> {
-        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
-        encoder.write_all(text).unwrap();
-        encoder.finish().unwrap()
-    }
-
-    #[test]
-    fn gzip_round_trip() {
-        let text = b"ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n";
-        assert_eq!(inflate(&gzip(text), "a.stpz").unwrap(), text);
-    }
-
-    #[test]
-    fn gzip_bomb_is_an_error() {
-        let bomb = gzip(&vec![b' '; 1 << 24]);
-        assert!(matches!(inflate(&bomb, "bomb.gz"), Err(ImportError::Expansion { .. })));
-    }
-
-    /// Files of no share, of one, and of several that do not fill the last.
-    #[test]
-    fn files_are_read_whole() {
-        let path = std::env::temp_dir().join(format!("selvedge-read-{}", std::process::id()));
-        for size in [0usize, 1, 1 << 20, (3 << 20) + 17] {
-            let written: Vec<u8> = (0..size).map(|i| (i ^ i >> 8 ^ i >> 16) as u8).collect();
-            std::fs::write(&path, &written).unwrap();
-            let read = load(&path, "read", &Options::default()).unwrap();
-            assert!(read == written, "{size} bytes");
-        }
-        std::fs::remove_file(&path).unwrap();
-    }
 
     #[test]
     fn missing_and_unknown_files_are_named() {

@@ -1,8 +1,8 @@
 //! How far an import has come, told to whoever waits for it.
 //!
 //! ```text
-//!   Read ──▶ Parse ──▶ Faces 0/n ──▶ ... ──▶ Faces n/n
-//!            from one thread      from any thread, in any order
+//!   Read ──▶ Parse ──▶ Records b/n … n/n ──▶ Bodies 0/n … ──▶ Faces 0/n ──▶ ... ──▶ Faces n/n
+//!            from one thread; both of STEP alone                  from any thread, in any order
 //! ```
 
 use super::Facets;
@@ -22,6 +22,20 @@ pub enum Stage {
         /// Size of the data, decompressed.
         bytes: u64,
     },
+    /// So far in the text.
+    Records {
+        /// Bytes read.
+        read: u64,
+        /// All of them.
+        bytes: u64,
+    },
+    /// Records become bodies: their faces and edges are looked up.
+    Bodies {
+        /// Bodies done before this one.
+        mapped: usize,
+        /// All of them.
+        total: usize,
+    },
     /// Surfaces and trims are made, most of the work in most files.
     Faces {
         /// Faces done, whether or not they could be built.
@@ -34,21 +48,31 @@ pub enum Stage {
 /// How to import.
 #[derive(Clone, Copy, Default)]
 pub struct Options<'a> {
-    /// Called at the beginning of each stage and after every face, from several threads: it should
-    /// return at once.
+    /// Called at the beginning of each stage, before every body, after every face and some bytes of text, from several
+    /// threads: it should return at once.
     pub progress: Option<&'a (dyn Fn(Stage) + Sync)>,
     /// Whether round solids of OpenSCAD's files are round.
     pub facets: Facets,
+    /// Most bytes of a file, before and after gzip is undone. Offsets are 32 bits wide: it is 4 GiB at most, and without it.
+    pub most_bytes: Option<u64>,
 }
 
 impl fmt::Debug for Options<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
-        let progress = self.progress.map(|_| "Fn(Stage)");
-        f.debug_struct("Options").field("progress", &progress).field("facets", &self.facets).finish()
+        f.debug_struct("Options")
+            .field("progress", &self.progress.map(|_| "Fn(Stage)"))
+            .field("most_bytes", &self.most_bytes)
+            .field("facets", &self.facets)
+            .finish()
     }
 }
 
 impl Options<'_> {
+    /// The limit that holds.
+    pub(crate) fn most_bytes(&self) -> u64 {
+        self.most_bytes.unwrap_or(u64::MAX).min(u32::MAX.into())
+    }
+
     /// Tells the stage, if anybody listens.
     pub(crate) fn tell(&self, stage: Stage) {
         if let Some(progress) = self.progress {
@@ -94,8 +118,12 @@ mod tests {
         let bytes = std::fs::metadata(&path).unwrap().len();
         let stages = stages.into_inner().unwrap();
         let total = import.report.faces;
-        assert_eq!(stages[..3], [Stage::Read { bytes }, Stage::Parse { bytes }, Stage::Faces { built: 0, total }]);
-        let mut built: Vec<_> = stages[3..].to_vec();
+        let text = [0, bytes].map(|read| Stage::Records { read, bytes });
+        let bodies = [Stage::Bodies { mapped: 0, total: 1 }];
+        let first = [Stage::Read { bytes }, Stage::Parse { bytes }];
+        let begun = [&first[..], &text, &bodies, &[Stage::Faces { built: 0, total }]].concat();
+        assert_eq!(stages[..6], begun);
+        let mut built: Vec<_> = stages[6..].to_vec();
         built.sort_by_key(|stage| if let Stage::Faces { built, .. } = stage { *built } else { 0 });
         assert_eq!(built, (1..=total).map(|built| Stage::Faces { built, total }).collect::<Vec<_>>());
         assert_eq!(import.model, open(&path).unwrap().model);

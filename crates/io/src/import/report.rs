@@ -1,10 +1,12 @@
 //! Warnings that name their place, counted by kind and kept in bounded number, and the summary.
 
+use super::Reasons;
 use crate::brep::BuiltFace;
 use crate::model::{Face, SurfaceKind};
 use serde::Serialize;
 use std::collections::BTreeMap;
 use std::fmt;
+use std::path::PathBuf;
 
 /// Where in a file.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, Serialize)]
@@ -60,14 +62,18 @@ pub struct ImportReport {
     pub occurrences: Vec<String>,
     /// Files that hold parts of an assembly; they are not followed.
     pub external_files: Vec<String>,
+    /// Files that were read beside the one that was opened: models, data and materials that it names.
+    pub files_read: Vec<PathBuf>,
     /// Nodes of a Boolean solid by name, as the file has them, and of modifiers (`%`, `#`, `!`, `*`).
     pub nodes: BTreeMap<String, usize>,
     /// Warnings by kind.
     pub warnings: BTreeMap<String, usize>,
     /// Faces left out, by reason.
-    pub dropped: BTreeMap<String, usize>,
+    pub dropped: Reasons,
+    /// What else is left out, by kind and reason: bodies, occurrences, polygons, statements that cannot be read, ...
+    pub left_out: BTreeMap<String, Reasons>,
     /// Healed faces, by what was healed.
-    pub healed: BTreeMap<String, usize>,
+    pub healed: Reasons,
     /// Largest [`FaceRecord::deviation`] of trim curves: the engine's own part of the error.
     pub deviation: f64,
     /// Largest distance in millimetres of a surface that was made, not read, from what it stands for: an equation, data,
@@ -135,6 +141,53 @@ impl fmt::Display for Warning {
 /// Warnings of each kind that are kept one by one; later ones only count.
 const KEPT_PER_KIND: usize = 10;
 
+/// The kind of warning that costs a face, which [`ImportReport::dropped`] counts.
+pub(crate) const FACE_LOST: &str = "face left out";
+
+/// What a kind of warning says of the model.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+enum Loss {
+    /// The model lacks something that the file states.
+    LeftOut,
+    /// The file says itself that something is not to be seen, or it is nothing that could be.
+    Beside,
+    /// Nothing is lost.
+    None,
+}
+
+impl Loss {
+    /// By how the kind ends: `... left out` and `... not drawn` say what they mean. Others that are losses are listed.
+    fn of(kind: &str) -> Self {
+        const OTHERS: [&str; 16] = [
+            "card skipped",
+            "cards missing",
+            "entity without parameters",
+            "external block not followed",
+            "file cut short",
+            "mapped item ignored",
+            "not decoded",
+            "parameter vertex not read",
+            "record skipped",
+            "record without end",
+            "relationship ignored",
+            "representation ignored",
+            "statement not read",
+            "subdivision surface not read",
+            "truncated",
+            "vertex not read",
+        ];
+        if kind == FACE_LOST {
+            Self::None
+        } else if kind.ends_with("left out") || OTHERS.contains(&kind) {
+            Self::LeftOut
+        } else if kind.ends_with("not drawn") || kind.ends_with("not placed") {
+            Self::Beside
+        } else {
+            Self::None
+        }
+    }
+}
+
 /// Collects the warnings of one file.
 #[derive(Debug)]
 pub(crate) struct Warnings {
@@ -142,30 +195,53 @@ pub(crate) struct Warnings {
     list: Vec<Warning>,
     /// Kind: occurrences so far, index of the last kept warning.
     kinds: BTreeMap<&'static str, (usize, usize)>,
+    /// Of the kinds that say that something is not in the model, all of them.
+    missing: BTreeMap<&'static str, Reasons>,
 }
 
 impl Warnings {
     pub fn new(file: &str) -> Self {
-        Self { file: file.to_owned(), list: Vec::new(), kinds: BTreeMap::new() }
+        Self { file: file.to_owned(), list: Vec::new(), kinds: BTreeMap::new(), missing: BTreeMap::new() }
     }
 
-    /// Adds one warning; `place` and `message` are made only if it is kept.
+    /// Adds one warning; `place` and `message` are made only if they are kept.
     pub fn push(&mut self, kind: &'static str, place: impl FnOnce() -> Place, message: impl FnOnce() -> String) {
         let (count, last) = self.kinds.entry(kind).or_insert((0, 0));
         *count += 1;
-        if *count > KEPT_PER_KIND {
+        let kept = *count <= KEPT_PER_KIND;
+        let missing = Loss::of(kind) != Loss::None;
+        if !kept {
             self.list[*last].count += 1;
+        }
+        if !kept && !missing {
+            return;
+        }
+        let message = message();
+        if missing {
+            self.missing.entry(kind).or_default().add(&message);
+        }
+        if !kept {
             return;
         }
         *last = self.list.len();
-        let message = format!("{kind}: {}", message());
+        let message = format!("{kind}: {message}");
         self.list.push(Warning { file: self.file.clone(), place: place(), message, count: 1 });
     }
 
-    /// The warnings and the counts by kind.
-    pub fn finish(self) -> (Vec<Warning>, BTreeMap<String, usize>) {
-        let counts = self.kinds.into_iter().map(|(kind, (count, _))| (kind.to_owned(), count)).collect();
-        (self.list, counts)
+    /// The warnings; their counts go to the report, by kind, and what they say of things that are not in the model.
+    pub fn finish(self, report: &mut ImportReport) -> Vec<Warning> {
+        report.warnings = self.kinds.into_iter().map(|(kind, (count, _))| (kind.to_owned(), count)).collect();
+        for (kind, reasons) in self.missing {
+            if Loss::of(kind) == Loss::LeftOut {
+                report.left_out.insert(kind.to_owned(), reasons);
+                continue;
+            }
+            let what = kind.trim_end_matches("not drawn").trim_end_matches("not placed").trim_end_matches([' ', ',']);
+            for (why, count) in reasons.iter() {
+                *report.ignored.entry(format!("{what} ({why})")).or_default() += count;
+            }
+        }
+        self.list
     }
 }
 
@@ -205,21 +281,6 @@ impl ImportReport {
         self.deviation = curves;
         face
     }
-
-    /// A message without its numbers, the key under which it is counted: `face #3: edge #7 was turned`
-    /// is `edge was turned`.
-    pub(crate) fn reason(message: &str) -> String {
-        let mut words: Vec<&str> = Vec::new();
-        for word in message.split_whitespace() {
-            match word.contains(|c: char| c.is_ascii_digit()) {
-                // what the message is about
-                true if word.ends_with(':') => words.clear(),
-                true => {}
-                false => words.push(word),
-            }
-        }
-        words.join(" ").trim_end_matches(|c: char| !c.is_alphanumeric()).to_owned()
-    }
 }
 
 #[cfg(test)]
@@ -233,7 +294,9 @@ mod tests {
             warnings.push("record skipped", || Place::Line(line), || "bad".into());
         }
         warnings.push("face left out", || Place::Entity { id: 7, line: 3 }, || "no loop".into());
-        let (list, counts) = warnings.finish();
+        let mut report = ImportReport::default();
+        let list = warnings.finish(&mut report);
+        let counts = report.warnings;
         assert_eq!(list.len(), KEPT_PER_KIND + 1);
         assert_eq!(list.iter().map(|w| w.count).sum::<usize>(), 1001);
         assert_eq!(counts["record skipped"], 1000);
@@ -241,10 +304,23 @@ mod tests {
         assert!(list[KEPT_PER_KIND - 1].to_string().ends_with("(and 990 more of this kind)"));
     }
 
+    /// All of them, not only those that are kept; faces are counted by their own reasons.
     #[test]
-    fn reasons_drop_numbers() {
-        assert_eq!(ImportReport::reason("#12: the radius is 0"), "the radius is");
-        assert_eq!(ImportReport::reason("loop closed over a gap of 1e-3"), "loop closed over a gap of");
-        assert_eq!(ImportReport::reason("face #3: edge #7 lies 2.1e-4 mm off"), "edge lies mm off");
+    fn what_is_not_in_the_model_is_counted_by_reason() {
+        let mut warnings = Warnings::new("a.stp");
+        for line in 0..50 {
+            warnings.push("body left out", || Place::Line(line), || format!("#{line} does not exist"));
+        }
+        warnings.push("blanked entity not drawn", || Place::File, || "type 144".into());
+        warnings.push("hidden object not placed", || Place::File, || "lid".into());
+        warnings.push("face healed", || Place::File, || "turned".into());
+        warnings.push(FACE_LOST, || Place::File, || "no loop".into());
+        let mut report = ImportReport::default();
+        warnings.finish(&mut report);
+        let left_out: Vec<_> = report.left_out.iter().map(|(kind, why)| (kind.as_str(), why.total())).collect();
+        assert_eq!(left_out, [("body left out", 50)]);
+        assert_eq!(report.left_out["body left out"].iter().next(), Some(("… does not exist".to_owned(), 50)));
+        let beside: Vec<_> = report.ignored.iter().map(|(what, count)| (what.as_str(), *count)).collect();
+        assert_eq!(beside, [("blanked entity (type 144)", 1), ("hidden object (lid)", 1)]);
     }
 }

@@ -1,6 +1,6 @@
 //! Polygons of a Wavefront OBJ file as the control meshes of subdivision surfaces, one part an object.
 
-use super::{Cage, Import, ImportError, ImportReport, open_cages, stem};
+use super::{Cage, Import, ImportError, ImportReport, Options, open_cages, stem};
 use crate::construct::subdivide::{ControlMesh, Scheme, subdivide};
 use crate::model::{Bounds, Instance, Model};
 use std::path::Path;
@@ -14,11 +14,16 @@ const WITHIN: f64 = 1e-5;
 ///
 /// # Errors
 /// As [`open_cages`], and [`ImportError::Construct`] for a mesh that has no such surface.
-pub fn open_subdivided(path: &Path, scheme: Scheme, within: Option<f64>) -> Result<Import, ImportError> {
+pub fn open_subdivided(
+    path: &Path,
+    scheme: Scheme,
+    within: Option<f64>,
+    options: &Options<'_>,
+) -> Result<Import, ImportError> {
     let file = path.display().to_string();
     let mut model = Model { name: stem(&file), ..Model::default() };
     let mut report = ImportReport { format: "Wavefront OBJ, subdivided".into(), ..ImportReport::default() };
-    for (part, cage) in open_cages(path)?.into_iter().enumerate() {
+    for (part, cage) in open_cages(path, options)?.into_iter().enumerate() {
         let Cage { name: object, positions, faces, creases } = cage;
         let size = positions.iter().copied().fold(Bounds::EMPTY, Bounds::with).diagonal();
         let named = if object.is_empty() { file.clone() } else { format!("{file}: object {object}") };

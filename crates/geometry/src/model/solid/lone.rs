@@ -15,7 +15,8 @@
 
 use super::operands::Operands;
 use super::outward::outward;
-use super::{Primitive, Shape, Solid, SolidError, nearby::Nearby, reach};
+use super::reach::{self, Boxes};
+use super::{Primitive, Shape, Solid, SolidError, nearby::Nearby};
 use crate::csg::Node;
 use crate::model::{Bounds, Mesh};
 
@@ -73,7 +74,7 @@ fn apart<'a>(solids: &'a [Solid], operands: &[Operands<'_>], coincidence: f64) -
             Node::Leaf(p) => Some(&solid.primitives()[p as usize]).filter(|p| matches!(p.shape, Shape::Mesh(_))),
             _ => None,
         };
-        let of = reach::boxes(solid);
+        let of = reach::boxes(solid, Boxes::of);
         for &root in operands.roots() {
             match is_mesh(root) {
                 Some(primitive) => candidates.push((s, root, primitive, of[root as usize].of)),

@@ -16,28 +16,33 @@ pub use carrier::Carrier;
 pub use lone::Lone;
 pub(super) use operands::Operands;
 pub use outward::outward;
+pub(crate) use reach::{Boxes, meet};
 pub use shape::{Primitive, Quadric, Shape, ShapeError};
 pub use surface::{CarriedFace, Surface, SurfaceTable};
 
 use super::Bounds;
 use crate::csg::{Builder, Entry, Node, Op, Tree, TreeError};
-use serde::{Deserialize, Serialize};
+#[cfg(feature = "serde")]
+use serde::Deserialize;
 
 /// Primitives and a Boolean expression over them. Valid by construction: see [`Solid::new`].
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
-#[serde(try_from = "SolidData")]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "SolidData"))]
 pub struct Solid {
     pub(super) primitives: Vec<Primitive>,
     tree: Tree,
 }
 
 /// A solid before its indices are checked.
+#[cfg(feature = "serde")]
 #[derive(Deserialize)]
 struct SolidData {
     primitives: Vec<Primitive>,
     tree: Tree,
 }
 
+#[cfg(feature = "serde")]
 impl TryFrom<SolidData> for Solid {
     type Error = SolidError;
 
@@ -150,7 +155,12 @@ impl Solid {
     /// A box around the solid: boxes of the primitives under the same operations. Infinite where the
     /// solid may be unbounded.
     pub fn bounds(&self) -> Bounds {
-        reach::boxes(self).last().expect("a tree has a root").of
+        self.bounds_over(Boxes::of)
+    }
+
+    /// A box around the solid, over boxes of its primitives.
+    pub(crate) fn bounds_over(&self, primitive: impl Fn(&Primitive) -> Boxes) -> Bounds {
+        reach::boxes(self, primitive).last().expect("a tree has a root").of
     }
 
     /// Of each primitive, the box outside which nothing changes where it is taken for the outside, alone or with

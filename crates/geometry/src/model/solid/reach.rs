@@ -15,7 +15,7 @@
 //! the box of its complement stays inside it. A node whose reach holds the point keeps its value: either both children
 //! reach it, or the pair is decided by the child whose box does not hold it.
 
-use super::Solid;
+use super::{Primitive, Solid};
 use crate::csg::Node;
 use crate::csg::Op::{Difference, Intersection, SymmetricDifference, Union};
 use crate::model::Bounds;
@@ -24,43 +24,60 @@ use glam::DVec3;
 /// All of space.
 const ALL: Bounds = Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
 
-/// Boxes around a node, and around all that it is not.
+/// Boxes around a node, and around all that it is not; and one that is within it, or nothing.
 #[derive(Clone, Copy)]
-pub(super) struct Boxes {
+pub(crate) struct Boxes {
     pub of: Bounds,
-    not: Bounds,
+    pub not: Bounds,
+    pub within: Bounds,
 }
 
-/// Of each node of the tree.
-pub(super) fn boxes(solid: &Solid) -> Vec<Boxes> {
+impl Boxes {
+    /// Of a primitive, which is within its [bounds](Primitive::bounds).
+    pub(super) fn of(primitive: &Primitive) -> Self {
+        Self::around(primitive.bounds())
+    }
+
+    /// Of what is in a box, and of which no more is known.
+    pub fn around(of: Bounds) -> Self {
+        Self { of, not: ALL, within: Bounds::EMPTY }
+    }
+}
+
+/// Of each node of the tree, over those of the primitives.
+pub(super) fn boxes(solid: &Solid, primitive: impl Fn(&Primitive) -> Boxes) -> Vec<Boxes> {
     let mut boxes: Vec<Boxes> = Vec::with_capacity(solid.tree.nodes().len());
     for node in solid.tree.nodes() {
         let at = |i: u32| boxes[i as usize];
-        let (of, not) = match *node {
-            Node::Constant(true) => (ALL, Bounds::EMPTY),
-            Node::Constant(false) => (Bounds::EMPTY, ALL),
-            Node::Leaf(p) => (solid.primitives[p as usize].bounds(), ALL),
-            Node::Complement(a) => (at(a).not, at(a).of),
+        let none = Bounds::EMPTY;
+        let (of, not, within) = match *node {
+            Node::Constant(true) => (ALL, none, ALL),
+            Node::Constant(false) => (none, ALL, none),
+            Node::Leaf(p) => {
+                let Boxes { of, not, within } = primitive(&solid.primitives[p as usize]);
+                (of, not, within)
+            }
+            Node::Complement(a) => (at(a).not, at(a).of, none),
             Node::Pair(op, a, b) => {
                 let (l, r) = (at(a), at(b));
                 match op {
-                    Union => (l.of.union(r.of), meet(l.not, r.not)),
-                    Intersection => (meet(l.of, r.of), l.not.union(r.not)),
-                    Difference => (meet(l.of, r.not), l.not.union(r.of)),
+                    Union => (l.of.union(r.of), meet(l.not, r.not), larger(l.within, r.within)),
+                    Intersection => (meet(l.of, r.of), l.not.union(r.not), meet(l.within, r.within)),
+                    Difference => (without(meet(l.of, r.not), r.within), l.not.union(r.of), none),
                     SymmetricDifference => {
-                        (meet(l.of, r.not).union(meet(l.not, r.of)), meet(l.of, r.of).union(meet(l.not, r.not)))
+                        (meet(l.of, r.not).union(meet(l.not, r.of)), meet(l.of, r.of).union(meet(l.not, r.not)), none)
                     }
                 }
             }
         };
-        boxes.push(Boxes { of, not });
+        boxes.push(Boxes { of, not, within });
     }
     boxes
 }
 
 /// See [`Solid::reaches`].
 pub(super) fn reaches(solid: &Solid) -> Vec<Bounds> {
-    let boxes = boxes(solid);
+    let boxes = boxes(solid, Boxes::of);
     let mut of_nodes = vec![ALL; boxes.len()];
     let mut of_primitives = vec![Bounds::EMPTY; solid.primitives.len()];
     for (i, node) in solid.tree.nodes().iter().enumerate().rev() {
@@ -89,7 +106,33 @@ pub(super) fn reaches(solid: &Solid) -> Vec<Bounds> {
     of_primitives
 }
 
-fn meet(a: Bounds, b: Bounds) -> Bounds {
+/// What both boxes hold.
+pub(crate) fn meet(a: Bounds, b: Bounds) -> Bounds {
     let both = Bounds { min: a.min.max(b.min), max: a.max.min(b.max) };
     if both.is_empty() { Bounds::EMPTY } else { both }
+}
+
+/// The box with the longer diagonal.
+fn larger(a: Bounds, b: Bounds) -> Bounds {
+    if b.diagonal() > a.diagonal() { b } else { a }
+}
+
+/// A box around what a hole leaves of a box: less where the hole goes right through it and takes one of its ends.
+fn without(of: Bounds, hole: Bounds) -> Bounds {
+    if hole.is_empty() {
+        return of;
+    }
+    let (covers_min, covers_max) = (hole.min.cmple(of.min), hole.max.cmpge(of.max));
+    let mut left = of;
+    for axis in 0..3 {
+        let across = (0..3).filter(|a| *a != axis).all(|a| covers_min.test(a) && covers_max.test(a));
+        if across && covers_min.test(axis) {
+            left.min[axis] = left.min[axis].max(hole.max[axis]);
+        }
+        if across && covers_max.test(axis) {
+            left.max[axis] = left.max[axis].min(hole.min[axis]);
+        }
+    }
+    let nothing = left != of && !left.min.cmplt(left.max).all();
+    if nothing { Bounds::EMPTY } else { left }
 }

@@ -10,11 +10,11 @@
 
 use crate::model::{Bounds, Colour, Mesh, Part};
 use glam::{DAffine3, DVec3};
-use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// The set of points of a primitive, in its own coordinates. All sets are closed.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub enum Shape {
     /// Points with `normal · x <= offset`; the normal, of any length but 0, points out.
     HalfSpace {
@@ -68,7 +68,8 @@ pub enum Shape {
 }
 
 /// `a·(x², y², z²) + b·(xy, yz, zx) + c·(x, y, z) + d`.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Quadric {
     /// Coefficients of the squares.
     pub squares: DVec3,
@@ -104,7 +105,8 @@ impl Quadric {
 }
 
 /// A placed shape.
-#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[derive(Clone, Debug, PartialEq)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
 pub struct Primitive {
     /// In its own coordinates.
     pub shape: Shape,
@@ -178,7 +180,7 @@ impl Shape {
             Self::Torus { major, minor } if *minor > 0.0 => round(major + minor, -minor, *minor),
             Self::Torus { .. } => Bounds::EMPTY,
             Self::Mesh(mesh) => mesh.bounds(),
-            Self::Part(part) => part.bounds(),
+            Self::Part(part) => part.control_bounds(),
         };
         let flat = !(bounds.min.cmplt(bounds.max)).all();
         if flat { Bounds::EMPTY } else { bounds }

@@ -107,6 +107,7 @@ fn empty_primitives_have_no_faces() {
 }
 
 /// What is written is read again; indices that lead nowhere, radii below 0 and trees in a ring are refused.
+#[cfg(feature = "serde")]
 #[test]
 fn solids_are_written_and_read() {
     let mut b = Builder::new();

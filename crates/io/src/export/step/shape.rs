@@ -14,7 +14,7 @@ use super::super::join::{Boundaries, Edge, join};
 use super::super::{ExportError, ExportWarning, Item};
 use super::text::{Id, List, Text};
 use super::{Colours, style};
-use crate::model::{Bounds, Part};
+use crate::model::{Bounds, Face, Part};
 use crate::spline::{BSpline, SplineError};
 use crate::trim::LoopIndex;
 use glam::{DVec2, DVec3};
@@ -48,7 +48,7 @@ pub(super) fn shape<W: Write>(
     warnings: &mut Vec<ExportWarning>,
 ) -> Result<Shape, ExportError> {
     let sheets: Vec<Sheet> = part.faces.iter().map(Sheet::new).collect();
-    let size = part.faces.iter().map(|f| f.bounds()).fold(Bounds::EMPTY, Bounds::union).diagonal();
+    let size = part.faces.iter().map(Face::control_bounds).fold(Bounds::EMPTY, Bounds::union).diagonal();
     let face_error =
         |(face, source): (usize, SplineError)| ExportError::Face { item, face: part.faces[face].id, source };
     let mut out = join(&sheets, JOIN * size, FIT * size).map_err(face_error)?;
@@ -189,7 +189,7 @@ fn shells<W: Write>(
         let closed = out.edges.iter().all(|e| e.second.is_some() || !group.contains(&out.stretches[e.first].face));
         let kind = if closed { "CLOSED_SHELL" } else { "OPEN_SHELL" };
         let id = text.add(format_args!("{kind}('',{})", List(&ids)))?;
-        let bounds = group.iter().map(|&f| sheets[f].face.bounds()).fold(Bounds::EMPTY, Bounds::union);
+        let bounds = group.iter().map(|&f| sheets[f].face.control_bounds()).fold(Bounds::EMPTY, Bounds::union);
         let volume = group.iter().map(|&f| volume(&sheets[f], bounds.centre())).sum::<f64>();
         groups.push((id, bounds, volume, Vec::new()));
     }

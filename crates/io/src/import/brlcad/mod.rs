@@ -86,8 +86,7 @@ pub(super) fn read(text: &str, name: &str) -> Result<Import, ImportError> {
         model.solids.push(assembly.finish(root).map_err(|message| failed(Fault::new(1, message)))?);
     }
     report.bodies = model.solids.len();
-    let (warnings, counts) = Warnings::new(name).finish();
-    report.warnings = counts;
+    let warnings = Warnings::new(name).finish(&mut report);
     Ok(Import { model, warnings, report, ..Import::default() })
 }
 

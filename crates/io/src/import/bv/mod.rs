@@ -64,7 +64,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
         let Lost { line, why } = lost;
         if reader.report.faces > reader.faces.len() {
             reader.faces.push((reader.group.clone(), Err((reader.patches, why.clone()))));
-            *reader.report.dropped.entry("the rest of the file left out".into()).or_default() += 1;
+            reader.report.dropped.add(&why);
         }
         reader.warnings.push("the rest of the file left out", || Place::Line(line), || why);
     }
@@ -72,8 +72,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     let model = parts::assemble(name, faces, meshes, &mut report);
     report.bodies = model.parts.len();
     report.occurrences = model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect();
-    let (warnings, counts) = warnings.finish();
-    report.warnings = counts;
+    let warnings = warnings.finish(&mut report);
     Ok(Import { model, warnings, report, ..Import::default() })
 }
 
@@ -153,7 +152,7 @@ impl Reader<'_> {
             }
             Err(error) => {
                 let why = error.to_string();
-                *self.report.dropped.entry(ImportReport::reason(&why)).or_default() += 1;
+                self.report.dropped.add(&why);
                 self.faces.push((self.group.clone(), Err((self.patches, why.clone()))));
                 self.warnings.push("face left out", || Place::Line(line), || why);
             }

@@ -153,7 +153,7 @@ proptest! {
         }
         if let Ok(read) = bv(words.join(" ").as_bytes(), "t.bv") {
             let lost = read.report.faces - read.model.face_count();
-            prop_assert_eq!(lost, read.report.dropped.values().sum::<usize>());
+            prop_assert_eq!(lost, read.report.dropped.total());
         }
     }
 

@@ -19,8 +19,8 @@ pub(super) enum Fault {
     Value { id: u32, what: &'static str },
     #[error("#{0} refers to itself")]
     Cycle(u32),
-    #[error("#{0} is nested too deep")]
-    Depth(u32),
+    #[error("#{0} is nested deeper than {1} levels")]
+    Depth(u32, usize),
     #[error("#{id}: {source}")]
     Spline { id: u32, source: SplineError },
     #[error("type {kind} form {form} is not supported (#{id})")]

@@ -11,11 +11,12 @@
 
 use super::entity::{Entity, Fault};
 use super::file::File;
+pub(super) use crate::import::FACE_LOST;
+
 use crate::brep::Frame;
-use crate::import::{ImportReport, Place, Warnings};
+use crate::import::{Place, Reasons, Warnings};
 use glam::{DAffine3, DMat3, DVec3};
 use std::cell::{Cell, RefCell};
-use std::collections::BTreeMap;
 
 /// Deepest chain of entities that define one another.
 const MAX_DEPTH: usize = 32;
@@ -26,9 +27,6 @@ const SHARING: u64 = 64;
 /// Work that even the smallest file may do.
 const FREE_WORK: u64 = 1 << 20;
 
-/// The kind of warning that costs a face.
-pub(super) const FACE_LOST: &str = "face left out";
-
 /// A file, what may still be done with it, and what was found.
 #[derive(Debug)]
 pub(super) struct Geometry<'a> {
@@ -37,7 +35,7 @@ pub(super) struct Geometry<'a> {
     work: Cell<u64>,
     trail: RefCell<Vec<u32>>,
     warnings: RefCell<Warnings>,
-    dropped: RefCell<BTreeMap<String, usize>>,
+    dropped: RefCell<Reasons>,
 }
 
 /// A frame in millimetres, and what a reflection did to it.
@@ -59,7 +57,7 @@ impl<'a> Geometry<'a> {
     }
 
     /// The warnings, and the faces left out by reason.
-    pub fn finish(self) -> (Warnings, BTreeMap<String, usize>) {
+    pub fn finish(self) -> (Warnings, Reasons) {
         (self.warnings.into_inner(), self.dropped.into_inner())
     }
 
@@ -74,7 +72,7 @@ impl<'a> Geometry<'a> {
     pub fn note(&self, kind: &'static str, id: u32, message: impl Into<String>) {
         let message = message.into();
         if kind == FACE_LOST {
-            *self.dropped.borrow_mut().entry(ImportReport::reason(&message)).or_default() += 1;
+            self.dropped.borrow_mut().add(&message);
         }
         let place = || Entity::find(self.file, id).map_or(Place::File, Entity::place);
         self.warnings.borrow_mut().push(kind, place, || message);
@@ -89,7 +87,7 @@ impl<'a> Geometry<'a> {
                 return Err(Fault::Cycle(id));
             }
             if trail.len() >= MAX_DEPTH {
-                return Err(Fault::Depth(id));
+                return Err(Fault::Depth(id, MAX_DEPTH));
             }
             trail.push(id);
         }

@@ -127,11 +127,12 @@ fn delimiters(text: &[u8]) -> (Delimiters, usize, usize) {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::import::ImportReport;
 
     fn read(text: &str) -> (Global, Vec<String>) {
         let mut warnings = Warnings::new("g.igs");
         let global = Global::read(text.as_bytes(), 2, &mut warnings);
-        (global, warnings.finish().0.iter().map(ToString::to_string).collect())
+        (global, warnings.finish(&mut ImportReport::default()).iter().map(ToString::to_string).collect())
     }
 
     #[test]

@@ -84,10 +84,9 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     };
     build(&geometry, &bodies, &mut model, &mut report);
     let (warnings, dropped) = geometry.finish();
-    report.faces = model.face_count() + dropped.values().sum::<usize>();
+    report.faces = model.face_count() + dropped.total();
     report.dropped = dropped;
-    let (list, counts) = warnings.finish();
-    report.warnings = counts;
+    let list = warnings.finish(&mut report);
     // most of what was read is needed no more, and is given back while the model is used
     rayon::spawn(move || drop((file, bodies)));
     Ok(Import { model, warnings: list, report, ..Import::default() })
@@ -111,7 +110,7 @@ fn build(geometry: &Geometry<'_>, bodies: &[Body], model: &mut Model, report: &m
                 Ok(mut built) => {
                     built.face.colour = colour;
                     for note in &built.notes {
-                        *report.healed.entry(ImportReport::reason(note)).or_default() += 1;
+                        report.healed.add(note);
                         geometry.note("face healed", id, note.as_str());
                     }
                     model.parts[part].faces.push(report.record(record(id, part), built));

@@ -44,6 +44,9 @@ pub(super) struct Placement {
 /// Largest number of instances; a few kilobytes of text can ask for 2^60.
 const MAX_INSTANCES: usize = 1 << 20;
 
+/// Deepest subfigures in subfigures.
+const MAX_LEVELS: usize = 256;
+
 /// Largest number of subfigures entered.
 const MAX_VISITS: usize = 1 << 20;
 
@@ -171,6 +174,9 @@ impl<'g, 'a> Tree<'g, 'a> {
         let definition = definition.of_kind(308, "308, a subfigure")?;
         if self.trail.contains(&definition.id()) {
             return Err(Fault::Cycle(definition.id()));
+        }
+        if self.trail.len() > MAX_LEVELS {
+            return Err(Fault::Depth(id, MAX_LEVELS));
         }
         let unit = self.geometry.file.global.unit;
         let scale = if entity.real(5)? == 0.0 { 1.0 } else { entity.real(5)? };

@@ -229,8 +229,7 @@ pub(super) fn read(bytes: &[u8], name: &str, ending: &str, folder: Option<&Path>
     report.bodies = model.parts.len();
     let mut warnings = Warnings::new(name);
     notes.into_iter().for_each(|(kind, note)| warnings.push(kind, || Place::File, || note));
-    let (warnings, counts) = warnings.finish();
-    report.warnings = counts;
+    let warnings = warnings.finish(&mut report);
     Ok(Import { model, warnings, report, ..Import::default() })
 }
 

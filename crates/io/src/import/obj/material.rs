@@ -7,12 +7,11 @@
 //! The format names no colour space; programs store what their screen shows, sRGB.
 
 use super::lines::lines;
-use crate::import::{Place, Warnings, colour};
+use crate::import::{Place, Warnings, colour, source};
 use crate::model::Colour;
 use std::collections::HashMap;
 use std::fmt::Write;
-use std::io::Read;
-use std::path::{Component, Path};
+use std::path::{Component, Path, PathBuf};
 
 /// Bytes of one material file that are read.
 const MAX_BYTES: u64 = 1 << 26;
@@ -26,6 +25,8 @@ pub(super) struct Materials {
     /// The colour, where the material has one.
     colours: HashMap<String, Option<Colour>>,
     files: usize,
+    /// Those that were read.
+    pub opened: Vec<PathBuf>,
 }
 
 impl Materials {
@@ -43,7 +44,10 @@ impl Materials {
             Some(folder) => load(folder, name),
         };
         match result {
-            Ok(text) => self.read(&text, name, warnings),
+            Ok((path, text)) => {
+                self.opened.push(path);
+                self.read(&text, name, warnings);
+            }
             Err(why) => {
                 warnings.push("materials not read", || Place::Line(line), || format!("{name}: {why}"));
             }
@@ -97,15 +101,13 @@ pub(super) fn brief(text: &str) -> String {
     words
 }
 
-/// The bytes of `folder/name`, which must not leave the folder.
-fn load(folder: &Path, name: &str) -> Result<Vec<u8>, String> {
+/// Path and bytes of `folder/name`, which must not leave the folder.
+fn load(folder: &Path, name: &str) -> Result<(PathBuf, Vec<u8>), String> {
     let inside = |c| matches!(c, Component::Normal(_) | Component::CurDir);
     let name = name.replace('\\', "/");
     if name.is_empty() || !Path::new(&name).components().all(inside) {
         return Err("not beside the model".into());
     }
-    let mut text = Vec::new();
-    let file = std::fs::File::open(folder.join(name)).map_err(|e| e.to_string())?;
-    file.take(MAX_BYTES + 1).read_to_end(&mut text).map_err(|e| e.to_string())?;
-    if text.len() as u64 > MAX_BYTES { Err(format!("larger than {MAX_BYTES} bytes")) } else { Ok(text) }
+    let path = folder.join(name);
+    source::beside(&path, MAX_BYTES).map(|text| (path, text))
 }

@@ -6,7 +6,7 @@ use super::index;
 use super::material::{Materials, brief};
 use super::polygons::{Look, Polygons};
 use crate::import::parts::{self, Stated};
-use crate::import::{Import, ImportError, ImportReport, Place, Warnings};
+use crate::import::{FACE_LOST, Import, ImportError, ImportReport, Place, Warnings};
 use crate::model::Face;
 use glam::{DVec3, DVec4};
 use std::collections::BTreeMap;
@@ -48,9 +48,6 @@ const WORK_PER_BYTE: usize = 16;
 
 /// Different words that are counted as unused statements.
 const MAX_UNUSED: usize = 64;
-
-/// The warning that a surface gave no face.
-const FACE_LOST: &str = "face left out";
 
 impl<'f> Reader<'f> {
     pub fn new(name: &'f str, folder: Option<&'f Path>, bytes: usize) -> Self {
@@ -115,7 +112,7 @@ impl<'f> Reader<'f> {
             }
             "f" | "fo" => match self.polygons.polygon(words, &self.vertices, &self.look) {
                 Ok(false) => {}
-                Ok(true) => self.warn("normals left out", line, brief(text)),
+                Ok(true) => self.warn("normals not used", line, brief(text)),
                 Err(why) => self.warn("polygon left out", line, why),
             },
             "o" => self.look.object = rest().to_owned(),
@@ -232,7 +229,7 @@ impl<'f> Reader<'f> {
     }
 
     fn lose(&mut self, line: usize, why: String) {
-        *self.report.dropped.entry(ImportReport::reason(&why)).or_default() += 1;
+        self.report.dropped.add(&why);
         let id = self.faces.len() as u32 + 1;
         self.faces.push((self.look.object.clone(), Err((id, why.clone()))));
         self.warn(FACE_LOST, line, why);
@@ -250,7 +247,7 @@ impl<'f> Reader<'f> {
                 match element.face(id, &self.curves, &mut self.work) {
                     Ok((face, notes)) => {
                         for note in &notes {
-                            *self.report.healed.entry(ImportReport::reason(note)).or_default() += 1;
+                            self.report.healed.add(note);
                             self.warn("face healed", line, note.clone());
                         }
                         let colour = self.look.colour;
@@ -289,8 +286,8 @@ impl<'f> Reader<'f> {
         let model = parts::assemble(self.name, self.faces, meshes, &mut self.report);
         self.report.bodies = model.parts.len();
         self.report.occurrences = model.instances.iter().map(|i| i.name.clone()).filter(|n| !n.is_empty()).collect();
-        let (warnings, counts) = self.warnings.finish();
-        self.report.warnings = counts;
+        self.report.files_read = self.materials.opened;
+        let warnings = self.warnings.finish(&mut self.report);
         Ok(Import { model, warnings, report: self.report, ..Import::default() })
     }
 }

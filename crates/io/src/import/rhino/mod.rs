@@ -27,7 +27,7 @@ use std::collections::{BTreeMap, HashMap, HashSet};
 use std::io::Cursor;
 
 /// Deepest nesting of blocks.
-const MAX_LEVELS: usize = 64;
+const MAX_LEVELS: usize = 256;
 
 /// The part of a face that was left out with all others of its body, until the parts are counted.
 const NOWHERE: usize = usize::MAX;
@@ -63,8 +63,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     report.bodies = model.parts.len();
     report.meshes = model.parts.iter().map(|p| p.meshes.len()).sum();
     report.face_records.iter_mut().for_each(|r| r.part = r.part.min(model.parts.len()));
-    let (warnings, counts) = warnings.finish();
-    report.warnings = counts;
+    let warnings = warnings.finish(&mut report);
     Ok(Import { model, warnings, report, ..Import::default() })
 }
 
@@ -98,14 +97,14 @@ fn parts(
                 Ok(Built { mut face, notes, gap }) => {
                     face.colour = face.colour.or(own);
                     for note in &notes {
-                        *report.healed.entry(ImportReport::reason(note)).or_default() += 1;
+                        report.healed.add(note);
                         warnings.push("face healed", || Place::File, || format!("{}: {note}", id.as_str()));
                     }
                     let built = BuiltFace { face, notes, deviation: 0.0, gap };
                     part.faces.push(report.record(record, built));
                 }
                 Err(why) => {
-                    *report.dropped.entry(ImportReport::reason(&why)).or_default() += 1;
+                    report.dropped.add(&why);
                     warnings.push("face left out", || Place::File, || format!("{}: {why}", id.as_str()));
                     lost.push(FaceRecord { notes: vec![why], ..record });
                     part.closed = false;
@@ -135,10 +134,15 @@ fn place(ir: &CadIr, part_of: &HashMap<String, usize>, model: &mut Model, warnin
         };
         let (mut transform, mut at, mut levels) = (affine(occurrence.transform), &occurrence.parent, 0);
         while let OccurrenceParent::Occurrence { occurrence } = at {
-            let Some(parent) = occurrences.get(occurrence.as_str()).filter(|_| levels < MAX_LEVELS) else { break };
+            let Some(parent) = occurrences.get(occurrence.as_str()).filter(|_| levels <= MAX_LEVELS) else { break };
             transform = affine(parent.transform) * transform;
             at = &parent.parent;
             levels += 1;
+        }
+        if levels > MAX_LEVELS {
+            let told = || format!("{} is nested deeper than {MAX_LEVELS} levels", occurrence.id.as_str());
+            warnings.push("occurrence left out", || Place::File, told);
+            continue;
         }
         let bodies = definitions.get(definition.as_str()).map(|d| d.bodies.as_slice()).unwrap_or_default();
         for body in bodies {

@@ -37,7 +37,7 @@ fn face_counts_of_a_folder() {
             read.report.healed,
         );
         read.warnings.iter().take(6).for_each(|w| eprintln!("    {w}"));
-        let lost = read.report.dropped.values().sum::<usize>();
+        let lost = read.report.dropped.total();
         if Some(read.model.face_count() + lost) != count || lost > 1 || read.report.meshes > 0 {
             wrong.push(file);
         }
@@ -100,7 +100,7 @@ fn blocks_meshes_colours_and_units() {
 /// Every face is read or counted as lost, and nothing panics.
 fn sound(bytes: &[u8]) {
     if let Ok(read) = rhino(bytes, "a.3dm") {
-        let lost = read.report.dropped.values().sum::<usize>();
+        let lost = read.report.dropped.total();
         assert_eq!(read.report.faces, read.report.face_records.len());
         assert_eq!(lost, read.report.face_records.iter().filter(|r| r.kind.is_none()).count());
     }

@@ -136,8 +136,7 @@ pub(super) fn read(text: &str, name: &str, facets: Facets, folder: Option<&Path>
         let solid = reader.assembly.finish(root);
         model.solids.push(solid.map_err(|message| failed(Fault::new(1, message)))?);
     }
-    let (warnings, counts) = reader.warnings.finish();
-    reader.report.warnings = counts;
+    let warnings = reader.warnings.finish(&mut reader.report);
     reader.report.bodies = model.solids.len();
     Ok(Import { model, warnings, report: reader.report, ..Import::default() })
 }
@@ -236,7 +235,7 @@ impl<'a> Reader<'a> {
             }
         }
         if background && !disabled {
-            self.warn("background left out", args, || format!("`%{}` is no part of the solid", args.node));
+            self.warn("background not drawn", args, || format!("`%{}` is no part of the solid", args.node));
         }
         if root {
             inside = TOP;
@@ -380,7 +379,7 @@ impl<'a> Reader<'a> {
     /// Names a node that cannot be made; its children are read for their grammar only.
     fn left_out(&mut self, frame: &mut Frame<'a>, fault: Fault) {
         if self.muted == 0 {
-            self.warnings.push("left out", || Place::Line(fault.line), || fault.message);
+            self.warnings.push("node left out", || Place::Line(fault.line), || fault.message);
         }
         frame.lose();
     }

@@ -189,7 +189,7 @@ fn modifiers() {
     same(&at("!"), 3.0, ball(1.0)); // as if it stood at the top: moved once
     let import = import(&at("%"));
     assert_eq!(import.report.nodes["%"], 1);
-    assert!(import.warnings[0].to_string().starts_with("t.csg:1: background left out"), "{:?}", import.warnings);
+    assert!(import.warnings[0].to_string().starts_with("t.csg:1: background not drawn"), "{:?}", import.warnings);
     // grammar alone counts in what is disabled
     assert!(super::super::scad(b"*hull() { text(); } cube();", "t", Facets::Round).is_ok());
 }

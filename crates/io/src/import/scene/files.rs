@@ -6,7 +6,7 @@
 use super::items::Scene;
 use super::text::{Outcome, Value, shortened};
 use crate::construct::subdivide::Scheme;
-use crate::import::Import;
+use crate::import::{Import, Options, source};
 use std::path::{Component, Path, PathBuf};
 
 /// Largest file of data, bytes.
@@ -21,7 +21,11 @@ fn path(scene: &Scene<'_>, value: Value<'_>) -> Outcome<PathBuf> {
         return Err(value.fault(format!("`{text}` is not a relative path within the scene's own folder")));
     }
     match scene.folder {
-        Some(folder) => Ok(folder.join(text)),
+        Some(folder) => {
+            let path = folder.join(text);
+            scene.files.borrow_mut().push(path.clone());
+            Ok(path)
+        }
         None => Err(value.fault("the scene has no folder in which other files could be")),
     }
 }
@@ -30,12 +34,8 @@ fn path(scene: &Scene<'_>, value: Value<'_>) -> Outcome<PathBuf> {
 pub(super) fn data(scene: &Scene<'_>, value: Value<'_>) -> Outcome<(Vec<u8>, String)> {
     let path = path(scene, value)?;
     let shown = path.display().to_string();
-    let unreadable = |e: std::io::Error| value.fault(format!("{shown}: {e}"));
-    let size = std::fs::metadata(&path).map_err(unreadable)?.len();
-    if size > MOST_BYTES {
-        return Err(value.fault(format!("{shown} has {size} bytes, and at most {MOST_BYTES} are read")));
-    }
-    Ok((std::fs::read(&path).map_err(unreadable)?, shown))
+    let bytes = source::beside(&path, MOST_BYTES).map_err(|why| value.fault(format!("{shown}: {why}")))?;
+    Ok((bytes, shown))
 }
 
 /// The model in a file.
@@ -50,5 +50,5 @@ pub(super) fn model(scene: &Scene<'_>, value: Value<'_>) -> Outcome<Import> {
 /// The polygons of a file as the control meshes of smooth surfaces, within `tolerance` millimetres.
 pub(super) fn subdivided(scene: &Scene<'_>, value: Value<'_>, scheme: Scheme, tolerance: f64) -> Outcome<Import> {
     let path = path(scene, value)?;
-    crate::import::open_subdivided(&path, scheme, Some(tolerance)).map_err(|e| value.fault(e))
+    crate::import::open_subdivided(&path, scheme, Some(tolerance), &Options::default()).map_err(|e| value.fault(e))
 }

@@ -283,14 +283,19 @@ impl<'a> Builder<'a> {
         own.gap = own.gap.max(of.gap);
         for (own, of) in [
             (&mut own.warnings, &of.warnings),
-            (&mut own.dropped, &of.dropped),
-            (&mut own.healed, &of.healed),
             (&mut own.ignored, &of.ignored),
             (&mut own.layers, &of.layers),
             (&mut own.nodes, &of.nodes),
         ] {
             of.iter().for_each(|(what, n)| *own.entry(what.clone()).or_default() += n);
         }
+        own.files_read.extend(of.files_read.iter().cloned());
+        own.dropped.extend(&of.dropped);
+        own.healed.extend(&of.healed);
+        for (kind, why) in &of.left_out {
+            own.left_out.entry(kind.clone()).or_default().extend(why);
+        }
+        own.external_files.extend(of.external_files.iter().cloned());
         self.warnings.extend(import.warnings.iter().cloned());
     }
 
@@ -337,7 +342,7 @@ impl<'a> Builder<'a> {
         if of.is_empty() {
             return Err(name.fault(format!("nothing that is called `{}` is placed", shortened(word))));
         }
-        let all = of.iter().map(|p| solid::bounds(&self.model, p.1.clone(), p.2.clone()));
+        let all = of.iter().map(|p| self.model.bounds_of(p.1.clone(), p.2.clone()));
         Ok(all.fold(crate::model::Bounds::EMPTY, crate::model::Bounds::union))
     }
 
@@ -349,6 +354,7 @@ impl<'a> Builder<'a> {
             }
         }
         let mut report = self.report;
+        report.files_read.extend(scene.files.take());
         report.format = format!("selvedge scene {VERSION}");
         report.units = vec![self.model.unit.clone()];
         report.bodies = self.model.parts.len() + self.model.solids.len();

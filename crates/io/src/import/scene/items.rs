@@ -14,9 +14,9 @@ use crate::construct::subdivide::Scheme;
 use crate::import::Import;
 use crate::model::{Colour, Part};
 use glam::DAffine3;
-use std::cell::OnceCell;
+use std::cell::{OnceCell, RefCell};
 use std::collections::{BTreeMap, HashMap, HashSet};
-use std::path::Path;
+use std::path::{Path, PathBuf};
 use std::rc::Rc;
 use std::sync::Arc;
 
@@ -101,6 +101,8 @@ pub(super) struct Scene<'a> {
     /// Names that other items are made of.
     pub used: HashSet<&'a str>,
     places: HashMap<&'a str, usize>,
+    /// Other files, as they were read.
+    pub files: RefCell<Vec<PathBuf>>,
     /// By name.
     pub made: HashMap<&'a str, Thing>,
     open: Vec<&'a str>,
@@ -119,6 +121,7 @@ impl<'a> Scene<'a> {
             shapes: BTreeMap::new(),
             used: HashSet::new(),
             places: HashMap::new(),
+            files: RefCell::default(),
             made: HashMap::new(),
             open: Vec::new(),
             budget: BUDGET,

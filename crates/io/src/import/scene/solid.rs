@@ -13,7 +13,7 @@ use super::{place, shapes, trim};
 use crate::construct::{extruded_solid, lathed_solid};
 use crate::csg::{self, Expression, Node, Op, ParseError};
 use crate::import::solid::{Assembly, Placed};
-use crate::model::{Bounds, Colour, Face, Mesh, Model, Part, Primitive, Quadric, Shape, ShapeError, Solid, SolidError};
+use crate::model::{Colour, Face, Mesh, Model, Part, Primitive, Quadric, Shape, ShapeError, Solid, SolidError};
 use glam::{DAffine3, DVec3};
 use std::sync::Arc;
 
@@ -333,16 +333,4 @@ pub(super) fn renumber(model: &mut Model, first: u32) -> Result<(), SolidError> 
         *solid = Solid::new(primitives, solid.tree().clone())?;
     }
     Ok(())
-}
-
-/// Box of some of a model's instances and solids, millimetres.
-pub(super) fn bounds(model: &Model, instances: std::ops::Range<usize>, solids: std::ops::Range<usize>) -> Bounds {
-    let placed = model.instances[instances].iter().flat_map(|i| {
-        let own = model.parts[i.part].bounds();
-        let corners = if own.is_empty() { Vec::new() } else { own.corners().to_vec() };
-        corners.into_iter().map(|c| i.transform.transform_point3(c))
-    });
-    let solids = model.solids[solids].iter().map(Solid::bounds);
-    let finite = solids.filter(|b| b.min.is_finite() && b.max.is_finite());
-    placed.chain(finite.flat_map(Bounds::corners)).fold(Bounds::EMPTY, Bounds::with)
 }

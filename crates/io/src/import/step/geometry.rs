@@ -7,8 +7,10 @@
 use super::entity::{Entity, Fault};
 use super::part21::File;
 use super::units::Units;
+pub(super) use crate::import::FACE_LOST;
+
 use crate::brep::Frame;
-use crate::import::{ImportReport, Place, Warnings};
+use crate::import::{Place, Reasons, Warnings};
 use glam::{DAffine3, DMat3, DVec3};
 use std::cell::{Cell, RefCell};
 use std::collections::BTreeMap;
@@ -21,9 +23,6 @@ const SHARING: u64 = 64;
 
 /// Work that even the smallest file may do.
 const FREE_WORK: u64 = 1 << 20;
-
-/// The kind of warning that costs a face.
-pub(super) const FACE_LOST: &str = "face left out";
 
 /// Work left and what was found; shared by all representations of a file.
 #[derive(Debug)]
@@ -40,7 +39,7 @@ pub(super) struct Notes {
     /// By kind and place.
     pub warnings: Warnings,
     /// Faces left out, by reason.
-    pub dropped: BTreeMap<String, usize>,
+    pub dropped: Reasons,
     /// What is not drawn though nothing is wrong with it, by kind.
     pub ignored: BTreeMap<String, usize>,
 }
@@ -49,7 +48,7 @@ impl Notes {
     /// Warns about something; `place` is asked only if the warning is kept.
     pub fn push(&mut self, kind: &'static str, place: impl FnOnce() -> Place, message: String) {
         if kind == FACE_LOST {
-            *self.dropped.entry(ImportReport::reason(&message)).or_default() += 1;
+            self.dropped.add(&message);
         }
         self.warnings.push(kind, place, || message);
     }
@@ -70,7 +69,7 @@ impl<'a> Ledger<'a> {
     /// A fresh budget; `warnings` are those of the syntax.
     pub fn new(file: &'a File<'a>, warnings: Warnings) -> Self {
         let work = Cell::new(FREE_WORK + SHARING * file.slot_count() as u64);
-        let notes = RefCell::new(Notes { warnings, dropped: BTreeMap::new(), ignored: BTreeMap::new() });
+        let notes = RefCell::new(Notes { warnings, dropped: Reasons::default(), ignored: BTreeMap::new() });
         Self { file, work, trail: RefCell::default(), notes }
     }
 
@@ -110,7 +109,7 @@ impl<'a> Ledger<'a> {
                 return Err(Fault::Cycle(id));
             }
             if trail.len() >= MAX_DEPTH {
-                return Err(Fault::Depth(id));
+                return Err(Fault::Depth(id, MAX_DEPTH));
             }
             trail.push(id);
         }

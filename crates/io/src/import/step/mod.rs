@@ -40,7 +40,7 @@ mod walk;
 pub(super) use part21::recognise;
 pub(super) use surface::{as_cylinder, offset};
 
-use super::{FaceCount, FaceRecord, Import, ImportError, ImportReport, Options, Warnings, locate};
+use super::{FaceCount, FaceRecord, Import, ImportError, ImportReport, Options, Stage, Warnings, locate};
 use crate::brep::build_face;
 use crate::model::{Instance, Model, Part};
 use assembly::Assembly;
@@ -57,7 +57,7 @@ use std::collections::{BTreeSet, HashMap};
 /// Reads STEP text; `name` is the file's name in messages.
 pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Import, ImportError> {
     let mut warnings = Warnings::new(name);
-    let file = File::parse(bytes, name, &mut warnings)?;
+    let file = File::parse_telling(bytes, name, &mut warnings, options)?;
     let ledger = Ledger::new(&file, warnings);
     let mut report = header(&file);
     externals(&file, &ledger, &mut report);
@@ -82,8 +82,12 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
         };
         report.face_records.extend(body.lost.iter().map(lost));
     };
+    let total = assembly.groups.values().map(|group| group.bodies.len()).sum();
+    let mut mapped = 0;
     for group in assembly.groups.values() {
         for &(id, representation) in &group.bodies {
+            options.tell(Stage::Bodies { mapped, total });
+            mapped += 1;
             if part_of.contains_key(&id) {
                 continue;
             }
@@ -137,9 +141,8 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Im
     report.face_records.iter_mut().for_each(|r| r.part = r.part.min(parts));
     report.dropped = notes.dropped;
     report.ignored = notes.ignored;
-    let (list, counts) = notes.warnings.finish();
-    report.warnings = counts;
-    Ok(Import { model, warnings: list, report, ..Import::default() })
+    let warnings = notes.warnings.finish(&mut report);
+    Ok(Import { model, warnings, report, ..Import::default() })
 }
 
 /// Builds all faces, in parallel; results are taken in file order. What a face was made from is freed
@@ -174,7 +177,7 @@ fn build(
             Ok(mut built) => {
                 built.face.colour = colour;
                 for note in &built.notes {
-                    *report.healed.entry(ImportReport::reason(note)).or_default() += 1;
+                    report.healed.add(note);
                     notes.push("face healed", || places.of(id), note.clone());
                 }
                 model.parts[record.part].faces.push(report.record(record, built));

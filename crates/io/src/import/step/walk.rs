@@ -29,7 +29,7 @@ const MAX_INSTANCES: usize = 1 << 20;
 const MAX_VISITS: usize = 8 * MAX_INSTANCES;
 
 /// Deepest assembly.
-const MAX_LEVELS: usize = 64;
+const MAX_LEVELS: usize = 256;
 
 /// Bytes of a path of names after which deeper levels add no more to it.
 const MAX_NAME: usize = 512;
@@ -65,8 +65,12 @@ impl Walk<'_> {
 
     fn visit(&mut self, id: u32, transform: DAffine3, path: &mut Vec<u32>, name: &str) {
         self.visits += 1;
-        if self.trail.contains(&id) || self.trail.len() >= MAX_LEVELS {
+        if self.trail.contains(&id) {
             self.ledger.note("occurrence left out", id, "the assembly contains itself");
+            return;
+        }
+        if self.trail.len() >= MAX_LEVELS {
+            self.ledger.note("occurrence left out", id, format!("it is nested deeper than {MAX_LEVELS} levels"));
             return;
         }
         let Some(group) = self.assembly.groups.get(&id) else { return };

@@ -11,7 +11,7 @@ fn after(from: &str, to: &str) -> Vec<String> {
     // columns stay where they are
     let padded = format!("{to:<width$}", width = from.len());
     let import = iges(CYLINDER.replacen(from, &padded, 1).as_bytes(), "c.igs").unwrap();
-    assert_eq!(import.report.dropped.values().sum::<usize>(), import.report.faces - import.model.face_count());
+    assert_eq!(import.report.dropped.total(), import.report.faces - import.model.face_count());
     import.warnings.iter().map(ToString::to_string).collect()
 }
 
@@ -137,6 +137,31 @@ fn subfigures_without_end() {
     assert!(own.warnings.iter().any(|w| w.message == "subfigure left out: #1 refers to itself"), "{:?}", own.warnings);
 }
 
+/// Thousands of subfigures, each in the next: as many are followed as can be, and it is told that there are more.
+#[test]
+fn deep_subfigures_are_told_as_deep() {
+    let mut all = vec![e("308,0,1Ha,0;")];
+    for level in 0..5000 {
+        let definition = 1 + 4 * level;
+        all.push(e(&format!("408,{definition},0.,0.,0.;")));
+        all.push(e(&format!("308,0,1Ha,1,{};", definition + 2)));
+    }
+    all.push(e(&format!("408,{},0.,0.,0.;", 1 + 4 * 5000)));
+    let deep = import(&all);
+    let told = |w: &crate::import::Warning| w.message.contains("is nested deeper than 256 levels");
+    assert!(deep.warnings.iter().any(told), "{:?}", deep.warnings);
+}
+
+/// A line: nothing to draw, and the summary says what there is instead.
+#[test]
+fn lines_are_told() {
+    let summary = import(&[e("110,0.,0.,0.,1.,0.,0.;")]).summary();
+    assert_eq!(
+        summary.to_string(),
+        "nothing of it can be drawn; it holds 1 x no surface (type 110, a curve or a point)"
+    );
+}
+
 /// Thousands of faces on one surface of many numbers: the work is cut off, not the program.
 #[test]
 fn sharing_is_bounded() {
@@ -260,7 +285,7 @@ proptest! {
             prop_assert!(import.model.instances.iter().all(|i| i.part < parts && i.transform.is_finite()));
             prop_assert!(import.warnings.len() < 300);
             let lost = import.report.faces - import.model.face_count();
-            prop_assert_eq!(lost, import.report.dropped.values().sum::<usize>());
+            prop_assert_eq!(lost, import.report.dropped.total());
         }
     }
 

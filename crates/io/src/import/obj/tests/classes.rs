@@ -50,7 +50,7 @@ fn one_change_one_message() {
             0,
         ),
         ("swapped", SOLID, "f 1 2 4", "f 4 2 5", "t.obj:7: polygon left out: vertex 5 of 4", 0, 3),
-        ("swapped", SOLID, "3//1", "3//4", "t.obj:6: normals left out: f 1//1 3//4 2//1", 0, 4),
+        ("swapped", SOLID, "3//1", "3//4", "t.obj:6: normals not used: f 1//1 3//4 2//1", 0, 4),
         // counts
         (
             "huge",

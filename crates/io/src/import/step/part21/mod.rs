@@ -23,7 +23,7 @@ mod value;
 pub(super) use text::decode;
 pub(super) use value::{Value, Values};
 
-use crate::import::{ImportError, Place, Warnings};
+use crate::import::{ImportError, Options, Place, Warnings};
 use std::collections::HashMap;
 
 /// A range of the text.
@@ -97,18 +97,29 @@ pub(in crate::import) fn recognise(bytes: &[u8]) -> bool {
 }
 
 impl<'a> File<'a> {
-    /// Parses the text; bad records are skipped with a warning.
+    /// For tests: nobody is told.
+    #[cfg(test)]
+    pub fn parse(bytes: &'a [u8], name: &str, warnings: &mut Warnings) -> Result<Self, ImportError> {
+        Self::parse_telling(bytes, name, warnings, &Options::default())
+    }
+
+    /// Parses the text; bad records are skipped with a warning; tells how far it has come.
     ///
     /// # Errors
     /// [`ImportError`] when the text is not STEP, has no data, or more bad records than good ones.
-    pub fn parse(bytes: &'a [u8], name: &str, warnings: &mut Warnings) -> Result<Self, ImportError> {
+    pub fn parse_telling(
+        bytes: &'a [u8],
+        name: &str,
+        warnings: &mut Warnings,
+        options: &Options<'_>,
+    ) -> Result<Self, ImportError> {
         if u32::try_from(bytes.len()).is_err() {
-            return Err(ImportError::TooLarge { file: name.to_owned() });
+            return Err(ImportError::TooLarge { file: name.to_owned(), limit: u32::MAX.into() });
         }
         if !recognise(bytes) {
             return Err(ImportError::NotStep { file: name.to_owned() });
         }
-        let mut file = scan::scan(bytes, name, warnings)?;
+        let mut file = scan::scan(bytes, name, warnings, options)?;
         if !file.records.is_sorted_by(|a, b| a.id < b.id) {
             file.records.sort_by_key(|r| r.id);
             let mut repeated = Vec::new();

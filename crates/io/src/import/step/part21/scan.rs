@@ -6,7 +6,7 @@
 //! scan resumes at the place of the error. Hence linear time on any input.
 
 use super::{File, Part, Record, Slot, Span, line_of};
-use crate::import::{ImportError, Place, Warnings};
+use crate::import::{ImportError, Options, Place, Stage, Warnings};
 use std::collections::HashMap;
 
 /// Deepest nesting of lists. Real files need 5.
@@ -14,6 +14,9 @@ const MAX_DEPTH: usize = 64;
 
 /// Bad records that are looked at before a file with fewer good ones is given up.
 const PATIENCE: usize = 1000;
+
+/// Bytes of text between two words about how far it is.
+const TOLD: usize = 1 << 20;
 
 /// What is wrong with a record.
 type Bad = &'static str;
@@ -39,7 +42,12 @@ enum Section {
 }
 
 /// Reads all sections; `ISO-10303-21` has been seen.
-pub(super) fn scan<'a>(bytes: &'a [u8], name: &str, warnings: &mut Warnings) -> Result<File<'a>, ImportError> {
+pub(super) fn scan<'a>(
+    bytes: &'a [u8],
+    name: &str,
+    warnings: &mut Warnings,
+    options: &Options<'_>,
+) -> Result<File<'a>, ImportError> {
     let mut s = Scanner {
         bytes,
         at: 0,
@@ -55,9 +63,16 @@ pub(super) fn scan<'a>(bytes: &'a [u8], name: &str, warnings: &mut Warnings) -> 
     let mut section = Section::Outside;
     let (mut has_data, mut complete) = (false, false);
     let mut scopes: Vec<(u32, usize)> = Vec::new(); // `#id = &SCOPE` still open
+    let tell = |read: usize| options.tell(Stage::Records { read: read as u64, bytes: bytes.len() as u64 });
+    let mut told = 0;
+    tell(0);
     loop {
         s.blanks();
         let start = s.at;
+        if start >= told + TOLD {
+            told = start;
+            tell(told);
+        }
         let Some(&first) = bytes.get(start) else { break };
         let result = match first {
             b'#' if section == Section::Data => s.instance(&mut scopes),
@@ -106,6 +121,7 @@ pub(super) fn scan<'a>(bytes: &'a [u8], name: &str, warnings: &mut Warnings) -> 
             }
         }
     }
+    tell(bytes.len());
     if !has_data {
         return Err(ImportError::NoData { file: name.to_owned(), line: line_of(bytes, bytes.len()) });
     }

@@ -1,4 +1,5 @@
 use super::*;
+use crate::import::ImportReport;
 
 fn parse(text: &str) -> (Vec<(u32, String)>, Vec<String>) {
     let mut warnings = Warnings::new("t.step");
@@ -8,7 +9,7 @@ fn parse(text: &str) -> (Vec<(u32, String)>, Vec<String>) {
         (r.id, parts.join(" "))
     };
     let records = file.records.iter().map(show).collect();
-    (records, warnings.finish().0.iter().map(ToString::to_string).collect())
+    (records, warnings.finish(&mut ImportReport::default()).iter().map(ToString::to_string).collect())
 }
 
 /// Values in one line, decoded.
@@ -108,7 +109,7 @@ fn records_in_any_order_and_sparse() {
         [Some("B"), Some("A"), Some("C"), Some("Z"), None, None]
     );
     assert_eq!(file.of_kind("C").collect::<Vec<_>>(), [11]);
-    let (list, _) = warnings.finish();
+    let list = warnings.finish(&mut ImportReport::default());
     assert_eq!(list[0].to_string(), "t:2: #10: number used twice: the first record counts");
 }
 
@@ -204,7 +205,7 @@ fn nonsense_ends_soon() {
         let mut warnings = Warnings::new("t.step");
         let records = File::parse(text.as_bytes(), "t.step", &mut warnings).map_or(0, |f| f.records.len());
         assert!(records <= 1, "{unit}: {records}");
-        assert!(warnings.finish().0.len() < 40);
+        assert!(warnings.finish(&mut ImportReport::default()).len() < 40);
         assert!(start.elapsed().as_secs() < 20, "{unit} took {:?}", start.elapsed());
     }
 }

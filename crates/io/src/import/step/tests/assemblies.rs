@@ -176,3 +176,29 @@ fn exponential_assemblies_are_bounded() {
         import.warnings
     );
 }
+
+/// A hundred thousand levels of one child each: no cycle, and not called one.
+#[test]
+fn deep_assemblies_are_told_as_deep() {
+    let chain = |levels: u32| {
+        let mut data = TRIANGLE.to_owned();
+        data += "#100=MANIFOLD_SURFACE_SHAPE_REPRESENTATION('',(#18),#1);";
+        for level in 1..=levels {
+            let [below, rep, map, item] = [100 + 3 * (level - 1), 100 + 3 * level, 101 + 3 * level, 102 + 3 * level];
+            write!(
+                data,
+                "#{map}=REPRESENTATION_MAP(#24,#{below});#{item}=MAPPED_ITEM('',#{map},#24);\
+                 #{rep}=SHAPE_REPRESENTATION('',(#{item}),#1);"
+            )
+            .unwrap();
+        }
+        import(&data)
+    };
+    let whole = chain(255);
+    assert_eq!((whole.model.instances.len(), whole.warnings.len()), (1, 0), "{:?}", whole.warnings);
+    for levels in [256, 100_000] {
+        let deep = chain(levels).summary().to_string();
+        let why = "1 x occurrence left out: 1 x it is nested deeper than 256 levels";
+        assert!(deep.starts_with("nothing of it can be drawn; ") && deep.contains(why), "{deep}");
+    }
+}

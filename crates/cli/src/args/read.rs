@@ -1,0 +1,80 @@
+//! How files are read, whatever becomes of them.
+
+use crate::values::{length, mebibytes};
+use clap::{Args, ValueEnum};
+use selvedge::construct::subdivide::Scheme;
+
+/// Which files are taken.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub struct ReadArgs {
+    /// Refuse a file of which anything is left out: exit status 2 in place of a warning
+    #[arg(long)]
+    pub strict: bool,
+    /// Most MiB of a file that are read, gzip undone; three quarters of the machine's memory without it, and 4096 at most
+    #[arg(long, value_name = "MIB", value_parser = mebibytes)]
+    pub limit_mib: Option<f64>,
+}
+
+impl ReadArgs {
+    /// Most bytes of a file.
+    pub fn most_bytes(&self) -> u64 {
+        match self.limit_mib {
+            Some(mebibytes) => (mebibytes * f64::from(1 << 20)) as u64,
+            None => memory() / 4 * 3,
+        }
+    }
+}
+
+/// The machine's, or what the group of processes may use of it.
+fn memory() -> u64 {
+    let mut system = sysinfo::System::new();
+    system.refresh_memory();
+    let group = system.cgroup_limits().map_or(u64::MAX, |limits| limits.total_memory);
+    system.total_memory().min(group)
+}
+
+/// What becomes of polygons.
+#[derive(Clone, Copy, Debug, Default, Args)]
+pub struct SubdivideArgs {
+    /// Read an OBJ file's polygons as the control mesh of a smooth surface
+    #[arg(long, value_enum, value_name = "SCHEME")]
+    pub subdivide: Option<Smooth>,
+    /// Largest distance of the faces from that surface, in the file's units; a hundred-thousandth of the size without
+    /// it
+    #[arg(long, value_name = "LENGTH", requires = "subdivide", value_parser = length)]
+    pub within: Option<f64>,
+    /// Give every round solid of an OpenSCAD file the facets that OpenSCAD gives it
+    #[arg(long)]
+    pub as_openscad: bool,
+}
+
+/// Schemes of subdivision.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
+pub enum Smooth {
+    /// Any polygons, bicubic patches
+    CatmullClark,
+    /// Triangles, quartic patches
+    Loop,
+}
+
+impl Smooth {
+    pub fn scheme(self) -> Scheme {
+        match self {
+            Self::CatmullClark => Scheme::CatmullClark,
+            Self::Loop => Scheme::Loop,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_read_is_bounded_by_the_machine_or_by_the_user() {
+        let most = ReadArgs::default().most_bytes();
+        assert!(most > 1 << 20 && most < memory(), "{most} of {}", memory());
+        let args = ReadArgs { limit_mib: Some(0.5), ..ReadArgs::default() };
+        assert_eq!(args.most_bytes(), 1 << 19);
+    }
+}

@@ -1,0 +1,214 @@
+//! Where outputs go: checked before the work begins, whole or not there at all when it ends.
+//!
+//! ```text
+//!   arguments ──check──▶ ending, folder, no file twice, no input among them        nothing is opened yet
+//!   write ─▶ folder/.selvedge-XXXXXX ──whole──▶ renamed to folder/name             a failure leaves the old file
+//!        ├▶ a device, a pipe: written where it is
+//!        └▶ `-`: standard output, in one piece
+//! ```
+
+use anyhow::{Context, Result, bail};
+use same_file::Handle;
+use selvedge_io::import::Import;
+use std::fs::{self, File, OpenOptions};
+use std::io::{self, BufWriter, Write};
+use std::path::{Path, PathBuf};
+
+/// Links that are followed at the end of a path, as many as Linux follows.
+const MOST_LINKS: usize = 40;
+
+/// What a file holds, which its ending has to say.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct Form {
+    name: &'static str,
+    endings: &'static [&'static str],
+}
+
+pub const PNG: Form = Form { name: "a PNG picture", endings: &["png"] };
+pub const NPY: Form = Form { name: "a NumPy array", endings: &["npy"] };
+pub const JSON: Form = Form { name: "JSON", endings: &["json"] };
+pub const CSV: Form = Form { name: "CSV", endings: &["csv"] };
+pub const STEP: Form = Form { name: "a STEP file", endings: &["step", "stp", "p21"] };
+pub const NATIVE: Form = Form { name: "a .selvedge file", endings: &["selvedge"] };
+
+/// An output of a call.
+#[derive(Clone, Debug)]
+pub struct Target {
+    pub path: PathBuf,
+    pub form: Form,
+}
+
+impl Target {
+    pub fn new(path: impl Into<PathBuf>, form: Form) -> Self {
+        Self { path: path.into(), form }
+    }
+}
+
+/// The path means standard output, or standard input.
+pub fn is_standard(path: &Path) -> bool {
+    path.as_os_str() == "-"
+}
+
+/// Refuses what cannot be written, and what would be written over another output or an input of the same call.
+///
+/// Existing files are the same when they are one file to the system, whatever names and links lead to it; new ones, when
+/// their names in one folder differ in case at most.
+pub fn check(inputs: &[&Path], outputs: &[Target]) -> Result<()> {
+    let read: Vec<_> =
+        inputs.iter().filter(|path| !is_standard(path)).map(|path| (*path, Identity::of(path))).collect();
+    let mut written: Vec<(&Path, Identity)> = Vec::new();
+    for Target { path, form } in outputs {
+        let told = path.display();
+        let identity = if is_standard(path) {
+            Some(Identity::Standard)
+        } else {
+            form.check(path)?;
+            Identity::of(path)
+        };
+        let Some(identity) = identity else { continue };
+        if let Some((input, _)) = read.iter().find(|(_, known)| known.as_ref() == Some(&identity)) {
+            bail!("{told}: the same file as the input {}, which it would replace", input.display());
+        }
+        if let Some((other, _)) = written.iter().find(|(_, known)| *known == identity) {
+            bail!("{told}: the same place as another output, {}", other.display());
+        }
+        written.push((path, identity));
+    }
+    Ok(())
+}
+
+impl Form {
+    /// The place can have such a file.
+    fn check(self, path: &Path) -> Result<()> {
+        let told = path.display();
+        if let Some(ending) = path.extension() {
+            let ending = ending.to_string_lossy();
+            if !self.endings.iter().any(|known| ending.eq_ignore_ascii_case(known)) {
+                let wanted: Vec<_> = self.endings.iter().map(|e| format!(".{e}")).collect();
+                bail!("{told}: what is written here is {}, so its name ends in {}", self.name, wanted.join(" or "));
+            }
+        }
+        let place = resolved(path).with_context(|| format!("cannot write {told}"))?;
+        match fs::metadata(&place) {
+            Ok(found) if found.is_dir() => bail!("{told}: a folder, not a file that can be written"),
+            Ok(found) if !found.is_file() => return Ok(()),
+            // which to rename another file over it would not respect
+            Ok(found) if found.permissions().readonly() => bail!("{told}: the file is write-protected"),
+            _ => {}
+        }
+        let folder = place.parent().unwrap_or(Path::new("."));
+        // to be renamed, a file has to be made here first
+        beside(folder).with_context(|| format!("cannot write {told}: no file can be made in its folder"))?;
+        Ok(())
+    }
+}
+
+/// What tells a place from another.
+#[derive(PartialEq, Eq)]
+enum Identity {
+    /// `-`
+    Standard,
+    /// A file that exists.
+    File(Handle),
+    /// One that does not: its folder, and its name in small letters.
+    New(PathBuf, String),
+}
+
+impl Identity {
+    /// `None` for devices, pipes and what cannot be reached: to write them twice loses nothing.
+    fn of(path: &Path) -> Option<Self> {
+        let place = resolved(path).ok()?;
+        match fs::metadata(&place) {
+            Ok(found) if found.is_file() => Handle::from_path(&place).ok().map(Self::File),
+            Ok(_) => None,
+            Err(_) => Some(Self::New(place.parent()?.to_owned(), place.file_name()?.to_string_lossy().to_lowercase())),
+        }
+    }
+}
+
+/// The file that a path leads to, whether or not it exists: its folder without links, and the name there.
+fn resolved(path: &Path) -> io::Result<PathBuf> {
+    let mut path = path.to_owned();
+    for _ in 0..MOST_LINKS {
+        match fs::read_link(&path) {
+            Ok(to) => path = path.parent().unwrap_or(Path::new("")).join(to),
+            Err(_) => break,
+        }
+    }
+    let name = path.file_name().ok_or_else(|| io::Error::new(io::ErrorKind::InvalidInput, "the path names no file"))?;
+    let folder = path.parent().filter(|folder| !folder.as_os_str().is_empty()).unwrap_or(Path::new("."));
+    let folder = folder.canonicalize().map_err(|e| io::Error::new(e.kind(), format!("{}: {e}", folder.display())))?;
+    Ok(folder.join(name))
+}
+
+/// A file that is removed again unless it is renamed.
+fn beside(folder: &Path) -> io::Result<tempfile::NamedTempFile> {
+    let mut builder = tempfile::Builder::new();
+    builder.prefix(".selvedge-");
+    #[cfg(unix)]
+    {
+        // as any new file: what the user's mask leaves of it
+        use std::os::unix::fs::PermissionsExt;
+        builder.permissions(fs::Permissions::from_mode(0o666));
+    }
+    builder.tempfile_in(folder)
+}
+
+/// Lets `fill` write a file, which is there when all of it is; names it when either fails.
+pub fn write(path: &Path, fill: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<()> {
+    if is_standard(path) {
+        let mut bytes = Vec::new();
+        fill(&mut bytes)?;
+        return standard(&bytes);
+    }
+    let write = || -> Result<()> {
+        let place = resolved(path)?;
+        let found = fs::metadata(&place).ok();
+        if found.as_ref().is_some_and(|found| !found.is_file()) {
+            return filled(OpenOptions::new().write(true).open(&place)?, fill).map(drop);
+        }
+        let (file, temporary) = beside(place.parent().unwrap_or(Path::new(".")))?.into_parts();
+        let file = filled(file, fill)?;
+        if let Some(found) = found {
+            file.set_permissions(found.permissions())?;
+        }
+        temporary.persist(&place)?;
+        Ok(())
+    };
+    write().with_context(|| format!("cannot write {}", path.display()))
+}
+
+/// The file with what `fill` writes to it.
+fn filled(file: File, fill: impl FnOnce(&mut dyn Write) -> Result<()>) -> Result<File> {
+    let mut to = BufWriter::new(file);
+    fill(&mut to)?;
+    Ok(to.into_inner().map_err(io::IntoInnerError::into_error)?)
+}
+
+/// To standard output. A reader that went away (`selvedge info m.step | head`) is no error.
+pub fn standard(bytes: &[u8]) -> Result<()> {
+    let mut out = io::stdout().lock();
+    match out.write_all(bytes).and_then(|()| out.flush()) {
+        Err(error) if error.kind() == io::ErrorKind::BrokenPipe => Ok(()),
+        result => result.context("standard output"),
+    }
+}
+
+/// The same of what has been read beside the model, which is known when that is.
+pub fn check_read(import: &Import, outputs: &[Target]) -> Result<()> {
+    let files: Vec<&Path> = import.report.files_read.iter().map(PathBuf::as_path).collect();
+    check(&files, outputs)
+}
+
+/// Makes the folder of outputs, and checks their places in it.
+pub fn folder(inputs: &[&Path], folder: &Path, files: impl IntoIterator<Item = (String, Form)>) -> Result<()> {
+    if is_standard(folder) {
+        bail!("a folder is wanted for several files, and `-` is standard output");
+    }
+    fs::create_dir_all(folder).with_context(|| format!("cannot make {}", folder.display()))?;
+    let files: Vec<_> = files.into_iter().map(|(name, form)| Target::new(folder.join(name), form)).collect();
+    check(inputs, &files)
+}
+
+#[cfg(test)]
+mod tests;

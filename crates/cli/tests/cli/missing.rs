@@ -1,0 +1,109 @@
+//! Files of which something or everything cannot be drawn: what is said, and the exit status.
+
+use super::{refused, selvedge, text};
+use std::fs;
+use tempfile::TempDir;
+
+/// A patch that is drawn, and one that is not.
+const PATCH: &str = "4\n1\n0 0 0\n1 0 0\n0 1 0\n1 1 0\n";
+const DAMAGED: &str = "4\n0\n0 0 0\n";
+
+fn file(folder: &TempDir, name: &str, content: &str) -> String {
+    let path = folder.path().join(name);
+    fs::write(&path, content).unwrap();
+    path.to_str().unwrap().to_owned()
+}
+
+/// Status 2 and `message` from every command that draws or writes the model; nothing is written.
+#[track_caller]
+fn draws_nothing(folder: &TempDir, model: &str, message: &str) {
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (png, native, step) = (path("a.png"), path("a.selvedge"), path("a.step"));
+    for call in [
+        &["render", model, "-o", &png][..],
+        &["check", model],
+        &["bench", model],
+        &["convert", model, &native],
+        &["export", model, &step],
+    ] {
+        refused(call, message);
+    }
+    let written = [&png, &native, &step].map(|path| fs::exists(path).unwrap());
+    assert_eq!(written, [false; 3]);
+    // which describes the file all the same
+    let info = selvedge(&["info", "--json", model]);
+    assert_eq!(info.status.code(), Some(2));
+    assert!(text(&info.stderr).contains(message), "{}", text(&info.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&info.stdout).unwrap();
+    for what in ["faces", "meshes", "solids"] {
+        assert_eq!(told["summary"][what]["drawn"], 0, "{told}");
+    }
+}
+
+#[test]
+fn a_file_without_anything_to_draw_is_refused() {
+    let folder = TempDir::new().unwrap();
+    let damaged = file(&folder, "damaged.bv", DAMAGED);
+    let why = "damaged.bv: nothing of it can be drawn; 1 left out: 1 x degree 0 is not between 1 and 15";
+    draws_nothing(&folder, &damaged, why);
+    let step = |data: &str| {
+        format!("ISO-10303-21;HEADER;FILE_SCHEMA(('AUTOMOTIVE_DESIGN'));ENDSEC;DATA;{data}ENDSEC;END-ISO-10303-21;")
+    };
+    let lines = "#1=CARTESIAN_POINT('',(0.,0.,0.));#2=DIRECTION('',(1.,0.,0.));#3=VECTOR('',#2,1.);#4=LINE('',#1,#3);\
+                 #5=GEOMETRIC_CURVE_SET('',(#4));#6=SHAPE_REPRESENTATION('',(#5),#7);#7=REPRESENTATION_CONTEXT('','');";
+    let lines = file(&folder, "lines.step", &step(lines));
+    draws_nothing(&folder, &lines, "lines.step: nothing of it can be drawn; it holds 1 x GEOMETRIC_CURVE_SET");
+    let empty = file(&folder, "empty.csg", "group();");
+    draws_nothing(&folder, &empty, "empty.csg: nothing of it can be drawn");
+}
+
+#[test]
+fn what_is_left_out_is_told_and_strict_refuses_it() {
+    let folder = TempDir::new().unwrap();
+    let some = file(&folder, "some.bv", &format!("{PATCH}{DAMAGED}{PATCH}{DAMAGED}"));
+    let png = folder.path().join("a.png").to_str().unwrap().to_owned();
+    let why = "some.bv: drawn 2 of 4 faces; 2 left out: 2 x degree 0 is not between 1 and 15";
+    let small = ["--size", "32x24"];
+    for call in [&["render", &some, "-o", &png][..], &["check", &some]] {
+        let call = [call, &small].concat();
+        let output = selvedge(&call);
+        assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+        assert!(text(&output.stderr).contains(why), "{}", text(&output.stderr));
+        refused(&[&call[..], &["--strict"]].concat(), &format!("--strict: {}", &some));
+    }
+    let info = selvedge(&["info", &some]);
+    assert_eq!(info.status.code(), Some(0));
+    assert!(text(&info.stdout).contains("faces left out: 2\n  2 x degree 0 is not between 1 and 15"));
+    assert_eq!(selvedge(&["info", "--strict", &some]).status.code(), Some(2));
+    let whole = file(&folder, "whole.bv", PATCH);
+    let output = selvedge(&["info", "--strict", &whole]);
+    assert_eq!((output.status.code(), text(&output.stderr).as_str()), (Some(0), ""));
+}
+
+/// A Boolean solid of which nothing is left, which no reader can tell; a section that takes everything; a camera that
+/// looks past the model.
+#[test]
+fn pictures_of_nothing_are_no_success() {
+    let folder = TempDir::new().unwrap();
+    let nothing =
+        file(&folder, "nothing.csg", "difference() { sphere(r = 1); cube(size = [9, 9, 9], center = true); }");
+    let ball = file(&folder, "ball.csg", "sphere(r = 1);");
+    let png = folder.path().join("a.png").to_str().unwrap().to_owned();
+    let small = ["--size", "32x24"];
+    let refused_drawing = |model: &str, more: &[&str], status: i32| {
+        for call in [&["render", model, "-o", &png][..], &["check", model]] {
+            let output = selvedge(&[call, &small, more].concat());
+            let told = text(&output.stderr);
+            assert_eq!(output.status.code(), Some(status), "{call:?} {more:?}: {told}");
+            let what = if status == 2 { "nothing is seen" } else { "no pixel shows anything of it" };
+            assert!(told.contains(what), "{call:?} {more:?}: {told}");
+        }
+    };
+    refused_drawing(&nothing, &[], 2);
+    refused_drawing(&nothing, &["--eye", "0,-9,0", "--target", "0,0,0"], 2);
+    refused(&["render", &ball, "-o", &png, "--section", "1,0,0,-2"], "what cuts the model open leaves nothing of it");
+    assert!(!fs::exists(&png).unwrap());
+    refused_drawing(&ball, &["--eye", "0,-9,0", "--target", "0,-99,0"], 0);
+    let past = ["render", &ball, "-o", &png, "--eye", "0,-9,0", "--target", "0,-99,0", "--strict"];
+    refused(&past, "ball.csg: no pixel shows anything of it");
+}

@@ -1,0 +1,89 @@
+//! What is read, and how much of it: files, streams, and what is neither.
+
+use super::scenes::SCENE;
+use super::{refused, selvedge, text};
+use std::fs;
+use std::io::Write;
+use std::process::{Command, Output, Stdio};
+
+/// Runs with `input` on standard input.
+fn piped(arguments: &[&str], input: &[u8]) -> Output {
+    let mut child = Command::new(env!("CARGO_BIN_EXE_selvedge"))
+        .args(arguments)
+        .stdin(Stdio::piped())
+        .stdout(Stdio::piped())
+        .stderr(Stdio::piped())
+        .spawn()
+        .unwrap();
+    // it may have seen enough, and closed the pipe
+    let _ = child.stdin.take().unwrap().write_all(input);
+    child.wait_with_output().unwrap()
+}
+
+#[test]
+fn a_dash_is_standard_input() {
+    let good = include_bytes!("../../../io/src/import/step/tests/good.step");
+    let told = piped(&["info", "--json", "-"], good);
+    assert_eq!(told.status.code(), Some(0), "{}", text(&told.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&told.stdout).unwrap();
+    assert_eq!(told["faces"], 3);
+    let folder = tempfile::tempdir().unwrap();
+    let native = folder.path().join("a.selvedge").to_str().unwrap().to_owned();
+    assert_eq!(piped(&["convert", "-", &native], good).status.code(), Some(0));
+    let again = selvedge(&["convert", &native, "-"]).stdout;
+    let through = piped(&["convert", "-", "-"], &again);
+    assert!(through.stdout == again, "{}", text(&through.stderr));
+    for (input, message) in [(&b"no model"[..], "not a CAD file of a known format"), (b"", "not a CAD file")] {
+        let output = piped(&["info", "-"], input);
+        assert_eq!(output.status.code(), Some(2));
+        let told = text(&output.stderr);
+        assert!(told.contains("standard input: ") && told.contains(message), "{told}");
+    }
+    // no format begins so: the rest is not waited for
+    let output = piped(&["info", "-"], &vec![b'y'; 4 << 20]);
+    assert!(text(&output.stderr).contains("not a CAD file of a known format"), "{}", text(&output.stderr));
+}
+
+#[test]
+fn what_is_no_file_is_not_read() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let within = path("a.step");
+    fs::create_dir(&within).unwrap();
+    refused(&["info", &within], "a.step: a folder, not a file");
+    #[cfg(unix)]
+    {
+        refused(&["info", "/dev/zero"], "/dev/zero: a device, not a file");
+        let pipe = path("pipe.step");
+        assert!(Command::new("mkfifo").arg(&pipe).status().unwrap().success());
+        refused(&["info", &pipe], "pipe.step: a named pipe");
+        refused(&["render", &pipe, "-o", &path("a.png")], "pipe.step: a named pipe");
+        // beside a model too
+        let scene = path("a.toml");
+        fs::write(&scene, "selvedge = 1\n[file.a]\npath = \"pipe.step\"\n").unwrap();
+        refused(&["info", &scene], "pipe.step: a named pipe");
+        let data = "selvedge = 1\n[surface.a]\nshape = \"grid\"\nfile = \"pipe.csv\"\n";
+        fs::rename(&pipe, path("pipe.csv")).unwrap();
+        fs::write(&scene, data).unwrap();
+        refused(&["info", &scene], "pipe.csv: a named pipe");
+    }
+}
+
+#[test]
+fn what_is_read_is_bounded() {
+    let folder = tempfile::tempdir().unwrap();
+    let path = |name: &str| folder.path().join(name).to_str().unwrap().to_owned();
+    let (scene, large) = (path("a.toml"), path("large.step"));
+    fs::write(&scene, SCENE).unwrap();
+    let mut step = include_bytes!("../../../io/src/import/step/tests/good.step").to_vec();
+    step.extend(vec![b'\n'; 2 << 20]);
+    fs::write(&large, &step).unwrap();
+    assert_eq!(selvedge(&["info", &large]).status.code(), Some(0));
+    let bounded = "more than --limit-mib allows: ";
+    refused(&["info", &large, "--limit-mib", "1"], bounded);
+    refused(&["render", &large, "-o", &path("a.png"), "--limit-mib", "1"], bounded);
+    refused(&["render", &scene, "-o", &path("a.png"), "--trim-by", &large, "--limit-mib", "1"], bounded);
+    let output = piped(&["info", "-", "--limit-mib", "1"], &step);
+    assert!(output.status.code() == Some(2) && text(&output.stderr).contains(bounded), "{}", text(&output.stderr));
+    refused(&["info", &large, "--limit-mib", "0"], "MiB above 0");
+}

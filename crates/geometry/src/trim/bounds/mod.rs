@@ -1,0 +1,148 @@
+//! How far models reach: boxes of what the trims leave, not of control points.
+//!
+//! ```text
+//!        control points                 highest along a direction is       1. a point of a trim curve, or of the
+//!     ●─ ─ ─ ─ ─ ─ ─ ─ ●                                                      border of the domain,
+//!        ╭──────╮            ┬ box      2. a point where patches meet,
+//!     ┊ ╱  face  ╲     ┊     │          3. or a point inside a patch where
+//!      ╱──────────╲          ┴             the surface is level.
+//!     ●            ●
+//! ```
+//!
+//! *Method.* Each of the six sides is a search of its own for the highest point along a direction. What may hold it
+//! waits in a heap, the highest bound first: placed parts, their faces, pieces of trim curves, patches and their sides.
+//! Bounds are those of boxes, then of control values. A piece of a trim curve over one patch is a rational curve in
+//! space ([`height`]), and is halved until the bound is met; a patch is halved likewise, and goes where the loops
+//! leave nothing of it or where it is nowhere level. Points that are certainly there raise a mark: ends of curves, and
+//! corners that the loops keep. The search is over when no bound is above the mark by more than the tolerance: parts
+//! and faces that are not at the border of the model are never looked at.
+//!
+//! *Accuracy.* A side is where a point of the model is, and no point is beyond it by more than [`ANALYTIC`] of the box's
+//! diagonal, or [`OTHER`] of it for faces that have no equation of their own, plus some roundings of the largest
+//! coordinate. Faces are those of the model: what an importer's tolerance moved stays moved. Where a search would take
+//! more than some 65,000 steps, the side is that of the bounds that are left, and too far out. Loops that cancel each
+//! other bound nothing; a face of which nothing is left has no box.
+//!
+//! *Placed parts.* A direction of the model is turned into a direction of the part, so turned parts have boxes as tight
+//! as others. Of copies that are turned alike the highest is searched alone; of all others, those that no bound rules
+//! out. A copy costs one box. A turned copy that may reach farthest costs a box for each of its faces, and their search.
+//!
+//! *Solids.* See [`solid`]. A volume that [trims](Model::trim_by) the model cuts the box of the faces, where it has a
+//! box: such sides are not nearer than the model, and may be farther.
+//!
+//! Source: branch and bound on hulls as in T. W. Sederberg, *Computer Aided Geometric Design*, course notes, 2012,
+//! chapter 10 (Bézier clipping), with the test for level points instead of clipping.
+
+mod carried;
+mod height;
+mod search;
+mod solid;
+
+use crate::model::{Bounds, Face, Model, Part, SurfaceKind, meet};
+use glam::{DAffine3, DVec3};
+use search::{Body, Search, Tolerance};
+use std::ops::Range;
+
+/// How far points may be beyond a box, in shares of its diagonal: of planes, cylinders, cones, spheres and tori.
+pub const ANALYTIC: f64 = 1e-9;
+/// The same of other surfaces.
+pub const OTHER: f64 = 1e-6;
+
+/// A first guess at the size: how far a search may be off, in shares of the guess.
+const COARSE: f64 = 1e-2;
+/// The box is no smaller beside the guess, or the guess is too large.
+const GOOD_GUESS: f64 = 0.1;
+/// Guesses; after them the size is a rounding of the first.
+const MOST_GUESSES: usize = 16;
+
+impl Face {
+    /// Box of the trimmed face; empty where its loops leave nothing.
+    ///
+    /// Each side is where a point of the face is. No point is beyond it by more than [`ANALYTIC`] of the box's diagonal,
+    /// or [`OTHER`] of it where the surface has no equation of its own, plus some roundings of the largest coordinate.
+    pub fn bounds(&self) -> Bounds {
+        of(&[Body::new(std::slice::from_ref(self), &[])], &[(0, DAffine3::IDENTITY)])
+    }
+}
+
+impl Part {
+    /// Box of the trimmed faces and of the meshes' triangles, part coordinates; see [`Face::bounds`].
+    pub fn bounds(&self) -> Bounds {
+        self.bounds_placed(DAffine3::IDENTITY)
+    }
+
+    /// Box of the part when it is placed so: as tight as its own, however it is turned.
+    pub fn bounds_placed(&self, transform: DAffine3) -> Bounds {
+        of(&[Body::new(&self.faces, &self.meshes)], &[(0, transform)])
+    }
+}
+
+impl Model {
+    /// Box of all that is drawn, model coordinates: of the placed faces and meshes as tight as [`Face::bounds`]; of the
+    /// solids that have an end, a box of their expressions over tight boxes of their primitives.
+    pub fn bounds(&self) -> Bounds {
+        self.bounds_of(0..self.instances.len(), 0..self.solids.len())
+    }
+
+    /// The same of some of the instances and solids, by their numbers.
+    ///
+    /// # Panics
+    /// Where there are fewer.
+    pub fn bounds_of(&self, instances: Range<usize>, solids: Range<usize>) -> Bounds {
+        let mut numbers = vec![None; self.parts.len()];
+        let (mut bodies, mut placements) = (Vec::new(), Vec::new());
+        for instance in self.instances[instances].iter().filter(|i| i.transform.is_finite()) {
+            let part = &self.parts[instance.part];
+            let body = *numbers[instance.part].get_or_insert_with(|| {
+                bodies.push(Body::new(&part.faces, &part.meshes));
+                bodies.len() - 1
+            });
+            placements.push((body, instance.transform));
+        }
+        let faces = of(&bodies, &placements);
+        let faces = self.trim.as_ref().map_or(faces, |volume| meet(faces, solid::bounds(volume)));
+        let solids = self.solids[solids].iter().map(solid::bounds);
+        let finite = solids.filter(|b| b.min.is_finite() && b.max.is_finite());
+        finite.fold(faces, Bounds::union)
+    }
+}
+
+/// Box of bodies by their numbers, as placed.
+fn of(bodies: &[Body<'_>], placements: &[(usize, DAffine3)]) -> Bounds {
+    let directions = [DVec3::X, DVec3::Y, DVec3::Z, DVec3::NEG_X, DVec3::NEG_Y, DVec3::NEG_Z];
+    let mut searches = directions.map(|direction| Search::new(bodies, placements, direction));
+    let whole = placements.iter().flat_map(|(body, transform)| {
+        let around = bodies[*body].around;
+        let corners = if around.is_empty() { Vec::new() } else { around.corners().to_vec() };
+        corners.into_iter().map(|c| transform.transform_point3(c))
+    });
+    let mut size = whole.fold(Bounds::EMPTY, Bounds::with).diagonal();
+    // the box of control points may be many times too large
+    for _ in 0..MOST_GUESSES {
+        let off = COARSE * size;
+        searches.iter_mut().for_each(|search| {
+            search.refine(Tolerance { analytic: off, other: off });
+        });
+        let found = between(searches.each_ref().map(Search::low)).diagonal();
+        if !(found < GOOD_GUESS * size) {
+            size = found;
+            break;
+        }
+        size = found + 4.0 * off;
+    }
+    let tolerance = Tolerance { analytic: ANALYTIC * size, other: OTHER * size };
+    between(searches.each_mut().map(|search| search.refine(tolerance)))
+}
+
+/// The box whose sides are so far along the directions.
+fn between([x, y, z, below_x, below_y, below_z]: [f64; 6]) -> Bounds {
+    // no -0
+    let all = Bounds { min: 0.0 - DVec3::new(below_x, below_y, below_z), max: DVec3::new(x, y, z) };
+    if all.is_empty() { Bounds::EMPTY } else { all }
+}
+
+/// Whether a surface was given by an equation of its own.
+fn is_analytic(kind: SurfaceKind) -> bool {
+    use SurfaceKind::{Cone, Cylinder, Plane, Sphere, Torus};
+    matches!(kind, Plane | Cylinder | Cone | Sphere | Torus)
+}

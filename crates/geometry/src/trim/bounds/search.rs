@@ -1,0 +1,332 @@
+//! The largest height of placed faces and meshes, by branch and bound.
+//!
+//! ```text
+//!   body ──▶ face ──┬─▶ piece of a trim curve ──▶ its halves …      the heap: what is left, the highest bound first
+//!     │             └─▶ patch ──┬─▶ its halves, inside or across the loops …
+//!     └────▶ mesh               └─▶ its four sides ──▶ their halves …
+//! ```
+
+use super::carried::{Carried, Piece};
+use super::height::{Height, ROUNDING, Up, quotient};
+use crate::model::{Bounds, Face, Mesh};
+use crate::trim::RectSide;
+use glam::{DAffine3, DVec2, DVec3};
+use std::cell::OnceCell;
+use std::cmp::Ordering;
+use std::collections::{BinaryHeap, HashMap};
+
+/// Steps of one search; after them what is left counts as high as its bounds.
+const MOST_STEPS: usize = 1 << 16;
+/// Halvings of a curve or patch; after them it counts as high as its bound.
+const MOST_HALVINGS: u32 = 96;
+
+/// Faces and meshes that are placed together.
+pub(super) struct Body<'a> {
+    faces: Vec<(&'a Face, Bounds, OnceCell<Carried<'a>>)>,
+    meshes: Vec<(&'a Mesh, Bounds)>,
+    /// Box of all control points and vertices.
+    pub around: Bounds,
+}
+
+impl<'a> Body<'a> {
+    pub fn new(faces: &'a [Face], meshes: &'a [Mesh]) -> Self {
+        let faces: Vec<_> = faces
+            .iter()
+            .map(|face| {
+                let (min, max) = face.surface.bounds();
+                (face, Bounds { min, max }, OnceCell::new())
+            })
+            .collect();
+        let meshes: Vec<_> = meshes.iter().map(|mesh| (mesh, mesh.bounds())).filter(|m| !m.1.is_empty()).collect();
+        let around = faces.iter().map(|f| f.1).chain(meshes.iter().map(|m| m.1)).fold(Bounds::EMPTY, Bounds::union);
+        Self { faces, meshes, around }
+    }
+
+    fn carried(&self, face: usize) -> &Carried<'a> {
+        let (face, _, carried) = &self.faces[face];
+        carried.get_or_init(|| Carried::new(face))
+    }
+}
+
+/// How far from the truth a search may end.
+#[derive(Clone, Copy, Debug)]
+pub(super) struct Tolerance {
+    /// Of faces that have equations.
+    pub analytic: f64,
+    /// Of others; no less.
+    pub other: f64,
+}
+
+/// What is left to look at.
+struct Candidate {
+    upper: f64,
+    placed: usize,
+    what: What,
+}
+
+enum What {
+    Body,
+    Face(usize),
+    Mesh(usize),
+    /// A piece of a trim curve, as high as its patch.
+    Piece {
+        face: usize,
+        piece: usize,
+    },
+    /// A part of such a piece.
+    Curve {
+        face: usize,
+        height: Height,
+        halvings: u32,
+    },
+    /// A rectangle of a face's domain within one patch, or a line of it.
+    Area(Area),
+}
+
+struct Area {
+    face: usize,
+    height: Height,
+    lo: DVec2,
+    hi: DVec2,
+    /// No trim curve is in it.
+    inside: bool,
+    /// A whole patch, whose sides come with it.
+    whole: bool,
+    halvings: u32,
+}
+
+impl What {
+    /// Of those with equal bounds: trim curves raise the mark at once, areas ask the loops.
+    fn rank(&self) -> u8 {
+        u8::from(!matches!(self, Self::Area(_)))
+    }
+}
+
+impl PartialEq for Candidate {
+    fn eq(&self, other: &Self) -> bool {
+        self.cmp(other) == Ordering::Equal
+    }
+}
+impl Eq for Candidate {}
+impl PartialOrd for Candidate {
+    fn partial_cmp(&self, other: &Self) -> Option<Ordering> {
+        Some(self.cmp(other))
+    }
+}
+impl Ord for Candidate {
+    fn cmp(&self, other: &Self) -> Ordering {
+        self.upper.total_cmp(&other.upper).then(self.what.rank().cmp(&other.what.rank()))
+    }
+}
+
+/// Of one direction.
+pub(super) struct Search<'s, 'a> {
+    bodies: &'s [Body<'a>],
+    /// Of each body that is placed, which way is up and its number.
+    placed: Vec<(Up, usize)>,
+    heap: BinaryHeap<Candidate>,
+    /// The highest point found that is certainly there.
+    low: f64,
+    /// As high as what could not be looked at closely enough may be.
+    unsure: f64,
+    /// Heights are rounded by as much.
+    rounding: f64,
+    steps: usize,
+}
+
+impl<'s, 'a> Search<'s, 'a> {
+    /// Of bodies by their numbers, as placed.
+    pub fn new(bodies: &'s [Body<'a>], placements: &[(usize, DAffine3)], direction: DVec3) -> Self {
+        // of bodies that are turned alike the highest
+        let mut highest: HashMap<(usize, [u64; 3]), Up> = HashMap::new();
+        for &(body, transform) in placements {
+            let along = transform.matrix3.transpose() * direction + 0.0; // no -0
+            let up = Up { along, offset: direction.dot(transform.translation) };
+            let known = highest.entry((body, along.to_array().map(f64::to_bits))).or_insert(up);
+            known.offset = known.offset.max(up.offset);
+        }
+        let mut placed: Vec<(Up, usize)> = highest.into_iter().map(|((body, _), up)| (up, body)).collect();
+        placed.sort_by(|a, b| a.1.cmp(&b.1).then(a.0.offset.total_cmp(&b.0.offset)));
+        let upper = |(up, body): &(Up, usize)| of_box(*up, bodies[*body].around);
+        let size = placed.iter().map(|(up, body)| {
+            let around = bodies[*body].around;
+            up.along.abs().dot(around.min.abs().max(around.max.abs())) + up.offset.abs()
+        });
+        let rounding = ROUNDING * size.fold(0.0, f64::max);
+        let candidates = placed.iter().enumerate();
+        let heap = candidates.map(|(n, p)| Candidate { upper: upper(p), placed: n, what: What::Body }).collect();
+        Self { bodies, placed, heap, low: f64::NEG_INFINITY, unsure: f64::NEG_INFINITY, rounding, steps: 0 }
+    }
+
+    /// The largest height, or less by the tolerance; more where the work that it may take does not suffice. Negative
+    /// infinity where there is nothing.
+    pub fn refine(&mut self, tolerance: Tolerance) -> f64 {
+        while let Some(top) = self.heap.peek() {
+            if !(top.upper > self.low + tolerance.analytic + self.rounding) {
+                break;
+            }
+            if self.steps >= MOST_STEPS {
+                self.unsure = self.unsure.max(top.upper);
+                break;
+            }
+            let Some(top) = self.heap.pop() else { break };
+            if top.upper > self.low + self.allowed(&top, tolerance) + self.rounding {
+                self.steps += 1;
+                self.expand(top);
+            }
+        }
+        self.low.max(self.unsure)
+    }
+
+    /// The highest point found.
+    pub fn low(&self) -> f64 {
+        self.low
+    }
+
+    fn allowed(&self, of: &Candidate, tolerance: Tolerance) -> f64 {
+        let face = match &of.what {
+            What::Body | What::Mesh(_) => return tolerance.analytic,
+            What::Face(face) | What::Piece { face, .. } | What::Curve { face, .. } | What::Area(Area { face, .. }) => {
+                *face
+            }
+        };
+        let (face, ..) = self.bodies[self.placed[of.placed].1].faces[face];
+        if super::is_analytic(face.kind) { tolerance.analytic } else { tolerance.other }
+    }
+
+    fn push(&mut self, placed: usize, upper: f64, what: What) {
+        if upper > self.low {
+            self.heap.push(Candidate { upper, placed, what });
+        }
+    }
+
+    fn find(&mut self, height: f64) {
+        self.low = self.low.max(height);
+    }
+
+    fn expand(&mut self, Candidate { upper, placed, what }: Candidate) {
+        let bodies = self.bodies;
+        let (up, body) = self.placed[placed];
+        let body = &bodies[body];
+        match what {
+            What::Body => {
+                for (i, (_, around, _)) in body.faces.iter().enumerate() {
+                    self.push(placed, of_box(up, *around), What::Face(i));
+                }
+                for (i, (_, around)) in body.meshes.iter().enumerate() {
+                    self.push(placed, of_box(up, *around), What::Mesh(i));
+                }
+            }
+            What::Mesh(mesh) => {
+                let mesh = body.meshes[mesh].0;
+                let corners = mesh.triangles().iter().flatten().map(|&v| up.of_point(mesh.positions()[v as usize]));
+                self.find(corners.fold(f64::NEG_INFINITY, f64::max));
+            }
+            What::Face(face) => self.face(placed, up, face, body.carried(face)),
+            What::Piece { face, piece } => {
+                let carried = body.carried(face);
+                if carried.is_beside(piece) {
+                    let Piece { patch, curve, .. } = &carried.pieces[piece];
+                    let height = up.of_patch(&carried.grid.patches[*patch].patch).along(curve);
+                    self.push(placed, height.upper().min(upper), What::Curve { face, height, halvings: 0 });
+                }
+            }
+            What::Curve { face, height, halvings } => {
+                let ends = [height.at(0, 0), height.at(height.n, 0)].map(quotient);
+                ends.into_iter().for_each(|end| self.find(end));
+                if self.is_done(upper, height.lower(), &height, halvings) {
+                    return;
+                }
+                for half in height.halves_u() {
+                    let upper = half.upper().min(upper);
+                    self.push(placed, upper, What::Curve { face, height: half, halvings: halvings + 1 });
+                }
+            }
+            What::Area(area) => {
+                let carried = body.carried(area.face);
+                self.area(placed, upper, area, carried);
+            }
+        }
+    }
+
+    fn face(&mut self, placed: usize, up: Up, face: usize, carried: &Carried<'_>) {
+        let heights: Vec<Height> = carried.grid.patches.iter().map(|p| up.of_patch(&p.patch)).collect();
+        let uppers: Vec<f64> = heights.iter().map(Height::upper).collect();
+        for (number, piece) in carried.pieces.iter().enumerate() {
+            self.push(placed, uppers[piece.patch], What::Piece { face, piece: number });
+        }
+        for ((patch, height), upper) in carried.grid.patches.iter().zip(heights).zip(uppers) {
+            let (lo, hi) = (DVec2::new(patch.u.0, patch.v.0), DVec2::new(patch.u.1, patch.v.1));
+            let area = Area { face, height, lo, hi, inside: false, whole: true, halvings: 0 };
+            self.push(placed, upper, What::Area(area));
+        }
+    }
+
+    fn area(&mut self, placed: usize, upper: f64, area: Area, carried: &Carried<'_>) {
+        let Area { face, height, lo, hi, inside, whole, halvings } = area;
+        if !carried.may_meet(lo, hi) {
+            return;
+        }
+        for (i, j) in [(0, 0), (height.n, 0), (0, height.k), (height.n, height.k)] {
+            let top = quotient(height.at(i, j));
+            let corner = DVec2::new(if i == 0 { lo.x } else { hi.x }, if j == 0 { lo.y } else { hi.y });
+            if top > self.low && (inside || carried.holds(corner)) {
+                self.find(top);
+            }
+        }
+        if whole {
+            // where patches meet, and at the domain's border, it may be highest without being level
+            for last in [false, true] {
+                let (u, v) = if last { (hi.x, hi.y) } else { (lo.x, lo.y) };
+                let along_v = (height.side_u(last), DVec2::new(u, lo.y), DVec2::new(u, hi.y));
+                let along_u = (height.side_v(last), DVec2::new(lo.x, v), DVec2::new(hi.x, v));
+                for (height, lo, hi) in [along_v, along_u] {
+                    let area = Area { face, height, lo, hi, inside, whole: false, halvings };
+                    self.push(placed, area.height.upper(), What::Area(area));
+                }
+            }
+        }
+        let lower = height.lower();
+        if self.is_done(upper, lower, &height, halvings) {
+            return;
+        }
+        let side = if inside { RectSide::Inside } else { carried.classify(lo, hi) };
+        let inside = side == RectSide::Inside;
+        // a level one is as high as the trim curves in it, which are looked at
+        if side == RectSide::Outside || !inside && upper - lower <= self.rounding {
+            return;
+        }
+        let (middle, halvings) = (0.5 * (lo + hi), halvings + 1);
+        let (halves, first_hi, second_lo) =
+            if height.n == 0 || height.k > 0 && height.is_steeper_in_v(self.low.max(lower)) {
+                (height.halves_v(), DVec2::new(hi.x, middle.y), DVec2::new(lo.x, middle.y))
+            } else {
+                (height.halves_u(), DVec2::new(middle.x, hi.y), DVec2::new(middle.x, lo.y))
+            };
+        for (height, (lo, hi)) in halves.into_iter().zip([(lo, first_hi), (second_lo, hi)]) {
+            let upper = height.upper().min(upper);
+            self.push(placed, upper, What::Area(Area { face, height, lo, hi, inside, whole: false, halvings }));
+        }
+    }
+
+    /// Whether nothing higher than what is found is in it, its ends and sides apart; or it is too small to be halved.
+    fn is_done(&mut self, upper: f64, lower: f64, height: &Height, halvings: u32) -> bool {
+        let from = self.low.max(lower);
+        if upper <= self.low || from.is_finite() && upper.is_finite() && !height.may_turn(from, upper) {
+            return true;
+        }
+        if halvings >= MOST_HALVINGS {
+            self.unsure = self.unsure.max(upper);
+            return true;
+        }
+        false
+    }
+}
+
+/// The largest height of a box; negative infinity of nothing.
+fn of_box(up: Up, around: Bounds) -> f64 {
+    if around.is_empty() {
+        return f64::NEG_INFINITY;
+    }
+    up.of_point(DVec3::select(up.along.cmpgt(DVec3::ZERO), around.max, around.min))
+}

@@ -1,0 +1,6 @@
+//! Boxes of what the trims leave, against closed forms and against points searched for without them.
+
+mod damage;
+mod free;
+mod solids;
+pub mod support;

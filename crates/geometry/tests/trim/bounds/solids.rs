@@ -1,0 +1,115 @@
+//! Boolean solids: what their boxes promise.
+
+use super::support::{assert_box, turns};
+use glam::{DAffine3, DVec3};
+use selvedge_geometry::csg::{Builder, Op};
+use selvedge_geometry::model::{Bounds, Model, Primitive, Quadric, Shape, Solid};
+
+fn primitive(shape: Shape, transform: DAffine3) -> Primitive {
+    Primitive { shape, transform, colour: [0.5; 4], id: 1 }
+}
+
+fn block(min: [f64; 3], max: [f64; 3]) -> Primitive {
+    primitive(Shape::Block { min: min.into(), max: max.into() }, DAffine3::IDENTITY)
+}
+
+fn model(solid: Solid) -> Model {
+    Model { solids: vec![solid], ..Model::default() }
+}
+
+fn pair(op: Op, a: Primitive, b: Primitive) -> Model {
+    let mut builder = Builder::new();
+    let leaves = [builder.leaf(0), builder.leaf(1)];
+    let root = builder.pair(op, leaves[0], leaves[1]);
+    model(Solid::new(vec![a, b], builder.finish(root).unwrap()).unwrap())
+}
+
+fn of(min: [f64; 3], max: [f64; 3]) -> Bounds {
+    Bounds { min: min.into(), max: max.into() }
+}
+
+/// Against points of the shape's border, by its own equation.
+#[test]
+fn turned_primitives_are_tight() {
+    let ring = |r: f64, z: f64| (0..3600).map(move |k| (DVec3::new(r, 0.0, z), f64::from(k) * 0.1f64.to_radians()));
+    let turned = |(p, angle): (DVec3, f64)| DVec3::new(p.x * angle.cos(), p.x * angle.sin(), p.z);
+    let torus = (0..360).flat_map(|k| {
+        let (sin, cos) = f64::from(k).to_radians().sin_cos();
+        ring(3.0 + cos, sin).step_by(10)
+    });
+    let sphere = (-90..=90).flat_map(|k| {
+        let (sin, cos) = f64::from(k).to_radians().sin_cos();
+        ring(2.0 * cos, 2.0 * sin).step_by(10)
+    });
+    // 4 x² + y² + z² - 4 y <= 0: semi-axes 1, 2, 2 about (0, 2, 0)
+    let quadric = Quadric { squares: DVec3::new(4.0, 1.0, 1.0), linear: DVec3::Y * -4.0, ..Quadric::default() };
+    let egg = sphere.clone().map(turned).map(|p| DVec3::new(0.5 * p.x, p.y + 2.0, p.z));
+    let cases: Vec<(Shape, Vec<DVec3>)> = vec![
+        (Shape::Sphere { radius: 2.0 }, sphere.map(turned).collect()),
+        (Shape::Cylinder { radius: 1.0, height: 5.0 }, ring(1.0, 0.0).chain(ring(1.0, 5.0)).map(turned).collect()),
+        (
+            Shape::Cone { bottom: 2.0, top: 0.5, height: 3.0 },
+            ring(2.0, 0.0).chain(ring(0.5, 3.0)).map(turned).collect(),
+        ),
+        (Shape::Torus { major: 3.0, minor: 1.0 }, torus.map(turned).collect()),
+        (Shape::Quadric(quadric), egg.collect()),
+    ];
+    for (shape, points) in cases {
+        for transform in turns() {
+            let expected = points.iter().map(|p| transform.transform_point3(*p)).fold(Bounds::EMPTY, Bounds::with);
+            let found = model(Solid::of(primitive(shape.clone(), transform)).unwrap()).bounds();
+            // degrees between the points: 1 - cos 0.5°
+            assert_box(found, expected, 1e-4);
+            let holds = |p: &DVec3| (p.cmpge(found.min - 1e-9) & p.cmple(found.max + 1e-9)).all();
+            assert!(expected.corners().iter().all(holds), "{shape:?}: {expected:?} is not within {found:?}");
+        }
+    }
+}
+
+#[test]
+fn expressions_of_blocks() {
+    let (a, b) = (|| block([0.0; 3], [4.0, 4.0, 4.0]), || block([3.0, -1.0, -1.0], [9.0, 5.0, 5.0]));
+    assert_eq!(pair(Op::Union, a(), b()).bounds(), of([0.0, -1.0, -1.0], [9.0, 5.0, 5.0]));
+    assert_eq!(pair(Op::Intersection, a(), b()).bounds(), of([3.0, 0.0, 0.0], [4.0, 4.0, 4.0]));
+    // right through, and at an end
+    assert_eq!(pair(Op::Difference, a(), b()).bounds(), of([0.0; 3], [3.0, 4.0, 4.0]));
+    // through the middle, or not right through: all ends stay
+    for hole in [block([1.0, -1.0, -1.0], [2.0, 5.0, 5.0]), block([3.0, 0.5, -1.0], [9.0, 5.0, 5.0])] {
+        assert_eq!(pair(Op::Difference, a(), hole).bounds(), of([0.0; 3], [4.0; 3]));
+    }
+    assert_eq!(pair(Op::Difference, a(), block([-1.0; 3], [5.0; 3])).bounds(), Bounds::EMPTY);
+    // a turned block goes through nowhere for certain
+    let turned = Primitive { transform: DAffine3::from_rotation_z(0.1), ..b() };
+    assert_eq!(pair(Op::Difference, a(), turned).bounds(), of([0.0; 3], [4.0; 3]));
+}
+
+#[test]
+fn half_spaces_across_an_axis_cut() {
+    let half = |normal: [f64; 3], offset: f64| {
+        primitive(Shape::HalfSpace { normal: normal.into(), offset }, DAffine3::IDENTITY)
+    };
+    let ball = || primitive(Shape::Sphere { radius: 2.0 }, DAffine3::IDENTITY);
+    let below = of([-2.0; 3], [2.0, 2.0, 1.0]);
+    assert_eq!(pair(Op::Intersection, ball(), half([0.0, 0.0, 2.0], 2.0)).bounds(), below);
+    let above = of([-2.0, -2.0, 1.0], [2.0; 3]);
+    assert_eq!(pair(Op::Difference, ball(), half([0.0, 0.0, 2.0], 2.0)).bounds(), above);
+    // on a slant it may leave any end
+    assert_eq!(pair(Op::Intersection, ball(), half([0.0, 1.0, 1.0], 1.0)).bounds(), of([-2.0; 3], [2.0; 3]));
+    // without an end there is no box
+    assert_eq!(model(Solid::of(half([0.0, 0.0, 1.0], 1.0)).unwrap()).bounds(), Bounds::EMPTY);
+}
+
+/// No box is larger than that which frames keep.
+#[test]
+fn boxes_are_within_those_of_control_points() {
+    for transform in turns() {
+        let torus = primitive(Shape::Torus { major: 3.0, minor: 1.0 }, transform);
+        for op in [Op::Union, Op::Intersection, Op::Difference, Op::SymmetricDifference] {
+            let model = pair(op, torus.clone(), block([-2.0; 3], [3.0; 3]));
+            let (found, kept) = (model.bounds(), model.control_bounds());
+            let margin = 1e-12 * kept.diagonal();
+            let is_within = found.min.cmpge(kept.min - margin) & found.max.cmple(kept.max + margin);
+            assert!(found.is_empty() || is_within.all(), "{op:?}: {found:?} beyond {kept:?}");
+        }
+    }
+}

@@ -1,0 +1,198 @@
+//! The bytes of files and streams: bounded, gzip undone.
+
+use super::{ImportError, Options, Stage};
+use rayon::prelude::*;
+use std::fs::{self, File, Metadata};
+use std::io::{self, Read, Seek, SeekFrom};
+use std::path::Path;
+
+/// A gzip stream may expand by this factor at most. STEP text shrinks 4 to 12 times; deflate itself
+/// cannot exceed 1032.
+const MAX_EXPANSION: u64 = 100;
+
+/// Expansion that is always allowed, whatever the factor.
+const FREE_EXPANSION: u64 = 1 << 20;
+
+/// How much of a stream is looked at before the rest is read: no format begins later.
+const BEGINNING: u64 = 1 << 20;
+
+/// The bytes of a file, gzip undone.
+pub(super) fn load(path: &Path, name: &str, options: &Options<'_>) -> Result<Vec<u8>, ImportError> {
+    let unreadable = |source| ImportError::Read { file: name.to_owned(), source };
+    let found = fs::metadata(path).map_err(unreadable)?;
+    if let Some(what) = no_file(path, &found) {
+        return Err(ImportError::NoFile { file: name.to_owned(), what });
+    }
+    let (size, limit) = (found.len(), options.most_bytes());
+    if size > limit {
+        return Err(ImportError::TooLarge { file: name.to_owned(), limit });
+    }
+    options.tell(Stage::Read { bytes: size });
+    if found.is_file() && size > 0 {
+        return inflated(read_apart(path, size as usize).map_err(unreadable)?, name, limit);
+    }
+    // a pipe that the shell has opened, or a file of a system that does not tell its size
+    drain(&mut File::open(path).map_err(unreadable)?, name, limit, |_| true)
+}
+
+/// The bytes of a stream, gzip undone. `known` tells from the beginning, gzip undone, whether the rest is worth reading.
+pub(super) fn drain(
+    stream: &mut dyn Read,
+    name: &str,
+    limit: u64,
+    known: impl FnOnce(&[u8]) -> bool,
+) -> Result<Vec<u8>, ImportError> {
+    let unreadable = |source| ImportError::Read { file: name.to_owned(), source };
+    let mut bytes = Vec::new();
+    stream.take(BEGINNING.min(limit + 1)).read_to_end(&mut bytes).map_err(unreadable)?;
+    if bytes.len() as u64 == BEGINNING {
+        let gzip = is_gzip(&bytes);
+        if !gzip && !known(&bytes) {
+            return Err(ImportError::Format { file: name.to_owned() });
+        }
+        stream.take(limit + 1 - BEGINNING.min(limit)).read_to_end(&mut bytes).map_err(unreadable)?;
+    }
+    if bytes.len() as u64 > limit {
+        return Err(ImportError::TooLarge { file: name.to_owned(), limit });
+    }
+    inflated(bytes, name, limit)
+}
+
+/// The bytes of a file beside the model, at most so many.
+///
+/// # Errors
+/// In words.
+pub(super) fn beside(path: &Path, most: u64) -> Result<Vec<u8>, String> {
+    let found = fs::metadata(path).map_err(|e| e.to_string())?;
+    if let Some(what) = no_file(path, &found) {
+        return Err(what.to_owned());
+    }
+    let mut bytes = Vec::new();
+    File::open(path).and_then(|file| file.take(most + 1).read_to_end(&mut bytes)).map_err(|e| e.to_string())?;
+    if bytes.len() as u64 > most { Err(format!("larger than {most} bytes, the most that is read")) } else { Ok(bytes) }
+}
+
+/// What cannot be read as a file, or might never end or begin.
+fn no_file(path: &Path, found: &Metadata) -> Option<&'static str> {
+    if found.is_dir() {
+        return Some("a folder, not a file");
+    }
+    #[cfg(unix)]
+    {
+        use std::os::unix::fs::FileTypeExt;
+        let kind = found.file_type();
+        if kind.is_char_device() || kind.is_block_device() {
+            return Some("a device, not a file");
+        }
+        if kind.is_socket() {
+            return Some("a socket, not a file");
+        }
+        // a link is what shells make of pipes that somebody writes to
+        if kind.is_fifo() && fs::symlink_metadata(path).is_ok_and(|named| named.file_type().is_fifo()) {
+            return Some("a named pipe, to which nobody may be writing");
+        }
+    }
+    None
+}
+
+/// A file's first `size` bytes: to give memory to what is read takes about as long as to copy it, so several threads do.
+fn read_apart(path: &Path, size: usize) -> io::Result<Vec<u8>> {
+    const SHARE: usize = 1 << 20;
+    let mut bytes = vec![0; size];
+    bytes.par_chunks_mut(SHARE).enumerate().try_for_each(|(k, share)| {
+        let mut file = File::open(path)?;
+        file.seek(SeekFrom::Start((k * SHARE) as u64))?;
+        file.read_exact(share)
+    })?;
+    Ok(bytes)
+}
+
+fn is_gzip(bytes: &[u8]) -> bool {
+    bytes.starts_with(&[0x1f, 0x8b])
+}
+
+/// Undoes gzip, if it is; output is bounded by [`MAX_EXPANSION`] and by `limit`.
+fn inflated(bytes: Vec<u8>, name: &str, limit: u64) -> Result<Vec<u8>, ImportError> {
+    if !is_gzip(&bytes) {
+        return Ok(bytes);
+    }
+    let limit = (bytes.len() as u64 * MAX_EXPANSION + FREE_EXPANSION).min(limit);
+    let mut text = Vec::new();
+    flate2::read::MultiGzDecoder::new(bytes.as_slice())
+        .take(limit + 1)
+        .read_to_end(&mut text)
+        .map_err(|source| ImportError::Read { file: name.to_owned(), source })?;
+    if text.len() as u64 > limit {
+        return Err(ImportError::Expansion { file: name.to_owned(), limit });
+    }
+    Ok(text)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::Write;
+
+    const ALL: u64 = u32::MAX as u64;
+
+    fn gzip(text: &[u8]) -> Vec<u8> {
+        let mut encoder = flate2::write::GzEncoder::new(Vec::new(), flate2::Compression::best());
+        encoder.write_all(text).unwrap();
+        encoder.finish().unwrap()
+    }
+
+    #[test]
+    fn gzip_round_trip() {
+        let text = b"ISO-10303-21;\nHEADER;\nENDSEC;\nDATA;\nENDSEC;\nEND-ISO-10303-21;\n";
+        assert_eq!(inflated(gzip(text), "a.stpz", ALL).unwrap(), text);
+    }
+
+    #[test]
+    fn gzip_bomb_is_an_error() {
+        let bomb = gzip(&vec![b' '; 1 << 24]);
+        assert!(matches!(inflated(bomb, "bomb.gz", ALL), Err(ImportError::Expansion { .. })));
+        // what is less than a bomb, but more than is to be read
+        assert!(matches!(inflated(gzip(&[b' '; 5000]), "b.gz", 4000), Err(ImportError::Expansion { limit: 4000, .. })));
+    }
+
+    /// Files of no share, of one, and of several that do not fill the last.
+    #[test]
+    fn files_are_read_whole() {
+        let path = std::env::temp_dir().join(format!("selvedge-read-{}", std::process::id()));
+        for size in [0usize, 1, 1 << 20, (3 << 20) + 17] {
+            let written: Vec<u8> = (0..size).map(|i| (i ^ i >> 8 ^ i >> 16) as u8).collect();
+            fs::write(&path, &written).unwrap();
+            let read = load(&path, "read", &Options::default()).unwrap();
+            assert!(read == written, "{size} bytes");
+            let drained = drain(&mut written.as_slice(), "read", ALL, |_| true).unwrap();
+            assert!(drained == written, "{size} bytes");
+            let less = Options { most_bytes: Some(size as u64 / 2), ..Options::default() };
+            assert_eq!(load(&path, "read", &less).is_err(), size > 0, "{size} bytes");
+            assert_eq!(beside(&path, size as u64 / 2).is_err(), size > 0, "{size} bytes");
+        }
+        fs::remove_file(&path).unwrap();
+    }
+
+    /// A stream without an end: nothing of it is a format, or it is more than is read.
+    #[test]
+    fn endless_streams_end() {
+        let endless = || io::repeat(b' ');
+        assert!(matches!(drain(&mut endless(), "-", ALL, |_| false), Err(ImportError::Format { .. })));
+        let most = (2 << 20) + 1;
+        for limit in [0, 100, BEGINNING - 1, BEGINNING, BEGINNING + 1, most] {
+            let error = drain(&mut endless(), "-", limit, |_| true).unwrap_err();
+            assert!(matches!(error, ImportError::TooLarge { limit: told, .. } if told == limit), "{error}");
+            let whole = drain(&mut endless().take(limit), "-", limit, |_| true).unwrap();
+            assert_eq!(whole.len() as u64, limit);
+        }
+    }
+
+    #[test]
+    fn folders_and_devices_are_no_files() {
+        let told = |path: &str| load(Path::new(path), path, &Options::default()).unwrap_err().to_string();
+        assert_eq!(told("."), ".: a folder, not a file");
+        assert_eq!(beside(Path::new("."), 1), Err("a folder, not a file".to_owned()));
+        #[cfg(target_os = "linux")]
+        assert_eq!(told("/dev/zero"), "/dev/zero: a device, not a file");
+    }
+}
