@@ -249,6 +249,6 @@ fn openscad_runs_its_programs() {
     let (status, _, told) = run(Some("echo 'ERROR: Parser error' >&2; exit 1"));
     assert!(status == Some(2) && told.contains("openscad failed") && told.contains("Parser error"), "{told}");
     let (status, out, told) = run(Some("echo 'WARNING: odd' >&2; echo 'cube(size = [2, 3, 4], center = false);'"));
-    assert!(status == Some(0) && out.contains("2 x 3 x 4") && told.contains("odd"), "{out} {told}");
+    assert!(status == Some(0) && out.contains("box 2.000 x 3.000 x 4.000 mm") && told.contains("odd"), "{out} {told}");
     std::fs::remove_dir_all(&folder).unwrap();
 }

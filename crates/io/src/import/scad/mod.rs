@@ -379,7 +379,7 @@ impl<'a> Reader<'a> {
     /// Names a node that cannot be made; its children are read for their grammar only.
     fn left_out(&mut self, frame: &mut Frame<'a>, fault: Fault) {
         if self.muted == 0 {
-            self.warnings.push("left out", || Place::Line(fault.line), || fault.message);
+            self.warnings.push("node left out", || Place::Line(fault.line), || fault.message);
         }
         frame.lose();
     }

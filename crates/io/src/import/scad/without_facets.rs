@@ -49,7 +49,8 @@ impl Gather {
 
 impl Reader<'_> {
     pub(super) fn facet_leaf(&mut self, args: &Args<'_>) -> Result<Made<Shape>, Fault> {
-        Err(args.fault(NEEDED))
+        let place = self.folder.map(|f| format!(" (files would be those of {})", f.display())).unwrap_or_default();
+        Err(args.fault(format!("{NEEDED}{place}")))
     }
 
     pub(super) fn placed(&mut self, _: &Args<'_>, _: &Context, shape: Made<Shape>) -> Result<Made<u32>, Fault> {

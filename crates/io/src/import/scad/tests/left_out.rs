@@ -12,28 +12,34 @@ fn told(text: &str) -> Vec<String> {
 #[test]
 fn each_is_named_with_its_line() {
     for (text, message) in [
-        ("frobnicate();", "t.csg:1: left out: frobnicate: such a node is not known"),
-        ("cube();\n\nroof() { square(); }", "t.csg:3: left out: roof: such a node is not known"),
-        ("multmatrix([[1, 0], [0, 1]]) { cube(); }", "t.csg:1: left out: multmatrix: not a matrix"),
-        ("linear_extrude(height = 1, twist = nan) { square(); }", "t.csg:1: left out: linear_extrude: a twist"),
-        ("linear_extrude(height = 1, scale = [1, 0]) { square(); }", "t.csg:1: left out: linear_extrude: an upper end"),
-        ("linear_extrude(height = 1, scale = [-1, 2]) { square(); }", "t.csg:1: left out: linear_extrude: a scale"),
+        ("frobnicate();", "t.csg:1: node left out: frobnicate: such a node is not known"),
+        ("cube();\n\nroof() { square(); }", "t.csg:3: node left out: roof: such a node is not known"),
+        ("multmatrix([[1, 0], [0, 1]]) { cube(); }", "t.csg:1: node left out: multmatrix: not a matrix"),
+        ("linear_extrude(height = 1, twist = nan) { square(); }", "t.csg:1: node left out: linear_extrude: a twist"),
+        (
+            "linear_extrude(height = 1, scale = [1, 0]) { square(); }",
+            "t.csg:1: node left out: linear_extrude: an upper end",
+        ),
+        (
+            "linear_extrude(height = 1, scale = [-1, 2]) { square(); }",
+            "t.csg:1: node left out: linear_extrude: a scale",
+        ),
         (
             "linear_extrude(twist = 1, slices = 1e9) { square(); }",
-            "t.csg:1: left out: square: 1000000000 slices of 4 corners",
+            "t.csg:1: node left out: square: 1000000000 slices of 4 corners",
         ),
         (
             "linear_extrude(twist = 1, slices = 100000) { square(); square(); }",
-            "t.csg:1: left out: square: 100000 slices of 4 corners are too many",
+            "t.csg:1: node left out: square: 100000 slices of 4 corners are too many",
         ),
-        ("linear_extrude(twist = 1e300) { circle($fn = 1e9); }", "t.csg:1: left out: circle: "),
-        ("rotate_extrude() { square(center = true); }", "t.csg:1: left out: square: an outline across the axis"),
+        ("linear_extrude(twist = 1e300) { circle($fn = 1e9); }", "t.csg:1: node left out: circle: "),
+        ("rotate_extrude() { square(center = true); }", "t.csg:1: node left out: square: an outline across the axis"),
         (
             "polyhedron(points = [[0, 0, 0], [2, 0, 0], [0, 2, 0], [0, 0, 2]], faces = [[0, 1, 2], [0, 3, 1], [0, 2, 3]]);",
-            "t.csg:1: left out: polyhedron: the faces do not close",
+            "t.csg:1: node left out: polyhedron: the faces do not close",
         ),
-        ("import(file = \"no such file.stl\");", "t.csg:1: left out: import: "),
-        ("surface(file = \"\");", "t.csg:1: left out: surface: "),
+        ("import(file = \"no such file.stl\");", "t.csg:1: node left out: import: "),
+        ("surface(file = \"\");", "t.csg:1: node left out: surface: "),
     ] {
         let told = told(&format!("{text}\nsphere(r = 9);"));
         assert!(told.len() == 1 && told[0].starts_with(message), "{text}: {told:?}");
