@@ -124,7 +124,8 @@ fn of(bodies: &[Body<'_>], placements: &[(usize, DAffine3)]) -> Bounds {
             search.refine(Tolerance { analytic: off, other: off });
         });
         let found = between(searches.each_ref().map(Search::low)).diagonal();
-        if !(found < GOOD_GUESS * size) {
+        let is_near = found < GOOD_GUESS * size;
+        if !is_near {
             size = found;
             break;
         }

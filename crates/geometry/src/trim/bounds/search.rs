@@ -162,7 +162,9 @@ impl<'s, 'a> Search<'s, 'a> {
     /// infinity where there is nothing.
     pub fn refine(&mut self, tolerance: Tolerance) -> f64 {
         while let Some(top) = self.heap.peek() {
-            if !(top.upper > self.low + tolerance.analytic + self.rounding) {
+            // what is no number reaches no farther
+            let reaches_farther = top.upper > self.low + tolerance.analytic + self.rounding;
+            if !reaches_farther {
                 break;
             }
             if self.steps >= MOST_STEPS {
