@@ -164,7 +164,7 @@ fn triangles_are_bounded() {
     };
     let sun = |m: &Model| SunData::new(DVec3::new(0.3, 0.2, 1.0), &SolidData::default(), Some(m));
     let one = sun(&copies(1, 1.0));
-    let size = copies(1, 1.0).bounds().diagonal();
+    let size = copies(1, 1.0).control_bounds().diagonal();
     assert!(
         one.left_out == 0 && one.deviation > 0.2 * size / 8192.0 && one.deviation <= size / 8192.0,
         "{}",

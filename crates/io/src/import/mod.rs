@@ -137,12 +137,13 @@ enum Format {
 impl Format {
     /// Formats that are read byte by byte, by how they begin.
     fn certain(bytes: &[u8]) -> Option<Self> {
-        let known: [(Self, fn(&[u8]) -> bool); 3] = [
-            (Self::Native, native::recognise),
-            (Self::Rhino, |bytes| bytes.starts_with(RHINO)),
-            (Self::Iges, iges::recognise),
-        ];
-        known.iter().find(|(_, recognise)| recognise(bytes)).map(|(format, _)| *format)
+        if native::recognise(bytes) {
+            Some(Self::Native)
+        } else if bytes.starts_with(RHINO) {
+            Some(Self::Rhino)
+        } else {
+            iges::recognise(bytes).then_some(Self::Iges)
+        }
     }
 
     fn named_mesh(file: &str) -> Option<Self> {

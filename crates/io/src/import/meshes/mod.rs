@@ -233,9 +233,13 @@ pub(super) fn read(bytes: &[u8], name: &str, ending: &str, folder: Option<&Path>
     Ok(Import { model, warnings, report, ..Import::default() })
 }
 
+/// Points, and the corners of triangles among them.
+#[cfg(feature = "scad-facets")]
+pub(super) type Triangles = (Vec<DVec3>, Vec<[u32; 3]>);
+
 /// The triangles of a file, each object where it stands.
 #[cfg(feature = "scad-facets")]
-pub(super) fn pieces(bytes: &[u8], ending: &str) -> Result<Vec<(Vec<DVec3>, Vec<[u32; 3]>)>, String> {
+pub(super) fn pieces(bytes: &[u8], ending: &str) -> Result<Vec<Triangles>, String> {
     let wrong = |w: Wrong| match w.line {
         Some(line) => format!("line {line}: {}", w.message),
         None => w.message,

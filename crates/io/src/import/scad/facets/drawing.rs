@@ -204,7 +204,7 @@ fn bulged(vertices: &[(DVec2, f64)], closed: bool, segments: &impl Fn(f64) -> f6
         points.push(a);
         let last = i + 1 == vertices.len();
         let (b, _) = vertices[(i + 1) % vertices.len()];
-        if bulge != 0.0 && !(last && !closed) && a != b {
+        if bulge != 0.0 && (closed || !last) && a != b {
             let turn = 4.0 * bulge.atan();
             let centre = 0.5 * (a + b) + (b - a).perp() * (1.0 - bulge * bulge) / (4.0 * bulge);
             let along = arc(centre, a.distance(centre), (a - centre).to_angle(), turn, segments);
