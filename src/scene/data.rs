@@ -15,7 +15,9 @@ use super::trimmed::Trimmed;
 use super::way::taken;
 use crate::abi;
 use crate::model::{Bounds, Instance, Items, Lone, Model, Part, SolidError};
-use crate::picture::{Highlight, Samples, SceneSettings, TakenWay};
+#[cfg(any(test, feature = "baselines"))]
+use crate::picture::SceneSettings;
+use crate::picture::{Highlight, Samples, TakenWay};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 use std::borrow::Cow;

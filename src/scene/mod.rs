@@ -52,6 +52,8 @@ pub(crate) use solids::{Asked, Blister, SolidData};
 pub(crate) use trimmed::TableView;
 #[cfg(feature = "baselines")]
 pub(crate) use upload::BaselineScene;
-pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, TableScene, Trims};
+#[cfg(feature = "baselines")]
+pub(crate) use upload::TableScene;
+pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, Trims};
 pub(crate) use view::{focal_and_slant, seen_by, view};
 pub use way::trim_way;

@@ -16,13 +16,19 @@ pub(crate) struct SceneRequest {
 impl SceneRequest {
     /// The same, trimmed exactly.
     pub(crate) fn exact(self) -> Self {
-        Self { settings: SceneSettings { trim: TrimWay::Exact, ..self.settings }, ..self }
+        let mut request = self;
+        request.settings.trim = TrimWay::Exact;
+        request
     }
 }
 
 impl From<SceneSettings> for SceneRequest {
     fn from(settings: SceneSettings) -> Self {
-        Self { settings, ..Self::default() }
+        Self {
+            settings,
+            #[cfg(feature = "baselines")]
+            baseline: SceneOptions::default(),
+        }
     }
 }
 

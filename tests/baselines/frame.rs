@@ -14,7 +14,7 @@ use std::path::Path;
 const SIZE: (u32, u32) = (320, 240);
 
 fn camera(model: &Model) -> Camera {
-    Camera::framing(model.bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), SIZE)
+    Camera::framing(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), SIZE)
 }
 
 fn sample(name: &str) -> Model {
@@ -89,7 +89,7 @@ fn baselines_leave_out_what_lies_behind() {
     let one = sample("bracket.step");
     let mut model = Model { instances: Vec::new(), ..one.clone() };
     // away from the eye
-    let behind = -0.5 * one.bounds().diagonal() * DVec3::new(1.0, -1.6, 1.1).normalize();
+    let behind = -0.5 * one.control_bounds().diagonal() * DVec3::new(1.0, -1.6, 1.1).normalize();
     for k in 0..12 {
         let place = |i: &Instance| Instance {
             transform: DAffine3::from_translation(f64::from(k) * behind) * i.transform,

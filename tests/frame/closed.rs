@@ -19,7 +19,7 @@ fn views() -> u32 {
 fn view(model: &Model, k: u32, n: u32) -> Camera {
     let (a, b) = (f64::from(k) * 2.399_963, (f64::from(k) + 0.5) * 2.0 / f64::from(n) - 1.0);
     let from = DVec3::new(a.cos() * (1.0 - b * b).sqrt(), a.sin() * (1.0 - b * b).sqrt(), b);
-    Camera { up: DVec3::new(0.3, 0.5, 0.7), ..Camera::framing(model.bounds(), from, DVec3::Z, 0.6, SIZE) }
+    Camera { up: DVec3::new(0.3, 0.5, 0.7), ..Camera::framing(model.control_bounds(), from, DVec3::Z, 0.6, SIZE) }
 }
 
 /// Pixels that may look through the surface: what they show is the background, or lies behind what is shown on both
@@ -40,7 +40,7 @@ fn cracks(name: &str, model: &Model) -> (Vec<String>, usize) {
     let tracer = Tracer::new(model);
     let mut renderer = watched(model);
     let (mut wrong, mut covered) = (Vec::new(), 0);
-    let slack = 0.01 * model.bounds().diagonal();
+    let slack = 0.01 * model.control_bounds().diagonal();
     for k in 0..views() {
         let camera = view(model, k, views());
         let picture = render(&mut renderer, &camera);

@@ -25,7 +25,7 @@ fn trimmed(mut model: Model, volume: &Solid) -> Model {
 
 /// A volume grown to a model's box: written for one that reaches from -1 to 1.
 fn around(model: &Model, text: &str, primitives: Vec<Primitive>) -> Solid {
-    let bounds = model.bounds();
+    let bounds = model.control_bounds();
     let size = (bounds.max - bounds.min).max_element() * 0.5;
     let to = DAffine3::from_translation(bounds.centre()) * DAffine3::from_scale(DVec3::splat(size));
     volume(text, primitives.into_iter().map(|p| moved(to, p)).collect())
@@ -107,7 +107,7 @@ fn half_a_sphere_is_half_a_disc() {
     for (k, &face) in picture.face.iter().enumerate() {
         let centre = glam::DVec2::new((k % 200) as f64 + 0.5, (k / 200) as f64 + 0.5);
         let (p, _) = camera.ray(centre);
-        let pixel = 1.5 * whole.bounds().diagonal() / 150.0; // half of one from the rim, by a corner
+        let pixel = 1.5 * whole.control_bounds().diagonal() / 150.0; // half of one from the rim, by a corner
         let r = p.x.hypot(p.y);
         if (r - SPHERE_RADIUS).abs() > pixel && p.x.abs() > 1e-3 {
             assert_eq!(face != 0, p.x < 0.0 && r < SPHERE_RADIUS, "pixel {centre}");
@@ -187,13 +187,13 @@ fn sections_have_caps() {
     let mut wrong = Vec::new();
     for (name, model) in &cases {
         let normal = DVec3::new(1.0, -0.8, 0.37);
-        let middle = normal.dot(model.bounds().centre()) + 0.11;
+        let middle = normal.dot(model.control_bounds().centre()) + 0.11;
         let cut = model.section(normal, middle).unwrap();
         wrong.extend(right(&mut renderer, name, model, &cut, TrimWay::Table));
         if !["cube", "shell", "tube"].contains(name) {
             continue;
         }
-        let twice = cut.section(DVec3::Z, model.bounds().centre().z + 0.21).unwrap();
+        let twice = cut.section(DVec3::Z, model.control_bounds().centre().z + 0.21).unwrap();
         wrong.extend(right(&mut renderer, &format!("{name} twice"), model, &twice, TrimWay::Exact));
     }
     assert_silent(renderer);
@@ -213,7 +213,7 @@ fn the_cap_of_a_sphere_is_a_disc() {
     let camera = Camera { eye: DVec3::Z * 20.0, target: DVec3::ZERO, up: DVec3::Y, ..orthographic(&whole, size) };
     let mut renderer = watched(&cut);
     let picture = render(&mut renderer, &camera);
-    let pixel = whole.bounds().diagonal() / 150.0;
+    let pixel = whole.control_bounds().diagonal() / 150.0;
     for (k, &face) in picture.face.iter().enumerate() {
         let (p, _) = camera.ray(glam::DVec2::new((k % 200) as f64 + 0.5, (k / 200) as f64 + 0.5));
         let r = p.x.hypot(p.y);

@@ -101,7 +101,7 @@ fn the_same_cylinder_in_other_facets() {
 #[test]
 fn a_subdivision_shell_is_an_operand() {
     for closed in [cages::a_box(), cages::tips_of_5()] {
-        let (part, bounds) = (Arc::new(closed.model.parts[0].clone()), closed.model.bounds());
+        let (part, bounds) = (Arc::new(closed.model.parts[0].clone()), closed.model.control_bounds());
         let shell = || solids::primitive(Shape::Part(part.clone()), glam::DAffine3::IDENTITY);
         let [a, b] = [bounds.centre(), bounds.centre() + bounds.diagonal() * 0.3];
         let (radius, corner) = (0.25 * bounds.diagonal(), bounds.centre().lerp(bounds.min, 0.3));

@@ -18,7 +18,7 @@ pub fn crowd() -> Model {
     let shapes = [shapes::plate(), shapes::cube(), shapes::mirrored(), shapes::wave(), shapes::ripple()];
     let mut model = Model::default();
     for (part, shape) in shapes.into_iter().enumerate() {
-        let centre = shape.bounds().centre();
+        let centre = shape.control_bounds().centre();
         model.parts.extend(shape.parts);
         for k in 0..18 {
             let nth = k + 18 * part;
@@ -32,7 +32,7 @@ pub fn crowd() -> Model {
 }
 
 fn from(model: &Model, direction: DVec3) -> Camera {
-    Camera::framing(model.bounds(), direction, DVec3::Z, 35f64.to_radians(), SIZE)
+    Camera::framing(model.control_bounds(), direction, DVec3::Z, 35f64.to_radians(), SIZE)
 }
 
 /// The picture of a renderer that knows nothing of any other.

@@ -37,7 +37,7 @@ fn thickness() {
             let picture = renderer.render(&camera, &FrameSettings::default(), outputs).unwrap();
             assert_eq!(picture.thickness.len(), picture.colour.len());
             let (_, _, forward) = camera.axes();
-            let (mut seen, size) = (0, framed.bounds().diagonal());
+            let (mut seen, size) = (0, framed.control_bounds().diagonal());
             for (i, drawn) in picture.thickness.iter().enumerate() {
                 let at = centre(i, SIZE);
                 if !m.solids.is_empty() && is_at_edge(&layers, &camera, at, EDGE_PX) {

@@ -256,7 +256,7 @@ fn every_kind_of_face_is_shaded() {
     ];
     let mut renderer = watched(&Model::default());
     for (name, mut m) in cases {
-        let (c, r) = (m.bounds().centre(), m.bounds().diagonal());
+        let (c, r) = (m.control_bounds().centre(), m.control_bounds().diagonal());
         let towards = DVec3::new(-0.3, -0.6, 0.9).normalize();
         let to =
             DAffine3::from_scale_rotation_translation(DVec3::splat(r), DQuat::from_rotation_arc(DVec3::Z, towards), c);
@@ -286,7 +286,7 @@ fn meshes_cast_shadows() {
     let mut renderer = watched(&Model::default());
     let mut wrong = Vec::new();
     for (name, mut m) in operands::meshes().into_iter().chain(operands::unclean()) {
-        let bounds = m.bounds();
+        let bounds = m.control_bounds();
         let (c, r) = (bounds.centre(), bounds.diagonal());
         let below = DVec3::new(0.0, 0.0, bounds.min.z - c.z - 0.05 * r);
         let slab = block(
@@ -426,7 +426,7 @@ fn among_layers_and_samples() {
 fn cut_open() {
     let cut = holed().section(DVec3::new(0.3, 1.0, 0.1), 0.4).unwrap();
     let mut trimmed = shapes::sphere();
-    let bounds = trimmed.bounds();
+    let bounds = trimmed.control_bounds();
     trimmed.trim_by(&one(moved(at(0.0, 0.0, bounds.centre().z), below(DVec3::new(1.0, -1.0, 1.0), 0.2)))).unwrap();
     let (c, r) = (bounds.centre(), bounds.diagonal());
     let bar = Primitive { id: 77, ..block([-0.1, -0.1, 0.5], [0.1, 0.1, 0.6]) };

@@ -209,7 +209,7 @@ fn pictures_repeat_and_operands_commute() {
 #[test]
 fn solids_among_patches_and_meshes() {
     let through = |model: Model| {
-        let bounds: Bounds = model.bounds();
+        let bounds: Bounds = model.control_bounds();
         let (c, r) = (bounds.centre(), bounds.diagonal());
         let m = DAffine3::from_translation(c) * solids::turned(0.5, 0.4, 0.0) * DAffine3::from_scale(DVec3::splat(r));
         let mut all = solids::solid(

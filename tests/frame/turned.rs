@@ -14,7 +14,7 @@ const VIEWS: u32 = 12;
 /// The same part with a speck of a face just below its first one.
 fn with_a_speck(model: &Model) -> Model {
     let mut model = model.clone();
-    let size = model.parts[0].bounds().diagonal();
+    let size = model.parts[0].control_bounds().diagonal();
     let first = &model.parts[0].faces[0];
     let jet = first.surface.patches().patches[0].patch.jet(0.4, 0.3);
     let outwards = jet.du.cross(jet.dv).normalize() * if first.same_sense { 1.0 } else { -1.0 };
@@ -32,8 +32,8 @@ fn views(model: &Model) -> Vec<Camera> {
     let view = |k: u32| {
         let (a, b) = (f64::from(k) * 2.399_963, (f64::from(k) + 0.5) * 2.0 / f64::from(VIEWS) - 1.0);
         let from = DVec3::new(a.cos() * (1.0 - b * b).sqrt(), a.sin() * (1.0 - b * b).sqrt(), b);
-        let camera = Camera::framing(model.bounds(), from, DVec3::new(0.3, 0.5, 0.7), 0.6, SIZE);
-        let height = model.bounds().diagonal();
+        let camera = Camera::framing(model.control_bounds(), from, DVec3::new(0.3, 0.5, 0.7), 0.6, SIZE);
+        let height = model.control_bounds().diagonal();
         if k.is_multiple_of(3) { Camera { projection: Projection::Orthographic { height }, ..camera } } else { camera }
     };
     (0..VIEWS).map(view).collect()
@@ -43,7 +43,7 @@ fn views(model: &Model) -> Vec<Camera> {
 fn pixel(model: &Model, camera: &Camera) -> f64 {
     match camera.projection {
         Projection::Orthographic { height } => height / f64::from(SIZE.1),
-        Projection::Perspective { .. } => model.bounds().diagonal() / f64::from(SIZE.1),
+        Projection::Perspective { .. } => model.control_bounds().diagonal() / f64::from(SIZE.1),
     }
 }
 

@@ -52,7 +52,7 @@ const RINGS: u32 = 8;
 const PLACES: u32 = 16;
 
 impl SunTracer {
-    /// `towards` is that of [`SceneSettings::sun`](crate::picture::SceneSettings::sun), finite and not 0: what is seen
+    /// `towards` is that of the engine's `SceneSettings::sun`, finite and not 0: what is seen
     /// through casts no shadow, nor do placed parts that a volume trims.
     ///
     /// # Errors
@@ -138,7 +138,7 @@ pub struct SunJudgement {
     /// The largest distance at which one is, pixels: of the offsets tried.
     pub worst_shift_px: f64,
     /// Of the rest, pixels whose light is right where the point is moved by what surfaces may be off by that cast
-    /// shadows: [`FrameStats::shadow_deviation`](crate::picture::FrameStats::shadow_deviation).
+    /// shadows: [`Images::shadow_deviation`].
     pub deviated: u64,
     /// Pixels whose light is right nowhere within the limit, nor moved so.
     pub wrong: u64,
@@ -146,7 +146,7 @@ pub struct SunJudgement {
     pub first_wrong: Option<[u32; 2]>,
 }
 
-/// Compares [`Picture::sunlit`], drawn with `camera`, with the truth: the pixels that `options` samples, and those
+/// Compares [`Images::sunlit`], drawn with `camera`, with the truth: the pixels that `options` samples, and those
 /// beside which the light changes.
 ///
 /// # Panics

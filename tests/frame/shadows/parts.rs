@@ -174,7 +174,7 @@ fn whatever_there_is_casts_shadows_as_in_truth() {
     let mut deviated = 0;
     let all = shapes::all().into_iter().map(|s| (s.name, s.model)).filter(|(name, _)| *name != "empty");
     for (name, mut m) in all.chain(operands::splines()) {
-        let bounds = m.bounds();
+        let bounds = m.control_bounds();
         let (c, r) = (bounds.centre(), bounds.diagonal());
         let below = DVec3::new(0.0, 0.0, bounds.min.z - c.z - 0.05 * r);
         let corner = |z: f64, side: f64| c + below + r * DVec3::new(0.8 * side, 0.8 * side, z);

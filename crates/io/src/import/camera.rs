@@ -65,7 +65,7 @@ pub struct PictureSettings {
     pub camera: Option<usize>,
     /// Colour behind the model.
     pub background: Option<Colour>,
-    /// From the model towards the sun; see [`SceneSettings::sun`](crate::picture::SceneSettings::sun).
+    /// From the model towards the sun; the engine's `SceneSettings::sun`.
     pub sun: Option<DVec3>,
 }
 

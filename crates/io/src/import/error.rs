@@ -10,7 +10,7 @@ pub enum ImportError {
     /// Neither content nor extension is one that is read here.
     #[error("{file}: not a CAD file of a known format")]
     Format { file: String },
-    /// More than [`Options::most_bytes`](super::Options::most_bytes) allows.
+    /// More than [`Options::most_bytes`](field@super::Options::most_bytes) allows.
     #[error("{file}: larger than {limit} bytes, the most that is read")]
     TooLarge { file: String, limit: u64 },
     /// Not a file, or nothing that ever ends.
