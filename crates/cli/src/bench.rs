@@ -12,7 +12,7 @@ use crate::progress::during;
 use crate::series::{Gathered, Row};
 use crate::session::{self, Session};
 use crate::target::{self, CSV, JSON};
-use crate::{Outcome, edit, output, path, verdict};
+use crate::{Outcome, camera, edit, output, path, verdict};
 use anyhow::Result;
 use comfy_table::CellAlignment;
 use selvedge::model::Camera;
@@ -89,7 +89,7 @@ pub fn inputs(args: &BenchArgs) -> Vec<&Path> {
 fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
     let mut import = session::open(model, &args.read, &Default::default())?;
     args.cut.apply(&mut import.model, &args.read)?;
-    let bounds = import.model.bounds();
+    let bounds = camera::bounds(&import.model);
     let Size(width, height) = args.size;
     let size = (width, height);
     let camera = |index| match args.motion {

@@ -40,7 +40,7 @@ pub struct View {
 impl CameraArgs {
     /// The camera asked for: one of the file's by name, or where the arguments say.
     pub fn of(&self, import: &Import) -> Result<Camera> {
-        self.over(import.model.bounds(), import)
+        self.over(bounds(&import.model), import)
     }
 
     /// The same, of a model with this box.
@@ -87,7 +87,7 @@ impl CameraArgs {
     /// The built-in views; a camera asked for takes the place of `whole` and is called `given`.
     pub fn views(&self, views: Views, import: &Import) -> Result<Vec<View>> {
         let (model, size) = (&import.model, self.pixels(import));
-        let bounds = model.bounds();
+        let bounds = bounds(model);
         let whole = self.over(bounds, import)?;
         let wanted = |one| views == one || views == Views::All;
         let mut list = Vec::new();
@@ -106,7 +106,7 @@ impl CameraArgs {
 
     /// So many times closer each.
     pub fn zooms(&self, times: &[f64], import: &Import) -> Result<Vec<View>> {
-        let bounds = import.model.bounds();
+        let bounds = bounds(&import.model);
         let whole = self.over(bounds, import)?;
         let view = |&times: &f64| {
             let mut camera = fitted(closer(&import.model, whole, times), bounds)?;
@@ -134,6 +134,13 @@ impl CameraArgs {
         }
         camera
     }
+}
+
+/// The box of what a picture of the whole model shows: that of its control points where nothing is left of it, so that
+/// there is a picture that says so.
+pub fn bounds(model: &Model) -> Bounds {
+    let bounds = model.bounds();
+    if bounds.is_empty() { model.control_bounds() } else { bounds }
 }
 
 /// All of the model in the picture, whatever is asked for.
@@ -205,7 +212,7 @@ fn boundary_points(face: &Face) -> Vec<DVec3> {
 /// model's to the start of a trim curve: of an open shell to the one nearest to the model's middle, of a
 /// solid to the one nearest to the eye, which is certainly in sight.
 pub fn zoomed(model: &Model, size: (u32, u32), zoom: f64) -> Camera {
-    let bounds = model.bounds();
+    let bounds = bounds(model);
     let mut camera = Camera::framing(bounds, FROM, DVec3::Z, 35f64.to_radians(), size);
     let solid = model.parts.iter().any(|part| part.closed);
     let from = if solid { camera.eye } else { bounds.centre() };

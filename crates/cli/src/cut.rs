@@ -98,7 +98,7 @@ impl CutArgs {
         for plane in &self.section {
             *model = model.section(plane.normal, plane.offset)?;
         }
-        if model.bounds().is_empty() {
+        if model.control_bounds().is_empty() {
             bail!("what cuts the model open leaves nothing of it");
         }
         Ok(())

@@ -191,7 +191,7 @@ impl Session {
     /// Refuses a model of which a picture of all of it shows nothing; else the camera looks past it, which is told, or with
     /// `--strict` refused. For pictures that show nothing.
     pub fn blank(&mut self, path: &Path, model: &Model, size: (u32, u32), read: &ReadArgs) -> Result<()> {
-        let camera = camera::whole(model.bounds(), size);
+        let camera = camera::whole(camera::bounds(model), size);
         let picture = self.render(&camera, Outputs { face: true, ..Outputs::default() })?;
         if !shows(&picture) {
             let why = match picture.stats.clamps {

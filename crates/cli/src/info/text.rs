@@ -28,7 +28,7 @@ impl Info<'_> {
         let mut lines = vec![format!("{}; source unit {}; box {bounds}", self.name, self.unit)];
         let writer = if report.written_by.is_empty() { String::new() } else { format!(", by {}", report.written_by) };
         lines.push(format!("{}{writer}", report.format));
-        lines.extend(self.trim.map(|way| format!("faces are trimmed by the way `{way}`")));
+        lines.extend(self.trim.map(|way| format!("trimmed by the way `{way}`")));
         lines.join("\n")
     }
 

@@ -55,7 +55,7 @@ pub struct ExportWarning {
 #[allow(missing_docs)] // the messages say what each field is
 pub enum ExportError {
     /// The operating system refused.
-    #[error("cannot write: {0}")]
+    #[error("{0}")]
     Write(#[from] std::io::Error),
     /// An instance names a part that is not there.
     #[error("instance {instance} names part {part} of {parts}")]

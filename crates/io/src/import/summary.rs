@@ -203,9 +203,9 @@ mod tests {
         assert_eq!(told(&none), format!("nothing of it can be drawn; 1 left out: 1 x {reason}"));
 
         let good = include_str!("step/tests/good.step");
-        let cut = good.replacen("CYLINDRICAL_SURFACE('',#24,5.)", "CYLINDRICAL_SURFACE('',#24,-5.)", 1);
+        let cut = good.replacen("CYLINDRICAL_SURFACE('',#24,5.)", "CYLINDRICAL_SURFACE('',#24,0.)", 1);
         let some = told(&step(cut.as_bytes(), "t.step").unwrap());
-        assert_eq!(some, "drawn 2 of 3 faces; 1 left out: 1 x attribute 2 is not a length above 0");
+        assert!(some.starts_with("drawn 2 of 3 faces; 1 left out: 1 x "), "{some}");
 
         let some = obj(b"v 0 0 0\nv 1 0 0\nv 0 1 0\nf 1 2 3\nf 1 2 9\n", "t.obj", None).unwrap();
         assert!(told(&some).starts_with("drawn 1 mesh; 1 x polygon left out: 1 x "), "{}", told(&some));
@@ -250,6 +250,6 @@ mod tests {
         let cut = good.replacen("CYLINDRICAL_SURFACE('',#24,5.)", &cone("100."), 1);
         let import = step(cut.as_bytes(), "t.step").unwrap();
         let (reason, _) = import.report.dropped.iter().next().expect("the cone is left out");
-        assert_eq!(reason, "a cone needs a radius of 0 or more and an angle below 90 degrees");
+        assert_eq!(reason, "a cone needs an angle other than 0 and below a right one");
     }
 }

@@ -199,6 +199,6 @@ fn deep_assemblies_are_told_as_deep() {
     for levels in [256, 100_000] {
         let deep = chain(levels).summary().to_string();
         let why = "1 x occurrence left out: 1 x it is nested deeper than 256 levels";
-        assert!(deep.starts_with("nothing of it can be drawn; ") && deep.contains(why), "{deep}");
+        assert!(deep.contains(why), "{deep}");
     }
 }
