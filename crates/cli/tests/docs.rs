@@ -7,8 +7,9 @@ const HEAD: &str = "# The program `selvedge`
 
 Made from `selvedge help COMMAND`. Results go to standard output, warnings to standard error.
 
-The arrays of `--aov` are samples at pixel centres, row 0 on top. Model files: STEP, IGES, OBJ, BezierView `.bv`, OpenSCAD
-`.csg`, BRL-CAD `.asc`, Rhino `.3dm`, `.selvedge`, and [scenes](scene.md) in TOML.
+The arrays of `--aov` are samples at pixel centres, row 0 on top. Model files: STEP, IGES, OBJ, STL, 3MF, AMF,
+PLY, OFF, glTF, BezierView `.bv`, OpenSCAD `.csg` and `.scad`, BRL-CAD `.asc`, Rhino `.3dm` with the feature `rhino`,
+`.selvedge`, and [scenes](scene.md) in TOML.
 ";
 
 /// What the program prints when it is asked for help.
