@@ -73,7 +73,7 @@ impl Model {
     ///
     /// # Example
     /// ```
-    /// use crate::model::Model;
+    /// use selvedge_geometry::model::Model;
     /// let half = Model::default().section(glam::DVec3::X, 0.0).unwrap();
     /// assert!(half.solids.is_empty());
     /// ```
