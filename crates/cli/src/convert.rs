@@ -2,7 +2,7 @@
 
 use crate::args::ConvertArgs;
 use crate::target::{self, NATIVE, Target};
-use crate::{Outcome, session};
+use crate::{Outcome, remains, session};
 use anyhow::Result;
 use selvedge_io::native;
 
@@ -11,6 +11,7 @@ pub fn run(args: &ConvertArgs) -> Result<Outcome> {
     let output = [Target::new(&args.output, NATIVE)];
     target::check(&[&args.model], &output)?;
     let import = session::open(&args.model, &args.read, &args.subdivide)?;
+    remains::judge(&args.model, &import.model)?;
     target::check_read(&import, &output)?;
     let bytes = native::write(&import.model);
     target::write(&args.output, |to| Ok(to.write_all(&bytes)?))?;

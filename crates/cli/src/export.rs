@@ -2,7 +2,7 @@
 
 use crate::args::ExportArgs;
 use crate::target::{self, STEP, Target};
-use crate::{Outcome, session};
+use crate::{Outcome, remains, session};
 use anyhow::Result;
 use selvedge_io::export;
 
@@ -11,6 +11,7 @@ pub fn run(args: &ExportArgs) -> Result<Outcome> {
     let output = [Target::new(&args.output, STEP)];
     target::check(&[&args.model], &output)?;
     let import = session::open(&args.model, &args.read, &args.subdivide)?;
+    remains::judge(&args.model, &import.model)?;
     target::check_read(&import, &output)?;
     let model = import.model;
     let mut warnings = Vec::new();

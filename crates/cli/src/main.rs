@@ -24,6 +24,7 @@ mod openscad;
 mod output;
 mod path;
 mod progress;
+mod remains;
 mod render;
 mod series;
 mod session;

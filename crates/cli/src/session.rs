@@ -44,7 +44,7 @@ fn facets(subdivide: &SubdivideArgs) -> Facets {
 }
 
 /// The file as messages name it.
-fn named(path: &Path) -> String {
+pub fn named(path: &Path) -> String {
     if target::is_standard(path) { "standard input".to_owned() } else { path.display().to_string() }
 }
 

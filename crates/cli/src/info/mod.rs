@@ -13,7 +13,7 @@ mod tiles;
 mod tree;
 
 use crate::args::InfoArgs;
-use crate::{Outcome, output, session};
+use crate::{Outcome, output, remains, session};
 use anyhow::Result;
 use selvedge::model::{Mesh, Model, Part, SurfaceKind};
 use selvedge::picture::{SceneSettings, TrimWay};
@@ -102,6 +102,7 @@ pub fn run(args: &InfoArgs) -> Result<Outcome> {
         }
     }
     session::judge(&args.model, &import, &args.read)?;
+    remains::judge(&args.model, &import.model)?;
     Ok(Outcome::Good)
 }
 

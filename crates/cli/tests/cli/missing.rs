@@ -100,6 +100,20 @@ fn pictures_of_nothing_are_no_success() {
         }
     };
     refused_drawing(&nothing, &[], 2);
+    let written = ["a.selvedge", "a.step"].map(|name| folder.path().join(name).to_str().unwrap().to_owned());
+    let [native, step] = &written;
+    let why = "nothing.csg: nothing of it can be drawn: its solids leave no surface";
+    refused(&["convert", &nothing, native], why);
+    refused(&["export", &nothing, step], why);
+    let info = selvedge(&["info", &nothing]);
+    assert_eq!(info.status.code(), Some(2));
+    assert!(text(&info.stderr).contains(why), "{}", text(&info.stderr));
+    assert_eq!(written.each_ref().map(|path| fs::exists(path).unwrap()), [false; 2]);
+    // a sliver that one ray in thousands meets is something
+    let sliver =
+        file(&folder, "sliver.csg", "difference() { sphere(r = 1); cube(size = [1.98, 9, 9], center = true); }");
+    assert_eq!(selvedge(&["info", &sliver]).status.code(), Some(0));
+    assert_eq!(selvedge(&["convert", &sliver, native]).status.code(), Some(0));
     refused_drawing(&nothing, &["--eye", "0,-9,0", "--target", "0,0,0"], 2);
     refused(&["render", &ball, "-o", &png, "--section", "1,0,0,-2"], "what cuts the model open leaves nothing of it");
     assert!(!fs::exists(&png).unwrap());
