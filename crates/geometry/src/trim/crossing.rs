@@ -7,6 +7,7 @@
 //!        B╱   ╲A          what only touches, or runs along, does not count
 //! ```
 
+use super::meet::{Box2, each_pair};
 use super::piece::{Piece, append_pieces};
 use crate::math::root::bracketed;
 use crate::model::TrimLoop;
@@ -22,7 +23,7 @@ const PLACE: f64 = 1e-12;
 const SHARES: [f64; 5] = [0.02, 0.25, 0.5, 0.75, 0.98];
 /// Bisections to the place where two chains meet: it is only told.
 const BISECTIONS: u32 = 40;
-/// Pairs of boxes that are looked at: more take longer than reading the face.
+/// Pairs of boxes that meet and are looked at: more take longer than reading the face.
 const MOST_PAIRS: usize = 1 << 22;
 
 /// What was found.
@@ -42,35 +43,28 @@ pub fn crossing(loops: &[TrimLoop]) -> Crossing {
     let curves: Vec<Vec<Bezier<DVec3>>> = loops.iter().map(|l| l.curves().collect()).collect();
     let boxes: Vec<Hull> = curves.iter().flatten().map(Hull::new).collect();
     if boxes.iter().all(|b| !b.turns_back) {
-        match pairs(boxes, |hull| (hull.lo, hull.hi), |a, b| a.meets(b).then_some(DVec2::ZERO)) {
+        match pairs(&boxes, |hull| (hull.lo, hull.hi), |a, b| a.meets(b).then_some(DVec2::ZERO)) {
             Crossing::At(_) => {}
             other => return other,
         }
     }
-    let chains = curves.iter().enumerate().flat_map(|(of, curves)| chains(of, curves)).collect();
+    let chains: Vec<_> = curves.iter().enumerate().flat_map(|(of, curves)| chains(of, curves)).collect();
     let margins: Vec<DVec2> = loops.iter().map(TrimLoop::bounds).map(|(lo, hi)| MARGIN * (hi - lo)).collect();
-    pairs(chains, |chain: &Chain<'_>| (chain.lo, chain.hi), |a, b| change_sides(a, b, margins[a.of].min(margins[b.of])))
+    pairs(&chains, |chain| (chain.lo, chain.hi), |a, b| change_sides(a, b, margins[a.of].min(margins[b.of])))
 }
 
 /// The first answer of `ask` about two whose boxes meet.
-fn pairs<T>(mut all: Vec<T>, bounds: impl Fn(&T) -> (DVec2, DVec2), ask: impl Fn(&T, &T) -> Option<DVec2>) -> Crossing {
-    all.sort_by(|a, b| bounds(a).0.y.total_cmp(&bounds(b).0.y));
+fn pairs<T>(all: &[T], bounds: impl Fn(&T) -> Box2, ask: impl Fn(&T, &T) -> Option<DVec2>) -> Crossing {
+    let boxes: Vec<Box2> = all.iter().map(bounds).collect();
     let mut asked = 0;
-    for (i, a) in all.iter().enumerate() {
-        let (lo, hi) = bounds(a);
-        for b in all[i + 1..].iter().take_while(|b| bounds(b).0.y <= hi.y) {
-            asked += 1;
-            if asked > MOST_PAIRS {
-                return Crossing::Unknown;
-            }
-            let (b_lo, b_hi) = bounds(b);
-            let meet = lo.x.max(b_lo.x) <= hi.x.min(b_hi.x);
-            if let Some(at) = meet.then(|| ask(a, b)).flatten() {
-                return Crossing::At(at);
-            }
+    let answer = each_pair(&boxes, |a, b| {
+        asked += 1;
+        if asked > MOST_PAIRS {
+            return Some(Crossing::Unknown);
         }
-    }
-    Crossing::No
+        ask(&all[a], &all[b]).map(Crossing::At)
+    });
+    answer.unwrap_or(Crossing::No)
 }
 
 /// The box of a curve's control points, which holds it.
@@ -312,12 +306,29 @@ mod tests {
         }
     }
 
-    /// A comb of 3000 tall teeth: each box is beside all others.
+    /// A comb of 3000 teeth whose boxes all meet, so far do they lean; upright, each is beside two others.
     #[test]
     fn too_many_are_told() {
-        let teeth = (0..3000).flat_map(|k| [(f64::from(2 * k), 0.0), (f64::from(2 * k + 1), 1.0)]);
-        let comb: Vec<(f64, f64)> = teeth.chain([(6000.0, -1.0), (0.0, -1.0)]).collect();
-        assert_eq!(crossing(&[polygon(&comb)]), Crossing::Unknown);
-        assert_eq!(crossing(&[polygon(&comb[4000..])]), Crossing::No);
+        let comb = |lean: f64, first: u32| {
+            let teeth = (first..3000).flat_map(|k| [(f64::from(2 * k), 0.0), (f64::from(2 * k + 1) + lean, 1.0)]);
+            let points: Vec<(f64, f64)> = teeth.chain([(6000.0, -1.0), (0.0, -1.0)]).collect();
+            crossing(&[polygon(&points)])
+        };
+        assert_eq!(comb(12_000.0, 0), Crossing::Unknown);
+        assert_eq!(comb(12_000.0, 2500), Crossing::No);
+        assert_eq!(comb(0.0, 0), Crossing::No);
+    }
+
+    /// Holes in rows and columns, as perforated sheets have them: all are told apart, and one that crosses another is found.
+    #[test]
+    fn many_loops_side_by_side() {
+        let hole = |k: u32| {
+            let (x, y) = (f64::from(k % 100), f64::from(k / 100));
+            polygon(&[(x + 0.2, y + 0.5), (x + 0.5, y + 0.8), (x + 0.8, y + 0.5), (x + 0.5, y + 0.2)])
+        };
+        let mut loops: Vec<TrimLoop> = (0..10_000).map(hole).chain([square(0.0, 100.0)]).collect();
+        assert_eq!(crossing(&loops), Crossing::No);
+        loops.push(polygon(&[(41.5, 73.0), (41.9, 73.5), (41.5, 74.5), (41.4, 73.5)]));
+        near(&loops, (41.5, 73.8), 1.0);
     }
 }

@@ -40,6 +40,7 @@ mod crossing;
 mod distance;
 mod exact;
 mod flatten;
+mod meet;
 mod piece;
 mod table;
 mod winding;
