@@ -10,7 +10,7 @@ Prints a JSON object a line, each as soon as it is known, so that a reader keeps
     area        of the placed faces, mm², by two quadratures: fixed, and adaptive, which go wrong on different faces
     box         of the placed faces, mm: [[x, y, z], [x, y, z]]
     colours     {"r,g,b": area}, "none" where a face has no colour; sRGB, 0 to 255
-    picture     rays sampled, and those that see something else than the 3 x 3 pixels around them, by kind:
+    picture     rays sampled, and those that see something else than the 3 x 3 pixels around them, as all near them do, by kind:
                 missing (nothing drawn), extra (nothing there), behind (drawn farther off), before (drawn nearer)
 """
 import json, pathlib, sys, time
@@ -45,6 +45,8 @@ QUADRATURE = 1e-6
 STEP = 4
 # of the box's diagonal: depths as far apart are of different places
 DEPTH = 1e-3
+# pixels from a ray that sees something else to those that may excuse it
+NEAR = [(-.4, -.3), (.4, -.3), (-.1, .2), (.1, .2), (0, 1), (1, 0), (0, -1), (-1, 0)]
 # seconds for the rays of a picture
 PATIENCE = 15.0
 
@@ -85,12 +87,12 @@ def colours(free, areas):
     for label, shape in free:
         styles, of = Styles(), {}
         XCAFPrs.CollectStyleSettings_s(label, TopLoc_Location(), styles)
-        # outer shapes come first, so that inner ones overwrite them
-        for i in range(1, styles.Size() + 1):
-            style = styles.FindFromIndex(i)
-            if style.IsSetColorSurf():
-                for face in each(styles.FindKey(i), TopAbs_FACE):
-                    of[areas.number(face)] = style.GetColorSurf()
+        styled = [(styles.FindKey(i), styles.FindFromIndex(i)) for i in range(1, styles.Size() + 1)]
+        styled = [(list(each(key, TopAbs_FACE)), key.ShapeType(), style) for key, style in styled if style.IsSetColorSurf()]
+        # outer shapes first, so that inner ones overwrite them
+        for inside, _, style in sorted(styled, key=lambda s: (-len(s[0]), int(s[1]))):
+            for face in inside:
+                of[areas.number(face)] = style.GetColorSurf()
         for face in each(shape, TopAbs_FACE):
             if has_surface(face):
                 colour = of.get(areas.number(face))
@@ -179,8 +181,8 @@ def picture(shape, camera, depth, diagonal):
         z = rays.depth(x + .5, y + .5)
         result['rays'] += 1
         result['seen'] += bool(np.isfinite(z))
-        # the kernel begins from a coarse polyhedron and misses points near borders: some of its rays close by may not
-        near = ((x + .5 + dx, y + .5 + dy) for dx in (-.4, -.1, .1, .4) for dy in (-.3, .2))
+        # the kernel begins from a coarse polyhedron and misses points near borders and silhouettes: a ray close by may not
+        near = ((x + .5 + dx, y + .5 + dy) for dx, dy in NEAR)
         if agrees(z, around, finite) or any(agrees(rays.depth(*p), around, finite) for p in near):
             continue
         if np.isinf(z):
