@@ -1,4 +1,4 @@
-//! What a frame is asked for and what it hands back: settings, images, statistics.
+//! A frame's settings, images and statistics.
 
 use crate::model::{Colour, Images};
 use glam::DVec3;

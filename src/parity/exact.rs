@@ -169,9 +169,9 @@ fn lists_hold_within_their_boxes() {
     );
 }
 
-/// `cargo nextest run --run-ignored only a_hundred_thousand_loops`: tells the figures.
+/// `tools/soak a_hundred_thousand_loops` tells the figures.
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: tools/soak"]
 fn a_hundred_thousand_loops() {
     use rayon::prelude::*;
     let all = (0..1000u64).into_par_iter().map(|seed| worst_difference(1000 + seed, 50, 200));

@@ -1,4 +1,4 @@
-//! `selvedge info`: what a file holds, as the engine read it.
+//! `selvedge info`: the content of a file, as it was read.
 //!
 //! ```text
 //!   Import ──▶ Info ──┬─▶ JSON            everything

@@ -1,4 +1,4 @@
-//! What is drawn: faces, solids, instances. Plain `f64` data, valid by construction.
+//! Models: faces, solids, instances. Plain `f64` data, valid by construction.
 //!
 //! ```text
 //!   Model ── parts: [Part]            one rigid body of faces in its own coordinates

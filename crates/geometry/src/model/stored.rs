@@ -1,4 +1,4 @@
-//! What is stored of a model, and the checks between a file and a [`Model`].
+//! The stored form of a model, and the checks between a file and a [`Model`].
 //!
 //! ```text
 //!   bytes ──serde──▶ ModelData ──parts named by instances, numbers of faces, colours──▶ Model
@@ -6,7 +6,7 @@
 //!                       └─ Mesh, Surface, TrimLoop      see their `try_from`
 //! ```
 //!
-//! The code that builds a model in memory keeps these invariants by construction; a file keeps nothing.
+//! Code that builds a model in memory has these invariants by construction; a file may violate each of them.
 
 use super::{Colour, Face, Instance, Model, Part, Solid, SurfaceKind, TrimLoop};
 use crate::spline::Surface;

@@ -1,4 +1,4 @@
-//! Which stretches of which loops are the same edge.
+//! Finds the stretches of loops that are the same edge.
 //!
 //! ```text
 //!   corners of every loop ─▶ vertices ─▶ every loop cut at each vertex that it passes ─▶ stretches

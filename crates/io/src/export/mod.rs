@@ -8,7 +8,7 @@
 //! ```
 //!
 //! Faces keep their exact rational surfaces, and so do the faces of a solid that is one primitive; a Boolean solid stays
-//! an expression over exact primitives. What a file of the format cannot say is left out, and an [`ExportWarning`]
+//! an expression over exact primitives. Anything that the format cannot express is left out, and an [`ExportWarning`]
 //! names it.
 
 mod boundary;
