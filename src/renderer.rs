@@ -362,7 +362,7 @@ impl Renderer {
         let scopes = slot.times.read()?;
         let stats = FrameStats {
             passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
-            kept: slot.reused,
+            reused: slot.reused,
             trim: self.loaded.as_ref().and_then(|l| l.counts.trim).and_then(TakenWay::reported),
             patches: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.items)),
             triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),

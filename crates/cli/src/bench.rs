@@ -5,7 +5,7 @@
 //!
 //! Frames are drawn as a viewer draws them: the warm-up builds the trim table that serves all views from about the same
 //! distance, and later frames reuse it. A standing view (`--motion still`) is drawn in turn with every pass and with the
-//! visibility of the frame before; rows of the latter begin with `kept:`.
+//! visibility of the frame before; rows of the latter begin with `reused:`.
 //!
 //! The first frame is no part of the table: the driver compiles for it, and its time stands apart.
 
@@ -151,13 +151,13 @@ fn timed(session: &mut Session, camera: &Camera, gathered: &mut Gathered) -> Res
     let start = Instant::now();
     let stats = session.render(camera, Outputs::default())?.stats;
     let took = start.elapsed().as_secs_f64() * 1e3;
-    let row = |name: &str| if stats.kept { format!("kept: {name}") } else { name.to_owned() };
+    let row = |name: &str| if stats.reused { format!("reused: {name}") } else { name.to_owned() };
     gathered.push(&row("wall clock, with read-back"), "ms", took);
     for pass in &stats.passes {
         gathered.push(&row(&format!("pass: {}", pass.name)), "ms", pass.gpu_ms);
     }
     gathered.push(&row("all passes"), "ms", stats.passes.iter().map(|p| p.gpu_ms).sum());
-    if !stats.kept {
+    if !stats.reused {
         if stats.trim_rows > 0 && stats.passes.iter().all(|p| p.name != TRIM_TABLE) {
             gathered.push(&row(&format!("pass: {TRIM_TABLE}")), "ms", 0.0);
         }

@@ -127,7 +127,7 @@ fn a_dash_is_standard_output() {
     let stats: serde_json::Value = serde_json::from_slice(&fs::read(path("a.json")).unwrap()).unwrap();
     let ms = |of: &str| stats["first_frame"][of].as_f64().unwrap();
     assert!(ms("pipelines_ms") > 0.0 && ms("wall_ms") > 0.0, "{stats}");
-    assert_eq!(stats["kept"], false, "every pass is measured");
+    assert_eq!(stats["reused"], false, "every pass is measured");
     let passes: f64 = stats["passes"].as_array().unwrap().iter().map(|pass| pass["gpu_ms"].as_f64().unwrap()).sum();
     assert!(passes > 0.0, "{stats}");
     let verdicts = selvedge(&["check", &scene, "--samples", "100", "--json", "-"]);
