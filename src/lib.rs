@@ -7,7 +7,7 @@
 pub use {ash, glam, gpu_allocator};
 
 /// What is drawn, and what makes it: `selvedge-geometry`.
-pub use selvedge_geometry::{construct, csg, math, model, spline, trim};
+pub use selvedge_geometry::{construct, csg, edges, math, model, spline, trim};
 
 /// Shared test shapes name the library as its users do.
 #[cfg(test)]
