@@ -39,7 +39,7 @@
 pub use {ash, glam, gpu_allocator};
 
 /// Models and their geometry: `selvedge-geometry`.
-pub use selvedge_geometry::{construct, csg, model, spline, trim};
+pub use selvedge_geometry::{construct, csg, edges, model, spline, trim};
 
 /// For tests and benchmarks.
 #[doc(hidden)]

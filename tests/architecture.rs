@@ -12,11 +12,12 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("model", &["csg", "math", "spline"]),
     ("trim", &["math", "spline", "model"]),
     ("construct", &["math", "spline", "model", "trim"]),
+    ("edges", &["math", "spline", "model"]),
     ("csg", &[]),
     // selvedge-io
     ("brep", &["math", "spline", "trim", "model"]),
     ("import", &["brep", "construct", "csg", "native", "spline", "model"]),
-    ("export", &["construct", "csg", "spline", "trim", "model"]),
+    ("export", &["construct", "csg", "edges", "spline", "trim", "model"]),
     ("native", &["model"]),
     // selvedge-check: Cargo says it all
     ("check", &[]),

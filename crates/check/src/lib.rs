@@ -17,11 +17,12 @@
 //! volume, and up to [`ON`] outside of it.
 //!
 //! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`]; [`SunTracer`] and [`judge_sun`] do so for the
-//! light.
+//! light. [`EdgeTracer`] says which points of edges are seen.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
 mod bvh;
+mod edges;
 mod facet;
 mod judge;
 mod leaf;
@@ -33,6 +34,7 @@ mod sun;
 #[cfg(test)]
 mod tests;
 
+pub use edges::{AT, EdgePoint, EdgeTracer, Visibility};
 pub use judge::{
     Bin, Class, DepthErrors, EXACT_DEPTH_PX, EXACT_NORMAL_DEG, Errors, Exactness, Folds, GRAZING_COSINE, JudgeOptions,
     Judgement, Mismatch, SMOOTH_PX, TURN, judge,
