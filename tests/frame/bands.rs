@@ -98,7 +98,7 @@ fn of_spline_parts() {
 #[test]
 fn of_thousands_of_primitives() {
     let model = solids::holes(45);
-    let above = Camera::framing(model.control_bounds(), DVec3::new(0.02, -0.01, 1.0), DVec3::Y, 0.6, SIZE);
+    let above = Camera::around(model.control_bounds(), DVec3::new(0.02, -0.01, 1.0), DVec3::Y, 0.6, SIZE);
     seen_with_less_and_less("holes", (&model, above), SceneSettings::default(), 120_000.0);
 }
 
