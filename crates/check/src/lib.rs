@@ -26,6 +26,7 @@ mod bvh;
 mod facet;
 mod judge;
 mod leaf;
+pub mod light;
 mod net;
 mod probe;
 pub mod solids;

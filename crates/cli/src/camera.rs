@@ -53,9 +53,9 @@ impl CameraArgs {
     }
 
     /// From one of the standard directions, as large as the model fits.
-    pub fn standard(&self, direction: Direction, import: &Import) -> Result<Camera> {
+    pub fn standard(&self, direction: Direction, import: &Import, size: (u32, u32)) -> Result<Camera> {
         let up = self.up.unwrap_or(direction.up());
-        fitted(self.framed(&import.model, direction.from(), up, self.pixels(import)), bounds(&import.model))
+        fitted(self.framed(&import.model, direction.from(), up, size), bounds(&import.model))
     }
 
     /// The file's camera of the name given; without any word about a camera the one that its picture asks for.
@@ -74,7 +74,8 @@ impl CameraArgs {
         Ok(found)
     }
 
-    fn pixels(&self, import: &Import) -> (u32, u32) {
+    /// Width and height of the picture.
+    pub fn pixels(&self, import: &Import) -> (u32, u32) {
         let asked = self.size.or(import.picture.size.map(|(w, h)| Size(w, h)));
         let Size(width, height) = asked.unwrap_or(SIZE);
         (width, height)

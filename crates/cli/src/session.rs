@@ -6,8 +6,8 @@ use crate::{camera, openscad, output, target};
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
-use selvedge::model::{Camera, LoopAt, Model, TrimLoop};
-use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, SceneSettings};
+use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
+use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, SceneSettings, Style};
 use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
 use std::io;
 use std::path::Path;
@@ -169,6 +169,12 @@ impl Session {
             FrameSettings { tolerance_px: args.tolerance, levels: args.factors.0, ..FrameSettings::default() };
         settings.background = import.picture.background.or(settings.background);
         Ok(Self { renderer, settings })
+    }
+
+    /// From now on frames are drawn on this colour, in this style.
+    pub fn look(&mut self, background: Colour, style: Style) {
+        self.settings.background = Some(background);
+        self.settings.style = style;
     }
 
     /// One frame.
