@@ -1,5 +1,9 @@
 //! A frame's settings, images and statistics.
 
+mod style;
+
+pub use style::{Style, UnknownStyle};
+
 use crate::model::{Colour, Images};
 use glam::DVec3;
 
@@ -11,6 +15,8 @@ pub struct FrameSettings {
     pub tolerance_px: f64,
     /// Colour behind the model; with `None` the target's own content stays there.
     pub background: Option<Colour>,
+    /// How surfaces are shown.
+    pub style: Style,
     /// How finely patches are divided.
     pub levels: Levels,
     /// Record every pass in every frame, for measurements. Otherwise a frame reuses the visibility of the one before, if
@@ -31,7 +37,13 @@ pub enum Levels {
 
 impl Default for FrameSettings {
     fn default() -> Self {
-        Self { tolerance_px: 0.5, background: Some([1.0, 1.0, 1.0, 1.0]), levels: Levels::Bound, all_passes: false }
+        Self {
+            tolerance_px: 0.5,
+            background: Some([1.0, 1.0, 1.0, 1.0]),
+            style: Style::Shaded,
+            levels: Levels::Bound,
+            all_passes: false,
+        }
     }
 }
 
@@ -332,7 +344,7 @@ impl Outputs {
 pub struct Picture {
     /// Width and height in pixels.
     pub size: (u32, u32),
-    /// sRGB-encoded colour and opacity.
+    /// sRGB-encoded colour, not multiplied by its opacity, and opacity.
     pub colour: Vec<[u8; 4]>,
     /// Distance along the view axis, `+inf` for background.
     pub depth: Vec<f32>,

@@ -71,6 +71,7 @@ pub(super) fn constants(
         offset: [0.0; 2],
         spread_px: counts.samples.offsets().iter().flatten().fold(0.0f64, |far, x| far.max(x.abs())) as f32,
         samples: counts.samples.count(),
+        style: input.settings.style as u32,
         ..abi::Frame::default()
     };
     seen_by(camera, frame)

@@ -15,7 +15,7 @@ use std::path::Path;
 const SIZE: (u32, u32) = (320, 240);
 
 fn camera(model: &Model) -> Camera {
-    Camera::framing(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), SIZE)
+    Camera::around(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), SIZE)
 }
 
 fn sample(name: &str) -> Model {

@@ -120,7 +120,7 @@ fn of_spline_parts() -> Vec<Case> {
 
 fn of_thousands_of_primitives() -> Vec<Case> {
     let model = solids::holes(45);
-    let above = Camera::framing(model.control_bounds(), DVec3::new(0.02, -0.01, 1.0), DVec3::Y, 0.6, SIZE);
+    let above = Camera::around(model.control_bounds(), DVec3::new(0.02, -0.01, 1.0), DVec3::Y, 0.6, SIZE);
     vec![Case { camera: above, ..Case::new("holes", model, SceneSettings::default(), 120_000.0) }]
 }
 

@@ -24,7 +24,7 @@ fn few() -> Model {
 
 fn from(model: &Model, angle: f64) -> Camera {
     let direction = DVec3::new(angle.sin(), -angle.cos(), 0.4);
-    Camera::framing(model.control_bounds(), direction, DVec3::Z, 35f64.to_radians(), SIZE)
+    Camera::around(model.control_bounds(), direction, DVec3::Z, 35f64.to_radians(), SIZE)
 }
 
 /// A renderer, and one that begins anew with every picture.

@@ -25,6 +25,7 @@ mod layers;
 mod ledges;
 mod lengths;
 mod light;
+mod look;
 mod meshes;
 mod narrow;
 mod objects;

@@ -26,7 +26,7 @@ pub fn render(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
 
 /// All of the model, from the front, the right and above.
 pub fn perspective(model: &Model, size: (u32, u32)) -> Camera {
-    Camera::framing(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), size)
+    Camera::around(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), size)
 }
 
 /// The same in a parallel view.

@@ -26,6 +26,7 @@ mod edges;
 mod facet;
 mod judge;
 mod leaf;
+pub mod light;
 mod net;
 mod probe;
 pub mod solids;

@@ -6,8 +6,8 @@ use crate::{camera, openscad, output, target};
 use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
-use selvedge::model::{Camera, LoopAt, Model, TrimLoop};
-use selvedge::picture::{FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings};
+use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
+use selvedge::picture::{FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
 use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
 use serde::Serialize;
 use std::io;
@@ -120,6 +120,14 @@ pub struct FirstFrame {
     pub wall_ms: f64,
 }
 
+/// A frame's statistics, and what the session's first one took.
+#[derive(Debug, Serialize)]
+pub struct Measured {
+    #[serde(flatten)]
+    pub frame: FrameStats,
+    pub first_frame: Option<FirstFrame>,
+}
+
 /// Opens the device that is asked for.
 pub fn opened(args: &FrameArgs) -> Result<HeadlessRenderer> {
     during("opening the device", || device(args))
@@ -182,6 +190,12 @@ impl Session {
         Ok(Self { renderer, settings, first_frame: None })
     }
 
+    /// From now on frames are drawn on this colour, in this style.
+    pub fn look(&mut self, background: Colour, style: Style) {
+        self.settings.background = Some(background);
+        self.settings.style = style;
+    }
+
     /// One frame.
     pub fn render(&mut self, camera: &Camera, outputs: Outputs) -> Result<Picture> {
         let start = Instant::now();
@@ -200,10 +214,11 @@ impl Session {
     }
 
     /// The statistics of a picture, measured once more by a frame of all passes for which the driver compiles nothing.
-    pub fn measured_again(&mut self, camera: &Camera, outputs: Outputs, first: &FrameStats) -> Result<FrameStats> {
+    pub fn measured(&mut self, camera: &Camera, outputs: Outputs, first: &FrameStats) -> Result<Measured> {
         let settings = FrameSettings { all_passes: true, ..self.settings };
         let again = during("drawing again, to measure", || self.renderer.render(camera, &settings, outputs))?.stats;
-        Ok(FrameStats { retries: first.retries, ..again })
+        let frame = FrameStats { retries: first.retries, ..again };
+        Ok(Measured { frame, first_frame: self.first_frame })
     }
 
     /// Whether any pixel of the picture shows the model.

@@ -168,7 +168,7 @@ fn copied(model: &Model, copies: usize, distinct: bool) -> Model {
 
 fn camera(model: &Model, zoom: f64, size: (u32, u32)) -> Camera {
     let bounds = model.bounds();
-    let whole = Camera::framing(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size);
+    let whole = Camera::around(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size);
     let mut camera = if zoom > 1.0 { closer(model, whole, zoom) } else { whole };
     camera.fit_depth(bounds);
     camera.depth_range.0 = camera.depth_range.0.min((camera.eye - camera.target).length() * 0.1);
