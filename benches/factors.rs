@@ -46,7 +46,7 @@ fn print(what: &str, all: &[Ways]) {
 }
 
 fn camera(bounds: Bounds, closer: f64) -> Camera {
-    let mut camera = Camera::framing(bounds, DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), (1920, 1080));
+    let mut camera = Camera::around(bounds, DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), (1920, 1080));
     camera.eye = camera.target + (camera.eye - camera.target) / closer;
     camera.fit_depth(bounds);
     camera

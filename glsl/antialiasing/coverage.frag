@@ -78,7 +78,8 @@ Covering covering(uvec2 seen, vec2 pixel) {
 vec4 colour_at(ivec2 at) {
     vec4 seen = imageLoad(resolved, at);
     if (seen.a < UNSEEN) return vec4(seen.rgb, 1.0);
-    return frame.background.a < 0.0 ? vec4(0.0) : frame.background;
+    float opacity = max(frame.background.a, 0.0);
+    return vec4(frame.background.rgb * opacity, opacity);
 }
 
 bool is_in_picture(ivec2 at) {

@@ -6,13 +6,18 @@
 
 layout(location = 0) out vec4 out_colour; // multiplied by its opacity where the host keeps its picture
 
-// In alpha of opacities; where the host keeps its picture, colours are multiplied by theirs, and what saw nothing
-// lets it through.
+// Of colours that are multiplied by their opacities, in alpha. Where the host keeps its picture, what saw nothing lets it
+// through.
 void write_mean(vec4 mean) {
+    bool keeps = frame.background.a < 0.0;
     out_colour = encode(mean, frame.encode_srgb);
-    if (frame.background.a >= 0.0) return;
-    if (mean.a == 0.0) discard;
-    out_colour = vec4(encode(mean / mean.a, frame.encode_srgb).rgb * mean.a, mean.a);
+    if (frame.background.a >= 1.0) return;
+    if (mean.a == 0.0) {
+        if (keeps) discard;
+        return;
+    }
+    vec3 colour = encode(mean / mean.a, frame.encode_srgb).rgb;
+    out_colour = vec4(keeps ? colour * mean.a : colour, mean.a);
 }
 
 #endif

@@ -36,7 +36,7 @@ Lit lit_at(vec3 colour, vec3 n, bool two_sided, Ray ray, float depth, uint surfa
 #ifdef SUN_BINDING
     vec3 seen = two_sided && dot(n, ray.d) > 0.0 ? -n : n;
     bool reached = in_sun(ray, depth, seen, surface);
-    return Lit(shade_in_sun(colour, seen, frame, sun.towards, reached), reached ? 1.0 : 0.0);
+    return Lit(shade_in_sun(colour, seen, frame, sun.towards, reached, ray.d), reached ? 1.0 : 0.0);
 #else
     return Lit(shade(colour, n, frame, two_sided, ray.d), 1.0);
 #endif

@@ -185,7 +185,14 @@ struct Frame {
     vec2 offset;        // of the sample from the pixel's centre, pixels
     float spread_px;    // how far from the centre samples lie, along each axis
     uint samples;       // of each pixel's colour
+    uint style;         // STYLE_*
 };
+
+// Frame.style.
+const uint STYLE_SHADED = 0u;
+const uint STYLE_CLAY = 1u;
+const uint STYLE_NORMALS = 2u;
+const uint STYLE_ZEBRA = 3u;
 
 // Frame.encode_srgb, beside 0 and 1: linear, but within what colour targets hold.
 const uint ENCODE_SUMMED = 2u;

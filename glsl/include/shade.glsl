@@ -1,29 +1,65 @@
-// A neutral studio: a key light from the upper left behind the viewer, a weaker fill from the
-// right, a sky above a darker floor. Directions are in view space and travel with the camera.
+// A neutral studio: a key light from the upper left behind the viewer, a fill from the right, a rim light from above
+// behind the model, a sky above a darker ground. Directions are unit vectors in view space and travel with the camera.
+// Twin: `studio` of the judge.
 #ifndef SHADE_GLSL
 #define SHADE_GLSL
 
-const vec3 KEY = vec3(-0.42, 0.57, 0.71);
-const vec3 FILL = vec3(0.71, 0.14, 0.69);
-const float KEY_STRENGTH = 0.62;
-const float FILL_STRENGTH = 0.22;
-const float SKY_STRENGTH = 0.26;
-const float FLOOR_STRENGTH = 0.12;
+const vec3 KEY = vec3(-0.45, 0.60, 0.66);
+const vec3 FILL = vec3(0.72, 0.10, 0.69);
+const vec3 RIM = vec3(0.25, 0.55, -0.80);
+const float KEY_STRENGTH = 0.66;
+const float FILL_STRENGTH = 0.18;
+const float RIM_STRENGTH = 0.40;
+const float SKY_STRENGTH = 0.28;
+const float GROUND_STRENGTH = 0.10;
 const float GLOSS = 0.10;      // strength of the highlight
 const float SHININESS = 48.0;
+
+// Light up to here is shown as it is; above, it nears 1 without an end.
+const float SHOULDER = 0.76;
+
+// Colour of clay, linear.
+const vec3 CLAY = vec3(0.58, 0.52, 0.46);
+// Pairs of stripes from pole to pole of the room that a zebra reflects.
+const float ZEBRA_STRIPES = 12.0;
 
 // Depth of nothing, beside linear colour.
 const float UNSEEN = 3.0e38;
 
 vec3 in_view(Frame frame, vec3 v) { return vec3(dot(frame.right, v), dot(frame.up, v), -dot(frame.forward, v)); }
 
+// A neutral tone curve: hues stay, no light is clipped.
+vec3 toned(vec3 light) {
+    float peak = max(light.r, max(light.g, light.b));
+    if (peak <= SHOULDER) return light;
+    float rest = 1.0 - SHOULDER;
+    return light * ((1.0 - rest * rest / (peak - SHOULDER + rest)) / peak);
+}
+
 // What the key light's cosines make of a surface with normal `v` in view space, beside the lights that are always
 // there.
 vec3 studio(vec3 colour, vec3 v, float key, float shine) {
     float fill = max(dot(v, FILL), 0.0);
-    float sky = mix(FLOOR_STRENGTH, SKY_STRENGTH, 0.5 + 0.5 * v.y);
+    float rim = max(dot(v, RIM), 0.0);
+    float sky = mix(GROUND_STRENGTH, SKY_STRENGTH, 0.5 + 0.5 * v.y);
     float highlight = pow(shine, SHININESS) * GLOSS;
-    return colour * (KEY_STRENGTH * key + FILL_STRENGTH * fill + sky) + highlight;
+    return toned(colour * (KEY_STRENGTH * key + FILL_STRENGTH * fill + RIM_STRENGTH * rim + sky) + highlight);
+}
+
+// Linear light of sRGB colours.
+vec3 decoded(vec3 c) {
+    return mix(pow((c + 0.055) / 1.055, vec3(2.4)), c / 12.92, lessThanEqual(c, vec3(0.04045)));
+}
+
+// Styles that show the surface in place of its light; `v` looks to the side that is seen.
+vec3 styled(uint style, vec3 v, vec3 ray) {
+    if (style == STYLE_NORMALS) return decoded(0.5 + 0.5 * v);
+    if (style == STYLE_CLAY) return studio(CLAY, v, max(dot(v, KEY), 0.0), 0.0);
+    // the room's stripes lie around the vertical: the reflected ray's height tells which one is seen
+    float height = clamp(reflect(ray, v).y, -1.0, 1.0);
+    float stripe = fract(ZEBRA_STRIPES * acos(height) / 3.14159265);
+    float light = 0.35 + 0.65 * max(v.z, 0.0);
+    return vec3(stripe < 0.5 ? 0.9 * light : 0.02);
 }
 
 // `ray` runs from the eye to the point: in a perspective view it, not the view's axis, tells which side of a
@@ -31,14 +67,16 @@ vec3 studio(vec3 colour, vec3 v, float key, float shine) {
 vec3 shade(vec3 colour, vec3 n, Frame frame, bool two_sided, vec3 ray) {
     if (two_sided && dot(n, ray) > 0.0) n = -n;
     vec3 v = in_view(frame, n);
+    if (frame.style != STYLE_SHADED) return styled(frame.style, v, normalize(in_view(frame, ray)));
     float shine = max(dot(v, normalize(KEY + vec3(0.0, 0.0, 1.0))), 0.0);
     return studio(colour, v, max(dot(v, KEY), 0.0), shine);
 }
 
 // The same where the key light is a sun, which stays where it is in the model: `towards` it, in model space and of unit
 // length. `n` looks to the side that is seen.
-vec3 shade_in_sun(vec3 colour, vec3 n, Frame frame, vec3 towards, bool reached) {
+vec3 shade_in_sun(vec3 colour, vec3 n, Frame frame, vec3 towards, bool reached, vec3 ray) {
     vec3 v = in_view(frame, n);
+    if (frame.style != STYLE_SHADED) return styled(frame.style, v, normalize(in_view(frame, ray)));
     if (!reached) return studio(colour, v, 0.0, 0.0);
     vec3 half_way = in_view(frame, towards) + vec3(0.0, 0.0, 1.0);
     float size = length(half_way);

@@ -424,8 +424,8 @@ void main() {
     if (opacity == 0.0 && frame.background.a < 0.0) discard;
     vec3 colour = opacity > 0.0 ? (sum + rest * alpha * under.rgb) / opacity : under.rgb;
     out_colour = encode(vec4(colour, opacity), frame.encode_srgb);
-    // what the host keeps is laid under
-    if (frame.background.a < 0.0) out_colour.rgb *= opacity;
+    // what the host keeps is laid under; samples are added up
+    if (frame.background.a < 0.0 || frame.encode_srgb == ENCODE_SUMMED) out_colour.rgb *= opacity;
     gl_FragDepth = first_seen >= UNSEEN ? 0.0 : depth_written(first_seen);
 }
 

@@ -20,5 +20,6 @@ void main() {
     if (!sees_nothing(imageLoad(visibility, pixel).x) || !sees_nothing(imageLoad(others, pixel).x)) discard;
     if (frame.background.a < 0.0) discard;
     out_colour = encode(frame.background, frame.encode_srgb);
+    out_colour.rgb *= frame.background.a;
     gl_FragDepth = 0.0;
 }

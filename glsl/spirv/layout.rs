@@ -106,7 +106,8 @@ const _: () = assert!(core::mem::offset_of!(crate::abi::Frame, background) == 16
 const _: () = assert!(core::mem::offset_of!(crate::abi::Frame, offset) == 184);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Frame, spread_px) == 192);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Frame, samples) == 196);
-const _: () = assert!(core::mem::size_of::<crate::abi::Frame>() == 200);
+const _: () = assert!(core::mem::offset_of!(crate::abi::Frame, style) == 200);
+const _: () = assert!(core::mem::size_of::<crate::abi::Frame>() == 204);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Instance, normal) == 0);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Instance, scale) == 36);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Instance, colour) == 40);

@@ -55,6 +55,7 @@ pub struct Frame {
     pub offset: [f32; 2],
     pub spread_px: f32,
     pub samples: u32,
+    pub style: u32,
 }
 
 /// [`Frame::encode_srgb`] of colours that are summed up: linear, but within what colour targets hold.

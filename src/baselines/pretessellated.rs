@@ -55,7 +55,7 @@ pub fn pretessellated(model: &Model, deflection: f64) -> (Model, Triangulated) {
             }
             all.beyond += beyond;
         }
-        Part { name: part.name.clone(), faces: Vec::new(), meshes, closed: part.closed }
+        Part { name: part.name.clone(), faces: Vec::new(), meshes, closed: part.closed, ..Part::default() }
     });
     let parts = parts.collect();
     (Model { parts, ..model.clone() }, all)

@@ -70,7 +70,7 @@ fn parity() {
     let gpu = Gpu::new();
     let (model, cameras) = model_and_cameras();
     let (sieve, degrees) = (model_with_sieve(), of_all_degrees());
-    let whole = Camera::framing(degrees.bounds(), DVec3::new(1.0, -2.0, 1.5), DVec3::Z, 0.6, (480, 360));
+    let whole = Camera::around(degrees.bounds(), DVec3::new(1.0, -2.0, 1.5), DVec3::Z, 0.6, (480, 360));
     let of_shapes = cameras.iter().flat_map(|camera| [(&model, camera, 0.5), (&sieve, camera, 0.5)]);
     let loose_and_tight = [(&model, &cameras[0], 4.0), (&model, &cameras[0], 1e-6), (&degrees, &whole, 0.5)];
     for (model, camera, tolerance_px) in of_shapes.chain(loose_and_tight) {

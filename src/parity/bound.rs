@@ -51,7 +51,7 @@ fn seamless() -> Vec<(Camera, Case)> {
     let case = |k: u32| {
         let (a, b) = (2.4 * f64::from(k), f64::from(k) / 6.0 - 0.9);
         let from = DVec3::new(a.cos(), a.sin(), b);
-        let camera = Camera::framing(model.bounds(), from, DVec3::Z, 0.6, (480, 360));
+        let camera = Camera::around(model.bounds(), from, DVec3::Z, 0.6, (480, 360));
         let parallel = Camera { projection: Projection::Orthographic { height: 12.0 }, ..camera };
         let camera = if k.is_multiple_of(3) { parallel } else { camera };
         (camera, Case::new(&model, &camera, 0.5))

@@ -155,7 +155,7 @@ fn everything() -> Model {
 pub(super) fn model_and_cameras() -> (Model, Vec<Camera>) {
     let model = everything();
     let bounds = model.bounds();
-    let all = Camera::framing(bounds, DVec3::new(1.0, -2.0, 1.5), DVec3::Z, 0.6, (480, 360));
+    let all = Camera::around(bounds, DVec3::new(1.0, -2.0, 1.5), DVec3::Z, 0.6, (480, 360));
     let mut close = all;
     (close.eye, close.target, close.size) = (DVec3::new(-5.0, -4.0, 4.5), DVec3::new(0.0, 2.0, 5.0), (320, 240));
     close.depth_range = (0.5, 100.0);

@@ -61,7 +61,7 @@ fn parity() {
 fn parity_of_shared_sides() {
     let gpu = Gpu::new();
     let (model, mut random) = (cages::a_box().model, Random::new(3));
-    let camera = Camera::framing(model.bounds(), DVec3::new(1.0, -2.0, 1.5), DVec3::Z, 0.6, (480, 360));
+    let camera = Camera::around(model.bounds(), DVec3::new(1.0, -2.0, 1.5), DVec3::Z, 0.6, (480, 360));
     let case = Case::new(&model, &camera, 0.5);
     assert!(case.data.links.iter().any(|link| link.halvings() > 0));
     let taus = Chain::new(&case).taus;

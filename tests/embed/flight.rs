@@ -82,7 +82,7 @@ fn sizes_and_models_change_in_flight() {
         };
         let model = &models[model_at(frame)];
         let from = DVec3::new((frame as f64).cos(), (frame as f64).sin(), 0.5);
-        let camera = Camera::framing(model.control_bounds(), from, DVec3::Z, 0.6, size);
+        let camera = Camera::around(model.control_bounds(), from, DVec3::Z, 0.6, size);
         record(&host, &mut renderer, slot, &targets, &camera, 0.5);
         slots[slot] = Some((frame, targets));
     }
@@ -117,7 +117,7 @@ fn without_room(across: u32, size: (u32, u32)) {
     let place = |i: u32| DVec3::new(f64::from(i % across), f64::from(i / across), 0.0) * 7.0;
     let placed = |i| shapes::placed(DAffine3::from_translation(place(i)), Some(RED));
     model.instances = (0..across * across).map(placed).collect();
-    let camera = Camera::framing(model.control_bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, size);
+    let camera = Camera::around(model.control_bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, size);
     let mut renderer = renderer(&host, &model, FORMAT);
     // made for edits, patches are as many as they were
     renderer.upload_with(&model, SceneSettings { editable: true, ..SceneSettings::default() }).unwrap();
@@ -129,7 +129,7 @@ fn without_room(across: u32, size: (u32, u32)) {
         let slot = frame % SLOTS;
         host.wait(slot);
         let report = renderer.report(slot).unwrap();
-        kept.extend(report.iter().map(|report| report.stats.kept));
+        kept.extend(report.iter().map(|report| report.stats.reused));
         complete.extend(report.map(|report| report.complete));
         record(&host, &mut renderer, slot, &targets[slot], &camera, 0.125);
     }
@@ -154,7 +154,7 @@ fn a_target_of_another_size_is_refused() {
     let model = painted(shapes::sphere(), RED);
     let mut renderer = renderer(&host, &model, FORMAT);
     let targets = Targets::new(&host, (32, 32), FORMAT);
-    let camera = Camera::framing(model.control_bounds(), DVec3::X, DVec3::Z, 0.6, (32, 31));
+    let camera = Camera::around(model.control_bounds(), DVec3::X, DVec3::Z, 0.6, (32, 31));
     let cmd = host.begin(0);
     let into = Into { colour: &targets.colour, depth: Some(&targets.depth), aovs: None };
     let input = FrameInput { camera: &camera, settings: FrameSettings::default(), slot: 0, targets: into };

@@ -22,7 +22,7 @@ const VIEWS: u32 = 100;
 fn view(model: &Model, k: u32) -> Camera {
     let (a, b) = (f64::from(k) * 2.399_963, (f64::from(k) + 0.5) * 2.0 / f64::from(VIEWS) - 1.0);
     let from = DVec3::new(a.cos() * (1.0 - b * b).sqrt(), a.sin() * (1.0 - b * b).sqrt(), b);
-    Camera::framing(model.control_bounds(), from, DVec3::Z, 35f64.to_radians(), SIZE)
+    Camera::around(model.control_bounds(), from, DVec3::Z, 35f64.to_radians(), SIZE)
 }
 
 /// Each pixel of these views is within the tolerance of what it should be.
@@ -78,7 +78,7 @@ fn no_background_where_two_silhouettes_meet() {
     let height = 3.0;
     let model = borders::drums_in_line(0.002 * height / f64::from(size.1));
     let mut renderer = watched(&model);
-    let mut camera = Camera::framing(model.control_bounds(), DVec3::NEG_Y, DVec3::Z, 35f64.to_radians(), size);
+    let mut camera = Camera::around(model.control_bounds(), DVec3::NEG_Y, DVec3::Z, 35f64.to_radians(), size);
     camera.projection = Projection::Orthographic { height };
     camera.target = DVec3::new(0.0, 0.0, 2.0);
     camera.eye = camera.target - DVec3::Y * 10.0;
@@ -99,7 +99,7 @@ fn a_pole_is_not_taken_for_the_face_s_back() {
     let mut seen = 0;
     for k in 0..12 {
         let tilt = DVec3::new(0.05 * f64::from(k), 0.02 * f64::from(k % 5), 1.0);
-        let mut camera = Camera::framing(model.control_bounds(), tilt, DVec3::Y, 35f64.to_radians(), SIZE);
+        let mut camera = Camera::around(model.control_bounds(), tilt, DVec3::Y, 35f64.to_radians(), SIZE);
         // nearer, so that the picture holds no outline
         camera.projection = Projection::Perspective { fov_y: 12f64.to_radians() };
         let picture = render(&mut renderer, &camera);

@@ -19,7 +19,7 @@ fn views() -> u32 {
 fn view(model: &Model, k: u32, n: u32) -> Camera {
     let (a, b) = (f64::from(k) * 2.399_963, (f64::from(k) + 0.5) * 2.0 / f64::from(n) - 1.0);
     let from = DVec3::new(a.cos() * (1.0 - b * b).sqrt(), a.sin() * (1.0 - b * b).sqrt(), b);
-    Camera { up: DVec3::new(0.3, 0.5, 0.7), ..Camera::framing(model.control_bounds(), from, DVec3::Z, 0.6, SIZE) }
+    Camera { up: DVec3::new(0.3, 0.5, 0.7), ..Camera::around(model.control_bounds(), from, DVec3::Z, 0.6, SIZE) }
 }
 
 /// Pixels that may look through the surface: what they show is the background, or lies behind what is shown on both

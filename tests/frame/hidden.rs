@@ -32,7 +32,7 @@ pub fn crowd() -> Model {
 }
 
 fn from(model: &Model, direction: DVec3) -> Camera {
-    Camera::framing(model.control_bounds(), direction, DVec3::Z, 35f64.to_radians(), SIZE)
+    Camera::around(model.control_bounds(), direction, DVec3::Z, 35f64.to_radians(), SIZE)
 }
 
 /// The picture of a renderer that knows nothing of any other.

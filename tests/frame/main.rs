@@ -25,6 +25,7 @@ mod layers;
 mod ledges;
 mod lengths;
 mod light;
+mod look;
 mod meshes;
 mod narrow;
 mod objects;
@@ -46,4 +47,6 @@ mod touching;
 #[path = "../shapes/trims.rs"]
 mod trims;
 mod turned;
+#[path = "../watched/mod.rs"]
+mod watched;
 mod zoom;

@@ -48,7 +48,7 @@ fn closer(whole: &Camera, picture: &Picture, times: f64) -> Camera {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: tools/soak"]
 fn closed_solids_of_real_files_have_no_cracks() {
     let folder = std::env::var_os("SELVEDGE_MODELS").map(PathBuf::from).expect("SELVEDGE_MODELS names a folder");
     let mut paths = Vec::new();
@@ -70,7 +70,7 @@ fn closed_solids_of_real_files_have_no_cracks() {
         let tracer = Tracer::new(&model);
         renderer.upload(&model).expect("room for the model");
         let whole =
-            Camera::framing(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), SIZE);
+            Camera::around(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), SIZE);
         let first = render(&mut renderer, &whole);
         for times in ZOOMS {
             let mut camera = if times > 1.0 { closer(&whole, &first, times) } else { whole };

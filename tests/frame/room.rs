@@ -51,7 +51,7 @@ fn more_rows_than_the_first_table_holds() {
     let place = |i: u32| DVec3::new(f64::from(i % 8), f64::from(i / 8), 0.0) * 7.0;
     let placed = |i| shapes::placed(DAffine3::from_translation(place(i)), None);
     model.instances = (0..64).map(placed).collect();
-    let camera = Camera::framing(model.control_bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, (640, 480));
+    let camera = Camera::around(model.control_bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, (640, 480));
     let picture = check(&model, &camera, 0.125);
     assert!(picture.stats.trim_rows > 65_536, "{:?}", picture.stats);
 }
@@ -69,7 +69,7 @@ fn more_sub_patches_than_the_first_list_holds() {
         )
     };
     model.instances = (0..6).map(tall).collect();
-    let above = Camera::framing(model.control_bounds(), DVec3::Z, DVec3::Y, 0.6, (320, 240));
+    let above = Camera::around(model.control_bounds(), DVec3::Z, DVec3::Y, 0.6, (320, 240));
     let camera = Camera { projection: Projection::Orthographic { height: 3.2 }, ..above };
     let picture = check(&model, &camera, 0.125);
     assert!(picture.stats.sub_patches > 262, "{:?}", picture.stats);
@@ -87,7 +87,7 @@ fn stack() -> Model {
 
 /// The whole stack from above, and a part of it so many times closer.
 fn onto(model: &Model, closer: f64) -> Camera {
-    let above = Camera::framing(model.control_bounds(), DVec3::Z, DVec3::Y, 0.6, (64, 64));
+    let above = Camera::around(model.control_bounds(), DVec3::Z, DVec3::Y, 0.6, (64, 64));
     let height = model.control_bounds().diagonal() / closer;
     Camera { projection: Projection::Orthographic { height }, ..above }
 }

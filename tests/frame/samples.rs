@@ -20,7 +20,7 @@ fn sample(name: &str) -> Model {
 }
 
 fn camera(model: &Model, from: DVec3) -> Camera {
-    Camera::framing(model.control_bounds(), from, DVec3::Z, 35f64.to_radians(), SIZE)
+    Camera::around(model.control_bounds(), from, DVec3::Z, 35f64.to_radians(), SIZE)
 }
 
 fn judged(tracer: &Tracer, camera: &Camera, picture: &Picture) -> Judgement {
@@ -69,7 +69,7 @@ fn walls_seen_edge_on() {
     let tracer = Tracer::new(&model);
     let mut renderer = watched(&model);
     for (from, up) in [(DVec3::X, DVec3::Z), (DVec3::Z, DVec3::Y)] {
-        let camera = Camera::framing(model.control_bounds(), from, up, 35f64.to_radians(), (480, 270));
+        let camera = Camera::around(model.control_bounds(), from, up, 35f64.to_radians(), (480, 270));
         let picture = render(&mut renderer, &camera);
         let j = judged(&tracer, &camera, &picture);
         assert_eq!((j.wrong, j.given_up), (0, 0), "from {from}: {:?}", j.mismatches);
@@ -84,7 +84,7 @@ fn the_eye_within_a_solid() {
     let mut camera = Camera {
         eye: DVec3::new(60.6806, 87.5394, 11.5276),
         target: DVec3::new(54.6456, 94.0687, 8.72294),
-        ..Camera::framing(model.control_bounds(), VIEWS[0], DVec3::Z, 60f64.to_radians(), (240, 180))
+        ..Camera::around(model.control_bounds(), VIEWS[0], DVec3::Z, 60f64.to_radians(), (240, 180))
     };
     camera.fit_depth(model.control_bounds());
     let tracer = Tracer::new(&model);

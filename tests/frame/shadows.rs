@@ -9,9 +9,10 @@ use crate::shapes::{self, operands};
 use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched, watched_with};
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
-use selvedge::model::{Camera, Model, Primitive, Projection, Solid};
+use selvedge::model::{Camera, Model, Primitive, Projection, Solid, srgb};
 use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, SolidWay};
 use selvedge::renderer::RenderError;
+use selvedge_check::light::{Key, studio};
 use selvedge_check::{JudgeOptions, SunJudgement, SunTracer, Tracer, judge, judge_sun};
 
 const SIZE: (u32, u32) = (120, 90);
@@ -154,19 +155,9 @@ fn every_pixel_is_lit_or_shaded_as_in_truth() {
     assert_silent(renderer);
 }
 
-/// The light of a floor of colour `grey` and normal `n`, eight bits: the studio's two other lights, and the sun.
-fn light(grey: f64, n: DVec3, camera: &Camera, sun: Option<DVec3>) -> f64 {
-    let (right, up, forward) = camera.axes();
-    let view = |v: DVec3| DVec3::new(right.dot(v), up.dot(v), -forward.dot(v));
-    let v = view(n);
-    let around = 0.22 * v.dot(DVec3::new(0.71, 0.14, 0.69)).max(0.0) + 0.12 + 0.14 * (0.5 + 0.5 * v.y);
-    let of_sun = |s: DVec3| {
-        let half_way = (view(s) + DVec3::Z).normalize();
-        (0.62 * n.dot(s) * grey, 0.10 * v.dot(half_way).max(0.0).powf(48.0))
-    };
-    let (key, shine) = sun.map_or((0.0, 0.0), of_sun);
-    let linear: f64 = grey * around + key + shine;
-    255.0 * if linear <= 0.0031308 { 12.92 * linear } else { 1.055 * linear.powf(1.0 / 2.4) - 0.055 }
+/// The light of a floor of colour `grey` and normal `n`, eight bits.
+fn light(grey: f64, n: DVec3, camera: &Camera, key: Key) -> f64 {
+    255.0 * srgb::encoded(studio(DVec3::splat(grey), n, camera, key).x)
 }
 
 /// Of a plate's shadow, which falls on a leaning floor: a ray to the sun passes the plate's lower face and its upper
@@ -207,8 +198,8 @@ fn light_falls_through_a_hole() {
         let (first, last) = (a.min(b).max_element().max(0.0), a.max(b).min_element().min(1.0));
         Some(within(low) && within(high) || first >= last)
     };
-    let colour = |sun| light(f64::from(179) / 255.0, n, &camera, sun);
-    let (bright, dark) = (colour(Some(s)), colour(None));
+    let colour = |key| light(f64::from(179) / 255.0, n, &camera, key);
+    let (bright, dark) = (colour(Key::Sun(s)), colour(Key::Shadow));
     assert!(bright - dark > 60.0);
     let mut seen = [0; 3];
     for i in 0..picture.colour.len() {

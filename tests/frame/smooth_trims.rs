@@ -115,7 +115,7 @@ fn solids_are_as_the_frame_sixteen_times_as_large() {
 fn small_holes() {
     for (radius, bound) in [(0.5, 0.15), (1.0, 0.08), (1.5, 0.08)] {
         let camera = |model: &Model| {
-            Camera::framing(model.control_bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, (160, 120))
+            Camera::around(model.control_bounds(), DVec3::new(0.1, -0.2, 1.0), DVec3::Y, 0.6, (160, 120))
         };
         let model = shapes::plate();
         let px = {

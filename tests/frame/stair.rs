@@ -20,7 +20,7 @@ fn a_face_without_trims_ends_where_its_surface_ends() {
     let tracer = Tracer::new(&model);
     let mut renderer = watched(&model);
     for from in [DVec3::new(1.0, -1.5, 1.5), DVec3::new(-0.4, -1.0, 0.35), DVec3::new(0.7, 1.0, -0.6)] {
-        let camera = Camera::framing(model.control_bounds(), from, DVec3::Z, 30f64.to_radians(), (480, 360));
+        let camera = Camera::around(model.control_bounds(), from, DVec3::Z, 30f64.to_radians(), (480, 360));
         let picture = render(&mut renderer, &camera);
         let judgement = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());
         assert_eq!((judgement.wrong, judgement.given_up), (0, 0), "from {from}: {:?}", judgement.mismatches);

@@ -32,7 +32,7 @@ fn views(model: &Model) -> Vec<Camera> {
     let view = |k: u32| {
         let (a, b) = (f64::from(k) * 2.399_963, (f64::from(k) + 0.5) * 2.0 / f64::from(VIEWS) - 1.0);
         let from = DVec3::new(a.cos() * (1.0 - b * b).sqrt(), a.sin() * (1.0 - b * b).sqrt(), b);
-        let camera = Camera::framing(model.control_bounds(), from, DVec3::new(0.3, 0.5, 0.7), 0.6, SIZE);
+        let camera = Camera::around(model.control_bounds(), from, DVec3::new(0.3, 0.5, 0.7), 0.6, SIZE);
         let height = model.control_bounds().diagonal();
         if k.is_multiple_of(3) { Camera { projection: Projection::Orthographic { height }, ..camera } } else { camera }
     };

@@ -13,7 +13,7 @@ const SIZE: (u32, u32) = (160, 120);
 
 /// `times` closer to the point of a face at (u, v), shares of its domain; or to where its first loop starts.
 fn closer(model: &Model, face: usize, at: Option<DVec2>, times: f64) -> Camera {
-    let mut camera = Camera::framing(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, SIZE);
+    let mut camera = Camera::around(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, SIZE);
     let instance = &model.instances[0];
     let face = &model.parts[instance.part].faces[face];
     let ((u0, u1), (v0, v1)) = face.surface.domain();
@@ -124,7 +124,7 @@ fn an_eye_beside_a_bent_face_is_near_no_more_than_that() {
         let eye = 20.3 * out + height;
         let target = eye + beside - 0.4 * out + 0.3 * DVec3::Z;
         let mut camera =
-            Camera { eye, target, ..Camera::framing(model.control_bounds(), DVec3::X, DVec3::Z, 0.6, SIZE) };
+            Camera { eye, target, ..Camera::around(model.control_bounds(), DVec3::X, DVec3::Z, 0.6, SIZE) };
         camera.fit_depth(model.control_bounds());
         let picture = render(&mut renderer, &camera);
         let j = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());

@@ -1,16 +1,19 @@
-//! What the command line accepts, checked before anything is opened.
+//! The arguments of the command line, checked before any file is opened.
 
 mod read;
 
 pub use read::{ReadArgs, SubdivideArgs};
 
+use crate::backdrop::Backdrop;
 use crate::cut::CutArgs;
+use crate::directions::Directions;
 use crate::sweep::Divided;
 use crate::trims::Way;
 use crate::values::{at_least_one, direction, mebibytes, times, tolerance, vector, zoom};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
-use selvedge::picture::{Levels, Samples, SolidWay, TrimWay};
+use selvedge::picture::{Levels, Samples, SolidWay, Style, TrimWay};
+use selvedge_io::import::Import;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -69,6 +72,26 @@ pub struct EdgeArgs {
     pub smooth_trims: bool,
 }
 
+/// What a picture looks like.
+#[derive(Debug, Args)]
+pub struct LookArgs {
+    /// What lies behind the model: a CSS colour, gradient, or none for a transparent PNG; without it the scene file's
+    /// colour, or the gradient
+    #[arg(long, value_name = "COLOUR|gradient|none")]
+    pub background: Option<Backdrop>,
+    /// How surfaces are shown: shaded, clay (one colour, no highlights), normals (as colours: right red, up green, towards
+    /// the eye blue) or zebra (stripes of a striped room, reflected: they break where surfaces do)
+    #[arg(long, value_name = "STYLE", default_value = "shaded")]
+    pub style: Style,
+}
+
+impl LookArgs {
+    /// What lies behind the model of a file.
+    pub fn backdrop(&self, import: &Import) -> Backdrop {
+        self.background.or(import.picture.background.map(Backdrop::Colour)).unwrap_or(Backdrop::Gradient)
+    }
+}
+
 #[derive(Debug, Args)]
 pub struct RenderArgs {
     /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
@@ -80,9 +103,19 @@ pub struct RenderArgs {
     pub subdivide: SubdivideArgs,
     #[command(flatten)]
     pub cut: CutArgs,
-    /// PNG file to write; `-` is standard output, here and wherever one file is written
+    /// PNG file to write; `-` is standard output, here and wherever one file is written. With several views each adds its
+    /// name to every file's, or stands where the file's name says {view}
     #[arg(short, long, value_name = "OUT.png")]
     pub output: PathBuf,
+    /// Standard views, as large as the model fits: iso, front, right, back, left, top, bottom, or AZIMUTH,ELEVATION in
+    /// degrees, azimuth 0 the front and 90 the right; several with commas
+    #[arg(long, value_name = "VIEWS", allow_hyphen_values = true, conflicts_with_all = ["eye", "target", "camera"])]
+    pub view: Option<Directions>,
+    /// All views in one picture, side by side; those with names where --view names none
+    #[arg(long, conflicts_with_all = ["aov", "stats", "camera_out", "eye", "target", "camera"])]
+    pub contact_sheet: bool,
+    #[command(flatten)]
+    pub look: LookArgs,
     #[command(flatten)]
     pub camera: CameraArgs,
     #[command(flatten)]
@@ -94,7 +127,7 @@ pub struct RenderArgs {
     /// (f32, H x W: length of the ray within solids and closed parts, overlaps counted once)
     #[arg(long, value_name = "IMAGE=FILE.npy")]
     pub aov: Vec<Aov>,
-    /// Write the frame's statistics as JSON
+    /// Write statistics as JSON, of the same frame drawn once more; what the driver compiles for the first one stands apart, as `first_frame`
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
     /// Write the camera as JSON: eye, target, up, fovy in degrees (or ortho: half the height), size

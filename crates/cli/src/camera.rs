@@ -1,13 +1,14 @@
 //! Cameras from the command line, the built-in views, and the camera file for other programs.
 //!
 //! ```text
-//!   whole     the bounding sphere in the picture, from FROM
+//!   whole     the model in the picture, as large as it fits, from FROM
 //!   close     the same direction, CLOSER times nearer, at the boundary point nearest to the eye; of Boolean
 //!             solids alone, at the nearest of LOOKS x LOOKS rays beside which another face is seen
 //!   grazing   along the largest extent, GRAZING_DEG above the two larger ones
 //! ```
 
 use crate::args::{CameraArgs, Size, Views};
+use crate::directions::Direction;
 use anyhow::{Context, Result, bail};
 use glam::{DVec2, DVec3};
 use selvedge::model::{Bounds, Camera, Face, Model, Projection};
@@ -47,8 +48,14 @@ impl CameraArgs {
     fn over(&self, bounds: Bounds, import: &Import) -> Result<Camera> {
         match self.named(import)? {
             Some(named) => fitted(named.camera(bounds, self.pixels(import)), bounds),
-            None => self.camera(bounds, self.pixels(import)),
+            None => self.camera(&import.model, bounds, self.pixels(import)),
         }
+    }
+
+    /// From one of the standard directions, as large as the model fits.
+    pub fn standard(&self, direction: Direction, import: &Import, size: (u32, u32)) -> Result<Camera> {
+        let up = self.up.unwrap_or(direction.up());
+        fitted(self.framed(&import.model, direction.from(), up, size), bounds(&import.model))
     }
 
     /// The file's camera of the name given; without any word about a camera the one that its picture asks for.
@@ -67,19 +74,26 @@ impl CameraArgs {
         Ok(found)
     }
 
-    fn pixels(&self, import: &Import) -> (u32, u32) {
+    /// Width and height of the picture.
+    pub fn pixels(&self, import: &Import) -> (u32, u32) {
         let asked = self.size.or(import.picture.size.map(|(w, h)| Size(w, h)));
         let Size(width, height) = asked.unwrap_or(SIZE);
         (width, height)
     }
 
     /// Where the arguments say; what they do not say frames the model.
-    fn camera(&self, bounds: Bounds, size: (u32, u32)) -> Result<Camera> {
-        let mut camera = self.framed(bounds, FROM, self.up.unwrap_or(DVec3::Z), size);
-        match (self.eye, self.target) {
-            (Some(eye), target) => (camera.eye, camera.target) = (eye, target.unwrap_or(camera.target)),
-            (None, Some(target)) => (camera.eye, camera.target) = (camera.eye + target - camera.target, target),
-            (None, None) => {}
+    fn camera(&self, model: &Model, bounds: Bounds, size: (u32, u32)) -> Result<Camera> {
+        let up = self.up.unwrap_or(DVec3::Z);
+        if let Some(eye) = self.eye {
+            let target = self.target.unwrap_or(if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() });
+            return fitted(
+                Camera { eye, target, ..self.projected(Camera::around(bounds, FROM, up, self.fov(), size)) },
+                bounds,
+            );
+        }
+        let mut camera = self.framed(model, FROM, up, size);
+        if let Some(target) = self.target {
+            (camera.eye, camera.target) = (camera.eye + target - camera.target, target);
         }
         fitted(camera, bounds)
     }
@@ -99,7 +113,7 @@ impl CameraArgs {
             list.push(View { name: "close".to_string(), camera: fitted(closer(model, whole, CLOSER), bounds)? });
         }
         if wanted(Views::Grazing) {
-            list.push(View { name: "grazing".to_string(), camera: fitted(self.grazing(bounds, size), bounds)? });
+            list.push(View { name: "grazing".to_string(), camera: fitted(self.grazing(model, bounds, size), bounds)? });
         }
         Ok(list)
     }
@@ -118,21 +132,27 @@ impl CameraArgs {
         times.iter().map(view).collect()
     }
 
-    fn grazing(&self, bounds: Bounds, size: (u32, u32)) -> Camera {
+    fn grazing(&self, model: &Model, bounds: Bounds, size: (u32, u32)) -> Camera {
         let extent = bounds.max - bounds.min;
         let mut axes = [0, 1, 2];
         axes.sort_by(|&a, &b| extent[a].total_cmp(&extent[b]));
         let (up, along) = (DVec3::AXES[axes[0]], DVec3::AXES[axes[2]]);
         let (sin, cos) = GRAZING_DEG.to_radians().sin_cos();
-        self.framed(bounds, along * cos + up * sin, up, size)
+        self.framed(model, along * cos + up * sin, up, size)
     }
 
-    fn framed(&self, bounds: Bounds, from: DVec3, up: DVec3, size: (u32, u32)) -> Camera {
-        let mut camera = Camera::framing(bounds, from, up, self.fov.unwrap_or(FOV_DEG).to_radians(), size);
-        if let Some(height) = self.ortho {
-            camera.projection = Projection::Orthographic { height };
-        }
-        camera
+    fn framed(&self, model: &Model, from: DVec3, up: DVec3, size: (u32, u32)) -> Camera {
+        self.projected(Camera::framing(model, from, up, self.fov(), size))
+    }
+
+    fn projected(&self, camera: Camera) -> Camera {
+        let parallel = self.ortho.map(|height| Projection::Orthographic { height });
+        Camera { projection: parallel.unwrap_or(camera.projection), ..camera }
+    }
+
+    /// Vertical field of view, radians.
+    fn fov(&self) -> f64 {
+        self.fov.unwrap_or(FOV_DEG).to_radians()
     }
 }
 
@@ -145,7 +165,7 @@ pub fn bounds(model: &Model) -> Bounds {
 
 /// All of the model in the picture, whatever is asked for.
 pub fn whole(bounds: Bounds, size: (u32, u32)) -> Camera {
-    Camera::framing(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size)
+    Camera::around(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size)
 }
 
 /// `camera` with a depth range that holds the model, checked.
@@ -213,7 +233,7 @@ fn boundary_points(face: &Face) -> Vec<DVec3> {
 /// solid to the one nearest to the eye, which is certainly in sight.
 pub fn zoomed(model: &Model, size: (u32, u32), zoom: f64) -> Camera {
     let bounds = bounds(model);
-    let mut camera = Camera::framing(bounds, FROM, DVec3::Z, 35f64.to_radians(), size);
+    let mut camera = Camera::around(bounds, FROM, DVec3::Z, 35f64.to_radians(), size);
     let solid = model.parts.iter().any(|part| part.closed);
     let from = if solid { camera.eye } else { bounds.centre() };
     let nearest = |p: &DVec3| p.distance_squared(from);
@@ -264,6 +284,8 @@ mod tests {
     use super::*;
     use crate::args::{Cli, Command};
     use clap::Parser;
+    use glam::DAffine3;
+    use selvedge::model::{Primitive, Shape, Solid};
 
     const BOX: Bounds = Bounds { min: DVec3::new(-10.0, -3.0, 0.0), max: DVec3::new(30.0, 3.0, 1.0) };
 
@@ -273,10 +295,17 @@ mod tests {
         args.camera
     }
 
+    /// A solid that is the box.
+    fn model() -> Model {
+        let shape = Shape::Block { min: BOX.min, max: BOX.max };
+        let block = Primitive { shape, transform: DAffine3::IDENTITY, colour: [0.5; 4], id: 1 };
+        Model { solids: vec![Solid::of(block).expect("a block")], ..Model::default() }
+    }
+
     /// As for a file that asks for nothing.
     fn framing(words: &[&str]) -> Result<Camera> {
         let args = args(words);
-        args.camera(BOX, args.pixels(&Import::default()))
+        args.camera(&model(), BOX, args.pixels(&Import::default()))
     }
 
     #[test]
@@ -313,7 +342,7 @@ mod tests {
 
     #[test]
     fn grazing_looks_along_the_largest_extent_from_eight_degrees() {
-        let camera = args(&[]).grazing(BOX, (1920, 1080));
+        let camera = args(&[]).grazing(&model(), BOX, (1920, 1080));
         let back = (camera.eye - camera.target).normalize();
         assert!((back.z - 8f64.to_radians().sin()).abs() < 1e-12 && back.y.abs() < 1e-12 && back.x > 0.9);
         assert!(corners_inside(&camera));

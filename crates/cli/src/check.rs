@@ -120,26 +120,8 @@ fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
 /// The picture of the verdicts of each view; of several, each with the view's name. Several to `-` are one too many.
 fn differences(path: &Path, views: &[View]) -> Vec<PathBuf> {
     let named = |view: &View| match views.len() > 1 && !target::is_standard(path) {
-        true => with_name(path, &view.name),
+        true => target::with_name(path, &format!("-{}", view.name)),
         false => path.to_owned(),
     };
     views.iter().map(named).collect()
-}
-
-/// `out.png` becomes `out-close.png`.
-fn with_name(path: &Path, view: &str) -> PathBuf {
-    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
-    let end = path.extension().map_or(String::new(), |e| format!(".{}", e.to_string_lossy()));
-    path.with_file_name(format!("{stem}-{view}{end}"))
-}
-
-#[cfg(test)]
-mod tests {
-    use super::*;
-
-    #[test]
-    fn view_names_go_before_the_extension() {
-        assert_eq!(with_name(Path::new("a/b.c.png"), "close"), Path::new("a/b.c-close.png"));
-        assert_eq!(with_name(Path::new("plain"), "whole"), Path::new("plain-whole"));
-    }
 }

@@ -11,11 +11,13 @@
 //! Results go to standard output, everything else to standard error.
 
 mod args;
+mod backdrop;
 mod bench;
 mod camera;
 mod check;
 mod convert;
 mod cut;
+mod directions;
 mod edit;
 mod export;
 mod info;
@@ -28,6 +30,7 @@ mod remains;
 mod render;
 mod series;
 mod session;
+mod sheet;
 mod sweep;
 mod target;
 mod trims;

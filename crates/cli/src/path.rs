@@ -22,7 +22,7 @@ pub fn camera(bounds: Bounds, size: (u32, u32), index: usize, count: usize) -> C
     let elevation = (30.0 + 20.0 * azimuth.sin()).to_radians();
     let zoom = LARGEST_ZOOM.powf((1.0 - (2.0 * azimuth).cos()) / 2.0);
     let from = DVec3::new(azimuth.sin() * elevation.cos(), -azimuth.cos() * elevation.cos(), elevation.sin());
-    let mut camera = Camera::framing(bounds, from, DVec3::Z, FOV_DEG.to_radians(), size);
+    let mut camera = Camera::around(bounds, from, DVec3::Z, FOV_DEG.to_radians(), size);
     // the eye comes nearer to the front of the bounding sphere, never into it
     let radius = (bounds.diagonal() * 0.5).max(1e-9);
     let distance = (camera.eye - camera.target).length();
@@ -36,7 +36,7 @@ pub fn turned(bounds: Bounds, size: (u32, u32), index: usize) -> Camera {
     let azimuth = (3.0 * index as f64).to_radians();
     let elevation = 30f64.to_radians();
     let from = DVec3::new(azimuth.sin() * elevation.cos(), -azimuth.cos() * elevation.cos(), elevation.sin());
-    Camera::framing(bounds, from, DVec3::Z, FOV_DEG.to_radians(), size)
+    Camera::around(bounds, from, DVec3::Z, FOV_DEG.to_radians(), size)
 }
 
 #[cfg(test)]

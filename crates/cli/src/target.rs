@@ -49,6 +49,13 @@ pub fn is_standard(path: &Path) -> bool {
     path.as_os_str() == "-"
 }
 
+/// The path with words at the end of its name, before the ending: `out.png` becomes `out-close.png`.
+pub fn with_name(path: &Path, words: &str) -> PathBuf {
+    let stem = path.file_stem().unwrap_or_default().to_string_lossy();
+    let end = path.extension().map_or(String::new(), |e| format!(".{}", e.to_string_lossy()));
+    path.with_file_name(format!("{stem}{words}{end}"))
+}
+
 /// Refuses what cannot be written, and what would be written over another output or an input of the same call.
 ///
 /// Existing files are the same when they are one file to the system, whatever names and links lead to it; new ones, when

@@ -273,7 +273,7 @@ impl CloseUp {
             let Cut { model, extents } = &mut *near;
             extents.push(VIEW_PX / pixels);
             model.instances.push(Instance { part: model.parts.len(), ..instance.clone() });
-            model.parts.push(Part { name: part.name.clone(), faces, meshes, closed: part.closed });
+            model.parts.push(Part { name: part.name.clone(), faces, meshes, closed: part.closed, ..Part::default() });
         };
         if !(whole.is_empty() && part.meshes.is_empty()) {
             let seen = faces.iter().filter(|(_, close)| !close);

@@ -127,7 +127,7 @@ fn sub_patches_are_within_the_hardware_s_factor() {
 #[test]
 fn sides_that_faces_share_agree() {
     let model = cages::a_box().model;
-    let camera = Camera::framing(model.bounds(), DVec3::ONE, DVec3::Z, 0.6, (64, 64));
+    let camera = Camera::around(model.bounds(), DVec3::ONE, DVec3::Z, 0.6, (64, 64));
     let case = Case::new(&model, &camera, 0.5);
     let (scene, mut random) = (case.scene(), Random::new(7));
     for (largest, unseen) in [(1, 0), (1, 5), (3, 3), (20, 0), (64, 3), (300, 1), (4096, 1)] {

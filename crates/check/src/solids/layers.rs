@@ -1,4 +1,4 @@
-//! A line's way through solids that are told apart, front to back: what drawn layers are measured against.
+//! The faces of separate solids along a line, front to back: the reference of drawn layers.
 //!
 //! ```text
 //!   opaque union  ─────────────────┤▒▒▒▒▒▒▒▒     one list of crossings, so that coincident faces of two solids are
@@ -7,10 +7,11 @@
 //!                   A           A B  B           layers: faces that are left before those that are entered
 //! ```
 //!
-//! An opaque face comes between the two: it hides what is entered where it is, and all behind it.
+//! An opaque face comes between the two: it hides the faces entered at the same place, and all behind it.
 
 use super::{Boundary, Crossing, SolidTracer, Trace};
 use crate::csg::{Tree, TreeError};
+use crate::light::{Key, studio};
 use crate::model::{Camera, Colour, Items, Primitive, Solid, SolidError};
 use glam::{DVec2, DVec3, DVec4};
 
@@ -114,7 +115,7 @@ impl LayerTracer {
             let stored = |c: f32| f64::from((c.clamp(0.0, 1.0) * 255.0).round()) / 255.0;
             let [r, g, b_, a] = colour.map(stored);
             let n = if b.normal.dot(direction) > 0.0 { -b.normal } else { b.normal };
-            (studio(DVec3::new(r, g, b_), n, camera), a)
+            (studio(DVec3::new(r, g, b_), n, camera, Key::Lamp), a)
         };
         let within = |b: &Boundary| b.t <= far / cosine;
         let (mut sum, mut rest) = (DVec3::ZERO, 1.0);
@@ -132,17 +133,4 @@ impl LayerTracer {
         let colour = if all > 0.0 { (sum + rest * opacity * under) / all } else { under };
         colour.extend(all)
     }
-}
-
-/// The light of pass `resolve` on a face of unit normal `n` that looks at the viewer, clamped: two lamps and a sky that
-/// travel with the camera.
-fn studio(colour: DVec3, n: DVec3, camera: &Camera) -> DVec3 {
-    let (right, up, forward) = camera.axes();
-    let v = DVec3::new(right.dot(n), up.dot(n), -forward.dot(n));
-    let key_from = DVec3::new(-0.42, 0.57, 0.71);
-    let key = v.dot(key_from).max(0.0);
-    let fill = v.dot(DVec3::new(0.71, 0.14, 0.69)).max(0.0);
-    let sky = 0.12 + (0.26 - 0.12) * (0.5 + 0.5 * v.y);
-    let shine = v.dot((key_from + DVec3::Z).normalize()).max(0.0).powf(48.0) * 0.10;
-    (colour * (0.62 * key + 0.22 * fill + sky) + shine).clamp(DVec3::ZERO, DVec3::ONE)
 }

@@ -15,8 +15,7 @@ const SIDE: usize = 64;
 pub fn told(args: &SweepArgs, rows: &[Row]) -> Result<String> {
     let row = rows.iter().max_by_key(|r| r.triangles).context("nothing was drawn")?;
     let model = grid(row.triangles as usize / (2 * SIDE * SIDE) + 1)?;
-    let mut camera =
-        Camera::framing(model.bounds(), DVec3::new(0.0, -0.3, 1.0), DVec3::Y, 0.6, (row.width, row.height));
+    let mut camera = Camera::around(model.bounds(), DVec3::new(0.0, -0.3, 1.0), DVec3::Y, 0.6, (row.width, row.height));
     camera.fit_depth(model.bounds());
     let mut renderer = renderer(args)?;
     renderer.upload(&model)?;

@@ -77,3 +77,9 @@ fn a_file_is_whole_or_as_it_was() {
         assert!(format!("{full:#}").starts_with("cannot write /dev/full: "), "{full:#}");
     }
 }
+
+#[test]
+fn words_go_before_the_ending() {
+    assert_eq!(with_name(Path::new("a/b.c.png"), "-close"), Path::new("a/b.c-close.png"));
+    assert_eq!(with_name(Path::new("plain"), "_iso"), Path::new("plain_iso"));
+}

@@ -93,10 +93,9 @@ impl Camera {
         Ok(())
     }
 
-    /// A camera that shows all of `bounds` from direction `from` (towards the eye).
-    ///
-    /// The eye keeps the whole bounding sphere in the picture; the depth range encloses it.
-    pub fn framing(bounds: Bounds, from: DVec3, up: DVec3, fov_y: f64, size: (u32, u32)) -> Self {
+    /// A camera that shows the sphere around `bounds` from direction `from` (towards the eye); the depth range encloses it.
+    /// [`Camera::framing`] shows a model as large as it fits.
+    pub fn around(bounds: Bounds, from: DVec3, up: DVec3, fov_y: f64, size: (u32, u32)) -> Self {
         let radius = (bounds.diagonal() * 0.5).max(1e-9);
         let centre = if bounds.is_empty() { DVec3::ZERO } else { bounds.centre() };
         let aspect = f64::from(size.0) / f64::from(size.1);

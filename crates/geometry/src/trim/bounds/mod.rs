@@ -34,11 +34,12 @@
 //! chapter 10 (Bézier clipping), with the test for level points instead of clipping.
 
 mod carried;
+mod framing;
 mod height;
 mod search;
 mod solid;
 
-use crate::model::{Bounds, Face, Model, Part, SurfaceKind, meet};
+use crate::model::{Bounds, Face, Instance, Model, Part, SurfaceKind, meet};
 use glam::{DAffine3, DVec3};
 use search::{Body, Search, Tolerance};
 use std::ops::Range;
@@ -89,21 +90,35 @@ impl Model {
     /// # Panics
     /// Where there are fewer.
     pub fn bounds_of(&self, instances: Range<usize>, solids: Range<usize>) -> Bounds {
-        let mut numbers = vec![None; self.parts.len()];
+        let Placed { bodies, placements } = Placed::new(&self.parts, &self.instances[instances]);
+        let faces = of(&bodies, &placements);
+        let faces = self.trim.as_ref().map_or(faces, |volume| meet(faces, solid::bounds(volume)));
+        let solids = self.solids[solids].iter().map(solid::bounds);
+        let finite = solids.filter(|b| b.min.is_finite() && b.max.is_finite());
+        finite.fold(faces, Bounds::union)
+    }
+}
+
+/// Parts that are placed, each once, and the number and transform of each instance.
+struct Placed<'a> {
+    bodies: Vec<Body<'a>>,
+    placements: Vec<(usize, DAffine3)>,
+}
+
+impl<'a> Placed<'a> {
+    /// Instances whose transforms are finite.
+    fn new(parts: &'a [Part], instances: &[Instance]) -> Self {
+        let mut numbers = vec![None; parts.len()];
         let (mut bodies, mut placements) = (Vec::new(), Vec::new());
-        for instance in self.instances[instances].iter().filter(|i| i.transform.is_finite()) {
-            let part = &self.parts[instance.part];
+        for instance in instances.iter().filter(|i| i.transform.is_finite()) {
+            let part = &parts[instance.part];
             let body = *numbers[instance.part].get_or_insert_with(|| {
                 bodies.push(Body::new(&part.faces, &part.meshes));
                 bodies.len() - 1
             });
             placements.push((body, instance.transform));
         }
-        let faces = of(&bodies, &placements);
-        let faces = self.trim.as_ref().map_or(faces, |volume| meet(faces, solid::bounds(volume)));
-        let solids = self.solids[solids].iter().map(solid::bounds);
-        let finite = solids.filter(|b| b.min.is_finite() && b.max.is_finite());
-        finite.fold(faces, Bounds::union)
+        Self { bodies, placements }
     }
 }
 

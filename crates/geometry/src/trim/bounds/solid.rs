@@ -12,7 +12,7 @@
 //! larger: where boxes meet and solids do not, and where a difference takes what reached farthest.
 
 use crate::model::{Bounds, Boxes, Primitive, Quadric, Shape, Solid};
-use glam::{BVec3, DMat3, DVec3};
+use glam::{BVec3, DAffine3, DMat3, DVec3};
 
 /// Directions that differ by less are one: rounding of a placement.
 const PARALLEL: f64 = 8.0 * f64::EPSILON;
@@ -24,6 +24,15 @@ const ALL: Bounds = Bounds { min: DVec3::NEG_INFINITY, max: DVec3::INFINITY };
 
 pub(super) fn bounds(solid: &Solid) -> Bounds {
     solid.bounds_over(boxes)
+}
+
+/// A height along `direction`, of any length but 0, that no point of the solid exceeds: that of a box with a side across
+/// it. Infinite where the solid may have no end there.
+pub(super) fn reach(solid: &Solid, direction: DVec3) -> f64 {
+    let (u, v) = direction.normalize().any_orthonormal_pair();
+    let turn = DAffine3::from_mat3(DMat3::from_cols(direction, u, v).transpose());
+    let turned = |p: &Primitive| boxes(&Primitive { transform: turn * p.transform, ..p.clone() });
+    solid.bounds_over(turned).max.x
 }
 
 fn boxes(primitive: &Primitive) -> Boxes {
