@@ -37,7 +37,7 @@ mod texels;
 mod timestamps;
 mod upload;
 
-pub use access::Access;
+pub use access::{Access, ImageAccess};
 pub use buffer::{Buffer, BufferInfo};
 pub use commands::Commands;
 pub use device::{Device, HostDevice};

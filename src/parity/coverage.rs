@@ -210,7 +210,6 @@ mod parity {
     use super::super::harness::{Gpu, Mismatch, same};
     use super::*;
     use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource};
-    use crate::shaders::TRIM_EXACT;
 
     fn spirv() -> Vec<u32> {
         let bytes = include_bytes!("../../tests/gpu/spirv/coverage.comp.spv");
@@ -220,8 +219,7 @@ mod parity {
     /// Pixels of each face on the GPU, with the data of `given`, against the twin with `expected`; bits of numbers.
     fn compare(gpu: &Gpu, given: &ExactData, expected: &ExactData, pixels: &[Vec<Pixel>]) -> Result<(), Mismatch> {
         let texels = gpu.upload_exact(given);
-        let (spirv, bindings) =
-            (spirv(), [vec![Binding::Texels; TRIM_EXACT.texels], vec![Binding::Storage; 2]].concat());
+        let (spirv, bindings) = (spirv(), [vec![Binding::Texels; 3], vec![Binding::Storage; 2]].concat());
         let info = ComputeInfo { name: "coverage", spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
         let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
         for (face, pixels) in pixels.iter().enumerate() {

@@ -228,7 +228,6 @@ mod parity {
     use super::super::harness::{Gpu, Mismatch, same};
     use super::*;
     use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource};
-    use crate::shaders::TRIM_EXACT;
     use crate::twin::exact::FAR;
 
     fn spirv() -> Vec<u32> {
@@ -239,8 +238,7 @@ mod parity {
     /// Points of each face on the GPU, with the data of `given`, against the twin with `expected`.
     fn compare(gpu: &Gpu, given: &ExactData, expected: &ExactData, points: &[Vec<[f32; 2]>]) -> Result<(), Mismatch> {
         let texels = gpu.upload_exact(given);
-        let (spirv, bindings) =
-            (spirv(), [vec![Binding::Texels; TRIM_EXACT.texels], vec![Binding::Storage; 2]].concat());
+        let (spirv, bindings) = (spirv(), [vec![Binding::Texels; 3], vec![Binding::Storage; 2]].concat());
         let info = ComputeInfo { name: "exact", spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
         let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
         for (face, points) in points.iter().enumerate() {

@@ -161,7 +161,6 @@ mod parity {
     use super::super::shapes::cases;
     use super::*;
     use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource, Texel};
-    use crate::shaders::TRIM_TABLE;
 
     /// Words of the module; `include_bytes` aligns to bytes only.
     fn spirv() -> Vec<u32> {
@@ -184,8 +183,7 @@ mod parity {
         let info = ComputeInfo {
             name: "table",
             spirv: &spirv(),
-            bindings: &[vec![Binding::Uniform], vec![Binding::Texels; TRIM_TABLE.texels], vec![Binding::Storage; 2]]
-                .concat(),
+            bindings: &[vec![Binding::Uniform], vec![Binding::Texels; 4], vec![Binding::Storage; 2]].concat(),
             push_bytes: 16,
             constants: &[],
         };
