@@ -1,4 +1,4 @@
-//! How the promise of half a pixel is shared out among the steps that can spend it.
+//! The error budget: the tolerance, half a pixel, is divided among the steps that cause errors.
 //!
 //! ```text
 //!   true border of a face                          border as one face is drawn

@@ -1,13 +1,49 @@
-//! Selvedge draws trimmed spline surfaces exactly, at the resolution of the picture.
+//! Selvedge draws trimmed spline surfaces and Boolean solids exactly, at the resolution of the picture, with raw Vulkan.
 //!
-//! Start at [`model`] for what is drawn and `ARCHITECTURE.md` for how.
+//! | module | for |
+//! |---|---|
+//! | [`model`] | models: faces with trim loops, meshes, solids, instances, cameras |
+//! | [`picture`] | settings of scenes and frames, images, statistics |
+//! | [`renderer`] | hosts with a Vulkan device of their own: frames recorded into their command buffers |
+//! | [`gpu`] | what such a host hands over, and what its device must offer |
+//! | `headless` | pictures in memory, without a window |
+//! | [`spline`], [`trim`], [`csg`], [`construct`] | surfaces, loops and solids by themselves, and constructions of them |
+//!
+//! | feature | gives |
+//! |---|---|
+//! | none | the renderer for hosts, from committed SPIR-V |
+//! | `headless` | an instance, a device and targets without a window |
+//! | `serde` | settings and statistics as JSON |
+//! | `compile-shaders` | shaders compiled from `glsl/` by shaderc |
+//!
+//! The crate `selvedge-io` reads files into models. With the feature `headless`, a model becomes a picture so:
+//!
+#![cfg_attr(feature = "headless", doc = "```no_run")]
+#![cfg_attr(not(feature = "headless"), doc = "```ignore")]
+//! use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
+//! use selvedge::model::{Camera, Model};
+//! use selvedge::{glam::DVec3, picture::*};
+//!
+//! fn draw(model: &Model) -> Result<Picture, HeadlessError> {
+//!     let mut renderer = HeadlessRenderer::new(&HeadlessOptions::default())?;
+//!     renderer.upload(model)?;
+//!     let camera = Camera::framing(model.bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, (1920, 1080));
+//!     renderer.render(&camera, &FrameSettings::default(), Outputs::ALL)
+//! }
+//! ```
+//!
+//! `README.md` has a whole program, `docs/embedding.md` the contract with a host, `ARCHITECTURE.md` the way through a frame.
 #![warn(missing_docs)]
 
 /// Vulkan's bindings, the allocator and the vectors, in the versions that this crate's types take.
 pub use {ash, glam, gpu_allocator};
 
-/// What is drawn, and what makes it: `selvedge-geometry`.
-pub use selvedge_geometry::{construct, csg, math, model, spline, trim};
+/// Models and their geometry: `selvedge-geometry`.
+pub use selvedge_geometry::{construct, csg, edges, model, spline, trim};
+
+/// For tests and benchmarks.
+#[doc(hidden)]
+pub use selvedge_geometry::math;
 
 /// Shared test shapes name the library as its users do.
 #[cfg(test)]

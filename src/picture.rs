@@ -1,32 +1,31 @@
-//! What a frame is asked for and what it hands back: settings, images, statistics.
+//! A frame's settings, images and statistics.
 
 use crate::model::{Colour, Images};
 use glam::DVec3;
 
-/// What the caller decides about a frame.
+/// The caller's choices for one frame.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct FrameSettings {
     /// Largest distance in pixels between a drawn boundary and the true one; the promise. At least
     /// [`LEAST_TOLERANCE_PX`](Self::LEAST_TOLERANCE_PX); the default is one half.
     pub tolerance_px: f64,
-    /// Colour behind the model; `None` keeps what the target holds.
+    /// Colour behind the model; with `None` the target's own content stays there.
     pub background: Option<Colour>,
     /// How finely patches are divided.
     pub levels: Levels,
-    /// Every pass is recorded in every frame. Else a frame of the same view as the one before, with the same settings and
-    /// no edit between them, keeps what each pixel sees, and draws that into its targets, and one of a view from about as
-    /// far keeps the trim table: the same picture, bit for bit, sooner. For measurements; asking for it or not makes no
-    /// other view.
+    /// Record every pass in every frame, for measurements. Otherwise a frame reuses the visibility of the one before, if
+    /// view and settings are the same and no loop was edited, and the trim table, if the view is from about as far: the
+    /// same picture, bit for bit, sooner.
     pub all_passes: bool,
 }
 
 /// How the number of segments along a patch's sides is chosen.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
 pub enum Levels {
-    /// From bounds on its derivatives, for each view: the promise is kept.
+    /// From bounds on its derivatives, for each view: the promise holds.
     #[default]
     Bound,
-    /// The same number everywhere, 1 to 64. The promise is *not* kept; for comparisons.
+    /// The same number everywhere, 1 to 64. The promise does *not* hold; for comparisons.
     Fixed(u32),
 }
 
@@ -37,12 +36,12 @@ impl Default for FrameSettings {
 }
 
 impl FrameSettings {
-    /// Tolerances below this ask for more than single precision gives at full zoom.
+    /// Single precision does not resolve smaller tolerances at full zoom.
     pub const LEAST_TOLERANCE_PX: f64 = 0.1;
 }
 
 impl Levels {
-    /// The level where it is fixed, within what the hardware has.
+    /// The fixed level, if there is one, within the hardware's range.
     pub(crate) fn fixed(self) -> Option<u32> {
         match self {
             Self::Bound => None,
@@ -51,14 +50,14 @@ impl Levels {
     }
 }
 
-/// How pixels on trimmed patches are told from those that the loops cut away. All ways draw the same
-/// picture within [`FrameSettings::tolerance_px`]; `docs/design/trimming.md` tells what each costs.
+/// How it is decided which pixels of a patch the trim loops cut away. All ways draw the same picture within
+/// [`FrameSettings::tolerance_px`]; `docs/design/trimming.md` has the cost of each.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
 pub enum TrimWay {
     /// [`Table`](Self::Table) for scenes that are expected to need few scan lines, [`Exact`](Self::Exact) for the others:
-    /// [`renderer::trim_way`](crate::renderer::trim_way) tells which, and [`FrameStats::trim`] which one drew a frame.
+    /// [`renderer::trim_way`](crate::renderer::trim_way) returns the choice, and [`FrameStats::trim`] the way of a frame.
     /// Where a view needs more of the table than there can be, the scene is trimmed exactly from then on.
     #[default]
     Auto,
@@ -80,7 +79,7 @@ pub(crate) enum TakenWay {
 }
 
 impl TakenWay {
-    /// As a host knows it; `None` for a way to compare with.
+    /// In a host's terms; `None` for a baseline.
     pub(crate) fn reported(self) -> Option<TrimWay> {
         match self {
             Self::Table => Some(TrimWay::Table),
@@ -150,7 +149,7 @@ pub enum SolidWay {
     /// The faces of each primitive, trimmed by the Blist of the others: constructive solid trimming. Scenes in
     /// which some operand is a mesh or a spline part, or something is seen through, are drawn by events.
     Cst,
-    /// Layers of faces, peeled off from front to back, and each asked whether it bounds the solid: by labels in a
+    /// Layers of faces, peeled off from front to back, each tested whether it bounds the solid: by labels in a
     /// stencil image, as Hable and Rossignac have it. Its cost is that of all primitives, once a layer. Scenes in which
     /// some operand is a spline part, or a mesh that is not closed and turned outwards, crosses itself or lies back to back,
     /// or something is seen through, are drawn by events. Of a mesh's face and another that coincide, the face that is not
@@ -185,10 +184,10 @@ impl std::str::FromStr for SolidWay {
 #[error("no way to draw solids is called `{0}`; there are: {names}", names = SolidWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
 pub struct UnknownSolidWay(String);
 
-/// How many samples of a pixel its colour is the mean of.
+/// The number of samples whose mean a pixel's colour is.
 ///
-/// The mean is of linear colours, each clamped to what the target holds. The images beside the colour, and the
-/// host's depth, hold what is seen at the pixel's centre, whatever the number.
+/// The mean is of linear colours, each clamped to the target's range. The images beside the colour, and the host's
+/// depth, are those of the pixel's centre, whatever the number.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 #[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
@@ -266,27 +265,27 @@ impl Default for Highlight {
     }
 }
 
-/// What the caller decides about a loaded model.
+/// The caller's choices for a loaded model.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
 pub struct SceneSettings {
     /// How to trim.
     pub trim: TrimWay,
     /// How to draw Boolean solids.
     pub solids: SolidWay,
-    /// Loops may be edited while the scene is drawn: takes memory for what an edit may uncover or grow into, and time,
-    /// because trimmed faces are not cut into pieces of which most need no trim test.
+    /// Loops may be edited while the scene is drawn. Costs memory, room for larger loops, and time: trimmed faces are not
+    /// cut into pieces, most of which would need no trim test.
     pub editable: bool,
     /// Samples of each pixel's colour: edges are smoothed where there are more than one.
     pub samples: Samples,
-    /// The borders of trimmed faces are smooth: each pixel there is mixed, in linear colour, from what it sees, by the
-    /// area that the exact trim curves cut from it. Costs far less than [`samples`](Self::samples), of which there must
+    /// The borders of trimmed faces are smooth: each pixel there is a mixture, in linear colour, of the faces that it
+    /// sees, weighted by the area that the exact trim curves cut from it. Costs far less than [`samples`](Self::samples), of which there must
     /// be one, and smooths nothing else: silhouettes of curved faces, meshes and Boolean solids stay as they are. All
     /// images but the colour stay as they are, bit for bit, and so do pixels away from borders, but that colours above
     /// 1 are cut off there, too. [`TrimWay::Auto`] is
-    /// [`TrimWay::Exact`] then. What may not be asked for beside it is
+    /// [`TrimWay::Exact`] then. Settings that exclude it give
     /// [`RenderError::SmoothTrims`](crate::renderer::RenderError::SmoothTrims).
     pub smooth_trims: bool,
-    /// The length of rays within solids will be asked for: rays are followed through all of them.
+    /// Frames may have an image of thickness: rays are followed through all solids.
     pub thickness: bool,
     /// Mark contacts and overlaps, and count their pixels: rays are followed through all solids.
     pub highlight: Option<Highlight>,
@@ -295,9 +294,9 @@ pub struct SceneSettings {
     ///
     /// It is parallel, and reaches a point where nothing opaque lies on the way: every face of the scene is shaded, and
     /// all that is opaque casts shadows. Those of primitives with equations and of meshes are exact. Spline faces, placed
-    /// or of operands, cast them as triangles within [`FrameStats::shadow_deviation`] of the faces. What is seen through
-    /// casts none, nor do parts that [`Model::trim_by`](crate::model::Model::trim_by) cuts open, nor what is more than a
-    /// million triangles: all that is counted in [`FrameStats::shadowless`]. Made with the scene: loops that are edited
+    /// or of operands, cast them as triangles within [`FrameStats::shadow_deviation`] of the faces. Transparent
+    /// objects cast none, nor do parts that [`Model::trim_by`](crate::model::Model::trim_by) cuts open, nor triangles beyond
+    /// a million: [`FrameStats::shadowless`] counts them. Made with the scene: loops that are edited
     /// later change no shadow.
     pub sun: Option<DVec3>,
     /// Most bytes that the lists of [`SolidWay::Events`] take: which primitives each tile of 16 x 16 pixels sees, and
@@ -326,9 +325,9 @@ impl Outputs {
     pub const ALL: Self = Self { depth: true, face: true, uv: true, normal: true, thickness: false };
 }
 
-/// A finished picture in host memory. Row 0 is on top; samples are taken at pixel centres. Images
-/// that were not asked for are empty. Depth, face, (u, v) and normal are those of the first face whose opacity is not
-/// 0, seen through or not.
+/// A finished picture in host memory. Row 0 is on top; samples are taken at pixel centres. Images that
+/// [`Outputs`] leaves out are empty. Depth, face, (u, v) and normal are those of the first face whose opacity is not 0,
+/// transparent or not.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Picture {
     /// Width and height in pixels.
@@ -344,18 +343,18 @@ pub struct Picture {
     pub uv: Vec<[f32; 2]>,
     /// Unit outward normal in model space; 0 for background.
     pub normal: Vec<[f32; 3]>,
-    /// Whether the sun reaches the point: it faces the sun, and no shadow lies on it. Asked for with the normals; empty
+    /// Whether the sun reaches the point: it faces the sun, and no shadow lies on it. Comes with the normals; empty
     /// in scenes without [`SceneSettings::sun`]; false for background.
     pub sunlit: Vec<bool>,
     /// Length of the pixel's ray within solids, between the near and the far plane: Boolean solids and closed parts,
     /// model units, where several overlap counted once; 0 without any.
     pub thickness: Vec<f32>,
-    /// What the frame cost.
+    /// The frame's statistics.
     pub stats: FrameStats,
 }
 
 impl Picture {
-    /// The images that say what each pixel sees: for a judge.
+    /// The images that a judge compares.
     pub fn images(&self) -> Images<'_> {
         Images {
             size: self.size,
@@ -368,22 +367,22 @@ impl Picture {
     }
 }
 
-/// What a frame cost and whether anything was clamped.
+/// The cost of a frame, and counts of the places where the promise does not hold.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
 pub struct FrameStats {
     /// Name and GPU time in milliseconds of each pass, in order. Where pixels have several samples, passes are those of
-    /// the first one; the others are `more samples`, and what is no colour is `centre sample`.
+    /// the first one; the others are `more samples`, and the images beside the colour `centre sample`.
     pub passes: Vec<PassTime>,
-    /// What each pixel sees is what it saw in the frame before, which had the same view; where pixels have several samples,
-    /// patches as they were divided and the trim table are that frame's. `passes` has none of what made them, and the
+    /// The visibility of each pixel is that of the frame before, which had the same view; where pixels have several
+    /// samples, only the division of patches and the trim table are. `passes` lacks the passes that made them, and the
     /// counts are that frame's. Never with [`FrameSettings::all_passes`].
-    pub kept: bool,
+    pub reused: bool,
     /// How faces were trimmed, never [`TrimWay::Auto`]; `None` where no face needs it.
     pub trim: Option<TrimWay>,
     /// Patches of the loaded model, those of each instance counted; of a view from very near, those near it.
     pub patches: u64,
-    /// Triangles that the tessellator made, and those of meshes; for one sample. 0 where they were not drawn: `kept`.
+    /// Triangles that the tessellator made, and those of meshes; for one sample. 0 where none was drawn: `reused`.
     pub triangles: u64,
     /// Sub-patches drawn.
     pub sub_patches: u64,
@@ -393,49 +392,49 @@ pub struct FrameStats {
     pub trim_segments: u64,
     /// u-intercepts stored in the trim table.
     pub trim_intercepts: u64,
-    /// Pixels near borders of trimmed faces at which more than one face was asked who is seen; of the sample with the
-    /// most.
+    /// Candidates for gap filling: pixels near borders of trimmed faces at which several faces may be seen; of the sample
+    /// with the most.
     pub doubtful_pixels: u64,
     /// Patches whose tessellation factor would have exceeded the largest split; and how often a ray or a tile of Boolean
-    /// solids or a row of the trim table needed more steps than the driver lets a shader make: the promise is not kept
+    /// solids or a row of the trim table needed more steps than the driver lets a shader make: the promise does not hold
     /// there. 0 in a good frame.
     pub clamps: u64,
-    /// Patches that were left out because they lie behind others; 0 in the first frames of a scene, which find out.
+    /// Patches left out because they lie behind others; 0 in the first frames of a scene, whose occlusion is not tested yet.
     pub hidden_patches: u64,
     /// Crossings of rays with operands of Boolean solids that are meshes or spline parts.
     pub fragments: u64,
     /// Of those rays, how many slip between two faces of an operand and were given the face that is nearest
     /// beside the gap, within the tolerance.
     pub mended: u64,
-    /// Rays that enter an operand and never leave it, or leave it without having entered: it is not closed. What
-    /// is entered stays so, what is left without is left out.
+    /// Rays that enter an operand and never leave it, or leave it without having entered: it is not closed. A ray
+    /// without an exit stays inside; an exit without an entry is ignored.
     pub unpaired: u64,
-    /// Pixels whose rays meet coincident faces of two solids, where [`SceneSettings::highlight`] asks for them; of the
+    /// Pixels whose rays meet coincident faces of two solids, with [`SceneSettings::highlight`]; of the
     /// sample with the most.
     pub contact_pixels: u64,
     /// The same of rays that are within two solids at once.
     pub overlap_pixels: u64,
-    /// Instances with faces that would be seen through, but are not closed, or cut open by a volume: they have no
-    /// inside, and are drawn opaque.
+    /// Instances with transparent faces that are not closed, or cut open by a volume: they have no inside, and are drawn
+    /// opaque.
     pub open_clear: u64,
-    /// In a scene with a sun: solids and parts that are seen through, parts that a volume cuts open, and what would be
-    /// too many triangles: parts, and spline parts that are operands, which are left out of the solid that casts the
-    /// shadow. They cast none.
+    /// In a scene with a sun, the number of things that cast no shadow: transparent solids and parts, parts that a volume
+    /// cuts open, and parts and spline operands that would need too many triangles. Such an operand is left out of the
+    /// solid that casts the shadow.
     pub shadowless: u64,
     /// In a scene with a sun: shadows that spline faces cast are those of surfaces that are no farther from them than this,
-    /// model units. An 8192nd of the diagonal of what casts shadows at most, and a 1024th of a part's own; more where
-    /// that would be too many triangles.
+    /// model units. At most an 8192nd of the diagonal of all that casts shadows, and a 1024th of a part's own; more where
+    /// that would need too many triangles.
     pub shadow_deviation: f64,
     /// Layers of faces that [`SolidWay::Blister`] peeled off before every pixel was decided.
     pub layers: u64,
     /// Bands of rows of tiles in which the lists of [`SolidWay::Events`] were made: 1 where all of them fit, 0 where
     /// that way draws nothing. See [`SceneSettings::solid_budget`].
     pub bands: u32,
-    /// Bytes of what the way to draw Boolean solids takes beside what every frame has: lists of the primitives that
-    /// `blocks` of 8 x 8 tiles see, and `tiles`; lists of `crossings` with operands; images of `layers`; `halts`, where
-    /// rays go on from. Those that there are; [`SceneSettings::solid_budget`] is for `tiles` and `crossings`.
+    /// Bytes of the lists and images of Boolean solids: primitives of each of the `blocks` of 8 x 8 tiles, and of each of
+    /// the `tiles`; `crossings` with operands; images of `layers`; `halts`, where rays resume. Those that exist are listed;
+    /// [`SceneSettings::solid_budget`] bounds `tiles` and `crossings` together.
     pub solid_bytes: Vec<PoolBytes>,
-    /// Times the frame was recorded again because a buffer was too small, or rays went on in more legs.
+    /// Times the frame was recorded again because a buffer was too small, or rays took more segments.
     pub retries: u32,
     /// Bytes copied for edits of trim loops since the frame before.
     pub edit_bytes: u64,

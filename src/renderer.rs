@@ -8,18 +8,18 @@
 //!                                      report(slot) ─▶ complete? times, counts, bytes
 //! ```
 //!
-//! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the GPU can tell (the
+//! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the GPU can count (the
 //! trim table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete:
 //! false`, and the next `record` into its slot makes them larger. A view from very near is resolved by what [`CloseUp`]
 //! cuts for it.
 
-mod asked;
 mod centres;
 mod constants;
 mod edit;
-mod known;
+mod history;
 mod load;
 mod slot;
+mod validate;
 
 use crate::abi;
 use crate::budget::Budget;
@@ -36,8 +36,8 @@ use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, TakenWay};
 pub use crate::scene::{CloseUp, Cut, EditError, UndrawnSolid, Wanted, trim_way};
 use crate::scene::{Scene, SceneData, Write};
 use ash::vk;
-use known::Known;
-use load::Kept;
+use history::History;
+use load::Fallback;
 use slot::Slot;
 
 /// Formats of the images that the host will pass to [`Renderer::record`].
@@ -148,9 +148,9 @@ struct Loaded {
     /// Edits that the next frame copies.
     edits: Vec<Write>,
     /// What the frame before left; `None`: its buffers are gone.
-    known: Option<Known>,
+    history: Option<History>,
     /// The model, where it may have to be trimmed another way.
-    kept: Option<Box<Kept>>,
+    fallback: Option<Box<Fallback>>,
 }
 
 impl Loaded {
@@ -281,8 +281,8 @@ impl Renderer {
         let slot = &mut self.slots[input.slot];
         let view = (*input.camera, input.settings);
         let table = loaded.data.table_view(input.camera, Budget::of(tolerance).beside());
-        let known = Known::after(loaded.known, view, table, !loaded.edits.is_empty(), loaded.counts.hides);
-        slot.write(&self.device, loaded, input, &self.formats, &known)?;
+        let history = History::after(loaded.history, view, table, !loaded.edits.is_empty(), loaded.counts.hides);
+        slot.write(&self.device, loaded, input, &self.formats, &history)?;
         if loaded.scene.is_none() {
             let (scene, uploads) = Scene::record(&cmd, &loaded.data)?;
             slot.retired.push(Retired::Uploads(uploads));
@@ -303,8 +303,8 @@ impl Renderer {
         let mut colour = vec![target(targets.colour, keep)];
         colour.extend(targets.aovs.iter().flatten().map(|image| target(image, keep)));
         let depth = targets.depth.map(|image| {
-            let kept = target(image, keep);
-            if keep { kept } else { Attachment { load: Load::Depth(0.0), ..kept } }
+            let whole = target(image, keep);
+            if keep { whole } else { Attachment { load: Load::Depth(0.0), ..whole } }
         });
         let solids = scene.solids.as_ref().and_then(|s| s.blister.as_ref());
         let near = Near {
@@ -323,9 +323,9 @@ impl Renderer {
             table_view: slot.table.as_ref(),
             centres: slot.centres.solids(),
             near,
-            hiding: known.hiding,
-            keeps: known.keeps,
-            keeps_table: known.keeps_table,
+            hiding: history.hiding,
+            keeps: history.reuses_view,
+            keeps_table: history.reuses_table,
             shell_pixels: &shell_pixels,
             volume_places: slot.centres.volume(),
             sun: slot.centres.sun(),
@@ -339,8 +339,8 @@ impl Renderer {
         slot.times.reset(&cmd);
         frame.record(&cmd, &mut slot.times);
         // only now: a frame that was not recorded left nothing
-        loaded.known = Some(known);
-        (slot.recorded, slot.kept) = (true, known.keeps);
+        loaded.history = Some(history);
+        (slot.recorded, slot.reused) = (true, history.reuses_view);
         slot.capacities = Some(loaded.capacities);
         slot.size = input.camera.size;
         (slot.bands, slot.solid_bytes) = (loaded.bands(), loaded.solid_bytes());
@@ -362,7 +362,7 @@ impl Renderer {
         let scopes = slot.times.read()?;
         let stats = FrameStats {
             passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
-            kept: slot.kept,
+            reused: slot.reused,
             trim: self.loaded.as_ref().and_then(|l| l.counts.trim).and_then(TakenWay::reported),
             patches: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.items)),
             triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
@@ -398,8 +398,8 @@ impl Renderer {
         self.device.objects()
     }
 
-    /// Frees what the slot kept for the frame before, and makes the buffers large enough for what
-    /// that frame reported, or a first one is expected to, and for the picture's size.
+    /// Frees what the slot's last frame used, and makes the buffers large enough for the counts that this frame
+    /// reported, or that a first one is expected to report, and for the picture's size.
     fn make_room(&mut self, slot: usize, camera: &Camera) -> Result<(), RenderError> {
         let size = camera.size;
         let finished = &mut self.slots[slot];
@@ -418,7 +418,7 @@ impl Renderer {
                 Ok(grown) => grown,
                 // a picture of another size may have room
                 Err(_) if drawn != size => loaded.capacities,
-                Err(too_many) if too_many.is_of_table() && loaded.kept.is_some() => {
+                Err(too_many) if too_many.is_of_table() && loaded.fallback.is_some() => {
                     self.load_exact()?;
                     return self.make_room(slot, camera);
                 }
@@ -435,7 +435,7 @@ impl Renderer {
         let made = (!suffice).then(make).transpose()?;
         // layers of faces are recorded, not stored: more of them may be seen in the same buffers
         if made.is_some() || loaded.capacities != capacities {
-            loaded.known = None;
+            loaded.history = None;
         }
         // only now: a view that needs more than there is must not spoil the next one
         loaded.capacities = capacities;

@@ -12,11 +12,12 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("model", &["csg", "math", "spline"]),
     ("trim", &["math", "spline", "model"]),
     ("construct", &["math", "spline", "model", "trim"]),
+    ("edges", &["math", "spline", "model"]),
     ("csg", &[]),
     // selvedge-io
     ("brep", &["math", "spline", "trim", "model"]),
     ("import", &["brep", "construct", "csg", "native", "spline", "model"]),
-    ("export", &["construct", "csg", "spline", "trim", "model"]),
+    ("export", &["construct", "csg", "edges", "spline", "trim", "model"]),
     ("native", &["model"]),
     // selvedge-check: Cargo says it all
     ("check", &[]),
@@ -298,4 +299,37 @@ fn no_file_is_too_long_to_read() {
     let long: Vec<_> = text.filter(|(_, text)| text.as_ref().unwrap().lines().count() > MOST_LINES).collect();
     let names: Vec<_> = long.iter().map(|(name, _)| name).collect();
     assert!(names.is_empty(), "longer than {MOST_LINES} lines: {names:?}");
+}
+
+/// The names of the tests of a source that are ignored: the function that follows each attribute.
+fn ignored(text: &str) -> Vec<String> {
+    let mut lines = text.lines().map(str::trim);
+    let mut found = Vec::new();
+    while lines.any(|line| line.starts_with("#[ignore")) {
+        let function = lines.by_ref().find_map(|line| line.strip_prefix("fn ")).expect("a test follows its attribute");
+        found.push(function.split('(').next().unwrap_or_default().to_owned());
+    }
+    found
+}
+
+/// What `tools/test` leaves out, `tools/soak` runs.
+#[test]
+fn every_ignored_test_is_named_in_soak() {
+    let sources =
+        ["src", "tests", "crates"].into_iter().flat_map(files).filter(|p| p.extension().is_some_and(|e| e == "rs"));
+    let text = |path: &PathBuf| fs::read_to_string(path).unwrap_or_default();
+    let mut of_sources: Vec<String> = sources.flat_map(|path| ignored(&text(&path))).collect();
+    let soak = text(&root().join("tools/soak"));
+    let list = soak.split("tests=(\n").nth(1).and_then(|rest| rest.split("\n)").next()).expect("a list of tests");
+    let name = |line: &str| line.trim().rsplit("::").next().unwrap_or_default().to_owned();
+    let mut of_soak: Vec<String> = list.lines().map(name).collect();
+    of_sources.sort();
+    of_soak.sort();
+    assert_eq!(of_sources, of_soak, "ignored tests, and those of tools/soak");
+}
+
+#[test]
+fn an_ignored_test_is_found() {
+    let text = "#[test]\n    #[ignore = \"minutes\"]\n    fn long() {}\n#[test]\nfn short() {}\n#[ignore]\n#[test]\nfn other() {}\n";
+    assert_eq!(ignored(text), ["long", "other"]);
 }

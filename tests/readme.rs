@@ -12,7 +12,9 @@ fn block(language: &str) -> String {
     rest.split_once("```").expect("the block ends").0.to_owned()
 }
 
+/// Its code compiles as a documentation test, too.
 #[test]
+#[ignore = "a minute, to compile every dependency anew: tools/soak"]
 fn the_first_example_builds_as_a_fresh_project() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR"));
     let project = env::temp_dir().join(format!("selvedge-readme-{}", std::process::id()));

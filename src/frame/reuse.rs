@@ -14,7 +14,7 @@
 //!
 //! What these passes write hangs on the view, the settings, the scene and the room that there is, and what comes after them
 //! writes none of it but the counters: while all of that stays, so do sub-patches, draws, table, lists, visibility and depth
-//! where they are, and making them once more would give the same bits. `renderer::known` says when. The host's targets are
+//! where they are, and making them once more would give the same bits. `renderer::history` says when. The host's targets are
 //! another matter: they are drawn into in every frame. Samples share one visibility image, so those are drawn in every
 //! frame, too, from the patches and the table.
 //!

@@ -7,7 +7,7 @@ use std::ops::Range;
 
 /// A command buffer being recorded, and the device that it belongs to.
 ///
-/// The methods are Vulkan's commands with the engine's types. They check what is cheap to check;
+/// The methods are Vulkan's commands with the engine's types. Cheap checks are made;
 /// Vulkan's other rules are the caller's, and the validation layers' to find broken.
 #[derive(Clone, Copy)]
 pub struct Commands<'a> {
@@ -35,7 +35,7 @@ impl<'a> Commands<'a> {
         self.raw
     }
 
-    /// Orders what was done to buffers before what is done to them next. Images have
+    /// Orders earlier accesses to buffers before later ones. Images have
     /// [`barrier::images`], which change their layouts, too.
     pub fn after(&self, before: Access, next: Access) {
         barrier::memory(self, before, next);

@@ -1,14 +1,17 @@
-//! The host's device as the engine sees it: functions, limits, allocator, and a list of what lives.
+//! The host's device: functions, limits, allocator, living pipelines, and a list of living objects.
 
+use super::description::Description;
 use super::memory::lock;
+use super::pipeline::Made;
 use super::{Pool, Quirks};
 use ash::vk;
 use ash::vk::Handle;
 use gpu_allocator::vulkan::Allocator;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 use std::ffi::CString;
 use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard};
+use std::sync::{Arc, Mutex, MutexGuard, Weak};
+use std::time::{Duration, Instant};
 
 /// What a host hands over. The engine destroys none of it.
 pub struct HostDevice<'a> {
@@ -48,6 +51,8 @@ struct Inner {
     pool_bytes: [AtomicI64; Pool::ALL.len()],
     objects: Mutex<BTreeMap<u64, (String, u64)>>,
     next_object: AtomicU64,
+    pipelines: Mutex<HashMap<Description, Weak<Made>>>,
+    pipeline_nanoseconds: AtomicU64,
 }
 
 impl Device {
@@ -98,6 +103,8 @@ impl Device {
             pool_bytes: Default::default(),
             objects: Mutex::default(),
             next_object: AtomicU64::new(0),
+            pipelines: Mutex::default(),
+            pipeline_nanoseconds: AtomicU64::new(0),
         }))
     }
 
@@ -139,6 +146,11 @@ impl Device {
     /// Bytes of memory that live buffers and images occupy, per pool in the order of [`Pool::ALL`].
     pub fn pool_bytes(&self) -> [(Pool, u64); Pool::ALL.len()] {
         Pool::ALL.map(|pool| (pool, self.0.pool_bytes[pool as usize].load(Ordering::Relaxed).max(0) as u64))
+    }
+
+    /// The time that the driver has spent so far on making pipelines; those made side by side count each for itself.
+    pub fn pipeline_time(&self) -> Duration {
+        Duration::from_nanos(self.0.pipeline_nanoseconds.load(Ordering::Relaxed))
     }
 
     /// Names of the live buffers, images and pipelines, oldest first.
@@ -189,6 +201,26 @@ impl Device {
         // A name is a courtesy: failing to set one changes nothing that is drawn.
         // SAFETY: the handle belongs to this device and is not in use elsewhere yet.
         let _ = unsafe { debug.set_debug_utils_object_name(&info) };
+    }
+
+    /// Runs what makes a pipeline, and counts its time.
+    pub(super) fn timing_pipeline<T>(&self, make: impl FnOnce() -> T) -> T {
+        let start = Instant::now();
+        let made = make();
+        self.0.pipeline_nanoseconds.fetch_add(start.elapsed().as_nanos() as u64, Ordering::Relaxed);
+        made
+    }
+
+    /// The living pipeline of a description, if there is one.
+    pub(super) fn pipeline(&self, description: &Description) -> Option<Arc<Made>> {
+        lock(&self.0.pipelines).get(description)?.upgrade()
+    }
+
+    /// From now on, and as long as it lives, the pipeline of this description.
+    pub(super) fn share_pipeline(&self, description: Description, made: &Arc<Made>) {
+        let mut pipelines = lock(&self.0.pipelines);
+        pipelines.retain(|_, made| made.strong_count() > 0);
+        pipelines.insert(description, Arc::downgrade(made));
     }
 
     /// Lists a named object of so many bytes until the returned entry is dropped.

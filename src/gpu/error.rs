@@ -32,7 +32,7 @@ pub enum GpuError {
     TooLarge {
         /// Name of the buffer.
         resource: String,
-        /// Bytes asked for.
+        /// Bytes of the request.
         bytes: u64,
         /// The device's limit.
         limit: u64,

@@ -3,8 +3,9 @@
 //! They draw without vertex buffers: shaders fetch what they need by index. Viewport and scissor are
 //! dynamic; attachments are named by format (dynamic rendering).
 
+use super::description::Description;
 use super::layout::{Binding, Layout};
-use super::pipeline::{Constants, ENTRY, Module};
+use super::pipeline::{Constants, ENTRY, Made, Module};
 use super::{Device, GpuError, Named, Pipeline};
 use ash::vk;
 
@@ -42,11 +43,11 @@ pub struct GraphicsInfo<'a> {
 pub struct ColourTarget {
     /// Its format.
     pub format: vk::Format,
-    /// How what is drawn meets what is there.
+    /// How a fragment's colour is combined with the attachment's.
     pub blend: Blend,
 }
 
-/// How a fragment's colour meets the attachment's.
+/// How a fragment's colour is combined with the attachment's.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub enum Blend {
     /// It replaces it.
@@ -71,7 +72,7 @@ pub struct DepthTest {
 }
 
 /// Stencil test of a pipeline, the same for both sides of faces. A fragment passes when the stored bits under the
-/// compare mask are those of the reference; both masks and the reference are what [`Commands::stencil`] says.
+/// compare mask are those of the reference; [`Commands::stencil`] sets both masks and the reference.
 ///
 /// [`Commands::stencil`]: super::Commands::stencil
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -98,6 +99,10 @@ impl Pipeline {
     /// # Errors
     /// [`GpuError::Vulkan`].
     pub fn graphics(device: &Device, info: &GraphicsInfo<'_>) -> Result<Self, GpuError> {
+        let description = Description::of_graphics(info);
+        if let Some(made) = device.pipeline(&description) {
+            return Ok(Self::sharing(made));
+        }
         let all_stages = info.stages.iter().fold(vk::ShaderStageFlags::empty(), |all, (stage, _)| all | *stage);
         let layout = Layout::new(device, info.name, all_stages, info.bindings, info.push_bytes)?;
         let modules = info
@@ -168,16 +173,20 @@ impl Pipeline {
             create = create.tessellation_state(&tessellation);
         }
         // SAFETY: layout and modules belong to this device and outlive the call.
-        let made = unsafe { device.raw().create_graphics_pipelines(vk::PipelineCache::null(), &[create], None) };
+        let make = || unsafe { device.raw().create_graphics_pipelines(vk::PipelineCache::null(), &[create], None) };
+        let made = device.timing_pipeline(make);
         let handle = made.map_err(|(_, result)| result).named("vkCreateGraphicsPipelines", info.name)?[0];
-        Ok(Self::own(
-            device,
-            handle,
-            layout,
-            vk::PipelineBindPoint::GRAPHICS,
-            info.bindings,
-            info.push_bytes,
-            info.name,
+        Ok(Self::of_made(
+            description,
+            Made {
+                device: device.clone(),
+                handle,
+                layout,
+                point: vk::PipelineBindPoint::GRAPHICS,
+                bindings: info.bindings.to_vec(),
+                push_bytes: info.push_bytes,
+                name: info.name.to_owned(),
+            },
         ))
     }
 }

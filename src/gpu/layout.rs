@@ -1,4 +1,4 @@
-//! What a pipeline's shaders find at the bindings of set 0, and the layouts that say so.
+//! Kinds of bindings of set 0, and the layouts made of them.
 
 use super::{Device, GpuError, Named};
 use ash::vk;

@@ -1,4 +1,4 @@
-//! Device memory in three pools, counted: how long a resource lives is part of what it is.
+//! Device memory in three pools, by how long a resource lives; each pool counts its bytes.
 //!
 //! ```text
 //!   persistent   with the scene          control points, trim curves, trees

@@ -1,4 +1,4 @@
-//! The thin Vulkan layer: typed owners for the handles that the engine makes, and nothing else.
+//! The thin Vulkan layer: typed owners of the engine's Vulkan handles, and nothing else.
 //!
 //! ```text
 //!   the host's VkInstance, VkPhysicalDevice, VkDevice, queue family, allocator
@@ -11,16 +11,17 @@
 //!        bind · dispatch · draw · rendering · barrier::buffers · Uploads · ReadBack
 //! ```
 //!
-//! The host keeps its device: this layer records into command buffers that it is given, and never
-//! submits, waits, or destroys a device. It knows nothing of geometry. `unsafe` lives here (and in
-//! `headless`, which plays the host for tools and tests), so that the passes
-//! need none.
+//! The device stays the host's: this layer records into the host's command buffers, and never submits, waits, or destroys
+//! a device. It has no geometry in it. `unsafe` lives here (and in `headless`, which plays the host for tools and tests),
+//! so that the passes need none.
 
+#[doc(hidden)]
 pub mod barrier;
 
 mod access;
 mod buffer;
 mod commands;
+mod description;
 mod device;
 mod error;
 mod graphics;
@@ -37,23 +38,31 @@ mod texels;
 mod timestamps;
 mod upload;
 
+// for hosts
 pub use access::{Access, ImageAccess};
-pub use buffer::{Buffer, BufferInfo};
-pub use commands::Commands;
 pub use device::{Device, HostDevice};
 pub use error::GpuError;
-pub use graphics::{Blend, ColourTarget, DepthTest, GraphicsInfo, StencilTest};
-pub use image::{Image, ImageInfo, Sampler};
-pub use layout::Binding;
-pub use memory::{Home, Pool};
-pub use pipeline::{ComputeInfo, Pipeline};
-pub use push::Resource;
+pub use image::Image;
+pub use memory::Pool;
 pub use quirks::Quirks;
-pub use read_back::ReadBack;
-pub use rendering::{Attachment, Load};
 pub use requirements::Requirements;
-pub use texels::{Texel, Texels};
-pub use timestamps::{ScopeTime, Statistics, Timestamps};
-pub use upload::Uploads;
+
+// for the passes, and tests of this layer
+#[doc(hidden)]
+pub use {
+    buffer::{Buffer, BufferInfo},
+    commands::Commands,
+    graphics::{Blend, ColourTarget, DepthTest, GraphicsInfo, StencilTest},
+    image::{ImageInfo, Sampler},
+    layout::Binding,
+    memory::Home,
+    pipeline::{ComputeInfo, Pipeline},
+    push::Resource,
+    read_back::ReadBack,
+    rendering::{Attachment, Load},
+    texels::{Texel, Texels},
+    timestamps::{ScopeTime, Statistics, Timestamps},
+    upload::Uploads,
+};
 
 pub(crate) use error::Named;

@@ -1,16 +1,21 @@
 //! Pipelines from SPIR-V, a list of bindings and named constants.
 //!
+//! A driver may compile a pipeline for seconds, and successive models need mostly the same ones. So two pipelines of equal
+//! descriptions share one Vulkan object as long as one of them lives.
+//!
 //! ```text
 //!   set 0, push descriptors          push constants             specialisation constants
 //!   binding 0: bindings[0]           push_bytes, all stages     constants: [(id, bits)], all stages
 //!   binding 1: bindings[1] …
 //! ```
 
+use super::description::Description;
 use super::device::Registration;
 use super::layout::{Binding, Layout};
 use super::{Device, GpuError, Named};
 use ash::vk;
 use std::ffi::CStr;
+use std::sync::Arc;
 
 /// What a compute pipeline is made from.
 #[derive(Clone, Copy, Debug)]
@@ -27,16 +32,24 @@ pub struct ComputeInfo<'a> {
     pub constants: &'a [(u32, u32)],
 }
 
-/// A pipeline with its layout; frees them on drop. The GPU must have finished with it by then.
+/// A pipeline with its layout. The last of those that share one frees it on drop; the GPU must have finished with it by
+/// then.
 #[derive(Debug)]
 pub struct Pipeline {
-    handle: vk::Pipeline,
-    layout: Layout,
-    point: vk::PipelineBindPoint,
-    bindings: Vec<Binding>,
-    push_bytes: u32,
-    name: String,
-    registration: Registration,
+    made: Arc<Made>,
+    _registration: Registration,
+}
+
+/// What pipelines of one description share.
+#[derive(Debug)]
+pub(super) struct Made {
+    pub(super) device: Device,
+    pub(super) handle: vk::Pipeline,
+    pub(super) layout: Layout,
+    pub(super) point: vk::PipelineBindPoint,
+    pub(super) bindings: Vec<Binding>,
+    pub(super) push_bytes: u32,
+    pub(super) name: String,
 }
 
 pub(super) const ENTRY: &CStr = c"main";
@@ -47,6 +60,10 @@ impl Pipeline {
     /// # Errors
     /// [`GpuError::Vulkan`].
     pub fn compute(device: &Device, info: &ComputeInfo<'_>) -> Result<Self, GpuError> {
+        let description = Description::of_compute(info);
+        if let Some(made) = device.pipeline(&description) {
+            return Ok(Self::sharing(made));
+        }
         let stages = vk::ShaderStageFlags::COMPUTE;
         let layout = Layout::new(device, info.name, stages, info.bindings, info.push_bytes)?;
         let module = Module::new(device, info.name, info.spirv)?;
@@ -59,65 +76,76 @@ impl Pipeline {
             .specialization_info(&special);
         let create = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout.pipeline);
         // SAFETY: layout and module belong to this device and outlive the call.
-        let made = unsafe { device.raw().create_compute_pipelines(vk::PipelineCache::null(), &[create], None) };
+        let make = || unsafe { device.raw().create_compute_pipelines(vk::PipelineCache::null(), &[create], None) };
+        let made = device.timing_pipeline(make);
         let handle = made.map_err(|(_, result)| result).named("vkCreateComputePipelines", info.name)?[0];
-        Ok(Self::own(device, handle, layout, vk::PipelineBindPoint::COMPUTE, info.bindings, info.push_bytes, info.name))
+        Ok(Self::of_made(
+            description,
+            Made {
+                device: device.clone(),
+                handle,
+                layout,
+                point: vk::PipelineBindPoint::COMPUTE,
+                bindings: info.bindings.to_vec(),
+                push_bytes: info.push_bytes,
+                name: info.name.to_owned(),
+            },
+        ))
     }
 
-    pub(super) fn own(
-        device: &Device,
-        handle: vk::Pipeline,
-        layout: Layout,
-        point: vk::PipelineBindPoint,
-        bindings: &[Binding],
-        push_bytes: u32,
-        name: &str,
-    ) -> Self {
-        device.set_name(handle, name);
-        let registration = device.register(name, 0);
-        Self { handle, layout, point, bindings: bindings.to_vec(), push_bytes, name: name.to_owned(), registration }
+    /// The first pipeline of its description.
+    pub(super) fn of_made(description: Description, made: Made) -> Self {
+        made.device.set_name(made.handle, &made.name);
+        let made = Arc::new(made);
+        made.device.share_pipeline(description, &made);
+        Self::sharing(made)
+    }
+
+    /// One more pipeline of a description.
+    pub(super) fn sharing(made: Arc<Made>) -> Self {
+        Self { _registration: made.device.register(&made.name, 0), made }
     }
 
     /// The Vulkan pipeline.
     pub fn handle(&self) -> vk::Pipeline {
-        self.handle
+        self.made.handle
     }
 
     /// Its layout.
     pub fn layout(&self) -> vk::PipelineLayout {
-        self.layout.pipeline
+        self.made.layout.pipeline
     }
 
     /// Compute or graphics.
     pub fn point(&self) -> vk::PipelineBindPoint {
-        self.point
+        self.made.point
     }
 
     /// The bindings of set 0 in order.
     pub fn bindings(&self) -> &[Binding] {
-        &self.bindings
+        &self.made.bindings
     }
 
     /// Size of the push constants.
     pub fn push_bytes(&self) -> u32 {
-        self.push_bytes
+        self.made.push_bytes
     }
 
     /// Stages that see bindings and push constants.
     pub fn stages(&self) -> vk::ShaderStageFlags {
-        self.layout.stages
+        self.made.layout.stages
     }
 
     /// Its name.
     pub fn name(&self) -> &str {
-        &self.name
+        &self.made.name
     }
 }
 
-impl Drop for Pipeline {
+impl Drop for Made {
     fn drop(&mut self) {
         // SAFETY: owned here; the GPU has finished with it, as the type's contract says.
-        unsafe { self.registration.device().raw().destroy_pipeline(self.handle, None) }
+        unsafe { self.device.raw().destroy_pipeline(self.handle, None) }
     }
 }
 

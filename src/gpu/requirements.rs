@@ -84,7 +84,7 @@ impl Requirements {
         if properties.api_version < Self::API_VERSION {
             let (major, minor) =
                 (vk::api_version_major(properties.api_version), vk::api_version_minor(properties.api_version));
-            // The feature structs below may not even be asked of an older device.
+            // An older device does not have the feature structs below.
             return vec![format!("Vulkan 1.3 (it offers {major}.{minor})")];
         }
         let mut v12 = vk::PhysicalDeviceVulkan12Features::default();
@@ -134,7 +134,7 @@ mod tests {
     }
 
     #[test]
-    fn merging_keeps_what_the_host_asked_for() {
+    fn merging_leaves_the_host_s_own_features() {
         let (mut core, mut v12, mut v13): (vk::PhysicalDeviceFeatures, _, _) = Default::default();
         core.wide_lines = vk::TRUE;
         Requirements::add_to(&mut core, &mut v12, &mut v13);

@@ -38,7 +38,7 @@ impl Instance {
         }
         let mut enabled: Vec<_> = debug_utils.then_some(ash::ext::debug_utils::NAME.as_ptr()).into_iter().collect();
 
-        // Newer layers are told through settings, and look at what shaders access only when asked;
+        // Newer layers read settings, and follow shader accesses only when a setting says so;
         // older ones know the validation features alone.
         let yes = vk::TRUE.to_ne_bytes();
         let settings = [c"validate_sync", c"syncval_shader_accesses_heuristic"].map(|name| {

@@ -1,4 +1,4 @@
-//! What the validation layers said to one instance.
+//! Messages of the validation layers about one instance.
 
 use ash::vk;
 use std::ffi::{CStr, c_void};

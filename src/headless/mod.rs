@@ -6,8 +6,8 @@
 //!          ▼ drop              queue ─ allocator ─ device ─ messenger ─ instance
 //! ```
 //!
-//! Everything made from [`HeadlessDevice::device`] goes before it. What is still alive then is named
-//! by [`HeadlessDevice::shutdown`], beside the leaks that the validation layers find.
+//! Everything made from [`HeadlessDevice::device`] is dropped before it. [`HeadlessDevice::shutdown`] names what is still
+//! alive, and the leaks that the validation layers find.
 
 mod instance;
 mod messages;
@@ -49,7 +49,7 @@ pub enum HeadlessError {
     /// No device of the wanted name.
     #[error("no Vulkan device is named like `{wanted}`; there are: {present}")]
     NoSuchDevice {
-        /// The name asked for.
+        /// The name in the options.
         wanted: String,
         /// Names of the devices found.
         present: String,
@@ -60,7 +60,7 @@ pub enum HeadlessError {
         /// Each device with what it lacks.
         devices: String,
     },
-    /// Validation was asked for and is not installed.
+    /// The options want validation, and its layer is not installed.
     #[error("the Vulkan validation layers are not installed (on Debian: apt install vulkan-validationlayers)")]
     NoValidation,
     /// The allocator could not be made.

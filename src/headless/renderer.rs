@@ -10,6 +10,7 @@ use ash::vk;
 use bytemuck::Pod;
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
+use std::time::Duration;
 
 /// Colour is rendered to 8 bits, encoded by the format.
 const COLOUR_FORMAT: vk::Format = vk::Format::R8G8B8A8_SRGB;
@@ -69,7 +70,7 @@ impl HeadlessRenderer {
         self.upload_shared(Arc::new(model.clone()), settings, &|_| ())
     }
 
-    /// The same of a model that is not copied; `told` as in [`Renderer::upload_telling`].
+    /// The same of a model that is not copied; `progress` as in [`Renderer::upload_with_progress`].
     ///
     /// # Errors
     /// [`HeadlessError::Gpu`].
@@ -77,12 +78,12 @@ impl HeadlessRenderer {
         &mut self,
         model: Arc<Model>,
         settings: SceneSettings,
-        told: &(dyn Fn(usize) + Sync),
+        progress: &(dyn Fn(usize) + Sync),
     ) -> Result<(), HeadlessError> {
-        self.upload_request(model, settings.into(), told)
+        self.upload_request(model, settings.into(), progress)
     }
 
-    /// As [`upload_with`](Self::upload_with), with what is to be compared with in the engine's place.
+    /// As [`upload_with`](Self::upload_with), with baselines in place of the engine's own methods.
     ///
     /// # Errors
     /// [`HeadlessError::Gpu`].
@@ -101,11 +102,11 @@ impl HeadlessRenderer {
         &mut self,
         model: Arc<Model>,
         request: SceneRequest,
-        told: &(dyn Fn(usize) + Sync),
+        progress: &(dyn Fn(usize) + Sync),
     ) -> Result<(), HeadlessError> {
         self.close_up = CloseUp::new(&model);
         let (model, _) = self.model.insert((model, request));
-        Ok(self.renderer.upload_request(model, request, told)?)
+        Ok(self.renderer.upload_request(model, request, progress)?)
     }
 
     /// Replaces a trim loop of the model, which was uploaded as editable; see [`Renderer::edit_loop`].
@@ -169,6 +170,11 @@ impl HeadlessRenderer {
         self.device.device().object_bytes()
     }
 
+    /// The time that the driver has spent so far on making pipelines: [`Device::pipeline_time`].
+    pub fn pipeline_time(&self) -> Duration {
+        self.device.device().pipeline_time()
+    }
+
     /// Frees everything and returns all validation messages, those about leaks included.
     pub fn shutdown(mut self) -> Vec<String> {
         // SAFETY: each is taken once, and `self` is forgotten; every frame was waited for.
@@ -207,7 +213,7 @@ impl HeadlessRenderer {
         Ok((report.complete, report.stats))
     }
 
-    /// Makes targets of this size, and a renderer that writes the images asked for.
+    /// Makes targets of this size, and a renderer that writes these images.
     fn prepare(&mut self, size: (u32, u32), outputs: Outputs) -> Result<(), HeadlessError> {
         let thickness = outputs.thickness;
         let aovs = Outputs { thickness: false, ..outputs } != Outputs::default();
@@ -232,7 +238,7 @@ impl HeadlessRenderer {
         Ok(())
     }
 
-    /// Has the renderer hold what resolves this view: the model, or what is seen of it close up.
+    /// Loads the scene that resolves this view: the whole model, or close up the part of it in view.
     fn approach(&mut self, camera: &Camera) -> Result<(), HeadlessError> {
         let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
         // loops that are being edited stay where they are, and parts are followed through as a whole

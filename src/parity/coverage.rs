@@ -209,33 +209,17 @@ fn hard_cases() {
 mod parity {
     use super::super::harness::{Gpu, Mismatch, same};
     use super::*;
-    use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource};
-
-    fn spirv() -> Vec<u32> {
-        let bytes = include_bytes!("../../tests/gpu/spirv/coverage.comp.spv");
-        bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
-    }
 
     /// Pixels of each face on the GPU, with the data of `given`, against the twin with `expected`; bits of numbers.
     fn compare(gpu: &Gpu, given: &ExactData, expected: &ExactData, pixels: &[Vec<Pixel>]) -> Result<(), Mismatch> {
-        let texels = gpu.upload_exact(given);
-        let (spirv, bindings) = (spirv(), [vec![Binding::Texels; 3], vec![Binding::Storage; 2]].concat());
-        let info = ComputeInfo { name: "coverage", spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
-        let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
-        for (face, pixels) in pixels.iter().enumerate() {
-            let words: Vec<[[f32; 2]; 3]> = pixels.iter().map(|p| [p.uv, p.along[0], p.along[1]]).collect();
-            let asked = gpu.upload("asked", &words);
-            let answers = gpu.upload("answers", &vec![[99u32; 4]; pixels.len()]);
-            gpu.run(|cmd| {
-                let asks = [&asked, &answers].map(Resource::from);
-                let resources: Vec<_> = texels.iter().map(Resource::from).chain(asks).collect();
-                cmd.bind(&pipeline, &resources, bytemuck::bytes_of(&[face as u32, pixels.len() as u32]));
-                cmd.dispatch(pixels.len().div_ceil(64) as u32);
-            });
+        let words = |pixels: &Vec<Pixel>| pixels.iter().map(|p| [p.uv, p.along[0], p.along[1]]).collect();
+        let asked: Vec<Vec<[[f32; 2]; 3]>> = pixels.iter().map(words).collect();
+        let spirv = include_bytes!("../../tests/gpu/spirv/coverage.comp.spv");
+        let answers = gpu.answers("coverage", spirv, given, (&asked, [99u32; 4]));
+        for ((face, pixels), answers) in pixels.iter().enumerate().zip(answers) {
             let twin: Vec<_> = pixels.iter().map(|pixel| words_of(cover(expected, face, pixel))).collect();
             // 0 and -0 are the same border
             let unsigned = |word: u32| if word == (-0.0f32).to_bits() { 0 } else { word };
-            let answers: Vec<[u32; 4]> = gpu.read(&answers, pixels.len());
             let answers: Vec<_> = answers.into_iter().map(|a| a.map(unsigned)).collect();
             same("answers", &answers, &twin)?;
         }

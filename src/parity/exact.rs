@@ -169,9 +169,9 @@ fn lists_hold_within_their_boxes() {
     );
 }
 
-/// `cargo nextest run --run-ignored only a_hundred_thousand_loops`: tells the figures.
+/// `tools/soak a_hundred_thousand_loops` tells the figures.
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: tools/soak"]
 fn a_hundred_thousand_loops() {
     use rayon::prelude::*;
     let all = (0..1000u64).into_par_iter().map(|seed| worst_difference(1000 + seed, 50, 200));
@@ -227,31 +227,15 @@ fn memory_is_linear_in_arcs() {
 mod parity {
     use super::super::harness::{Gpu, Mismatch, same};
     use super::*;
-    use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource};
     use crate::twin::exact::FAR;
-
-    fn spirv() -> Vec<u32> {
-        let bytes = include_bytes!("../../tests/gpu/spirv/exact.comp.spv");
-        bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
-    }
 
     /// Points of each face on the GPU, with the data of `given`, against the twin with `expected`.
     fn compare(gpu: &Gpu, given: &ExactData, expected: &ExactData, points: &[Vec<[f32; 2]>]) -> Result<(), Mismatch> {
-        let texels = gpu.upload_exact(given);
-        let (spirv, bindings) = (spirv(), [vec![Binding::Texels; 3], vec![Binding::Storage; 2]].concat());
-        let info = ComputeInfo { name: "exact", spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
-        let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
-        for (face, points) in points.iter().enumerate() {
-            let asked = gpu.upload("asked", points);
-            let answers = gpu.upload("answers", &vec![[99i32; 2]; points.len()]);
-            gpu.run(|cmd| {
-                let asks = [&asked, &answers].map(Resource::from);
-                let resources: Vec<_> = texels.iter().map(Resource::from).chain(asks).collect();
-                cmd.bind(&pipeline, &resources, bytemuck::bytes_of(&[face as u32, points.len() as u32]));
-                cmd.dispatch(points.len().div_ceil(64) as u32);
-            });
+        let spirv = include_bytes!("../../tests/gpu/spirv/exact.comp.spv");
+        let answers = gpu.answers("exact", spirv, given, (points, [99i32; 2]));
+        for ((face, points), answers) in points.iter().enumerate().zip(answers) {
             let twin: Vec<_> = (0..points.len()).map(|i| answer(twin(expected), face, points, i)).collect();
-            same("answers", &gpu.read(&answers, points.len()), &twin)?;
+            same("answers", &answers, &twin)?;
         }
         Ok(())
     }

@@ -2,7 +2,7 @@
 //! situation. Depths are multiples of 2⁻⁶ and slopes of 2⁻⁸, so that whatever is compared is equal or far apart.
 
 use super::Random;
-use super::harness::{Gpu, Mismatch, same};
+use super::harness::{Gpu, Mismatch, same, words};
 use crate::abi::Frame;
 use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource};
 use crate::twin::gap_decide::{Candidate, From, Kind, Outline, Situation, decide};
@@ -118,8 +118,7 @@ fn compare(
     given: &[(Situation, Vec<Candidate>)],
     expected: &[(Situation, Vec<Candidate>)],
 ) -> Result<Vec<[u32; 2]>, Mismatch> {
-    let bytes = include_bytes!("../../tests/gpu/spirv/gap_decide.comp.spv");
-    let spirv: Vec<_> = bytes.chunks_exact(4).map(|w| u32::from_le_bytes([w[0], w[1], w[2], w[3]])).collect();
+    let spirv = words(include_bytes!("../../tests/gpu/spirv/gap_decide.comp.spv"));
     let bindings = [Binding::Uniform, Binding::Storage, Binding::Storage];
     let info = ComputeInfo { name: "gap decide", spirv: &spirv, bindings: &bindings, push_bytes: 4, constants: &[] };
     let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();

@@ -2,7 +2,10 @@
 
 use super::Case;
 use crate::bindings::Bounded;
-use crate::gpu::{Access, Buffer, Commands, Device, Pool, ReadBack, Texel, Texels, Uploads, barrier};
+use crate::gpu::{
+    Access, Binding, Buffer, Commands, ComputeInfo, Device, Pipeline, Pool, ReadBack, Resource, Texel, Texels, Uploads,
+    barrier,
+};
 use crate::headless::{HeadlessDevice, HeadlessOptions};
 use crate::scene::ExactData;
 use ash::vk;
@@ -82,6 +85,35 @@ impl Gpu {
         ]
     }
 
+    /// The answers of a wrapper of `tests/gpu/glsl` to questions about each face that is trimmed exactly. Its bindings are
+    /// those of [`upload_exact`](Self::upload_exact), the questions and the answers, which are `blank` before; its push
+    /// constants the face and the number of questions.
+    pub(super) fn answers<Q: Pod, A: Pod>(
+        &self,
+        name: &str,
+        spirv: &[u8],
+        data: &ExactData,
+        (questions, blank): (&[Vec<Q>], A),
+    ) -> Vec<Vec<A>> {
+        let texels = self.upload_exact(data);
+        let bindings = [vec![Binding::Texels; texels.len()], vec![Binding::Storage; 2]].concat();
+        let spirv = words(spirv);
+        let info = ComputeInfo { name, spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
+        let pipeline = Pipeline::compute(self.device(), &info).unwrap();
+        let of_face = |(face, questions): (usize, &Vec<Q>)| {
+            let asked = self.upload("questions", questions);
+            let answers = self.upload("answers", &vec![blank; questions.len()]);
+            self.run(|cmd| {
+                let of_wrapper = [&asked, &answers].map(Resource::from);
+                let resources: Vec<_> = texels.iter().map(Resource::from).chain(of_wrapper).collect();
+                cmd.bind(&pipeline, &resources, bytemuck::bytes_of(&[face as u32, questions.len() as u32]));
+                cmd.dispatch(questions.len().div_ceil(64) as u32);
+            });
+            self.read(&answers, questions.len())
+        };
+        questions.iter().enumerate().map(of_face).collect()
+    }
+
     /// Records, submits, waits.
     pub(super) fn run(&self, record: impl FnOnce(&Commands<'_>)) {
         self.0.submit(record).unwrap();
@@ -103,6 +135,11 @@ impl Gpu {
         let messages: Vec<_> = self.0.shutdown().iter().map(ToString::to_string).collect();
         assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
     }
+}
+
+/// The words of a SPIR-V file.
+pub(super) fn words(bytes: &[u8]) -> Vec<u32> {
+    bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
 }
 
 /// The arrays of a case in GPU memory.

@@ -157,17 +157,12 @@ fn lines_without_borders_are_all_the_same() {
 /// Of `tests/gpu/glsl/table.comp`, which wraps the include.
 #[cfg(feature = "headless")]
 mod parity {
-    use super::super::harness::{Gpu, Mismatch, same};
+    use super::super::harness::{Gpu, Mismatch, same, words};
     use super::super::shapes::cases;
     use super::*;
     use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource, Texel};
 
     /// Words of the module; `include_bytes` aligns to bytes only.
-    fn spirv() -> Vec<u32> {
-        let bytes = include_bytes!("../../tests/gpu/spirv/table.comp.spv");
-        bytes.chunks_exact(4).map(|word| u32::from_le_bytes([word[0], word[1], word[2], word[3]])).collect()
-    }
-
     fn compare(gpu: &Gpu, case: &Case, given: &Chain, expected: &Chain) -> Result<(), Mismatch> {
         let placed = case.data.face_instances[SHEET];
         let (face, points) = (&case.data.faces[SHEET], points(4096));
@@ -182,7 +177,7 @@ mod parity {
         let answers = gpu.upload("answers", &vec![7u32; points.len()]);
         let info = ComputeInfo {
             name: "table",
-            spirv: &spirv(),
+            spirv: &words(include_bytes!("../../tests/gpu/spirv/table.comp.spv")),
             bindings: &[vec![Binding::Uniform], vec![Binding::Texels; 4], vec![Binding::Storage; 2]].concat(),
             push_bytes: 16,
             constants: &[],

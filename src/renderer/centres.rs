@@ -1,4 +1,4 @@
-//! Where surfaces of solids are, seen from a frame's eye: what changes with the camera and stays in `f64`.
+//! Positions of solids' surfaces relative to the frame's eye, computed in `f64` for every camera.
 
 use super::Retired;
 use super::slot::{upload_buffer, upload_texels};
@@ -57,7 +57,7 @@ impl SlotCentres {
             if texels.is_some() && place.is_none() {
                 *place = Some(upload_texels(device, name, bytes)?);
             }
-            place.iter_mut().zip(&texels).for_each(|(kept, texels)| kept.write(0, texels));
+            place.iter_mut().zip(&texels).for_each(|(buffer, texels)| buffer.write(0, texels));
         }
         match &data.sun {
             None => retired.extend(self.sun.take().map(Retired::Buffer)),

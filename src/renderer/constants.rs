@@ -13,7 +13,7 @@ fn encodes(formats: &TargetFormats) -> bool {
     matches!(formats.colour, vk::Format::R8G8B8A8_SRGB | vk::Format::B8G8R8A8_SRGB | vk::Format::A8B8G8R8_SRGB_PACK32)
 }
 
-/// The background as the colour target is cleared to it; nothing where the host keeps its picture. Twin of `encode` in
+/// The clear colour of the target; 0 where the host's picture stays. Twin of `encode` in
 /// shade.glsl.
 pub(super) fn background(input: &FrameInput<'_>, formats: &TargetFormats) -> [f32; 4] {
     let [r, g, b, opacity] = input.settings.background.unwrap_or_default();
@@ -66,7 +66,7 @@ pub(super) fn constants(
         right: right.as_vec3().to_array(),
         up: up.as_vec3().to_array(),
         forward: forward.as_vec3().to_array(),
-        // a negative opacity tells the shader to leave the background alone
+        // with a negative opacity the shader leaves the background as it is
         background: input.settings.background.unwrap_or([0.0, 0.0, 0.0, -1.0]),
         offset: [0.0; 2],
         spread_px: counts.samples.offsets().iter().flatten().fold(0.0f64, |far, x| far.max(x.abs())) as f32,

@@ -33,8 +33,8 @@ impl Renderer {
     pub fn edit_loop(&mut self, at: LoopAt, new: &TrimLoop) -> Result<(), EditError> {
         let Some(loaded) = &mut self.loaded else { panic!("upload a model before editing it") };
         let writes = loaded.data.edit.as_mut().ok_or(EditError::NotEditable)?.replace(at, new)?;
-        if let Some(kept) = &mut loaded.kept {
-            kept.edit(at, new);
+        if let Some(fallback) = &mut loaded.fallback {
+            fallback.edit(at, new);
         }
         if loaded.scene.is_some() {
             loaded.edits.extend(writes);

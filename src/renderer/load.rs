@@ -1,12 +1,12 @@
-//! A model comes in, or in place of itself, to be trimmed another way.
+//! Loading a model, and loading it once more to be trimmed exactly where the trim table has no room for a view.
 //!
 //! ```text
-//!   Auto ──rows expected──▶ few ──▶ Table, and the model is kept ──a view wants too many──▶ Exact
+//!   Auto ──rows expected──▶ few ──▶ Table, with the model as a fallback ──a view needs too many──▶ Exact
 //!             └────────────▶ many ─▶ Exact
 //! ```
 
 use super::constants::draw_vertices;
-use super::{Loaded, RenderError, Renderer, Retired, asked};
+use super::{Loaded, RenderError, Renderer, Retired, validate};
 use crate::frame::Passes;
 use crate::frame::capacities::Capacities;
 use crate::frame::counts::Counts;
@@ -15,33 +15,33 @@ use crate::model::{LoopAt, Model, TrimLoop};
 use crate::picture::{SceneSettings, TakenWay, TrimWay};
 use crate::scene::{Cut, SceneData, SceneRequest, Told, UndrawnSolid};
 
-/// What a scene is made of: a model, or what was cut out of it for a view.
+/// The source of a scene: a model, or the part cut out of it for a view.
 #[derive(Clone, Copy)]
 struct Source<'a> {
     whole: &'a Model,
     cut: Option<&'a Cut>,
-    told: Told<'a>,
+    progress: Told<'a>,
 }
 
 impl Source<'_> {
     fn data(self, settings: SceneRequest) -> Result<SceneData, UndrawnSolid> {
         match self.cut {
-            None => SceneData::telling(self.whole, settings, self.told),
+            None => SceneData::telling(self.whole, settings, self.progress),
             Some(cut) => SceneData::cut_from(self.whole, cut, settings),
         }
     }
 }
 
-/// What is loaded once more where the table does not suffice for a view.
-pub(super) struct Kept {
+/// A copy of the model, loaded once more where the table does not suffice for a view.
+pub(super) struct Fallback {
     whole: Model,
     cut: Option<Cut>,
     settings: SceneRequest,
 }
 
-impl Kept {
+impl Fallback {
     fn new(of: Source<'_>, settings: SceneRequest) -> Self {
-        // of a whole model only shadows are asked for beside what was cut out of it
+        // beside a cut, shadows alone need the whole model
         let whole = if of.cut.is_none() || settings.sun.is_some() { of.whole.clone() } else { Model::default() };
         Self { whole, cut: of.cut.cloned(), settings }
     }
@@ -68,21 +68,21 @@ impl Renderer {
     /// # Errors
     /// As [`upload`](Self::upload).
     pub fn upload_with(&mut self, model: &Model, settings: SceneSettings) -> Result<(), RenderError> {
-        self.upload_telling(model, settings, &|_| ())
+        self.upload_with_progress(model, settings, &|_| ())
     }
 
-    /// As [`upload_with`](Self::upload_with); `told` hears from several threads, in no order, how many more faces of placed
-    /// parts are ready.
+    /// As [`upload_with`](Self::upload_with). `progress` is called by several threads, in no order, with the number of faces
+    /// of placed parts that have become ready since its last call.
     ///
     /// # Errors
     /// As [`upload`](Self::upload).
-    pub fn upload_telling(
+    pub fn upload_with_progress(
         &mut self,
         model: &Model,
         settings: SceneSettings,
-        told: &(dyn Fn(usize) + Sync),
+        progress: &(dyn Fn(usize) + Sync),
     ) -> Result<(), RenderError> {
-        self.upload_request(model, settings.into(), told)
+        self.upload_request(model, settings.into(), progress)
     }
 
     /// As [`upload_with`](Self::upload_with), of what [`CloseUp`](super::CloseUp) cut out of a model for a view: shadows
@@ -96,20 +96,20 @@ impl Renderer {
 
     /// The same model once more, trimmed exactly: the table has no room for a view of it.
     pub(super) fn load_exact(&mut self) -> Result<(), RenderError> {
-        let Some(kept) = self.loaded.as_mut().and_then(|loaded| loaded.kept.take()) else { return Ok(()) };
-        let Kept { whole, cut, settings } = &*kept;
-        let of = Source { whole, cut: cut.as_ref(), told: &|_| () };
+        let Some(fallback) = self.loaded.as_mut().and_then(|loaded| loaded.fallback.take()) else { return Ok(()) };
+        let Fallback { whole, cut, settings } = &*fallback;
+        let of = Source { whole, cut: cut.as_ref(), progress: &|_| () };
         self.load(of, settings.exact())
     }
 
-    /// As [`upload_telling`](Self::upload_telling).
+    /// As [`upload_with_progress`](Self::upload_with_progress).
     pub(crate) fn upload_request(
         &mut self,
         model: &Model,
         request: SceneRequest,
-        told: Told<'_>,
+        progress: Told<'_>,
     ) -> Result<(), RenderError> {
-        self.load(Source { whole: model, cut: None, told }, request)
+        self.load(Source { whole: model, cut: None, progress }, request)
     }
 
     /// As [`upload_cut`](Self::upload_cut).
@@ -119,21 +119,21 @@ impl Renderer {
         cut: &Cut,
         request: SceneRequest,
     ) -> Result<(), RenderError> {
-        self.load(Source { whole, cut: Some(cut), told: &|_| () }, request)
+        self.load(Source { whole, cut: Some(cut), progress: &|_| () }, request)
     }
 
     fn load(&mut self, of: Source<'_>, settings: SceneRequest) -> Result<(), RenderError> {
-        asked::check_sun(*settings)?;
+        validate::check_sun(*settings)?;
         let mut data = of.data(settings)?;
         if settings.smooth_trims {
-            asked::check_smooth_trims(&data, settings)?;
+            validate::check_smooth_trims(&data, settings)?;
         }
         let may_change = settings.trim == TrimWay::Auto && data.trim_way() == Some(TakenWay::Table);
         let too_many = Counts::of(&data).check().err().filter(|too_many| may_change && too_many.is_of_table());
         if too_many.is_some() {
             data = of.data(settings.exact())?;
         }
-        let kept = (may_change && too_many.is_none()).then(|| Box::new(Kept::new(of, settings)));
+        let fallback = (may_change && too_many.is_none()).then(|| Box::new(Fallback::new(of, settings)));
         let counts = Counts::of(&data);
         counts.check()?;
         let formats =
@@ -147,8 +147,8 @@ impl Renderer {
             scene: None,
             stages: None,
             edits: Vec::new(),
-            known: None,
-            kept,
+            history: None,
+            fallback,
         };
         if let Some(old) = self.loaded.replace(loaded) {
             self.retire(Retired::Loaded(Box::new(old)));

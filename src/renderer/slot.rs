@@ -1,8 +1,8 @@
-//! What one frame in flight owns, and what the host writes of it.
+//! A frame slot: the buffers that the CPU writes and reads for one frame in flight.
 
 use super::centres::SlotCentres;
 use super::constants::constants;
-use super::known::Known;
+use super::history::History;
 use super::{FrameInput, Loaded, Retired, TargetFormats};
 use crate::abi;
 use crate::abi::Counters;
@@ -35,8 +35,8 @@ pub(super) struct Slot {
     /// Freed when the slot comes round again.
     pub(super) retired: Vec<Retired>,
     pub(super) recorded: bool,
-    /// The frame kept what the frame before had seen.
-    pub(super) kept: bool,
+    /// The frame reused the visibility of the one before.
+    pub(super) reused: bool,
     /// Copied for edits at the beginning of the frame.
     pub(super) edit_bytes: u64,
     /// What the frame had room for; `None` when its model has been replaced since.
@@ -62,7 +62,7 @@ impl Slot {
             times: Timestamps::new(device, SCOPES)?,
             retired: Vec::new(),
             recorded: false,
-            kept: false,
+            reused: false,
             edit_bytes: 0,
             capacities: None,
             size: (0, 0),
@@ -83,7 +83,7 @@ impl Slot {
         loaded: &Loaded,
         input: &FrameInput<'_>,
         formats: &TargetFormats,
-        known: &Known,
+        history: &History,
     ) -> Result<(), GpuError> {
         let pixels = input.camera.pixel_matrix();
         let views: Vec<abi::View> = loaded.data.placements.iter().map(|p| view(pixels, *p)).collect();
@@ -96,11 +96,11 @@ impl Slot {
             buffer.write(0, &views);
         }
         self.centres.write(device, &loaded.data, input.camera, &mut self.retired)?;
-        let centre = constants(device, loaded, input, formats, known.table.as_ref());
+        let centre = constants(device, loaded, input, formats, history.table.as_ref());
         self.constants.write(0, &[centre]);
         self.write_samples(device, loaded, input.camera, centre)?;
-        self.write_table(device, loaded, (input.camera, known), centre)?;
-        // a drawing for each sample, and one for what is not their mean
+        self.write_table(device, loaded, (input.camera, history), centre)?;
+        // one drawing a sample, and one at the centre for the images that are no mean of samples
         let beside = formats.aovs || formats.depth.is_some() || loaded.counts.thickness || self.samples.is_empty();
         self.counted = self.samples.len() + usize::from(beside);
         if self.counter_room < self.counted {
@@ -142,17 +142,17 @@ impl Slot {
         &mut self,
         device: &Device,
         loaded: &Loaded,
-        (camera, known): (&Camera, &Known),
+        (camera, history): (&Camera, &History),
         centre: abi::Frame,
     ) -> Result<(), GpuError> {
-        let wider = match &known.table {
+        let wider = match &history.table {
             Some(TableView::Of(wider)) if wider != camera => wider,
             _ => {
                 self.retired.extend(self.table.take().into_iter().flat_map(gone));
                 return Ok(());
             }
         };
-        if known.keeps_table {
+        if history.reuses_table {
             return Ok(());
         }
         let pixels = wider.pixel_matrix();

@@ -8,3 +8,5 @@ mod pretessellated;
 mod program;
 mod simplex;
 mod slefe;
+#[path = "../watched/mod.rs"]
+mod watched;

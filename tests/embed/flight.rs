@@ -129,7 +129,7 @@ fn without_room(across: u32, size: (u32, u32)) {
         let slot = frame % SLOTS;
         host.wait(slot);
         let report = renderer.report(slot).unwrap();
-        kept.extend(report.iter().map(|report| report.stats.kept));
+        kept.extend(report.iter().map(|report| report.stats.reused));
         complete.extend(report.map(|report| report.complete));
         record(&host, &mut renderer, slot, &targets[slot], &camera, 0.125);
     }

@@ -40,35 +40,60 @@ fn list_bytes(picture: &Picture) -> u64 {
     lists.map(|l| l.bytes).sum()
 }
 
-/// Draws with less and less room from `most` bytes on, until a row of tiles has too little.
-fn with_less_and_less(name: &str, model: &Model, settings: SceneSettings, most: f64) {
-    seen_with_less_and_less(name, (model, perspective(model, SIZE)), settings, most);
+/// What is drawn with less and less room.
+struct Case {
+    name: &'static str,
+    model: Model,
+    camera: Camera,
+    settings: SceneSettings,
+    /// Bytes with which it is drawn in one band.
+    most: f64,
 }
 
-fn seen_with_less_and_less(name: &str, (model, camera): (&Model, Camera), settings: SceneSettings, most: f64) {
+impl Case {
+    fn new(name: &'static str, model: Model, settings: SceneSettings, most: f64) -> Self {
+        Self { name, camera: perspective(&model, SIZE), model, settings, most }
+    }
+}
+
+/// How budgets follow one another.
+#[derive(Clone, Copy, PartialEq)]
+enum Steps {
+    /// From as much as one band takes to as little as ten do, and no more steps than the next number of bands needs.
+    Wide,
+    /// From `Case::most` on, by 6 % as long as there are fewer than three bands.
+    Narrow,
+}
+
+/// Draws with less and less room, until a row of tiles has too little.
+fn with_less_and_less(case: &Case, steps: Steps) {
+    let Case { name, model, camera, settings, most } = case;
+    let settings = *settings;
     let outputs = Outputs { thickness: settings.thickness, ..Outputs::ALL };
     let mut renderer = watched(&Model::default());
     renderer.upload_with(model, settings).unwrap();
-    let whole = draw(&mut renderer, &camera, outputs).unwrap();
+    let whole = draw(&mut renderer, camera, outputs).unwrap();
     assert_eq!(whole.stats.bands, 1, "{name}");
     assert!(whole.face.iter().filter(|id| **id != 0).count() * 8 > whole.face.len(), "{name} shows little");
     let mut seen = BTreeSet::new();
-    let mut budget = most;
+    // lists of a view without a budget have a quarter more than they need
+    let mut budget = if steps == Steps::Wide { most.min(list_bytes(&whole) as f64) } else { *most };
     let refused = loop {
         assert!(budget > 100.0, "{name}: any budget will do");
         let what = format!("{name}, {budget:.0} bytes");
         let settings = SceneSettings { solid_budget: Some(budget as u64), ..settings };
         renderer.upload_with(model, settings).unwrap();
-        let picture = match draw(&mut renderer, &camera, outputs) {
+        let picture = match draw(&mut renderer, camera, outputs) {
             Ok(picture) => picture,
             Err(error) => break error,
         };
         assert_same(&whole, &picture, &what);
         assert!(picture.stats.retries <= 3, "{what}: {} retries", picture.stats.retries);
         assert!(list_bytes(&picture) <= budget as u64, "{what}: {:?}", picture.stats.solid_bytes);
-        assert_same(&whole, &draw(&mut renderer, &camera, outputs).unwrap(), &format!("{what}, again"));
+        assert_same(&whole, &draw(&mut renderer, camera, outputs).unwrap(), &format!("{what}, again"));
         seen.insert(picture.stats.bands);
-        budget *= if picture.stats.bands < 3 { 0.94 } else { 0.7 };
+        let narrow = picture.stats.bands < if steps == Steps::Wide { 2 } else { 3 };
+        budget *= if narrow { 0.94 } else { 0.7 };
     };
     let few = [1, 2].iter().all(|bands| seen.contains(bands)) && [3, 4, 5].iter().any(|bands| seen.contains(bands));
     assert!(few && seen.contains(&10), "{name}: {seen:?}");
@@ -76,57 +101,98 @@ fn seen_with_less_and_less(name: &str, (model, camera): (&Model, Camera), settin
     assert_eq!((error.what, error.most), ("bytes for the lists of one row of tiles", budget as u32), "{name}");
     // and the renderer goes on
     renderer.upload_with(model, settings).unwrap();
-    assert_same(&whole, &draw(&mut renderer, &camera, outputs).unwrap(), name);
+    assert_same(&whole, &draw(&mut renderer, camera, outputs).unwrap(), name);
     assert_silent(renderer);
 }
 
-#[test]
-fn of_a_mesh() {
+fn of_a_mesh() -> Vec<Case> {
     let (name, model) = meshes().swap_remove(1);
-    with_less_and_less(name, &model, SceneSettings::default(), 900_000.0);
+    vec![Case::new(name, model, SceneSettings::default(), 900_000.0)]
 }
 
 /// Trimmed faces, whose gaps are mended, and healed before.
-#[test]
-fn of_spline_parts() {
+fn of_spline_parts() -> Vec<Case> {
     let (name, mut model) = splines().swap_remove(6);
     model.parts = cube().parts;
     model.instances = cube().instances;
-    with_less_and_less(name, &model, SceneSettings::default(), 1_600_000.0);
+    vec![Case::new(name, model, SceneSettings::default(), 1_600_000.0)]
 }
 
-#[test]
-fn of_thousands_of_primitives() {
+fn of_thousands_of_primitives() -> Vec<Case> {
     let model = solids::holes(45);
     let above = Camera::framing(model.control_bounds(), DVec3::new(0.02, -0.01, 1.0), DVec3::Y, 0.6, SIZE);
-    seen_with_less_and_less("holes", (&model, above), SceneSettings::default(), 120_000.0);
+    vec![Case { camera: above, ..Case::new("holes", model, SceneSettings::default(), 120_000.0) }]
 }
 
-#[test]
-fn of_what_is_seen_through() {
-    with_less_and_less("glass", &in_glass(), SceneSettings::default(), 20_000.0);
+fn of_what_is_seen_through() -> Vec<Case> {
     let clear = |c| [0.2, 0.5, 0.4, c];
     let of_operands = model(vec![
         one(painted(clear(0.4), mesh(ball_mesh(3)))),
         one(painted(clear(0.3), part(cube()))),
         one(painted(clear(1.0), ball(0.4, 0.1))),
     ]);
-    with_less_and_less("operands of glass", &of_operands, SceneSettings::default(), 900_000.0);
+    let settings = SceneSettings::default();
+    vec![
+        Case::new("glass", in_glass(), settings, 20_000.0),
+        Case::new("operands of glass", of_operands, settings, 900_000.0),
+    ]
 }
 
-#[test]
-fn of_lengths_and_marks() {
+fn of_lengths_and_marks() -> Vec<Case> {
     let settings = SceneSettings { thickness: true, highlight: Some(Highlight::default()), ..SceneSettings::default() };
     let m = model(vec![one(painted([0.5; 4], mesh(ball_mesh(3)))), one(painted([0.7; 4], ball(0.8, 0.5)))]);
-    with_less_and_less("lengths", &m, settings, 900_000.0);
+    vec![Case::new("lengths", m, settings, 900_000.0)]
+}
+
+fn of_samples() -> Vec<Case> {
+    let (name, model) = splines().swap_remove(1);
+    let settings = SceneSettings { samples: Samples::Four, ..SceneSettings::default() };
+    vec![Case::new(name, model, settings, 900_000.0), Case::new("glass, samples", in_glass(), settings, 20_000.0)]
 }
 
 #[test]
-fn of_samples() {
-    let (name, model) = splines().swap_remove(1);
-    let settings = SceneSettings { samples: Samples::Four, ..SceneSettings::default() };
-    with_less_and_less(name, &model, settings, 900_000.0);
-    with_less_and_less("glass", &in_glass(), settings, 20_000.0);
+fn a_mesh() {
+    of_a_mesh().iter().for_each(|case| with_less_and_less(case, Steps::Wide));
+}
+
+#[test]
+fn spline_parts() {
+    of_spline_parts().iter().for_each(|case| with_less_and_less(case, Steps::Wide));
+}
+
+#[test]
+fn thousands_of_primitives() {
+    of_thousands_of_primitives().iter().for_each(|case| with_less_and_less(case, Steps::Wide));
+}
+
+#[test]
+fn seen_through() {
+    of_what_is_seen_through().iter().for_each(|case| with_less_and_less(case, Steps::Wide));
+}
+
+#[test]
+fn lengths_and_marks() {
+    of_lengths_and_marks().iter().for_each(|case| with_less_and_less(case, Steps::Wide));
+}
+
+#[test]
+fn samples() {
+    of_samples().iter().for_each(|case| with_less_and_less(case, Steps::Wide));
+}
+
+/// By many more budgets, of which most make as many bands as the one before.
+#[test]
+#[ignore = "minutes: tools/soak"]
+fn by_small_steps() {
+    let all = [
+        of_a_mesh(),
+        of_spline_parts(),
+        of_thousands_of_primitives(),
+        of_what_is_seen_through(),
+        of_lengths_and_marks(),
+        of_samples(),
+    ];
+    all.iter().flatten().for_each(|case| with_less_and_less(case, Steps::Narrow));
 }
 
 /// What is told of crossings is told of one drawing of the view, however many there are.

@@ -5,10 +5,10 @@
 //! passes within the tolerance of its centre.
 
 use crate::shapes;
-use crate::support::assert_silent;
+use crate::support::{assert_silent, watched_with};
 use crate::trims;
 use glam::{DAffine3, DVec2, DVec3, DVec4};
-use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
+use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Face, LoopAt, Model, Projection, SurfaceKind};
 use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings, TrimWay};
 use selvedge::spline::Surface;
@@ -53,14 +53,6 @@ fn camera(i: usize, focus: DVec2, zoom: f64) -> Camera {
     }
 }
 
-fn renderer(model: &Model, settings: SceneSettings) -> HeadlessRenderer {
-    let options = HeadlessOptions { device: None, validation: true };
-    let mut renderer =
-        HeadlessRenderer::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"));
-    renderer.upload_with(model, settings).unwrap();
-    renderer
-}
-
 fn draw(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
     let outputs = Outputs { face: true, ..Outputs::default() };
     renderer.render(camera, &FrameSettings::default(), outputs).unwrap()
@@ -95,7 +87,7 @@ fn judge(picture: &Picture, case: &trims::TrimCase, id: u32, (focus, zoom): (DVe
 
 fn every_case(way: TrimWay, zooms: &[f64]) {
     let cases = trims::all();
-    let mut renderer = renderer(&model(&cases), SceneSettings { trim: way, ..Default::default() });
+    let mut renderer = watched_with(&model(&cases), SceneSettings { trim: way, ..Default::default() });
     for (i, case) in cases.iter().enumerate() {
         // what the judge knows is what was stated by hand
         let index = LoopIndex::new(&case.loops);
@@ -132,7 +124,7 @@ fn a_wrong_case_is_seen() {
     let cases = trims::all();
     let find = |name: &str| cases.iter().position(|case| case.name == name).unwrap();
     let (eight, star) = (find("5 figure of eight"), find("5 pentagram"));
-    let mut renderer = renderer(&model(&cases), SceneSettings::default());
+    let mut renderer = watched_with(&model(&cases), SceneSettings::default());
     let focus = DVec2::from(cases[star].focus);
     let picture = draw(&mut renderer, &camera(star, focus, 1.0));
     assert!(!judge(&picture, &cases[eight], star as u32 + 1, (focus, 1.0)).0.is_empty());
@@ -148,13 +140,13 @@ fn no_frame_depends_on_the_one_before() {
     let model = model(&cases[i..=i]);
     for &trim in TrimWay::ALL {
         let settings = SceneSettings { trim, ..Default::default() };
-        let mut old = renderer(&model, settings);
+        let mut old = watched_with(&model, settings);
         let focus = DVec2::from(cases[i].focus);
         let away =
             Camera { eye: DVec3::new(50.0, 0.0, 2.0), target: DVec3::new(50.0, 0.0, 0.0), ..camera(0, focus, 1.0) };
         for view in [camera(0, focus, 1.0), camera(0, focus, 100.0), away, camera(0, focus, 3.0)] {
             let picture = draw(&mut old, &view);
-            let mut fresh = renderer(&model, settings);
+            let mut fresh = watched_with(&model, settings);
             let same = draw(&mut fresh, &view);
             assert!(picture.face == same.face && picture.colour == same.colour, "{trim:?}");
             assert_silent(fresh);
@@ -183,7 +175,7 @@ fn edited_as_if_uploaded_afresh(trim: TrimWay, most_bytes: u64) {
     let at = LoopAt { part: 0, face: 0, trim_loop: 0 };
     let view = Camera { size: (64, 64), ..camera(0, DVec2::splat(0.5), 1.0) };
     let fixed = SceneSettings { trim, ..Default::default() };
-    let mut edited = renderer(&model, SceneSettings { editable: true, ..fixed });
+    let mut edited = watched_with(&model, SceneSettings { editable: true, ..fixed });
     draw(&mut edited, &view);
     for frame in 0..6 {
         let start = model.parts[0].faces[0].loops[0].clone();
@@ -198,7 +190,7 @@ fn edited_as_if_uploaded_afresh(trim: TrimWay, most_bytes: u64) {
         };
         edited.edit_loop(at, &next).unwrap();
         model.parts[0].faces[0].loops[0] = next;
-        let (a, mut fresh) = (draw(&mut edited, &view), renderer(&model, fixed));
+        let (a, mut fresh) = (draw(&mut edited, &view), watched_with(&model, fixed));
         let b = draw(&mut fresh, &view);
         assert!(a.colour == b.colour && a.face == b.face, "frame {frame}");
         assert!(a.stats.edit_bytes > 0 && a.stats.edit_bytes < most_bytes, "{trim:?}: {} bytes", a.stats.edit_bytes);
@@ -219,7 +211,7 @@ fn an_edit_costs_what_its_face_costs() {
         let settings = SceneSettings { trim, editable: true, ..Default::default() };
         let sent = [&[one][..], &[one, many, many]].map(|names| {
             let cases: Vec<_> = names.iter().map(named).collect();
-            let mut edited = renderer(&model(&cases), settings);
+            let mut edited = watched_with(&model(&cases), settings);
             draw(&mut edited, &view);
             let moved = cases[0].loops[0].translated(DVec2::new(0.01, 0.02)).unwrap();
             edited.edit_loop(at, &moved).unwrap();
@@ -239,10 +231,10 @@ fn edits_that_cannot_be() {
     let model = model(&cases[..1]);
     let at = LoopAt { part: 0, face: 0, trim_loop: 0 };
     let shape = &model.parts[0].faces[0].loops[0];
-    let mut fixed = renderer(&model, SceneSettings::default());
+    let mut fixed = watched_with(&model, SceneSettings::default());
     assert_eq!(fixed.edit_loop(at, shape), Err(EditError::NotEditable));
     assert_silent(fixed);
-    let mut edited = renderer(&model, SceneSettings { editable: true, ..Default::default() });
+    let mut edited = watched_with(&model, SceneSettings { editable: true, ..Default::default() });
     for wrong in [LoopAt { part: 7, ..at }, LoopAt { face: 1, ..at }, LoopAt { trim_loop: 1, ..at }] {
         assert_eq!(edited.edit_loop(wrong, shape), Err(EditError::NoSuchLoop(wrong)));
     }

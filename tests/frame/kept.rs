@@ -50,12 +50,12 @@ impl Pair {
             picture
         };
         let first = drawn(0, false);
-        assert!(!first.stats.kept || first.stats.retries > 0, "{what}: something changed");
+        assert!(!first.stats.reused || first.stats.retries > 0, "{what}: something changed");
         // where patches may lie behind others, a view is told of them, and then draws once more without
         let kept = [1, 2, 3].map(|nth| drawn(nth, false))[2].clone();
         let whole = drawn(4, true);
         let again = drawn(5, false);
-        assert_eq!((kept.stats.kept, whole.stats.kept, again.stats.kept), (true, false, true), "{what}");
+        assert_eq!((kept.stats.reused, whole.stats.reused, again.stats.reused), (true, false, true), "{what}");
         let kept_passes: &[&str] = if self.scene.samples == Samples::One { &SEEN_BY } else { &SEEN_BY[..2] };
         // of samples, tessellation and trim table alone, which a scene without patches has not
         let has = passes(&whole).iter().any(|pass| kept_passes.contains(pass));
@@ -81,7 +81,7 @@ fn passes(picture: &Picture) -> Vec<&str> {
 
 /// All that a frame tells but its time, and what was drawn anew.
 fn counts(picture: &Picture) -> FrameStats {
-    FrameStats { passes: Vec::new(), kept: false, triangles: 0, ..picture.stats.clone() }
+    FrameStats { passes: Vec::new(), reused: false, triangles: 0, ..picture.stats.clone() }
 }
 
 /// Whether the next picture of a viewer makes a trim table. It is as a fresh renderer draws it, of as many rows.
@@ -92,7 +92,7 @@ fn makes_a_table(pair: &mut Pair, model: &Model, camera: &Camera, settings: Fram
     assert_identical(&picture, &expected, what);
     let of_table = |p: &Picture| (p.stats.trim_rows, p.stats.trim_segments, p.stats.trim_intercepts, p.stats.clamps);
     assert_eq!(of_table(&picture), of_table(&expected), "{what}");
-    assert!(!picture.stats.kept && picture.stats.trim_rows > 0, "{what}");
+    assert!(!picture.stats.reused && picture.stats.trim_rows > 0, "{what}");
     assert!(passes(&expected).contains(&"trim table"), "{what}: a first picture has no table");
     passes(&picture).contains(&"trim table")
 }

@@ -46,4 +46,6 @@ mod touching;
 #[path = "../shapes/trims.rs"]
 mod trims;
 mod turned;
+#[path = "../watched/mod.rs"]
+mod watched;
 mod zoom;

@@ -48,7 +48,7 @@ fn closer(whole: &Camera, picture: &Picture, times: f64) -> Camera {
 }
 
 #[test]
-#[ignore = "minutes"]
+#[ignore = "minutes: tools/soak"]
 fn closed_solids_of_real_files_have_no_cracks() {
     let folder = std::env::var_os("SELVEDGE_MODELS").map(PathBuf::from).expect("SELVEDGE_MODELS names a folder");
     let mut paths = Vec::new();

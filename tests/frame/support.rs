@@ -1,7 +1,9 @@
 //! A watched renderer and the cameras of these tests.
 
+pub use crate::watched::assert_silent;
+use crate::watched::renderer;
 use glam::DVec3;
-use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
+use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Model, Projection};
 use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
 
@@ -12,9 +14,7 @@ pub fn watched(model: &Model) -> HeadlessRenderer {
 
 /// As [`watched`], with settings of the scene.
 pub fn watched_with(model: &Model, settings: SceneSettings) -> HeadlessRenderer {
-    let options = HeadlessOptions { device: None, validation: true };
-    let mut renderer =
-        HeadlessRenderer::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"));
+    let mut renderer = renderer();
     renderer.upload_with(model, settings).unwrap();
     renderer
 }
@@ -22,12 +22,6 @@ pub fn watched_with(model: &Model, settings: SceneSettings) -> HeadlessRenderer 
 /// One picture with every image, at the default tolerance.
 pub fn render(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
     renderer.render(camera, &FrameSettings::default(), Outputs::ALL).unwrap()
-}
-
-/// Ends the renderer; anything that the layers said fails the test.
-pub fn assert_silent(renderer: HeadlessRenderer) {
-    let messages = renderer.shutdown();
-    assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
 }
 
 /// All of the model, from the front, the right and above.

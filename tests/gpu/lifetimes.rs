@@ -2,7 +2,7 @@
 
 use crate::support::{assert_silent, watched};
 use ash::vk;
-use selvedge::gpu::{Buffer, BufferInfo, GpuError, Home, Image, ImageInfo, Pool};
+use selvedge::gpu::{Binding, Buffer, BufferInfo, ComputeInfo, GpuError, Home, Image, ImageInfo, Pipeline, Pool};
 use selvedge::headless::{HeadlessDevice, HeadlessError, HeadlessOptions, Severity};
 use selvedge::passes::scan::Scan;
 
@@ -104,4 +104,38 @@ fn a_missing_driver_is_answered_with_what_to_install() {
     let said = [output.stdout, output.stderr].map(|bytes| String::from_utf8_lossy(&bytes).into_owned()).concat();
     assert!(!output.status.success(), "{said}");
     assert!(said.contains("apt install mesa-vulkan-drivers"), "{said}");
+}
+
+/// Pipelines of one description are one Vulkan object, which lives as long as the last of them; the driver makes it once.
+#[test]
+fn pipelines_of_one_description_are_one() {
+    let watched = watched();
+    let device = watched.device();
+    let spirv: Vec<u32> = include_bytes!("spirv/coverage.comp.spv")
+        .chunks_exact(4)
+        .map(|word| u32::from_le_bytes(word.try_into().unwrap()))
+        .collect();
+    let bindings = [[Binding::Texels; 3].as_slice(), &[Binding::Storage; 2]].concat();
+    let info = ComputeInfo { name: "twice", spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
+    let named = |name: &str| device.objects().iter().filter(|object| *object == name).count();
+    let first = Pipeline::compute(device, &info).unwrap();
+    let once = device.pipeline_time();
+    assert!(!once.is_zero());
+    let copy = spirv.clone();
+    let second = Pipeline::compute(device, &ComputeInfo { spirv: &copy, ..info }).unwrap();
+    assert_eq!((first.handle(), first.layout()), (second.handle(), second.layout()));
+    assert_eq!((named("twice"), device.pipeline_time()), (2, once));
+    let other = Pipeline::compute(device, &ComputeInfo { name: "another", ..info }).unwrap();
+    assert!(other.handle() != first.handle() && device.pipeline_time() > once);
+    drop(first);
+    assert_eq!(named("twice"), 1);
+    // the validation layer tells whether it was freed too early, twice or never
+    let third = Pipeline::compute(device, &info).unwrap();
+    assert_eq!(third.handle(), second.handle());
+    drop((second, third));
+    let before = device.pipeline_time();
+    let anew = Pipeline::compute(device, &info).unwrap();
+    assert!(device.pipeline_time() > before, "made once more");
+    drop((anew, other));
+    assert_silent(watched);
 }

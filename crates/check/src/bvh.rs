@@ -1,6 +1,6 @@
-//! A tree of boxes: which of many things can a ray meet, nearest first.
+//! A bounding volume hierarchy: the boxes that a ray may meet, nearest first.
 //!
-//! Binary, built from the top by the surface area heuristic over [`BINS`] bins an axis; the items of
+//! Binary, built from the top by the surface area heuristic over [`BINS`] bins an axis; the boxes of
 //! a leaf are a range of one permutation. Source: I. Wald, *On fast construction of SAH-based bounding
 //! volume hierarchies*, IEEE Symposium on Interactive Ray Tracing 2007.
 

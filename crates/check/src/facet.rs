@@ -1,4 +1,4 @@
-//! Triangles of meshes: an exact decision who is hit, so that no ray slips between two of them.
+//! Triangles of meshes: an exact hit test, so that no ray passes between two neighbours.
 //!
 //! ```text
 //!            c          the corners, seen along the ray, are points of a plane in which the ray is the

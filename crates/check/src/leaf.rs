@@ -5,7 +5,7 @@
 //!                        drop what lies outside all trim loops
 //! ```
 //!
-//! A leaf keeps its control net relative to its own middle `c` (so that a model far from the origin
+//! A leaf has its control net relative to its own middle `c` (so that a model far from the origin
 //! loses no digits) as `(w (X - c), w)`. A leaf that is a parallelogram with equal weights, as every
 //! plane is, is met in closed form; any other goes through the [`Solver`].
 //!

@@ -1,5 +1,5 @@
-//! The slow exact renderer: what every error is measured against. `f64`, no GPU; triangles only where the
-//! model itself has them.
+//! The exact reference renderer, against which every error is measured. Slow, `f64`, no GPU; triangles only where
+//! the model itself has them.
 //!
 //! ```text
 //!   pixel ──Camera::ray──▶ line ──Bvh over instances, then leaves──▶ candidates
@@ -10,19 +10,19 @@
 //!
 //! Nothing is tessellated and nothing is sampled: a hit is a root of the surface's own rational
 //! equations, accurate to about 1e-15 of the distance to the eye, and a root is left out only after a
-//! proof that there is none (see the `solver` module). What the reference leaves out by rule, because
-//! it covers no area: surface that is seen exactly edge-on. A solid shows where the ray comes from outside
-//! to inside, at the near plane or behind it: a near plane within a solid cuts it open, and the first face
-//! entered from there is seen. Of solids that are seen through every face shows, entered or left, unless its opacity
-//! is 0: hits are those, and what is opaque. Faces and meshes of a model that a volume trims are met within it, and
-//! nearer to its boundary than [`ON`].
+//! proof that there is none (see the `solver` module). By rule the reference leaves out a surface seen exactly edge-on,
+//! because it covers no area. A solid is hit where the ray enters it, at the near plane or behind it: a near plane
+//! within a solid cuts it open, and the first face entered from there is seen. Of a transparent solid every face is
+//! hit, entered or left, unless its opacity is 0. Faces and meshes of a model trimmed by a volume are hit within the
+//! volume, and up to [`ON`] outside of it.
 //!
 //! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`]; [`SunTracer`] and [`judge_sun`] do so for the
-//! light.
+//! light. [`EdgeTracer`] says which points of edges are seen.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
 mod bvh;
+mod edges;
 mod facet;
 mod judge;
 mod leaf;
@@ -34,6 +34,7 @@ mod sun;
 #[cfg(test)]
 mod tests;
 
+pub use edges::{AT, EdgePoint, EdgeTracer, Visibility};
 pub use judge::{
     Bin, Class, DepthErrors, EXACT_DEPTH_PX, EXACT_NORMAL_DEG, Errors, Exactness, Folds, GRAZING_COSINE, JudgeOptions,
     Judgement, Mismatch, SMOOTH_PX, TURN, judge,

@@ -1,4 +1,4 @@
-//! What the command line accepts, checked before anything is opened.
+//! The arguments of the command line, checked before any file is opened.
 
 mod read;
 
@@ -94,7 +94,7 @@ pub struct RenderArgs {
     /// (f32, H x W: length of the ray within solids and closed parts, overlaps counted once)
     #[arg(long, value_name = "IMAGE=FILE.npy")]
     pub aov: Vec<Aov>,
-    /// Write the frame's statistics as JSON
+    /// Write statistics as JSON, of the same frame drawn once more; what the driver compiles for the first one stands apart, as `first_frame`
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
     /// Write the camera as JSON: eye, target, up, fovy in degrees (or ortho: half the height), size

@@ -3,14 +3,16 @@
 //! Speed without its error says little: some frames of the path are judged against the exact model,
 //! and both stand in the same table.
 //!
-//! Frames are drawn as a viewer draws them: a trim table for all views from about as far is made once, in the warm-up, and
-//! costs those that keep it nothing. A view that stands (`--motion still`) is drawn in turn with every pass, and keeping
-//! what the frame before saw: those rows begin with `kept:`.
+//! Frames are drawn as a viewer draws them: the warm-up builds the trim table that serves all views from about the same
+//! distance, and later frames reuse it. A standing view (`--motion still`) is drawn in turn with every pass and with the
+//! visibility of the frame before; rows of the latter begin with `reused:`.
+//!
+//! The first frame is no part of the table: the driver compiles for it, and its time stands apart.
 
 use crate::args::{BenchArgs, Motion, Size};
 use crate::progress::during;
 use crate::series::{Gathered, Row};
-use crate::session::{self, Session};
+use crate::session::{self, FirstFrame, Session};
 use crate::target::{self, CSV, JSON};
 use crate::{Outcome, camera, edit, output, path, verdict};
 use anyhow::Result;
@@ -22,7 +24,7 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Frames before the first measured one: buffers have grown, the driver's pipelines are compiled.
+/// Frames before the first measured one: buffers have grown, and the driver has compiled. What the first one took is told apart.
 const WARM_UP_FRAMES: usize = 3;
 /// Pixels judged in each of them, beside those at which the face changes.
 const JUDGED_SAMPLES: usize = 2_000;
@@ -38,6 +40,7 @@ struct Report {
     tolerance_px: f64,
     device: String,
     driver: String,
+    first_frame: Option<FirstFrame>,
     rows: Vec<Row>,
     error: Error,
 }
@@ -136,6 +139,7 @@ fn measure(args: &BenchArgs, model: &Path) -> Result<(Report, bool)> {
         tolerance_px: args.frame.tolerance,
         device: stats.device,
         driver: stats.driver,
+        first_frame: session.first_frame(),
         rows: gathered.rows(),
         error,
     };
@@ -147,13 +151,13 @@ fn timed(session: &mut Session, camera: &Camera, gathered: &mut Gathered) -> Res
     let start = Instant::now();
     let stats = session.render(camera, Outputs::default())?.stats;
     let took = start.elapsed().as_secs_f64() * 1e3;
-    let row = |name: &str| if stats.kept { format!("kept: {name}") } else { name.to_owned() };
+    let row = |name: &str| if stats.reused { format!("reused: {name}") } else { name.to_owned() };
     gathered.push(&row("wall clock, with read-back"), "ms", took);
     for pass in &stats.passes {
         gathered.push(&row(&format!("pass: {}", pass.name)), "ms", pass.gpu_ms);
     }
     gathered.push(&row("all passes"), "ms", stats.passes.iter().map(|p| p.gpu_ms).sum());
-    if !stats.kept {
+    if !stats.reused {
         if stats.trim_rows > 0 && stats.passes.iter().all(|p| p.name != TRIM_TABLE) {
             gathered.push(&row(&format!("pass: {TRIM_TABLE}")), "ms", 0.0);
         }
@@ -212,8 +216,14 @@ impl Report {
         }
         table.column_iter_mut().skip(2).for_each(|c| c.set_cell_alignment(CellAlignment::Right));
         let Self { model, faces, face_instances, missing_faces, size: [w, h], device, driver, error: e, .. } = self;
+        let first = self.first_frame.map_or_else(String::new, |first| {
+            format!(
+                "first frame, not in the table: {:.0} ms; pipelines for it: {:.0} ms of the driver's\n",
+                first.wall_ms, first.pipelines_ms
+            )
+        });
         format!(
-            "{model}: {faces} faces, {face_instances} placed, {missing_faces} missing; {w} x {h} on {device} ({driver})\n{table}\n\
+            "{model}: {faces} faces, {face_instances} placed, {missing_faces} missing; {w} x {h} on {device} ({driver})\n{table}\n{first}\
              error in {} judged frames: {} of {} pixels wrong, worst shift {:.3} px, depth {:.2e} mm, normal {:.3} deg",
             e.judged_frames, e.wrong_pixels, e.judged_pixels, e.worst_shift_px, e.worst_depth, e.worst_normal_deg
         )
@@ -225,7 +235,12 @@ fn csv(path: &Path, reports: &[Report]) -> Result<()> {
     target::write(path, |to| {
         let mut lines = csv::Writer::from_writer(to);
         lines.write_record(["model", "quantity", "unit", "median", "p95", "largest", "frames"])?;
-        for Report { model, rows, error: e, .. } in reports {
+        for Report { model, rows, first_frame, error: e, .. } in reports {
+            for (name, ms) in
+                first_frame.iter().flat_map(|f| [("first frame", f.wall_ms), ("pipelines", f.pipelines_ms)])
+            {
+                lines.serialize((model, name, "ms", ms, ms, ms, 1))?;
+            }
             for r in rows {
                 lines.serialize((model, &r.name, r.unit, r.median, r.p95, r.largest, r.frames))?;
             }

@@ -1,4 +1,4 @@
-//! What every command writes: results, JSON, pictures, warnings.
+//! The output of all commands: results, JSON, pictures, warnings.
 
 use crate::target;
 use anyhow::Result;

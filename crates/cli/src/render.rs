@@ -2,12 +2,13 @@
 
 use crate::args::{Aov, Image, RenderArgs};
 use crate::camera::CameraFile;
-use crate::session::{self, Session};
+use crate::session::{self, FirstFrame, Session};
 use crate::target::{self, JSON, NPY, PNG, Target};
 use crate::{Outcome, npy, output};
 use anyhow::Result;
 use selvedge::model::Camera;
-use selvedge::picture::{Outputs, Picture};
+use selvedge::picture::{FrameStats, Outputs, Picture};
+use serde::Serialize;
 use std::sync::Arc;
 
 /// Draws the picture and writes every file asked for.
@@ -23,7 +24,8 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     // the renderer shares it: large models are there once
     let model = Arc::new(std::mem::take(&mut import.model));
     let mut session = Session::of_one(device?, &args.frame, &import, &model, &args.edges)?;
-    let picture = session.render(&camera, wanted(&args.aov))?;
+    let outputs = wanted(&args.aov);
+    let picture = session.render(&camera, outputs)?;
     if args.frame.highlight {
         let stats = &picture.stats;
         tracing::warn!("{} pixels show contact, {} overlap", stats.contact_pixels, stats.overlap_pixels);
@@ -31,11 +33,21 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     if !session.shows(&camera, &picture)? {
         session.blank(&args.model, &model, camera.size, &args.read)?;
     }
+    let stats = match (&args.stats, session.first_frame()) {
+        (Some(_), Some(first_frame)) => {
+            Some(Stats { frame: session.measured_again(&camera, outputs, &picture.stats)?, first_frame })
+        }
+        _ => None,
+    };
     let gpu_ms: f64 = picture.stats.passes.iter().map(|p| p.gpu_ms).sum();
     let trimmed = picture.stats.trim.map_or(String::new(), |way| format!(", trimmed by way {}", way.name()));
-    tracing::info!("{gpu_ms:.1} ms in {} passes on {}{trimmed}", picture.stats.passes.len(), picture.stats.device);
+    tracing::info!(
+        "{gpu_ms:.1} ms in {} passes of a first frame on {}{trimmed}",
+        picture.stats.passes.len(),
+        picture.stats.device
+    );
     // to close a device takes about as long as to write a picture
-    let (written, complained) = rayon::join(|| write_all(args, &camera, &picture), || session.close());
+    let (written, complained) = rayon::join(|| write_all(args, &camera, &picture, stats.as_ref()), || session.close());
     written?;
     Ok(if complained { Outcome::Broken } else { Outcome::Good })
 }
@@ -48,13 +60,21 @@ fn outputs(args: &RenderArgs) -> Vec<Target> {
     std::iter::once(picture).chain(images).chain(told).collect()
 }
 
-fn write_all(args: &RenderArgs, camera: &Camera, picture: &Picture) -> Result<()> {
+/// What `--stats` writes.
+#[derive(Serialize)]
+struct Stats {
+    #[serde(flatten)]
+    frame: FrameStats,
+    first_frame: FirstFrame,
+}
+
+fn write_all(args: &RenderArgs, camera: &Camera, picture: &Picture, stats: Option<&Stats>) -> Result<()> {
     output::png(&args.output, picture.size, &picture.colour)?;
     for aov in &args.aov {
         write(aov, picture)?;
     }
     args.camera_out.iter().try_for_each(|path| output::json(path, &CameraFile::from(camera)))?;
-    args.stats.iter().try_for_each(|path| output::json(path, &picture.stats))
+    args.stats.iter().zip(stats).try_for_each(|(path, stats)| output::json(path, stats))
 }
 
 fn wanted(aovs: &[Aov]) -> Outputs {

@@ -1,4 +1,4 @@
-//! A model read and a renderer opened, with everything worth knowing told on standard error.
+//! Reads a model and opens a renderer; progress and warnings go to standard error.
 
 use crate::args::{EdgeArgs, FrameArgs, ReadArgs, SubdivideArgs};
 use crate::progress::{advancing, during, importing};
@@ -7,8 +7,9 @@ use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, Model, TrimLoop};
-use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, SceneSettings};
+use selvedge::picture::{FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings};
 use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
+use serde::Serialize;
 use std::io;
 use std::path::Path;
 use std::sync::Arc;
@@ -107,6 +108,16 @@ pub fn shows(picture: &Picture) -> bool {
 pub struct Session {
     renderer: HeadlessRenderer,
     settings: FrameSettings,
+    first_frame: Option<FirstFrame>,
+}
+
+/// What the first frame took: drivers compile for it, and for no other one.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct FirstFrame {
+    /// The driver's time for the pipelines of the scene, made one by one.
+    pub pipelines_ms: f64,
+    /// From the call to the picture in host memory, with what the driver compiles when it first runs a shader.
+    pub wall_ms: f64,
 }
 
 /// Opens the device that is asked for.
@@ -168,14 +179,31 @@ impl Session {
         let mut settings =
             FrameSettings { tolerance_px: args.tolerance, levels: args.factors.0, ..FrameSettings::default() };
         settings.background = import.picture.background.or(settings.background);
-        Ok(Self { renderer, settings })
+        Ok(Self { renderer, settings, first_frame: None })
     }
 
     /// One frame.
     pub fn render(&mut self, camera: &Camera, outputs: Outputs) -> Result<Picture> {
+        let start = Instant::now();
         let picture = during("drawing", || self.renderer.render(camera, &self.settings, outputs))?;
+        self.first_frame.get_or_insert_with(|| FirstFrame {
+            pipelines_ms: self.renderer.pipeline_time().as_secs_f64() * 1e3,
+            wall_ms: start.elapsed().as_secs_f64() * 1e3,
+        });
         output::clamps(&picture.stats);
         Ok(picture)
+    }
+
+    /// What the first frame took, once it is drawn.
+    pub fn first_frame(&self) -> Option<FirstFrame> {
+        self.first_frame
+    }
+
+    /// The statistics of a picture, measured once more by a frame of all passes for which the driver compiles nothing.
+    pub fn measured_again(&mut self, camera: &Camera, outputs: Outputs, first: &FrameStats) -> Result<FrameStats> {
+        let settings = FrameSettings { all_passes: true, ..self.settings };
+        let again = during("drawing again, to measure", || self.renderer.render(camera, &settings, outputs))?.stats;
+        Ok(FrameStats { retries: first.retries, ..again })
     }
 
     /// Whether any pixel of the picture shows the model.

@@ -4,8 +4,8 @@
 //!   model ─▶ copies ─▶ zoom ─▶ size ─▶ { every way and tolerance, in turn, frame by frame } ─▶ a row each
 //! ```
 //!
-//! What stands in one group of rows was measured in turn, so that whatever else the machine does slows all of it
-//! alike; their ratios mean something where times do not. Slefes have renderers of their own: they belong to the scene.
+//! The rows of one group are measured in turn, so that other work on the machine slows all of them alike: their ratios are
+//! comparable, their times are not. Slefes have renderers of their own: they belong to the scene.
 //! In the end, how time grows (`growth`), with `--rate` triangles a second beside those of a plain grid (`rate`); or,
 //! with `--against-fixed`, another table (`against`).
 

@@ -1,4 +1,4 @@
-//! Numbers and vectors of the command line, with what is told of bad ones.
+//! Numbers and vectors of the command line, and the messages about bad ones.
 
 use glam::DVec3;
 use selvedge::picture::FrameSettings;

@@ -1,7 +1,7 @@
 //! The accuracy promise, tested on one picture.
 //!
 //! The promise: a pixel shows what the exact model shows at a point at most `tolerance` pixels away.
-//! The judge asks [`selvedge_check`], which intersects rays with the exact surfaces and classifies the
+//! The judge is [`selvedge_check`]: it intersects rays with the exact surfaces and classifies the
 //! hits against the exact trim curves in double precision, and shares no code with the GPU passes.
 
 use crate::progress::counting;

@@ -3,11 +3,12 @@
 //!
 //! ```text
 //!   math ◀─ spline ◀─ model ◀─ trim
-//!                 csg ◀┘ ▲       ▲
-//!                        └───────┴── construct
+//!                 csg ◀┘ ▲ ▲     ▲
+//!                   edges┘ └─────┴── construct
 //! ```
 //!
-//! [`model`] says what a renderer draws; [`spline`] and [`trim`] evaluate it; [`csg`] has Boolean expressions;
+//! [`model`] says what a renderer draws; [`spline`] and [`trim`] evaluate it; [`edges`] finds where its faces meet;
+//! [`csg`] has Boolean expressions;
 //! [`construct`] makes surfaces and solids from curves, data, equations and dimensions.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
@@ -17,6 +18,7 @@ pub use glam;
 
 pub mod construct;
 pub mod csg;
+pub mod edges;
 pub mod math;
 pub mod model;
 pub mod spline;

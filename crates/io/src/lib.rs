@@ -13,4 +13,4 @@ pub mod export;
 pub mod import;
 pub mod native;
 
-use selvedge_geometry::{construct, csg, math, model, spline, trim};
+use selvedge_geometry::{construct, csg, edges, math, model, spline, trim};

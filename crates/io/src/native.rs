@@ -23,7 +23,7 @@ use serde::Deserialize;
 pub const MAGIC: &[u8; 9] = b"selvedge\0";
 
 /// The version that is written, and the only one that is read.
-pub const VERSION: u32 = 3;
+pub const VERSION: u32 = 4;
 
 /// Bytes before the model.
 const HEADER: usize = 25;

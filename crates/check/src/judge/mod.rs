@@ -9,7 +9,7 @@
 //!
 //! A picture keeps its promise when no shift exceeds `limit_px` and nothing is gross: every boundary
 //! then lies within `limit_px` of its true place. Where ids agree, depth and normal are compared too.
-//! Two things would make those numbers meaningless, and are kept apart:
+//! Two things would make those numbers meaningless, and are counted apart:
 //!
 //! - *grazing* pixels, where the surface leans more than [`GRAZING_COSINE`] allows: there one pixel of
 //!   shift is ten of depth. They count in `all`, not in `regular`.
@@ -19,7 +19,7 @@
 //! `exact` says more, of *regular* surface: what is seen up to [`SMOOTH_PX`] around the centre is one sheet of one
 //! face, nowhere grazing, and turns by [`TURN`] at most. Elsewhere a shift within the limit may show another sheet, or
 //! the normal changes by more within the arithmetic's last digits of a pixel; those are counted only. Whether a pixel
-//! is regular is asked of the exact surface alone, and only where the drawn one is off by more than [`EXACT_DEPTH_PX`]
+//! is regular follows from the exact surface alone, and is tested only where the drawn one is off by more than [`EXACT_DEPTH_PX`]
 //! or [`EXACT_NORMAL_DEG`]: all others are taken as regular.
 
 mod report;

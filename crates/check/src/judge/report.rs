@@ -1,4 +1,4 @@
-//! What a judgement says: counts, the worst, where, and a picture of it.
+//! The result of a judgement: counts, the largest errors and their places, and a picture of them.
 
 use serde::Serialize;
 

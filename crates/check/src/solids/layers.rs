@@ -1,4 +1,4 @@
-//! A line's way through solids that are told apart, front to back: what drawn layers are measured against.
+//! The faces of separate solids along a line, front to back: the reference of drawn layers.
 //!
 //! ```text
 //!   opaque union  ─────────────────┤▒▒▒▒▒▒▒▒     one list of crossings, so that coincident faces of two solids are
@@ -7,7 +7,7 @@
 //!                   A           A B  B           layers: faces that are left before those that are entered
 //! ```
 //!
-//! An opaque face comes between the two: it hides what is entered where it is, and all behind it.
+//! An opaque face comes between the two: it hides the faces entered at the same place, and all behind it.
 
 use super::{Boundary, Crossing, SolidTracer, Trace};
 use crate::csg::{Tree, TreeError};

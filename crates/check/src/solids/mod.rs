@@ -1,4 +1,4 @@
-//! Boolean solids along a line, exactly: what every drawn solid is measured against.
+//! Boolean solids along a line, exactly: the reference of drawn solids.
 //!
 //! ```text
 //!   A      ────┤▒▒▒▒▒▒▒▒▒▒▒▒├──────          each primitive: where the line crosses it

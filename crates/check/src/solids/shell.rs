@@ -1,4 +1,4 @@
-//! Closed meshes and spline parts: what lies inside, along a line.
+//! Closed meshes and spline parts: the intervals of a line inside of them.
 //!
 //! ```text
 //!   mesh   winding number of the triangles crossed: exact signs, a shared edge is crossed once

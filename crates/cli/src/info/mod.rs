@@ -1,4 +1,4 @@
-//! `selvedge info`: what a file holds, as the engine read it.
+//! `selvedge info`: the content of a file, as it was read.
 //!
 //! ```text
 //!   Import ──▶ Info ──┬─▶ JSON            everything
@@ -15,7 +15,7 @@ mod tree;
 use crate::args::InfoArgs;
 use crate::{Outcome, output, session};
 use anyhow::Result;
-use selvedge::model::{Mesh, Model, Part, SurfaceKind};
+use selvedge::model::{EdgeCounts, Mesh, Model, Part, SurfaceKind};
 use selvedge::picture::{SceneSettings, TrimWay};
 use selvedge::renderer::trim_way;
 use selvedge_io::import::{FaceRecord, Import, ImportReport, Summary};
@@ -36,6 +36,8 @@ struct Info<'a> {
     open_shell_instances: usize,
     faces: usize,
     face_instances: usize,
+    /// Edges and vertices of the distinct parts, as they were found; absent where a face's boundary is no curve.
+    edges: Option<EdgeCounts>,
     trim_loops: usize,
     trim_curves: usize,
     meshes: MeshCounts,
@@ -122,6 +124,7 @@ impl<'a> Info<'a> {
             open_shell_instances: placed(false),
             faces: model.face_count(),
             face_instances: model.face_instance_count(),
+            edges: edges(model),
             trim_loops: faces().map(|f| f.loops.len()).sum(),
             trim_curves: faces().flat_map(|f| &f.loops).map(|l| l.curves().len()).sum(),
             meshes: meshes(model, &parts),
@@ -151,6 +154,13 @@ fn parts<'a>(model: &'a Model) -> Vec<PartRow<'a>> {
         instances,
     };
     model.parts.iter().zip(instances).map(row).collect()
+}
+
+fn edges(model: &Model) -> Option<EdgeCounts> {
+    model.parts.iter().try_fold(EdgeCounts::default(), |mut sum, part| {
+        sum += part.edges().ok()?.counts();
+        Some(sum)
+    })
 }
 
 fn meshes(model: &Model, parts: &[PartRow<'_>]) -> MeshCounts {

@@ -1,4 +1,4 @@
-//! What a Boolean solid is made of.
+//! The parts of a Boolean solid.
 
 use crate::output;
 use selvedge::csg::{Blist, Convention};

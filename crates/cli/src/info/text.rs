@@ -40,13 +40,23 @@ impl Info<'_> {
         row("solids", self.solids, Some(self.solid_instances));
         row("open shells", self.open_shells, Some(self.open_shell_instances));
         row("faces", self.faces, Some(self.face_instances));
-        row("edges", self.report.edges, None);
+        row("edges, stated", self.report.edges, None);
+        if let Some(found) = &self.edges {
+            row("sharp edges", found.sharp, None);
+            row("smooth edges", found.smooth, None);
+            row("seams", found.seams, None);
+            row("free borders", found.borders, None);
+            row("vertices", found.vertices, None);
+        }
         row("trim loops", self.trim_loops, None);
         row("trim curves, derived", self.trim_curves, None);
         row("p-curves, given", self.report.pcurves, None);
         if self.meshes.distinct > 0 {
             row("meshes", self.meshes.distinct, Some(self.meshes.instances));
             row("triangles", self.meshes.triangles, None);
+            let found = self.edges.unwrap_or_default();
+            row("creases", found.mesh_creases, None);
+            row("free borders of meshes", found.mesh_borders, None);
         }
         table.to_string()
     }
@@ -70,6 +80,9 @@ impl Info<'_> {
     fn found(&self) -> String {
         let report = self.report;
         let mut lines = Vec::new();
+        if self.edges.is_none() {
+            lines.push("edges: not counted, for the boundary of a face is no curve".to_owned());
+        }
         if report.edges > 0 || report.deviation > 0.0 {
             lines.push(format!("trim curves: largest deviation {:.3e} mm from their edges", report.deviation));
         }

@@ -5,10 +5,10 @@
 //!             + "visibility" - "visibility untested"                  what the tests in the pixels cost
 //! ```
 //!
-//! Each frame draws its sub-patches twice, first without a test: the same ones, so what is seen through holes counts
-//! for neither. Without a test pixels are kept that a test discards, so the difference can be below zero.
+//! Each frame draws the same sub-patches twice, first without a test, so faces behind holes count for neither drawing.
+//! Without a test, no pixel is discarded: the difference can be below zero.
 //!
-//! All passes are recorded, and once more what a view takes that turns: a table that serves it as well is kept.
+//! Each view is measured with every pass recorded, and once more as a turning view, which reuses a table that serves it.
 
 use super::way::{Contender, Way};
 use crate::args::TrimsArgs;

@@ -6,7 +6,7 @@
 //!                   over accuracy    time against error        each way's own knob, at one view
 //! ```
 //!
-//! What is measured: `measure`. What comes out: a table on standard output, and into `--out` all of it as
+//! `measure` makes the measurements. The output is a table on standard output, and in `--out` all figures as
 //! JSON and CSV, and the plots of R. Wu and J. Peters, *Correct resolution rendering of trimmed spline
 //! surfaces*, 2014: time over zoom, time over picture size, memory over zoom; and time over error.
 

@@ -123,6 +123,13 @@ fn a_dash_is_standard_output() {
     let picture = selvedge(&["render", &scene, "-o", "-", "--stats", &path("a.json")]);
     done(&picture);
     assert_eq!(picture.stdout, fs::read(path("a.png")).unwrap());
+    // what the driver compiled stands apart from what the frame takes
+    let stats: serde_json::Value = serde_json::from_slice(&fs::read(path("a.json")).unwrap()).unwrap();
+    let ms = |of: &str| stats["first_frame"][of].as_f64().unwrap();
+    assert!(ms("pipelines_ms") > 0.0 && ms("wall_ms") > 0.0, "{stats}");
+    assert_eq!(stats["reused"], false, "every pass is measured");
+    let passes: f64 = stats["passes"].as_array().unwrap().iter().map(|pass| pass["gpu_ms"].as_f64().unwrap()).sum();
+    assert!(passes > 0.0, "{stats}");
     let verdicts = selvedge(&["check", &scene, "--samples", "100", "--json", "-"]);
     done(&verdicts);
     assert_eq!(serde_json::from_slice::<serde_json::Value>(&verdicts.stdout).unwrap()[0]["kept"], true);

@@ -1,4 +1,4 @@
-//! What cannot be built, by name.
+//! The errors of constructions, each with the name of its construction.
 
 use crate::math::banded::Singular;
 use crate::model::FaceError;

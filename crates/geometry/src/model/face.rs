@@ -1,6 +1,6 @@
 //! A face: one surface and the loops that trim it.
 
-use super::{Bounds, Colour};
+use super::{Bounds, Colour, EdgeRef};
 use crate::spline::{Bezier, Control, MAX_DEGREE, Surface};
 use glam::{DVec2, DVec3};
 #[cfg(feature = "serde")]
@@ -31,6 +31,8 @@ pub enum SurfaceKind {
 #[cfg_attr(feature = "serde", serde(try_from = "LoopData"))]
 pub struct TrimLoop {
     curves: Vec<Vec<DVec3>>,
+    /// One a curve, or none at all: see [`TrimLoop::edges`].
+    edges: Vec<Option<EdgeRef>>,
 }
 
 /// A trim loop of a model, by numbers.
@@ -79,6 +81,9 @@ pub enum FaceError {
     /// There is no such control point.
     #[error("trim curve {curve} has no control point {point}, or there is no such curve")]
     NoPoint { curve: usize, point: usize },
+    /// References to edges that are neither none nor one a curve.
+    #[error("{edges} references to edges for {curves} trim curves")]
+    Edges { edges: usize, curves: usize },
     /// Degree 0, or above [`MAX_DEGREE`].
     #[error("trim curve {curve} has degree {degree}, which is not between 1 and {MAX_DEGREE}")]
     Degree { curve: usize, degree: usize },
@@ -89,6 +94,7 @@ pub enum FaceError {
 #[derive(Deserialize)]
 struct LoopData {
     curves: Vec<Vec<DVec3>>,
+    edges: Vec<Option<EdgeRef>>,
 }
 
 /// Largest gap between the curves of a stored loop, relative to its coordinates: a loop that was run
@@ -110,7 +116,7 @@ impl TryFrom<LoopData> for TrimLoop {
                 return Err(FaceError::OpenLoop { curve, gap: gap.max_element() });
             }
         }
-        Ok(Self { curves: data.curves })
+        Self { curves: data.curves, edges: Vec::new() }.with_edges(data.edges)
     }
 }
 
@@ -150,7 +156,29 @@ impl TrimLoop {
             }
             *start = DVec3::from_point(end.point(), start.z);
         }
-        Ok(Self { curves })
+        Ok(Self { curves, edges: Vec::new() })
+    }
+
+    /// The loop with one reference to an edge a curve, in the order of the curves.
+    ///
+    /// # Errors
+    /// [`FaceError::Edges`] when their number is another.
+    pub fn with_edges(self, edges: Vec<Option<EdgeRef>>) -> Result<Self, FaceError> {
+        if !edges.is_empty() && edges.len() != self.curves.len() {
+            return Err(FaceError::Edges { edges: edges.len(), curves: self.curves.len() });
+        }
+        Ok(Self { edges, ..self })
+    }
+
+    /// The loop without references to edges.
+    pub fn without_edges(self) -> Self {
+        Self { edges: Vec::new(), ..self }
+    }
+
+    /// The edge of the source of which each curve is a piece: one entry a curve, or none at all where the source has no
+    /// shared edges. `None` for what no edge asked for: seams and sides at poles that were inserted.
+    pub fn edges(&self) -> &[Option<EdgeRef>] {
+        &self.edges
     }
 
     /// The curves in order.
@@ -178,7 +206,7 @@ impl TrimLoop {
             *start = DVec3::from_point(joint, start.z);
         }
         check_curves(&curves)?;
-        Ok(Self { curves })
+        Ok(Self { curves, edges: self.edges.clone() })
     }
 
     /// The loop moved by `step` in `(u, v)`.
@@ -190,7 +218,7 @@ impl TrimLoop {
         let curves = self.curves.iter().map(|c| Bezier { points: c.iter().map(point).collect() }).collect();
         // two homogeneous forms of one point may round apart
         let (lo, hi) = self.bounds();
-        Self::new(curves, STORED_GAP * (lo.abs().max(hi.abs()) + step.abs()))
+        Self::new(curves, STORED_GAP * (lo.abs().max(hi.abs()) + step.abs()))?.with_edges(self.edges.clone())
     }
 
     /// Twice the signed area of the control polygons' enclosed region: positive when the loop runs
@@ -215,6 +243,8 @@ impl TrimLoop {
     pub fn reversed(mut self) -> Self {
         self.curves.reverse();
         self.curves.iter_mut().for_each(|c| c.reverse());
+        self.edges.reverse();
+        self.edges.iter_mut().flatten().for_each(|e| e.forward = !e.forward);
         self
     }
 

@@ -1,4 +1,4 @@
-//! What a renderer says that each pixel sees.
+//! The images of a rendered picture: depth, face and (u, v) of each pixel.
 
 /// Images of a model through a [`Camera`](super::Camera), as a renderer made them. Row 0 is on top; each value is that
 /// at the pixel's centre. An image that the renderer did not make is empty.

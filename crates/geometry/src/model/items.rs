@@ -1,4 +1,4 @@
-//! What is seen through, told apart from the rest: the solids that a ray is followed through.
+//! Transparent and opaque solids, separated: the solids that a ray is followed through.
 //!
 //! ```text
 //!   model.solids: (glass block + gear) , nut        closed parts, one of glass

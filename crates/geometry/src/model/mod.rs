@@ -1,11 +1,13 @@
-//! What is drawn: faces, solids, instances. Plain `f64` data, valid by construction.
+//! Models: faces, solids, instances. Plain `f64` data, valid by construction.
 //!
 //! ```text
 //!   Model ── parts: [Part]            one rigid body of faces in its own coordinates
 //!         │            ├─ faces: [Face]
 //!         │            │       ├─ surface: Surface      rational B-spline over (u, v)
 //!         │            │       └─ loops:   [TrimLoop]   closed chains of rational Bézier curves in (u, v)
-//!         │            └─ meshes: [Mesh]                what the source gave as facets
+//!         │            │       │              └─ edges      which edge of the source each curve is a piece of
+//!         │            ├─ meshes: [Mesh]                what the source gave as facets
+//!         │            └─ stated_edges                  numbers of the source's edges; Part::edges finds them
 //!         ├─ solids: [Solid]          Boolean: primitives and an expression over them
 //!         └─ instances: [Instance]    part index, transform to model space, colour
 //! ```
@@ -17,6 +19,7 @@
 //! Lengths are millimetres where the source file has a unit, else the file's own numbers.
 
 mod camera;
+mod edge;
 mod face;
 mod images;
 mod items;
@@ -29,6 +32,7 @@ mod stored;
 mod xray;
 
 pub use camera::{Camera, CameraError, Projection};
+pub use edge::{Edge, EdgeCounts, EdgeKind, EdgeLimits, EdgeRef, EdgeSource, EdgeUse, Edges, MeshEdge};
 pub use face::{Face, FaceError, LoopAt, SurfaceKind, TrimLoop};
 pub use images::Images;
 pub use items::Items;
@@ -76,6 +80,7 @@ pub struct Model {
 /// One body: a closed solid, or an open shell.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
+#[cfg_attr(feature = "serde", serde(try_from = "stored::PartData"))]
 pub struct Part {
     /// Name in the source, or empty.
     pub name: String,
@@ -85,6 +90,9 @@ pub struct Part {
     pub meshes: Vec<Mesh>,
     /// The faces (or the meshes) bound a volume and their normals point out of it.
     pub closed: bool,
+    /// Edges that the source states and that faces may share, by the number that [`EdgeRef::edge`] gives them: where each
+    /// stands in the source, `None` where it has no number there. Empty where the source states no shared edges.
+    pub stated_edges: Vec<Option<EdgeSource>>,
 }
 
 /// A part placed in the model.

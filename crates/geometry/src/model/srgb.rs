@@ -1,4 +1,4 @@
-//! What a screen shows, and linear light: sRGB (IEC 61966-2-1), a component in `[0, 1]` at a time.
+//! Conversion between sRGB (IEC 61966-2-1) and linear light, one component in `[0, 1]` at a time.
 
 /// Linear light of a component.
 pub fn decoded(c: f64) -> f64 {

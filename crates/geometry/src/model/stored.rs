@@ -1,14 +1,15 @@
-//! What is stored of a model, and the checks between a file and a [`Model`].
+//! The stored form of a model, and the checks between a file and a [`Model`].
 //!
 //! ```text
 //!   bytes ──serde──▶ ModelData ──parts named by instances, numbers of faces, colours──▶ Model
+//!                       ├─ PartData ─▶ Part
 //!                       └─ FaceData ─▶ Face      each type checks its own on the way up:
 //!                       └─ Mesh, Surface, TrimLoop      see their `try_from`
 //! ```
 //!
-//! The code that builds a model in memory keeps these invariants by construction; a file keeps nothing.
+//! Code that builds a model in memory has these invariants by construction; a file may violate each of them.
 
-use super::{Colour, Face, Instance, Model, Part, Solid, SurfaceKind, TrimLoop};
+use super::{Colour, EdgeSource, Face, Instance, Mesh, Model, Part, Solid, SurfaceKind, TrimLoop};
 use crate::spline::Surface;
 use serde::Deserialize;
 
@@ -28,6 +29,9 @@ pub enum ModelError {
     /// A colour outside `[0, 1]`.
     #[error("a colour is not between 0 and 1")]
     Colour,
+    /// A trim curve of an edge that the part does not have.
+    #[error("a trim curve is of edge {edge}, and the part has {edges}")]
+    Edge { edge: u32, edges: usize },
     /// [`Model::coincident`] is not a number.
     #[error("faces coincide within what is not a number")]
     Coincident,
@@ -43,6 +47,30 @@ pub(super) struct ModelData {
     trim: Option<Solid>,
     unit: String,
     coincident: Option<f64>,
+}
+
+/// A [`Part`] as stored.
+#[derive(Deserialize)]
+pub(super) struct PartData {
+    name: String,
+    faces: Vec<Face>,
+    meshes: Vec<Mesh>,
+    closed: bool,
+    stated_edges: Vec<Option<EdgeSource>>,
+}
+
+impl TryFrom<PartData> for Part {
+    type Error = ModelError;
+
+    fn try_from(data: PartData) -> Result<Self, ModelError> {
+        let PartData { name, faces, meshes, closed, stated_edges } = data;
+        let edges = stated_edges.len();
+        let mut named = faces.iter().flat_map(|f| &f.loops).flat_map(|l| l.edges()).flatten();
+        match named.find(|e| e.edge as usize >= edges) {
+            Some(e) => Err(ModelError::Edge { edge: e.edge, edges }),
+            None => Ok(Self { name, faces, meshes, closed, stated_edges }),
+        }
+    }
 }
 
 /// A [`Face`] as stored.

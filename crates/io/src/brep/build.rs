@@ -8,10 +8,10 @@ use super::nest::{Directions, arrange, come_home};
 use super::order;
 use super::preimage::{Lines, widen_poles};
 use super::rims::natural_border;
-use super::strand::Strand;
+use super::strand::{Part, Strand};
 use super::support::Support;
 use super::{Boundary, BuildError, Edge, FaceGeometry};
-use crate::model::{Bounds, Face, TrimLoop};
+use crate::model::{Bounds, EdgeRef, Face, TrimLoop};
 use crate::spline::{Bezier, Control};
 use crate::trim::{Crossing, crossing};
 use glam::{DVec2, DVec3};
@@ -20,7 +20,8 @@ use std::rc::Rc;
 /// A face, and what its making found.
 #[derive(Clone, Debug)]
 pub struct BuiltFace {
-    /// The face; its carrier is tight around its loops (a B-spline is kept whole).
+    /// The face; its carrier is tight around its loops (a B-spline is kept whole). Of faces built from edges, each trim
+    /// curve names its own by its place in the list of edges.
     pub face: Face,
     /// What had to be healed or is doubtful, with lengths in mm.
     pub notes: Vec<String>,
@@ -127,14 +128,17 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
     // joints are equal up to rounding; sides a period apart too
     let snap = DVec2::new(range[0].1 - range[0].0, range[1].1 - range[1].0) * 1e-7;
     for l in &loops {
-        let mut curves: Vec<Bezier<DVec3>> = Vec::new();
+        let mut curves: Vec<(Bezier<DVec3>, Option<EdgeRef>)> = Vec::new();
         for strand in &l.strands {
             let fitted = fitter.curves(strand);
             deviation = deviation.max(fitted.deviation);
-            curves.extend(fitted.curves);
+            let edge = strand.part.as_ref().map(Part::edge);
+            curves.extend(fitted.curves.into_iter().map(|c| (c, edge)));
         }
-        curves.retain(|c| c.degree() > 1 || c.points[0].point() != c.points[1].point());
-        let trim = TrimLoop::new(curves, snap).map_err(|source| BuildError::Loop { face: face.id, source })?;
+        curves.retain(|(c, _)| c.degree() > 1 || c.points[0].point() != c.points[1].point());
+        let (curves, edges) = curves.into_iter().unzip();
+        let trim = TrimLoop::new(curves, snap).and_then(|trim| trim.with_edges(edges));
+        let trim = trim.map_err(|source| BuildError::Loop { face: face.id, source })?;
         if trim.signed_area().abs() <= 1e-12 * (range[0].1 - range[0].0) * (range[1].1 - range[1].0) {
             lost.push(format!("face #{}: a loop without area was left out", face.id));
             continue;
@@ -204,10 +208,14 @@ fn edge_uses(face: &FaceGeometry, edges: &[Edge]) -> Result<Vec<Vec<EdgeCurve>>,
         let mut out = Vec::new();
         for &(index, forward) in list {
             let edge = edges.get(index).ok_or(BuildError::EdgeIndex { face: face.id, index })?;
-            out.extend(EdgeCurve::new(edge, forward, rounding)?);
+            let of_edge = EdgeCurve::new(edge, forward, rounding)?;
+            out.extend(of_edge.map(|e| EdgeCurve { used: (index, forward), ..e }));
         }
         if out.len() < 2 && out.first().is_none_or(EdgeCurve::is_sliver) {
-            let around = |&(index, forward): &(usize, bool)| EdgeCurve::around(&edges[index], forward, rounding);
+            let around = |&(index, forward): &(usize, bool)| {
+                let whole = EdgeCurve::around(&edges[index], forward, rounding)?;
+                Ok(whole.map(|e| EdgeCurve { used: (index, forward), ..e }))
+            };
             let all = list.iter().filter_map(|e| around(e).transpose()).collect::<Result<Vec<_>, _>>()?;
             if all.len() == 1 {
                 out = all;

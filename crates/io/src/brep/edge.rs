@@ -10,6 +10,8 @@ use glam::DVec3;
 pub(super) struct EdgeCurve {
     /// Number in the source.
     pub id: u32,
+    /// Which of the body's edges it is; the loop runs it from start to end, or back.
+    pub used: (usize, bool),
     /// Turned around where the loop runs it backwards.
     pub curve: Curve,
     /// Parameter at the start.
@@ -92,7 +94,8 @@ impl EdgeCurve {
         let curve = if edge.same_sense == forward { stated } else { stated.reversed() };
         let vertices = if forward { [edge.start, edge.end] } else { [edge.end, edge.start] };
         let (length, bounds, node_count) = (0.0, Bounds::EMPTY, 0);
-        Ok(Self { id: edge.id, curve, t0: 0.0, t1: 0.0, vertices, turned: false, length, bounds, node_count })
+        let used = (0, forward);
+        Ok(Self { id: edge.id, used, curve, t0: 0.0, t1: 0.0, vertices, turned: false, length, bounds, node_count })
     }
 
     /// Length and box, once the range is known.

@@ -2,7 +2,7 @@
 //!
 //! A file says: *this analytic or spline surface, bounded by these edges in space*. The engine draws:
 //! *this rational B-spline surface, trimmed by these loops in its (u, v) domain*. This module is the
-//! bridge, shared by every file format; it knows no file syntax and no GPU.
+//! bridge, shared by every file format; no file syntax and no GPU is in it.
 //!
 //! ```text
 //!   SurfaceGeometry ──carrier over the loops' box──▶ Surface          (exact)

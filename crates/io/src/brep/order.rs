@@ -59,7 +59,8 @@ fn directed(edges: Vec<EdgeCurve>, face: u32, eps: f64, notes: &mut Vec<String>)
     let flip = |e: EdgeCurve| {
         let [a, b] = e.vertices;
         let (t0, t1) = (e.curve.reversed_parameter(e.t1), e.curve.reversed_parameter(e.t0));
-        EdgeCurve { curve: e.curve.reversed(), t0, t1, vertices: [b, a], ..e }
+        let used = (e.used.0, !e.used.1);
+        EdgeCurve { curve: e.curve.reversed(), used, t0, t1, vertices: [b, a], ..e }
     };
     let mut out: Vec<EdgeCurve> = Vec::with_capacity(edges.len());
     let count = edges.len();

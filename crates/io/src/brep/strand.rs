@@ -3,6 +3,7 @@
 use super::support::Support;
 use super::trace::Trace;
 use crate::math::root::bracketed;
+use crate::model::EdgeRef;
 use crate::spline::Bezier;
 use glam::{DVec2, DVec3};
 use std::rc::Rc;
@@ -35,6 +36,12 @@ impl Part {
     pub fn new(support: &Support, trace: Rc<Trace>, from: f64, to: f64) -> Self {
         let ends = [from, to].map(|s| trace.at(support, s));
         Self { trace, from, to, ends }
+    }
+
+    /// The edge, and whether the part runs along it.
+    pub fn edge(&self) -> EdgeRef {
+        let (index, forward) = self.trace.edge.used;
+        EdgeRef { edge: index as u32, forward: forward == (self.from < self.to) }
     }
 
     /// Native parameters at the fraction `s` of the part.

@@ -1,19 +1,16 @@
 //! [`Model`](crate::model::Model)s out, as CAD files.
 //!
 //! ```text
-//!   model ──boundary──▶ stretches of loops, in (u, v) and in space
-//!         ──join──────▶ edges that two faces share ──step──▶ ISO 10303-21 text
-//!   solid ──operand───▶ primitives as placed ───────┤
-//!         ──expression▶ unions, intersections, differences
+//!   model ──Part::edges─▶ edges that two faces share ──step──▶ ISO 10303-21 text
+//!   solid ──operand────▶ primitives as placed ───────┤
+//!         ──expression─▶ unions, intersections, differences
 //! ```
 //!
 //! Faces keep their exact rational surfaces, and so do the faces of a solid that is one primitive; a Boolean solid stays
-//! an expression over exact primitives. What a file of the format cannot say is left out, and an [`ExportWarning`]
+//! an expression over exact primitives. Anything that the format cannot express is left out, and an [`ExportWarning`]
 //! names it.
 
-mod boundary;
 mod expression;
-mod join;
 mod operand;
 mod step;
 

@@ -20,6 +20,8 @@ mod bv;
 mod camera;
 mod chain;
 mod colour;
+#[cfg(test)]
+mod damage;
 mod error;
 mod external;
 mod facets;

@@ -1,4 +1,4 @@
-//! The engine's own form, of which [`crate::native`] tells: all or nothing, so without warnings.
+//! The engine's own form ([`crate::native`]): a file is read as a whole or refused, so there are no warnings.
 
 use super::{Import, ImportError, ImportReport};
 use crate::native;

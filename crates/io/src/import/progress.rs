@@ -1,4 +1,4 @@
-//! How far an import has come, told to whoever waits for it.
+//! Progress of an import, reported to the caller.
 //!
 //! ```text
 //!   Read ──▶ Parse ──▶ Records b/n … n/n ──▶ Bodies 0/n … ──▶ Faces 0/n ──▶ ... ──▶ Faces n/n

@@ -1,4 +1,4 @@
-//! Messages counted by what they say: those that differ in numbers only are one.
+//! Counts of messages by their text: messages that differ in numbers only are counted as one.
 //!
 //! ```text
 //!   #3: edge #7 lies 2.1e-4 mm off   ┐

@@ -1,4 +1,4 @@
-//! Warnings that name their place, counted by kind and kept in bounded number, and the summary.
+//! Warnings with their places, counted by kind and bounded in number, and the import's counts.
 
 use super::Reasons;
 use crate::brep::BuiltFace;

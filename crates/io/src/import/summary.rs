@@ -1,4 +1,4 @@
-//! What a file states, what of it the model has, and why the rest is not there.
+//! The summary of an import: what the file states, how much of it the model has, and why the rest is missing.
 
 use super::{Import, ImportReport, Reasons};
 use crate::model::{Model, Part, Shape};

@@ -7,7 +7,7 @@
 //! ```
 //!
 //! STEP, IGES and OBJ know no encoding; programs write what their screen shows. A line that is UTF-8 stays so, since files are
-//! put together from several. A guess is told, and so are bytes that it has no character for.
+//! put together from several. A warning tells of a guess, and of bytes that have no character in it.
 //!
 //! Formats without columns are decoded whole, by [`utf8`]. Where columns and lengths count bytes, as in IGES, single strings
 //! are, by [`Encoding::decode`].

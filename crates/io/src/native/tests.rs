@@ -2,7 +2,7 @@
 
 use super::*;
 use crate::import::step;
-use crate::model::{Face, Instance, Mesh, Part, SurfaceKind, TrimLoop};
+use crate::model::{EdgeRef, EdgeSource, Face, Instance, Mesh, Part, SurfaceKind, TrimLoop};
 use crate::spline::{Bezier, Surface};
 use glam::{DAffine3, DVec2, DVec3, DVec4};
 use proptest::prelude::*;
@@ -27,6 +27,8 @@ fn face(numbers: &[f64; 12], weight: f64) -> Face {
         points: [at(i), (at(i) + at(i + 1)) / 3.0, at(i + 1)].map(|p| (p * weight).extend(weight)).into(),
     };
     let trim = TrimLoop::new((0..3).map(rational).collect(), DVec2::splat(1e-9)).unwrap();
+    let edges = [Some((1, true)), None, Some((0, false))].map(|e| e.map(|(edge, forward)| EdgeRef { edge, forward }));
+    let trim = trim.with_edges(edges.to_vec()).unwrap();
     let loops = vec![trim.clone().reversed(), trim];
     Face { id: 7, kind: SurfaceKind::Plane, surface, loops, same_sense: false, colour: Some([0.25, -0.0, 1.0, 0.5]) }
 }
@@ -36,7 +38,13 @@ fn model(numbers: &[f64; 12], weight: f64, name: &str) -> Model {
     let positions: Vec<DVec3> = (0..4).map(corner).collect();
     let normals = vec![[corner(0), corner(1), corner(2)]; 2];
     let mesh = Mesh::new(u32::MAX, positions, vec![[0, 1, 2], [2, 1, 3]], normals).unwrap();
-    let solid = Part { name: name.to_owned(), faces: vec![face(numbers, weight)], meshes: vec![mesh], closed: true };
+    let solid = Part {
+        name: name.to_owned(),
+        faces: vec![face(numbers, weight)],
+        meshes: vec![mesh],
+        closed: true,
+        stated_edges: vec![Some(EdgeSource { entity: 400, item: Some(3) }), None],
+    };
     let transform = DAffine3::from_translation(corner(3));
     let instance = Instance { part: 1, transform, colour: None, name: String::new() };
     Model {
@@ -107,7 +115,16 @@ fn an_imported_model_comes_back() {
 fn the_form_is_that_of_the_version() {
     let numbers = std::array::from_fn(|i| i as f64 - 0.5);
     let bytes = write(&model(&numbers, 2.0, "part"));
-    assert_eq!((VERSION, bytes.len(), checksum(&bytes[HEADER..])), (3, 1239, 680_148_745));
+    assert_eq!((VERSION, bytes.len(), checksum(&bytes[HEADER..])), (4, 1263, 3_103_249_073));
+}
+
+/// A trim curve of an edge that its part does not have.
+#[test]
+fn an_edge_that_is_not_there_is_told() {
+    let mut model = model(&[0.5; 12], 1.0, "part");
+    model.parts[1].stated_edges.pop();
+    let error = read(&write(&model)).unwrap_err();
+    assert!(error.to_string().ends_with("a trim curve is of edge 1, and the part has 1"), "{error}");
 }
 
 /// Every cut, and every single flipped bit.

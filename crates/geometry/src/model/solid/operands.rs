@@ -1,4 +1,4 @@
-//! What a solid is the union of.
+//! The operands whose union a solid is.
 //!
 //! ```text
 //!   (A + (B - C)) + D       operands: A, B - C, D

@@ -9,25 +9,16 @@
 //! Faces that share edges form a shell. A shell whose every edge has two faces is closed; in a part that bounds a
 //! volume one of negative volume is a void of the smallest shell around it.
 
-use super::super::boundary::Sheet;
-use super::super::join::{Boundaries, Edge, join};
 use super::super::{ExportError, ExportWarning, Item};
 use super::text::{Id, List, Text};
 use super::{Colours, style};
-use crate::model::{Bounds, Face, Part};
-use crate::spline::{BSpline, SplineError};
+use crate::edges::{LOOSE, REACH, Sheet};
+use crate::model::{Bounds, Edges, Face, Part};
+use crate::spline::{BSpline, SplineError, arc};
 use crate::trim::LoopIndex;
 use glam::{DVec2, DVec3};
 use std::io::Write;
 
-/// Points that are the same, in shares of the part's diagonal.
-const JOIN: f64 = 1e-5;
-/// The same for parts that bound a volume but whose edges do not meet, in turn.
-const RETRIED: [f64; 2] = [1e-5, 4e-5];
-/// Of those, how far apart edges may lie that nothing else meets: a few times what is found in sloppy files.
-const LOOSE: f64 = 2e-4;
-/// Aim of fitted curves, in shares of the part's diagonal.
-const FIT: f64 = 1e-8;
 /// Samples along each side of a patch, for the sign of a volume.
 const SAMPLES: u32 = 8;
 
@@ -51,26 +42,11 @@ pub(super) fn shape<W: Write>(
     let size = part.faces.iter().map(Face::control_bounds).fold(Bounds::EMPTY, Bounds::union).diagonal();
     let face_error =
         |(face, source): (usize, SplineError)| ExportError::Face { item, face: part.faces[face].id, source };
-    let mut out = join(&sheets, JOIN * size, FIT * size).map_err(face_error)?;
-    for reach in if part.closed { &RETRIED[..] } else { &[] } {
-        if out.closed() {
-            break;
-        }
-        let mut other = join(&sheets, reach * size, FIT * size).map_err(face_error)?;
-        other.mend(LOOSE * size);
-        // a reach that swallows a loop is too wide
-        let same = out.loops.iter().zip(&other.loops).all(|(a, b)| a.len() == b.len());
-        if same && other.single() < out.single() {
-            out = other;
-        }
-    }
-    for (sheet, kept) in sheets.iter().zip(&out.loops) {
-        let lost = sheet.face.loops.len().saturating_sub(kept.len());
-        if lost > 0 {
-            let message =
-                format!("face {}: {lost} loops within {:e} mm of a point were left out", sheet.face.id, JOIN * size);
-            warnings.push(ExportWarning { item, message });
-        }
+    let out = part.edges().map_err(|e| face_error((e.face, e.source)))?;
+    for &(face, lost) in &out.lost {
+        let (id, reach) = (part.faces[face].id, out.reach);
+        let message = format!("face {id}: {lost} loops within {reach:e} mm of a point were left out");
+        warnings.push(ExportWarning { item, message });
     }
     let frames: Vec<Option<[DVec3; 3]>> = sheets.iter().map(|s| s.plane.map(frame)).collect();
     let mut surfaces = Vec::new();
@@ -93,40 +69,39 @@ pub(super) fn shape<W: Write>(
     ))?;
     let mut edges = Vec::new();
     for edge in &out.edges {
-        let first = &out.stretches[edge.first];
-        let (a, b) = first.both.space.domain();
-        let curve = text.space_curve(&first.both.space)?;
-        let opposite = out.opposite(edge);
+        let (degree, knots, points) = arc::assemble(&edge.curve);
+        let space = BSpline::new(degree, knots, points).map_err(|e| face_error((edge.uses[0].face, e)))?;
+        let (a, b) = space.domain();
+        let curve = text.space_curve(&space)?;
         let mut flats = Vec::new();
-        for s in [Some(edge.first), edge.second].into_iter().flatten() {
-            let s_face = out.stretches[s].face;
-            let mut flat = out.stretches[s].both.flat.clone();
-            if s != edge.first {
-                flat = if opposite { flat.reversed() } else { flat };
-                flat = flat.over(a, b).map_err(|e| face_error((s_face, e)))?;
-            }
-            if let (Some([_, du, dv]), Some(frame)) = (sheets[s_face].plane, frames[s_face]) {
-                flat = mapped(&flat, du, dv, frame).map_err(|e| face_error((s_face, e)))?;
+        // more than two p-curves cannot be stated
+        for used in edge.uses.iter().take(2) {
+            let sheet = &sheets[used.face];
+            let fault = |e| face_error((used.face, e));
+            let mut flat = sheet.in_plane(&sheet.along(used, out.reach)).map_err(fault)?;
+            flat = if used.forward { flat } else { flat.reversed() };
+            flat = flat.over(a, b).map_err(fault)?;
+            if let (Some([_, du, dv]), Some(frame)) = (sheet.plane, frames[used.face]) {
+                flat = mapped(&flat, du, dv, frame).map_err(fault)?;
             }
             let flat = text.flat_curve(&flat)?;
             let definition = text.add(format_args!("DEFINITIONAL_REPRESENTATION('',({flat}),{plane})"))?;
-            flats.push(text.add(format_args!("PCURVE('',{},{definition})", surfaces[s_face]))?);
+            flats.push(text.add(format_args!("PCURVE('',{},{definition})", surfaces[used.face]))?);
         }
-        let seam = edge.second.is_some_and(|s| out.stretches[s].face == first.face);
+        let seam = edge.uses.get(1).is_some_and(|second| second.face == edge.uses[0].face);
         let kind = if seam { "SEAM_CURVE" } else { "SURFACE_CURVE" };
         let curve = text.add(format_args!("{kind}('',{curve},{},.CURVE_3D.)", List(&flats)))?;
-        let [start, end] = first.ends.map(|v| vertices[v]);
+        let [start, end] = edge.ends.map(|v| vertices[v]);
         edges.push(text.add(format_args!("EDGE_CURVE('',{start},{end},{curve},.T.)"))?);
     }
+    let loops = loops(part.faces.len(), &out);
     let mut faces = Vec::new();
     for (i, face) in part.faces.iter().enumerate() {
         let mut bounds = Vec::new();
-        for l in &out.loops[i] {
+        for l in &loops[i] {
             let mut uses = Vec::new();
-            for &s in l {
-                let e = out.edge_of[s];
-                let forward = out.edges[e].first == s || !out.opposite(&out.edges[e]);
-                uses.push(text.add(format_args!("ORIENTED_EDGE('',*,*,{},{})", edges[e], flag(forward)))?);
+            for &(edge, forward) in l {
+                uses.push(text.add(format_args!("ORIENTED_EDGE('',*,*,{},{})", edges[edge], flag(forward)))?);
             }
             let chain = text.add(format_args!("EDGE_LOOP('',{})", List(&uses)))?;
             // loops run about the surface's normal, bounds about the face's
@@ -142,19 +117,33 @@ pub(super) fn shape<W: Write>(
     let closed = out.closed();
     if part.closed && !closed {
         let message = format!(
-            "{} of {} edges have one face only within {:e} mm: written as an open shell",
-            out.single(),
+            "{} of {} edges have not two faces within {:e} mm: written as an open shell",
+            out.edges.iter().filter(|e| e.uses.len() != 2).count(),
             out.edges.len(),
             LOOSE * size
         );
         warnings.push(ExportWarning { item, message });
-    } else if out.deviation > JOIN * size {
+    } else if out.deviation > REACH * size {
         let message = format!("edges up to {:.1e} mm apart were joined", out.deviation);
         warnings.push(ExportWarning { item, message });
     }
     let solid = part.closed && closed;
     let items = shells(text, &part.name, &sheets, &out, &faces, solid)?;
     Ok(Shape { items, solid, deviation: out.deviation.max(1e-9 * size) })
+}
+
+/// The loops of each face: edges in order, and whether the loop runs along them.
+fn loops(faces: usize, out: &Edges) -> Vec<Vec<Vec<(usize, bool)>>> {
+    let uses = out.edges.iter().enumerate().flat_map(|(k, e)| e.uses.iter().map(move |u| (u, k)));
+    let mut all: Vec<_> = uses.collect();
+    all.sort_by(|(a, _), (b, _)| {
+        (a.face, a.trim_loop).cmp(&(b.face, b.trim_loop)).then(a.range.0.total_cmp(&b.range.0))
+    });
+    let mut loops = vec![Vec::new(); faces];
+    for same in all.chunk_by(|(a, _), (b, _)| (a.face, a.trim_loop) == (b.face, b.trim_loop)) {
+        loops[same[0].0.face].push(same.iter().map(|(u, edge)| (*edge, u.forward)).collect());
+    }
+    loops
 }
 
 fn flag(yes: bool) -> &'static str {
@@ -178,15 +167,15 @@ fn shells<W: Write>(
     text: &mut Text<W>,
     name: &str,
     sheets: &[Sheet],
-    out: &Boundaries,
+    out: &Edges,
     faces: &[Id],
     solid: bool,
 ) -> Result<Vec<Id>, ExportError> {
     let name = super::text::Quoted(name);
     let mut groups = Vec::new();
-    for group in connected(faces.len(), &out.edges, out) {
+    for group in connected(faces.len(), out) {
         let ids: Vec<Id> = group.iter().map(|&f| faces[f]).collect();
-        let closed = out.edges.iter().all(|e| e.second.is_some() || !group.contains(&out.stretches[e.first].face));
+        let closed = out.edges.iter().all(|e| e.uses.len() == 2 || !group.contains(&e.uses[0].face));
         let kind = if closed { "CLOSED_SHELL" } else { "OPEN_SHELL" };
         let id = text.add(format_args!("{kind}('',{})", List(&ids)))?;
         let bounds = group.iter().map(|&f| sheets[f].face.control_bounds()).fold(Bounds::EMPTY, Bounds::union);
@@ -224,7 +213,7 @@ fn shells<W: Write>(
 }
 
 /// Groups of faces, each in order, by union over shared edges.
-fn connected(count: usize, edges: &[Edge], out: &Boundaries) -> Vec<Vec<usize>> {
+fn connected(count: usize, out: &Edges) -> Vec<Vec<usize>> {
     let mut up: Vec<usize> = (0..count).collect();
     fn root(up: &mut [usize], mut f: usize) -> usize {
         while up[f] != f {
@@ -233,9 +222,8 @@ fn connected(count: usize, edges: &[Edge], out: &Boundaries) -> Vec<Vec<usize>> 
         }
         f
     }
-    for e in edges {
-        let Some(second) = e.second else { continue };
-        let (a, b) = (root(&mut up, out.stretches[e.first].face), root(&mut up, out.stretches[second].face));
+    for pair in out.edges.iter().flat_map(|e| e.uses.windows(2)) {
+        let (a, b) = (root(&mut up, pair[0].face), root(&mut up, pair[1].face));
         let (a, b) = (a.min(b), a.max(b));
         up[b] = a;
     }

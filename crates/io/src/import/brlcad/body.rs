@@ -1,4 +1,4 @@
-//! Solids of BRL-CAD: each the affine image of a shape that is known exactly.
+//! Solids of BRL-CAD: each is the affine image of a shape with an exact equation.
 //!
 //! ```text
 //!   ell  ball of (A B C V)        tgc  cylinder or cone of (A B H V), where C = k A and D = k B; else a wall of lines

@@ -1,4 +1,4 @@
-//! Sketches and what is extruded of them.
+//! Sketches, and solids extruded from them.
 //!
 //! ```text
 //!   sketch   VL {{x y} ...}   SL {{line S 0 E 1} {carc S 1 E 2 R r L 0 O 0} {bezier D 3 P {2 3 4 5}}}

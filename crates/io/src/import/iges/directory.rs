@@ -7,7 +7,7 @@
 //!                                                       status: blank, subordinate, use, hierarchy
 //! ```
 //!
-//! An entity is known by the number of its first card, always odd.
+//! An entity's number is that of its first card, always odd.
 
 use super::card::Card;
 use crate::import::text::Encoding;

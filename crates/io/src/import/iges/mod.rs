@@ -162,6 +162,7 @@ fn build(geometry: &Geometry<'_>, bodies: &[Body], model: &mut Model, report: &m
     }
     for (part, body) in bodies.iter().enumerate() {
         let shared = &body.shells;
+        model.parts[part].stated_edges = shared.sources();
         let solid = shared.faces.par_iter().map(|(f, colour)| (f.id, *colour, build_face(f, &shared.edges, tolerance)));
         let free = body.sheets.par_iter().map(|(sheet, colour)| (sheet.id, *colour, sheet.build(tolerance)));
         let built: Vec<_> = solid.chain(free).collect();

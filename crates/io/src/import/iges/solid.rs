@@ -16,7 +16,7 @@ use super::entity::{Entity, Fault};
 use super::geometry::{FACE_LOST, Geometry, finite};
 use super::surface::SURFACES;
 use crate::brep::{Boundary, CurveGeometry, Edge, FaceGeometry};
-use crate::model::Colour;
+use crate::model::{Colour, EdgeSource};
 use glam::{DAffine3, DVec3};
 use std::collections::HashMap;
 
@@ -38,6 +38,17 @@ struct Context<'m> {
     map: &'m DAffine3,
     sense: bool,
     colour: Option<Colour>,
+}
+
+impl Shells {
+    /// Where each edge stands in the file: its list, and its place there.
+    pub fn sources(&self) -> Vec<Option<EdgeSource>> {
+        let mut all = vec![None; self.edges.len()];
+        for (&(entity, item), &index) in &self.by_item {
+            all[index] = Some(EdgeSource { entity, item: u32::try_from(item).ok() });
+        }
+        all
+    }
 }
 
 impl<'a> Geometry<'a> {

@@ -1,4 +1,4 @@
-//! What is drawn: solids and surfaces that nothing else refers to, placed by subfigures.
+//! The drawn entities: solids and surfaces that no other entity refers to, placed by subfigures.
 //!
 //! ```text
 //!   scope: the file, or a 308                     instances of its parts

@@ -18,7 +18,7 @@ use super::geometry::Geometry;
 use super::surface::Carrier;
 use crate::brep::{Boundary, BuildError, BuiltFace, CurveGeometry, Edge, FaceGeometry, SurfaceGeometry, SurfaceMap};
 use crate::brep::{build_face, face_in_parameters};
-use crate::model::Bounds;
+use crate::model::{Bounds, TrimLoop};
 use glam::{DAffine2, DAffine3, DVec2, DVec3};
 
 /// A surface and what bounds it.
@@ -251,7 +251,10 @@ impl Sheet {
             same_sense: !self.carrier.flipped,
             doubtful: false,
         };
-        build_face(&face, &edges, tolerance)
+        let mut built = build_face(&face, &edges, tolerance)?;
+        // its edges are its own: no other face can share them
+        built.face.loops = built.face.loops.into_iter().map(TrimLoop::without_edges).collect();
+        Ok(built)
     }
 
     /// The face along the curves in the parameters, where those are its spline's own and bound it as they stand.

@@ -6,7 +6,7 @@
 //! ```
 //!
 //! Metres become millimetres, and y, which points up, becomes z. Points and lines, textures, animations and skins are
-//! left out, told. Every access to a buffer is checked: a file may state any offset.
+//! left out, with a warning. Every access to a buffer is checked: a file may state any offset.
 //!
 //! Source: Khronos Group, *glTF 2.0 Specification*.
 

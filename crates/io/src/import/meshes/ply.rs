@@ -4,7 +4,7 @@
 //!   element vertex: x y z [red green blue [alpha]]     element face: a list of corners [red green blue [alpha]]
 //! ```
 //!
-//! Colours of vertices would vary over a triangle: where they differ they are left out, told.
+//! Colours of vertices would vary over a triangle: where they differ they are left out, with a warning.
 //!
 //! Source: G. Turk, *The PLY Polygon File Format*, 1994.
 

@@ -1,4 +1,4 @@
-//! What 3MF and AMF share: XML, numbers in it, and the archives around it.
+//! The common part of 3MF and AMF: XML, numbers in it, and the archives around it.
 
 use super::Wrong;
 use roxmltree::Node;

@@ -1,4 +1,4 @@
-//! Control meshes: the polygons as they are, corner by corner, for what is made from them.
+//! Control meshes: the polygons as the file has them, corner by corner, for subdivision.
 //!
 //! ```text
 //!   v  f          vertices and polygons; texture and normal numbers are passed over

@@ -1,4 +1,4 @@
-//! Lines of text: continuations joined, comments taken off, the number of the first line kept.
+//! Lines of text: continuations joined, comments taken off, with the number of the first line.
 
 use std::borrow::Cow;
 

@@ -9,7 +9,7 @@
 //! ```
 //!
 //! Outlines that cross themselves are first put right by `facets`.
-//! What turns while it rises has no such form: `twist` makes the facets that OpenSCAD makes.
+//! A twisted extrusion has no such form: `twist` makes the facets that OpenSCAD makes.
 
 use super::args::Args;
 use super::polygon::{self, MOST_POINTS, Piece};

@@ -1,4 +1,4 @@
-//! What stands in for `facets` in a library that is built without the feature `scad-facets`: nodes that need them are
+//! The substitute for `facets` in a library built without the feature `scad-facets`: nodes that need them are
 //! left out by name.
 
 use super::args::Args;

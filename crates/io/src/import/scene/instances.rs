@@ -1,4 +1,4 @@
-//! The scene as a whole: settings, items, what is placed where, cameras.
+//! The scene as a whole: settings, named objects, instances, cameras.
 //!
 //! ```text
 //!   [[instance]]  of = "bolt"  at = [20, 0, 5]          without any, whatever no other item is made of

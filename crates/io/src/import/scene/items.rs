@@ -1,4 +1,4 @@
-//! The items of a scene by name, each made once, when it is named or at last.
+//! The named objects of a scene, each made once: when another one names it, or at the end.
 //!
 //! ```text
 //!   thing("bowl") ──made before?──▶ shared

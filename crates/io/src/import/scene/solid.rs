@@ -240,7 +240,7 @@ fn closed<'a>(
         faces.push(Face { id, surface, same_sense, colour: face.colour.or(colour), ..face.clone() });
     }
     let exact = faces.iter().map(|_| (0.0, Vec::new())).collect();
-    let part = Part { name: name.to_owned(), faces, meshes: Vec::new(), closed: part.closed };
+    let part = Part { name: name.to_owned(), faces, meshes: Vec::new(), ..part.clone() };
     let transform = DAffine3::IDENTITY;
     Ok(Body { form: Form::Part(Arc::new(part)), transform, colour, id: scene.number(), faces: exact })
 }

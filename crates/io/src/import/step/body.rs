@@ -23,7 +23,7 @@ use super::spline;
 use super::swept::SWEPT;
 use super::tessellated::{self, Coordinates};
 use crate::brep::{Edge, FaceGeometry, SurfaceGeometry};
-use crate::model::{Colour, Mesh};
+use crate::model::{Colour, EdgeSource, Mesh};
 use glam::DAffine3;
 use std::collections::HashSet;
 
@@ -34,6 +34,8 @@ pub(super) struct Body {
     pub closed: bool,
     /// Shared edges.
     pub edges: Vec<Edge>,
+    /// Their numbers in the file, where they have one.
+    pub stated_edges: Vec<Option<EdgeSource>>,
     /// Faces and their colours.
     pub faces: Vec<(FaceGeometry, Option<Colour>)>,
     /// Triangles that the file states itself.
@@ -111,7 +113,7 @@ pub(super) fn body(geometry: &Geometry<'_>, id: u32, looks: Looks<'_>, outer: &[
     if let Err(fault) = builder.item(id, &trail) {
         geometry.ledger.note("body left out", id, fault.to_string());
     }
-    Body { edges: builder.table.edges, ..builder.body }
+    Body { stated_edges: builder.table.sources(), edges: builder.table.edges, ..builder.body }
 }
 
 /// Faces that no shell holds, as one open body.
@@ -123,7 +125,7 @@ pub(super) fn loose(geometry: &Geometry<'_>, faces: &[u32], looks: Looks<'_>) ->
             break;
         }
     }
-    Body { edges: builder.table.edges, ..builder.body }
+    Body { stated_edges: builder.table.sources(), edges: builder.table.edges, ..builder.body }
 }
 
 struct Builder<'g, 'a> {

@@ -23,6 +23,7 @@ use super::geometry::{Geometry, frame};
 use super::locate;
 use super::part21::Value;
 use crate::brep::{Boundary, CurveGeometry, Edge, FaceGeometry, SurfaceGeometry};
+use crate::model::EdgeSource;
 use glam::DVec3;
 use std::collections::HashMap;
 
@@ -225,6 +226,13 @@ impl Geometry<'_> {
 }
 
 impl EdgeTable {
+    /// The number of each edge in the file; sides of polygons and of swept areas have none.
+    pub fn sources(&self) -> Vec<Option<EdgeSource>> {
+        let mut all = vec![None; self.edges.len()];
+        self.by_id.iter().for_each(|(&entity, &index)| all[index] = Some(EdgeSource { entity, item: None }));
+        all
+    }
+
     /// The ends of a bound's edges.
     fn vertices(&self, bound: &Boundary) -> Vec<DVec3> {
         let Boundary::Edges(uses) = bound else { return Vec::new() };

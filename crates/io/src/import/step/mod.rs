@@ -182,6 +182,7 @@ fn build(
             report.healed.add(&note);
             notes.push("edge healed", || places.of(id), note);
         }
+        model.parts[part].stated_edges = std::mem::take(&mut body.stated_edges);
         edges.push(body.edges);
         jobs.extend(body.faces.into_iter().map(|(face, colour)| (part, tolerance, face, colour)));
     }

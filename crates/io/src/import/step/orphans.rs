@@ -1,4 +1,4 @@
-//! What a damaged file holds and no longer lists.
+//! Entities of a damaged file that no list names any more.
 //!
 //! ```text
 //!   representation ──▶ solid ──▶ shell ──▶ face        a file cut off after its faces has lost

@@ -1,4 +1,4 @@
-//! Layers, what is hidden, and annotation: what a file says about showing its items.
+//! Layers, hidden entities and annotation: what a file states about showing its items.
 //!
 //! ```text
 //!   PRESENTATION_LAYER_ASSIGNMENT('name','',(items))      an item is a styled item, a representation, or

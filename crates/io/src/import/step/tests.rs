@@ -6,6 +6,7 @@ mod colours;
 mod csg;
 mod damage;
 mod derived;
+mod edges;
 mod healed;
 mod looks;
 mod models;

@@ -2,14 +2,11 @@
 
 use super::structure::CYLINDER;
 use super::{GLOBAL, e, file};
+use crate::import::damage::{faces, one_change_one_message, outcome, replaced_in_columns};
 use crate::import::iges;
 
-/// The first warning of damaged text, or its error, and the faces that are left.
 fn first(text: &str) -> (String, usize) {
-    match iges(text.as_bytes(), "c.igs") {
-        Ok(i) => (i.warnings.first().map(ToString::to_string).unwrap_or_default(), i.model.face_count()),
-        Err(error) => (format!("error: {error}"), 0),
-    }
+    outcome(iges(text.as_bytes(), "c.igs"), |_| true, faces)
 }
 
 #[test]
@@ -35,9 +32,8 @@ fn truncated_files() {
 }
 
 #[test]
-fn one_change_one_message() {
-    let mut wrong = Vec::new();
-    for (class, from, to, message, faces) in [
+fn every_change_has_its_message() {
+    let changes = [
         // swapped references: surface and loop, direction and point, a face that is a shell
         (
             "swapped",
@@ -146,19 +142,8 @@ fn one_change_one_message() {
         ),
         // missing
         ("missing", "510,7,1,1,15;", "510,7,1,1,99;", "c.igs:68: #5: face left out: #99 does not exist", 2),
-    ] {
-        assert!(CYLINDER.contains(from), "{from}");
-        // columns stay where they are
-        let width = from.len().max(to.len());
-        let (old, new) = (format!("{from:<width$}"), format!("{to:<width$}"));
-        let text =
-            if CYLINDER.contains(&old) { CYLINDER.replacen(&old, &new, 1) } else { CYLINDER.replacen(from, to, 1) };
-        let found = first(&text);
-        if found != (message.to_owned(), faces) {
-            wrong.push(format!("{class}: {from} -> {to}: {found:?}"));
-        }
-    }
-    assert!(wrong.is_empty(), "{wrong:#?}");
+    ];
+    one_change_one_message(CYLINDER, replaced_in_columns, first, &changes);
 }
 
 /// Twenty squares that stand alone; one surface, one loop or one curve of them is bad.

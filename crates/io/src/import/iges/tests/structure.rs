@@ -23,6 +23,18 @@ fn a_solid() {
     normals_leave(&part.faces, DVec3::new(0.0, 0.0, 2.5));
 }
 
+/// Each edge is used twice and known by its list and its place there.
+#[test]
+fn edges_of_a_solid_have_their_places() {
+    let part = &iges(CYLINDER.as_bytes(), "cylinder.igs").unwrap().model.parts[0];
+    let edges = part.edges().unwrap();
+    let counts = edges.counts();
+    assert_eq!((counts.sharp, counts.smooth, counts.seams, counts.borders, counts.vertices), (2, 0, 1, 0, 2));
+    let mut sources: Vec<_> = edges.edges.iter().map(|e| e.source.unwrap().to_string()).collect();
+    sources.sort();
+    assert_eq!(sources, ["#17, item 1", "#17, item 2", "#17, item 3"]);
+}
+
 /// A solid in a mirror: normals still leave it.
 #[test]
 fn a_mirrored_solid() {

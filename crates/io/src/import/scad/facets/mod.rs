@@ -1,4 +1,4 @@
-//! What depends on facets: nodes whose result is that of their children's corners, not of their surfaces.
+//! Nodes whose result depends on their children's facets, not on their surfaces.
 //!
 //! ```text
 //!   hull minkowski projection offset resize fill text import surface
@@ -7,7 +7,7 @@
 //!   Shape: Region (i_overlay) or Body (convex cells, meshes) ──placed──▶ Assembly: half-spaces, meshes
 //! ```
 //!
-//! Inside of such a node every node is evaluated at once, when its last child is known; outside, solids stay exact.
+//! Inside of such a node every node is evaluated when its last child is complete; outside, solids stay exact.
 
 mod cells;
 mod drawing;

@@ -3,27 +3,19 @@
 //! Text that is not the format's refuses the file. A node whose values are wrong is left out, and so is a difference that
 //! it is the first operand of.
 
+use crate::import::damage::{one_change_one_message, outcome, primitives, replaced};
 use crate::import::{Facets, scad};
 
 const GOOD: &str = "group() {\n\tdifference() {\n\t\tcube(size = [4, 4, 4], center = true);\n\t\tsphere($fn = 0, $fa = 12, $fs = 2, r = 2.5);\n\t}\n\tmultmatrix([[1, 0, 0, 5], [0, 1, 0, 0], [0, 0, 1, 0], [0, 0, 0, 1]]) {\n\t\tpolyhedron(points = [[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1]], faces = [[0, 1, 2], [0, 3, 1], [1, 3, 2], [2, 3, 0]], convexity = 1);\n\t}\n\tlinear_extrude(height = 2, $fn = 0, $fa = 12, $fs = 2) {\n\t\tpolygon(points = [[0, 0], [3, 0], [0, 3]], paths = undef, convexity = 1);\n\t}\n}\n";
 
-/// The first warning or the error, and the primitives.
 fn first(text: &str) -> (String, usize) {
-    match scad(text.as_bytes(), "t.csg", Facets::Round) {
-        Ok(read) => {
-            let told = read.warnings.first().map(ToString::to_string);
-            (told.unwrap_or_default(), read.model.solids.iter().map(|s| s.primitives().len()).sum())
-        }
-        Err(error) => (format!("error: {error}"), 0),
-    }
+    outcome(scad(text.as_bytes(), "t.csg", Facets::Round), |_| true, primitives)
 }
 
 #[test]
-fn one_change_one_message() {
-    let whole = first(GOOD);
-    assert_eq!(whole, (String::new(), 11));
-    let mut wrong = Vec::new();
-    for (class, from, to, message, primitives) in [
+fn every_change_has_its_message() {
+    assert_eq!(first(GOOD).1, 11);
+    let changes = [
         ("truncated", "size = [4", "", "error: t.csg:3: a value expected, not the end of the file", 0),
         ("truncated", "r = 2.5", "", "error: t.csg:4: a value expected, not the end of the file", 0),
         ("truncated", "}\n\tmult", "", "error: t.csg:5: the file ends 2 `}` too early", 0),
@@ -94,15 +86,8 @@ fn one_change_one_message() {
         ),
         ("type", "[1, 0, 0, 5]", "5", "t.csg:6: node left out: multmatrix: not a matrix of 4 rows of 4 numbers", 6),
         ("type", "sphere", "7", "error: t.csg:4: a node expected, not `7`", 0),
-    ] {
-        let at = GOOD.find(from).unwrap_or_else(|| panic!("{from}"));
-        let text = if class == "truncated" { GOOD[..at].to_owned() } else { GOOD.replacen(from, to, 1) };
-        let found = first(&text);
-        if found != (message.to_owned(), primitives) {
-            wrong.push(format!("{class}: {from} -> {to}: {found:?}"));
-        }
-    }
-    assert!(wrong.is_empty(), "{wrong:#?}");
+    ];
+    one_change_one_message(GOOD, replaced, first, &changes);
 }
 
 /// A file is no solid that another one could take in, so none reads itself.

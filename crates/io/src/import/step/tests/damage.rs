@@ -1,6 +1,8 @@
 //! Damaged files: never a panic, and a warning that names what was lost.
 
 use super::{import, wrap};
+use crate::import::damage::random::{self, Damage};
+use crate::import::damage::replaced;
 use crate::import::{Import, step};
 use crate::model::SurfaceKind;
 use proptest::prelude::*;
@@ -25,8 +27,7 @@ fn the_good_file_is_good() {
 
 /// Loses exactly the named face; `#lost` and `reason` stand in the warning.
 fn loses(from: &str, to: &str, lost: u32, reason: &str) {
-    assert!(GOOD.contains(from), "{from}");
-    let import = step(GOOD.replacen(from, to, 1).as_bytes(), "good.step").unwrap();
+    let import = step(replaced(GOOD, from, to).as_bytes(), "good.step").unwrap();
     let found: Vec<String> = import.warnings.iter().map(ToString::to_string).collect();
     let named = |w: &String| w.contains(&format!(" #{lost}: face left out: ")) && w.contains(reason);
     assert!(found.iter().any(named), "{from} -> {to}: {found:#?}");
@@ -118,83 +119,36 @@ fn a_solid_whose_shell_is_itself() {
     assert!(import.warnings.iter().any(|w| w.message.contains("#2 refers to itself")), "{:?}", import.warnings);
 }
 
-/// A kind of damage at a place.
-#[derive(Clone, Debug)]
-enum Damage {
-    Byte(usize, u8),
-    Truncate(usize),
-    Remove(usize, usize),
-    Repeat(usize, usize),
-    /// The n-th number or reference becomes another one.
-    Token(usize, &'static str),
-    Reference(usize, u32),
-}
-
-fn apply(text: &mut Vec<u8>, damage: &Damage) {
-    let len = text.len().max(1);
-    match *damage {
-        Damage::Byte(at, byte) => {
-            if let Some(b) = text.get_mut(at % len) {
-                *b = byte;
-            }
-        }
-        Damage::Truncate(at) => text.truncate(at % len),
-        Damage::Remove(at, count) => drop(text.drain((at % len).min(text.len())..(at % len + count).min(text.len()))),
-        Damage::Repeat(at, count) => {
-            let piece = text[(at % len).min(text.len())..(at % len + count).min(text.len())].to_vec();
-            text.splice(at % len..at % len, piece).for_each(drop);
-        }
-        Damage::Token(n, with) => replace(text, n, |b| b.is_ascii_digit() || b"+-.E".contains(&b), with),
-        Damage::Reference(n, id) => replace(text, n, |b| b.is_ascii_digit() || b == b'#', &format!("#{id}")),
-    }
-}
-
-/// Replaces the n-th run of bytes that `is` holds for.
-fn replace(text: &mut Vec<u8>, n: usize, is: impl Fn(u8) -> bool, with: &str) {
-    let starts: Vec<usize> = (1..text.len()).filter(|&i| is(text[i]) && !is(text[i - 1])).collect();
-    if starts.is_empty() {
-        return;
-    }
-    let start = starts[n % starts.len()];
-    let end = text[start..].iter().position(|&b| !is(b)).map_or(text.len(), |p| start + p);
-    text.splice(start..end, with.bytes()).for_each(drop);
-}
-
 fn damage() -> impl Strategy<Value = Damage> {
-    let tokens =
+    let words =
         ["NaN", "1E999", "-1", "0", "1000000000", "99999999999999999999", "$", "*", "()", "'x'", ".T.", "1e-320"];
-    prop_oneof![
-        (any::<usize>(), any::<u8>()).prop_map(|(a, b)| Damage::Byte(a, b)),
-        (any::<usize>(), prop::sample::select(b"';(),#*$./&".to_vec())).prop_map(|(a, b)| Damage::Byte(a, b)),
-        any::<usize>().prop_map(Damage::Truncate),
-        (any::<usize>(), 1usize..80).prop_map(|(a, n)| Damage::Remove(a, n)),
-        (any::<usize>(), 1usize..200).prop_map(|(a, n)| Damage::Repeat(a, n)),
-        (any::<usize>(), prop::sample::select(tokens.to_vec())).prop_map(|(n, t)| Damage::Token(n, t)),
-        (any::<usize>(), 1u32..110).prop_map(|(n, id)| Damage::Reference(n, id)),
-        (any::<usize>(), 1u32..110).prop_map(|(n, id)| Damage::Reference(n, id)),
-    ]
+    random::damage(b";(),#*$./&", &words, Some(110))
+}
+
+/// Whatever the damage: an error or a valid model, with a bounded number of warnings.
+fn sound_when(list: &[Damage]) {
+    let mut text = GOOD.as_bytes().to_vec();
+    list.iter().for_each(|d| d.apply(&mut text));
+    let Ok(import) = step(&text, "t.step") else { return };
+    random::assert_sound(&import);
+    // a warning that stands for one loss says all of it
+    for (why, _) in import.report.dropped.iter().filter(|(_, count)| *count == 1) {
+        assert!(import.warnings.iter().any(|w| w.message.contains(&why)), "{why}: {:?}", import.warnings);
+    }
+}
+
+/// Found by random damage.
+#[test]
+fn bytes_that_are_missing() {
+    sound_when(&[Damage::Remove(2_623_484_653_231_844_243, 56)]);
 }
 
 proptest! {
     #![proptest_config(ProptestConfig::with_cases(2000))]
 
-    /// Whatever the damage: an error or a valid model, soon, with a bounded number of warnings.
     #[test]
     fn no_damage_panics(list in prop::collection::vec(damage(), 1..6)) {
-        let mut text = GOOD.as_bytes().to_vec();
-        list.iter().for_each(|d| apply(&mut text, d));
-        if let Ok(import) = step(&text, "t.step") {
-            let parts = import.model.parts.len();
-            prop_assert!(import.model.instances.iter().all(|i| i.part < parts));
-            prop_assert!(import.model.instances.iter().all(|i| i.transform.is_finite()));
-            prop_assert!(import.warnings.len() < 300);
-            let lost = import.report.faces - import.model.face_count();
-            prop_assert_eq!(lost, import.report.dropped.total());
-            // what was said once is said in full
-            for (why, _) in import.report.dropped.iter().filter(|(_, count)| *count == 1) {
-                prop_assert!(import.warnings.iter().any(|w| w.message.contains(&why)), "{}: {:?}", why, import.warnings);
-            }
-        }
+        sound_when(&list);
     }
 
     /// Arbitrary bytes behind a valid start.

@@ -10,9 +10,9 @@
 //!      └─────────────────────▶ u
 //! ```
 //!
-//! Pieces that are points in space (the poles of a sphere) are left out: a STEP loop passes them silently.
+//! Pieces that are points in space (the poles of a sphere) are left out.
 
-use crate::model::Face;
+use crate::model::{EdgeRef, EdgeUse, Face};
 use crate::spline::{BSpline, Bezier, Control, PatchGrid, Span, SplineError, Surface, arc};
 use glam::{DVec2, DVec3, DVec4};
 
@@ -24,22 +24,35 @@ const ISO: f64 = 1e-12;
 const CHORDS: u32 = 8;
 
 /// A face with its surface cut for evaluation.
-pub(super) struct Sheet<'a> {
+#[derive(Debug)]
+pub struct Sheet<'a> {
+    /// The face.
     pub face: &'a Face,
+    /// Its surface's patches.
     pub grid: PatchGrid,
     /// `S = origin + a u + b v` when the surface is that.
     pub plane: Option<[DVec3; 3]>,
 }
 
-/// A curve in both spaces, over one domain.
-pub(super) struct Both {
-    pub flat: BSpline<DVec3>,
-    pub space: BSpline<DVec4>,
-    /// Largest distance found between the two, mm.
-    pub deviation: f64,
+/// A curve of a loop.
+#[derive(Clone, Debug)]
+pub(super) struct Piece {
+    /// Its number in the loop.
+    pub index: usize,
+    pub curve: Bezier<DVec3>,
+    pub edge: Option<EdgeRef>,
+}
+
+/// Curves along one line of constant parameter, run through once.
+struct Iso {
+    along_v: bool,
+    at: f64,
+    from: f64,
+    to: f64,
 }
 
 impl<'a> Sheet<'a> {
+    /// Cuts the surface.
     pub fn new(face: &'a Face) -> Self {
         Self { face, grid: face.surface.patches(), plane: plane(&face.surface) }
     }
@@ -50,48 +63,112 @@ impl<'a> Sheet<'a> {
         self.grid.point(p.x, p.y)
     }
 
-    /// The loops, without pieces that stay within `reach` of one point.
-    pub fn loops(&self, reach: f64) -> Vec<Vec<Bezier<DVec3>>> {
-        let loops: Vec<Vec<_>> = if self.face.loops.is_empty() {
-            let ((a, b), (c, d)) = self.face.surface.domain();
-            let corners = [(a, c), (b, c), (b, d), (a, d), (a, c)].map(DVec2::from);
-            vec![corners.windows(2).map(|w| Bezier::line(w[0], w[1])).collect()]
-        } else {
-            self.face.loops.iter().map(|l| l.curves().collect()).collect()
-        };
-        let is_point = |c: &Bezier<DVec3>| {
-            let start = self.at(c, 0.0);
-            (1..=CHORDS).all(|k| self.at(c, f64::from(k) / f64::from(CHORDS)).distance(start) <= reach)
-        };
-        let kept = loops.into_iter().map(|l| l.into_iter().filter(|c| !is_point(c)).collect::<Vec<_>>());
-        kept.filter(|l| !l.is_empty()).collect()
+    /// The numbers of the face's loops; `None` is the border of a face without.
+    pub(super) fn loops(&self) -> Vec<Option<usize>> {
+        let count = self.face.loops.len();
+        if count == 0 { vec![None] } else { (0..count).map(Some).collect() }
     }
 
-    /// `pieces`, end to end, in both spaces; the distance between the two aims at `reach`.
-    pub fn curve(&self, pieces: &[Bezier<DVec3>], reach: f64) -> Result<Both, SplineError> {
-        if let Some(both) = self.iso(pieces) {
-            return both;
+    /// All curves of a loop, as [`EdgeUse::trim_loop`] numbers them.
+    fn curves(&self, trim_loop: Option<usize>) -> Vec<Bezier<DVec3>> {
+        if let Some(at) = trim_loop {
+            return self.face.loops[at].curves().collect();
         }
-        let mut deviation: f64 = 0.0;
-        let (mut flat, mut space) = (Vec::new(), Vec::new());
-        for (k, c) in pieces.iter().enumerate() {
-            let (start, end) = (k as f64, k as f64 + 1.0);
-            flat.push(Span { start, end, piece: c.clone() });
-            if let Some([o, a, b]) = self.plane {
-                let map = |p: &DVec3| (o * p.z + a * p.x + b * p.y).extend(p.z);
-                space.push(Span { start, end, piece: Bezier { points: c.points.iter().map(map).collect() } });
-            } else {
-                self.fit(c, (0.0, 1.0), start, reach, HALVINGS, &mut space, &mut deviation);
+        let ((a, b), (c, d)) = self.face.surface.domain();
+        let corners = [(a, c), (b, c), (b, d), (a, d), (a, c)].map(DVec2::from);
+        corners.windows(2).map(|w| Bezier::line(w[0], w[1])).collect()
+    }
+
+    /// How many curves a loop has, and those that do not stay within `reach` of one point.
+    pub(super) fn pieces(&self, trim_loop: Option<usize>, reach: f64) -> (usize, Vec<Piece>) {
+        let edges = trim_loop.map_or(&[][..], |at| self.face.loops[at].edges());
+        let curves = self.curves(trim_loop);
+        let count = curves.len();
+        let piece = |(index, curve)| Piece { index, curve, edge: edges.get(index).copied().flatten() };
+        (count, curves.into_iter().enumerate().filter(|(_, c)| !self.is_point(c, reach)).map(piece).collect())
+    }
+
+    fn is_point(&self, curve: &Bezier<DVec3>, reach: f64) -> bool {
+        let start = self.at(curve, 0.0);
+        (1..=CHORDS).all(|k| self.at(curve, f64::from(k) / f64::from(CHORDS)).distance(start) <= reach)
+    }
+
+    /// The curves in `(u, v)` of a use of an edge, end to end as the loop runs, without those that stay within `reach` of
+    /// one point.
+    pub fn along(&self, used: &EdgeUse, reach: f64) -> Vec<Bezier<DVec3>> {
+        let curves = self.curves(used.trim_loop);
+        let (from, to) = used.range;
+        let mut out = Vec::new();
+        for k in from.floor() as usize..to.ceil() as usize {
+            let curve = &curves[k % curves.len()];
+            let (a, b) = ((from - k as f64).max(0.0), (to - k as f64).min(1.0));
+            if b > a && !self.is_point(curve, reach) {
+                out.push(curve.segment(a, b));
             }
         }
-        let (degree, knots, points) = arc::assemble(&flat);
-        let flat = BSpline::new(degree, knots, points)?;
-        let (degree, knots, points) = arc::assemble(&space);
-        Ok(Both { flat, space: BSpline::new(degree, knots, points)?, deviation })
+        out
     }
 
-    /// Pieces along one line of constant parameter, run through once.
-    fn iso(&self, pieces: &[Bezier<DVec3>]) -> Option<Result<Both, SplineError>> {
+    /// Whether [`Sheet::in_space`] is exact.
+    pub(super) fn is_exact(&self, pieces: &[Bezier<DVec3>]) -> bool {
+        self.plane.is_some() || self.iso(pieces).is_some()
+    }
+
+    /// `pieces`, end to end, as one spline over the parameters of [`Sheet::in_space`].
+    ///
+    /// # Errors
+    /// [`SplineError`] where the pieces are no spline.
+    pub fn in_plane(&self, pieces: &[Bezier<DVec3>]) -> Result<BSpline<DVec3>, SplineError> {
+        if let Some(Iso { along_v, at, from, to }) = self.iso(pieces) {
+            let end = |t: f64| if along_v { DVec2::new(at, t) } else { DVec2::new(t, at) };
+            return BSpline::from_bezier(Bezier::line(end(from), end(to)), from.min(to), from.max(to));
+        }
+        let spans = pieces.iter().enumerate();
+        let spans: Vec<_> =
+            spans.map(|(k, c)| Span { start: k as f64, end: k as f64 + 1.0, piece: c.clone() }).collect();
+        let (degree, knots, points) = arc::assemble(&spans);
+        BSpline::new(degree, knots, points)
+    }
+
+    /// `pieces`, end to end, in space, and the largest distance found of a fit from the surface's points; fits aim at
+    /// `reach`.
+    ///
+    /// # Errors
+    /// [`SplineError`] where a line of constant parameter is no spline.
+    pub(super) fn in_space(
+        &self,
+        pieces: &[Bezier<DVec3>],
+        reach: f64,
+    ) -> Result<(Vec<Span<Bezier<DVec4>>>, f64), SplineError> {
+        if let Some(Iso { along_v, at, from, to }) = self.iso(pieces) {
+            let whole = isocurve(&self.face.surface, at, along_v)?;
+            let (a, b) = (from.min(to), from.max(to));
+            let mut spans = whole.beziers_between(a, b);
+            if from > to {
+                spans.reverse();
+                for s in &mut spans {
+                    (s.start, s.end) = (a + (b - s.end), a + (b - s.start));
+                    s.piece.points.reverse();
+                }
+            }
+            return Ok((spans, 0.0));
+        }
+        let mut deviation: f64 = 0.0;
+        let mut spans = Vec::new();
+        for (k, c) in pieces.iter().enumerate() {
+            let start = k as f64;
+            if let Some([o, a, b]) = self.plane {
+                let map = |p: &DVec3| (o * p.z + a * p.x + b * p.y).extend(p.z);
+                let piece = Bezier { points: c.points.iter().map(map).collect() };
+                spans.push(Span { start, end: start + 1.0, piece });
+            } else {
+                self.fit(c, (0.0, 1.0), start, reach, HALVINGS, &mut spans, &mut deviation);
+            }
+        }
+        Ok((spans, deviation))
+    }
+
+    fn iso(&self, pieces: &[Bezier<DVec3>]) -> Option<Iso> {
         let ((u0, u1), (v0, v1)) = self.face.surface.domain();
         let points = || pieces.iter().flat_map(|c| &c.points).map(|p| p.point());
         let (first, last) = (points().next()?, points().next_back()?);
@@ -108,18 +185,8 @@ impl<'a> Sheet<'a> {
         if from == to || !inside || !(rising || along.windows(2).all(|w| w[0] >= w[1])) {
             return None;
         }
-        let whole = isocurve(&self.face.surface, if along_v { first.x } else { first.y }, along_v);
-        Some(whole.and_then(|whole| {
-            let spans = whole.beziers_between(from.min(to).max(lo), from.max(to).min(hi));
-            let (degree, knots, points) = arc::assemble(&spans);
-            let part = BSpline::new(degree, knots, points)?;
-            let (a, b) = part.domain();
-            let end = |t: f64| if along_v { DVec2::new(first.x, t) } else { DVec2::new(t, first.y) };
-            let flat = BSpline::from_bezier(Bezier::line(end(a), end(b)), a, b)?;
-            let turned = from > to;
-            let (flat, space) = if turned { (flat.reversed(), part.reversed()) } else { (flat, part) };
-            Ok(Both { flat, space, deviation: 0.0 })
-        }))
+        let at = if along_v { first.x } else { first.y };
+        Some(Iso { along_v, at, from: from.clamp(lo, hi), to: to.clamp(lo, hi) })
     }
 
     /// Cubic Hermite pieces of `S(c(t))` over `range`.
@@ -152,11 +219,18 @@ impl<'a> Sheet<'a> {
 
     /// Point and derivative of `S(c(t))`.
     fn jet(&self, c: &Bezier<DVec3>, t: f64) -> (DVec3, DVec3) {
+        let (s, along) = self.frame(c, t);
+        (s.point, along)
+    }
+
+    /// The surface under `t` of a curve in `(u, v)`, and the derivative of `S(c(t))`.
+    pub(super) fn frame(&self, c: &Bezier<DVec3>, t: f64) -> (crate::spline::Jet, DVec3) {
         let (h, dh) = c.jet(t);
         let p = h.point();
         let slope = (dh.truncate() - p * dh.z) / h.z;
         let s = self.grid.jet(p.x, p.y);
-        (s.point, s.du * slope.x + s.dv * slope.y)
+        let along = s.du * slope.x + s.dv * slope.y;
+        (s, along)
     }
 }
 

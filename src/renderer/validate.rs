@@ -1,10 +1,10 @@
-//! What settings may ask for.
+//! Checks of a scene's settings.
 
 use super::RenderError;
 use crate::picture::{Samples, SceneSettings, TrimWay};
 use crate::scene::{SceneData, SceneRequest};
 
-/// Nothing is asked for that smooth trims do not go with.
+/// Smooth trims exclude some other settings.
 pub(super) fn check_smooth_trims(data: &SceneData, settings: SceneRequest) -> Result<(), RenderError> {
     let refused = match settings.trim {
         _ if settings.samples != Samples::One => Some("several samples a pixel, which smooth them, too"),
@@ -17,7 +17,7 @@ pub(super) fn check_smooth_trims(data: &SceneData, settings: SceneRequest) -> Re
     refused.map_or(Ok(()), |what| Err(RenderError::SmoothTrims(what)))
 }
 
-/// The sun is in some direction.
+/// The direction towards the sun is finite and has a length.
 pub(super) fn check_sun(settings: SceneSettings) -> Result<(), RenderError> {
     let nowhere = settings.sun.filter(|s| !s.is_finite() || *s == glam::DVec3::ZERO);
     nowhere.map_or(Ok(()), |towards| Err(RenderError::Sun(towards)))

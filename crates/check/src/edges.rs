@@ -1,0 +1,191 @@
+//! Which points of a model's edges are seen: the truth that drawn lines are judged against.
+//!
+//! ```text
+//!   edge ─▶ points on its curve ─▶ ray from the eye through each ─▶ all hits before the point
+//!
+//!      eye ──────×───────────────●    hit of any face before the point               hidden
+//!      eye ───────────────────×──●    hit so near that it is the point: own face     visible
+//!                                                               another's            unsure
+//! ```
+//!
+//! A hit is *at* the point when the point lies within [`AT`] times the edges' stated deviation of the tangent plane of the
+//! hit; at a face that is seen almost edge-on the plane says little, and own faces count as at the point also when the
+//! hit is as near as a curved surface allows: within the square root of 8 deviations times the part's size. Hits on solids
+//! and parts that are seen through hide nothing. Where a volume trims the model, edges outside it are cut away.
+//!
+//! Another face at the point (a part that lies flush on another) leaves open which one a renderer sees: such points are
+//! [`Visibility::Unsure`], and no judge counts them.
+
+use super::{Hit, ON, Probe, Tracer};
+use crate::model::{Camera, Edge, Edges, Model};
+use crate::spline::Control;
+use glam::{DAffine3, DVec2, DVec3, DVec4};
+use rayon::prelude::*;
+use selvedge_geometry::edges::EdgeError;
+
+/// A hit is at a point of an edge within so many times what is known of the edge's place.
+pub const AT: f64 = 4.0;
+/// What is known of a place at best, relative to the model's size.
+const ROUNDING: f64 = 1e-12;
+/// Points of one piece of a curve at most.
+const MOST: f64 = 4096.0;
+
+/// Whether a point of an edge is seen.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Visibility {
+    /// Nothing is before it.
+    Visible,
+    /// A face is before it.
+    Hidden,
+    /// Only faces of others that are at the point, too.
+    Unsure,
+    /// The volume that trims the model does not hold it.
+    Cut,
+}
+
+/// A point of an edge, in the picture.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct EdgePoint {
+    /// Index into [`Model::instances`].
+    pub instance: usize,
+    /// Index into [`Edges::edges`] of the instance's part.
+    pub edge: usize,
+    /// The edge's parameter: number of the piece, and fraction.
+    pub parameter: f64,
+    /// The point, model coordinates.
+    pub point: DVec3,
+    /// Its place in the picture, and its depth.
+    pub pixel: DVec2,
+    /// Distance from the eye along the view axis.
+    pub depth: f64,
+    /// Whether it is seen.
+    pub visibility: Visibility,
+}
+
+/// The edges of a model's parts.
+#[derive(Debug)]
+pub struct EdgeTracer<'a> {
+    model: &'a Model,
+    tracer: &'a Tracer,
+    parts: Vec<Edges>,
+}
+
+impl<'a> EdgeTracer<'a> {
+    /// Finds the edges of all parts; `tracer` is the model's.
+    ///
+    /// # Errors
+    /// The part, and [`EdgeError`] for a face whose boundary is no curve.
+    pub fn new(model: &'a Model, tracer: &'a Tracer) -> Result<Self, (usize, EdgeError)> {
+        let edges = |(part, p): (usize, &crate::model::Part)| p.edges().map_err(|e| (part, e));
+        let parts = model.parts.par_iter().enumerate().map(edges).collect::<Result<_, _>>()?;
+        Ok(Self { model, tracer, parts })
+    }
+
+    /// The edges of each part.
+    pub fn parts(&self) -> &[Edges] {
+        &self.parts
+    }
+
+    /// Points of all edges of faces that lie in the picture and the depth range, at most `spacing` pixels apart along the
+    /// control polygons (and no more than some thousands a piece), away from the ends of pieces. Edges of meshes have no
+    /// points yet.
+    pub fn points(&self, camera: &Camera, spacing: f64) -> Vec<EdgePoint> {
+        let jobs: Vec<(usize, usize)> = self
+            .tracer
+            .placed
+            .iter()
+            .flat_map(|placed| (0..self.parts[placed.part].edges.len()).map(|edge| (placed.instance, edge)))
+            .collect();
+        jobs.into_par_iter()
+            .flat_map_iter(|(instance, edge)| {
+                let mut probe = self.tracer.probe(camera);
+                self.points_of(instance, edge, &mut probe, spacing)
+            })
+            .collect()
+    }
+
+    fn points_of(&self, instance: usize, number: usize, probe: &mut Probe<'_>, spacing: f64) -> Vec<EdgePoint> {
+        let placed = &self.model.instances[instance];
+        let edges = &self.parts[placed.part];
+        let camera = probe.camera();
+        let (near, far) = camera.depth_range;
+        let mut out = Vec::new();
+        for (k, span) in edges.edges[number].curve.iter().enumerate() {
+            let to_pixel =
+                |p: &DVec4| camera.project(placed.transform.transform_point3(p.point())).map(|(pixel, _)| pixel);
+            let polygon: Vec<Option<DVec2>> = span.piece.points.iter().map(to_pixel).collect();
+            // behind the eye a polygon has no length: then as many as there may be
+            let length = polygon.windows(2).map(|w| w[0].zip(w[1]).map_or(f64::INFINITY, |(a, b)| a.distance(b)));
+            let steps = (length.sum::<f64>() / spacing).ceil().clamp(1.0, MOST) as u32;
+            for i in 0..steps {
+                let t = (f64::from(i) + 0.5) / f64::from(steps);
+                let point = placed.transform.transform_point3(span.piece.point(t));
+                let Some((pixel, depth)) = camera.project(point) else { continue };
+                let (w, h) = (f64::from(camera.size.0), f64::from(camera.size.1));
+                let shown = pixel.x >= 0.0 && pixel.y >= 0.0 && pixel.x <= w && pixel.y <= h;
+                if !shown || depth < near || depth > far {
+                    continue;
+                }
+                let visibility = self.visibility(instance, number, point, probe);
+                let parameter = k as f64 + t;
+                out.push(EdgePoint { instance, edge: number, parameter, point, pixel, depth, visibility });
+            }
+        }
+        out
+    }
+
+    /// Whether a point of an edge of an instance, model coordinates, is seen; it lies in the picture and in front of the
+    /// eye.
+    ///
+    /// # Panics
+    /// For a point behind the eye.
+    pub fn visibility(&self, instance: usize, edge: usize, point: DVec3, probe: &mut Probe<'_>) -> Visibility {
+        let camera = probe.camera();
+        let placed = &self.model.instances[instance];
+        let edges = &self.parts[placed.part];
+        let edge: &Edge = &edges.edges[edge];
+        let (pixel, depth) = camera.project(point).expect("in front of the eye");
+        let (origin, direction) = camera.ray(pixel);
+        let along = (point - origin).dot(direction);
+        if let Some(volume) = &self.tracer.trim {
+            let on = ON * self.tracer.bounds.diagonal();
+            let trace = volume.trace(origin, direction);
+            if ![along - on, along, along + on].iter().any(|t| trace.inside(*t)) {
+                return Visibility::Cut;
+            }
+        }
+        let size = self.tracer.bounds.diagonal();
+        let known = (edges.deviation * scale(&placed.transform)).max(ROUNDING * size);
+        let own = |hit: &Hit| hit.instance == instance && edge.uses.iter().any(|u| u.face == hit.face_index);
+        let mut seen = Visibility::Visible;
+        for hit in probe.hits(pixel) {
+            let gap = (point - hit.point).dot(direction);
+            if gap <= 0.0 || hit.depth >= depth || self.tracer.is_clear(hit) {
+                continue;
+            }
+            let grazing = own(hit) && gap * gap <= 8.0 * known * size;
+            let at = gap * hit.normal.dot(direction).abs() <= AT * known;
+            match (at || grazing, own(hit)) {
+                (false, _) => return Visibility::Hidden,
+                (true, true) => {}
+                (true, false) => seen = Visibility::Unsure,
+            }
+        }
+        seen
+    }
+}
+
+impl Tracer {
+    /// The hit is on a solid that is seen through.
+    fn is_clear(&self, hit: &Hit) -> bool {
+        let solids = self.solids.iter().filter(|_| hit.part >= self.parts.len());
+        let mut primitives = solids.filter_map(|s| s.union().primitives().get(hit.face_index));
+        primitives.any(|p| !p.is_opaque())
+    }
+}
+
+/// By how much a transform lengthens at most, within a factor of the square root of 3.
+fn scale(transform: &DAffine3) -> f64 {
+    let m = transform.matrix3;
+    (m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared()).sqrt()
+}
