@@ -6,6 +6,7 @@
 //!                                                                 OUT_DIR/shaders.rs
 //! ```
 //!
+//! `interfaces.rs` says what each shader needs of its pipeline, `constants.rs` what constants the sources state.
 //! `shaders.rs` has one `static` per entry point; `layout.rs` asserts at compile time that each
 //! struct of `src/abi` has the offsets and size that the shaders read. `tools/shaders` writes the
 //! committed files of `glsl/spirv/` by setting `SELVEDGE_SHADERS_TO`.
@@ -17,6 +18,9 @@ use std::{env, fs};
 #[cfg(feature = "compile-shaders")]
 #[path = "build/compile.rs"]
 mod compile;
+#[cfg(feature = "compile-shaders")]
+#[path = "build/constants.rs"]
+mod constants;
 #[cfg(feature = "compile-shaders")]
 #[path = "build/interface.rs"]
 mod interface;
@@ -66,12 +70,8 @@ fn list_shaders(artefacts: &Path) -> String {
         let bytes = fs::metadata(path).map_or_else(|e| panic!("{}: {e}", path.display()), |m| m.len());
         let only = if entry_point.starts_with("baseline_") { "#[cfg(feature = \"baselines\")]\n" } else { "" };
         let words = format!("&words::<{}>(include_bytes!({path:?}))", bytes / 4);
-        let (kind, value) = if entry_point.ends_with(".comp") {
-            ("Compute", format!("Compute {{ words: {words}, interface: interfaces::{name} }}"))
-        } else {
-            ("&[u32]", words)
-        };
-        writeln!(text, "/// `glsl/{entry_point}`\n{only}pub static {name}: {kind} = {value};")
+        let value = format!("Shader {{ words: {words}, interface: interfaces::{name} }}");
+        writeln!(text, "/// `glsl/{entry_point}`\n{only}pub static {name}: Shader = {value};")
             .expect("writing to a string");
     }
     text

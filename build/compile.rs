@@ -1,17 +1,17 @@
 //! Every entry point of `glsl/` by shaderc, twice: unoptimised for its names, optimised to ship.
 
-use crate::{files, folders, interface, reflect, write};
+use crate::{constants, files, folders, interface, reflect, write};
 use std::fs;
 use std::path::{Path, PathBuf};
 
-/// Compiles `root/glsl` into `artefacts`, with `layout.rs` and `interfaces.rs`. The error is shaderc's, with file and line.
+/// Compiles `root/glsl` into `artefacts`, with `layout.rs`, `interfaces.rs` and `constants.rs`. The error is shaderc's, with file and line.
 pub fn all(root: &Path, artefacts: &Path) -> Result<(), String> {
     let glsl = root.join("glsl");
     let compiler = shaderc::Compiler::new().map_err(|e| format!("shaderc does not start: {e}"))?;
     let reflected = options(&glsl, shaderc::OptimizationLevel::Zero)?;
     let shipped = options(&glsl, shaderc::OptimizationLevel::Performance)?;
     let mut layouts = reflect::Layouts::new(&root.join("src/abi"))?;
-    let mut interfaces = String::from("// Written by build.rs from the shaders: what they need of their pipelines.\n");
+    let mut interfaces = interface::Interfaces::default();
     let mut errors = Vec::new();
     for path in entry_points(&glsl) {
         let kind = match path.extension().and_then(|extension| extension.to_str()) {
@@ -29,9 +29,7 @@ pub fn all(root: &Path, artefacts: &Path) -> Result<(), String> {
         match compile(&reflected) {
             Ok(module) => {
                 layouts.add(&name, module.as_binary())?;
-                if kind == shaderc::ShaderKind::Compute {
-                    interfaces.push_str(&interface::of_compute(&name, module.as_binary())?);
-                }
+                interfaces.add(&name, module.as_binary())?;
             }
             Err(error) => {
                 errors.push(error.to_string());
@@ -44,7 +42,8 @@ pub fn all(root: &Path, artefacts: &Path) -> Result<(), String> {
     if !errors.is_empty() {
         return Err(errors.join("\n"));
     }
-    write(&artefacts.join("interfaces.rs"), interfaces.as_bytes());
+    write(&artefacts.join("interfaces.rs"), interfaces.text().as_bytes());
+    write(&artefacts.join("constants.rs"), constants::of_sources(&glsl)?.as_bytes());
     write(&artefacts.join("layout.rs"), layouts.assertions()?.as_bytes());
     Ok(())
 }

@@ -1,5 +1,5 @@
-//! What a compute shader needs of its pipeline, read out of unoptimised SPIR-V: the kind of each binding, the size of a
-//! workgroup and of the push constants, and the names of specialisation constants.
+//! What a shader needs of its pipeline, read out of unoptimised SPIR-V: the kind of each binding, the size of a
+//! workgroup and of the push constants, and the specialisation constants. A constant's name has one id in all shaders.
 //!
 //! ```text
 //!   OpDecorate id Binding n      OpVariable pointer id class      OpTypePointer pointer class type
@@ -47,57 +47,97 @@ struct Found {
     sampled: HashMap<u32, u32>,
 }
 
-/// The line of `interfaces.rs` for a shader. Bindings count up from 0, each of a kind that `gpu::Binding` has.
-pub fn of_compute(shader: &str, words: &[u32]) -> Result<String, String> {
-    let mut found = Found::default();
-    instructions(words, |op, operands| found.read(op, operands));
-    let module = Module::parse(words);
-    let mut kinds = BTreeMap::new();
-    let mut push_bytes = 0;
-    for (id, &(pointer, class)) in &found.variables {
-        let target = found.pointers.get(&pointer).copied().unwrap_or_default();
-        if class == CLASS_PUSH_CONSTANT {
-            push_bytes = module.bytes(target).ok_or_else(|| format!("{shader}: push constants of no fixed size"))?;
-        }
-        let Some(&binding) = found.bindings.get(id) else { continue };
-        let kind = match class {
-            CLASS_STORAGE_BUFFER => "Storage",
-            CLASS_UNIFORM => "Uniform",
-            _ => match (found.images.get(&target), found.sampled.get(&target).and_then(|i| found.images.get(i))) {
-                (Some(&DIM_BUFFER), _) => "Texels",
-                (_, Some(_)) => "Sampled",
-                (Some(_), _) => "StorageImage",
-                _ => return Err(format!("{shader}: binding {binding} is of no kind that pipelines have")),
-            },
-        };
-        kinds.insert(binding, kind);
-    }
-    if let Some(gap) = (0..).zip(kinds.keys()).find(|(expected, binding)| expected != *binding) {
-        return Err(format!("{shader}: there is no binding {}", gap.0));
-    }
-    let group = found.group.map(|id| found.numbers.get(&id).copied().unwrap_or_default());
-    if group.contains(&0) {
-        return Err(format!("{shader}: the size of its workgroups is not told"));
-    }
-    let kinds: Vec<_> = kinds.values().map(|kind| format!("Binding::{kind}")).collect();
-    let constants = found.constants.iter().filter_map(|(constant, id)| Some((module.names.get(id)?, constant)));
-    let constants: Vec<_> = constants.map(|(name, constant)| format!("({name:?}, {constant})")).collect();
-    let mut text = String::new();
-    if shader.starts_with("baseline_") {
-        text.push_str("#[cfg(feature = \"baselines\")]\n");
-    }
-    let _ = writeln!(
-        text,
-        "pub(super) const {}: Interface = Interface {{ group: {:?}, push_bytes: {push_bytes}, bindings: &[{}], constants: &[{}] }};",
-        shader.replace('.', "_").to_uppercase(),
-        group,
-        kinds.join(", "),
-        constants.join(", "),
-    );
-    Ok(text)
+/// All of `interfaces.rs`.
+#[derive(Default)]
+pub struct Interfaces {
+    shaders: String,
+    /// Ids of specialisation constants.
+    constants: BTreeMap<String, u32>,
 }
 
+impl Interfaces {
+    /// A shader's, whose bindings are of the kinds that `gpu::Binding` has. Those of a compute shader count up from 0.
+    pub fn add(&mut self, shader: &str, words: &[u32]) -> Result<(), String> {
+        let mut found = Found::default();
+        instructions(words, |op, operands| found.read(op, operands));
+        let module = Module::parse(words);
+        let (bindings, push_bytes) = found.bindings(shader, &module)?;
+        let is_compute = shader.ends_with(".comp");
+        if let (true, Some(gap)) = (is_compute, bindings.iter().position(|kind| *kind == UNUSED)) {
+            return Err(format!("{shader}: there is no binding {gap}"));
+        }
+        let group = found.group.map(|id| found.numbers.get(&id).copied().unwrap_or_default());
+        if is_compute && group.contains(&0) {
+            return Err(format!("{shader}: the size of its workgroups is not told"));
+        }
+        let constants = found.constants.iter().filter_map(|(constant, id)| Some((module.names.get(id)?, *constant)));
+        let mut ids = Vec::new();
+        for (name, constant) in constants {
+            let is_new = !self.constants.contains_key(name);
+            if is_new && self.constants.values().any(|id| *id == constant) {
+                return Err(format!("{shader}: the id {constant} of `{name}` is another constant's"));
+            }
+            if *self.constants.entry(name.clone()).or_insert(constant) != constant {
+                return Err(format!("{shader}: `{name}` has another id than {constant} elsewhere"));
+            }
+            ids.push(constant);
+        }
+        if shader.starts_with("baseline_") {
+            self.shaders.push_str("#[cfg(feature = \"baselines\")]\n");
+        }
+        let bindings: Vec<_> = bindings.iter().map(|kind| format!("Binding::{kind}")).collect();
+        let _ = writeln!(
+            self.shaders,
+            "pub(super) const {}: Interface = Interface {{ group: {group:?}, push_bytes: {push_bytes}, bindings: &[{}], constants: &{ids:?} }};",
+            shader.replace('.', "_").to_uppercase(),
+            bindings.join(", "),
+        );
+        Ok(())
+    }
+
+    /// The file.
+    pub fn text(&self) -> String {
+        let mut text = String::from("// Written by build.rs from the shaders: what they need of their pipelines.\n");
+        text.push_str("pub mod constant {\n");
+        for (name, id) in &self.constants {
+            let _ = writeln!(text, "    pub const {name}: u32 = {id};");
+        }
+        text.push_str("}\n");
+        text + &self.shaders
+    }
+}
+
+/// Kind of a binding that the shader has not.
+const UNUSED: &str = "Unused";
+
 impl Found {
+    /// The kind of each binding from 0 on, and bytes of the push constants.
+    fn bindings(&self, shader: &str, module: &Module) -> Result<(Vec<&'static str>, u32), String> {
+        let mut kinds = Vec::new();
+        let mut push_bytes = 0;
+        for (id, &(pointer, class)) in &self.variables {
+            let target = self.pointers.get(&pointer).copied().unwrap_or_default();
+            if class == CLASS_PUSH_CONSTANT {
+                push_bytes =
+                    module.bytes(target).ok_or_else(|| format!("{shader}: push constants of no fixed size"))?;
+            }
+            let Some(&binding) = self.bindings.get(id) else { continue };
+            let kind = match class {
+                CLASS_STORAGE_BUFFER => "Storage",
+                CLASS_UNIFORM => "Uniform",
+                _ => match (self.images.get(&target), self.sampled.get(&target).and_then(|i| self.images.get(i))) {
+                    (Some(&DIM_BUFFER), _) => "Texels",
+                    (_, Some(_)) => "Sampled",
+                    (Some(_), _) => "StorageImage",
+                    _ => return Err(format!("{shader}: binding {binding} is of no kind that pipelines have")),
+                },
+            };
+            kinds.resize(kinds.len().max(binding as usize + 1), UNUSED);
+            kinds[binding as usize] = kind;
+        }
+        Ok((kinds, push_bytes))
+    }
+
     fn read(&mut self, op: u16, operands: &[u32]) {
         match (op, operands) {
             (OP_EXECUTION_MODE_ID, &[_, MODE_LOCAL_SIZE_ID, x, y, z]) => self.group = [x, y, z],

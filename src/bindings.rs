@@ -6,27 +6,15 @@
 //!   placed patches views, faces' places, faces, patches, items, points           glsl/include/placed.glsl
 //!   bounded        views, instances, faces' places, faces, patches, items, taus, counters, cones, points
 //!                                                                                  glsl/include/bound.glsl
-//!   PRIMITIVES     leaves, their sides, surfaces, surfaces' places         glsl/include/solids.glsl, volume.glsl
-//!   SUN_BINDINGS   sun, its tiles, …, PRIMITIVES, leaves' centres, counts  glsl/include/sun.glsl
+//!   primitives     leaves, their sides, surfaces, surfaces' places         glsl/include/solids.glsl, volume.glsl
+//!   sun            sun, its tiles, …, primitives, leaves' centres, counts  glsl/include/sun.glsl
 //! ```
 
-use crate::gpu::{Binding, Buffer, Resource, Texels};
-use std::ops::Range;
+use crate::gpu::{Buffer, Resource, Texels};
+use crate::shaders::constant;
 
-/// Of the primitives of Boolean solids, one after another.
-pub(crate) const PRIMITIVES: [Binding; 4] = [Binding::Storage, Binding::Texels, Binding::Texels, Binding::Texels];
-
-/// The bindings of the sun, after all others of a pass: `glsl/include/sun.glsl`. Those that cast shadows are among them.
-pub(crate) const SUN_BINDINGS: [Binding; 13] = {
-    let mut bindings: [Binding; 13] = with_primitives(SUN_OWN);
-    // triangles, lists, facets, parts
-    let mut i = 3;
-    while i < SUN_OWN {
-        bindings[i] = Binding::Texels;
-        i += 1;
-    }
-    bindings
-};
+/// Bindings of the sun, after all others of a pass: `glsl/include/sun.glsl`. Primitives that cast shadows are among them.
+pub(crate) const SUN_BINDINGS: usize = 13;
 /// The first of them, which a pass needs that has the scene's primitives for itself.
 pub(crate) const SUN_OWN: usize = 7;
 
@@ -72,8 +60,8 @@ pub(crate) struct Bounded<'a> {
 
 impl<'a> Bounded<'a> {
     /// The shaders' constants.
-    pub(crate) fn constants(cones: bool) -> [(&'static str, u32); 1] {
-        [("SCENE_HAS_CONES", u32::from(cones))]
+    pub(crate) fn constants(cones: bool) -> [(u32, u32); 1] {
+        [(constant::SCENE_HAS_CONES, u32::from(cones))]
     }
 
     /// In binding order.
@@ -86,7 +74,7 @@ impl<'a> Bounded<'a> {
     }
 }
 
-/// What stands at [`PRIMITIVES`].
+/// Primitives of Boolean solids.
 #[derive(Clone, Copy)]
 pub(crate) struct Primitives<'a> {
     pub leaves: &'a Buffer,
@@ -102,35 +90,4 @@ impl<'a> Primitives<'a> {
         let [sides, surfaces, places] = [self.leaf_surfaces, self.surfaces, self.surface_places].map(Resource::from);
         [self.leaves.into(), sides, surfaces, places]
     }
-}
-
-/// Constants, and storage buffers after them: `count` in all.
-pub(crate) fn with_constants(count: usize) -> Vec<Binding> {
-    let mut bindings = vec![Binding::Storage; count];
-    bindings[0] = Binding::Uniform;
-    bindings
-}
-
-/// Constants, texels, and storage buffers after them: `count` in all.
-pub(crate) fn with_texels(texels: Range<usize>, count: usize) -> Vec<Binding> {
-    let mut bindings = with_constants(count);
-    bindings[texels].fill(Binding::Texels);
-    bindings
-}
-
-/// Constants, [`Placed`], and storage buffers after them: `count` in all.
-pub(crate) fn with_placed(count: usize) -> Vec<Binding> {
-    with_texels(1..7, count)
-}
-
-/// Constants, and storage buffers, but for [`PRIMITIVES`] from `first` on.
-pub(crate) const fn with_primitives<const COUNT: usize>(first: usize) -> [Binding; COUNT] {
-    let mut bindings = [Binding::Storage; COUNT];
-    bindings[0] = Binding::Uniform;
-    let mut i = 0;
-    while i < PRIMITIVES.len() {
-        bindings[first + i] = PRIMITIVES[i];
-        i += 1;
-    }
-    bindings
 }

@@ -109,9 +109,6 @@ pub(crate) struct Frame<'a> {
 
 const WRITE_TO_READ: (Access, Access) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);
 
-/// A copy's source, among buffer accesses, which have no layout of their own.
-const COPIED: Access = Access { layout: Access::COMPUTE_READ.layout, ..Access::TRANSFER_READ };
-
 impl<'a> Frame<'a> {
     /// What the trim test reads, in its order; nothing where no patch is trimmed.
     fn trim_test(&self) -> Vec<Resource<'a>> {
@@ -210,7 +207,7 @@ impl Frame<'_> {
             times.scope(cmd, "layers", || layers.record(self, cmd, &solids, drawing));
         }
         let counters = &stages.common.counters;
-        barrier::buffers(cmd, &[(counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, COPIED)]);
+        barrier::buffers(cmd, &[(counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, Access::TRANSFER_READ)]);
         self.counters.record_nth(cmd, counters, size_of::<Counters>() as u64, nth);
     }
 
@@ -230,9 +227,7 @@ impl Frame<'_> {
     fn wait(&self, cmd: &Commands<'_>) {
         let before = [Access::COMPUTE_WRITE, Access::VERTEX_READ, Access::FRAGMENT_READ, Access::INDIRECT_READ];
         let before = before.into_iter().fold(Access::COMPUTE_READ, |all, one| all | one);
-        let transfer = Access { layout: before.layout, ..Access::TRANSFER_READ };
-        let clear = Access { layout: before.layout, ..Access::TRANSFER_WRITE };
-        barrier::memory(cmd, before | transfer, Access::COMPUTE_WRITE | clear);
+        barrier::memory(cmd, before | Access::TRANSFER_READ, Access::COMPUTE_WRITE | Access::TRANSFER_WRITE);
     }
 
     /// Clears what each drawing counts, and its images.

@@ -156,7 +156,7 @@ struct Loaded {
 impl Loaded {
     fn bands(&self) -> u32 {
         let stages = self.stages.as_ref().filter(|_| self.counts.events);
-        stages.map_or(0, |s| s.size().1.div_ceil(abi::TILE).div_ceil(self.capacities.band_rows))
+        stages.map_or(0, |s| s.size().1.div_ceil(abi::TILE).div_ceil(self.capacities.solids.band_rows))
     }
 
     fn solid_bytes(&self) -> Vec<PoolBytes> {

@@ -19,9 +19,9 @@ const fn words<const COUNT: usize>(bytes: &[u8]) -> [u32; COUNT] {
 
 include!(concat!(env!("OUT_DIR"), "/shaders.rs"));
 
-/// A compute shader, and what it needs of its pipeline.
+/// A shader, and what it needs of its pipeline.
 #[derive(Debug)]
-pub struct Compute {
+pub struct Shader {
     /// The SPIR-V.
     pub words: &'static [u32],
     /// Read out of it.
@@ -31,17 +31,20 @@ pub struct Compute {
 /// What a shader needs of its pipeline.
 #[derive(Debug)]
 pub struct Interface {
-    /// Threads of a workgroup.
+    /// Threads of a workgroup; 0 of a graphics stage.
     pub group: [u32; 3],
     /// Bytes of the push constants.
     pub push_bytes: u32,
     /// From binding 0 on.
     pub bindings: &'static [Binding],
-    /// Names and ids of the specialisation constants.
-    pub constants: &'static [(&'static str, u32)],
+    /// Ids of the specialisation constants.
+    pub constants: &'static [u32],
 }
 
-/// Of every compute shader.
+/// Ids of specialisation constants.
+pub use interfaces::constant;
+
+/// Of every shader.
 mod interfaces {
     use super::{Binding, Interface};
     include!(concat!(env!("OUT_DIR"), "/spirv/interfaces.rs"));
@@ -53,76 +56,69 @@ pub struct TrimTest {
     /// Its name in the pipelines'.
     pub way: &'static str,
     /// Fragment shader of pass `visibility`.
-    pub visibility: &'static [u32],
+    pub visibility: &'static Shader,
     /// Fragment shader of pass `operand_patch`.
-    pub operand_patch: &'static [u32],
+    pub operand_patch: &'static Shader,
     /// Pass `gap_fill`.
-    pub gap_fill: &'static Compute,
+    pub gap_fill: &'static Shader,
     /// Both again, within a volume that trims the scene; `None`: the way draws no such scene.
     pub within: Option<Within>,
-    /// Buffers of the test, read as texels; they follow the bindings of the pass.
-    pub texels: usize,
 }
 
 /// Shaders of scenes that a volume trims: `glsl/include/volume.glsl`.
 #[derive(Clone, Copy, Debug)]
 pub struct Within {
     /// Fragment shader of pass `visibility`.
-    pub visibility: &'static [u32],
+    pub visibility: &'static Shader,
     /// Pass `gap_fill`.
-    pub gap_fill: &'static Compute,
+    pub gap_fill: &'static Shader,
 }
 
 /// The u-intercept table.
 pub static TRIM_TABLE: TrimTest = TrimTest {
     way: "table",
-    visibility: VISIBILITY_TABLE_FRAG,
-    operand_patch: OPERAND_PATCH_TABLE_FRAG,
+    visibility: &VISIBILITY_TABLE_FRAG,
+    operand_patch: &OPERAND_PATCH_TABLE_FRAG,
     gap_fill: &GAP_FILL_TABLE_COMP,
-    within: Some(Within { visibility: VISIBILITY_TABLE_VOLUME_FRAG, gap_fill: &GAP_FILL_TABLE_VOLUME_COMP }),
-    texels: 4,
+    within: Some(Within { visibility: &VISIBILITY_TABLE_VOLUME_FRAG, gap_fill: &GAP_FILL_TABLE_VOLUME_COMP }),
 };
 /// Cells with lists of arcs.
 pub static TRIM_EXACT: TrimTest = TrimTest {
     way: "exact",
-    visibility: VISIBILITY_EXACT_FRAG,
-    operand_patch: OPERAND_PATCH_EXACT_FRAG,
+    visibility: &VISIBILITY_EXACT_FRAG,
+    operand_patch: &OPERAND_PATCH_EXACT_FRAG,
     gap_fill: &GAP_FILL_EXACT_COMP,
-    within: Some(Within { visibility: VISIBILITY_EXACT_VOLUME_FRAG, gap_fill: &GAP_FILL_EXACT_VOLUME_COMP }),
-    texels: 3,
+    within: Some(Within { visibility: &VISIBILITY_EXACT_VOLUME_FRAG, gap_fill: &GAP_FILL_EXACT_VOLUME_COMP }),
 };
 
 /// No test at all.
 #[cfg(feature = "baselines")]
 pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
     way: "untrimmed",
-    visibility: BASELINE_VISIBILITY_UNTRIMMED_FRAG,
-    operand_patch: BASELINE_OPERAND_PATCH_UNTRIMMED_FRAG,
+    visibility: &BASELINE_VISIBILITY_UNTRIMMED_FRAG,
+    operand_patch: &BASELINE_OPERAND_PATCH_UNTRIMMED_FRAG,
     gap_fill: &BASELINE_GAP_FILL_UNTRIMMED_COMP,
     within: None,
-    texels: 0,
 };
 
 /// Bisection of monotone pieces.
 #[cfg(feature = "baselines")]
 pub static TRIM_BISECT: TrimTest = TrimTest {
     way: "bisect",
-    visibility: BASELINE_VISIBILITY_BISECT_FRAG,
-    operand_patch: BASELINE_OPERAND_PATCH_BISECT_FRAG,
+    visibility: &BASELINE_VISIBILITY_BISECT_FRAG,
+    operand_patch: &BASELINE_OPERAND_PATCH_BISECT_FRAG,
     gap_fill: &BASELINE_GAP_FILL_BISECT_COMP,
     within: None,
-    texels: 6,
 };
 
 /// Trim textures.
 #[cfg(feature = "baselines")]
 pub static TRIM_TEXTURE: TrimTest = TrimTest {
     way: "texture",
-    visibility: BASELINE_VISIBILITY_TEXTURE_FRAG,
-    operand_patch: BASELINE_OPERAND_PATCH_TEXTURE_FRAG,
+    visibility: &BASELINE_VISIBILITY_TEXTURE_FRAG,
+    operand_patch: &BASELINE_OPERAND_PATCH_TEXTURE_FRAG,
     gap_fill: &BASELINE_GAP_FILL_TEXTURE_COMP,
     within: None,
-    texels: 2,
 };
 
 #[cfg(test)]

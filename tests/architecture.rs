@@ -31,7 +31,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     // GPU: no geometry
     ("gpu", &[]),
     ("shaders", &["gpu"]),
-    ("bindings", &["gpu"]),
+    ("bindings", &["gpu", "shaders"]),
     // where both meet
     ("scene", &["abi", "bindings", "csg", "gpu", "math", "spline", "trim", "model", "picture", "baselines"]),
     ("frame", &["abi", "baselines", "bindings", "gpu", "picture", "scene", "shaders"]),
@@ -73,11 +73,16 @@ const RECORDS: &[&str] = &[
 /// Files of a stage's folder that are neither a pass nor a record.
 const NO_PASSES: &[&str] = &[
     "src/frame/antialiasing/mod.rs",
+    "src/frame/common/draw.rs",
     "src/frame/common/kernel.rs",
     "src/frame/common/room.rs",
+    "src/frame/gaps/capacities.rs",
     "src/frame/solids/buffers.rs",
+    "src/frame/solids/capacities.rs",
     "src/frame/solids/lists.rs",
+    "src/frame/tessellation/capacities.rs",
     "src/frame/tessellation/divide.rs",
+    "src/frame/trim/capacities.rs",
     "src/frame/trim/mod.rs",
 ];
 /// What a library leaves to its host.
@@ -237,6 +242,49 @@ fn a_forbidden_use_is_seen() {
     assert_eq!(for_tests("src/lib.rs", declares), ["src/parity.rs", "src/parity/"]);
     assert_eq!(for_tests("src/twin/mod.rs", declares), ["src/twin/parity.rs", "src/twin/parity/"]);
     assert_eq!(for_tests("src/twin/factor.rs", declares)[0], "src/twin/factor/parity.rs");
+}
+
+/// Names that mean one thing in GLSL and another in Rust.
+const HOMONYMS: &[&str] =
+    &["BLOCK", "CHORDS", "GROUP", "MARGIN", "MARGIN_PX", "MOST_CELLS", "MOST_STEPS", "ROUNDING", "SIDE", "SPARE"];
+
+/// Names and values of the literal constants of a file, GLSL or Rust.
+fn literals(text: &str) -> Vec<(&str, &str)> {
+    let declared = |line: &'_ str| line.split_once("const ").map(|(_, rest)| rest.len());
+    let rest = text.lines().filter_map(|line| declared(line).map(|length| &line[line.len() - length..]));
+    let halves = rest.filter_map(|rest| rest.split_once(" = ").map(|(name, value)| (name, value)));
+    let named = halves.map(|(declared, value)| match declared.split_once(": ") {
+        Some((name, _)) => (name, value),
+        None => (declared.rsplit(' ').next().unwrap_or_default(), value),
+    });
+    named.filter(|(_, value)| value.starts_with(|c: char| c.is_ascii_digit())).collect()
+}
+
+/// What GLSL states has no second home in Rust, which reads it by `abi::constants`.
+fn second_homes(glsl: &[String], rust: &[(String, String)]) -> Vec<String> {
+    let stated: Vec<_> = glsl.iter().flat_map(|text| literals(text)).map(|(name, _)| name).collect();
+    let of_rust = rust.iter().flat_map(|(path, text)| literals(text).into_iter().map(move |(name, _)| (path, name)));
+    let twice = of_rust.filter(|(_, name)| stated.contains(name) && !HOMONYMS.contains(name));
+    twice.map(|(path, name)| format!("{path}: `{name}` is stated in GLSL, use `abi::constants`")).collect()
+}
+
+#[test]
+fn shared_constants_have_one_home() {
+    let read = |path: &PathBuf| fs::read_to_string(path).ok();
+    // other methods, in glsl/baselines, state theirs for themselves
+    let own = |path: &&PathBuf| !relative(path).contains("/baseline");
+    let glsl: Vec<_> = files("glsl").iter().filter(own).filter_map(read).collect();
+    let rust: Vec<_> = files("src").iter().filter_map(|path| Some((relative(path), read(path)?))).collect();
+    let twice = second_homes(&glsl, &rust);
+    assert!(twice.is_empty(), "{}", twice.join("\n"));
+}
+
+#[test]
+fn a_second_home_is_seen() {
+    let glsl = ["const uint FAILED_DRAWS = 2u;\nconst float HALF = 0.5; // of it\n".to_owned()];
+    let twice = |text: &str| second_homes(&glsl, &[("a.rs".to_owned(), text.to_owned())]).len();
+    assert_eq!(twice("pub const FAILED_DRAWS: u32 = 4;\nconst HALF: f64 = 0.5;\n"), 2);
+    assert_eq!(twice("const HALF: f64 = scene::HALF as f64;\nconst OTHER: u32 = 1;\n"), 0);
 }
 
 #[test]

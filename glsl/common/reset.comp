@@ -5,7 +5,7 @@
 // the other counters stay.
 #include "scene.glsl"
 
-layout(constant_id = 1) const bool DRAWS_ONLY = false;
+layout(constant_id = 25) const bool DRAWS_ONLY = false;
 
 layout(local_size_x = 64) in;
 struct Draw {

@@ -7,7 +7,7 @@
 #include "view.glsl"
 
 // Some closed part has no trims.
-layout(constant_id = 1) const bool SCENE_HAS_CONES = false;
+layout(constant_id = 24) const bool SCENE_HAS_CONES = false;
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };

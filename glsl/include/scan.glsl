@@ -3,7 +3,7 @@
 #include "abi/scan.glsl"
 
 layout(local_size_x = 64) in;
-layout(constant_id = 0) const bool COUNT_ON_GPU = false;
+layout(constant_id = 22) const bool COUNT_ON_GPU = false;
 
 layout(scalar, binding = 0) readonly buffer Values { uint values[]; };
 layout(scalar, binding = 1) buffer Offsets { uint offsets[]; };

@@ -15,11 +15,11 @@
 // Twin: src/twin/cross.rs.
 #include "scene.glsl"
 
-layout(constant_id = 1) const bool INSERT = false;
+layout(constant_id = 23) const bool INSERT = false;
 // Strips of some face have several bays.
-layout(constant_id = 2) const bool SCENE_HAS_BAYS = false;
+layout(constant_id = 1) const bool SCENE_HAS_BAYS = false;
 // Somebody asks where trim curves pass: pass `operand_patch`.
-layout(constant_id = 3) const bool MARKS_BORDERS = false;
+layout(constant_id = 26) const bool MARKS_BORDERS = false;
 
 layout(local_size_x = 128) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };

@@ -1,13 +1,7 @@
 //! The exact way to trim: twin of `glsl/include/exact.glsl`, which reads these structs as texels.
 
+pub use crate::abi::constants::exact::{ARC_LAST, ARC_UP, CELL_SPLIT};
 use bytemuck::{Pod, Zeroable};
-
-/// [`ExactArc::shape`]: the loop runs from the lower end to the higher one.
-pub const ARC_UP: u32 = 4;
-/// [`ExactArc::shape`]: the list ends here.
-pub const ARC_LAST: u32 = 8;
-/// [`ExactCell::first`]: the cell is split, and its second word is the number of halvings.
-pub const CELL_SPLIT: u32 = 1 << 31;
 
 /// Where a face's cells are.
 #[repr(C)]

@@ -1,5 +1,6 @@
 //! What changes with every frame.
 
+pub use crate::abi::constants::scene::ENCODE_SUMMED;
 use bytemuck::{Pod, Zeroable};
 
 /// From part coordinates to homogeneous pixels: rows `X`, `Y`, depth and `W`.
@@ -57,9 +58,6 @@ pub struct Frame {
     pub samples: u32,
     pub style: u32,
 }
-
-/// [`Frame::encode_srgb`] of colours that are summed up: linear, but within what colour targets hold.
-pub const ENCODE_SUMMED: u32 = 2;
 
 impl Counters {
     /// The larger of each count, of two samples of one frame.

@@ -20,3 +20,9 @@ pub use solids::*;
 pub use sun::*;
 
 include!(concat!(env!("OUT_DIR"), "/spirv/layout.rs"));
+
+/// The constants of `glsl/`, a module a file: what Rust and GLSL share is stated there alone.
+#[allow(dead_code, clippy::approx_constant, clippy::excessive_precision)] // GLSL has some for itself
+pub mod constants {
+    include!(concat!(env!("OUT_DIR"), "/spirv/constants.rs"));
+}

@@ -1,5 +1,12 @@
 //! What stays in GPU memory while a model is loaded.
 
+pub use crate::abi::constants::behind::OUTSIDE_CELLS;
+pub use crate::abi::constants::border_cells::BORDER_BANDS;
+pub use crate::abi::constants::depth_pyramid::SQUARE;
+pub use crate::abi::constants::scene::{
+    BORDER_U0, BORDER_U1, BORDER_V0, BORDER_V1, FACE_CLOSED_U, FACE_CLOSED_V, FACE_OPERAND, FACE_SAME_SENSE,
+    FACE_SOLID, FACE_TRIMMED, MESH_NORMALS, MESH_SOLID,
+};
 use bytemuck::{Pod, Zeroable};
 
 /// How a patch lies to its face's trim loops.
@@ -13,29 +20,6 @@ pub enum Side {
     /// A trim curve may meet it.
     Boundary = 2,
 }
-
-/// The side `u = 0` of the patch is a border of the face's surface.
-pub const BORDER_U0: u32 = 1;
-/// As [`BORDER_U0`], for `u = 1`.
-pub const BORDER_U1: u32 = 2;
-/// As [`BORDER_U0`], for `v = 0`.
-pub const BORDER_V0: u32 = 4;
-/// As [`BORDER_U0`], for `v = 1`.
-pub const BORDER_V1: u32 = 8;
-
-/// The sides `u = 0` and `u = 1` of the face's surface coincide.
-pub const FACE_CLOSED_U: u32 = 1;
-/// As [`FACE_CLOSED_U`], for `v`.
-pub const FACE_CLOSED_V: u32 = 2;
-/// The outward normal is `S_u x S_v`.
-pub const FACE_SAME_SENSE: u32 = 4;
-/// The face belongs to a closed part.
-pub const FACE_SOLID: u32 = 8;
-/// The face bounds an operand of a Boolean solid.
-pub const FACE_OPERAND: u32 = 32;
-
-/// Some patch of the face meets a trim curve.
-pub const FACE_TRIMMED: u32 = 16;
 
 /// One Bézier patch.
 ///
@@ -207,11 +191,6 @@ pub struct Instance {
     pub unused: [u32; 3],
 }
 
-/// The mesh belongs to a closed part.
-pub const MESH_SOLID: u32 = 1;
-/// The mesh has a normal at each corner of each triangle.
-pub const MESH_NORMALS: u32 = 2;
-
 /// One triangle mesh.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
@@ -245,14 +224,8 @@ pub struct Cell {
     pub high: f32,
 }
 
-/// Pixels along a side of the smallest squares whose farthest depth is kept.
-pub const SQUARE: u32 = 4;
-/// Cells of a patch along u and along v that tell where nothing of its face is.
-pub const OUTSIDE_CELLS: u32 = 8;
-/// Bands of a strip, and columns of a band, in which trim curves are marked: `glsl/include/border_cells.glsl`.
-pub const BORDER_BANDS: u32 = 4;
 /// See [`BORDER_BANDS`].
-pub const BORDER_COLUMNS: u32 = 128;
+pub const BORDER_COLUMNS: u32 = crate::abi::constants::border_cells::BORDER_COLUMNS as u32;
 
 /// Where the rows of a v-strip are: `glsl/include/bays.glsl`.
 #[repr(C)]

@@ -6,238 +6,59 @@
 //!                                                  └──────────────── grown ◀──────────┘
 //! ```
 
-use super::counts::{Counts, EXACT, MOST_GROUPS, SMALLER, TooMany};
-use super::solids::lists::{Entries, Lists, WHOLE};
-use crate::abi::{BLOCK, Counters, Doubt, SubPatch, TILE, TileLeaf};
-use crate::picture::TakenWay;
+use super::counts::{Counts, TooMany};
+use super::{gaps, solids, tessellation, trim};
+use crate::abi::Counters;
 
-/// In a view of the whole scene, where most items are a sub-patch of few segments.
-const VERTICES_OF_AN_ITEM: u64 = 16;
-/// Of Boolean solids, to begin with.
-const LEAVES_IN_A_TILE: u32 = 16;
-/// Crossings of operands, in any case.
-const FEWEST_FRAGMENTS: u32 = 1 << 14;
-/// Layers of faces recorded in any case.
-const FEWEST_LAYERS: u32 = 4;
-/// Of faces, each of which asks every primitive.
-const MOST_LAYERS: u32 = 1 << 10;
-/// Of a ray, each as long as a driver lets a loop be: what is left then is counted as clamps.
-pub(crate) const MOST_LEGS: u32 = 64;
-/// Rows that pass `sort` takes, 128 to a workgroup.
-const MOST_ROWS: u32 = MOST_GROUPS * 128;
-
-/// Room for what only the GPU can count.
+/// Room for what only the GPU can count, of each stage that counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Capacities {
-    pub sub_patches: u32,
-    pub draws: u32,
-    pub rows: u32,
-    pub intercepts: u32,
-    pub doubts: u32,
-    pub block_leaves: u32,
-    pub tile_leaves: u32,
-    pub fragments: u32,
-    /// Rows of tiles in a band, for whose lists these two have room; [`WHOLE`]: one band.
-    pub band_rows: u32,
-    /// That way `blister` peels.
-    pub layers: u32,
-    /// Of each ray of way `events`, one where the other ended.
-    pub legs: u32,
+    pub tessellation: tessellation::Capacities,
+    pub trim: trim::Capacities,
+    pub gaps: gaps::Capacities,
+    pub solids: solids::Capacities,
 }
 
-/// Bits of [`Counters::failed`], as in `scene.glsl`.
-const FAILED_DRAWS: u32 = 2;
-const FAILED_TILE_LEAVES: u32 = 64;
-const FAILED_FRAGMENTS: u32 = 128;
-const FAILED_LAYERS: u32 = 256;
-const FAILED_LEGS: u32 = 512;
+/// What was wanted and a quarter more, but no more than the most, where less was there.
+pub(super) fn grown(had: u32, wanted: u32, most: u32) -> u32 {
+    let spare = wanted.saturating_add(wanted / 4).min(most);
+    if wanted > had { spare.max(wanted) } else { had }
+}
 
 impl Capacities {
-    /// A first guess that fits most scenes in full view.
-    pub(crate) fn first(counts: Counts) -> Self {
-        let trimmed = u32::from(counts.trim.is_some());
-        let table = u32::from(counts.trim == Some(TakenWay::Table));
-        let counted = table.max(u32::from(counts.trim.is_some_and(TakenWay::is_texture)));
+    /// A first guess that fits most scenes in full view, of items so many of whose vertices make a draw.
+    pub(crate) fn first(counts: Counts, draw_vertices: u32) -> Self {
         Self {
-            sub_patches: counts.items.saturating_add(256),
-            draws: 256,
-            rows: table * (1 << 16).max(2 * counts.bays).min(MOST_ROWS),
-            intercepts: counted * (1 << 18).max(4 * counts.bays),
-            doubts: trimmed * (1 << 14),
-            block_leaves: counts.leaves.saturating_mul(4),
-            tile_leaves: counts.leaves.saturating_mul(16),
-            fragments: if counts.has_fragments() { FEWEST_FRAGMENTS } else { 0 },
-            band_rows: WHOLE,
-            layers: if counts.blister { FEWEST_LAYERS } else { 0 },
-            legs: 1,
+            tessellation: tessellation::Capacities::first(counts).drawn_by(counts, draw_vertices),
+            trim: trim::Capacities::first(counts),
+            gaps: gaps::Capacities::first(counts),
+            solids: solids::Capacities::first(counts),
         }
     }
 
-    /// The same, with room for the draws of a scene whose items have a few vertices each, so many of which make a draw.
-    pub(crate) fn drawn_by(self, counts: Counts, draw_vertices: u32) -> Self {
-        let draws = u64::from(counts.items) * VERTICES_OF_AN_ITEM / u64::from(draw_vertices);
-        Self { draws: self.draws.max(draws as u32), ..self }
-    }
-
-    /// The same, with room for so many crossings of operands, and for a quarter more.
+    /// See [`solids::Capacities::expecting`].
     pub(crate) fn expecting(self, crossings: u64, counts: Counts) -> Self {
-        let wanted = u32::try_from(crossings + crossings / 4).unwrap_or(u32::MAX);
-        Self { fragments: if counts.has_fragments() { self.fragments.max(wanted) } else { 0 }, ..self }
+        Self { solids: self.solids.expecting(crossings, counts), ..self }
     }
 
-    /// The same, with room for a few leaves in every tile of a picture of this size, where a storage buffer of `range`
-    /// bytes and the budget have it: most often that is enough at once.
+    /// See [`solids::Capacities::for_picture`].
     pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), range: u32) -> Result<Self, TooMany> {
-        let lists = counts.lists(size, range);
-        let mut band_rows = self.band_rows;
-        if counts.events && !lists.hold(band_rows.min(lists.rows()), Entries::NONE) {
-            band_rows = lists.even(lists.most_rows(Entries::NONE));
-            if band_rows == 0 {
-                return Err(lists.no_room(Entries::NONE));
-            }
-        }
-        let rows = band_rows.min(lists.rows());
-        let few = counts.leaves.min(LEAVES_IN_A_TILE);
-        let within = |side, down: u32| few.saturating_mul(size.0.div_ceil(side).saturating_mul(down));
-        let few = within(TILE, rows);
-        let block_leaves = self.block_leaves.max(within(TILE * BLOCK, size.1.div_ceil(TILE * BLOCK)));
-        let room = |tile_leaves: u32| {
-            Entries { tile_leaves: tile_leaves.into(), fragments: self.fragments.into() }.within(range)
-        };
-        let (wanted, had) = (room(self.tile_leaves.max(few)), room(self.tile_leaves));
-        let room = if !counts.events || lists.hold(rows, wanted) {
-            wanted
-        } else if lists.hold(rows, had) {
-            had
-        } else {
-            lists.shared(rows, wanted)
-        };
-        Ok(Self { block_leaves, band_rows, ..self }.with(room))
-    }
-
-    fn with(self, room: Entries) -> Self {
-        // what one storage buffer holds has a number of 32 bits
-        Self { tile_leaves: room.tile_leaves as u32, fragments: room.fragments as u32, ..self }
-    }
-
-    /// Rows of tiles in a band, and room for their lists, where a frame reported `c`.
-    fn banded(self, c: &Counters, lists: &Lists) -> Result<Self, TooMany> {
-        let entries =
-            |tile_leaves: u32, fragments: u32| Entries { tile_leaves: tile_leaves.into(), fragments: fragments.into() };
-        let row = entries(c.row_tile_leaves, c.row_fragments);
-        let (all, rows) = (entries(c.tile_leaves, c.fragments), lists.rows());
-        let failed = c.failed & (FAILED_TILE_LEAVES | FAILED_FRAGMENTS) != 0;
-        let counted = c.band_tile_leaves.max(c.band_fragments) < u32::MAX;
-        let is_whole = self.band_rows >= rows;
-        if !lists.hold(1, row) {
-            return Err(lists.no_room(row));
-        }
-        if is_whole && !failed {
-            return Ok(self);
-        }
-        let had = entries(self.tile_leaves, self.fragments);
-        let grown = if is_whole { had.grown(all) } else { all.with_spare() };
-        if counted && lists.hold(rows, grown) {
-            return Ok(Self { band_rows: WHOLE, ..self }.with(grown));
-        }
-        if is_whole && counted && lists.hold(rows, all) {
-            return Ok(self.with(lists.shared(rows, all.with_spare())));
-        }
-        let sure = lists.even(lists.most_rows(row));
-        let band_rows = match (is_whole, failed) {
-            (true, _) if counted => {
-                let mean = |n: &u32| lists.hold(*n, all.times(*n, rows));
-                lists.even((sure..rows).rev().find(mean).unwrap_or(sure))
-            }
-            (false, false) => self.band_rows.max(lists.even(lists.most_rows(row.with_spare()))),
-            _ => sure,
-        };
-        if band_rows == self.band_rows && !failed {
-            return Ok(self);
-        }
-        let wanted = row.times(band_rows, 1);
-        let room = lists.shared(band_rows, wanted.with_spare());
-        let room = if lists.hold(band_rows, wanted) && !room.hold(wanted) { wanted } else { room };
-        Ok(Self { band_rows, ..self }.with(room))
-    }
-
-    /// Four times as many legs as did not suffice; else one, 4, 16, … of which the last had nothing to do, or was the
-    /// last that may be. What rays did with lists that lacked something does not count.
-    fn legs(self, c: &Counters, size: (u32, u32), range: u32) -> Result<u32, TooMany> {
-        let grown = match c.failed {
-            0 => (0..).map(|n| 4u32.pow(n)).find(|legs| *legs > c.legs).unwrap_or(MOST_LEGS),
-            FAILED_LEGS => 4 * self.legs,
-            _ => self.legs,
-        };
-        let rows = self.band_rows.saturating_mul(TILE).min(size.1);
-        let (pixels, most) = (size.0.saturating_mul(rows), range / size_of::<u32>() as u32);
-        if grown > 1 && pixels > most {
-            let what = "pixels whose rays go on in legs";
-            return Err(TooMany {
-                what,
-                count: pixels,
-                most,
-                help: "draw a smaller picture, or by a smaller solid budget",
-            });
-        }
-        Ok(grown.min(MOST_LEGS))
+        Ok(Self { solids: self.solids.for_picture(counts, size, range)?, ..self })
     }
 
     /// Buffers made for these take as much as those made for `others`.
     pub(crate) fn takes_as_much(self, others: Self) -> bool {
-        let legs = if (self.legs > 1) == (others.legs > 1) { others.legs } else { self.legs };
-        Self { layers: others.layers, legs, ..self } == others
+        self.solids.takes_as_much(others.solids) && Self { solids: others.solids, ..self } == others
     }
 
     /// What the frame that reported `c` would have needed, with a quarter to spare where a storage
     /// buffer of `range` bytes has it; the same when it had enough. `size` is that of the picture.
     pub(crate) fn grown(self, c: &Counters, counts: Counts, size: (u32, u32), range: u32) -> Result<Self, TooMany> {
-        if c.wanted_rows > MOST_ROWS {
-            return Err(TooMany { what: "scan lines", count: c.wanted_rows, most: MOST_ROWS, help: EXACT });
-        }
-        let most_intercepts = range / size_of::<u32>() as u32;
-        if counts.trim == Some(TakenWay::Table) && c.intercepts > most_intercepts {
-            let what = "crossings of scan lines";
-            return Err(TooMany { what, count: c.intercepts, most: most_intercepts, help: EXACT });
-        }
-        let most_leaves = range / size_of::<TileLeaf>() as u32;
-        if !counts.events && c.band_tile_leaves > most_leaves {
-            let what = "primitives in tiles";
-            return Err(TooMany { what, count: c.band_tile_leaves, most: most_leaves, help: SMALLER });
-        }
-        if c.failed & FAILED_LAYERS != 0 && self.layers >= MOST_LAYERS {
-            let help = "draw the solids by the way `events`";
-            return Err(TooMany { what: "layers of faces", count: c.layers, most: MOST_LAYERS, help });
-        }
-        let room = |had: u32, wanted: u32, most: u32| {
-            let spare = wanted.saturating_add(wanted / 4).min(most);
-            if wanted > had { spare.max(wanted) } else { had }
-        };
-        let more_draws = if c.failed & FAILED_DRAWS != 0 { 4 } else { 1 };
-        let lists = match counts.events {
-            true => self.banded(c, &counts.lists(size, range))?,
-            false => Self { tile_leaves: room(self.tile_leaves, c.tile_leaves, most_leaves), ..self },
-        };
         Ok(Self {
-            sub_patches: room(
-                self.sub_patches,
-                c.plain.saturating_add(c.trimmed),
-                range / size_of::<SubPatch>() as u32,
-            ),
-            draws: self.draws.saturating_mul(more_draws),
-            rows: room(self.rows, c.wanted_rows, MOST_ROWS),
-            intercepts: room(self.intercepts, c.intercepts, most_intercepts),
-            doubts: room(self.doubts, c.doubts, range / size_of::<Doubt>() as u32),
-            block_leaves: room(self.block_leaves, c.block_leaves, range / size_of::<u32>() as u32),
-            tile_leaves: lists.tile_leaves,
-            fragments: lists.fragments,
-            band_rows: lists.band_rows,
-            layers: match self.layers {
-                0 => 0,
-                had if c.failed & FAILED_LAYERS != 0 => 2 * had,
-                _ => (c.layers + 1).max(FEWEST_LAYERS),
-            },
-            legs: self.legs(c, size, range)?,
+            tessellation: self.tessellation.grown(c, range),
+            trim: self.trim.grown(c, counts, range)?,
+            gaps: self.gaps.grown(c, range),
+            solids: self.solids.grown(c, counts, size, range)?,
         })
     }
 }
@@ -246,12 +67,16 @@ impl Capacities {
 mod tests {
     use super::super::counts::{MOST_SEEN, MOST_THREADS, MOST_TRIANGLES};
     use super::*;
+    use crate::abi::constants::scene::FAILED_DRAWS;
+    use crate::picture::TakenWay;
+    use trim::capacities::MOST_ROWS;
 
     /// Every storage buffer of Vulkan's least capable device.
     const RANGE: u32 = 1 << 27;
 
     fn first() -> Capacities {
-        Capacities::first(Counts { items: 1000, bays: 8, trim: Some(TakenWay::Table), ..Default::default() })
+        let counts = Counts { items: 1000, bays: 8, trim: Some(TakenWay::Table), ..Default::default() };
+        Capacities::first(counts, u32::MAX)
     }
 
     fn grown(had: Capacities, c: &Counters) -> Result<Capacities, TooMany> {
@@ -268,61 +93,14 @@ mod tests {
     fn what_did_not_gets_what_it_wanted_and_a_quarter() {
         let c = Counters { plain: 2000, wanted_rows: 100_000, failed: FAILED_DRAWS | 1 | 4, ..Default::default() };
         let had = grown(first(), &c).unwrap();
-        assert_eq!((had.sub_patches, had.rows), (2500, 125_000));
-        assert_eq!((had.draws, had.intercepts), (4 * first().draws, first().intercepts));
+        assert_eq!((had.tessellation.sub_patches, had.trim.rows), (2500, 125_000));
+        let first = first();
+        assert_eq!(had.tessellation.draws, 4 * first.tessellation.draws);
+        assert_eq!(had.trim.intercepts, first.trim.intercepts);
+        assert!(!had.takes_as_much(first));
         // no room for a quarter more in one storage buffer
         let c = Counters { intercepts: RANGE / 4 - 1, failed: 8, ..Default::default() };
-        assert_eq!(grown(first(), &c).unwrap().intercepts, RANGE / 4);
-    }
-
-    /// A driver that takes few vertices a draw gets many draws of a large scene at once.
-    #[test]
-    fn draws_follow_the_scene() {
-        let counts = Counts { items: 1 << 20, ..Default::default() };
-        let draws = |draw_vertices| Capacities::first(counts).drawn_by(counts, draw_vertices).draws;
-        assert_eq!((draws(u32::MAX), draws(1 << 12)), (Capacities::first(counts).draws, 1 << 12));
-    }
-
-    /// One layer more than were needed, so that it is seen to be empty; twice as many where some were wanting.
-    #[test]
-    fn layers_follow_the_view() {
-        let peels = Capacities::first(Counts { leaves: 3, blister: true, ..Default::default() });
-        assert_eq!((first().layers, peels.layers), (0, FEWEST_LAYERS));
-        let of = |had: Capacities, c| grown(had, &c).map(|c| c.layers);
-        let more = Capacities { layers: 16, ..peels };
-        assert_eq!(
-            of(peels, Counters { layers: 5, failed: FAILED_LAYERS, ..Default::default() }),
-            Ok(2 * FEWEST_LAYERS)
-        );
-        assert_eq!(of(more, Counters { layers: 9, ..Default::default() }), Ok(10));
-        assert_eq!(of(more, Counters::default()), Ok(FEWEST_LAYERS));
-        assert!(more.takes_as_much(peels) && !Capacities { draws: 1, ..more }.takes_as_much(peels));
-        let most = Capacities { layers: MOST_LAYERS, ..peels };
-        let c = Counters { layers: MOST_LAYERS + 1, failed: FAILED_LAYERS, ..Default::default() };
-        assert!(matches!(of(most, c), Err(TooMany { what: "layers of faces", .. })));
-    }
-
-    #[test]
-    fn legs_follow_the_view() {
-        let ended = Counters { failed: FAILED_LEGS, ..Default::default() };
-        let mut had = first();
-        for legs in [4, 16, 64, MOST_LEGS] {
-            had = grown(had, &ended).unwrap();
-            assert_eq!(had.legs, legs);
-        }
-        // as the view needs
-        let of = |c| grown(had, &c).unwrap().legs;
-        assert_eq!(of(Counters { legs: 63, ..Default::default() }), MOST_LEGS);
-        assert_eq!(of(Counters { legs: 64, ..Default::default() }), MOST_LEGS);
-        assert_eq!(of(Counters { legs: 3, ..Default::default() }), 4);
-        assert_eq!(of(Counters { legs: 1, ..Default::default() }), 4);
-        assert_eq!(of(Counters::default()), 1);
-        // lists that lack something say nothing of rays
-        let both = Counters { failed: FAILED_LEGS | FAILED_TILE_LEAVES, tile_leaves: 99, ..Default::default() };
-        assert_eq!(grown(first(), &both).unwrap().legs, 1);
-        assert!(had.takes_as_much(Capacities { legs: 4, ..had }) && !had.takes_as_much(first()));
-        let large = first().grown(&ended, Counts::default(), (16_384, 16_384), RANGE);
-        assert!(matches!(large, Err(TooMany { what: "pixels whose rays go on in legs", .. })));
+        assert_eq!(grown(first, &c).unwrap().trim.intercepts, RANGE / 4);
     }
 
     #[test]

@@ -21,8 +21,8 @@
 //! Counters begin as they were after what is kept: counts that go on, clamps among them, are those of a whole frame, and
 //! what had no room is told again by every frame that keeps it.
 
+use super::Frame;
 use super::trim::table::Table;
-use super::{COPIED, Frame};
 use crate::abi::Counters;
 use crate::gpu::{Access, Buffer, Commands, barrier};
 
@@ -52,11 +52,14 @@ impl Frame<'_> {
             return;
         }
         record();
-        barrier::buffers(cmd, &[(counters, counted(), COPIED)]);
+        barrier::buffers(cmd, &[(counters, counted(), Access::TRANSFER_READ)]);
         cmd.copy(counters, 0, kept, 0, bytes);
         barrier::buffers(
             cmd,
-            &[(counters, COPIED, Access::COMPUTE_WRITE), (kept, Access::TRANSFER_WRITE, Access::TRANSFER_READ)],
+            &[
+                (counters, Access::TRANSFER_READ, Access::COMPUTE_WRITE),
+                (kept, Access::TRANSFER_WRITE, Access::TRANSFER_READ),
+            ],
         );
     }
 }

@@ -1,20 +1,25 @@
-//! Named accesses: what a command does to a buffer or image, as stages, access mask and layout.
+//! Named accesses: what a command does to a buffer or image, as stages and access mask, and the layouts of images.
 
 use ash::vk;
 use std::ops::BitOr;
 use vk::{AccessFlags2 as A, ImageLayout as L, PipelineStageFlags2 as S};
 
-/// One side of a barrier. Buffers ignore the layout.
-///
-/// Shader accesses keep an image in `GENERAL`; attachments and copies use their own layouts.
-/// Accesses of one layout combine by `|`.
+/// One side of a barrier. Accesses combine by `|`.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct Access {
     /// Pipeline stages that touch the resource.
     pub stages: S,
     /// How they touch it.
     pub mask: A,
-    /// Layout that an image is in meanwhile.
+}
+
+/// One side of a barrier of an image. Every [`Access`] is one in its own layout: shader accesses keep an image in
+/// `GENERAL`, attachments and copies use theirs.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct ImageAccess {
+    /// What touches it, and how.
+    pub access: Access,
+    /// Layout that it is in meanwhile.
     pub layout: L,
 }
 
@@ -27,53 +32,73 @@ const DEPTH: S = S::from_raw(S::EARLY_FRAGMENT_TESTS.as_raw() | S::LATE_FRAGMENT
 
 impl Access {
     /// Nothing happened before: the first use of a new resource.
-    pub const NONE: Self = Self::new(S::NONE, A::NONE, L::UNDEFINED);
+    pub const NONE: Self = Self::new(S::NONE, A::NONE);
     /// A compute shader reads a storage buffer, or an image by `imageLoad` or a sampler.
-    pub const COMPUTE_READ: Self = Self::new(S::COMPUTE_SHADER, SHADER_READ, L::GENERAL);
+    pub const COMPUTE_READ: Self = Self::new(S::COMPUTE_SHADER, SHADER_READ);
     /// A compute shader writes, or reads and writes, a storage buffer or image; atomics too.
-    pub const COMPUTE_WRITE: Self = Self::new(S::COMPUTE_SHADER, SHADER_WRITE, L::GENERAL);
+    pub const COMPUTE_WRITE: Self = Self::new(S::COMPUTE_SHADER, SHADER_WRITE);
     /// A shader of any kind reads a uniform buffer.
     pub const UNIFORM_READ: Self = Self::new(
         S::from_raw(S::COMPUTE_SHADER.as_raw() | GEOMETRY.as_raw() | S::FRAGMENT_SHADER.as_raw()),
         A::UNIFORM_READ,
-        L::GENERAL,
     );
     /// Arguments or the count of an indirect dispatch or draw.
-    pub const INDIRECT_READ: Self = Self::new(S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ, L::GENERAL);
+    pub const INDIRECT_READ: Self = Self::new(S::DRAW_INDIRECT, A::INDIRECT_COMMAND_READ);
     /// A vertex or tessellation shader reads a storage buffer or samples an image.
-    pub const VERTEX_READ: Self = Self::new(GEOMETRY, SHADER_READ, L::GENERAL);
+    pub const VERTEX_READ: Self = Self::new(GEOMETRY, SHADER_READ);
     /// A fragment shader reads a storage buffer, or an image by `imageLoad` or a sampler.
-    pub const FRAGMENT_READ: Self = Self::new(S::FRAGMENT_SHADER, SHADER_READ, L::GENERAL);
+    pub const FRAGMENT_READ: Self = Self::new(S::FRAGMENT_SHADER, SHADER_READ);
     /// A fragment shader writes, or reads and writes, a storage buffer or image; atomics too.
-    pub const FRAGMENT_WRITE: Self = Self::new(S::FRAGMENT_SHADER, SHADER_WRITE, L::GENERAL);
+    pub const FRAGMENT_WRITE: Self = Self::new(S::FRAGMENT_SHADER, SHADER_WRITE);
     /// Colour attachment: cleared, written, blended.
     pub const COLOUR_WRITE: Self = Self::new(
         S::COLOR_ATTACHMENT_OUTPUT,
         A::from_raw(A::COLOR_ATTACHMENT_READ.as_raw() | A::COLOR_ATTACHMENT_WRITE.as_raw()),
-        L::COLOR_ATTACHMENT_OPTIMAL,
     );
     /// Depth (and stencil) attachment: cleared, tested, written.
     pub const DEPTH_WRITE: Self = Self::new(
         DEPTH,
         A::from_raw(A::DEPTH_STENCIL_ATTACHMENT_READ.as_raw() | A::DEPTH_STENCIL_ATTACHMENT_WRITE.as_raw()),
-        L::DEPTH_STENCIL_ATTACHMENT_OPTIMAL,
     );
     /// Source of a copy.
-    pub const TRANSFER_READ: Self = Self::new(S::ALL_TRANSFER, A::TRANSFER_READ, L::TRANSFER_SRC_OPTIMAL);
+    pub const TRANSFER_READ: Self = Self::new(S::ALL_TRANSFER, A::TRANSFER_READ);
     /// Target of a copy, a fill or a clear.
-    pub const TRANSFER_WRITE: Self = Self::new(S::ALL_TRANSFER, A::TRANSFER_WRITE, L::TRANSFER_DST_OPTIMAL);
+    pub const TRANSFER_WRITE: Self = Self::new(S::ALL_TRANSFER, A::TRANSFER_WRITE);
     /// The CPU reads mapped memory after the fence.
-    pub const HOST_READ: Self = Self::new(S::HOST, A::HOST_READ, L::GENERAL);
+    pub const HOST_READ: Self = Self::new(S::HOST, A::HOST_READ);
 
-    /// An access of one's own, for a host's images.
-    pub const fn new(stages: S, mask: A, layout: L) -> Self {
-        Self { stages, mask, layout }
+    /// An access of one's own, for what a host does.
+    pub const fn new(stages: S, mask: A) -> Self {
+        Self { stages, mask }
     }
 
     /// The same uses, but the contents of the image may be thrown away: what comes before a pass
     /// that overwrites all of it.
-    pub const fn discarded(self) -> Self {
-        Self { layout: L::UNDEFINED, ..self }
+    pub const fn discarded(self) -> ImageAccess {
+        ImageAccess { access: self, layout: L::UNDEFINED }
+    }
+
+    /// The layout of an image that is accessed so; `None` where that is no single one.
+    fn layout(self) -> Option<L> {
+        let own = [
+            (A::NONE, L::UNDEFINED),
+            (Self::COLOUR_WRITE.mask, L::COLOR_ATTACHMENT_OPTIMAL),
+            (Self::DEPTH_WRITE.mask, L::DEPTH_STENCIL_ATTACHMENT_OPTIMAL),
+            (Self::TRANSFER_READ.mask, L::TRANSFER_SRC_OPTIMAL),
+            (Self::TRANSFER_WRITE.mask, L::TRANSFER_DST_OPTIMAL),
+        ];
+        let all = own.iter().fold(A::NONE, |all, (mask, _)| all | *mask);
+        let found = own.iter().find(|(mask, _)| mask.contains(self.mask)).map(|(_, layout)| *layout);
+        found.or((self.mask & all == A::NONE).then_some(L::GENERAL))
+    }
+}
+
+impl From<Access> for ImageAccess {
+    /// # Panics
+    /// When its parts have different layouts: an image is in one layout at a time.
+    fn from(access: Access) -> Self {
+        let layout = access.layout();
+        Self { access, layout: layout.unwrap_or_else(|| panic!("{access:?} is not one access of an image")) }
     }
 }
 
@@ -81,11 +106,30 @@ impl BitOr for Access {
     type Output = Self;
 
     /// Both accesses.
-    ///
-    /// # Panics
-    /// When their layouts differ: an image is in one layout at a time.
     fn bitor(self, other: Self) -> Self {
-        assert!(self.layout == other.layout, "{:?} and {:?} are not one access", self.layout, other.layout);
-        Self { stages: self.stages | other.stages, mask: self.mask | other.mask, layout: self.layout }
+        Self { stages: self.stages | other.stages, mask: self.mask | other.mask }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_access_of_an_image_has_one_layout() {
+        let layout = |access: Access| ImageAccess::from(access).layout;
+        assert_eq!(layout(Access::NONE), L::UNDEFINED);
+        assert_eq!(layout(Access::COLOUR_WRITE), L::COLOR_ATTACHMENT_OPTIMAL);
+        assert_eq!(layout(Access::DEPTH_WRITE), L::DEPTH_STENCIL_ATTACHMENT_OPTIMAL);
+        assert_eq!(layout(Access::TRANSFER_READ), L::TRANSFER_SRC_OPTIMAL);
+        assert_eq!(layout(Access::TRANSFER_WRITE), L::TRANSFER_DST_OPTIMAL);
+        assert_eq!(layout(Access::COMPUTE_WRITE | Access::FRAGMENT_READ), L::GENERAL);
+        assert_eq!(Access::COLOUR_WRITE.discarded().layout, L::UNDEFINED);
+    }
+
+    #[test]
+    #[should_panic(expected = "is not one access of an image")]
+    fn two_layouts_are_told() {
+        let _ = ImageAccess::from(Access::COMPUTE_READ | Access::TRANSFER_READ);
     }
 }

@@ -5,7 +5,7 @@
 //!   barrier::images(cmd, &[(&depth, Access::NONE, Access::DEPTH_WRITE)]);
 //! ```
 
-use super::{Access, Buffer, Commands, Image};
+use super::{Access, Buffer, Commands, Image, ImageAccess};
 use ash::vk;
 
 /// Orders accesses to whole buffers.
@@ -28,15 +28,20 @@ pub fn buffers(cmd: &Commands<'_>, barriers: &[(&Buffer, Access, Access)]) {
 }
 
 /// Orders accesses to images and moves them from the first access's layout to the second's.
-pub fn images(cmd: &Commands<'_>, barriers: &[(&Image, Access, Access)]) {
+pub fn images<Before, After>(cmd: &Commands<'_>, barriers: &[(&Image, Before, After)])
+where
+    Before: Into<ImageAccess> + Copy,
+    After: Into<ImageAccess> + Copy,
+{
     let barriers: Vec<_> = barriers
         .iter()
         .map(|(image, before, after)| {
+            let (before, after): (ImageAccess, ImageAccess) = ((*before).into(), (*after).into());
             vk::ImageMemoryBarrier2::default()
-                .src_stage_mask(before.stages)
-                .src_access_mask(before.mask)
-                .dst_stage_mask(after.stages)
-                .dst_access_mask(after.mask)
+                .src_stage_mask(before.access.stages)
+                .src_access_mask(before.access.mask)
+                .dst_stage_mask(after.access.stages)
+                .dst_access_mask(after.access.mask)
                 .old_layout(before.layout)
                 .new_layout(after.layout)
                 .src_queue_family_index(vk::QUEUE_FAMILY_IGNORED)

@@ -1,6 +1,6 @@
 //! Recording into a command buffer of the host's.
 
-use super::{Access, Attachment, Buffer, Device, Image, Pipeline, Resource, barrier, push};
+use super::{Access, Attachment, Buffer, Device, Image, ImageAccess, Pipeline, Resource, barrier, push};
 use ash::vk;
 use std::ffi::CString;
 use std::ops::Range;
@@ -240,7 +240,7 @@ impl<'a> Commands<'a> {
             height,
             depth: 1,
         });
-        let layout = Access::TRANSFER_READ.layout;
+        let layout = ImageAccess::from(Access::TRANSFER_READ).layout;
         // SAFETY: recording outside rendering; both belong to this device.
         unsafe {
             self.device.raw().cmd_copy_image_to_buffer(self.raw, from.handle(), layout, to.handle(), &[region]);

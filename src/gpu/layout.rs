@@ -16,17 +16,21 @@ pub enum Binding {
     StorageImage,
     /// `sampler2D` and its kin: image and sampler in one.
     Sampled,
+    /// No stage reads it: it takes no resource.
+    Unused,
 }
 
 impl Binding {
-    pub(crate) fn descriptor_type(self) -> vk::DescriptorType {
-        match self {
+    /// `None` where nothing stands there.
+    pub(crate) fn descriptor_type(self) -> Option<vk::DescriptorType> {
+        Some(match self {
+            Self::Unused => return None,
             Self::Storage => vk::DescriptorType::STORAGE_BUFFER,
             Self::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
             Self::Texels => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
             Self::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
             Self::Sampled => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
-        }
+        })
     }
 }
 
@@ -50,12 +54,9 @@ impl Layout {
         let bindings: Vec<_> = bindings
             .iter()
             .enumerate()
-            .map(|(i, binding)| {
-                vk::DescriptorSetLayoutBinding::default()
-                    .binding(i as u32)
-                    .descriptor_type(binding.descriptor_type())
-                    .descriptor_count(1)
-                    .stage_flags(stages)
+            .filter_map(|(i, binding)| {
+                let layout = vk::DescriptorSetLayoutBinding::default().binding(i as u32);
+                Some(layout.descriptor_type(binding.descriptor_type()?).descriptor_count(1).stage_flags(stages))
             })
             .collect();
         let create = vk::DescriptorSetLayoutCreateInfo::default()

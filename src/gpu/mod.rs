@@ -39,7 +39,7 @@ mod timestamps;
 mod upload;
 
 // for hosts
-pub use access::Access;
+pub use access::{Access, ImageAccess};
 pub use device::{Device, HostDevice};
 pub use error::GpuError;
 pub use image::Image;

@@ -80,19 +80,19 @@ impl Descriptor {
 /// # Panics
 /// When their number or kinds are not those of the pipeline's bindings.
 pub(crate) fn resources(cmd: &Commands<'_>, pipeline: &Pipeline, resources: &[Resource<'_>]) {
-    let bindings = pipeline.bindings();
+    let bindings = (0u32..).zip(pipeline.bindings()).filter_map(|(i, b)| Some((i, b, b.descriptor_type()?)));
+    let bindings: Vec<_> = bindings.collect();
     assert_eq!(resources.len(), bindings.len(), "`{}` takes one resource per binding", pipeline.name());
     if resources.is_empty() {
         return;
     }
     let descriptors: Vec<Descriptor> = resources.iter().map(Descriptor::of).collect();
-    let writes: Vec<_> = (0u32..)
-        .zip(bindings.iter().zip(resources).zip(&descriptors))
-        .map(|(i, ((binding, resource), descriptor))| {
-            let write = vk::WriteDescriptorSet::default()
-                .dst_binding(i)
-                .descriptor_type(binding.descriptor_type())
-                .descriptor_count(1);
+    let writes: Vec<_> = bindings
+        .iter()
+        .zip(resources)
+        .zip(&descriptors)
+        .map(|((&(i, binding, kind), resource), descriptor)| {
+            let write = vk::WriteDescriptorSet::default().dst_binding(i).descriptor_type(kind).descriptor_count(1);
             match (binding, resource) {
                 (Binding::Storage | Binding::Uniform, Resource::Buffer(_) | Resource::Range { .. }) => {
                     write.buffer_info(std::slice::from_ref(&descriptor.buffer))

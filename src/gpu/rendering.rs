@@ -1,6 +1,6 @@
 //! Dynamic rendering: which images are drawn into, and what they hold before and after.
 
-use super::{Access, Image};
+use super::{Access, Image, ImageAccess};
 use ash::vk;
 
 /// What an attachment holds when rendering begins.
@@ -45,7 +45,7 @@ impl Attachment<'_> {
         };
         vk::RenderingAttachmentInfo::default()
             .image_view(self.image.view())
-            .image_layout(access.layout)
+            .image_layout(ImageAccess::from(access).layout)
             .load_op(load_op)
             .store_op(vk::AttachmentStoreOp::STORE)
             .clear_value(clear)

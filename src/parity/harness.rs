@@ -8,7 +8,6 @@ use crate::gpu::{
 };
 use crate::headless::{HeadlessDevice, HeadlessOptions};
 use crate::scene::ExactData;
-use crate::shaders::TRIM_EXACT;
 use ash::vk;
 use bytemuck::Pod;
 use std::fmt::Debug;
@@ -97,7 +96,7 @@ impl Gpu {
         (questions, blank): (&[Vec<Q>], A),
     ) -> Vec<Vec<A>> {
         let texels = self.upload_exact(data);
-        let bindings = [vec![Binding::Texels; TRIM_EXACT.texels], vec![Binding::Storage; 2]].concat();
+        let bindings = [vec![Binding::Texels; texels.len()], vec![Binding::Storage; 2]].concat();
         let spirv = words(spirv);
         let info = ComputeInfo { name, spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
         let pipeline = Pipeline::compute(self.device(), &info).unwrap();

@@ -42,6 +42,8 @@ mod emit;
 #[cfg(feature = "headless")]
 mod frame;
 #[cfg(feature = "headless")]
+mod gap_decide;
+#[cfg(feature = "headless")]
 mod harness;
 #[cfg(feature = "headless")]
 mod lines;

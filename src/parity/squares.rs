@@ -3,6 +3,7 @@
 use super::harness::{Gpu, Mismatch, same};
 use super::shapes::cases;
 use super::{Case, Random};
+use crate::abi::constants::visible::{DOUBTFUL, SEEN_MESH, SEEN_OPERAND, SEEN_SOLID};
 use crate::abi::{MeshInstance, TILE};
 use crate::frame::shading::seen_squares::{Bindings, SeenSquares};
 use crate::frame::visibility::mesh::{self, Mesh};
@@ -10,11 +11,6 @@ use crate::frame::visibility::patches::{DEPTH_FORMAT, VISIBILITY_FORMAT};
 use crate::gpu::{Access, Attachment, Image, ImageInfo, Load, Pool, ReadBack, barrier};
 use crate::twin::squares::seen_squares;
 use ash::vk;
-
-const SEEN_MESH: u32 = 0x2000_0000;
-const SEEN_SOLID: u32 = 0x4000_0000;
-const SEEN_OPERAND: u32 = 0x6000_0000;
-const DOUBTFUL: u32 = 0x8000_0000;
 
 fn image(gpu: &Gpu, name: &str, format: vk::Format, usage: vk::ImageUsageFlags, size: (u32, u32)) -> Image {
     let usage = usage | vk::ImageUsageFlags::TRANSFER_SRC;

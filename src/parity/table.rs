@@ -161,7 +161,6 @@ mod parity {
     use super::super::shapes::cases;
     use super::*;
     use crate::gpu::{Binding, ComputeInfo, Pipeline, Resource, Texel};
-    use crate::shaders::TRIM_TABLE;
 
     /// Words of the module; `include_bytes` aligns to bytes only.
     fn compare(gpu: &Gpu, case: &Case, given: &Chain, expected: &Chain) -> Result<(), Mismatch> {
@@ -179,8 +178,7 @@ mod parity {
         let info = ComputeInfo {
             name: "table",
             spirv: &words(include_bytes!("../../tests/gpu/spirv/table.comp.spv")),
-            bindings: &[vec![Binding::Uniform], vec![Binding::Texels; TRIM_TABLE.texels], vec![Binding::Storage; 2]]
-                .concat(),
+            bindings: &[vec![Binding::Uniform], vec![Binding::Texels; 4], vec![Binding::Storage; 2]].concat(),
             push_bytes: 16,
             constants: &[],
         };

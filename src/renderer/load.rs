@@ -142,7 +142,7 @@ impl Renderer {
         let loaded = Loaded {
             data,
             counts,
-            capacities: Capacities::first(counts).drawn_by(counts, draw_vertices(&self.device)),
+            capacities: Capacities::first(counts, draw_vertices(&self.device)),
             passes,
             scene: None,
             stages: None,

@@ -5,6 +5,7 @@ use super::cone::looks_away;
 use super::factor::factors;
 use super::view::{Seen, covers_a_centre, far_of, pixels_per_unit, see, to_pixel};
 use super::{MOST_SEGMENTS, Scene};
+pub use crate::abi::constants::bound::DEPTH_SHARE;
 use crate::abi::{Counters, Frame, Patch, Side, View};
 use glam::Vec3;
 
@@ -40,9 +41,6 @@ pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u
         })
         .collect()
 }
-
-/// Where a bend towards the eye moves no pixel, points may be off in space by so many times what pixels may.
-pub const DEPTH_SHARE: f32 = 1.5;
 
 fn factors_of(frame: &Frame, scene: &Scene<'_>, patch: &Patch, instance: usize, seen: Seen) -> [f32; 2] {
     let view = &scene.views[instance];

@@ -18,10 +18,8 @@
 //! The eye is where the homogeneous pixel vanishes. Source: L. A. Shirman, S. S. Abi-Ezzi, *The cone of normals technique
 //! for fast processing of curved patches*, Computer Graphics Forum 12, 1993.
 
+use crate::abi::constants::cone::EYE_ROUNDING;
 use crate::abi::{Frame, Patch, View};
-
-/// Of the eye's distance: its rounding.
-const EYE_ROUNDING: f32 = 1e-5;
 
 type Vector = [f32; 3];
 

@@ -21,12 +21,8 @@
 //! whole pixel.
 
 use super::exact::Exact;
+pub use crate::abi::constants::coverage::{CHORDS, MOST_CELLS};
 use crate::abi::{ARC_UP, ExactArc};
-
-/// Cells that a pixel is asked in.
-pub const MOST_CELLS: u32 = 128;
-/// Chords of a bent arc in one cell.
-pub const CHORDS: u32 = 8;
 
 /// What a face covers of a pixel.
 #[derive(Clone, Copy, Debug, PartialEq)]

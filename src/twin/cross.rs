@@ -19,6 +19,7 @@ use super::curve::curve_point;
 use super::sizes::MOST_SEGMENTS;
 use super::sort::from_ordered;
 use super::{Scene, strips_of};
+use crate::abi::constants::border_cells::BAND_ROUNDING;
 use crate::abi::{BORDER_BANDS, Frame, StripRows};
 
 /// Intercepts of each of `row_capacity` rows, and what those of strips with several bays add to the winding number.
@@ -77,9 +78,6 @@ pub fn border_cells(frame: &Frame, scene: &Scene<'_>, strips: &[StripRows], segm
     });
     cells
 }
-
-/// Of a strip: more than `v` times the number of strips is rounded, at most 2^-24 of 128.
-const BAND_ROUNDING: f32 = 1e-4;
 
 /// A segment where it passes a strip that has scan lines.
 struct Chord {

@@ -1,11 +1,9 @@
 //! Twin of `glsl/include/exact.glsl`: the exact trim test. What the structures mean stands in
 //! [`trim::ExactTrim`](crate::trim::ExactTrim).
 
+pub use crate::abi::constants::exact::FAR;
 use crate::abi::{ARC_LAST, ARC_UP, CELL_SPLIT, ExactArc, ExactCell, ExactFace};
 use crate::trim::{AT_HIGH, AT_LOW, MARGIN};
-
-/// Beyond it a coordinate is none.
-pub const FAR: f32 = 1e30;
 
 /// The arrays of all faces.
 #[derive(Clone, Copy, Debug, Default)]

@@ -80,11 +80,8 @@
 //! finely. Sources: D. Filip, R. Magedson, R. Markot, *Surface algorithms using bounds on derivatives*,
 //! CAGD 3, 1986 (right triangles, in space); T. Popoviciu, *Sur les équations algébriques*, 1935.
 
-/// Quads, over the fewest, that may be spent on less slender ones.
-pub const SPARE: f32 = 0.125;
-
-/// A few ulp up, so that rounding never breaks the bound.
-const UP: f32 = 1.00001;
+pub use crate::abi::constants::factor::SPARE;
+use crate::abi::constants::factor::UP;
 
 /// Segments `(tau_u, tau_v)`, whole numbers of small product, with
 /// `bend[0] / tau_u² + 2 bend[1] / (tau_u tau_v) + bend[2] / tau_v² ≤ budget`.

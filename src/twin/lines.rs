@@ -2,10 +2,8 @@
 //! row of each in every bay from the first to the last that is seen.
 
 use super::bays::seen_range;
+pub use crate::abi::constants::scene::MAX_ROWS;
 use crate::abi::{Counters, Frame};
-
-/// Most scan lines of one strip.
-pub const MAX_ROWS: u32 = 65536;
 
 /// Rows of each strip of `strip_heights` pixels, at its first bay; scan lines cut to [`MAX_ROWS`] count as clamps.
 pub fn lines(frame: &Frame, strip_heights: &[f32], seen_bays: &[u32], counters: &mut Counters) -> Vec<u32> {

@@ -23,6 +23,7 @@ pub mod density;
 pub mod emit;
 pub mod exact;
 pub mod factor;
+pub mod gap_decide;
 pub mod lines;
 pub mod occlusion;
 pub mod operand_sort;
@@ -40,24 +41,14 @@ pub mod squares;
 pub mod table;
 pub mod view;
 
+pub use crate::abi::constants::push::MAX_PUSH;
+pub use crate::abi::constants::scene::{
+    FAILED_DRAWS, FAILED_INTERCEPTS, FAILED_ROWS, FAILED_SUB_PATCHES, MAX_FACTOR, MAX_SPLIT,
+};
 use crate::abi::{Cell, Curve, Face, FaceInstance, Instance, Link, Patch, View};
 
-/// The hardware's tessellation factor.
-pub const MAX_FACTOR: u32 = 64;
-/// Most sub-patches along one side of a patch.
-pub const MAX_SPLIT: u32 = 64;
-/// Most of a patch's width that its border is pushed outwards.
-pub const MAX_PUSH: f32 = 0.5;
 /// Most segments along one side of a patch.
 pub const MOST_SEGMENTS: u32 = MAX_FACTOR * MAX_SPLIT;
-/// Bits of [`Counters::failed`](crate::abi::Counters::failed): the buffer that was too small.
-pub const FAILED_SUB_PATCHES: u32 = 1;
-/// See [`FAILED_SUB_PATCHES`].
-pub const FAILED_DRAWS: u32 = 2;
-/// See [`FAILED_SUB_PATCHES`].
-pub const FAILED_ROWS: u32 = 4;
-/// See [`FAILED_SUB_PATCHES`].
-pub const FAILED_INTERCEPTS: u32 = 8;
 
 /// What the passes read of a scene: the arrays of `glsl/include/scene.glsl`, by reference.
 #[derive(Clone, Copy, Debug, Default)]

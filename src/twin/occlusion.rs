@@ -27,23 +27,19 @@
 //! Whatever rounds does so within a pixel, which is added on each side, and `DEPTH_ROUNDING` of the depth.
 
 use super::{MAX_PUSH, Scene};
+use crate::abi::constants::behind::{self, MOST_CELLS, MOST_SQUARES};
+pub use crate::abi::constants::scene::TAU_HIDDEN;
 use crate::abi::{self, BLOCK, Frame, OUTSIDE_CELLS, SQUARE, Side, TILE};
 use crate::spline::Patch;
 use glam::{DVec2, DVec3, DVec4};
 use std::ops::RangeInclusive;
 
-/// Bit of a patch's taus: it is not drawn now.
-pub const TAU_HIDDEN: u32 = 0x8000;
 /// Pixels that a cell has along each parameter, some.
-const CELL_PX: f64 = 32.0;
-/// Cells along each parameter.
-const MOST_CELLS: u32 = 8;
-/// Squares that a cell asks along each axis; else it asks larger ones.
-const MOST_SQUARES: u32 = 10;
+const CELL_PX: f64 = behind::CELL_PX as f64;
 /// Of depths that the rasteriser interpolates.
-const DEPTH_ROUNDING: f64 = 1e-5;
+const DEPTH_ROUNDING: f64 = behind::DEPTH_ROUNDING as f64;
 /// What is pushed at a cell's corners is up to so much more between them.
-const PUSH_SLACK: f64 = 2.0;
+const PUSH_SLACK: f64 = behind::PUSH_SLACK as f64;
 
 /// Whether a patch with these taus is drawn now.
 pub fn is_drawn(tau: u32) -> bool {

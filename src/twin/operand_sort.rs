@@ -10,12 +10,12 @@
 //!                               as entered, as for a mesh
 //! ```
 
+use crate::abi::constants::scene::FAILED_FRAGMENTS;
 use crate::abi::{
     Counters, FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_RING, FRAGMENT_WITHIN, Fragment, Frame, Leaf, TILE,
 };
 
 const FLAGS: u32 = FRAGMENT_LEAVES | FRAGMENT_RING | FRAGMENT_PATCH | FRAGMENT_WITHIN;
-const FAILED_FRAGMENTS: u32 = 128;
 
 /// Leaves, their centres seen from the eye, and a leaf of each shell.
 #[derive(Clone, Copy, Debug)]

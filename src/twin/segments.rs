@@ -10,9 +10,7 @@ use super::bays::{bay_of, seen_range};
 use super::density::Density;
 use super::{Scene, strips_of};
 use crate::abi::Frame;
-
-const LINES_PER_SEGMENT: u32 = 32;
-const MAX_SEGMENTS: f32 = 65536.0;
+use crate::abi::constants::segments::{LINES_PER_SEGMENT, MAX_SEGMENTS};
 
 /// Segments of each curve item; `strip_starts` holds the rows before each strip, and the total.
 pub fn segments(frame: &Frame, scene: &Scene<'_>, density: &Density, strip_starts: &[u32]) -> Vec<u32> {

@@ -3,14 +3,9 @@
 
 use super::FAILED_ROWS;
 use super::bays::seen_range;
+use crate::abi::constants::sizes::{GROUP, MAX_GROUPS, SCAN_BLOCK};
 use crate::abi::{Counters, Frame, StripRows};
 
-/// Threads of a workgroup in passes `cross` and `sort`.
-const GROUP: u32 = 128;
-/// Rows of a workgroup in the prefix sum.
-const SCAN_BLOCK: u32 = 1024;
-/// Workgroups that every device can dispatch.
-const MAX_GROUPS: u32 = 65535;
 /// Most segments that pass `cross` can be given.
 pub const MOST_SEGMENTS: u32 = MAX_GROUPS * GROUP;
 

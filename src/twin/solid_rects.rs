@@ -6,12 +6,11 @@
 //!       eye └─────────────▶ forward
 //! ```
 
+use crate::abi::constants::solid_rects::MARGIN_PX;
 use crate::abi::{Frame, LEAF_UNBOUNDED, Leaf, Rect, TILE};
 
 /// Of a leaf that no tile sees.
 pub const NOWHERE: Rect = Rect { first: [1; 2], last: [0; 2] };
-
-const MARGIN_PX: f32 = 0.5;
 
 /// Tiles across and down the picture.
 pub fn tile_count(frame: &Frame) -> [u32; 2] {

@@ -3,14 +3,8 @@
 
 use super::bays::{bay_of, within_bay};
 use super::border_cells::columns_between;
+pub use crate::abi::constants::along::{ALONG_BEFORE, ALONG_BEHIND, ALONG_INSIDE};
 use crate::abi::{BORDER_BANDS, Face, StripRows};
-
-/// Of what [`Table::along`] tells: the point is inside.
-pub const ALONG_INSIDE: u32 = 1;
-/// A border runs within reach, at a smaller u.
-pub const ALONG_BEFORE: u32 = 2;
-/// A border runs within reach, at a larger u.
-pub const ALONG_BEHIND: u32 = 4;
 
 /// The table as the passes leave it.
 #[derive(Clone, Copy, Debug, Default)]

@@ -8,6 +8,7 @@
 //!
 //! The planes are linear in `(X, Y, D, W)`, so the test also holds for corners behind the eye.
 
+use crate::abi::constants::view::{PIXEL_ROUNDING, SLAB_ROUNDING};
 use crate::abi::{FACE_OPERAND, Face, Frame, Instance, View};
 
 fn row_times(row: [f32; 4], p: [f32; 4]) -> f32 {
@@ -74,8 +75,6 @@ pub fn see(view: &View, frame: &Frame, lo: [f32; 3], hi: [f32; 3], margin: f32, 
     })
 }
 
-/// Of every rounding of [`nearest_in_slab`], relative to what is added up.
-const SLAB_ROUNDING: f32 = 1e-5;
 /// A bound of `W` from below, for what a perspective picture `margin` pixels wider shows of the points `p` with
 /// `low <= n . p <= high`; 0 where the eye is among them. Derived in `glsl/include/view.glsl`.
 pub fn nearest_in_slab(view: &View, frame: &Frame, n: [f32; 3], (low, high): (f32, f32), margin: f32) -> f32 {
@@ -102,9 +101,6 @@ pub fn nearest_in_slab(view: &View, frame: &Frame, n: [f32; 3], (low, high): (f3
     let slack = SLAB_ROUNDING * (straight.abs() + most[0].abs() + most[1].abs());
     if steepest + slack > 0.0 { gap / (steepest + slack) } else { 0.0 }
 }
-
-/// Rounding of a vertex' pixel; far above that of single precision for pictures up to 16384 pixels.
-const PIXEL_ROUNDING: f32 = 0.015625;
 
 /// Whether the centre of a pixel is within `margin` pixels of what is seen.
 pub fn covers_a_centre(seen: &Seen, margin: f32) -> bool {

@@ -7,9 +7,8 @@
 //! Reads: the constants, `sum`. Writes: the target, over what the host keeps. Halves hold the sum: eleven bits of
 //! eight linear colours, each a rounding of 2⁻¹², leave the mean right to 1/500 of itself, half a step of 8 bits.
 
-use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, Device, GpuError, GraphicsInfo, Image, Pipeline,
-};
+use crate::frame::common::draw::Draw;
+use crate::gpu::{Attachment, Blend, Buffer, ColourTarget, Commands, Device, GpuError, Image, Pipeline};
 use crate::shaders;
 use ash::vk;
 
@@ -29,26 +28,9 @@ pub(crate) struct Bindings<'a> {
 
 impl Average {
     pub(crate) fn new(device: &Device, colour: vk::Format) -> Result<Self, GpuError> {
-        let pipeline = Pipeline::graphics(
-            device,
-            &GraphicsInfo {
-                name: "average",
-                stages: &[
-                    (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
-                    (vk::ShaderStageFlags::FRAGMENT, shaders::AVERAGE_FRAG),
-                ],
-                bindings: &[Binding::Uniform, Binding::StorageImage],
-                push_bytes: 0,
-                constants: &[],
-                topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-                patch_points: 0,
-                cull: vk::CullModeFlags::NONE,
-                front: vk::FrontFace::COUNTER_CLOCKWISE,
-                colour: &[ColourTarget { format: colour, blend: Blend::Over }],
-                depth: None,
-                stencil: None,
-            },
-        )?;
+        let colour = [ColourTarget { format: colour, blend: Blend::Over }];
+        let draw = Draw::new("average", &shaders::RESOLVE_VERT, &shaders::AVERAGE_FRAG);
+        let pipeline = Draw { colour: &colour, ..draw }.pipeline(device)?;
         Ok(Self { pipeline })
     }
 

@@ -9,16 +9,11 @@
 //! straight trim curves, and for bent ones within what `twin::coverage` says; pixels away from borders come out as
 //! pass `resolve` drew them.
 
-use crate::bindings::{Placed, with_placed};
-use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, Device, GpuError, GraphicsInfo, Image, Pipeline,
-    Resource,
-};
-use crate::shaders::{self, TRIM_EXACT};
+use crate::bindings::Placed;
+use crate::frame::common::draw::Draw;
+use crate::gpu::{Attachment, Blend, Buffer, ColourTarget, Commands, Device, GpuError, Image, Pipeline, Resource};
+use crate::shaders::{self, constant};
 use ash::vk;
-
-/// `constant_id` of `SCENE_HAS_RATIONAL`.
-const SCENE_HAS_RATIONAL: u32 = 0;
 
 /// The pass.
 pub(crate) struct Coverage {
@@ -38,29 +33,10 @@ pub(crate) struct Bindings<'a> {
 
 impl Coverage {
     pub(crate) fn new(device: &Device, colour: vk::Format, rational: bool) -> Result<Self, GpuError> {
-        let mut bindings = with_placed(9);
-        bindings[7..9].fill(Binding::StorageImage);
-        bindings.extend(vec![Binding::Texels; TRIM_EXACT.texels]);
-        let pipeline = Pipeline::graphics(
-            device,
-            &GraphicsInfo {
-                name: "coverage",
-                stages: &[
-                    (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
-                    (vk::ShaderStageFlags::FRAGMENT, shaders::COVERAGE_FRAG),
-                ],
-                bindings: &bindings,
-                push_bytes: 0,
-                constants: &[(SCENE_HAS_RATIONAL, u32::from(rational))],
-                topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-                patch_points: 0,
-                cull: vk::CullModeFlags::NONE,
-                front: vk::FrontFace::COUNTER_CLOCKWISE,
-                colour: &[ColourTarget { format: colour, blend: Blend::Over }],
-                depth: None,
-                stencil: None,
-            },
-        )?;
+        let colour = [ColourTarget { format: colour, blend: Blend::Over }];
+        let constants = [(constant::SCENE_HAS_RATIONAL, u32::from(rational))];
+        let draw = Draw::new("coverage", &shaders::RESOLVE_VERT, &shaders::COVERAGE_FRAG);
+        let pipeline = Draw { constants: &constants, colour: &colour, ..draw }.pipeline(device)?;
         Ok(Self { pipeline })
     }
 

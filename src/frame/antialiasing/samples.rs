@@ -160,7 +160,7 @@ fn begin_again(frame: &Frame<'_>, cmd: &Commands<'_>, colour: &Image) {
     for at in counted {
         cmd.fill_word(counters, (at / size_of::<u32>()) as u64, 0);
     }
-    let cleared = Access { layout: Access::COMPUTE_WRITE.layout, ..Access::TRANSFER_WRITE };
+    let cleared = Access::TRANSFER_WRITE;
     barrier::buffers(cmd, &[(counters, cleared, Access::COMPUTE_WRITE | Access::INDIRECT_READ)]);
     let again = [(colour, Access::COLOUR_WRITE, Access::COLOUR_WRITE)];
     let hidden = frame.depth.map(|depth| (depth.image, Access::DEPTH_WRITE, Access::DEPTH_WRITE));

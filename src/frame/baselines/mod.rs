@@ -129,7 +129,7 @@ impl Textures {
             words: room.words("trim texture sizes", counts.face_instances)?,
             starts: room.words("trim texture starts", counts.face_instances + 1)?,
             places: room.texels::<[u32; 4]>("trim texture places", counts.bays, Texel::U32x4)?,
-            texels: room.texels::<u32>("trim texels", room.capacities.intercepts, Texel::Words)?,
+            texels: room.texels::<u32>("trim texels", room.capacities.trim.intercepts, Texel::Words)?,
         })
     }
 

@@ -1,7 +1,7 @@
 //! A compute pipeline that knows from its shader what it needs: bindings, workgroups, constants.
 
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Resource};
-use crate::shaders::Compute;
+use crate::shaders::Shader;
 
 /// The pipeline of one compute shader.
 #[derive(Debug)]
@@ -11,28 +11,26 @@ pub(crate) struct Kernel {
 }
 
 impl Kernel {
-    /// `constants`: specialisation constants by name; a flag is 0 or 1.
+    /// `constants`: specialisation constants, ids of `shaders::constant`; a flag is 0 or 1.
     ///
     /// # Panics
-    /// When the shader has no constant of a name.
+    /// When the shader has no constant of an id.
     pub(crate) fn new(
         device: &Device,
         name: &str,
-        shader: &Compute,
-        constants: &[(&str, u32)],
+        shader: &Shader,
+        constants: &[(u32, u32)],
     ) -> Result<Self, GpuError> {
         let of_shader = &shader.interface;
-        let id = |wanted: &str| {
-            let found = of_shader.constants.iter().find(|(name, _)| *name == wanted);
-            found.unwrap_or_else(|| panic!("`{name}` has no constant `{wanted}`")).1
-        };
-        let constants: Vec<_> = constants.iter().map(|(name, value)| (id(name), *value)).collect();
+        for (id, _) in constants {
+            assert!(of_shader.constants.contains(id), "`{name}` has no constant {id}");
+        }
         let info = ComputeInfo {
             name,
             spirv: shader.words,
             bindings: of_shader.bindings,
             push_bytes: of_shader.push_bytes,
-            constants: &constants,
+            constants,
         };
         Ok(Self { pipeline: Pipeline::compute(device, &info)?, group: of_shader.group })
     }

@@ -1,5 +1,6 @@
 //! What several stages have in common: counters that begin at 0, prefix sums, and the draws of sub-patches.
 
+pub(crate) mod draw;
 pub(crate) mod kernel;
 pub(crate) mod reset;
 pub(crate) mod room;
@@ -43,7 +44,7 @@ impl Common {
     pub(super) fn new(room: &Room<'_>, passes: &Arc<Passes>, scanned: u32) -> Result<Self, GpuError> {
         Ok(Self {
             passes: Arc::clone(passes),
-            draws: room.indirect::<vk::DrawIndirectCommand>("draws", 2 * room.capacities.draws)?,
+            draws: room.indirect::<vk::DrawIndirectCommand>("draws", 2 * room.capacities.tessellation.draws)?,
             counters: room.indirect::<Counters>("counters", 1)?,
             kept_counters: room.structs::<Counters>("kept counters", 1)?,
             sums: room.words("scan sums", scan::block_count(scanned))?,
@@ -53,7 +54,7 @@ impl Common {
     /// No draws, and nothing is counted.
     pub(super) fn reset(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let bindings = reset::Bindings { frame: frame.constants, draws: &self.draws, counters: &self.counters };
-        self.passes.reset.record(cmd, &bindings, 2 * frame.capacities.draws);
+        self.passes.reset.record(cmd, &bindings, 2 * frame.capacities.tessellation.draws);
         let w = Access::COMPUTE_WRITE;
         cmd.after(w, w);
     }

@@ -12,7 +12,7 @@
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};
-use crate::shaders;
+use crate::shaders::{self, constant};
 
 /// The pass.
 pub(crate) struct Reset {
@@ -36,7 +36,7 @@ impl Reset {
             device,
             if draws_only { "reset (draws)" } else { "reset" },
             &shaders::RESET_COMP,
-            &[("DRAWS_ONLY", u32::from(draws_only))],
+            &[(constant::DRAWS_ONLY, u32::from(draws_only))],
         )?;
         Ok(Self { kernel })
     }

@@ -57,7 +57,7 @@ impl Room<'_> {
 
     /// Rows of tiles of which the lists of Boolean solids are made at a time.
     pub(crate) fn band_rows(&self) -> u32 {
-        self.capacities.band_rows.min(self.size.1.div_ceil(TILE))
+        self.capacities.solids.band_rows.min(self.size.1.div_ceil(TILE))
     }
 
     /// Pixels of so many rows.

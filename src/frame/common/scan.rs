@@ -23,7 +23,7 @@
 use crate::abi::ScanParams;
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
-use crate::shaders;
+use crate::shaders::{self, constant};
 
 /// Elements that one workgroup scans.
 pub const BLOCK: u32 = 1024;
@@ -87,7 +87,8 @@ struct Steps {
 
 impl Steps {
     fn new(device: &Device, count_on_gpu: bool) -> Result<Self, GpuError> {
-        let step = |name, shader| Kernel::new(device, name, shader, &[("COUNT_ON_GPU", u32::from(count_on_gpu))]);
+        let step =
+            |name, shader| Kernel::new(device, name, shader, &[(constant::COUNT_ON_GPU, u32::from(count_on_gpu))]);
         let [blocks, sums, add] = match count_on_gpu {
             false => ["scan blocks", "scan sums", "scan add"],
             true => ["scan blocks (counted)", "scan sums (counted)", "scan add (counted)"],

@@ -17,7 +17,7 @@
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource, Sampler, Texels};
-use crate::shaders::{self, TrimTest};
+use crate::shaders::{self, TrimTest, constant};
 use ash::vk;
 
 /// Columns and rows of the picture that a workgroup of the first step looks for doubtful pixels in.
@@ -84,9 +84,9 @@ impl GapFill {
     ) -> Result<Self, GpuError> {
         let weights = if rational { "rational" } else { "polynomial" };
         let constants = [
-            ("SCENE_HAS_RATIONAL", u32::from(rational)),
-            ("SCENE_HAS_OTHERS", u32::from(others)),
-            ("SOLIDS_HAVE", volume.unwrap_or_default()),
+            (constant::SCENE_HAS_RATIONAL, u32::from(rational)),
+            (constant::SCENE_HAS_OTHERS, u32::from(others)),
+            (constant::SOLIDS_HAVE, volume.unwrap_or_default()),
         ];
         let (fill, within, constants) = match test.within.filter(|_| volume.is_some()) {
             Some(within) => (within.gap_fill, ", within a volume", &constants[..]),

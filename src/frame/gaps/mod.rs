@@ -4,7 +4,10 @@
 //!   visibility, rings ──gap_find──▶ candidates ──gap_fill──▶ who is seen there ──gap_write──▶ visibility
 //! ```
 
+mod capacities;
 pub(crate) mod gap_fill;
+
+pub(crate) use capacities::Capacities;
 
 use super::common::room::Room;
 use super::{Frame, WRITE_TO_READ};
@@ -35,7 +38,7 @@ impl Gaps {
         Ok(Self {
             passes: Arc::clone(passes),
             rings: room.texels::<u32>("trim rings", room.size.0 * room.size.1, Texel::Numbers)?,
-            candidates: room.structs::<Doubt>("gap candidates", room.capacities.doubts)?,
+            candidates: room.structs::<Doubt>("gap candidates", room.capacities.gaps.candidates)?,
             dispatch: room.indirect::<[u32; 3]>("gap dispatch", 1)?,
         })
     }
@@ -54,13 +57,12 @@ impl Gaps {
         if let Some(others) = &v.others {
             barrier::images(cmd, &[(others, Access::COLOUR_WRITE, Access::COMPUTE_READ | Access::FRAGMENT_READ)]);
         }
-        let cleared = Access { layout: w.layout, ..Access::TRANSFER_WRITE };
         barrier::buffers(
             cmd,
             &[
                 (&self.rings, Access::FRAGMENT_WRITE, r),
                 (&c.counters, Access::INDIRECT_READ, w),
-                (&self.dispatch, cleared, w),
+                (&self.dispatch, Access::TRANSFER_WRITE, w),
             ],
         );
         let find = gap_fill::DoubtBindings {

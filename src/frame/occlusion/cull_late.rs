@@ -11,7 +11,7 @@
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
-use crate::shaders;
+use crate::shaders::{self, constant};
 
 /// The pass.
 pub(crate) struct CullLate {
@@ -41,8 +41,12 @@ pub(crate) struct Bindings<'a> {
 
 impl CullLate {
     pub(crate) fn new(device: &Device, rational: bool) -> Result<Self, GpuError> {
-        let kernel =
-            Kernel::new(device, "cull late", &shaders::CULL_LATE_COMP, &[("SCENE_HAS_RATIONAL", u32::from(rational))])?;
+        let kernel = Kernel::new(
+            device,
+            "cull late",
+            &shaders::CULL_LATE_COMP,
+            &[(constant::SCENE_HAS_RATIONAL, u32::from(rational))],
+        )?;
         Ok(Self { kernel })
     }
 

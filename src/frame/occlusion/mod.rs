@@ -92,7 +92,7 @@ impl Occlusion {
     pub(super) fn cull_early(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let (taus, counters) = (&frame.stages.tessellation.taus, &frame.stages.common.counters);
         let (w, r) = WRITE_TO_READ;
-        let cleared = Access { layout: w.layout, ..Access::TRANSFER_WRITE };
+        let cleared = Access::TRANSFER_WRITE;
         barrier::buffers(cmd, &[(taus, w, w), (&self.hidden, cleared | w, r), (counters, w, w)]);
         let bindings = cull_early::Bindings { frame: frame.constants, hidden: &self.hidden, taus, counters };
         self.passes.cull_early.record(cmd, &bindings, frame.counts.items);
@@ -139,7 +139,7 @@ impl Occlusion {
         barrier::images(cmd, &[(&v.image, Access::COLOUR_WRITE, Access::COLOUR_WRITE)]);
         cmd.after(Access::INDIRECT_READ | w, w);
         let draws = reset::Bindings { frame: frame.constants, draws: &c.draws, counters: &c.counters };
-        self.passes.reset.record(cmd, &draws, 2 * frame.capacities.draws);
+        self.passes.reset.record(cmd, &draws, 2 * frame.capacities.tessellation.draws);
         cmd.after(w, w);
         frame.stages.tessellation.begin_again(cmd);
         frame.stages.tessellation.split(frame, cmd);

@@ -13,45 +13,21 @@
 //! Reads: everything that `Bindings` names. Writes: the targets.
 
 use crate::abi;
-use crate::bindings::{Placed, Primitives, SUN_BINDINGS, with_constants, with_placed, with_primitives};
+pub(crate) use crate::abi::constants::shade::UNSEEN;
+use crate::bindings::{Placed, Primitives, SUN_BINDINGS};
+use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
-    Pipeline, Resource, Texels,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Image, Pipeline, Resource, Texels,
 };
-use crate::shaders;
+use crate::shaders::{self, Shader, constant};
 use ash::vk;
 
 /// Formats of the images of depth, face, (u, v) and normal.
 pub(crate) const AOV_FORMATS: [vk::Format; 4] =
     [vk::Format::R32_SFLOAT, vk::Format::R32_UINT, vk::Format::R32G32_SFLOAT, vk::Format::R32G32B32A32_SFLOAT];
 
-/// `constant_id` of `SCENE_HAS_RATIONAL`.
-const SCENE_HAS_RATIONAL: u32 = 0;
-/// `constant_id` of `SCENE_HAS_PIECES`.
-const SCENE_HAS_PIECES: u32 = 19;
-
-/// `constant_id` of `SCENE_HAS_FINE`.
-const SCENE_HAS_FINE: u32 = 20;
-/// `constant_id` of `HAS_AOVS`.
-const HAS_AOVS: u32 = 3;
-
-/// `constant_id` of `SCENE_HAS_OTHERS`.
-const SCENE_HAS_OTHERS: u32 = 4;
-
-/// `constant_id` of `SOLIDS_HAVE`.
-const SOLIDS_HAVE: u32 = 5;
-
-/// `constant_id` of `SOLIDS_HAVE_SHELLS`.
-const SOLIDS_HAVE_SHELLS: u32 = 13;
-
-/// `constant_id` of `BEHIND`.
-const BEHIND: u32 = 18;
-
 /// Format of what is behind layers, and of what pass `coverage` mixes: linear colour and depth.
 pub(crate) const BEHIND_FORMAT: vk::Format = vk::Format::R32G32B32A32_SFLOAT;
-
-/// Depth in `behind` where nothing is, as in `resolved.glsl`.
-pub(crate) const UNSEEN: f32 = 3.0e38;
 
 /// The pass: a pipeline for each kind of thing that the scene has.
 pub(crate) struct Resolve {
@@ -84,27 +60,27 @@ pub(crate) struct Kinds {
 
 /// The fragment shaders of a scene, one for each kind of thing.
 struct Shaders {
-    patches: &'static [u32],
-    meshes: &'static [u32],
-    solids: &'static [u32],
-    operands: &'static [u32],
+    patches: &'static Shader,
+    meshes: &'static Shader,
+    solids: &'static Shader,
+    operands: &'static Shader,
     /// In the pipelines' names.
     light: &'static str,
 }
 
 const STUDIO: Shaders = Shaders {
-    patches: shaders::RESOLVE_FRAG,
-    meshes: shaders::RESOLVE_MESH_FRAG,
-    solids: shaders::RESOLVE_SOLID_FRAG,
-    operands: shaders::RESOLVE_OPERAND_FRAG,
+    patches: &shaders::RESOLVE_FRAG,
+    meshes: &shaders::RESOLVE_MESH_FRAG,
+    solids: &shaders::RESOLVE_SOLID_FRAG,
+    operands: &shaders::RESOLVE_OPERAND_FRAG,
     light: "",
 };
 
 const SUN: Shaders = Shaders {
-    patches: shaders::RESOLVE_SUN_FRAG,
-    meshes: shaders::RESOLVE_MESH_SUN_FRAG,
-    solids: shaders::RESOLVE_SOLID_SUN_FRAG,
-    operands: shaders::RESOLVE_OPERAND_SUN_FRAG,
+    patches: &shaders::RESOLVE_SUN_FRAG,
+    meshes: &shaders::RESOLVE_MESH_SUN_FRAG,
+    solids: &shaders::RESOLVE_SOLID_SUN_FRAG,
+    operands: &shaders::RESOLVE_OPERAND_SUN_FRAG,
     light: ", sun",
 };
 
@@ -212,72 +188,46 @@ impl Resolve {
         if formats.aovs {
             colour.extend(AOV_FORMATS.map(|format| ColourTarget { format, blend: Blend::Replace }));
         }
-        let mut bindings = with_placed(10);
-        bindings[7] = Binding::Texels;
-        bindings[8] = Binding::StorageImage;
         let of = if kinds.sun { SUN } else { STUDIO };
-        let over = |vertex, name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
-            Pipeline::graphics(
-                device,
-                &GraphicsInfo {
-                    name: &format!("resolve ({name}{of_samples}{})", of.light),
-                    stages: &[(vk::ShaderStageFlags::VERTEX, vertex), (vk::ShaderStageFlags::FRAGMENT, fragment)],
-                    bindings,
-                    push_bytes: 0,
-                    constants,
-                    topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-                    patch_points: 0,
-                    cull: vk::CullModeFlags::NONE,
-                    front: vk::FrontFace::COUNTER_CLOCKWISE,
-                    colour: &colour,
-                    depth: formats.depth.map(|format| DepthTest {
-                        format,
-                        compare: vk::CompareOp::GREATER_OR_EQUAL,
-                        write: !matches!(into, Destination::Sum | Destination::Behind { writes_depth: false }),
-                    }),
-                    stencil: None,
-                },
-            )
+        let over = |vertex, name: &str, fragment, constants: &[(u32, u32)]| {
+            let name = format!("resolve ({name}{of_samples}{})", of.light);
+            let draw = Draw {
+                constants,
+                colour: &colour,
+                depth: formats.depth.map(|format| DepthTest {
+                    format,
+                    compare: vk::CompareOp::GREATER_OR_EQUAL,
+                    write: !matches!(into, Destination::Sum | Destination::Behind { writes_depth: false }),
+                }),
+                ..Draw::new(&name, vertex, fragment)
+            };
+            draw.pipeline(device)
         };
-        let aovs = (HAS_AOVS, u32::from(formats.aovs));
-        let behind = (BEHIND, u32::from(matches!(into, Destination::Behind { .. } | Destination::Unmixed)));
-        let surfaces = (SOLIDS_HAVE, kinds.solids.map_or(abi::SURFACE_PLANE, |s| s.surfaces));
-        // what is lit: solids, and with a sun whatever they may shade
-        let lit = |vertex, name: &str, fragment, bindings: &[Binding], constants: &[(u32, u32)]| {
-            let constants = [constants, &[aovs, behind, surfaces]].concat();
-            let sun: &[_] = if kinds.sun { &SUN_BINDINGS } else { &[] };
-            over(vertex, name, fragment, &[bindings, sun].concat(), &constants)
+        let behind = matches!(into, Destination::Behind { .. } | Destination::Unmixed);
+        let of_all = [
+            (constant::HAS_AOVS, u32::from(formats.aovs)),
+            (constant::BEHIND, u32::from(behind)),
+            (constant::SOLIDS_HAVE, kinds.solids.map_or(abi::SURFACE_PLANE, |s| s.surfaces)),
+        ];
+        let of_patches = [
+            (constant::SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
+            (constant::SCENE_HAS_PIECES, u32::from(kinds.pieces)),
+            (constant::SCENE_HAS_FINE, u32::from(kinds.fine)),
+        ];
+        let others = [(constant::SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some()))];
+        let shells = [(constant::SOLIDS_HAVE_SHELLS, u32::from(kinds.solids.is_some_and(|s| s.shells)))];
+        let lit = |is_there: bool, vertex, name, fragment, constants: &[&[(u32, u32)]]| {
+            is_there.then(|| over(vertex, name, fragment, &[&of_all[..], &constants.concat()].concat())).transpose()
         };
-        let mut of_mesh = with_constants(11);
-        of_mesh[8..10].fill(Binding::StorageImage);
-        let mesh = |()| lit(shaders::RESOLVE_SEEN_MESH_VERT, "mesh", of.meshes, &of_mesh, &[]);
-        let meshes = kinds.meshes.then_some(()).map(mesh).transpose()?;
-        let mut of_solid = with_primitives::<14>(1);
-        of_solid[5..7].fill(Binding::StorageImage);
-        let solid = |solid: SolidKinds| {
-            let vertex = if solid.tiles { shaders::RESOLVE_SOLID_VERT } else { shaders::RESOLVE_VERT };
-            lit(vertex, "solid", of.solids, &of_solid, &[(SOLIDS_HAVE_SHELLS, u32::from(solid.shells))])
-        };
-        let solids = kinds.solids.map(solid).transpose()?;
-        let mut of_operand = with_placed(11);
-        of_operand[7] = Binding::Texels;
-        of_operand[8..].fill(Binding::StorageImage);
-        let rational = (SCENE_HAS_RATIONAL, u32::from(kinds.rational));
-        let pieces = (SCENE_HAS_PIECES, u32::from(kinds.pieces));
-        let fine = (SCENE_HAS_FINE, u32::from(kinds.fine));
-        let operand = |()| lit(shaders::RESOLVE_VERT, "operand", of.operands, &of_operand, &[rational, pieces, fine]);
-        let operands = kinds.operands.then_some(()).map(operand).transpose()?;
-        let patch = |()| {
-            let weights = if kinds.rational { "rational" } else { "polynomial" };
-            let others = (SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some()));
-            let constants = [rational, pieces, fine, others];
-            lit(shaders::RESOLVE_SEEN_VERT, weights, of.patches, &bindings, &constants)
-        };
-        let patches = kinds.patches.then_some(()).map(patch).transpose()?;
-        let of_background = [Binding::Uniform, Binding::StorageImage, Binding::StorageImage];
-        let unseen =
-            |()| over(shaders::RESOLVE_VERT, "background", shaders::RESOLVE_BACKGROUND_FRAG, &of_background, &[]);
-        let background = (into == Destination::Sum).then_some(()).map(unseen).transpose()?;
+        let weights = if kinds.rational { "rational" } else { "polynomial" };
+        let has_tiles = kinds.solids.is_some_and(|s| s.tiles);
+        let of_solid = if has_tiles { &shaders::RESOLVE_SOLID_VERT } else { &shaders::RESOLVE_VERT };
+        let patches = lit(kinds.patches, &shaders::RESOLVE_SEEN_VERT, weights, of.patches, &[&of_patches, &others])?;
+        let meshes = lit(kinds.meshes, &shaders::RESOLVE_SEEN_MESH_VERT, "mesh", of.meshes, &[])?;
+        let solids = lit(kinds.solids.is_some(), of_solid, "solid", of.solids, &[&shells])?;
+        let operands = lit(kinds.operands, &shaders::RESOLVE_VERT, "operand", of.operands, &[&of_patches])?;
+        let unseen = || over(&shaders::RESOLVE_VERT, "background", &shaders::RESOLVE_BACKGROUND_FRAG, &[]);
+        let background = (into == Destination::Sum).then(unseen).transpose()?;
         Ok(Self { background, patches, meshes, solids, operands })
     }
 
@@ -288,7 +238,7 @@ impl Resolve {
         cmd: &Commands<'_>,
         b: &Bindings<'_>,
         (meshes, solids): (Option<&MeshBindings<'_>>, Option<&SolidBindings<'_>>),
-        sun: Option<&[Resource<'_>; SUN_BINDINGS.len()]>,
+        sun: Option<&[Resource<'_>; SUN_BINDINGS]>,
         colour: &[Attachment<'_>],
         depth: Option<Attachment<'_>>,
     ) {
@@ -316,15 +266,15 @@ impl Resolve {
                 cmd.draw_instances(0..6, 0..count);
             }
             if let (Some(pipeline), Some(s)) = (&self.solids, solids) {
-                // the shaders have these bindings in every scene, and read them only where there are tiles, or shells
-                let squares = s.tiles.map_or(s.frame, |(_, squares)| squares);
+                // the shader has these bindings in every scene, and reads them only where there are shells
                 let shells = s
                     .shells
                     .as_ref()
                     .map_or([s.frame; 6], |m| [m.instances, m.meshes, m.triangles, m.positions, m.planes, m.views]);
-                let images = [s.visibility.into(), s.others.into(), squares.into()];
+                let images = [s.visibility.into(), s.others.into()];
+                let squares = s.tiles.map(|(_, squares)| squares.into());
                 let primitives = [s.frame.into()].into_iter().chain(s.primitives.resources());
-                bind(pipeline, primitives.chain(images).chain(shells.map(Into::into)).collect());
+                bind(pipeline, primitives.chain(images).chain(squares).chain(shells.map(Into::into)).collect());
                 match s.tiles {
                     Some((count, _)) => cmd.draw_instances(0..6, 0..count),
                     None => cmd.draw(3, 0, 1),

@@ -7,7 +7,7 @@ use crate::scene::SunTiles;
 
 impl<'a> Frame<'a> {
     /// The sun's buffers, in their order; `None` in a scene without one.
-    pub(super) fn sun_bindings(&self) -> Option<[Resource<'a>; SUN_BINDINGS.len()]> {
+    pub(super) fn sun_bindings(&self) -> Option<[Resource<'a>; SUN_BINDINGS]> {
         let sun = self.sun?;
         // where nothing casts shadows the shader reads but the first
         let (tiles, leaves) = self.scene.sun.as_ref().map_or((sun, sun), |s| (&s.tiles, &s.leaves));
@@ -31,7 +31,7 @@ impl<'a> Frame<'a> {
     }
 
     /// Draws with the sun, which counts the rays to it that the driver cut off.
-    pub(super) fn under_sun(&self, cmd: &Commands<'_>, draw: impl FnOnce(Option<&[Resource<'_>; SUN_BINDINGS.len()]>)) {
+    pub(super) fn under_sun(&self, cmd: &Commands<'_>, draw: impl FnOnce(Option<&[Resource<'_>; SUN_BINDINGS]>)) {
         let bindings = self.sun_bindings();
         let counted = WRITE_TO_READ.0 | Access::INDIRECT_READ;
         if bindings.is_some() {

@@ -31,9 +31,6 @@ fn of_constants() -> Access {
     Access::UNIFORM_READ | readers()
 }
 
-/// A clearing, among buffer accesses, which have no layout of their own.
-const CLEARED: Access = Access { layout: Access::COMPUTE_READ.layout, ..Access::TRANSFER_WRITE };
-
 impl Frame<'_> {
     /// From the top down.
     pub(crate) fn bands(&self) -> impl Iterator<Item = Band> + use<> {
@@ -61,23 +58,23 @@ impl Frame<'_> {
         let lists: Vec<&Buffer> =
             lists.flat_map(|t| [&t.tile_counts, &t.tile_starts, &t.tile_leaves, &t.tile_entries]).collect();
         let mut before: Vec<_> = lists.into_iter().map(|list| (list, readers(), w)).collect();
-        before.push((self.constants, of_constants(), CLEARED));
+        before.push((self.constants, of_constants(), Access::TRANSFER_WRITE));
         if let Some(f) = fragments {
-            before.push((&f.counts, readers() | CLEARED, CLEARED));
+            before.push((&f.counts, readers() | Access::TRANSFER_WRITE, Access::TRANSFER_WRITE));
         }
         barrier::buffers(cmd, &before);
         cmd.fill_word(self.constants, (offset_of!(abi::Frame, band_top) / size_of::<u32>()) as u64, band.rows.start);
         if let Some(f) = fragments {
             cmd.fill(&f.counts, 0);
         }
-        barrier::buffers(cmd, &[(self.constants, CLEARED, of_constants())]);
+        barrier::buffers(cmd, &[(self.constants, Access::TRANSFER_WRITE, of_constants())]);
     }
 
     /// Before the lists of all bands are made once more: what they count begins again.
     pub(crate) fn count_bands_again(&self, cmd: &Commands<'_>) {
         let counters = &self.stages.common.counters;
         let counted = Access::COMPUTE_WRITE | Access::INDIRECT_READ;
-        barrier::buffers(cmd, &[(counters, counted, CLEARED)]);
+        barrier::buffers(cmd, &[(counters, counted, Access::TRANSFER_WRITE)]);
         let sums = [
             offset_of!(abi::Counters, tile_leaves),
             offset_of!(abi::Counters, fragments),
@@ -87,6 +84,6 @@ impl Frame<'_> {
         for at in sums {
             cmd.fill_word(counters, (at / size_of::<u32>()) as u64, 0);
         }
-        barrier::buffers(cmd, &[(counters, CLEARED, counted)]);
+        barrier::buffers(cmd, &[(counters, Access::TRANSFER_WRITE, counted)]);
     }
 }

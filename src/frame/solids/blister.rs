@@ -17,12 +17,13 @@
 //! SIGGRAPH 2005. Departures: depths that are equal are equal to the bit, so no face is tested against its own
 //! primitive's rounding; whose a face is that several share is told as the other ways tell it.
 
-use crate::bindings::{Primitives, with_constants, with_primitives};
+use crate::bindings::Primitives;
+use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
-    Pipeline, Resource, StencilTest, Texels,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Image, Pipeline, Resource,
+    StencilTest, Texels,
 };
-use crate::shaders;
+use crate::shaders::{self, Shader, constant};
 use ash::vk;
 use std::ops::Range;
 
@@ -30,10 +31,6 @@ use std::ops::Range;
 pub(crate) const LAYER_FORMAT: vk::Format = vk::Format::R32G32_UINT;
 /// Of the depth test among the faces of a layer.
 pub(crate) const LAYER_DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
-
-/// `constant_id` of `SOLIDS_HAVE`, and of `SOLIDS_HAVE_SHELLS`.
-const SOLIDS_HAVE: u32 = 5;
-const SOLIDS_HAVE_SHELLS: u32 = 13;
 
 const PARITY: u32 = 0x80;
 const LOCKED: u32 = 0x40;
@@ -123,84 +120,41 @@ impl Blister {
         visibility: vk::Format,
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
-        let constants = [(SOLIDS_HAVE, surfaces), (SOLIDS_HAVE_SHELLS, 0)];
+        let constants = [(constant::SOLIDS_HAVE, surfaces), (constant::SOLIDS_HAVE_SHELLS, 0)];
         let layer = [ColourTarget { format: LAYER_FORMAT, blend: Blend::Replace }];
+        let seen = [ColourTarget { format: visibility, blend: Blend::Replace }];
         let nearest = DepthTest { format: LAYER_DEPTH_FORMAT, compare: vk::CompareOp::LESS, write: true };
+        let among = DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true };
         let marks = |pass| Some(StencilTest { format: device.stencil_format(), pass });
-        let bindings = |storage: usize, images: usize| {
-            let mut all = with_constants(storage);
-            all.extend(vec![Binding::StorageImage; images]);
-            all
+        let (replaces, inverts) = (marks(vk::StencilOp::REPLACE), marks(vk::StencilOp::INVERT));
+        let make = |name: &str, vertex, fragment: Option<&'static Shader>, colour: &[_], depth, stencil| {
+            let name = format!("blister {name}");
+            let draw = Draw::new(&name, vertex, fragment);
+            Draw { constants: &constants, colour, depth, stencil, ..draw }.pipeline(device)
         };
-        let info = GraphicsInfo {
-            name: "",
-            stages: &[],
-            bindings: &[],
-            push_bytes: 0,
-            constants: &constants,
-            topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-            patch_points: 0,
-            cull: vk::CullModeFlags::NONE,
-            front: vk::FrontFace::COUNTER_CLOCKWISE,
-            colour: &[],
-            depth: None,
-            stencil: None,
-        };
-        let make = |name: &str, vertex, fragment: Option<&'static [u32]>, of: GraphicsInfo<'_>| {
-            let fragment = fragment.map(|spirv| (vk::ShaderStageFlags::FRAGMENT, spirv));
-            let stages: Vec<_> = [(vk::ShaderStageFlags::VERTEX, vertex)].into_iter().chain(fragment).collect();
-            Pipeline::graphics(device, &GraphicsInfo { name: &format!("blister {name}"), stages: &stages, ..of })
-        };
-        let (leaf, triangle, everywhere) = (shaders::SOLID_CST_VERT, shaders::OPERAND_MESH_VERT, shaders::RESOLVE_VERT);
-        // a leaf's last bindings are the vertex shader's: where it is, and which one
-        let mut of_peel = with_primitives::<10>(1);
-        of_peel[5..7].fill(Binding::StorageImage);
-        let mut of_within = of_peel;
-        of_within[6] = Binding::Storage;
-        let of_meshes = |images: usize| {
-            let mut all = bindings(8, images);
-            all[6..8].fill(Binding::Texels);
-            all
-        };
-        let peels = GraphicsInfo { push_bytes: 4, colour: &layer, depth: Some(nearest), ..info };
-        let replaces = GraphicsInfo { stencil: marks(vk::StencilOp::REPLACE), ..info };
-        let inverts = GraphicsInfo { stencil: marks(vk::StencilOp::INVERT), ..info };
-        let shown = GraphicsInfo {
-            colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
-            depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
-            ..info
-        };
-        let peel = |name, vertex, fragment, bindings: &[Binding]| {
-            make(name, vertex, Some(fragment), GraphicsInfo { bindings, ..peels })
-        };
+        let (leaf, triangle) = (&shaders::SOLID_CST_VERT, &shaders::OPERAND_MESH_VERT);
+        let peel = |name, vertex, fragment| make(name, vertex, Some(fragment), &layer, Some(nearest), None);
+        let within = |name, vertex, fragment, stencil| make(name, vertex, Some(fragment), &[], None, stencil);
         let mesh_pipelines = |()| {
-            let of_within = GraphicsInfo { bindings: &of_meshes(1), ..inverts };
             Ok(Meshes {
-                peel: peel("peel (meshes)", triangle, shaders::BLISTER_PEEL_MESH_FRAG, &of_meshes(2))?,
-                within: make("within (meshes)", triangle, Some(shaders::BLISTER_WITHIN_MESH_FRAG), of_within)?,
+                peel: peel("peel (meshes)", triangle, &shaders::BLISTER_PEEL_MESH_FRAG)?,
+                within: within("within (meshes)", triangle, &shaders::BLISTER_WITHIN_MESH_FRAG, inverts)?,
             })
         };
-        let of_within = GraphicsInfo { bindings: &of_within, ..replaces };
-        let of_wait = GraphicsInfo { bindings: &bindings(2, 1), push_bytes: 4, ..replaces };
-        let of_lock = GraphicsInfo { bindings: &[Binding::StorageImage], colour: &layer, ..replaces };
-        let of_show = bindings(1, 1);
-        let mut of_owner = with_primitives::<13>(1);
-        of_owner[5..8].fill(Binding::Texels);
-        of_owner[10] = Binding::Texels;
-        of_owner[12] = Binding::StorageImage;
+        let everywhere = |name, fragment, colour: &[_], depth: Option<_>, stencil: Option<_>| {
+            make(name, &shaders::RESOLVE_VERT, fragment, colour, depth, stencil)
+        };
+        let show = |name, fragment| everywhere(name, Some(fragment), &seen, Some(among), None);
         Ok(Self {
-            peel: peel("peel", leaf, shaders::BLISTER_PEEL_FRAG, &of_peel)?,
-            within: make("within", leaf, Some(shaders::BLISTER_WITHIN_FRAG), of_within)?,
+            peel: peel("peel", leaf, &shaders::BLISTER_PEEL_FRAG)?,
+            within: within("within", leaf, &shaders::BLISTER_WITHIN_FRAG, replaces)?,
             meshes: meshes.then_some(()).map(mesh_pipelines).transpose()?,
-            wait: make("wait", everywhere, Some(shaders::BLISTER_WAIT_FRAG), of_wait)?,
-            turn: make("turn", everywhere, None, inverts)?,
-            lock: make("lock", everywhere, Some(shaders::BLISTER_LOCK_FRAG), of_lock)?,
-            show: if meshes {
-                let of_show = GraphicsInfo { bindings: &of_show, ..shown };
-                Show::Found(make("show", everywhere, Some(shaders::BLISTER_SHOW_FRAG), of_show)?)
-            } else {
-                let of_owner = GraphicsInfo { bindings: &of_owner, ..shown };
-                Show::Owned(make("owner", everywhere, Some(shaders::BLISTER_OWNER_FRAG), of_owner)?)
+            wait: everywhere("wait", Some(&shaders::BLISTER_WAIT_FRAG), &[], None, replaces)?,
+            turn: everywhere("turn", None, &[], None, inverts)?,
+            lock: everywhere("lock", Some(&shaders::BLISTER_LOCK_FRAG), &layer, None, replaces)?,
+            show: match meshes {
+                true => Show::Found(show("show", &shaders::BLISTER_SHOW_FRAG)?),
+                false => Show::Owned(show("owner", &shaders::BLISTER_OWNER_FRAG)?),
             },
         })
     }
@@ -218,7 +172,7 @@ impl Blister {
             if !leaves.is_empty() {
                 let mut resources: Vec<Resource<'_>> = b.of_leaves().collect();
                 resources.extend([Resource::from(layer.before), layer.found.into()]);
-                resources.extend([b.frame, b.rects, b.order].map(Resource::from));
+                resources.extend([b.rects, b.order].map(Resource::from));
                 cmd.bind(&self.peel, &resources, &peel.bits());
                 cmd.draw_instances(0..6, leaves);
             }
@@ -249,7 +203,7 @@ impl Blister {
     pub(crate) fn within(&self, cmd: &Commands<'_>, b: &Bindings<'_>, layer: &Image, place: u32, name: u32) {
         let mut resources: Vec<Resource<'_>> = b.of_leaves().collect();
         resources.push(layer.into());
-        resources.extend([b.frame, b.frame, b.rects, b.order].map(Resource::from));
+        resources.extend([b.rects, b.order].map(Resource::from));
         cmd.bind(&self.within, &resources, &[]);
         cmd.stencil(PARITY | name, LOCKED | LABEL, PARITY);
         cmd.draw_instances(0..6, place..place + 1);

@@ -44,7 +44,7 @@ impl FragmentBuffers {
         Ok(Self {
             counts: room.words("operand fragment counts", pixels)?,
             starts: room.words("operand fragment starts", pixels + 1)?,
-            all: room.texels::<Fragment>("operand fragments", room.capacities.fragments, Texel::U32x4)?,
+            all: room.texels::<Fragment>("operand fragments", room.capacities.solids.fragments, Texel::U32x4)?,
         })
     }
 }

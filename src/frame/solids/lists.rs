@@ -174,8 +174,8 @@ impl Lists {
 mod tests {
     use super::*;
     use crate::abi::Counters;
-    use crate::frame::capacities::Capacities;
     use crate::frame::counts::Counts;
+    use crate::frame::solids::Capacities;
 
     const LISTS: Lists =
         Lists { size: (160, 120), has_fragments: true, limits: Limits { range: 1 << 27, budget: 60_000 } };

@@ -13,6 +13,7 @@
 pub(crate) mod bands;
 pub(crate) mod blister;
 pub(crate) mod buffers;
+mod capacities;
 pub(crate) mod lists;
 pub(crate) mod operand_mesh;
 pub(crate) mod operand_patch;
@@ -27,6 +28,8 @@ pub(crate) mod solid_rects;
 pub(crate) mod solid_squares;
 pub(crate) mod solid_tiles;
 mod tiles;
+
+pub(crate) use capacities::Capacities;
 
 use super::common::room::{DRAWN_AND_READ, Room};
 use super::shading::resolve;
@@ -136,7 +139,9 @@ impl Solids {
             },
             operands: passes.operands.as_ref().map(operands).transpose()?,
             operand_uv: (counts.operand_patches && counts.has_fragments()).then(uv).transpose()?,
-            halts: (room.capacities.legs > 1).then(|| room.words("solid halts", room.band_pixels())).transpose()?,
+            halts: (room.capacities.solids.legs > 1)
+                .then(|| room.words("solid halts", room.band_pixels()))
+                .transpose()?,
         })
     }
 
@@ -320,7 +325,7 @@ fn legs(
     (colour, uv, depth): (Attachment<'_>, Option<Attachment<'_>>, Attachment<'_>),
     band: &Band,
 ) {
-    let of = frame.capacities.legs;
+    let of = frame.capacities.solids.legs;
     let drawn = [(colour.image, Access::COLOUR_WRITE), (depth.image, Access::DEPTH_WRITE)];
     let drawn = drawn.into_iter().chain(uv.map(|uv| (uv.image, Access::COLOUR_WRITE)));
     let drawn: Vec<_> = drawn.map(|(image, access)| (image, access, access)).collect();
@@ -338,7 +343,7 @@ fn legs(
             cmd.after(Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE);
             barrier::images(cmd, &drawn);
         }
-        let leg = solid_events::Leg { nth, of, is_most: of >= super::capacities::MOST_LEGS };
+        let leg = solid_events::Leg { nth, of, is_most: of >= capacities::MOST_LEGS };
         let targets = if nth == 0 { (colour, uv, depth) } else { kept };
         pass.record(cmd, bindings, targets, (band.rows.clone(), frame.tiles_of(band)), leg);
     }

@@ -8,16 +8,10 @@
 //! Reads: everything that `Bindings` names but what it writes. Writes: `counts`; the second time `counts`,
 //! which go down to 0 again, and `fragments`.
 
-use crate::bindings::with_constants;
-use crate::gpu::{Binding, Buffer, Commands, Device, GpuError, GraphicsInfo, Pipeline, Resource, Texels};
-use crate::shaders;
-use ash::vk;
+use crate::frame::common::draw::Draw;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Pipeline, Resource, Texels};
+use crate::shaders::{self, constant};
 use std::ops::Range;
-
-/// `constant_id` of `SOLIDS_HAVE`.
-const SOLIDS_HAVE: u32 = 5;
-/// `constant_id` of `FILLS`.
-const FILLS: u32 = 12;
 
 /// The pass, in its two steps.
 pub(crate) struct OperandMesh {
@@ -44,30 +38,11 @@ pub(crate) struct Bindings<'a> {
 
 impl OperandMesh {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let mut bindings = with_constants(11);
-        bindings[6..8].fill(Binding::Texels);
         let pipeline = |name, fills: bool| {
-            Pipeline::graphics(
-                device,
-                &GraphicsInfo {
-                    name,
-                    stages: &[
-                        (vk::ShaderStageFlags::VERTEX, shaders::OPERAND_MESH_VERT),
-                        (vk::ShaderStageFlags::FRAGMENT, shaders::OPERAND_MESH_FRAG),
-                    ],
-                    bindings: &bindings,
-                    push_bytes: 0,
-                    // triangles are planes
-                    constants: &[(SOLIDS_HAVE, 0), (FILLS, u32::from(fills))],
-                    topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-                    patch_points: 0,
-                    cull: vk::CullModeFlags::NONE,
-                    front: vk::FrontFace::COUNTER_CLOCKWISE,
-                    colour: &[],
-                    depth: None,
-                    stencil: None,
-                },
-            )
+            // triangles are planes
+            let constants = [(constant::SOLIDS_HAVE, 0), (constant::FILLS, u32::from(fills))];
+            let draw = Draw::new(name, &shaders::OPERAND_MESH_VERT, &shaders::OPERAND_MESH_FRAG);
+            Draw { constants: &constants, ..draw }.pipeline(device)
         };
         Ok(Self { count: pipeline("operand mesh (count)", false)?, fill: pipeline("operand mesh (fill)", true)? })
     }

@@ -9,23 +9,13 @@
 //! which go down to 0 again, and `fragments`.
 
 use crate::abi::Counters;
-use crate::bindings::{Placed, with_placed};
-use crate::gpu::{Binding, Buffer, Commands, Device, GpuError, GraphicsInfo, Pipeline, Resource, Texels};
-use crate::shaders::{self, TrimTest};
+use crate::bindings::Placed;
+use crate::frame::common::draw::Draw;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Pipeline, Resource, Texels};
+use crate::shaders::{self, TrimTest, constant};
 use ash::vk;
 use std::mem::offset_of;
 use std::ops::Range;
-
-/// `constant_id` of `SCENE_HAS_RATIONAL`.
-const SCENE_HAS_RATIONAL: u32 = 0;
-/// `constant_id` of `TRIMMED`.
-const TRIMMED: u32 = 2;
-/// `constant_id` of `SCENE_HAS_OPERANDS`.
-const SCENE_HAS_OPERANDS: u32 = 10;
-/// `constant_id` of `DRAWS_OPERANDS`.
-const DRAWS_OPERANDS: u32 = 11;
-/// `constant_id` of `FILLS`.
-const FILLS: u32 = 12;
 
 /// The pass, in its two steps: a pipeline for each kind of patch that the scene has.
 pub(crate) struct OperandPatch {
@@ -65,42 +55,23 @@ impl OperandPatch {
         trimmed: Option<&TrimTest>,
     ) -> Result<Self, GpuError> {
         let pipeline = |fills: bool, trimmed: Option<&TrimTest>| {
-            let (fragment, kind) = trimmed.map_or((shaders::OPERAND_PATCH_FRAG, "plain"), |t| (t.operand_patch, t.way));
-            let constants = [
-                (SCENE_HAS_RATIONAL, u32::from(rational)),
-                (TRIMMED, u32::from(trimmed.is_some())),
-                (SCENE_HAS_OPERANDS, 1),
-                (DRAWS_OPERANDS, 1),
-                (FILLS, u32::from(fills)),
-            ];
+            let (fragment, kind) =
+                trimmed.map_or((&shaders::OPERAND_PATCH_FRAG, "plain"), |t| (t.operand_patch, t.way));
             let linked = linked && trimmed.is_none();
-            let surface = if linked { shaders::OPERAND_LINKED_TESE } else { shaders::VISIBILITY_TESE };
-            let mut bindings = with_placed(13);
-            bindings[9] = Binding::Texels;
-            bindings.extend(linked.then_some(Binding::Storage));
-            bindings.extend(vec![Binding::Texels; trimmed.map_or(0, |test| test.texels)]);
-            Pipeline::graphics(
-                device,
-                &GraphicsInfo {
-                    name: &format!("operand patch ({kind}, {})", if fills { "fill" } else { "count" }),
-                    stages: &[
-                        (vk::ShaderStageFlags::VERTEX, shaders::VISIBILITY_VERT),
-                        (vk::ShaderStageFlags::TESSELLATION_CONTROL, shaders::VISIBILITY_TESC),
-                        (vk::ShaderStageFlags::TESSELLATION_EVALUATION, surface),
-                        (vk::ShaderStageFlags::FRAGMENT, fragment),
-                    ],
-                    bindings: &bindings,
-                    push_bytes: 0,
-                    constants: &constants,
-                    topology: vk::PrimitiveTopology::PATCH_LIST,
-                    patch_points: 1,
-                    cull: vk::CullModeFlags::NONE,
-                    front: vk::FrontFace::COUNTER_CLOCKWISE,
-                    colour: &[],
-                    depth: None,
-                    stencil: None,
-                },
-            )
+            let surface = if linked { &shaders::OPERAND_LINKED_TESE } else { &shaders::VISIBILITY_TESE };
+            let name = format!("operand patch ({kind}, {})", if fills { "fill" } else { "count" });
+            let draw = Draw {
+                tessellation: Some([&shaders::VISIBILITY_TESC, surface]),
+                constants: &[
+                    (constant::SCENE_HAS_RATIONAL, u32::from(rational)),
+                    (constant::TRIMMED, u32::from(trimmed.is_some())),
+                    (constant::SCENE_HAS_OPERANDS, 1),
+                    (constant::DRAWS_OPERANDS, 1),
+                    (constant::FILLS, u32::from(fills)),
+                ],
+                ..Draw::new(&name, &shaders::VISIBILITY_VERT, fragment)
+            };
+            draw.pipeline(device)
         };
         let kinds = |fills| {
             Ok(Kinds {

@@ -88,7 +88,7 @@ impl Operands {
                 pass.record(cmd, &meshes, (size, rows()), &shells.draws, fills);
             }
             if let Some(pass) = &passes.patches {
-                pass.record(cmd, &patches, (size, rows()), frame.capacities.draws, fills);
+                pass.record(cmd, &patches, (size, rows()), frame.capacities.tessellation.draws, fills);
             }
         };
         let (w, r) = WRITE_TO_READ;

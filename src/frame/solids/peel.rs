@@ -15,7 +15,7 @@ use super::SolidParts;
 use super::buffers::LayerImages;
 use crate::frame::Frame;
 use crate::frame::solids::blister::{Bindings, Blister, Layer, MeshBindings, Peel};
-use crate::gpu::{Access, Attachment, Commands, Image, Load, barrier};
+use crate::gpu::{Access, Attachment, Commands, Image, ImageAccess, Load, barrier};
 use crate::scene::{self, Asked};
 use std::ops::Range;
 
@@ -102,7 +102,7 @@ impl Parts<'_> {
     /// Peels from the layer `start` on: for the inside, from where the search for the outside left `found`.
     fn search(&self, frame: &Frame<'_>, cmd: &Commands<'_>, start: &Image, search: Search) {
         let images = self.images;
-        for k in 0..frame.capacities.layers {
+        for k in 0..frame.capacities.solids.layers {
             let [image, other] = if k % 2 == 0 { [0, 1] } else { [1, 0] }.map(|i| &images.layers[i]);
             let before = if k == 0 { start } else { other };
             let first = k == 0 && search == Search::Inside;
@@ -115,20 +115,18 @@ impl Parts<'_> {
             self.ask(cmd, image, search, k + 1);
         }
         // whoever waits still wants more layers than there are
-        let last = &images.layers[(frame.capacities.layers as usize + 1) % 2];
+        let last = &images.layers[(frame.capacities.solids.layers as usize + 1) % 2];
         let stencil = Attachment { image: &images.stencil, load: Load::Keep };
         barrier::images(cmd, &[(&images.stencil, Access::DEPTH_WRITE, Access::DEPTH_WRITE)]);
         cmd.rendering_stencil(last.size(), &[], stencil, || {
-            self.pass.wait(cmd, &self.bindings, last, frame.capacities.layers + 1);
+            self.pass.wait(cmd, &self.bindings, last, frame.capacities.solids.layers + 1);
         });
     }
 
     fn peel(&self, cmd: &Commands<'_>, layer: Layer<'_>, search: Search, (unlocks, covers): (bool, bool)) {
         let depth = &self.images.depth;
-        barrier::images(
-            cmd,
-            &[(layer.image, READ.discarded(), DRAWN), (depth, Access::DEPTH_WRITE, Access::DEPTH_WRITE)],
-        );
+        let (drawn, tested) = (ImageAccess::from(DRAWN), ImageAccess::from(Access::DEPTH_WRITE));
+        barrier::images(cmd, &[(layer.image, READ.discarded(), drawn), (depth, tested, tested)]);
         let peel = |adds, takes_away| {
             let (begins, ends) = if search == Search::Inside { (adds, takes_away) } else { (takes_away, adds) };
             Peel { entries: begins, exits: ends, unlocks }

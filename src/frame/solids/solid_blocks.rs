@@ -4,7 +4,7 @@
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};
-use crate::shaders;
+use crate::shaders::{self, constant};
 
 /// The pass.
 pub(crate) struct SolidBlocks {
@@ -23,7 +23,7 @@ pub(crate) struct Bindings<'a> {
 
 impl SolidBlocks {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let kernel = |name, lists| Kernel::new(device, name, &shaders::SOLID_BLOCKS_COMP, &[("LISTS", lists)]);
+        let kernel = |name, lists| Kernel::new(device, name, &shaders::SOLID_BLOCKS_COMP, &[(constant::LISTS, lists)]);
         Ok(Self { count: kernel("solid blocks (count)", 0)?, list: kernel("solid blocks (list)", 1)? })
     }
 

@@ -9,16 +9,13 @@
 //! storage per pixel. Source: J. Hable, J. Rossignac, *CST: constructive solid trimming*, 2007.
 
 use crate::abi;
-use crate::bindings::{Primitives, with_primitives};
+use crate::bindings::Primitives;
+use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
-    Resource, Texels,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Pipeline, Resource, Texels,
 };
-use crate::shaders;
+use crate::shaders::{self, constant};
 use ash::vk;
-
-/// `constant_id` of `SOLIDS_HAVE`.
-const SOLIDS_HAVE: u32 = 5;
 
 /// The pass.
 pub(crate) struct SolidCst {
@@ -47,28 +44,14 @@ impl SolidCst {
         visibility: vk::Format,
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
-        let mut bindings = with_primitives::<11>(1);
-        bindings[6] = Binding::Texels;
-        let pipeline = Pipeline::graphics(
-            device,
-            &GraphicsInfo {
-                name: &format!("solid cst ({})", abi::surface_kind(surfaces)),
-                stages: &[
-                    (vk::ShaderStageFlags::VERTEX, shaders::SOLID_CST_VERT),
-                    (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_CST_FRAG),
-                ],
-                bindings: &bindings,
-                push_bytes: 0,
-                constants: &[(SOLIDS_HAVE, surfaces)],
-                topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-                patch_points: 0,
-                cull: vk::CullModeFlags::NONE,
-                front: vk::FrontFace::COUNTER_CLOCKWISE,
-                colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
-                depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
-                stencil: None,
-            },
-        )?;
+        let name = format!("solid cst ({})", abi::surface_kind(surfaces));
+        let draw = Draw {
+            constants: &[(constant::SOLIDS_HAVE, surfaces)],
+            colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
+            depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
+            ..Draw::new(&name, &shaders::SOLID_CST_VERT, &shaders::SOLID_CST_FRAG)
+        };
+        let pipeline = draw.pipeline(device)?;
         Ok(Self { pipeline })
     }
 

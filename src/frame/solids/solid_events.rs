@@ -9,21 +9,14 @@
 //! operands without equations, unless a driver ends long loops: then rays go on in legs, from where they came to.
 
 use crate::abi;
-use crate::bindings::{Primitives, with_primitives};
+use crate::bindings::Primitives;
+use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
-    Resource, Texels,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Pipeline, Resource, Texels,
 };
-use crate::shaders;
+use crate::shaders::{self, constant};
 use ash::vk;
 use std::ops::Range;
-
-/// `constant_id` of `SOLIDS_HAVE`.
-const SOLIDS_HAVE: u32 = 5;
-/// `constant_id` of `SOLIDS_HAVE_SHELLS`.
-const SOLIDS_HAVE_SHELLS: u32 = 13;
-/// `constant_id` of `SOLIDS_ARE_FOLLOWED`.
-const SOLIDS_ARE_FOLLOWED: u32 = 14;
 
 /// Of the image of (u, v) of spline faces: packed as in the visibility image.
 pub(crate) const OPERAND_UV_FORMAT: vk::Format = vk::Format::R32_UINT;
@@ -87,35 +80,20 @@ impl SolidEvents {
         visibility: vk::Format,
         depth: vk::Format,
     ) -> Result<Self, GpuError> {
-        let mut bindings = with_primitives::<14>(1);
-        bindings[5..8].fill(Binding::Texels);
-        bindings[10] = Binding::Texels;
         let target = |format| ColourTarget { format, blend: Blend::Replace };
         let colour = [target(visibility), target(OPERAND_UV_FORMAT)];
-        let pipeline = Pipeline::graphics(
-            device,
-            &GraphicsInfo {
-                name: &format!("solid events ({})", abi::surface_kind(kinds.surfaces)),
-                stages: &[
-                    (vk::ShaderStageFlags::VERTEX, shaders::SOLID_EVENTS_VERT),
-                    (vk::ShaderStageFlags::FRAGMENT, shaders::SOLID_EVENTS_FRAG),
-                ],
-                bindings: &bindings,
-                push_bytes: 12,
-                constants: &[
-                    (SOLIDS_HAVE, kinds.surfaces),
-                    (SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),
-                    (SOLIDS_ARE_FOLLOWED, u32::from(kinds.followed)),
-                ],
-                topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-                patch_points: 0,
-                cull: vk::CullModeFlags::NONE,
-                front: vk::FrontFace::COUNTER_CLOCKWISE,
-                colour: &colour[..if kinds.patches { 2 } else { 1 }],
-                depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
-                stencil: None,
-            },
-        )?;
+        let name = format!("solid events ({})", abi::surface_kind(kinds.surfaces));
+        let draw = Draw {
+            constants: &[
+                (constant::SOLIDS_HAVE, kinds.surfaces),
+                (constant::SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),
+                (constant::SOLIDS_ARE_FOLLOWED, u32::from(kinds.followed)),
+            ],
+            colour: &colour[..if kinds.patches { 2 } else { 1 }],
+            depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
+            ..Draw::new(&name, &shaders::SOLID_EVENTS_VERT, &shaders::SOLID_EVENTS_FRAG)
+        };
+        let pipeline = draw.pipeline(device)?;
         Ok(Self { pipeline })
     }
 

@@ -5,7 +5,7 @@
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};
-use crate::shaders;
+use crate::shaders::{self, constant};
 
 /// The pass.
 pub(crate) struct SolidTiles {
@@ -28,7 +28,7 @@ pub(crate) struct Bindings<'a> {
 
 impl SolidTiles {
     pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
-        let kernel = |name, lists| Kernel::new(device, name, &shaders::SOLID_TILES_COMP, &[("LISTS", lists)]);
+        let kernel = |name, lists| Kernel::new(device, name, &shaders::SOLID_TILES_COMP, &[(constant::LISTS, lists)]);
         Ok(Self { count: kernel("solid tiles (count)", 0)?, list: kernel("solid tiles (list)", 1)? })
     }
 

@@ -61,10 +61,14 @@ impl Tiles {
             tiles: all_tiles,
             block_counts: room.words("solid block counts", runs)?,
             block_starts: room.words("solid block starts", runs + 1)?,
-            block_leaves: room.words("solid block leaves", room.capacities.block_leaves)?,
+            block_leaves: room.words("solid block leaves", room.capacities.solids.block_leaves)?,
             tile_counts: room.words("solid tile counts", tiles)?,
             tile_starts: room.texels::<u32>("solid tile starts", tiles + 1, Texel::Words)?,
-            tile_leaves: room.texels::<TileLeaf>("solid tile leaves", room.capacities.tile_leaves, Texel::U32x4)?,
+            tile_leaves: room.texels::<TileLeaf>(
+                "solid tile leaves",
+                room.capacities.solids.tile_leaves,
+                Texel::U32x4,
+            )?,
             tile_entries: room.texels::<u32>("solid tile entries", all_tiles, Texel::Words)?,
             tile_squares: room.words("solid tile squares", all_tiles)?,
         })

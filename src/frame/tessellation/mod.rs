@@ -8,9 +8,12 @@
 //! ```
 
 pub(crate) mod bound;
+mod capacities;
 mod divide;
 pub(crate) mod emit;
 pub(crate) mod split;
+
+pub(crate) use capacities::Capacities;
 
 use super::common::room::Room;
 use super::{Frame, WRITE_TO_READ};
@@ -61,7 +64,7 @@ impl Tessellation {
             passes: passes.cloned(),
             taus: room.words("taus", n)?,
             factors: room.structs::<Factors>("factors", n)?,
-            sub_patches: room.structs::<SubPatch>("sub-patches", room.capacities.sub_patches)?,
+            sub_patches: room.structs::<SubPatch>("sub-patches", room.capacities.tessellation.sub_patches)?,
             sub_patch_counts: room.words("sub-patch counts", 2 * n)?,
             sub_patch_starts: room.words("sub-patch starts", 2 * n + 1)?,
             vertex_counts: room.words("vertex counts", 2 * n)?,

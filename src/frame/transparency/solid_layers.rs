@@ -10,34 +10,14 @@
 //! Reads: everything that `Bindings` names. Writes: the targets; of the counters `clamps`, `contacts` and `overlaps`.
 //! Needs no storage per pixel beside `behind` and the fragments of operands without equations.
 
-use crate::bindings::{Primitives, SUN_BINDINGS, SUN_OWN, with_primitives};
+use crate::bindings::{Primitives, SUN_BINDINGS, SUN_OWN};
+use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image,
-    Pipeline, Resource, Texels,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Image, Pipeline, Resource, Texels,
 };
-use crate::shaders;
+use crate::shaders::{self, constant};
 use ash::vk;
 use std::ops::Range;
-
-/// `constant_id` of `SCENE_HAS_RATIONAL`.
-const SCENE_HAS_RATIONAL: u32 = 0;
-/// `constant_id` of `SCENE_HAS_PIECES`.
-const SCENE_HAS_PIECES: u32 = 19;
-
-/// `constant_id` of `SCENE_HAS_FINE`.
-const SCENE_HAS_FINE: u32 = 20;
-/// `constant_id` of `HAS_AOVS`.
-const HAS_AOVS: u32 = 3;
-/// `constant_id` of `SOLIDS_HAVE`.
-const SOLIDS_HAVE: u32 = 5;
-/// `constant_id` of `SOLIDS_HAVE_SHELLS`.
-const SOLIDS_HAVE_SHELLS: u32 = 13;
-/// `constant_id` of `FOLLOWED_FOR`.
-const FOLLOWED_FOR: u32 = 15;
-/// `constant_id` of `MARKS`.
-const MARKS: u32 = 16;
-/// `constant_id` of `SOLIDS_HAVE_PATCHES`.
-const SOLIDS_HAVE_PATCHES: u32 = 17;
 
 /// Format of the image of thickness.
 pub(crate) const THICKNESS_FORMAT: vk::Format = vk::Format::R32_SFLOAT;
@@ -102,7 +82,7 @@ pub(crate) struct Bindings<'a> {
     pub points: &'a Texels,
     pub instances: &'a Buffer,
     /// What [`Kinds::sun`] asks for.
-    pub sun: Option<[Resource<'a>; SUN_BINDINGS.len()]>,
+    pub sun: Option<[Resource<'a>; SUN_BINDINGS]>,
     /// Of meshes that bound operands: meshes, triangles, positions, planes; `None` where there are none.
     pub shells: Option<[&'a Buffer; 4]>,
 }
@@ -127,50 +107,31 @@ impl SolidLayers {
         };
         // lengths within solids are in no light
         let sun = kinds.sun && number != 2;
-        let mut bindings = with_primitives::<24>(1).to_vec();
-        (bindings[7], bindings[10]) = (Binding::Texels, Binding::Texels);
-        bindings[12] = Binding::StorageImage;
-        bindings[18] = Binding::Texels;
-        bindings.extend(SUN_BINDINGS.iter().take(if sun { SUN_OWN } else { 0 }));
         let marks = kinds.marks.filter(|_| number == 0);
         let writes = matches!(purpose, For::First { .. });
-        let pipeline = Pipeline::graphics(
-            device,
-            &GraphicsInfo {
-                name: &format!("solid layers ({name})"),
-                stages: &[
-                    (vk::ShaderStageFlags::VERTEX, shaders::RESOLVE_VERT),
-                    (
-                        vk::ShaderStageFlags::FRAGMENT,
-                        if sun { shaders::SOLID_LAYERS_SUN_FRAG } else { shaders::SOLID_LAYERS_FRAG },
-                    ),
-                ],
-                bindings: &bindings,
-                push_bytes: size_of::<[[f32; 4]; 2]>() as u32,
-                constants: &[
-                    (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
-                    (SCENE_HAS_PIECES, u32::from(kinds.pieces)),
-                    (SCENE_HAS_FINE, u32::from(kinds.fine)),
-                    (HAS_AOVS, u32::from(writes)),
-                    (SOLIDS_HAVE, kinds.surfaces),
-                    (SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),
-                    (FOLLOWED_FOR, number),
-                    (MARKS, u32::from(marks.is_some())),
-                    (SOLIDS_HAVE_PATCHES, u32::from(kinds.patches)),
-                ],
-                topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-                patch_points: 0,
-                cull: vk::CullModeFlags::NONE,
-                front: vk::FrontFace::COUNTER_CLOCKWISE,
-                colour: &colour,
-                depth: depth.filter(|_| number != 2).map(|format| DepthTest {
-                    format,
-                    compare: vk::CompareOp::GREATER_OR_EQUAL,
-                    write: writes,
-                }),
-                stencil: None,
-            },
-        )?;
+        let fragment = if sun { &shaders::SOLID_LAYERS_SUN_FRAG } else { &shaders::SOLID_LAYERS_FRAG };
+        let name = format!("solid layers ({name})");
+        let draw = Draw {
+            constants: &[
+                (constant::SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
+                (constant::SCENE_HAS_PIECES, u32::from(kinds.pieces)),
+                (constant::SCENE_HAS_FINE, u32::from(kinds.fine)),
+                (constant::HAS_AOVS, u32::from(writes)),
+                (constant::SOLIDS_HAVE, kinds.surfaces),
+                (constant::SOLIDS_HAVE_SHELLS, u32::from(kinds.shells)),
+                (constant::FOLLOWED_FOR, number),
+                (constant::MARKS, u32::from(marks.is_some())),
+                (constant::SOLIDS_HAVE_PATCHES, u32::from(kinds.patches)),
+            ],
+            colour: &colour,
+            depth: depth.filter(|_| number != 2).map(|format| DepthTest {
+                format,
+                compare: vk::CompareOp::GREATER_OR_EQUAL,
+                write: writes,
+            }),
+            ..Draw::new(&name, &shaders::RESOLVE_VERT, fragment)
+        };
+        let pipeline = draw.pipeline(device)?;
         Ok(Self { pipeline, marks: marks.unwrap_or_default(), sun })
     }
 

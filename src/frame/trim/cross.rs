@@ -13,7 +13,7 @@
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
-use crate::shaders;
+use crate::shaders::{self, constant};
 
 /// The pass, in its two roles.
 pub(crate) struct Cross {
@@ -46,7 +46,8 @@ impl Cross {
     /// `bays`: strips of some face have several bays. `marks`: where curves pass is asked for.
     pub(crate) fn new(device: &Device, bays: bool, marks: bool) -> Result<Self, GpuError> {
         let kernel = |name, insert: bool| {
-            let roles = [("INSERT", insert), ("SCENE_HAS_BAYS", bays), ("MARKS_BORDERS", marks)];
+            let roles =
+                [(constant::INSERT, insert), (constant::SCENE_HAS_BAYS, bays), (constant::MARKS_BORDERS, marks)];
             Kernel::new(device, name, &shaders::CROSS_COMP, &roles.map(|(name, flag)| (name, u32::from(flag))))
         };
         Ok(Self { count: kernel("cross (count)", false)?, insert: kernel("cross (insert)", true)? })

@@ -13,7 +13,7 @@ impl Frame<'_> {
     pub(crate) fn edit(cmd: &Commands<'_>, scene: &Scene, writes: &[Write]) -> Result<Uploads, GpuError> {
         let mut uploads = Uploads::new();
         let reads = Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ;
-        let copied = Access { layout: reads.layout, ..Access::TRANSFER_WRITE };
+        let copied = Access::TRANSFER_WRITE;
         barrier::memory(cmd, reads, copied);
         for write in writes {
             if let Some(target) = target(scene, write.to) {

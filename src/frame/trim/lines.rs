@@ -5,7 +5,7 @@
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};
-use crate::shaders;
+use crate::shaders::{self, constant};
 
 /// The pass.
 pub(crate) struct Lines {
@@ -26,7 +26,8 @@ pub(crate) struct Bindings<'a> {
 impl Lines {
     /// `bays`: strips of some face have several bays.
     pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
-        let kernel = Kernel::new(device, "lines", &shaders::LINES_COMP, &[("SCENE_HAS_BAYS", u32::from(bays))])?;
+        let kernel =
+            Kernel::new(device, "lines", &shaders::LINES_COMP, &[(constant::SCENE_HAS_BAYS, u32::from(bays))])?;
         Ok(Self { kernel })
     }
 

@@ -9,6 +9,7 @@
 //! A scene uses one way; the others' passes, pipelines and buffers do not exist. Whatever the way, its
 //! test is compiled into the passes `visibility` and `gap_fill` ([`TrimTest`](crate::shaders::TrimTest)).
 
+pub(crate) mod capacities;
 pub(crate) mod carry;
 pub(crate) mod cross;
 pub(crate) mod density;
@@ -18,6 +19,8 @@ pub(crate) mod segments;
 pub(crate) mod sizes;
 pub(crate) mod sort;
 pub(super) mod table;
+
+pub(crate) use capacities::Capacities;
 
 use super::Frame;
 #[cfg(feature = "baselines")]

@@ -6,7 +6,7 @@
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};
-use crate::shaders;
+use crate::shaders::{self, constant};
 
 /// The pass.
 pub(crate) struct Sizes {
@@ -30,7 +30,8 @@ pub(crate) struct Bindings<'a> {
 impl Sizes {
     /// `bays`: strips of some face have several bays.
     pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
-        let kernel = Kernel::new(device, "sizes", &shaders::SIZES_COMP, &[("SCENE_HAS_BAYS", u32::from(bays))])?;
+        let kernel =
+            Kernel::new(device, "sizes", &shaders::SIZES_COMP, &[(constant::SCENE_HAS_BAYS, u32::from(bays))])?;
         Ok(Self { kernel })
     }
 

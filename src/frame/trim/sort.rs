@@ -10,7 +10,7 @@
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
-use crate::shaders;
+use crate::shaders::{self, constant};
 
 /// The pass.
 pub(crate) struct Sort {
@@ -36,7 +36,7 @@ pub(crate) struct Bindings<'a> {
 impl Sort {
     /// `bays`: strips of some face have several bays.
     pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
-        let kernel = Kernel::new(device, "sort", &shaders::SORT_COMP, &[("SCENE_HAS_BAYS", u32::from(bays))])?;
+        let kernel = Kernel::new(device, "sort", &shaders::SORT_COMP, &[(constant::SCENE_HAS_BAYS, u32::from(bays))])?;
         Ok(Self { kernel })
     }
 

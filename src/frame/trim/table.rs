@@ -86,7 +86,7 @@ struct Bays {
 
 impl Table {
     pub(crate) fn new(room: &Room<'_>, passes: &Arc<Passes>) -> Result<Self, GpuError> {
-        let (counts, capacities) = (room.counts, room.capacities);
+        let (counts, capacities) = (room.counts, room.capacities.trim);
         let bays = |carry: &Arc<carry::Carry>| {
             Ok::<_, GpuError>(Bays {
                 carry: Arc::clone(carry),
@@ -228,7 +228,7 @@ impl Table {
                 index: word(offset_of!(Counters, rows)),
                 arguments: &t.dispatches,
                 offset: 2 * size_of::<[u32; 3]>() as u64,
-                capacity: frame.capacities.rows,
+                capacity: frame.capacities.trim.rows,
             },
             &scan::Bindings {
                 values: &t.rows,

@@ -11,17 +11,14 @@
 //! Reads: everything that `Bindings` names. Writes: depth and, in scenes without trims, the visibility
 //! image; else the image `others`, which pass `heal` looks through. Both begin cleared.
 
-use crate::bindings::{PRIMITIVES, Primitives, with_constants};
+use crate::bindings::Primitives;
+use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Image, Load,
-    Pipeline, Resource,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Image, Load, Pipeline, Resource,
 };
-use crate::shaders;
+use crate::shaders::{self, constant};
 use ash::vk;
 use std::ops::Range;
-
-/// `constant_id` of `SOLIDS_HAVE`.
-const SOLIDS_HAVE: u32 = 5;
 
 /// The pass.
 pub(crate) struct Mesh {
@@ -61,30 +58,18 @@ impl Mesh {
     ) -> Result<Self, GpuError> {
         let volume = kinds.volume;
         let (name, fragment) = match volume {
-            None => ("mesh", shaders::MESH_FRAG),
-            Some(_) => ("mesh (within a volume)", shaders::MESH_VOLUME_FRAG),
+            None => ("mesh", &shaders::MESH_FRAG),
+            Some(_) => ("mesh (within a volume)", &shaders::MESH_VOLUME_FRAG),
         };
         let pipeline = |name: &str, cull: vk::CullModeFlags| {
-            Pipeline::graphics(
-                device,
-                &GraphicsInfo {
-                    name,
-                    stages: &[
-                        (vk::ShaderStageFlags::VERTEX, shaders::MESH_VERT),
-                        (vk::ShaderStageFlags::FRAGMENT, fragment),
-                    ],
-                    bindings: &[&with_constants(5)[..], volume.map_or(&[], |_| &PRIMITIVES)].concat(),
-                    push_bytes: 0,
-                    constants: &[(SOLIDS_HAVE, volume.unwrap_or_default())],
-                    topology: vk::PrimitiveTopology::TRIANGLE_LIST,
-                    patch_points: 0,
-                    cull,
-                    front: vk::FrontFace::COUNTER_CLOCKWISE,
-                    colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
-                    depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
-                    stencil: None,
-                },
-            )
+            let draw = Draw {
+                constants: &[(constant::SOLIDS_HAVE, volume.unwrap_or_default())],
+                cull,
+                colour: &[ColourTarget { format: visibility, blend: Blend::Replace }],
+                depth: Some(DepthTest { format: depth, compare: vk::CompareOp::GREATER, write: true }),
+                ..Draw::new(name, &shaders::MESH_VERT, fragment)
+            };
+            draw.pipeline(device)
         };
         Ok(Self {
             both: kinds.both.then(|| pipeline(name, vk::CullModeFlags::NONE)).transpose()?,

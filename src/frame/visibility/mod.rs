@@ -87,7 +87,7 @@ impl Visibility {
     pub(super) fn begin(&self, cmd: &Commands<'_>) {
         let read = (Access::COMPUTE_READ | Access::FRAGMENT_READ).discarded();
         let others = self.others.iter().map(|image| (image, read, Access::COLOUR_WRITE));
-        let tested = Access::DEPTH_WRITE.discarded() | Access::COMPUTE_READ.discarded();
+        let tested = (Access::DEPTH_WRITE | Access::COMPUTE_READ).discarded();
         let fixed = [(&self.image, read, Access::COLOUR_WRITE), (&self.depth, tested, Access::DEPTH_WRITE)];
         barrier::images(cmd, &fixed.into_iter().chain(others).collect::<Vec<_>>());
     }
@@ -158,6 +158,6 @@ impl Visibility {
         let colour = if again || drawn && self.others.is_none() { Load::Keep } else { Load::ColourU32([0; 4]) };
         let visibility = Attachment { image: &self.image, load: colour };
         let depth = Attachment { image: &self.depth, load: if drawn { Load::Keep } else { Load::Depth(0.0) } };
-        pass.record(cmd, &bindings, (visibility, depth), frame.capacities.draws);
+        pass.record(cmd, &bindings, (visibility, depth), frame.capacities.tessellation.draws);
     }
 }

@@ -10,12 +10,12 @@
 //! (reversed: 1 at the near plane), which begin cleared or with what is no patch; `rings`, cleared before.
 
 use crate::abi::Counters;
-use crate::bindings::{PRIMITIVES, Placed, Primitives, with_placed};
+use crate::bindings::{Placed, Primitives};
+use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Binding, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, GraphicsInfo, Pipeline,
-    Resource, Texels,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Pipeline, Resource, Texels,
 };
-use crate::shaders::{self, TrimTest};
+use crate::shaders::{self, TrimTest, constant};
 use ash::vk;
 use std::mem::offset_of;
 
@@ -23,17 +23,6 @@ use std::mem::offset_of;
 pub(crate) const VISIBILITY_FORMAT: vk::Format = vk::Format::R32G32_UINT;
 /// Format of the pass's own depth image.
 pub(crate) const DEPTH_FORMAT: vk::Format = vk::Format::D32_SFLOAT;
-
-/// `constant_id` of `SCENE_HAS_RATIONAL`.
-const SCENE_HAS_RATIONAL: u32 = 0;
-/// `constant_id` of `TRIMMED`.
-const TRIMMED: u32 = 2;
-/// `constant_id` of `SOLIDS_HAVE`.
-const SOLIDS_HAVE: u32 = 5;
-/// `constant_id` of `TRIMS_HAVE_BAYS`.
-const TRIMS_HAVE_BAYS: u32 = 21;
-/// `constant_id` of `SCENE_HAS_OPERANDS`.
-const SCENE_HAS_OPERANDS: u32 = 10;
 
 /// The pass: a pipeline for each kind of patch that the scene has.
 pub(crate) struct Visibility {
@@ -82,47 +71,34 @@ impl Visibility {
         let pipeline = |trimmed: Option<&TrimTest>| {
             let within = kinds.volume.is_some();
             let (fragment, kind) = match trimmed {
-                None if within => (shaders::VISIBILITY_VOLUME_FRAG, "plain"),
-                None => (shaders::VISIBILITY_FRAG, "plain"),
+                None if within => (&shaders::VISIBILITY_VOLUME_FRAG, "plain"),
+                None => (&shaders::VISIBILITY_FRAG, "plain"),
                 Some(t) => (t.within.filter(|_| within).map_or(t.visibility, |w| w.visibility), t.way),
             };
             let linked = kinds.linked && trimmed.is_none();
             let surface = match (linked, within) {
-                (false, _) => shaders::VISIBILITY_TESE,
-                (true, false) => shaders::VISIBILITY_LINKED_TESE,
-                (true, true) => shaders::VISIBILITY_LINKED_VOLUME_TESE,
+                (false, _) => &shaders::VISIBILITY_TESE,
+                (true, false) => &shaders::VISIBILITY_LINKED_TESE,
+                (true, true) => &shaders::VISIBILITY_LINKED_VOLUME_TESE,
             };
             let within = if within { ", within a volume" } else { "" };
             let shared = if linked { ", linked" } else { "" };
             let weights = if kinds.rational { "rational" } else { "polynomial" };
-            Pipeline::graphics(
-                device,
-                &GraphicsInfo {
-                    name: &format!("visibility ({kind}, {weights}{shared}{within})"),
-                    stages: &[
-                        (vk::ShaderStageFlags::VERTEX, shaders::VISIBILITY_VERT),
-                        (vk::ShaderStageFlags::TESSELLATION_CONTROL, shaders::VISIBILITY_TESC),
-                        (vk::ShaderStageFlags::TESSELLATION_EVALUATION, surface),
-                        (vk::ShaderStageFlags::FRAGMENT, fragment),
-                    ],
-                    bindings: &bindings(trimmed.map(|test| test.texels), kinds.volume.is_some(), linked),
-                    push_bytes: 0,
-                    constants: &[
-                        (SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
-                        (TRIMMED, u32::from(trimmed.is_some())),
-                        (TRIMS_HAVE_BAYS, u32::from(kinds.bays)),
-                        (SCENE_HAS_OPERANDS, u32::from(kinds.operands)),
-                        (SOLIDS_HAVE, kinds.volume.unwrap_or_default()),
-                    ],
-                    topology: vk::PrimitiveTopology::PATCH_LIST,
-                    patch_points: 1,
-                    cull: vk::CullModeFlags::NONE,
-                    front: vk::FrontFace::COUNTER_CLOCKWISE,
-                    colour: &[ColourTarget { format: VISIBILITY_FORMAT, blend: Blend::Replace }],
-                    depth: Some(DepthTest { format: DEPTH_FORMAT, compare: vk::CompareOp::GREATER, write: true }),
-                    stencil: None,
-                },
-            )
+            let name = format!("visibility ({kind}, {weights}{shared}{within})");
+            let draw = Draw {
+                tessellation: Some([&shaders::VISIBILITY_TESC, surface]),
+                constants: &[
+                    (constant::SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
+                    (constant::TRIMMED, u32::from(trimmed.is_some())),
+                    (constant::TRIMS_HAVE_BAYS, u32::from(kinds.bays)),
+                    (constant::SCENE_HAS_OPERANDS, u32::from(kinds.operands)),
+                    (constant::SOLIDS_HAVE, kinds.volume.unwrap_or_default()),
+                ],
+                colour: &[ColourTarget { format: VISIBILITY_FORMAT, blend: Blend::Replace }],
+                depth: Some(DepthTest { format: DEPTH_FORMAT, compare: vk::CompareOp::GREATER, write: true }),
+                ..Draw::new(&name, &shaders::VISIBILITY_VERT, fragment)
+            };
+            draw.pipeline(device)
         };
         Ok(Self {
             plain: kinds.plain.then(|| pipeline(None)).transpose()?,
@@ -158,18 +134,4 @@ impl Visibility {
             }
         });
     }
-}
-
-/// Bindings of a pipeline whose trim test has so many texel buffers beside the rings; `None`: without one. `linked`: it
-/// reads links.
-fn bindings(of_test: Option<usize>, volume: bool, linked: bool) -> Vec<Binding> {
-    let mut bindings = with_placed(10);
-    bindings[9] = Binding::Texels;
-    if let Some(texels) = of_test {
-        bindings.push(Binding::Storage);
-        bindings.extend(vec![Binding::Texels; texels]);
-    }
-    bindings.extend(PRIMITIVES.iter().filter(|_| volume));
-    bindings.extend(linked.then_some(Binding::Storage));
-    bindings
 }

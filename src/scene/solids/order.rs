@@ -1,9 +1,7 @@
 //! The order in which leaves are drawn where each is drawn by itself.
 
+use crate::abi::constants::trimmed_leaf::UNOWNED;
 use crate::abi::{LEAF_NEGATIVE, Leaf};
-
-/// As in `trimmed_leaf.glsl`: draw also where no leaf owns the face.
-const UNOWNED: u32 = 0x8000_0000;
 
 /// The leaves in the order in which they are drawn. Of faces at the same depth the first wins: the solids that
 /// add before those that are taken away, then in the order of the tree. `shared`: whether some leaves share a

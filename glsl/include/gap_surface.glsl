@@ -1,0 +1,162 @@
+// A face at the centre of a gap candidate, by its exact surface and its trims. Needs gap_candidate.glsl, trim.glsl,
+// placed.glsl, refine.glsl, patch_place.glsl and facing.glsl; with WITHIN_VOLUME volume.glsl.
+#ifndef GAP_SURFACE_GLSL
+#define GAP_SURFACE_GLSL
+
+// Points of the gap radius at which a face is tested: where the centre is inside, whether all are; where it is outside,
+// whether some are.
+const uint RADIUS_OF_INSIDE = 1u;
+const uint RADIUS_OF_OUTSIDE = 2u;
+
+// How many patches of its face a surface is followed across: a patch may be smaller than a pixel.
+const uint MAX_HOPS = 8u;
+// Of a patch's width: less beyond its side is rounding, and the side's own point.
+const float BEYOND = 1e-4;
+// The same for the end of a face without trims: single precision, and what Newton's method leaves of 100 pixels.
+const float ROUNDED = 1e-5;
+
+// Whether (u, v) of a patch that no loop cuts is in it, or in one beside it that the loops leave. A surface
+// goes on beyond its own end, but the face does not.
+bool in_whole_patch(FaceInstance fi, Face face, uint item, vec2 uv) {
+    ivec2 count = ivec2(face.count_u, face.count_v);
+    ivec2 place = place_of(face, int(item - fi.first_item)) + way_beyond(uv, ROUNDED);
+    if (any(lessThan(place, ivec2(0))) || any(greaterThanEqual(place, count))) return false;
+    return side_of(patch_at(patch_in(face, place)).shape) != SIDE_OUTSIDE;
+}
+
+// Whether the face is there at (u, v) of the item's patch. The table has rows only where its border runs: not
+// for strips and bays in which all patches are whole.
+bool is_there(FaceInstance fi, Face face, uint item, Patch patch_, vec2 uv) {
+    if ((face.flags & FACE_TRIMMED) == 0u) return in_whole_patch(fi, face, item, uv);
+    vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
+#ifdef TRIM_BY_TABLE
+    if (side_of(patch_.shape) == SIDE_INSIDE) {
+        if (clamp(uv, 0.0, 1.0) == uv) return true;
+        if (!table_covers(fi.first_bay, face.strips, at)) return in_whole_patch(fi, face, item, uv);
+    }
+#endif
+    return trim_inside(fi, face, at);
+}
+
+// `refine` from one patch of a face into the next where the point lies beyond a side. `item` becomes the
+// one in which it ended.
+Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec2 uv, vec2 pixel) {
+    ivec2 count = ivec2(face.count_u, face.count_v);
+    Sample s = refine(patch_at(face.first_patch + item - fi.first_item), view, uv, pixel);
+    for (uint hop = 0u; hop < MAX_HOPS; ++hop) {
+        int n = int(item - fi.first_item);
+        ivec2 place = place_of(face, n);
+        ivec2 next = clamp(place + way_beyond(s.uv, BEYOND), ivec2(0), count - 1);
+        if (next == place) break;
+        Patch there = patch_at(patch_in(face, next));
+        if (side_of(there.shape) == SIDE_OUTSIDE) break; // it has no control points
+        Patch here = patch_at(face.first_patch + uint(n));
+        vec2 from = (here.domain.xy + s.uv * here.domain.zw - there.domain.xy) / there.domain.zw;
+        Sample t = refine(there, view, clamp(from, 0.0, 1.0), pixel);
+        // beside a silhouette it may not come as near: then the first patch's continuation is better
+        bool on = length(t.miss) <= max(length(s.miss), ON_PIXEL_PX);
+        if (on) {
+            item = fi.first_item + patch_in(face, next) - face.first_patch;
+            s = t;
+        }
+        if (!on) break; // only now: see refine.glsl
+    }
+    return s;
+}
+
+// The face that `seen` names, at the pixel's centre. Of `radius` the points are tested that RADIUS_OF_ names. A border
+// behind `behind` does not count: that hides it.
+Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius, Candidate behind) {
+    uint item = seen_item(seen.x);
+    FaceInstance fi = face_instance_at(face_instance_of(item));
+    Face face = face_at(fi.face);
+    View view = view_at(fi.instance);
+    Sample s = refine_across(fi, face, view, item, unpack_uv(seen.y), pixel);
+    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    uvec2 word = uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0))));
+    Candidate c = Candidate(ABSENT, from, fi.face + 1u, false, true, s.q.z, length(s.miss), vec2(0.0), word);
+#ifdef WITHIN_VOLUME
+    if (!in_volume(s.q, RING_SLACK * frame.ring_px)) return c;
+    bool inside = in_volume(s.q, ON_PX) && is_there(fi, face, item, patch_, s.uv);
+#else
+    bool inside = is_there(fi, face, item, patch_, s.uv);
+#endif
+    c.inside = inside;
+    if (c.miss > ON_PIXEL_PX) {
+        // a silhouette beside the pixel
+        if (inside && c.miss <= RING_SLACK * frame.ring_px) c.kind = NEAR;
+        return c;
+    }
+    mat2 along = pixels_along(s, view);
+    vec2 pu = along[0];
+    vec2 pv = along[1];
+    float det = pu.x * pv.y - pu.y * pv.x;
+    c.away = looks_away(det, face, instance_at(fi.instance));
+    if (inside) c.kind = PRESENT;
+    if (abs(det) < 1e-12) return c;
+    float zu = row_times(view.depth, vec4(s.jet.du, 0.0));
+    float zv = row_times(view.depth, vec4(s.jet.dv, 0.0));
+    c.slope = vec2(zu * pv.y - zv * pu.y, zv * pu.x - zu * pv.x) / det;
+    if ((radius & (inside ? RADIUS_OF_INSIDE : RADIUS_OF_OUTSIDE)) == 0u) return c;
+    for (uint k = 0u; k < RING_POINTS; ++k) {
+        vec2 step_ = frame.ring_px * RING[k];
+        vec2 duv = vec2(step_.x * pv.y - step_.y * pv.x, pu.x * step_.y - pu.y * step_.x) / det;
+        bool there = is_there(fi, face, item, patch_, s.uv + duv);
+        if (inside && !there) {
+            c.kind = NEAR;
+            break;
+        }
+        if (inside || !there) continue;
+        vec4 q = to_pixel(view, vec4(patch_jet(patch_.first, patch_.shape, s.uv + duv).point, 1.0));
+#ifdef WITHIN_VOLUME
+        // each alone may reach to the pixel from beside the corner in which they meet
+        if (!in_volume(q, ON_PX)) continue;
+#endif
+        vec2 off = q.xy / q.w - pixel;
+        if (q.z <= behind.depth + dot(behind.slope, off) && length(off) <= RING_SLACK * frame.ring_px) {
+            c.kind = NEAR;
+            break;
+        }
+    }
+    return c;
+}
+
+// A face that bends away from the viewer between the pixel and `beside`, which sees it: near where it is there within the
+// gap radius towards that one. At the pixel itself its surface looks away, where its trims tell nothing.
+Candidate candidate_towards(vec2 beside, uvec2 seen, vec2 pixel, Candidate behind) {
+    uint item = seen_item(seen.x);
+    FaceInstance fi = face_instance_at(face_instance_of(item));
+    Face face = face_at(fi.face);
+    View view = view_at(fi.instance);
+    vec2 at = pixel + frame.ring_px * normalize(beside - pixel);
+    Sample s = refine_across(fi, face, view, item, unpack_uv(seen.y), at);
+    mat2 along = pixels_along(s, view);
+    bool away = looks_away(determinant(along), face, instance_at(fi.instance));
+    bool there = is_there(fi, face, item, patch_at(face.first_patch + item - fi.first_item), s.uv);
+    bool near = there && !away && length(s.miss) <= ON_PIXEL_PX && s.q.z <= behind.depth;
+#ifdef WITHIN_VOLUME
+    near = near && in_volume(s.q, ON_PX);
+#endif
+    uvec2 word = uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0))));
+    return Candidate(near ? NEAR : ABSENT, FROM_BESIDE, fi.face + 1u, false, away, s.q.z, frame.ring_px, vec2(0.0), word);
+}
+
+// The border of a candidate near the pixel; see gap_decide.glsl.
+Outline outline_of(Candidate c, vec2 pixel) {
+    uint item = seen_item(c.word.x);
+    FaceInstance fi = face_instance_at(face_instance_of(item));
+    Face face = face_at(fi.face);
+    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    View view = view_at(fi.instance);
+    Sample s = sample_at(patch_, net_of(patch_), view, unpack_uv(c.word.y), pixel);
+    mat2 uv_along = inverse(pixels_along(s, view));
+    vec2 sum = vec2(0.0);
+    for (uint k = 0u; k < RING_POINTS; ++k) {
+        vec2 step_ = frame.ring_px * RING[k];
+        if (is_there(fi, face, item, patch_, s.uv + uv_along * step_)) sum += step_;
+    }
+    vec2 out_ = -0.5 * frame.ring_px / max(length(sum), 1e-6) * sum;
+    return Outline(sum, !is_there(fi, face, item, patch_, s.uv + uv_along * out_));
+}
+
+#endif

@@ -1,0 +1,286 @@
+// Written by build.rs from the shaders: constants of theirs.
+pub mod along {
+    pub const ALONG_BEFORE: u32 = 2;
+    pub const ALONG_BEHIND: u32 = 4;
+    pub const ALONG_INSIDE: u32 = 1;
+}
+pub mod behind {
+    pub const CELL_PX: f32 = 32.0;
+    pub const DEPTH_ROUNDING: f32 = 1e-5;
+    pub const MOST_CELLS: u32 = 8;
+    pub const MOST_SQUARES: u32 = 10;
+    pub const OUTSIDE_CELLS: u32 = 8;
+    pub const PUSH_SLACK: f32 = 2.0;
+}
+pub mod blister {
+    pub const PEEL_ENTRIES: u32 = 1;
+    pub const PEEL_EXITS: u32 = 2;
+    pub const PEEL_UNLOCKS: u32 = 4;
+}
+pub mod border {
+    pub const NO_BORDER: f32 = -3.0e38;
+}
+pub mod border_cells {
+    pub const BAND_ROUNDING: f32 = 1e-4;
+    pub const BORDER_BANDS: u32 = 4;
+    pub const BORDER_COLUMNS: f32 = 128.0;
+}
+pub mod bound {
+    pub const DEPTH_SHARE: f32 = 1.5;
+}
+pub mod cone {
+    pub const EYE_ROUNDING: f32 = 1e-5;
+}
+pub mod coverage {
+    pub const CHORDS: u32 = 8;
+    pub const MOST_CELLS: u32 = 128;
+    pub const MOST_FACES: u32 = 4;
+    pub const ON_PIXEL_PX: f32 = 0.05;
+    pub const SAME_SHEET_PX: f32 = 4.0;
+    pub const TOUCHES: f32 = 1e-5;
+}
+pub mod depth_pyramid {
+    pub const SQUARE: u32 = 4;
+}
+pub mod exact {
+    pub const ARC_LAST: u32 = 8;
+    pub const ARC_UP: u32 = 4;
+    pub const AT_HIGH: u32 = 2;
+    pub const AT_LOW: u32 = 1;
+    pub const CELL_SPLIT: u32 = 0x80000000;
+    pub const FAR: f32 = 1e30;
+    pub const MARGIN: f32 = 0.25;
+}
+pub mod factor {
+    pub const SPARE: f32 = 0.125;
+    pub const UP: f32 = 1.00001;
+}
+pub mod gap_candidate {
+    pub const ABSENT: u32 = 0;
+    pub const FROM_BESIDE: u32 = 0;
+    pub const FROM_BEYOND: u32 = 1;
+    pub const FROM_FOLD: u32 = 2;
+    pub const NEAR: u32 = 1;
+    pub const ON_PIXEL_PX: f32 = 0.05;
+    pub const PRESENT: u32 = 2;
+}
+pub mod gap_decide {
+    pub const SAME_DEPTH: f32 = 1e-6;
+}
+pub mod gap_find {
+    pub const GROUP: u32 = 64;
+    pub const LANES: i32 = 64;
+    pub const ROWS: i32 = 30;
+}
+pub mod gap_gather {
+    pub const ACROSS: f32 = 0.2;
+    pub const BAND_PX: u32 = 4;
+}
+pub mod gap_surface {
+    pub const BEYOND: f32 = 1e-4;
+    pub const MAX_HOPS: u32 = 8;
+    pub const RADIUS_OF_INSIDE: u32 = 1;
+    pub const RADIUS_OF_OUTSIDE: u32 = 2;
+    pub const ROUNDED: f32 = 1e-5;
+}
+pub mod patch_normal {
+    pub const FIRST_INWARDS: f32 = 1e-3;
+    pub const MOST_INWARDS: f32 = 0.3;
+}
+pub mod push {
+    pub const MAX_PUSH: f32 = 0.5;
+}
+pub mod refine {
+    pub const CLOSE_ENOUGH: f32 = 5e-4;
+    pub const MAX_STEP: f32 = 0.25;
+    pub const NEWTON_STEPS: u32 = 4;
+}
+pub mod resolved {
+    pub const NO_SURFACE: u32 = 0xffffffff;
+}
+pub mod ring {
+    pub const APOTHEM: f32 = 0.92387953;
+    pub const CORNER: f32 = 1.06680402;
+    pub const DIAGONAL: f32 = 0.70710678;
+    pub const RING_POINTS: u32 = 8;
+    pub const RING_SLACK: f32 = 1.25;
+    pub const SQUARE: f32 = 0.8;
+}
+pub mod scene {
+    pub const BORDER_U0: u32 = 1;
+    pub const BORDER_U1: u32 = 2;
+    pub const BORDER_V0: u32 = 4;
+    pub const BORDER_V1: u32 = 8;
+    pub const ENCODE_SUMMED: u32 = 2;
+    pub const FACE_CLOSED_U: u32 = 1;
+    pub const FACE_CLOSED_V: u32 = 2;
+    pub const FACE_OPERAND: u32 = 32;
+    pub const FACE_SAME_SENSE: u32 = 4;
+    pub const FACE_SOLID: u32 = 8;
+    pub const FACE_TRIMMED: u32 = 16;
+    pub const FAILED_BLOCK_LEAVES: u32 = 32;
+    pub const FAILED_DOUBTS: u32 = 16;
+    pub const FAILED_DRAWS: u32 = 2;
+    pub const FAILED_FRAGMENTS: u32 = 128;
+    pub const FAILED_INTERCEPTS: u32 = 8;
+    pub const FAILED_LAYERS: u32 = 256;
+    pub const FAILED_LEGS: u32 = 512;
+    pub const FAILED_ROWS: u32 = 4;
+    pub const FAILED_SUB_PATCHES: u32 = 1;
+    pub const FAILED_TILE_LEAVES: u32 = 64;
+    pub const LINK_MOST_SIDES: u32 = 32;
+    pub const MAX_FACTOR: u32 = 64;
+    pub const MAX_ROWS: u32 = 65536;
+    pub const MAX_SPLIT: u32 = 64;
+    pub const MESH_NORMALS: u32 = 2;
+    pub const MESH_SOLID: u32 = 1;
+    pub const SIDE_BOUNDARY: u32 = 2;
+    pub const SIDE_INSIDE: u32 = 1;
+    pub const SIDE_OUTSIDE: u32 = 0;
+    pub const STYLE_CLAY: u32 = 1;
+    pub const STYLE_NORMALS: u32 = 2;
+    pub const STYLE_SHADED: u32 = 0;
+    pub const STYLE_ZEBRA: u32 = 3;
+    pub const TAU_HIDDEN: u32 = 0x8000;
+}
+pub mod segments {
+    pub const LINES_PER_SEGMENT: u32 = 32;
+    pub const MAX_SEGMENTS: f32 = 65536.0;
+}
+pub mod shade {
+    pub const FILL_STRENGTH: f32 = 0.18;
+    pub const GLOSS: f32 = 0.10;
+    pub const GROUND_STRENGTH: f32 = 0.10;
+    pub const KEY_STRENGTH: f32 = 0.66;
+    pub const RIM_STRENGTH: f32 = 0.40;
+    pub const SHININESS: f32 = 48.0;
+    pub const SHOULDER: f32 = 0.76;
+    pub const SKY_STRENGTH: f32 = 0.28;
+    pub const UNSEEN: f32 = 3.0e38;
+    pub const ZEBRA_STRIPES: f32 = 12.0;
+}
+pub mod shells {
+    pub const FRAGMENT_LEAVES: u32 = 0x80000000;
+    pub const FRAGMENT_PATCH: u32 = 0x20000000;
+    pub const FRAGMENT_RING: u32 = 0x40000000;
+    pub const FRAGMENT_SHELL: u32 = 0x0fffffff;
+    pub const FRAGMENT_WITHIN: u32 = 0x10000000;
+    pub const NO_PLANE: u32 = 0xffffffff;
+}
+pub mod sizes {
+    pub const GROUP: u32 = 128;
+    pub const MAX_GROUPS: u32 = 65535;
+    pub const SCAN_BLOCK: u32 = 1024;
+}
+pub mod solid_cst {
+    pub const OWN: u32 = 0;
+    pub const SIDE: u32 = 2;
+    pub const WALK: u32 = 1;
+}
+pub mod solid_events {
+    pub const HALT_BEFORE: u32 = 0x80000000;
+    pub const KEPT: u32 = 12;
+    pub const NOBODY: u32 = 0xffffffff;
+    pub const OWNER: u32 = 1;
+    pub const SEARCH: u32 = 0;
+    pub const SIDE: u32 = 2;
+}
+pub mod solid_layers {
+    pub const BOX: f32 = 1e-6;
+    pub const ENTERED: u32 = 0x80000000;
+    pub const FOR_COLOUR: u32 = 0;
+    pub const FOR_FIRST: u32 = 1;
+    pub const FOR_THICKNESS: u32 = 2;
+    pub const KEPT: u32 = 12;
+    pub const NOBODY: u32 = 0xffffffff;
+    pub const OWNER: u32 = 1;
+    pub const SEARCH: u32 = 0;
+    pub const SIDE: u32 = 2;
+}
+pub mod solid_rects {
+    pub const MARGIN_PX: f32 = 0.5;
+}
+pub mod solids {
+    pub const EXIT_FALSE: u32 = 0xfffffffe;
+    pub const EXIT_TRUE: u32 = 0xffffffff;
+    pub const LEAF_ELSEWHERE: u32 = 16;
+    pub const LEAF_FALLS: u32 = 4;
+    pub const LEAF_FLAG_BITS: u32 = 7;
+    pub const LEAF_NEGATIVE: u32 = 2;
+    pub const LEAF_PLANES: u32 = 32;
+    pub const LEAF_ROUNDS: u32 = 64;
+    pub const LEAF_SHELL: u32 = 8;
+    pub const LEAF_UNBOUNDED: u32 = 1;
+    pub const MOST_STEPS: u32 = 30;
+    pub const NEVER: f32 = 3.0e38;
+    pub const OWN_PLANE: u32 = 0x80000000;
+    pub const SETTLED: f32 = 6e-8;
+    pub const SIDE_MORE: u32 = 4;
+    pub const SIDE_NEGATIVE: u32 = 1;
+    pub const SIDE_PLANE: u32 = 2;
+    pub const SIDE_SHIFT: u32 = 3;
+    pub const SURFACE_PLANE: u32 = 0;
+    pub const SURFACE_QUADRIC: u32 = 1;
+    pub const SURFACE_TORUS: u32 = 2;
+}
+pub mod sort {
+    pub const FEW: u32 = 16;
+}
+pub mod split_linked {
+    pub const NO_PATCH: u32 = 0xffffffff;
+}
+pub mod sun {
+    pub const CRACK_TRIES: u32 = 7;
+    pub const SUN_KEPT: u32 = 12;
+}
+pub mod table {
+    pub const NO_FLIP: f32 = 3.0e38;
+}
+pub mod tiles {
+    pub const BLOCK: u32 = 8;
+    pub const LEAF_RUN: u32 = 32768;
+    pub const TILE: u32 = 16;
+    pub const TILE_LEAF_ENTRY: u32 = 0x80000000;
+    pub const TILE_LEAF_GATE: u32 = 0x40000000;
+}
+pub mod triangle_depth {
+    pub const ROUNDING: f32 = 4e-6;
+}
+pub mod trim {
+    pub const TRIM_IN: u32 = 1;
+    pub const TRIM_MIXED: u32 = 2;
+    pub const TRIM_OUT: u32 = 0;
+    pub const TRIM_SAME: u32 = 3;
+}
+pub mod trimmed_leaf {
+    pub const LEAF_OF: u32 = 0x7fffffff;
+    pub const UNOWNED: u32 = 0x80000000;
+}
+pub mod view {
+    pub const PIXEL_ROUNDING: f32 = 0.015625;
+    pub const RUN: f32 = 16.0;
+    pub const SLAB_ROUNDING: f32 = 1e-5;
+}
+pub mod visibility_surface {
+    pub const MAX_BEND: f32 = 0.25;
+}
+pub mod visibility_trimmed {
+    pub const GROWTH: f32 = 0.25;
+    pub const STAND_BACK: f32 = 2e-6;
+    pub const STEEP: f32 = 4.0;
+}
+pub mod visible {
+    pub const BEHIND_RING: u32 = 0x8000;
+    pub const DOUBTFUL: u32 = 0x80000000;
+    pub const LONE: u32 = 0x8000;
+    pub const RINGED: u32 = 0x80000000;
+    pub const SEEN_KIND: u32 = 0x60000000;
+    pub const SEEN_MESH: u32 = 0x20000000;
+    pub const SEEN_OPERAND: u32 = 0x60000000;
+    pub const SEEN_SOLID: u32 = 0x40000000;
+    pub const WIDE_BAND_PX: u32 = 16;
+}
+pub mod volume {
+    pub const ON_DEPTH: f32 = 2e-6;
+    pub const ON_PX: f32 = 0.01;
+}

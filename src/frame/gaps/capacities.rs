@@ -1,0 +1,23 @@
+//! How many gap candidates there is room for.
+
+use crate::abi::{Counters, Doubt};
+use crate::frame::capacities::grown;
+use crate::frame::counts::Counts;
+
+/// Room for what only the GPU can count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Capacities {
+    pub candidates: u32,
+}
+
+impl Capacities {
+    /// A first guess that fits most scenes in full view.
+    pub(crate) fn first(counts: Counts) -> Self {
+        Self { candidates: u32::from(counts.trim.is_some()) * (1 << 14) }
+    }
+
+    /// What the frame that reported `c` would have needed.
+    pub(crate) fn grown(self, c: &Counters, range: u32) -> Self {
+        Self { candidates: grown(self.candidates, c.doubts, range / size_of::<Doubt>() as u32) }
+    }
+}

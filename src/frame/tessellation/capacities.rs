@@ -1,0 +1,52 @@
+//! How many sub-patches and draws there is room for.
+
+use crate::abi::constants::scene::FAILED_DRAWS;
+use crate::abi::{Counters, SubPatch};
+use crate::frame::capacities::grown;
+use crate::frame::counts::Counts;
+
+/// In a view of the whole scene, where most items are a sub-patch of few segments.
+const VERTICES_OF_AN_ITEM: u64 = 16;
+
+/// Room for what only the GPU can count.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(crate) struct Capacities {
+    pub sub_patches: u32,
+    pub draws: u32,
+}
+
+impl Capacities {
+    /// A first guess that fits most scenes in full view.
+    pub(crate) fn first(counts: Counts) -> Self {
+        Self { sub_patches: counts.items.saturating_add(256), draws: 256 }
+    }
+
+    /// The same, with room for the draws of a scene whose items have a few vertices each, so many of which make a draw.
+    pub(crate) fn drawn_by(self, counts: Counts, draw_vertices: u32) -> Self {
+        let draws = u64::from(counts.items) * VERTICES_OF_AN_ITEM / u64::from(draw_vertices);
+        Self { draws: self.draws.max(draws as u32), ..self }
+    }
+
+    /// What the frame that reported `c` would have needed.
+    pub(crate) fn grown(self, c: &Counters, range: u32) -> Self {
+        let wanted = c.plain.saturating_add(c.trimmed);
+        let more_draws = if c.failed & FAILED_DRAWS != 0 { 4 } else { 1 };
+        Self {
+            sub_patches: grown(self.sub_patches, wanted, range / size_of::<SubPatch>() as u32),
+            draws: self.draws.saturating_mul(more_draws),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// A driver that takes few vertices a draw gets many draws of a large scene at once.
+    #[test]
+    fn draws_follow_the_scene() {
+        let counts = Counts { items: 1 << 20, ..Default::default() };
+        let draws = |draw_vertices| Capacities::first(counts).drawn_by(counts, draw_vertices).draws;
+        assert_eq!((draws(u32::MAX), draws(1 << 12)), (Capacities::first(counts).draws, 1 << 12));
+    }
+}

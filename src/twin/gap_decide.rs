@@ -1,0 +1,362 @@
+//! Twin of `glsl/include/gap_candidate.glsl` and `gap_decide.glsl`: which face belongs at a gap candidate, from the
+//! pixel's situation and its candidates. The rules, in the order and the words of docs/design/gaps.md.
+//!
+//! ```text
+//!   candidates ──consider, one by one──▶ Evidence ──▶ decide ──▶ word of the visibility buffer
+//! ```
+//!
+//! A choice is the shader's wherever no two depths that it compares differ by rounding alone.
+
+use crate::abi::Frame;
+pub use crate::abi::constants::gap_candidate::ON_PIXEL_PX;
+use crate::abi::constants::gap_decide::SAME_DEPTH;
+use crate::abi::constants::ring::RING_SLACK;
+
+/// Farther than anything.
+pub const FARTHEST: f32 = 3.0e38;
+
+/// What a face is at the pixel's centre.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum Kind {
+    /// Not there.
+    #[default]
+    Absent,
+    /// A border or silhouette of it is within the gap radius.
+    Near,
+    /// Its surface passes the centre, inside its trims; of the pixel's own face: and the whole gap radius.
+    Present,
+}
+
+/// Where a candidate was seen.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub enum From {
+    /// By the next pixel.
+    #[default]
+    Beside,
+    /// Beyond other gap candidates.
+    Beyond,
+    /// It is the pixel's own face, across a silhouette.
+    Fold,
+}
+
+/// Where a face ends near the pixel.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Outline {
+    /// The sum of the gap radius's points in the face, pixels; zero where all are.
+    pub into: [f32; 2],
+    /// The other way the face does not reach half of the gap radius.
+    pub ends: bool,
+}
+
+/// A face that may belong there.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Candidate {
+    pub kind: Kind,
+    pub from: From,
+    /// Of the scene, + 1; 0 where it is no patch.
+    pub face: u32,
+    /// Its trims, at the centre.
+    pub inside: bool,
+    /// Looks away from the viewer.
+    pub away: bool,
+    pub depth: f32,
+    /// From the centre to the nearest point of its surface, pixels.
+    pub miss: f32,
+    /// Of its depth, a pixel.
+    pub slope: [f32; 2],
+    /// For the visibility buffer.
+    pub word: [u32; 2],
+    pub outline: Outline,
+}
+
+impl Default for Candidate {
+    fn default() -> Self {
+        Self {
+            kind: Kind::Absent,
+            from: From::Beside,
+            face: 0,
+            inside: false,
+            away: false,
+            depth: FARTHEST,
+            miss: FARTHEST,
+            slope: [0.0; 2],
+            word: [0; 2],
+            outline: Outline::default(),
+        }
+    }
+}
+
+/// Why the pixel is a gap candidate, and what is known about it.
+#[derive(Clone, Copy, Debug, Default, PartialEq)]
+pub struct Situation {
+    /// A border lies before what is seen, or the eye is within a solid; else a back face is seen.
+    pub border: bool,
+    /// No border is near: nothing is seen, between patches on both sides.
+    pub isolated: bool,
+    /// No patch is seen.
+    pub empty: bool,
+    /// A neighbour shows the background.
+    pub empty_beside: bool,
+    /// A neighbour shows a mesh or solid behind `own`.
+    pub other_beside: bool,
+    /// Depth of a mesh or solid behind the pixel.
+    pub other: Option<f32>,
+    /// A volume trims the scene.
+    pub cut_open: bool,
+    /// Word of the visibility buffer.
+    pub seen: [u32; 2],
+    /// The face that is seen; absent where there is none.
+    pub own: Candidate,
+}
+
+impl Situation {
+    /// A back face all of whose gap radius is inside its trims: the pixel looks into a solid.
+    fn is_interior(&self) -> bool {
+        !self.border && self.own.kind == Kind::Present
+    }
+
+    fn own_on_pixel(&self) -> bool {
+        self.own.kind != Kind::Absent && self.own.miss <= ON_PIXEL_PX
+    }
+
+    /// Candidates beyond this depth do not count.
+    fn depth_limit(&self) -> f32 {
+        if self.is_interior() { self.own.depth * (1.0 - SAME_DEPTH) } else { FARTHEST }
+    }
+}
+
+/// Which face is seen: a word of the visibility buffer.
+pub fn decide(frame: &Frame, situation: &Situation, candidates: &[Candidate]) -> [u32; 2] {
+    let mut evidence = Evidence::new(frame, situation);
+    candidates.iter().for_each(|c| evidence.consider(c));
+    evidence.decide()
+}
+
+/// Of the candidates, what decides.
+struct Evidence<'a> {
+    frame: &'a Frame,
+    s: &'a Situation,
+    /// The nearest that is present.
+    present: Candidate,
+    /// The nearest that is near.
+    near: Candidate,
+    /// The nearest that is near, of another face.
+    second: Candidate,
+    /// The nearest front that touches the back face that is seen.
+    touching: Candidate,
+    /// Whose surface passes closest to the centre, before the back face if possible.
+    closest: Candidate,
+    closest_before: bool,
+    /// Near ones are of two faces.
+    edge: bool,
+    /// The face that met the own one last.
+    met: u32,
+    /// Two faces meet the own one.
+    corner: bool,
+}
+
+/// A mesh or solid at the very pixel.
+fn other_candidate(depth: f32) -> Candidate {
+    Candidate { kind: Kind::Present, inside: true, depth, miss: 0.0, ..Candidate::default() }
+}
+
+fn dot(a: [f32; 2], b: [f32; 2]) -> f32 {
+    a[0] * b[0] + a[1] * b[1]
+}
+
+/// Whether `a` hides `b` up to a silhouette in which both end here; derived in `gap_decide.glsl`.
+fn covers(a: &Candidate, b: &Candidate) -> bool {
+    if a.miss.max(b.miss) > ON_PIXEL_PX {
+        return false; // a surface's own silhouette
+    }
+    let (of_a, of_b) = (a.outline, b.outline);
+    let together = dot(of_a.into, of_b.into) > 0.0 && of_a.ends && of_b.ends;
+    let slope = [a.slope[0] - b.slope[0], a.slope[1] - b.slope[1]];
+    together && a.depth - b.depth + dot(slope, of_a.into) < 0.0
+}
+
+impl<'a> Evidence<'a> {
+    /// Before any candidate. Where no patch is seen, a mesh or solid at the pixel is there.
+    fn new(frame: &'a Frame, s: &'a Situation) -> Self {
+        let none = Candidate::default();
+        let present = s.other.filter(|_| s.border && s.empty).map_or(none, other_candidate);
+        Self {
+            frame,
+            s,
+            present,
+            near: none,
+            second: none,
+            touching: none,
+            closest: none,
+            closest_before: false,
+            edge: false,
+            met: 0,
+            corner: false,
+        }
+    }
+
+    /// How much its depth changes within the gap radius.
+    fn lean(&self, c: &Candidate) -> f32 {
+        RING_SLACK * self.frame.ring_px * dot(c.slope, c.slope).sqrt()
+    }
+
+    /// In all of the gap radius: surfaces that meet within it are not.
+    fn wholly_before(&self, a: &Candidate, b: &Candidate) -> bool {
+        a.depth + self.lean(a) + self.lean(b) < b.depth
+    }
+
+    /// How far apart in depth a front and a back count as one: the front stands back by this.
+    fn touch(&self, front: &Candidate) -> f32 {
+        let px = if self.frame.perspective != 0 { front.depth } else { 1.0 } / self.frame.focal;
+        let slope = front.slope[0].abs() + front.slope[1].abs() + px;
+        2.0 * self.frame.deviation_px * slope + 2.0 * SAME_DEPTH * front.depth
+    }
+
+    fn consider(&mut self, c: &Candidate) {
+        // rule "far front"
+        if c.from != From::Beside && (c.kind != Kind::Present || c.away) {
+            return;
+        }
+        let before = c.depth <= self.s.depth_limit();
+        self.consider_closest(c, before);
+        self.consider_touching(c);
+        if !before {
+            return;
+        }
+        match c.kind {
+            Kind::Present if c.depth < self.present.depth => self.present = *c,
+            Kind::Near => self.consider_near(c),
+            _ => {}
+        }
+        self.consider_corner(c);
+    }
+
+    /// Rule "closest surface".
+    fn consider_closest(&mut self, c: &Candidate, before: bool) {
+        let hidden = !before && c.miss <= ON_PIXEL_PX;
+        let closer = before == self.closest_before && c.miss < self.closest.miss;
+        if !hidden && (before && !self.closest_before || closer) {
+            (self.closest, self.closest_before) = (*c, before);
+        }
+    }
+
+    /// Rule "touching front".
+    fn consider_touching(&mut self, c: &Candidate) {
+        let front = c.from != From::Fold && c.kind == Kind::Present && !c.away;
+        let touches = front && (c.depth - self.s.own.depth).abs() <= self.touch(c);
+        if touches && c.depth < self.touching.depth {
+            self.touching = *c;
+        }
+    }
+
+    /// Rules "edge" and "common silhouette".
+    fn consider_near(&mut self, c: &Candidate) {
+        let another = c.face != self.near.face;
+        self.edge |= self.near.face != 0 && another;
+        if c.depth < self.near.depth {
+            if another {
+                self.second = self.near;
+            }
+            self.near = *c;
+        } else if another && c.depth < self.second.depth {
+            self.second = *c;
+        }
+    }
+
+    /// Rule "hidden third".
+    fn consider_corner(&mut self, c: &Candidate) {
+        let own = &self.s.own;
+        let meets = c.depth - self.lean(c) - self.lean(own) <= own.depth;
+        if c.kind == Kind::Absent || c.face == own.face || !meets {
+            return;
+        }
+        self.corner |= self.met != 0 && self.met != c.face;
+        self.met = c.face;
+    }
+
+    /// Rule "common silhouette", of two that are near.
+    fn put_covering_first(&mut self) {
+        let meet = self.second.kind == Kind::Near && !self.wholly_before(&self.near, &self.second);
+        if meet && covers(&self.second, &self.near) {
+            self.near = self.second;
+        }
+    }
+
+    /// Rule "common silhouette", of the own face.
+    fn own_is_covered(&self, near_first: bool) -> bool {
+        let nearest = if near_first { &self.near } else { &self.present };
+        let ends = self.s.border && self.s.own_on_pixel() && self.s.own.kind == Kind::Near;
+        ends && nearest.kind != Kind::Absent && nearest.face != self.s.own.face && covers(nearest, &self.s.own)
+    }
+
+    /// Rule "grown front".
+    fn own_has_grown(&self) -> bool {
+        let own = &self.s.own;
+        !own.inside && self.wholly_before(own, &self.present) && !self.wholly_before(&self.near, own)
+    }
+
+    /// Rule "interior back".
+    fn behind_gap(&self) -> [u32; 2] {
+        let near_first = self.near.kind == Kind::Near && self.near.depth < self.present.depth;
+        if self.present.kind == Kind::Present && !near_first {
+            self.present.word
+        } else if self.near.kind == Kind::Near {
+            self.near.word
+        } else if self.touching.kind == Kind::Present {
+            self.touching.word
+        } else if self.closest.miss <= RING_SLACK * self.frame.ring_px {
+            self.closest.word
+        } else {
+            self.s.seen
+        }
+    }
+
+    fn decide(mut self) -> [u32; 2] {
+        let s = self.s;
+        self.put_covering_first();
+        if s.is_interior() {
+            return self.behind_gap();
+        }
+        let near_first = self.near.kind == Kind::Near && self.near.depth < self.present.depth;
+        let covered = self.own_is_covered(near_first);
+        let third = s.own.kind == Kind::Near && self.corner;
+        let mut grown = false;
+        if s.border && s.own_on_pixel() && !covered && !third && s.own.depth < self.present.depth {
+            grown = self.own_has_grown();
+            if s.own.inside || grown {
+                self.present = Candidate { kind: Kind::Present, ..s.own };
+            }
+        }
+        // rule "other"
+        let patches_end = s.empty_beside || s.other_beside || self.present.kind == Kind::Present;
+        match s.other {
+            Some(depth) if !s.border && patches_end && depth < self.present.depth => {
+                self.present = other_candidate(depth);
+            }
+            _ => {}
+        }
+        // rule "edge"
+        let two = self.edge && self.near.depth < self.present.depth && !grown && !s.isolated;
+        // rule "outline of the part"
+        let cut_open = s.cut_open && s.border && s.own_on_pixel() && s.own.inside && s.own.away;
+        let outline = cut_open && self.near.kind == Kind::Near && self.near.depth < s.own.depth;
+        if covered && near_first || two || outline {
+            return self.near.word;
+        }
+        if self.present.kind == Kind::Present {
+            return self.present.word;
+        }
+        // rule "background"
+        if if s.border { s.empty } else { s.empty_beside } {
+            return [0; 2];
+        }
+        match (self.near.kind, s.other) {
+            (Kind::Near, _) => self.near.word,
+            (_, Some(_)) if !s.border => [0; 2],
+            _ => s.seen,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests;
