@@ -150,13 +150,15 @@ Outline outline_of(Candidate c, vec2 pixel) {
     View view = view_at(fi.instance);
     Sample s = sample_at(patch_, net_of(patch_), view, unpack_uv(c.word.y), pixel);
     mat2 uv_along = inverse(pixels_along(s, view));
+    // a word's (u, v) has 16 bits, which in a large patch are a part of a pixel
+    vec2 at = s.uv - uv_along * s.miss;
     vec2 sum = vec2(0.0);
     for (uint k = 0u; k < RING_POINTS; ++k) {
         vec2 step_ = frame.ring_px * RING[k];
-        if (is_there(fi, face, item, patch_, s.uv + uv_along * step_)) sum += step_;
+        if (is_there(fi, face, item, patch_, at + uv_along * step_)) sum += step_;
     }
     vec2 out_ = -0.5 * frame.ring_px / max(length(sum), 1e-6) * sum;
-    return Outline(sum, !is_there(fi, face, item, patch_, s.uv + uv_along * out_));
+    return Outline(sum, !is_there(fi, face, item, patch_, at + uv_along * out_));
 }
 
 #endif

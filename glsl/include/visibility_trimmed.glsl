@@ -8,8 +8,8 @@
 //     looks into the solid. It wins over a face of another solid that touches it.
 //   * the ring around a face of a solid seen from behind, so that the faces behind leave no gap themselves, and around
 //     each face of an open shell. To either side of the border of the former: a hole's far end, drawn narrower than it
-//     is, must not hide its wall. Within the border of the latter it is drawn, and marked where it is seen from behind:
-//     it may meet the face before it in a silhouette, which is drawn narrower than it is.
+//     is, must not hide its wall. Within the border of the latter it is drawn, and marked: it may meet the face before it
+//     in a silhouette, which is drawn narrower than it is. Nothing says which side of an open shell is its front.
 //
 // Rings are not drawn: what they are before may be right, and narrower than they are. Only how near
 // the nearest of them comes is kept for each pixel.
@@ -99,7 +99,7 @@ void main() {
     vec2 ahead = steep ? off * normalize(slope) : vec2(0.0);
     Border border = border_at(FacePoint(fi, face, at, dx, dy), grows ? reach : 0.0, away, ahead, slope);
     bool inside = area == TRIM_IN || border.inside;
-    bool whole = !away || border.whole;
+    bool whole = solid && !away || border.whole;
     bool goes_on = border.goes_on;
     // of the ring's points inside the face, the nearest to the viewer
     float border_depth = border.rise == NO_BORDER ? -1.0 : max(gl_FragCoord.z + border.rise, 0.0);

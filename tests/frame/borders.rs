@@ -70,6 +70,18 @@ fn a_face_hidden_up_to_a_silhouette_is_not_seen_beyond_it() {
     }
 }
 
+/// Nothing says which side of an open shell's face is its front. The end behind was drawn beyond the silhouette, by as much
+/// as a scan line is off, where its normal looked at the viewer.
+#[test]
+fn nor_where_an_open_shell_s_normals_look_inwards() {
+    let mut drum = borders::drum(1.5, 0.7);
+    drum.parts[0].closed = false;
+    drum.parts[0].faces.iter_mut().for_each(|face| face.same_sense = !face.same_sense);
+    for &way in TrimWay::ALL {
+        keeps_it_by(way, &drum, 0..VIEWS);
+    }
+}
+
 /// Both silhouettes are drawn inside of what they are, by less than the tolerance, and pixels' centres lie where they
 /// meet: no crack, but the background shows.
 #[test]
