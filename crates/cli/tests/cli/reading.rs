@@ -20,6 +20,28 @@ fn piped(arguments: &[&str], input: &[u8]) -> Output {
     child.wait_with_output().unwrap()
 }
 
+/// A cylinder with a seam, from its source and from the engine's own form.
+#[test]
+fn edges_are_counted_by_kind() {
+    let good = include_bytes!("../../../io/src/import/step/tests/good.step");
+    let folder = tempfile::tempdir().unwrap();
+    let native = folder.path().join("a.selvedge").to_str().unwrap().to_owned();
+    assert_eq!(piped(&["convert", "-", &native], good).status.code(), Some(0));
+    let native = selvedge(&["info", "--json", &native]);
+    for told in [piped(&["info", "--json", "-"], good), native] {
+        let told: serde_json::Value = serde_json::from_slice(&told.stdout).unwrap();
+        let counts = ["sharp", "smooth", "seams", "borders", "vertices", "mesh_creases", "mesh_borders"];
+        assert_eq!(counts.map(|kind| told["edges"][kind].as_u64().unwrap()), [2, 0, 1, 0, 2, 0, 0]);
+    }
+    let told = text(&piped(&["info", "-"], good).stdout);
+    let row = |name: &str| {
+        told.lines().find(|l| l.contains(name)).unwrap_or_else(|| panic!("no {name} in {told}")).to_owned()
+    };
+    for (name, count) in [("sharp edges", "2"), ("seams", "1"), ("vertices", "2")] {
+        assert!(row(name).contains(count), "{told}");
+    }
+}
+
 #[test]
 fn a_dash_is_standard_input() {
     let good = include_bytes!("../../../io/src/import/step/tests/good.step");

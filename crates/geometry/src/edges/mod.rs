@@ -10,9 +10,8 @@
 //! ```
 //!
 //! Edges are found on demand, not when a file is read. An import stores only what cannot be found again: the edge of the
-//! source that each trim curve comes from. The rest costs as much as it does to trim the faces once more, which pictures
-//! without lines should not pay; and a curve found from the trimmed surface lies on that surface, where the curve that the
-//! file states may lie beside it.
+//! source that each trim curve comes from. Pictures without lines do not pay for the rest; and a curve found from the
+//! trimmed surface lies on that surface, where the curve that the file states may lie beside it.
 //!
 //! Tolerances, in shares of the diagonal of the part's control points: points within `1e-5` are one; where a part should
 //! be closed and is not, loops without partner may be `2e-4` apart; fits aim at `1e-8`.
@@ -68,8 +67,7 @@ impl Part {
     /// The part's edges and vertices.
     ///
     /// Each trim curve that is not a point in space belongs to one use of one edge. What the source states as one edge is
-    /// one, unless the seam of a face cuts it. Cost: microseconds an edge where the source shares edges, up to a
-    /// millisecond where they are found by geometry; parallel.
+    /// one, unless the seam of a face cuts it. Where the source shares edges, no search is made for them.
     ///
     /// # Errors
     /// [`EdgeError`] for a face whose surface or loops overflow.
