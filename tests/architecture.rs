@@ -252,7 +252,7 @@ const HOMONYMS: &[&str] =
 fn literals(text: &str) -> Vec<(&str, &str)> {
     let declared = |line: &'_ str| line.split_once("const ").map(|(_, rest)| rest.len());
     let rest = text.lines().filter_map(|line| declared(line).map(|length| &line[line.len() - length..]));
-    let halves = rest.filter_map(|rest| rest.split_once(" = ").map(|(name, value)| (name, value)));
+    let halves = rest.filter_map(|rest| rest.split_once(" = "));
     let named = halves.map(|(declared, value)| match declared.split_once(": ") {
         Some((name, _)) => (name, value),
         None => (declared.rsplit(' ').next().unwrap_or_default(), value),

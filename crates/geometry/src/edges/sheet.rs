@@ -16,6 +16,9 @@ use crate::model::{EdgeRef, EdgeUse, Face};
 use crate::spline::{BSpline, Bezier, Control, PatchGrid, Span, SplineError, Surface, arc};
 use glam::{DVec2, DVec3, DVec4};
 
+/// Pieces of a curve in space, end to end.
+type Chain = Vec<Span<Bezier<DVec4>>>;
+
 /// Halvings of one piece of a fit; beyond them the distance reached is what counts.
 const HALVINGS: u32 = 10;
 /// A line of constant parameter, in shares of the domain.
@@ -114,7 +117,7 @@ impl<'a> Sheet<'a> {
         self.plane.is_some() || self.iso(pieces).is_some()
     }
 
-    /// `pieces`, end to end, as one spline over the parameters of [`Sheet::in_space`].
+    /// `pieces`, end to end, as one spline over the parameters of `Sheet::in_space`.
     ///
     /// # Errors
     /// [`SplineError`] where the pieces are no spline.
@@ -135,11 +138,7 @@ impl<'a> Sheet<'a> {
     ///
     /// # Errors
     /// [`SplineError`] where a line of constant parameter is no spline.
-    pub(super) fn in_space(
-        &self,
-        pieces: &[Bezier<DVec3>],
-        reach: f64,
-    ) -> Result<(Vec<Span<Bezier<DVec4>>>, f64), SplineError> {
+    pub(super) fn in_space(&self, pieces: &[Bezier<DVec3>], reach: f64) -> Result<(Chain, f64), SplineError> {
         if let Some(Iso { along_v, at, from, to }) = self.iso(pieces) {
             let whole = isocurve(&self.face.surface, at, along_v)?;
             let (a, b) = (from.min(to), from.max(to));
@@ -198,7 +197,7 @@ impl<'a> Sheet<'a> {
         start: f64,
         reach: f64,
         halvings: u32,
-        spans: &mut Vec<Span<Bezier<DVec4>>>,
+        spans: &mut Chain,
         deviation: &mut f64,
     ) {
         let [p, q] = [a, b].map(|t| self.jet(c, t));

@@ -243,15 +243,18 @@ fn cuts(sheet: &Sheet, c: &Bezier<DVec3>, order: &Ordered, reach: f64) -> Vec<(f
     found
 }
 
+/// Parts of pieces, by number and from where to where, since a vertex.
+type Opened = (Vec<(usize, f64, f64)>, usize);
+
 /// Cuts a section of a loop, given by the numbers of its pieces, at the vertices that it passes; of a section that is the
 /// whole loop, what comes before the first vertex belongs to the last stretch.
 fn stretches(l: &Loop, section: &[usize], order: &Ordered, reach: f64, out: &mut Cut) {
     let mut head = Vec::new();
-    let mut open: Option<(Vec<(usize, f64, f64)>, usize)> = None;
+    let mut open: Option<Opened> = None;
     let mut first = None;
     for &k in section {
         let mut at = 0.0;
-        let mut take = |from: f64, to: f64, open: &mut Option<(Vec<_>, usize)>| {
+        let mut take = |from: f64, to: f64, open: &mut Option<Opened>| {
             if to > from {
                 open.as_mut().map_or(&mut head, |o| &mut o.0).push((k, from, to));
             }
