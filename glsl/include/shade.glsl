@@ -1,17 +1,15 @@
-// A neutral studio: a key light from the upper left behind the viewer, a fill from the right, a rim light from above
-// behind the model, a sky above a darker ground. Directions are unit vectors in view space and travel with the camera.
+// A neutral studio: a key light from the upper left behind the viewer, a fill from the right, a sky above a darker
+// ground. Directions are unit vectors in view space and travel with the camera.
 // Twin: `studio` of the judge.
 #ifndef SHADE_GLSL
 #define SHADE_GLSL
 
-const vec3 KEY = vec3(-0.45, 0.60, 0.66);
-const vec3 FILL = vec3(0.72, 0.10, 0.69);
-const vec3 RIM = vec3(0.25, 0.55, -0.80);
-const float KEY_STRENGTH = 0.66;
-const float FILL_STRENGTH = 0.18;
-const float RIM_STRENGTH = 0.40;
-const float SKY_STRENGTH = 0.28;
-const float GROUND_STRENGTH = 0.10;
+const vec3 KEY = vec3(-0.42, 0.57, 0.71);
+const vec3 FILL = vec3(0.71, 0.14, 0.69);
+const float KEY_STRENGTH = 0.62;
+const float FILL_STRENGTH = 0.22;
+const float SKY_STRENGTH = 0.26;
+const float GROUND_STRENGTH = 0.12;
 const float GLOSS = 0.10;      // strength of the highlight
 const float SHININESS = 48.0;
 
@@ -40,10 +38,9 @@ vec3 toned(vec3 light) {
 // there.
 vec3 studio(vec3 colour, vec3 v, float key, float shine) {
     float fill = max(dot(v, FILL), 0.0);
-    float rim = max(dot(v, RIM), 0.0);
     float sky = mix(GROUND_STRENGTH, SKY_STRENGTH, 0.5 + 0.5 * v.y);
     float highlight = pow(shine, SHININESS) * GLOSS;
-    return toned(colour * (KEY_STRENGTH * key + FILL_STRENGTH * fill + RIM_STRENGTH * rim + sky) + highlight);
+    return toned(colour * (KEY_STRENGTH * key + FILL_STRENGTH * fill + sky) + highlight);
 }
 
 // Linear light of sRGB colours.

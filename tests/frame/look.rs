@@ -32,7 +32,7 @@ fn expected(style: Style, v: DVec3, ray: DVec3, n: DVec3, camera: &Camera) -> Op
         Style::Normals => Some((0.5 + 0.5 * v).map(srgb::decoded)),
         Style::Clay => {
             // below the tone curve's shoulder: the highlight is a summand
-            let half_way = (DVec3::new(-0.45, 0.60, 0.66) + DVec3::Z).normalize();
+            let half_way = (DVec3::new(-0.42, 0.57, 0.71) + DVec3::Z).normalize();
             let highlight = 0.10 * v.dot(half_way).max(0.0).powi(48);
             Some(studio(DVec3::new(0.58, 0.52, 0.46), n, camera, Key::Lamp) - highlight)
         }

@@ -21,17 +21,16 @@ pub fn studio(colour: DVec3, n: DVec3, camera: &Camera, key: Key) -> DVec3 {
     let (right, up, forward) = camera.axes();
     let in_view = |d: DVec3| DVec3::new(right.dot(d), up.dot(d), -forward.dot(d));
     let v = in_view(n);
-    let lamp = DVec3::new(-0.45, 0.60, 0.66);
+    let lamp = DVec3::new(-0.42, 0.57, 0.71);
     let (cosine, shine) = match key {
         Key::Shadow => (0.0, 0.0),
         Key::Lamp => (v.dot(lamp), v.dot((lamp + DVec3::Z).normalize())),
         Key::Sun(towards) => (n.dot(towards), v.dot((in_view(towards) + DVec3::Z).normalize_or_zero())),
     };
-    let fill = v.dot(DVec3::new(0.72, 0.10, 0.69)).max(0.0);
-    let rim = v.dot(DVec3::new(0.25, 0.55, -0.80)).max(0.0);
-    let sky = 0.10 + (0.28 - 0.10) * (0.5 + 0.5 * v.y);
+    let fill = v.dot(DVec3::new(0.71, 0.14, 0.69)).max(0.0);
+    let sky = 0.12 + (0.26 - 0.12) * (0.5 + 0.5 * v.y);
     let highlight = 0.10 * shine.max(0.0).powi(48);
-    toned(colour * (0.66 * cosine.max(0.0) + 0.18 * fill + 0.40 * rim + sky) + highlight)
+    toned(colour * (0.62 * cosine.max(0.0) + 0.22 * fill + sky) + highlight)
 }
 
 /// The tone curve: light up to its shoulder as it is, above it nearer and nearer to 1.
