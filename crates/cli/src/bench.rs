@@ -24,7 +24,8 @@ use serde::Serialize;
 use std::path::{Path, PathBuf};
 use std::time::Instant;
 
-/// Frames before the first measured one: buffers have grown, and the driver has compiled. What the first one took is told apart.
+/// Frames before the first measured one. In them buffers grow and the driver compiles; the report has the first one in a
+/// line of its own.
 const WARM_UP_FRAMES: usize = 3;
 /// Pixels judged in each of them, beside those at which the face changes.
 const JUDGED_SAMPLES: usize = 2_000;

@@ -1,7 +1,7 @@
 //! Whether Boolean solids leave anything to draw, for commands that open no device.
 //!
-//! Rays of the true picture of the whole model, coarse to fine, until one meets something: a model of which anything is
-//! seen costs a few rays, and an empty one a picture of [`SIZE`].
+//! The exact tracer follows rays through a picture of the whole model, coarse to fine, until one meets a surface. A model
+//! with a surface costs a few rays, an empty one a picture of [`SIZE`].
 
 use crate::{camera, session};
 use anyhow::{Result, bail};

@@ -100,7 +100,7 @@ fn what_stands_before_hides() {
     assert!(count(Visibility::Hidden) > 20 && count(Visibility::Visible) > 100);
 }
 
-/// A label on a wall: nobody can say which of the two a renderer sees at its edges. A little before it, it is seen.
+/// A label on a wall has the wall's depth: visibility of its edges is unsure. A label before the wall is visible.
 #[test]
 fn what_lies_flush_is_unsure() {
     let camera = Camera { up: DVec3::Y, ..view(DVec3::new(0.3, 0.2, 3.0)) };

@@ -68,7 +68,7 @@ impl LinePoint {
 pub struct Lines {
     /// Each a polyline that stays in the picture, or all but its ends; in the order of the edge.
     pub lines: Vec<Vec<LinePoint>>,
-    /// Pieces of which the bound does not hold: halved as often as may be, and still bent.
+    /// Pieces that miss the bound after the last halving.
     pub unresolved: usize,
 }
 

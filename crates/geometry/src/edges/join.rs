@@ -1,4 +1,4 @@
-//! Which stretches of which loops are the same edge.
+//! Finds the stretches of loops that are the same edge.
 //!
 //! ```text
 //!      face A ──●────────────●──         one edge of the source: its uses, whatever the distance
@@ -193,8 +193,8 @@ impl Boundaries {
         t(0.3) > t(0.6)
     }
 
-    /// Joins edges that have one stretch only, where a file's edges lie off its surfaces: their ends within `loose` of
-    /// each other become one vertex, those that are within `loose` of a point go, and the others are paired again.
+    /// Joins edges that have one stretch only, where a file's edges lie off its surfaces: ends within `loose` of
+    /// each other become one vertex, stretches within `loose` of a point are dropped, and the others are paired again.
     pub fn mend(&mut self, sheets: &[Sheet], loose: f64) {
         let single: Vec<usize> = self.edges.iter().filter(|e| e.len() == 1).map(|e| e[0].0).collect();
         let points = &self.cut.vertices.points;

@@ -82,7 +82,7 @@ impl<'a> Sheet<'a> {
         corners.windows(2).map(|w| Bezier::line(w[0], w[1])).collect()
     }
 
-    /// How many curves a loop has, and those that do not stay within `reach` of one point.
+    /// The number of a loop's curves, and its curves that are longer than a point: not within `reach` of one.
     pub(super) fn pieces(&self, trim_loop: Option<usize>, reach: f64) -> (usize, Vec<Piece>) {
         let edges = trim_loop.map_or(&[][..], |at| self.face.loops[at].edges());
         let curves = self.curves(trim_loop);
@@ -96,8 +96,8 @@ impl<'a> Sheet<'a> {
         (1..=CHORDS).all(|k| self.at(curve, f64::from(k) / f64::from(CHORDS)).distance(start) <= reach)
     }
 
-    /// The curves in `(u, v)` of a use of an edge, end to end as the loop runs, without those that stay within `reach` of
-    /// one point.
+    /// The curves of an edge's use in `(u, v)`, end to end in the loop's direction. Curves within `reach` of one point
+    /// are left out.
     pub fn along(&self, used: &EdgeUse, reach: f64) -> Vec<Bezier<DVec3>> {
         let curves = self.curves(used.trim_loop);
         let (from, to) = used.range;

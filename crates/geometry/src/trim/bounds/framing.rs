@@ -95,11 +95,11 @@ impl Camera {
             return Self::around(model.control_bounds(), from, up, fov_y, size);
         }
         let around = Self::around(bounds, from, up, fov_y, size);
-        around.closer_to(model, bounds, fov_y).filter(|camera| camera.check().is_ok()).unwrap_or(around)
+        around.fitted(model, bounds, fov_y).filter(|camera| camera.check().is_ok()).unwrap_or(around)
     }
 
     /// The same camera moved until the model covers [`FILL`] of the picture; `None` of a model without size.
-    fn closer_to(&self, model: &Model, bounds: Bounds, fov_y: f64) -> Option<Self> {
+    fn fitted(&self, model: &Model, bounds: Bounds, fov_y: f64) -> Option<Self> {
         let diagonal = bounds.diagonal();
         let tolerance = Tolerance { analytic: WITHIN * diagonal, other: WITHIN * diagonal };
         let reach = Reach { model, placed: Placed::new(&model.parts, &model.instances), tolerance };
@@ -111,7 +111,7 @@ impl Camera {
         let back = pairs.iter().map(|(_, pair)| pair.depth()).fold(front - NEAREST * diagonal, f64::min);
         let [across, upright] = pairs.map(|(axis, pair)| {
             let slope = pair.slope;
-            // sides that meet behind the eye touch the model at a smaller slope, between bounds
+            // sides that do not decide meet before the eye's depth: a smaller slope makes them meet at it
             let (mut wide, mut narrow) =
                 (pair, Pair { slope: 0.0, above: reach.along(axis), below: reach.along(-axis) });
             for step in 0..MOST_STEPS {
