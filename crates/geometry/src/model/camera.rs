@@ -42,6 +42,11 @@ pub struct Camera {
     pub size: (u32, u32),
 }
 
+/// Smallest height of a picture beside what it lies at: a picture of 4096 rows then has steps of 16 roundings of `f64`.
+const LEAST_STEP: f64 = 4096.0 * 16.0 * f64::EPSILON;
+/// Lengths whose squares, and products of three with a count of pixels, are single-precision numbers.
+const LENGTHS: std::ops::RangeInclusive<f64> = 1e-12..=1e12;
+
 /// Why a camera shows nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)]
@@ -54,6 +59,12 @@ pub enum CameraError {
     UpAlongAxis,
     #[error("the field of view must lie between 0 and 180 degrees, the orthographic height above 0")]
     Projection,
+    #[error("the field of view is so narrow that double precision tells no two pixels apart")]
+    Narrow,
+    #[error("the orthographic height is so small that double precision tells no two pixels apart there")]
+    Small,
+    #[error("lengths of the view are outside of 1e-12 to 1e12, which single precision can square")]
+    Scale,
     #[error("the depth range must be 0 < near < far")]
     DepthRange,
     #[error("the picture has no pixels, or a side above 16384")]
@@ -86,6 +97,16 @@ impl Camera {
         let (near, far) = self.depth_range;
         if !(near > 0.0 && far > near && far.is_finite()) {
             return Err(CameraError::DepthRange);
+        }
+        let place = self.eye.abs().max(self.target.abs()).max_element();
+        match self.projection {
+            Projection::Perspective { fov_y } if fov_y < LEAST_STEP => return Err(CameraError::Narrow),
+            Projection::Orthographic { height } if !LENGTHS.contains(&height) => return Err(CameraError::Scale),
+            Projection::Orthographic { height } if height < LEAST_STEP * place => return Err(CameraError::Small),
+            _ => {}
+        }
+        if !(LENGTHS.contains(&near) && LENGTHS.contains(&far) && place <= *LENGTHS.end()) {
+            return Err(CameraError::Scale);
         }
         if self.size.0 == 0 || self.size.1 == 0 || self.size.0.max(self.size.1) > 16384 {
             return Err(CameraError::Size);
