@@ -10,7 +10,7 @@
 use crate::abi::Frame;
 pub use crate::abi::constants::gap_candidate::ON_PIXEL_PX;
 use crate::abi::constants::gap_decide::SAME_DEPTH;
-use crate::abi::constants::ring::RING_SLACK;
+use crate::abi::constants::gap_radius::GAP_SLACK;
 
 /// Farther than anything.
 pub const FARTHEST: f32 = 3.0e38;
@@ -51,7 +51,9 @@ pub struct Outline {
 /// A face that may belong there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
+    /// Whether it is there.
     pub kind: Kind,
+    /// Where it was seen.
     pub from: From,
     /// Of the scene, + 1; 0 where it is no patch.
     pub face: u32,
@@ -59,6 +61,7 @@ pub struct Candidate {
     pub inside: bool,
     /// Looks away from the viewer.
     pub away: bool,
+    /// At the centre; larger is farther.
     pub depth: f32,
     /// From the centre to the nearest point of its surface, pixels.
     pub miss: f32,
@@ -66,6 +69,7 @@ pub struct Candidate {
     pub slope: [f32; 2],
     /// For the visibility buffer.
     pub word: [u32; 2],
+    /// How it ends.
     pub outline: Outline,
 }
 
@@ -197,7 +201,7 @@ impl<'a> Evidence<'a> {
 
     /// How much its depth changes within the gap radius.
     fn lean(&self, c: &Candidate) -> f32 {
-        RING_SLACK * self.frame.ring_px * dot(c.slope, c.slope).sqrt()
+        GAP_SLACK * self.frame.gap_radius_px * dot(c.slope, c.slope).sqrt()
     }
 
     /// In all of the gap radius: surfaces that meet within it are not.
@@ -304,7 +308,7 @@ impl<'a> Evidence<'a> {
             self.near.word
         } else if self.touching.kind == Kind::Present {
             self.touching.word
-        } else if self.closest.miss <= RING_SLACK * self.frame.ring_px {
+        } else if self.closest.miss <= GAP_SLACK * self.frame.gap_radius_px {
             self.closest.word
         } else {
             self.s.seen
