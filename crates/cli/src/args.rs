@@ -1,7 +1,9 @@
 //! The arguments of the command line, checked before any file is opened.
 
+mod draw;
 mod read;
 
+pub use draw::{DrawArgs, DrawnEdges, TangentEdges};
 pub use read::{ReadArgs, SubdivideArgs};
 
 use crate::backdrop::Backdrop;
@@ -38,6 +40,9 @@ pub enum Command {
     /// Draw a model to a PNG file
     #[command(after_help = STATUSES)]
     Render(RenderArgs),
+    /// Draw the lines of a view to an SVG file: visible edges and silhouettes as curves; needs no GPU
+    #[command(after_help = STATUSES)]
+    Draw(DrawArgs),
     /// Describe what a file holds; needs no GPU
     #[command(after_help = STATUSES)]
     Info(InfoArgs),

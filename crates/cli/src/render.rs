@@ -105,14 +105,14 @@ fn shots(args: &RenderArgs) -> Result<Vec<Shot>> {
 }
 
 /// Where the view's name goes in a path.
-const VIEW: &str = "{view}";
+pub const VIEW: &str = "{view}";
 
-fn is_pattern(path: &Path) -> bool {
+pub fn is_pattern(path: &Path) -> bool {
     path.to_string_lossy().contains(VIEW)
 }
 
 /// The path of a view's file: the name in the pattern's place, or before the ending.
-fn named(path: &Path, view: &str) -> Result<PathBuf> {
+pub fn named(path: &Path, view: &str) -> Result<PathBuf> {
     if target::is_standard(path) {
         bail!("several pictures do not go to standard output: --contact-sheet makes one of them");
     }

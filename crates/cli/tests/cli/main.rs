@@ -44,7 +44,7 @@ fn help_names_every_command_and_the_exit_statuses() {
 #[test]
 fn wrong_arguments_are_usage_errors() {
     refused(&[], "Usage");
-    refused(&["draw", "m.step"], "unrecognized subcommand");
+    refused(&["paint", "m.step"], "unrecognized subcommand");
     refused(&["render", "m.step"], "--output");
     let render = |more: &[&'static str], message: &str| {
         refused(&[&["render", "m.step", "-o", "a.png"], more].concat(), message);
