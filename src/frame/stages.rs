@@ -102,7 +102,7 @@ impl Stages {
         size: (u32, u32),
     ) -> Result<Self, GpuError> {
         let room = &Room { device, counts, capacities, size };
-        let scanned = [2 * counts.items, counts.bays, counts.curves, counts.face_instances, capacities.trim.rows];
+        let scanned = [2 * counts.items, counts.bins, counts.curves, counts.face_instances, capacities.trim.rows];
         let scanned = scanned.into_iter().fold(solids::buffers::scanned(room), u32::max);
         let p = passes;
         Ok(Self {
