@@ -2,9 +2,11 @@
 
 mod draw;
 mod read;
+mod write;
 
 pub use draw::{DrawArgs, DrawnEdges, TangentEdges};
 pub use read::{ReadArgs, SubdivideArgs};
+pub use write::{ConvertArgs, ExportArgs};
 
 use crate::backdrop::Backdrop;
 use crate::cut::CutArgs;
@@ -157,19 +159,6 @@ pub struct InfoArgs {
     /// Print JSON; it holds all that `--deep` tells
     #[arg(long)]
     pub json: bool,
-}
-
-#[derive(Debug, Args)]
-pub struct ExportArgs {
-    /// The model, as for `render`
-    pub model: PathBuf,
-    #[command(flatten)]
-    pub read: ReadArgs,
-    #[command(flatten)]
-    pub subdivide: SubdivideArgs,
-    /// STEP file to write
-    #[arg(value_name = "OUT.step")]
-    pub output: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -334,20 +323,6 @@ pub struct TrimsArgs {
     /// Folder for trims.json, trims.csv and the plots
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-}
-
-#[derive(Debug, Args)]
-pub struct ConvertArgs {
-    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
-    /// .toml, or .3dm with the feature rhino
-    pub model: PathBuf,
-    #[command(flatten)]
-    pub read: ReadArgs,
-    #[command(flatten)]
-    pub subdivide: SubdivideArgs,
-    /// File to write, in the engine's own form, bit for bit
-    #[arg(value_name = "OUT.selvedge")]
-    pub output: PathBuf,
 }
 
 /// Where the eye is.

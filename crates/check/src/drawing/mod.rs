@@ -7,6 +7,7 @@
 //!   runs     places, samples between them, bisection ─▶ stretches of one state
 //!   fit      stretches ─▶ cubic Bézier curves, to a measured distance
 //!   join     lines that continue each other ─▶ strokes
+//!   judge    a picture of lines against points of all paths
 //! ```
 //!
 //! *Accuracy.* Cubics are within [`DrawingSettings::tolerance`] of the exact curve at 15 points a piece, and the largest
@@ -21,6 +22,7 @@
 
 mod fit;
 mod join;
+mod judge;
 mod meet;
 mod path;
 mod runs;
@@ -29,6 +31,7 @@ mod sources;
 
 pub use fit::{Cubic, cubic_at};
 pub use join::Stroke;
+pub use judge::{LineFault, LineImage, LineJudgement, SLACK, SPACING, judge_lines};
 pub use path::LineSource;
 
 use crate::Tracer;

@@ -12,7 +12,7 @@ fn cube() -> Model {
 }
 
 /// The twelve edges of the cube by their ends: visible, hidden.
-fn cube_edges(camera: &Camera) -> [Vec<[DVec2; 2]>; 2] {
+pub fn cube_edges(camera: &Camera) -> [Vec<[DVec2; 2]>; 2] {
     let mut out = [Vec::new(), Vec::new()];
     for axis in 0..3 {
         for (s, t) in [(-0.5, -0.5), (-0.5, 0.5), (0.5, -0.5), (0.5, 0.5)] {

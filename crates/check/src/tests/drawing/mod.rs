@@ -1,6 +1,7 @@
 //! Drawings against closed forms and brute force.
 
 mod bodies;
+mod judged;
 mod meeting;
 mod torus;
 
