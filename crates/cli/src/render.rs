@@ -88,13 +88,7 @@ fn shots(args: &RenderArgs) -> Result<Vec<Shot>> {
     }
     let several = directions.len() > 1;
     let shot = |direction: Option<Direction>| {
-        let path = |path: &PathBuf| match direction {
-            Some(direction) if several || is_pattern(path) => named(path, &direction.to_string()),
-            None if is_pattern(path) => {
-                bail!("{}: {VIEW} stands for the view's name: --view says which", path.display())
-            }
-            _ => Ok(path.clone()),
-        };
+        let path = |path: &PathBuf| named_for(path, direction, several);
         let optional = |of: &Option<PathBuf>| of.as_ref().map(path).transpose();
         let output = if args.contact_sheet { None } else { Some(path(&args.output)?) };
         let aov = |aov: &Aov| Ok(Aov { file: path(&aov.file)?, ..aov.clone() });
@@ -105,14 +99,25 @@ fn shots(args: &RenderArgs) -> Result<Vec<Shot>> {
 }
 
 /// Where the view's name goes in a path.
-pub const VIEW: &str = "{view}";
+const VIEW: &str = "{view}";
 
-pub fn is_pattern(path: &Path) -> bool {
+fn is_pattern(path: &Path) -> bool {
     path.to_string_lossy().contains(VIEW)
 }
 
+/// A path as it is for a view, one of several or not.
+pub fn named_for(path: &Path, direction: Option<Direction>, several: bool) -> Result<PathBuf> {
+    match direction {
+        Some(direction) if several || is_pattern(path) => named(path, &direction.to_string()),
+        None if is_pattern(path) => {
+            bail!("{}: {VIEW} stands for the view's name: --view says which", path.display())
+        }
+        _ => Ok(path.to_owned()),
+    }
+}
+
 /// The path of a view's file: the name in the pattern's place, or before the ending.
-pub fn named(path: &Path, view: &str) -> Result<PathBuf> {
+fn named(path: &Path, view: &str) -> Result<PathBuf> {
     if target::is_standard(path) {
         bail!("several pictures do not go to standard output: --contact-sheet makes one of them");
     }

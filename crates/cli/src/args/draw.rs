@@ -42,6 +42,9 @@ pub struct DrawArgs {
     /// Edges at which faces continue each other: none, thin, or full as any other
     #[arg(long, value_enum, value_name = "HOW", default_value_t = TangentEdges::Thin)]
     pub tangent_edges: TangentEdges,
+    /// Write the camera as JSON, as for `render`
+    #[arg(long, value_name = "FILE.json")]
+    pub camera_out: Option<PathBuf>,
 }
 
 /// Which edges are drawn.

@@ -3,11 +3,12 @@
 mod svg;
 
 use crate::args::{DrawArgs, DrawnEdges, TangentEdges};
+use crate::camera::CameraFile;
 use crate::directions::Direction;
 use crate::progress::during;
-use crate::render::{VIEW, is_pattern, named};
-use crate::target::{self, SVG, Target};
-use crate::{Outcome, session};
+use crate::render::named_for;
+use crate::target::{self, JSON, SVG, Target};
+use crate::{Outcome, output, session};
 use anyhow::{Result, bail};
 use selvedge::model::{Camera, Projection};
 use selvedge_check::Tracer;
@@ -19,12 +20,12 @@ use svg::Page;
 /// Draws the views and writes a file each.
 pub fn run(args: &DrawArgs) -> Result<Outcome> {
     let sheets = sheets(args)?;
-    let outputs: Vec<Target> = sheets.iter().map(|(_, path)| Target::new(path, SVG)).collect();
+    let outputs: Vec<Target> = sheets.iter().flat_map(Sheet::outputs).collect();
     target::check(&args.cut.inputs(&args.model), &outputs)?;
     let mut import = session::open(&args.model, &args.read, &args.subdivide)?;
     target::check_read(&import, &outputs)?;
     args.cut.apply(&mut import.model, &args.read)?;
-    let cameras = sheets.iter().map(|(direction, _)| args.camera.parallel(*direction, &import));
+    let cameras = sheets.iter().map(|sheet| args.camera.parallel(sheet.direction, &import));
     let cameras = cameras.collect::<Result<Vec<_>>>()?;
     let pages = cameras.iter().map(|camera| page(args, camera)).collect::<Result<Vec<_>>>()?;
     let model = &import.model;
@@ -40,7 +41,7 @@ pub fn run(args: &DrawArgs) -> Result<Outcome> {
     };
     let start = Instant::now();
     let tracer = during("preparing faces", || Tracer::new(model));
-    for (((_, path), camera), page) in sheets.iter().zip(&cameras).zip(&pages) {
+    for ((sheet, camera), page) in sheets.iter().zip(&cameras).zip(&pages) {
         let drawing = during("drawing", || Drawing::new(model, &tracer, camera, &settings))?;
         let strokes = drawing.strokes();
         if strokes.is_empty() {
@@ -58,26 +59,36 @@ pub fn run(args: &DrawArgs) -> Result<Outcome> {
         let (count, off) = (strokes.len(), drawing.deviation);
         tracing::info!("{count} lines in {:.2?}, curves within {off:.4} px", start.elapsed());
         let full = args.tangent_edges == TangentEdges::Full;
-        target::write(path, |to| Ok(svg::write(to, page, &model.name, &strokes, full)?))?;
+        target::write(&sheet.output, |to| Ok(svg::write(to, page, &model.name, &strokes, full)?))?;
+        sheet.camera_out.iter().try_for_each(|path| output::json(path, &CameraFile::from(camera)))?;
     }
     Ok(Outcome::Good)
 }
 
-/// Each view and its file.
-fn sheets(args: &DrawArgs) -> Result<Vec<(Option<Direction>, PathBuf)>> {
-    let Some(views) = &args.view else {
-        if is_pattern(&args.output) {
-            bail!("{}: {VIEW} stands for the view's name: --view says which", args.output.display());
-        }
-        return Ok(vec![(None, args.output.clone())]);
+/// A view, and the files of it.
+struct Sheet {
+    direction: Option<Direction>,
+    output: PathBuf,
+    camera_out: Option<PathBuf>,
+}
+
+impl Sheet {
+    fn outputs(&self) -> impl Iterator<Item = Target> {
+        let camera = self.camera_out.iter().map(|path| Target::new(path, JSON));
+        std::iter::once(Target::new(&self.output, SVG)).chain(camera)
+    }
+}
+
+/// One for each view; of several, each file has the view's name.
+fn sheets(args: &DrawArgs) -> Result<Vec<Sheet>> {
+    let directions = args.view.as_ref().map_or(vec![None], |views| views.0.iter().copied().map(Some).collect());
+    let several = directions.len() > 1;
+    let sheet = |direction: Option<Direction>| {
+        let path = |path: &PathBuf| named_for(path, direction, several);
+        let camera_out = args.camera_out.as_ref().map(path).transpose()?;
+        Ok(Sheet { direction, output: path(&args.output)?, camera_out })
     };
-    let several = views.0.len() > 1;
-    let sheet = |direction: &Direction| {
-        let apart = several || is_pattern(&args.output);
-        let path = if apart { named(&args.output, &direction.to_string())? } else { args.output.clone() };
-        Ok((Some(*direction), path))
-    };
-    views.0.iter().map(sheet).collect()
+    directions.into_iter().map(sheet).collect()
 }
 
 /// The paper of a picture.

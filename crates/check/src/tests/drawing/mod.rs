@@ -3,6 +3,7 @@
 mod bodies;
 mod judged;
 mod meeting;
+mod meshes;
 mod torus;
 
 use super::shapes::view;
