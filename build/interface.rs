@@ -126,7 +126,7 @@ impl Found {
                 CLASS_STORAGE_BUFFER => "Storage",
                 CLASS_UNIFORM => "Uniform",
                 _ => match (self.images.get(&target), self.sampled.get(&target).and_then(|i| self.images.get(i))) {
-                    (Some(&DIM_BUFFER), _) => "Texels",
+                    (Some(&DIM_BUFFER), _) => "TexelBuffer",
                     (_, Some(_)) => "Sampled",
                     (Some(_), _) => "StorageImage",
                     _ => return Err(format!("{shader}: binding {binding} is of no kind that pipelines have")),

@@ -10,7 +10,7 @@
 //!   sun            sun, its tiles, …, primitives, leaves' centres, counts  glsl/include/sun.glsl
 //! ```
 
-use crate::gpu::{Buffer, Resource, Texels};
+use crate::gpu::{Buffer, Resource, TexelBuffer};
 use crate::shaders::constant;
 
 /// Bindings of the sun, after all others of a pass: `glsl/include/sun.glsl`. Primitives that cast shadows are among them.
@@ -21,12 +21,12 @@ pub(crate) const SUN_OWN: usize = 7;
 /// Patches as they are placed, after the constants.
 #[derive(Clone, Copy)]
 pub(crate) struct Placed<'a> {
-    pub views: &'a Texels,
-    pub face_instances: &'a Texels,
-    pub faces: &'a Texels,
-    pub patches: &'a Texels,
-    pub items: &'a Texels,
-    pub points: &'a Texels,
+    pub views: &'a TexelBuffer,
+    pub face_instances: &'a TexelBuffer,
+    pub faces: &'a TexelBuffer,
+    pub patches: &'a TexelBuffer,
+    pub items: &'a TexelBuffer,
+    pub points: &'a TexelBuffer,
 }
 
 impl<'a> Placed<'a> {
@@ -55,7 +55,7 @@ pub(crate) struct Bounded<'a> {
     /// Of each patch's normals, where some closed part has no trims.
     pub cones: Option<&'a Buffer>,
     /// Control points.
-    pub points: &'a Texels,
+    pub points: &'a TexelBuffer,
 }
 
 impl<'a> Bounded<'a> {
@@ -78,10 +78,10 @@ impl<'a> Bounded<'a> {
 #[derive(Clone, Copy)]
 pub(crate) struct Primitives<'a> {
     pub leaves: &'a Buffer,
-    pub leaf_surfaces: &'a Texels,
-    pub surfaces: &'a Texels,
+    pub leaf_surfaces: &'a TexelBuffer,
+    pub surfaces: &'a TexelBuffer,
     /// Where surfaces are, model axes, seen from the eye.
-    pub surface_places: &'a Texels,
+    pub surface_places: &'a TexelBuffer,
 }
 
 impl<'a> Primitives<'a> {

@@ -38,7 +38,9 @@
 
 use crate::abi::Counters;
 use crate::bindings::Primitives;
-use crate::gpu::{Access, Attachment, Buffer, Commands, Image, Load, ReadBack, Resource, Texels, Timestamps, barrier};
+use crate::gpu::{
+    Access, Attachment, Buffer, Commands, Image, Load, ReadBack, Resource, TexelBuffer, Timestamps, barrier,
+};
 use crate::scene::Scene;
 use antialiasing::samples::Scopes;
 use capacities::Capacities;
@@ -67,7 +69,7 @@ pub(crate) mod trim;
 pub(crate) mod visibility;
 
 pub(crate) use antialiasing::samples::ViewBuffers;
-pub(crate) use occlusion::Hiding;
+pub(crate) use occlusion::OcclusionState;
 pub(crate) use solids::{Centres, Near};
 pub(crate) use stages::{Passes, Stages};
 
@@ -80,14 +82,14 @@ pub(crate) struct Frame<'a> {
     pub capacities: Capacities,
     /// This slot's constants and transforms, written by the host.
     pub constants: &'a Buffer,
-    pub views: &'a Texels,
+    pub views: &'a TexelBuffer,
     /// The same for each of a pixel's samples, where there are several.
     pub samples: &'a [ViewBuffers],
     /// What the trim table is made of, where that is not this view.
     pub table_view: Option<&'a ViewBuffers>,
     pub centres: Option<Centres<'a>>,
     pub near: Near,
-    pub hiding: Hiding,
+    pub occlusion: OcclusionState,
     /// What is seen, or what samples are drawn from, is that of the frame before.
     pub keeps: bool,
     /// So is the trim table.
@@ -95,11 +97,11 @@ pub(crate) struct Frame<'a> {
     /// Columns and rows of the pixels that operands without equations may be in.
     pub shell_pixels: &'a [Range<u32>; 2],
     /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.
-    pub volume_places: Option<&'a Texels>,
+    pub volume_places: Option<&'a TexelBuffer>,
     /// Where the sun is, in a scene that has one.
     pub sun: Option<&'a Buffer>,
     /// Middles of the placed parts that cast shadows; where there are some.
-    pub sun_parts: Option<&'a Texels>,
+    pub sun_parts: Option<&'a TexelBuffer>,
     pub counters: &'a ReadBack,
     pub colour: &'a [Attachment<'a>],
     /// As the colour target holds it, unless that is kept.
@@ -191,11 +193,11 @@ impl Frame<'_> {
         stages.visibility.untested(self, cmd, times);
         times.drawing(cmd, "visibility", || stages.visibility.patches(self, cmd, &test, false));
         if let Some(occlusion) = stages.occlusion.as_ref().filter(|occlusion| occlusion.tests(self)) {
-            times.drawing(cmd, "reveal", || occlusion.cull_late(self, cmd, &test));
+            times.drawing(cmd, "occlusion", || occlusion.cull_late(self, cmd, &test));
         }
         let mut drawn = Access::COLOUR_WRITE;
         if let Some(gaps) = &stages.gaps {
-            times.scope(cmd, "heal", || gaps.record(self, cmd, &test));
+            times.scope(cmd, "gaps", || gaps.record(self, cmd, &test));
             drawn = Access::COMPUTE_WRITE;
         }
         let read = Access::COMPUTE_READ | Access::FRAGMENT_READ;

@@ -378,7 +378,7 @@ pub struct FrameStats {
     pub trim_intercepts: u64,
     /// Candidates for gap filling: pixels near borders of trimmed faces at which several faces may be seen; of the sample
     /// with the most.
-    pub doubtful_pixels: u64,
+    pub gap_candidates: u64,
     /// Patches whose tessellation factor would have exceeded the largest split; and how often a ray or a tile of Boolean
     /// solids or a row of the trim table needed more steps than the driver lets a shader make: the promise does not hold
     /// there. 0 in a good frame.
@@ -417,7 +417,7 @@ pub struct FrameStats {
     /// that way draws nothing. See [`SceneSettings::solid_budget`].
     pub bands: u32,
     /// Bytes of the lists and images of Boolean solids: primitives of each of the `blocks` of 8 x 8 tiles, and of each of
-    /// the `tiles`; `crossings` with operands; images of `layers`; `halts`, where rays resume. Those that exist are listed;
+    /// the `tiles`; `crossings` with operands; images of `layers`; `resume_points`, where rays resume. Those that exist are listed;
     /// [`SceneSettings::solid_budget`] bounds `tiles` and `crossings` together.
     pub solid_bytes: Vec<PoolBytes>,
     /// Times the frame was recorded again because a buffer was too small, or rays took more segments.

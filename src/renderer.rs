@@ -10,7 +10,7 @@
 //!
 //! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the GPU can count (the
 //! trim table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete:
-//! false`, and the next `record` into its slot makes them larger. A view from very near is resolved by what [`CloseUp`]
+//! false`, and the next `record` into its slot makes them larger. A view from very near is resolved by what [`DeepZoom`]
 //! cuts for it.
 
 mod centres;
@@ -30,10 +30,10 @@ use crate::frame::shading::{numbers, resolve};
 use crate::frame::solids::Solids;
 use crate::frame::transparency::solid_layers;
 use crate::frame::{Frame, Near, Passes, Stages, target};
-use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, Texels, Uploads};
+use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, TexelBuffer, Uploads};
 use crate::model::{Camera, CameraError};
 use crate::picture::{BadEdges, FrameSettings, FrameStats, PassTime, PoolBytes, TakenWay};
-pub use crate::scene::{CloseUp, Cut, EditError, UndrawnEdges, UndrawnSolid, Wanted, trim_way};
+pub use crate::scene::{Cut, DeepZoom, DeepZoomUpload, EditError, UndrawnEdges, UndrawnSolid, trim_way};
 use crate::scene::{Scene, SceneData, Write};
 use ash::vk;
 use history::History;
@@ -180,7 +180,7 @@ enum Retired {
     Loaded(Box<Loaded>),
     Uploads(Uploads),
     Buffer(Buffer),
-    Texels(Texels),
+    TexelBuffer(TexelBuffer),
 }
 
 impl Renderer {
@@ -336,7 +336,7 @@ impl Renderer {
             table_view: slot.table.as_ref(),
             centres: slot.centres.solids(),
             near,
-            hiding: history.hiding,
+            occlusion: history.occlusion,
             keeps: history.reuses_view,
             keeps_table: history.reuses_table,
             shell_pixels: &shell_pixels,
@@ -384,7 +384,7 @@ impl Renderer {
             trim_rows: u64::from(c.rows),
             trim_segments: u64::from(c.segments),
             trim_intercepts: u64::from(c.intercepts),
-            doubtful_pixels: u64::from(c.doubts),
+            gap_candidates: u64::from(c.gap_candidates),
             clamps: u64::from(c.clamps),
             hidden_patches: u64::from(c.hidden),
             fragments: u64::from(c.fragments),
@@ -425,7 +425,7 @@ impl Renderer {
         let Some(loaded) = &mut self.loaded else { return Ok(()) };
         let limits = self.device.limits();
         // the largest lists are read as texels
-        let texels = u64::from(limits.max_texel_buffer_elements) * Texels::LEAST_BYTES;
+        let texels = u64::from(limits.max_texel_buffer_elements) * TexelBuffer::LEAST_BYTES;
         let range = limits.max_storage_buffer_range.min(u32::try_from(texels).unwrap_or(u32::MAX));
         let capacities = match (had, report) {
             // else another slot's frame has made them larger since

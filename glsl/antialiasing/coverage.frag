@@ -27,7 +27,7 @@ layout(binding = 8, rgba32f) readonly uniform image2D resolved; // linear colour
 #include "placed.glsl"
 #include "patch.glsl"
 #include "refine.glsl"
-#include "ring.glsl"
+#include "gap_radius.glsl"
 #include "visible.glsl"
 
 // A surface counts at the pixel when its point projects this close to the centre.
@@ -98,8 +98,8 @@ vec4 mixed(ivec2 at, uvec2 own, uint own_face) {
     ivec2 other = at; // sees something else
     uint met[MOST_FACES];
     uint met_count = 0u;
-    for (uint k = 0u; k < RING_POINTS; ++k) {
-        ivec2 beside = at + ivec2(sign(RING[k]));
+    for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
+        ivec2 beside = at + ivec2(sign(DIRECTIONS[k]));
         if (!is_in_picture(beside)) continue;
         uvec2 seen = imageLoad(visibility, beside).xy;
         uint face = placed_face(seen);
@@ -156,8 +156,8 @@ void main() {
     // what the host drew hides it
     if (frame.background.a < 0.0 && own_face != 0u && imageLoad(resolved, at).a >= UNSEEN) discard;
     bool alone = true;
-    for (uint k = 0u; k < RING_POINTS; ++k) {
-        ivec2 beside = at + ivec2(sign(RING[k]));
+    for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
+        ivec2 beside = at + ivec2(sign(DIRECTIONS[k]));
         if (is_in_picture(beside)) alone = alone && placed_face(imageLoad(visibility, beside).xy) == own_face;
     }
     write_mean(alone ? colour_at(at) : mixed(at, own, own_face));

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `heal`, second step, by a trim texture.
+// Pass `gap_fill`, by a trim texture.
 #define TRIM_BY_TEXTURE
 #include "gap_fill.glsl"

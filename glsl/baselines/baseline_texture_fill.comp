@@ -24,7 +24,7 @@ void main() {
     if ((counters.failed & FAILED_INTERCEPTS) != 0u) size = TextureSize(0u, 0u, 0u);
     FaceInstance fi = face_instances[placed];
     bool trimmed = (faces[fi.face].flags & FACE_TRIMMED) != 0u;
-    if (trimmed && gl_GlobalInvocationID.y == 0u) places[fi.first_bay] = TexturePlace(size, starts[placed]);
+    if (trimmed && gl_GlobalInvocationID.y == 0u) places[fi.first_bin] = TexturePlace(size, starts[placed]);
     uint shares = gl_NumWorkGroups.y * gl_WorkGroupSize.y;
     for (uint row = gl_GlobalInvocationID.y; row < size.rows; row += shares) {
         uint before = 0u; // all ones when the texel before is set

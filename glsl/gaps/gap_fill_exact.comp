@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `heal`, second step, by the exact arcs.
+// Pass `gap_fill`, by the exact arcs.
 #define TRIM_BY_EXACT
 #include "gap_fill.glsl"

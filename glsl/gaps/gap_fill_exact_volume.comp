@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `heal`, second step, by the exact arcs; within a volume.
+// Pass `gap_fill`, by the exact arcs; within a volume.
 #define WITHIN_VOLUME
 #define TRIM_BY_EXACT
 #include "gap_fill.glsl"

@@ -1,6 +1,6 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `heal`, second step, by the trim table.
+// Pass `gap_fill`, by the trim table.
 #define TRIM_BY_TABLE
 #include "gap_fill.glsl"

@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `heal`, first step: the list of doubtful pixels: what is seen is doubtful itself, or a ring lies
+// Pass `gap_find`: the list of gap candidates: what is seen is a candidate itself, or a skirt lies
 // before it, or nothing is seen between patches. All of them get the mark. One thread a column of 30 pixels, whose
 // neighbours' columns it learns from the threads beside it; the first and the last of a workgroup do nothing else.
 //
@@ -12,7 +12,7 @@
 //          31   row below                                · · b   · b ·   b · ·
 //
 // Where the eye is within a solid, all its faces are seen from behind. What sees nothing else within WIDE_BAND_PX, nor any
-// ring, is not listed: the second step would find nobody to ask.
+// skirt, is not listed: the second step would find nobody to ask.
 #include "scene.glsl"
 #include "visible.glsl"
 #include "words.glsl"
@@ -20,11 +20,11 @@
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1, rg32ui) uniform uimage2D visibility;
-layout(scalar, binding = 2) writeonly buffer Doubts { Doubt doubts[]; };
+layout(scalar, binding = 2) writeonly buffer GapCandidates { GapCandidate candidates[]; };
 layout(scalar, binding = 3) buffer Dispatch { uvec3 dispatch; }; // of the second step; zero before
 layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
 layout(binding = 5) uniform sampler2D depth; // reversed
-layout(binding = 6) uniform samplerBuffer rings;
+layout(binding = 6) uniform samplerBuffer border_depths;
 
 const uint GROUP = 64u; // threads of a workgroup of the second step
 const int LANES = 64;
@@ -36,12 +36,12 @@ shared uint patches_seen[LANES];
 shared uint full_columns; // of backs
 shared uint among_backs[COLUMNS];
 
-// A solid's face from behind, without a ring: what other threads mark has one, or sees nothing. Beside the picture there
+// A solid's face from behind, without a skirt: what other threads mark has one, or sees nothing. Beside the picture there
 // is nobody to ask either.
 bool is_back(ivec2 pixel, ivec2 size) {
     if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, size))) return true;
     uint word = imageLoad(visibility, pixel).x;
-    return (word & DOUBTFUL) != 0u && !sees_nothing(word) && number_at(rings, uint(pixel.y * size.x + pixel.x)) == 0.0;
+    return (word & GAP_CANDIDATE) != 0u && !sees_nothing(word) && number_at(border_depths, uint(pixel.y * size.x + pixel.x)) == 0.0;
 }
 
 // A column's bits: nothing but backs up to BAND above and below.
@@ -60,10 +60,10 @@ void main() {
     int column = int(gl_WorkGroupID.x) * (LANES - 2) + lane - 1;
     int top = int(gl_WorkGroupID.y) * ROWS - 1;
     ivec2 size = ivec2(frame.size);
-    uint doubtful = 0u;
+    uint candidate = 0u;
     uint nothing = 0u;
-    uint has_ring = 0u; // a ring is there
-    uint ringed = 0u; // before what is seen
+    uint has_skirt = 0u; // a skirt is there
+    uint border_before = 0u; // before what is seen
     uint patch_seen = 0u;
     if (lane == 0) full_columns = 0u;
     barrier();
@@ -76,26 +76,26 @@ void main() {
             uint bit = 1u << uint(row - top);
             if (sees_nothing(word)) nothing |= bit;
             else patch_seen |= bit;
-            if ((word & DOUBTFUL) != 0u) doubtful |= bit;
-            if (number_at(rings, uint(row * size.x + column)) > 0.0) has_ring |= bit;
+            if ((word & GAP_CANDIDATE) != 0u) candidate |= bit;
+            if (number_at(border_depths, uint(row * size.x + column)) > 0.0) has_skirt |= bit;
         }
-        // few have a ring: the depth of the others is not looked at
-        for (uint left_over = has_ring; left_over != 0u; left_over &= left_over - 1u) {
+        // few have a skirt: the depth of the others is not looked at
+        for (uint left_over = has_skirt; left_over != 0u; left_over &= left_over - 1u) {
             int row = top + findLSB(left_over);
-            float ring = number_at(rings, uint(row * size.x + column));
-            if (ring > texelFetch(depth, ivec2(column, row), 0).x) ringed |= left_over & (~left_over + 1u);
+            float skirt = number_at(border_depths, uint(row * size.x + column));
+            if (skirt > texelFetch(depth, ivec2(column, row), 0).x) border_before |= left_over & (~left_over + 1u);
         }
     }
     patches_seen[lane] = patch_seen;
     uint own = ((1u << uint(ROWS)) - 1u) << 1;
-    if ((doubtful & ~(has_ring | nothing) & own) == own) atomicAdd(full_columns, 1u);
+    if ((candidate & ~(has_skirt | nothing) & own) == own) atomicAdd(full_columns, 1u);
     barrier();
     int to_ask = full_columns > 0u ? COLUMNS : 0;
     for (int k = lane; k < to_ask; k += LANES) {
         among_backs[k] = backs_along(int(gl_WorkGroupID.x) * (LANES - 2) - BAND + k, top, size);
     }
     barrier();
-    uint unasked = to_ask > 0 ? doubtful : 0u;
+    uint unasked = to_ask > 0 ? candidate : 0u;
     for (int k = 0; k <= 2 * BAND && unasked != 0u; ++k) unasked &= among_backs[clamp(lane - 1 + k, 0, COLUMNS - 1)];
     if (lane == 0 || lane == LANES - 1 || column >= size.x) return;
     uint left = patches_seen[lane - 1];
@@ -105,26 +105,26 @@ void main() {
     between |= (patch_seen << 1) & (patch_seen >> 1);
     between |= (left << 1) & (right >> 1);
     between |= (left >> 1) & (right << 1);
-    uint behind_ring = ringed & doubtful;
-    ringed &= ~doubtful;
-    uint lone = nothing & between & ~(doubtful | ringed);
-    doubtful &= ~unasked;
-    for (uint left_over = (doubtful | ringed | lone) & own; left_over != 0u; left_over &= left_over - 1u) {
+    uint behind_skirt = border_before & candidate;
+    border_before &= ~candidate;
+    uint isolated = nothing & between & ~(candidate | border_before);
+    candidate &= ~unasked;
+    for (uint left_over = (candidate | border_before | isolated) & own; left_over != 0u; left_over &= left_over - 1u) {
         uint k = uint(findLSB(left_over));
         ivec2 pixel = ivec2(column, top + int(k));
         uint bit = 1u << k;
-        uint flags = (behind_ring & bit) != 0u ? BEHIND_RING : 0u;
-        if ((doubtful & bit) == 0u) {
-            flags = (lone & bit) != 0u ? RINGED | LONE : RINGED;
+        uint flags = (behind_skirt & bit) != 0u ? BACK_BEHIND_BORDER : 0u;
+        if ((candidate & bit) == 0u) {
+            flags = (isolated & bit) != 0u ? BORDER_BEFORE | ISOLATED : BORDER_BEFORE;
             uvec2 seen = imageLoad(visibility, pixel).xy;
-            imageStore(visibility, pixel, uvec4(seen.x | DOUBTFUL, seen.y, 0u, 0u));
+            imageStore(visibility, pixel, uvec4(seen.x | GAP_CANDIDATE, seen.y, 0u, 0u));
         }
-        uint at = atomicAdd(counters.doubts, 1u);
-        if (at >= frame.doubt_capacity) {
-            atomicOr(counters.failed, FAILED_DOUBTS);
+        uint at = atomicAdd(counters.gap_candidates, 1u);
+        if (at >= frame.gap_candidate_capacity) {
+            atomicOr(counters.failed, FAILED_GAP_CANDIDATES);
             continue;
         }
-        doubts[at].pixel = uint(pixel.x) | uint(pixel.y) << 16 | flags;
+        candidates[at].pixel = uint(pixel.x) | uint(pixel.y) << 16 | flags;
         atomicMax(dispatch.x, at / GROUP + 1u);
         atomicMax(dispatch.y, 1u);
         atomicMax(dispatch.z, 1u);

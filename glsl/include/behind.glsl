@@ -102,7 +102,7 @@ bool cover_cell(Patch patch_, View view, float scale, vec2 segment, uvec2 cell, 
         vec4 q = to_pixel(view, vec4(jet.point, 1.0));
         if (q.z < near) return false;
         cover(c, q);
-        // at borders; and rings of what ends beside cells without anything of the face reach into those
+        // at borders; and skirts of what ends beside cells without anything of the face reach into those
         uvec2 far = uvec2(k & 1u, k >> 1);
         bvec2 at_end = equal(cell + far, uvec2(far.x * n, far.y * n));
         uvec2 border = uvec2(far.x == 0u ? BORDER_U0 : BORDER_U1, far.y == 0u ? BORDER_V0 : BORDER_V1);

@@ -1,7 +1,7 @@
 // The border near a pixel, by the exact arcs: the point, the corners of a square around it, and the point ahead are all told
 // by the list of the point's cell.
 //
-//      1 ●─────────● 0      a straight border that comes nearer than the sides has a corner beyond it (SQUARE, ring.glsl)
+//      1 ●─────────● 0      a straight border that comes nearer than the sides has a corner beyond it (SQUARE, gap_radius.glsl)
 //        │         │
 //        │    ·──▶ │        each arc that is fetched is asked about all of them: where a point is in its triangle is
 //        │         │        linear, and opposite corners are as far from the point
@@ -10,12 +10,12 @@
 // What lies beyond the list's box, a quarter of a cell around it, is not told: to ask in other cells takes a loop around the
 // loop of arcs, which costs half of everything even where it ends after one round. A front that is not
 // told of a border does not grow to it: the gap is found by the back behind it, as wider ones are. Else what is not told
-// counts as a border, and pass `heal` looks closer; but a solid's back that is there is drawn, since it is doubtful itself.
+// counts as a border, and pass `gap_fill` looks closer; but a solid's back that is there is drawn, since it is a candidate itself.
 #ifndef BORDER_ARCS_GLSL
 #define BORDER_ARCS_GLSL
 
 #include "border.glsl"
-#include "ring.glsl"
+#include "gap_radius.glsl"
 
 // Of a number at corners 0 and 1, less that at the point: the same at all corners.
 vec4 at_corners(vec2 two) { return vec4(two, -two); }

@@ -1,7 +1,7 @@
-// Where trim curves pass, coarsely: a bit for each cell of the bays of a placed face's strips. Written by pass `cross` in
+// Where trim curves pass, coarsely: a bit for each cell of the bins of a placed face's strips. Written by pass `cross` in
 // scenes with spline operands, asked by table.glsl. Twin of src/twin/border_cells.rs.
 //
-//            128 columns of a bay, a texel of four words
+//            128 columns of a bin, a texel of four words
 //          ┌─┬─┬─┬─┬─┬─┬─┬─┐
 //    band  │ │ │ │█│█│ │ │ │        a chord of the table is in these cells, or less than half a scan line below or above:
 //          ├─┼─┼─┼─┼─┼─┼─┼─┤        what is looked up there is that of the nearest line. Where a box meets no such cell,

@@ -1,4 +1,4 @@
-// The border near a pixel, by the u-intercept table: three scan lines tell what the ring's eight points would, and what is
+// The border near a pixel, by the u-intercept table: three scan lines tell what the circle's eight points would, and what is
 // between them.
 //
 //          ┌─────┐      ┐ `across`: the scan line at its end, half as long
@@ -8,7 +8,7 @@
 //        ╲         ╱
 //          └─────┘        and the one as far on the other side
 //
-// The corners of ring.glsl's hexagon are on the lines, turned so that the lines are scan lines.
+// The corners of gap_radius.glsl's hexagon are on the lines, turned so that the lines are scan lines.
 //
 // Always three look-ups, and one loop for the searches of all of them: a loop costs a wide machine about as much as a look-up,
 // however few rounds it takes. So where a steep front asks for the point ahead, that takes the place of one of the lines
@@ -17,17 +17,17 @@
 #define BORDER_LINES_GLSL
 
 #include "border.glsl"
-#include "ring.glsl"
+#include "gap_radius.glsl"
 
-// Some strip has several bays: a line is told within one of them.
-layout(constant_id = 21) const bool TRIMS_HAVE_BAYS = false;
+// Some strip has several bins: a line is told within one of them.
+layout(constant_id = 21) const bool TRIMS_HAVE_BINS = false;
 
 uint told_along(FacePoint p, vec2 step_, float reach) {
-    return table_along(p.fi.first_bay, p.face.strips, p.at + step_.x * p.dx + step_.y * p.dy, reach);
+    return table_along(p.fi.first_bin, p.face.strips, p.at + step_.x * p.dx + step_.y * p.dy, reach);
 }
 
 Search search_for(FacePoint p, vec2 step_) {
-    return search_at(p.fi.first_bay, p.face.strips, p.at + step_.x * p.dx + step_.y * p.dy);
+    return search_at(p.fi.first_bin, p.face.strips, p.at + step_.x * p.dx + step_.y * p.dy);
 }
 
 // The rise to the nearest point that a line tells inside, `aside` long to either side.
@@ -66,19 +66,19 @@ Border border_at(FacePoint p, float reach, bool from_behind, vec2 ahead, vec2 sl
     float rise = rise_along(told, 0.0, aside);
     if (!asks_ahead) rise = max(rise, rise_along(told_one, up, 0.5 * aside));
     rise = max(rise, rise_along(told_other, -up, 0.5 * aside));
-    if (TRIMS_HAVE_BAYS) {
-        // a line may end within the ring: its points do not
+    if (TRIMS_HAVE_BINS) {
+        // a line may end within the circle: its points do not
         float wide = CORNER * reach * (abs(p.dx.x) + abs(p.dy.x));
-        bool one_bay = table_one_bay(p.face.strips, p.at.x - wide, p.at.x + wide);
-        for (uint k = 0u; k < RING_POINTS && !one_bay; ++k) {
-            vec2 step_ = reach * RING[k];
+        bool one_bin = table_one_bin(p.face.strips, p.at.x - wide, p.at.x + wide);
+        for (uint k = 0u; k < DIRECTION_COUNT && !one_bin; ++k) {
+            vec2 step_ = reach * DIRECTIONS[k];
             bool is_in = told_along(p, step_, 0.0) == ALONG_INSIDE;
             whole = whole && is_in;
             if (is_in) rise = max(rise, dot(step_, slope));
         }
     }
-    bool rings = reach > 0.0;
-    return Border(inside, whole || !rings, (told_one & ALONG_INSIDE) != 0u, rings ? rise : NO_BORDER);
+    bool looks_beside = reach > 0.0;
+    return Border(inside, whole || !looks_beside, (told_one & ALONG_INSIDE) != 0u, looks_beside ? rise : NO_BORDER);
 }
 
 #endif

@@ -3,10 +3,10 @@
 #define BORDER_POINTS_GLSL
 
 #include "border.glsl"
-#include "ring.glsl"
+#include "gap_radius.glsl"
 
 // All questions are asked in one place, since a wide machine runs every place for every pixel: the point itself; then
-// the ring, or the point ahead.
+// the circle, or the point ahead.
 Border border_at(FacePoint p, float reach, bool from_behind, vec2 ahead, vec2 slope) {
     Border border = Border(false, true, false, NO_BORDER);
     vec2 step_ = vec2(0.0);
@@ -18,8 +18,8 @@ Border border_at(FacePoint p, float reach, bool from_behind, vec2 ahead, vec2 sl
         else if (border.inside) border.goes_on = is_in;
         else if (is_in) border.rise = max(border.rise, dot(step_, slope));
         bool around_it = from_behind || !border.inside;
-        if (around_it ? reach == 0.0 || !border.whole || k == RING_POINTS : ahead == vec2(0.0) || k == 1u) break;
-        step_ = around_it ? reach * RING[k] : ahead;
+        if (around_it ? reach == 0.0 || !border.whole || k == DIRECTION_COUNT : ahead == vec2(0.0) || k == 1u) break;
+        step_ = around_it ? reach * DIRECTIONS[k] : ahead;
         ++k;
     }
     return border;

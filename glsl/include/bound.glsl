@@ -37,10 +37,10 @@ void main() {
     taus[item] = 0u;
     if (side_of(patch_.shape) == SIDE_OUTSIDE) return;
     View view = views[fi.instance];
-    Seen seen = see(view, frame, patch_.box_min, patch_.box_max, frame.ring_px + 1.0, far_of(face, frame));
+    Seen seen = see(view, frame, patch_.box_min, patch_.box_max, frame.gap_radius_px + 1.0, far_of(face, frame));
     if (seen.w < 0.0) return;
-    // nothing is drawn farther from the box: cut patches have rings
-    float beyond = frame.deviation_px + frame.spread_px + (side_of(patch_.shape) == SIDE_INSIDE ? 0.0 : frame.ring_px);
+    // nothing is drawn farther from the box: cut patches have skirts
+    float beyond = frame.deviation_px + frame.spread_px + (side_of(patch_.shape) == SIDE_INSIDE ? 0.0 : frame.gap_radius_px);
     if (!covers_a_centre(seen, beyond)) return;
     if (SCENE_HAS_CONES && looks_away(view, frame, patch_, cones[index])) return;
     vec2 tau = frame.fixed_factor != 0u ? vec2(frame.fixed_factor) : factors_of(patch_, view, fi.instance, seen);

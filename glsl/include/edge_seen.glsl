@@ -111,7 +111,7 @@ bool is_before_solid(EdgePoint e, ivec2 at, uvec2 seen) {
 // Of instance `instance`, from 1 on.
 bool is_seen(EdgePoint e, EdgeLine line, uint instance, ivec2 at) {
     uvec2 seen = imageLoad(visibility, at).xy;
-    if (SCENE_HAS_OTHERS && sees_nothing(seen.x)) seen = imageLoad(others, at).xy;
+    if (SCENE_HAS_MESHES_OR_SOLIDS && sees_nothing(seen.x)) seen = imageLoad(others, at).xy;
     if (sees_nothing(seen.x)) return true;
     if (SCENE_HAS_MESHES && sees_mesh(seen.x)) return is_before_mesh(e, line, instance, seen);
     if (sees_other(seen.x)) return is_before_solid(e, at, seen);

@@ -1,5 +1,5 @@
 // A face that may belong at a gap candidate, as its own surface and trims have it there. Twin: src/twin/gap_decide.rs.
-// Needs ring.glsl and the frame's constants.
+// Needs gap_radius.glsl and the frame's constants.
 #ifndef GAP_CANDIDATE_GLSL
 #define GAP_CANDIDATE_GLSL
 
@@ -33,7 +33,7 @@ Candidate no_candidate() {
 }
 
 // How much its depth changes within the gap radius.
-float lean(Candidate c) { return RING_SLACK * frame.ring_px * length(c.slope); }
+float lean(Candidate c) { return GAP_SLACK * frame.gap_radius_px * length(c.slope); }
 
 // In all of the gap radius: surfaces that meet within it are not.
 bool wholly_before(Candidate a, Candidate b) { return a.depth + lean(a) + lean(b) < b.depth; }

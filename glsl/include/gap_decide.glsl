@@ -166,7 +166,7 @@ uvec2 behind_gap(Situation s, Evidence e) {
     if (e.present.kind == PRESENT && !near_first) return e.present.word;
     if (e.near.kind == NEAR) return e.near.word;
     if (e.touching.kind == PRESENT) return e.touching.word;
-    return e.closest.miss <= RING_SLACK * frame.ring_px ? e.closest.word : s.seen;
+    return e.closest.miss <= GAP_SLACK * frame.gap_radius_px ? e.closest.word : s.seen;
 }
 
 uvec2 decide(Situation s, Evidence e, vec2 pixel) {

@@ -11,7 +11,7 @@
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
-layout(scalar, binding = 8) buffer Doubts { Doubt doubts[]; };
+layout(scalar, binding = 8) buffer GapCandidates { GapCandidate candidates[]; };
 layout(scalar, binding = 9) readonly buffer CountersBuffer { Counters counters; };
 layout(binding = 11, rg32ui) readonly uniform uimage2D others;
 layout(scalar, binding = 12) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
@@ -31,7 +31,7 @@ layout(scalar, binding = 14) readonly buffer Positions { vec3 positions[]; };
 #include "patch.glsl"
 #include "patch_place.glsl"
 #include "refine.glsl"
-#include "ring.glsl"
+#include "gap_radius.glsl"
 #include "visible.glsl"
 #include "gap_candidate.glsl"
 #include "gap_decide.glsl"
@@ -40,12 +40,12 @@ layout(scalar, binding = 14) readonly buffer Positions { vec3 positions[]; };
 
 void main() {
     uint n = gl_GlobalInvocationID.x;
-    if (n >= min(counters.doubts, frame.doubt_capacity)) return;
-    uint listed = doubts[n].pixel;
-    ivec2 at = doubtful_pixel(listed);
+    if (n >= min(counters.gap_candidates, frame.gap_candidate_capacity)) return;
+    uint listed = candidates[n].pixel;
+    ivec2 at = candidate_pixel(listed);
     vec2 pixel = vec2(at) + 0.5;
-    bool within = (listed & (RINGED | BEHIND_RING)) != 0u && among_backs(at);
+    bool within = (listed & (BORDER_BEFORE | BACK_BEHIND_BORDER)) != 0u && among_backs(at);
     Situation situation = situation_at(listed, at, pixel, within);
     Evidence evidence = gather(situation, at, pixel, within);
-    doubts[n].healed = decide(situation, evidence, pixel);
+    candidates[n].word = decide(situation, evidence, pixel);
 }

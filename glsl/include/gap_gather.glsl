@@ -16,7 +16,7 @@ const float ACROSS = 0.2;
 // Whether what a neighbour shows counts. The mark of a gap candidate on an open shell is that of a border before it: as it
 // is drawn, it is there.
 bool counts(uint word) {
-    if ((word & DOUBTFUL) == 0u) return true;
+    if ((word & GAP_CANDIDATE) == 0u) return true;
     if (sees_nothing(word)) return false;
     return (face_at(face_instance_at(face_instance_of(seen_item(word))).face).flags & FACE_SOLID) == 0u;
 }
@@ -26,8 +26,8 @@ bool in_picture(ivec2 at) { return all(greaterThanEqual(at, ivec2(0))) && all(le
 // Whether at least three in four pixels around this one see a solid's face from behind: then the eye is within it.
 bool among_backs(ivec2 at) {
     int more = 0;
-    for (uint k = 0u; k < RING_POINTS; ++k) {
-        ivec2 step_ = ivec2(sign(RING[k]));
+    for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
+        ivec2 step_ = ivec2(sign(DIRECTIONS[k]));
         ivec2 beside = at;
         for (uint steps = 0u; steps < WIDE_BAND_PX; ++steps) {
             beside += step_;
@@ -47,10 +47,10 @@ float other_depth(uvec2 seen, vec2 pixel) {
 // The situation but for what the neighbours show.
 Situation situation_at(uint listed, ivec2 at, vec2 pixel, bool within) {
     uvec2 seen = imageLoad(visibility, at).xy;
-    uvec2 other = SCENE_HAS_OTHERS ? imageLoad(others, at).xy : uvec2(0u);
+    uvec2 other = SCENE_HAS_MESHES_OR_SOLIDS ? imageLoad(others, at).xy : uvec2(0u);
     Situation s;
-    s.border = (listed & RINGED) != 0u || within;
-    s.isolated = (listed & RINGED) != 0u && (listed & LONE) != 0u;
+    s.border = (listed & BORDER_BEFORE) != 0u || within;
+    s.isolated = (listed & BORDER_BEFORE) != 0u && (listed & ISOLATED) != 0u;
     s.empty = sees_nothing(seen.x);
     s.empty_beside = false;
     s.other_beside = false;
@@ -70,8 +70,8 @@ Situation situation_at(uint listed, ivec2 at, vec2 pixel, bool within) {
 
 // A curved face can show its front at the same pixel, narrower than the tessellation's error: across the fold.
 void gather_across_fold(inout Evidence e, Situation s, vec2 pixel) {
-    for (uint k = 0u; k < RING_POINTS; ++k) {
-        uvec2 seen = uvec2(s.seen.x, pack_uv(unpack_uv(s.seen.y) + ACROSS * RING[k]));
+    for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
+        uvec2 seen = uvec2(s.seen.x, pack_uv(unpack_uv(s.seen.y) + ACROSS * DIRECTIONS[k]));
         consider(e, s, candidate_at(seen, pixel, FROM_FOLD, RADIUS_OF_OUTSIDE, no_candidate()));
     }
 }
@@ -100,14 +100,14 @@ Evidence gather(inout Situation s, ivec2 at, vec2 pixel, bool within) {
     uint band = is_interior(s) ? WIDE_BAND_PX : BAND_PX;
     uvec2 bending = uvec2(0u); // a neighbour sees it, and it looks away at the pixel
     vec2 bending_at = pixel + 1.0;
-    for (uint k = 0u; k < RING_POINTS; ++k) {
+    for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
         ivec2 beside;
         uvec2 seen;
-        uint steps = first_that_counts(at, ivec2(sign(RING[k])), band, within, beside, seen);
+        uint steps = first_that_counts(at, ivec2(sign(DIRECTIONS[k])), band, within, beside, seen);
         if (steps == 0u) continue;
         if (sees_nothing(seen.x)) {
             if (steps > 1u) continue;
-            uvec2 there = SCENE_HAS_OTHERS ? imageLoad(others, beside).xy : uvec2(0u);
+            uvec2 there = SCENE_HAS_MESHES_OR_SOLIDS ? imageLoad(others, beside).xy : uvec2(0u);
             // a mesh or solid before the own face may hide its neighbour: it tells nothing
             if (there.x == 0u) s.empty_beside = true;
             else if (other_depth(there, vec2(beside) + 0.5) > s.own.depth) s.other_beside = true;

@@ -25,14 +25,14 @@ bool in_whole_patch(FaceInstance fi, Face face, uint item, vec2 uv) {
 }
 
 // Whether the face is there at (u, v) of the item's patch. The table has rows only where its border runs: not
-// for strips and bays in which all patches are whole.
+// for strips and bins in which all patches are whole.
 bool is_there(FaceInstance fi, Face face, uint item, Patch patch_, vec2 uv) {
     if ((face.flags & FACE_TRIMMED) == 0u) return in_whole_patch(fi, face, item, uv);
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
 #ifdef TRIM_BY_TABLE
     if (side_of(patch_.shape) == SIDE_INSIDE) {
         if (clamp(uv, 0.0, 1.0) == uv) return true;
-        if (!table_covers(fi.first_bay, face.strips, at)) return in_whole_patch(fi, face, item, uv);
+        if (!table_covers(fi.first_bin, face.strips, at)) return in_whole_patch(fi, face, item, uv);
     }
 #endif
     return trim_inside(fi, face, at);
@@ -76,7 +76,7 @@ Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius, Candidate
     uvec2 word = uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0))));
     Candidate c = Candidate(ABSENT, from, fi.face + 1u, false, true, s.q.z, length(s.miss), vec2(0.0), word);
 #ifdef WITHIN_VOLUME
-    if (!in_volume(s.q, RING_SLACK * frame.ring_px)) return c;
+    if (!in_volume(s.q, GAP_SLACK * frame.gap_radius_px)) return c;
     bool inside = in_volume(s.q, ON_PX) && is_there(fi, face, item, patch_, s.uv);
 #else
     bool inside = is_there(fi, face, item, patch_, s.uv);
@@ -84,7 +84,7 @@ Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius, Candidate
     c.inside = inside;
     if (c.miss > ON_PIXEL_PX) {
         // a silhouette beside the pixel
-        if (inside && c.miss <= RING_SLACK * frame.ring_px) c.kind = NEAR;
+        if (inside && c.miss <= GAP_SLACK * frame.gap_radius_px) c.kind = NEAR;
         return c;
     }
     mat2 along = pixels_along(s, view);
@@ -98,8 +98,8 @@ Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius, Candidate
     float zv = row_times(view.depth, vec4(s.jet.dv, 0.0));
     c.slope = vec2(zu * pv.y - zv * pu.y, zv * pu.x - zu * pv.x) / det;
     if ((radius & (inside ? RADIUS_OF_INSIDE : RADIUS_OF_OUTSIDE)) == 0u) return c;
-    for (uint k = 0u; k < RING_POINTS; ++k) {
-        vec2 step_ = frame.ring_px * RING[k];
+    for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
+        vec2 step_ = frame.gap_radius_px * DIRECTIONS[k];
         vec2 duv = vec2(step_.x * pv.y - step_.y * pv.x, pu.x * step_.y - pu.y * step_.x) / det;
         bool there = is_there(fi, face, item, patch_, s.uv + duv);
         if (inside && !there) {
@@ -113,7 +113,7 @@ Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius, Candidate
         if (!in_volume(q, ON_PX)) continue;
 #endif
         vec2 off = q.xy / q.w - pixel;
-        if (q.z <= behind.depth + dot(behind.slope, off) && length(off) <= RING_SLACK * frame.ring_px) {
+        if (q.z <= behind.depth + dot(behind.slope, off) && length(off) <= GAP_SLACK * frame.gap_radius_px) {
             c.kind = NEAR;
             break;
         }
@@ -128,7 +128,7 @@ Candidate candidate_towards(vec2 beside, uvec2 seen, vec2 pixel, Candidate behin
     FaceInstance fi = face_instance_at(face_instance_of(item));
     Face face = face_at(fi.face);
     View view = view_at(fi.instance);
-    vec2 at = pixel + frame.ring_px * normalize(beside - pixel);
+    vec2 at = pixel + frame.gap_radius_px * normalize(beside - pixel);
     Sample s = refine_across(fi, face, view, item, unpack_uv(seen.y), at);
     mat2 along = pixels_along(s, view);
     bool away = looks_away(determinant(along), face, instance_at(fi.instance));
@@ -138,7 +138,7 @@ Candidate candidate_towards(vec2 beside, uvec2 seen, vec2 pixel, Candidate behin
     near = near && in_volume(s.q, ON_PX);
 #endif
     uvec2 word = uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0))));
-    return Candidate(near ? NEAR : ABSENT, FROM_BESIDE, fi.face + 1u, false, away, s.q.z, frame.ring_px, vec2(0.0), word);
+    return Candidate(near ? NEAR : ABSENT, FROM_BESIDE, fi.face + 1u, false, away, s.q.z, frame.gap_radius_px, vec2(0.0), word);
 }
 
 // The border of a candidate near the pixel; see gap_decide.glsl.
@@ -153,11 +153,11 @@ Outline outline_of(Candidate c, vec2 pixel) {
     // a word's (u, v) has 16 bits, which in a large patch are a part of a pixel
     vec2 at = s.uv - uv_along * s.miss;
     vec2 sum = vec2(0.0);
-    for (uint k = 0u; k < RING_POINTS; ++k) {
-        vec2 step_ = frame.ring_px * RING[k];
+    for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
+        vec2 step_ = frame.gap_radius_px * DIRECTIONS[k];
         if (is_there(fi, face, item, patch_, at + uv_along * step_)) sum += step_;
     }
-    vec2 out_ = -0.5 * frame.ring_px / max(length(sum), 1e-6) * sum;
+    vec2 out_ = -0.5 * frame.gap_radius_px / max(length(sum), 1e-6) * sum;
     return Outline(sum, !is_there(fi, face, item, patch_, at + uv_along * out_));
 }
 

@@ -1,7 +1,7 @@
 // Pass `operand_patch`: a ray crosses a spline face of an operand, after the tessellation of pass
 // `visibility`. The depth is that of the exact surface at the pixel's centre.
 //
-// Faces that meet along an edge are trimmed apart from each other, so a ray may slip between them. The ring
+// Faces that meet along an edge are trimmed apart from each other, so a ray may slip between them. The skirt
 // around each trimmed face gives fragments of its own, which pass `operand_sort` takes where a ray would
 // else leave without having entered, or the reverse. The entry point defines TRIMMED and its way to trim.
 #include "scene.glsl"
@@ -23,7 +23,7 @@ layout(scalar, binding = 12) writeonly buffer Fragments { Fragment fragments[]; 
 #include "patch.glsl"
 #include "put_fragment.glsl"
 #include "refine.glsl"
-#include "ring.glsl"
+#include "gap_radius.glsl"
 #include "visible.glsl"
 
 layout(location = 0) in vec2 uv;
@@ -40,17 +40,17 @@ void main() {
     if (looks_away(dx, dy, face, instance)) shell |= FRAGMENT_LEAVES;
 #ifdef TRIMMED
     vec2 at = patch_.domain.xy + uv * patch_.domain.zw;
-    vec2 around = frame.ring_px * (abs(dx) + abs(dy)); // of the point: its ring is in that box
+    vec2 around = frame.gap_radius_px * (abs(dx) + abs(dy)); // of the point: its circle is in that box
     uint area = trim_area(fi, face, at - around, at + around);
     if (area == TRIM_OUT) discard;
     bool inside = area == TRIM_IN || trim_inside(fi, face, at);
     bool near = inside;
-    for (uint k = 0u; area == TRIM_MIXED && !near && k < RING_POINTS; ++k) {
-        vec2 step_ = frame.ring_px * RING[k];
+    for (uint k = 0u; area == TRIM_MIXED && !near && k < DIRECTION_COUNT; ++k) {
+        vec2 step_ = frame.gap_radius_px * DIRECTIONS[k];
         near = trim_inside(fi, face, at + step_.x * dx + step_.y * dy);
     }
     if (!near) discard;
-    if (!inside) shell |= FRAGMENT_RING;
+    if (!inside) shell |= FRAGMENT_SKIRT;
 #endif
     Fragment f = Fragment(shell, 0.0, item + 1u, 0u);
     if (FILLS) {

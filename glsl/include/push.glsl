@@ -12,10 +12,10 @@ void pixel_speeds(Frame frame, vec4 q, vec4 qu, vec4 qv, out vec2 pu, out vec2 p
     pv = (qv.xy - q.xy / w * qv.w) / w;
 }
 
-// Twice the ring, across the border: a step du moves it by du * area / |pv| pixels across itself.
+// Twice the gap radius, across the border: a step du moves it by du * area / |pv| pixels across itself.
 vec2 border_push(Frame frame, vec2 pu, vec2 pv) {
     float area = abs(pu.x * pv.y - pu.y * pv.x);
-    return 2.0 * frame.ring_px * vec2(length(pv), length(pu)) / max(area, 1e-12);
+    return 2.0 * frame.gap_radius_px * vec2(length(pv), length(pu)) / max(area, 1e-12);
 }
 
 vec2 border_push(Frame frame, vec4 q, vec4 qu, vec4 qv) {

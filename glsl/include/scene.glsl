@@ -6,7 +6,7 @@
 //                    ├── first_item   + local patch  = item     (one patch of one placed face)
 //                    ├── first_cell   + local cell   = cell item
 //                    ├── first_curve  + local curve  = curve item
-//                    └── first_bay    + strip * bays + bay = bay item (a strip's is that of its first bay)
+//                    └── first_bin    + strip * bins + bin = bin item (a strip's is that of its first bin)
 //
 //   Patch, side ──▶ Link ──▶ the next side that lies on the same curve: patches of one part, whose items are as far apart
 //
@@ -67,7 +67,7 @@ struct Face {
 
     uint first_patch;
     uint flags;
-    uint strips;        // of the trim table: uniform v-strips, bays of each << 16; 0 where there is none (bays.glsl)
+    uint strips;        // of the trim table: uniform v-strips, bins of each << 16; 0 where there is none (bins.glsl)
     uint first_curve;
 
     uint id;
@@ -83,7 +83,7 @@ struct FaceInstance {
     uint face;
     uint instance;
     uint first_item;
-    uint first_bay;
+    uint first_bin;
 
     uint first_cell;
     uint first_curve;
@@ -116,13 +116,13 @@ struct MeshInstance {
     uint instance;
 };
 
-// The part of a patch that lies in one bay of one v-strip.
+// The part of a patch that lies in one bin of one v-strip.
 struct Cell {
     vec3 box_min;
     float speed_u; // largest |S_u|, |S_v| there, part units per unit of normalised u, v
     vec3 box_max;
     float speed_v; // negative where no loop meets the patch, in scenes whose loops may be edited
-    uint bay;       // strip * bays + bay
+    uint bin;       // strip * bins + bin
     uint normal;    // octahedral: the surface lies where low <= normal . p <= high
     float low;
     float high;
@@ -153,14 +153,14 @@ struct Frame {
     float far;
     uint perspective;
     float deviation_px; // budget of the tessellation
-    float ring_px;      // how far a trimmed face reaches over its border to close cracks
+    float gap_radius_px;      // how far a trimmed face reaches over its border to close cracks
     float row_px;       // spacing of the trim table's scan lines
     float chord_px;     // budget of a trim curve's linear segments
     float table_density; // pixels a model unit that the trim table is for, whatever the view; 0: of what this one shows
     uint fixed_factor;  // of every patch; 0: what the bound asks for
     uint item_count;
     uint cell_count;
-    uint bay_count;     // of all strips of all placed faces
+    uint bin_count;     // of all strips of all placed faces
     uint curve_count;
     uint draw_vertices; // most tessellated vertices in one draw
     uint encode_srgb;   // 1: the colour target does not encode by itself; ENCODE_SUMMED
@@ -168,7 +168,7 @@ struct Frame {
     uint draw_capacity;
     uint row_capacity;
     uint intercept_capacity;
-    uint doubt_capacity;
+    uint gap_candidate_capacity;
     uint leaf_count;    // of Boolean solids
     uint block_leaf_capacity;
     uint tile_leaf_capacity;
@@ -207,7 +207,7 @@ struct Counters {
     uint segments;
     uint wanted_rows;  // rows before they were cut to the capacity
     uint intercepts;
-    uint doubts;       // pixels for pass heal
+    uint gap_candidates;       // pixels for pass gap_fill
     uint block_leaves; // leaves of Boolean solids in all blocks of tiles, and in all tiles
     uint tile_leaves;
     uint band_tile_leaves; // the most in one band, or more than can be counted; in one row of tiles
@@ -220,7 +220,7 @@ struct Counters {
     uint contacts;     // pixels whose rays meet coincident faces of two items, and that are within two at once
     uint overlaps;
     uint layers;       // peeled by way `blister`
-    uint legs;         // of rays through Boolean solids that did not come to their ends
+    uint ray_segments;         // of rays through Boolean solids that did not come to their ends
     uint hidden;       // patches left out because they lie behind others
     uint edge_chords;  // of lines along edges
     uint clamps;       // factors or densities above their hard limits, loops that a driver ended
@@ -231,12 +231,12 @@ const uint FAILED_SUB_PATCHES = 1u;
 const uint FAILED_DRAWS = 2u;
 const uint FAILED_ROWS = 4u;
 const uint FAILED_INTERCEPTS = 8u;
-const uint FAILED_DOUBTS = 16u;
+const uint FAILED_GAP_CANDIDATES = 16u;
 const uint FAILED_BLOCK_LEAVES = 32u;
 const uint FAILED_TILE_LEAVES = 64u;
 const uint FAILED_FRAGMENTS = 128u;
 const uint FAILED_LAYERS = 256u;
-const uint FAILED_LEGS = 512u;
+const uint FAILED_RAY_SEGMENTS = 512u;
 const uint FAILED_EDGE_CHORDS = 1024u;
 
 // Tessellation of one item, decided by the split pass. Totals over the whole patch.
@@ -252,10 +252,10 @@ struct SubPatch {
     uint place; // i | j << 8: which of the item's sub-patches
 };
 
-// A pixel for pass `heal`.
-struct Doubt {
-    uint pixel;    // column | row << 16 | RINGED | LONE (visible.glsl)
-    uvec2 healed;  // what is seen there
+// A pixel for pass `gap_fill`.
+struct GapCandidate {
+    uint pixel;    // column | row << 16 | BORDER_BEFORE | ISOLATED (visible.glsl)
+    uvec2 word;  // what is seen there
 };
 
 const uint MAX_FACTOR = 64u;   // the hardware's tessellation factor
@@ -271,7 +271,7 @@ bool is_rational(uint shape) { return ((shape >> 8) & 1u) != 0u; }
 uint side_of(uint shape) { return (shape >> 9) & 3u; }
 uint borders_of(uint shape) { return (shape >> 11) & 15u; }
 bool has_fine_net(uint shape) { return ((shape >> 15) & 1u) != 0u; }
-// How many of it would be as large as the patch that it was cut from (src/scene/apart.rs), along u and v.
+// How many of it would be as large as the patch that it was cut from (src/scene/sub_patches.rs), along u and v.
 vec2 pieces_of(uint shape) { return vec2(((uvec2(shape) >> uvec2(16u, 22u)) & 63u) + 1u); }
 
 #endif

@@ -9,7 +9,7 @@
 
 // Fragment.shell: the shell's number and four bits.
 const uint FRAGMENT_LEAVES = 0x80000000u; // the ray leaves the shell here
-const uint FRAGMENT_RING = 0x40000000u;   // of the ring around a trimmed face: counts in a gap only
+const uint FRAGMENT_SKIRT = 0x40000000u;   // of the skirt around a trimmed face: counts in a gap only
 const uint FRAGMENT_PATCH = 0x20000000u;  // of a spline face, else of a triangle
 const uint FRAGMENT_WITHIN = 0x10000000u; // sorted: the near plane is within the shell
 const uint FRAGMENT_SHELL = 0x0fffffffu;

@@ -15,7 +15,7 @@
 // Where the depth of the face is found already, the walk begins there and tells whose it is.
 //
 // A driver may end a long loop before its end. Such a ray goes on from the last event that it came to, by the same
-// pass drawn again: in legs, of which there are several only once a frame has told that they are needed.
+// pass drawn again: in segments, of which there are several only once a frame has told that they are needed.
 //
 // An event that matters is one of a leaf that the walk asks: the others are not looked at whatever they are, so until
 // then the walk ends as it does. In A - (B + C + ...) nothing is asked before A begins. And while a gate of the tile's list
@@ -52,16 +52,16 @@ layout(binding = 12, rg32ui) readonly uniform uimage2D found;
 #endif
 
 #ifndef FACE_IS_FOUND
-layout(scalar, binding = 13) buffer Halts { uint halts[]; }; // of each pixel: bound where there are several legs
+layout(scalar, binding = 13) buffer ResumePoints { uint resume_points[]; }; // of each pixel: bound where there are several ray segments
 layout(scalar, push_constant) uniform Legs {
-    uint nth;     // this leg, from 0
-    uint legs;    // of this drawing
+    uint nth;     // this segment, from 0
+    uint ray_segments;    // of this drawing
     uint is_most; // a frame may not ask for more
 };
 
-// A halt: the depth of the event from which the next leg goes on, its sign bit set where the solid is in front of it; 0
+// A resume point: the depth of the event from which the next segment goes on, its sign bit set where the solid is in front of it; 0
 // where the ray came to its end.
-const uint HALT_BEFORE = 0x80000000u;
+const uint RESUME_BEFORE = 0x80000000u;
 #endif
 
 // Whether some leaf is a shell: compiled in only then.
@@ -118,10 +118,10 @@ void meet(inout Walk walk, uint i, TileLeaf here, Crossing c, uint other, uint a
 void main() {
     uint pixel = pixel_in_band(frame, uvec2(gl_FragCoord.xy));
 #ifndef FACE_IS_FOUND
-    uint halt = 0u;
+    uint resume_point = 0u;
     if (nth > 0u) {
-        halt = halts[pixel];
-        if (halt == 0u) discard;
+        resume_point = resume_points[pixel];
+        if (resume_point == 0u) discard;
     }
 #endif
     uint n = tile_in_band(frame, uvec2(gl_FragCoord.xy));
@@ -153,8 +153,8 @@ void main() {
     before = false;
 #else
     if (nth > 0u) {
-        before = (halt & HALT_BEFORE) != 0u;
-        t = uintBitsToFloat(halt & ~HALT_BEFORE);
+        before = (resume_point & RESUME_BEFORE) != 0u;
+        t = uintBitsToFloat(resume_point & ~RESUME_BEFORE);
     }
     float begun = t;
     bool begun_before = before;
@@ -248,10 +248,10 @@ void main() {
 #else
     // from the event whose scan was the last to be trusted, if that is farther on
     bool goes_on = !ended && (t > begun || t == begun && before != begun_before);
-    if (goes_on) atomicMax(counters.legs, nth + 1u);
-    if (legs > 1u) halts[pixel] = goes_on ? floatBitsToUint(t) | (before ? HALT_BEFORE : 0u) : 0u;
-    if (goes_on && nth + 1u == legs && is_most == 0u) atomicOr(counters.failed, FAILED_LEGS);
-    else if (!ended && (!goes_on || nth + 1u == legs)) atomicAdd(counters.clamps, 1u);
+    if (goes_on) atomicMax(counters.ray_segments, nth + 1u);
+    if (ray_segments > 1u) resume_points[pixel] = goes_on ? floatBitsToUint(t) | (before ? RESUME_BEFORE : 0u) : 0u;
+    if (goes_on && nth + 1u == ray_segments && is_most == 0u) atomicOr(counters.failed, FAILED_RAY_SEGMENTS);
+    else if (!ended && (!goes_on || nth + 1u == ray_segments)) atomicAdd(counters.clamps, 1u);
 #endif
     if (!done) discard;
     visible = uvec2(word | side, floatBitsToUint(t));

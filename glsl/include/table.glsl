@@ -4,22 +4,22 @@
 #define TABLE_GLSL
 
 #include "along.glsl"
-#include "bays.glsl"
+#include "u_bins.glsl"
 #include "border_cells.glsl"
 
 // as texels, which a driver fetches at once where it gathers words of storage buffers one by one
-layout(binding = TABLE_BINDING + 0) uniform usamplerBuffer table_strips; // StripRows, at each strip's first bay
+layout(binding = TABLE_BINDING + 0) uniform usamplerBuffer table_strips; // StripRows, at each strip's first bin
 layout(binding = TABLE_BINDING + 1) uniform usamplerBuffer table_rows;   // first flip; flips << 1 | inside before it
 layout(binding = TABLE_BINDING + 2) uniform usamplerBuffer flips;        // u, in order in each row, two a texel
-layout(binding = TABLE_BINDING + 3) uniform usamplerBuffer border_cells; // one a band of a bay
+layout(binding = TABLE_BINDING + 3) uniform usamplerBuffer border_cells; // one a band of a bin
 
-// Whether a placed face whose bay items begin at `first` has rows at (u, v); `strips` as in Face.
+// Whether a placed face whose bin items begin at `first` has rows at (u, v); `strips` as in Face.
 bool table_covers(uint first, uint strips, vec2 uv) {
     float n = float(strip_count(strips));
-    uint bays = bay_count(strips);
-    StripRows rows = strip_rows(table_strips, first + uint(clamp(uv.y * n, 0.0, n - 1.0)) * bays);
-    uint bay = bay_of(uv.x, bays);
-    return rows.lines != 0u && bay >= rows.first_bay && bay <= last_bay(rows);
+    uint bins = bin_count(strips);
+    StripRows rows = strip_rows(table_strips, first + uint(clamp(uv.y * n, 0.0, n - 1.0)) * bins);
+    uint bin = bin_of(uv.x, bins);
+    return rows.lines != 0u && bin >= rows.first_bin && bin <= last_bin(rows);
 }
 
 const float NO_FLIP = 3.0e38;
@@ -45,11 +45,11 @@ struct Search {
 // Where the search of (u, v) begins. Without flips to look at it ends there, too.
 Search search_at(uint first, uint strips, vec2 uv) {
     float n = float(strip_count(strips));
-    uint bays = bay_count(strips);
+    uint bins = bin_count(strips);
     float s = uv.y * n;
     bool on_face = s >= 0.0 && s < n;
-    StripRows rows = strip_rows(table_strips, first + (on_face ? uint(s) * bays : 0u));
-    uint row = row_of(rows, min(uint(fract(s) * float(rows.lines)), rows.lines - 1u), bay_of(uv.x, bays));
+    StripRows rows = strip_rows(table_strips, first + (on_face ? uint(s) * bins : 0u));
+    uint row = row_of(rows, min(uint(fract(s) * float(rows.lines)), rows.lines - 1u), bin_of(uv.x, bins));
     bool has_row = on_face && rows.lines != 0u;
     bool has_room = row < frame.row_capacity;
     row = has_row && has_room ? row : 0u;
@@ -85,7 +85,7 @@ void halve(inout Search s) {
     }
 }
 
-// Whether its point is inside, and whether flips of its scan line are within `reach` of u, in its bay: along.glsl.
+// Whether its point is inside, and whether flips of its scan line are within `reach` of u, in its bin: along.glsl.
 uint told_by(Search s, float reach) {
     uint along = (max(s.passed, s.first) - s.first ^ s.inside) & 1u;
     if (s.before > s.u - reach) along |= ALONG_BEFORE;
@@ -103,29 +103,29 @@ bool table_inside(uint first, uint strips, vec2 uv) {
     return (table_along(first, strips, uv, 0.0) & ALONG_INSIDE) != 0u;
 }
 
-// Whether all of a scan line from one u to another is in one bay.
-bool table_one_bay(uint strips, float lo, float hi) {
-    uint bays = bay_count(strips);
-    return bay_of(lo, bays) == bay_of(hi, bays);
+// Whether all of a scan line from one u to another is in one bin.
+bool table_one_bin(uint strips, float lo, float hi) {
+    uint bins = bin_count(strips);
+    return bin_of(lo, bins) == bin_of(hi, bins);
 }
 
-// Whether all of a box is inside or none of it: within a bay, what is looked up changes at trim curves alone.
+// Whether all of a box is inside or none of it: within a bin, what is looked up changes at trim curves alone.
 bool table_same(uint first, uint strips, vec2 lo, vec2 hi) {
     float n = float(strip_count(strips));
-    uint bays = bay_count(strips);
+    uint bins = bin_count(strips);
     float from = lo.y * n;
     float to = hi.y * n;
     if (!(from >= 0.0 && to < n)) return false;
     uint strip = uint(from);
-    uint bay = bay_of(lo.x, bays);
-    if (uint(to) != strip || bay_of(hi.x, bays) != bay) return false;
+    uint bin = bin_of(lo.x, bins);
+    if (uint(to) != strip || bin_of(hi.x, bins) != bin) return false;
     uint low = uint(from * float(BORDER_BANDS));
     uint high = uint(to * float(BORDER_BANDS));
     if (high > low + 1u) return false;
-    uint band = (first + strip * bays + bay) * BORDER_BANDS;
+    uint band = (first + strip * bins + bin) * BORDER_BANDS;
     uint up = strip * BORDER_BANDS;
     uvec4 marked = texelFetch(border_cells, int(band + low - up)) | texelFetch(border_cells, int(band + high - up));
-    return (marked & columns_between(within_bay(lo.x, bay, bays), within_bay(hi.x, bay, bays))) == uvec4(0u);
+    return (marked & columns_between(within_bin(lo.x, bin, bins), within_bin(hi.x, bin, bins))) == uvec4(0u);
 }
 
 #endif

@@ -22,11 +22,11 @@ const uint TRIM_SAME = 3u;
 #include "table.glsl"
 
 bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
-    return table_inside(fi.first_bay, face.strips, uv);
+    return table_inside(fi.first_bin, face.strips, uv);
 }
 
 uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
-    return table_same(fi.first_bay, face.strips, lo, hi) ? TRIM_SAME : TRIM_MIXED;
+    return table_same(fi.first_bin, face.strips, lo, hi) ? TRIM_SAME : TRIM_MIXED;
 }
 #endif
 
@@ -66,7 +66,7 @@ layout(binding = TRIM_BINDING + 1) uniform usamplerBuffer texels;
 
 bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
     if (any(lessThan(uv, vec2(0.0))) || any(greaterThanEqual(uv, vec2(1.0)))) return false;
-    uvec4 words = texelFetch(texture_places, int(fi.first_bay));
+    uvec4 words = texelFetch(texture_places, int(fi.first_bin));
     TexturePlace place = TexturePlace(TextureSize(words.x, words.y, words.z), words.w);
     if (place.size.words == 0u) return false;
     uint column = min(uint(uv.x * float(place.size.columns)), place.size.columns - 1u);

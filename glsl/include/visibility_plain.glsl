@@ -1,5 +1,5 @@
 // Pass `visibility`, patches without a trim test: who is seen, and where on its patch. A face of a
-// solid that is seen from behind is doubtful, as in visibility_trimmed.glsl. Where a volume
+// solid that is seen from behind is a gap candidate, as in visibility_trimmed.glsl. Where a volume
 // trims the scene (WITHIN_VOLUME), the exact point at (u, v) must be within it.
 #include "scene.glsl"
 #include "view.glsl"
@@ -22,10 +22,10 @@ void main() {
     FaceInstance fi = face_instance_at(face_instance_of(item));
     Face face = face_at(fi.face);
     bool solid = (face.flags & FACE_SOLID) != 0u;
-    bool doubtful = solid && looks_away(dFdx(uv), dFdy(uv), face, instance_at(fi.instance));
+    bool candidate = solid && looks_away(dFdx(uv), dFdy(uv), face, instance_at(fi.instance));
 #ifdef WITHIN_VOLUME
     Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
     if (!in_volume(exact_point(patch_, view_at(fi.instance), uv), ON_PX)) discard;
 #endif
-    visible = uvec2(item + 1u | (doubtful ? DOUBTFUL : 0u), pack_uv(uv));
+    visible = uvec2(item + 1u | (candidate ? GAP_CANDIDATE : 0u), pack_uv(uv));
 }

@@ -3,7 +3,7 @@
 //
 // Two sub-patches that share a side compute its vertices from the same integers (segment k of n),
 // so they agree bit for bit. On the border of a trimmed face the outermost vertices are pushed
-// ring_px beyond it: the surface continues, and the trim test finds material on both sides of an
+// gap_radius_px beyond it: the surface continues, and the trim test finds material on both sides of an
 // edge even where rounding or chords leave a gap.
 #include "scene.glsl"
 #include "view.glsl"
@@ -94,8 +94,8 @@ void main() {
             // where a shared side meets the border, both its patches must push alike, bit for bit: along it
             bool shared_u = (uv.x == 0.0 || uv.x == 1.0) && !(left || right);
             bool shared_v = (uv.y == 0.0 || uv.y == 1.0) && !(bottom || top);
-            if (shared_u) push.y = 2.0 * frame.ring_px / max(length(pv), 1e-12);
-            if (shared_v) push.x = 2.0 * frame.ring_px / max(length(pu), 1e-12);
+            if (shared_u) push.y = 2.0 * frame.gap_radius_px / max(length(pv), 1e-12);
+            if (shared_v) push.x = 2.0 * frame.gap_radius_px / max(length(pu), 1e-12);
             push = min(min(vec2(MAX_PUSH), 1.0 / segments_across(uv)), push);
             vec2 step_ = vec2(right ? push.x : left ? -push.x : 0.0, top ? push.y : bottom ? -push.y : 0.0);
             vec3 there = patch_jet(patch_.first, patch_.shape, uv + step_).point;

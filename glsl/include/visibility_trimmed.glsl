@@ -2,21 +2,21 @@
 //
 // Two faces that meet along an edge are trimmed apart from each other, each with its own rounding;
 // a pixel in the gap would show what lies behind. Such pixels must be found, then mended by pass
-// `heal`, which looks closer:
+// `gap_fill`, which looks closer:
 //
-//   * a face of a solid seen from behind, with all of the ring around the pixel's centre, ring_px wide, in it: the gap
+//   * a face of a solid seen from behind, with all of the circle around the pixel's centre, gap_radius_px wide, in it: the gap
 //     looks into the solid. It wins over a face of another solid that touches it.
-//   * the ring around a face of a solid seen from behind, so that the faces behind leave no gap themselves, and around
+//   * the skirt around a face of a solid seen from behind, so that the faces behind leave no gap themselves, and around
 //     each face of an open shell. To either side of the border of the former: a hole's far end, drawn narrower than it
 //     is, must not hide its wall. Within the border of the latter it is drawn, and marked: it may meet the face before it
 //     in a silhouette, which is drawn narrower than it is. Nothing says which side of an open shell is its front.
 //
-// Rings are not drawn: what they are before may be right, and narrower than they are. Only how near
+// Skirts are not drawn: what they are before may be right, and narrower than they are. Only how near
 // the nearest of them comes is kept for each pixel.
 //
-// Where a volume trims the scene (WITHIN_VOLUME), the exact point at (u, v) must be within it, of rings too.
+// Where a volume trims the scene (WITHIN_VOLUME), the exact point at (u, v) must be within it, of skirts too.
 //
-// The ring of an open shell is as near to the viewer as the border that it continues: not as the surface goes on, since
+// The skirt of an open shell is as near to the viewer as the border that it continues: not as the surface goes on, since
 // a floor seen from a low angle must not flow over what stands before its edge, nor be lost behind another face that ends
 // there and goes on before it.
 #include "scene.glsl"
@@ -25,7 +25,7 @@
 #include "placed.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 10) buffer Rings { uint rings[]; }; // depth's bits for each pixel, 0 without a ring
+layout(scalar, binding = 10) buffer BorderDepths { uint border_depths[]; }; // depth's bits for each pixel, 0 without a skirt
 
 #define TRIM_BINDING 11
 #include "trim.glsl"
@@ -48,7 +48,7 @@ layout(location = 1) flat in uint item;
 layout(location = 0) out uvec2 visible;
 layout(depth_less) out float gl_FragDepth;
 
-// The faces of a solid that look at the viewer grow by this share of the ring: most gaps close at once. They grow
+// The faces of a solid that look at the viewer grow by this share of the gap radius: most gaps close at once. They grow
 // only where their surface follows the triangle as far: one that is seen edge-on goes on where the surface does not.
 const float GROWTH = 0.25;
 // Where two solids touch, the back of one must win over the front of the other. Each is drawn up to
@@ -75,9 +75,9 @@ void main() {
     vec2 slope = vec2(dFdx(gl_FragCoord.z), dFdy(gl_FragCoord.z));
     bool away = looks_away(dx, dy, face, instance_at(fi.instance));
     bool solid = (face.flags & FACE_SOLID) != 0u;
-    bool doubtful = solid && away;
-    float reach = solid && !away ? GROWTH * frame.ring_px : frame.ring_px;
-    vec2 around = reach * (abs(dx) + abs(dy)); // of the point: its ring is in that box
+    bool candidate = solid && away;
+    float reach = solid && !away ? GROWTH * frame.gap_radius_px : frame.gap_radius_px;
+    vec2 around = reach * (abs(dx) + abs(dy)); // of the point: its circle is in that box
 #ifdef TRIM_BY_TABLE
     uint area = TRIM_MIXED; // three scan lines are asked for whatever the area is: that costs less than to know it
 #else
@@ -92,8 +92,8 @@ void main() {
     float off = 2.0 * frame.deviation_px;
     bool steep = false;
     if (solid && !away) {
-        vec2 far = around / patch_.domain.zw; // (u, v) of the patch that the ring spans
-        grows = grows && bend_within(patch_, far) * px <= (RING_SLACK - 1.0) * reach + 2.0 * frame.deviation_px;
+        vec2 far = around / patch_.domain.zw; // (u, v) of the patch that the circle spans
+        grows = grows && bend_within(patch_, far) * px <= (GAP_SLACK - 1.0) * reach + 2.0 * frame.deviation_px;
         steep = length(slope) > STEEP * unit / frame.focal;
     }
     vec2 ahead = steep ? off * normalize(slope) : vec2(0.0);
@@ -101,28 +101,28 @@ void main() {
     bool inside = area == TRIM_IN || border.inside;
     bool whole = solid && !away || border.whole;
     bool goes_on = border.goes_on;
-    // of the ring's points inside the face, the nearest to the viewer
+    // of the circle's points inside the face, the nearest to the viewer
     float border_depth = border.rise == NO_BORDER ? -1.0 : max(gl_FragCoord.z + border.rise, 0.0);
     if (!inside && border_depth < 0.0) discard;
-    bool ring = !inside && (doubtful || !solid) || doubtful && !whole;
+    bool skirt = !inside && (candidate || !solid) || candidate && !whole;
 #ifdef WITHIN_VOLUME
-    // a gap between faces may run along the volume's boundary: rings reach beyond it
-    if (!in_volume(exact_point(patch_, view_at(fi.instance), uv), inside && !ring ? ON_PX : frame.ring_px)) discard;
+    // a gap between faces may run along the volume's boundary: skirts reach beyond it
+    if (!in_volume(exact_point(patch_, view_at(fi.instance), uv), inside && !skirt ? ON_PX : frame.gap_radius_px)) discard;
 #endif
     float z = gl_FragCoord.z;
-    if (!inside && !doubtful) z = solid ? min(z, border_depth) : border_depth;
+    if (!inside && !candidate) z = solid ? min(z, border_depth) : border_depth;
     float stand_back = 0.0;
     if (solid && !away) {
         if (inside && steep && goes_on) off = min(off, 2.0 * (bend_within(patch_, vec2(1.0)) * px + SNAP_PX));
         stand_back = off * (abs(slope.x) + abs(slope.y) + unit / frame.focal) + STAND_BACK * z;
     }
     // depths are not negative, so they order like their bits
-    uint ring_depth = floatBitsToUint(max(z - stand_back, 0.0));
-    if (ring || !whole) {
+    uint skirt_depth = floatBitsToUint(max(z - stand_back, 0.0));
+    if (skirt || !whole) {
         uvec2 pixel = uvec2(gl_FragCoord.xy);
-        atomicMax(rings[pixel.y * uint(frame.size.x) + pixel.x], ring ? ring_depth : ring_depth + 1u);
+        atomicMax(border_depths[pixel.y * uint(frame.size.x) + pixel.x], skirt ? skirt_depth : skirt_depth + 1u);
     }
-    if (ring) discard;
-    visible = uvec2(item + 1u | (doubtful ? DOUBTFUL : 0u), pack_uv(uv));
+    if (skirt) discard;
+    visible = uvec2(item + 1u | (candidate ? GAP_CANDIDATE : 0u), pack_uv(uv));
     gl_FragDepth = z - stand_back;
 }

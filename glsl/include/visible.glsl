@@ -8,19 +8,19 @@
 //   an operand     0      3   item + 1           the same; of a spline face that bounds a solid's operand. Its (u, v)
 //                                                are in an image of their own, `operand_uv`
 //
-// d: doubtful, for pass `heal`. In scenes with trims, what is no
+// d: a gap candidate, for pass `gap_fill`. In scenes with trims, what is no
 // patch is in an image of its own, `others`, and seen where `visibility` has nothing.
 #ifndef VISIBLE_GLSL
 #define VISIBLE_GLSL
 
-const uint DOUBTFUL = 0x80000000u;
-// In the list of doubtful pixels, whose columns and rows have 15 bits: what is seen there is not doubtful itself.
-const uint RINGED = 0x80000000u;
-// Beside RINGED: no ring, but nothing is seen there, and patches are on both sides.
-const uint LONE = 0x8000u;
-// Without RINGED: what is seen is doubtful, and a ring lies before it.
-const uint BEHIND_RING = 0x8000u;
-// How far from a face from behind `heal` looks for a front that it lies on.
+const uint GAP_CANDIDATE = 0x80000000u;
+// In the list of gap candidates, whose columns and rows have 15 bits: what is seen there is no candidate itself.
+const uint BORDER_BEFORE = 0x80000000u;
+// Beside BORDER_BEFORE: no skirt, but nothing is seen there, and patches are on both sides.
+const uint ISOLATED = 0x8000u;
+// Without BORDER_BEFORE: what is seen is a candidate, and a skirt lies before it.
+const uint BACK_BEHIND_BORDER = 0x8000u;
+// How far from a face from behind `gap_fill` looks for a front that it lies on.
 const uint WIDE_BAND_PX = 16u;
 const uint SEEN_KIND = 0x60000000u;
 const uint SEEN_MESH = 0x20000000u;
@@ -28,20 +28,20 @@ const uint SEEN_SOLID = 0x40000000u; // Boolean
 const uint SEEN_OPERAND = 0x60000000u;
 
 // The scene has things that are no patches.
-layout(constant_id = 4) const bool SCENE_HAS_OTHERS = false;
+layout(constant_id = 4) const bool SCENE_HAS_MESHES_OR_SOLIDS = false;
 
-bool sees_nothing(uint word) { return (word & ~DOUBTFUL) == 0u; }
-bool sees_other(uint word) { return SCENE_HAS_OTHERS && (word & SEEN_KIND) != 0u; } // than a patch
+bool sees_nothing(uint word) { return (word & ~GAP_CANDIDATE) == 0u; }
+bool sees_other(uint word) { return SCENE_HAS_MESHES_OR_SOLIDS && (word & SEEN_KIND) != 0u; } // than a patch
 bool sees_mesh(uint word) { return (word & SEEN_KIND) == SEEN_MESH; }
 bool sees_solid(uint word) { return (word & SEEN_KIND) == SEEN_SOLID; }
 bool sees_operand(uint word) { return (word & SEEN_KIND) == SEEN_OPERAND; }
 
 // Column and row of a word of that list.
-ivec2 doubtful_pixel(uint doubt) { return ivec2(doubt & 0x7fffu, (doubt & ~RINGED) >> 16); }
+ivec2 candidate_pixel(uint packed) { return ivec2(packed & 0x7fffu, (packed & ~BORDER_BEFORE) >> 16); }
 
-uint seen_item(uint word) { return (word & ~(DOUBTFUL | SEEN_KIND)) - 1u; }
-uint seen_mesh_instance(uint word) { return word & ~(DOUBTFUL | SEEN_KIND); }
-uint seen_side(uint word) { return word & ~(DOUBTFUL | SEEN_KIND); }
+uint seen_item(uint word) { return (word & ~(GAP_CANDIDATE | SEEN_KIND)) - 1u; }
+uint seen_mesh_instance(uint word) { return word & ~(GAP_CANDIDATE | SEEN_KIND); }
+uint seen_side(uint word) { return word & ~(GAP_CANDIDATE | SEEN_KIND); }
 
 // A border of a patch may be continued by less than its width.
 uint pack_uv(vec2 uv) { return packUnorm2x16((uv + 1.0) / 3.0); }

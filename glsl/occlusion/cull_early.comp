@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `hide`: patches that lay behind others in the frame before are not drawn, unless pass `reveal` finds that
+// Pass `cull_early`: patches that lay behind others in the frame before are not drawn, unless pass `cull_late` finds that
 // they may be seen. One thread an item. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 

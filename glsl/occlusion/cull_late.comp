@@ -1,8 +1,8 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `reveal`: which patches lie behind what has been drawn, wherever they could be seen. Those that do not, and
-// were left out by pass `hide`, are drawn now; those that do are left out of the next frame's first drawing. One
+// Pass `cull_late`: which patches lie behind what has been drawn, wherever they could be seen. Those that do not, and
+// were left out by pass `cull_early`, are drawn now; those that do are left out of the next frame's first drawing. One
 // thread an item. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 #include "view.glsl"

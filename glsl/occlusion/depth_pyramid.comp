@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `farthest`: the farthest depth that is seen in each square of 4 x 4 pixels, in each tile, and in each block of
+// Pass `depth_pyramid`: the farthest depth that is seen in each square of 4 x 4 pixels, in each tile, and in each block of
 // tiles. One workgroup a block, one thread a tile. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 #include "tiles.glsl"
@@ -10,7 +10,7 @@
 layout(local_size_x = 64) in; // BLOCK x BLOCK
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1) uniform sampler2D depth; // reversed
-layout(scalar, binding = 2) writeonly buffer Farthest { float farthest[]; }; // farthest.glsl
+layout(scalar, binding = 2) writeonly buffer Farthest { float farthest[]; }; // depth_pyramid.glsl
 
 shared float of_tiles[BLOCK * BLOCK];
 

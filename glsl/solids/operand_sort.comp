@@ -8,11 +8,11 @@
 //   mesh    E  E     L  L       how often the ray is within counts up and down; it is within where that is
 //           E  ·     ·  L       not 0. A near plane in its box: begin so that the end is 0
 //
-//   faces   E  ·  L  L          the second L wants an entry: a ring's fragment E between the two, where the
+//   faces   E  ·  L  L          the second L wants an entry: a skirt's fragment E between the two, where the
 //                 E? L          ray slips through a gap (`mended`), else it is left out
 //           E  E  L             the second E, the reverse; at the end, too
 //
-//           L  E  E  L          no ring helps, but it is left as often as entered: as for a mesh. Near a
+//           L  E  E  L          no skirt helps, but it is left as often as entered: as for a mesh. Near a
 //                               silhouette two fragments may have changed places
 //
 //   Entries without an exit stay, exits without an entry go: both are `unpaired`, unless the camera's depth
@@ -77,7 +77,7 @@ uint cuts(uint shell) {
 uint kept;
 
 void keep(Fragment f, uint bits) {
-    f.shell = f.shell & ~(FRAGMENT_RING | FRAGMENT_LEAVES) | bits;
+    f.shell = f.shell & ~(FRAGMENT_SKIRT | FRAGMENT_LEAVES) | bits;
     fragments[kept] = f;
     ++kept;
 }
@@ -92,7 +92,7 @@ bool by_winding(uint from, uint end, int number, uint start) {
         Fragment f;
         bool more = i < end;
         if (more) f = fragments[i];
-        if (more && (f.shell & FRAGMENT_RING) != 0u) continue;
+        if (more && (f.shell & FRAGMENT_SKIRT) != 0u) continue;
         if (any && (!more || f.depth != depth)) {
             bool now = number != 0;
             if (now != within) keep(owner, start | (now ? 0u : FRAGMENT_LEAVES));
@@ -107,38 +107,38 @@ bool by_winding(uint from, uint end, int number, uint start) {
     return number == 0;
 }
 
-// Entering and leaving in turn, mended by rings; returns whether they do: an entry without an exit is all right where it is
+// Entering and leaving in turn, mended by skirts; returns whether they do: an entry without an exit is all right where it is
 // kept, and not where they are told to be as many. Keeps nothing unless it `writes`.
 bool in_turn(uint from, uint end, bool within, uint start, bool writes) {
-    Fragment ring[2]; // the first of a ring since the last that was kept: entering, leaving
-    bool has_ring[2] = bool[](false, false);
+    Fragment skirt[2]; // the first of a skirt since the last that was kept: entering, leaving
+    bool has_skirt[2] = bool[](false, false);
     bool lost = false;
     for (uint i = from; i < end; ++i) {
         Fragment f = fragments[i];
         uint kind = (f.shell & FRAGMENT_LEAVES) != 0u ? 1u : 0u;
-        if ((f.shell & FRAGMENT_RING) != 0u) {
-            if (!has_ring[kind]) ring[kind] = f;
-            has_ring[kind] = true;
+        if ((f.shell & FRAGMENT_SKIRT) != 0u) {
+            if (!has_skirt[kind]) skirt[kind] = f;
+            has_skirt[kind] = true;
             continue;
         }
         if ((kind == 1u) != within) {
             // one is missing between: of the other kind
-            if (!has_ring[1u - kind]) {
+            if (!has_skirt[1u - kind]) {
                 lost = lost || kind == 1u || !writes;
                 continue;
             }
             if (writes) {
-                keep(ring[1u - kind], start | (kind == 1u ? 0u : FRAGMENT_LEAVES));
+                keep(skirt[1u - kind], start | (kind == 1u ? 0u : FRAGMENT_LEAVES));
                 atomicAdd(counters.mended, 1u);
             }
         }
         within = kind == 0u;
-        has_ring = bool[](false, false);
+        has_skirt = bool[](false, false);
         if (writes) keep(f, start | (f.shell & FRAGMENT_LEAVES));
     }
-    if (within && has_ring[1]) {
+    if (within && has_skirt[1]) {
         if (writes) {
-            keep(ring[1], start | FRAGMENT_LEAVES);
+            keep(skirt[1], start | FRAGMENT_LEAVES);
             atomicAdd(counters.mended, 1u);
         }
         within = false;
@@ -183,7 +183,7 @@ void main() {
         for (; stop < end; ++stop) {
             uint word = fragments[stop].shell;
             if ((word & FRAGMENT_SHELL) != shell) break;
-            if ((word & FRAGMENT_RING) != 0u) continue;
+            if ((word & FRAGMENT_SKIRT) != 0u) continue;
             bool leaves_ = (word & FRAGMENT_LEAVES) != 0u;
             sum += leaves_ ? 1 : -1;
             if (!any) leaves_first = leaves_;

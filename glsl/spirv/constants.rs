@@ -106,6 +106,14 @@ pub mod gap_gather {
     pub const ACROSS: f32 = 0.2;
     pub const BAND_PX: u32 = 4;
 }
+pub mod gap_radius {
+    pub const APOTHEM: f32 = 0.92387953;
+    pub const CORNER: f32 = 1.06680402;
+    pub const DIAGONAL: f32 = 0.70710678;
+    pub const DIRECTION_COUNT: u32 = 8;
+    pub const GAP_SLACK: f32 = 1.25;
+    pub const SQUARE: f32 = 0.8;
+}
 pub mod gap_surface {
     pub const BEYOND: f32 = 1e-4;
     pub const MAX_HOPS: u32 = 8;
@@ -128,14 +136,6 @@ pub mod refine {
 pub mod resolved {
     pub const NO_SURFACE: u32 = 0xffffffff;
 }
-pub mod ring {
-    pub const APOTHEM: f32 = 0.92387953;
-    pub const CORNER: f32 = 1.06680402;
-    pub const DIAGONAL: f32 = 0.70710678;
-    pub const RING_POINTS: u32 = 8;
-    pub const RING_SLACK: f32 = 1.25;
-    pub const SQUARE: f32 = 0.8;
-}
 pub mod scene {
     pub const BORDER_U0: u32 = 1;
     pub const BORDER_U1: u32 = 2;
@@ -149,13 +149,13 @@ pub mod scene {
     pub const FACE_SOLID: u32 = 8;
     pub const FACE_TRIMMED: u32 = 16;
     pub const FAILED_BLOCK_LEAVES: u32 = 32;
-    pub const FAILED_DOUBTS: u32 = 16;
     pub const FAILED_DRAWS: u32 = 2;
     pub const FAILED_EDGE_CHORDS: u32 = 1024;
     pub const FAILED_FRAGMENTS: u32 = 128;
+    pub const FAILED_GAP_CANDIDATES: u32 = 16;
     pub const FAILED_INTERCEPTS: u32 = 8;
     pub const FAILED_LAYERS: u32 = 256;
-    pub const FAILED_LEGS: u32 = 512;
+    pub const FAILED_RAY_SEGMENTS: u32 = 512;
     pub const FAILED_ROWS: u32 = 4;
     pub const FAILED_SUB_PATCHES: u32 = 1;
     pub const FAILED_TILE_LEAVES: u32 = 64;
@@ -192,8 +192,8 @@ pub mod shade {
 pub mod shells {
     pub const FRAGMENT_LEAVES: u32 = 0x80000000;
     pub const FRAGMENT_PATCH: u32 = 0x20000000;
-    pub const FRAGMENT_RING: u32 = 0x40000000;
     pub const FRAGMENT_SHELL: u32 = 0x0fffffff;
+    pub const FRAGMENT_SKIRT: u32 = 0x40000000;
     pub const FRAGMENT_WITHIN: u32 = 0x10000000;
     pub const NO_PLANE: u32 = 0xffffffff;
 }
@@ -208,10 +208,10 @@ pub mod solid_cst {
     pub const WALK: u32 = 1;
 }
 pub mod solid_events {
-    pub const HALT_BEFORE: u32 = 0x80000000;
     pub const KEPT: u32 = 12;
     pub const NOBODY: u32 = 0xffffffff;
     pub const OWNER: u32 = 1;
+    pub const RESUME_BEFORE: u32 = 0x80000000;
     pub const SEARCH: u32 = 0;
     pub const SIDE: u32 = 2;
 }
@@ -300,10 +300,10 @@ pub mod visibility_trimmed {
     pub const STEEP: f32 = 4.0;
 }
 pub mod visible {
-    pub const BEHIND_RING: u32 = 0x8000;
-    pub const DOUBTFUL: u32 = 0x80000000;
-    pub const LONE: u32 = 0x8000;
-    pub const RINGED: u32 = 0x80000000;
+    pub const BACK_BEHIND_BORDER: u32 = 0x8000;
+    pub const BORDER_BEFORE: u32 = 0x80000000;
+    pub const GAP_CANDIDATE: u32 = 0x80000000;
+    pub const ISOLATED: u32 = 0x8000;
     pub const SEEN_KIND: u32 = 0x60000000;
     pub const SEEN_MESH: u32 = 0x20000000;
     pub const SEEN_OPERAND: u32 = 0x60000000;

@@ -1,29 +1,29 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `carry`: the winding number that each row of a strip with several bays begins with: what crosses its scan line in
-// the bays before. One workgroup a strip, one thread a scan line at a time.
+// Pass `carry`: the winding number that each row of a strip with several bins begins with: what crosses its scan line in
+// the bins before. One workgroup a strip, one thread a scan line at a time.
 //
-//   bay               0     1     2     3
+//   bin               0     1     2     3
 //   crossings add up  +1    0     -1    0      as pass `cross` counted them
 //   begins with        0    1     1     0
 //
 // Twin: src/twin/carry.rs.
-#include "bays.glsl"
+#include "u_bins.glsl"
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1) uniform usamplerBuffer strips;
-layout(scalar, binding = 2) readonly buffer WideStrips { uint wide_strips[]; }; // bay items
+layout(scalar, binding = 2) readonly buffer WideStrips { uint wide_strips[]; }; // bin items
 layout(scalar, binding = 3) buffer RowWindings { int row_windings[]; };
 
 void main() {
     StripRows rows = strip_rows(strips, wide_strips[gl_WorkGroupID.x]);
     for (uint line = gl_LocalInvocationID.x; line < rows.lines; line += gl_WorkGroupSize.x) {
         int winding = 0;
-        for (uint bay = rows.first_bay; bay <= last_bay(rows); ++bay) {
-            uint row = row_of(rows, line, bay);
+        for (uint bin = rows.first_bin; bin <= last_bin(rows); ++bin) {
+            uint row = row_of(rows, line, bin);
             if (row >= frame.row_capacity) return; // the host grows the table and records again
             int crossed = row_windings[row];
             row_windings[row] = winding;

@@ -8,16 +8,16 @@
 //          │   ────╱──────                  bottom-open, top-closed: v_a < v <= v_b, so a line through
 //          │   a ●                          a shared vertex counts one crossing, and a touch 0 or 2
 //
-// A scan line has a row in each bay that is seen (bays.glsl); what crosses it there adds to the row's winding, from which
-// pass `carry` makes the one that the next bay begins with.
+// A scan line has a row in each bin that is seen (bins.glsl); what crosses it there adds to the row's winding, from which
+// pass `carry` makes the one that the next bin begins with.
 //
 // An intercept is u as order-preserving bits, its lowest bit the direction: 1 upwards.
 // Twin: src/twin/cross.rs.
 #include "scene.glsl"
 
 layout(constant_id = 23) const bool INSERT = false;
-// Strips of some face have several bays.
-layout(constant_id = 1) const bool SCENE_HAS_BAYS = false;
+// Strips of some face have several bins.
+layout(constant_id = 1) const bool SCENE_HAS_BINS = false;
 // Somebody asks where trim curves pass: pass `operand_patch`.
 layout(constant_id = 26) const bool MARKS_BORDERS = false;
 
@@ -35,9 +35,9 @@ layout(binding = 8) uniform usamplerBuffer row_starts;
 layout(scalar, binding = 9) buffer RowCounts { uint row_counts[]; };
 layout(scalar, binding = 10) writeonly buffer Intercepts { uint intercepts[]; };
 layout(scalar, binding = 11) buffer BorderCells { uint border_cells[]; }; // four words a band, where MARKS_BORDERS
-layout(scalar, binding = 12) buffer RowWindings { int row_windings[]; }; // where SCENE_HAS_BAYS
+layout(scalar, binding = 12) buffer RowWindings { int row_windings[]; }; // where SCENE_HAS_BINS
 
-#include "bays.glsl"
+#include "u_bins.glsl"
 #include "border_cells.glsl"
 #include "curve.glsl"
 #include "curves.glsl"
@@ -59,13 +59,13 @@ uint curve_of(uint segment) {
     return lo;
 }
 
-// Marks the bands of a bay from `lo` to `hi` of its strip, 0 to 1, as far as it has them.
-void mark(uint bay_item, float lo, float hi, uvec4 columns) {
+// Marks the bands of a bin from `lo` to `hi` of its strip, 0 to 1, as far as it has them.
+void mark(uint bin_item, float lo, float hi, uvec4 columns) {
     float last_band = float(BORDER_BANDS - 1u);
     uint first = uint(clamp(floor(lo * float(BORDER_BANDS)), 0.0, last_band));
     uint last = uint(clamp(floor(hi * float(BORDER_BANDS)), 0.0, last_band));
     for (uint band = first; band <= last; ++band) {
-        uint at = 4u * (bay_item * BORDER_BANDS + band);
+        uint at = 4u * (bin_item * BORDER_BANDS + band);
         for (uint word = 0u; word < 4u; ++word) {
             if (columns[word] != 0u) atomicOr(border_cells[at + word], columns[word]);
         }
@@ -92,17 +92,17 @@ void main() {
         b = swap;
     }
     float strip_n = float(strip_count(face.strips));
-    uint bays = bay_count(face.strips);
+    uint bins = bin_count(face.strips);
     uint first = uint(clamp(floor(a.y * strip_n), 0.0, strip_n - 1.0));
     uint last = uint(clamp(floor(b.y * strip_n), 0.0, strip_n - 1.0));
     float left = min(a.x, b.x);
     float right = max(a.x, b.x);
     for (uint k = first; k <= last; ++k) {
-        uint item = fi.first_bay + k * bays;
+        uint item = fi.first_bin + k * bins;
         StripRows rows = strip_rows(strips, item);
         if (rows.lines == 0u) continue;
         // right of all that is seen, or of a loop that is left of it all
-        if (SCENE_HAS_BAYS && (bay_of(left, bays) > last_bay(rows) || bay_of(curve.range_u.y, bays) < rows.first_bay)) continue;
+        if (SCENE_HAS_BINS && (bin_of(left, bins) > last_bin(rows) || bin_of(curve.range_u.y, bins) < rows.first_bin)) continue;
         float mu = float(rows.lines);
         precise float low = a.y * strip_n - float(k);
         precise float high = b.y * strip_n - float(k);
@@ -110,9 +110,9 @@ void main() {
             precise float around = 0.5 / mu + BAND_ROUNDING;
             precise float below = low - around;
             precise float above = high + around;
-            uint last_marked = min(bay_of(right, bays), last_bay(rows));
-            for (uint bay = max(bay_of(left, bays), rows.first_bay); bay <= last_marked; ++bay) {
-                mark(item + bay, below, above, columns_between(within_bay(left, bay, bays), within_bay(right, bay, bays)));
+            uint last_marked = min(bin_of(right, bins), last_bin(rows));
+            for (uint bin = max(bin_of(left, bins), rows.first_bin); bin <= last_marked; ++bin) {
+                mark(item + bin, below, above, columns_between(within_bin(left, bin, bins), within_bin(right, bin, bins)));
             }
         }
         // one line too many on each side: the comparison below decides
@@ -127,15 +127,15 @@ void main() {
             precise float u = a.x + (v - a.y) / (b.y - a.y) * (b.x - a.x);
             uint intercept = ordered_bits(clamp(u, left, right)) & ~1u;
             uint row = rows.first + line;
-            if (SCENE_HAS_BAYS) {
-                uint bay = bay_of(from_ordered(intercept), bays);
-                if (bay > last_bay(rows)) continue;
-                row = row_of(rows, line, bay);
+            if (SCENE_HAS_BINS) {
+                uint bin = bin_of(from_ordered(intercept), bins);
+                if (bin > last_bin(rows)) continue;
+                row = row_of(rows, line, bin);
             }
             if (row >= frame.row_capacity) continue;
             if (!INSERT) {
                 atomicAdd(row_counts[row], 1u);
-                if (SCENE_HAS_BAYS && rows.bays > 1u) atomicAdd(row_windings[row], upwards != 0u ? 1 : -1);
+                if (SCENE_HAS_BINS && rows.bins > 1u) atomicAdd(row_windings[row], upwards != 0u ? 1 : -1);
             } else {
                 // counting down, so that the counts need not be cleared in between
                 uint place = atomicAdd(row_counts[row], 0xffffffffu) - 1u;

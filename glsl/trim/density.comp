@@ -6,15 +6,15 @@
 //   |S_v| <= speed_v  and  W >= w over the cell   =>   strip height in pixels <= speed_v pixels / strips
 //
 // The largest over the strip's visible cells stands for the paper's sup rho; strips that nobody
-// sees get no scan line, and bays beyond those that are seen no row. A table for all views from about as far
-// (src/scene/around.rs) takes the same density everywhere, seen or not. Twin: src/twin/density.rs.
-#include "bays.glsl"
+// sees get no scan line, and bins beyond those that are seen no row. A table for all views from about as far
+// (src/scene/whole_view.rs) takes the same density everywhere, seen or not. Twin: src/twin/density.rs.
+#include "u_bins.glsl"
 #include "octahedral.glsl"
 #include "scene.glsl"
 #include "view.glsl"
 
-// Strips of some face have several bays.
-layout(constant_id = 1) const bool SCENE_HAS_BAYS = false;
+// Strips of some face have several bins.
+layout(constant_id = 1) const bool SCENE_HAS_BINS = false;
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
@@ -26,14 +26,14 @@ layout(scalar, binding = 5) readonly buffer Cells { Cell cells[]; };
 layout(scalar, binding = 6) readonly buffer CellItems { uint cell_face_instance[]; };
 layout(scalar, binding = 7) buffer StripHeights { uint strip_heights[]; }; // float bits, pixels
 layout(scalar, binding = 8) buffer FaceSpeeds { uint face_speeds[]; };     // float bits, pixels per unit u, v
-layout(scalar, binding = 9) buffer SeenBays { uint seen_bays[]; }; // a bit for each bay of a strip, where SCENE_HAS_BAYS
+layout(scalar, binding = 9) buffer SeenBins { uint seen_bins[]; }; // a bit for each bin of a strip, where SCENE_HAS_BINS
 
 // That one unit of the cell can cover; negative where nobody sees it.
 float pixels_of(FaceInstance fi, Face face, Cell cell) {
     Instance instance = instances[fi.instance];
     if (frame.table_density > 0.0) return frame.table_density * instance.scale;
     View view = views[fi.instance];
-    float margin = frame.ring_px + 1.0;
+    float margin = frame.gap_radius_px + 1.0;
     Seen seen = see(view, frame, cell.box_min, cell.box_max, margin, far_of(face, frame));
     if (seen.w < 0.0) return -1.0;
     if (frame.perspective != 0u) {
@@ -54,10 +54,10 @@ void main() {
     if (pixels < 0.0) return;
     // positive floats order like their bits
     float height = cell.speed_v * pixels / float(strip_count(face.strips));
-    uint bay = cell.bay % bay_count(face.strips);
-    uint strip = fi.first_bay + cell.bay - bay;
+    uint bin = cell.bin % bin_count(face.strips);
+    uint strip = fi.first_bin + cell.bin - bin;
     atomicMax(strip_heights[strip], floatBitsToUint(max(height, 1e-6)));
-    if (SCENE_HAS_BAYS) atomicOr(seen_bays[strip], 1u << bay);
+    if (SCENE_HAS_BINS) atomicOr(seen_bins[strip], 1u << bin);
     atomicMax(face_speeds[2u * placed], floatBitsToUint(cell.speed_u * pixels));
     atomicMax(face_speeds[2u * placed + 1u], floatBitsToUint(cell.speed_v * pixels));
 }

@@ -8,8 +8,8 @@
 // Twin: src/twin/segments.rs.
 #include "scene.glsl"
 
-// Strips of some face have several bays.
-layout(constant_id = 1) const bool SCENE_HAS_BAYS = false;
+// Strips of some face have several bins.
+layout(constant_id = 1) const bool SCENE_HAS_BINS = false;
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
@@ -20,9 +20,9 @@ layout(binding = 4) uniform usamplerBuffer curve_items; // the placed face of ea
 layout(binding = 5) uniform usamplerBuffer strip_starts;
 layout(scalar, binding = 6) readonly buffer FaceSpeeds { uint face_speeds[]; };
 layout(scalar, binding = 7) writeonly buffer SegmentCounts { uint segment_counts[]; };
-layout(scalar, binding = 8) readonly buffer SeenBays { uint seen_bays[]; }; // where SCENE_HAS_BAYS
+layout(scalar, binding = 8) readonly buffer SeenBins { uint seen_bins[]; }; // where SCENE_HAS_BINS
 
-#include "bays.glsl"
+#include "u_bins.glsl"
 #include "curves.glsl"
 #include "faces.glsl"
 #include "words.glsl"
@@ -30,18 +30,18 @@ layout(scalar, binding = 8) readonly buffer SeenBays { uint seen_bays[]; }; // w
 const uint LINES_PER_SEGMENT = 32u;
 const float MAX_SEGMENTS = 65536.0;
 
-uint first_row(uint bay_item) { return word_at(strip_starts, bay_item); }
+uint first_row(uint bin_item) { return word_at(strip_starts, bin_item); }
 
-// Scan lines of a face's strips from `lo` to `hi` that have rows where the curve counts: in a bay that it or what is
-// right of it in its loop reaches. Of a loop left of all bays that are seen no winding number is left.
-uint lines_of(FaceInstance fi, uint bays, uint lo, uint hi, Curve curve) {
-    if (!SCENE_HAS_BAYS) return first_row(fi.first_bay + hi + 1u) - first_row(fi.first_bay + lo);
-    uint from = bay_of(curve.range_u.x, bays);
-    uint to = bay_of(curve.range_u.y, bays);
+// Scan lines of a face's strips from `lo` to `hi` that have rows where the curve counts: in a bin that it or what is
+// right of it in its loop reaches. Of a loop left of all bins that are seen no winding number is left.
+uint lines_of(FaceInstance fi, uint bins, uint lo, uint hi, Curve curve) {
+    if (!SCENE_HAS_BINS) return first_row(fi.first_bin + hi + 1u) - first_row(fi.first_bin + lo);
+    uint from = bin_of(curve.range_u.x, bins);
+    uint to = bin_of(curve.range_u.y, bins);
     uint lines = 0u;
     for (uint strip = lo; strip <= hi; ++strip) {
-        uint item = fi.first_bay + strip * bays;
-        uvec2 seen = seen_range(seen_bays[item]);
+        uint item = fi.first_bin + strip * bins;
+        uvec2 seen = seen_range(seen_bins[item]);
         if (from >= seen.x + seen.y || to < seen.x) continue;
         lines += (first_row(item + 1u) - first_row(item)) / seen.y;
     }
@@ -58,7 +58,7 @@ void main() {
     float strips = float(strip_count(face.strips));
     uint lo = uint(clamp(floor(curve.range_v.x * strips), 0.0, strips - 1.0));
     uint hi = uint(clamp(floor(curve.range_v.y * strips), 0.0, strips - 1.0));
-    uint lines = lines_of(fi, bay_count(face.strips), lo, hi, curve);
+    uint lines = lines_of(fi, bin_count(face.strips), lo, hi, curve);
     if (lines == 0u) {
         segment_counts[item] = 0u;
         return;

@@ -2,12 +2,12 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `sizes`: where the rows of each v-strip are, as a look-up wants it; and of the whole trim table rows and segments,
-// and the dispatches that follow from them. One thread a bay, of which the first of all does the rest. Twin: src/twin/sizes.rs.
-#include "bays.glsl"
+// and the dispatches that follow from them. One thread a bin, of which the first of all does the rest. Twin: src/twin/sizes.rs.
+#include "u_bins.glsl"
 #include "scene.glsl"
 
-// Strips of some face have several bays.
-layout(constant_id = 1) const bool SCENE_HAS_BAYS = false;
+// Strips of some face have several bins.
+layout(constant_id = 1) const bool SCENE_HAS_BINS = false;
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
@@ -16,7 +16,7 @@ layout(scalar, binding = 2) readonly buffer SegmentStarts { uint segment_starts[
 layout(scalar, binding = 3) writeonly buffer Dispatches { uvec3 dispatches[]; }; // cross, sort, scan of the rows
 layout(scalar, binding = 4) writeonly buffer Strips { StripRows strips[]; };
 layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
-layout(scalar, binding = 6) readonly buffer SeenBays { uint seen_bays[]; }; // where SCENE_HAS_BAYS
+layout(scalar, binding = 6) readonly buffer SeenBins { uint seen_bins[]; }; // where SCENE_HAS_BINS
 
 const uint GROUP = 128u;        // threads of a workgroup in passes cross and sort
 const uint SCAN_BLOCK = 1024u;  // rows of a workgroup in the prefix sum
@@ -24,12 +24,12 @@ const uint MAX_GROUPS = 65535u; // what every device can dispatch
 
 void main() {
     uint strip = gl_GlobalInvocationID.x;
-    if (strip >= frame.bay_count) return;
+    if (strip >= frame.bin_count) return;
     uint first_row = strip_starts[strip];
-    uvec2 seen = SCENE_HAS_BAYS ? seen_range(seen_bays[strip]) : uvec2(0u, 1u);
+    uvec2 seen = SCENE_HAS_BINS ? seen_range(seen_bins[strip]) : uvec2(0u, 1u);
     strips[strip] = StripRows(first_row, (strip_starts[strip + 1u] - first_row) / seen.y, seen.x, seen.y);
     if (strip != 0u) return;
-    uint rows = strip_starts[frame.bay_count];
+    uint rows = strip_starts[frame.bin_count];
     uint segments = segment_starts[frame.curve_count];
     if (rows > frame.row_capacity) counters.failed |= FAILED_ROWS;
     rows = min(rows, frame.row_capacity);
@@ -38,7 +38,7 @@ void main() {
         segments = MAX_GROUPS * GROUP;
     }
     counters.rows = rows;
-    counters.wanted_rows = strip_starts[frame.bay_count];
+    counters.wanted_rows = strip_starts[frame.bin_count];
     counters.segments = segments;
     dispatches[0] = uvec3((segments + GROUP - 1u) / GROUP, 1u, 1u);
     dispatches[1] = uvec3((rows + GROUP - 1u) / GROUP, 1u, 1u);

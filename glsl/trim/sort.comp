@@ -14,8 +14,8 @@
 #include "scene.glsl"
 #include "words.glsl"
 
-// Strips of some face have several bays: their rows begin with the winding number of what is left of them.
-layout(constant_id = 1) const bool SCENE_HAS_BAYS = false;
+// Strips of some face have several bins: their rows begin with the winding number of what is left of them.
+layout(constant_id = 1) const bool SCENE_HAS_BINS = false;
 
 layout(local_size_x = 128) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
@@ -24,7 +24,7 @@ layout(scalar, binding = 2) readonly buffer RowTotal { uint row_total; };
 layout(scalar, binding = 3) writeonly buffer Rows { uvec2 rows[]; }; // first flip; flips << 1 | inside before it
 layout(scalar, binding = 4) buffer Intercepts { uint intercepts[]; };
 layout(scalar, binding = 5) buffer CountersBuffer { Counters counters; };
-layout(scalar, binding = 6) readonly buffer RowWindings { int row_windings[]; }; // where SCENE_HAS_BAYS
+layout(scalar, binding = 6) readonly buffer RowWindings { int row_windings[]; }; // where SCENE_HAS_BINS
 
 const uint FEW = 16u;
 
@@ -83,7 +83,7 @@ void main() {
         return;
     }
     uint count = end - first;
-    int winding = SCENE_HAS_BAYS ? row_windings[row] : 0;
+    int winding = SCENE_HAS_BINS ? row_windings[row] : 0;
     uint inside = winding != 0 ? 1u : 0u;
     if (count <= FEW) {
         rows[row] = uvec2(first, sort_few(first, count, winding) << 1 | inside);

@@ -37,7 +37,7 @@ bool seen(Patch patch_, View view, vec2 lo, vec2 hi, float far) {
                  patch_.bend.z * size.y * size.y) / 8.0;
     vec3 low = min(min(a, b), min(c, d)) - off;
     vec3 high = max(max(a, b), max(c, d)) + off;
-    return see(view, frame, low, high, frame.ring_px + 1.0, far).w >= 0.0;
+    return see(view, frame, low, high, frame.gap_radius_px + 1.0, far).w >= 0.0;
 }
 
 void main() {

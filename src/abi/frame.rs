@@ -24,14 +24,14 @@ pub struct Frame {
     pub far: f32,
     pub perspective: u32,
     pub deviation_px: f32,
-    pub ring_px: f32,
+    pub gap_radius_px: f32,
     pub row_px: f32,
     pub chord_px: f32,
     pub table_density: f32,
     pub fixed_factor: u32,
     pub item_count: u32,
     pub cell_count: u32,
-    pub bay_count: u32,
+    pub bin_count: u32,
     pub curve_count: u32,
     pub draw_vertices: u32,
     pub encode_srgb: u32,
@@ -39,7 +39,7 @@ pub struct Frame {
     pub draw_capacity: u32,
     pub row_capacity: u32,
     pub intercept_capacity: u32,
-    pub doubt_capacity: u32,
+    pub gap_candidate_capacity: u32,
     pub leaf_count: u32,
     pub block_leaf_capacity: u32,
     pub tile_leaf_capacity: u32,
@@ -84,7 +84,7 @@ pub struct Counters {
     pub segments: u32,
     pub wanted_rows: u32,
     pub intercepts: u32,
-    pub doubts: u32,
+    pub gap_candidates: u32,
     pub block_leaves: u32,
     pub tile_leaves: u32,
     pub band_tile_leaves: u32,
@@ -97,7 +97,7 @@ pub struct Counters {
     pub contacts: u32,
     pub overlaps: u32,
     pub layers: u32,
-    pub legs: u32,
+    pub ray_segments: u32,
     pub hidden: u32,
     pub edge_chords: u32,
     pub clamps: u32,
@@ -114,12 +114,12 @@ pub struct Factors {
     pub splits: u32,
 }
 
-/// A pixel for pass `heal`, and what is seen there.
+/// A pixel for pass `gap_fill`, and what is seen there.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
-pub struct Doubt {
+pub struct GapCandidate {
     pub pixel: u32,
-    pub healed: [u32; 2],
+    pub word: [u32; 2],
 }
 
 /// One entry of the draw list.

@@ -41,8 +41,8 @@ pub struct Patch {
 
 impl Face {
     /// Packs [`Face::strips`].
-    pub fn pack_strips(strips: u32, bays: u32) -> u32 {
-        strips | bays << 16
+    pub fn pack_strips(strips: u32, bins: u32) -> u32 {
+        strips | bins << 16
     }
 
     /// v-strips of the trim table; 0 where there is none.
@@ -50,8 +50,8 @@ impl Face {
         self.strips & 0xffff
     }
 
-    /// Bays of each strip.
-    pub fn bay_count(&self) -> u32 {
+    /// Bins of each strip.
+    pub fn bin_count(&self) -> u32 {
         self.strips >> 16
     }
 }
@@ -171,7 +171,7 @@ pub struct FaceInstance {
     pub face: u32,
     pub instance: u32,
     pub first_item: u32,
-    pub first_bay: u32,
+    pub first_bin: u32,
     pub first_cell: u32,
     pub first_curve: u32,
     /// Up to whole texels.
@@ -218,7 +218,7 @@ pub struct Cell {
     pub speed_u: f32,
     pub box_max: [f32; 3],
     pub speed_v: f32,
-    pub bay: u32,
+    pub bin: u32,
     pub normal: u32,
     pub low: f32,
     pub high: f32,
@@ -227,14 +227,14 @@ pub struct Cell {
 /// See [`BORDER_BANDS`].
 pub const BORDER_COLUMNS: u32 = crate::abi::constants::border_cells::BORDER_COLUMNS as u32;
 
-/// Where the rows of a v-strip are: `glsl/include/bays.glsl`.
+/// Where the rows of a v-strip are: `glsl/include/u_bins.glsl`.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
 pub struct StripRows {
     pub first: u32,
     pub lines: u32,
-    pub first_bay: u32,
-    pub bays: u32,
+    pub first_bin: u32,
+    pub bins: u32,
 }
 
 /// One trim curve.

@@ -1,6 +1,6 @@
 //! Boolean solids: leaves, their surfaces, and the tiles that see them.
 
-pub use crate::abi::constants::shells::{FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_RING, FRAGMENT_WITHIN, NO_PLANE};
+pub use crate::abi::constants::shells::{FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_SKIRT, FRAGMENT_WITHIN, NO_PLANE};
 pub use crate::abi::constants::solids::{
     EXIT_FALSE, EXIT_TRUE, LEAF_ELSEWHERE, LEAF_FALLS, LEAF_FLAG_BITS, LEAF_NEGATIVE, LEAF_PLANES, LEAF_ROUNDS,
     LEAF_SHELL, LEAF_UNBOUNDED, OWN_PLANE, SIDE_MORE, SIDE_NEGATIVE, SIDE_PLANE, SIDE_SHIFT, SURFACE_PLANE,

@@ -28,7 +28,7 @@ use crate::twin;
 pub fn wanted_bytes(model: &Model, camera: &Camera, eighths: u32) -> Result<f64, UndrawnSolid> {
     let baseline = SceneOptions { trim: Some(TrimMethod::Texture { eighths }), ..SceneOptions::default() };
     let data = SceneData::new(model, SceneRequest { baseline, ..SceneRequest::default() })?;
-    let frame = Frame { cell_count: data.cell_items.len() as u32, bay_count: data.bay_count, ..Frame::default() };
+    let frame = Frame { cell_count: data.cell_items.len() as u32, bin_count: data.bin_count, ..Frame::default() };
     let frame = seen_by(camera, frame);
     let pixels = camera.pixel_matrix();
     let views: Vec<_> = data.placements.iter().map(|p| view(pixels, *p)).collect();

@@ -78,7 +78,7 @@ mod tests {
     const RANGE: u32 = 1 << 27;
 
     fn first() -> Capacities {
-        let counts = Counts { items: 1000, bays: 8, trim: Some(TakenWay::Table), ..Default::default() };
+        let counts = Counts { items: 1000, bins: 8, trim: Some(TakenWay::Table), ..Default::default() };
         Capacities::first(counts, u32::MAX)
     }
 

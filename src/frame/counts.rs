@@ -9,7 +9,7 @@ use crate::scene::SceneData;
 pub(crate) struct Counts {
     pub items: u32,
     pub cells: u32,
-    pub bays: u32,
+    pub bins: u32,
     /// v-strips with several.
     pub wide_strips: u32,
     pub curves: u32,
@@ -60,7 +60,7 @@ impl Counts {
         Self {
             items: data.items.len() as u32,
             cells: data.cell_items.len() as u32,
-            bays: data.bay_count,
+            bins: data.bin_count,
             wide_strips: count(data.wide_strips.len()),
             curves: data.curve_items.len() as u32,
             face_instances: data.face_instances.len() as u32,
@@ -107,8 +107,8 @@ impl Counts {
         let all = [
             ("patches", self.items, MOST_THREADS, FEWER_PARTS),
             ("cells", self.cells, MOST_THREADS, EXACT),
-            ("bays of v-strips", self.bays, MOST_THREADS, EXACT),
-            ("v-strips with several bays", self.wide_strips, MOST_GROUPS, EXACT),
+            ("bins of v-strips", self.bins, MOST_THREADS, EXACT),
+            ("v-strips with several bins", self.wide_strips, MOST_GROUPS, EXACT),
             ("curves", self.curves, MOST_THREADS, EXACT),
             ("triangles", self.triangles, MOST_TRIANGLES, "draw fewer of the meshes, or coarser ones"),
             ("primitives", self.leaves, MOST_THREADS, FEWER_SOLIDS),

@@ -106,7 +106,7 @@ impl Stages {
         size: (u32, u32),
     ) -> Result<Self, GpuError> {
         let room = &Room { device, counts, capacities, size };
-        let (trimmed, edges) = ([counts.bays, counts.curves, capacities.trim.rows], counts.edge_items);
+        let (trimmed, edges) = ([counts.bins, counts.curves, capacities.trim.rows], counts.edge_items);
         let scanned = [2 * counts.items, counts.face_instances, edges].into_iter().chain(trimmed);
         let scanned = scanned.fold(solids::buffers::scanned(room), u32::max);
         let p = passes;

@@ -2,7 +2,7 @@
 
 use super::device::Registration;
 use super::memory::Memory;
-use super::{Device, GpuError, Home, Named, Pool};
+use super::{Device, GpuError, MemoryLocation, Named, Pool};
 use ash::vk;
 use bytemuck::Pod;
 
@@ -18,7 +18,7 @@ pub struct BufferInfo<'a> {
     /// How long it lives.
     pub pool: Pool,
     /// Where its memory is.
-    pub home: Home,
+    pub location: MemoryLocation,
 }
 
 /// A buffer; frees itself and its memory on drop. The GPU must have finished with it by then.
@@ -63,7 +63,7 @@ impl Buffer {
         let handle = unsafe { device.raw().create_buffer(&create, None) }.named("vkCreateBuffer", info.name)?;
         // SAFETY: the buffer was just made from this device.
         let requirements = unsafe { device.raw().get_buffer_memory_requirements(handle) };
-        let bound = Memory::new(device, info.name, requirements, info.pool, info.home, true).and_then(|memory| {
+        let bound = Memory::new(device, info.name, requirements, info.pool, info.location, true).and_then(|memory| {
             let (raw, offset) = memory.raw();
             // SAFETY: memory and buffer belong to this device, neither is bound yet.
             unsafe { device.raw().bind_buffer_memory(handle, raw, offset) }.named("vkBindBufferMemory", info.name)?;
@@ -83,7 +83,7 @@ impl Buffer {
     /// # Errors
     /// See [`Buffer::new`].
     pub fn storage(device: &Device, pool: Pool, name: &str, bytes: u64) -> Result<Self, GpuError> {
-        Self::new(device, &BufferInfo { name, bytes, usage: Self::STORAGE, pool, home: Home::Device })
+        Self::new(device, &BufferInfo { name, bytes, usage: Self::STORAGE, pool, location: MemoryLocation::Device })
     }
 
     /// An [`INDIRECT`](Self::INDIRECT) buffer in device memory.
@@ -91,7 +91,7 @@ impl Buffer {
     /// # Errors
     /// See [`Buffer::new`].
     pub fn indirect(device: &Device, pool: Pool, name: &str, bytes: u64) -> Result<Self, GpuError> {
-        Self::new(device, &BufferInfo { name, bytes, usage: Self::INDIRECT, pool, home: Home::Device })
+        Self::new(device, &BufferInfo { name, bytes, usage: Self::INDIRECT, pool, location: MemoryLocation::Device })
     }
 
     /// The Vulkan buffer.

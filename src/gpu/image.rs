@@ -2,7 +2,7 @@
 
 use super::device::Registration;
 use super::memory::Memory;
-use super::{Device, GpuError, Home, Named, Pool};
+use super::{Device, GpuError, MemoryLocation, Named, Pool};
 use ash::vk;
 
 /// What an image is made from: one layer, one level, one sample a pixel.
@@ -88,7 +88,7 @@ impl Image {
     fn bind(device: &Device, info: &ImageInfo<'_>, handle: vk::Image) -> Result<Memory, GpuError> {
         // SAFETY: the image was just made from this device.
         let requirements = unsafe { device.raw().get_image_memory_requirements(handle) };
-        let memory = Memory::new(device, info.name, requirements, info.pool, Home::Device, false)?;
+        let memory = Memory::new(device, info.name, requirements, info.pool, MemoryLocation::Device, false)?;
         let (raw, offset) = memory.raw();
         // SAFETY: memory and image belong to this device, neither is bound yet.
         unsafe { device.raw().bind_image_memory(handle, raw, offset) }.named("vkBindImageMemory", info.name)?;

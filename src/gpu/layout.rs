@@ -11,7 +11,7 @@ pub enum Binding {
     /// `uniform` block.
     Uniform,
     /// `samplerBuffer`.
-    Texels,
+    TexelBuffer,
     /// `image2D` and its kin.
     StorageImage,
     /// `sampler2D` and its kin: image and sampler in one.
@@ -27,7 +27,7 @@ impl Binding {
             Self::Unused => return None,
             Self::Storage => vk::DescriptorType::STORAGE_BUFFER,
             Self::Uniform => vk::DescriptorType::UNIFORM_BUFFER,
-            Self::Texels => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
+            Self::TexelBuffer => vk::DescriptorType::UNIFORM_TEXEL_BUFFER,
             Self::StorageImage => vk::DescriptorType::STORAGE_IMAGE,
             Self::Sampled => vk::DescriptorType::COMBINED_IMAGE_SAMPLER,
         })

@@ -8,7 +8,7 @@
 
 use super::{Device, GpuError};
 use ash::vk;
-use gpu_allocator::MemoryLocation;
+use gpu_allocator::MemoryLocation as AllocatorLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use std::mem::ManuallyDrop;
 use std::sync::PoisonError;
@@ -40,7 +40,7 @@ impl Pool {
 
 /// Which side of the bus the memory is on, and whether the CPU sees it.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub enum Home {
+pub enum MemoryLocation {
     /// Fastest for the GPU; not mapped.
     Device,
     /// Mapped for the CPU to write.
@@ -68,13 +68,13 @@ impl Memory {
         name: &str,
         requirements: vk::MemoryRequirements,
         pool: Pool,
-        home: Home,
+        location: MemoryLocation,
         linear: bool,
     ) -> Result<Self, GpuError> {
-        let location = match home {
-            Home::Device => MemoryLocation::GpuOnly,
-            Home::Upload => MemoryLocation::CpuToGpu,
-            Home::ReadBack => MemoryLocation::GpuToCpu,
+        let location = match location {
+            MemoryLocation::Device => AllocatorLocation::GpuOnly,
+            MemoryLocation::Upload => AllocatorLocation::CpuToGpu,
+            MemoryLocation::ReadBack => AllocatorLocation::GpuToCpu,
         };
         let allocation_scheme = AllocationScheme::GpuAllocatorManaged;
         let description = AllocationCreateDesc { name, requirements, location, linear, allocation_scheme };

@@ -1,6 +1,6 @@
 //! Push descriptors: the resources of a pass, in binding order, written into the command buffer.
 
-use super::{Binding, Buffer, Commands, Image, Pipeline, Sampler, Texels};
+use super::{Binding, Buffer, Commands, Image, Pipeline, Sampler, TexelBuffer};
 use ash::vk;
 
 /// What stands at one binding.
@@ -19,7 +19,7 @@ pub enum Resource<'a> {
         bytes: u64,
     },
     /// A buffer read through a format.
-    Texels(&'a Texels),
+    TexelBuffer(&'a TexelBuffer),
     /// A storage image in layout `GENERAL`.
     Image(&'a Image),
     /// An image in layout `GENERAL`, seen through a sampler.
@@ -32,9 +32,9 @@ impl<'a> From<&'a Buffer> for Resource<'a> {
     }
 }
 
-impl<'a> From<&'a Texels> for Resource<'a> {
-    fn from(texels: &'a Texels) -> Self {
-        Self::Texels(texels)
+impl<'a> From<&'a TexelBuffer> for Resource<'a> {
+    fn from(texels: &'a TexelBuffer) -> Self {
+        Self::TexelBuffer(texels)
     }
 }
 
@@ -44,7 +44,7 @@ impl<'a> From<&'a Image> for Resource<'a> {
     }
 }
 
-/// Vulkan's description of a resource; one of the two, by binding. Texels need neither.
+/// Vulkan's description of a resource; one of the two, by binding. TexelBuffer need neither.
 #[derive(Clone, Copy, Default)]
 struct Descriptor {
     buffer: vk::DescriptorBufferInfo,
@@ -68,7 +68,7 @@ impl Descriptor {
         match *resource {
             Resource::Buffer(b) => buffer(b, 0, vk::WHOLE_SIZE),
             Resource::Range { buffer: b, first, bytes } => buffer(b, first, bytes),
-            Resource::Texels(_) => Self::default(),
+            Resource::TexelBuffer(_) => Self::default(),
             Resource::Image(i) => image(i, vk::Sampler::null()),
             Resource::Sampled(i, sampler) => image(i, sampler.handle()),
         }
@@ -100,7 +100,7 @@ pub(crate) fn resources(cmd: &Commands<'_>, pipeline: &Pipeline, resources: &[Re
                 (Binding::StorageImage, Resource::Image(_)) | (Binding::Sampled, Resource::Sampled(..)) => {
                     write.image_info(std::slice::from_ref(&descriptor.image))
                 }
-                (Binding::Texels, Resource::Texels(texels)) => {
+                (Binding::TexelBuffer, Resource::TexelBuffer(texels)) => {
                     write.texel_buffer_view(std::slice::from_ref(texels.view()))
                 }
                 _ => panic!("`{}` has {binding:?} at binding {i}, not {resource:?}", pipeline.name()),

@@ -1,6 +1,6 @@
 //! Device memory copied to where the CPU reads it, after the fence.
 
-use super::{Access, Buffer, BufferInfo, Commands, Device, GpuError, Home, Image, Pool, barrier};
+use super::{Access, Buffer, BufferInfo, Commands, Device, GpuError, Image, MemoryLocation, Pool, barrier};
 use ash::vk;
 use bytemuck::Pod;
 
@@ -17,7 +17,7 @@ impl ReadBack {
     /// See [`Buffer::new`].
     pub fn new(device: &Device, name: &str, bytes: u64) -> Result<Self, GpuError> {
         let usage = vk::BufferUsageFlags::TRANSFER_DST;
-        let info = BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::ReadBack };
+        let info = BufferInfo { name, bytes, usage, pool: Pool::Ring, location: MemoryLocation::ReadBack };
         Ok(Self { buffer: Buffer::new(device, &info)? })
     }
 

@@ -43,14 +43,14 @@ impl Texel {
 /// A buffer of usage `UNIFORM_TEXEL_BUFFER` with a view of all of it; frees the view on drop. Passes that write it, or
 /// read it as structs, take it as the buffer that it is.
 #[derive(Debug)]
-pub struct Texels {
+pub struct TexelBuffer {
     view: vk::BufferView,
     // Declared after the view that shows it.
     buffer: Buffer,
     device: Device,
 }
 
-impl Texels {
+impl TexelBuffer {
     /// Of the smallest texel.
     pub const LEAST_BYTES: u64 = 8;
 
@@ -82,7 +82,7 @@ impl Texels {
     }
 }
 
-impl Deref for Texels {
+impl Deref for TexelBuffer {
     type Target = Buffer;
 
     fn deref(&self) -> &Buffer {
@@ -90,7 +90,7 @@ impl Deref for Texels {
     }
 }
 
-impl Drop for Texels {
+impl Drop for TexelBuffer {
     fn drop(&mut self) {
         // SAFETY: owned here; the GPU has finished with it, as the buffer's contract says.
         unsafe { self.device.raw().destroy_buffer_view(self.view, None) }

@@ -1,6 +1,6 @@
 //! Host data into device-local buffers, by staging copies in a given command buffer.
 
-use super::{Access, Buffer, BufferInfo, Commands, GpuError, Home, Pool, barrier};
+use super::{Access, Buffer, BufferInfo, Commands, GpuError, MemoryLocation, Pool, barrier};
 use ash::vk;
 use bytemuck::Pod;
 
@@ -30,7 +30,8 @@ impl Uploads {
         data: &[T],
     ) -> Result<Buffer, GpuError> {
         let (bytes, usage) = (size_of_val(data) as u64, usage | vk::BufferUsageFlags::TRANSFER_DST);
-        let buffer = Buffer::new(cmd.device(), &BufferInfo { name, bytes, usage, pool, home: Home::Device })?;
+        let buffer =
+            Buffer::new(cmd.device(), &BufferInfo { name, bytes, usage, pool, location: MemoryLocation::Device })?;
         self.write(cmd, &buffer, 0, data)?;
         Ok(buffer)
     }
@@ -54,7 +55,7 @@ impl Uploads {
         }
         let name = format!("staging of {}", target.name());
         let (bytes, usage) = (size_of_val(data) as u64, vk::BufferUsageFlags::TRANSFER_SRC);
-        let info = BufferInfo { name: &name, bytes, usage, pool: Pool::Transient, home: Home::Upload };
+        let info = BufferInfo { name: &name, bytes, usage, pool: Pool::Transient, location: MemoryLocation::Upload };
         let mut staging = Buffer::new(cmd.device(), &info)?;
         staging.write(0, data);
         cmd.copy(&staging, 0, target, offset, bytes);

@@ -4,7 +4,7 @@ use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
 use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
 use crate::model::{Camera, LoopAt, Model, TrimLoop};
 use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
-use crate::renderer::{CloseUp, EditError, FrameInput, RenderError, Renderer, TargetFormats, Targets, Wanted};
+use crate::renderer::{DeepZoom, DeepZoomUpload, EditError, FrameInput, RenderError, Renderer, TargetFormats, Targets};
 use crate::scene::SceneRequest;
 use ash::vk;
 use bytemuck::Pod;
@@ -27,7 +27,7 @@ pub struct HeadlessRenderer {
     /// What the renderer draws into.
     formats: TargetFormats,
     model: Option<(Arc<Model>, SceneRequest)>,
-    close_up: CloseUp,
+    deep_zoom: DeepZoom,
 }
 
 /// Images of one size, and the buffers that they are copied to.
@@ -53,7 +53,7 @@ impl HeadlessRenderer {
             device: ManuallyDrop::new(device),
             formats,
             model: None,
-            close_up: CloseUp::default(),
+            deep_zoom: DeepZoom::default(),
         })
     }
 
@@ -107,7 +107,7 @@ impl HeadlessRenderer {
         request: SceneRequest,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<(), HeadlessError> {
-        self.close_up = CloseUp::new(&model);
+        self.deep_zoom = DeepZoom::new(&model);
         let (model, _) = self.model.insert((model, request));
         Ok(self.renderer.upload_request(model, request, progress)?)
     }
@@ -232,7 +232,7 @@ impl HeadlessRenderer {
             renderer.upload_request(model, *settings, &|_| ())?;
             *self.renderer = renderer;
             self.formats = formats;
-            self.close_up = CloseUp::new(model);
+            self.deep_zoom = DeepZoom::new(model);
             *self.targets = None;
         }
         let fits = |t: &TargetImages| t.colour.0.size() == size && t.thickness.is_some() == thickness;
@@ -248,14 +248,14 @@ impl HeadlessRenderer {
         let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
         // loops that are being edited stay where they are, and parts are followed through as a whole
         let whole = settings.editable || settings.thickness || settings.highlight.is_some();
-        let wanted = if whole { Wanted::Same } else { self.close_up.of(model, camera) };
+        let wanted = if whole { DeepZoomUpload::Same } else { self.deep_zoom.of(model, camera) };
         let uploaded = match &wanted {
-            Wanted::Same => Ok(()),
-            Wanted::Whole => self.renderer.upload_request(model, *settings, &|_| ()),
-            Wanted::Cut(near) => self.renderer.upload_cut_request(model, near, *settings),
+            DeepZoomUpload::Same => Ok(()),
+            DeepZoomUpload::Whole => self.renderer.upload_request(model, *settings, &|_| ()),
+            DeepZoomUpload::Cut(near) => self.renderer.upload_cut_request(model, near, *settings),
         };
         if uploaded.is_err() {
-            self.close_up.forget();
+            self.deep_zoom.forget();
         }
         Ok(uploaded?)
     }

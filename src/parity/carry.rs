@@ -38,10 +38,10 @@ fn parity() {
 #[test]
 fn a_difference_is_seen() {
     let gpu = Gpu::new();
-    let case = cases().into_iter().find(|case| !case.data.wide_strips.is_empty()).expect("a case with bays");
+    let case = cases().into_iter().find(|case| !case.data.wide_strips.is_empty()).expect("a case with bins");
     let chain = Chain::new(&case);
     let mut other = chain.rows_add_up.clone();
-    let first = chain.strips.iter().find(|rows| rows.bays > 1).expect("a strip with bays").first as usize;
+    let first = chain.strips.iter().find(|rows| rows.bins > 1).expect("a strip with bins").first as usize;
     other[first] += 1;
     assert!(compare(&gpu, &case, &chain, &other, &chain.rows_add_up).is_err());
     gpu.finish();

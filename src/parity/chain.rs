@@ -62,12 +62,12 @@ impl Chain {
         twin::emit::emit(frame, &c.split.factors, &c.sub_patch_starts, &c.vertex_starts, list, &mut c.counters);
 
         c.density = twin::density::density(&table.frame, &table.scene());
-        c.strip_counts = twin::lines::lines(frame, &c.density.strip_heights, &c.density.seen_bays, &mut c.counters);
+        c.strip_counts = twin::lines::lines(frame, &c.density.strip_heights, &c.density.seen_bins, &mut c.counters);
         c.strip_starts = starts(&c.strip_counts);
         c.segment_counts = twin::segments::segments(frame, scene, &c.density, &c.strip_starts);
         c.segment_starts = starts(&c.segment_counts);
         c.dispatches = twin::sizes::sizes(frame, &c.strip_starts, &c.segment_starts, &mut c.counters);
-        c.strips = twin::sizes::strips(&c.strip_starts, &c.density.seen_bays);
+        c.strips = twin::sizes::strips(&c.strip_starts, &c.density.seen_bins);
         (c.row_counts, c.rows_add_up) = twin::cross::count(frame, scene, &c.strips, &c.segment_starts);
         c.border_cells = twin::cross::border_cells(frame, scene, &c.strips, &c.segment_starts);
         c.row_windings = c.rows_add_up.clone();

@@ -28,7 +28,7 @@ fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> Left {
     let row_counts = gpu.upload("row counts", &before);
     let intercepts = gpu.upload("intercepts", &vec![UNTOUCHED; chain.intercepts.len()]);
     let border_cells = gpu.upload("border cells", &vec![[0u32; 4]; chain.border_cells.len()]);
-    let bays = !case.data.wide_strips.is_empty();
+    let bins = !case.data.wide_strips.is_empty();
     let row_windings = gpu.upload("row windings", &vec![0i32; chain.rows_add_up.len()]);
     let dispatches = gpu.upload("dispatches", chain.dispatches.as_flattened());
     let bindings = Bindings {
@@ -44,10 +44,10 @@ fn on_gpu(gpu: &Gpu, case: &Case, chain: &Chain, insert: bool) -> Left {
         row_counts: &row_counts,
         intercepts: &intercepts,
         border_cells: &border_cells,
-        row_windings: bays.then_some(&row_windings),
+        row_windings: bins.then_some(&row_windings),
         dispatches: &dispatches,
     };
-    let pass = Cross::new(gpu.device(), bays, true).unwrap();
+    let pass = Cross::new(gpu.device(), bins, true).unwrap();
     gpu.run(|cmd| if insert { pass.insert(cmd, &bindings) } else { pass.count(cmd, &bindings) });
     Left {
         row_counts: gpu.read(&row_counts, before.len()),

@@ -7,13 +7,13 @@ use crate::frame::trim::density::{Bindings, Density};
 use crate::twin;
 
 fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
-    let (strips, faces) = (given.data.bay_count as usize, given.data.face_instances.len());
+    let (strips, faces) = (given.data.bin_count as usize, given.data.face_instances.len());
     let s = SceneBuffers::new(gpu, given);
     let strip_heights = gpu.upload("strip heights", &vec![0.0f32; strips]);
     let face_speeds = gpu.upload("face speeds", &vec![0.0f32; 2 * faces]);
-    let bays = !given.data.wide_strips.is_empty();
-    let seen_bays = gpu.upload("seen bays", &vec![0u32; strips]);
-    let pass = Density::new(gpu.device(), bays).unwrap();
+    let bins = !given.data.wide_strips.is_empty();
+    let seen_bins = gpu.upload("seen bins", &vec![0u32; strips]);
+    let pass = Density::new(gpu.device(), bins).unwrap();
     let bindings = Bindings {
         frame: &s.frame,
         views: &s.views,
@@ -24,13 +24,13 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
         cell_items: &s.cell_items,
         strip_heights: &strip_heights,
         face_speeds: &face_speeds,
-        seen_bays: bays.then_some(&seen_bays),
+        seen_bins: bins.then_some(&seen_bins),
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, given.data.cell_items.len() as u32));
     let twin = twin::density::density(&expected.frame, &expected.scene());
     floats("strip heights", &gpu.read(&strip_heights, strips), &twin.strip_heights, gpu.slack())?;
-    if bays {
-        same("seen bays", &gpu.read(&seen_bays, strips), &twin.seen_bays)?;
+    if bins {
+        same("seen bins", &gpu.read(&seen_bins, strips), &twin.seen_bins)?;
     }
     floats("face speeds", &gpu.read(&face_speeds, 2 * faces), twin.face_speeds.as_flattened(), gpu.slack())
 }
@@ -56,11 +56,11 @@ fn a_table_for_many_views_holds_each() {
         let mut frame = case.frame;
         frame.table_density = one.face_speeds.iter().flatten().fold(0.0, |all: f32, speed| all.max(*speed));
         let many = twin::density::density(&frame, &case.scene());
-        for ((one, many), seen) in one.strip_heights.iter().zip(&many.strip_heights).zip(&one.seen_bays) {
+        for ((one, many), seen) in one.strip_heights.iter().zip(&many.strip_heights).zip(&one.seen_bins) {
             assert!(one <= many);
             more += usize::from(*seen == 0 && *many > 0.0);
         }
-        assert!(one.seen_bays.iter().zip(&many.seen_bays).all(|(one, many)| one & !many == 0));
+        assert!(one.seen_bins.iter().zip(&many.seen_bins).all(|(one, many)| one & !many == 0));
     }
     assert!(more > 0, "every strip is seen in every view");
 }
@@ -73,6 +73,6 @@ fn a_difference_is_seen() {
     let last = fast.data.cells.len() - 1; // of the plate: the last strip of either instance
     fast.data.cells[last].speed_v *= 1.001;
     let mismatch = compare(&gpu, &fast, case).unwrap_err();
-    assert_eq!((mismatch.buffer, mismatch.index), ("strip heights", case.data.bay_count as usize / 2 - 1));
+    assert_eq!((mismatch.buffer, mismatch.index), ("strip heights", case.data.bin_count as usize / 2 - 1));
     gpu.finish();
 }

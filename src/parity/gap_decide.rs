@@ -70,7 +70,7 @@ impl Pixel {
 }
 
 fn frame() -> Frame {
-    Frame { ring_px: 0.25, deviation_px: 0.125, focal: 512.0, perspective: 1, ..Frame::default() }
+    Frame { gap_radius_px: 0.25, deviation_px: 0.125, focal: 512.0, perspective: 1, ..Frame::default() }
 }
 
 /// `word` tells candidates apart.

@@ -3,8 +3,8 @@
 use super::Case;
 use crate::bindings::Bounded;
 use crate::gpu::{
-    Access, Binding, Buffer, Commands, ComputeInfo, Device, Pipeline, Pool, ReadBack, Resource, Texel, Texels, Uploads,
-    barrier,
+    Access, Binding, Buffer, Commands, ComputeInfo, Device, Pipeline, Pool, ReadBack, Resource, Texel, TexelBuffer,
+    Uploads, barrier,
 };
 use crate::headless::{HeadlessDevice, HeadlessOptions};
 use crate::scene::ExactData;
@@ -65,19 +65,19 @@ impl Gpu {
     }
 
     /// The same, for shaders that fetch texels, too.
-    pub(super) fn upload_texels<T: Pod>(&self, name: &str, data: &[T], texel: Texel) -> Texels {
+    pub(super) fn upload_texels<T: Pod>(&self, name: &str, data: &[T], texel: Texel) -> TexelBuffer {
         let record = |cmd: &Commands<'_>| {
             let mut uploads = Uploads::new();
             let usage = Buffer::STORAGE | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
             let buffer = uploads.buffer(cmd, Pool::Transient, name, usage, data).unwrap();
             uploads.finish(cmd, Access::COMPUTE_READ);
-            (Texels::new(cmd.device(), buffer, texel).unwrap(), uploads)
+            (TexelBuffer::new(cmd.device(), buffer, texel).unwrap(), uploads)
         };
         self.0.submit(record).unwrap().0
     }
 
     /// What the exact trim test reads, in its order.
-    pub(super) fn upload_exact(&self, data: &ExactData) -> [Texels; 3] {
+    pub(super) fn upload_exact(&self, data: &ExactData) -> [TexelBuffer; 3] {
         [
             self.upload_texels("faces", &data.faces, Texel::U32x4),
             self.upload_texels("cells", &data.cells, Texel::Words),
@@ -96,7 +96,7 @@ impl Gpu {
         (questions, blank): (&[Vec<Q>], A),
     ) -> Vec<Vec<A>> {
         let texels = self.upload_exact(data);
-        let bindings = [vec![Binding::Texels; texels.len()], vec![Binding::Storage; 2]].concat();
+        let bindings = [vec![Binding::TexelBuffer; texels.len()], vec![Binding::Storage; 2]].concat();
         let spirv = words(spirv);
         let info = ComputeInfo { name, spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
         let pipeline = Pipeline::compute(self.device(), &info).unwrap();
@@ -147,16 +147,16 @@ pub(super) struct SceneBuffers {
     pub frame: Buffer,
     pub views: Buffer,
     pub instances: Buffer,
-    pub face_instances: Texels,
-    pub faces: Texels,
+    pub face_instances: TexelBuffer,
+    pub faces: TexelBuffer,
     pub patches: Buffer,
-    pub points: Texels,
+    pub points: TexelBuffer,
     pub items: Buffer,
     pub cells: Buffer,
     pub cell_items: Buffer,
-    pub curves: Texels,
-    pub curve_points: Texels,
-    pub curve_items: Texels,
+    pub curves: TexelBuffer,
+    pub curve_points: TexelBuffer,
+    pub curve_items: TexelBuffer,
 }
 
 impl SceneBuffers {

@@ -12,14 +12,14 @@ fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: &[f32], expected: &[f3
     let strip_heights = gpu.upload("strip heights", given);
     let strip_counts = gpu.upload("strip counts", &vec![UNTOUCHED; given.len()]);
     let counters = gpu.upload("counters", &[Counters::default()]);
-    let seen_bays = gpu.upload("seen bays", seen);
+    let seen_bins = gpu.upload("seen bins", seen);
     let pass = Lines::new(gpu.device(), true).unwrap();
     let bindings = Bindings {
         frame: &frame_buffer,
         strip_heights: &strip_heights,
         strip_counts: &strip_counts,
         counters: &counters,
-        seen_bays: Some(&seen_bays),
+        seen_bins: Some(&seen_bins),
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, given.len() as u32));
     let mut clamps = Counters::default();
@@ -33,7 +33,7 @@ fn parity() {
     let gpu = Gpu::new();
     for case in cases() {
         let density = Chain::new(&case).density;
-        let (mut heights, seen) = (density.strip_heights, density.seen_bays);
+        let (mut heights, seen) = (density.strip_heights, density.seen_bins);
         compare(&gpu, &case.frame, &seen, &heights, &heights).unwrap();
         heights[0] = 1e6; // more than a strip can have
         heights[1] = 65536.0 * case.frame.row_px; // as many as it can have
@@ -47,7 +47,7 @@ fn a_difference_is_seen() {
     let gpu = Gpu::new();
     let case = &cases()[0];
     let density = Chain::new(case).density;
-    let (heights, seen) = (density.strip_heights, density.seen_bays);
+    let (heights, seen) = (density.strip_heights, density.seen_bins);
     let mut other = heights.clone();
     other[4] += 2.0 * case.frame.row_px;
     let mismatch = compare(&gpu, &case.frame, &seen, &other, &heights).unwrap_err();

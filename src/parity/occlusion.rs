@@ -1,4 +1,4 @@
-//! Parity of the passes `hide` and `farthest`: exact; of `reveal`: what the twin says in double precision with some slack,
+//! Parity of the passes `cull_early` and `depth_pyramid`: exact; of `cull_late`: what the twin says in double precision with some slack,
 //! and without as much.
 
 use super::harness::{Gpu, Mismatch, SceneBuffers, same};
@@ -34,7 +34,7 @@ fn taus(case: &Case) -> Vec<u32> {
     twin::bound::bound(&case.frame, &case.scene(), &mut Counters::default())
 }
 
-fn compare_hide(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<(), Mismatch> {
+fn compare_cull_early(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<(), Mismatch> {
     let n = case.data.items.len();
     let s = SceneBuffers::new(gpu, case);
     let mut twin_taus = taus(case);
@@ -43,7 +43,7 @@ fn compare_hide(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Resu
     let pass = cull_early::CullEarly::new(gpu.device()).unwrap();
     let bindings = cull_early::Bindings { frame: &s.frame, hidden: &hidden, taus: &taus, counters: &counters };
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
-    let marked = twin::occlusion::hide(expected, &mut twin_taus);
+    let marked = twin::occlusion::cull_early(expected, &mut twin_taus);
     same("taus", &gpu.read(&taus, n), &twin_taus)?;
     same("counters", &gpu.read(&counters, 1), &[Counters { hidden: marked, ..Counters::default() }])
 }
@@ -54,11 +54,11 @@ fn parity_of_hide_is_exact_and_sees_a_difference() {
     let case = &crowd()[0];
     let mut random = Random::new(9);
     let hidden: Vec<u32> = case.data.items.iter().map(|_| u32::from(random.integer(0, 3) > 0)).collect();
-    compare_hide(&gpu, case, &hidden, &hidden).unwrap();
+    compare_cull_early(&gpu, case, &hidden, &hidden).unwrap();
     let mut other = hidden.clone();
     let seen = taus(case).iter().position(|tau| *tau != 0).unwrap();
     other[seen] ^= 1;
-    let mismatch = compare_hide(&gpu, case, &other, &hidden).unwrap_err();
+    let mismatch = compare_cull_early(&gpu, case, &other, &hidden).unwrap_err();
     assert_eq!((mismatch.buffer, mismatch.index), ("taus", seen));
     gpu.finish();
 }
@@ -99,7 +99,12 @@ fn parity_of_farthest_is_exact_and_sees_a_difference() {
 }
 
 /// The pass, against the twin with and without slack; how many items lie behind, and how many of those that are seen do not.
-fn compare_reveal(gpu: &Gpu, case: &Case, given: &Farthest, expected: &Farthest) -> Result<(usize, usize), Mismatch> {
+fn compare_cull_late(
+    gpu: &Gpu,
+    case: &Case,
+    given: &Farthest,
+    expected: &Farthest,
+) -> Result<(usize, usize), Mismatch> {
     let n = case.data.items.len();
     let s = SceneBuffers::new(gpu, case);
     let mut old = taus(case);
@@ -135,7 +140,7 @@ fn compare_reveal(gpu: &Gpu, case: &Case, given: &Farthest, expected: &Farthest)
         return Err(Mismatch { buffer: "hidden", index, values: format!("GPU {behind}") });
     }
     let told: Vec<_> =
-        old.iter().zip(&on_gpu).map(|(tau, behind)| twin::occlusion::reveal(*tau, *behind == 1)).collect();
+        old.iter().zip(&on_gpu).map(|(tau, behind)| twin::occlusion::cull_late(*tau, *behind == 1)).collect();
     same("hidden", &on_gpu, &told.iter().map(|t| t.1).collect::<Vec<_>>())?;
     same("taus", &gpu.read(&taus, n), &told.iter().map(|t| t.0).collect::<Vec<_>>())?;
     let left = 1000 - told.iter().filter(|t| t.2).count() as u32;
@@ -163,7 +168,7 @@ fn parity_of_reveal() {
             let z = case.frame.near + share * range;
             let scale = if case.frame.perspective != 0 { case.frame.near / z } else { 1.0 };
             let wall = wall(&case, (case.frame.far - z) / range * scale);
-            let (more_behind, more_before) = compare_reveal(&gpu, &case, &wall, &wall).unwrap();
+            let (more_behind, more_before) = compare_cull_late(&gpu, &case, &wall, &wall).unwrap();
             (behind, before) = (behind + more_behind, before + more_before);
         }
     }
@@ -176,8 +181,8 @@ fn a_difference_of_reveal_is_seen() {
     let gpu = Gpu::new();
     let case = &crowd()[0];
     let (near, nothing) = (wall(case, 1.0), wall(case, 0.0));
-    compare_reveal(&gpu, case, &near, &near).unwrap();
-    assert_eq!(compare_reveal(&gpu, case, &near, &nothing).unwrap_err().buffer, "hidden");
-    assert_eq!(compare_reveal(&gpu, case, &nothing, &near).unwrap_err().buffer, "hidden");
+    compare_cull_late(&gpu, case, &near, &near).unwrap();
+    assert_eq!(compare_cull_late(&gpu, case, &near, &nothing).unwrap_err().buffer, "hidden");
+    assert_eq!(compare_cull_late(&gpu, case, &nothing, &near).unwrap_err().buffer, "hidden");
     gpu.finish();
 }

@@ -2,7 +2,7 @@
 
 use super::Random;
 use super::harness::{Gpu, Mismatch, same};
-use crate::abi::{Counters, FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_RING, Fragment, Frame, Leaf};
+use crate::abi::{Counters, FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_SKIRT, Fragment, Frame, Leaf};
 use crate::frame::solids::operand_sort::{Bindings, OperandSort};
 use crate::twin::operand_sort::{Shells, operand_sort};
 
@@ -31,7 +31,7 @@ fn case(random: &mut Random, most: u32) -> Case {
             let shell = random.integer(0, 3);
             let mut bits = if random.integer(0, 1) == 0 { FRAGMENT_LEAVES } else { 0 };
             if shell > 1 {
-                bits |= FRAGMENT_PATCH | if random.integer(0, 2) == 0 { FRAGMENT_RING } else { 0 };
+                bits |= FRAGMENT_PATCH | if random.integer(0, 2) == 0 { FRAGMENT_SKIRT } else { 0 };
             }
             // few depths, so that some are equal
             let depth = 1.0 + random.integer(0, 40) as f32;
@@ -143,8 +143,8 @@ fn one_from(near: f32, fragments: &[Fragment]) -> (Vec<f32>, u32, u32) {
 #[test]
 fn gaps_are_mended_by_rings_alone() {
     let (enter, leave) = (|t| fragment(0, t), |t| fragment(FRAGMENT_LEAVES, t));
-    let (ring_in, ring_out) = (|t| fragment(FRAGMENT_RING, t), |t| fragment(FRAGMENT_RING | FRAGMENT_LEAVES, t));
-    // rings beside a clean ray are not asked
+    let (ring_in, ring_out) = (|t| fragment(FRAGMENT_SKIRT, t), |t| fragment(FRAGMENT_SKIRT | FRAGMENT_LEAVES, t));
+    // skirts beside a clean ray are not asked
     assert_eq!(one(&[ring_in(1.0), enter(2.0), leave(5.0), ring_out(6.0)]), (vec![2.0, 5.0], 0, 0));
     assert_eq!(one(&[leave(5.0), ring_in(2.0)]), (vec![2.0, 5.0], 1, 0));
     assert_eq!(one(&[enter(2.0), ring_out(4.0)]), (vec![2.0, 4.0], 1, 0));

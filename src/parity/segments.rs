@@ -14,9 +14,9 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case, chain: &Chain) -> Result<()
     let face_speeds = gpu.upload("face speeds", &chain.density.face_speeds);
     let strip_starts = gpu.upload_texels("strip starts", &chain.strip_starts, Texel::Words);
     let segment_counts = gpu.upload("segment counts", &vec![UNTOUCHED; n]);
-    let bays = !given.data.wide_strips.is_empty();
-    let seen_bays = gpu.upload("seen bays", &chain.density.seen_bays);
-    let pass = Segments::new(gpu.device(), bays).unwrap();
+    let bins = !given.data.wide_strips.is_empty();
+    let seen_bins = gpu.upload("seen bins", &chain.density.seen_bins);
+    let pass = Segments::new(gpu.device(), bins).unwrap();
     let bindings = Bindings {
         frame: &s.frame,
         face_instances: &s.face_instances,
@@ -26,7 +26,7 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case, chain: &Chain) -> Result<()
         strip_starts: &strip_starts,
         face_speeds: &face_speeds,
         segment_counts: &segment_counts,
-        seen_bays: bays.then_some(&seen_bays),
+        seen_bins: bins.then_some(&seen_bins),
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
     let scene = expected.scene();

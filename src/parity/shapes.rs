@@ -5,7 +5,7 @@
 //!   drop     1 cubic patch whose sides u = 0, 1 coincide    drawn plain, its own neighbour
 //!   sheet    3 x 2 bicubic patches, 3 loops: a rational     plain, trimmed and absent patches
 //!            hole, and a cubic hole that overlaps it
-//!   sieve    in another model in place of the sheet: 600 holes, so that its strips have several bays
+//!   sieve    in another model in place of the sheet: 600 holes, so that its strips have several bins
 //!   plate    1 bilinear patch, a square with a round hole   trimmed
 //!
 //!   placed as they are, and once mirrored, stretched and aside
@@ -171,7 +171,7 @@ pub(super) fn model_with_sieve() -> Model {
 }
 
 /// The model seen by each camera; then a loose tolerance; then too little room for anything; then the one with the sieve:
-/// all of it, a part of its bays, and with too few rows; at last the model with its patches cut.
+/// all of it, a part of its bins, and with too few rows; at last the model with its patches cut.
 pub(super) fn cases() -> Vec<Case> {
     let (model, cameras) = model_and_cameras();
     let mut cases: Vec<Case> = cameras.iter().map(|camera| Case::new(&model, camera, 0.5)).collect();
@@ -224,10 +224,10 @@ mod tests {
         assert!(chains[1].split.factors.iter().any(|f| f.splits != 1 | 1 << 16), "and splits some");
         assert!(chains[1].counters.plain_draws > 1, "and needs several draws");
         assert_eq!(chains[4].counters.failed, 15, "every buffer of the tight case is too small");
-        let seen = |chain: &Chain| chain.strips.iter().filter(|rows| rows.lines > 0).map(|rows| rows.bays).max();
-        assert_eq!(cases[5].data.faces[2].bay_count(), 4);
-        assert_eq!(seen(&chains[5]), Some(4), "all bays of the sieve");
-        let is_part = |rows: &abi::StripRows| rows.lines > 0 && (rows.first_bay > 0 || rows.bays < 4);
+        let seen = |chain: &Chain| chain.strips.iter().filter(|rows| rows.lines > 0).map(|rows| rows.bins).max();
+        assert_eq!(cases[5].data.faces[2].bin_count(), 4);
+        assert_eq!(seen(&chains[5]), Some(4), "all bins of the sieve");
+        let is_part = |rows: &abi::StripRows| rows.lines > 0 && (rows.first_bin > 0 || rows.bins < 4);
         let wide =
             |chain: &Chain| cases[6].data.wide_strips.iter().any(|&strip| is_part(&chain.strips[strip as usize]));
         assert!(wide(&chains[6]), "the close view sees some of them");

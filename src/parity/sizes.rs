@@ -14,9 +14,9 @@ fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: [&[u32]; 2], expected:
     let strip_starts = gpu.upload("strip starts", given[0]);
     let segment_starts = gpu.upload("segment starts", given[1]);
     let dispatches = gpu.upload("dispatches", &[UNTOUCHED; 9]);
-    let strips = gpu.upload("strips", &vec![UNTOUCHED; 4 * frame.bay_count as usize]);
+    let strips = gpu.upload("strips", &vec![UNTOUCHED; 4 * frame.bin_count as usize]);
     let counters = gpu.upload("counters", &[before]);
-    let seen_bays = gpu.upload("seen bays", seen);
+    let seen_bins = gpu.upload("seen bins", seen);
     let pass = Sizes::new(gpu.device(), true).unwrap();
     let bindings = Bindings {
         frame: &frame_buffer,
@@ -25,9 +25,9 @@ fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: [&[u32]; 2], expected:
         dispatches: &dispatches,
         strips: &strips,
         counters: &counters,
-        seen_bays: Some(&seen_bays),
+        seen_bins: Some(&seen_bins),
     };
-    gpu.run(|cmd| pass.record(cmd, &bindings, frame.bay_count));
+    gpu.run(|cmd| pass.record(cmd, &bindings, frame.bin_count));
     let mut after = before;
     let twin = twin::sizes::sizes(frame, expected[0], expected[1], &mut after);
     let of_strips = twin::sizes::strips(expected[0], seen);
@@ -42,10 +42,10 @@ fn parity() {
     for case in cases() {
         let chain = Chain::new(&case);
         let starts = [chain.strip_starts.as_slice(), chain.segment_starts.as_slice()];
-        compare(&gpu, &case.frame, &chain.density.seen_bays, starts, starts).unwrap();
+        compare(&gpu, &case.frame, &chain.density.seen_bins, starts, starts).unwrap();
         let mut many = chain.segment_starts.clone(); // more than one dispatch can hold
         *many.last_mut().unwrap() = 9_000_000;
-        compare(&gpu, &case.frame, &chain.density.seen_bays, [starts[0], &many], [starts[0], &many]).unwrap();
+        compare(&gpu, &case.frame, &chain.density.seen_bins, [starts[0], &many], [starts[0], &many]).unwrap();
     }
     gpu.finish();
 }
@@ -58,11 +58,11 @@ fn a_difference_is_seen() {
     let starts = [chain.strip_starts.as_slice(), chain.segment_starts.as_slice()];
     let mut other = chain.segment_starts.clone();
     *other.last_mut().unwrap() += 1;
-    let mismatch = compare(&gpu, &case.frame, &chain.density.seen_bays, [starts[0], &other], starts).unwrap_err();
+    let mismatch = compare(&gpu, &case.frame, &chain.density.seen_bins, [starts[0], &other], starts).unwrap_err();
     assert_eq!(mismatch.buffer, "counters");
     let mut other = chain.strip_starts.clone();
     other[1] += 1;
-    let mismatch = compare(&gpu, &case.frame, &chain.density.seen_bays, [&other, starts[1]], starts).unwrap_err();
+    let mismatch = compare(&gpu, &case.frame, &chain.density.seen_bins, [&other, starts[1]], starts).unwrap_err();
     assert_eq!(mismatch.buffer, "strips");
     gpu.finish();
 }

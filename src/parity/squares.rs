@@ -3,7 +3,7 @@
 use super::harness::{Gpu, Mismatch, same};
 use super::shapes::cases;
 use super::{Case, Random};
-use crate::abi::constants::visible::{DOUBTFUL, SEEN_MESH, SEEN_OPERAND, SEEN_SOLID};
+use crate::abi::constants::visible::{GAP_CANDIDATE, SEEN_MESH, SEEN_OPERAND, SEEN_SOLID};
 use crate::abi::{MeshInstance, TILE};
 use crate::frame::shading::seen_squares::{Bindings, SeenSquares};
 use crate::frame::visibility::mesh::{self, Mesh};
@@ -139,14 +139,14 @@ fn parity_is_exact_and_sees_a_difference() {
     let squares = compare(&gpu, case, (&few.seen, &many.seen), |n| few.words[n] != 0 || many.words[n] != 0).unwrap();
     assert!(squares.iter().any(|side| *side > 1), "nothing but single tiles");
     compare(&gpu, case, (&few.seen, &many.seen), |n| few.words[n] != 0).unwrap_err();
-    // a patch, a mesh, both doubtful or not; what is neither; and the other image behind nothing, though it is in doubt
-    for (word, is_seen) in [(7, true), (SEEN_MESH | 7, true), (DOUBTFUL | 7, true)] {
+    // a patch, a mesh, both candidates or not; what is neither; and the other image behind nothing, though it is in doubt
+    for (word, is_seen) in [(7, true), (SEEN_MESH | 7, true), (GAP_CANDIDATE | 7, true)] {
         compare(&gpu, case, (&filled(&gpu, word, size), &few.seen), |_| is_seen).unwrap();
     }
     for word in [SEEN_SOLID | 7, SEEN_OPERAND | 7] {
         compare(&gpu, case, (&filled(&gpu, word, size), &few.seen), |_| false).unwrap();
     }
-    for word in [0, DOUBTFUL] {
+    for word in [0, GAP_CANDIDATE] {
         compare(&gpu, case, (&filled(&gpu, word, size), &few.seen), |n| few.words[n] != 0).unwrap();
     }
     drop((few, many));

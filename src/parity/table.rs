@@ -6,8 +6,8 @@ use super::shapes::{model_and_cameras, model_with_sieve, sheet_loops, sieve_loop
 use super::{Case, Random};
 use crate::abi::{BORDER_BANDS, Face, StripRows};
 use crate::trim::LoopIndex;
-use crate::twin::bays::bay_of;
 use crate::twin::table::{ALONG_BEFORE, ALONG_BEHIND, Table};
+use crate::twin::u_bins::bin_of;
 use glam::DVec2;
 
 /// The face instance of the sheet and its strips, in the first instance of the model.
@@ -41,11 +41,11 @@ fn points(count: usize) -> Vec<[f32; 2]> {
     border.into_iter().chain(inner).collect()
 }
 
-/// The rows of the strip that a point is in; `None` where nobody sees its bay.
-fn rows_at(chain: &Chain, first_bay: u32, face: &Face, [u, v]: [f32; 2]) -> Option<StripRows> {
-    let strip = first_bay + (v * face.strip_count() as f32) as u32 * face.bay_count();
-    let (rows, bay) = (chain.strips[strip as usize], bay_of(u, face.bay_count()));
-    (rows.lines > 0 && bay >= rows.first_bay && bay <= rows.last_bay()).then_some(rows)
+/// The rows of the strip that a point is in; `None` where nobody sees its bin.
+fn rows_at(chain: &Chain, first_bin: u32, face: &Face, [u, v]: [f32; 2]) -> Option<StripRows> {
+    let strip = first_bin + (v * face.strip_count() as f32) as u32 * face.bin_count();
+    let (rows, bin) = (chain.strips[strip as usize], bin_of(u, face.bin_count()));
+    (rows.lines > 0 && bin >= rows.first_bin && bin <= rows.last_bin()).then_some(rows)
 }
 
 /// A point is decided as by the exact loops unless it is nearer to one than half a row and a chord.
@@ -66,7 +66,7 @@ fn the_table_decides_as_the_exact_loops_do() {
         let strips = face.strip_count();
         let speed = chain.density.face_speeds[SHEET].map(f64::from);
         for [u, v] in points(20_000).into_iter().filter(|p| p[1] > 0.0 && p[1] < 1.0) {
-            let Some(rows) = rows_at(&chain, placed.first_bay, face, [u, v]) else { continue };
+            let Some(rows) = rows_at(&chain, placed.first_bin, face, [u, v]) else { continue };
             // the nearest row, and a chord that is off by chord_px where a unit covers the most pixels
             let row = 0.5 / f64::from(strips * rows.lines);
             let chord = f64::from(case.frame.chord_px) / speed[0].min(speed[1]);
@@ -74,7 +74,7 @@ fn the_table_decides_as_the_exact_loops_do() {
             let off = exact.distance_scaled(uv * domain, 1.0 / domain, 1.0);
             const ROUNDING: f64 = 1e-6; // of single precision, and the direction in the last bit of u
             if off > row + chord + ROUNDING {
-                let inside = table.inside(placed.first_bay, face, [u, v]);
+                let inside = table.inside(placed.first_bin, face, [u, v]);
                 assert_eq!(inside, exact.contains(uv * domain), "{uv}, {off:e} from the nearest loop");
                 decided[usize::from(inside)] += 1;
             }
@@ -95,7 +95,7 @@ fn boxes_that_no_border_meets_are_all_the_same() {
         let chain = Chain::new(&case);
         let flips: Vec<f32> = chain.flips.iter().map(|&bits| f32::from_bits(bits)).collect();
         let table = table(&case, &chain, &flips);
-        let (first, face) = (case.data.face_instances[SHEET].first_bay, &case.data.faces[SHEET]);
+        let (first, face) = (case.data.face_instances[SHEET].first_bin, &case.data.faces[SHEET]);
         for p in points(5_000) {
             let (lo, hi) = around(p);
             if !table.same(first, face, lo, hi) {
@@ -134,14 +134,14 @@ fn lines_without_borders_are_all_the_same() {
         let chain = Chain::new(&case);
         let flips: Vec<f32> = chain.flips.iter().map(|&bits| f32::from_bits(bits)).collect();
         let table = table(&case, &chain, &flips);
-        let (first, face) = (case.data.face_instances[SHEET].first_bay, &case.data.faces[SHEET]);
+        let (first, face) = (case.data.face_instances[SHEET].first_bin, &case.data.faces[SHEET]);
         for [u, v] in points(5_000).into_iter().filter(|p| p[0] >= 0.0 && p[0] < 1.0) {
             let reach = 4.0 * AROUND[0];
             let told = table.along(first, face, [u, v], reach);
             let inside = table.inside(first, face, [u, v]);
             for (bit, way) in [(ALONG_BEFORE, -1.0), (ALONG_BEHIND, 1.0)] {
                 let steps = (1..400).map(|step| u + way * reach * (step as f32 / 400.0));
-                let mut steps = steps.take_while(|&at| bay_of(at, face.bay_count()) == bay_of(u, face.bay_count()));
+                let mut steps = steps.take_while(|&at| bin_of(at, face.bin_count()) == bin_of(u, face.bin_count()));
                 let changes = steps.any(|at| table.inside(first, face, [at, v]) != inside);
                 assert!(!changes || told & bit != 0, "{u}, {v}: a border in way {way} is not told");
                 lines[k][usize::from(told & bit != 0)] += 1;
@@ -178,12 +178,12 @@ mod parity {
         let info = ComputeInfo {
             name: "table",
             spirv: &words(include_bytes!("../../tests/gpu/spirv/table.comp.spv")),
-            bindings: &[vec![Binding::Uniform], vec![Binding::Texels; 4], vec![Binding::Storage; 2]].concat(),
+            bindings: &[vec![Binding::Uniform], vec![Binding::TexelBuffer; 4], vec![Binding::Storage; 2]].concat(),
             push_bytes: 16,
             constants: &[],
         };
         let pipeline = Pipeline::compute(gpu.device(), &info).unwrap();
-        let push = [placed.first_bay, face.strips, AROUND[0].to_bits(), AROUND[1].to_bits()];
+        let push = [placed.first_bin, face.strips, AROUND[0].to_bits(), AROUND[1].to_bits()];
         gpu.run(|cmd| {
             let texels = [&of_strips, &rows, &flips, &border_cells].map(Resource::from);
             let of_points = [&uvs, &answers].map(Resource::from);
@@ -195,10 +195,10 @@ mod parity {
         let table = table(case, expected, &flips);
         let answer = |&p: &[f32; 2]| {
             let (lo, hi) = around(p);
-            let told = table.same(placed.first_bay, face, lo, hi);
-            table.along(placed.first_bay, face, p, AROUND[0])
+            let told = table.same(placed.first_bin, face, lo, hi);
+            table.along(placed.first_bin, face, p, AROUND[0])
                 | u32::from(told) << 3
-                | u32::from(table.inside(placed.first_bay, face, p)) << 4
+                | u32::from(table.inside(placed.first_bin, face, p)) << 4
         };
         let twin: Vec<u32> = points.iter().map(answer).collect();
         same("answers", &gpu.read(&answers, points.len()), &twin)
@@ -220,7 +220,7 @@ mod parity {
         let case = &cases()[0];
         let chain = Chain::new(case);
         let mut other = chain.clone();
-        let strip = case.data.face_instances[SHEET].first_bay as usize + 2;
+        let strip = case.data.face_instances[SHEET].first_bin as usize + 2;
         let row = chain.strip_starts[strip] as usize;
         other.flip_counts[row..].fill(0);
         assert!(compare(&gpu, case, &other, &chain).is_err());

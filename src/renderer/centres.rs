@@ -4,7 +4,7 @@ use super::Retired;
 use super::slot::{upload_buffer, upload_texels};
 use crate::abi;
 use crate::frame::Centres;
-use crate::gpu::{Buffer, Device, GpuError, Texels};
+use crate::gpu::{Buffer, Device, GpuError, TexelBuffer};
 use crate::model::Camera;
 use crate::scene::{SceneData, SolidData};
 
@@ -12,13 +12,13 @@ use crate::scene::{SceneData, SolidData};
 #[derive(Default)]
 pub(super) struct SlotCentres {
     leaves: Option<Buffer>,
-    surfaces: Option<Texels>,
+    surfaces: Option<TexelBuffer>,
     /// Surfaces of the volume that trims the scene.
-    volume: Option<Texels>,
+    volume: Option<TexelBuffer>,
     /// The sun, and where its picture has the eye.
     sun: Option<Buffer>,
     /// The parts that it sees.
-    sun_parts: Option<Texels>,
+    sun_parts: Option<TexelBuffer>,
 }
 
 impl SlotCentres {
@@ -52,7 +52,7 @@ impl SlotCentres {
         for (place, name, texels) in lists {
             let bytes = texels.as_ref().map_or(0, |texels| size_of_val(texels.as_slice()) as u64);
             if texels.is_none() || place.as_ref().is_some_and(|t| t.bytes() < bytes) {
-                retired.extend(place.take().map(Retired::Texels));
+                retired.extend(place.take().map(Retired::TexelBuffer));
             }
             if texels.is_some() && place.is_none() {
                 *place = Some(upload_texels(device, name, bytes)?);
@@ -81,11 +81,11 @@ impl SlotCentres {
         self.sun.as_ref()
     }
 
-    pub(super) fn sun_parts(&self) -> Option<&Texels> {
+    pub(super) fn sun_parts(&self) -> Option<&TexelBuffer> {
         self.sun_parts.as_ref()
     }
 
-    pub(super) fn volume(&self) -> Option<&Texels> {
+    pub(super) fn volume(&self) -> Option<&TexelBuffer> {
         self.volume.as_ref()
     }
 }

@@ -12,7 +12,7 @@
 //! of another scene, of another picture size, or larger ones. A trim table follows from the views that it serves and from
 //! the tolerance alone (`scene::trimmed`).
 
-use crate::frame::Hiding;
+use crate::frame::OcclusionState;
 use crate::model::Camera;
 use crate::picture::FrameSettings;
 use crate::scene::TableView;
@@ -20,7 +20,7 @@ use crate::scene::TableView;
 /// What the last frame left, and the view that it drew.
 #[derive(Clone, Copy, Debug)]
 pub(super) struct History {
-    pub(super) hiding: Hiding,
+    pub(super) occlusion: OcclusionState,
     /// The visibility of each pixel is that of the frame before.
     pub(super) reuses_view: bool,
     /// The trim table is that of the frame before.
@@ -44,19 +44,19 @@ impl History {
         // the choice of passes is no part of the view
         let view = (camera, FrameSettings { all_passes: false, ..settings });
         let is_same = |before: &Self| before.view == view && !edited;
-        let hiding = match before {
-            None => Hiding::First,
-            Some(before) if before.hiding == Hiding::First => Hiding::Asks,
-            Some(before) if is_same(&before) => Hiding::Same,
-            Some(_) => Hiding::Moved,
+        let occlusion = match before {
+            None => OcclusionState::First,
+            Some(before) if before.occlusion == OcclusionState::First => OcclusionState::Asks,
+            Some(before) if is_same(&before) => OcclusionState::Same,
+            Some(_) => OcclusionState::Moved,
         };
-        let is_drawn = before.filter(is_same).is_some_and(|before| !hides || before.hiding == Hiding::Same);
+        let is_drawn = before.filter(is_same).is_some_and(|before| !hides || before.occlusion == OcclusionState::Same);
         let serves = |before: &Self| {
             let (_, settings_before) = before.view;
             table.is_some() && before.table == table && settings_before.tolerance_px == settings.tolerance_px
         };
         let has_table = before.filter(serves).is_some() && !edited;
         let may_reuse = !settings.all_passes;
-        Self { hiding, reuses_view: is_drawn && may_reuse, reuses_table: has_table && may_reuse, table, view }
+        Self { occlusion, reuses_view: is_drawn && may_reuse, reuses_table: has_table && may_reuse, table, view }
     }
 }

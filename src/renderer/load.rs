@@ -92,7 +92,7 @@ impl Renderer {
         self.upload_request(model, settings.into(), progress)
     }
 
-    /// As [`upload_with`](Self::upload_with), of what [`CloseUp`](super::CloseUp) cut out of a model for a view: shadows
+    /// As [`upload_with`](Self::upload_with), of what [`DeepZoom`](super::DeepZoom) cut out of a model for a view: shadows
     /// are those of the whole model, of which all spline faces that cast them are made triangles for each cut.
     ///
     /// # Errors

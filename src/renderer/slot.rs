@@ -8,7 +8,9 @@ use crate::abi;
 use crate::abi::Counters;
 use crate::frame::ViewBuffers;
 use crate::frame::capacities::Capacities;
-use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Pool, ReadBack, Texel, Texels, Timestamps};
+use crate::gpu::{
+    Buffer, BufferInfo, Device, GpuError, MemoryLocation, Pool, ReadBack, Texel, TexelBuffer, Timestamps,
+};
 use crate::model::Camera;
 use crate::picture::PoolBytes;
 use crate::scene::{TableView, seen_by, view};
@@ -21,7 +23,7 @@ const SCOPES: u32 = 17;
 /// What one frame in flight owns.
 pub(super) struct Slot {
     pub(super) constants: Buffer,
-    pub(super) views: Option<Texels>,
+    pub(super) views: Option<TexelBuffer>,
     /// The same for each of a pixel's samples, where there are several.
     pub(super) samples: Vec<ViewBuffers>,
     /// What the trim table is made of, where that is another view.
@@ -90,7 +92,7 @@ impl Slot {
         let bytes = size_of_val(views.as_slice()) as u64;
         if self.views.as_ref().is_none_or(|b| b.bytes() < bytes) {
             let made = upload_views(device, "views", bytes)?;
-            self.retired.extend(self.views.replace(made).map(Retired::Texels));
+            self.retired.extend(self.views.replace(made).map(Retired::TexelBuffer));
         }
         if let Some(buffer) = &mut self.views {
             buffer.write(0, &views);
@@ -184,16 +186,16 @@ pub(super) fn upload_buffer(device: &Device, name: &str, bytes: u64) -> Result<B
     use vk::BufferUsageFlags as Usage;
     // constants are uniform, and change from band to band
     let usage = Usage::UNIFORM_BUFFER | Usage::STORAGE_BUFFER | Usage::TRANSFER_DST;
-    Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })
+    Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, location: MemoryLocation::Upload })
 }
 
 /// Of four floats each.
-pub(super) fn upload_texels(device: &Device, name: &str, bytes: u64) -> Result<Texels, GpuError> {
+pub(super) fn upload_texels(device: &Device, name: &str, bytes: u64) -> Result<TexelBuffer, GpuError> {
     texels(device, name, bytes, vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER)
 }
 
 /// The same, which some passes read as structs.
-fn upload_views(device: &Device, name: &str, bytes: u64) -> Result<Texels, GpuError> {
+fn upload_views(device: &Device, name: &str, bytes: u64) -> Result<TexelBuffer, GpuError> {
     use vk::BufferUsageFlags as Usage;
     texels(device, name, bytes, Usage::UNIFORM_TEXEL_BUFFER | Usage::STORAGE_BUFFER)
 }
@@ -204,10 +206,11 @@ fn view_buffers(device: &Device, names: [&str; 2], bytes: u64) -> Result<ViewBuf
 }
 
 fn gone(buffers: ViewBuffers) -> [Retired; 2] {
-    [Retired::Buffer(buffers.constants), Retired::Texels(buffers.views)]
+    [Retired::Buffer(buffers.constants), Retired::TexelBuffer(buffers.views)]
 }
 
-fn texels(device: &Device, name: &str, bytes: u64, usage: vk::BufferUsageFlags) -> Result<Texels, GpuError> {
-    let buffer = Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, home: Home::Upload })?;
-    Texels::new(device, buffer, Texel::F32x4)
+fn texels(device: &Device, name: &str, bytes: u64, usage: vk::BufferUsageFlags) -> Result<TexelBuffer, GpuError> {
+    let buffer =
+        Buffer::new(device, &BufferInfo { name, bytes, usage, pool: Pool::Ring, location: MemoryLocation::Upload })?;
+    TexelBuffer::new(device, buffer, Texel::F32x4)
 }

@@ -1,8 +1,8 @@
-//! The trim table's strips and bays of a face, and the cells that tell how dense its scan lines must be.
+//! The trim table's strips and bins of a face, and the cells that tell how dense its scan lines must be.
 //!
 //! ```text
 //!    v ▲  strip   ├────┬────┤
-//!      │          │cell│cell│ bays        of each: a box, and how fast the surface runs there
+//!      │          │cell│cell│ bins        of each: a box, and how fast the surface runs there
 //!      │          ├────┼────┤
 //!      └─────────────────────▶ u
 //! ```
@@ -16,15 +16,15 @@ use crate::spline::{Bezier, Control, Patch, SurfacePatch};
 use glam::{DVec2, DVec3};
 
 /// v-strips of a face with few rows of patches. More strips follow a changing density more closely
-/// and leave out more rows beyond the picture; each costs a cell of 48 bytes a bay.
+/// and leave out more rows beyond the picture; each costs a cell of 48 bytes a bin.
 const LEAST_STRIPS: usize = 8;
 /// The paper's benchmark used 128 strips for every surface; nothing asked for more.
 const MOST_STRIPS: usize = 128;
-/// Intercepts of a scan line, on average, for each bay: fewer than pass `sort` holds in registers. Bays that nobody sees
+/// Intercepts of a scan line, on average, for each bin: fewer than pass `sort` holds in registers. Bins that nobody sees
 /// cost nothing in a view, so many are better than few; each costs a cell a strip.
-const BAY_INTERCEPTS: f64 = 8.0;
+const BIN_INTERCEPTS: f64 = 8.0;
 /// A word has a bit for each.
-const MOST_BAYS: f64 = 32.0;
+const MOST_BINS: f64 = 32.0;
 /// The root of the number of curves, for each strip: four rows of holes that are as many across, of four curves each.
 const STRIP_CURVES: f64 = 8.0;
 
@@ -42,7 +42,7 @@ pub(super) fn strips(face: &Face, rows: usize, way: TakenWay) -> u32 {
     };
     let (v0, v1) = face.surface.domain().1;
     let intercepts = curves().map(height).sum::<f64>() / (v1 - v0);
-    abi::Face::pack_strips(strips, (intercepts / BAY_INTERCEPTS).clamp(1.0, MOST_BAYS) as u32)
+    abi::Face::pack_strips(strips, (intercepts / BIN_INTERCEPTS).clamp(1.0, MOST_BINS) as u32)
 }
 
 /// Which of `n` equal parts of 0 to 1 an interval reaches, and the share of the interval, 0 to 1 within it, that is in each.
@@ -67,12 +67,12 @@ fn slab(piece: &Patch, origin: DVec3) -> (u32, f32, f32) {
     (word, (low as f32).next_down(), round_up(high))
 }
 
-/// One for each bay of each v-strip that a patch of the face reaches.
+/// One for each bin of each v-strip that a patch of the face reaches.
 pub(super) fn cells(face: &abi::Face, p: &SurfacePatch, origin: DVec3, domain: &Domain) -> Vec<abi::Cell> {
-    let (strips, bays) = (face.strip_count(), face.bay_count());
+    let (strips, bins) = (face.strip_count(), face.bin_count());
     let corner = domain.unit(DVec2::new(p.u.0, p.v.0));
     let size = domain.unit(DVec2::new(p.u.1, p.v.1)) - corner;
-    let cell = |(strip, v): (u32, (f64, f64)), (bay, u): (u32, (f64, f64))| {
+    let cell = |(strip, v): (u32, (f64, f64)), (bin, u): (u32, (f64, f64))| {
         let piece = p.patch.rectangle(u, v);
         let (speed_u, speed_v) = piece.speed_bound();
         let (box_min, box_max) = outward_box(&piece, origin);
@@ -82,13 +82,13 @@ pub(super) fn cells(face: &abi::Face, p: &SurfacePatch, origin: DVec3, domain: &
             speed_u: round_up(speed_u / (size.x * (u.1 - u.0))),
             box_max,
             speed_v: round_up(speed_v / (size.y * (v.1 - v.0))),
-            bay: strip * bays + bay,
+            bin: strip * bins + bin,
             normal,
             low,
             high,
         }
     };
-    let in_u: Vec<_> = shares(corner.x, size.x, bays).collect();
+    let in_u: Vec<_> = shares(corner.x, size.x, bins).collect();
     shares(corner.y, size.y, strips).flat_map(|v| in_u.iter().map(move |&u| (v, u))).map(|(v, u)| cell(v, u)).collect()
 }
 
@@ -128,7 +128,7 @@ mod tests {
         let face = abi::Face { strips: abi::Face::pack_strips(16, 1), ..Default::default() };
         for (nth, p) in (0..).zip(&surface.patches().patches) {
             let cells = cells(&face, p, DVec3::ZERO, &domain);
-            assert_eq!(cells.iter().map(|cell| cell.bay).collect::<Vec<_>>(), [2 * nth, 2 * nth + 1]);
+            assert_eq!(cells.iter().map(|cell| cell.bin).collect::<Vec<_>>(), [2 * nth, 2 * nth + 1]);
             assert!(cells.iter().all(|cell| (cell.speed_v - 8.0).abs() < 1e-4), "{cells:?}");
         }
     }

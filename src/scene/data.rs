@@ -1,7 +1,7 @@
 //! The whole scene as plain arrays, and the transforms that stay in `f64`.
 
-use super::closeup::Cut;
 use super::cones::{Normals, cones};
+use super::deep_zoom::Cut;
 use super::edges::{EdgeData, Placing, UndrawnEdges, edges_of};
 use super::edit::EditScene;
 use super::exact::ExactData;
@@ -15,7 +15,7 @@ use super::sun::SunData;
 use super::trimmed::Trimmed;
 use super::way::taken;
 use crate::abi;
-use crate::model::{Bounds, Instance, Items, Lone, Model, Part, SolidError};
+use crate::model::{Bounds, Instance, Isolated, Items, Model, Part, SolidError};
 #[cfg(any(test, feature = "baselines"))]
 use crate::picture::SceneSettings;
 use crate::picture::{EdgeSettings, Highlight, Samples, TakenWay};
@@ -57,8 +57,8 @@ pub(crate) struct SceneData {
     pub cell_items: Vec<u32>,
     pub curve_items: Vec<u32>,
     /// Of all strips of all placed faces.
-    pub bay_count: u32,
-    /// Bay items of strips with several bays.
+    pub bin_count: u32,
+    /// Bin items of strips with several bins.
     pub wide_strips: Vec<u32>,
     pub cells: Vec<abi::Cell>,
     pub curves: Vec<abi::Curve>,
@@ -170,8 +170,8 @@ impl SceneData {
         let seen_through = items.as_ref().map_or(0, |items| items.clear.len());
         // whatever asks for more than the nearest face asks for all of the solids
         let nearest = items.is_none() && settings.sun.is_none() && model.trim.is_none();
-        let lone = nearest.then(|| Lone::of(&model.solids, model.coincidence())).transpose()?.flatten();
-        let union = lone.as_ref().map_or(&model.solids, |lone| &lone.rest);
+        let isolated = nearest.then(|| Isolated::of(&model.solids, model.coincidence())).transpose()?.flatten();
+        let union = isolated.as_ref().map_or(&model.solids, |isolated| &isolated.rest);
         let lists = items.map_or_else(|| Lists::union(union), |items| Lists::of(items, all));
         let solids = SolidData::new(&lists, model.coincidence(), settings.solids)?;
         // what a volume cuts open casts no shadow: it would be that of all of it
@@ -268,7 +268,7 @@ impl SceneData {
             edit.first_faces = first_faces;
         }
         data.meshes = Meshes::new(model, &origins, open);
-        for mesh in lone.iter().flat_map(|lone| &lone.meshes) {
+        for mesh in isolated.iter().flat_map(|isolated| &isolated.meshes) {
             let origin = mesh.bounds().centre();
             let instance = Instance { part: 0, transform: DAffine3::IDENTITY, colour: None, name: String::new() };
             data.push_instance(&instance, origin, 0..0, 0);
@@ -474,16 +474,16 @@ impl SceneData {
                 face: face as u32,
                 instance,
                 first_item: self.items.len() as u32,
-                first_bay: self.bay_count,
+                first_bin: self.bin_count,
                 first_cell: self.cell_items.len() as u32,
                 first_curve: self.curve_items.len() as u32,
                 ..abi::FaceInstance::default()
             });
-            let (strips, bays) = (f.strip_count(), f.bay_count());
-            if bays > 1 {
-                self.wide_strips.extend((0..strips).map(|strip| self.bay_count + strip * bays));
+            let (strips, bins) = (f.strip_count(), f.bin_count());
+            if bins > 1 {
+                self.wide_strips.extend((0..strips).map(|strip| self.bin_count + strip * bins));
             }
-            self.bay_count += strips * bays;
+            self.bin_count += strips * bins;
             let repeat = |list: &mut Vec<u32>, n: u32| list.extend(std::iter::repeat_n(placed, n as usize));
             repeat(&mut self.items, f.count_u * f.count_v);
             repeat(&mut self.cell_items, cells);

@@ -1,6 +1,5 @@
 //! One face: patches, cells and trim curves, with indices relative to the face.
 
-use super::apart::{Apart, apart};
 use super::cells::{cells, strips};
 use super::cones::Normals;
 use super::edit::{EditFace, EditLoop, EditPatch};
@@ -8,6 +7,7 @@ use super::exact::exact_trim;
 use super::fine::fine_net;
 pub(super) use super::flatten::Cuts;
 use super::flatten::flattened;
+use super::sub_patches::{SubPatches, sub_patches};
 use crate::abi;
 use crate::abi::Side;
 use crate::model::{Face, SurfaceKind, TrimLoop};
@@ -81,7 +81,7 @@ pub(super) struct Trimming {
     pub smooth: bool,
     /// They may be edited.
     pub editable: bool,
-    /// How large the scene is that their patches are cut for ([`apart`](super::apart)), in the units of the part;
+    /// How large the scene is that their patches are cut for ([`apart`](super::sub_patches)), in the units of the part;
     /// infinite: they stay as they are.
     pub extent: f64,
 }
@@ -93,12 +93,12 @@ impl FaceData {
         let ((u0, u1), (v0, v1)) = face.surface.domain();
         let domain = Domain { origin: DVec2::new(u0, v0), size: DVec2::new(u1 - u0, v1 - v0) };
         let index = (!face.loops.is_empty()).then(|| LoopIndex::new(&face.loops));
-        let Apart { grid, sides, shares } = match &index {
+        let SubPatches { grid, sides, shares } = match &index {
             None => {
                 let sides = vec![Side::Inside; flat.patches.len()];
-                Apart::whole(flat.clone(), sides)
+                SubPatches::whole(flat.clone(), sides)
             }
-            Some(index) => apart(flat.clone(), index, trim.extent),
+            Some(index) => sub_patches(flat.clone(), index, trim.extent),
         };
         let trimmed = sides.contains(&Side::Boundary);
         let table = trimmed && needs_curves(way);

@@ -14,12 +14,10 @@
 //! relative to the centre of their part, and the transform from there to the eye is composed in
 //! `f64` every frame. Patches too slight for that have a fine net beside their points (`fine.rs`).
 
-mod apart;
-mod around;
 mod cells;
-mod closeup;
 mod cones;
 mod data;
+mod deep_zoom;
 mod edges;
 mod edit;
 mod exact;
@@ -28,18 +26,20 @@ mod fine;
 mod flatten;
 mod link;
 mod mesh;
-mod nearby;
 mod parts;
 mod request;
 mod solids;
+mod sub_patches;
 mod sun;
 mod trimmed;
 mod upload;
 mod view;
+mod view_cell;
 mod way;
+mod whole_view;
 
-pub use closeup::{CloseUp, Cut, Wanted};
 pub(crate) use data::{Division, SceneData};
+pub use deep_zoom::{Cut, DeepZoom, DeepZoomUpload};
 pub(crate) use edges::EdgeData;
 pub use edges::UndrawnEdges;
 pub use edit::EditError;

@@ -8,9 +8,9 @@
 //!
 //! Each follows from the view alone, not from what was drawn before: so does the picture.
 
-use super::around::Ball;
 use super::data::SceneData;
-use super::nearby::nearby;
+use super::view_cell::view_cell;
+use super::whole_view::Ball;
 use crate::model::{Bounds, Camera};
 use crate::picture::TakenWay;
 use glam::Vec3;
@@ -82,7 +82,7 @@ impl SceneData {
         if let Some(density) = trimmed.ball.table_density(camera) {
             return Some(TableView::Everywhere(density));
         }
-        let wider = nearby(camera, beside_px, &trimmed.ball, &trimmed.boxes);
+        let wider = view_cell(camera, beside_px, &trimmed.ball, &trimmed.boxes);
         Some(TableView::Of(wider.unwrap_or(*camera)))
     }
 }

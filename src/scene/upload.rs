@@ -7,7 +7,7 @@ use super::{Blister, EdgeData, SceneData, SolidData};
 #[cfg(feature = "baselines")]
 use crate::baselines::TrimMethod;
 use crate::bindings::{Placed, Primitives};
-use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texel, Texels, Uploads};
+use crate::gpu::{Access, Buffer, Commands, GpuError, Pool, Texel, TexelBuffer, Uploads};
 use crate::picture::TakenWay;
 use ash::vk;
 use bytemuck::Pod;
@@ -15,19 +15,19 @@ use std::ops::Range;
 
 /// A scene in GPU memory.
 pub(crate) struct Scene {
-    pub patches: Texels,
+    pub patches: TexelBuffer,
     /// Where nothing of their faces is; `None` where they are not asked whether they lie behind others.
     outside: Option<Buffer>,
     /// Of the normals of each patch; `None` where no part is closed without trims.
     pub cones: Option<Buffer>,
     /// Homogeneous control points, and fine nets.
-    pub points: Texels,
+    pub points: TexelBuffer,
     /// Sides that faces share; `None` where they share none.
     pub links: Option<Buffer>,
-    pub faces: Texels,
-    pub face_instances: Texels,
-    pub instances: Texels,
-    pub items: Texels,
+    pub faces: TexelBuffer,
+    pub face_instances: TexelBuffer,
+    pub instances: TexelBuffer,
+    pub items: TexelBuffer,
     /// What divides patches in place of the bound; `None` where that does.
     #[cfg(feature = "baselines")]
     slefes: Option<Buffer>,
@@ -40,7 +40,7 @@ pub(crate) struct Scene {
     /// The volume that trims faces and meshes; `None` when none does.
     pub volume: Option<Volume>,
     /// Parts and instances of the model, of each instance; `None` where nothing tells them apart.
-    pub sources: Option<Texels>,
+    pub sources: Option<TexelBuffer>,
     /// What lines along edges need; `None` where there are none.
     pub edges: Option<EdgeBuffers>,
     /// What the sun sees; `None` without one, and where nothing casts shadows.
@@ -50,11 +50,11 @@ pub(crate) struct Scene {
 /// Edges of parts, in pieces, and where these are placed.
 pub(crate) struct EdgeBuffers {
     pub pieces: Buffer,
-    pub points: Texels,
+    pub points: TexelBuffer,
     pub lines: Buffer,
     pub own_faces: Buffer,
     pub items: Buffer,
-    pub face_keys: Texels,
+    pub face_keys: TexelBuffer,
 }
 
 /// The sun's picture.
@@ -62,23 +62,23 @@ pub(crate) struct SunTiles {
     pub tiles: Buffer,
     pub leaves: Buffer,
     /// Those of operands and of placed parts, and which each tile sees; only where there are some.
-    pub triangles: Option<Texels>,
-    pub facets: Option<Texels>,
-    pub lists: Option<Texels>,
+    pub triangles: Option<TexelBuffer>,
+    pub facets: Option<TexelBuffer>,
+    pub lists: Option<TexelBuffer>,
 }
 
 /// A volume's switches, and their surfaces.
 pub(crate) struct Volume {
     pub leaves: Buffer,
-    pub leaf_surfaces: Texels,
-    pub surfaces: Texels,
+    pub leaf_surfaces: TexelBuffer,
+    pub surfaces: TexelBuffer,
 }
 
 /// The switches of the Blist, and their surfaces.
 pub(crate) struct Solids {
     pub leaves: Buffer,
-    pub leaf_surfaces: Texels,
-    pub surfaces: Texels,
+    pub leaf_surfaces: TexelBuffer,
+    pub surfaces: TexelBuffer,
     /// The leaves as they are drawn, and how many; only where each is drawn by itself.
     pub order: Option<(Buffer, u32)>,
     /// For way `blister`: the walk, and its order.
@@ -125,21 +125,21 @@ pub(crate) enum Trims {
 pub(crate) enum BaselineScene {
     Untrimmed,
     /// Faces, bands, cells, lists, pieces, points.
-    Bisect([Texels; 6]),
+    Bisect([TexelBuffer; 6]),
     /// Curves and cells; texels to a pixel and the number of placed faces.
     Texture(TableScene, Buffer),
 }
 
 /// Cells and their arcs; see `glsl/include/exact.glsl`.
 pub(crate) struct ExactScene {
-    pub faces: Texels,
-    pub cells: Texels,
-    pub arcs: Texels,
+    pub faces: TexelBuffer,
+    pub cells: TexelBuffer,
+    pub arcs: TexelBuffer,
 }
 
 impl ExactScene {
     /// As the trim test reads them.
-    pub(crate) fn all(&self) -> [&Texels; 3] {
+    pub(crate) fn all(&self) -> [&TexelBuffer; 3] {
         [&self.faces, &self.cells, &self.arcs]
     }
 }
@@ -148,16 +148,16 @@ impl ExactScene {
 pub(crate) struct TableScene {
     pub cells: Buffer,
     pub cell_items: Buffer,
-    pub curves: Texels,
-    pub curve_points: Texels,
-    pub curve_items: Texels,
-    /// Bay items of strips with several bays; `None` where there are none.
+    pub curves: TexelBuffer,
+    pub curve_points: TexelBuffer,
+    pub curve_items: TexelBuffer,
+    /// Bin items of strips with several bins; `None` where there are none.
     pub wide_strips: Option<Buffer>,
 }
 
 impl Solids {
     /// With the places of surfaces as one frame's eye sees them.
-    pub(crate) fn primitives<'a>(&'a self, surface_places: &'a Texels) -> Primitives<'a> {
+    pub(crate) fn primitives<'a>(&'a self, surface_places: &'a TexelBuffer) -> Primitives<'a> {
         let Self { leaves, leaf_surfaces, surfaces, .. } = self;
         Primitives { leaves, leaf_surfaces, surfaces, surface_places }
     }
@@ -165,7 +165,7 @@ impl Solids {
 
 impl Volume {
     /// With the places of surfaces as one frame's eye sees them.
-    pub(crate) fn primitives<'a>(&'a self, surface_places: &'a Texels) -> Primitives<'a> {
+    pub(crate) fn primitives<'a>(&'a self, surface_places: &'a TexelBuffer) -> Primitives<'a> {
         let Self { leaves, leaf_surfaces, surfaces } = self;
         Primitives { leaves, leaf_surfaces, surfaces, surface_places }
     }
@@ -206,7 +206,7 @@ impl Scene {
     }
 
     /// Its patches, seen so.
-    pub(crate) fn placed<'a>(&'a self, views: &'a Texels) -> Placed<'a> {
+    pub(crate) fn placed<'a>(&'a self, views: &'a TexelBuffer) -> Placed<'a> {
         Placed {
             views,
             face_instances: &self.face_instances,
@@ -396,7 +396,7 @@ fn shells(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SolidData) -> Result
     })
 }
 
-fn surfaces(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &SolidData) -> Result<Texels, GpuError> {
+fn surfaces(uploads: &mut Uploads, cmd: &Commands<'_>, name: &str, data: &SolidData) -> Result<TexelBuffer, GpuError> {
     texels(uploads, cmd, name, &data.surfaces.iter().map(Surface::texels).collect::<Vec<_>>(), Texel::F32x4)
 }
 
@@ -407,9 +407,9 @@ fn read_both<T: Pod>(
     name: &str,
     data: &[T],
     texel: Texel,
-) -> Result<Texels, GpuError> {
+) -> Result<TexelBuffer, GpuError> {
     let usage = Buffer::STORAGE | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
-    Texels::new(cmd.device(), uploads.buffer(cmd, Pool::Persistent, name, usage, data)?, texel)
+    TexelBuffer::new(cmd.device(), uploads.buffer(cmd, Pool::Persistent, name, usage, data)?, texel)
 }
 
 /// For passes that fetch texels alone: the range of a storage buffer does not bind them.
@@ -419,10 +419,10 @@ fn texels<T: Pod>(
     name: &str,
     data: &[T],
     texel: Texel,
-) -> Result<Texels, GpuError> {
+) -> Result<TexelBuffer, GpuError> {
     let usage = vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
     let buffer = uploads.buffer(cmd, Pool::Persistent, name, usage, data)?;
-    Texels::new(cmd.device(), buffer, texel)
+    TexelBuffer::new(cmd.device(), buffer, texel)
 }
 
 /// Only where there are some.
@@ -432,7 +432,7 @@ fn some_texels<T: Pod>(
     name: &str,
     data: &[T],
     texel: Texel,
-) -> Result<Option<Texels>, GpuError> {
+) -> Result<Option<TexelBuffer>, GpuError> {
     (!data.is_empty()).then(|| texels(uploads, cmd, name, data, texel)).transpose()
 }
 

@@ -1,7 +1,7 @@
 //! Which way a scene is trimmed, told before anything is made for either.
 //!
 //! ```text
-//!   rows of a placed face  =  bays (strips + length)        length: of a curve along v, in rows, where the scene is as
+//!   rows of a placed face  =  bins (strips + length)        length: of a curve along v, in rows, where the scene is as
 //!                                                           wide as a picture of PICTURE_PX
 //!   Auto:  rows of all faces <= MOST_ROWS  and  points <= MOST_POINTS  ──▶ table        else ──▶ exact
 //! ```
@@ -11,10 +11,10 @@
 //! sees as many rows as it likes. A view that wants more than there can be has the renderer load the model once more, for the
 //! exact way (`renderer/load.rs`). The renderer keeps a copy of the model for that, which is why [`MOST_POINTS`] is a bound, too.
 
-use super::around::Ball;
 use super::cells::strips;
 use super::data::stretch;
 use super::request::SceneRequest;
+use super::whole_view::Ball;
 use crate::abi;
 use crate::model::{Face, Mesh, Model, Part, Shape};
 use crate::picture::{SceneSettings, TakenWay, TrimWay};
@@ -78,14 +78,14 @@ fn points(model: &Model) -> usize {
 fn rows(model: &Model) -> f64 {
     let Some(ball) = Ball::around(model.control_bounds()) else { return 0.0 };
     let of_strips = |face: &Face| {
-        let (strips, bays) = strips_and_bays(face);
-        strips * bays
+        let (strips, bins) = strips_and_bins(face);
+        strips * bins
     };
     let fewest = summed(model, of_strips, |_| 1.0);
     if fewest > MOST_ROWS {
         return fewest;
     }
-    let of_length = |face: &Face| strips_and_bays(face).1 * length(face);
+    let of_length = |face: &Face| strips_and_bins(face).1 * length(face);
     let lines_a_unit = PICTURE_PX / (2.0 * ball.radius) / ROW_PX;
     fewest + summed(model, of_length, |scale| scale * lines_a_unit)
 }
@@ -99,10 +99,10 @@ fn summed(model: &Model, of: impl Fn(&Face) -> f64 + Sync, by: impl Fn(f64) -> f
     placed.chain(operands).map(|(sum, scale)| sum * by(scale)).sum()
 }
 
-fn strips_and_bays(face: &Face) -> (f64, f64) {
+fn strips_and_bins(face: &Face) -> (f64, f64) {
     let strips = strips(face, v_spans(face).count(), TakenWay::Table);
     let face = abi::Face { strips, ..Default::default() };
-    (f64::from(face.strip_count()), f64::from(face.bay_count()))
+    (f64::from(face.strip_count()), f64::from(face.bin_count()))
 }
 
 /// Knots along v between which a surface is one polynomial.

@@ -19,11 +19,11 @@ pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u
             if patch.side() == Side::Outside {
                 return 0;
             }
-            let (margin, far) = (frame.ring_px + 1.0, far_of(&face, frame));
+            let (margin, far) = (frame.gap_radius_px + 1.0, far_of(&face, frame));
             let Some(seen) = see(view, frame, patch.box_min, patch.box_max, margin, far) else { return 0 };
-            // nothing is drawn farther from the box: cut patches have rings
-            let ring = if patch.side() == Side::Inside { 0.0 } else { frame.ring_px };
-            if !covers_a_centre(&seen, frame.deviation_px + frame.spread_px + ring) {
+            // nothing is drawn farther from the box: cut patches have skirts
+            let skirt = if patch.side() == Side::Inside { 0.0 } else { frame.gap_radius_px };
+            if !covers_a_centre(&seen, frame.deviation_px + frame.spread_px + skirt) {
                 return 0;
             }
             let cone = scene.cones.get(face.first_patch as usize + item - placed.first_item as usize);

@@ -1,21 +1,21 @@
-//! Twin of the pass [`carry`](crate::passes): the winding number that each row of a strip with several bays begins with.
+//! Twin of the pass [`carry`](crate::passes): the winding number that each row of a strip with several bins begins with.
 //!
 //! ```text
-//!   bay               0     1     2     3
+//!   bin               0     1     2     3
 //!   crossings add up  +1    0     -1    0      as pass `cross` counted them
 //!   begins with        0    1     1     0
 //! ```
 
 use crate::abi::{Frame, StripRows};
 
-/// Of the strips that begin at the bay items `wide_strips`; rows of all others begin with 0, and have 0 already.
+/// Of the strips that begin at the bin items `wide_strips`; rows of all others begin with 0, and have 0 already.
 pub fn carry(frame: &Frame, strips: &[StripRows], wide_strips: &[u32], row_windings: &mut [i32]) {
     for &strip in wide_strips {
         let rows = strips[strip as usize];
         for line in 0..rows.lines {
             let mut winding = 0;
-            for bay in rows.first_bay..=rows.last_bay() {
-                let row = rows.row_of(line, bay);
+            for bin in rows.first_bin..=rows.last_bin() {
+                let row = rows.row_of(line, bin);
                 if row >= frame.row_capacity {
                     break; // and so are the line's other rows
                 }

@@ -12,7 +12,7 @@
 //! `n · (p - eye) >= |ray| cos(φ + θ) - around`, and `cos(φ + θ) >= cos φ - sin θ` for `φ <= 90° - θ`.
 //!
 //! A closed surface hides such a patch by what is before it, unless the near plane has cut that off: so the part must
-//! lie behind that plane, all of it. The sides of trimmed faces have gaps, which `heal` finds by the faces that look away
+//! lie behind that plane, all of it. The sides of trimmed faces have gaps, which `gap_fill` finds by the faces that look away
 //! behind them: those stay. So do those of parts whose sides are not all drawn with the same vertices (`scene/link.rs`).
 //!
 //! The eye is where the homogeneous pixel vanishes. Source: L. A. Shirman, S. S. Abi-Ezzi, *The cone of normals technique

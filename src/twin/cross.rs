@@ -8,27 +8,27 @@
 //!     │   a ●                          v of line j of strip k:  (k + (j + 1/2) / mu_k) / strips
 //! ```
 //!
-//! A scan line has a row in each bay that is seen (`bays.rs`).
+//! A scan line has a row in each bin that is seen (`bins.rs`).
 //!
 //! An intercept is `u` as order-preserving bits, its lowest bit the direction: 1 upwards. In which
 //! order a row receives its intercepts is left to the GPU; the rows compare as sets.
 
-use super::bays::{bay_of, within_bay};
 use super::border_cells::columns_between;
 use super::curve::curve_point;
 use super::sizes::MOST_SEGMENTS;
 use super::sort::from_ordered;
+use super::u_bins::{bin_of, within_bin};
 use super::{Scene, strips_of};
 use crate::abi::constants::border_cells::BAND_ROUNDING;
 use crate::abi::{BORDER_BANDS, Frame, StripRows};
 
-/// Intercepts of each of `row_capacity` rows, and what those of strips with several bays add to the winding number.
+/// Intercepts of each of `row_capacity` rows, and what those of strips with several bins add to the winding number.
 pub fn count(frame: &Frame, scene: &Scene<'_>, strips: &[StripRows], segment_starts: &[u32]) -> (Vec<u32>, Vec<i32>) {
     let mut counts = vec![0; frame.row_capacity as usize];
     let mut windings = vec![0; frame.row_capacity as usize];
     crossings(frame, scene, strips, segment_starts, |chord, row, _| {
         counts[row] += 1;
-        if chord.rows.bays > 1 {
+        if chord.rows.bins > 1 {
             windings[row] += if chord.upwards { 1 } else { -1 };
         }
     });
@@ -60,18 +60,18 @@ pub fn ordered_bits(u: f32) -> u32 {
     if bits & 0x8000_0000 != 0 { !bits } else { bits | 0x8000_0000 }
 }
 
-/// Four words for each band of each bay: the columns of it that chords pass, or come nearer to than half a scan line.
+/// Four words for each band of each bin: the columns of it that chords pass, or come nearer to than half a scan line.
 pub fn border_cells(frame: &Frame, scene: &Scene<'_>, strips: &[StripRows], segment_starts: &[u32]) -> Vec<[u32; 4]> {
-    let mut cells = vec![[0; 4]; (frame.bay_count * BORDER_BANDS) as usize];
+    let mut cells = vec![[0; 4]; (frame.bin_count * BORDER_BANDS) as usize];
     chords(frame, scene, strips, segment_starts, |chord| {
         let around = 0.5 / chord.rows.lines as f32 + BAND_ROUNDING;
         let band = |y: f32| (y * BORDER_BANDS as f32).floor().clamp(0.0, (BORDER_BANDS - 1) as f32) as u32;
         let (left, right) = chord.reach();
-        let first = bay_of(left, chord.bays).max(chord.rows.first_bay);
-        for bay in first..=bay_of(right, chord.bays).min(chord.rows.last_bay()) {
-            let columns = columns_between(within_bay(left, bay, chord.bays), within_bay(right, bay, chord.bays));
+        let first = bin_of(left, chord.bins).max(chord.rows.first_bin);
+        for bin in first..=bin_of(right, chord.bins).min(chord.rows.last_bin()) {
+            let columns = columns_between(within_bin(left, bin, chord.bins), within_bin(right, bin, chord.bins));
             for k in band(chord.of_strip(chord.low) - around)..=band(chord.of_strip(chord.high) + around) {
-                let words = &mut cells[((chord.item + bay) * BORDER_BANDS + k) as usize];
+                let words = &mut cells[((chord.item + bin) * BORDER_BANDS + k) as usize];
                 words.iter_mut().zip(columns).for_each(|(word, bits)| *word |= bits);
             }
         }
@@ -84,12 +84,12 @@ struct Chord {
     low: [f32; 2],
     high: [f32; 2],
     upwards: bool,
-    /// The strip's first bay item; the strip's number in its face.
+    /// The strip's first bin item; the strip's number in its face.
     item: u32,
     of_face: f32,
-    /// Strips of the face, and bays of each.
+    /// Strips of the face, and bins of each.
     strips: f32,
-    bays: u32,
+    bins: u32,
     rows: StripRows,
 }
 
@@ -129,9 +129,9 @@ fn crossings(
             }
             let u = a[0] + (v - a[1]) / (b[1] - a[1]) * (b[0] - a[0]);
             let intercept = ordered_bits(u.clamp(left, right)) & !1;
-            let bay = bay_of(from_ordered(intercept), chord.bays);
-            let row = chord.rows.row_of(line, bay);
-            if bay > chord.rows.last_bay() || row >= frame.row_capacity {
+            let bin = bin_of(from_ordered(intercept), chord.bins);
+            let row = chord.rows.row_of(line, bin);
+            if bin > chord.rows.last_bin() || row >= frame.row_capacity {
                 continue;
             }
             visit(chord, row as usize, intercept | u32::from(chord.upwards));
@@ -157,14 +157,14 @@ fn chords(
             let upwards = from[1] < to[1];
             let (low, high) = if upwards { (from, to) } else { (to, from) };
             let (first, last) = strips_of(low[1], high[1], face.strip_count());
-            let bays = face.bay_count();
+            let bins = face.bin_count();
             for k in first..=last {
-                let item = placed.first_bay + k * bays;
+                let item = placed.first_bin + k * bins;
                 let rows = strips[item as usize];
                 let (of_face, strip_count) = (k as f32, face.strip_count() as f32);
-                let chord = Chord { low, high, upwards, item, of_face, strips: strip_count, bays, rows };
-                let is_right = bay_of(chord.reach().0, bays) > rows.last_bay();
-                let is_left = bay_of(curve.range_u[1], bays) < rows.first_bay;
+                let chord = Chord { low, high, upwards, item, of_face, strips: strip_count, bins, rows };
+                let is_right = bin_of(chord.reach().0, bins) > rows.last_bin();
+                let is_left = bin_of(curve.range_u[1], bins) < rows.first_bin;
                 if rows.lines > 0 && !is_right && !is_left {
                     visit(&chord);
                 }

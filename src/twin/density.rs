@@ -12,12 +12,12 @@ use crate::math::octahedral;
 /// What the pass writes.
 #[derive(Clone, Debug, Default, PartialEq)]
 pub struct Density {
-    /// Height of each placed strip in pixels, at its first bay; 0 for one that cannot be seen.
+    /// Height of each placed strip in pixels, at its first bin; 0 for one that cannot be seen.
     pub strip_heights: Vec<f32>,
     /// Largest pixels per unit of `u` and of `v` of each placed face.
     pub face_speeds: Vec<[f32; 2]>,
-    /// A bit for each bay that can be seen of each placed strip, at its first bay.
-    pub seen_bays: Vec<u32>,
+    /// A bit for each bin that can be seen of each placed strip, at its first bin.
+    pub seen_bins: Vec<u32>,
 }
 
 /// Pixels that one unit of a cell can cover; `None` where nobody sees it.
@@ -27,7 +27,7 @@ fn pixels_of(frame: &Frame, scene: &Scene<'_>, placed: FaceInstance, face: &Face
         return Some(frame.table_density * instance.scale);
     }
     let view = &scene.views[placed.instance as usize];
-    let (margin, far) = (frame.ring_px + 1.0, far_of(face, frame));
+    let (margin, far) = (frame.gap_radius_px + 1.0, far_of(face, frame));
     let mut seen = see(view, frame, cell.box_min, cell.box_max, margin, far)?;
     if frame.perspective != 0 {
         let normal = octahedral::unpack(cell.normal);
@@ -39,9 +39,9 @@ fn pixels_of(frame: &Frame, scene: &Scene<'_>, placed: FaceInstance, face: &Face
 /// The largest over the visible cells of each strip and of each face.
 pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
     let mut out = Density {
-        strip_heights: vec![0.0; frame.bay_count as usize],
+        strip_heights: vec![0.0; frame.bin_count as usize],
         face_speeds: vec![[0.0; 2]; scene.face_instances.len()],
-        seen_bays: vec![0; frame.bay_count as usize],
+        seen_bins: vec![0; frame.bin_count as usize],
     };
     for item in 0..frame.cell_count as usize {
         let placed_index = scene.cell_items[item] as usize;
@@ -52,9 +52,9 @@ pub fn density(frame: &Frame, scene: &Scene<'_>) -> Density {
             continue;
         }
         let Some(pixels) = pixels_of(frame, scene, placed, &face, &cell) else { continue };
-        let bay = cell.bay % face.bay_count();
-        let strip = (placed.first_bay + cell.bay - bay) as usize;
-        out.seen_bays[strip] |= 1 << bay;
+        let bin = cell.bin % face.bin_count();
+        let strip = (placed.first_bin + cell.bin - bin) as usize;
+        out.seen_bins[strip] |= 1 << bin;
         let height = &mut out.strip_heights[strip];
         // a visible strip gets a scan line, however flat it is seen
         *height = height.max((cell.speed_v * pixels / face.strip_count() as f32).max(1e-6));

@@ -48,7 +48,7 @@
 //! the box stands for them, and where that crosses it, `W_min` is cut to `near`: the drawn `T` has `T_z ≥ near`, and
 //! `S_z ≥ near - |e|` costs a factor of at most
 //! `1 / (1 - deviation_px / focal)`, one part in 5000 for half a pixel at the usual lenses. A trimmed
-//! face's ring reaches beyond `[0, 1]²`: `visibility_surface.glsl` pushes no vertex so far that the surface leaves its
+//! face's skirt reaches beyond `[0, 1]²`: `visibility_surface.glsl` pushes no vertex so far that the surface leaves its
 //! tangent by more than a quarter of the budget, so across the border it is off by 25/16 of it at most.
 //!
 //! **Towards the eye.** What is off along the ray moves no pixel. For a polynomial patch pass [`bound`](super::bound) projects

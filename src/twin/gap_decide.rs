@@ -10,7 +10,7 @@
 use crate::abi::Frame;
 pub use crate::abi::constants::gap_candidate::ON_PIXEL_PX;
 use crate::abi::constants::gap_decide::SAME_DEPTH;
-use crate::abi::constants::ring::RING_SLACK;
+use crate::abi::constants::gap_radius::GAP_SLACK;
 
 /// Farther than anything.
 pub const FARTHEST: f32 = 3.0e38;
@@ -197,7 +197,7 @@ impl<'a> Evidence<'a> {
 
     /// How much its depth changes within the gap radius.
     fn lean(&self, c: &Candidate) -> f32 {
-        RING_SLACK * self.frame.ring_px * dot(c.slope, c.slope).sqrt()
+        GAP_SLACK * self.frame.gap_radius_px * dot(c.slope, c.slope).sqrt()
     }
 
     /// In all of the gap radius: surfaces that meet within it are not.
@@ -304,7 +304,7 @@ impl<'a> Evidence<'a> {
             self.near.word
         } else if self.touching.kind == Kind::Present {
             self.touching.word
-        } else if self.closest.miss <= RING_SLACK * self.frame.ring_px {
+        } else if self.closest.miss <= GAP_SLACK * self.frame.gap_radius_px {
             self.closest.word
         } else {
             self.s.seen

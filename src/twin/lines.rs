@@ -1,15 +1,15 @@
 //! Twin of the pass [`lines`](crate::passes): `mu = ceil(height / spacing)` scan lines for each v-strip, and a
-//! row of each in every bay from the first to the last that is seen.
+//! row of each in every bin from the first to the last that is seen.
 
-use super::bays::seen_range;
+use super::u_bins::seen_range;
 pub use crate::abi::constants::scene::MAX_ROWS;
 use crate::abi::{Counters, Frame};
 
-/// Rows of each strip of `strip_heights` pixels, at its first bay; scan lines cut to [`MAX_ROWS`] count as clamps.
-pub fn lines(frame: &Frame, strip_heights: &[f32], seen_bays: &[u32], counters: &mut Counters) -> Vec<u32> {
+/// Rows of each strip of `strip_heights` pixels, at its first bin; scan lines cut to [`MAX_ROWS`] count as clamps.
+pub fn lines(frame: &Frame, strip_heights: &[f32], seen_bins: &[u32], counters: &mut Counters) -> Vec<u32> {
     strip_heights
         .iter()
-        .zip(seen_bays)
+        .zip(seen_bins)
         .map(|(height, &seen)| {
             let lines = (height / frame.row_px).ceil();
             counters.clamps += u32::from(lines > MAX_ROWS as f32);

@@ -11,7 +11,6 @@
 //! llvmpipe, the results are the same bit for bit; Vulkan allows a GPU 2.5 units in the last place for
 //! a quotient and 3 for a root, so there a `ceil` may come out one higher or lower.
 
-pub mod bays;
 pub mod border_cells;
 pub mod bound;
 pub mod carry;
@@ -39,6 +38,7 @@ pub mod sort;
 pub mod split;
 pub mod squares;
 pub mod table;
+pub mod u_bins;
 pub mod view;
 
 pub use crate::abi::constants::push::MAX_PUSH;

@@ -1,4 +1,4 @@
-//! Twin of the passes [`hide`, `farthest` and `reveal`](crate::passes), and of `glsl/include/behind.glsl`: which patches
+//! Twin of the passes [`cull_early`, `depth_pyramid` and `cull_late`](crate::passes), and of `glsl/include/behind.glsl`: which patches
 //! lie behind what has been drawn.
 //!
 //! ```text
@@ -17,11 +17,11 @@
 //! theirs, and its pixel within theirs, which are quotients of linear functions.
 //!
 //! **Borders.** What pass `visibility` pushes outwards, it pushes along the tangent by at most a segment, and by as much
-//! as takes it twice the ring across the border: `s + p` is within `4 E(p)` of `s + p S_u`, and the tangent turns by at
+//! as takes it twice the gap radius across the border: `s + p` is within `4 E(p)` of `s + p S_u`, and the tangent turns by at
 //! most `|S_uv| <= b + sqrt(a c)` along the border (the form along `(s, 1 / s)` less that along `(s, -1 / s)` is 4 S_uv). How many units of u that is hangs on the place; here it is asked at the cell's
 //! corners and doubled. Of faces with cells that are left out ([`is_outside`]) all sides of a cell count as borders.
 //!
-//! **What does not pass the depth test changes nothing.** Neither visibility nor depth, and a ring counts only before
+//! **What does not pass the depth test changes nothing.** Neither visibility nor depth, and a skirt counts only before
 //! what is seen. Fronts stand back from where they are, so they are never nearer than this bound.
 //!
 //! Whatever rounds does so within a pixel, which is added on each side, and `DEPTH_ROUNDING` of the depth.
@@ -47,7 +47,7 @@ pub fn is_drawn(tau: u32) -> bool {
 }
 
 /// Marks patches that were `hidden`; how many are marked.
-pub fn hide(hidden: &[u32], taus: &mut [u32]) -> u32 {
+pub fn cull_early(hidden: &[u32], taus: &mut [u32]) -> u32 {
     let mut marked = 0;
     for (tau, _) in taus.iter_mut().zip(hidden).filter(|(tau, was_hidden)| **tau != 0 && **was_hidden != 0) {
         *tau |= TAU_HIDDEN;
@@ -56,8 +56,8 @@ pub fn hide(hidden: &[u32], taus: &mut [u32]) -> u32 {
     marked
 }
 
-/// What pass `reveal` leaves of a patch's taus and of whether it is hidden; and whether it appears.
-pub fn reveal(tau: u32, lies_behind: bool) -> (u32, u32, bool) {
+/// What pass `cull_late` leaves of a patch's taus and of whether it is hidden; and whether it appears.
+pub fn cull_late(tau: u32, lies_behind: bool) -> (u32, u32, bool) {
     let appears = tau & TAU_HIDDEN != 0 && !lies_behind;
     let marked = if appears { tau & !TAU_HIDDEN } else { tau | TAU_HIDDEN };
     if tau == 0 { (0, 0, false) } else { (marked, u32::from(lies_behind), appears) }
@@ -222,13 +222,14 @@ impl Seen<'_> {
         (depth >= near).then_some(Cover { low, high, depth, beside })
     }
 
-    /// Units of u and v that take a border twice the ring across itself.
+    /// Units of u and v that take a border twice the gap radius across itself.
     fn push(&self, q: [f64; 4], qu: [f64; 4], qv: [f64; 4]) -> DVec2 {
         let w = if self.frame.perspective != 0 { q[3].max(f64::from(self.frame.near)) } else { 1.0 };
         let at = DVec2::new(q[0], q[1]) / w;
         let speed = |d: [f64; 4]| (DVec2::new(d[0], d[1]) - at * d[3]) / w;
         let (pu, pv) = (speed(qu), speed(qv));
-        2.0 * f64::from(self.frame.ring_px) * DVec2::new(pv.length(), pu.length()) / pu.perp_dot(pv).abs().max(1e-12)
+        2.0 * f64::from(self.frame.gap_radius_px) * DVec2::new(pv.length(), pu.length())
+            / pu.perp_dot(pv).abs().max(1e-12)
     }
 
     fn is_covered(&self, cover: &Cover, farthest: &Farthest, slack: f64) -> bool {

@@ -5,17 +5,17 @@
 //!   mesh    E  E     L  L       how often the ray is within counts up and down; it is within where that is
 //!           E  ·     ·  L       not 0
 //!
-//!   faces   E  ·  L  L          the second L wants an entry: a ring's fragment E between the two, where the
+//!   faces   E  ·  L  L          the second L wants an entry: a skirt's fragment E between the two, where the
 //!                 E? L          ray slips through a gap, else it is left out; but where it is left as often
 //!                               as entered, as for a mesh
 //! ```
 
 use crate::abi::constants::scene::FAILED_FRAGMENTS;
 use crate::abi::{
-    Counters, FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_RING, FRAGMENT_WITHIN, Fragment, Frame, Leaf, TILE,
+    Counters, FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_SKIRT, FRAGMENT_WITHIN, Fragment, Frame, Leaf, TILE,
 };
 
-const FLAGS: u32 = FRAGMENT_LEAVES | FRAGMENT_RING | FRAGMENT_PATCH | FRAGMENT_WITHIN;
+const FLAGS: u32 = FRAGMENT_LEAVES | FRAGMENT_SKIRT | FRAGMENT_PATCH | FRAGMENT_WITHIN;
 
 /// Leaves, their centres seen from the eye, and a leaf of each shell.
 #[derive(Clone, Copy, Debug)]
@@ -62,7 +62,7 @@ pub fn operand_sort(
         let mut kept = Vec::with_capacity(here.len());
         for of_one in here.chunk_by(|a, b| shell_of(a) == shell_of(b)) {
             let cuts = cuts(frame, shells, shell_of(&of_one[0]));
-            let real: Vec<Fragment> = of_one.iter().filter(|f| f.shell & FRAGMENT_RING == 0).copied().collect();
+            let real: Vec<Fragment> = of_one.iter().filter(|f| f.shell & FRAGMENT_SKIRT == 0).copied().collect();
             let sum: i32 = real.iter().map(|f| if leaves(f) { 1 } else { -1 }).sum();
             let number = if cuts.0 { sum } else { 0 };
             let before = kept.len();
@@ -136,24 +136,24 @@ struct InTurn {
 
 /// Of faces.
 fn in_turn(all: &[Fragment], cut: bool, kept: &mut Vec<Fragment>, counters: &mut Counters) -> InTurn {
-    let first = all.iter().find(|f| f.shell & FRAGMENT_RING == 0);
+    let first = all.iter().find(|f| f.shell & FRAGMENT_SKIRT == 0);
     let mut within = cut && first.is_some_and(leaves);
     let start = if within { FRAGMENT_WITHIN } else { 0 };
-    let mut rings: [Option<Fragment>; 2] = [None; 2]; // entering, leaving
+    let mut skirts: [Option<Fragment>; 2] = [None; 2]; // entering, leaving
     let mut lost = [false; 2]; // entering, leaving
-    let mut mend = |ring: Fragment, kept: &mut Vec<Fragment>| {
-        kept.push(Fragment { shell: ring.shell & !FRAGMENT_RING | start, ..ring });
+    let mut mend = |skirt: Fragment, kept: &mut Vec<Fragment>| {
+        kept.push(Fragment { shell: skirt.shell & !FRAGMENT_SKIRT | start, ..skirt });
         counters.mended += 1;
     };
     for f in all {
         let kind = usize::from(leaves(f));
-        if f.shell & FRAGMENT_RING != 0 {
-            rings[kind].get_or_insert(*f);
+        if f.shell & FRAGMENT_SKIRT != 0 {
+            skirts[kind].get_or_insert(*f);
             continue;
         }
         if leaves(f) != within {
-            match rings[1 - kind] {
-                Some(ring) => mend(ring, kept),
+            match skirts[1 - kind] {
+                Some(skirt) => mend(skirt, kept),
                 None => {
                     lost[kind] = true;
                     continue;
@@ -161,11 +161,11 @@ fn in_turn(all: &[Fragment], cut: bool, kept: &mut Vec<Fragment>, counters: &mut
             }
         }
         within = !leaves(f);
-        rings = [None; 2];
+        skirts = [None; 2];
         kept.push(Fragment { shell: f.shell | start, ..*f });
     }
-    if let (true, Some(ring)) = (within, rings[1]) {
-        mend(ring, kept);
+    if let (true, Some(skirt)) = (within, skirts[1]) {
+        mend(skirt, kept);
         within = false;
     }
     InTurn { closed: !within && !lost[1], all: !within && lost == [false; 2] }

@@ -6,8 +6,8 @@
 //!   n  = 0                                    no scan line where the curve is: nobody sees it, or right of it
 //! ```
 
-use super::bays::{bay_of, seen_range};
 use super::density::Density;
+use super::u_bins::{bin_of, seen_range};
 use super::{Scene, strips_of};
 use crate::abi::Frame;
 use crate::abi::constants::segments::{LINES_PER_SEGMENT, MAX_SEGMENTS};
@@ -18,13 +18,13 @@ pub fn segments(frame: &Frame, scene: &Scene<'_>, density: &Density, strip_start
         .map(|item| {
             let (placed, face, curve) = scene.curve(item);
             let (lo, hi) = strips_of(curve.range_v[0], curve.range_v[1], face.strip_count());
-            // in bays that the curve or what is right of it in its loop reaches
-            let [from, to] = curve.range_u.map(|u| bay_of(u, face.bay_count()));
+            // in bins that the curve or what is right of it in its loop reaches
+            let [from, to] = curve.range_u.map(|u| bin_of(u, face.bin_count()));
             let of_strip = |strip: u32| {
-                let item = (placed.first_bay + strip * face.bay_count()) as usize;
-                let (first, bays) = seen_range(density.seen_bays[item]);
-                let is_met = from < first + bays && to >= first;
-                if is_met { (strip_starts[item + 1] - strip_starts[item]) / bays } else { 0 }
+                let item = (placed.first_bin + strip * face.bin_count()) as usize;
+                let (first, bins) = seen_range(density.seen_bins[item]);
+                let is_met = from < first + bins && to >= first;
+                if is_met { (strip_starts[item + 1] - strip_starts[item]) / bins } else { 0 }
             };
             let lines: u32 = (lo..=hi).map(of_strip).sum();
             if lines == 0 {

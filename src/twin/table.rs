@@ -1,15 +1,15 @@
 //! Twin of `glsl/include/table.glsl`: look-up in the u-intercept table, nearest scan line, then a binary
 //! search.
 
-use super::bays::{bay_of, within_bay};
 use super::border_cells::columns_between;
+use super::u_bins::{bin_of, within_bin};
 pub use crate::abi::constants::along::{ALONG_BEFORE, ALONG_BEHIND, ALONG_INSIDE};
 use crate::abi::{BORDER_BANDS, Face, StripRows};
 
 /// The table as the passes leave it.
 #[derive(Clone, Copy, Debug, Default)]
 pub struct Table<'a> {
-    /// Where the rows of each placed strip are, at its first bay.
+    /// Where the rows of each placed strip are, at its first bin.
     pub strips: &'a [StripRows],
     /// First flip of each row.
     pub row_starts: &'a [u32],
@@ -17,32 +17,32 @@ pub struct Table<'a> {
     pub row_counts: &'a [u32],
     /// Their `u`, ascending in each row.
     pub flips: &'a [f32],
-    /// Columns of each band of each bay that trim curves pass.
+    /// Columns of each band of each bin that trim curves pass.
     pub border_cells: &'a [[u32; 4]],
     /// Rows that there is room for.
     pub row_capacity: u32,
 }
 
 impl Table<'_> {
-    /// Whether the normalised `(u, v)` belongs to the placed `face` whose bay items begin at
-    /// `first_bay`. A point beyond the capacity does: the host grows the table and records again.
-    pub fn inside(&self, first_bay: u32, face: &Face, uv: [f32; 2]) -> bool {
-        self.along(first_bay, face, uv, 0.0) & ALONG_INSIDE != 0
+    /// Whether the normalised `(u, v)` belongs to the placed `face` whose bin items begin at
+    /// `first_bin`. A point beyond the capacity does: the host grows the table and records again.
+    pub fn inside(&self, first_bin: u32, face: &Face, uv: [f32; 2]) -> bool {
+        self.along(first_bin, face, uv, 0.0) & ALONG_INSIDE != 0
     }
 
-    /// The same, and whether flips of the point's scan line are within `reach` of `u`, in its bay.
-    pub fn along(&self, first_bay: u32, face: &Face, [u, v]: [f32; 2], reach: f32) -> u32 {
-        let (strips, bays) = (face.strip_count() as f32, face.bay_count());
+    /// The same, and whether flips of the point's scan line are within `reach` of `u`, in its bin.
+    pub fn along(&self, first_bin: u32, face: &Face, [u, v]: [f32; 2], reach: f32) -> u32 {
+        let (strips, bins) = (face.strip_count() as f32, face.bin_count());
         let s = v * strips;
         if !(s >= 0.0 && s < strips) {
             return 0;
         }
-        let rows = self.strips[(first_bay + s as u32 * bays) as usize];
+        let rows = self.strips[(first_bin + s as u32 * bins) as usize];
         if rows.lines == 0 {
             return 0;
         }
         let line = (((s - s.floor()) * rows.lines as f32) as u32).min(rows.lines - 1);
-        let row = rows.row_of(line, bay_of(u, bays));
+        let row = rows.row_of(line, bin_of(u, bins));
         if row >= self.row_capacity {
             return ALONG_INSIDE;
         }
@@ -60,23 +60,23 @@ impl Table<'_> {
     }
 
     /// Whether all of the box from `lo` to `hi` is inside or none of it. `false` where that is not easily told.
-    pub fn same(&self, first_bay: u32, face: &Face, lo: [f32; 2], hi: [f32; 2]) -> bool {
-        let (strips, bays) = (face.strip_count() as f32, face.bay_count());
+    pub fn same(&self, first_bin: u32, face: &Face, lo: [f32; 2], hi: [f32; 2]) -> bool {
+        let (strips, bins) = (face.strip_count() as f32, face.bin_count());
         let (from, to) = (lo[1] * strips, hi[1] * strips);
         if !(from >= 0.0 && to < strips) {
             return false;
         }
-        let (strip, bay) = (from as u32, bay_of(lo[0], bays));
-        if to as u32 != strip || bay_of(hi[0], bays) != bay {
+        let (strip, bin) = (from as u32, bin_of(lo[0], bins));
+        if to as u32 != strip || bin_of(hi[0], bins) != bin {
             return false;
         }
         let (first, last) = ((from * BORDER_BANDS as f32) as u32, (to * BORDER_BANDS as f32) as u32);
         if last > first + 1 {
             return false;
         }
-        let item = first_bay + strip * bays + bay;
+        let item = first_bin + strip * bins + bin;
         let band = |k: u32| self.border_cells[(item * BORDER_BANDS + k - strip * BORDER_BANDS) as usize];
-        let columns = columns_between(within_bay(lo[0], bay, bays), within_bay(hi[0], bay, bays));
+        let columns = columns_between(within_bin(lo[0], bin, bins), within_bin(hi[0], bin, bins));
         (0..4).all(|w| (band(first)[w] | band(last)[w]) & columns[w] == 0)
     }
 }

@@ -60,11 +60,11 @@ fn a_wall_that_two_tops_hide_is_not_seen_between_them() {
 
 /// Where the mantle and an end meet in a silhouette, the end, which the mantle hides up to there, was drawn beyond it: in
 /// the plane that continues it it is nearer than what continues the mantle. And it was drawn where it is, beside the
-/// mantle's silhouette, which is drawn narrower than it is: no ring of the mantle's is there.
+/// mantle's silhouette, which is drawn narrower than it is: no skirt of the mantle's is there.
 #[test]
 fn a_face_hidden_up_to_a_silhouette_is_not_seen_beyond_it() {
     let mut drum = borders::drum(1.5, 0.7);
-    drum.parts[0].closed = false; // each face has a ring, on both sides
+    drum.parts[0].closed = false; // each face has a skirt, on both sides
     for &way in TrimWay::ALL {
         keeps_it_by(way, &drum, 0..VIEWS);
     }
@@ -115,7 +115,7 @@ fn a_pole_is_not_taken_for_the_face_s_back() {
         // nearer, so that the picture holds no outline
         camera.projection = Projection::Perspective { fov_y: 12f64.to_radians() };
         let picture = render(&mut renderer, &camera);
-        assert_eq!(picture.stats.doubtful_pixels, 0, "view {k}");
+        assert_eq!(picture.stats.gap_candidates, 0, "view {k}");
         seen += picture.face.iter().filter(|&&face| face == 1).count();
     }
     assert_eq!(seen, 12 * (SIZE.0 * SIZE.1) as usize);

@@ -183,7 +183,7 @@ fn many_patches_below_a_pixel() {
     assert!(covered(&picture) > 1000);
 }
 
-/// A thousand plates with a hole, a fifth of a pixel wide: those whose rings reach no pixel's centre are left out, and about as
+/// A thousand plates with a hole, a fifth of a pixel wide: those whose skirts reach no pixel's centre are left out, and about as
 /// many pixels show one as have one at their centres: what borders may be off by is much of such a plate.
 #[test]
 fn many_cut_patches_below_a_pixel() {

@@ -129,7 +129,7 @@ fn row_of_balls(count: u32, cut: Cut) -> Model {
 }
 
 /// 255 and more faces lie before the one that is seen. Where nothing says beforehand that none of them counts, each is an
-/// event of its ray, and a driver may end such a ray's loop: it goes on in another leg. Tiles see hundreds of leaves.
+/// event of its ray, and a driver may end such a ray's loop: it goes on in another segment. Tiles see hundreds of leaves.
 #[test]
 fn what_lies_behind_255_faces_is_seen() {
     let mut renderer = watched(&Model::default());
@@ -152,10 +152,10 @@ fn what_lies_behind_255_faces_is_seen() {
         let what = format!("{count} balls, cut {cut:?}");
         all_are(&picture, count, &what);
         assert_identical(&picture, &render(&mut renderer, &view(count)), &what);
-        let in_legs = picture.stats.solid_bytes.iter().any(|list| list.name == "halts");
+        let in_segments = picture.stats.solid_bytes.iter().any(|list| list.name == "resume points");
         // such a driver ends loops; where a gate is shut none is long
         if picture.stats.device.contains("llvmpipe") {
-            assert_eq!(in_legs, matches!(cut, Cut::OfTwo), "{what}");
+            assert_eq!(in_segments, matches!(cut, Cut::OfTwo), "{what}");
         }
     }
     // band by band, sample by sample, and from within the first ball
@@ -173,14 +173,18 @@ fn what_lies_behind_255_faces_is_seen() {
         all_are(&picture, 200, what);
         assert!(picture.stats.bands >= least_bands, "{what}: {}", picture.stats.bands);
     }
-    // a view of another side needs one leg
+    // a view of another side needs one segment
     renderer.upload(&model).unwrap();
     render(&mut renderer, &whole);
     let aside =
         Camera { eye: DVec3::new(199.0, -3.0, 0.0), target: DVec3::X * 199.0, depth_range: (1.0, 9.0), ..whole };
     let picture = [(); 2].map(|()| render(&mut renderer, &aside)).into_iter().next_back().unwrap();
     all_are(&picture, 200, "from aside");
-    assert!(picture.stats.solid_bytes.iter().all(|list| list.name != "halts"), "{:?}", picture.stats.solid_bytes);
+    assert!(
+        picture.stats.solid_bytes.iter().all(|list| list.name != "resume points"),
+        "{:?}",
+        picture.stats.solid_bytes
+    );
     assert_silent(renderer);
 }
 

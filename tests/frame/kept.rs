@@ -73,7 +73,7 @@ impl Pair {
 }
 
 /// Passes that find out what is seen; the first two serve all samples.
-const SEEN_BY: [&str; 7] = ["tessellation", "trim table", "mesh", "solids", "visibility", "reveal", "heal"];
+const SEEN_BY: [&str; 7] = ["tessellation", "trim table", "mesh", "solids", "visibility", "occlusion", "gaps"];
 
 fn passes(picture: &Picture) -> Vec<&str> {
     picture.stats.passes.iter().map(|pass| pass.name.as_str()).collect()

@@ -1,7 +1,7 @@
-//! Walls narrower than a pixel one behind the other: what a ring hides must not be lost.
+//! Walls narrower than a pixel one behind the other: what a skirt hides must not be lost.
 //!
 //! ```text
-//!            4                  ring of the nearest wall's back: a quarter of a pixel
+//!            4                  skirt of the nearest wall's back: a quarter of a pixel
 //!   ──────────────── 0.75       above the edge, so before the centre
 //!            3
 //!   ──────────────── 0.31

@@ -16,7 +16,7 @@ use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings}
 use selvedge_check::Tracer;
 
 const SIZE: (u32, u32) = (64, 48);
-/// By how much the faces of solids grow over their borders: a quarter of the ring, which is half the tolerance.
+/// By how much the faces of solids grow over their borders: a quarter of the gap radius, which is half the tolerance.
 const GROWTH_PX: f64 = 0.5 * 0.5 * 0.25;
 /// Granted beyond the expected error: corners and curves within a pixel, eight bits of colour, and that the edges of
 /// one picture are a few hundred, in few directions.

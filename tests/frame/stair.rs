@@ -1,4 +1,4 @@
-//! Faces without trims beside trimmed ones: `heal` moves their surfaces to the doubtful pixels next to them, and a
+//! Faces without trims beside trimmed ones: `gap_fill` moves their surfaces to the gap candidates next to them, and a
 //! surface goes on where its face ends.
 //!
 //! ```text
@@ -24,7 +24,7 @@ fn a_face_without_trims_ends_where_its_surface_ends() {
         let picture = render(&mut renderer, &camera);
         let judgement = judge(&tracer, &camera, &picture.images(), &JudgeOptions::default());
         assert_eq!((judgement.wrong, judgement.given_up), (0, 0), "from {from}: {:?}", judgement.mismatches);
-        assert!(picture.stats.doubtful_pixels > 100, "from {from}: nothing was healed");
+        assert!(picture.stats.gap_candidates > 100, "from {from}: nothing was healed");
     }
     assert_silent(renderer);
 }

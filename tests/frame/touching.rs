@@ -1,5 +1,5 @@
-//! A front just before another solid's back: every pixel above the strip is doubtful, and most of them have
-//! doubtful neighbours only.
+//! A front just before another solid's back: every pixel above the strip is a candidate, and most of them have
+//! candidates as neighbours only.
 //!
 //! ```text
 //!        eye
@@ -45,7 +45,7 @@ fn counts<const N: usize>(picture: &Picture, widths: [(u32, f64); N]) -> [(usize
 /// Nothing of the strip is seen: face 1 has each pixel whose centre is above it.
 #[test]
 fn a_strip_just_below_a_face_is_not_seen() {
-    const { assert!(TOUCHING_STRIP > 2.0 * PIXEL, "some doubtful pixel must have no other neighbour") };
+    const { assert!(TOUCHING_STRIP > 2.0 * PIXEL, "some gap candidate must have no other neighbour") };
     let picture = from_straight_above(&shapes::touching());
     for (pixels, expected) in counts(&picture, [(1, 2.0 * PLATE_HALF), (2, 0.0)]) {
         assert_eq!(pixels, expected);

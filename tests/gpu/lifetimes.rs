@@ -2,7 +2,9 @@
 
 use crate::support::{assert_silent, watched};
 use ash::vk;
-use selvedge::gpu::{Binding, Buffer, BufferInfo, ComputeInfo, GpuError, Home, Image, ImageInfo, Pipeline, Pool};
+use selvedge::gpu::{
+    Binding, Buffer, BufferInfo, ComputeInfo, GpuError, Image, ImageInfo, MemoryLocation, Pipeline, Pool,
+};
 use selvedge::headless::{HeadlessDevice, HeadlessError, HeadlessOptions, Severity};
 use selvedge::passes::scan::Scan;
 
@@ -71,7 +73,7 @@ fn a_buffer_beyond_the_device_is_refused_by_name() {
         bytes: limit + 1,
         usage: Buffer::STORAGE,
         pool: Pool::Transient,
-        home: Home::Device,
+        location: MemoryLocation::Device,
     };
     match Buffer::new(device.device(), &info) {
         Err(GpuError::TooLarge { resource, .. }) => assert_eq!(resource, "giant"),
@@ -115,7 +117,7 @@ fn pipelines_of_one_description_are_one() {
         .chunks_exact(4)
         .map(|word| u32::from_le_bytes(word.try_into().unwrap()))
         .collect();
-    let bindings = [[Binding::Texels; 3].as_slice(), &[Binding::Storage; 2]].concat();
+    let bindings = [[Binding::TexelBuffer; 3].as_slice(), &[Binding::Storage; 2]].concat();
     let info = ComputeInfo { name: "twice", spirv: &spirv, bindings: &bindings, push_bytes: 8, constants: &[] };
     let named = |name: &str| device.objects().iter().filter(|object| *object == name).count();
     let first = Pipeline::compute(device, &info).unwrap();

@@ -21,7 +21,9 @@ use crate::frame::Frame;
 use crate::frame::common::room::{DRAWN_AND_READ, Room};
 use crate::frame::shading::{self, resolve};
 use crate::frame::transparency::Drawing;
-use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, Texels, Timestamps, barrier};
+use crate::gpu::{
+    Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, TexelBuffer, Timestamps, barrier,
+};
 use crate::picture::Samples;
 use crate::scene::SceneData;
 use std::mem::offset_of;
@@ -59,7 +61,7 @@ pub(crate) struct MoreSamples {
 /// A view besides the pixels' centres, written by the host.
 pub(crate) struct ViewBuffers {
     pub constants: Buffer,
-    pub views: Texels,
+    pub views: TexelBuffer,
 }
 
 /// Timed scopes, or none: each sample costs what the first one does.
@@ -149,7 +151,7 @@ fn begin_again(frame: &Frame<'_>, cmd: &Commands<'_>, colour: &Image) {
     let counters = &frame.stages.common.counters;
     frame.wait(cmd);
     let counted = [
-        offset_of!(Counters, doubts),
+        offset_of!(Counters, gap_candidates),
         offset_of!(Counters, contacts),
         offset_of!(Counters, overlaps),
         offset_of!(Counters, tile_leaves),

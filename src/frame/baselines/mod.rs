@@ -16,7 +16,7 @@ use super::trim::density;
 use super::visibility::patches;
 use super::{Frame, WRITE_TO_READ};
 use crate::baselines::TrimMethod;
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, Texel, Texels, Timestamps, barrier};
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, Texel, TexelBuffer, Timestamps, barrier};
 use crate::scene::{BaselineScene, Scene, SceneData, TableScene};
 use crate::shaders::{TRIM_BISECT, TRIM_TEXTURE, TRIM_UNTRIMMED, TrimTest};
 use std::sync::Arc;
@@ -69,9 +69,9 @@ pub(crate) struct Textures {
     face_speeds: Buffer,
     words: Buffer,
     starts: Buffer,
-    places: Texels,
+    places: TexelBuffer,
     /// As large as the capacity of intercepts.
-    texels: Texels,
+    texels: TexelBuffer,
 }
 
 impl Trim {
@@ -124,11 +124,11 @@ impl Textures {
         let counts = room.counts;
         Ok(Self {
             passes: Arc::clone(passes),
-            strip_heights: room.words("trim strip heights", counts.bays)?,
+            strip_heights: room.words("trim strip heights", counts.bins)?,
             face_speeds: room.words("trim face speeds", 2 * counts.face_instances)?,
             words: room.words("trim texture sizes", counts.face_instances)?,
             starts: room.words("trim texture starts", counts.face_instances + 1)?,
-            places: room.texels::<[u32; 4]>("trim texture places", counts.bays, Texel::U32x4)?,
+            places: room.texels::<[u32; 4]>("trim texture places", counts.bins, Texel::U32x4)?,
             texels: room.texels::<u32>("trim texels", room.capacities.trim.intercepts, Texel::Words)?,
         })
     }
@@ -154,7 +154,7 @@ impl Textures {
             cell_items: &scene.cell_items,
             strip_heights: &t.strip_heights,
             face_speeds: &t.face_speeds,
-            seen_bays: None,
+            seen_bins: None,
         };
         self.passes.density.record(cmd, &density, counts.cells);
         cmd.after(w, r | w);

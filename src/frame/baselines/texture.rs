@@ -9,7 +9,7 @@
 //! between the steps are the caller's. What the method is: `src/baselines/texture.rs`.
 
 use crate::frame::common::kernel::Kernel;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Resource, Texels};
+use crate::gpu::{Buffer, Commands, Device, GpuError, Resource, TexelBuffer};
 use crate::shaders;
 
 /// Workgroups that share the rows of one face in the third step.
@@ -26,11 +26,11 @@ pub(crate) struct BaselineTexture {
 pub(crate) struct Bindings<'a> {
     pub knob: &'a Buffer,
     pub frame: &'a Buffer,
-    pub face_instances: &'a Texels,
-    pub faces: &'a Texels,
-    pub curves: &'a Texels,
-    pub curve_points: &'a Texels,
-    pub curve_items: &'a Texels,
+    pub face_instances: &'a TexelBuffer,
+    pub faces: &'a TexelBuffer,
+    pub curves: &'a TexelBuffer,
+    pub curve_points: &'a TexelBuffer,
+    pub curve_items: &'a TexelBuffer,
     pub face_speeds: &'a Buffer,
     pub words: &'a Buffer,
     pub starts: &'a Buffer,

@@ -91,12 +91,12 @@ fn merged<'b>(name: &str, stages: impl Iterator<Item = &'b [Binding]>) -> Vec<Bi
 #[cfg(test)]
 mod tests {
     use super::*;
-    use Binding::{Storage, Texels, Uniform, Unused};
+    use Binding::{Storage, TexelBuffer, Uniform, Unused};
 
     #[test]
     fn each_stage_adds_its_bindings() {
-        let stages: [&[Binding]; 3] = [&[], &[Uniform, Unused, Unused, Storage], &[Unused, Texels]];
-        assert_eq!(merged("a", stages.into_iter()), [Uniform, Texels, Unused, Storage]);
+        let stages: [&[Binding]; 3] = [&[], &[Uniform, Unused, Unused, Storage], &[Unused, TexelBuffer]];
+        assert_eq!(merged("a", stages.into_iter()), [Uniform, TexelBuffer, Unused, Storage]);
     }
 
     #[test]

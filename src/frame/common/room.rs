@@ -3,7 +3,7 @@
 use crate::abi::TILE;
 use crate::frame::capacities::Capacities;
 use crate::frame::counts::Counts;
-use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Home, Image, ImageInfo, Pool, Texel, Texels};
+use crate::gpu::{Buffer, BufferInfo, Device, GpuError, Image, ImageInfo, MemoryLocation, Pool, Texel, TexelBuffer};
 use ash::vk;
 
 /// What there must be room for.
@@ -38,11 +38,11 @@ impl Room<'_> {
     }
 
     /// `n` structs or words, written as such and read as texels.
-    pub(crate) fn texels<T>(&self, name: &str, n: u32, texel: Texel) -> Result<Texels, GpuError> {
+    pub(crate) fn texels<T>(&self, name: &str, n: u32, texel: Texel) -> Result<TexelBuffer, GpuError> {
         let usage = Buffer::STORAGE | vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER;
         let bytes = u64::from(n) * size_of::<T>() as u64;
-        let info = BufferInfo { name, bytes, usage, pool: Pool::Transient, home: Home::Device };
-        Texels::new(self.device, Buffer::new(self.device, &info)?, texel)
+        let info = BufferInfo { name, bytes, usage, pool: Pool::Transient, location: MemoryLocation::Device };
+        TexelBuffer::new(self.device, Buffer::new(self.device, &info)?, texel)
     }
 
     /// An image of the picture's size.

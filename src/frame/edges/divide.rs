@@ -10,7 +10,7 @@
 //! Reads: everything that `Bindings` names. Writes: `counts`, `chords`, `draw`, `counters`. Twin: `src/twin/edges.rs`.
 
 use crate::frame::common::kernel::Kernel;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Resource, Texels};
+use crate::gpu::{Buffer, Commands, Device, GpuError, Resource, TexelBuffer};
 use crate::shaders;
 use bytemuck::{Pod, Zeroable};
 
@@ -26,7 +26,7 @@ pub(crate) struct Bindings<'a> {
     pub views: &'a Buffer,
     pub items: &'a Buffer,
     pub pieces: &'a Buffer,
-    pub points: &'a Texels,
+    pub points: &'a TexelBuffer,
     /// Per item.
     pub counts: &'a Buffer,
     /// Their sums, one more.

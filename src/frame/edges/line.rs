@@ -10,7 +10,7 @@
 
 use crate::bindings::Placed;
 use crate::frame::common::draw::Draw;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource, Texels};
+use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource, TexelBuffer};
 use crate::scene::{EdgeBuffers, MeshBuffers, SceneData};
 use crate::shaders::{self, constant};
 use bytemuck::{Pod, Zeroable};
@@ -26,7 +26,7 @@ pub(crate) struct Bindings<'a> {
     pub placed: Placed<'a>,
     pub visibility: &'a Image,
     pub others: &'a Image,
-    pub sources: &'a Texels,
+    pub sources: &'a TexelBuffer,
     pub chords: &'a Buffer,
     pub edges: &'a EdgeBuffers,
     pub best: &'a Buffer,
@@ -49,7 +49,7 @@ impl Line {
             (constant::SCENE_HAS_RATIONAL, u32::from(data.has_rational)),
             (constant::SCENE_HAS_FINE, u32::from(data.has_fine)),
             (constant::SCENE_HAS_MESHES, u32::from(data.has_meshes())),
-            (constant::SCENE_HAS_OTHERS, u32::from(others)),
+            (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
         ];
         let draw = Draw::new("edge_line", &shaders::EDGE_LINE_VERT, &shaders::EDGE_LINE_FRAG);
         Ok(Self { pipeline: Draw { constants: &constants, ..draw }.pipeline(device)? })

@@ -48,7 +48,7 @@ impl Show {
         let others = data.has_meshes() || data.solids.kinds().is_some();
         let constants = [
             (constant::HAS_EDGE_IMAGE, u32::from(formats.numbers)),
-            (constant::SCENE_HAS_OTHERS, u32::from(others)),
+            (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
         ];
         let draw = Draw::new("edge_show", &shaders::RESOLVE_VERT, &shaders::EDGE_SHOW_FRAG);
         Ok(Self { pipeline: Draw { constants: &constants, colour: &colour, ..draw }.pipeline(device)? })

@@ -1,6 +1,6 @@
 //! How many gap candidates there is room for.
 
-use crate::abi::{Counters, Doubt};
+use crate::abi::{Counters, GapCandidate};
 use crate::frame::capacities::grown;
 use crate::frame::counts::Counts;
 
@@ -18,6 +18,6 @@ impl Capacities {
 
     /// What the frame that reported `c` would have needed.
     pub(crate) fn grown(self, c: &Counters, range: u32) -> Self {
-        Self { candidates: grown(self.candidates, c.doubts, range / size_of::<Doubt>() as u32) }
+        Self { candidates: grown(self.candidates, c.gap_candidates, range / size_of::<GapCandidate>() as u32) }
     }
 }

@@ -1,7 +1,7 @@
 //! Pass `gap_fill`: pixels that look through a gap between two faces get the face that belongs there.
 //!
 //! ```text
-//!   visibility image, rings ──find──▶ list of doubtful pixels ──record──▶ who is seen there ──show──▶ visibility image
+//!   visibility image, border_depths ──find──▶ list of gap candidates ──record──▶ who is seen there ──show──▶ visibility image
 //!
 //!        ┌───┬───┬───┐     asks the faces of the neighbours, on their exact surfaces at the pixel's
 //!        │ A │ A │ B │     centre, which of them is there; the rules stand in glsl/include/gap_fill.glsl
@@ -10,17 +10,17 @@
 //!        └───┴───┴───┘
 //! ```
 //!
-//! Reads: everything that the bindings name but what it writes. Writes: `find`: `doubts`, `dispatch`,
-//! `counters`, and the mark in the visibility image; `record`: `doubts`; `show`: the visibility image. All of them at
-//! doubtful pixels only.
+//! Reads: everything that the bindings name but what it writes. Writes: `find`: `candidates`, `dispatch`,
+//! `counters`, and the mark in the visibility image; `record`: `candidates`; `show`: the visibility image. All of them at
+//! gap candidates only.
 
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::kernel::Kernel;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource, Sampler, Texels};
+use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource, Sampler, TexelBuffer};
 use crate::shaders::{self, TrimTest, constant};
 use ash::vk;
 
-/// Columns and rows of the picture that a workgroup of the first step looks for doubtful pixels in.
+/// Columns and rows of the picture that a workgroup of the first step looks for gap candidates in.
 const PART: [u32; 2] = [62, 30];
 /// The pass, in its three steps.
 pub(crate) struct GapFill {
@@ -31,15 +31,15 @@ pub(crate) struct GapFill {
 }
 
 /// Of the first step, in binding order.
-pub(crate) struct DoubtBindings<'a> {
+pub(crate) struct FindBindings<'a> {
     pub frame: &'a Buffer,
     pub visibility: &'a Image,
-    pub doubts: &'a Buffer,
+    pub candidates: &'a Buffer,
     /// Of the second step; zero before.
     pub dispatch: &'a Buffer,
     pub counters: &'a Buffer,
     pub depth: &'a Image,
-    pub rings: &'a Texels,
+    pub border_depths: &'a TexelBuffer,
 }
 
 /// Of the second step, in binding order, and its dispatch.
@@ -47,9 +47,9 @@ pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub placed: Placed<'a>,
     pub visibility: &'a Image,
-    pub doubts: &'a Buffer,
+    pub candidates: &'a Buffer,
     pub counters: &'a Buffer,
-    pub instances: &'a Texels,
+    pub instances: &'a TexelBuffer,
     /// What is no patch; `None` where the scene has nothing else.
     pub others: Option<Others<'a>>,
     /// What the trim test reads, in its order.
@@ -85,7 +85,7 @@ impl GapFill {
         let weights = if rational { "rational" } else { "polynomial" };
         let constants = [
             (constant::SCENE_HAS_RATIONAL, u32::from(rational)),
-            (constant::SCENE_HAS_OTHERS, u32::from(others)),
+            (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
             (constant::SOLIDS_HAVE, volume.unwrap_or_default()),
         ];
         let (fill, within, constants) = match test.within.filter(|_| volume.is_some()) {
@@ -101,22 +101,22 @@ impl GapFill {
         })
     }
 
-    /// Lists the doubtful pixels.
-    pub(crate) fn find(&self, cmd: &Commands<'_>, b: &DoubtBindings<'_>) {
+    /// Lists the gap candidates.
+    pub(crate) fn find(&self, cmd: &Commands<'_>, b: &FindBindings<'_>) {
         let (width, height) = b.visibility.size();
         let resources = [
             b.frame.into(),
             b.visibility.into(),
-            b.doubts.into(),
+            b.candidates.into(),
             b.dispatch.into(),
             b.counters.into(),
             Resource::Sampled(b.depth, &self.nearest),
-            b.rings.into(),
+            b.border_depths.into(),
         ];
         self.find.record_grid(cmd, &resources, [width.div_ceil(PART[0]), height.div_ceil(PART[1]), 1]);
     }
 
-    /// One thread a doubtful pixel.
+    /// One thread a gap candidate.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
         // the shader has these bindings in every scene, and reads them only where there are others
         let seen = b.others.as_ref().map_or(b.visibility, |o| o.seen);
@@ -124,7 +124,7 @@ impl GapFill {
         let meshes = b.others.as_ref().and_then(|o| o.meshes.as_ref()).unwrap_or(&none);
         let resources = [
             b.visibility.into(),
-            b.doubts.into(),
+            b.candidates.into(),
             b.counters.into(),
             b.instances.into(),
             seen.into(),
@@ -144,11 +144,11 @@ impl GapFill {
         self.fill.record_indirect(cmd, &resources, (b.dispatch, 0));
     }
 
-    /// One thread a doubtful pixel, as in the second step, whose bindings these are.
+    /// One thread a gap candidate, as in the second step, whose bindings these are.
     pub(crate) fn show(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
         self.write.record_indirect(
             cmd,
-            &[b.frame.into(), b.visibility.into(), b.doubts.into(), b.counters.into()],
+            &[b.frame.into(), b.visibility.into(), b.candidates.into(), b.counters.into()],
             (b.dispatch, 0),
         );
     }

@@ -1,7 +1,7 @@
 //! Gaps between trimmed faces: pixels that may look through one are listed, and get the face that belongs there.
 //!
 //! ```text
-//!   visibility, rings ──gap_find──▶ candidates ──gap_fill──▶ who is seen there ──gap_write──▶ visibility
+//!   visibility, border_depths ──gap_find──▶ candidates ──gap_fill──▶ who is seen there ──gap_write──▶ visibility
 //! ```
 
 mod capacities;
@@ -11,8 +11,8 @@ pub(crate) use capacities::Capacities;
 
 use super::common::room::Room;
 use super::{Frame, WRITE_TO_READ};
-use crate::abi::Doubt;
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, Texel, Texels, barrier};
+use crate::abi::GapCandidate;
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, Texel, TexelBuffer, barrier};
 use crate::scene::{SceneData, SolidData};
 use crate::shaders::TrimTest;
 use std::sync::Arc;
@@ -27,8 +27,8 @@ pub(super) fn passes(device: &Device, data: &SceneData, test: &TrimTest) -> Resu
 /// The stage.
 pub(crate) struct Gaps {
     passes: Arc<gap_fill::GapFill>,
-    /// How near the nearest ring comes, a word a pixel.
-    pub rings: Texels,
+    /// How near the nearest skirt comes, a word a pixel.
+    pub border_depths: TexelBuffer,
     candidates: Buffer,
     dispatch: Buffer,
 }
@@ -37,8 +37,8 @@ impl Gaps {
     pub(super) fn new(room: &Room<'_>, passes: &Arc<gap_fill::GapFill>) -> Result<Self, GpuError> {
         Ok(Self {
             passes: Arc::clone(passes),
-            rings: room.texels::<u32>("trim rings", room.size.0 * room.size.1, Texel::Numbers)?,
-            candidates: room.structs::<Doubt>("gap candidates", room.capacities.gaps.candidates)?,
+            border_depths: room.texels::<u32>("border depths", room.size.0 * room.size.1, Texel::Numbers)?,
+            candidates: room.structs::<GapCandidate>("gap candidates", room.capacities.gaps.candidates)?,
             dispatch: room.indirect::<[u32; 3]>("gap dispatch", 1)?,
         })
     }
@@ -46,7 +46,7 @@ impl Gaps {
     /// Before each drawing.
     pub(super) fn clear(&self, cmd: &Commands<'_>) {
         cmd.fill(&self.dispatch, 0);
-        cmd.fill(&self.rings, 0);
+        cmd.fill(&self.border_depths, 0);
     }
 
     /// Pixels that look through a gap between faces get the face that belongs there.
@@ -60,19 +60,19 @@ impl Gaps {
         barrier::buffers(
             cmd,
             &[
-                (&self.rings, Access::FRAGMENT_WRITE, r),
+                (&self.border_depths, Access::FRAGMENT_WRITE, r),
                 (&c.counters, Access::INDIRECT_READ, w),
                 (&self.dispatch, Access::TRANSFER_WRITE, w),
             ],
         );
-        let find = gap_fill::DoubtBindings {
+        let find = gap_fill::FindBindings {
             frame: frame.constants,
             visibility: &v.image,
-            doubts: &self.candidates,
+            candidates: &self.candidates,
             dispatch: &self.dispatch,
             counters: &c.counters,
             depth: &v.depth,
-            rings: &self.rings,
+            border_depths: &self.border_depths,
         };
         self.passes.find(cmd, &find);
         barrier::images(cmd, &[(&v.image, w, r)]);
@@ -81,7 +81,7 @@ impl Gaps {
             frame: frame.constants,
             placed: s.placed(frame.views),
             visibility: &v.image,
-            doubts: &self.candidates,
+            candidates: &self.candidates,
             counters: &c.counters,
             instances: &s.instances,
             others: v.others.as_ref().map(|seen| gap_fill::Others {

@@ -10,7 +10,7 @@
 //! Writes: `taus`, `hidden`, `counters`. Twin: `src/twin/occlusion.rs`.
 
 use crate::frame::common::kernel::Kernel;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
+use crate::gpu::{Buffer, Commands, Device, GpuError, TexelBuffer};
 use crate::shaders::{self, constant};
 
 /// The pass.
@@ -26,7 +26,7 @@ pub(crate) struct Bindings<'a> {
     pub face_instances: &'a Buffer,
     pub faces: &'a Buffer,
     pub patches: &'a Buffer,
-    pub points: &'a Texels,
+    pub points: &'a TexelBuffer,
     /// Face instance of each item.
     pub items: &'a Buffer,
     /// Of squares, then of tiles, then of blocks.

@@ -10,7 +10,7 @@
 //! ```
 //!
 //! A view is right whatever the frame before left, and the picture is the same bit for bit as with every patch drawn: what
-//! is left out would have lost the depth test at each pixel, and its rings lie behind what is seen there. The derivation
+//! is left out would have lost the depth test at each pixel, and its skirts lie behind what is seen there. The derivation
 //! stands in `twin::occlusion`. Only of faces that have the same depth to the bit another may be drawn first, and seen. If
 //! the view has not changed since the last occlusion test, the test is skipped.
 
@@ -28,7 +28,7 @@ use std::sync::Arc;
 
 /// What a frame may take from the frames before.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum Hiding {
+pub(crate) enum OcclusionState {
     /// Nothing, and it makes no test: the next frame may never come.
     First,
     /// Nothing, but it tests.
@@ -83,7 +83,7 @@ impl Occlusion {
 
     /// Clears what `cull_early` reads in a first frame.
     pub(super) fn begin(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
-        if frame.hiding == Hiding::First {
+        if frame.occlusion == OcclusionState::First {
             cmd.fill(&self.hidden, 0);
         }
     }
@@ -101,7 +101,7 @@ impl Occlusion {
 
     /// This frame tests what lies behind what it draws.
     pub(super) fn tests(&self, frame: &Frame<'_>) -> bool {
-        matches!(frame.hiding, Hiding::Asks | Hiding::Moved)
+        matches!(frame.occlusion, OcclusionState::Asks | OcclusionState::Moved)
     }
 
     /// After `visibility`: what lies behind what it drew; and where something had been left out that does not, that as
@@ -132,7 +132,7 @@ impl Occlusion {
         };
         self.passes.cull_late.record(cmd, &bindings, frame.counts.items);
         barrier::images(cmd, &[(&v.depth, r, Access::DEPTH_WRITE)]);
-        if frame.hiding != Hiding::Moved {
+        if frame.occlusion != OcclusionState::Moved {
             cmd.after(w, Access::INDIRECT_READ);
             return;
         }

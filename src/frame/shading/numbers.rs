@@ -8,7 +8,7 @@
 
 use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Blend, Buffer, ColourTarget, Commands, Device, GpuError, Image, Load, Pipeline, Resource, Texels,
+    Attachment, Blend, Buffer, ColourTarget, Commands, Device, GpuError, Image, Load, Pipeline, Resource, TexelBuffer,
 };
 use crate::shaders;
 use ash::vk;
@@ -23,9 +23,9 @@ pub(crate) struct Numbers {
 
 /// Its buffers and images, in binding order.
 pub(crate) struct Bindings<'a> {
-    pub sources: &'a Texels,
-    pub face_instances: &'a Texels,
-    pub items: &'a Texels,
+    pub sources: &'a TexelBuffer,
+    pub face_instances: &'a TexelBuffer,
+    pub items: &'a TexelBuffer,
     pub visibility: &'a Image,
     pub others: &'a Image,
     /// Some buffer where there are no meshes.

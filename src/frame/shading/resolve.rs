@@ -17,7 +17,8 @@ pub(crate) use crate::abi::constants::shade::UNSEEN;
 use crate::bindings::{Placed, Primitives, SUN_BINDINGS};
 use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Image, Pipeline, Resource, Texels,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Image, Pipeline, Resource,
+    TexelBuffer,
 };
 use crate::shaders::{self, Shader, constant};
 use ash::vk;
@@ -126,7 +127,7 @@ pub(crate) enum Destination {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub placed: Placed<'a>,
-    pub instances: &'a Texels,
+    pub instances: &'a TexelBuffer,
     pub visibility: &'a Image,
     /// The visibility image again where the scene has no trims, or nothing but patches.
     pub others: &'a Image,
@@ -215,7 +216,7 @@ impl Resolve {
             (constant::SCENE_HAS_PIECES, u32::from(kinds.pieces)),
             (constant::SCENE_HAS_FINE, u32::from(kinds.fine)),
         ];
-        let others = [(constant::SCENE_HAS_OTHERS, u32::from(kinds.meshes || kinds.solids.is_some()))];
+        let others = [(constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(kinds.meshes || kinds.solids.is_some()))];
         let shells = [(constant::SOLIDS_HAVE_SHELLS, u32::from(kinds.solids.is_some_and(|s| s.shells)))];
         let lit = |is_there: bool, vertex, name, fragment, constants: &[&[(u32, u32)]]| {
             is_there.then(|| over(vertex, name, fragment, &[&of_all[..], &constants.concat()].concat())).transpose()

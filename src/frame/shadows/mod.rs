@@ -2,7 +2,7 @@
 
 use super::{Frame, WRITE_TO_READ};
 use crate::bindings::{Primitives, SUN_BINDINGS};
-use crate::gpu::{Access, Commands, Resource, Texels};
+use crate::gpu::{Access, Commands, Resource, TexelBuffer};
 use crate::scene::SunTiles;
 
 impl<'a> Frame<'a> {
@@ -12,7 +12,7 @@ impl<'a> Frame<'a> {
         // where nothing casts shadows the shader reads but the first
         let (tiles, leaves) = self.scene.sun.as_ref().map_or((sun, sun), |s| (&s.tiles, &s.leaves));
         let (points, words, quads) = (&self.scene.points, &self.scene.items, &self.scene.patches);
-        let of = |which: fn(&'a SunTiles) -> Option<&'a Texels>, none: &'a Texels| {
+        let of = |which: fn(&'a SunTiles) -> Option<&'a TexelBuffer>, none: &'a TexelBuffer| {
             self.scene.sun.as_ref().and_then(which).unwrap_or(none)
         };
         let triangles = of(|s| s.triangles.as_ref(), quads);

@@ -21,7 +21,7 @@ use crate::bindings::Primitives;
 use crate::frame::common::draw::Draw;
 use crate::gpu::{
     Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Image, Pipeline, Resource,
-    StencilTest, Texels,
+    StencilTest, TexelBuffer,
 };
 use crate::shaders::{self, Shader, constant};
 use ash::vk;
@@ -89,7 +89,7 @@ pub(crate) struct Bindings<'a> {
     /// `None` without meshes.
     pub meshes: Option<MeshBindings<'a>>,
     /// Starts, leaves and entries of tiles; `None` with meshes, whose faces show as they are found.
-    pub tiles: Option<(&'a Texels, &'a Texels, &'a Texels)>,
+    pub tiles: Option<(&'a TexelBuffer, &'a TexelBuffer, &'a TexelBuffer)>,
 }
 
 /// Those of meshes.

@@ -5,7 +5,7 @@ use super::{Solids, Way};
 use crate::abi::Fragment;
 use crate::frame::common::room::{DRAWN_AND_READ, Room};
 use crate::frame::solids::blister::{LAYER_DEPTH_FORMAT, LAYER_FORMAT};
-use crate::gpu::{Buffer, GpuError, Image, Texel, Texels};
+use crate::gpu::{Buffer, GpuError, Image, Texel, TexelBuffer};
 use crate::picture::PoolBytes;
 use ash::vk;
 
@@ -35,7 +35,7 @@ impl LayerImages {
 pub(crate) struct FragmentBuffers {
     pub counts: Buffer,
     pub starts: Buffer,
-    pub all: Texels,
+    pub all: TexelBuffer,
 }
 
 impl FragmentBuffers {
@@ -77,7 +77,8 @@ impl Solids {
             }
             Way::Events(..) | Way::Cst(..) => None,
         };
-        let halts = self.halts.as_ref().map(|halts| sum("halts", &[halts.bytes()]));
-        blocks.into_iter().chain(tiles).chain(crossings).chain(layers).chain(halts).collect()
+        let resume_points =
+            self.resume_points.as_ref().map(|resume_points| sum("resume points", &[resume_points.bytes()]));
+        blocks.into_iter().chain(tiles).chain(crossings).chain(layers).chain(resume_points).collect()
     }
 }

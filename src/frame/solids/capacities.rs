@@ -1,7 +1,7 @@
 //! How much the lists of Boolean solids, and what they count, have room for.
 
 use super::lists::{Entries, Lists, WHOLE};
-use crate::abi::constants::scene::{FAILED_FRAGMENTS, FAILED_LAYERS, FAILED_LEGS, FAILED_TILE_LEAVES};
+use crate::abi::constants::scene::{FAILED_FRAGMENTS, FAILED_LAYERS, FAILED_RAY_SEGMENTS, FAILED_TILE_LEAVES};
 use crate::abi::{BLOCK, Counters, TILE, TileLeaf};
 use crate::frame::capacities::grown;
 use crate::frame::counts::{Counts, SMALLER, TooMany};
@@ -15,7 +15,7 @@ const FEWEST_LAYERS: u32 = 4;
 /// Of faces, each of which asks every primitive.
 const MOST_LAYERS: u32 = 1 << 10;
 /// Of a ray, each as long as a driver lets a loop be: what is left then is counted as clamps.
-pub(crate) const MOST_LEGS: u32 = 64;
+pub(crate) const MOST_RAY_SEGMENTS: u32 = 64;
 
 /// Room for what only the GPU can count of them.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -28,7 +28,7 @@ pub(crate) struct Capacities {
     /// That way `blister` peels.
     pub layers: u32,
     /// Of each ray of way `events`, one where the other ended.
-    pub legs: u32,
+    pub ray_segments: u32,
 }
 
 impl Capacities {
@@ -40,7 +40,7 @@ impl Capacities {
             fragments: if counts.has_fragments() { FEWEST_FRAGMENTS } else { 0 },
             band_rows: WHOLE,
             layers: if counts.blister { FEWEST_LAYERS } else { 0 },
-            legs: 1,
+            ray_segments: 1,
         }
     }
 
@@ -126,18 +126,21 @@ impl Capacities {
         Ok(Self { band_rows, ..self }.with(room))
     }
 
-    /// Four times as many legs as did not suffice; else one, 4, 16, … of which the last had nothing to do, or was the
+    /// Four times as many ray segments as did not suffice; else one, 4, 16, … of which the last had nothing to do, or was the
     /// last that may be. What rays did with lists that lacked something does not count.
-    fn legs(self, c: &Counters, size: (u32, u32), range: u32) -> Result<u32, TooMany> {
+    fn ray_segments(self, c: &Counters, size: (u32, u32), range: u32) -> Result<u32, TooMany> {
         let grown = match c.failed {
-            0 => (0..).map(|n| 4u32.pow(n)).find(|legs| *legs > c.legs).unwrap_or(MOST_LEGS),
-            FAILED_LEGS => 4 * self.legs,
-            _ => self.legs,
+            0 => (0..)
+                .map(|n| 4u32.pow(n))
+                .find(|ray_segments| *ray_segments > c.ray_segments)
+                .unwrap_or(MOST_RAY_SEGMENTS),
+            FAILED_RAY_SEGMENTS => 4 * self.ray_segments,
+            _ => self.ray_segments,
         };
         let rows = self.band_rows.saturating_mul(TILE).min(size.1);
         let (pixels, most) = (size.0.saturating_mul(rows), range / size_of::<u32>() as u32);
         if grown > 1 && pixels > most {
-            let what = "pixels whose rays go on in legs";
+            let what = "pixels whose rays go on in segments";
             return Err(TooMany {
                 what,
                 count: pixels,
@@ -145,13 +148,14 @@ impl Capacities {
                 help: "draw a smaller picture, or by a smaller solid budget",
             });
         }
-        Ok(grown.min(MOST_LEGS))
+        Ok(grown.min(MOST_RAY_SEGMENTS))
     }
 
     /// Buffers made for these take as much as those made for `others`.
     pub(crate) fn takes_as_much(self, others: Self) -> bool {
-        let legs = if (self.legs > 1) == (others.legs > 1) { others.legs } else { self.legs };
-        Self { layers: others.layers, legs, ..self } == others
+        let ray_segments =
+            if (self.ray_segments > 1) == (others.ray_segments > 1) { others.ray_segments } else { self.ray_segments };
+        Self { layers: others.layers, ray_segments, ..self } == others
     }
 
     /// What the frame that reported `c` would have needed; see [`Capacities::grown`](crate::frame::capacities::Capacities::grown).
@@ -176,7 +180,7 @@ impl Capacities {
                 had if c.failed & FAILED_LAYERS != 0 => 2 * had,
                 _ => (c.layers + 1).max(FEWEST_LAYERS),
             },
-            legs: self.legs(c, size, range)?,
+            ray_segments: self.ray_segments(c, size, range)?,
             ..lists
         })
     }
@@ -218,24 +222,24 @@ mod tests {
 
     #[test]
     fn legs_follow_the_view() {
-        let ended = Counters { failed: FAILED_LEGS, ..Default::default() };
+        let ended = Counters { failed: FAILED_RAY_SEGMENTS, ..Default::default() };
         let mut had = first();
-        for legs in [4, 16, 64, MOST_LEGS] {
+        for ray_segments in [4, 16, 64, MOST_RAY_SEGMENTS] {
             had = grown(had, &ended).unwrap();
-            assert_eq!(had.legs, legs);
+            assert_eq!(had.ray_segments, ray_segments);
         }
         // as the view needs
-        let of = |c| grown(had, &c).unwrap().legs;
-        assert_eq!(of(Counters { legs: 63, ..Default::default() }), MOST_LEGS);
-        assert_eq!(of(Counters { legs: 64, ..Default::default() }), MOST_LEGS);
-        assert_eq!(of(Counters { legs: 3, ..Default::default() }), 4);
-        assert_eq!(of(Counters { legs: 1, ..Default::default() }), 4);
+        let of = |c| grown(had, &c).unwrap().ray_segments;
+        assert_eq!(of(Counters { ray_segments: 63, ..Default::default() }), MOST_RAY_SEGMENTS);
+        assert_eq!(of(Counters { ray_segments: 64, ..Default::default() }), MOST_RAY_SEGMENTS);
+        assert_eq!(of(Counters { ray_segments: 3, ..Default::default() }), 4);
+        assert_eq!(of(Counters { ray_segments: 1, ..Default::default() }), 4);
         assert_eq!(of(Counters::default()), 1);
         // lists that lack something say nothing of rays
-        let both = Counters { failed: FAILED_LEGS | FAILED_TILE_LEAVES, tile_leaves: 99, ..Default::default() };
-        assert_eq!(grown(first(), &both).unwrap().legs, 1);
-        assert!(had.takes_as_much(Capacities { legs: 4, ..had }) && !had.takes_as_much(first()));
+        let both = Counters { failed: FAILED_RAY_SEGMENTS | FAILED_TILE_LEAVES, tile_leaves: 99, ..Default::default() };
+        assert_eq!(grown(first(), &both).unwrap().ray_segments, 1);
+        assert!(had.takes_as_much(Capacities { ray_segments: 4, ..had }) && !had.takes_as_much(first()));
         let large = first().grown(&ended, Counts::default(), (16_384, 16_384), RANGE);
-        assert!(matches!(large, Err(TooMany { what: "pixels whose rays go on in legs", .. })));
+        assert!(matches!(large, Err(TooMany { what: "pixels whose rays go on in segments", .. })));
     }
 }

@@ -36,7 +36,7 @@ use super::shading::resolve;
 use super::visibility::patches::{DEPTH_FORMAT, VISIBILITY_FORMAT};
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::Rect;
-use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, Texels, barrier};
+use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, TexelBuffer, barrier};
 use crate::scene::{self, SceneData};
 use crate::shaders::TrimTest;
 use bands::Band;
@@ -108,8 +108,8 @@ pub(crate) struct Solids {
     operands: Option<Operands>,
     /// (u, v) of spline faces that bound operands.
     operand_uv: Option<Image>,
-    /// Where rays go on from, a word a pixel of a band; where one leg did not suffice.
-    halts: Option<Buffer>,
+    /// Where rays go on from, a word a pixel of a band; where one segment did not suffice.
+    resume_points: Option<Buffer>,
 }
 
 /// What finds the faces, and which leaves each tile sees.
@@ -139,8 +139,8 @@ impl Solids {
             },
             operands: passes.operands.as_ref().map(operands).transpose()?,
             operand_uv: (counts.operand_patches && counts.has_fragments()).then(uv).transpose()?,
-            halts: (room.capacities.solids.legs > 1)
-                .then(|| room.words("solid halts", room.band_pixels()))
+            resume_points: (room.capacities.solids.ray_segments > 1)
+                .then(|| room.words("solid resume points", room.band_pixels()))
                 .transpose()?,
         })
     }
@@ -174,7 +174,7 @@ impl Solids {
 #[derive(Clone, Copy)]
 pub(crate) struct Centres<'a> {
     pub leaves: &'a Buffer,
-    pub surfaces: &'a Texels,
+    pub surfaces: &'a TexelBuffer,
 }
 
 /// The plane at which rays begin.
@@ -283,11 +283,11 @@ impl<'a> SolidParts<'a> {
                     }),
                     counters,
                     tile_squares: &tiles.tile_squares,
-                    halts: stage.halts.as_ref(),
+                    resume_points: stage.resume_points.as_ref(),
                 };
                 cmd.after(w, Access::FRAGMENT_WRITE);
                 let uv = stage.operand_uv.as_ref().map(|image| Attachment { image, load: Load::Discard });
-                legs(frame, cmd, (pass, &bindings), (colour, uv, depth), band);
+                ray_segments(frame, cmd, (pass, &bindings), (colour, uv, depth), band);
                 cmd.after(Access::FRAGMENT_WRITE, w);
             }
         }
@@ -318,14 +318,14 @@ impl<'a> SolidParts<'a> {
 
 /// The rays of a band's pixels, from event to event; again and again from where they came to, where a driver ends long
 /// loops.
-fn legs(
+fn ray_segments(
     frame: &Frame<'_>,
     cmd: &Commands<'_>,
     (pass, bindings): (&solid_events::SolidEvents, &solid_events::Bindings<'_>),
     (colour, uv, depth): (Attachment<'_>, Option<Attachment<'_>>, Attachment<'_>),
     band: &Band,
 ) {
-    let of = frame.capacities.solids.legs;
+    let of = frame.capacities.solids.ray_segments;
     let drawn = [(colour.image, Access::COLOUR_WRITE), (depth.image, Access::DEPTH_WRITE)];
     let drawn = drawn.into_iter().chain(uv.map(|uv| (uv.image, Access::COLOUR_WRITE)));
     let drawn: Vec<_> = drawn.map(|(image, access)| (image, access, access)).collect();
@@ -335,16 +335,16 @@ fn legs(
         Attachment { load: Load::Keep, ..depth },
     );
     for nth in 0..of {
-        if bindings.halts.is_some() {
-            // by the leg before, of this band or another, or of another sample
+        if bindings.resume_points.is_some() {
+            // by the segment before, of this band or another, or of another sample
             cmd.after(Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE);
         }
         if nth > 0 {
             cmd.after(Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE);
             barrier::images(cmd, &drawn);
         }
-        let leg = solid_events::Leg { nth, of, is_most: of >= capacities::MOST_LEGS };
+        let segment = solid_events::RaySegment { nth, of, is_most: of >= capacities::MOST_RAY_SEGMENTS };
         let targets = if nth == 0 { (colour, uv, depth) } else { kept };
-        pass.record(cmd, bindings, targets, (band.rows.clone(), frame.tiles_of(band)), leg);
+        pass.record(cmd, bindings, targets, (band.rows.clone(), frame.tiles_of(band)), segment);
     }
 }

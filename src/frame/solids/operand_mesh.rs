@@ -9,7 +9,7 @@
 //! which go down to 0 again, and `fragments`.
 
 use crate::frame::common::draw::Draw;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Pipeline, Resource, Texels};
+use crate::gpu::{Buffer, Commands, Device, GpuError, Pipeline, Resource, TexelBuffer};
 use crate::shaders::{self, constant};
 use std::ops::Range;
 
@@ -28,9 +28,9 @@ pub(crate) struct Bindings<'a> {
     pub positions: &'a Buffer,
     /// Surfaces in whose planes triangles lie.
     pub planes: &'a Buffer,
-    pub surfaces: &'a Texels,
+    pub surfaces: &'a TexelBuffer,
     /// Model axes, seen from the eye.
-    pub surface_places: &'a Texels,
+    pub surface_places: &'a TexelBuffer,
     pub counts: &'a Buffer,
     pub starts: &'a Buffer,
     pub fragments: &'a Buffer,

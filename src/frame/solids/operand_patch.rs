@@ -11,7 +11,7 @@
 use crate::abi::Counters;
 use crate::bindings::Placed;
 use crate::frame::common::draw::Draw;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Pipeline, Resource, Texels};
+use crate::gpu::{Buffer, Commands, Device, GpuError, Pipeline, Resource, TexelBuffer};
 use crate::shaders::{self, TrimTest, constant};
 use ash::vk;
 use std::mem::offset_of;
@@ -34,7 +34,7 @@ pub(crate) struct Bindings<'a> {
     pub placed: Placed<'a>,
     pub factors: &'a Buffer,
     pub sub_patches: &'a Buffer,
-    pub instances: &'a Texels,
+    pub instances: &'a TexelBuffer,
     pub counts: &'a Buffer,
     pub starts: &'a Buffer,
     pub fragments: &'a Buffer,

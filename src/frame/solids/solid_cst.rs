@@ -12,7 +12,7 @@ use crate::abi;
 use crate::bindings::Primitives;
 use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Pipeline, Resource, Texels,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Pipeline, Resource, TexelBuffer,
 };
 use crate::shaders::{self, constant};
 use ash::vk;
@@ -27,7 +27,7 @@ pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub primitives: Primitives<'a>,
     pub tile_starts: &'a Buffer,
-    pub tile_leaves: &'a Texels,
+    pub tile_leaves: &'a TexelBuffer,
     pub tile_entries: &'a Buffer,
     pub rects: &'a Buffer,
     /// Which leaf an instance draws, as `trimmed_leaf.glsl` says.

@@ -6,13 +6,13 @@
 //!
 //! Reads: everything that `Bindings` names. Writes: the visibility image (side, depth) and depth, beside what
 //! pass `visibility` drew; of spline faces the image of (u, v). Needs no storage per pixel beside the fragments of
-//! operands without equations, unless a driver ends long loops: then rays go on in legs, from where they came to.
+//! operands without equations, unless a driver ends long loops: then rays go on in segments, from where they came to.
 
 use crate::abi;
 use crate::bindings::Primitives;
 use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Pipeline, Resource, Texels,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Pipeline, Resource, TexelBuffer,
 };
 use crate::shaders::{self, constant};
 use ash::vk;
@@ -43,21 +43,21 @@ pub(crate) struct SolidEvents {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub primitives: Primitives<'a>,
-    pub tile_starts: &'a Texels,
-    pub tile_leaves: &'a Texels,
-    pub tile_entries: &'a Texels,
+    pub tile_starts: &'a TexelBuffer,
+    pub tile_leaves: &'a TexelBuffer,
+    pub tile_entries: &'a TexelBuffer,
     /// Where rays cross operands without equations; `None` where there are none.
     pub fragments: Option<Fragments<'a>>,
     /// `clamps`: rays that a driver did not let come to their end.
     pub counters: &'a Buffer,
     pub tile_squares: &'a Buffer,
-    /// Where the next leg goes on, a word a pixel of the band; where there are several.
-    pub halts: Option<&'a Buffer>,
+    /// Where the next segment goes on, a word a pixel of the band; where there are several.
+    pub resume_points: Option<&'a Buffer>,
 }
 
-/// One of the legs of a drawing's rays.
+/// One of the ray segments of a drawing's rays.
 #[derive(Clone, Copy)]
-pub(crate) struct Leg {
+pub(crate) struct RaySegment {
     /// From 0.
     pub nth: u32,
     pub of: u32,
@@ -69,7 +69,7 @@ pub(crate) struct Leg {
 pub(crate) struct Fragments<'a> {
     pub starts: &'a Buffer,
     pub counts: &'a Buffer,
-    pub all: &'a Texels,
+    pub all: &'a TexelBuffer,
 }
 
 impl SolidEvents {
@@ -105,15 +105,16 @@ impl SolidEvents {
         b: &Bindings<'_>,
         (visibility, uv, depth): (Attachment<'_>, Option<Attachment<'_>>, Attachment<'_>),
         (rows, tiles): (Range<u32>, Range<u32>),
-        leg: Leg,
+        segment: RaySegment,
     ) {
         // the shader has these bindings in every scene, and reads them only where there are shells
         let none = Fragments { starts: b.frame, counts: b.frame, all: b.tile_leaves };
         let f = b.fragments.as_ref().unwrap_or(&none);
         let lists: [Resource<'_>; 3] = [b.tile_starts.into(), b.tile_leaves.into(), b.tile_entries.into()];
         let fragments: [Resource<'_>; 3] = [f.starts.into(), f.counts.into(), f.all.into()];
-        let rest = [b.counters, b.tile_squares, b.halts.unwrap_or(b.counters)].map(Resource::from);
-        let leg: Vec<u8> = [leg.nth, leg.of, u32::from(leg.is_most)].into_iter().flat_map(u32::to_ne_bytes).collect();
+        let rest = [b.counters, b.tile_squares, b.resume_points.unwrap_or(b.counters)].map(Resource::from);
+        let segment: Vec<u8> =
+            [segment.nth, segment.of, u32::from(segment.is_most)].into_iter().flat_map(u32::to_ne_bytes).collect();
         let resources: Vec<_> = [b.frame.into()]
             .into_iter()
             .chain(b.primitives.resources())
@@ -123,7 +124,7 @@ impl SolidEvents {
             .collect();
         let colour: Vec<_> = [visibility].into_iter().chain(uv).collect();
         cmd.rendering_rows((visibility.image.size(), rows), &colour, Some(depth), || {
-            cmd.bind(&self.pipeline, &resources, &leg);
+            cmd.bind(&self.pipeline, &resources, &segment);
             cmd.draw_instances(0..6, tiles);
         });
     }

@@ -5,7 +5,7 @@ use super::{SolidParts, solid_blocks, solid_fold, solid_squares, solid_tiles};
 use crate::abi::{BLOCK, LEAF_RUN, TILE, TileLeaf};
 use crate::frame::common::room::Room;
 use crate::frame::{Frame, WRITE_TO_READ};
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Texel, Texels};
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Texel, TexelBuffer};
 use std::sync::Arc;
 
 /// The passes.
@@ -38,10 +38,10 @@ pub(crate) struct Tiles {
     pub block_starts: Buffer,
     pub block_leaves: Buffer,
     pub tile_counts: Buffer,
-    pub tile_starts: Texels,
-    pub tile_leaves: Texels,
+    pub tile_starts: TexelBuffer,
+    pub tile_leaves: TexelBuffer,
     /// These two of all tiles of the picture.
-    pub tile_entries: Texels,
+    pub tile_entries: TexelBuffer,
     pub tile_squares: Buffer,
 }
 

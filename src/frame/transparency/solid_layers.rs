@@ -13,7 +13,8 @@
 use crate::bindings::{Primitives, SUN_BINDINGS, SUN_OWN};
 use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Image, Pipeline, Resource, Texels,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Image, Pipeline, Resource,
+    TexelBuffer,
 };
 use crate::shaders::{self, constant};
 use ash::vk;
@@ -69,9 +70,9 @@ pub(crate) struct Bindings<'a> {
     /// Model axes, seen from the eye.
     pub leaf_centres: &'a Buffer,
     pub tile_starts: &'a Buffer,
-    pub tile_leaves: &'a Texels,
+    pub tile_leaves: &'a TexelBuffer,
     /// Where rays cross operands without equations: starts, counts, all; `None` where there are none.
-    pub fragments: Option<(&'a Buffer, &'a Buffer, &'a Texels)>,
+    pub fragments: Option<(&'a Buffer, &'a Buffer, &'a TexelBuffer)>,
     pub counters: &'a Buffer,
     pub behind: &'a Image,
     pub views: &'a Buffer,
@@ -79,7 +80,7 @@ pub(crate) struct Bindings<'a> {
     pub faces: &'a Buffer,
     pub patches: &'a Buffer,
     pub items: &'a Buffer,
-    pub points: &'a Texels,
+    pub points: &'a TexelBuffer,
     pub instances: &'a Buffer,
     /// What [`Kinds::sun`] asks for.
     pub sun: Option<[Resource<'a>; SUN_BINDINGS]>,

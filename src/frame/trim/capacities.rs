@@ -21,8 +21,8 @@ impl Capacities {
         let table = u32::from(counts.trim == Some(TakenWay::Table));
         let counted = table.max(u32::from(counts.trim.is_some_and(TakenWay::is_texture)));
         Self {
-            rows: table * (1 << 16).max(2 * counts.bays).min(MOST_ROWS),
-            intercepts: counted * (1 << 18).max(4 * counts.bays),
+            rows: table * (1 << 16).max(2 * counts.bins).min(MOST_ROWS),
+            intercepts: counted * (1 << 18).max(4 * counts.bins),
         }
     }
 

@@ -1,8 +1,8 @@
-//! Pass `carry`: the winding number that each row of a strip with several bays begins with: what crosses its scan line in
-//! the bays before.
+//! Pass `carry`: the winding number that each row of a strip with several bins begins with: what crosses its scan line in
+//! the bins before.
 //!
 //! ```text
-//!   bay               0     1     2     3
+//!   bin               0     1     2     3
 //!   crossings add up  +1    0     -1    0      as pass `cross` counted them
 //!   begins with        0    1     1     0
 //! ```
@@ -10,7 +10,7 @@
 //! Reads: `frame`, `strips`, `wide_strips`. Writes: `row_windings`. Twin: `src/twin/carry.rs`.
 
 use crate::frame::common::kernel::Kernel;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
+use crate::gpu::{Buffer, Commands, Device, GpuError, TexelBuffer};
 use crate::shaders;
 
 /// The pass.
@@ -21,8 +21,8 @@ pub(crate) struct Carry {
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub strips: &'a Texels,
-    /// Bay items of the strips with several bays.
+    pub strips: &'a TexelBuffer,
+    /// Bin items of the strips with several bins.
     pub wide_strips: &'a Buffer,
     pub row_windings: &'a Buffer,
 }

@@ -12,7 +12,7 @@
 //! `intercepts`, `border_cells` and `row_windings` (zero before counting). Twin: `src/twin/cross.rs`.
 
 use crate::frame::common::kernel::Kernel;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
+use crate::gpu::{Buffer, Commands, Device, GpuError, TexelBuffer};
 use crate::shaders::{self, constant};
 
 /// The pass, in its two roles.
@@ -24,30 +24,30 @@ pub(crate) struct Cross {
 /// Its buffers, in binding order, and the dispatches.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub face_instances: &'a Texels,
-    pub faces: &'a Texels,
-    pub curves: &'a Texels,
-    pub curve_points: &'a Texels,
-    pub curve_items: &'a Texels,
-    pub strips: &'a Texels,
-    pub segment_starts: &'a Texels,
-    pub row_starts: &'a Texels,
+    pub face_instances: &'a TexelBuffer,
+    pub faces: &'a TexelBuffer,
+    pub curves: &'a TexelBuffer,
+    pub curve_points: &'a TexelBuffer,
+    pub curve_items: &'a TexelBuffer,
+    pub strips: &'a TexelBuffer,
+    pub segment_starts: &'a TexelBuffer,
+    pub row_starts: &'a TexelBuffer,
     pub row_counts: &'a Buffer,
     pub intercepts: &'a Buffer,
     /// `glsl/include/border_cells.glsl`.
     pub border_cells: &'a Buffer,
-    /// What crosses each row adds up to, where strips have several bays.
+    /// What crosses each row adds up to, where strips have several bins.
     pub row_windings: Option<&'a Buffer>,
     /// Written by pass `sizes`; this pass's is the first.
     pub dispatches: &'a Buffer,
 }
 
 impl Cross {
-    /// `bays`: strips of some face have several bays. `marks`: where curves pass is asked for.
-    pub(crate) fn new(device: &Device, bays: bool, marks: bool) -> Result<Self, GpuError> {
+    /// `bins`: strips of some face have several bins. `marks`: where curves pass is asked for.
+    pub(crate) fn new(device: &Device, bins: bool, marks: bool) -> Result<Self, GpuError> {
         let kernel = |name, insert: bool| {
             let roles =
-                [(constant::INSERT, insert), (constant::SCENE_HAS_BAYS, bays), (constant::MARKS_BORDERS, marks)];
+                [(constant::INSERT, insert), (constant::SCENE_HAS_BINS, bins), (constant::MARKS_BORDERS, marks)];
             Kernel::new(device, name, &shaders::CROSS_COMP, &roles.map(|(name, flag)| (name, u32::from(flag))))
         };
         Ok(Self { count: kernel("cross (count)", false)?, insert: kernel("cross (insert)", true)? })

@@ -1,13 +1,13 @@
 //! Pass `density`: pixels that each v-strip of a trimmed face can cover.
 //!
 //! ```text
-//!    cell = part of a patch in a bay of a strip:   |S_v| x pixels per unit / strips  = height_px
+//!    cell = part of a patch in a bin of a strip:   |S_v| x pixels per unit / strips  = height_px
 //!    strip height = largest of its visible cells; 0 when none is visible
 //! ```
 //!
 //! Reads: `frame`, `views`, `instances`, `face_instances`, `faces`, `cells`, `cell_items`. Writes: `strip_heights`, `face_speeds`,
-//! `seen_bays`. `frame` and `views` are those of what the table is made of: this view, or a wider one that serves those from near
-//! by (`src/scene/nearby.rs`). Twin: `src/twin/density.rs`.
+//! `seen_bins`. `frame` and `views` are those of what the table is made of: this view, or a wider one that serves those from near
+//! by (`src/scene/view_cell.rs`). Twin: `src/twin/density.rs`.
 
 use crate::frame::common::kernel::Kernel;
 use crate::gpu::{Buffer, Commands, Device, GpuError};
@@ -32,15 +32,15 @@ pub(crate) struct Bindings<'a> {
     pub strip_heights: &'a Buffer,
     /// Float bits of pixels per unit u, v; zero before.
     pub face_speeds: &'a Buffer,
-    /// A bit for each bay of a strip, where strips have several; zero before.
-    pub seen_bays: Option<&'a Buffer>,
+    /// A bit for each bin of a strip, where strips have several; zero before.
+    pub seen_bins: Option<&'a Buffer>,
 }
 
 impl Density {
-    /// `bays`: strips of some face have several bays.
-    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
+    /// `bins`: strips of some face have several bins.
+    pub(crate) fn new(device: &Device, bins: bool) -> Result<Self, GpuError> {
         let kernel =
-            Kernel::new(device, "density", &shaders::DENSITY_COMP, &[(constant::SCENE_HAS_BAYS, u32::from(bays))])?;
+            Kernel::new(device, "density", &shaders::DENSITY_COMP, &[(constant::SCENE_HAS_BINS, u32::from(bins))])?;
         Ok(Self { kernel })
     }
 
@@ -57,7 +57,7 @@ impl Density {
             b.strip_heights,
             b.face_speeds,
             // neither read nor written then
-            b.seen_bays.unwrap_or(b.frame),
+            b.seen_bins.unwrap_or(b.frame),
         ]
         .map(Into::into);
         self.kernel.record(cmd, &resources, cells);

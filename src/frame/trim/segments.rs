@@ -9,7 +9,7 @@
 //! Twin: `src/twin/segments.rs`.
 
 use crate::frame::common::kernel::Kernel;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
+use crate::gpu::{Buffer, Commands, Device, GpuError, TexelBuffer};
 use crate::shaders::{self, constant};
 
 /// The pass.
@@ -20,22 +20,22 @@ pub(crate) struct Segments {
 /// Its buffers, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub face_instances: &'a Texels,
-    pub faces: &'a Texels,
-    pub curves: &'a Texels,
-    pub curve_items: &'a Texels,
-    pub strip_starts: &'a Texels,
+    pub face_instances: &'a TexelBuffer,
+    pub faces: &'a TexelBuffer,
+    pub curves: &'a TexelBuffer,
+    pub curve_items: &'a TexelBuffer,
+    pub strip_starts: &'a TexelBuffer,
     pub face_speeds: &'a Buffer,
     pub segment_counts: &'a Buffer,
-    /// A bit for each bay of a strip, where strips have several.
-    pub seen_bays: Option<&'a Buffer>,
+    /// A bit for each bin of a strip, where strips have several.
+    pub seen_bins: Option<&'a Buffer>,
 }
 
 impl Segments {
-    /// `bays`: strips of some face have several bays.
-    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
+    /// `bins`: strips of some face have several bins.
+    pub(crate) fn new(device: &Device, bins: bool) -> Result<Self, GpuError> {
         let kernel =
-            Kernel::new(device, "segments", &shaders::SEGMENTS_COMP, &[(constant::SCENE_HAS_BAYS, u32::from(bays))])?;
+            Kernel::new(device, "segments", &shaders::SEGMENTS_COMP, &[(constant::SCENE_HAS_BINS, u32::from(bins))])?;
         Ok(Self { kernel })
     }
 
@@ -51,7 +51,7 @@ impl Segments {
             b.face_speeds.into(),
             b.segment_counts.into(),
             // not read where there are none
-            b.seen_bays.unwrap_or(b.frame).into(),
+            b.seen_bins.unwrap_or(b.frame).into(),
         ];
         self.kernel.record(cmd, &resources, curves);
     }

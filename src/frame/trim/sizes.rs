@@ -20,27 +20,27 @@ pub(crate) struct Bindings<'a> {
     pub segment_starts: &'a Buffer,
     /// Of passes cross and sort.
     pub dispatches: &'a Buffer,
-    /// Where the rows of each are, at its first bay.
+    /// Where the rows of each are, at its first bin.
     pub strips: &'a Buffer,
     pub counters: &'a Buffer,
-    /// A bit for each bay of a strip, where strips have several.
-    pub seen_bays: Option<&'a Buffer>,
+    /// A bit for each bin of a strip, where strips have several.
+    pub seen_bins: Option<&'a Buffer>,
 }
 
 impl Sizes {
-    /// `bays`: strips of some face have several bays.
-    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
+    /// `bins`: strips of some face have several bins.
+    pub(crate) fn new(device: &Device, bins: bool) -> Result<Self, GpuError> {
         let kernel =
-            Kernel::new(device, "sizes", &shaders::SIZES_COMP, &[(constant::SCENE_HAS_BAYS, u32::from(bays))])?;
+            Kernel::new(device, "sizes", &shaders::SIZES_COMP, &[(constant::SCENE_HAS_BINS, u32::from(bins))])?;
         Ok(Self { kernel })
     }
 
-    /// One thread for each of `bays`.
-    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, bays: u32) {
+    /// One thread for each of `bins`.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, bins: u32) {
         // not read where there are none
-        let seen_bays = b.seen_bays.unwrap_or(b.frame);
-        let resources = [b.frame, b.strip_starts, b.segment_starts, b.dispatches, b.strips, b.counters, seen_bays];
+        let seen_bins = b.seen_bins.unwrap_or(b.frame);
+        let resources = [b.frame, b.strip_starts, b.segment_starts, b.dispatches, b.strips, b.counters, seen_bins];
         let resources = resources.map(Into::into);
-        self.kernel.record(cmd, &resources, bays);
+        self.kernel.record(cmd, &resources, bins);
     }
 }

@@ -9,7 +9,7 @@
 //! flip, and its number of flips twice, 1 more where it begins inside), `intercepts`, `counters`. Twin: `src/twin/sort.rs`.
 
 use crate::frame::common::kernel::Kernel;
-use crate::gpu::{Buffer, Commands, Device, GpuError, Texels};
+use crate::gpu::{Buffer, Commands, Device, GpuError, TexelBuffer};
 use crate::shaders::{self, constant};
 
 /// The pass.
@@ -20,23 +20,23 @@ pub(crate) struct Sort {
 /// Its buffers, in binding order, and the dispatches.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub row_starts: &'a Texels,
+    pub row_starts: &'a TexelBuffer,
     /// Intercepts of all rows.
     pub row_total: &'a Buffer,
     /// Two words a row.
     pub rows: &'a Buffer,
     pub intercepts: &'a Buffer,
     pub counters: &'a Buffer,
-    /// What each row begins with, where strips have several bays.
+    /// What each row begins with, where strips have several bins.
     pub row_windings: Option<&'a Buffer>,
     /// Written by pass `sizes`; this pass's is the second.
     pub dispatches: &'a Buffer,
 }
 
 impl Sort {
-    /// `bays`: strips of some face have several bays.
-    pub(crate) fn new(device: &Device, bays: bool) -> Result<Self, GpuError> {
-        let kernel = Kernel::new(device, "sort", &shaders::SORT_COMP, &[(constant::SCENE_HAS_BAYS, u32::from(bays))])?;
+    /// `bins`: strips of some face have several bins.
+    pub(crate) fn new(device: &Device, bins: bool) -> Result<Self, GpuError> {
+        let kernel = Kernel::new(device, "sort", &shaders::SORT_COMP, &[(constant::SCENE_HAS_BINS, u32::from(bins))])?;
         Ok(Self { kernel })
     }
 

@@ -4,7 +4,7 @@
 //!   cells ──density──▶ strip heights ──lines──(scan)──▶ rows
 //!   curves ──segments──(scan)──▶ chords ──sizes──▶ dispatches
 //!   chords ──cross: count──(scan)──▶ cross: insert──▶ intercepts ──sort──▶ flips of each row
-//!                 ╰──▶ row windings ──carry──▶ what rows begin with ──╯       only where strips have several bays
+//!                 ╰──▶ row windings ──carry──▶ what rows begin with ──╯       only where strips have several bins
 //! ```
 //!
 //! A table is made once and stays until there is a view that it does not serve (`scene::trimmed`), or an edit; `kept.rs` tells
@@ -15,12 +15,12 @@ use crate::abi::{BORDER_BANDS, BORDER_COLUMNS, Counters, StripRows};
 use crate::frame::common::room::Room;
 use crate::frame::common::scan;
 use crate::frame::{Frame, WRITE_TO_READ};
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, Texel, Texels, barrier};
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, Texel, TexelBuffer, barrier};
 use crate::scene::SceneData;
 use std::mem::offset_of;
 use std::sync::Arc;
 
-/// Where curves pass in a bay, a bit a cell: `glsl/include/border_cells.glsl`.
+/// Where curves pass in a bin, a bit a cell: `glsl/include/border_cells.glsl`.
 type BorderCells = [u8; (BORDER_BANDS * BORDER_COLUMNS / 8) as usize];
 
 /// The passes of the trim table.
@@ -31,23 +31,23 @@ pub(crate) struct Passes {
     sizes: sizes::Sizes,
     cross: cross::Cross,
     sort: sort::Sort,
-    /// `None` where each strip has one bay.
+    /// `None` where each strip has one bin.
     carry: Option<Arc<carry::Carry>>,
 }
 
 impl Passes {
     pub(crate) fn new(device: &Device, data: &SceneData) -> Result<Self, GpuError> {
-        // strips of some face have several bays
-        let bays = !data.wide_strips.is_empty();
+        // strips of some face have several bins
+        let bins = !data.wide_strips.is_empty();
         Ok(Self {
-            density: density::Density::new(device, bays)?,
-            lines: lines::Lines::new(device, bays)?,
-            segments: segments::Segments::new(device, bays)?,
-            sizes: sizes::Sizes::new(device, bays)?,
+            density: density::Density::new(device, bins)?,
+            lines: lines::Lines::new(device, bins)?,
+            segments: segments::Segments::new(device, bins)?,
+            sizes: sizes::Sizes::new(device, bins)?,
             // operands ask where curves pass
-            cross: cross::Cross::new(device, bays, data.has_operands)?,
-            sort: sort::Sort::new(device, bays)?,
-            carry: bays.then(|| carry::Carry::new(device)).transpose()?.map(Arc::new),
+            cross: cross::Cross::new(device, bins, data.has_operands)?,
+            sort: sort::Sort::new(device, bins)?,
+            carry: bins.then(|| carry::Carry::new(device)).transpose()?.map(Arc::new),
         })
     }
 }
@@ -58,27 +58,27 @@ pub(crate) struct Table {
     strip_heights: Buffer,
     face_speeds: Buffer,
     strip_counts: Buffer,
-    strip_starts: Texels,
+    strip_starts: TexelBuffer,
     segment_counts: Buffer,
-    segment_starts: Texels,
+    segment_starts: TexelBuffer,
     dispatches: Buffer,
-    strips: Texels,
+    strips: TexelBuffer,
     /// While rows are filled how many intercepts each has, a word a row; then of each row its first flip, and its
     /// number of flips twice, 1 more where it begins inside.
-    rows: Texels,
-    row_starts: Texels,
+    rows: TexelBuffer,
+    row_starts: TexelBuffer,
     row_total: Buffer,
-    intercepts: Texels,
+    intercepts: TexelBuffer,
     /// Of scenes with spline operands: only those ask.
-    border_cells: Texels,
-    /// `None` where each strip has one bay.
-    bays: Option<Bays>,
+    border_cells: TexelBuffer,
+    /// `None` where each strip has one bin.
+    bins: Option<Bins>,
     /// What was counted when the table was made.
     pub counters: Buffer,
 }
 
-/// What strips with several bays need.
-struct Bays {
+/// What strips with several bins need.
+struct Bins {
     carry: Arc<carry::Carry>,
     seen: Buffer,
     row_windings: Buffer,
@@ -87,29 +87,29 @@ struct Bays {
 impl Table {
     pub(crate) fn new(room: &Room<'_>, passes: &Arc<Passes>) -> Result<Self, GpuError> {
         let (counts, capacities) = (room.counts, room.capacities.trim);
-        let bays = |carry: &Arc<carry::Carry>| {
-            Ok::<_, GpuError>(Bays {
+        let bins = |carry: &Arc<carry::Carry>| {
+            Ok::<_, GpuError>(Bins {
                 carry: Arc::clone(carry),
-                seen: room.words("trim seen bays", counts.bays)?,
+                seen: room.words("trim seen bins", counts.bins)?,
                 row_windings: room.words("trim row windings", capacities.rows)?,
             })
         };
-        let marked = if counts.operand_patches { counts.bays } else { 1 };
+        let marked = if counts.operand_patches { counts.bins } else { 1 };
         Ok(Self {
-            strip_heights: room.words("trim strip heights", counts.bays)?,
+            strip_heights: room.words("trim strip heights", counts.bins)?,
             face_speeds: room.words("trim face speeds", 2 * counts.face_instances)?,
-            strip_counts: room.words("trim strip counts", counts.bays)?,
-            strip_starts: room.texels::<u32>("trim strip starts", counts.bays + 1, Texel::Words)?,
+            strip_counts: room.words("trim strip counts", counts.bins)?,
+            strip_starts: room.texels::<u32>("trim strip starts", counts.bins + 1, Texel::Words)?,
             segment_counts: room.words("trim segment counts", counts.curves)?,
             segment_starts: room.texels::<u32>("trim segment starts", counts.curves + 1, Texel::Words)?,
             dispatches: room.indirect::<[u32; 3]>("trim dispatches", 3)?,
-            strips: room.texels::<StripRows>("trim strips", counts.bays, Texel::U32x4)?,
+            strips: room.texels::<StripRows>("trim strips", counts.bins, Texel::U32x4)?,
             rows: room.texels::<[u32; 2]>("trim rows", capacities.rows, Texel::U32x2)?,
             row_starts: room.texels::<u32>("trim row starts", capacities.rows, Texel::Words)?,
             row_total: room.words("trim row total", 1)?,
             intercepts: room.texels::<u32>("trim intercepts", capacities.intercepts, Texel::U32x2)?,
             border_cells: room.texels::<BorderCells>("trim border cells", marked, Texel::U32x4)?,
-            bays: passes.carry.as_ref().map(bays).transpose()?,
+            bins: passes.carry.as_ref().map(bins).transpose()?,
             counters: room.structs::<Counters>("trim table counters", 1)?,
             passes: Arc::clone(passes),
         })
@@ -124,9 +124,9 @@ impl Table {
 
     /// Zero when the frame begins.
     fn counted(&self) -> impl Iterator<Item = &Buffer> {
-        let of_bays = self.bays.iter().flat_map(|bays| [&bays.seen, &bays.row_windings]);
+        let of_bins = self.bins.iter().flat_map(|bins| [&bins.seen, &bins.row_windings]);
         let all: [&Buffer; 4] = [&self.strip_heights, &self.face_speeds, &self.rows, &self.border_cells];
-        all.into_iter().chain(of_bays)
+        all.into_iter().chain(of_bins)
     }
 
     /// What the look-up reads, in the order of `glsl/include/trim.glsl`.
@@ -143,8 +143,8 @@ impl Table {
         let cleared = (Access::TRANSFER_WRITE, Access::COMPUTE_WRITE);
         let all_cleared: Vec<_> = t.counted().map(|buffer| (buffer, cleared.0, cleared.1)).collect();
         barrier::buffers(cmd, &all_cleared);
-        let seen_bays = t.bays.as_ref().map(|bays| &bays.seen);
-        let row_windings = t.bays.as_ref().map(|bays| &bays.row_windings);
+        let seen_bins = t.bins.as_ref().map(|bins| &bins.seen);
+        let row_windings = t.bins.as_ref().map(|bins| &bins.row_windings);
         let (constants, views) =
             frame.table_view.map_or((frame.constants, frame.views), |wider| (&wider.constants, &wider.views));
         let density = density::Bindings {
@@ -157,7 +157,7 @@ impl Table {
             cell_items: &trims.cell_items,
             strip_heights: &t.strip_heights,
             face_speeds: &t.face_speeds,
-            seen_bays,
+            seen_bins,
         };
         p.density.record(cmd, &density, counts.cells);
         cmd.after(w, r);
@@ -167,11 +167,11 @@ impl Table {
             strip_heights: &t.strip_heights,
             strip_counts: &t.strip_counts,
             counters: &b.counters,
-            seen_bays,
+            seen_bins,
         };
-        p.lines.record(cmd, &lines, counts.bays);
+        p.lines.record(cmd, &lines, counts.bins);
         cmd.after(w, r | w);
-        b.scan(cmd, &t.strip_counts, &t.strip_starts, counts.bays);
+        b.scan(cmd, &t.strip_counts, &t.strip_starts, counts.bins);
         cmd.after(w, r);
 
         let segments = segments::Bindings {
@@ -183,7 +183,7 @@ impl Table {
             strip_starts: &t.strip_starts,
             face_speeds: &t.face_speeds,
             segment_counts: &t.segment_counts,
-            seen_bays,
+            seen_bins,
         };
         p.segments.record(cmd, &segments, counts.curves);
         cmd.after(w, r);
@@ -197,9 +197,9 @@ impl Table {
             dispatches: &t.dispatches,
             strips: &t.strips,
             counters: &b.counters,
-            seen_bays,
+            seen_bins,
         };
-        p.sizes.record(cmd, &sizes, counts.bays);
+        p.sizes.record(cmd, &sizes, counts.bins);
         cmd.after(w, Access::INDIRECT_READ | r | w);
 
         let cross = cross::Bindings {
@@ -239,11 +239,11 @@ impl Table {
             },
         );
         cmd.after(w, r | w);
-        if let (Some(bays), Some(wide_strips)) = (&t.bays, &trims.wide_strips) {
-            let row_windings = &bays.row_windings;
+        if let (Some(bins), Some(wide_strips)) = (&t.bins, &trims.wide_strips) {
+            let row_windings = &bins.row_windings;
             cmd.after(w, Access::COMPUTE_READ | Access::COMPUTE_WRITE);
             let bindings = carry::Bindings { frame: frame.constants, strips: &t.strips, wide_strips, row_windings };
-            bays.carry.record(cmd, &bindings, counts.wide_strips);
+            bins.carry.record(cmd, &bindings, counts.wide_strips);
             cmd.after(w, r);
         }
         p.cross.insert(cmd, &cross);

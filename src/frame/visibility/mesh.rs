@@ -9,7 +9,7 @@
 //! without a geometry shader, which not every device has.
 //!
 //! Reads: everything that `Bindings` names. Writes: depth and, in scenes without trims, the visibility
-//! image; else the image `others`, which pass `heal` looks through. Both begin cleared.
+//! image; else the image `others`, which pass `gap_fill` looks through. Both begin cleared.
 
 use crate::bindings::Primitives;
 use crate::frame::common::draw::Draw;

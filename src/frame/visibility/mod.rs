@@ -31,7 +31,7 @@ impl Passes {
             plain: data.has_plain,
             linked: !data.links.is_empty(),
             trimmed: test,
-            bays: !data.wide_strips.is_empty(),
+            bins: !data.wide_strips.is_empty(),
             operands: data.has_operands,
             volume,
         };
@@ -135,11 +135,11 @@ impl Visibility {
     ) {
         let (s, stages) = (frame.scene, frame.stages);
         let (c, t) = (&stages.common, &stages.tessellation);
-        let rings = stages.gaps.as_ref().map(|gaps| &gaps.rings);
+        let border_depths = stages.gaps.as_ref().map(|gaps| &gaps.border_depths);
         cmd.after(Access::COMPUTE_WRITE, Access::INDIRECT_READ);
-        if let Some(rings) = rings {
+        if let Some(border_depths) = border_depths {
             let before = if again { Access::FRAGMENT_WRITE } else { Access::TRANSFER_WRITE };
-            barrier::buffers(cmd, &[(rings, before, Access::FRAGMENT_WRITE)]);
+            barrier::buffers(cmd, &[(border_depths, before, Access::FRAGMENT_WRITE)]);
         }
         let bindings = patches::Bindings {
             frame: frame.constants,
@@ -147,7 +147,7 @@ impl Visibility {
             factors: &t.factors,
             sub_patches: &t.sub_patches,
             instances: &s.instances,
-            rings: rings.map(|rings| &**rings),
+            border_depths: border_depths.map(|border_depths| &**border_depths),
             trim: test,
             volume: frame.volume(),
             links: s.links.as_ref(),

@@ -3,17 +3,17 @@
 //! ```text
 //!   sub-patch ──tesc──▶ levels ──tese──▶ exact surface at the vertices ──▶ triangles
 //!        plain    frag  ──────────────────────────────▶ item, (u, v)   depth
-//!        trimmed  frag  trim test of one way          ▶ item, (u, v)   depth, rings apart
+//!        trimmed  frag  trim test of one way          ▶ item, (u, v)   depth, depths of skirts
 //! ```
 //!
 //! Reads: everything that `Bindings` names but the images. Writes: the visibility image and depth
-//! (reversed: 1 at the near plane), which begin cleared or with what is no patch; `rings`, cleared before.
+//! (reversed: 1 at the near plane), which begin cleared or with what is no patch; `border_depths`, cleared before.
 
 use crate::abi::Counters;
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Pipeline, Resource, Texels,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Pipeline, Resource, TexelBuffer,
 };
 use crate::shaders::{self, TrimTest, constant};
 use ash::vk;
@@ -39,8 +39,8 @@ pub(crate) struct Kinds<'a> {
     pub linked: bool,
     /// How faces are trimmed, where some are.
     pub trimmed: Option<&'a TrimTest>,
-    /// Some strip of the trim table has several bays.
-    pub bays: bool,
+    /// Some strip of the trim table has several bins.
+    pub bins: bool,
     /// Some patches bound operands of Boolean solids: they are not drawn here.
     pub operands: bool,
     /// A volume trims the scene; its most general kind of surface.
@@ -53,9 +53,9 @@ pub(crate) struct Bindings<'a> {
     pub placed: Placed<'a>,
     pub factors: &'a Buffer,
     pub sub_patches: &'a Buffer,
-    pub instances: &'a Texels,
-    /// Where rings are found; in scenes with trims only.
-    pub rings: Option<&'a Buffer>,
+    pub instances: &'a TexelBuffer,
+    /// The nearest depth of a border; in scenes with trims only.
+    pub border_depths: Option<&'a Buffer>,
     /// What the trim test reads, in its order.
     pub trim: &'a [Resource<'a>],
     /// The volume that trims the scene; `None` where there is none.
@@ -90,7 +90,7 @@ impl Visibility {
                 constants: &[
                     (constant::SCENE_HAS_RATIONAL, u32::from(kinds.rational)),
                     (constant::TRIMMED, u32::from(trimmed.is_some())),
-                    (constant::TRIMS_HAVE_BAYS, u32::from(kinds.bays)),
+                    (constant::TRIMS_HAVE_BINS, u32::from(kinds.bins)),
                     (constant::SCENE_HAS_OPERANDS, u32::from(kinds.operands)),
                     (constant::SOLIDS_HAVE, kinds.volume.unwrap_or_default()),
                 ],
@@ -125,9 +125,9 @@ impl Visibility {
                 let count = offset_of!(Counters, plain_draws) as u64;
                 cmd.draw_indirect_count(b.draws, 0, b.counters, count, draw_capacity);
             }
-            if let (Some(trimmed), Some(rings)) = (&self.trimmed, b.rings) {
+            if let (Some(trimmed), Some(border_depths)) = (&self.trimmed, b.border_depths) {
                 let test = b.trim.iter().copied().chain(volume());
-                let resources: Vec<_> = shared().chain([rings.into()]).chain(test).collect();
+                let resources: Vec<_> = shared().chain([border_depths.into()]).chain(test).collect();
                 cmd.bind(trimmed, &resources, &[]);
                 let count = offset_of!(Counters, trimmed_draws) as u64;
                 cmd.draw_indirect_count(b.draws, bytes, b.counters, count, draw_capacity);

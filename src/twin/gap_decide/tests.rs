@@ -6,7 +6,7 @@ const SEEN: [u32; 2] = [99, 0];
 const NOTHING: [u32; 2] = [0, 0];
 
 fn frame() -> Frame {
-    Frame { ring_px: 0.25, deviation_px: 0.125, focal: 512.0, ..Frame::default() }
+    Frame { gap_radius_px: 0.25, deviation_px: 0.125, focal: 512.0, ..Frame::default() }
 }
 
 fn present(face: u32, depth: f32) -> Candidate {

@@ -3,7 +3,7 @@
 #extension GL_GOOGLE_include_directive : require
 // Decisions about gap candidates, gap_decide.glsl, one thread a pixel, for src/parity/gap_decide.rs.
 #include "scene.glsl"
-#include "ring.glsl"
+#include "gap_radius.glsl"
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };

@@ -9,7 +9,7 @@ layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 5) readonly buffer Points { vec2 points[]; };
 layout(scalar, binding = 6) writeonly buffer Answers { uint answers[]; };
-layout(push_constant) uniform Push { uint first_bay; uint strips; vec2 around; };
+layout(push_constant) uniform Push { uint first_bin; uint strips; vec2 around; };
 
 #define TABLE_BINDING 1
 #include "table.glsl"
@@ -17,7 +17,7 @@ layout(push_constant) uniform Push { uint first_bay; uint strips; vec2 around; }
 void main() {
     uint i = gl_GlobalInvocationID.x;
     vec2 p = points[i];
-    answers[i] = table_along(first_bay, strips, p, around.x) |
-                 uint(table_same(first_bay, strips, p - around, p + around)) << 3 |
-                 uint(table_inside(first_bay, strips, p)) << 4;
+    answers[i] = table_along(first_bin, strips, p, around.x) |
+                 uint(table_same(first_bin, strips, p - around, p + around)) << 3 |
+                 uint(table_inside(first_bin, strips, p)) << 4;
 }

@@ -66,7 +66,7 @@ pub struct Row {
 pub struct Cost {
     pub trim_ms: f64,
     pub own_passes_ms: f64,
-    pub heal_ms: f64,
+    pub gaps_ms: f64,
     pub frame_ms: f64,
     /// The first and the last of these, of a view that turns.
     pub turning_trim_ms: f64,
@@ -254,7 +254,7 @@ fn cost(stats: &FrameStats, turning: &FrameStats, objects: Vec<(String, u64)>) -
     Cost {
         trim_ms: trim_ms(stats),
         own_passes_ms: own_passes_ms(stats),
-        heal_ms: time(stats, "heal"),
+        gaps_ms: time(stats, "gaps"),
         frame_ms: frame_ms(stats),
         turning_trim_ms: trim_ms(turning),
         turning_frame_ms: frame_ms(turning),
@@ -286,12 +286,12 @@ mod tests {
     #[test]
     fn trim_time_is_own_passes_and_the_difference() {
         let pass = |name: &str, gpu_ms| PassTime { name: name.into(), gpu_ms };
-        let passes = [("trim table", 2.0), (UNTESTED, 5.5), ("visibility", 7.0), ("heal", 1.0), ("resolve", 3.0)];
+        let passes = [("trim table", 2.0), (UNTESTED, 5.5), ("visibility", 7.0), ("gaps", 1.0), ("resolve", 3.0)];
         let passes: Vec<_> = passes.map(|(name, ms)| pass(name, ms)).into();
         let turning = FrameStats { passes: passes[1..].to_vec(), ..FrameStats::default() };
         let all = FrameStats { passes, ..FrameStats::default() };
         let cost = cost(&all, &turning, vec![("trim rows".into(), 12)]);
-        assert_eq!((cost.trim_ms, cost.own_passes_ms, cost.heal_ms, cost.frame_ms), (3.5, 2.0, 1.0, 13.0));
+        assert_eq!((cost.trim_ms, cost.own_passes_ms, cost.gaps_ms, cost.frame_ms), (3.5, 2.0, 1.0, 13.0));
         assert_eq!((cost.turning_trim_ms, cost.turning_frame_ms), (1.5, 11.0));
         assert_eq!(cost.bytes, 12);
     }

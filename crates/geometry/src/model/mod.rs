@@ -39,7 +39,7 @@ pub use items::Items;
 pub use mesh::{Mesh, MeshError};
 pub(crate) use solid::{Boxes, meet};
 pub use solid::{
-    CarriedFace, Carrier, Lone, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
+    CarriedFace, Carrier, Isolated, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
     SurfaceTable, outward,
 };
 #[cfg(feature = "serde")]

@@ -2,7 +2,7 @@
 
 mod carrier;
 mod embedded;
-mod lone;
+mod isolated;
 mod nearby;
 mod operands;
 mod outward;
@@ -13,7 +13,7 @@ mod surface;
 mod tests;
 
 pub use carrier::Carrier;
-pub use lone::Lone;
+pub use isolated::Isolated;
 pub(super) use operands::Operands;
 pub use outward::outward;
 pub(crate) use reach::{Boxes, meet};

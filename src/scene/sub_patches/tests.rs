@@ -35,7 +35,7 @@ fn most_of_a_large_face_needs_no_test() {
     let loops = [polygon(&ell), rectangle((20.0, 20.0), (24.0, 24.0))];
     let index = LoopIndex::new(&loops);
     let whole = square();
-    let Apart { grid, sides, .. } = apart(whole.clone(), &index, 200.0);
+    let SubPatches { grid, sides, .. } = sub_patches(whole.clone(), &index, 200.0);
     for (p, side) in grid.patches.iter().zip(&sides) {
         for k in 0..64 {
             let at = |(a, b): (f64, f64), k: i32| a + (b - a) * (f64::from(k) + 0.5) / 8.0;
@@ -60,7 +60,7 @@ fn a_face_that_is_small_in_its_scene_stays_whole() {
     let loops = [rectangle((10.0, 10.0), (90.0, 90.0))];
     let index = LoopIndex::new(&loops);
     for extent in [2e4, f64::INFINITY, 0.0] {
-        assert_eq!(apart(square(), &index, extent), Apart::whole(square(), vec![Side::Boundary]));
+        assert_eq!(sub_patches(square(), &index, extent), SubPatches::whole(square(), vec![Side::Boundary]));
     }
 }
 
@@ -73,16 +73,19 @@ fn what_curves_pass_everywhere_stays_whole() {
     };
     let loops: Vec<TrimLoop> =
         std::iter::once(rectangle((0.0, 0.0), (100.0, 100.0))).chain((0..2500).map(hole)).collect();
-    assert_eq!(apart(square(), &LoopIndex::new(&loops), 200.0), Apart::whole(square(), vec![Side::Boundary]));
+    assert_eq!(
+        sub_patches(square(), &LoopIndex::new(&loops), 200.0),
+        SubPatches::whole(square(), vec![Side::Boundary])
+    );
 }
 
-/// A curve so near to a piece that a pixel's ring may meet it: the piece is tested, too.
+/// A curve so near to a piece that a pixel's circle may meet it: the piece is tested, too.
 #[test]
 fn pieces_beside_a_curve_are_tested() {
     // the middle, where a piece ends, whatever their number
     for x in [50.0, 50.0 - 1e-3, 50.0 + 1e-3] {
         let loops = [rectangle((0.0, 0.0), (x, 100.0))];
-        let Apart { grid, sides, .. } = apart(square(), &LoopIndex::new(&loops), 200.0);
+        let SubPatches { grid, sides, .. } = sub_patches(square(), &LoopIndex::new(&loops), 200.0);
         let beside = |p: &SurfacePatch| p.u.0 <= 50.0 && p.u.1 >= 50.0;
         let all: Vec<_> = grid.patches.iter().zip(&sides).filter(|(p, _)| beside(p)).collect();
         assert!(grid.patches.len() > 4 && all.len() >= 2 && all.iter().all(|(_, side)| **side == Side::Boundary));
@@ -96,7 +99,7 @@ fn patches_are_cut_each_for_itself() {
     let knots = vec![0.0, 0.0, 30.0, 100.0, 100.0];
     let surface = Surface::new((1, 1), knots, vec![0.0, 0.0, 1.0, 1.0], (0..6).map(point).collect()).unwrap();
     let loops = [rectangle((0.0, 0.0), (98.0, 1.0))];
-    let Apart { grid, sides, shares } = apart(surface.patches(), &LoopIndex::new(&loops), 200.0);
+    let SubPatches { grid, sides, shares } = sub_patches(surface.patches(), &LoopIndex::new(&loops), 200.0);
     assert_eq!(grid.patches.len(), sides.len());
     assert_eq!(shares.each_ref().map(Vec::len), [grid.count_u, grid.count_v]);
     for (p, share) in grid.patches.iter().zip(&shares[0]) {

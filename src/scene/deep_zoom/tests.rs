@@ -83,7 +83,7 @@ fn camera(model: &Model, uv: DVec2, distance: f64) -> Camera {
 #[test]
 fn an_ordinary_view_keeps_the_model() {
     let model = wavy();
-    assert_eq!(CloseUp::new(&model).of(&model, &camera(&model, DVec2::splat(0.5), 10.0)), Wanted::Same);
+    assert_eq!(DeepZoom::new(&model).of(&model, &camera(&model, DVec2::splat(0.5), 10.0)), DeepZoomUpload::Same);
 }
 
 /// At (u, v) in the picture there is a window, small enough, and its surface is the face's; windows stay few.
@@ -91,12 +91,14 @@ fn an_ordinary_view_keeps_the_model() {
 fn windows_cover_what_is_seen() {
     let model = wavy();
     let face = &model.parts[0].faces[0];
-    let mut close_up = CloseUp::new(&model);
+    let mut deep_zoom = DeepZoom::new(&model);
     let mut r = Random::new(9);
     for distance in [1e-2, 1e-4, 1e-6] {
         for uv in [DVec2::new(0.45, 0.2), DVec2::new(0.5, 0.4), DVec2::new(0.6, 0.65), DVec2::new(0.0, 1.0)] {
             let camera = camera(&model, uv, distance);
-            let Wanted::Cut(cut) = close_up.of(&model, &camera) else { panic!("too close for single precision") };
+            let DeepZoomUpload::Cut(cut) = deep_zoom.of(&model, &camera) else {
+                panic!("too close for single precision")
+            };
             let near = &cut.model;
             let faces: Vec<&Face> = near.parts.iter().flat_map(|p| &p.faces).collect();
             assert!(!faces.is_empty() && faces.len() < 40, "{} windows from {distance}", faces.len());
@@ -134,7 +136,7 @@ fn windows_cover_what_is_seen() {
 #[test]
 fn windows_overlap_by_little() {
     let model = wavy();
-    let Wanted::Cut(cut) = CloseUp::new(&model).of(&model, &camera(&model, DVec2::splat(0.5), 1e-4)) else {
+    let DeepZoomUpload::Cut(cut) = DeepZoom::new(&model).of(&model, &camera(&model, DVec2::splat(0.5), 1e-4)) else {
         panic!("too close for single precision")
     };
     let domains = cut.model.parts.iter().flat_map(|p| &p.faces).map(|f| <[_; 2]>::from(f.surface.domain()));
@@ -152,27 +154,31 @@ fn windows_overlap_by_little() {
 #[test]
 fn a_view_that_hardly_moves_keeps_what_was_cut() {
     let model = wavy();
-    let mut close_up = CloseUp::new(&model);
+    let mut deep_zoom = DeepZoom::new(&model);
     let whole = camera(&model, DVec2::splat(0.5), 10.0);
     let start = camera(&model, DVec2::new(0.45, 0.2), 1e-3);
-    assert_eq!(close_up.of(&model, &whole), Wanted::Same);
+    assert_eq!(deep_zoom.of(&model, &whole), DeepZoomUpload::Same);
     let mut told = [0; 2]; // that serves, too; cut anew
     for step in 0..100 {
         let by = DVec3::new(1.0, 0.5, 0.0) * 1e-3 * 0.6 / 600.0 * f64::from(step);
         let moved = Camera { eye: start.eye + by, target: start.target + by, ..start };
-        match close_up.of(&model, &moved) {
-            Wanted::Same => told[0] += 1,
-            Wanted::Whole => panic!("too close for single precision"),
-            Wanted::Cut(cut) => {
+        match deep_zoom.of(&model, &moved) {
+            DeepZoomUpload::Same => told[0] += 1,
+            DeepZoomUpload::Whole => panic!("too close for single precision"),
+            DeepZoomUpload::Cut(cut) => {
                 told[1] += 1;
                 assert_eq!(cut.extents.len(), cut.model.parts.len());
-                assert_eq!(CloseUp::new(&model).of(&model, &moved), Wanted::Cut(cut), "what was drawn before counts");
+                assert_eq!(
+                    DeepZoom::new(&model).of(&model, &moved),
+                    DeepZoomUpload::Cut(cut),
+                    "what was drawn before counts"
+                );
             }
         }
     }
     assert!(told[0] >= 80 && told[1] >= 1, "{told:?}");
-    close_up.forget();
-    assert!(matches!(close_up.of(&model, &start), Wanted::Cut(_)));
-    assert_eq!(close_up.of(&model, &whole), Wanted::Whole);
-    assert_eq!(close_up.of(&model, &whole), Wanted::Same);
+    deep_zoom.forget();
+    assert!(matches!(deep_zoom.of(&model, &start), DeepZoomUpload::Cut(_)));
+    assert_eq!(deep_zoom.of(&model, &whole), DeepZoomUpload::Whole);
+    assert_eq!(deep_zoom.of(&model, &whole), DeepZoomUpload::Same);
 }

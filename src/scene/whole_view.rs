@@ -14,7 +14,7 @@
 //! Rounded up to the next of a few steps it is the same for all views from about as far: a model that is turned needs no new
 //! table while it is seen as a whole, and a view's picture is the same whatever was drawn before.
 //!
-//! Such a table has rows for what lies beside the picture, too: for views of a part of the model there is `nearby.rs`.
+//! Such a table has rows for what lies beside the picture, too: for views of a part of the model there is `view_cell.rs`.
 
 use super::focal_and_slant;
 use crate::model::{Bounds, Camera, Projection};

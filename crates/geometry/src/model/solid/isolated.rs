@@ -2,8 +2,8 @@
 //!
 //! ```text
 //!     ┌──────┐     ┌───────┐       boxes of the union's operands:
-//!     │ mesh │     │ A ┌───┼───┐     the mesh's touches no other ─▶ Lone::meshes
-//!     └──────┘     └───┼───┘mesh│                                    the others stay, Lone::rest
+//!     │ mesh │     │ A ┌───┼───┐     the mesh's touches no other ─▶ Isolated::meshes
+//!     └──────┘     └───┼───┘mesh│                                    the others stay, Isolated::rest
 //!                      └───────┘
 //! ```
 //!
@@ -26,14 +26,14 @@ const TOUCHES: f64 = 1e-6;
 
 /// Solids taken apart.
 #[derive(Debug)]
-pub struct Lone {
+pub struct Isolated {
     /// In model coordinates, with their primitives' numbers and colours; counter-clockwise from outside.
     pub meshes: Vec<Mesh>,
     /// The others.
     pub rest: Vec<Solid>,
 }
 
-impl Lone {
+impl Isolated {
     /// `None` where no mesh is lone; `coincidence` is that of [`Model::coincidence`](crate::model::Model::coincidence).
     ///
     /// # Errors
@@ -149,7 +149,7 @@ mod tests {
     fn counts_within(coincidence: f64, expression: &str, primitives: Vec<Primitive>) -> (usize, usize) {
         let solid = Solid::new(primitives, parse(expression).unwrap().tree).unwrap();
         let all = solid.primitives().len();
-        let lone = Lone::of(&[solid], coincidence).unwrap();
+        let lone = Isolated::of(&[solid], coincidence).unwrap();
         lone.map_or((0, all), |l| (l.meshes.len(), l.rest.iter().map(|s| s.primitives().len()).sum()))
     }
 
@@ -207,7 +207,8 @@ mod tests {
     #[test]
     fn meshes_are_placed() {
         let transform = at(4.0) * DAffine3::from_scale(DVec3::new(-2.0, 1.0, 1.0));
-        let lone = Lone::of(&[Solid::of(tetra(&TETRA, transform)).unwrap()], SurfaceTable::ROUNDED).unwrap().unwrap();
+        let lone =
+            Isolated::of(&[Solid::of(tetra(&TETRA, transform)).unwrap()], SurfaceTable::ROUNDED).unwrap().unwrap();
         let mesh = &lone.meshes[0];
         assert_eq!((mesh.id, mesh.colour), (7, Some([0.25; 4])));
         assert_eq!((mesh.bounds().min, mesh.bounds().max), (DVec3::X * 2.0, DVec3::new(4.0, 1.0, 1.0)));

@@ -22,8 +22,8 @@
 //! Cells follow from the view alone, and steps of a fourth of an octave keep their size while the view hardly changes. Axes and
 //! planes of coordinates are in the middle of cells: a view straight from the front does not come and go by roundings.
 
-use super::around::Ball;
 use super::focal_and_slant;
+use super::whole_view::Ball;
 use crate::model::{Bounds, Camera, Projection};
 use glam::{DVec2, DVec3, Vec2Swizzles};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -47,7 +47,7 @@ const ROUNDING: f64 = 1e-9;
 
 /// The camera whose table serves this view, widened by so many pixels, and those from near by; `None`: it wants one of its own.
 /// What is trimmed lies in the ball, and in the boxes.
-pub(super) fn nearby(camera: &Camera, margin_px: f64, ball: &Ball, boxes: &[Bounds]) -> Option<Camera> {
+pub(super) fn view_cell(camera: &Camera, margin_px: f64, ball: &Ball, boxes: &[Bounds]) -> Option<Camera> {
     let (focal, _) = focal_and_slant(camera);
     let size = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1));
     let half = (0.5 * size + margin_px) / focal;
@@ -315,7 +315,7 @@ mod tests {
             if camera.check().is_err() {
                 continue;
             }
-            let table = nearby(&camera, MARGIN_PX, &ball, &boxes);
+            let table = view_cell(&camera, MARGIN_PX, &ball, &boxes);
             served[usize::from(parallel)][usize::from(table.is_none())] += 1;
             let Some(table) = table else { continue };
             for _ in 0..50 {
@@ -362,7 +362,7 @@ mod tests {
         for parallel in [false, true] {
             let tables = |by: &dyn Fn(f64) -> (DVec3, DVec3)| {
                 let made: Vec<_> = (0..200)
-                    .map(|step| nearby(&moved(step, parallel, by), MARGIN_PX, &ball, &boxes).expect("shared"))
+                    .map(|step| view_cell(&moved(step, parallel, by), MARGIN_PX, &ball, &boxes).expect("shared"))
                     .collect();
                 1 + made.windows(2).filter(|pair| pair[0] != pair[1]).count()
             };
@@ -386,14 +386,14 @@ mod tests {
         };
         let perspective = Projection::Perspective { fov_y: 0.6 };
         let aside = camera(DVec3::new(1.0, 0.0, 1.0), DVec3::ZERO, perspective);
-        assert!(nearby(&aside, MARGIN_PX, &ball, &[face]).is_some());
+        assert!(view_cell(&aside, MARGIN_PX, &ball, &[face]).is_some());
         let within = camera(DVec3::new(0.5, 0.0, 0.05), DVec3::new(0.0, 0.0, 0.05), perspective);
-        assert_eq!(nearby(&within, MARGIN_PX, &ball, &[face]), None);
+        assert_eq!(view_cell(&within, MARGIN_PX, &ball, &[face]), None);
         let away = camera(DVec3::new(3.0, 0.0, 0.5), DVec3::new(9.0, 0.0, 0.5), perspective);
-        assert_eq!(nearby(&away, MARGIN_PX, &ball, &[face]), None, "it shows nothing");
+        assert_eq!(view_cell(&away, MARGIN_PX, &ball, &[face]), None, "it shows nothing");
         for projection in [perspective, Projection::Orthographic { height: 0.5 }] {
             let above = camera(DVec3::new(0.001, 0.0, 1.0), DVec3::ZERO, projection);
-            assert_eq!(nearby(&above, MARGIN_PX, &ball, &[face]), None, "{projection:?}");
+            assert_eq!(view_cell(&above, MARGIN_PX, &ball, &[face]), None, "{projection:?}");
         }
     }
 }

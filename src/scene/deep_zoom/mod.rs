@@ -15,18 +15,18 @@
 //! the view sees are made, so memory follows the view, not the zoom. Windows overlap by a margin: next to each other
 //! they show the same surface, and no crack between them. Everything else that is seen stays as it is.
 //!
-//! What is cut is what a camera sees that serves all views from near by (`scene/nearby.rs`): while a view hardly changes,
+//! What is cut is what a camera sees that serves all views from near by (`scene/view_cell.rs`): while a view hardly changes,
 //! nothing is made or uploaded. What is seen through is not cut: a ray is followed through all of it.
 //!
 //! Cost: a face's patches are cut once and kept; a view costs some 50 µs a window and patch near it.
 
 mod loops;
 
-use super::apart::VIEW_PX;
-use super::around::Ball;
 use super::data::stretch;
 use super::focal_and_slant;
-use super::nearby::nearby;
+use super::sub_patches::VIEW_PX;
+use super::view_cell::view_cell;
+use super::whole_view::Ball;
 use crate::model::{Bounds, Camera, Face, Instance, Model, Part, TrimLoop};
 use crate::spline::{Patch, PatchGrid};
 use crate::trim::{LoopIndex, RectSide};
@@ -50,7 +50,7 @@ const MOST_DEPTH: u32 = 90;
 
 /// Cuts what views see out of one model. Keeps the patches of faces that were seen close up.
 #[derive(Debug, Default)]
-pub struct CloseUp {
+pub struct DeepZoom {
     /// Of each part, of each face.
     faces: Vec<Vec<Known>>,
     /// Around the model.
@@ -61,7 +61,7 @@ pub struct CloseUp {
 
 /// What a view wants uploaded.
 #[derive(Clone, Debug, PartialEq)]
-pub enum Wanted {
+pub enum DeepZoomUpload {
     /// What was wanted last serves this view, too; at first that is the model as it is.
     Same,
     /// The model as it is.
@@ -173,7 +173,7 @@ impl Window {
     }
 }
 
-impl CloseUp {
+impl DeepZoom {
     /// Of a model that has been uploaded as it is. Looks at nothing but control points.
     pub fn new(model: &Model) -> Self {
         let known = |face: &Face| Known { bounds: face.surface.bounds(), cut: None };
@@ -184,17 +184,17 @@ impl CloseUp {
     /// What to upload for this view of `model`, the one that this was made for, in place of what was told last.
     ///
     /// Cost where that serves this view, too: some 0.2 µs a placed face.
-    pub fn of(&mut self, model: &Model, camera: &Camera) -> Wanted {
+    pub fn of(&mut self, model: &Model, camera: &Camera) -> DeepZoomUpload {
         let seen = self.seen(model, camera);
         if !seen.iter().any(Seen::is_close) {
             let held = self.held.replace(Held::Whole);
-            return if held == Some(Held::Whole) { Wanted::Same } else { Wanted::Whole };
+            return if held == Some(Held::Whole) { DeepZoomUpload::Same } else { DeepZoomUpload::Whole };
         }
         let boxes: Vec<Bounds> = seen.iter().flat_map(|seen| self.boxes(model, seen, camera.eye)).collect();
-        let wider = self.ball.and_then(|ball| nearby(camera, BESIDE_PX, &ball, &boxes)).unwrap_or(*camera);
+        let wider = self.ball.and_then(|ball| view_cell(camera, BESIDE_PX, &ball, &boxes)).unwrap_or(*camera);
         let held = self.held.replace(Held::Cut(wider));
         if held == self.held {
-            return Wanted::Same;
+            return DeepZoomUpload::Same;
         }
         let none = Model {
             name: model.name.clone(),
@@ -209,7 +209,7 @@ impl CloseUp {
             let instance = &model.instances[seen.placed];
             self.add(&mut near, &model.parts[instance.part], instance, &seen);
         }
-        Wanted::Cut(Box::new(near))
+        DeepZoomUpload::Cut(Box::new(near))
     }
 
     /// What was told last was not uploaded: the next view is told again.

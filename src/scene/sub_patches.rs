@@ -13,7 +13,7 @@
 //! Made once, for no view in particular: what a piece costs in each frame is set against the tests that it saves where the
 //! whole scene is some thousand pixels wide. From as many lines as there is room for, the one that is worth least goes,
 //! and the next, until each is worth what it costs. Closer up, they are worth more; what is cut out of a model for close
-//! views (`scene/closeup`) is made for views of one size and cut for that.
+//! views (`scene/deep_zoom`) is made for views of one size and cut for that.
 
 use super::flatten::divided;
 use crate::abi::Side;
@@ -33,7 +33,7 @@ const PLAIN_PX: f64 = 0.3;
 const MOST_HALVINGS: u32 = 5;
 /// Pieces are not narrower than this, in pixels.
 const LEAST_PX: f64 = 12.0;
-/// Of a piece's width, on each side: where no curve passes either. Rings around pixels reach beyond their pieces, and only
+/// Of a piece's width, on each side: where no curve passes either. Skirts reach beyond their pieces, and only
 /// tested ones are asked for them.
 const MARGIN: f64 = 0.25;
 
@@ -44,7 +44,7 @@ fn sides(grid: &PatchGrid, index: &LoopIndex) -> Vec<Side> {
 
 /// A grid of pieces.
 #[derive(Clone, Debug, PartialEq)]
-pub(super) struct Apart {
+pub(super) struct SubPatches {
     pub grid: PatchGrid,
     /// Each of its patches against the loops.
     pub sides: Vec<Side>,
@@ -52,7 +52,7 @@ pub(super) struct Apart {
     pub shares: [Vec<f64>; 2],
 }
 
-impl Apart {
+impl SubPatches {
     /// A grid that stays whole.
     pub(super) fn whole(grid: PatchGrid, sides: Vec<Side>) -> Self {
         let shares = [grid.count_u, grid.count_v].map(|count| vec![1.0; count]);
@@ -61,18 +61,18 @@ impl Apart {
 }
 
 /// The grid, cut where that pays; `extent` is the scene's, in the units of the face.
-pub(super) fn apart(grid: PatchGrid, index: &LoopIndex, extent: f64) -> Apart {
+pub(super) fn sub_patches(grid: PatchGrid, index: &LoopIndex, extent: f64) -> SubPatches {
     let px = VIEW_PX / extent;
     let cuts = finest(&grid, if px.is_finite() { px } else { 0.0 });
     if cuts.iter().flatten().all(|ends| ends.len() == 2) {
         let sides = sides(&grid, index);
-        return Apart::whole(grid, sides);
+        return SubPatches::whole(grid, sides);
     }
     let mut lines = Lines::new(&divided(grid.clone(), &cuts), index, px, &cuts);
     lines.merge();
     let kept = lines.kept(&cuts);
     let shares = kept.each_ref().map(|ends| ends.iter().flat_map(|e| e.windows(2).map(|w| w[1] - w[0])).collect());
-    Apart { grid: divided(grid, &kept), sides: lines.sides(), shares }
+    SubPatches { grid: divided(grid, &kept), sides: lines.sides(), shares }
 }
 
 /// Where each column and each row would be cut into the most equal pieces that it has room for.
