@@ -1,10 +1,14 @@
 //! The arguments of the command line, checked before any file is opened.
 
 mod draw;
+mod images;
+mod lines;
 mod read;
 mod write;
 
-pub use draw::{DrawArgs, DrawnEdges, TangentEdges};
+pub use draw::DrawArgs;
+pub use images::{Aov, Image};
+pub use lines::LineArgs;
 pub use read::{ReadArgs, SubdivideArgs};
 pub use write::{ConvertArgs, ExportArgs};
 
@@ -129,9 +133,12 @@ pub struct RenderArgs {
     pub frame: FrameArgs,
     #[command(flatten)]
     pub edges: EdgeArgs,
+    #[command(flatten)]
+    pub lines: LineArgs,
     /// Also write an image as a NumPy array, row 0 on top: depth (f32, H x W, +inf is background), face (u32, H x W,
     /// 0 is background), uv (f32, H x W x 2, NaN is background), normal (f32, H x W x 3, 0 is background), thickness
-    /// (f32, H x W: length of the ray within solids and closed parts, overlaps counted once)
+    /// (f32, H x W: length of the ray within solids and closed parts, overlaps counted once), edge (u32, H x W, with
+    /// --edges: number of the edge whose line covers the pixel, 0 is none), part and instance (u32, H x W, counted from 1, 0 is none)
     #[arg(long, value_name = "IMAGE=FILE.npy")]
     pub aov: Vec<Aov>,
     /// Write statistics as JSON, of the same frame drawn once more; what the driver compiles for the first one stands apart, as `first_frame`
@@ -192,6 +199,10 @@ pub struct CheckArgs {
     /// several views each adds its name to the file's
     #[arg(long, value_name = "OUT.png")]
     pub difference: Option<PathBuf>,
+    /// Also draw lines along all edges and judge them: points half a pixel apart that are seen and have no line within half
+    /// its width and 0.5 px, and pixels of lines farther than that from all that is seen
+    #[arg(long)]
+    pub edges: bool,
     /// Write the judgements as JSON
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,
@@ -447,32 +458,6 @@ impl FromStr for Size {
         text.split_once('x')
             .and_then(|(w, h)| Some(Self(side(w)?, side(h)?)))
             .ok_or_else(|| "wants WIDTHxHEIGHT, each from 1 to 16384, as in 1920x1080".into())
-    }
-}
-
-/// An image beside the colour, and the file that it goes to.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Aov {
-    pub image: Image,
-    pub file: PathBuf,
-}
-
-/// The images of [`Aov`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Image {
-    Depth,
-    Face,
-    Uv,
-    Normal,
-    Thickness,
-}
-
-impl FromStr for Aov {
-    type Err = String;
-    fn from_str(text: &str) -> Result<Self, String> {
-        let wanted = || "wants IMAGE=FILE.npy, the image being depth, face, uv, normal or thickness".to_string();
-        let (image, file) = text.split_once('=').filter(|(_, file)| !file.is_empty()).ok_or_else(wanted)?;
-        Ok(Self { image: Image::from_str(image, false).map_err(|_| wanted())?, file: file.into() })
     }
 }
 

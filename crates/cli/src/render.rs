@@ -34,7 +34,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let cameras = shots.iter().map(camera).collect::<Result<Vec<_>>>()?;
     // the renderer shares it: large models are there once
     let model = Arc::new(std::mem::take(&mut import.model));
-    let mut session = Session::of_one(device?, &args.frame, &import, &model, &args.edges)?;
+    let mut session = Session::of_one(device?, &args.frame, &import, &model, (&args.edges, args.lines.settings()?))?;
     let backdrop = args.look.backdrop(&import);
     session.look(backdrop.colour(), args.look.style);
     for (index, (shot, camera)) in shots.iter().zip(&cameras).enumerate() {
@@ -152,6 +152,9 @@ fn wanted(aovs: &[Aov]) -> Outputs {
         uv: has(Image::Uv),
         normal: has(Image::Normal),
         thickness: has(Image::Thickness),
+        edge: has(Image::Edge),
+        part: has(Image::Part),
+        instance: has(Image::Instance),
     }
 }
 
@@ -164,6 +167,9 @@ fn write(aov: &Aov, picture: &Picture) -> Result<()> {
             Image::Uv => npy::write(&mut to, &[height, width, 2], picture.uv.as_flattened())?,
             Image::Normal => npy::write(&mut to, &[height, width, 3], picture.normal.as_flattened())?,
             Image::Thickness => npy::write(&mut to, &[height, width], &picture.thickness)?,
+            Image::Edge => npy::write(&mut to, &[height, width], &picture.edge)?,
+            Image::Part => npy::write(&mut to, &[height, width], &picture.part)?,
+            Image::Instance => npy::write(&mut to, &[height, width], &picture.instance)?,
         }
         Ok(())
     })

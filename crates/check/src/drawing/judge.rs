@@ -177,7 +177,7 @@ fn samples(
     if !(settings.draws(path.kind) || contour) || length <= 0.0 {
         return Vec::new();
     }
-    let sight = Sight::new(scene, view, path);
+    let sight = Sight::new(scene, view, path, settings.silhouettes);
     let count = (length / SPACING).ceil().max(1.0) as usize;
     let mut runs: Vec<Vec<Sample>> = vec![Vec::new()];
     for k in 0..count {

@@ -155,7 +155,7 @@ impl Drawing {
             if !may {
                 return (Vec::new(), 0.0);
             }
-            let sight = Sight::new(&scene, &view, path);
+            let sight = Sight::new(&scene, &view, path, settings.silhouettes);
             let runs = runs::runs(number, path, &sight, &meetings, &places[number], probe);
             lines(path, &view, &runs, settings)
         };

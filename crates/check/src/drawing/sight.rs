@@ -78,9 +78,12 @@ pub(crate) struct Sight<'s> {
 }
 
 impl<'s> Sight<'s> {
-    pub fn new(scene: &'s Scene<'s>, view: &'s View, path: &'s Path<'s>) -> Self {
+    /// `contours`: smooth edges and seams are told as silhouettes where they are.
+    pub fn new(scene: &'s Scene<'s>, view: &'s View, path: &'s Path<'s>, contours: bool) -> Self {
         let sides = match path.source {
-            LineSource::Edge { instance, edge } if matches!(path.kind, LineKind::Smooth | LineKind::Seam) => {
+            LineSource::Edge { instance, edge }
+                if contours && matches!(path.kind, LineKind::Smooth | LineKind::Seam) =>
+            {
                 let part = scene.model.instances[instance].part;
                 let edges = &scene.edges[part];
                 let side = |used: &crate::model::EdgeUse| {

@@ -2,7 +2,8 @@
 
 use super::{CameraArgs, CutArgs, Directions, ReadArgs, SubdivideArgs};
 use crate::values::{drawing_scale, millimetres};
-use clap::{ArgAction, Args, ValueEnum};
+use clap::{ArgAction, Args};
+use selvedge::picture::{EdgeChoice, TangentEdges};
 use std::path::PathBuf;
 
 #[derive(Debug, Args)]
@@ -34,31 +35,15 @@ pub struct DrawArgs {
     #[arg(long)]
     pub hidden_lines: bool,
     /// Which edges: all, sharp (and borders), or none
-    #[arg(long, value_enum, value_name = "WHICH", default_value_t = DrawnEdges::All)]
-    pub edges: DrawnEdges,
+    #[arg(long, value_name = "all|sharp|none", default_value = "all")]
+    pub edges: EdgeChoice,
     /// Where surfaces turn away from the eye
     #[arg(long, value_name = "true|false", default_value_t = true, action = ArgAction::Set)]
     pub silhouettes: bool,
     /// Edges at which faces continue each other: none, thin, or full as any other
-    #[arg(long, value_enum, value_name = "HOW", default_value_t = TangentEdges::Thin)]
+    #[arg(long, value_name = "none|thin|full", default_value = "thin")]
     pub tangent_edges: TangentEdges,
     /// Write the camera as JSON, as for `render`
     #[arg(long, value_name = "FILE.json")]
     pub camera_out: Option<PathBuf>,
-}
-
-/// Which edges are drawn.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum DrawnEdges {
-    All,
-    Sharp,
-    None,
-}
-
-/// How edges are drawn at which faces continue each other.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum TangentEdges {
-    None,
-    Thin,
-    Full,
 }

@@ -2,7 +2,7 @@
 
 mod svg;
 
-use crate::args::{DrawArgs, DrawnEdges, TangentEdges};
+use crate::args::DrawArgs;
 use crate::camera::CameraFile;
 use crate::directions::Direction;
 use crate::progress::during;
@@ -11,6 +11,7 @@ use crate::target::{self, JSON, SVG, Target};
 use crate::{Outcome, output, session};
 use anyhow::{Result, bail};
 use selvedge::model::{Camera, Projection};
+use selvedge::picture::{EdgeChoice, TangentEdges};
 use selvedge_check::Tracer;
 use selvedge_check::drawing::{Drawing, DrawingSettings};
 use std::path::PathBuf;
@@ -33,8 +34,8 @@ pub fn run(args: &DrawArgs) -> Result<Outcome> {
         tracing::warn!("{} Boolean solids hide what is behind them and have no lines of their own", model.solids.len());
     }
     let settings = DrawingSettings {
-        sharp: args.edges != DrawnEdges::None,
-        smooth: args.edges == DrawnEdges::All && args.tangent_edges != TangentEdges::None,
+        sharp: args.edges != EdgeChoice::None,
+        smooth: args.edges == EdgeChoice::All && args.tangent_edges != TangentEdges::None,
         silhouettes: args.silhouettes,
         hidden: args.hidden_lines,
         ..DrawingSettings::default()

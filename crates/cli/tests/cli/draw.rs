@@ -117,7 +117,7 @@ fn bad_requests_are_refused() {
     draw(&["--scale", "1", "--width", "100"], "cannot be used with");
     draw(&["--scale", "1", "--fov", "30"], "--scale wants a parallel view");
     draw(&["--scale", "1e9"], "--scale makes a sheet of");
-    draw(&["--edges", "some"], "possible values: all, sharp, none");
+    draw(&["--edges", "some"], "there are: all, sharp, none");
     draw(&["--size", "0x10"], "WIDTHxHEIGHT");
     draw(&["--edges", "none", "--silhouettes", "false"], "nothing to draw");
     let two = folder.path("{view}.svg");

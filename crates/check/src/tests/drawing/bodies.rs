@@ -1,6 +1,6 @@
 //! Convex bodies, whose lines have closed forms.
 
-use super::super::shapes::{face, hole, rectangle};
+use super::super::shapes::{face, hole, patch, rectangle};
 use super::*;
 use selvedge_geometry::construct::shapes;
 
@@ -157,4 +157,26 @@ fn settings_choose_the_kinds() {
     assert_eq!(count(DrawingSettings { hidden: false, ..all }), (sharp - hidden, 2, 0));
     assert_eq!(count(DrawingSettings { silhouettes: false, ..all }), (sharp, 0, hidden));
     assert_eq!(count(DrawingSettings { sharp: false, ..all }), (0, 2, 0));
+}
+
+/// A rounded edge from the front: the round meets the top smoothly just where both turn away from the eye. The line is a
+/// silhouette; where these are not asked for, the smooth edge that it is.
+#[test]
+fn a_smooth_edge_may_be_a_silhouette() {
+    let half = std::f64::consts::FRAC_1_SQRT_2;
+    let arc = [(1.0, 0.0, 1.0), (1.0, 1.0, half), (0.0, 1.0, 1.0)];
+    let row = |y: f64| arc.map(|(x, z, w)| glam::DVec4::new(x * w, y * w, z * w, w));
+    let round = patch((2, 1), [row(0.0), row(1.0)].concat());
+    let top = rectangle(DVec3::new(-1.0, 0.0, 1.0), DVec3::X, DVec3::Y);
+    let model = alone(Part { faces: vec![face(1, round, vec![]), face(2, top, vec![])], ..Part::default() });
+    let camera = parallel(DVec3::X * 4.0, 3.0);
+    let wanted = [[0.0, 1.0].map(|y| pixel(&camera, DVec3::new(0.0, y, 1.0)))];
+    let drawing = drawn(&model, &camera);
+    same_segments(&strokes(&drawing, LineKind::Silhouette, false), &wanted);
+    assert!(strokes(&drawing, LineKind::Smooth, false).is_empty());
+    let tracer = Tracer::new(&model);
+    let settings = DrawingSettings { silhouettes: false, ..DrawingSettings::default() };
+    let drawing = Drawing::new(&model, &tracer, &camera, &settings).unwrap();
+    same_segments(&strokes(&drawing, LineKind::Smooth, false), &wanted);
+    assert!(strokes(&drawing, LineKind::Silhouette, false).is_empty());
 }
