@@ -121,3 +121,9 @@ fn a_pole_is_not_taken_for_the_face_s_back() {
     assert_eq!(seen, 12 * (SIZE.0 * SIZE.1) as usize);
     assert_silent(renderer);
 }
+
+/// A bar that hides a neighbour says nothing of where the drum ends.
+#[test]
+fn the_floor_is_not_seen_through_a_gap_beside_a_bar() {
+    keeps_the_promise(&borders::barred(), 60..100);
+}

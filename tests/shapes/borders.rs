@@ -1,5 +1,6 @@
 //! Solids whose faces end where their surfaces end, with loops along their sides, as CAD files have them.
 
+use super::meshes::block_mesh;
 use super::{circle, face, one, placed, plane, rectangle, revolved, sphere_surface};
 use glam::{DAffine3, DVec2, DVec3};
 use selvedge::model::{Face, Instance, Model, Part, SurfaceKind, TrimLoop};
@@ -57,4 +58,19 @@ fn block(id: u32, low: DVec3, high: DVec3) -> Vec<Face> {
         Face { loops: vec![whole], same_sense: sign > 0.0, ..face(id, SurfaceKind::Plane, surface) }
     };
     (0..6).map(side).collect()
+}
+
+/// A drum over a floor of facets, and before it, seen from above, thin bars of facets: where a bar hides the neighbour of a
+/// pixel at the drum's border, nothing says that the drum ends there.
+pub fn barred() -> Model {
+    let mut model = drum(1.5, 4.0);
+    let bar = |k: u32| {
+        let x = -2.0 + 0.37 * f64::from(k);
+        block_mesh(DVec3::new(x, -3.0, 4.5), DVec3::new(x + 0.12, 3.0, 4.6), 40 + k)
+    };
+    let floor = block_mesh(DVec3::new(-4.0, -4.0, -1.5), DVec3::new(4.0, 4.0, -1.0), 30);
+    let meshes = (0..11).map(bar).chain([floor]).collect();
+    model.parts.push(Part { name: "facets".to_owned(), meshes, ..Part::default() });
+    model.instances.push(Instance { part: 1, ..placed(DAffine3::IDENTITY, None) });
+    model
 }
