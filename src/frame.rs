@@ -28,6 +28,7 @@
 //!                      ▼
 //!                 coverage       scenes with smooth trims: pixels at borders, mixed of what resolve drew
 //!               solid_layers     scenes with something to see through: its faces, over what resolve drew
+//!                edge_line       scenes with lines: each pixel's best line along an edge, over what was drawn
 //!
 //!  from mesh on once for each of a pixel's samples, where there are several: antialiasing/samples.rs
 //!  nothing above seen_squares, or mesh where there are several samples, where the frame before had this view: reuse.rs
@@ -54,6 +55,7 @@ pub(crate) mod baselines;
 pub(crate) mod capacities;
 pub(crate) mod common;
 pub(crate) mod counts;
+pub(crate) mod edges;
 pub(crate) mod gaps;
 pub(crate) mod occlusion;
 mod reuse;
@@ -107,6 +109,8 @@ pub(crate) struct Frame<'a> {
     pub depth: Option<Attachment<'a>>,
     /// Length of the pixel's ray within solids; cleared to 0 when it is drawn into.
     pub thickness: Option<Attachment<'a>>,
+    /// Numbers of edges, parts and instances.
+    pub numbers: Option<[Attachment<'a>; 3]>,
 }
 
 const WRITE_TO_READ: (Access, Access) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);
@@ -142,6 +146,17 @@ impl Frame<'_> {
             }
         }
         self.no_thickness(cmd);
+        self.beside(cmd, times);
+    }
+
+    /// Numbers of what is seen, and lines along edges over the picture.
+    fn beside(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
+        if self.numbers.is_some() {
+            times.scope(cmd, "numbers", || self.stages.shading.numbers(self, cmd));
+        }
+        if let Some(edges) = &self.stages.edges {
+            times.scope(cmd, "lines", || edges.draw(self, cmd));
+        }
     }
 
     /// What is drawn from: the trim table, and patches divided.
@@ -153,6 +168,9 @@ impl Frame<'_> {
         }
         if self.counts.items > 0 {
             times.scope(cmd, "tessellation", || stages.tessellation.record(self, cmd));
+        }
+        if let Some(edges) = &stages.edges {
+            times.scope(cmd, "edges", || edges.divide(self, cmd));
         }
         #[cfg(feature = "baselines")]
         if let Some(trim) = &stages.trim {

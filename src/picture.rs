@@ -1,7 +1,12 @@
 //! A frame's settings, images and statistics.
 
+mod edges;
+mod samples;
 mod style;
 
+pub(crate) use edges::LineStyle;
+pub use edges::{BadEdges, EdgeChoice, EdgeSettings, TangentEdges, UnknownEdges};
+pub use samples::{Samples, UnknownSamples};
 pub use style::{Style, UnknownStyle};
 
 use crate::model::{Colour, Images};
@@ -196,69 +201,6 @@ impl std::str::FromStr for SolidWay {
 #[error("no way to draw solids is called `{0}`; there are: {names}", names = SolidWay::ALL.iter().map(|w| w.name()).collect::<Vec<_>>().join(", "))]
 pub struct UnknownSolidWay(String);
 
-/// The number of samples whose mean a pixel's colour is.
-///
-/// The mean is of linear colours, each clamped to the target's range. The images beside the colour, and the host's
-/// depth, are those of the pixel's centre, whatever the number.
-#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
-#[cfg_attr(feature = "serde", derive(serde::Serialize))]
-#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
-pub enum Samples {
-    /// One, at the centre.
-    #[default]
-    One,
-    /// Four, no two in one row or column.
-    Four,
-    /// Eight, no two in one row or column.
-    Eight,
-}
-
-impl Samples {
-    /// How many.
-    pub fn count(self) -> u32 {
-        match self {
-            Self::One => 1,
-            Self::Four => 4,
-            Self::Eight => 8,
-        }
-    }
-
-    /// Where they lie, pixels from the centre, y down; none for [`One`](Self::One). Source: Vulkan 1.3, section 25.3
-    /// (standard sample locations).
-    pub(crate) fn offsets(self) -> &'static [[f64; 2]] {
-        const FOUR: [[f64; 2]; 4] = [[-0.125, -0.375], [0.375, -0.125], [-0.375, 0.125], [0.125, 0.375]];
-        const DIRECTION_COUNT: [[f64; 2]; 8] = [
-            [0.0625, -0.1875],
-            [-0.0625, 0.1875],
-            [0.3125, 0.0625],
-            [-0.1875, -0.3125],
-            [-0.3125, 0.3125],
-            [-0.4375, -0.0625],
-            [0.1875, 0.4375],
-            [0.4375, -0.4375],
-        ];
-        match self {
-            Self::One => &[],
-            Self::Four => &FOUR,
-            Self::Eight => &DIRECTION_COUNT,
-        }
-    }
-}
-
-impl std::str::FromStr for Samples {
-    type Err = UnknownSamples;
-
-    fn from_str(count: &str) -> Result<Self, UnknownSamples> {
-        let all = [Self::One, Self::Four, Self::Eight];
-        all.into_iter().find(|s| s.count().to_string() == count).ok_or_else(|| UnknownSamples(count.to_owned()))
-    }
-}
-
-/// No picture has so many samples a pixel.
-#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("`{0}` samples a pixel: there may be 1, 4 or 8")]
-pub struct UnknownSamples(String);
-
 /// Colours of places where solids of an assembly meet, in linear light; the opacity is that of the mark, which lies
 /// before everything. Solids here are the model's Boolean solids and closed parts, each by itself.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -311,6 +253,9 @@ pub struct SceneSettings {
     /// a million: [`FrameStats::shadowless`] counts them. Made with the scene: loops that are edited
     /// later change no shadow.
     pub sun: Option<DVec3>,
+    /// Lines along edges; `None`: no lines, and nothing that lines need. Edges of parts and meshes are found when the model
+    /// is uploaded; Boolean solids have none.
+    pub edges: Option<EdgeSettings>,
     /// Most bytes that the lists of [`SolidWay::Events`] take: which primitives each tile of 16 x 16 pixels sees, and
     /// where each pixel's ray crosses operands that are meshes or spline parts. Where they would take more, the picture
     /// is drawn in bands of rows of tiles, one after another, each with all geometry: the same picture, bit for bit.
@@ -329,12 +274,29 @@ pub struct Outputs {
     pub uv: bool,
     pub normal: bool,
     pub thickness: bool,
+    pub edge: bool,
+    pub part: bool,
+    pub instance: bool,
 }
 
 impl Outputs {
-    /// Every image of the face that is seen first; `thickness`, for which rays are followed to the far plane, is not
-    /// among them.
-    pub const ALL: Self = Self { depth: true, face: true, uv: true, normal: true, thickness: false };
+    /// Every image of the point that is seen first; those of `thickness`, for which rays are followed to the far plane,
+    /// and of numbers of edges, parts and instances are not among them.
+    pub const ALL: Self = Self {
+        depth: true,
+        face: true,
+        uv: true,
+        normal: true,
+        thickness: false,
+        edge: false,
+        part: false,
+        instance: false,
+    };
+
+    /// The image of edges, parts or instances.
+    pub fn has_numbers(self) -> bool {
+        self.edge || self.part || self.instance
+    }
 }
 
 /// A finished picture in host memory. Row 0 is on top; samples are taken at pixel centres. Images that
@@ -361,6 +323,16 @@ pub struct Picture {
     /// Length of the pixel's ray within solids, between the near and the far plane: Boolean solids and closed parts,
     /// model units, where several overlap counted once; 0 without any.
     pub thickness: Vec<f32>,
+    /// Number of the edge whose line covers the pixel, by a tenth or more; 0 without any. Edges are counted from 1 on, part
+    /// after part as [`Model::parts`](crate::model::Model::parts) has them: of each those of [`Edges::edges`](crate::model::Edges::edges), then
+    /// [`Edges::of_meshes`](crate::model::Edges::of_meshes), drawn or not. With
+    /// [`SceneSettings::edges`]; without, 0 everywhere.
+    pub edge: Vec<u32>,
+    /// Index into [`Model::parts`](crate::model::Model::parts), plus 1; 0 for background, Boolean solids and what is seen
+    /// through.
+    pub part: Vec<u32>,
+    /// The same into [`Model::instances`](crate::model::Model::instances).
+    pub instance: Vec<u32>,
     /// The frame's statistics.
     pub stats: FrameStats,
 }
@@ -437,6 +409,8 @@ pub struct FrameStats {
     /// model units. At most an 8192nd of the diagonal of all that casts shadows, and a 1024th of a part's own; more where
     /// that would need too many triangles.
     pub shadow_deviation: f64,
+    /// Chords of lines along edges.
+    pub edge_chords: u64,
     /// Layers of faces that [`SolidWay::Blister`] peeled off before every pixel was decided.
     pub layers: u64,
     /// Bands of rows of tiles in which the lists of [`SolidWay::Events`] were made: 1 where all of them fit, 0 where

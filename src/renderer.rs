@@ -26,14 +26,14 @@ use crate::budget::Budget;
 use crate::frame::capacities::Capacities;
 use crate::frame::counts::Counts;
 pub use crate::frame::counts::TooMany;
-use crate::frame::shading::resolve;
+use crate::frame::shading::{numbers, resolve};
 use crate::frame::solids::Solids;
 use crate::frame::transparency::solid_layers;
 use crate::frame::{Frame, Near, Passes, Stages, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, TexelBuffer, Uploads};
-use crate::model::{Camera, CameraError};
-use crate::picture::{FrameSettings, FrameStats, PassTime, PoolBytes, TakenWay};
-pub use crate::scene::{Cut, DeepZoom, DeepZoomUpload, EditError, UndrawnSolid, trim_way};
+use crate::model::{Camera, CameraError, ModelError};
+use crate::picture::{BadEdges, FrameSettings, FrameStats, PassTime, PoolBytes, TakenWay};
+pub use crate::scene::{Cut, DeepZoom, DeepZoomUpload, EditError, UndrawnEdges, UndrawnSolid, trim_way};
 use crate::scene::{Scene, SceneData, Write};
 use ash::vk;
 use history::History;
@@ -51,6 +51,8 @@ pub struct TargetFormats {
     pub depth: Option<vk::Format>,
     /// Four more colour targets follow: [`Renderer::AOV_FORMATS`].
     pub aovs: bool,
+    /// There are images of numbers: [`Renderer::NUMBER_FORMAT`].
+    pub numbers: bool,
 }
 
 /// The host's images for one frame, all of the camera's size: [`Image::borrowed`] makes them of Vulkan
@@ -67,6 +69,8 @@ pub struct Targets<'a> {
     pub depth: Option<&'a Image>,
     /// Depth, face, (u, v) and normal; layouts as for `colour`.
     pub aovs: Option<[&'a Image; 4]>,
+    /// Numbers of edges, parts and instances, as [`Picture`](crate::picture::Picture) has them; layouts as for `colour`.
+    pub numbers: Option<[&'a Image; 3]>,
 }
 
 /// One frame.
@@ -94,6 +98,9 @@ pub enum RenderError {
     /// [`FrameSettings::tolerance_px`] is below [`FrameSettings::LEAST_TOLERANCE_PX`].
     #[error("the tolerance must be at least {least} pixels, not {0}", least = FrameSettings::LEAST_TOLERANCE_PX)]
     Tolerance(f64),
+    /// The model cannot be drawn.
+    #[error("model: {0}")]
+    Model(#[from] ModelError),
     /// The model, or what this view needs of it.
     #[error(transparent)]
     TooMany(#[from] TooMany),
@@ -106,6 +113,12 @@ pub enum RenderError {
     /// [`smooth_trims`](crate::picture::SceneSettings::smooth_trims) beside something that it does not go with.
     #[error("smooth trims do not go with {0}")]
     SmoothTrims(&'static str),
+    /// [`edges`](crate::picture::SceneSettings::edges) that cannot be drawn.
+    #[error(transparent)]
+    Edges(#[from] BadEdges),
+    /// A part whose edges are no curves.
+    #[error("edges: {0}")]
+    UndrawnEdges(#[from] UndrawnEdges),
     /// A target of another size than the camera's.
     #[error("the target `{name}` is {width} x {height}, the camera's picture another size")]
     TargetSize {
@@ -177,6 +190,8 @@ impl Renderer {
     /// Formats of the images of depth, face, (u, v) and normal. The fourth component of a normal is 1, but 0 for
     /// background and where [`sun`](crate::picture::SceneSettings::sun) does not reach.
     pub const AOV_FORMATS: [vk::Format; 4] = resolve::AOV_FORMATS;
+    /// Format of the images of edges, parts and instances.
+    pub const NUMBER_FORMAT: vk::Format = numbers::NUMBER_FORMAT;
     /// Format of the image of thickness.
     pub const THICKNESS_FORMAT: vk::Format = solid_layers::THICKNESS_FORMAT;
 
@@ -262,7 +277,7 @@ impl Renderer {
         let targets = input.targets;
         for image in [Some(targets.colour), targets.depth, thickness]
             .into_iter()
-            .chain(targets.aovs.iter().flatten().map(|i| Some(*i)))
+            .chain(targets.aovs.iter().flatten().chain(targets.numbers.iter().flatten()).map(|i| Some(*i)))
         {
             if let Some(image) = image.filter(|i| i.size() != input.camera.size) {
                 let (width, height) = image.size();
@@ -270,6 +285,7 @@ impl Renderer {
             }
         }
         assert!(targets.aovs.is_some() == self.formats.aovs, "the targets are those of TargetFormats::aovs");
+        assert!(targets.numbers.is_some() == self.formats.numbers, "the targets are those of TargetFormats::numbers");
         assert!(
             targets.depth.is_some() == self.formats.depth.is_some(),
             "the targets are those of TargetFormats::depth"
@@ -335,6 +351,7 @@ impl Renderer {
             background: constants::background(input, &self.formats),
             depth,
             thickness: thickness.map(|image| Attachment { image, load: Load::ColourF32([0.0; 4]) }),
+            numbers: targets.numbers.map(|images| images.map(|image| target(image, keep))),
         };
         slot.times.reset(&cmd);
         frame.record(&cmd, &mut slot.times);
@@ -381,6 +398,7 @@ impl Renderer {
             open_clear: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.open)),
             shadowless: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.shadowless)),
             shadow_deviation: self.loaded.as_ref().and_then(|l| l.data.sun.as_ref()).map_or(0.0, |sun| sun.deviation),
+            edge_chords: u64::from(c.edge_chords),
             layers: u64::from(c.layers),
             bands: slot.bands,
             solid_bytes: slot.solid_bytes.clone(),

@@ -222,6 +222,7 @@ struct Counters {
     uint layers;       // peeled by way `blister`
     uint ray_segments;         // of rays through Boolean solids that did not come to their ends
     uint hidden;       // patches left out because they lie behind others
+    uint edge_chords;  // of lines along edges
     uint clamps;       // factors or densities above their hard limits, loops that a driver ended
     uint failed;       // one bit a buffer that was too small, or a pass that was drawn too seldom
 };
@@ -236,6 +237,7 @@ const uint FAILED_TILE_LEAVES = 64u;
 const uint FAILED_FRAGMENTS = 128u;
 const uint FAILED_LAYERS = 256u;
 const uint FAILED_RAY_SEGMENTS = 512u;
+const uint FAILED_EDGE_CHORDS = 1024u;
 
 // Tessellation of one item, decided by the split pass. Totals over the whole patch.
 struct Factors {

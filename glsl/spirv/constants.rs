@@ -42,6 +42,36 @@ pub mod coverage {
 pub mod depth_pyramid {
     pub const SQUARE: u32 = 4;
 }
+pub mod edge_divide {
+    pub const EDGE_HALVES: u32 = 0xffffffff;
+    pub const EDGE_HALVINGS: u32 = 22;
+    pub const EDGE_MOST_CHORDS: u32 = 16;
+    pub const EDGE_MOST_POINTS: u32 = 16;
+    pub const EDGE_OUTSIDE: u32 = 0;
+    pub const EDGE_TOLERANCE_PX: f32 = 0.09;
+}
+pub mod edge_line {
+    pub const DASH: f32 = 8.0;
+    pub const GAP: f32 = 6.0;
+    pub const ROUNDED_PX: f32 = 0.0625;
+}
+pub mod edge_seen {
+    pub const ARRIVED_PX: f32 = 0.05;
+    pub const OWN_SHEET_PX: f32 = 0.25;
+    pub const PLACE_ROUNDING: f32 = 1e-6;
+}
+pub mod edge_show {
+    pub const EDGE_COVERS: f32 = 0.1;
+}
+pub mod edges {
+    pub const EDGE_FULL: u32 = 0;
+    pub const EDGE_THIN: u32 = 1;
+    pub const LINE_CHORD: u32 = 0xffffff;
+    pub const LINE_COVERAGE: u32 = 24;
+    pub const LINE_SEEN: u32 = 0x80000000;
+    pub const LINE_STEPS: f32 = 127.0;
+    pub const OWN_TRIANGLE: u32 = 0x80000000;
+}
 pub mod exact {
     pub const ARC_LAST: u32 = 8;
     pub const ARC_UP: u32 = 4;
@@ -120,6 +150,7 @@ pub mod scene {
     pub const FACE_TRIMMED: u32 = 16;
     pub const FAILED_BLOCK_LEAVES: u32 = 32;
     pub const FAILED_DRAWS: u32 = 2;
+    pub const FAILED_EDGE_CHORDS: u32 = 1024;
     pub const FAILED_FRAGMENTS: u32 = 128;
     pub const FAILED_GAP_CANDIDATES: u32 = 16;
     pub const FAILED_INTERCEPTS: u32 = 8;

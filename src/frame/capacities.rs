@@ -7,7 +7,7 @@
 //! ```
 
 use super::counts::{Counts, TooMany};
-use super::{gaps, solids, tessellation, trim};
+use super::{edges, gaps, solids, tessellation, trim};
 use crate::abi::Counters;
 
 /// Room for what only the GPU can count, of each stage that counts.
@@ -17,6 +17,7 @@ pub(crate) struct Capacities {
     pub trim: trim::Capacities,
     pub gaps: gaps::Capacities,
     pub solids: solids::Capacities,
+    pub edges: edges::Capacities,
 }
 
 /// What was wanted and a quarter more, but no more than the most, where less was there.
@@ -33,6 +34,7 @@ impl Capacities {
             trim: trim::Capacities::first(counts),
             gaps: gaps::Capacities::first(counts),
             solids: solids::Capacities::first(counts),
+            edges: edges::Capacities::first(counts),
         }
     }
 
@@ -59,6 +61,7 @@ impl Capacities {
             trim: self.trim.grown(c, counts, range)?,
             gaps: self.gaps.grown(c, range),
             solids: self.solids.grown(c, counts, size, range)?,
+            edges: self.edges.grown(c, range)?,
         })
     }
 }

@@ -50,6 +50,8 @@ pub(crate) struct Counts {
     pub open: u32,
     /// What casts no shadow in a scene with a sun.
     pub shadowless: u32,
+    /// Pieces of edges that lines are drawn along.
+    pub edge_items: u32,
 }
 
 impl Counts {
@@ -82,6 +84,7 @@ impl Counts {
             thickness: data.thickness,
             open: count(data.open),
             shadowless: count(data.shadowless),
+            edge_items: data.edges.as_ref().map_or(0, |edges| count(edges.items.len())),
         }
     }
 
@@ -110,6 +113,7 @@ impl Counts {
             ("triangles", self.triangles, MOST_TRIANGLES, "draw fewer of the meshes, or coarser ones"),
             ("primitives", self.leaves, MOST_THREADS, FEWER_SOLIDS),
             ("placed meshes", self.mesh_instances, MOST_SEEN, FEWER_PARTS),
+            ("pieces of edges", self.edge_items, MOST_THREADS, "draw lines along fewer edges"),
             ("sides of primitives", self.sides, MOST_SEEN, FEWER_SOLIDS),
         ];
         match all.into_iter().find(|(_, count, most, _)| count > most) {

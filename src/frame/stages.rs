@@ -8,6 +8,7 @@ use super::capacities::Capacities;
 use super::common::room::Room;
 use super::common::{self, Common};
 use super::counts::Counts;
+use super::edges::{self, EdgeStage};
 use super::gaps::gap_fill::GapFill;
 use super::gaps::{self, Gaps};
 use super::occlusion::{self, Occlusion};
@@ -34,6 +35,7 @@ pub(crate) struct Passes {
     samples: Option<Arc<samples::Passes>>,
     transparency: Option<Arc<transparency::Passes>>,
     smooth_trims: Option<Arc<Coverage>>,
+    edges: Option<Arc<edges::Passes>>,
 }
 
 impl Passes {
@@ -71,6 +73,7 @@ impl Passes {
             samples: samples.map(Arc::new),
             transparency: transparency::Passes::new(device, data, formats)?.map(Arc::new),
             smooth_trims: smooth_trims::pass(device, data, formats)?.map(Arc::new),
+            edges: edges::Passes::new(device, data, formats)?.map(Arc::new),
         })
     }
 }
@@ -91,6 +94,7 @@ pub(crate) struct Stages {
     pub(super) transparency: Option<Transparency>,
     pub(super) samples: Option<MoreSamples>,
     pub(super) smooth_trims: Option<SmoothTrims>,
+    pub(super) edges: Option<EdgeStage>,
 }
 
 impl Stages {
@@ -102,8 +106,9 @@ impl Stages {
         size: (u32, u32),
     ) -> Result<Self, GpuError> {
         let room = &Room { device, counts, capacities, size };
-        let scanned = [2 * counts.items, counts.bins, counts.curves, counts.face_instances, capacities.trim.rows];
-        let scanned = scanned.into_iter().fold(solids::buffers::scanned(room), u32::max);
+        let (trimmed, edges) = ([counts.bins, counts.curves, capacities.trim.rows], counts.edge_items);
+        let scanned = [2 * counts.items, counts.face_instances, edges].into_iter().chain(trimmed);
+        let scanned = scanned.fold(solids::buffers::scanned(room), u32::max);
         let p = passes;
         Ok(Self {
             capacities,
@@ -119,6 +124,7 @@ impl Stages {
             transparency: p.transparency.as_ref().map(|p| Transparency::new(room, p)).transpose()?,
             samples: p.samples.as_ref().map(|p| MoreSamples::new(room, p)).transpose()?,
             smooth_trims: p.smooth_trims.as_ref().map(|p| SmoothTrims::new(room, p)).transpose()?,
+            edges: p.edges.as_ref().map(|p| EdgeStage::new(room, p)).transpose()?,
         })
     }
 

@@ -24,7 +24,8 @@ pub struct HeadlessRenderer {
     renderer: ManuallyDrop<Renderer>,
     targets: ManuallyDrop<Option<TargetImages>>,
     device: ManuallyDrop<HeadlessDevice>,
-    aovs: bool,
+    /// What the renderer draws into.
+    formats: TargetFormats,
     model: Option<(Arc<Model>, SceneRequest)>,
     deep_zoom: DeepZoom,
 }
@@ -34,6 +35,7 @@ struct TargetImages {
     colour: (Image, ReadBack),
     aovs: Option<[(Image, ReadBack); 4]>,
     thickness: Option<(Image, ReadBack)>,
+    numbers: Option<[(Image, ReadBack); 3]>,
 }
 
 impl HeadlessRenderer {
@@ -43,12 +45,13 @@ impl HeadlessRenderer {
     /// [`HeadlessError`]: no loader, no device, no validation layers.
     pub fn new(options: &HeadlessOptions) -> Result<Self, HeadlessError> {
         let device = HeadlessDevice::new(options)?;
-        let renderer = Renderer::on(device.device(), formats(false), 1)?;
+        let formats = TargetFormats { colour: COLOUR_FORMAT, depth: None, aovs: false, numbers: false };
+        let renderer = Renderer::on(device.device(), formats, 1)?;
         Ok(Self {
             renderer: ManuallyDrop::new(renderer),
             targets: ManuallyDrop::new(None),
             device: ManuallyDrop::new(device),
-            aovs: false,
+            formats,
             model: None,
             deep_zoom: DeepZoom::default(),
         })
@@ -197,6 +200,7 @@ impl HeadlessRenderer {
                 colour: &images.colour.0,
                 depth: None,
                 aovs: images.aovs.as_ref().map(|aovs| std::array::from_fn(|i| &aovs[i].0)),
+                numbers: images.numbers.as_ref().map(|numbers| std::array::from_fn(|i| &numbers[i].0)),
             };
             let input = FrameInput { camera, settings: *settings, slot: 0, targets };
             // SAFETY: recording; the submission is waited for, so the slot is free again.
@@ -216,24 +220,25 @@ impl HeadlessRenderer {
     /// Makes targets of this size, and a renderer that writes these images.
     fn prepare(&mut self, size: (u32, u32), outputs: Outputs) -> Result<(), HeadlessError> {
         let thickness = outputs.thickness;
-        let aovs = Outputs { thickness: false, ..outputs } != Outputs::default();
+        let aovs = outputs.depth || outputs.face || outputs.uv || outputs.normal;
+        let formats = TargetFormats { aovs, numbers: outputs.has_numbers(), ..self.formats };
         let followed = self.model.as_ref().is_some_and(|(_, settings)| settings.thickness);
         if let Some((_, settings)) = self.model.as_mut().filter(|_| thickness) {
             settings.settings.thickness = true;
         }
-        if aovs != self.aovs || thickness && !followed {
-            let mut renderer = Renderer::on(self.device.device(), formats(aovs), 1)?;
+        if formats != self.formats || thickness && !followed {
+            let mut renderer = Renderer::on(self.device.device(), formats, 1)?;
             let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
             renderer.upload_request(model, *settings, &|_| ())?;
             *self.renderer = renderer;
-            self.aovs = aovs;
+            self.formats = formats;
             self.deep_zoom = DeepZoom::new(model);
             *self.targets = None;
         }
         let fits = |t: &TargetImages| t.colour.0.size() == size && t.thickness.is_some() == thickness;
         if !self.targets.as_ref().is_some_and(fits) {
             *self.targets = None;
-            *self.targets = Some(TargetImages::new(self.device.device(), size, aovs, thickness)?);
+            *self.targets = Some(TargetImages::new(self.device.device(), size, formats, thickness)?);
         }
         Ok(())
     }
@@ -259,6 +264,7 @@ impl HeadlessRenderer {
         let Some(images) = &*self.targets else { unreachable!("prepared before") };
         let count = size.0 as usize * size.1 as usize;
         let aov = |i: usize| images.aovs.as_ref().map(|a| &a[i].1);
+        let number = |i: usize| images.numbers.as_ref().map(|n| &n[i].1);
         fn values<T: Pod>(read: Option<&ReadBack>, wanted: bool, count: usize) -> Vec<T> {
             read.filter(|_| wanted).map_or_else(Vec::new, |r| r.values(count))
         }
@@ -272,6 +278,9 @@ impl HeadlessRenderer {
             uv: values(aov(2), outputs.uv, count),
             normal: normals.iter().map(|n| [n[0], n[1], n[2]]).collect(),
             sunlit: if has_sun { normals.iter().map(|n| n[3] > 0.0).collect() } else { Vec::new() },
+            edge: values(number(0), outputs.edge, count),
+            part: values(number(1), outputs.part, count),
+            instance: values(number(2), outputs.instance, count),
             thickness: values(images.thickness.as_ref().map(|t| &t.1), outputs.thickness, count),
             stats,
         }
@@ -289,12 +298,8 @@ impl Drop for HeadlessRenderer {
     }
 }
 
-fn formats(aovs: bool) -> TargetFormats {
-    TargetFormats { colour: COLOUR_FORMAT, depth: None, aovs }
-}
-
 impl TargetImages {
-    fn new(device: &Device, size: (u32, u32), aovs: bool, thickness: bool) -> Result<Self, GpuError> {
+    fn new(device: &Device, size: (u32, u32), formats: TargetFormats, thickness: bool) -> Result<Self, GpuError> {
         let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
         let target = |name: &str, format, bytes: u64| {
             let image = Image::new(device, &ImageInfo { name, size, format, usage, pool: Pool::Transient })?;
@@ -303,7 +308,8 @@ impl TargetImages {
         };
         let colour = target("colour", COLOUR_FORMAT, 4)?;
         let [depth, face, uv, normal] = Renderer::AOV_FORMATS;
-        let aovs = aovs
+        let aovs = formats
+            .aovs
             .then(|| {
                 Ok::<_, GpuError>([
                     target("depth", depth, 4)?,
@@ -314,11 +320,15 @@ impl TargetImages {
             })
             .transpose()?;
         let thickness = thickness.then(|| target("thickness", Renderer::THICKNESS_FORMAT, 4)).transpose()?;
-        Ok(Self { colour, aovs, thickness })
+        let number = |name| target(name, Renderer::NUMBER_FORMAT, 4);
+        let numbers = || Ok::<_, GpuError>([number("edge")?, number("part")?, number("instance")?]);
+        let numbers = formats.numbers.then(numbers).transpose()?;
+        Ok(Self { colour, aovs, thickness, numbers })
     }
 
     fn all(&self) -> impl Iterator<Item = &(Image, ReadBack)> {
-        std::iter::once(&self.colour).chain(self.aovs.iter().flatten()).chain(&self.thickness)
+        let numbers = self.numbers.iter().flatten();
+        std::iter::once(&self.colour).chain(self.aovs.iter().flatten()).chain(&self.thickness).chain(numbers)
     }
 
     /// Ready to be drawn into; what they held goes.

@@ -6,14 +6,14 @@
 //! ```
 
 use super::constants::draw_vertices;
-use super::{Loaded, RenderError, Renderer, Retired, validate};
+use super::{Loaded, RenderError, Renderer, Retired, TargetFormats, validate};
 use crate::frame::Passes;
 use crate::frame::capacities::Capacities;
 use crate::frame::counts::Counts;
 use crate::frame::shading::resolve;
 use crate::model::{LoopAt, Model, TrimLoop};
-use crate::picture::{SceneSettings, TakenWay, TrimWay};
-use crate::scene::{Cut, SceneData, SceneRequest, Told, UndrawnSolid};
+use crate::picture::{EdgeSettings, SceneSettings, TakenWay, TrimWay};
+use crate::scene::{Cut, SceneData, SceneRequest, Told, UndrawnEdges, UndrawnSolid};
 
 /// The source of a scene: a model, or the part cut out of it for a view.
 #[derive(Clone, Copy)]
@@ -28,6 +28,13 @@ impl Source<'_> {
         match self.cut {
             None => SceneData::telling(self.whole, settings, self.progress),
             Some(cut) => SceneData::cut_from(self.whole, cut, settings),
+        }
+    }
+
+    fn find_edges(self, data: &mut SceneData, settings: EdgeSettings) -> Result<(), UndrawnEdges> {
+        match self.cut {
+            None => data.find_edges(self.whole, settings),
+            Some(_) => Ok(()),
         }
     }
 }
@@ -58,7 +65,8 @@ impl Renderer {
     /// copies its data. Frames in flight keep the old one until their slots come round.
     ///
     /// # Errors
-    /// [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before stays.
+    /// [`RenderError::Model`] where [`Model::check`] fails, [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before
+    /// stays.
     pub fn upload(&mut self, model: &Model) -> Result<(), RenderError> {
         self.upload_with(model, SceneSettings::default())
     }
@@ -124,6 +132,10 @@ impl Renderer {
 
     fn load(&mut self, of: Source<'_>, settings: SceneRequest) -> Result<(), RenderError> {
         validate::check_sun(*settings)?;
+        if of.cut.is_none() {
+            of.whole.check()?; // a cut is of a model that was
+        }
+        settings.edges.map_or(Ok(()), |edges| edges.check())?;
         let mut data = of.data(settings)?;
         if settings.smooth_trims {
             validate::check_smooth_trims(&data, settings)?;
@@ -133,11 +145,15 @@ impl Renderer {
         if too_many.is_some() {
             data = of.data(settings.exact())?;
         }
+        data.has_numbers = self.formats.numbers;
+        if let Some(edges) = settings.edges {
+            of.find_edges(&mut data, edges)?;
+        }
         let fallback = (may_change && too_many.is_none()).then(|| Box::new(Fallback::new(of, settings)));
         let counts = Counts::of(&data);
         counts.check()?;
-        let formats =
-            resolve::Formats { colour: self.formats.colour, depth: self.formats.depth, aovs: self.formats.aovs };
+        let TargetFormats { colour, depth, aovs, numbers } = self.formats;
+        let formats = resolve::Formats { colour, depth, aovs, numbers };
         let passes = Passes::new(&self.device, &data, formats)?;
         let loaded = Loaded {
             data,

@@ -2,6 +2,7 @@
 
 use super::cones::{Normals, cones};
 use super::deep_zoom::Cut;
+use super::edges::{EdgeData, Placing, UndrawnEdges, edges_of};
 use super::edit::EditScene;
 use super::exact::ExactData;
 use super::face::{Body, Cuts, FaceData, Trimming, pack_colour};
@@ -17,7 +18,7 @@ use crate::abi;
 use crate::model::{Bounds, Instance, Isolated, Items, Model, Part, SolidError};
 #[cfg(any(test, feature = "baselines"))]
 use crate::picture::SceneSettings;
-use crate::picture::{Highlight, Samples, TakenWay};
+use crate::picture::{EdgeSettings, Highlight, Samples, TakenWay};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -113,6 +114,14 @@ pub(crate) struct SceneData {
     pub sun: Option<SunData>,
     /// Of a scene with a sun: what casts no shadow.
     pub shadowless: usize,
+    /// Of each instance: the model's part and instance, from 1 on; 0 of what is neither.
+    pub sources: Vec<[u32; 2]>,
+    /// Where its parts are: of each, its origin and its first face.
+    parts: Vec<(DVec3, usize)>,
+    /// Lines along edges, where they are wanted.
+    pub edges: Option<EdgeData>,
+    /// Images have the numbers of edges, parts and instances.
+    pub has_numbers: bool,
 }
 
 impl SceneData {
@@ -153,6 +162,8 @@ impl SceneData {
         let all = settings.thickness || settings.highlight.is_some();
         let items = (all || !model.is_opaque()).then(|| model.items(all)).transpose()?;
         let is_whole = std::ptr::eq(whole, model);
+        let is_drawn = |nth: &usize| items.as_ref().is_none_or(|items| items.drawn[*nth]);
+        let drawn: Vec<usize> = (0..model.instances.len()).filter(is_drawn).collect();
         let model = &*drawn_as_faces(model, items.as_ref());
         let open = items.as_ref().map_or(0, |items| items.open);
         let clear = items.as_ref().is_some_and(|items| !items.clear.is_empty());
@@ -246,11 +257,13 @@ impl SceneData {
             }
         });
         first_faces.resize(model.parts.len(), data.faces.len());
-        for instance in &model.instances {
+        for (instance, nth) in model.instances.iter().zip(drawn) {
+            data.sources.push([instance.part as u32 + 1, nth as u32 + 1]);
             let part = &model.parts[instance.part];
             let first = first_faces[instance.part];
             data.push_instance(instance, origins[instance.part], first..first + part.faces.len(), 0);
         }
+        data.parts = origins.iter().copied().zip(first_faces.iter().copied()).collect();
         if let Some(edit) = &mut data.edit {
             edit.first_faces = first_faces;
         }
@@ -273,8 +286,27 @@ impl SceneData {
         if !data.hides() {
             data.outside = Vec::new();
         }
+        data.sources.resize(data.instances.len(), [0; 2]);
         data.trimmed = Trimmed::by_table(&data);
         Ok(data)
+    }
+
+    /// Finds the edges of the model that the scene is made of.
+    pub(crate) fn find_edges(&mut self, model: &Model, settings: EdgeSettings) -> Result<(), UndrawnEdges> {
+        let edges = edges_of(model)?;
+        let mut placed = vec![None; model.instances.len()];
+        for (nth, [_, instance]) in (0..).zip(&self.sources).filter(|(_, source)| source[1] > 0) {
+            placed[*instance as usize - 1] = Some(nth);
+        }
+        let of = Placing {
+            model,
+            parts: &self.parts,
+            placed: &placed,
+            first_triangles: &self.meshes.first_triangles,
+            faces: self.faces.len(),
+        };
+        self.edges = Some(EdgeData::new(settings, &of, &edges, &mut self.placements));
+        Ok(())
     }
 
     /// The faces from this one on meet along sides, where they do; whether all sides of those without trims do.
@@ -310,6 +342,11 @@ impl SceneData {
     /// Some mesh is placed.
     pub(crate) fn has_meshes(&self) -> bool {
         !self.meshes.draws.is_empty()
+    }
+
+    /// Some line is drawn along an edge.
+    pub(crate) fn has_lines(&self) -> bool {
+        self.edges.as_ref().is_some_and(|edges| !edges.items.is_empty())
     }
 
     /// Patches or meshes are seen themselves.

@@ -26,6 +26,8 @@ pub(crate) struct Meshes {
     pub normals: Vec<u32>,
     /// Corners of the triangles of one mesh, and its range of `instances`.
     pub draws: Vec<(Range<u32>, Range<u32>)>,
+    /// Of each part, of each of its meshes: its first triangle, where it is placed.
+    pub first_triangles: Vec<Vec<u32>>,
     /// From this draw on only the triangles that face the eye are seen: Boolean solids.
     pub outward: usize,
 }
@@ -37,9 +39,14 @@ impl Meshes {
         (0..).zip(&model.instances).for_each(|(index, i)| placed[i.part].push(index));
         let mut all = Self::default();
         for ((part, &origin), placed) in model.parts.iter().zip(origins).zip(&placed) {
-            for mesh in part.meshes.iter().filter(|m| !m.triangles().is_empty() && !placed.is_empty()) {
-                all.push(mesh, origin, part.closed && !open, placed);
+            let mut first_triangles = Vec::with_capacity(part.meshes.len());
+            for mesh in &part.meshes {
+                first_triangles.push(all.triangles.len() as u32);
+                if !mesh.triangles().is_empty() && !placed.is_empty() {
+                    all.push(mesh, origin, part.closed && !open, placed);
+                }
             }
+            all.first_triangles.push(first_triangles);
         }
         all.outward = all.draws.len();
         all

@@ -18,6 +18,7 @@ mod cells;
 mod cones;
 mod data;
 mod deep_zoom;
+mod edges;
 mod edit;
 mod exact;
 mod face;
@@ -39,6 +40,8 @@ mod whole_view;
 
 pub(crate) use data::{Division, SceneData};
 pub use deep_zoom::{Cut, DeepZoom, DeepZoomUpload};
+pub(crate) use edges::EdgeData;
+pub use edges::UndrawnEdges;
 pub use edit::EditError;
 pub(crate) use edit::{EditTarget, Write};
 #[cfg(test)]
@@ -54,6 +57,6 @@ pub(crate) use trimmed::TableView;
 pub(crate) use upload::BaselineScene;
 #[cfg(feature = "baselines")]
 pub(crate) use upload::TableScene;
-pub(crate) use upload::{ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, Trims};
+pub(crate) use upload::{EdgeBuffers, ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, Trims};
 pub(crate) use view::{focal_and_slant, seen_by, view};
 pub use way::trim_way;

@@ -3,7 +3,7 @@
 #[cfg(feature = "baselines")]
 use super::Division;
 use super::solids::Surface;
-use super::{Blister, SceneData, SolidData};
+use super::{Blister, EdgeData, SceneData, SolidData};
 #[cfg(feature = "baselines")]
 use crate::baselines::TrimMethod;
 use crate::bindings::{Placed, Primitives};
@@ -39,8 +39,22 @@ pub(crate) struct Scene {
     pub meshes: Option<MeshBuffers>,
     /// The volume that trims faces and meshes; `None` when none does.
     pub volume: Option<Volume>,
+    /// Parts and instances of the model, of each instance; `None` where nothing tells them apart.
+    pub sources: Option<TexelBuffer>,
+    /// What lines along edges need; `None` where there are none.
+    pub edges: Option<EdgeBuffers>,
     /// What the sun sees; `None` without one, and where nothing casts shadows.
     pub sun: Option<SunTiles>,
+}
+
+/// Edges of parts, in pieces, and where these are placed.
+pub(crate) struct EdgeBuffers {
+    pub pieces: Buffer,
+    pub points: TexelBuffer,
+    pub lines: Buffer,
+    pub own_faces: Buffer,
+    pub items: Buffer,
+    pub face_keys: TexelBuffer,
 }
 
 /// The sun's picture.
@@ -294,6 +308,12 @@ impl Scene {
                     })
                 })
                 .transpose()?,
+            sources: (data.has_numbers || data.has_lines())
+                .then(|| texels(&mut uploads, cmd, "instance sources", &data.sources, Texel::U32x2))
+                .transpose()?,
+            edges: (data.edges.as_ref().filter(|_| data.has_lines()))
+                .map(|edges| edge_buffers(&mut uploads, cmd, edges))
+                .transpose()?,
             sun: (data.sun.as_ref().filter(|sun| sun.has_casters()))
                 .map(|sun| {
                     let none = [Default::default()];
@@ -311,6 +331,17 @@ impl Scene {
         uploads.finish(cmd, Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ);
         Ok((scene, uploads))
     }
+}
+
+fn edge_buffers(uploads: &mut Uploads, cmd: &Commands<'_>, edges: &EdgeData) -> Result<EdgeBuffers, GpuError> {
+    Ok(EdgeBuffers {
+        pieces: persistent(uploads, cmd, "edge pieces", &edges.pieces)?,
+        points: texels(uploads, cmd, "edge points", &edges.points, Texel::F32x4)?,
+        lines: persistent(uploads, cmd, "edge lines", &edges.lines)?,
+        own_faces: persistent(uploads, cmd, "edge faces", &edges.own_faces)?,
+        items: persistent(uploads, cmd, "edge items", &edges.items)?,
+        face_keys: texels(uploads, cmd, "edge face keys", &edges.face_keys, Texel::Words)?,
+    })
 }
 
 fn table_scene(uploads: &mut Uploads, cmd: &Commands<'_>, data: &SceneData) -> Result<TableScene, GpuError> {

@@ -17,7 +17,7 @@ const WALL: f64 = 9.0;
 
 /// The renderer on the host's device; the model is uploaded.
 pub fn renderer(host: &Host, model: &Model, colour: vk::Format) -> Renderer {
-    let formats = TargetFormats { colour, depth: Some(DEPTH_FORMAT), aovs: false };
+    let formats = TargetFormats { colour, depth: Some(DEPTH_FORMAT), aovs: false, numbers: false };
     // SAFETY: the host's device meets the requirements and outlives the renderer.
     let mut renderer = unsafe { Renderer::new(host.lend(), formats, crate::host::SLOTS) }.unwrap();
     renderer.upload(model).unwrap();

@@ -1,8 +1,16 @@
 //! The arguments of the command line, checked before any file is opened.
 
+mod draw;
+mod images;
+mod lines;
 mod read;
+mod write;
 
+pub use draw::DrawArgs;
+pub use images::{Aov, Image};
+pub use lines::LineArgs;
 pub use read::{ReadArgs, SubdivideArgs};
+pub use write::{ConvertArgs, ExportArgs};
 
 use crate::backdrop::Backdrop;
 use crate::cut::CutArgs;
@@ -38,6 +46,9 @@ pub enum Command {
     /// Draw a model to a PNG file
     #[command(after_help = STATUSES)]
     Render(RenderArgs),
+    /// Draw the lines of a view to an SVG file: visible edges and silhouettes as curves; needs no GPU
+    #[command(after_help = STATUSES)]
+    Draw(DrawArgs),
     /// Describe what a file holds; needs no GPU
     #[command(after_help = STATUSES)]
     Info(InfoArgs),
@@ -122,9 +133,12 @@ pub struct RenderArgs {
     pub frame: FrameArgs,
     #[command(flatten)]
     pub edges: EdgeArgs,
+    #[command(flatten)]
+    pub lines: LineArgs,
     /// Also write an image as a NumPy array, row 0 on top: depth (f32, H x W, +inf is background), face (u32, H x W,
     /// 0 is background), uv (f32, H x W x 2, NaN is background), normal (f32, H x W x 3, 0 is background), thickness
-    /// (f32, H x W: length of the ray within solids and closed parts, overlaps counted once)
+    /// (f32, H x W: length of the ray within solids and closed parts, overlaps counted once), edge (u32, H x W, with
+    /// --edges: number of the edge whose line covers the pixel, 0 is none), part and instance (u32, H x W, counted from 1, 0 is none)
     #[arg(long, value_name = "IMAGE=FILE.npy")]
     pub aov: Vec<Aov>,
     /// Write statistics as JSON, of the same frame drawn once more; what the driver compiles for the first one stands apart, as `first_frame`
@@ -152,19 +166,6 @@ pub struct InfoArgs {
     /// Print JSON; it holds all that `--deep` tells
     #[arg(long)]
     pub json: bool,
-}
-
-#[derive(Debug, Args)]
-pub struct ExportArgs {
-    /// The model, as for `render`
-    pub model: PathBuf,
-    #[command(flatten)]
-    pub read: ReadArgs,
-    #[command(flatten)]
-    pub subdivide: SubdivideArgs,
-    /// STEP file to write
-    #[arg(value_name = "OUT.step")]
-    pub output: PathBuf,
 }
 
 #[derive(Debug, Args)]
@@ -198,6 +199,10 @@ pub struct CheckArgs {
     /// several views each adds its name to the file's
     #[arg(long, value_name = "OUT.png")]
     pub difference: Option<PathBuf>,
+    /// Also draw lines along all edges and judge them: points half a pixel apart that are seen and have no line within half
+    /// its width and 0.5 px, and pixels of lines farther than that from all that is seen
+    #[arg(long)]
+    pub edges: bool,
     /// Write the judgements as JSON
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,
@@ -331,20 +336,6 @@ pub struct TrimsArgs {
     pub out: Option<PathBuf>,
 }
 
-#[derive(Debug, Args)]
-pub struct ConvertArgs {
-    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, BezierView .bv, .scad, .csg, .asc,
-    /// .selvedge or a scene .toml
-    pub model: PathBuf,
-    #[command(flatten)]
-    pub read: ReadArgs,
-    #[command(flatten)]
-    pub subdivide: SubdivideArgs,
-    /// File to write, in the engine's own form, bit for bit
-    #[arg(value_name = "OUT.selvedge")]
-    pub output: PathBuf,
-}
-
 /// Where the eye is.
 #[derive(Debug, Args)]
 pub struct CameraArgs {
@@ -467,32 +458,6 @@ impl FromStr for Size {
         text.split_once('x')
             .and_then(|(w, h)| Some(Self(side(w)?, side(h)?)))
             .ok_or_else(|| "wants WIDTHxHEIGHT, each from 1 to 16384, as in 1920x1080".into())
-    }
-}
-
-/// An image beside the colour, and the file that it goes to.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub struct Aov {
-    pub image: Image,
-    pub file: PathBuf,
-}
-
-/// The images of [`Aov`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Image {
-    Depth,
-    Face,
-    Uv,
-    Normal,
-    Thickness,
-}
-
-impl FromStr for Aov {
-    type Err = String;
-    fn from_str(text: &str) -> Result<Self, String> {
-        let wanted = || "wants IMAGE=FILE.npy, the image being depth, face, uv, normal or thickness".to_string();
-        let (image, file) = text.split_once('=').filter(|(_, file)| !file.is_empty()).ok_or_else(wanted)?;
-        Ok(Self { image: Image::from_str(image, false).map_err(|_| wanted())?, file: file.into() })
     }
 }
 

@@ -75,12 +75,17 @@ impl FromStr for Backdrop {
             "gradient" => return Ok(Self::Gradient),
             _ => {}
         }
-        let colour = csscolorparser::parse(text).map_err(|_| {
-            format!("`{text}` is no colour: wants a CSS colour, as in white, #f4f4f6 or rgb(20 30 40 / 50%), gradient or none")
-        })?;
-        let light = |c: f32| srgb::decoded(f64::from(c.clamp(0.0, 1.0))) as f32;
-        Ok(Self::Colour([light(colour.r), light(colour.g), light(colour.b), colour.a.clamp(0.0, 1.0)]))
+        colour(text).map(Self::Colour).map_err(|error| format!("{error}, gradient or none"))
     }
+}
+
+/// A colour as style sheets write it, in linear light.
+pub fn colour(text: &str) -> Result<Colour, String> {
+    let colour = csscolorparser::parse(text).map_err(|_| {
+        format!("`{text}` is no colour: wants a CSS colour, as in white, #f4f4f6 or rgb(20 30 40 / 50%)")
+    })?;
+    let light = |c: f32| srgb::decoded(f64::from(c.clamp(0.0, 1.0))) as f32;
+    Ok([light(colour.r), light(colour.g), light(colour.b), colour.a.clamp(0.0, 1.0)])
 }
 
 #[cfg(test)]

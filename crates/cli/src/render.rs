@@ -34,7 +34,7 @@ pub fn run(args: &RenderArgs) -> Result<Outcome> {
     let cameras = shots.iter().map(camera).collect::<Result<Vec<_>>>()?;
     // the renderer shares it: large models are there once
     let model = Arc::new(std::mem::take(&mut import.model));
-    let mut session = Session::of_one(device?, &args.frame, &import, &model, &args.edges)?;
+    let mut session = Session::of_one(device?, &args.frame, &import, &model, (&args.edges, args.lines.settings()?))?;
     let backdrop = args.look.backdrop(&import);
     session.look(backdrop.colour(), args.look.style);
     for (index, (shot, camera)) in shots.iter().zip(&cameras).enumerate() {
@@ -88,13 +88,7 @@ fn shots(args: &RenderArgs) -> Result<Vec<Shot>> {
     }
     let several = directions.len() > 1;
     let shot = |direction: Option<Direction>| {
-        let path = |path: &PathBuf| match direction {
-            Some(direction) if several || is_pattern(path) => named(path, &direction.to_string()),
-            None if is_pattern(path) => {
-                bail!("{}: {VIEW} stands for the view's name: --view says which", path.display())
-            }
-            _ => Ok(path.clone()),
-        };
+        let path = |path: &PathBuf| named_for(path, direction, several);
         let optional = |of: &Option<PathBuf>| of.as_ref().map(path).transpose();
         let output = if args.contact_sheet { None } else { Some(path(&args.output)?) };
         let aov = |aov: &Aov| Ok(Aov { file: path(&aov.file)?, ..aov.clone() });
@@ -109,6 +103,17 @@ const VIEW: &str = "{view}";
 
 fn is_pattern(path: &Path) -> bool {
     path.to_string_lossy().contains(VIEW)
+}
+
+/// A path as it is for a view, one of several or not.
+pub fn named_for(path: &Path, direction: Option<Direction>, several: bool) -> Result<PathBuf> {
+    match direction {
+        Some(direction) if several || is_pattern(path) => named(path, &direction.to_string()),
+        None if is_pattern(path) => {
+            bail!("{}: {VIEW} stands for the view's name: --view says which", path.display())
+        }
+        _ => Ok(path.to_owned()),
+    }
 }
 
 /// The path of a view's file: the name in the pattern's place, or before the ending.
@@ -147,6 +152,9 @@ fn wanted(aovs: &[Aov]) -> Outputs {
         uv: has(Image::Uv),
         normal: has(Image::Normal),
         thickness: has(Image::Thickness),
+        edge: has(Image::Edge),
+        part: has(Image::Part),
+        instance: has(Image::Instance),
     }
 }
 
@@ -159,6 +167,9 @@ fn write(aov: &Aov, picture: &Picture) -> Result<()> {
             Image::Uv => npy::write(&mut to, &[height, width, 2], picture.uv.as_flattened())?,
             Image::Normal => npy::write(&mut to, &[height, width, 3], picture.normal.as_flattened())?,
             Image::Thickness => npy::write(&mut to, &[height, width], &picture.thickness)?,
+            Image::Edge => npy::write(&mut to, &[height, width], &picture.edge)?,
+            Image::Part => npy::write(&mut to, &[height, width], &picture.part)?,
+            Image::Instance => npy::write(&mut to, &[height, width], &picture.instance)?,
         }
         Ok(())
     })

@@ -7,7 +7,7 @@ use anyhow::{Context, Result, bail};
 use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
-use selvedge::picture::{FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
+use selvedge::picture::{EdgeSettings, FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
 use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
 use serde::Serialize;
 use std::io;
@@ -139,9 +139,10 @@ pub fn device(args: &FrameArgs) -> Result<HeadlessRenderer> {
 }
 
 impl Session {
-    /// Opens the device and hands it the model.
-    pub fn new(args: &FrameArgs, import: &Import) -> Result<Self> {
-        Self::with(opened(args)?, args, import, SceneSettings::default(), Arc::new(import.model.clone()))
+    /// Opens the device and hands it the model, with lines along edges where they are asked for.
+    pub fn with_lines(args: &FrameArgs, import: &Import, lines: Option<EdgeSettings>) -> Result<Self> {
+        let scene = SceneSettings { edges: lines, ..SceneSettings::default() };
+        Self::with(opened(args)?, args, import, scene, Arc::new(import.model.clone()))
     }
 
     /// The same with smooth edges, on a device that is open.
@@ -151,16 +152,16 @@ impl Session {
         Self::with(on, args, import, scene, Arc::new(import.model.clone()))
     }
 
-    /// The same of a model that the renderer shares: the import's own is not looked at.
+    /// The same of a model that the renderer shares, with lines along edges: the import's own is not looked at.
     pub fn of_one(
         on: HeadlessRenderer,
         args: &FrameArgs,
         import: &Import,
         model: &Arc<Model>,
-        edges: &EdgeArgs,
+        (edges, lines): (&EdgeArgs, Option<EdgeSettings>),
     ) -> Result<Self> {
         let EdgeArgs { samples, smooth_trims } = *edges;
-        let scene = SceneSettings { samples, smooth_trims, ..SceneSettings::default() };
+        let scene = SceneSettings { samples, smooth_trims, edges: lines, ..SceneSettings::default() };
         Self::with(on, args, import, scene, Arc::clone(model))
     }
 

@@ -1,5 +1,6 @@
 //! Where each kind of thing is seen, and its exact point, normal and light: into the host's targets, or what is mixed later.
 
+pub(crate) mod numbers;
 pub(crate) mod resolve;
 pub(crate) mod seen_squares;
 
@@ -18,6 +19,8 @@ pub(crate) struct Passes {
     resolve: Option<resolve::Resolve>,
     /// Of scenes with patches or meshes.
     squares: Option<Arc<SeenSquares>>,
+    /// Where images of numbers are wanted.
+    numbers: Option<numbers::Numbers>,
 }
 
 impl Passes {
@@ -25,6 +28,7 @@ impl Passes {
         Ok(Self {
             resolve: targets(device, data, formats)?,
             squares: data.has_surfaces().then(|| SeenSquares::new(device)).transpose()?.map(Arc::new),
+            numbers: formats.numbers.then(|| numbers::Numbers::new(device)).transpose()?,
         })
     }
 }
@@ -49,7 +53,8 @@ pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
 
 /// The pass into the host's targets; `None` where samples make all of them.
 fn targets(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<resolve::Resolve>, GpuError> {
-    let beside = formats.aovs || formats.depth.is_some() || data.thickness;
+    // lines and numbers are those of the pixels' centres
+    let beside = formats.aovs || formats.depth.is_some() || data.thickness || formats.numbers || data.has_lines();
     let into = match data.samples {
         Samples::One if data.smooths_trims() => resolve::Destination::Unmixed,
         Samples::One if data.is_layered => resolve::Destination::Behind { writes_depth: true },
@@ -125,6 +130,21 @@ impl Shading {
         let solids = frame.solids().map(|parts| parts.resolve(frame));
         let kinds = (meshes.as_ref(), solids.as_ref());
         frame.under_sun(cmd, |sun| pass.record(cmd, &bindings, kinds, sun, &frame.resolved_into(), frame.depth));
+    }
+
+    /// Which part and instance the pixels' centres see, into the host's images.
+    pub(super) fn numbers(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        let (s, v) = (frame.scene, &frame.stages.visibility);
+        let (Some(pass), Some(into), Some(sources)) = (&self.passes.numbers, frame.numbers, &s.sources) else { return };
+        let bindings = numbers::Bindings {
+            sources,
+            face_instances: &s.face_instances,
+            items: &s.items,
+            visibility: &v.image,
+            others: v.of_others(),
+            mesh_instances: s.meshes.as_ref().map_or(frame.constants, |m| &m.instances),
+        };
+        pass.record(cmd, &bindings, into);
     }
 
     /// Where pass `resolve` looks for patches and meshes.

@@ -102,6 +102,7 @@ pub(crate) struct Formats {
     pub colour: vk::Format,
     pub depth: Option<vk::Format>,
     pub aovs: bool,
+    pub numbers: bool,
 }
 
 /// Where the picture goes.

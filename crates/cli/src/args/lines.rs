@@ -1,0 +1,48 @@
+//! Lines along edges: `--edges` and what goes with it.
+
+use crate::backdrop::colour;
+use anyhow::Result;
+use clap::Args;
+use selvedge::model::Colour;
+use selvedge::picture::{EdgeChoice, EdgeSettings, TangentEdges};
+
+/// Which lines are drawn, and how.
+#[derive(Debug, Args)]
+pub struct LineArgs {
+    /// Draw lines along edges: all, sharp (where faces meet at an angle or end) or none
+    #[arg(long, value_name = "all|sharp|none", default_value = "none")]
+    pub edges: EdgeChoice,
+    /// Draw lines that lie behind faces, too: dashed and lighter
+    #[arg(long, requires = "edges")]
+    pub hidden_lines: bool,
+    /// How to draw edges at which the surface goes on without a visible angle: none, thin or full
+    #[arg(long, value_name = "none|thin|full", default_value = "thin", requires = "edges")]
+    pub tangent_edges: TangentEdges,
+    /// Colour of lines, a CSS colour
+    #[arg(long, value_name = "COLOUR", value_parser = colour, requires = "edges")]
+    pub edge_colour: Option<Colour>,
+    /// Width of lines in pixels of a picture 1080 pixels high; it grows and shrinks with the height
+    #[arg(long, value_name = "PX", default_value_t = EdgeSettings::default().width, requires = "edges")]
+    pub edge_width: f64,
+}
+
+impl LineArgs {
+    /// What the renderer is told; `None` where no lines are asked for.
+    pub fn settings(&self) -> Result<Option<EdgeSettings>> {
+        let usual = EdgeSettings::default();
+        let lighter = usual.hidden_colour[3];
+        let colour = self.edge_colour.unwrap_or(usual.colour);
+        let [r, g, b, opacity] = colour;
+        let settings = EdgeSettings {
+            which: self.edges,
+            tangent: self.tangent_edges,
+            hidden: self.hidden_lines,
+            width: self.edge_width,
+            thin_width: self.edge_width * usual.thin_width / usual.width,
+            colour,
+            hidden_colour: [r, g, b, opacity * lighter],
+        };
+        settings.check()?;
+        Ok((self.edges != EdgeChoice::None).then_some(settings))
+    }
+}

@@ -1,0 +1,36 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `edge_count`: how many chords each piece of an edge takes in this view. One thread a placed piece. Twin:
+// src/twin/edges.rs.
+#include "scene.glsl"
+#include "view.glsl"
+#include "edges.glsl"
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
+layout(scalar, binding = 1) readonly buffer Views { View views[]; };
+layout(scalar, binding = 2) readonly buffer EdgeItems { EdgeItem edge_items[]; };
+layout(scalar, binding = 3) readonly buffer EdgePieces { EdgePiece edge_pieces[]; };
+layout(binding = 4) uniform samplerBuffer edge_points;
+layout(scalar, binding = 5) writeonly buffer ChordCounts { uint chord_counts[]; };
+layout(scalar, binding = 6) buffer CountersBuffer { Counters counters; };
+
+layout(scalar, push_constant) uniform Push {
+    uint item_count;
+    float margin_px;
+} push;
+
+uint counted = 0u;
+
+void put_chords(uint n, uint chords, float a, float b) { counted += chords; }
+
+#include "edge_divide.glsl"
+
+void main() {
+    uint i = gl_GlobalInvocationID.x;
+    if (i >= push.item_count) return;
+    EdgeItem item = edge_items[i];
+    if (divide(edge_pieces[item.piece], views[item.placement])) atomicAdd(counters.clamps, 1u);
+    chord_counts[i] = counted;
+}

@@ -1,0 +1,94 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `edge_line`: each pixel's best line. Where several cover it, the one that is seen, then the one that covers most of
+// it, then the last one counts: the same whatever the order in which they are drawn.
+//
+//    ●━━━━━━━━━━━━●   chord        distance of the pixel's centre ─▶ share of the pixel
+//        │            its point nearest to the centre ─▶ parameter ─▶ the exact point of the edge ─▶ seen, or hidden
+//        · pixel
+#include "scene.glsl"
+#include "view.glsl"
+#include "edges.glsl"
+
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
+layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
+layout(binding = 8, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(binding = 9) uniform usamplerBuffer face_keys;    // a word a face of the scene
+layout(binding = 10) uniform usamplerBuffer sources;      // of an instance of the scene: part and instance, from 1 on
+layout(scalar, binding = 11) readonly buffer Chords { Chord chords[]; };
+layout(scalar, binding = 12) readonly buffer EdgeItems { EdgeItem edge_items[]; };
+layout(scalar, binding = 13) readonly buffer EdgePieces { EdgePiece edge_pieces[]; };
+layout(scalar, binding = 14) readonly buffer EdgeLines { EdgeLine edge_lines[]; };
+layout(scalar, binding = 15) readonly buffer OwnFaces { uint own_faces[]; };
+layout(binding = 16) uniform samplerBuffer edge_points;
+layout(scalar, binding = 17) buffer Lines { uint lines[]; };
+// in scenes without meshes not read
+layout(scalar, binding = 18) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
+layout(scalar, binding = 19) readonly buffer Triangles { uint triangles[]; };
+layout(scalar, binding = 20) readonly buffer Positions { vec3 positions[]; };
+
+layout(scalar, push_constant) uniform Push {
+    vec2 half_px;
+    uint hidden;
+} push;
+
+#include "placed.glsl"
+#include "patch.glsl"
+#include "refine.glsl"
+#include "visible.glsl"
+#include "edge_seen.glsl"
+
+layout(location = 0) flat in uint chord;
+
+// Dashes of hidden lines and the gaps between them, in half widths of lines.
+const float DASH = 8.0;
+const float GAP = 6.0;
+
+// The exact point of the edge at a share of the chord.
+EdgePoint point_at(Chord c, float share, EdgePiece piece, View view) {
+    float from = share * c.w.x;
+    float t = mix(c.t.x, c.t.y, from / (from + (1.0 - share) * c.w.y));
+    uint n = piece.degree;
+    float rest = 1.0 - t;
+    vec4 p = vec4(0.0);
+    Weights w = Weights(1.0, 1.0);
+    for (uint i = 0u; i <= n; ++i) {
+        p = p * rest + texelFetch(edge_points, int(piece.first + i)) * weight_of(w);
+        advance(w, n, i, t);
+    }
+    vec4 q = to_pixel(view, vec4(p.xyz / p.w, 1.0));
+    return EdgePoint(q.xy / q.w, seen_from_eye(q));
+}
+
+// Share of a hidden line's dash at a pixel, by rows of a steep line and columns of a flat one.
+float dash(vec2 along, vec2 pixel, float half_px) {
+    float at = abs(along.x) > abs(along.y) ? pixel.x : pixel.y;
+    float period = (DASH + GAP) * half_px;
+    float inside = abs(mod(at, period) - 0.5 * DASH * half_px);
+    return clamp(0.5 * DASH * half_px - inside + 0.5, 0.0, 1.0);
+}
+
+void main() {
+    Chord c = chords[chord];
+    vec2 along = c.b - c.a;
+    vec2 from = gl_FragCoord.xy - c.a;
+    float size = dot(along, along);
+    float share = size > 0.0 ? clamp(dot(from, along) / size, 0.0, 1.0) : 0.0;
+    float half_px = push.half_px[c.style];
+    float covered = line_coverage(length(from - share * along), half_px);
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    uint pixel = uint(at.y) * uint(frame.size.x) + uint(at.x);
+    uint steps = uint(covered * LINE_STEPS + 0.5);
+    uint best = LINE_SEEN | steps << LINE_COVERAGE | chord;
+    if (steps == 0u || lines[pixel] >= best) return;
+    EdgeItem item = edge_items[c.item];
+    EdgePiece piece = edge_pieces[item.piece];
+    EdgePoint e = point_at(c, share, piece, view_at(item.placement));
+    if (!is_seen(e, edge_lines[piece.edge], item.instance, at)) {
+        steps = uint(covered * dash(along, gl_FragCoord.xy, half_px) * LINE_STEPS + 0.5);
+        if (push.hidden == 0u || steps == 0u) return;
+        best = steps << LINE_COVERAGE | chord;
+    }
+    atomicMax(lines[pixel], best);
+}

@@ -1,0 +1,35 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `edge_line`: a rectangle around each chord, half a pixel wider than its line. One instance a chord.
+#include "scene.glsl"
+#include "edges.glsl"
+
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
+layout(scalar, binding = 11) readonly buffer Chords { Chord chords[]; };
+
+layout(scalar, push_constant) uniform Push {
+    vec2 half_px; // of lines: full, thin
+    uint hidden;  // 1: hidden ones are drawn, too
+} push;
+
+layout(location = 0) flat out uint chord;
+
+// A vertex' pixel is rounded: rectangles are wider by this.
+const float ROUNDED_PX = 0.0625;
+
+void main() {
+    chord = gl_InstanceIndex;
+    Chord c = chords[chord];
+    vec2 along = c.b - c.a;
+    float size = length(along);
+    along = size > 0.0 ? along / size : vec2(1.0, 0.0);
+    vec2 across = vec2(-along.y, along.x);
+    float reach = push.half_px[c.style] + 0.5 + ROUNDED_PX;
+    // two triangles: 0 1 2, 2 1 3
+    const uint CORNERS[6] = uint[](0u, 1u, 2u, 2u, 1u, 3u);
+    uint corner = CORNERS[gl_VertexIndex];
+    vec2 end = (corner & 1u) == 0u ? c.a - reach * along : c.b + reach * along;
+    vec2 place = end + ((corner & 2u) == 0u ? -reach : reach) * across;
+    gl_Position = vec4(place * 2.0 / frame.size - 1.0, 0.5, 1.0);
+}

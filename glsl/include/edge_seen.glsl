@@ -1,0 +1,121 @@
+// Whether a point of an edge is seen from a pixel: what the pixel sees is a face of the edge, or lies behind it.
+//
+//        own face                  another's                        depth along the axis ─▶
+//   ─────────●═══ edge      ──────────────╲  O, seen at the pixel
+//      the sheet that the                  ╲
+//      pixel sees holds it           edge ● ╲    before O's tangent plane: seen; behind it: hidden
+//
+// The surface that the pixel's centre sees is followed to where the edge is in the picture, by Newton's method on the
+// exact surface, and the point compared with the tangent plane there. Nothing is pushed nearer: a face of another may be
+// behind by rounding alone. A sheet of an own face counts as the edge's when the point is within OWN_SHEET_PX of its
+// tangent plane; where two sheets come together, at a fold, that moves the end of a line by a quarter of it. Needs
+// placed.glsl, patch.glsl, refine.glsl, visible.glsl, facet.glsl, edges.glsl, `frame`, buffers `uint own_faces[]`,
+// `MeshInstance mesh_instances[]`, and texels `face_keys`,
+// `sources`.
+#ifndef EDGE_SEEN_GLSL
+#define EDGE_SEEN_GLSL
+
+const float OWN_SHEET_PX = 0.25;
+// Of a point's place, relative to its depth: some eight roundings.
+const float PLACE_ROUNDING = 1e-6;
+// Newton's method has arrived.
+const float ARRIVED_PX = 0.05;
+
+layout(constant_id = 27) const bool SCENE_HAS_MESHES = false;
+
+// A point of an edge: where it is in the picture, and seen from the eye (right, down, ahead).
+struct EdgePoint {
+    vec2 pixel;
+    vec3 place;
+};
+
+// Of a homogeneous pixel, or of a direction that moves it.
+vec3 seen_from_eye(vec4 q) { return vec3((q.xy - 0.5 * frame.size * q.w) / frame.focal, q.z); }
+
+// How far the point lies before a plane through `on`, across `n`, whichever way that points.
+float before_plane(vec3 point, vec3 on, vec3 n) {
+    vec3 ray = frame.perspective != 0u ? on : vec3(0.0, 0.0, 1.0);
+    return -dot(point - on, n) * sign(dot(n, ray)) / length(n);
+}
+
+bool is_own(EdgeLine line, uint key) {
+    bool found = false;
+    for (uint i = 0u; i < line.own_count && !found; ++i) found = own_faces[line.first_own + i] == key;
+    return found;
+}
+
+float own_slack(vec3 point) {
+    return OWN_SHEET_PX * (frame.perspective != 0u ? point.z : 1.0) / frame.focal + PLACE_ROUNDING * point.z;
+}
+
+bool is_before_patch(EdgePoint e, EdgeLine line, uint instance, uvec2 seen) {
+    uint item = seen_item(seen.x);
+    FaceInstance fi = face_instance_at(face_instance_of(item));
+    Face face = face_at(fi.face);
+    Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+    View view = view_at(fi.instance);
+    Sample s = refine(patch_, view, unpack_uv(seen.y), e.pixel);
+    vec3 on = seen_from_eye(s.q);
+    vec3 du = seen_from_eye(to_pixel(view, vec4(s.jet.du, 0.0)));
+    vec3 dv = seen_from_eye(to_pixel(view, vec4(s.jet.dv, 0.0)));
+    float before = before_plane(e.place, on, cross(normalize(du), normalize(dv)));
+    bool own = texelFetch(sources, int(fi.instance)).y == instance && is_own(line, word_at(face_keys, fi.face));
+    if (own) return !(before < -own_slack(e.place));
+    // its sheet ends before it gets there, at a fold: or it has no tangent plane
+    if (!(length(s.miss) <= ARRIVED_PX) || isnan(before)) return e.place.z <= on.z;
+    return before >= -PLACE_ROUNDING * e.place.z;
+}
+
+bool is_before_mesh(EdgePoint e, EdgeLine line, uint instance, uvec2 seen) {
+    MeshInstance placed = mesh_instances[seen_mesh_instance(seen.x)];
+    View view = view_at(placed.instance);
+    vec3 a = positions[triangles[3u * seen.y]];
+    vec3 ab = positions[triangles[3u * seen.y + 1u]] - a;
+    vec3 ac = positions[triangles[3u * seen.y + 2u]] - a;
+    vec3 b = seen_from_eye(to_pixel(view, vec4(ab, 0.0)));
+    vec3 c = seen_from_eye(to_pixel(view, vec4(ac, 0.0)));
+    vec3 on = seen_from_eye(to_pixel(view, vec4(a, 1.0)));
+    float before = before_plane(e.place, on, cross(normalize(b), normalize(c)));
+    bool own = texelFetch(sources, int(placed.instance)).y == instance && is_own(line, OWN_TRIANGLE | seen.y);
+    if (own) return !(before < -own_slack(e.place));
+    return !(before < -PLACE_ROUNDING * e.place.z);
+}
+
+// The word of what is no patch at a pixel, and its depth; another's where it is not `like`.
+float solid_depth(ivec2 at, uint like, float none) {
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(frame.size)))) return none;
+    uvec2 seen = imageLoad(visibility, at).xy;
+    if (sees_nothing(seen.x)) seen = imageLoad(others, at).xy;
+    return seen.x == like ? uintBitsToFloat(seen.y) : none;
+}
+
+// Boolean solids: the side's depth, and its slope from the pixels beside it that see the same side.
+bool is_before_solid(EdgePoint e, ivec2 at, uvec2 seen) {
+    float depth = uintBitsToFloat(seen.y);
+    vec2 step_ = e.pixel - (vec2(at) + 0.5);
+    // linear in the picture: the depth itself in a parallel view, else one over it
+    float here = frame.perspective != 0u ? 1.0 / depth : depth;
+    float there = here;
+    for (uint axis = 0u; axis < 2u; ++axis) {
+        ivec2 beside = ivec2(axis == 0u ? 1 : 0, axis == 0u ? 0 : 1);
+        float after = solid_depth(at + beside, seen.x, depth);
+        float before = solid_depth(at - beside, seen.x, depth);
+        bool both = after != depth && before != depth;
+        float rise = frame.perspective != 0u ? 1.0 / after - 1.0 / before : after - before;
+        there += step_[axis] * rise * (both ? 0.5 : 1.0);
+    }
+    float follows = frame.perspective != 0u ? 1.0 / max(there, 1e-36) : there;
+    return e.place.z <= follows * (1.0 + PLACE_ROUNDING);
+}
+
+// Of instance `instance`, from 1 on.
+bool is_seen(EdgePoint e, EdgeLine line, uint instance, ivec2 at) {
+    uvec2 seen = imageLoad(visibility, at).xy;
+    if (SCENE_HAS_MESHES_OR_SOLIDS && sees_nothing(seen.x)) seen = imageLoad(others, at).xy;
+    if (sees_nothing(seen.x)) return true;
+    if (SCENE_HAS_MESHES && sees_mesh(seen.x)) return is_before_mesh(e, line, instance, seen);
+    if (sees_other(seen.x)) return is_before_solid(e, at, seen);
+    return is_before_patch(e, line, instance, seen);
+}
+
+#endif

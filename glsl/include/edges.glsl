@@ -1,0 +1,55 @@
+// Lines along edges. Twin of src/abi/edges.rs; the build checks every offset.
+//
+//   EdgeItem ──▶ EdgePiece ──▶ degree + 1 control points        a rational Bézier piece of an edge, as it is placed
+//                    └───────▶ EdgeLine ──▶ own faces            what is drawn along it
+//   Chord: from a to b, pixels; of an item                       what a frame draws
+#ifndef EDGES_GLSL
+#define EDGES_GLSL
+
+struct EdgePiece {
+    uint first; // control point
+    uint degree;
+    uint edge;
+};
+
+struct EdgeLine {
+    uint number; // in the image `edge`
+    uint style;  // EDGE_*
+    uint first_own;
+    uint own_count;
+};
+
+struct EdgeItem {
+    uint piece;
+    uint placement; // of its control points: which view
+    uint instance;  // of the model, from 1 on
+};
+
+struct Chord {
+    vec2 a;
+    vec2 b;
+    vec2 w; // homogeneous weights of its ends
+    vec2 t; // parameters of its ends on the piece
+    uint item;
+    uint style;
+};
+
+const uint EDGE_FULL = 0u; // as wide as lines are
+const uint EDGE_THIN = 1u;
+
+// In the list of own faces: a triangle of the scene, not the number of a face.
+const uint OWN_TRIANGLE = 0x80000000u;
+
+// A pixel's line: seen << 31 | coverage << 24 | chord. The best one is the largest.
+const uint LINE_SEEN = 0x80000000u;
+const uint LINE_COVERAGE = 24u;
+const float LINE_STEPS = 127.0;
+const uint LINE_CHORD = 0xffffffu;
+
+// Share of the pixel that a line covers whose middle runs so far from the pixel's centre: exact where it runs along
+// columns or rows.
+float line_coverage(float distance_px, float half_px) {
+    return clamp(min(distance_px + 0.5, half_px) - max(distance_px - 0.5, -half_px), 0.0, 1.0);
+}
+
+#endif

@@ -1,0 +1,44 @@
+//! Lines along edges. Twins of `glsl/include/edges.glsl`.
+
+pub use crate::abi::constants::edges::{EDGE_FULL, EDGE_THIN, OWN_TRIANGLE};
+use bytemuck::{Pod, Zeroable};
+
+/// A rational Bézier piece of an edge.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct EdgePiece {
+    pub first: u32,
+    pub degree: u32,
+    pub edge: u32,
+}
+
+/// What is drawn along an edge.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct EdgeLine {
+    pub number: u32,
+    pub style: u32,
+    pub first_own: u32,
+    pub own_count: u32,
+}
+
+/// A piece as it is placed.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct EdgeItem {
+    pub piece: u32,
+    pub placement: u32,
+    pub instance: u32,
+}
+
+/// A straight line of a frame.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
+pub struct Chord {
+    pub a: [f32; 2],
+    pub b: [f32; 2],
+    pub w: [f32; 2],
+    pub t: [f32; 2],
+    pub item: u32,
+    pub style: u32,
+}

@@ -1,0 +1,77 @@
+//! Pass `edge_line`: each pixel's best line along an edge.
+//!
+//! ```text
+//!   chord ─▶ rectangle ─▶ pixel: distance ─▶ share covered
+//!                               exact point of the edge, what the pixel sees ─▶ seen, or hidden
+//!                                                                          └─▶ seen | share | chord, the largest
+//! ```
+//!
+//! Reads: everything that `Bindings` names. Writes: `best`, one word a pixel, 0 before.
+
+use crate::bindings::Placed;
+use crate::frame::common::draw::Draw;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource, TexelBuffer};
+use crate::scene::{EdgeBuffers, MeshBuffers, SceneData};
+use crate::shaders::{self, constant};
+use bytemuck::{Pod, Zeroable};
+
+/// The pass.
+pub(crate) struct Line {
+    pipeline: Pipeline,
+}
+
+/// Its buffers and images, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub placed: Placed<'a>,
+    pub visibility: &'a Image,
+    pub others: &'a Image,
+    pub sources: &'a TexelBuffer,
+    pub chords: &'a Buffer,
+    pub edges: &'a EdgeBuffers,
+    pub best: &'a Buffer,
+    pub meshes: Option<&'a MeshBuffers>,
+}
+
+/// How lines look that matters to where they are.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct Params {
+    /// Pixels: of full lines, of thin ones.
+    pub half_px: [f32; 2],
+    pub hidden: u32,
+}
+
+impl Line {
+    pub(crate) fn new(device: &Device, data: &SceneData) -> Result<Self, GpuError> {
+        let others = data.has_meshes() || data.solids.kinds().is_some();
+        let constants = [
+            (constant::SCENE_HAS_RATIONAL, u32::from(data.has_rational)),
+            (constant::SCENE_HAS_FINE, u32::from(data.has_fine)),
+            (constant::SCENE_HAS_MESHES, u32::from(data.has_meshes())),
+            (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
+        ];
+        let draw = Draw::new("edge_line", &shaders::EDGE_LINE_VERT, &shaders::EDGE_LINE_FRAG);
+        Ok(Self { pipeline: Draw { constants: &constants, ..draw }.pipeline(device)? })
+    }
+
+    /// What `draw` says, over a picture of the visibility image's size.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, params: Params, draw: &Buffer) {
+        let (e, placed) = (b.edges, b.placed.resources());
+        let seen = [b.visibility.into(), b.others.into(), Resource::from(&e.face_keys), b.sources.into()];
+        let edges = [b.chords, &e.items, &e.pieces, &e.lines, &e.own_faces].map(Resource::from);
+        let meshes = b.meshes.map_or([b.best; 3], |m| [&m.instances, &m.triangles, &m.positions]);
+        let resources: Vec<_> = [b.frame.into()]
+            .into_iter()
+            .chain(placed)
+            .chain(seen)
+            .chain(edges)
+            .chain([Resource::from(&e.points), b.best.into()])
+            .chain(meshes.map(Resource::from))
+            .collect();
+        cmd.rendering(b.visibility.size(), &[], None, || {
+            cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&params));
+            cmd.draw_indirect(draw, 0, 1);
+        });
+    }
+}

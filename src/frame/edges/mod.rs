@@ -1,0 +1,145 @@
+//! Lines along edges: their curves divided for the view, then drawn over the picture where they are seen.
+//!
+//! ```text
+//!   edge_count ─(scan)─▶ edge_emit ──▶ chords, with the patches' tessellation
+//!                                        │
+//!   visibility, patches, meshes ──▶ edge_line ──▶ each pixel's best line ──edge_show──▶ the host's colour, edges' numbers
+//! ```
+//!
+//! Chords stay while the view does. docs/design/edges.md has the method.
+
+mod capacities;
+pub(crate) mod divide;
+pub(crate) mod line;
+pub(crate) mod show;
+
+pub(crate) use capacities::Capacities;
+
+use super::common::room::Room;
+use super::shading::resolve;
+use super::{Frame, WRITE_TO_READ};
+use crate::abi::Chord;
+use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, barrier};
+use crate::picture::EdgeSettings;
+use crate::scene::SceneData;
+use ash::vk;
+use std::sync::Arc;
+
+/// The passes of scenes with lines.
+pub(crate) struct Passes {
+    settings: EdgeSettings,
+    divide: divide::Divide,
+    line: line::Line,
+    show: show::Show,
+}
+
+impl Passes {
+    /// `None` where no line is drawn.
+    pub(super) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<Self>, GpuError> {
+        let Some(edges) = data.edges.as_ref().filter(|_| data.has_lines()) else { return Ok(None) };
+        Ok(Some(Self {
+            settings: edges.settings,
+            divide: divide::Divide::new(device)?,
+            line: line::Line::new(device, data)?,
+            show: show::Show::new(device, data, formats)?,
+        }))
+    }
+}
+
+/// The stage.
+pub(crate) struct EdgeStage {
+    passes: Arc<Passes>,
+    /// How wide lines are, half of it: full ones and thin ones.
+    half_px: [f32; 2],
+    counts: Buffer,
+    starts: Buffer,
+    chords: Buffer,
+    draw: Buffer,
+    /// A word a pixel.
+    best: Buffer,
+}
+
+/// Beyond the picture, lines are this much wider: for the pixels' own size, and what chords and rounding are off.
+const BESIDE_PX: f32 = 2.0;
+
+impl EdgeStage {
+    pub(super) fn new(room: &Room<'_>, passes: &Arc<Passes>) -> Result<Self, GpuError> {
+        let items = room.counts.edge_items;
+        let half = 0.5 * f64::from(room.size.1) / EdgeSettings::HEIGHT;
+        let settings = passes.settings;
+        Ok(Self {
+            passes: Arc::clone(passes),
+            half_px: [settings.width, settings.thin_width].map(|width| (half * width) as f32),
+            counts: room.words("edge chord counts", items)?,
+            starts: room.words("edge chord starts", items + 1)?,
+            chords: room.structs::<Chord>("edge chords", room.capacities.edges.chords)?,
+            draw: room.indirect::<vk::DrawIndirectCommand>("edge draw", 1)?,
+            best: room.words("best lines", room.size.0 * room.size.1)?,
+        })
+    }
+
+    /// Pieces of edges into chords.
+    pub(super) fn divide(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        let Some(edges) = &frame.scene.edges else { return };
+        let (w, r) = WRITE_TO_READ;
+        let bindings = divide::Bindings {
+            frame: frame.constants,
+            views: frame.views,
+            items: &edges.items,
+            pieces: &edges.pieces,
+            points: &edges.points,
+            counts: &self.counts,
+            starts: &self.starts,
+            counters: &frame.stages.common.counters,
+            lines: &edges.lines,
+            chords: &self.chords,
+            draw: &self.draw,
+        };
+        let margin_px = self.half_px[0].max(self.half_px[1]) + BESIDE_PX;
+        let params = divide::Params { item_count: frame.counts.edge_items, margin_px };
+        let divide = &self.passes.divide;
+        divide.count(cmd, &bindings, params);
+        frame.stages.common.scan(cmd, &self.counts, &self.starts, frame.counts.edge_items);
+        cmd.after(w, r | w);
+        divide.emit(cmd, &bindings, params, frame.capacities.edges.chords);
+        let drawn = Access::VERTEX_READ | Access::FRAGMENT_READ;
+        barrier::buffers(cmd, &[(&self.chords, w, drawn), (&self.draw, w, Access::INDIRECT_READ)]);
+        cmd.after(w, w | Access::INDIRECT_READ);
+    }
+
+    /// Lines over the host's colour, which is whole, and their numbers.
+    pub(super) fn draw(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
+        let (s, v, passes) = (frame.scene, &frame.stages.visibility, &self.passes);
+        let (Some(edges), Some(sources)) = (&s.edges, &s.sources) else { return };
+        cmd.fill(&self.best, 0);
+        barrier::buffers(cmd, &[(&self.best, Access::TRANSFER_WRITE, Access::FRAGMENT_WRITE)]);
+        let bindings = line::Bindings {
+            frame: frame.constants,
+            placed: s.placed(frame.views),
+            visibility: &v.image,
+            others: v.of_others(),
+            sources,
+            chords: &self.chords,
+            edges,
+            best: &self.best,
+            meshes: s.meshes.as_ref(),
+        };
+        let params = line::Params { half_px: self.half_px, hidden: u32::from(passes.settings.hidden) };
+        passes.line.record(cmd, &bindings, params, &self.draw);
+        barrier::buffers(cmd, &[(&self.best, Access::FRAGMENT_WRITE, Access::FRAGMENT_READ)]);
+        let bindings = show::Bindings {
+            frame: frame.constants,
+            best: &self.best,
+            chords: &self.chords,
+            edges,
+            visibility: &v.image,
+            others: v.of_others(),
+        };
+        let colours = show::Colours { seen: passes.settings.colour, hidden: passes.settings.hidden_colour };
+        let into: Vec<_> = frame.colour.iter().take(1).chain(frame.numbers.iter().flat_map(|n| n.first())).collect();
+        let again = into.iter().map(|a| (a.image, Access::COLOUR_WRITE, Access::COLOUR_WRITE));
+        barrier::images(cmd, &again.collect::<Vec<_>>());
+        let into: Vec<_> = into.into_iter().map(|a| Attachment { load: Load::Keep, ..*a }).collect();
+        passes.show.record(cmd, &bindings, colours, &into);
+    }
+}

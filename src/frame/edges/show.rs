@@ -1,0 +1,68 @@
+//! Pass `edge_show`: each pixel's best line over its colour, and the number of its edge.
+//!
+//! ```text
+//!   best line ─▶ share, seen or hidden ─▶ colour and opacity ──over──▶ the host's colour
+//!            └─▶ chord ─▶ edge ─▶ number ─▶ the host's image of edges
+//! ```
+//!
+//! Reads: everything that `Bindings` names. Writes: the targets.
+
+use crate::frame::common::draw::Draw;
+use crate::frame::shading::numbers::NUMBER_FORMAT;
+use crate::frame::shading::resolve::Formats;
+use crate::gpu::{Attachment, Blend, Buffer, ColourTarget, Commands, Device, GpuError, Image, Pipeline, Resource};
+use crate::model::Colour;
+use crate::scene::{EdgeBuffers, SceneData};
+use crate::shaders::{self, constant};
+use bytemuck::{Pod, Zeroable};
+
+/// The pass.
+pub(crate) struct Show {
+    pipeline: Pipeline,
+}
+
+/// Its buffers and images, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub best: &'a Buffer,
+    pub chords: &'a Buffer,
+    pub edges: &'a EdgeBuffers,
+    pub visibility: &'a Image,
+    pub others: &'a Image,
+}
+
+/// Linear light, and opacity.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Pod, Zeroable)]
+pub(crate) struct Colours {
+    pub seen: Colour,
+    pub hidden: Colour,
+}
+
+impl Show {
+    pub(crate) fn new(device: &Device, data: &SceneData, formats: Formats) -> Result<Self, GpuError> {
+        let mut colour = vec![ColourTarget { format: formats.colour, blend: Blend::Over }];
+        if formats.numbers {
+            colour.push(ColourTarget { format: NUMBER_FORMAT, blend: Blend::Replace });
+        }
+        let others = data.has_meshes() || data.solids.kinds().is_some();
+        let constants = [
+            (constant::HAS_EDGE_IMAGE, u32::from(formats.numbers)),
+            (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
+        ];
+        let draw = Draw::new("edge_show", &shaders::RESOLVE_VERT, &shaders::EDGE_SHOW_FRAG);
+        Ok(Self { pipeline: Draw { constants: &constants, colour: &colour, ..draw }.pipeline(device)? })
+    }
+
+    /// One triangle over the targets.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, colours: Colours, into: &[Attachment<'_>]) {
+        let e = b.edges;
+        let buffers = [b.frame, b.best, b.chords, &e.items, &e.pieces, &e.lines].map(Resource::from);
+        let images = [b.visibility, b.others].map(Resource::from);
+        let resources: Vec<_> = buffers.into_iter().chain(images).collect();
+        cmd.rendering(b.visibility.size(), into, None, || {
+            cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&colours));
+            cmd.draw(3, 0, 1);
+        });
+    }
+}

@@ -1,0 +1,137 @@
+//! Lines along edges as arrays: control points relative to the part's centre, as those of patches are.
+//!
+//! ```text
+//!   Part::edges ─▶ EdgeLine, one an edge that is drawn ─▶ own faces: numbers of the scene's, or triangles
+//!              └─▶ EdgePiece, one a rational Bézier piece ─▶ control points
+//!   placed parts ─▶ EdgeItem: a piece, its view, its instance
+//! ```
+//!
+//! A pixel tells an edge's own faces by their keys, here their numbers in the scene, and by the model's instance.
+
+use crate::abi;
+use crate::model::{Edges, Model, Part};
+use crate::picture::{EdgeSettings, LineStyle};
+use glam::{DAffine3, DVec3, DVec4};
+use rayon::prelude::*;
+
+/// Everything that lines are drawn from.
+#[derive(Clone, Debug)]
+pub(crate) struct EdgeData {
+    pub settings: EdgeSettings,
+    pub pieces: Vec<abi::EdgePiece>,
+    /// Homogeneous control points.
+    pub points: Vec<[f32; 4]>,
+    pub lines: Vec<abi::EdgeLine>,
+    pub own_faces: Vec<u32>,
+    pub items: Vec<abi::EdgeItem>,
+    /// Of each face of the scene.
+    pub face_keys: Vec<u32>,
+}
+
+/// Where the scene has what a model has.
+pub(crate) struct Placing<'a> {
+    pub model: &'a Model,
+    /// Of each part: its origin, and the scene's number of its first face.
+    pub parts: &'a [(DVec3, usize)],
+    /// Of each instance of the model: the scene's, where it is drawn as faces.
+    pub placed: &'a [Option<u32>],
+    /// Of each part, of each mesh: its first triangle in the scene.
+    pub first_triangles: &'a [Vec<u32>],
+    /// Faces of the scene.
+    pub faces: usize,
+}
+
+/// Pieces of one part.
+type Drawn = std::ops::Range<usize>;
+
+impl EdgeData {
+    /// Lines of all parts that are placed. Instances that the scene does not draw as faces get a placement of their own, behind
+    /// those of `placements`. `edges`: of each part of the model.
+    pub(super) fn new(
+        settings: EdgeSettings,
+        of: &Placing<'_>,
+        edges: &[Edges],
+        placements: &mut Vec<DAffine3>,
+    ) -> Self {
+        let mut data = Self {
+            settings,
+            pieces: Vec::new(),
+            points: Vec::new(),
+            lines: Vec::new(),
+            own_faces: Vec::new(),
+            items: Vec::new(),
+            face_keys: (0..of.faces as u32).collect(),
+        };
+        let mut number = 1;
+        let drawn: Vec<Drawn> = (0..of.model.parts.len())
+            .map(|part| {
+                let first = data.pieces.len();
+                data.push_part(of, part, &edges[part], number);
+                number += (edges[part].edges.len() + edges[part].of_meshes.len()) as u32;
+                first..data.pieces.len()
+            })
+            .collect();
+        for ((nth, instance), placed) in of.model.instances.iter().enumerate().zip(of.placed) {
+            let key = nth as u32 + 1;
+            let placement = placed.unwrap_or_else(|| {
+                placements.push(instance.transform * DAffine3::from_translation(of.parts[instance.part].0));
+                placements.len() as u32 - 1
+            });
+            let pieces = drawn[instance.part].clone();
+            data.items.extend(pieces.map(|piece| abi::EdgeItem { piece: piece as u32, placement, instance: key }));
+        }
+        data
+    }
+
+    /// The edges of a part, of which the first one has this number.
+    fn push_part(&mut self, of: &Placing<'_>, part: usize, edges: &Edges, number: u32) {
+        let (origin, first_face) = of.parts[part];
+        for (edge, number) in edges.edges.iter().zip(number..) {
+            let Some(style) = self.settings.style(edge.kind) else { continue };
+            let own = edge.uses.iter().map(|u| (first_face + u.face) as u32).collect();
+            self.push_line(number, style, own);
+            edge.curve.iter().for_each(|span| self.push_piece(&span.piece.points, origin));
+        }
+        let first = number + edges.edges.len() as u32;
+        for (edge, number) in edges.of_meshes.iter().zip(first..) {
+            let Some(style) = self.settings.style(edge.kind) else { continue };
+            let triangle =
+                |&(mesh, nth): &(usize, usize)| abi::OWN_TRIANGLE | (of.first_triangles[part][mesh] + nth as u32);
+            self.push_line(number, style, edge.triangles.iter().map(triangle).collect());
+            self.push_piece(&edge.ends.map(|p| p.extend(1.0)), origin);
+        }
+    }
+
+    fn push_line(&mut self, number: u32, style: LineStyle, own: Vec<u32>) {
+        let style = match style {
+            LineStyle::Full => abi::EDGE_FULL,
+            LineStyle::Thin => abi::EDGE_THIN,
+        };
+        let first_own = self.own_faces.len() as u32;
+        self.lines.push(abi::EdgeLine { number, style, first_own, own_count: own.len() as u32 });
+        self.own_faces.extend(own);
+    }
+
+    /// A piece of the line pushed last.
+    fn push_piece(&mut self, points: &[DVec4], origin: DVec3) {
+        let (first, edge) = (self.points.len() as u32, self.lines.len() as u32 - 1);
+        self.pieces.push(abi::EdgePiece { first, degree: points.len() as u32 - 1, edge });
+        self.points.extend(points.iter().map(|p| (p.truncate() - origin * p.w).extend(p.w).as_vec4().to_array()));
+    }
+}
+
+/// A part whose edges are no curves.
+#[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[error("part {part}: {source}")]
+pub struct UndrawnEdges {
+    /// Index into the model's parts.
+    pub part: usize,
+    /// What is wrong with it.
+    pub source: crate::edges::EdgeError,
+}
+
+/// The edges of all parts.
+pub(super) fn edges_of(model: &Model) -> Result<Vec<Edges>, UndrawnEdges> {
+    let edges = |(part, p): (usize, &Part)| p.edges().map_err(|source| UndrawnEdges { part, source });
+    model.parts.par_iter().enumerate().map(edges).collect()
+}
