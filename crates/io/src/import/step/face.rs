@@ -103,8 +103,8 @@ impl Geometry<'_> {
         if implicit {
             bounds.push(Boundary::Natural);
         }
-        // writers let the curves run either way, though the face ought to be on their left
-        let doubtful = !implicit;
+        // on spheres, writers let the curves run either way, though the face ought to be on their left
+        let doubtful = !implicit && matches!(carrier.surface, SurfaceGeometry::Sphere { .. });
         let same_sense = !carrier.flipped;
         Ok(FaceGeometry { id, surface: carrier.surface, bounds, same_sense, doubtful })
     }
