@@ -47,7 +47,7 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     let (ir, losses, source) = decoded.into_parts();
     let ir = &ir;
     let mut warnings = Warnings::new(name);
-    for loss in &losses.losses {
+    for loss in losses.losses.iter().filter(|loss| !is_whole(&loss.message)) {
         warnings.push("not decoded", || Place::File, || loss.message.clone());
     }
     let mut report = ImportReport { format: "Rhino 3dm".into(), ..ImportReport::default() };
@@ -76,6 +76,12 @@ pub(super) fn read(bytes: &[u8], name: &str) -> Result<Import, ImportError> {
     report.face_records.iter_mut().for_each(|r| r.part = r.part.min(model.parts.len()));
     let warnings = warnings.finish(&mut report);
     Ok(Import { model, warnings, report, ..Import::default() })
+}
+
+/// The decoder counts the records that it has decoded, even where it has decoded all: `decoded 6/6 Rhino object records`.
+fn is_whole(loss: &str) -> bool {
+    let count = loss.strip_prefix("decoded ").and_then(|rest| rest.split_once(' ')).map(|(count, _)| count);
+    count.and_then(|count| count.split_once('/')).is_some_and(|(decoded, all)| decoded == all)
 }
 
 /// One part a body; places of parts by the names of bodies.

@@ -59,6 +59,7 @@ fn blocks_meshes_colours_and_units() {
     let read = rhino(BLOCKS, "blocks.3dm").unwrap();
     let said = || read.warnings.iter().map(ToString::to_string).collect::<Vec<_>>();
     assert_eq!(read.model.unit, "centimetre");
+    assert!(read.summary().is_complete(), "{:?}", said());
     assert!(read.report.dropped.is_empty(), "{:?}", said());
     let part = |name: &str| read.model.parts.iter().position(|p| p.name == name).unwrap_or_else(|| panic!("{name}"));
     let of = |name: &str| &read.model.parts[part(name)];
@@ -181,6 +182,7 @@ fn one_bad_surface_costs_one_face() {
         }
         seen += 1;
         assert_eq!(read.report.dropped.total(), 1, "{told:?}");
+        assert!(!read.summary().is_complete(), "{told:?}");
         assert!(told.iter().any(|w| w.contains("face left out") && w.contains("a surface of class")), "{told:?}");
         assert!(told.iter().any(|w| w.contains("body read from its record")), "{told:?}");
         assert_eq!(read.report.face_records.iter().filter(|r| r.kind.is_none()).count(), 1);

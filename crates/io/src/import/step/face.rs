@@ -77,13 +77,9 @@ impl Geometry<'_> {
         let id = entity.id();
         let fields = entity.fields("CURVE_BOUNDED_SURFACE", 1)?;
         let mut bounds = Vec::new();
-        // what is called the outer border goes around the face, whichever way it runs
-        let mut doubtful = false;
         for boundary in fields.references(1)? {
             let mut uses = Vec::new();
-            let boundary = self.entity(boundary?)?;
-            doubtful |= boundary.is("OUTER_BOUNDARY_CURVE");
-            for segment in self.segments(boundary)? {
+            for segment in self.segments(self.entity(boundary?)?)? {
                 let index = match table.by_id.get(&segment.id) {
                     Some(&index) => index,
                     None => {
@@ -103,9 +99,12 @@ impl Geometry<'_> {
             bounds.iter_mut().for_each(reverse);
         }
         // .T.: its own border is the outer one, the curves are holes
-        if fields.value(2).and_then(Value::flag) == Some(true) {
+        let implicit = fields.value(2).and_then(Value::flag) == Some(true);
+        if implicit {
             bounds.push(Boundary::Natural);
         }
+        // on spheres, writers let the curves run either way, though the face ought to be on their left
+        let doubtful = !implicit && matches!(carrier.surface, SurfaceGeometry::Sphere { .. });
         let same_sense = !carrier.flipped;
         Ok(FaceGeometry { id, surface: carrier.surface, bounds, same_sense, doubtful })
     }
