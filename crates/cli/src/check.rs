@@ -51,7 +51,7 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     target::check(&inputs, &outputs)?;
     target::check_read(&import, &outputs)?;
     let lines = args.edges.then(|| EdgeSettings { tangent: TangentEdges::Full, ..EdgeSettings::default() });
-    let mut session = Session::with_lines(&args.frame, &import, lines)?;
+    let mut session = Session::new(&args.frame, &import, lines)?;
     let tracer = during("preparing the exact model", || Tracer::new(&import.model));
     let sun = session::sun(&args.frame, &import).map(|towards| SunTracer::new(&import.model, towards)).transpose()?;
     let tolerance_px = args.frame.tolerance;
