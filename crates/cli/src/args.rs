@@ -105,8 +105,8 @@ impl LookArgs {
 
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
-    /// .toml, or .3dm with the feature rhino; `-` is standard input
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, BezierView .bv, .scad, .csg, .asc,
+    /// .selvedge or a scene .toml; `-` is standard input
     pub model: PathBuf,
     #[command(flatten)]
     pub read: ReadArgs,
@@ -151,8 +151,8 @@ pub struct RenderArgs {
 
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
-    /// .toml, or .3dm with the feature rhino
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, BezierView .bv, .scad, .csg, .asc,
+    /// .selvedge or a scene .toml
     pub model: PathBuf,
     #[command(flatten)]
     pub read: ReadArgs,
@@ -170,8 +170,8 @@ pub struct InfoArgs {
 
 #[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
-    /// .toml, or .3dm with the feature rhino
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, BezierView .bv, .scad, .csg, .asc,
+    /// .selvedge or a scene .toml
     pub model: PathBuf,
     #[command(flatten)]
     pub read: ReadArgs,
@@ -210,8 +210,8 @@ pub struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub struct BenchArgs {
-    /// The models: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, scenes
-    /// .toml, or .3dm with the feature rhino
+    /// The models: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, BezierView .bv, .scad, .csg, .asc,
+    /// .selvedge or scenes .toml
     #[arg(required = true)]
     pub models: Vec<PathBuf>,
     #[command(flatten)]
@@ -245,7 +245,7 @@ pub struct BenchArgs {
 
 #[derive(Debug, Args)]
 pub struct SweepArgs {
-    /// The models: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    /// The models: STEP, IGES, OBJ, Rhino .3dm, BezierView .bv or .selvedge
     #[arg(required_unless_present = "degrees")]
     pub models: Vec<PathBuf>,
     #[command(flatten)]
@@ -295,9 +295,9 @@ pub struct SweepArgs {
 
 #[derive(Debug, Args)]
 pub struct TrimsArgs {
-    /// Models beside the generated face: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the
-    /// feature rhino. Without any: samples/panel.step, and nist_pmi_2.stp and m6_countersunk_screw.step in the folder
-    /// that SELVEDGE_MODELS names, those that are there
+    /// Models beside the generated face: STEP, IGES, OBJ, Rhino .3dm, BezierView .bv or .selvedge. Without any:
+    /// samples/panel.step, and nist_pmi_2.stp and m6_countersunk_screw.step in the folder that SELVEDGE_MODELS names,
+    /// those that are there
     pub models: Vec<PathBuf>,
     #[command(flatten)]
     pub read: ReadArgs,

@@ -139,8 +139,8 @@ pub fn device(args: &FrameArgs) -> Result<HeadlessRenderer> {
 }
 
 impl Session {
-    /// Opens the device and hands it the model, with lines along edges.
-    pub fn new(args: &FrameArgs, import: &Import, lines: Option<EdgeSettings>) -> Result<Self> {
+    /// Opens the device and hands it the model, with lines along edges where they are asked for.
+    pub fn with_lines(args: &FrameArgs, import: &Import, lines: Option<EdgeSettings>) -> Result<Self> {
         let scene = SceneSettings { edges: lines, ..SceneSettings::default() };
         Self::with(opened(args)?, args, import, scene, Arc::new(import.model.clone()))
     }

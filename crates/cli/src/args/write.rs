@@ -19,8 +19,8 @@ pub struct ExportArgs {
 
 #[derive(Debug, Args)]
 pub struct ConvertArgs {
-    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
-    /// .toml, or .3dm with the feature rhino
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, BezierView .bv, .scad, .csg, .asc,
+    /// .selvedge or a scene .toml
     pub model: PathBuf,
     #[command(flatten)]
     pub read: ReadArgs,
