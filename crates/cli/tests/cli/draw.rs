@@ -142,7 +142,7 @@ fn a_solid_alone_is_refused_and_the_old_file_stays() {
 fn lines_along_edges_are_judged() {
     let folder = Folder::new("cube.obj", CUBE);
     let (model, json) = (folder.path("cube.obj"), folder.path("cube.json"));
-    let output = selvedge(&["check", &model, "--edges", "--size", "160x120", "--samples", "50", "--json", &json]);
+    let output = selvedge(&["check", &model, "--edges", "--size", "320x240", "--samples", "50", "--json", &json]);
     assert_eq!(output.status.code(), Some(0), "{}{}", text(&output.stdout), text(&output.stderr));
     assert!(text(&output.stdout).contains("lines: points seen, missing, unsure; pixels, stray"));
     let told: serde_json::Value = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
