@@ -6,7 +6,7 @@
 The same file, parallel view and machine, one after the other. A row a file: seconds to read and to draw of each, and
 lengths in pixels of a picture of 1920 x 1080. `both`: visible lines of selvedge (sharp, borders, silhouettes) within 0.5 px
 of any visible line of the kernel; `ours alone`: the others; `theirs alone`: visible sharp lines and outlines of the kernel
-without any visible line of selvedge within 0.5 px. Smooth edges count as lines to be near to, not as lines to be found:
+without any visible line of selvedge within 0.5 px: along a line that selvedge has as hidden, or along none. Smooth edges count as lines to be near to, not as lines to be found:
 both programs call other edges smooth. SELVEDGE names the program; target/release/selvedge without it.
 """
 import argparse, json, multiprocessing, os, re, subprocess, sys, tempfile, time
@@ -68,17 +68,17 @@ def cubic(p, count=24):
 
 
 def ours(model, view, folder):
-    """Seconds to read, seconds to draw, visible lines by kind, camera."""
+    """Seconds to read, seconds to draw, lines by kind (visible-sharp, hidden-sharp, …), camera."""
     svg, camera = os.path.join(folder, 'ours.svg'), os.path.join(folder, 'camera.json')
     program = os.environ.get('SELVEDGE', 'target/release/selvedge')
     call = [program, '-v', 'draw', model, '-o', svg, '--view', view, '--camera-out', camera,
-            '--size', '%dx%d' % SIZE, '--width', str(WIDTH_MM)]
+            '--size', '%dx%d' % SIZE, '--width', str(WIDTH_MM), '--hidden-lines']
     start = time.time()
     told = subprocess.run(call, capture_output=True, text=True, check=True).stderr
     wall = time.time() - start
     text = open(svg).read()
     lines = {}
-    for kind, group in re.findall(r'<g id="visible-(\w+)"[^>]*>(.*?)</g>', text, re.S):
+    for kind, group in re.findall(r'<g id="([\w-]+)"[^>]*>(.*?)</g>', text, re.S):
         for d in re.findall(r' d="([^"]*)"', group):
             parts = re.findall(r'([MLCZ])([^MLCZ]*)', d)
             line, at, first = [], None, None
@@ -154,7 +154,7 @@ def main():
     parser.add_argument('--limit', type=float, default=600.0, help='seconds for the kernel, a file')
     parser.add_argument('models', nargs='+')
     args = parser.parse_args()
-    print('| file | selvedge: read, s | draw, s | kernel: read, s | draw, s | both, px | ours alone | theirs alone |')
+    print('| file | selvedge: read, s | draw, s | kernel: read, s | draw, s | both, px | ours alone | theirs alone: hidden, none |')
     print('|---|---|---|---|---|---|---|---|')
     for model in args.models:
         with tempfile.TemporaryDirectory() as folder:
@@ -177,14 +177,14 @@ def main():
             print(row, '%s | | | | |' % why, flush=True)
             continue
         flat = lambda d, kinds: sampled([line for kind in kinds for line in d.get(kind, [])])
-        mine, mine_length = flat(lines, ('sharp', 'border', 'silhouette'))
-        near_mine = Raster(flat(lines, lines)[0])
+        mine, mine_length = flat(lines, ('visible-sharp', 'visible-border', 'visible-silhouette'))
+        near_mine, near_hidden = (Raster(flat(lines, [k for k in lines if k.startswith(of)])[0]) for of in ('visible', 'hidden'))
         other, other_length = flat(result[2], ('sharp', 'outline'))
         near_other = Raster(flat(result[2], result[2])[0])
         common = near_other.holds(mine)
-        theirs_too = near_mine.holds(other)
-        print(row, '%.2f | %.2f | %.0f | %.0f | %.0f |' % (result[0], result[1], mine_length[common].sum(),
-              mine_length[~common].sum(), other_length[~theirs_too].sum()), flush=True)
+        theirs_too, hidden = near_mine.holds(other), near_hidden.holds(other)
+        print(row, '%.2f | %.2f | %.0f | %.0f | %.0f, %.0f |' % (result[0], result[1], mine_length[common].sum(),
+              mine_length[~common].sum(), other_length[~theirs_too & hidden].sum(), other_length[~theirs_too & ~hidden].sum()), flush=True)
 
 
 if __name__ == '__main__':

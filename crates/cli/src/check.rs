@@ -50,7 +50,7 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     let outputs: Vec<_> = pictures.iter().map(|path| Target::new(path, PNG)).chain(json).collect();
     target::check(&inputs, &outputs)?;
     target::check_read(&import, &outputs)?;
-    let lines = args.edges.then(|| EdgeSettings { tangent: TangentEdges::Full, ..EdgeSettings::default() });
+    let lines = args.edges.then(|| judged_lines(views.iter().map(|view| view.camera.size.1).min().unwrap_or(1)));
     let mut session = Session::with_lines(&args.frame, &import, lines)?;
     let tracer = during("preparing the exact model", || Tracer::new(&import.model));
     let sun = session::sun(&args.frame, &import).map(|towards| SunTracer::new(&import.model, towards)).transpose()?;
@@ -99,6 +99,14 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     }
     let complained = session.complaints();
     Ok(if complained || verdicts.iter().any(|v| !v.kept) { Outcome::Broken } else { Outcome::Good })
+}
+
+/// Lines along all edges, as wide in a picture of `height` pixels as they are at 1080, for what is thinner covers too
+/// little of a pixel to be told.
+fn judged_lines(height: u32) -> EdgeSettings {
+    let usual = EdgeSettings::default();
+    let width = usual.width * (EdgeSettings::HEIGHT / f64::from(height)).max(1.0);
+    EdgeSettings { tangent: TangentEdges::Full, width: width.min(EdgeSettings::MOST_WIDTH), ..usual }
 }
 
 fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {

@@ -136,3 +136,18 @@ fn a_solid_alone_is_refused_and_the_old_file_stays() {
     assert!(told.contains("1 Boolean solid"), "{told}");
     assert_eq!(fs::read_to_string(&out).unwrap(), "old");
 }
+
+/// The lines of a cube are all there and nowhere else, in a small picture, too.
+#[test]
+fn lines_along_edges_are_judged() {
+    let folder = Folder::new("cube.obj", CUBE);
+    let (model, json) = (folder.path("cube.obj"), folder.path("cube.json"));
+    let output = selvedge(&["check", &model, "--edges", "--size", "320x240", "--samples", "50", "--json", &json]);
+    assert_eq!(output.status.code(), Some(0), "{}{}", text(&output.stdout), text(&output.stderr));
+    assert!(text(&output.stdout).contains("lines: points seen, missing, unsure; pixels, stray"));
+    let told: serde_json::Value = serde_json::from_str(&fs::read_to_string(&json).unwrap()).unwrap();
+    let lines = &told[0]["lines"];
+    let count = |what: &str| lines[what].as_u64().unwrap();
+    assert!(count("visible") > 500 && count("line_pixels") > 200, "{lines}");
+    assert_eq!((count("missing"), count("stray"), count("unsure")), (0, 0, 0), "{lines}");
+}

@@ -56,7 +56,7 @@ fn wrong_arguments_are_usage_errors() {
     render(&["--eye", "1,2,inf"], "three finite numbers");
     render(&["--fov", "30", "--ortho", "10"], "cannot be used with");
     render(&["--tolerance", "0.09"], "at least 0.1");
-    render(&["--aov", "colour=c.npy"], "depth, face, uv, normal or thickness");
+    render(&["--aov", "colour=c.npy"], "depth, face, uv, normal, thickness, edge, part or instance");
     refused(&["check", "m.step", "--samples", "0"], "above 0");
     refused(&["check", "m.step", "--views", "close", "--eye", "1,2,3"], "cannot be used with");
     refused(&["check", "m.step", "--zoom", "1e3,0.5"], "from 1 to 1e9");
