@@ -27,7 +27,10 @@ pub enum Image {
 impl FromStr for Aov {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
-        let wanted = || "wants IMAGE=FILE.npy, the image being depth, face, uv, normal, thickness, edge, part or instance".to_string();
+        let wanted = || {
+            "wants IMAGE=FILE.npy, the image being depth, face, uv, normal, thickness, edge, part or instance"
+                .to_string()
+        };
         let (image, file) = text.split_once('=').filter(|(_, file)| !file.is_empty()).ok_or_else(wanted)?;
         Ok(Self { image: Image::from_str(image, false).map_err(|_| wanted())?, file: file.into() })
     }
