@@ -43,8 +43,11 @@ bool is_own_triangle(uint instance, uint triangle) { return false; }
 const uint FOLD_STEPS = 8u;
 // Of the patch: between points whose difference is the slope of det J.
 const float FOLD_DIFFERENCE = 1.0 / 512.0;
-// Where a fold may lie beside its patch, of the patch: its neighbour finds it there, too.
-const float FOLD_BESIDE = 0.02;
+// Where a fold may lie beside its patch, of the patch. One pixel within a small ball's outline is many degrees before the
+// fold: no pixel may see the patch that has it.
+const float FOLD_BESIDE = 0.25;
+// Largest cosine between normal and ray at a fold: det J is 0 at poles, too.
+const float FOLD_COSINE = 0.2;
 // From the centre of the pixel that sees the face.
 const float FOLD_REACH_PX = 1.5;
 // Neighbours whose (u, v) differ by no more, of the patch, are on one sheet.
@@ -93,11 +96,14 @@ bool find_fold(Patch patch_, View view, vec2 uv, vec2 pixel, out Sample s) {
         vec2 steps = abs(to) / MAX_STEP;
         to /= max(max(steps.x, steps.y), 1.0);
         moved = along * to;
-        // det J has no fold where it does not get smaller
         uv += to;
     }
     bool within = all(greaterThanEqual(s.uv, vec2(-FOLD_BESIDE))) && all(lessThanEqual(s.uv, vec2(1.0 + FOLD_BESIDE)));
-    return within && dot(moved, moved) < ARRIVED_PX * ARRIVED_PX;
+    vec3 du = seen_from_eye(to_pixel(view, vec4(s.jet.du, 0.0)));
+    vec3 dv = seen_from_eye(to_pixel(view, vec4(s.jet.dv, 0.0)));
+    vec3 ray = frame.perspective != 0u ? normalize(seen_from_eye(s.q)) : vec3(0.0, 0.0, 1.0);
+    float cosine = abs(dot(normalize(cross(normalize(du), normalize(dv))), ray));
+    return within && dot(moved, moved) < ARRIVED_PX * ARRIVED_PX && cosine < FOLD_COSINE;
 }
 
 void main() {

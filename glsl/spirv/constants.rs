@@ -51,7 +51,8 @@ pub mod edge_divide {
     pub const EDGE_TOLERANCE_PX: f32 = 0.09;
 }
 pub mod edge_fold {
-    pub const FOLD_BESIDE: f32 = 0.02;
+    pub const FOLD_BESIDE: f32 = 0.25;
+    pub const FOLD_COSINE: f32 = 0.2;
     pub const FOLD_REACH_PX: f32 = 1.5;
     pub const FOLD_STEPS: u32 = 8;
     pub const SAME_PLACE: f32 = 0.05;
