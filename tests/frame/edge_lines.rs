@@ -84,8 +84,8 @@ fn an_edge_close_behind_a_grazing_face_is_hidden() {
     let mut model = cube.clone();
     model.parts.push(cube.parts[0].clone());
     let slab = DAffine3::from_scale(DVec3::new(3.0, 3.0, 0.05));
-    let bounds = cube.control_bounds();
-    let half = 0.5 * (bounds.max.z - bounds.min.z) / 1.5;
+    let corners = cube.parts[0].edges().unwrap().vertices;
+    let half = corners.iter().fold(0.0f64, |most, corner| most.max(corner.z));
     let below = DVec3::new(0.0, 0.0, -half * 0.05 - half * 0.02 - 0.001);
     let thin = DAffine3::from_translation(below) * DAffine3::from_scale(DVec3::new(1.5, 1.5, 0.02));
     model.instances = vec![shapes::placed(slab, None), shapes::placed(thin, None)];
