@@ -49,9 +49,7 @@ pub use selvedge_geometry::math;
 #[cfg(test)]
 extern crate self as selvedge;
 
-/// For tests: what passes read and write.
-#[doc(hidden)]
-pub mod abi;
+mod abi;
 /// Other ways to trim and to divide, for comparisons: no part of what a host uses.
 #[cfg(feature = "baselines")]
 #[doc(hidden)]
@@ -66,18 +64,27 @@ pub mod gpu;
 pub mod headless;
 #[cfg(test)]
 mod parity;
-/// For tests of the Vulkan layer.
-#[doc(hidden)]
-pub mod passes {
-    pub use crate::frame::common::scan;
-}
 pub mod picture;
 pub mod renderer;
 mod scene;
 mod shaders;
-/// For tests: what passes compute, on the CPU.
+#[cfg(any(test, feature = "baselines"))]
+mod twin;
+
+/// For tests and measurements, beside the baselines: what shaders read, what passes compute on the CPU, and one pass.
+#[cfg(feature = "baselines")]
 #[doc(hidden)]
-pub mod twin;
+pub mod internals {
+    pub use crate::frame::common::scan;
+    /// The structures that Rust and GLSL share.
+    pub mod abi {
+        pub use crate::abi::*;
+    }
+    /// The CPU twins of the passes.
+    pub mod twin {
+        pub use crate::twin::*;
+    }
+}
 
 /// The examples of the README compile.
 #[cfg(all(doctest, feature = "headless"))]

@@ -31,7 +31,7 @@ use crate::frame::solids::Solids;
 use crate::frame::transparency::solid_layers;
 use crate::frame::{Frame, Near, Passes, Stages, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, TexelBuffer, Uploads};
-use crate::model::{Camera, CameraError};
+use crate::model::{Camera, CameraError, ModelError};
 use crate::picture::{BadEdges, FrameSettings, FrameStats, PassTime, PoolBytes, TakenWay};
 pub use crate::scene::{Cut, DeepZoom, DeepZoomUpload, EditError, UndrawnEdges, UndrawnSolid, trim_way};
 use crate::scene::{Scene, SceneData, Write};
@@ -98,6 +98,9 @@ pub enum RenderError {
     /// [`FrameSettings::tolerance_px`] is below [`FrameSettings::LEAST_TOLERANCE_PX`].
     #[error("the tolerance must be at least {least} pixels, not {0}", least = FrameSettings::LEAST_TOLERANCE_PX)]
     Tolerance(f64),
+    /// The model cannot be drawn.
+    #[error("model: {0}")]
+    Model(#[from] ModelError),
     /// The model, or what this view needs of it.
     #[error(transparent)]
     TooMany(#[from] TooMany),

@@ -13,6 +13,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("trim", &["math", "spline", "model"]),
     ("construct", &["math", "spline", "model", "trim"]),
     ("edges", &["math", "spline", "model"]),
+    ("silhouette", &["math", "spline"]),
     ("csg", &[]),
     // selvedge-io
     ("brep", &["math", "spline", "trim", "model"]),

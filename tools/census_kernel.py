@@ -9,7 +9,7 @@ Prints a JSON object a line, each as soon as it is known, so that a reader keeps
     counts      faces (distinct), placed (faces), solids (placed), facets (faces that are triangles only)
     area        of the placed faces, mm², by two quadratures: fixed, and adaptive, which go wrong on different faces
     box         of the placed faces, mm: [[x, y, z], [x, y, z]]
-    colours     {"r,g,b": area}, "none" where a face has no colour; sRGB, 0 to 255
+    colours     {"r,g,b": area}, by the adaptive quadrature; "none" where a face has no colour; sRGB, 0 to 255
     picture     rays sampled, and those that see something else than the 3 x 3 pixels around them, as all near them do, by kind:
                 missing (nothing drawn), extra (nothing there), behind (drawn farther off), before (drawn nearer)
 """
@@ -98,7 +98,7 @@ def colours(free, areas):
                 colour = of.get(areas.number(face))
                 name = 'none' if colour is None else ','.join(
                     str(round(255 * x)) for x in colour.Values(Quantity_TOC_sRGB))
-                found[name] = found.get(name, 0.0) + float(areas.of(face)[0])
+                found[name] = found.get(name, 0.0) + float(areas.of(face)[1])
     return found
 
 

@@ -85,6 +85,7 @@ impl Patch {
     }
 
     /// Its weights may differ.
+    #[cfg(any(test, feature = "baselines"))]
     pub fn is_rational(&self) -> bool {
         self.shape >> 8 & 1 != 0
     }

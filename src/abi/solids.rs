@@ -1,12 +1,16 @@
 //! Boolean solids: leaves, their surfaces, and the tiles that see them.
 
-pub use crate::abi::constants::shells::{FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_SKIRT, FRAGMENT_WITHIN, NO_PLANE};
+pub use crate::abi::constants::shells::NO_PLANE;
+#[cfg(any(test, feature = "baselines"))]
+pub use crate::abi::constants::shells::{FRAGMENT_LEAVES, FRAGMENT_PATCH, FRAGMENT_SKIRT, FRAGMENT_WITHIN};
 pub use crate::abi::constants::solids::{
     EXIT_FALSE, EXIT_TRUE, LEAF_ELSEWHERE, LEAF_FALLS, LEAF_FLAG_BITS, LEAF_NEGATIVE, LEAF_PLANES, LEAF_ROUNDS,
     LEAF_SHELL, LEAF_UNBOUNDED, OWN_PLANE, SIDE_MORE, SIDE_NEGATIVE, SIDE_PLANE, SIDE_SHIFT, SURFACE_PLANE,
     SURFACE_QUADRIC, SURFACE_TORUS,
 };
-pub use crate::abi::constants::tiles::{BLOCK, LEAF_RUN, TILE, TILE_LEAF_ENTRY, TILE_LEAF_GATE};
+pub use crate::abi::constants::tiles::{BLOCK, LEAF_RUN, TILE};
+#[cfg(any(test, feature = "baselines"))]
+pub use crate::abi::constants::tiles::{TILE_LEAF_ENTRY, TILE_LEAF_GATE};
 use bytemuck::{Pod, Zeroable};
 
 /// What to call scenes of this most general kind.

@@ -69,7 +69,8 @@ impl Renderer {
     /// copies its data. Frames in flight keep the old one until their slots come round.
     ///
     /// # Errors
-    /// [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before stays.
+    /// [`RenderError::Model`] where [`Model::check`] fails, [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before
+    /// stays.
     pub fn upload(&mut self, model: &Model) -> Result<(), RenderError> {
         self.upload_with(model, SceneSettings::default())
     }
@@ -135,6 +136,9 @@ impl Renderer {
 
     fn load(&mut self, of: Source<'_>, settings: SceneRequest) -> Result<(), RenderError> {
         validate::check_sun(*settings)?;
+        if of.cut.is_none() {
+            of.whole.check()?; // a cut is of a model that was
+        }
         settings.edges.map_or(Ok(()), |edges| edges.check())?;
         let mut data = of.data(settings)?;
         if settings.smooth_trims {

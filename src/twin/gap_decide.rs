@@ -51,7 +51,9 @@ pub struct Outline {
 /// A face that may belong there.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub struct Candidate {
+    /// Whether it is there.
     pub kind: Kind,
+    /// Where it was seen.
     pub from: From,
     /// Of the scene, + 1; 0 where it is no patch.
     pub face: u32,
@@ -59,6 +61,7 @@ pub struct Candidate {
     pub inside: bool,
     /// Looks away from the viewer.
     pub away: bool,
+    /// At the centre; larger is farther.
     pub depth: f32,
     /// From the centre to the nearest point of its surface, pixels.
     pub miss: f32,
@@ -66,6 +69,7 @@ pub struct Candidate {
     pub slope: [f32; 2],
     /// For the visibility buffer.
     pub word: [u32; 2],
+    /// How it ends.
     pub outline: Outline,
 }
 

@@ -2,8 +2,8 @@
 //! with and for whoever wants to read what a shader computes without reading GLSL.
 //!
 //! ```text
-//!   glsl/bound.comp          twin::bound        passes::bound        parity::bound
-//!   glsl/include/view.glsl   twin::view                              one name, four places
+//!   glsl/tessellation/bound.comp   twin::bound   frame::tessellation::bound   parity::bound
+//!   glsl/include/view.glsl         twin::view                                  one name, four places
 //! ```
 //!
 //! A twin repeats the shader's single-precision operations in the shader's order, and the shader marks

@@ -4,7 +4,7 @@ use crate::shapes;
 use crate::support::{assert_identical, assert_silent, perspective, render, watched};
 use glam::DVec3;
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
-use selvedge::model::{Camera, CameraError, Projection};
+use selvedge::model::{Camera, CameraError, Model, Projection};
 use selvedge::picture::{FrameSettings, Outputs};
 use selvedge::renderer::RenderError;
 
@@ -36,6 +36,11 @@ fn a_camera_that_shows_nothing() {
         (Camera { projection: lens(f64::NAN), ..good }, CameraError::Projection),
         (Camera { projection: parallel(-1.0), ..good }, CameraError::Projection),
         (Camera { projection: parallel(f64::INFINITY), ..good }, CameraError::Projection),
+        (Camera { projection: lens(1e-300), ..good }, CameraError::Narrow),
+        (Camera { projection: parallel(1e-300), ..good }, CameraError::Scale),
+        (Camera { projection: parallel(1e-11), eye: DVec3::splat(5.0), ..good }, CameraError::Small),
+        (Camera { depth_range: (1e-300, 1e300), ..good }, CameraError::Scale),
+        (Camera { target: DVec3::splat(1e16), ..good }, CameraError::Scale),
         (Camera { depth_range: (0.0, 1.0), ..good }, CameraError::DepthRange),
         (Camera { depth_range: (2.0, 1.0), ..good }, CameraError::DepthRange),
         (Camera { depth_range: (1.0, f64::INFINITY), ..good }, CameraError::DepthRange),
@@ -64,6 +69,37 @@ fn a_tolerance_that_single_precision_cannot_keep() {
             RenderError::Tolerance(said) => assert_eq!(said.to_bits(), tolerance.to_bits()),
             error => panic!("{tolerance}: {error}"),
         }
+    }
+    assert_identical(&before, &render(&mut renderer, &camera), "after errors");
+    assert_silent(renderer);
+}
+
+#[test]
+fn a_model_that_is_none() {
+    let model = shapes::plate();
+    let mut renderer = watched(&model);
+    let camera = perspective(&model, (64, 48));
+    let before = render(&mut renderer, &camera);
+    let changed = |change: &dyn Fn(&mut Model)| {
+        let mut model = model.clone();
+        change(&mut model);
+        model
+    };
+    let bad = [
+        (changed(&|m| m.instances[0].part = 999), "instance 0 is of part 999"),
+        (changed(&|m| m.instances[0].transform.translation.y = f64::NAN), "the transform of instance 0"),
+        (changed(&|m| m.instances[0].colour = Some([f32::NAN; 4])), "the colour of instance 0"),
+        (changed(&|m| m.parts[0].faces[0].id = 0), "face 0 of part 0 has number 0"),
+    ];
+    for (model, sentence) in bad {
+        match renderer.upload(&model) {
+            Err(HeadlessError::Render(error @ RenderError::Model(_))) => {
+                assert!(error.to_string().starts_with(&format!("model: {sentence}")), "{error}");
+            }
+            Err(error) => panic!("{sentence}: another error: {error}"),
+            Ok(()) => panic!("{sentence}: uploaded"),
+        }
+        assert!(!model.bounds().diagonal().is_nan(), "{sentence}"); // nor does a host that frames it first panic
     }
     assert_identical(&before, &render(&mut renderer, &camera), "after errors");
     assert_silent(renderer);

@@ -1,6 +1,6 @@
 //! Smooth trims: coverage of pixels at trim curves, against exact rays and against the same frame sixteen times as large.
 //!
-//! The share is exact but for what [`selvedge::twin::coverage`] says, so what is left is the colours' eight bits, the
+//! The share is exact but for what `src/twin/coverage.rs` says, so what is left is the colours' eight bits, the
 //! reference's own 16 x 16 points, and pixels in which more meets than one border of what a centre sees.
 
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, linear, root_mean_square};

@@ -6,7 +6,7 @@ use selvedge::gpu::{
     Binding, Buffer, BufferInfo, ComputeInfo, GpuError, Image, ImageInfo, MemoryLocation, Pipeline, Pool,
 };
 use selvedge::headless::{HeadlessDevice, HeadlessError, HeadlessOptions, Severity};
-use selvedge::passes::scan::Scan;
+use selvedge::internals::scan::Scan;
 
 #[test]
 fn live_objects_are_listed_until_they_go() {

@@ -3,8 +3,8 @@
 use crate::support::{assert_silent, read, upload, watched};
 use selvedge::gpu::{Access, Buffer, Pool, barrier};
 use selvedge::headless::HeadlessDevice;
-use selvedge::passes::scan::{BLOCK, Bindings, Count, MAX_COUNT, Scan, block_count};
-use selvedge::twin;
+use selvedge::internals::scan::{BLOCK, Bindings, Count, MAX_COUNT, Scan, block_count};
+use selvedge::internals::twin;
 
 /// Values whose total overflows, so that the sums wrap (xorshift, Marsaglia 2003).
 fn values(count: u32) -> Vec<u32> {

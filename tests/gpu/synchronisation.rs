@@ -3,7 +3,7 @@
 use crate::support::watched;
 use selvedge::gpu::{Access, Buffer, Pool, barrier};
 use selvedge::headless::Message;
-use selvedge::passes::scan::{Bindings, Count, Scan};
+use selvedge::internals::scan::{Bindings, Count, Scan};
 
 /// Fills `values`, then scans them, with or without the barrier between.
 fn fill_then_scan(with_barrier: bool) -> Vec<Message> {

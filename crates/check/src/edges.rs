@@ -140,27 +140,40 @@ impl<'a> EdgeTracer<'a> {
     /// # Panics
     /// For a point behind the eye.
     pub fn visibility(&self, instance: usize, edge: usize, point: DVec3, probe: &mut Probe<'_>) -> Visibility {
-        let camera = probe.camera();
         let placed = &self.model.instances[instance];
         let edges = &self.parts[placed.part];
         let edge: &Edge = &edges.edges[edge];
+        let known = edges.deviation * scale(&placed.transform);
+        let own = |hit: &Hit| hit.instance == instance && edge.uses.iter().any(|u| u.face == hit.face_index);
+        self.tracer.sight(point, known, &own, probe)
+    }
+}
+
+impl Tracer {
+    /// Whether a point is seen whose place is known to `known` and that lies on the surfaces that `own` names; in the
+    /// picture and in front of the eye.
+    ///
+    /// # Panics
+    /// For a point behind the eye.
+    pub(super) fn sight(
+        &self,
+        point: DVec3,
+        known: f64,
+        own: &dyn Fn(&Hit) -> bool,
+        probe: &mut Probe<'_>,
+    ) -> Visibility {
+        let camera = probe.camera();
         let (pixel, depth) = camera.project(point).expect("in front of the eye");
         let (origin, direction) = camera.ray(pixel);
-        let along = (point - origin).dot(direction);
-        if let Some(volume) = &self.tracer.trim {
-            let on = ON * self.tracer.bounds.diagonal();
-            let trace = volume.trace(origin, direction);
-            if ![along - on, along, along + on].iter().any(|t| trace.inside(*t)) {
-                return Visibility::Cut;
-            }
+        if self.is_cut(origin, direction, (point - origin).dot(direction)) {
+            return Visibility::Cut;
         }
-        let size = self.tracer.bounds.diagonal();
-        let known = (edges.deviation * scale(&placed.transform)).max(ROUNDING * size);
-        let own = |hit: &Hit| hit.instance == instance && edge.uses.iter().any(|u| u.face == hit.face_index);
+        let size = self.bounds.diagonal();
+        let known = known.max(ROUNDING * size);
         let mut seen = Visibility::Visible;
         for hit in probe.hits(pixel) {
             let gap = (point - hit.point).dot(direction);
-            if gap <= 0.0 || hit.depth >= depth || self.tracer.is_clear(hit) {
+            if gap <= 0.0 || hit.depth >= depth || self.is_clear(hit) {
                 continue;
             }
             let grazing = own(hit) && gap * gap <= 8.0 * known * size;
@@ -173,11 +186,18 @@ impl<'a> EdgeTracer<'a> {
         }
         seen
     }
-}
 
-impl Tracer {
+    /// The volume that trims the model does not hold the point of the ray at `along`.
+    pub(super) fn is_cut(&self, origin: DVec3, direction: DVec3, along: f64) -> bool {
+        let on = ON * self.bounds.diagonal();
+        self.trim.as_ref().is_some_and(|volume| {
+            let trace = volume.trace(origin, direction);
+            ![along - on, along, along + on].iter().any(|t| trace.inside(*t))
+        })
+    }
+
     /// The hit is on a solid that is seen through.
-    fn is_clear(&self, hit: &Hit) -> bool {
+    pub(super) fn is_clear(&self, hit: &Hit) -> bool {
         let solids = self.solids.iter().filter(|_| hit.part >= self.parts.len());
         let mut primitives = solids.filter_map(|s| s.union().primitives().get(hit.face_index));
         primitives.any(|p| !p.is_opaque())
@@ -185,7 +205,7 @@ impl Tracer {
 }
 
 /// By how much a transform lengthens at most, within a factor of the square root of 3.
-fn scale(transform: &DAffine3) -> f64 {
+pub(super) fn scale(transform: &DAffine3) -> f64 {
     let m = transform.matrix3;
     (m.x_axis.length_squared() + m.y_axis.length_squared() + m.z_axis.length_squared()).sqrt()
 }

@@ -17,11 +17,12 @@
 //! volume, and up to [`ON`] outside of it.
 //!
 //! [`Tracer`] answers rays, [`judge`] compares a drawn [`Picture`]; [`SunTracer`] and [`judge_sun`] do so for the
-//! light. [`EdgeTracer`] says which points of edges are seen.
+//! light. [`EdgeTracer`] says which points of edges are seen; [`drawing`] has a view's lines as curves.
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
 mod bvh;
+pub mod drawing;
 mod edges;
 mod facet;
 mod judge;

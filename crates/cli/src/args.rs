@@ -1,12 +1,16 @@
 //! The arguments of the command line, checked before any file is opened.
 
+mod draw;
 mod images;
 mod lines;
 mod read;
+mod write;
 
+pub use draw::DrawArgs;
 pub use images::{Aov, Image};
 pub use lines::LineArgs;
 pub use read::{ReadArgs, SubdivideArgs};
+pub use write::{ConvertArgs, ExportArgs};
 
 use crate::backdrop::Backdrop;
 use crate::cut::CutArgs;
@@ -42,6 +46,9 @@ pub enum Command {
     /// Draw a model to a PNG file
     #[command(after_help = STATUSES)]
     Render(RenderArgs),
+    /// Draw the lines of a view to an SVG file: visible edges and silhouettes as curves; needs no GPU
+    #[command(after_help = STATUSES)]
+    Draw(DrawArgs),
     /// Describe what a file holds; needs no GPU
     #[command(after_help = STATUSES)]
     Info(InfoArgs),
@@ -98,8 +105,8 @@ impl LookArgs {
 
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
-    /// .toml, or .3dm with the feature rhino; `-` is standard input
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, BezierView .bv, .scad, .csg, .asc,
+    /// .selvedge or a scene .toml; `-` is standard input
     pub model: PathBuf,
     #[command(flatten)]
     pub read: ReadArgs,
@@ -144,8 +151,8 @@ pub struct RenderArgs {
 
 #[derive(Debug, Args)]
 pub struct InfoArgs {
-    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
-    /// .toml, or .3dm with the feature rhino
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, BezierView .bv, .scad, .csg, .asc,
+    /// .selvedge or a scene .toml
     pub model: PathBuf,
     #[command(flatten)]
     pub read: ReadArgs,
@@ -162,22 +169,9 @@ pub struct InfoArgs {
 }
 
 #[derive(Debug, Args)]
-pub struct ExportArgs {
-    /// The model, as for `render`
-    pub model: PathBuf,
-    #[command(flatten)]
-    pub read: ReadArgs,
-    #[command(flatten)]
-    pub subdivide: SubdivideArgs,
-    /// STEP file to write
-    #[arg(value_name = "OUT.step")]
-    pub output: PathBuf,
-}
-
-#[derive(Debug, Args)]
 pub struct CheckArgs {
-    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
-    /// .toml, or .3dm with the feature rhino
+    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, BezierView .bv, .scad, .csg, .asc,
+    /// .selvedge or a scene .toml
     pub model: PathBuf,
     #[command(flatten)]
     pub read: ReadArgs,
@@ -205,6 +199,10 @@ pub struct CheckArgs {
     /// several views each adds its name to the file's
     #[arg(long, value_name = "OUT.png")]
     pub difference: Option<PathBuf>,
+    /// Also draw lines along all edges and judge them: points half a pixel apart that are seen and have no line within half
+    /// its width and 0.5 px, and pixels of lines farther than that from all that is seen
+    #[arg(long)]
+    pub edges: bool,
     /// Write the judgements as JSON
     #[arg(long, value_name = "FILE.json")]
     pub json: Option<PathBuf>,
@@ -212,8 +210,8 @@ pub struct CheckArgs {
 
 #[derive(Debug, Args)]
 pub struct BenchArgs {
-    /// The models: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, scenes
-    /// .toml, or .3dm with the feature rhino
+    /// The models: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, BezierView .bv, .scad, .csg, .asc,
+    /// .selvedge or scenes .toml
     #[arg(required = true)]
     pub models: Vec<PathBuf>,
     #[command(flatten)]
@@ -247,7 +245,7 @@ pub struct BenchArgs {
 
 #[derive(Debug, Args)]
 pub struct SweepArgs {
-    /// The models: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the feature rhino
+    /// The models: STEP, IGES, OBJ, Rhino .3dm, BezierView .bv or .selvedge
     #[arg(required_unless_present = "degrees")]
     pub models: Vec<PathBuf>,
     #[command(flatten)]
@@ -297,9 +295,9 @@ pub struct SweepArgs {
 
 #[derive(Debug, Args)]
 pub struct TrimsArgs {
-    /// Models beside the generated face: STEP, IGES, OBJ, BezierView .bv, .selvedge, or .3dm where built with the
-    /// feature rhino. Without any: samples/panel.step, and nist_pmi_2.stp and m6_countersunk_screw.step in the folder
-    /// that SELVEDGE_MODELS names, those that are there
+    /// Models beside the generated face: STEP, IGES, OBJ, Rhino .3dm, BezierView .bv or .selvedge. Without any:
+    /// samples/panel.step, and nist_pmi_2.stp and m6_countersunk_screw.step in the folder that SELVEDGE_MODELS names,
+    /// those that are there
     pub models: Vec<PathBuf>,
     #[command(flatten)]
     pub read: ReadArgs,
@@ -336,20 +334,6 @@ pub struct TrimsArgs {
     /// Folder for trims.json, trims.csv and the plots
     #[arg(long, value_name = "DIR")]
     pub out: Option<PathBuf>,
-}
-
-#[derive(Debug, Args)]
-pub struct ConvertArgs {
-    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, BezierView .bv, .scad, .csg, .asc, .selvedge, a scene
-    /// .toml, or .3dm with the feature rhino
-    pub model: PathBuf,
-    #[command(flatten)]
-    pub read: ReadArgs,
-    #[command(flatten)]
-    pub subdivide: SubdivideArgs,
-    /// File to write, in the engine's own form, bit for bit
-    #[arg(value_name = "OUT.selvedge")]
-    pub output: PathBuf,
 }
 
 /// Where the eye is.

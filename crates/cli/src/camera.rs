@@ -28,6 +28,8 @@ const GRAZING_DEG: f64 = 8.0;
 
 /// Vertical field of view where nothing is said.
 const FOV_DEG: f64 = 35.0;
+/// Field of view in radians that stands for a parallel view where a model is framed: off by no more than its share.
+const NARROW: f64 = 1e-4;
 /// Size of a picture where nothing is said.
 const SIZE: Size = Size(1920, 1080);
 
@@ -56,6 +58,28 @@ impl CameraArgs {
     pub fn standard(&self, direction: Direction, import: &Import, size: (u32, u32)) -> Result<Camera> {
         let up = self.up.unwrap_or(direction.up());
         fitted(self.framed(&import.model, direction.from(), up, size), bounds(&import.model))
+    }
+
+    /// For a drawing: parallel, as large as the model fits, from a direction or from [`FROM`], unless the arguments say
+    /// how else.
+    pub fn parallel(&self, direction: Option<Direction>, import: &Import) -> Result<Camera> {
+        let size = self.pixels(import);
+        let given = self.eye.is_some() || self.camera.is_some() || self.fov.is_some() || self.ortho.is_some();
+        match direction {
+            Some(direction) if given => self.standard(direction, import, size),
+            None if given => self.of(import),
+            _ => {
+                let (from, up) = direction.map_or((FROM, DVec3::Z), |d| (d.from(), d.up()));
+                let up = self.up.unwrap_or(up);
+                let mut camera = Camera::framing(&import.model, from, up, NARROW, size);
+                let back = camera.eye - camera.target;
+                camera.projection = Projection::Orthographic { height: 2.0 * back.length() * (0.5 * NARROW).tan() };
+                let bounds = bounds(&import.model);
+                camera.target = self.target.unwrap_or(camera.target);
+                camera.eye = camera.target + back.normalize() * bounds.diagonal().max(1e-9);
+                fitted(camera, bounds)
+            }
+        }
     }
 
     /// The file's camera of the name given; without any word about a camera the one that its picture asks for.

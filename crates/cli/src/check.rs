@@ -8,7 +8,8 @@ use crate::target::{self, JSON, PNG, Target};
 use crate::{Outcome, output, verdict};
 use anyhow::Result;
 use glam::DAffine3;
-use selvedge::picture::{FrameStats, Outputs};
+use selvedge::picture::{EdgeSettings, FrameStats, Outputs, TangentEdges};
+use selvedge_check::drawing::LineJudgement;
 use selvedge_check::{EXACT_DEPTH_PX, EXACT_NORMAL_DEG, Judgement, SunJudgement, SunTracer, Tracer};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
@@ -24,6 +25,7 @@ struct Verdict {
     seen: bool,
     judgement: Judgement,
     sun: Option<SunJudgement>,
+    lines: Option<LineJudgement>,
     stats: FrameStats,
 }
 
@@ -48,23 +50,37 @@ pub fn run(args: &CheckArgs) -> Result<Outcome> {
     let outputs: Vec<_> = pictures.iter().map(|path| Target::new(path, PNG)).chain(json).collect();
     target::check(&inputs, &outputs)?;
     target::check_read(&import, &outputs)?;
-    let mut session = Session::new(&args.frame, &import)?;
+    let lines = args.edges.then(|| EdgeSettings { tangent: TangentEdges::Full, ..EdgeSettings::default() });
+    let mut session = Session::with_lines(&args.frame, &import, lines)?;
     let tracer = during("preparing the exact model", || Tracer::new(&import.model));
     let sun = session::sun(&args.frame, &import).map(|towards| SunTracer::new(&import.model, towards)).transpose()?;
     let tolerance_px = args.frame.tolerance;
     let mut verdicts = Vec::new();
     for (index, View { name, camera }) in views.iter().enumerate() {
         let times = args.zoom.get(index).copied().unwrap_or(1.0);
-        let picture = session.render(camera, Outputs::ALL)?;
+        let picture = session.render(camera, Outputs { edge: args.edges, ..Outputs::ALL })?;
         let judgement = verdict::of(&tracer, camera, &picture, args.samples, tolerance_px, times, name);
         if let Some(path) = pictures.get(index) {
             output::png(path, picture.size, &judgement.paint())?;
         }
         let sun = sun.as_ref().map(|sun| verdict::of_sun(&tracer, sun, camera, &picture, args.samples, tolerance_px));
+        let drawn = lines.as_ref().map(|lines| verdict::of_lines(&import.model, &tracer, camera, &picture, lines));
+        let drawn = drawn.transpose()?;
         let wrong = verdict::wrong(&judgement) + sun.map_or(0, |sun| sun.wrong);
+        let wrong = wrong + drawn.as_ref().map_or(0, |lines| lines.missing + lines.stray);
         let kept = wrong == 0 && picture.stats.clamps == 0;
         let (camera, seen, stats) = (camera.into(), session::shows(&picture), picture.stats);
-        verdicts.push(Verdict { view: name.clone(), camera, tolerance_px, kept, seen, judgement, sun, stats });
+        verdicts.push(Verdict {
+            view: name.clone(),
+            camera,
+            tolerance_px,
+            kept,
+            seen,
+            judgement,
+            sun,
+            lines: drawn,
+            stats,
+        });
     }
     let told = |text: &str| output::print_beside(text, pictures.iter().chain(&args.json));
     told(&table(&verdicts, tolerance_px))?;
@@ -92,8 +108,10 @@ fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
     let beyond = format!("> {EXACT_DEPTH_PX} px, {EXACT_NORMAL_DEG} deg");
     let regular = ["regular: depth, px: worst, mean", "normal, deg: worst", &beyond, "not regular"];
     let shape = ["view", "judged", &wrong, "worst shift, px"].into_iter().chain(regular);
-    let mut table = output::table(shape.chain(light).chain(["clamps", "promise"]));
-    for Verdict { view, judgement, sun, stats, kept, seen, .. } in verdicts {
+    let drawn = verdicts.iter().any(|v| v.lines.is_some());
+    let drawn = drawn.then_some("lines: points seen, missing, unsure; pixels, stray");
+    let mut table = output::table(shape.chain(light).chain(drawn).chain(["clamps", "promise"]));
+    for Verdict { view, judgement, sun, lines, stats, kept, seen, .. } in verdicts {
         let exact = &judgement.exact;
         let shape = [
             view.clone(),
@@ -106,13 +124,16 @@ fn table(verdicts: &[Verdict], tolerance_px: f64) -> String {
             exact.irregular.to_string(),
         ];
         let light = sun.map(|sun| format!("{}, {}, {:.3}", sun.wrong, sun.deviated, sun.worst_shift_px));
+        let drawn = lines
+            .as_ref()
+            .map(|l| format!("{}, {}, {}; {}, {}", l.visible, l.missing, l.unsure, l.line_pixels, l.stray));
         let promise = match (kept, seen) {
             (true, true) => "kept",
             (true, false) => "nothing seen",
             (false, _) => "BROKEN",
         };
         let end = [stats.clamps.to_string(), promise.to_string()];
-        table.add_row(shape.into_iter().chain(light).chain(end));
+        table.add_row(shape.into_iter().chain(light).chain(drawn).chain(end));
     }
     table.to_string()
 }

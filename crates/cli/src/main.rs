@@ -5,7 +5,7 @@
 //!   check    picture against exact rays       bench   time and memory beside the error
 //!   trims    ways to trim, side by side       sweep   time against error, over many settings
 //!   convert  model ─▶ the engine's own form
-//!   export   model ─▶ STEP file
+//!   export   model ─▶ STEP file                draw    lines of a view ─▶ SVG
 //! ```
 //!
 //! Results go to standard output, everything else to standard error.
@@ -18,6 +18,7 @@ mod check;
 mod convert;
 mod cut;
 mod directions;
+mod draw;
 mod edit;
 mod export;
 mod info;
@@ -73,6 +74,7 @@ fn main() -> ExitCode {
         .init();
     let result = match &cli.command {
         Command::Render(args) => render::run(args),
+        Command::Draw(args) => draw::run(args),
         Command::Info(args) => info::run(args),
         Command::Export(args) => export::run(args),
         Command::Check(args) => check::run(args),

@@ -88,13 +88,7 @@ fn shots(args: &RenderArgs) -> Result<Vec<Shot>> {
     }
     let several = directions.len() > 1;
     let shot = |direction: Option<Direction>| {
-        let path = |path: &PathBuf| match direction {
-            Some(direction) if several || is_pattern(path) => named(path, &direction.to_string()),
-            None if is_pattern(path) => {
-                bail!("{}: {VIEW} stands for the view's name: --view says which", path.display())
-            }
-            _ => Ok(path.clone()),
-        };
+        let path = |path: &PathBuf| named_for(path, direction, several);
         let optional = |of: &Option<PathBuf>| of.as_ref().map(path).transpose();
         let output = if args.contact_sheet { None } else { Some(path(&args.output)?) };
         let aov = |aov: &Aov| Ok(Aov { file: path(&aov.file)?, ..aov.clone() });
@@ -109,6 +103,17 @@ const VIEW: &str = "{view}";
 
 fn is_pattern(path: &Path) -> bool {
     path.to_string_lossy().contains(VIEW)
+}
+
+/// A path as it is for a view, one of several or not.
+pub fn named_for(path: &Path, direction: Option<Direction>, several: bool) -> Result<PathBuf> {
+    match direction {
+        Some(direction) if several || is_pattern(path) => named(path, &direction.to_string()),
+        None if is_pattern(path) => {
+            bail!("{}: {VIEW} stands for the view's name: --view says which", path.display())
+        }
+        _ => Ok(path.to_owned()),
+    }
 }
 
 /// The path of a view's file: the name in the pattern's place, or before the ending.

@@ -139,9 +139,10 @@ pub fn device(args: &FrameArgs) -> Result<HeadlessRenderer> {
 }
 
 impl Session {
-    /// Opens the device and hands it the model.
-    pub fn new(args: &FrameArgs, import: &Import) -> Result<Self> {
-        Self::with(opened(args)?, args, import, SceneSettings::default(), Arc::new(import.model.clone()))
+    /// Opens the device and hands it the model, with lines along edges where they are asked for.
+    pub fn with_lines(args: &FrameArgs, import: &Import, lines: Option<EdgeSettings>) -> Result<Self> {
+        let scene = SceneSettings { edges: lines, ..SceneSettings::default() };
+        Self::with(opened(args)?, args, import, scene, Arc::new(import.model.clone()))
     }
 
     /// The same with smooth edges, on a device that is open.

@@ -38,6 +38,18 @@ pub fn length(text: &str) -> Result<f64, String> {
     text.parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| "wants a length above 0".into())
 }
 
+/// A side of a sheet of paper.
+pub fn millimetres(text: &str) -> Result<f64, String> {
+    let good = text.parse::<f64>().ok().filter(|x| (1.0..=10_000.0).contains(x));
+    good.ok_or_else(|| "wants millimetres, from 1 to 10000".into())
+}
+
+/// A scale of a drawing.
+pub fn drawing_scale(text: &str) -> Result<f64, String> {
+    let good = text.parse::<f64>().ok().filter(|x| (1e-9..=1e9).contains(x));
+    good.ok_or_else(|| "wants a scale above 0, as in 1 or 0.5".into())
+}
+
 pub fn mebibytes(text: &str) -> Result<f64, String> {
     text.parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| "wants a number of MiB above 0".into())
 }

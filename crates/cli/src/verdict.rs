@@ -5,8 +5,10 @@
 //! hits against the exact trim curves in double precision, and shares no code with the GPU passes.
 
 use crate::progress::counting;
-use selvedge::model::Camera;
-use selvedge::picture::Picture;
+use anyhow::Result;
+use selvedge::model::{Camera, Model};
+use selvedge::picture::{EdgeSettings, Picture};
+use selvedge_check::drawing::{DrawingSettings, LineImage, LineJudgement, judge_lines};
 use selvedge_check::{JudgeOptions, Judgement, SunJudgement, SunTracer, Tracer, judge, judge_sun};
 
 /// Judges about `samples` pixels of a picture, and every one at which the face changes. In a view `times` closer than
@@ -43,6 +45,20 @@ pub fn of_sun(
 ) -> SunJudgement {
     let options = JudgeOptions { samples: Some(samples), limit_px: tolerance, ..JudgeOptions::default() };
     judge_sun(tracer, sun, camera, &picture.images(), &options)
+}
+
+/// Judges the lines along edges of a picture.
+pub fn of_lines(
+    model: &Model,
+    tracer: &Tracer,
+    camera: &Camera,
+    picture: &Picture,
+    drawn: &EdgeSettings,
+) -> Result<LineJudgement> {
+    // lines along silhouettes are not drawn
+    let settings = DrawingSettings { silhouettes: false, hidden: drawn.hidden, ..DrawingSettings::default() };
+    let width = drawn.width * f64::from(camera.size.1) / EdgeSettings::HEIGHT;
+    Ok(judge_lines(model, tracer, camera, &settings, LineImage { lines: &picture.edge, width })?)
 }
 
 /// Pixels that break the promise: the wrong face, or the right face's wrong sheet.

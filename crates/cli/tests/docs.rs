@@ -8,8 +8,8 @@ const HEAD: &str = "# The program `selvedge`
 Made from `selvedge help COMMAND`. Results go to standard output, warnings to standard error.
 
 The arrays of `--aov` are samples at pixel centres, row 0 on top. Model files: STEP, IGES, OBJ, STL, 3MF, AMF,
-PLY, OFF, glTF, BezierView `.bv`, OpenSCAD `.csg` and `.scad`, BRL-CAD `.asc`, Rhino `.3dm` with the feature `rhino`,
-`.selvedge`, and [scenes](scene.md) in TOML.
+PLY, OFF, glTF, Rhino `.3dm`, BezierView `.bv`, OpenSCAD `.csg` and `.scad`, BRL-CAD `.asc`, `.selvedge`, and
+[scenes](scene.md) in TOML. Built with `--no-default-features`, the program reads no Rhino files.
 ";
 
 /// What the program prints when it is asked for help.

@@ -4,10 +4,11 @@
 //! ```text
 //!   math ◀─ spline ◀─ model ◀─ trim
 //!                 csg ◀┘ ▲ ▲     ▲
-//!                   edges┘ └─────┴── construct
+//!       edges, silhouette ┘ └─────┴── construct
 //! ```
 //!
-//! [`model`] says what a renderer draws; [`spline`] and [`trim`] evaluate it; [`edges`] finds where its faces meet;
+//! [`model`] says what a renderer draws; [`spline`] and [`trim`] evaluate it; [`edges`] finds where its faces meet,
+//! [`silhouette`] where a view sees them fold;
 //! [`csg`] has Boolean expressions;
 //! [`construct`] makes surfaces and solids from curves, data, equations and dimensions.
 #![warn(missing_docs)]
@@ -21,5 +22,6 @@ pub mod csg;
 pub mod edges;
 pub mod math;
 pub mod model;
+pub mod silhouette;
 pub mod spline;
 pub mod trim;

@@ -1,5 +1,6 @@
 //! The reference against closed forms and brute force.
 
+mod drawing;
 mod edges;
 mod facets;
 mod judge;

@@ -6,10 +6,10 @@
 //! ```
 
 use glam::DVec3;
-use selvedge::abi::{Frame, LEAF_UNBOUNDED, Leaf};
 use selvedge::csg::Blist;
+use selvedge::internals::abi::{Frame, LEAF_UNBOUNDED, Leaf};
+use selvedge::internals::twin::solid_rects::{solid_rects, tile_count};
 use selvedge::model::{Bounds, Camera, Model, Projection, Solid};
-use selvedge::twin::solid_rects::{solid_rects, tile_count};
 use serde::Serialize;
 
 /// What a view's tiles hold once their Blists are folded.

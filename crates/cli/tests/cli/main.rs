@@ -1,5 +1,6 @@
 //! The command line: arguments, messages, exit statuses; and models through every command.
 
+mod draw;
 mod missing;
 mod outputs;
 mod reading;
@@ -30,7 +31,7 @@ fn help_names_every_command_and_the_exit_statuses() {
     let help = selvedge(&["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let help = text(&help.stdout);
-    let commands = ["render", "info", "check", "bench", "trims", "sweep", "convert"];
+    let commands = ["render", "draw", "info", "check", "bench", "trims", "sweep", "convert"];
     for word in commands.into_iter().chain(["Exit status: 0 done; 1 a picture breaks"]) {
         assert!(help.contains(word), "{word} in {help}");
     }
@@ -44,7 +45,7 @@ fn help_names_every_command_and_the_exit_statuses() {
 #[test]
 fn wrong_arguments_are_usage_errors() {
     refused(&[], "Usage");
-    refused(&["draw", "m.step"], "unrecognized subcommand");
+    refused(&["paint", "m.step"], "unrecognized subcommand");
     refused(&["render", "m.step"], "--output");
     let render = |more: &[&'static str], message: &str| {
         refused(&[&["render", "m.step", "-o", "a.png"], more].concat(), message);

@@ -121,3 +121,33 @@ fn pictures_of_nothing_are_no_success() {
     let past = ["render", &ball, "-o", &png, "--eye", "0,-9,0", "--target", "0,-99,0", "--strict"];
     refused(&past, "ball.csg: no pixel shows anything of it");
 }
+
+/// A Rhino file of 21 faces, six of which lie on a layer that is not shown, and the same with one surface of a class that
+/// does not exist.
+#[cfg(feature = "rhino")]
+#[test]
+fn a_face_that_is_left_out_of_a_rhino_file_is_told() {
+    const BLOCKS: &[u8] = include_bytes!("../../../io/src/import/rhino/blocks.3dm");
+    /// The first bytes of the class of planes.
+    const PLANE: [u8; 4] = 0x4ED7_D4DF_u32.to_le_bytes();
+    let folder = TempDir::new().unwrap();
+    let file = |name: &str, bytes: &[u8]| {
+        let path = folder.path().join(name);
+        fs::write(&path, bytes).unwrap();
+        path.to_str().unwrap().to_owned()
+    };
+    let whole = file("whole.3dm", BLOCKS);
+    let output = selvedge(&["info", &whole]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    let mut damaged = BLOCKS.to_vec();
+    let at = damaged.windows(4).position(|w| w == PLANE).expect("a plane");
+    damaged[at] ^= 0x55;
+    let damaged = file("damaged.3dm", &damaged);
+    let info = selvedge(&["info", "--json", &damaged]);
+    assert_eq!(info.status.code(), Some(0), "{}", text(&info.stderr));
+    let told: serde_json::Value = serde_json::from_slice(&info.stdout).unwrap();
+    let faces = &told["summary"]["faces"];
+    assert_eq!((&faces["stated"], &faces["drawn"]), (&21.into(), &14.into()), "{}", text(&info.stderr));
+    assert!(text(&info.stderr).contains("face 0: a surface of class"), "{}", text(&info.stderr));
+    refused(&["check", &damaged, "--strict"], "1 left out");
+}

@@ -42,6 +42,11 @@ pub struct Camera {
     pub size: (u32, u32),
 }
 
+/// Smallest height of a picture beside what it lies at: a picture of 4096 rows then has steps of 16 roundings of `f64`.
+const LEAST_STEP: f64 = 4096.0 * 16.0 * f64::EPSILON;
+/// Lengths whose squares, times a count of pixels, are single-precision numbers.
+const LENGTHS: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
+
 /// Why a camera shows nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)]
@@ -54,6 +59,12 @@ pub enum CameraError {
     UpAlongAxis,
     #[error("the field of view must lie between 0 and 180 degrees, the orthographic height above 0")]
     Projection,
+    #[error("the field of view is so narrow that double precision tells no two pixels apart")]
+    Narrow,
+    #[error("the orthographic height is so small that double precision tells no two pixels apart there")]
+    Small,
+    #[error("lengths of the view are outside of 1e-15 to 1e15, which single precision can square")]
+    Scale,
     #[error("the depth range must be 0 < near < far")]
     DepthRange,
     #[error("the picture has no pixels, or a side above 16384")]
@@ -86,6 +97,16 @@ impl Camera {
         let (near, far) = self.depth_range;
         if !(near > 0.0 && far > near && far.is_finite()) {
             return Err(CameraError::DepthRange);
+        }
+        let place = self.eye.abs().max(self.target.abs()).max_element();
+        match self.projection {
+            Projection::Perspective { fov_y } if fov_y < LEAST_STEP => return Err(CameraError::Narrow),
+            Projection::Orthographic { height } if !LENGTHS.contains(&height) => return Err(CameraError::Scale),
+            Projection::Orthographic { height } if height < LEAST_STEP * place => return Err(CameraError::Small),
+            _ => {}
+        }
+        if !(LENGTHS.contains(&near) && LENGTHS.contains(&far) && place <= *LENGTHS.end()) {
+            return Err(CameraError::Scale);
         }
         if self.size.0 == 0 || self.size.1 == 0 || self.size.0.max(self.size.1) > 16384 {
             return Err(CameraError::Size);
@@ -152,6 +173,37 @@ impl Camera {
         DMat4::from_cols(x, y, rz, rw).transpose()
     }
 
+    /// Model coordinates to Vulkan's clip space, as the engine's depth target has it: x to the right, y down, depth 1 at
+    /// the near plane and 0 at the far one. A host that draws its own geometry by this matrix, with `GREATER_OR_EQUAL`,
+    /// hides the model and is hidden by it.
+    ///
+    /// ```
+    /// # use selvedge_geometry::model::{Camera, Projection};
+    /// # use glam::DVec3;
+    /// let camera = Camera {
+    ///     eye: DVec3::ZERO,
+    ///     target: DVec3::NEG_Z,
+    ///     up: DVec3::Y,
+    ///     projection: Projection::Perspective { fov_y: 1.0 },
+    ///     depth_range: (2.0, 8.0),
+    ///     size: (640, 480),
+    /// };
+    /// let depth = |z: f64| camera.clip_matrix().project_point3(DVec3::new(0.0, 0.0, -z)).z;
+    /// assert_eq!((depth(2.0), depth(8.0)), (1.0, 0.0));
+    /// ```
+    pub fn clip_matrix(&self) -> DMat4 {
+        let pixels = self.pixel_matrix().transpose(); // columns are the rows
+        let (x, y, depth, w) = (pixels.x_axis, pixels.y_axis, pixels.z_axis, pixels.w_axis);
+        let (near, far) = self.depth_range;
+        let nearness = (DVec4::W * far - depth) / (far - near);
+        let nearness = match self.projection {
+            Projection::Perspective { .. } => nearness * near,
+            Projection::Orthographic { .. } => nearness,
+        };
+        let across = |row: DVec4, size: u32| row * (2.0 / f64::from(size)) - w;
+        DMat4::from_cols(across(x, self.size.0), across(y, self.size.1), nearness, w).transpose()
+    }
+
     /// The ray through pixel position `p` (continuous, `y` down): origin and unit direction.
     pub fn ray(&self, p: DVec2) -> (DVec3, DVec3) {
         let (right, up, forward) = self.axes();
@@ -173,5 +225,39 @@ impl Camera {
     pub fn project(&self, p: DVec3) -> Option<(DVec2, f64)> {
         let q = self.pixel_matrix() * p.extend(1.0);
         (q.w > 0.0).then(|| (DVec2::new(q.x / q.w, q.y / q.w), q.z))
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Pixels and clip space say the same, in both projections; right, down and near have the signs that Vulkan has.
+    #[test]
+    fn clip_space_is_that_of_pixels() {
+        let lens = [Projection::Perspective { fov_y: 0.7 }, Projection::Orthographic { height: 3.0 }];
+        for projection in lens {
+            let camera = Camera {
+                eye: DVec3::new(4.0, -3.0, 2.0),
+                target: DVec3::new(0.5, 0.25, 0.0),
+                up: DVec3::Z,
+                projection,
+                depth_range: (0.5, 20.0),
+                size: (320, 180),
+            };
+            let (right, up, forward) = camera.axes();
+            for (a, b, z) in [(0.0, 0.0, 0.5), (0.3, -0.2, 4.0), (-0.7, 0.1, 20.0)] {
+                let p = camera.eye + right * a + up * b + forward * z;
+                let clip = camera.clip_matrix().project_point3(p);
+                let (pixel, depth) = camera.project(p).unwrap();
+                let expected = (pixel / DVec2::new(160.0, 90.0) - 1.0).extend(match projection {
+                    Projection::Perspective { .. } => (20.0 - depth) / 19.5 * 0.5 / depth,
+                    Projection::Orthographic { .. } => (20.0 - depth) / 19.5,
+                });
+                assert!((clip - expected).abs().max_element() < 1e-12, "{clip} for {expected}");
+                let signs = (clip.x * a >= -1e-12, clip.y * b <= 1e-12); // the axis may be off by roundings
+                assert_eq!(signs, (true, true));
+            }
+        }
     }
 }

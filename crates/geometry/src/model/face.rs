@@ -49,7 +49,6 @@ pub struct LoopAt {
 /// One face.
 #[derive(Clone, Debug, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "super::stored::FaceData"))]
 pub struct Face {
     /// Number in the source, written to the face-id image; for STEP `#123` is 123. Never 0.
     pub id: u32,

@@ -96,7 +96,7 @@ impl Instance {
 impl Model {
     /// Whether something is seen through, or would be if it were closed.
     pub fn is_opaque(&self) -> bool {
-        self.solids.iter().all(Solid::is_opaque) && self.instances.iter().all(|i| i.is_opaque(&self.parts[i.part]))
+        self.solids.iter().all(Solid::is_opaque) && self.placed_parts().all(|(instance, part)| instance.is_opaque(part))
     }
 
     /// The model's solids, those that are seen through apart; `all`: closed parts that are opaque are wanted, too. A
@@ -117,7 +117,7 @@ impl Model {
         }
         let mut shared: Vec<Option<Arc<Part>>> = vec![None; self.parts.len()];
         for (instance, drawn) in self.instances.iter().zip(&mut items.drawn) {
-            let part = &self.parts[instance.part];
+            let Some(part) = self.parts.get(instance.part) else { continue };
             let (opaque, closed) = (instance.is_opaque(part), part.closed && self.trim.is_none());
             items.open += usize::from(!opaque && !closed);
             if !closed || opaque && !all || part.control_bounds().is_empty() {

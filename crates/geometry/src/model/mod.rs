@@ -19,6 +19,7 @@
 //! Lengths are millimetres where the source file has a unit, else the file's own numbers.
 
 mod camera;
+mod check;
 mod edge;
 mod face;
 mod images;
@@ -32,6 +33,7 @@ mod stored;
 mod xray;
 
 pub use camera::{Camera, CameraError, Projection};
+pub use check::{Coloured, ModelError};
 pub use edge::{Edge, EdgeCounts, EdgeKind, EdgeLimits, EdgeRef, EdgeSource, EdgeUse, Edges, MeshEdge};
 pub use face::{Face, FaceError, LoopAt, SurfaceKind, TrimLoop};
 pub use images::Images;
@@ -42,8 +44,6 @@ pub use solid::{
     CarriedFace, Carrier, Isolated, Primitive, Quadric, Shape, ShapeError, Solid, SolidError, Surface as SolidSurface,
     SurfaceTable, outward,
 };
-#[cfg(feature = "serde")]
-pub use stored::ModelError;
 pub use xray::UnknownName;
 
 use glam::{DAffine3, DVec3};
@@ -80,7 +80,6 @@ pub struct Model {
 /// One body: a closed solid, or an open shell.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize, serde::Deserialize))]
-#[cfg_attr(feature = "serde", serde(try_from = "stored::PartData"))]
 pub struct Part {
     /// Name in the source, or empty.
     pub name: String,
@@ -182,10 +181,12 @@ impl Model {
     /// it contains the model, and may be much larger than it. How far the model reaches is [`Model::bounds`].
     pub fn control_bounds(&self) -> Bounds {
         let parts: Vec<Bounds> = self.parts.iter().map(Part::control_bounds).collect();
+        let placed =
+            |i: &Instance| parts.get(i.part).filter(|bounds| !bounds.is_empty()).map(|bounds| (*bounds, i.transform));
         self.instances
             .iter()
-            .filter(|i| !parts[i.part].is_empty())
-            .flat_map(|i| parts[i.part].corners().map(|c| i.transform.transform_point3(c)))
+            .filter_map(placed)
+            .flat_map(|(bounds, transform)| bounds.corners().map(|c| transform.transform_point3(c)))
             .chain(
                 self.solids
                     .iter()
@@ -196,6 +197,11 @@ impl Model {
             .fold(Bounds::EMPTY, Bounds::with)
     }
 
+    /// Instances with their parts. Instances of parts that do not exist are left out; [`Model::check`] names them.
+    pub fn placed_parts(&self) -> impl Iterator<Item = (&Instance, &Part)> {
+        self.instances.iter().filter_map(|instance| Some((instance, self.parts.get(instance.part)?)))
+    }
+
     /// Distinct faces.
     pub fn face_count(&self) -> usize {
         self.parts.iter().map(|p| p.faces.len()).sum()
@@ -203,6 +209,6 @@ impl Model {
 
     /// Placed faces: each instance counts its part's faces.
     pub fn face_instance_count(&self) -> usize {
-        self.instances.iter().map(|i| self.parts[i.part].faces.len()).sum()
+        self.placed_parts().map(|(_, part)| part.faces.len()).sum()
     }
 }

@@ -90,7 +90,7 @@ impl Model {
         let mut shared: Vec<Option<Arc<Part>>> = vec![None; self.parts.len()];
         let mut open = false;
         for instance in &self.instances {
-            let part = &self.parts[instance.part];
+            let Some(part) = self.parts.get(instance.part) else { continue };
             let bounds = part.control_bounds();
             if bounds.is_empty() {
                 continue;

@@ -43,8 +43,8 @@ impl Model {
     fn xray_name(&mut self, name: &str, alpha: f32) -> bool {
         let mut found = false;
         for i in 0..self.instances.len() {
-            let part = self.instances[i].part;
-            if !name.is_empty() && (self.instances[i].name == name || self.parts[part].name == name) {
+            let Some(part) = self.parts.get(self.instances[i].part) else { continue };
+            if !name.is_empty() && (self.instances[i].name == name || part.name == name) {
                 found = true;
                 self.xray_instance(i, alpha);
             }
@@ -58,7 +58,7 @@ impl Model {
             return;
         }
         // other occurrences keep theirs
-        let mut clear = self.parts[self.instances[i].part].clone();
+        let Some(mut clear) = self.parts.get(self.instances[i].part).cloned() else { return };
         clear.set_opacity(alpha, |_| true);
         self.instances[i].part = self.parts.len();
         self.parts.push(clear);
@@ -90,7 +90,7 @@ impl Model {
 
     /// What may be named, for a message.
     fn known(&self) -> String {
-        let own = self.instances.iter().flat_map(|i| [&i.name, &self.parts[i.part].name]);
+        let own = self.placed_parts().flat_map(|(i, part)| [&i.name, &part.name]);
         let mut names: Vec<String> = own.filter(|n| !n.is_empty()).map(|n| format!("`{n}`")).collect();
         let faces = self.parts.iter().flat_map(|p| p.faces.iter().map(|f| f.id).chain(p.meshes.iter().map(|m| m.id)));
         let mut numbers: Vec<u32> = faces.chain(self.solids.iter().flat_map(Solid::primitives).map(|p| p.id)).collect();

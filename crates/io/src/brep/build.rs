@@ -6,7 +6,7 @@ use super::fit::Fitter;
 use super::loops::{Limits, Loop};
 use super::nest::{Directions, arrange, come_home};
 use super::order;
-use super::preimage::{Lines, widen_poles};
+use super::preimage::{Lines, tips_beside, widen_poles};
 use super::rims::natural_border;
 use super::strand::{Part, Strand};
 use super::support::Support;
@@ -54,6 +54,15 @@ const MAX_TURNS: f64 = 1e4;
 /// # Errors
 /// [`BuildError`] names the face or edge and the reason.
 pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result<BuiltFace, BuildError> {
+    match build(face, edges, tolerance, false) {
+        // edges that meet beside the tip of the surface go around it in place of through it
+        open @ Err(BuildError::OpenRim { .. }) => build(face, edges, tolerance, true).or(open),
+        built => built,
+    }
+}
+
+/// `beside`: edges that end beside a tip of the surface end at it.
+fn build(face: &FaceGeometry, edges: &[Edge], tolerance: f64, beside: bool) -> Result<BuiltFace, BuildError> {
     let tolerance = if tolerance > 0.0 && tolerance.is_finite() { tolerance } else { 1e-6 };
     let mut notes = Vec::new();
     let mut uses = edge_uses(face, edges)?;
@@ -70,6 +79,9 @@ pub fn build_face(face: &FaceGeometry, edges: &[Edge], tolerance: f64) -> Result
     }
     uses.iter_mut().for_each(|bound| bound.retain(|e| e.length > support.target));
     widen_poles(&mut support, &uses, (face.id, size), &mut notes);
+    if beside {
+        tips_beside(&mut support, &uses, (face.id, size), &mut notes);
+    }
     let mut lost = lost(face, edges, &uses, &support);
     support.allow(uses.iter().flatten().map(|e| e.node_count).sum());
     let limits = Limits { face: face.id, size };

@@ -22,6 +22,8 @@
 //! | strands → loops without seams, oriented | `loops`; `rims`, `cut`; `nest` |
 //! | the standard's `(u, v)` → a spline's | `law`, `carrier`, `fit` |
 //! | loops stated in a spline's own `(u, v)` | `given` |
+//!
+//! Before that, `sweep` makes the faces of a solid that a plane area draws; `similarity` copies curves and surfaces.
 
 mod approximate;
 mod border;
@@ -45,9 +47,11 @@ mod pieces;
 mod preimage;
 mod rims;
 mod settle;
+mod similarity;
 mod spline;
 mod strand;
 mod support;
+mod sweep;
 mod trace;
 
 #[cfg(test)]
@@ -59,6 +63,8 @@ pub use error::BuildError;
 pub use given::face_in_parameters;
 pub use map::SurfaceMap;
 pub use settle::settle;
+pub use similarity::Similarity;
+pub use sweep::{Motion, sweep};
 
 use crate::spline::{BSpline, Surface};
 use glam::{DVec3, DVec4};
@@ -184,6 +190,19 @@ pub struct Edge {
     pub end: DVec3,
     /// The edge runs along increasing parameters of the curve.
     pub same_sense: bool,
+}
+
+impl Edge {
+    /// Adds straight edges from point to point to `edges`, and returns their places.
+    pub fn chain(id: u32, points: &[DVec3], edges: &mut Vec<Self>) -> Vec<usize> {
+        let first = edges.len();
+        edges.extend(points.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| {
+            let (start, end) = (pair[0], pair[1]);
+            let curve = CurveGeometry::Line { origin: start, direction: end - start };
+            Self { id, curve, start, end, same_sense: true }
+        }));
+        (first..edges.len()).collect()
+    }
 }
 
 /// One loop of a face, in the direction that keeps the face on its left when seen against the

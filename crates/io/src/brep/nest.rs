@@ -13,7 +13,7 @@ use std::rc::Rc;
 pub(super) enum Directions<'n> {
     /// They keep the face on their left.
     Sound,
-    /// They contradict each other; what is guessed instead is told.
+    /// They contradict each other, or what else is stated; what is guessed against them is told.
     Doubtful(&'n mut Vec<String>),
 }
 
@@ -38,9 +38,12 @@ pub(super) fn arrange(
         _ if !told_by_direction => false,
         Directions::Sound => is_outside(support, &loops),
         Directions::Doubtful(notes) => {
-            let what = "its loops do not say which side of them it is; the smaller one is taken";
-            notes.push(format!("face #{}: {what}", limits.face));
-            share_inside(support, &loops) > 0.5
+            let outside = share_inside(support, &loops) > 0.5;
+            if outside != is_outside(support, &loops) {
+                let what = "its loops do not say which side of them it is; the smaller one is taken";
+                notes.push(format!("face #{}: {what}", limits.face));
+            }
+            outside
         }
     };
     if outside {

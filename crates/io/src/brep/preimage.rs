@@ -171,6 +171,31 @@ pub(super) fn widen_poles(
     }
 }
 
+/// Share of the face's size by which edges may end before a pole or beside it.
+const BESIDE: f64 = 5e-3;
+
+/// Lets poles reach as far as edges end before them or beside them, those among them where a turned profile passes its
+/// axis without meeting it: those edges meet at the pole, which is told.
+pub(super) fn tips_beside(
+    support: &mut Support,
+    uses: &[Vec<EdgeCurve>],
+    (face, size): (u32, f64),
+    notes: &mut Vec<String>,
+) {
+    support.poles.extend(support.near_axis(BESIDE * size));
+    for pole in &mut support.poles {
+        let ends = uses.iter().flatten().flat_map(|edge| edge.vertices).map(|p| p.distance(pole.point));
+        let farthest = ends.filter(|d| *d <= BESIDE * size).fold(0.0, f64::max);
+        if farthest > pole.reach {
+            notes.push(format!(
+                "face #{face}: edges end {farthest:.3e} mm beside the tip of the surface, and now at it"
+            ));
+            // the neighbour ends as far away as rounding tells
+            pole.reach = 1.01 * farthest;
+        }
+    }
+}
+
 /// Share of an edge's greatest distance from a pole within which its end may lie behind the pole.
 const CLOSE: f64 = 1e-2;
 

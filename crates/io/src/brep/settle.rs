@@ -201,7 +201,7 @@ fn doubt(edges: &[Edge], faces: &mut [&mut FaceGeometry], closed: bool, toleranc
                 _ => {}
             }
         }
-        face.doubtful = against > with || (closed && !face.same_sense && encloses(&face.surface, edges, tolerance));
+        face.doubtful |= against > with || (closed && !face.same_sense && encloses(&face.surface, edges, tolerance));
     }
 }
 

@@ -272,6 +272,15 @@ impl Support {
         }
     }
 
+    /// Where a turned profile passes its axis within `distance` mm, and is at no pole.
+    pub fn near_axis(&self, distance: f64) -> Vec<Pole> {
+        let Form::Revolution { profile } = &self.form else { return Vec::new() };
+        let near = super::invert::axis_crossings(profile, &self.frame, distance).into_iter();
+        let reach = Pole::REACH * self.eps;
+        let pole = |value: f64| Pole { axis: 1, value, point: self.point(DVec2::new(0.0, value)), reach };
+        near.map(pole).filter(|tip| self.pole_at(tip.point, distance).is_none()).collect()
+    }
+
     /// What the surface is called in the face.
     pub fn kind(&self) -> SurfaceKind {
         match self.form {

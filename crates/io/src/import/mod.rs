@@ -26,6 +26,7 @@ mod error;
 mod external;
 mod facets;
 mod iges;
+mod junctions;
 mod locate;
 #[cfg(feature = "meshes")]
 mod meshes;

@@ -124,7 +124,10 @@ fn an_edge_that_is_not_there_is_told() {
     let mut model = model(&[0.5; 12], 1.0, "part");
     model.parts[1].stated_edges.pop();
     let error = read(&write(&model)).unwrap_err();
-    assert!(error.to_string().ends_with("a trim curve is of edge 1, and the part has 1"), "{error}");
+    assert!(
+        error.to_string().ends_with("a trim curve of face 0 of part 1 is of edge 1, and the part has 1"),
+        "{error}"
+    );
 }
 
 /// Every cut, and every single flipped bit.
@@ -175,8 +178,12 @@ fn every_invariant_is_checked() {
     for (class, bytes, message) in [
         ("swapped", with(&[0x93, 2, 1, 3], &[0x93, 2, 1, 4]), "triangle 1 names vertex 4 of 4"),
         ("swapped", with(&[0x94, 1, 0x9c], &[0x94, 2, 0x9c]), "instance 0 is of part 2, and there are 2"),
-        ("swapped", with(&[7, 0xa5], &[0, 0xa5]), "a face or mesh has number 0"),
-        ("swapped", with(&[0xce, 255, 255, 255, 255], &[0]), "a face or mesh has number 0"),
+        ("swapped", with(&[7, 0xa5], &[0, 0xa5]), "face 0 of part 1 has number 0, which is the background's"),
+        (
+            "swapped",
+            with(&[0xce, 255, 255, 255, 255], &[0]),
+            "mesh 0 of part 1 has number 0, which is the background's",
+        ),
         // counts that the bytes cannot hold
         (
             "huge",
@@ -200,7 +207,7 @@ fn every_invariant_is_checked() {
             with(&real(0.9), &real(f64::INFINITY)),
             "trim curve 1 has a control point that is not finite or a weight that is not positive",
         ),
-        ("NaN", with(&half(0.25), &half(f32::NAN)), "a colour is not between 0 and 1"),
+        ("NaN", with(&half(0.25), &half(f32::NAN)), "the colour of face 0 of part 1 is not between 0 and 1"),
         (
             "type",
             with(b"Plane", b"Plaid"),
@@ -211,7 +218,7 @@ fn every_invariant_is_checked() {
         ("type", with(&[0xa4, b'i', b'n', b'c', b'h'], &[0x2a]), "invalid type: integer `42`, expected a string"),
         ("value", with(&real(-0.0), &real(2.0)), "knot 1 is smaller than the one before it, or not a number"),
         ("value", with(&real(0.9), &real(0.8)), "trim loop is open by 9.999999999999998e-2 in (u, v) after curve 1"),
-        ("value", with(&half(0.25), &half(1.25)), "a colour is not between 0 and 1"),
+        ("value", with(&half(0.25), &half(1.25)), "the colour of face 0 of part 1 is not between 0 and 1"),
     ] {
         let error = read(&bytes).unwrap_err();
         if error != NativeError::Model(message.to_owned()) {

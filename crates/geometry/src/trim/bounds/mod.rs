@@ -106,12 +106,12 @@ struct Placed<'a> {
 }
 
 impl<'a> Placed<'a> {
-    /// Instances whose transforms are finite.
+    /// Instances of parts that exist, whose transforms are finite.
     fn new(parts: &'a [Part], instances: &[Instance]) -> Self {
         let mut numbers = vec![None; parts.len()];
         let (mut bodies, mut placements) = (Vec::new(), Vec::new());
         for instance in instances.iter().filter(|i| i.transform.is_finite()) {
-            let part = &parts[instance.part];
+            let Some(part) = parts.get(instance.part) else { continue };
             let body = *numbers[instance.part].get_or_insert_with(|| {
                 bodies.push(Body::new(&part.faces, &part.meshes));
                 bodies.len() - 1

@@ -9,7 +9,7 @@
 //!   184 assembly  N, N items, N matrices            430 instance   a solid, with the matrix of its entry
 //! ```
 //!
-//! A solid of faces (186) may be an operand. One operand that cannot be read costs the whole solid: without it, the rest
+//! A solid of faces (186) or a swept one (162, 164) may be an operand. One operand that cannot be read costs the whole solid: without it, the rest
 //! is another one.
 //!
 //! Source: US Product Data Association, *IGES 5.3*, 1996.
@@ -92,8 +92,13 @@ impl<'a> Geometry<'a> {
                     Ok(walk.nodes.fold(Op::Union, all))
                 }
                 430 => self.operand(entity.pointer(1)?, &map, colour, walk),
-                186 => {
-                    *walk.kinds.entry("solid of faces").or_default() += 1;
+                kind @ (162 | 164 | 186) => {
+                    let name = match kind {
+                        162 => "solid of revolution",
+                        164 => "solid of extrusion",
+                        _ => "solid of faces",
+                    };
+                    *walk.kinds.entry(name).or_default() += 1;
                     // its own matrix is part of it
                     walk.shells.push(self.faces_of(entity, outer)?);
                     let operand = Operand::Shells(walk.shells.len() - 1);

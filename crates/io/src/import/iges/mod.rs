@@ -7,7 +7,7 @@
 //!         ─geometry─▶ matrices, points, guards
 //!         ─curve, conic, spline, fit─▶ Segment                  curves in millimetres
 //!         ─surface, ruled─▶ Carrier                             surfaces, and how their (u, v) map
-//!         ─trim─▶ Sheet   ─solid─▶ Shells                       faces, by themselves or with shared edges
+//!         ─trim─▶ Sheet   ─solid, swept─▶ Shells                faces, by themselves or with shared edges
 //!         ─csg─▶ Expression         Boolean solids
 //!         ─tree, array, colour─▶ bodies and their places
 //!         ─brep::build_face─▶ Face  in parallel, results in file order
@@ -34,6 +34,7 @@ mod ruled;
 mod solid;
 mod spline;
 mod surface;
+mod swept;
 mod tree;
 mod trim;
 mod value;

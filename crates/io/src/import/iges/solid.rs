@@ -7,6 +7,8 @@
 //!                                           └─▶ 502 vertex list, item (a pole)
 //! ```
 //!
+//! A swept solid (162, 164) has shells without an entity: see `swept`.
+//!
 //! Both faces of an edge refer to the same edge; the curves in `(u, v)` that loops may list are not used.
 //! A loop keeps its face on the left, seen against the normal of the surface. The flags along the way
 //! from the solid to the face say whether that normal leaves the material.
@@ -52,7 +54,7 @@ impl Shells {
 }
 
 impl<'a> Geometry<'a> {
-    /// 186, or a 514 or 510 by itself.
+    /// 186, 162, 164, or a 514 or 510 by itself.
     pub fn shells(&self, id: u32, outer: &DAffine3) -> Result<Shells, Fault> {
         let mut shells = Shells::default();
         self.nested(id, |entity| {
@@ -73,11 +75,14 @@ impl<'a> Geometry<'a> {
         Ok(shells)
     }
 
-    /// 186, already on the trail.
+    /// 186, 162 or 164, already on the trail.
     pub fn faces_of(&self, entity: Entity<'a>, outer: &DAffine3) -> Result<Shells, Fault> {
         let mut shells = Shells::default();
-        let entity = entity.of_kind(186, "186, a solid")?;
         let map = self.placed(entity, outer)?;
+        if matches!(entity.kind(), 162 | 164) {
+            return self.swept(entity, &map);
+        }
+        let entity = entity.of_kind(186, "186, a solid")?;
         let sense = map.matrix3.determinant() > 0.0;
         let colour = self.colour(entity);
         let voids = entity.count(3, 2)?;

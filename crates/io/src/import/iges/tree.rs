@@ -2,7 +2,7 @@
 //!
 //! ```text
 //!   scope: the file, or a 308                     instances of its parts
-//!     186, 430 ────▶ one part a solid             408: scale, then move, then the matrix
+//!     186, 162, 164, 430 ▶ one part a solid       408: scale, then move, then the matrix
 //!     514, 510 ────▶ one part a shell                  ─▶ the scope of its 308, once more
 //!     150 to 180 ──▶ one Boolean solid each       412, 414: copies of one entity; 184: items with matrices
 //!     143, 144, surfaces ─▶ one open part a group (402) and level
@@ -130,7 +130,7 @@ impl<'g, 'a> Tree<'g, 'a> {
                 142 => used.extend((2..=4).filter_map(one)),
                 143 => used.extend(one(2).into_iter().chain(listed(3, 4, 1))),
                 144 => used.extend(one(1).into_iter().chain(one(4)).chain(listed(3, 5, 1))),
-                122 | 130 | 190 | 192 | 194 | 196 | 198 | 430 | 510 => used.extend(one(1)),
+                122 | 130 | 162 | 164 | 190 | 192 | 194 | 196 | 198 | 430 | 510 => used.extend(one(1)),
                 102 | 184 => used.extend(listed(1, 2, 1)),
                 504 => used.extend(listed(1, 2, 5)),
                 186 => used.extend(one(1).into_iter().chain(listed(3, 4, 2))),
@@ -305,12 +305,12 @@ impl<'g, 'a> Tree<'g, 'a> {
                 continue;
             }
             match entity.kind() {
-                186 | 510 | 514 if self.is_drawn(entity) => self.solid(entity),
+                162 | 164 | 186 | 510 | 514 if self.is_drawn(entity) => self.solid(entity),
                 430 if self.is_drawn(entity) => match self.instance_of(entity) {
-                    Some(150..=184) => self.boolean(entity),
+                    Some(150..=160 | 166..=184) => self.boolean(entity),
                     _ => self.solid(entity),
                 },
-                150..=180 if self.is_drawn(entity) => self.boolean(entity),
+                150..=160 | 166..=180 if self.is_drawn(entity) => self.boolean(entity),
                 108 if entity.entry.form == 0 => self.not_drawn(entity, "an unbounded surface"),
                 190 | 192 | 194 if !entity.entry.dependent => self.not_drawn(entity, "an unbounded surface"),
                 kind if (matches!(kind, 143 | 144) || SURFACES.contains(&kind)) && self.is_drawn(entity) => {
@@ -392,6 +392,8 @@ impl<'g, 'a> Tree<'g, 'a> {
             Ok(shells) => {
                 let items = |index: usize, each: usize| each * entity.count(index, each).unwrap_or(0);
                 let last = match entity.kind() {
+                    162 => 8,
+                    164 => 5,
                     186 => 3 + items(3, 2),
                     510 => 3 + items(2, 1),
                     514 => 1 + items(1, 2),

@@ -275,6 +275,7 @@ impl<'a> Reader<'a, '_> {
                 Ok(())
             });
         }
+        self.features(&mut listed);
         let orphans = Orphans::find(self.file, &listed);
         for &orphan in &orphans.bodies {
             self.ledger.note("body without representation", orphan, "drawn with the file's first units");
@@ -296,6 +297,25 @@ impl<'a> Reader<'a, '_> {
             self.ledger.note("face without shell", first, format!("{count} of them are drawn as one open shell"));
         }
         self.assembly.loose = orphans.faces;
+    }
+
+    /// Bodies that only aspects of a product list, as what a feature takes away: they are none of its shape, where it has
+    /// one.
+    fn features(&self, listed: &mut BTreeSet<u32>) {
+        if self.assembly.groups.values().all(|group| group.bodies.is_empty()) {
+            return;
+        }
+        for &id in &self.products.aspects {
+            let items = self.entity(id).and_then(|entity| representation(entity).list(1));
+            let units = self.assembly.units_of(id);
+            let geometry = Geometry { file: self.file, units: &units, ledger: self.ledger };
+            for item in items.into_iter().flatten().filter_map(Value::reference) {
+                let is_body = self.entity(item).is_ok_and(|e| matches!(body::role(&geometry, e), Role::Body));
+                if is_body && listed.insert(item) {
+                    self.ledger.ignore("bodies of features", 1);
+                }
+            }
+        }
     }
 
     /// Gathers bodies and placements by group and drops groups without any body below them.

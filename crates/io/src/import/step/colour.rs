@@ -12,19 +12,22 @@
 //!
 //! A face takes its own colour, else its shell's, its solid's, its representation's. An
 //! OVER_RIDING_STYLED_ITEM beats a STYLED_ITEM on the same item. A colour on a MAPPED_ITEM, or one
-//! given for the context of one occurrence, is that instance's.
+//! given for the context of one occurrence, is that instance's: by CONTEXT_DEPENDENT_OVER_RIDING_STYLED_ITEM, whose path
+//! it is, or by PRESENTATION_STYLE_BY_CONTEXT of the occurrence's own representation, for a body.
 //!
 //! The standard names no colour space; every known writer stores what its screen shows, sRGB. The model
 //! wants linear light.
 //!
 //! Source: ISO 10303-46, 6.4 to 6.7.
 
-use super::entity::{Entity, Fault};
+use super::body::{FACES, SHELLS};
+use super::entity::{Entity, Fault, Fields};
 use super::geometry::Ledger;
 use super::part21::{File, Value};
+use super::product::Products;
 use crate::import::colour::linear;
 use crate::model::Colour;
-use std::collections::HashMap;
+use std::collections::{BTreeSet, HashMap};
 
 /// Colours by the number of the styled item.
 #[derive(Debug, Default)]
@@ -32,12 +35,14 @@ pub(super) struct Colours {
     items: HashMap<u32, Colour>,
     /// Colours of single occurrences: by the first relationship of their path, with the others.
     contexts: HashMap<u32, Vec<(Vec<u32>, Colour)>>,
+    /// Colours of bodies, and of representations that list them, by an occurrence's representation and their number.
+    occurrences: HashMap<(u32, u32), Colour>,
 }
 
 /// Style entities that lead to a surface's colour.
 const STYLES: [&str; 9] = [
     "PRESENTATION_STYLE_ASSIGNMENT",
-    "PRESENTATION_STYLE_BY_CONTEXT",
+    BY_CONTEXT,
     "SURFACE_STYLE_USAGE",
     "SURFACE_SIDE_STYLE",
     "SURFACE_STYLE_FILL_AREA",
@@ -46,6 +51,9 @@ const STYLES: [&str; 9] = [
     "SURFACE_STYLE_RENDERING",
     "SURFACE_STYLE_RENDERING_WITH_PROPERTIES",
 ];
+
+/// A style for one context: a representation.
+const BY_CONTEXT: &str = "PRESENTATION_STYLE_BY_CONTEXT";
 
 /// Styles of curves on a surface: its border, its outline, its (u, v) lines. No curve is drawn, and none paints its face.
 const CURVES: [&str; 5] = [
@@ -69,11 +77,12 @@ impl Colours {
     /// Reads all styled items.
     pub fn read(file: &File<'_>, ledger: &Ledger<'_>) -> Self {
         let mut colours = Self::default();
+        let usages = usages(file);
         let context = "CONTEXT_DEPENDENT_OVER_RIDING_STYLED_ITEM";
         for kind in ["STYLED_ITEM", "OVER_RIDING_STYLED_ITEM", context] {
             for id in file.of_kind(kind) {
                 // a style that cannot be read costs its colour, not the shape
-                if let Err(fault) = colours.styled(file, ledger, id, kind == context) {
+                if let Err(fault) = colours.styled(file, ledger, id, (kind == context, &usages)) {
                     ledger.note("colour ignored", id, fault.to_string());
                 }
             }
@@ -86,15 +95,27 @@ impl Colours {
         self.items.get(&id).copied()
     }
 
-    /// The colour of an occurrence: `path` are the relationships that place it.
-    pub fn of_path(&self, path: &[u32]) -> Option<Colour> {
+    /// The colour of an occurrence: `path` are the relationships that place it, `body` is its body and what lists that.
+    pub fn of_path(&self, path: &[u32], body: [u32; 2]) -> Option<Colour> {
+        // the outermost occurrence rules
+        let own = |id: &u32| body.iter().find_map(|item| self.occurrences.get(&(*id, *item)));
+        if let Some(colour) = path.iter().find_map(own) {
+            return Some(*colour);
+        }
         let styles = path.iter().filter_map(|id| self.contexts.get(id)).flatten();
         let styled =
             styles.filter(|(others, _)| others.iter().all(|o| path.contains(o))).map(|(_, colour)| *colour).next();
         styled.or_else(|| path.iter().find_map(|id| self.of_item(*id)))
     }
 
-    fn styled(&mut self, file: &File<'_>, ledger: &Ledger<'_>, id: u32, in_context: bool) -> Result<(), Fault> {
+    /// `usages`: the representations of occurrences.
+    fn styled(
+        &mut self,
+        file: &File<'_>,
+        ledger: &Ledger<'_>,
+        id: u32,
+        (in_context, usages): (bool, &BTreeSet<u32>),
+    ) -> Result<(), Fault> {
         let fields = Entity::find(file, id)?;
         let base = fields.fields("STYLED_ITEM", 1).unwrap_or_else(|_| fields.all().after_name());
         let mut found = Found::default();
@@ -108,6 +129,15 @@ impl Colours {
             return Ok(());
         };
         let colour = linear(rgb, 1.0 - found.transparency.unwrap_or(0.0));
+        if let Some(usage) = occurrence(file, base, usages) {
+            let kinds = Entity::find(file, item)?;
+            if kinds.kinds().any(|k| FACES.contains(&k) || SHELLS.contains(&k)) {
+                ledger.note("colour ignored", id, format!("#{item} is a part of a body, and it is for one occurrence"));
+            } else {
+                self.occurrences.insert((usage, item), colour);
+            }
+            return Ok(());
+        }
         if !in_context {
             self.items.insert(item, colour);
             return Ok(());
@@ -119,6 +149,19 @@ impl Colours {
         }
         Ok(())
     }
+}
+
+/// The representation among `usages` for which a styled item, by its fields behind the name, has its style.
+pub(super) fn occurrence(file: &File<'_>, styled: Fields<'_>, usages: &BTreeSet<u32>) -> Option<u32> {
+    let styles = styled.references(0).ok()?.filter_map(Result::ok);
+    let by_context = |style: u32| Entity::find(file, style).ok()?.fields(BY_CONTEXT, 0).ok()?.optional(1);
+    styles.filter_map(by_context).find(|context| usages.contains(context))
+}
+
+/// The representations of occurrences, where any style is for one context.
+pub(super) fn usages(file: &File<'_>) -> BTreeSet<u32> {
+    let by_context = file.of_kind(BY_CONTEXT).next().is_some();
+    if by_context { Products::of_usages(file) } else { BTreeSet::new() }
 }
 
 /// Follows a style down to its first colour and transparency.

@@ -77,9 +77,13 @@ impl Geometry<'_> {
         let id = entity.id();
         let fields = entity.fields("CURVE_BOUNDED_SURFACE", 1)?;
         let mut bounds = Vec::new();
+        // what is called the outer border goes around the face, whichever way it runs
+        let mut doubtful = false;
         for boundary in fields.references(1)? {
             let mut uses = Vec::new();
-            for segment in self.segments(self.entity(boundary?)?)? {
+            let boundary = self.entity(boundary?)?;
+            doubtful |= boundary.is("OUTER_BOUNDARY_CURVE");
+            for segment in self.segments(boundary)? {
                 let index = match table.by_id.get(&segment.id) {
                     Some(&index) => index,
                     None => {
@@ -103,7 +107,7 @@ impl Geometry<'_> {
             bounds.push(Boundary::Natural);
         }
         let same_sense = !carrier.flipped;
-        Ok(FaceGeometry { id, surface: carrier.surface, bounds, same_sense, doubtful: false })
+        Ok(FaceGeometry { id, surface: carrier.surface, bounds, same_sense, doubtful })
     }
 
     fn bound(&self, id: u32, table: &mut EdgeTable) -> Result<Boundary, Fault> {
@@ -237,17 +241,6 @@ impl EdgeTable {
     fn vertices(&self, bound: &Boundary) -> Vec<DVec3> {
         let Boundary::Edges(uses) = bound else { return Vec::new() };
         uses.iter().flat_map(|(e, _)| [self.edges[*e].start, self.edges[*e].end]).collect()
-    }
-
-    /// Straight edges from point to point.
-    pub fn chain(&mut self, id: u32, points: &[DVec3]) -> Vec<usize> {
-        let first = self.edges.len();
-        self.edges.extend(points.windows(2).filter(|pair| pair[0] != pair[1]).map(|pair| {
-            let (start, end) = (pair[0], pair[1]);
-            let curve = CurveGeometry::Line { origin: start, direction: end - start };
-            Edge { id, curve, start, end, same_sense: true }
-        }));
-        (first..self.edges.len()).collect()
     }
 
     fn add(&mut self, edge: Edge) -> usize {

@@ -35,7 +35,6 @@ mod place;
 mod presentation;
 mod primitive;
 mod product;
-mod replica;
 mod solids;
 mod spline;
 mod surface;
@@ -125,7 +124,7 @@ pub(super) fn read(bytes: &[u8], name: &str, options: &Options<'_>) -> Result<Re
         bodies.push((body, tolerance));
     }
     let mut mentions: BTreeMap<u32, Mention> = BTreeMap::new();
-    for placed in assembly.walk(&colours, &ledger) {
+    for placed in assembly.walk(looks, &ledger) {
         if let Some(documents) = assembly.files.get(&placed.body) {
             let mention = mentions.entry(placed.body).or_insert_with(|| Mention {
                 at: Entity::find(&file, documents[0].0).map_or(Place::File, Entity::place),

@@ -98,8 +98,10 @@ impl Reader<'_, '_> {
                 self.ledger.note("occurrence without placement", usage, "placed at the origin of its parent");
                 (parent, Placement { child, transform: DAffine3::IDENTITY, name, ids: vec![usage] })
             };
-            let placement = at.unwrap_or_else(origin);
-            self.placements.push(placement);
+            let (parent, mut placement) = at.unwrap_or_else(origin);
+            // a style may name the occurrence's own representation
+            placement.ids.extend(self.products.usages.get(&usage).into_iter().flatten());
+            self.placements.push((parent, placement));
         }
     }
 

@@ -33,7 +33,10 @@ impl Orphans {
     pub fn find(file: &File<'_>, listed: &BTreeSet<u32>) -> Self {
         let shape = |kind: &str| {
             let named = [&SOLIDS[..], &MODELS[..], &SETS[..], &SHELLS[..], &FACES[2..], &SWEPT[..]];
-            kind.ends_with("REPRESENTATION") || named.iter().any(|names| names.contains(&kind))
+            // solids of kinds that are not read hold their profiles all the same
+            kind.ends_with("REPRESENTATION")
+                || kind.ends_with("_SOLID")
+                || named.iter().any(|names| names.contains(&kind))
         };
         let holding = held(file, shape);
         let operands = held(file, |kind| EXPRESSIONS.contains(&kind));

@@ -4,7 +4,8 @@
 //!   PRESENTATION_LAYER_ASSIGNMENT('name','',(items))      an item is a styled item, a representation, or
 //!                                                         the geometry itself
 //!   INVISIBILITY((items))                                 an item is a styled item, a layer, or a
-//!                                                         representation: everything on it is hidden
+//!                                                         representation: everything on it is hidden; one with a
+//!                                                         style for an occurrence: hidden in that alone
 //! ```
 //!
 //! Hidden bodies, shells, faces and placements are not drawn, and counted. Dimensions, tolerances and
@@ -12,15 +13,18 @@
 //!
 //! Source: ISO 10303-46, 4.4 and 4.5; CAx-IF Recommended Practices for Model Styling and Organization.
 
-use super::entity::{Entity, Fault};
+use super::colour;
+use super::entity::{Entity, Fault, Fields};
 use super::geometry::Ledger;
 use super::part21::File;
-use std::collections::{BTreeMap, HashSet};
+use std::collections::{BTreeMap, BTreeSet, HashSet};
 
 /// What a file hides, and its layers.
 #[derive(Debug, Default)]
 pub(super) struct Presentation {
     hidden: HashSet<u32>,
+    /// Items that one occurrence hides, behind the occurrence's representation.
+    in_occurrence: HashSet<(u32, u32)>,
     /// Number of items on each layer, by its name.
     pub layers: BTreeMap<String, usize>,
 }
@@ -37,9 +41,10 @@ impl Presentation {
                 Err(fault) => ledger.note("layer ignored", id, fault.to_string()),
             }
         }
+        let usages = colour::usages(file);
         for kind in ["INVISIBILITY", "CONTEXT_DEPENDENT_INVISIBILITY"] {
             for id in file.of_kind(kind) {
-                if let Err(fault) = this.hide(file, ledger, id) {
+                if let Err(fault) = this.hide(file, ledger, &usages, id) {
                     ledger.note("invisibility ignored", id, fault.to_string());
                 }
             }
@@ -60,7 +65,13 @@ impl Presentation {
         self.hidden.contains(&id)
     }
 
-    fn hide(&mut self, file: &File<'_>, ledger: &Ledger<'_>, id: u32) -> Result<(), Fault> {
+    /// The occurrence that a path leads to hides its body: `items` are the body and what lists it.
+    pub fn hides_in(&self, path: &[u32], items: [u32; 2]) -> bool {
+        let hidden = |id: &u32| items.iter().any(|item| self.in_occurrence.contains(&(*id, *item)));
+        !self.in_occurrence.is_empty() && path.iter().any(hidden)
+    }
+
+    fn hide(&mut self, file: &File<'_>, ledger: &Ledger<'_>, usages: &BTreeSet<u32>, id: u32) -> Result<(), Fault> {
         let entity = Entity::find(file, id)?;
         let fields = entity.fields("INVISIBILITY", 0).unwrap_or_else(|_| entity.all());
         for item in fields.references(0)? {
@@ -72,7 +83,11 @@ impl Presentation {
                 let (_, items) = layer(file, item)?;
                 self.hidden.extend(items.into_iter().map(|i| shown(file, i)));
             } else {
-                self.hidden.insert(shown(file, item));
+                let shown = shown(file, item);
+                match styled(found).and_then(|fields| colour::occurrence(file, fields, usages)) {
+                    Some(usage) => _ = self.in_occurrence.insert((usage, shown)),
+                    None => _ = self.hidden.insert(shown),
+                }
             }
         }
         Ok(())
@@ -86,11 +101,13 @@ fn layer(file: &File<'_>, id: u32) -> Result<(String, Vec<u32>), Fault> {
     Ok((fields.text(0), items))
 }
 
+/// The fields behind the name of a styled item.
+fn styled(entity: Entity<'_>) -> Option<Fields<'_>> {
+    let own = entity.fields("STYLED_ITEM", 1).ok();
+    own.or_else(|| entity.fields("OVER_RIDING_STYLED_ITEM", 1).ok())
+}
+
 /// What a styled item gives its style to; other items stand for themselves.
 fn shown(file: &File<'_>, id: u32) -> u32 {
-    let styled = |entity: Entity<'_>| {
-        let own = entity.fields("STYLED_ITEM", 1).ok();
-        own.or_else(|| entity.fields("OVER_RIDING_STYLED_ITEM", 1).ok())?.optional(1)
-    };
-    Entity::find(file, id).ok().and_then(styled).unwrap_or(id)
+    Entity::find(file, id).ok().and_then(styled).and_then(|fields| fields.optional(1)).unwrap_or(id)
 }

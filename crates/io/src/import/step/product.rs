@@ -66,6 +66,15 @@ impl Products {
         Ok(())
     }
 
+    /// Representations of assembly occurrences.
+    pub fn of_usages(file: &File<'_>) -> BTreeSet<u32> {
+        let mut products = Self::default();
+        let of = |id| products.shape(file, id);
+        // what cannot be read is told where products are read
+        file.of_kind("SHAPE_DEFINITION_REPRESENTATION").map(of).for_each(|_| ());
+        products.usages.into_values().flatten().collect()
+    }
+
     /// Name of the product of a product definition; its number when the name is empty.
     pub fn name(file: &File<'_>, definition: u32) -> Option<String> {
         let formation = Entity::find(file, definition).ok()?.all().optional(2)?;

@@ -27,9 +27,8 @@
 
 use super::entity::{Entity, Fault};
 use super::geometry::Geometry;
-use super::replica::Similarity;
 use super::spline;
-use crate::brep::{self, CurveGeometry, Frame, SurfaceGeometry};
+use crate::brep::{self, CurveGeometry, Frame, Similarity, SurfaceGeometry};
 use crate::spline::Surface;
 use glam::DVec3;
 use std::f64::consts::{FRAC_PI_2, TAU};

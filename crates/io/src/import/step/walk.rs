@@ -4,7 +4,7 @@
 //! itself; both are cut off with a note.
 
 use super::assembly::Assembly;
-use super::colour::Colours;
+use super::body::Looks;
 use super::geometry::Ledger;
 use crate::model::Colour;
 use glam::DAffine3;
@@ -37,11 +37,11 @@ const MAX_NAME: usize = 512;
 
 impl Assembly {
     /// Every body once per path from a root, by the rule of `once`.
-    pub fn walk(&self, colours: &Colours, ledger: &Ledger<'_>) -> Vec<Placed> {
+    pub fn walk(&self, looks: Looks<'_>, ledger: &Ledger<'_>) -> Vec<Placed> {
         let roots = self.roots();
         let mut walk = Walk {
             assembly: self,
-            colours,
+            looks,
             ledger,
             trail: Vec::new(),
             placed: Vec::new(),
@@ -63,7 +63,7 @@ impl Assembly {
 
 struct Walk<'w> {
     assembly: &'w Assembly,
-    colours: &'w Colours,
+    looks: Looks<'w>,
     ledger: &'w Ledger<'w>,
     trail: Vec<u32>,
     placed: Vec<Placed>,
@@ -103,8 +103,7 @@ impl Walk<'_> {
         let Some(group) = self.assembly.groups.get(&id) else { return };
         self.trail.push(id);
         self.visited.insert(id);
-        let colour = self.colours.of_path(path);
-        for &(body, _) in &group.bodies {
+        for &(body, listing) in &group.bodies {
             if self.full() {
                 break;
             }
@@ -113,6 +112,11 @@ impl Walk<'_> {
                 continue;
             }
             self.drawn.insert(body);
+            if self.looks.presentation.hides_in(path, [body, listing]) {
+                self.ledger.ignore("hidden occurrences", 1);
+                continue;
+            }
+            let colour = self.looks.colours.of_path(path, [body, listing]);
             self.placed.push(Placed { body, transform, colour, name: name.to_owned() });
         }
         for placement in &group.placements {

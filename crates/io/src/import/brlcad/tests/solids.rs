@@ -214,6 +214,19 @@ fn triangles_close_or_are_left_out() {
     let Shape::Mesh(mesh) = &read.model.solids[0].primitives()[0].shape else { panic!("no mesh") };
     assert_eq!((mesh.triangles().len(), mesh.bounds().max), (4, DVec3::ONE));
     let fault = |text: &str| brlcad(text.as_bytes(), "t.asc").expect_err("open").to_string();
+    // two triangles meet in the middle of another one's side, and a little beside it
+    let junction = |middle: &str| {
+        let more = text("{0 2 4} {4 2 1} {0 1 3} {1 2 3} {2 0 3}", "volume");
+        more.replace("{0 0 1} }", &format!("{{0 0 1}} {{{middle}}} }}"))
+    };
+    for (middle, off) in [("0.5 0 0", "0.000e0"), ("0.5 0 -1e-5", "1.000e-5")] {
+        let read = brlcad(junction(middle).as_bytes(), "t.asc").unwrap();
+        let Shape::Mesh(mesh) = &read.model.solids[0].primitives()[0].shape else { panic!("no mesh") };
+        assert_eq!(mesh.triangles().len(), 6);
+        let told = format!("sides divided: t: 1 sides of triangles, at vertices up to {off} off");
+        assert!(read.warnings.len() == 1 && read.warnings[0].to_string().ends_with(&told), "{:?}", read.warnings);
+    }
+    assert!(fault(&junction("0.5 0 -1e-3")).contains("its triangles do not close"));
     for (faces, mode, message) in [
         ("{0 2 1} {0 1 3} {1 2 3}", "volume", "its triangles do not close"),
         ("{0 2 1} {0 1 3} {1 2 3} {2 0 4}", "volume", "triangle 3 names a vertex that does not exist"),

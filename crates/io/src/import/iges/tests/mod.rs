@@ -7,6 +7,7 @@ mod models;
 mod shapes;
 mod solids;
 mod structure;
+mod swept;
 
 use crate::import::{Import, iges};
 use crate::model::Face;

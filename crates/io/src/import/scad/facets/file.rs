@@ -1,7 +1,7 @@
 //! `import(file)` and `surface(file)`: files beside the one that names them.
 
 use super::solid::Triangles;
-use super::{Body, Region, Shape, drawing, relief};
+use super::{Body, Region, Shape, dxf, relief, svg};
 use crate::import::meshes;
 use crate::import::scad::Fault;
 use crate::import::scad::args::{Args, Value};
@@ -34,7 +34,7 @@ pub(super) fn read(args: &Args<'_>, folder: Option<&Path>) -> Result<(Shape, Vec
             if !(1e-3..=1e6).contains(&dpi) {
                 return Err(args.fault(format!("{dpi} dots an inch")));
             }
-            let region = drawing::svg(&bytes, dpi, args.segments(10.0), args.flag("center")).map_err(wrong)?;
+            let region = svg::region(&bytes, dpi, args.segments(10.0), args.flag("center")).map_err(wrong)?;
             Ok((placed(args, &region)?, Vec::new()))
         }
         "dxf" => {
@@ -42,7 +42,7 @@ pub(super) fn read(args: &Args<'_>, folder: Option<&Path>) -> Result<(Shape, Vec
                 Some(Value::Text(layer)) => layer.as_str(),
                 _ => "",
             };
-            let (region, notes) = drawing::dxf(&bytes, layer, |r| args.segments(r)).map_err(wrong)?;
+            let (region, notes) = dxf::region(&bytes, layer, |r| args.segments(r)).map_err(wrong)?;
             let notes = notes.into_iter().map(|n| format!("{file}: {n}")).collect();
             Ok((placed(args, &region)?, notes))
         }

@@ -10,7 +10,7 @@
 //! Inside of such a node every node is evaluated when its last child is complete; outside, solids stay exact.
 
 mod cells;
-mod drawing;
+mod dxf;
 mod file;
 mod gather;
 mod hull;
@@ -19,6 +19,7 @@ mod place;
 mod region;
 mod relief;
 mod solid;
+mod svg;
 #[cfg(test)]
 mod tests;
 mod text;

@@ -110,6 +110,57 @@ fn occurrences_have_their_own_colour() {
     assert_eq!(colours, [None, Some(RED)]);
 }
 
+/// A part that is used twice, with a style for the representation of each occurrence.
+#[test]
+fn an_occurrence_has_the_colour_of_its_own_representation() {
+    let found = |item: u32, context: u32, more: &str| {
+        let part = |id: u32, name: &str| {
+            format!(
+                "#{id}=PRODUCT_DEFINITION('','',#{f},$);#{f}=PRODUCT_DEFINITION_FORMATION('','',#{p});#{p}=PRODUCT('{name}','{name}','',());",
+                f = id + 1,
+                p = id + 2
+            )
+        };
+        let usage = |id: u32, frame: u32| {
+            let [c, r, t, s, d, own] = [1, 2, 3, 4, 5, 6].map(|i| id + i);
+            format!(
+                "#{id}=NEXT_ASSEMBLY_USAGE_OCCURRENCE('{id}','','',#110,#100,$);#{c}=CONTEXT_DEPENDENT_SHAPE_REPRESENTATION(#{r},#{s});\
+                 #{r}=(REPRESENTATION_RELATIONSHIP('','',#19,#132)REPRESENTATION_RELATIONSHIP_WITH_TRANSFORMATION(#{t})SHAPE_REPRESENTATION_RELATIONSHIP());\
+                 #{t}=ITEM_DEFINED_TRANSFORMATION('','',#120,#{frame});#{s}=PRODUCT_DEFINITION_SHAPE('','',#{id});\
+                 #{d}=SHAPE_DEFINITION_REPRESENTATION(#{s},#{own});#{own}=SHAPE_REPRESENTATION('',(#{frame}),#1);"
+            )
+        };
+        let frames = "#120=AXIS2_PLACEMENT_3D('',#11,$,$);#121=AXIS2_PLACEMENT_3D('',#12,$,$);\
+            #130=PRODUCT_DEFINITION_SHAPE('','',#100);#131=SHAPE_DEFINITION_REPRESENTATION(#130,#19);\
+            #133=PRODUCT_DEFINITION_SHAPE('','',#110);#132=SHAPE_REPRESENTATION('',(#120,#121),#1);#134=SHAPE_DEFINITION_REPRESENTATION(#133,#132);";
+        let shape = SHAPE.replace("(#18),#1)", "(#18,#120),#1)");
+        let styles = format!(
+            "#90=STYLED_ITEM('',(#91),#{item});#91=PRESENTATION_STYLE_BY_CONTEXT((#51),#{context});\
+             #92=STYLED_ITEM('',(#93),#18);#93=PRESENTATION_STYLE_BY_CONTEXT((#41),#146);"
+        );
+        let all = [part(100, "a"), part(110, "b"), usage(140, 120), usage(150, 121)].concat();
+        let found = import(&[&shape, PALETTE, &style(40, 81), &style(50, 82), &all, frames, &styles, more].concat());
+        let colours: Vec<_> = found.model.instances.iter().map(|i| i.colour).collect();
+        let own = found.model.parts.first().and_then(|p| p.faces[0].colour);
+        (colours, own, found.warnings.iter().map(ToString::to_string).collect::<Vec<_>>())
+    };
+    // each its own; by the representation that lists the body
+    for item in [18, 19] {
+        assert_eq!(found(item, 156, ""), (vec![Some(GREEN), Some(RED)], None, Vec::new()), "#{item}");
+    }
+    // hidden there, or everywhere
+    assert_eq!(found(18, 156, "#95=INVISIBILITY((#90));"), (vec![Some(GREEN)], None, Vec::new()));
+    assert_eq!(found(18, 156, "#95=INVISIBILITY((#18));").0, []);
+    // the context is that of the part itself: no occurrence's
+    assert_eq!(found(18, 19, ""), (vec![Some(GREEN), None], Some(RED), Vec::new()));
+    let (colours, own, told) = found(16, 156, "");
+    assert_eq!((colours, own), (vec![Some(GREEN), None], None));
+    assert!(
+        told.len() == 1 && told[0].ends_with("colour ignored: #16 is a part of a body, and it is for one occurrence"),
+        "{told:?}"
+    );
+}
+
 #[test]
 fn a_style_that_refers_to_itself_costs_its_colour() {
     let cyclic =

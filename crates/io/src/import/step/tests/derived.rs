@@ -276,6 +276,41 @@ fn an_implicit_outer_border_makes_curves_holes() {
     }
 }
 
+/// Three quarter circles on a sphere of radius 2, either way around: a boundary says which part it means by its direction,
+/// an outer one goes around the face.
+#[test]
+fn an_outer_border_goes_around_its_face() {
+    let arc = |id: u32, z: u32, x: u32| {
+        format!(
+            "#{id}=TRIMMED_CURVE('',#{},(PARAMETER_VALUE(0.)),(PARAMETER_VALUE(1.5707963267948966)),.T.,.PARAMETER.);\
+             #{}=CIRCLE('',#{},2.);#{}=AXIS2_PLACEMENT_3D('',#11,#{z},#{x});",
+            id + 1,
+            id + 1,
+            id + 2,
+            id + 2
+        )
+    };
+    let shape = "#1=(GEOMETRIC_REPRESENTATION_CONTEXT(3) REPRESENTATION_CONTEXT('',''));#11=CARTESIAN_POINT('',(0.,0.,0.));\
+        #12=DIRECTION('',(1.,0.,0.));#13=DIRECTION('',(0.,1.,0.));#14=DIRECTION('',(0.,0.,1.));\
+        #20=SPHERICAL_SURFACE('',#42,2.);#30=GEOMETRIC_SET('',(#21));#31=SHAPE_REPRESENTATION('',(#30),#1);";
+    let arcs = [arc(40, 14, 12), arc(43, 12, 13), arc(46, 13, 14)].concat();
+    for (kind, sense, order, least, told) in [
+        ("BOUNDARY_CURVE", ".T.", "#51,#52,#53", 0.0, 0),
+        ("BOUNDARY_CURVE", ".F.", "#53,#52,#51", -2.0, 0),
+        ("OUTER_BOUNDARY_CURVE", ".T.", "#51,#52,#53", 0.0, 0),
+        ("OUTER_BOUNDARY_CURVE", ".F.", "#53,#52,#51", 0.0, 1),
+    ] {
+        let segment = |id: u32, arc: u32| format!("#{id}=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,{sense},#{arc});");
+        let segments = [segment(51, 40), segment(52, 43), segment(53, 46)].concat();
+        let border = format!("#22={kind}('',({order}),.F.);#21=CURVE_BOUNDED_SURFACE('',#20,(#22),.F.);");
+        let found = import(&[shape, &arcs, &segments, &border].concat());
+        let bounds = found.model.bounds();
+        assert!((bounds.min - DVec3::splat(least)).abs().max_element() < 1e-9, "{kind} {sense}: {bounds:?}");
+        let warned = found.warnings.iter().filter(|w| w.message.contains("the smaller one is taken")).count();
+        assert_eq!((warned, found.warnings.len()), (told, told), "{kind} {sense}: {:?}", found.warnings);
+    }
+}
+
 #[test]
 fn splines_that_break() {
     let part = "#40=CARTESIAN_POINT('',(6.,0.,0.));#41=CARTESIAN_POINT('',(9.,0.,0.));#42=CARTESIAN_POINT('',(6.,4.,0.));#43=CARTESIAN_POINT('',(9.,4.,0.));";

@@ -1,6 +1,7 @@
 //! One occurrence, one instance: views, copies and mapped items that mention it add none.
 
 use super::assemblies::{TRIANGLE, near, occurrence, product};
+use super::colours::SHAPE;
 use super::import;
 use crate::import::{Import, step};
 use glam::DVec3;
@@ -144,4 +145,21 @@ fn a_ring_beside_a_tree_is_not_lost() {
     let found = stated_and("", &data.concat());
     assert_eq!(found.model.instances.len(), 2);
     assert!(found.warnings.iter().any(|w| w.message.contains("contains itself")), "{:?}", found.warnings);
+}
+
+/// A second model of one triangle, which an aspect of the product has for its shape.
+#[test]
+fn the_body_of_a_feature_is_none_of_the_part() {
+    let product = "#100=PRODUCT_DEFINITION('','',#101,$);#101=PRODUCT_DEFINITION_FORMATION('','',#102);#102=PRODUCT('a','a','',());\
+        #130=PRODUCT_DEFINITION_SHAPE('','',#100);#131=SHAPE_DEFINITION_REPRESENTATION(#130,#19);\
+        #160=SHAPE_ASPECT('','',#130,.T.);#161=PROPERTY_DEFINITION('','',#160);#162=SHAPE_DEFINITION_REPRESENTATION(#161,#163);\
+        #163=SHAPE_REPRESENTATION('explicit geometry branch',(#165),#1);#165=SHELL_BASED_SURFACE_MODEL('',(#166));#166=OPEN_SHELL('',(#26));";
+    let found = import(&[SHAPE, product].concat());
+    assert_eq!(counts(&found), (1, 2, vec![]));
+    assert_eq!(found.report.ignored["bodies of features"], 1);
+    // a file that has lost the part's own shape draws what it has
+    let lost = SHAPE.replace("(#18),#1)", "(),#1)").replace("#18=SHELL_BASED_SURFACE_MODEL('',(#17));", "");
+    let found = import(&[&lost, product].concat());
+    assert!(found.warnings.iter().any(|w| w.to_string().contains("#165: body without")), "{:?}", found.warnings);
+    assert!(!found.report.ignored.contains_key("bodies of features"));
 }

@@ -104,6 +104,22 @@ fn revolved_areas() {
             ([0.0, 1.0, 0.0], false),
         ],
     );
+    // half a disk about its diameter: a ball, and a quarter of one
+    let half = "#90=CURVE_BOUNDED_SURFACE('',#63,(#91),.F.);#91=BOUNDARY_CURVE('',(#92,#93),.F.);\
+        #92=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#94);#94=TRIMMED_CURVE('',#64,(PARAMETER_VALUE(270.)),(PARAMETER_VALUE(90.)),.T.,.PARAMETER.);\
+        #93=COMPOSITE_CURVE_SEGMENT(.CONTINUOUS.,.T.,#95);#95=POLYLINE('',(#96,#97));\
+        #96=CARTESIAN_POINT('',(3.,1.5,0.));#97=CARTESIAN_POINT('',(3.,0.5,0.));#98=AXIS1_PLACEMENT('',#61,#3)";
+    for (angle, behind) in [("360.", true), ("90.", false)] {
+        check(
+            &format!("REVOLVED_AREA_SOLID('',#90,#98,{angle});{half}"),
+            &[
+                ([3.1, 1.0, -0.5 + 0.02], true),
+                ([3.1, 1.0, -0.5], false),
+                ([3.0 + E, 1.5 - 2.0 * E, -E], true),
+                ([2.8, 1.0, 0.1], behind),
+            ],
+        );
+    }
     // an area with a side on the axis: a cylinder, and a quarter of one
     let touching = "#91=AXIS1_PLACEMENT('',#71,#3)";
     for (angle, behind) in [("360.", true), ("90.", false)] {
@@ -229,6 +245,18 @@ fn swept_solids_are_bodies_too() {
     assert_eq!((part.closed, part.faces.len(), found.model.instances.len()), (true, 7, 1));
 }
 
+/// The profile of a solid of a kind that is not read is no face of its own.
+#[test]
+fn a_profile_is_not_drawn_by_itself() {
+    let face = "#99=FACE_SURFACE('',(#98),#63,.T.);#98=FACE_OUTER_BOUND('',#97,.T.);#97=POLY_LOOP('',(#71,#72,#73))";
+    let found = solid(&format!("PARAMETRIC_EXTRUDED_FACE_SOLID('',#99,#62,1.);{face}"));
+    assert_eq!(found.model.face_count(), 0, "{:?}", found.warnings);
+    assert!(told(&found)[0].contains("#51 is PARAMETRIC_EXTRUDED_FACE_SOLID"), "{:?}", found.warnings);
+    // one that nothing refers to is
+    let found = solid(&format!("PARAMETRIC_EXTRUDED_FACE_SOLID('',#80,#62,1.);{face}"));
+    assert_eq!(found.model.face_count(), 1, "{:?}", found.warnings);
+}
+
 #[test]
 fn what_cannot_be_swept_is_told() {
     let pipe = |from: &str, to: &str| {
@@ -242,6 +270,8 @@ fn what_cannot_be_swept_is_told() {
         ("EXTRUDED_AREA_SOLID('',#99,#62,1.);#99=CURVE_BOUNDED_SURFACE('',#98,(#82),.F.);#98=SPHERICAL_SURFACE('',#60,0.5)".into(), "#51: what is swept is not plane"),
         ("REVOLVED_AREA_SOLID('',#80,#65,0.)".into(), "#51: the angle is 0"),
         ("REVOLVED_AREA_SOLID('',#80,#99,90.);#99=AXIS1_PLACEMENT('',#61,#3)".into(), "#51: the axis crosses what turns"),
+        // a circle, whose vertex lies on one side
+        ("REVOLVED_AREA_SOLID('',#81,#99,90.);#99=AXIS1_PLACEMENT('',#61,#3)".into(), "#51: the axis crosses what turns"),
         ("REVOLVED_AREA_SOLID('',#80,#99,90.);#99=AXIS1_PLACEMENT('',#6,#98);#98=DIRECTION('',(0.,1.,1.))".into(), "#51: the axis does not lie in the plane of what turns"),
         ("SWEPT_DISK_SOLID('',#64,-1.,$,$,$)".into(), "#51: attribute 2 is not a length above 0"),
         ("SWEPT_DISK_SOLID('',#64,0.5,$,$,$)".into(), "#51: the tube folds: it is as wide as its arc"),

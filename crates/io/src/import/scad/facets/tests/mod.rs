@@ -5,7 +5,7 @@ mod font;
 use super::cells::{self, Cell};
 use super::region::{Join, Region};
 use super::solid::{Body, Part, Triangles};
-use super::{Budget, drawing, hull, relief};
+use super::{Budget, dxf, hull, relief, svg};
 use crate::model::Bounds;
 use glam::{DAffine2, DAffine3, DVec2, DVec3};
 
@@ -226,37 +226,99 @@ fn height_maps() {
 fn drawings() {
     let sheet = r#"<svg xmlns="http://www.w3.org/2000/svg" width="40mm" height="20mm" viewBox="0 0 80 40">
         <rect x="10" y="10" width="20" height="10"/><g transform="translate(40 0)"><path d="M10 20h10v10z"/></g></svg>"#;
-    let region = drawing::svg(sheet.as_bytes(), 72.0, 30.0, false).unwrap();
+    let region = svg::region(sheet.as_bytes(), 72.0, 30.0, false).unwrap();
     // half a millimetre a unit; usvg keeps single floats
     assert!((region.area() - 50.0 - 12.5).abs() < 1e-4, "{}", region.area());
     let low = region.corners().fold(DVec2::INFINITY, DVec2::min);
     assert!(low.distance(DVec2::new(5.0, 5.0)) < 1e-5, "{low}: y runs upwards from the lower edge");
-    assert!(drawing::svg(b"<svg", 72.0, 30.0, false).is_err());
+    assert!(svg::region(b"<svg", 72.0, 30.0, false).is_err());
 
     let wrap = |body: &str| format!("0\nSECTION\n2\nENTITIES\n{body}0\nENDSEC\n0\nEOF\n");
     let line =
         |a: [i32; 2], b: [i32; 2]| format!("0\nLINE\n8\na\n10\n{}\n20\n{}\n11\n{}\n21\n{}\n", a[0], a[1], b[0], b[1]);
     // three lines in any order and direction, a circle as a square, a polyline with two half circles of radius 1
     let triangle = [line([0, 0], [4, 0]), line([0, 3], [4, 0]), line([0, 3], [0, 0])].concat();
-    let (region, notes) = drawing::dxf(wrap(&triangle).as_bytes(), "", |_| 4.0).unwrap();
+    let (region, notes) = dxf::region(wrap(&triangle).as_bytes(), "", |_| 4.0).unwrap();
     near(region.area(), 6.0);
     assert!(notes.is_empty());
     let circle = "0\nCIRCLE\n8\nb\n10\n20\n20\n0\n40\n1\n";
-    let (region, _) = drawing::dxf(wrap(&(triangle.clone() + circle)).as_bytes(), "b", |_| 4.0).unwrap();
+    let (region, _) = dxf::region(wrap(&(triangle.clone() + circle)).as_bytes(), "b", |_| 4.0).unwrap();
     near(region.area(), 2.0);
     let slot = "0\nLWPOLYLINE\n70\n1\n10\n0\n20\n-1\n10\n5\n20\n-1\n42\n1\n10\n5\n20\n1\n10\n0\n20\n1\n42\n1\n";
-    let (region, _) = drawing::dxf(wrap(slot).as_bytes(), "", |_| 4.0).unwrap();
+    let (region, _) = dxf::region(wrap(slot).as_bytes(), "", |_| 4.0).unwrap();
     near(region.area(), 10.0 + 2.0);
     let (region, notes) =
-        drawing::dxf(wrap(&(line([0, 0], [1, 0]) + "0\nTEXT\n8\na\n")).as_bytes(), "", |_| 4.0).unwrap();
+        dxf::region(wrap(&(line([0, 0], [1, 0]) + "0\nTEXT\n8\na\n")).as_bytes(), "", |_| 4.0).unwrap();
     assert!(region.is_empty());
     assert_eq!(notes, ["1 of TEXT are not read", "1 runs do not close"]);
+    let (_, notes) = dxf::region(wrap("0\nINSERT\n2\nno\n").as_bytes(), "", |_| 4.0).unwrap();
+    assert_eq!(notes, ["the block \"no\" of an INSERT is not there"]);
     for (text, message) in [
         ("0\nSECTION\n2\nENTITIES\n0\nLINE\n", "cut off"),
         ("0\nSECTION\n2\n", "the file ends in line 3"),
         ("zero\nSECTION\n", "line 1 holds no group code"),
     ] {
-        let error = drawing::dxf(text.as_bytes(), "", |_| 4.0).unwrap_err();
+        let error = dxf::region(text.as_bytes(), "", |_| 4.0).unwrap_err();
         assert!(error.contains(message), "{error}");
     }
+}
+
+/// A triangle of area 6, and a square of 2 about (20, 0) on another layer.
+#[test]
+fn blocks_of_drawings() {
+    let line = |a: [i32; 2], b: [i32; 2]| format!("0\nLINE\n10\n{}\n20\n{}\n11\n{}\n21\n{}\n", a[0], a[1], b[0], b[1]);
+    let triangle = [line([0, 0], [4, 0]), line([4, 0], [0, 3]), line([0, 3], [0, 0])].concat();
+    let block = |name: &str, base: i32, body: &str| {
+        format!("0\nBLOCK\n8\n0\n2\n{name}\n10\n{base}\n20\n0\n{body}0\nENDBLK\n8\n0\n")
+    };
+    let insert = |name: &str, more: &str| format!("0\nINSERT\n8\na\n2\n{name}\n10\n100\n20\n50\n{more}");
+    let read = |blocks: &[String], entities: &str, layer: &str| {
+        let text = format!(
+            "0\nSECTION\n2\nBLOCKS\n{}0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{entities}0\nENDSEC\n0\nEOF\n",
+            blocks.concat()
+        );
+        dxf::region(text.as_bytes(), layer, |_| 4.0).unwrap()
+    };
+    let blocks = [block("T", 0, &triangle), block("TT", 0, &insert("T", ""))];
+    let bounds = |region: &Region| {
+        let all: Vec<DVec2> = region.corners().collect();
+        let (low, high) = all.iter().fold((all[0], all[0]), |(l, h), p| (l.min(*p), h.max(*p)));
+        [low.x, low.y, high.x, high.y]
+    };
+    // a block that nothing inserts is not drawn
+    assert!(read(&blocks, "", "").0.is_empty());
+    let (region, notes) = read(&blocks, &insert("T", ""), "a");
+    near(region.area(), 6.0);
+    assert_eq!((bounds(&region), notes.len()), ([100.0, 50.0, 104.0, 53.0], 0));
+    assert!(read(&blocks, &insert("T", ""), "b").0.is_empty());
+    // mirrored and twice as high, then turned by a right angle: (4, 0) goes to (-4, 0) and (0, -4), (0, 3) to (0, 6) and (-6, 0)
+    let (region, _) = read(&blocks, &insert("T", "41\n-1\n42\n2\n50\n90\n"), "");
+    near(region.area(), 12.0);
+    for (found, wanted) in bounds(&region).into_iter().zip([94.0, 46.0, 100.0, 50.0]) {
+        assert!((found - wanted).abs() < 1e-12, "{found}, not {wanted}");
+    }
+    // a block in a block, moved twice
+    let (region, _) = read(&blocks, &insert("TT", ""), "");
+    near(region.area(), 6.0);
+    assert_eq!(bounds(&region), [200.0, 100.0, 204.0, 103.0]);
+    // what is not as the file states it
+    for (blocks, entity, note) in [
+        (vec![block("T", 7, &triangle)], insert("T", ""), "the base point of the block \"T\""),
+        (blocks.to_vec(), insert("T", "70\n3\n44\n9\n"), "the block \"T\" is drawn once"),
+        (vec![block("A", 0, &insert("A", ""))], insert("A", ""), "the block \"A\" is within itself"),
+        (vec![block("A", 0, "0\nTEXT\n")], insert("A", ""), "1 of TEXT are not read"),
+    ] {
+        let (_, notes) = read(&blocks, &entity, "");
+        assert!(notes.len() == 1 && notes[0].starts_with(note), "{notes:?}");
+    }
+    // 10^30 uses
+    let many: Vec<String> =
+        (0..30).map(|i| block(&format!("{i}"), 0, &insert(&format!("{}", i + 1), "").repeat(10))).collect();
+    let text = format!(
+        "0\nSECTION\n2\nBLOCKS\n{}{}0\nENDSEC\n0\nSECTION\n2\nENTITIES\n{}0\nENDSEC\n0\nEOF\n",
+        many.concat(),
+        block("30", 0, &triangle),
+        insert("0", "")
+    );
+    assert!(dxf::region(text.as_bytes(), "", |_| 4.0).unwrap_err().contains("corners"));
 }

@@ -1,15 +1,15 @@
-//! Copies of curves and surfaces under a similarity: replicas, and plane curves put into space.
+//! Copies of curves and surfaces under a similarity: replicas, plane curves put into space, and what sweeps move.
 //!
 //! Parameters stay, but for a mirrored surface whose formula wants a right-handed frame: there `u` runs
 //! the other way, and the normal of the formula is the opposite of the copy's.
 
-use crate::brep::{CurveGeometry, Frame, SurfaceGeometry};
+use super::{CurveGeometry, Frame, SurfaceGeometry};
 use crate::spline::{BSpline, Control, Surface};
 use glam::{DAffine3, DVec3, DVec4};
 
 /// How a similarity maps frames and lengths.
 #[derive(Clone, Copy, Debug)]
-pub(super) struct Similarity {
+pub struct Similarity {
     map: DAffine3,
     scale: f64,
     mirrored: bool,
