@@ -254,7 +254,7 @@ pub struct SceneSettings {
     /// later change no shadow.
     pub sun: Option<DVec3>,
     /// Lines along edges; `None`: no lines, and nothing that lines need. Edges of parts and meshes are found when the model
-    /// is uploaded; Boolean solids have none.
+    /// is uploaded; loops that are edited later move no line. Boolean solids have none.
     pub edges: Option<EdgeSettings>,
     /// Most bytes that the lists of [`SolidWay::Events`] take: which primitives each tile of 16 x 16 pixels sees, and
     /// where each pixel's ray crosses operands that are meshes or spline parts. Where they would take more, the picture

@@ -37,9 +37,22 @@ layout(scalar, push_constant) uniform Push {
 #include "patch.glsl"
 #include "refine.glsl"
 #include "visible.glsl"
-#include "edge_seen.glsl"
 
 layout(location = 0) flat in uint chord;
+
+bool is_own(uint instance, uint key) {
+    EdgeItem item = edge_items[chords[chord].item];
+    EdgeLine line = edge_lines[edge_pieces[item.piece].edge];
+    bool found = false;
+    for (uint i = 0u; i < line.own_count && !found; ++i) found = own_faces[line.first_own + i] == key;
+    return found && texelFetch(sources, int(instance)).y == item.instance;
+}
+
+bool is_own_face(FaceInstance fi) { return is_own(fi.instance, word_at(face_keys, fi.face)); }
+
+bool is_own_triangle(uint instance, uint triangle) { return is_own(instance, OWN_TRIANGLE | triangle); }
+
+#include "edge_seen.glsl"
 
 // Dashes of hidden lines and the gaps between them, in half widths of lines.
 const float DASH = 8.0;
@@ -85,7 +98,7 @@ void main() {
     EdgeItem item = edge_items[c.item];
     EdgePiece piece = edge_pieces[item.piece];
     EdgePoint e = point_at(c, share, piece, view_at(item.placement));
-    if (!is_seen(e, edge_lines[piece.edge], item.instance, at)) {
+    if (!is_seen(e, at)) {
         steps = uint(covered * dash(along, gl_FragCoord.xy, half_px) * LINE_STEPS + 0.5);
         if (push.hidden == 0u || steps == 0u) return;
         best = steps << LINE_COVERAGE | chord;

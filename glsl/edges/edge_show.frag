@@ -48,6 +48,10 @@ void main() {
         vec3 mixed = (encoded * opacity + behind.rgb * rest) / max(opacity + rest, 1e-6);
         out_colour.rgb = max(mixed - behind.rgb * (1.0 - opacity), 0.0);
     }
-    EdgeItem item = edge_items[chords[line & LINE_CHORD].item];
-    if (HAS_EDGE_IMAGE) out_edge = covered >= EDGE_COVERS ? edge_lines[edge_pieces[item.piece].edge].number : 0u;
+    if (!HAS_EDGE_IMAGE) return;
+    uint number = FOLD_NUMBER;
+    if ((line & LINE_CHORD) != LINE_FOLD) {
+        number = edge_lines[edge_pieces[edge_items[chords[line & LINE_CHORD].item].piece].edge].number;
+    }
+    out_edge = covered >= EDGE_COVERS ? number : 0u;
 }

@@ -9,9 +9,9 @@
 // exact surface, and the point compared with the tangent plane there. Nothing is pushed nearer: a face of another may be
 // behind by rounding alone. A sheet of an own face counts as the edge's when the point is within OWN_SHEET_PX of its
 // tangent plane; where two sheets come together, at a fold, that moves the end of a line by a quarter of it. Needs
-// placed.glsl, patch.glsl, refine.glsl, visible.glsl, facet.glsl, edges.glsl, `frame`, buffers `uint own_faces[]`,
-// `MeshInstance mesh_instances[]`, and texels `face_keys`,
-// `sources`.
+// placed.glsl, patch.glsl, refine.glsl, visible.glsl, edges.glsl, `frame`, buffers `MeshInstance mesh_instances[]`, `uint
+// triangles[]`, `vec3 positions[]`; whoever includes this has `bool is_own_face(FaceInstance)` and
+// `bool is_own_triangle(uint instance, uint triangle)`.
 #ifndef EDGE_SEEN_GLSL
 #define EDGE_SEEN_GLSL
 
@@ -38,17 +38,11 @@ float before_plane(vec3 point, vec3 on, vec3 n) {
     return -dot(point - on, n) * sign(dot(n, ray)) / length(n);
 }
 
-bool is_own(EdgeLine line, uint key) {
-    bool found = false;
-    for (uint i = 0u; i < line.own_count && !found; ++i) found = own_faces[line.first_own + i] == key;
-    return found;
-}
-
 float own_slack(vec3 point) {
     return OWN_SHEET_PX * (frame.perspective != 0u ? point.z : 1.0) / frame.focal + PLACE_ROUNDING * point.z;
 }
 
-bool is_before_patch(EdgePoint e, EdgeLine line, uint instance, uvec2 seen) {
+bool is_before_patch(EdgePoint e, uvec2 seen) {
     uint item = seen_item(seen.x);
     FaceInstance fi = face_instance_at(face_instance_of(item));
     Face face = face_at(fi.face);
@@ -59,14 +53,13 @@ bool is_before_patch(EdgePoint e, EdgeLine line, uint instance, uvec2 seen) {
     vec3 du = seen_from_eye(to_pixel(view, vec4(s.jet.du, 0.0)));
     vec3 dv = seen_from_eye(to_pixel(view, vec4(s.jet.dv, 0.0)));
     float before = before_plane(e.place, on, cross(normalize(du), normalize(dv)));
-    bool own = texelFetch(sources, int(fi.instance)).y == instance && is_own(line, word_at(face_keys, fi.face));
-    if (own) return !(before < -own_slack(e.place));
+    if (is_own_face(fi)) return !(before < -own_slack(e.place));
     // its sheet ends before it gets there, at a fold: or it has no tangent plane
     if (!(length(s.miss) <= ARRIVED_PX) || isnan(before)) return e.place.z <= on.z;
     return before >= -PLACE_ROUNDING * e.place.z;
 }
 
-bool is_before_mesh(EdgePoint e, EdgeLine line, uint instance, uvec2 seen) {
+bool is_before_mesh(EdgePoint e, uvec2 seen) {
     MeshInstance placed = mesh_instances[seen_mesh_instance(seen.x)];
     View view = view_at(placed.instance);
     vec3 a = positions[triangles[3u * seen.y]];
@@ -76,8 +69,7 @@ bool is_before_mesh(EdgePoint e, EdgeLine line, uint instance, uvec2 seen) {
     vec3 c = seen_from_eye(to_pixel(view, vec4(ac, 0.0)));
     vec3 on = seen_from_eye(to_pixel(view, vec4(a, 1.0)));
     float before = before_plane(e.place, on, cross(normalize(b), normalize(c)));
-    bool own = texelFetch(sources, int(placed.instance)).y == instance && is_own(line, OWN_TRIANGLE | seen.y);
-    if (own) return !(before < -own_slack(e.place));
+    if (is_own_triangle(placed.instance, seen.y)) return !(before < -own_slack(e.place));
     return !(before < -PLACE_ROUNDING * e.place.z);
 }
 
@@ -108,14 +100,13 @@ bool is_before_solid(EdgePoint e, ivec2 at, uvec2 seen) {
     return e.place.z <= follows * (1.0 + PLACE_ROUNDING);
 }
 
-// Of instance `instance`, from 1 on.
-bool is_seen(EdgePoint e, EdgeLine line, uint instance, ivec2 at) {
+bool is_seen(EdgePoint e, ivec2 at) {
     uvec2 seen = imageLoad(visibility, at).xy;
     if (SCENE_HAS_MESHES_OR_SOLIDS && sees_nothing(seen.x)) seen = imageLoad(others, at).xy;
     if (sees_nothing(seen.x)) return true;
-    if (SCENE_HAS_MESHES && sees_mesh(seen.x)) return is_before_mesh(e, line, instance, seen);
+    if (SCENE_HAS_MESHES && sees_mesh(seen.x)) return is_before_mesh(e, seen);
     if (sees_other(seen.x)) return is_before_solid(e, at, seen);
-    return is_before_patch(e, line, instance, seen);
+    return is_before_patch(e, seen);
 }
 
 #endif

@@ -45,6 +45,10 @@ const uint LINE_SEEN = 0x80000000u;
 const uint LINE_COVERAGE = 24u;
 const float LINE_STEPS = 127.0;
 const uint LINE_CHORD = 0xffffffu;
+// In a chord's place: the outline of a curved face.
+const uint LINE_FOLD = LINE_CHORD;
+// Its number in the image `edge`.
+const uint FOLD_NUMBER = 0xffffffffu;
 
 // Share of the pixel that a line covers whose middle runs so far from the pixel's centre: exact where it runs along
 // columns or rows.

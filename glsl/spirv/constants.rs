@@ -50,6 +50,13 @@ pub mod edge_divide {
     pub const EDGE_OUTSIDE: u32 = 0;
     pub const EDGE_TOLERANCE_PX: f32 = 0.09;
 }
+pub mod edge_fold {
+    pub const FOLD_BESIDE: f32 = 0.25;
+    pub const FOLD_COSINE: f32 = 0.2;
+    pub const FOLD_REACH_PX: f32 = 1.5;
+    pub const FOLD_STEPS: u32 = 8;
+    pub const SAME_PLACE: f32 = 0.05;
+}
 pub mod edge_line {
     pub const DASH: f32 = 8.0;
     pub const GAP: f32 = 6.0;
@@ -66,6 +73,7 @@ pub mod edge_show {
 pub mod edges {
     pub const EDGE_FULL: u32 = 0;
     pub const EDGE_THIN: u32 = 1;
+    pub const FOLD_NUMBER: u32 = 0xffffffff;
     pub const LINE_CHORD: u32 = 0xffffff;
     pub const LINE_COVERAGE: u32 = 24;
     pub const LINE_SEEN: u32 = 0x80000000;

@@ -52,6 +52,8 @@ pub(crate) struct Counts {
     pub shadowless: u32,
     /// Pieces of edges that lines are drawn along.
     pub edge_items: u32,
+    /// There are lines, along edges or around curved faces.
+    pub lines: bool,
 }
 
 impl Counts {
@@ -85,6 +87,7 @@ impl Counts {
             open: count(data.open),
             shadowless: count(data.shadowless),
             edge_items: data.edges.as_ref().map_or(0, |edges| count(edges.items.len())),
+            lines: data.has_lines(),
         }
     }
 

@@ -38,6 +38,8 @@ mod cross;
 #[cfg(feature = "headless")]
 mod density;
 #[cfg(feature = "headless")]
+mod edges;
+#[cfg(feature = "headless")]
 mod emit;
 #[cfg(feature = "headless")]
 mod frame;

@@ -12,6 +12,8 @@ pub struct EdgeSettings {
     pub which: EdgeChoice,
     /// Edges across which the surface goes on without a visible angle.
     pub tangent: TangentEdges,
+    /// Outlines of curved faces, where they fold away from the eye.
+    pub silhouettes: bool,
     /// Lines behind faces, too: dashed, in [`hidden_colour`](Self::hidden_colour).
     pub hidden: bool,
     /// Pixels at a height of 1080; from 0 to [`MOST_WIDTH`](Self::MOST_WIDTH).
@@ -25,11 +27,12 @@ pub struct EdgeSettings {
 }
 
 impl Default for EdgeSettings {
-    /// All edges, 1.25 pixels wide and nearly black, tangent ones thin, hidden ones not at all.
+    /// All edges, 1.25 pixels wide and nearly black, tangent ones thin, hidden ones and silhouettes not at all.
     fn default() -> Self {
         Self {
             which: EdgeChoice::All,
             tangent: TangentEdges::Thin,
+            silhouettes: false,
             hidden: false,
             width: 1.25,
             thin_width: 0.6,

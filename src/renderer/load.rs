@@ -34,7 +34,7 @@ impl Source<'_> {
     fn find_edges(self, data: &mut SceneData, settings: EdgeSettings) -> Result<(), UndrawnEdges> {
         match self.cut {
             None => data.find_edges(self.whole, settings),
-            Some(_) => Ok(()),
+            Some(cut) => data.find_edges_of_cut(self.whole, cut, settings),
         }
     }
 }
@@ -48,8 +48,12 @@ pub(super) struct Fallback {
 
 impl Fallback {
     fn new(of: Source<'_>, settings: SceneRequest) -> Self {
-        // beside a cut, shadows alone need the whole model
-        let whole = if of.cut.is_none() || settings.sun.is_some() { of.whole.clone() } else { Model::default() };
+        // beside a cut, shadows and edges alone need the whole model
+        let whole = if of.cut.is_none() || settings.sun.is_some() || settings.edges.is_some() {
+            of.whole.clone()
+        } else {
+            Model::default()
+        };
         Self { whole, cut: of.cut.cloned(), settings }
     }
 

@@ -103,7 +103,7 @@ impl Slot {
         self.write_samples(device, loaded, input.camera, centre)?;
         self.write_table(device, loaded, (input.camera, history), centre)?;
         // one drawing a sample, and one at the centre for the images that are no mean of samples
-        let loaded_has = loaded.counts.thickness || loaded.counts.edge_items > 0;
+        let loaded_has = loaded.counts.thickness || loaded.counts.lines;
         let beside =
             formats.aovs || formats.numbers || formats.depth.is_some() || loaded_has || self.samples.is_empty();
         self.counted = self.samples.len() + usize::from(beside);

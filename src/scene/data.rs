@@ -117,7 +117,7 @@ pub(crate) struct SceneData {
     /// Of each instance: the model's part and instance, from 1 on; 0 of what is neither.
     pub sources: Vec<[u32; 2]>,
     /// Where its parts are: of each, its origin and its first face.
-    parts: Vec<(DVec3, usize)>,
+    pub(super) parts: Vec<(DVec3, usize)>,
     /// Lines along edges, where they are wanted.
     pub edges: Option<EdgeData>,
     /// Images have the numbers of edges, parts and instances.
@@ -139,7 +139,11 @@ impl SceneData {
 
     /// Of what close views see of a model, cut out of it: shadows are those of the whole.
     pub(crate) fn cut_from(whole: &Model, cut: &Cut, request: impl Into<SceneRequest>) -> Result<Self, UndrawnSolid> {
-        Self::of(whole, &cut.model, (request.into(), &|_| ()), |part, _| cut.extents[part])
+        let mut data = Self::of(whole, &cut.model, (request.into(), &|_| ()), |part, _| cut.extents[part])?;
+        for source in data.sources.iter_mut().filter(|source| source[1] > 0) {
+            *source = cut.source_of(source[1] as usize - 1, whole);
+        }
+        Ok(data)
     }
 
     /// All patches as they are.
@@ -305,7 +309,7 @@ impl SceneData {
             first_triangles: &self.meshes.first_triangles,
             faces: self.faces.len(),
         };
-        self.edges = Some(EdgeData::new(settings, &of, &edges, &mut self.placements));
+        self.edges = Some(EdgeData::of(settings, &of, &edges, &mut self.placements));
         Ok(())
     }
 
@@ -344,9 +348,10 @@ impl SceneData {
         !self.meshes.draws.is_empty()
     }
 
-    /// Some line is drawn along an edge.
+    /// Some line is drawn along an edge, or around a curved face.
     pub(crate) fn has_lines(&self) -> bool {
-        self.edges.as_ref().is_some_and(|edges| !edges.items.is_empty())
+        let has = |edges: &EdgeData| !edges.items.is_empty() || edges.settings.silhouettes && self.has_patches;
+        self.edges.as_ref().is_some_and(has)
     }
 
     /// Patches or meshes are seen themselves.

@@ -45,23 +45,28 @@ pub(crate) struct Placing<'a> {
 type Drawn = std::ops::Range<usize>;
 
 impl EdgeData {
-    /// Lines of all parts that are placed. Instances that the scene does not draw as faces get a placement of their own, behind
-    /// those of `placements`. `edges`: of each part of the model.
-    pub(super) fn new(
-        settings: EdgeSettings,
-        of: &Placing<'_>,
-        edges: &[Edges],
-        placements: &mut Vec<DAffine3>,
-    ) -> Self {
-        let mut data = Self {
+    /// No lines yet, in a scene of so many faces, whose keys are their numbers.
+    pub(super) fn new(settings: EdgeSettings, faces: usize) -> Self {
+        Self {
             settings,
             pieces: Vec::new(),
             points: Vec::new(),
             lines: Vec::new(),
             own_faces: Vec::new(),
             items: Vec::new(),
-            face_keys: (0..of.faces as u32).collect(),
-        };
+            face_keys: (0..faces as u32).collect(),
+        }
+    }
+
+    /// Lines of all parts that are placed. Instances that the scene does not draw as faces get a placement of their own, behind
+    /// those of `placements`. `edges`: of each part of the model.
+    pub(super) fn of(
+        settings: EdgeSettings,
+        of: &Placing<'_>,
+        edges: &[Edges],
+        placements: &mut Vec<DAffine3>,
+    ) -> Self {
+        let mut data = Self::new(settings, of.faces);
         let mut number = 1;
         let drawn: Vec<Drawn> = (0..of.model.parts.len())
             .map(|part| {
@@ -90,7 +95,9 @@ impl EdgeData {
             let Some(style) = self.settings.style(edge.kind) else { continue };
             let own = edge.uses.iter().map(|u| (first_face + u.face) as u32).collect();
             self.push_line(number, style, own);
-            edge.curve.iter().for_each(|span| self.push_piece(&span.piece.points, origin));
+            for span in &edge.curve {
+                self.push_piece(&span.piece.points, origin);
+            }
         }
         let first = number + edges.edges.len() as u32;
         for (edge, number) in edges.of_meshes.iter().zip(first..) {
@@ -102,7 +109,8 @@ impl EdgeData {
         }
     }
 
-    fn push_line(&mut self, number: u32, style: LineStyle, own: Vec<u32>) {
+    /// An edge with its own faces: keys, or triangles.
+    pub(super) fn push_line(&mut self, number: u32, style: LineStyle, own: Vec<u32>) {
         let style = match style {
             LineStyle::Full => abi::EDGE_FULL,
             LineStyle::Thin => abi::EDGE_THIN,
@@ -112,11 +120,12 @@ impl EdgeData {
         self.own_faces.extend(own);
     }
 
-    /// A piece of the line pushed last.
-    fn push_piece(&mut self, points: &[DVec4], origin: DVec3) {
+    /// A piece of the line pushed last; its number.
+    pub(super) fn push_piece(&mut self, points: &[DVec4], origin: DVec3) -> u32 {
         let (first, edge) = (self.points.len() as u32, self.lines.len() as u32 - 1);
         self.pieces.push(abi::EdgePiece { first, degree: points.len() as u32 - 1, edge });
         self.points.extend(points.iter().map(|p| (p.truncate() - origin * p.w).extend(p.w).as_vec4().to_array()));
+        self.pieces.len() as u32 - 1
     }
 }
 

@@ -41,7 +41,7 @@ pub(crate) struct Scene {
     pub volume: Option<Volume>,
     /// Parts and instances of the model, of each instance; `None` where nothing tells them apart.
     pub sources: Option<TexelBuffer>,
-    /// What lines along edges need; `None` where there are none.
+    /// What lines along edges are drawn from; `None` where there are none.
     pub edges: Option<EdgeBuffers>,
     /// What the sun sees; `None` without one, and where nothing casts shadows.
     pub sun: Option<SunTiles>,
@@ -311,7 +311,7 @@ impl Scene {
             sources: (data.has_numbers || data.has_lines())
                 .then(|| texels(&mut uploads, cmd, "instance sources", &data.sources, Texel::U32x2))
                 .transpose()?,
-            edges: (data.edges.as_ref().filter(|_| data.has_lines()))
+            edges: (data.edges.as_ref().filter(|edges| !edges.items.is_empty()))
                 .map(|edges| edge_buffers(&mut uploads, cmd, edges))
                 .transpose()?,
             sun: (data.sun.as_ref().filter(|sun| sun.has_casters()))

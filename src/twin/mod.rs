@@ -19,6 +19,7 @@ pub mod coverage;
 pub mod cross;
 pub mod curve;
 pub mod density;
+pub mod edges;
 pub mod emit;
 pub mod exact;
 pub mod factor;

@@ -12,6 +12,7 @@ mod cages;
 mod closed;
 mod cuts;
 mod distance;
+mod edge_lines;
 mod edges;
 mod errors;
 mod every_shape;

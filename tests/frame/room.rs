@@ -17,6 +17,7 @@ const BY_TABLE: SceneSettings = SceneSettings {
     thickness: false,
     highlight: None,
     sun: None,
+    edges: None,
     solid_budget: None,
 };
 

@@ -28,6 +28,7 @@ const fn plain() -> SceneSettings {
         thickness: false,
         highlight: None,
         sun: None,
+        edges: None,
         solid_budget: None,
     }
 }

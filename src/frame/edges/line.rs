@@ -42,17 +42,21 @@ pub(crate) struct Params {
     pub hidden: u32,
 }
 
+/// What passes that follow surfaces are told of the scene.
+pub(super) fn constants(data: &SceneData) -> [(u32, u32); 4] {
+    let others = data.has_meshes() || data.solids.kinds().is_some();
+    [
+        (constant::SCENE_HAS_RATIONAL, u32::from(data.has_rational)),
+        (constant::SCENE_HAS_FINE, u32::from(data.has_fine)),
+        (constant::SCENE_HAS_MESHES, u32::from(data.has_meshes())),
+        (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
+    ]
+}
+
 impl Line {
     pub(crate) fn new(device: &Device, data: &SceneData) -> Result<Self, GpuError> {
-        let others = data.has_meshes() || data.solids.kinds().is_some();
-        let constants = [
-            (constant::SCENE_HAS_RATIONAL, u32::from(data.has_rational)),
-            (constant::SCENE_HAS_FINE, u32::from(data.has_fine)),
-            (constant::SCENE_HAS_MESHES, u32::from(data.has_meshes())),
-            (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
-        ];
         let draw = Draw::new("edge_line", &shaders::EDGE_LINE_VERT, &shaders::EDGE_LINE_FRAG);
-        Ok(Self { pipeline: Draw { constants: &constants, ..draw }.pipeline(device)? })
+        Ok(Self { pipeline: Draw { constants: &constants(data), ..draw }.pipeline(device)? })
     }
 
     /// What `draw` says, over a picture of the visibility image's size.

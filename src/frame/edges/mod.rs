@@ -4,12 +4,14 @@
 //!   edge_count ─(scan)─▶ edge_emit ──▶ chords, with the patches' tessellation
 //!                                        │
 //!   visibility, patches, meshes ──▶ edge_line ──▶ each pixel's best line ──edge_show──▶ the host's colour, edges' numbers
+//!                                   edge_fold ──▶          outlines
 //! ```
 //!
 //! Chords stay while the view does. docs/design/edges.md has the method.
 
 mod capacities;
 pub(crate) mod divide;
+pub(crate) mod fold;
 pub(crate) mod line;
 pub(crate) mod show;
 
@@ -30,6 +32,8 @@ pub(crate) struct Passes {
     settings: EdgeSettings,
     divide: divide::Divide,
     line: line::Line,
+    /// Where outlines of curved faces are wanted, and there are patches.
+    fold: Option<fold::Fold>,
     show: show::Show,
 }
 
@@ -41,6 +45,9 @@ impl Passes {
             settings: edges.settings,
             divide: divide::Divide::new(device)?,
             line: line::Line::new(device, data)?,
+            fold: (edges.settings.silhouettes && data.has_patches)
+                .then(|| fold::Fold::new(device, data))
+                .transpose()?,
             show: show::Show::new(device, data, formats)?,
         }))
     }
@@ -110,28 +117,41 @@ impl EdgeStage {
     /// Lines over the host's colour, which is whole, and their numbers.
     pub(super) fn draw(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let (s, v, passes) = (frame.scene, &frame.stages.visibility, &self.passes);
-        let (Some(edges), Some(sources)) = (&s.edges, &s.sources) else { return };
         cmd.fill(&self.best, 0);
         barrier::buffers(cmd, &[(&self.best, Access::TRANSFER_WRITE, Access::FRAGMENT_WRITE)]);
-        let bindings = line::Bindings {
-            frame: frame.constants,
-            placed: s.placed(frame.views),
-            visibility: &v.image,
-            others: v.of_others(),
-            sources,
-            chords: &self.chords,
-            edges,
-            best: &self.best,
-            meshes: s.meshes.as_ref(),
-        };
-        let params = line::Params { half_px: self.half_px, hidden: u32::from(passes.settings.hidden) };
-        passes.line.record(cmd, &bindings, params, &self.draw);
+        if let (Some(edges), Some(sources)) = (&s.edges, &s.sources) {
+            let bindings = line::Bindings {
+                frame: frame.constants,
+                placed: s.placed(frame.views),
+                visibility: &v.image,
+                others: v.of_others(),
+                sources,
+                chords: &self.chords,
+                edges,
+                best: &self.best,
+                meshes: s.meshes.as_ref(),
+            };
+            let params = line::Params { half_px: self.half_px, hidden: u32::from(passes.settings.hidden) };
+            passes.line.record(cmd, &bindings, params, &self.draw);
+        }
+        if let Some(fold) = &passes.fold {
+            let bindings = fold::Bindings {
+                frame: frame.constants,
+                placed: s.placed(frame.views),
+                visibility: &v.image,
+                others: v.of_others(),
+                best: &self.best,
+                meshes: s.meshes.as_ref(),
+            };
+            barrier::buffers(cmd, &[(&self.best, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
+            fold.record(cmd, &bindings, self.half_px[0]);
+        }
         barrier::buffers(cmd, &[(&self.best, Access::FRAGMENT_WRITE, Access::FRAGMENT_READ)]);
         let bindings = show::Bindings {
             frame: frame.constants,
             best: &self.best,
             chords: &self.chords,
-            edges,
+            edges: s.edges.as_ref(),
             visibility: &v.image,
             others: v.of_others(),
         };

@@ -26,7 +26,8 @@ pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub best: &'a Buffer,
     pub chords: &'a Buffer,
-    pub edges: &'a EdgeBuffers,
+    /// Where lines are drawn along edges.
+    pub edges: Option<&'a EdgeBuffers>,
     pub visibility: &'a Image,
     pub others: &'a Image,
 }
@@ -56,10 +57,11 @@ impl Show {
 
     /// One triangle over the targets.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, colours: Colours, into: &[Attachment<'_>]) {
-        let e = b.edges;
-        let buffers = [b.frame, b.best, b.chords, &e.items, &e.pieces, &e.lines].map(Resource::from);
+        // not read without
+        let edges = b.edges.map_or([b.best; 3], |e| [&e.items, &e.pieces, &e.lines]).map(Resource::from);
+        let buffers = [b.frame, b.best, b.chords].map(Resource::from).into_iter().chain(edges);
         let images = [b.visibility, b.others].map(Resource::from);
-        let resources: Vec<_> = buffers.into_iter().chain(images).collect();
+        let resources: Vec<_> = buffers.chain(images).collect();
         cmd.rendering(b.visibility.size(), into, None, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&colours));
             cmd.draw(3, 0, 1);

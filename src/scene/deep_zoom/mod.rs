@@ -20,6 +20,7 @@
 //!
 //! Cost: a face's patches are cut once and kept; a view costs some 50 µs a window and patch near it.
 
+mod edges;
 mod loops;
 
 use super::data::stretch;
@@ -30,6 +31,7 @@ use super::whole_view::Ball;
 use crate::model::{Bounds, Camera, Face, Instance, Model, Part, TrimLoop};
 use crate::spline::{Patch, PatchGrid};
 use crate::trim::{LoopIndex, RectSide};
+pub(super) use edges::KnownEdges;
 use glam::{DMat4, DVec2, DVec3, DVec4};
 
 /// A part of half a diagonal of more pixels than this is cut. Rounding of its points, some 4 units of 2⁻²⁴, is then
@@ -55,6 +57,7 @@ pub struct DeepZoom {
     faces: Vec<Vec<Known>>,
     /// Around the model.
     ball: Option<Ball>,
+    edges: KnownEdges,
     /// What was told last; `None`: nothing that holds.
     held: Option<Held>,
 }
@@ -77,6 +80,21 @@ pub struct Cut {
     pub model: Model,
     /// Of each of its parts: how large is what its views would show, were they [`VIEW_PX`] wide. Units of the part.
     pub(super) extents: Vec<f64>,
+    /// Of each of its parts, where it is from.
+    pub(super) sources: Vec<Source>,
+    /// What all views that it serves see is seen by this camera.
+    pub(super) camera: Camera,
+    /// The edges of the whole model, once somebody asks.
+    pub(super) edges: KnownEdges,
+}
+
+/// Where a part of a cut is from.
+#[derive(Clone, Debug, PartialEq)]
+pub(super) struct Source {
+    /// Of the whole model.
+    pub instance: usize,
+    /// Its faces, of the instance's part.
+    pub faces: Vec<usize>,
 }
 
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -178,7 +196,8 @@ impl DeepZoom {
     pub fn new(model: &Model) -> Self {
         let known = |face: &Face| Known { bounds: face.surface.bounds(), cut: None };
         let faces = model.parts.iter().map(|part| part.faces.iter().map(known).collect()).collect();
-        Self { faces, ball: Ball::around(model.control_bounds()), held: Some(Held::Whole) }
+        let ball = Ball::around(model.control_bounds());
+        Self { faces, ball, edges: KnownEdges::default(), held: Some(Held::Whole) }
     }
 
     /// What to upload for this view of `model`, the one that this was made for, in place of what was told last.
@@ -204,7 +223,8 @@ impl DeepZoom {
             coincident: model.coincident,
             ..Model::default()
         };
-        let mut near = Cut { model: none, extents: Vec::new() };
+        let edges = self.edges.clone();
+        let mut near = Cut { model: none, extents: Vec::new(), sources: Vec::new(), camera: wider, edges };
         for seen in self.seen(model, &wider) {
             let instance = &model.instances[seen.placed];
             self.add(&mut near, &model.parts[instance.part], instance, &seen);
@@ -268,9 +288,11 @@ impl DeepZoom {
     /// What is seen of one placed part: its faces as they are, and windows of those that are `close`.
     fn add(&mut self, near: &mut Cut, part: &Part, instance: &Instance, seen: &Seen) {
         let Seen { sight, faces, .. } = seen;
-        let whole: Vec<Face> = faces.iter().filter(|(_, close)| !close).map(|(f, _)| part.faces[*f].clone()).collect();
-        let mut push = |faces: Vec<Face>, meshes: Vec<crate::model::Mesh>, pixels: f64| {
-            let Cut { model, extents } = &mut *near;
+        let numbers: Vec<usize> = faces.iter().filter(|(_, close)| !close).map(|(f, _)| *f).collect();
+        let whole: Vec<Face> = numbers.iter().map(|f| part.faces[*f].clone()).collect();
+        let mut push = |(faces, numbers): (Vec<Face>, Vec<usize>), meshes: Vec<crate::model::Mesh>, pixels: f64| {
+            let Cut { model, extents, sources, .. } = &mut *near;
+            sources.push(Source { instance: seen.placed, faces: numbers });
             extents.push(VIEW_PX / pixels);
             model.instances.push(Instance { part: model.parts.len(), ..instance.clone() });
             model.parts.push(Part { name: part.name.clone(), faces, meshes, closed: part.closed, ..Part::default() });
@@ -278,7 +300,7 @@ impl DeepZoom {
         if !(whole.is_empty() && part.meshes.is_empty()) {
             let seen = faces.iter().filter(|(_, close)| !close);
             let pixels = seen.filter_map(|(f, _)| sight.of_box(self.faces[instance.part][*f].bounds));
-            push(whole, part.meshes.clone(), pixels.fold(f64::INFINITY, f64::min));
+            push((whole, numbers), part.meshes.clone(), pixels.fold(f64::INFINITY, f64::min));
         }
         for (f, _) in faces.iter().filter(|(_, close)| *close) {
             let face = &part.faces[*f];
@@ -289,7 +311,7 @@ impl DeepZoom {
             }
             for (window, pixels) in windows {
                 if let Some(face) = window_face(face, grid, index, window) {
-                    push(vec![face], Vec::new(), pixels);
+                    push((vec![face], vec![*f]), Vec::new(), pixels);
                 }
             }
         }

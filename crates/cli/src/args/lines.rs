@@ -12,6 +12,9 @@ pub struct LineArgs {
     /// Draw lines along edges: all, sharp (where faces meet at an angle or end) or none
     #[arg(long, value_name = "all|sharp|none", default_value = "none")]
     pub edges: EdgeChoice,
+    /// Draw the outlines of curved faces, where they fold away from the eye
+    #[arg(long)]
+    pub silhouettes: bool,
     /// Draw lines that lie behind faces, too: dashed and lighter
     #[arg(long, requires = "edges")]
     pub hidden_lines: bool,
@@ -19,10 +22,10 @@ pub struct LineArgs {
     #[arg(long, value_name = "none|thin|full", default_value = "thin", requires = "edges")]
     pub tangent_edges: TangentEdges,
     /// Colour of lines, a CSS colour
-    #[arg(long, value_name = "COLOUR", value_parser = colour, requires = "edges")]
+    #[arg(long, value_name = "COLOUR", value_parser = colour)]
     pub edge_colour: Option<Colour>,
     /// Width of lines in pixels of a picture 1080 pixels high; it grows and shrinks with the height
-    #[arg(long, value_name = "PX", default_value_t = EdgeSettings::default().width, requires = "edges")]
+    #[arg(long, value_name = "PX", default_value_t = EdgeSettings::default().width)]
     pub edge_width: f64,
 }
 
@@ -36,6 +39,7 @@ impl LineArgs {
         let settings = EdgeSettings {
             which: self.edges,
             tangent: self.tangent_edges,
+            silhouettes: self.silhouettes,
             hidden: self.hidden_lines,
             width: self.edge_width,
             thin_width: self.edge_width * usual.thin_width / usual.width,
@@ -43,6 +47,6 @@ impl LineArgs {
             hidden_colour: [r, g, b, opacity * lighter],
         };
         settings.check()?;
-        Ok((self.edges != EdgeChoice::None).then_some(settings))
+        Ok((self.edges != EdgeChoice::None || self.silhouettes).then_some(settings))
     }
 }

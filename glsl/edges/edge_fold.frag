@@ -1,0 +1,146 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `edge_fold`: outlines of curved faces, where the surface folds away from the eye: normal across the ray.
+//
+//      pixel ·      ╭─── the exact fold: det J = 0, J = d(pixel) / d(u, v)
+//           ╲╲     ╱
+//            ╲ ╲  ╱      from where a pixel beside this one sees the face, Newton's method to the point of the fold
+//      face    ╲╱        that is nearest to this pixel's centre
+//
+// Only pixels are looked at beside which something else is seen: another face, or another place of the face. The fold is
+// the exact surface's, within ARRIVED_PX. It counts when it is as near to the pixel that sees the face as pixels beside each
+// other are: where the face ends before it folds, its edge is the outline.
+#include "scene.glsl"
+#include "view.glsl"
+#include "edges.glsl"
+
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
+layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
+layout(binding = 8, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
+layout(scalar, binding = 9) buffer Lines { uint lines[]; };
+// in scenes without meshes not read
+layout(scalar, binding = 10) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
+layout(scalar, binding = 11) readonly buffer Triangles { uint triangles[]; };
+layout(scalar, binding = 12) readonly buffer Positions { vec3 positions[]; };
+
+layout(scalar, push_constant) uniform Push { float half_px; } push;
+
+#include "placed.glsl"
+#include "patch.glsl"
+#include "refine.glsl"
+#include "visible.glsl"
+
+// Of the face whose fold is looked at.
+FaceInstance own_face;
+
+bool is_own_face(FaceInstance fi) { return fi == own_face; }
+
+bool is_own_triangle(uint instance, uint triangle) { return false; }
+
+#include "edge_seen.glsl"
+
+const uint FOLD_STEPS = 8u;
+// Of the patch: between points whose difference is the slope of det J.
+const float FOLD_DIFFERENCE = 1.0 / 512.0;
+// Where a fold may lie beside its patch, of the patch. One pixel within a small ball's outline is many degrees before the
+// fold: no pixel may see the patch that has it.
+const float FOLD_BESIDE = 0.25;
+// Largest cosine between normal and ray at a fold: det J is 0 at poles, too.
+const float FOLD_COSINE = 0.2;
+// From the centre of the pixel that sees the face.
+const float FOLD_REACH_PX = 1.5;
+// Neighbours whose (u, v) differ by no more, of the patch, are on one sheet.
+const float SAME_PLACE = 0.05;
+
+// A pixel's patch; x is 0 where it sees none.
+uvec2 patch_seen(ivec2 at) {
+    if (any(lessThan(at, ivec2(0))) || any(greaterThanEqual(at, ivec2(frame.size)))) return uvec2(0u);
+    uvec2 seen = imageLoad(visibility, at).xy;
+    return sees_nothing(seen.x) || sees_other(seen.x) ? uvec2(0u) : uvec2(seen_item(seen.x) + 1u, seen.y);
+}
+
+bool is_one_place(uvec2 a, uvec2 b) {
+    if (a.x != b.x) return false;
+    vec2 apart = abs(unpack_uv(a.y) - unpack_uv(b.y));
+    return max(apart.x, apart.y) <= SAME_PLACE;
+}
+
+float fold_at(Sample s, View view) {
+    mat2 along = pixels_along(s, view);
+    return along[0].x * along[1].y - along[0].y * along[1].x;
+}
+
+// The fold of the patch nearest to `pixel`, from (u, v) on; false where there is none near.
+bool find_fold(Patch patch_, View view, vec2 uv, vec2 pixel, out Sample s) {
+    Net net = net_of(patch_);
+    vec2 moved = vec2(1e9);
+    for (uint i = 0u; i <= FOLD_STEPS; ++i) {
+        s = sample_at(patch_, net, view, uv, pixel);
+        if (dot(moved, moved) < ARRIVED_PX * ARRIVED_PX || i == FOLD_STEPS) break;
+        float g = fold_at(s, view);
+        Sample beside = sample_at(patch_, net, view, uv + vec2(FOLD_DIFFERENCE, 0.0), pixel);
+        float gu = (fold_at(beside, view) - g) / FOLD_DIFFERENCE;
+        beside = sample_at(patch_, net, view, uv + vec2(0.0, FOLD_DIFFERENCE), pixel);
+        float gv = (fold_at(beside, view) - g) / FOLD_DIFFERENCE;
+        vec2 slope = vec2(gu, gv);
+        float steep = dot(slope, slope);
+        if (!(steep > 0.0)) return false;
+        // to the fold, then along it to the point next to the pixel
+        vec2 to = -g / steep * slope;
+        mat2 along = pixels_along(s, view);
+        vec2 fold = vec2(-gv, gu);
+        vec2 run = along * fold;
+        float runs = dot(run, run);
+        if (runs > 0.0) to -= dot(s.miss + along * to, run) / runs * fold;
+        vec2 steps = abs(to) / MAX_STEP;
+        to /= max(max(steps.x, steps.y), 1.0);
+        moved = along * to;
+        uv += to;
+    }
+    bool within = all(greaterThanEqual(s.uv, vec2(-FOLD_BESIDE))) && all(lessThanEqual(s.uv, vec2(1.0 + FOLD_BESIDE)));
+    vec3 du = seen_from_eye(to_pixel(view, vec4(s.jet.du, 0.0)));
+    vec3 dv = seen_from_eye(to_pixel(view, vec4(s.jet.dv, 0.0)));
+    vec3 ray = frame.perspective != 0u ? normalize(seen_from_eye(s.q)) : vec3(0.0, 0.0, 1.0);
+    float cosine = abs(dot(normalize(cross(normalize(du), normalize(dv))), ray));
+    return within && dot(moved, moved) < ARRIVED_PX * ARRIVED_PX && cosine < FOLD_COSINE;
+}
+
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    uvec2 own = patch_seen(at);
+    uvec2 found[3] = uvec2[](own, uvec2(0u), uvec2(0u));
+    ivec2 places[3] = ivec2[](at, at, at);
+    uint count = own.x != 0u ? 1u : 0u;
+    bool alone = true;
+    for (int k = 0; k < 9; ++k) {
+        ivec2 beside = at + ivec2(k % 3 - 1, k / 3 - 1);
+        uvec2 seen = patch_seen(beside);
+        bool known = is_one_place(seen, own);
+        alone = alone && known;
+        for (uint i = 0u; i < count; ++i) known = known || is_one_place(seen, found[i]);
+        if (known || seen.x == 0u || count >= 3u) continue;
+        found[count] = seen;
+        places[count] = beside;
+        ++count;
+    }
+    if (alone) return;
+    uint pixel = uint(at.y) * uint(frame.size.x) + uint(at.x);
+    for (uint i = 0u; i < count; ++i) {
+        uint item = found[i].x - 1u;
+        FaceInstance fi = face_instance_at(face_instance_of(item));
+        Face face = face_at(fi.face);
+        Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
+        if (patch_.bend == vec3(0.0)) continue;
+        View view = view_at(fi.instance);
+        Sample s;
+        if (!find_fold(patch_, view, unpack_uv(found[i].y), gl_FragCoord.xy, s)) continue;
+        vec2 place = s.q.xy / s.q.w;
+        float covered = line_coverage(length(s.miss), push.half_px);
+        uint steps = uint(covered * LINE_STEPS + 0.5);
+        if (steps == 0u || distance(place, vec2(places[i]) + 0.5) > FOLD_REACH_PX) continue;
+        own_face = fi;
+        if (!is_seen(EdgePoint(place, seen_from_eye(s.q)), at)) continue;
+        atomicMax(lines[pixel], LINE_SEEN | steps << LINE_COVERAGE | LINE_FOLD);
+    }
+}

@@ -1,0 +1,50 @@
+//! Pass `edge_fold`: outlines of curved faces, as lines.
+//!
+//! ```text
+//!   pixel, and those beside it ─▶ curved faces that end here ─▶ the exact fold next to the pixel ─▶ each pixel's best line
+//! ```
+//!
+//! Reads: everything that `Bindings` names. Writes: `best`, as pass `edge_line`.
+
+use crate::bindings::Placed;
+use crate::frame::common::draw::Draw;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource};
+use crate::scene::{MeshBuffers, SceneData};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct Fold {
+    pipeline: Pipeline,
+}
+
+/// Its buffers and images, in binding order.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    pub placed: Placed<'a>,
+    pub visibility: &'a Image,
+    pub others: &'a Image,
+    pub best: &'a Buffer,
+    pub meshes: Option<&'a MeshBuffers>,
+}
+
+impl Fold {
+    pub(crate) fn new(device: &Device, data: &SceneData) -> Result<Self, GpuError> {
+        let draw = Draw::new("edge_fold", &shaders::RESOLVE_VERT, &shaders::EDGE_FOLD_FRAG);
+        Ok(Self { pipeline: Draw { constants: &super::line::constants(data), ..draw }.pipeline(device)? })
+    }
+
+    /// One triangle over a picture of the visibility image's size; lines are twice `half_px` wide.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, half_px: f32) {
+        let meshes = b.meshes.map_or([b.best; 3], |m| [&m.instances, &m.triangles, &m.positions]);
+        let resources: Vec<_> = [b.frame.into()]
+            .into_iter()
+            .chain(b.placed.resources())
+            .chain([b.visibility.into(), b.others.into(), b.best.into()])
+            .chain(meshes.map(Resource::from))
+            .collect();
+        cmd.rendering(b.visibility.size(), &[], None, || {
+            cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&half_px));
+            cmd.draw(3, 0, 1);
+        });
+    }
+}

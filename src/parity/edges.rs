@@ -1,0 +1,169 @@
+//! Parity of the passes `edge_count` and `edge_emit`: exact; and both against the same division in double precision.
+
+use super::harness::{Gpu, Mismatch, counts, same};
+use crate::abi::{self, Chord, Counters};
+use crate::edges::flatten::Flattening;
+use crate::frame::edges::divide::{Bindings, Divide, Params};
+use crate::gpu::Texel;
+use crate::model::{Camera, Edges, Model, Projection};
+use crate::picture::{EdgeSettings, TangentEdges};
+use crate::scene::{SceneData, seen_by, view};
+use crate::twin::edges::{Given, divide};
+use glam::{DVec2, DVec3};
+use std::path::Path;
+
+const MARGIN_PX: f32 = 3.0;
+const ROOM: u32 = 1 << 16;
+
+/// A model's edges as a camera sees them.
+struct View {
+    data: SceneData,
+    views: Vec<abi::View>,
+    frame: abi::Frame,
+    camera: Camera,
+}
+
+impl View {
+    fn new(model: &Model, camera: Camera) -> Self {
+        let settings = EdgeSettings { tangent: TangentEdges::Full, ..EdgeSettings::default() };
+        let mut data = SceneData::new(model, crate::picture::SceneSettings::default()).unwrap();
+        data.find_edges(model, settings).unwrap();
+        let pixels = camera.pixel_matrix();
+        let views = data.placements.iter().map(|&placement| view(pixels, placement)).collect();
+        Self { data, views, frame: seen_by(&camera, abi::Frame::default()), camera }
+    }
+
+    fn given(&self) -> Given<'_> {
+        let edges = self.data.edges.as_ref().unwrap();
+        Given {
+            views: &self.views,
+            items: &edges.items,
+            pieces: &edges.pieces,
+            points: &edges.points,
+            lines: &edges.lines,
+            margin_px: MARGIN_PX,
+        }
+    }
+}
+
+fn bracket() -> Model {
+    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/bracket.step");
+    selvedge_io::import::open(&path).unwrap().model
+}
+
+/// The whole of it, a part of it that reaches behind the eye, and a parallel view from near.
+fn views() -> Vec<View> {
+    let model = bracket();
+    let whole = Camera::around(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, (320, 240));
+    let inside = Camera { eye: whole.eye + 0.93 * (whole.target - whole.eye), depth_range: (0.1, 1e4), ..whole };
+    let parallel = Camera { projection: Projection::Orthographic { height: 3.0 }, ..whole };
+    [whole, inside, parallel].map(|camera| View::new(&model, camera)).into()
+}
+
+fn compare(gpu: &Gpu, given: &View, expected: &View) -> Result<(), Mismatch> {
+    let (edges, n) = (given.data.edges.as_ref().unwrap(), given.given().items.len());
+    let frame = gpu.upload("frame", &[given.frame]);
+    let views = gpu.upload("views", &given.views);
+    let [items, pieces] = [gpu.upload("items", &edges.items), gpu.upload("pieces", &edges.pieces)];
+    let points = gpu.upload_texels("points", &edges.points, Texel::F32x4);
+    let lines = gpu.upload("lines", &edges.lines);
+    let (twin, clamps) = divide(&expected.frame, &expected.given());
+    let twin_counts: Vec<u32> = twin.iter().map(|chords| chords.len() as u32).collect();
+    let (mut starts, total) = crate::twin::scan::scan(&twin_counts);
+    starts.push(total);
+    let starts = gpu.upload("starts", &starts);
+    let chord_counts = gpu.upload("counts", &vec![u32::MAX; n]);
+    let counters = gpu.upload("counters", &[Counters::default()]);
+    let chords = gpu.upload("chords", &vec![Chord::default(); ROOM as usize]);
+    let draw = gpu.upload("draw", &[0u32; 4]);
+    let bindings = Bindings {
+        frame: &frame,
+        views: &views,
+        items: &items,
+        pieces: &pieces,
+        points: &points,
+        counts: &chord_counts,
+        starts: &starts,
+        counters: &counters,
+        lines: &lines,
+        chords: &chords,
+        draw: &draw,
+    };
+    let pass = Divide::new(gpu.device()).unwrap();
+    let params = Params { item_count: n as u32, margin_px: MARGIN_PX };
+    gpu.run(|cmd| pass.count(cmd, &bindings, params));
+    gpu.run(|cmd| pass.emit(cmd, &bindings, params, ROOM));
+    counts("edge chord counts", &gpu.read(&chord_counts, n), &twin_counts, gpu.slack())?;
+    if gpu.slack().count > 0 {
+        return Ok(()); // another number of chords moves all that follow
+    }
+    let flat: Vec<Chord> = twin.into_iter().flatten().collect();
+    same("edge chords", &gpu.read(&chords, flat.len()), &flat)?;
+    same("edge draw", &gpu.read(&draw, 4), &[6, total, 0, 0])?;
+    let told = gpu.read::<Counters>(&counters, 1);
+    same("counters", &[told[0].edge_chords, told[0].clamps, told[0].failed], &[total, clamps, 0])
+}
+
+#[test]
+fn parity() {
+    let gpu = Gpu::new();
+    for view in views() {
+        compare(&gpu, &view, &view).unwrap();
+    }
+    gpu.finish();
+}
+
+#[test]
+fn a_difference_is_seen() {
+    let gpu = Gpu::new();
+    let (view, mut bent) = (views().remove(0), views().remove(0));
+    let edges = bent.data.edges.as_mut().unwrap();
+    let item = edges.items.iter().position(|item| edges.pieces[item.piece as usize].degree > 1).unwrap();
+    let piece = edges.pieces[edges.items[item].piece as usize];
+    edges.points[piece.first as usize + 1][2] += 50.0;
+    assert!(compare(&gpu, &bent, &view).is_err());
+    gpu.finish();
+}
+
+/// Chords lie within a tenth of a pixel of the exact curve, and are about as many as in double precision.
+#[test]
+fn chords_are_as_near_as_those_in_double_precision() {
+    let model = bracket();
+    let edges: Edges = model.parts[0].edges().unwrap();
+    for view in views() {
+        let (chords, clamps) = divide(&view.frame, &view.given());
+        assert_eq!(clamps, 0);
+        let data = view.data.edges.as_ref().unwrap();
+        let mut worst: f64 = 0.0;
+        let placed = &model.instances[0].transform;
+        // pieces in the order of the edges that are drawn
+        let drawn = edges.edges.iter().filter(|e| data.settings.style(e.kind).is_some());
+        let spans: Vec<_> = drawn.clone().flat_map(|e| &e.curve).collect();
+        assert_eq!(spans.len(), chords.len());
+        let mut count = 0;
+        for (span, chords) in spans.iter().zip(&chords) {
+            count += chords.len();
+            for c in chords {
+                let [a, b] = [c.a, c.b].map(|p| DVec2::new(f64::from(p[0]), f64::from(p[1])));
+                for k in 0..=8 {
+                    let t = f64::from(c.t[0]) + f64::from(c.t[1] - c.t[0]) * f64::from(k) / 8.0;
+                    let point = placed.transform_point3(span.piece.point(t));
+                    let Some((pixel, _)) = view.camera.project(point) else { continue };
+                    let beside = |size: f64, x: f64| x < -3.0 || x > size + 3.0;
+                    if beside(320.0, pixel.x) || beside(240.0, pixel.y) {
+                        continue; // the bound is of what the picture shows
+                    }
+                    let along = (b - a).normalize_or_zero();
+                    let nearest = a + along * (pixel - a).dot(along).clamp(0.0, (b - a).length());
+                    worst = worst.max(pixel.distance(nearest));
+                }
+            }
+        }
+        let flat = Flattening::new(&view.camera, 0.09, f64::from(MARGIN_PX));
+        let lines = drawn.flat_map(|e| flat.edge(e).lines);
+        let wanted: usize = lines.map(|line| line.len() - 1).sum();
+        println!("{count} chords, {wanted} in double precision, {worst:.4} px off");
+        assert!(worst <= 0.1 && count > 100, "{worst} px, {count} chords");
+        assert!(count.abs_diff(wanted) * 50 <= wanted, "{count} chords, {wanted} in double precision");
+    }
+}

@@ -1,0 +1,122 @@
+//! Edges as a cut sees them: halved in `f64` until each piece is no larger than a window, each about its own centre.
+//!
+//! ```text
+//!   edge of the whole model ─▶ outside the view? left out ─▶ wider than a window? halved ─▶ a piece with its own placement
+//! ```
+//!
+//! Own faces have the numbers of the whole model's, so windows of one face are one face to an edge.
+
+use super::{Cut, MOST_DEPTH, Sight, WINDOW_PX};
+use crate::abi;
+use crate::model::{Bounds, Edges, Model};
+use crate::picture::EdgeSettings;
+use crate::scene::SceneData;
+use crate::scene::edges::{EdgeData, UndrawnEdges, edges_of};
+use crate::spline::{Bezier, Control};
+use glam::{DAffine3, DVec4};
+use std::collections::BTreeMap;
+use std::sync::{Arc, OnceLock};
+
+/// The edges of a model's parts, found when they are first asked for; what a cut shows does not depend on that.
+#[derive(Clone, Debug, Default)]
+pub(in crate::scene) struct KnownEdges(Arc<OnceLock<Result<Vec<Edges>, UndrawnEdges>>>);
+
+impl PartialEq for KnownEdges {
+    fn eq(&self, _: &Self) -> bool {
+        true
+    }
+}
+
+impl KnownEdges {
+    fn of(&self, model: &Model) -> Result<&[Edges], UndrawnEdges> {
+        self.0.get_or_init(|| edges_of(model)).as_deref().map_err(Clone::clone)
+    }
+}
+
+/// Before each number the sum of those before it, which begins with `first`.
+fn sums(numbers: impl Iterator<Item = usize>, first: usize) -> Vec<usize> {
+    let before = |sum: &mut usize, n: usize| Some(std::mem::replace(sum, *sum + n));
+    numbers.scan(first, before).collect()
+}
+
+/// Pieces of a curve that the view sees, none larger than a window.
+fn halve(piece: &Bezier<DVec4>, sight: &Sight, depth: u32, pieces: &mut Vec<Bezier<DVec4>>) {
+    let bounds = piece.points.iter().fold(Bounds::EMPTY, |all, p| all.with(p.point()));
+    let Some(pixels) = sight.of_box((bounds.min, bounds.max)) else { return };
+    if pixels * bounds.diagonal() <= WINDOW_PX || depth == 0 {
+        return pieces.push(piece.clone());
+    }
+    let (a, b) = piece.split(0.5);
+    halve(&a, sight, depth - 1, pieces);
+    halve(&b, sight, depth - 1, pieces);
+}
+
+impl Cut {
+    /// Part and instance of the whole model, from 1 on, that an instance of the cut is from.
+    pub(in crate::scene) fn source_of(&self, instance: usize, whole: &Model) -> [u32; 2] {
+        let instance = self.sources[instance].instance;
+        [whole.instances[instance].part as u32 + 1, instance as u32 + 1]
+    }
+}
+
+impl SceneData {
+    /// Finds the edges of the model that the cut is of.
+    pub(crate) fn find_edges_of_cut(
+        &mut self,
+        whole: &Model,
+        cut: &Cut,
+        settings: EdgeSettings,
+    ) -> Result<(), UndrawnEdges> {
+        let edges = cut.edges.of(whole)?;
+        let first_faces = sums(whole.parts.iter().map(|part| part.faces.len()), 0);
+        let numbers = sums(edges.iter().map(|e| e.edges.len() + e.of_meshes.len()), 1);
+        let mut data = EdgeData::new(settings, self.faces.len());
+        // of each instance that is seen: the cut's part that has its meshes
+        let mut seen: BTreeMap<usize, Option<usize>> = BTreeMap::new();
+        for (nth, (source, &(_, first))) in cut.sources.iter().zip(&self.parts).enumerate() {
+            let part = whole.instances[source.instance].part;
+            for (key, face) in data.face_keys[first..].iter_mut().zip(&source.faces) {
+                *key = (first_faces[part] + face) as u32;
+            }
+            let meshes = seen.entry(source.instance).or_default();
+            if !cut.model.parts[nth].meshes.is_empty() {
+                *meshes = Some(nth);
+            }
+        }
+        for (nth, meshes) in seen {
+            let instance = &whole.instances[nth];
+            let sight = Sight::new(&cut.camera, instance);
+            let (first_face, first_number) = (first_faces[instance.part], numbers[instance.part] as u32);
+            let Edges { edges, of_meshes, .. } = &edges[instance.part];
+            let key = nth as u32 + 1;
+            let mut push = |number, kind, own: &mut dyn Iterator<Item = u32>, pieces: Vec<Bezier<DVec4>>| {
+                let Some(style) = settings.style(kind).filter(|_| !pieces.is_empty()) else { return };
+                data.push_line(number, style, own.collect());
+                for piece in pieces {
+                    let bounds = piece.points.iter().fold(Bounds::EMPTY, |all, p| all.with(p.point()));
+                    let origin = bounds.centre();
+                    self.placements.push(instance.transform * DAffine3::from_translation(origin));
+                    let placement = self.placements.len() as u32 - 1;
+                    let piece = data.push_piece(&piece.points, origin);
+                    data.items.push(abi::EdgeItem { piece, placement, instance: key });
+                }
+            };
+            for (edge, number) in edges.iter().zip(first_number..) {
+                let mut pieces = Vec::new();
+                edge.curve.iter().for_each(|span| halve(&span.piece, &sight, MOST_DEPTH, &mut pieces));
+                push(number, edge.kind, &mut edge.uses.iter().map(|u| (first_face + u.face) as u32), pieces);
+            }
+            let Some(first_triangles) = meshes.map(|part| &self.meshes.first_triangles[part]) else { continue };
+            for (edge, number) in of_meshes.iter().zip(first_number + edges.len() as u32..) {
+                let mut pieces = Vec::new();
+                let points = edge.ends.map(|p| p.extend(1.0)).to_vec();
+                halve(&Bezier { points }, &sight, MOST_DEPTH, &mut pieces);
+                let own =
+                    |&(mesh, triangle): &(usize, usize)| abi::OWN_TRIANGLE | (first_triangles[mesh] + triangle as u32);
+                push(number, edge.kind, &mut edge.triangles.iter().map(own), pieces);
+            }
+        }
+        self.edges = Some(data);
+        Ok(())
+    }
+}

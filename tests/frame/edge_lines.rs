@@ -1,0 +1,286 @@
+//! Lines along edges: where exact rays see an edge there is a line, and nowhere else; and no other image changes.
+
+use crate::shapes;
+use crate::support::{assert_silent, orthographic, perspective, watched_with};
+use glam::{DAffine3, DVec2, DVec3};
+use selvedge::headless::{HeadlessError, HeadlessRenderer};
+use selvedge::model::{Camera, EdgeKind, Model};
+use selvedge::picture::{
+    BadEdges, EdgeChoice, EdgeSettings, FrameSettings, Outputs, Picture, Samples, SceneSettings, TangentEdges,
+};
+use selvedge::renderer::RenderError;
+use selvedge_check::{EdgeTracer, Tracer, Visibility};
+
+const SIZE: (u32, u32) = (160, 120);
+const ALL: Outputs = Outputs { edge: true, part: true, instance: true, ..Outputs::ALL };
+/// Number of an outline in the image of edges.
+const OUTLINE: u32 = u32::MAX;
+
+/// Lines as wide as at a height of 1080.
+fn lines() -> EdgeSettings {
+    let usual = EdgeSettings::default();
+    let width = usual.width * EdgeSettings::HEIGHT / f64::from(SIZE.1);
+    EdgeSettings { width, thin_width: width, tangent: TangentEdges::Full, ..usual }
+}
+
+/// Half a line's width, pixels.
+const HALF: f64 = 0.625;
+
+fn with(edges: EdgeSettings) -> SceneSettings {
+    SceneSettings { edges: Some(edges), ..SceneSettings::default() }
+}
+
+fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
+    let mut renderer = watched_with(model, settings);
+    let picture = renderer.render(camera, &FrameSettings::default(), ALL).unwrap();
+    assert_silent(renderer);
+    picture
+}
+
+fn centres(picture: &Picture) -> impl Iterator<Item = (DVec2, u32)> + '_ {
+    let width = picture.size.0 as usize;
+    let centre = move |at: usize| DVec2::new((at % width) as f64 + 0.5, (at / width) as f64 + 0.5);
+    picture.edge.iter().enumerate().filter(|(_, edge)| **edge != 0).map(move |(at, edge)| (centre(at), *edge))
+}
+
+/// Visible points without a line within half its width and half a pixel, and line pixels farther than that and a fifth from
+/// any point that may be seen: a tenth of a pixel for what chords may be off, a tenth for the points' own distance.
+fn faults(model: &Model, camera: &Camera, picture: &Picture) -> (usize, usize, usize) {
+    let tracer = Tracer::new(model);
+    let edges = EdgeTracer::new(model, &tracer).unwrap();
+    let all = edges.points(camera, 0.2);
+    let drawn = |p: &&selvedge_check::EdgePoint| {
+        edges.parts()[model.instances[p.instance].part].edges[p.edge].kind != EdgeKind::Seam
+    };
+    let points: Vec<_> = all.iter().filter(drawn).collect();
+    let marked: Vec<DVec2> = centres(picture).map(|(at, _)| at).collect();
+    let (w, h) = (f64::from(camera.size.0), f64::from(camera.size.1));
+    let inside = |p: DVec2| p.x > 1.0 && p.y > 1.0 && p.x < w - 1.0 && p.y < h - 1.0;
+    let seen = points.iter().filter(|p| p.visibility == Visibility::Visible && inside(p.pixel));
+    let bare = seen.clone().filter(|p| !marked.iter().any(|at| at.distance(p.pixel) <= HALF + 0.5)).count();
+    let open: Vec<DVec2> = points.iter().filter(|p| p.visibility != Visibility::Hidden).map(|p| p.pixel).collect();
+    let stray = marked.iter().filter(|at| !open.iter().any(|p| p.distance(**at) <= HALF + 0.5 + 0.2)).count();
+    (seen.count(), bare, stray)
+}
+
+/// Shapes with edges of every kind, some of them placed twice, from afar and in a parallel view.
+#[test]
+fn lines_are_where_exact_rays_see_edges() {
+    for shape in shapes::all().into_iter().filter(|shape| !shape.model.instances.is_empty()) {
+        for camera in [perspective(&shape.model, SIZE), orthographic(&shape.model, SIZE)] {
+            let picture = draw(&shape.model, with(lines()), &camera);
+            let (seen, bare, stray) = faults(&shape.model, &camera, &picture);
+            println!("{}: {seen} visible points, {bare} bare, {stray} stray", shape.name);
+            assert_eq!((bare, stray), (0, 0), "{}", shape.name);
+        }
+    }
+}
+
+/// A box a thousandth below a larger one, from 3 degrees above: its edges lie behind a face that falls away steeply from
+/// the eye, by far less than that face's depth changes from pixel to pixel.
+#[test]
+fn an_edge_close_behind_a_grazing_face_is_hidden() {
+    let cube = shapes::cube();
+    let mut model = cube.clone();
+    model.parts.push(cube.parts[0].clone());
+    let slab = DAffine3::from_scale(DVec3::new(3.0, 3.0, 0.05));
+    let corners = cube.parts[0].edges().unwrap().vertices;
+    let half = corners.iter().fold(0.0f64, |most, corner| most.max(corner.z));
+    let below = DVec3::new(0.0, 0.0, -half * 0.05 - half * 0.02 - 0.001);
+    let thin = DAffine3::from_translation(below) * DAffine3::from_scale(DVec3::new(1.5, 1.5, 0.02));
+    model.instances = vec![shapes::placed(slab, None), shapes::placed(thin, None)];
+    model.instances[1].part = 1;
+    let steep = 3f64.to_radians();
+    let from = DVec3::new(0.6, -0.8, 0.0) * steep.cos() + DVec3::Z * steep.sin();
+    let camera = Camera::around(model.control_bounds(), from, DVec3::Z, 0.4, SIZE);
+    let picture = draw(&model, with(lines()), &camera);
+    let count = model.parts[0].edges().unwrap().edges.len() as u32;
+    let (slabs, boxes): (Vec<_>, Vec<_>) = centres(&picture).partition(|(_, edge)| *edge <= count);
+    assert!(slabs.len() > 100, "{}", slabs.len());
+    let (_, bare, stray) = faults(&model, &camera, &picture);
+    assert_eq!((bare, stray), (0, 0), "{} line pixels of the box behind", boxes.len());
+}
+
+/// The outline of a ball is a circle in space, and the lines lie on it: at the exact fold, all around.
+#[test]
+fn a_balls_outline_is_where_it_folds() {
+    let model = shapes::sphere();
+    let camera = perspective(&model, SIZE);
+    let settings = EdgeSettings { which: EdgeChoice::None, silhouettes: true, ..lines() };
+    let picture = draw(&model, with(settings), &camera);
+    let radius = 0.5 * (model.control_bounds().max.z - model.control_bounds().min.z);
+    let away = camera.eye.length();
+    let (axis, middle) = (camera.eye / away, camera.eye * (radius * radius / (away * away)));
+    let round = radius * (1.0 - radius * radius / (away * away)).sqrt();
+    let right = axis.any_orthonormal_vector();
+    let up = axis.cross(right);
+    let outline: Vec<DVec2> = (0..4000)
+        .map(|k| {
+            let (sin, cos) = (f64::from(k) * std::f64::consts::TAU / 4000.0).sin_cos();
+            camera.project(middle + (right * cos + up * sin) * round).unwrap().0
+        })
+        .collect();
+    let marked: Vec<(DVec2, u32)> = centres(&picture).collect();
+    assert!(marked.iter().all(|(_, edge)| *edge == OUTLINE));
+    let stray = marked.iter().filter(|(at, _)| !outline.iter().any(|p| p.distance(*at) <= HALF + 0.5)).count();
+    let bare = outline.iter().filter(|p| !marked.iter().any(|(at, _)| at.distance(**p) <= HALF + 0.5)).count();
+    assert_eq!((bare, stray), (0, 0), "of {} pixels", marked.len());
+}
+
+/// A million times closer, at the hole of a plate: the picture shows a hundred-thousandth of the edge.
+#[test]
+fn lines_hold_at_any_zoom() {
+    let model = shapes::plate();
+    let edges = model.parts[0].edges().unwrap();
+    let curved = edges.edges.iter().find(|e| e.curve[0].piece.degree() > 1).unwrap();
+    let target = curved.curve[0].piece.point(0.3);
+    let whole = perspective(&model, SIZE);
+    for times in [1e2, 1e4, 1e6] {
+        let eye = target + (whole.eye - whole.target) / times;
+        let distance = (eye - target).length();
+        let camera = Camera { eye, target, depth_range: (0.1 * distance, whole.depth_range.1), ..whole };
+        let picture = draw(&model, with(lines()), &camera);
+        let (seen, bare, stray) = faults(&model, &camera, &picture);
+        println!("{times:e}: {seen} visible points, {bare} bare, {stray} stray");
+        assert!(centres(&picture).count() > 100, "{times:e}");
+        // points of the judge lie some pixels apart here: lines are judged by the curve's nearest point
+        assert_eq!(bare, 0, "{times:e}");
+        let near = |at: DVec2| {
+            let pieces = edges.edges.iter().flat_map(|e| &e.curve);
+            let pixel = |t: f64, span: &selvedge::spline::Span<selvedge::spline::Bezier<glam::DVec4>>| {
+                camera.project(span.piece.point(t)).map_or(f64::INFINITY, |(p, _)| p.distance(at))
+            };
+            pieces.map(|span| nearest(&|t| pixel(t, span))).fold(f64::INFINITY, f64::min)
+        };
+        for (at, _) in centres(&picture) {
+            assert!(near(at) <= HALF + 0.6, "{times:e}: {at} is {} px from any edge", near(at));
+        }
+    }
+}
+
+/// The least value of a function over `[0, 1]`: of a grid, refined around its best point.
+fn nearest(distance: &dyn Fn(f64) -> f64) -> f64 {
+    let (mut from, mut to) = (0.0, 1.0);
+    let mut best = f64::INFINITY;
+    for _ in 0..12 {
+        let at = |k: u32| from + (to - from) * f64::from(k) / 64.0;
+        let (k, value) = (0..=64).map(|k| (k, distance(at(k)))).min_by(|a, b| a.1.total_cmp(&b.1)).expect("65 points");
+        best = f64::min(best, value);
+        (from, to) = (at(k.saturating_sub(1)), at((k + 1).min(64)));
+    }
+    best
+}
+
+/// Part and instance of each pixel, beside the face.
+#[test]
+fn pixels_know_their_part_and_instance() {
+    let model = shapes::pair();
+    let camera = perspective(&model, SIZE);
+    let picture = draw(&model, SceneSettings::default(), &camera);
+    assert!(picture.edge.iter().all(|edge| *edge == 0));
+    let tracer = Tracer::new(&model);
+    let mut probe = tracer.probe(&camera);
+    let (mut seen, mut other) = ([0; 2], 0);
+    for (at, (&part, &instance)) in picture.part.iter().zip(&picture.instance).enumerate() {
+        let pixel = DVec2::new((at % SIZE.0 as usize) as f64 + 0.5, (at / SIZE.0 as usize) as f64 + 0.5);
+        assert_eq!(part != 0, picture.face[at] != 0);
+        assert_eq!(part != 0, instance != 0);
+        let hits = probe.hits(pixel);
+        let first = hits.iter().min_by(|a, b| a.depth.total_cmp(&b.depth));
+        if let Some(hit) = first.filter(|_| instance != 0) {
+            other += usize::from(hit.instance + 1 != instance as usize);
+            seen[instance as usize - 1] += 1;
+        }
+    }
+    // at borders a centre may see either
+    assert!(seen.iter().all(|n| *n > 200) && other * 100 < seen[0], "{seen:?}, {other} others");
+}
+
+/// Without lines nothing of theirs exists, and with them only the colour changes, where lines are.
+#[test]
+fn only_the_colour_changes_and_only_where_lines_are() {
+    let model = shapes::cube();
+    let camera = perspective(&model, SIZE);
+    let names = |settings| {
+        let mut renderer: HeadlessRenderer = watched_with(&model, settings);
+        let picture = renderer.render(&camera, &FrameSettings::default(), Outputs::ALL).unwrap();
+        let objects = renderer.objects();
+        assert_silent(renderer);
+        (picture, objects)
+    };
+    let of_lines = |names: &[String]| {
+        names.iter().filter(|n| n.starts_with("edge") || n.contains("best lines") || n.contains("sources")).count()
+    };
+    let (plain, without) = names(SceneSettings::default());
+    let (drawn, with_lines) = names(with(lines()));
+    assert_eq!(of_lines(&without), 0, "{without:?}");
+    assert!(of_lines(&with_lines) > 8, "{with_lines:?}");
+    let none = EdgeSettings { which: EdgeChoice::None, ..lines() };
+    assert_eq!(of_lines(&names(with(none)).1), 0);
+    let bits = |picture: &Picture| {
+        let depth: Vec<u32> = picture.depth.iter().map(|x| x.to_bits()).collect();
+        let normal: Vec<[u32; 3]> = picture.normal.iter().map(|n| n.map(f32::to_bits)).collect();
+        (depth, picture.face.clone(), normal)
+    };
+    assert!(bits(&plain) == bits(&drawn), "images beside the colour");
+    let numbered = draw(&model, with(lines()), &camera);
+    let changed = plain.colour.iter().zip(&drawn.colour).map(|(a, b)| a != b);
+    let (mut inside, mut faint) = (0, 0);
+    for (changed, edge) in changed.zip(&numbered.edge) {
+        inside += usize::from(changed && *edge != 0);
+        faint += usize::from(changed && *edge == 0); // covered by less than a tenth
+    }
+    assert!(inside > 200 && faint < inside / 4, "{inside}, {faint}");
+}
+
+/// Hidden lines are drawn when they are asked for, lighter than others.
+#[test]
+fn hidden_lines_are_lighter() {
+    let model = shapes::cube();
+    let camera = perspective(&model, SIZE);
+    let plain = draw(&model, with(lines()), &camera);
+    let hidden = draw(&model, with(EdgeSettings { hidden: true, ..lines() }), &camera);
+    let more = |a: &Picture, b: &Picture| {
+        let pairs = a.edge.iter().zip(&b.edge).zip(b.colour.iter());
+        pairs.filter(|((a, b), _)| **a == 0 && **b != 0).map(|(_, c)| c[0]).collect::<Vec<_>>()
+    };
+    let dashes = more(&plain, &hidden);
+    assert!(dashes.len() > 40, "{}", dashes.len());
+    let darkest = |picture: &Picture| {
+        let lines = picture.edge.iter().zip(&picture.colour).filter(|(edge, _)| **edge != 0);
+        lines.map(|(_, colour)| colour[0]).min().unwrap()
+    };
+    assert!(*dashes.iter().min().unwrap() > 2 * darkest(&plain));
+    assert!(more(&hidden, &plain).is_empty(), "a visible line stays where it was");
+}
+
+/// Lines of the pixels' centres go over pictures of several samples.
+#[test]
+fn lines_are_the_same_with_several_samples() {
+    let model = shapes::cube();
+    let camera = perspective(&model, SIZE);
+    let one = draw(&model, with(lines()), &camera);
+    let four = draw(&model, SceneSettings { samples: Samples::Four, ..with(lines()) }, &camera);
+    assert!(one.edge == four.edge);
+}
+
+#[test]
+fn bad_settings_are_refused() {
+    let model = shapes::cube();
+    let refused = |edges: EdgeSettings| {
+        let mut renderer = crate::watched::renderer();
+        match renderer.upload_with(&model, with(edges)) {
+            Err(HeadlessError::Render(RenderError::Edges(bad))) => bad,
+            other => panic!("{other:?}"),
+        }
+    };
+    for width in [-0.5, f64::NAN, f64::INFINITY, 65.0] {
+        let bad = refused(EdgeSettings { width, ..lines() });
+        assert!(matches!(bad, BadEdges::Width(_)), "{bad}");
+        assert!(bad.to_string().starts_with("the width of edge lines must be from 0 to 64 pixels, not "), "{bad}");
+    }
+    let colour = [0.0, f32::NAN, 0.0, 1.0];
+    assert!(matches!(refused(EdgeSettings { colour, ..lines() }), BadEdges::Colour(_)));
+    assert!("sharpest".parse::<EdgeChoice>().unwrap_err().to_string().contains("all, sharp, none"));
+    assert!("thick".parse::<TangentEdges>().unwrap_err().to_string().contains("none, thin, full"));
+}
