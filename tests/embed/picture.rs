@@ -63,7 +63,7 @@ fn draw(host: &Host, renderer: &mut Renderer, targets: &Targets, camera: &Camera
     targets.draw(host, cmd, HOST_BLUE, &[(third, third, wall), (2 * third, third, 1.0)]);
     targets.hand_over(host, cmd);
     let settings = FrameSettings { background, ..FrameSettings::default() };
-    let into = Into { colour: &targets.colour, depth: Some(&targets.depth), aovs: None };
+    let into = Into { colour: &targets.colour, depth: Some(&targets.depth), aovs: None, numbers: None };
     // SAFETY: recording; the slot's frame was waited for.
     unsafe { renderer.record(cmd, &FrameInput { camera, settings, slot: 0, targets: into }) }.unwrap();
     targets.overlay(host, cmd, 8, [1.0, 0.0, 0.0, 1.0]);
