@@ -28,6 +28,7 @@ layout(scalar, push_constant) uniform Push { float half_px; } push;
 
 #include "placed.glsl"
 #include "patch.glsl"
+#include "patch_place.glsl"
 #include "refine.glsl"
 #include "visible.glsl"
 
@@ -40,7 +41,9 @@ bool is_own_triangle(uint instance, uint triangle) { return false; }
 
 #include "edge_seen.glsl"
 
-const uint FOLD_STEPS = 8u;
+// At a fold the sheet bends away from its tangent plane at once.
+const float FOLD_SHEET_PX = 0.25;
+const uint FOLD_STEPS = 12u;
 // Of the patch: between points whose difference is the slope of det J.
 const float FOLD_DIFFERENCE = 1.0 / 512.0;
 // Where a fold may lie beside its patch, of the patch. One pixel within a small ball's outline is many degrees before the
@@ -71,11 +74,15 @@ float fold_at(Sample s, View view) {
     return along[0].x * along[1].y - along[0].y * along[1].x;
 }
 
-// The fold of the patch nearest to `pixel`, from (u, v) on; false where there is none near.
-bool find_fold(Patch patch_, View view, vec2 uv, vec2 pixel, out Sample s) {
-    Net net = net_of(patch_);
+// The fold of the face nearest to `pixel`, from (u, v) of a patch on and over into those beside it; false where there is
+// none near.
+bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s) {
+    ivec2 count = ivec2(face.count_u, face.count_v);
+    ivec2 place = place_of(face, n);
+    Patch patch_ = patch_at(patch_in(face, place));
     vec2 moved = vec2(1e9);
     for (uint i = 0u; i <= FOLD_STEPS; ++i) {
+        Net net = net_of(patch_);
         s = sample_at(patch_, net, view, uv, pixel);
         if (dot(moved, moved) < ARRIVED_PX * ARRIVED_PX || i == FOLD_STEPS) break;
         float g = fold_at(s, view);
@@ -97,6 +104,12 @@ bool find_fold(Patch patch_, View view, vec2 uv, vec2 pixel, out Sample s) {
         to /= max(max(steps.x, steps.y), 1.0);
         moved = along * to;
         uv += to;
+        ivec2 next = clamp(place + way_beyond(uv, 0.0), ivec2(0), count - 1);
+        Patch there = patch_at(patch_in(face, next));
+        if (next == place || side_of(there.shape) == SIDE_OUTSIDE) continue;
+        uv = (patch_.domain.xy + uv * patch_.domain.zw - there.domain.xy) / there.domain.zw;
+        patch_ = there;
+        place = next;
     }
     bool within = all(greaterThanEqual(s.uv, vec2(-FOLD_BESIDE))) && all(lessThanEqual(s.uv, vec2(1.0 + FOLD_BESIDE)));
     vec3 du = seen_from_eye(to_pixel(view, vec4(s.jet.du, 0.0)));
@@ -134,13 +147,13 @@ void main() {
         if (patch_.bend == vec3(0.0)) continue;
         View view = view_at(fi.instance);
         Sample s;
-        if (!find_fold(patch_, view, unpack_uv(found[i].y), gl_FragCoord.xy, s)) continue;
+        if (!find_fold(face, int(item - fi.first_item), view, unpack_uv(found[i].y), gl_FragCoord.xy, s)) continue;
         vec2 place = s.q.xy / s.q.w;
         float covered = line_coverage(length(s.miss), push.half_px);
         uint steps = uint(covered * LINE_STEPS + 0.5);
         if (steps == 0u || distance(place, vec2(places[i]) + 0.5) > FOLD_REACH_PX) continue;
         own_face = fi;
-        if (!is_seen(EdgePoint(place, seen_from_eye(s.q)), at)) continue;
+        if (!is_seen(EdgePoint(place, seen_from_eye(s.q), vec2(FOLD_SHEET_PX, 0.0)), at)) continue;
         atomicMax(lines[pixel], LINE_SEEN | steps << LINE_COVERAGE | LINE_FOLD);
     }
 }

@@ -54,6 +54,8 @@ bool is_own_triangle(uint instance, uint triangle) { return is_own(instance, OWN
 
 #include "edge_seen.glsl"
 
+// What Newton's method leaves of the way to the edge's place, and what the sheet bends on it.
+const float ON_SHEET_PX = 1.0 / 64.0;
 // Dashes of hidden lines and the gaps between them, in half widths of lines.
 const float DASH = 8.0;
 const float GAP = 6.0;
@@ -71,7 +73,7 @@ EdgePoint point_at(Chord c, float share, EdgePiece piece, View view) {
         advance(w, n, i, t);
     }
     vec4 q = to_pixel(view, vec4(p.xyz / p.w, 1.0));
-    return EdgePoint(q.xy / q.w, seen_from_eye(q));
+    return EdgePoint(q.xy / q.w, seen_from_eye(q), vec2(ON_SHEET_PX, edge_lines[piece.edge].off));
 }
 
 // Share of a hidden line's dash at a pixel, by rows of a steep line and columns of a flat one.

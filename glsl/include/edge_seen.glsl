@@ -7,17 +7,16 @@
 //
 // The surface that the pixel's centre sees is followed to where the edge is in the picture, by Newton's method on the
 // exact surface, and the point compared with the tangent plane there. Nothing is pushed nearer: a face of another may be
-// behind by rounding alone. A sheet of an own face counts as the edge's when the point is within OWN_SHEET_PX of its
-// tangent plane; where two sheets come together, at a fold, that moves the end of a line by a quarter of it. Needs
+// behind by rounding alone. A sheet of an own face counts as the edge's when the point is within `slack` of its
+// tangent plane; where two sheets come together, at a fold, that moves the end of a line by a quarter of it, across the fold. Needs
 // placed.glsl, patch.glsl, refine.glsl, visible.glsl, edges.glsl, `frame`, buffers `MeshInstance mesh_instances[]`, `uint
 // triangles[]`, `vec3 positions[]`; whoever includes this has `bool is_own_face(FaceInstance)` and
 // `bool is_own_triangle(uint instance, uint triangle)`.
 #ifndef EDGE_SEEN_GLSL
 #define EDGE_SEEN_GLSL
 
-const float OWN_SHEET_PX = 0.25;
 // Of a point's place, relative to its depth: some eight roundings.
-const float PLACE_ROUNDING = 1e-6;
+const float POINT_ROUNDING = 1e-6;
 // Newton's method has arrived.
 const float ARRIVED_PX = 0.05;
 
@@ -27,6 +26,7 @@ layout(constant_id = 27) const bool SCENE_HAS_MESHES = false;
 struct EdgePoint {
     vec2 pixel;
     vec3 place;
+    vec2 slack; // from a sheet of an own face: pixels, and units of the part
 };
 
 // Of a homogeneous pixel, or of a direction that moves it.
@@ -38,8 +38,15 @@ float before_plane(vec3 point, vec3 on, vec3 n) {
     return -dot(point - on, n) * sign(dot(n, ray)) / length(n);
 }
 
-float own_slack(vec3 point) {
-    return OWN_SHEET_PX * (frame.perspective != 0u ? point.z : 1.0) / frame.focal + PLACE_ROUNDING * point.z;
+// How far an own sheet may lie from the edge: pixels, and units of the part.
+float own_slack(vec3 point, View view, vec2 slack) {
+    float stretch = 0.0;
+    for (int axis = 0; axis < 3; ++axis) {
+        vec4 unit = vec4(axis == 0 ? 1.0 : 0.0, axis == 1 ? 1.0 : 0.0, axis == 2 ? 1.0 : 0.0, 0.0);
+        stretch = max(stretch, length(seen_from_eye(to_pixel(view, unit))));
+    }
+    float pixel = (frame.perspective != 0u ? point.z : 1.0) / frame.focal;
+    return slack.x * pixel + slack.y * stretch + POINT_ROUNDING * point.z;
 }
 
 bool is_before_patch(EdgePoint e, uvec2 seen) {
@@ -53,10 +60,10 @@ bool is_before_patch(EdgePoint e, uvec2 seen) {
     vec3 du = seen_from_eye(to_pixel(view, vec4(s.jet.du, 0.0)));
     vec3 dv = seen_from_eye(to_pixel(view, vec4(s.jet.dv, 0.0)));
     float before = before_plane(e.place, on, cross(normalize(du), normalize(dv)));
-    if (is_own_face(fi)) return !(before < -own_slack(e.place));
+    if (is_own_face(fi)) return !(before < -own_slack(e.place, view, e.slack));
     // its sheet ends before it gets there, at a fold: or it has no tangent plane
     if (!(length(s.miss) <= ARRIVED_PX) || isnan(before)) return e.place.z <= on.z;
-    return before >= -PLACE_ROUNDING * e.place.z;
+    return before >= -POINT_ROUNDING * e.place.z;
 }
 
 bool is_before_mesh(EdgePoint e, uvec2 seen) {
@@ -69,8 +76,8 @@ bool is_before_mesh(EdgePoint e, uvec2 seen) {
     vec3 c = seen_from_eye(to_pixel(view, vec4(ac, 0.0)));
     vec3 on = seen_from_eye(to_pixel(view, vec4(a, 1.0)));
     float before = before_plane(e.place, on, cross(normalize(b), normalize(c)));
-    if (is_own_triangle(placed.instance, seen.y)) return !(before < -own_slack(e.place));
-    return !(before < -PLACE_ROUNDING * e.place.z);
+    if (is_own_triangle(placed.instance, seen.y)) return !(before < -own_slack(e.place, view, e.slack));
+    return !(before < -POINT_ROUNDING * e.place.z);
 }
 
 // The word of what is no patch at a pixel, and its depth; another's where it is not `like`.
@@ -97,7 +104,7 @@ bool is_before_solid(EdgePoint e, ivec2 at, uvec2 seen) {
         there += step_[axis] * rise * (both ? 0.5 : 1.0);
     }
     float follows = frame.perspective != 0u ? 1.0 / max(there, 1e-36) : there;
-    return e.place.z <= follows * (1.0 + PLACE_ROUNDING);
+    return e.place.z <= follows * (1.0 + POINT_ROUNDING);
 }
 
 bool is_seen(EdgePoint e, ivec2 at) {

@@ -17,6 +17,7 @@ struct EdgeLine {
     uint style;  // EDGE_*
     uint first_own;
     uint own_count;
+    float off; // how far it may lie off its own faces, units of the part
 };
 
 struct EdgeItem {

@@ -58,7 +58,7 @@ Situation situation_at(uint listed, ivec2 at, vec2 pixel, bool within) {
     s.other_depth = s.other ? other_depth(other, pixel) : 3.0e38;
     s.own = no_candidate();
     uint radius = s.border ? RADIUS_OF_INSIDE | RADIUS_OF_OUTSIDE : RADIUS_OF_INSIDE;
-    if (!s.empty) s.own = candidate_at(seen, pixel, FROM_BESIDE, radius, no_candidate());
+    if (!s.empty) s.own = candidate_at(seen, pixel, FROM_BESIDE, radius);
     s.seen = seen;
 #ifdef WITHIN_VOLUME
     s.cut_open = true;
@@ -72,7 +72,7 @@ Situation situation_at(uint listed, ivec2 at, vec2 pixel, bool within) {
 void gather_across_fold(inout Evidence e, Situation s, vec2 pixel) {
     for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
         uvec2 seen = uvec2(s.seen.x, pack_uv(unpack_uv(s.seen.y) + ACROSS * DIRECTIONS[k]));
-        consider(e, s, candidate_at(seen, pixel, FROM_FOLD, RADIUS_OF_OUTSIDE, no_candidate()));
+        consider(e, s, candidate_at(seen, pixel, FROM_FOLD, RADIUS_OF_OUTSIDE));
     }
 }
 
@@ -95,11 +95,7 @@ uint first_that_counts(ivec2 at, ivec2 step_, uint band, bool within, out ivec2 
 Evidence gather(inout Situation s, ivec2 at, vec2 pixel, bool within) {
     Evidence e = no_evidence(s);
     if (!s.border) gather_across_fold(e, s, pixel);
-    Candidate behind = no_candidate();
-    if (s.border && own_on_pixel(s) && s.own.inside) behind = s.own; // a border that it hides is none
     uint band = is_interior(s) ? WIDE_BAND_PX : BAND_PX;
-    uvec2 bending = uvec2(0u); // a neighbour sees it, and it looks away at the pixel
-    vec2 bending_at = pixel + 1.0;
     for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
         ivec2 beside;
         uvec2 seen;
@@ -114,17 +110,7 @@ Evidence gather(inout Situation s, ivec2 at, vec2 pixel, bool within) {
             continue;
         }
         uint from = steps > 1u ? FROM_BEYOND : FROM_BESIDE;
-        Candidate c = candidate_at(seen, pixel, from, RADIUS_OF_OUTSIDE, behind);
-        if (from == FROM_BESIDE && c.kind == ABSENT && c.away) {
-            bending = seen;
-            bending_at = vec2(beside) + 0.5;
-        }
-        consider(e, s, c);
-    }
-    // rule "bends away": where nobody else is
-    bool nobody = e.present.kind == ABSENT && e.near.kind == ABSENT;
-    if (s.border && !s.empty && bending.x != 0u && nobody) {
-        consider(e, s, candidate_towards(bending_at, bending, pixel, behind));
+        consider(e, s, candidate_at(seen, pixel, from, RADIUS_OF_OUTSIDE));
     }
     return e;
 }

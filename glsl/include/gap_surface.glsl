@@ -64,9 +64,8 @@ Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec
     return s;
 }
 
-// The face that `seen` names, at the pixel's centre. Of `radius` the points are tested that RADIUS_OF_ names. A border
-// behind `behind` does not count: that hides it.
-Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius, Candidate behind) {
+// The face that `seen` names, at the pixel's centre. Of `radius` the points are tested that RADIUS_OF_ names.
+Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius) {
     uint item = seen_item(seen.x);
     FaceInstance fi = face_instance_at(face_instance_of(item));
     Face face = face_at(fi.face);
@@ -112,33 +111,12 @@ Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius, Candidate
         // each alone may reach to the pixel from beside the corner in which they meet
         if (!in_volume(q, ON_PX)) continue;
 #endif
-        vec2 off = q.xy / q.w - pixel;
-        if (q.z <= behind.depth + dot(behind.slope, off) && length(off) <= GAP_SLACK * frame.gap_radius_px) {
+        if (distance(q.xy / q.w, pixel) <= GAP_SLACK * frame.gap_radius_px) {
             c.kind = NEAR;
             break;
         }
     }
     return c;
-}
-
-// A face that bends away from the viewer between the pixel and `beside`, which sees it: near where it is there within the
-// gap radius towards that one. At the pixel itself its surface looks away, where its trims tell nothing.
-Candidate candidate_towards(vec2 beside, uvec2 seen, vec2 pixel, Candidate behind) {
-    uint item = seen_item(seen.x);
-    FaceInstance fi = face_instance_at(face_instance_of(item));
-    Face face = face_at(fi.face);
-    View view = view_at(fi.instance);
-    vec2 at = pixel + frame.gap_radius_px * normalize(beside - pixel);
-    Sample s = refine_across(fi, face, view, item, unpack_uv(seen.y), at);
-    mat2 along = pixels_along(s, view);
-    bool away = looks_away(determinant(along), face, instance_at(fi.instance));
-    bool there = is_there(fi, face, item, patch_at(face.first_patch + item - fi.first_item), s.uv);
-    bool near = there && !away && length(s.miss) <= ON_PIXEL_PX && s.q.z <= behind.depth;
-#ifdef WITHIN_VOLUME
-    near = near && in_volume(s.q, ON_PX);
-#endif
-    uvec2 word = uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0))));
-    return Candidate(near ? NEAR : ABSENT, FROM_BESIDE, fi.face + 1u, false, away, s.q.z, frame.gap_radius_px, vec2(0.0), word);
 }
 
 // The border of a candidate near the pixel; see gap_decide.glsl.

@@ -54,7 +54,8 @@ pub mod edge_fold {
     pub const FOLD_BESIDE: f32 = 0.25;
     pub const FOLD_COSINE: f32 = 0.2;
     pub const FOLD_REACH_PX: f32 = 1.5;
-    pub const FOLD_STEPS: u32 = 8;
+    pub const FOLD_SHEET_PX: f32 = 0.25;
+    pub const FOLD_STEPS: u32 = 12;
     pub const SAME_PLACE: f32 = 0.05;
 }
 pub mod edge_line {
@@ -64,8 +65,7 @@ pub mod edge_line {
 }
 pub mod edge_seen {
     pub const ARRIVED_PX: f32 = 0.05;
-    pub const OWN_SHEET_PX: f32 = 0.25;
-    pub const PLACE_ROUNDING: f32 = 1e-6;
+    pub const POINT_ROUNDING: f32 = 1e-6;
 }
 pub mod edge_show {
     pub const EDGE_COVERS: f32 = 0.1;

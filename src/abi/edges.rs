@@ -14,12 +14,13 @@ pub struct EdgePiece {
 
 /// What is drawn along an edge.
 #[repr(C)]
-#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq)]
 pub struct EdgeLine {
     pub number: u32,
     pub style: u32,
     pub first_own: u32,
     pub own_count: u32,
+    pub off: f32,
 }
 
 /// A piece as it is placed.

@@ -2,7 +2,7 @@
 
 use super::cones::{Normals, cones};
 use super::deep_zoom::Cut;
-use super::edges::{EdgeData, Placing, UndrawnEdges, edges_of};
+use super::edges::EdgeData;
 use super::edit::EditScene;
 use super::exact::ExactData;
 use super::face::{Body, Cuts, FaceData, Trimming, pack_colour};
@@ -18,7 +18,7 @@ use crate::abi;
 use crate::model::{Bounds, Instance, Isolated, Items, Model, Part, SolidError};
 #[cfg(any(test, feature = "baselines"))]
 use crate::picture::SceneSettings;
-use crate::picture::{EdgeSettings, Highlight, Samples, TakenWay};
+use crate::picture::{Highlight, Samples, TakenWay};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -295,24 +295,6 @@ impl SceneData {
         Ok(data)
     }
 
-    /// Finds the edges of the model that the scene is made of.
-    pub(crate) fn find_edges(&mut self, model: &Model, settings: EdgeSettings) -> Result<(), UndrawnEdges> {
-        let edges = edges_of(model)?;
-        let mut placed = vec![None; model.instances.len()];
-        for (nth, [_, instance]) in (0..).zip(&self.sources).filter(|(_, source)| source[1] > 0) {
-            placed[*instance as usize - 1] = Some(nth);
-        }
-        let of = Placing {
-            model,
-            parts: &self.parts,
-            placed: &placed,
-            first_triangles: &self.meshes.first_triangles,
-            faces: self.faces.len(),
-        };
-        self.edges = Some(EdgeData::of(settings, &of, &edges, &mut self.placements));
-        Ok(())
-    }
-
     /// The faces from this one on meet along sides, where they do; whether all sides of those without trims do.
     fn link(&mut self, first_face: usize) -> bool {
         link(&self.faces, first_face..self.faces.len(), &self.patches, &mut self.points, &mut self.links)
@@ -346,12 +328,6 @@ impl SceneData {
     /// Some mesh is placed.
     pub(crate) fn has_meshes(&self) -> bool {
         !self.meshes.draws.is_empty()
-    }
-
-    /// Some line is drawn along an edge, or around a curved face.
-    pub(crate) fn has_lines(&self) -> bool {
-        let has = |edges: &EdgeData| !edges.items.is_empty() || edges.settings.silhouettes && self.has_patches;
-        self.edges.as_ref().is_some_and(has)
     }
 
     /// Patches or meshes are seen themselves.

@@ -8,6 +8,7 @@
 //!
 //! A pixel tells an edge's own faces by their keys, here their numbers in the scene, and by the model's instance.
 
+use super::data::SceneData;
 use crate::abi;
 use crate::model::{Edges, Model, Part};
 use crate::picture::{EdgeSettings, LineStyle};
@@ -39,6 +40,32 @@ pub(crate) struct Placing<'a> {
     pub first_triangles: &'a [Vec<u32>],
     /// Faces of the scene.
     pub faces: usize,
+}
+
+impl SceneData {
+    /// Finds the edges of the model that the scene is made of.
+    pub(crate) fn find_edges(&mut self, model: &Model, settings: EdgeSettings) -> Result<(), UndrawnEdges> {
+        let edges = edges_of(model)?;
+        let mut placed = vec![None; model.instances.len()];
+        for (nth, [_, instance]) in (0..).zip(&self.sources).filter(|(_, source)| source[1] > 0) {
+            placed[*instance as usize - 1] = Some(nth);
+        }
+        let of = Placing {
+            model,
+            parts: &self.parts,
+            placed: &placed,
+            first_triangles: &self.meshes.first_triangles,
+            faces: self.faces.len(),
+        };
+        self.edges = Some(EdgeData::of(settings, &of, &edges, &mut self.placements));
+        Ok(())
+    }
+
+    /// Some line is drawn along an edge, or around a curved face.
+    pub(crate) fn has_lines(&self) -> bool {
+        let has = |edges: &EdgeData| !edges.items.is_empty() || edges.settings.silhouettes && self.has_patches;
+        self.edges.as_ref().is_some_and(has)
+    }
 }
 
 /// Pieces of one part.
@@ -94,7 +121,7 @@ impl EdgeData {
         for (edge, number) in edges.edges.iter().zip(number..) {
             let Some(style) = self.settings.style(edge.kind) else { continue };
             let own = edge.uses.iter().map(|u| (first_face + u.face) as u32).collect();
-            self.push_line(number, style, own);
+            self.push_line(number, style, own, edges.deviation);
             for span in &edge.curve {
                 self.push_piece(&span.piece.points, origin);
             }
@@ -104,19 +131,19 @@ impl EdgeData {
             let Some(style) = self.settings.style(edge.kind) else { continue };
             let triangle =
                 |&(mesh, nth): &(usize, usize)| abi::OWN_TRIANGLE | (of.first_triangles[part][mesh] + nth as u32);
-            self.push_line(number, style, edge.triangles.iter().map(triangle).collect());
+            self.push_line(number, style, edge.triangles.iter().map(triangle).collect(), 0.0);
             self.push_piece(&edge.ends.map(|p| p.extend(1.0)), origin);
         }
     }
 
-    /// An edge with its own faces: keys, or triangles.
-    pub(super) fn push_line(&mut self, number: u32, style: LineStyle, own: Vec<u32>) {
+    /// An edge with its own faces: keys, or triangles. It lies `off` them at most, in units of the part.
+    pub(super) fn push_line(&mut self, number: u32, style: LineStyle, own: Vec<u32>, off: f64) {
         let style = match style {
             LineStyle::Full => abi::EDGE_FULL,
             LineStyle::Thin => abi::EDGE_THIN,
         };
         let first_own = self.own_faces.len() as u32;
-        self.lines.push(abi::EdgeLine { number, style, first_own, own_count: own.len() as u32 });
+        self.lines.push(abi::EdgeLine { number, style, first_own, own_count: own.len() as u32, off: off as f32 });
         self.own_faces.extend(own);
     }
 

@@ -9,7 +9,7 @@
 use crate::bindings::Placed;
 use crate::frame::common::draw::Draw;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource};
-use crate::scene::{MeshBuffers, SceneData};
+use crate::scene::MeshBuffers;
 use crate::shaders;
 
 /// The pass.
@@ -28,9 +28,9 @@ pub(crate) struct Bindings<'a> {
 }
 
 impl Fold {
-    pub(crate) fn new(device: &Device, data: &SceneData) -> Result<Self, GpuError> {
+    pub(crate) fn new(device: &Device, constants: &[(u32, u32)]) -> Result<Self, GpuError> {
         let draw = Draw::new("edge_fold", &shaders::RESOLVE_VERT, &shaders::EDGE_FOLD_FRAG);
-        Ok(Self { pipeline: Draw { constants: &super::line::constants(data), ..draw }.pipeline(device)? })
+        Ok(Self { pipeline: Draw { constants, ..draw }.pipeline(device)? })
     }
 
     /// One triangle over a picture of the visibility image's size; lines are twice `half_px` wide.

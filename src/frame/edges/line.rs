@@ -11,8 +11,8 @@
 use crate::bindings::Placed;
 use crate::frame::common::draw::Draw;
 use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Pipeline, Resource, TexelBuffer};
-use crate::scene::{EdgeBuffers, MeshBuffers, SceneData};
-use crate::shaders::{self, constant};
+use crate::scene::{EdgeBuffers, MeshBuffers};
+use crate::shaders;
 use bytemuck::{Pod, Zeroable};
 
 /// The pass.
@@ -42,21 +42,10 @@ pub(crate) struct Params {
     pub hidden: u32,
 }
 
-/// What passes that follow surfaces are told of the scene.
-pub(super) fn constants(data: &SceneData) -> [(u32, u32); 4] {
-    let others = data.has_meshes() || data.solids.kinds().is_some();
-    [
-        (constant::SCENE_HAS_RATIONAL, u32::from(data.has_rational)),
-        (constant::SCENE_HAS_FINE, u32::from(data.has_fine)),
-        (constant::SCENE_HAS_MESHES, u32::from(data.has_meshes())),
-        (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
-    ]
-}
-
 impl Line {
-    pub(crate) fn new(device: &Device, data: &SceneData) -> Result<Self, GpuError> {
+    pub(crate) fn new(device: &Device, constants: &[(u32, u32)]) -> Result<Self, GpuError> {
         let draw = Draw::new("edge_line", &shaders::EDGE_LINE_VERT, &shaders::EDGE_LINE_FRAG);
-        Ok(Self { pipeline: Draw { constants: &constants(data), ..draw }.pipeline(device)? })
+        Ok(Self { pipeline: Draw { constants, ..draw }.pipeline(device)? })
     }
 
     /// What `draw` says, over a picture of the visibility image's size.

@@ -18,12 +18,14 @@ pub(crate) mod show;
 pub(crate) use capacities::Capacities;
 
 use super::common::room::Room;
+use super::shading::numbers::NUMBER_FORMAT;
 use super::shading::resolve;
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::Chord;
 use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, barrier};
 use crate::picture::EdgeSettings;
 use crate::scene::SceneData;
+use crate::shaders::constant;
 use ash::vk;
 use std::sync::Arc;
 
@@ -41,16 +43,29 @@ impl Passes {
     /// `None` where no line is drawn.
     pub(super) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<Self>, GpuError> {
         let Some(edges) = data.edges.as_ref().filter(|_| data.has_lines()) else { return Ok(None) };
+        let constants = constants(data);
+        let numbers = formats.numbers.then_some(NUMBER_FORMAT);
         Ok(Some(Self {
             settings: edges.settings,
             divide: divide::Divide::new(device)?,
-            line: line::Line::new(device, data)?,
+            line: line::Line::new(device, &constants)?,
             fold: (edges.settings.silhouettes && data.has_patches)
-                .then(|| fold::Fold::new(device, data))
+                .then(|| fold::Fold::new(device, &constants))
                 .transpose()?,
-            show: show::Show::new(device, data, formats)?,
+            show: show::Show::new(device, data, (formats.colour, numbers))?,
         }))
     }
+}
+
+/// What passes that follow surfaces are told of the scene.
+fn constants(data: &SceneData) -> [(u32, u32); 4] {
+    let others = data.has_meshes() || data.solids.kinds().is_some();
+    [
+        (constant::SCENE_HAS_RATIONAL, u32::from(data.has_rational)),
+        (constant::SCENE_HAS_FINE, u32::from(data.has_fine)),
+        (constant::SCENE_HAS_MESHES, u32::from(data.has_meshes())),
+        (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
+    ]
 }
 
 /// The stage.

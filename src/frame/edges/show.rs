@@ -8,12 +8,10 @@
 //! Reads: everything that `Bindings` names. Writes: the targets.
 
 use crate::frame::common::draw::Draw;
-use crate::frame::shading::numbers::NUMBER_FORMAT;
-use crate::frame::shading::resolve::Formats;
 use crate::gpu::{Attachment, Blend, Buffer, ColourTarget, Commands, Device, GpuError, Image, Pipeline, Resource};
-use crate::model::Colour;
 use crate::scene::{EdgeBuffers, SceneData};
 use crate::shaders::{self, constant};
+use ash::vk;
 use bytemuck::{Pod, Zeroable};
 
 /// The pass.
@@ -32,23 +30,25 @@ pub(crate) struct Bindings<'a> {
     pub others: &'a Image,
 }
 
+/// Of the colour, and of the image of numbers where there is one.
+pub(crate) type Formats = (vk::Format, Option<vk::Format>);
+
 /// Linear light, and opacity.
 #[repr(C)]
 #[derive(Clone, Copy, Debug, Pod, Zeroable)]
 pub(crate) struct Colours {
-    pub seen: Colour,
-    pub hidden: Colour,
+    pub seen: [f32; 4],
+    pub hidden: [f32; 4],
 }
 
 impl Show {
-    pub(crate) fn new(device: &Device, data: &SceneData, formats: Formats) -> Result<Self, GpuError> {
-        let mut colour = vec![ColourTarget { format: formats.colour, blend: Blend::Over }];
-        if formats.numbers {
-            colour.push(ColourTarget { format: NUMBER_FORMAT, blend: Blend::Replace });
-        }
+    pub(crate) fn new(device: &Device, data: &SceneData, (colour, numbers): Formats) -> Result<Self, GpuError> {
+        let over = ColourTarget { format: colour, blend: Blend::Over };
+        let number = numbers.map(|format| ColourTarget { format, blend: Blend::Replace });
+        let colour: Vec<_> = [over].into_iter().chain(number).collect();
         let others = data.has_meshes() || data.solids.kinds().is_some();
         let constants = [
-            (constant::HAS_EDGE_IMAGE, u32::from(formats.numbers)),
+            (constant::HAS_EDGE_IMAGE, u32::from(numbers.is_some())),
             (constant::SCENE_HAS_MESHES_OR_SOLIDS, u32::from(others)),
         ];
         let draw = Draw::new("edge_show", &shaders::RESOLVE_VERT, &shaders::EDGE_SHOW_FRAG);

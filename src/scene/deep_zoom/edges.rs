@@ -87,11 +87,11 @@ impl SceneData {
             let instance = &whole.instances[nth];
             let sight = Sight::new(&cut.camera, instance);
             let (first_face, first_number) = (first_faces[instance.part], numbers[instance.part] as u32);
-            let Edges { edges, of_meshes, .. } = &edges[instance.part];
+            let Edges { edges, of_meshes, deviation, .. } = &edges[instance.part];
             let key = nth as u32 + 1;
             let mut push = |number, kind, own: &mut dyn Iterator<Item = u32>, pieces: Vec<Bezier<DVec4>>| {
                 let Some(style) = settings.style(kind).filter(|_| !pieces.is_empty()) else { return };
-                data.push_line(number, style, own.collect());
+                data.push_line(number, style, own.collect(), *deviation);
                 for piece in pieces {
                     let bounds = piece.points.iter().fold(Bounds::EMPTY, |all, p| all.with(p.point()));
                     let origin = bounds.centre();
