@@ -1,4 +1,4 @@
-//! Twin of the pass [`bound`](crate::passes): which patches can be seen, and how finely each must be
+//! Twin of the pass `bound`: which patches can be seen, and how finely each must be
 //! divided.
 
 use super::cone::looks_away;

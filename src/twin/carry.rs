@@ -1,4 +1,4 @@
-//! Twin of the pass [`carry`](crate::passes): the winding number that each row of a strip with several bins begins with.
+//! Twin of the pass `carry`: the winding number that each row of a strip with several bins begins with.
 //!
 //! ```text
 //!   bin               0     1     2     3

@@ -1,4 +1,4 @@
-//! Twin of the pass [`cross`](crate::passes): every linear segment meets every scan line that it
+//! Twin of the pass `cross`: every linear segment meets every scan line that it
 //! crosses.
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! Twin of the pass [`density`](crate::passes): pixels that each v-strip of a trimmed face can cover.
+//! Twin of the pass `density`: pixels that each v-strip of a trimmed face can cover.
 //!
 //! ```text
 //!   |S_v| <= speed_v  and  W >= w over the cell   =>   strip height in pixels <= speed_v pixels / strips

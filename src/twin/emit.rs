@@ -1,4 +1,4 @@
-//! Twin of the pass [`emit`](crate::passes): the list of sub-patches, and the draws that cover it.
+//! Twin of the pass `emit`: the list of sub-patches, and the draws that cover it.
 //!
 //! ```text
 //!   vertices before an item  0 ..... draw_vertices ..... 2 draw_vertices ....

@@ -1,4 +1,4 @@
-//! Twin of the pass [`lines`](crate::passes): `mu = ceil(height / spacing)` scan lines for each v-strip, and a
+//! Twin of the pass `lines`: `mu = ceil(height / spacing)` scan lines for each v-strip, and a
 //! row of each in every bin from the first to the last that is seen.
 
 use super::u_bins::seen_range;

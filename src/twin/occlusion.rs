@@ -1,4 +1,4 @@
-//! Twin of the passes [`cull_early`, `depth_pyramid` and `cull_late`](crate::passes), and of `glsl/include/behind.glsl`: which patches
+//! Twin of the passes `cull_early`, `depth_pyramid` and `cull_late`, and of `glsl/include/behind.glsl`: which patches
 //! lie behind what has been drawn.
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! Twin of the pass [`reset`](crate::passes): empty draws and zero counters.
+//! Twin of the pass `reset`: empty draws and zero counters.
 
 use super::emit::Draw;
 use crate::abi::{Counters, Frame};

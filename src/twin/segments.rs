@@ -1,4 +1,4 @@
-//! Twin of the pass [`segments`](crate::passes): linear segments of each trim curve.
+//! Twin of the pass `segments`: linear segments of each trim curve.
 //!
 //! ```text
 //!   n >= sqrt(bend . speed / chord_px)        chords within chord_px of the curve on the screen

@@ -1,4 +1,4 @@
-//! Twin of the pass [`sizes`](crate::passes): where the rows of each v-strip are; rows and segments of the whole trim
+//! Twin of the pass `sizes`: where the rows of each v-strip are; rows and segments of the whole trim
 //! table, and the dispatches that follow from them.
 
 use super::FAILED_ROWS;

@@ -1,4 +1,4 @@
-//! Twin of the pass [`sort`](crate::passes): each row in order of `u`, reduced to the places where
+//! Twin of the pass `sort`: each row in order of `u`, reduced to the places where
 //! inside and outside change.
 //!
 //! ```text

@@ -1,4 +1,4 @@
-//! Twin of the pass [`split`](crate::passes): one number of segments per shared side, and as many
+//! Twin of the pass `split`: one number of segments per shared side, and as many
 //! sub-patches as keep every number within the hardware's limit.
 //!
 //! ```text
