@@ -43,11 +43,11 @@ bool is_own_triangle(uint instance, uint triangle) { return false; }
 
 // At a fold the sheet bends away from its tangent plane at once.
 const float FOLD_SHEET_PX = 0.25;
+// Near a pole a step of a quarter of a patch is a short way.
 const uint FOLD_STEPS = 12u;
 // Of the patch: between points whose difference is the slope of det J.
 const float FOLD_DIFFERENCE = 1.0 / 512.0;
-// Where a fold may lie beside its patch, of the patch. One pixel within a small ball's outline is many degrees before the
-// fold: no pixel may see the patch that has it.
+// Where a fold may lie beside the last patch of its face, of the patch: across the seam of a closed surface.
 const float FOLD_BESIDE = 0.25;
 // Largest cosine between normal and ray at a fold: det J is 0 at poles, too.
 const float FOLD_COSINE = 0.2;

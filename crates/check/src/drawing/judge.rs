@@ -26,7 +26,7 @@ use serde::Serialize;
 pub const SPACING: f64 = 0.5;
 /// Beside half the width, how far a line may be off: pixels.
 pub const SLACK: f64 = 0.5;
-/// Faults that are told one by one.
+/// Most faults that the report lists with their places.
 const TOLD: usize = 16;
 
 /// A picture of lines.

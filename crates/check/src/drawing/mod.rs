@@ -10,8 +10,8 @@
 //!   judge    a picture of lines against points of all paths
 //! ```
 //!
-//! *Accuracy.* Cubics are within [`DrawingSettings::tolerance`] of the exact curve at 15 points a piece, and the largest
-//! distance is told. An end lies at the crossing of two exact curves where rays 0.02 px beside it agree, else within
+//! *Accuracy.* Cubics are within [`DrawingSettings::tolerance`] of the exact curve at 15 points a piece, and
+//! [`Drawing::deviation`] is the largest distance. An end lies at the crossing of two exact curves where rays 0.02 px beside it agree, else within
 //! 0.005 px by bisection. Stretches between samples 3 px apart that no crossing of lines begins or ends are missed.
 //!
 //! A line that lies on another along a whole stretch is drawn once: the nearer one. Points flush with the face of another

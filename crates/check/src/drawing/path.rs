@@ -18,9 +18,9 @@ const HALVINGS: u32 = 14;
 const STEPS: u32 = 6;
 /// Pixels around the picture within which curves are followed.
 const MARGIN: f64 = 4.0;
-/// Measure of a chord of which nothing is in the picture.
+/// Measure of a chord outside of the picture.
 const UNSEEN: f64 = 1.0;
-/// How far inside a curve its direction at an end is told from, in shares of a piece.
+/// The direction of a curve at an end is that of a chord to a point so far inside, as a share of a piece.
 const INSIDE: f64 = 1e-4;
 
 /// A camera's numbers, made once.

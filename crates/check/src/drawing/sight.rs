@@ -20,7 +20,7 @@ use selvedge_geometry::spline::{Bezier, Control};
 
 /// Pixels by which a ray passes a fold.
 const BESIDE: f64 = 1e-3;
-/// What is before a fold is so by this share of the model's size at least.
+/// A hit hides a fold only if it lies before it by this share of the model's size.
 const BEFORE: f64 = 1e-9;
 /// Sine below which a face is seen edge-on.
 const EDGE_ON: f64 = 1e-6;
@@ -68,7 +68,7 @@ impl Side<'_> {
     }
 }
 
-/// One path, to be asked along it.
+/// Decides which stretches of one path are seen.
 pub(crate) struct Sight<'s> {
     scene: &'s Scene<'s>,
     view: &'s View,
@@ -78,7 +78,7 @@ pub(crate) struct Sight<'s> {
 }
 
 impl<'s> Sight<'s> {
-    /// `contours`: smooth edges and seams are told as silhouettes where they are.
+    /// `contours`: smooth edges and seams count as silhouettes where the surface folds along them.
     pub fn new(scene: &'s Scene<'s>, view: &'s View, path: &'s Path<'s>, contours: bool) -> Self {
         let sides = match path.source {
             LineSource::Edge { instance, edge }

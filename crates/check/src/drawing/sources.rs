@@ -47,7 +47,7 @@ impl<'a> Scene<'a> {
         Ok(Self { model, tracer, sheets, edges, loops })
     }
 
-    /// All paths of a view: also those that are not drawn, for lines may end at them.
+    /// All paths of a view. Paths that are not drawn are among them: they may end lines that are.
     pub fn paths(&self, view: &View, silhouettes: bool) -> Paths<'_> {
         let jobs: Vec<(usize, usize, DAffine3)> = self.instances().collect();
         let edges = jobs.par_iter().flat_map_iter(|&(instance, part, transform)| {

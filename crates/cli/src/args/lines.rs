@@ -30,7 +30,7 @@ pub struct LineArgs {
 }
 
 impl LineArgs {
-    /// What the renderer is told; `None` where no lines are asked for.
+    /// The renderer's settings; `None` without lines.
     pub fn settings(&self) -> Result<Option<EdgeSettings>> {
         let usual = EdgeSettings::default();
         let lighter = usual.hidden_colour[3];

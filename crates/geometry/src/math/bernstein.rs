@@ -15,10 +15,27 @@
 //! J. M. Lane, R. F. Riesenfeld, *Bounds on a polynomial*, BIT 21, 1981.
 
 use super::root::bracketed;
+use std::ops::{Add, Mul};
 
 /// Halvings of `[0, 1]` before a cluster of roots counts as one: 2^-48 is 32 times the spacing of
 /// `f64` parameters near 1.
 const MAX_HALVINGS: u32 = 48;
+
+/// de Casteljau's triangle at `t`: overwrites `points` with the control points of `[0, t]` and
+/// returns those of `[t, 1]`. Valid for any real `t` (extrapolation included).
+pub fn split<P: Copy + Add<Output = P> + Mul<f64, Output = P>>(points: &mut [P], t: f64) -> Vec<P> {
+    let n = points.len();
+    let mut work = points.to_vec();
+    let mut right = work.clone();
+    for level in 0..n {
+        points[level] = work[0];
+        right[n - 1 - level] = work[n - 1 - level];
+        for i in 0..n - 1 - level {
+            work[i] = work[i] * (1.0 - t) + work[i + 1] * t;
+        }
+    }
+    right
+}
 
 /// Value at `t` in `[0, 1]`, by Horner's scheme in `t / (1 - t)`.
 ///

@@ -2,7 +2,7 @@
 
 use super::Branch;
 use super::net::{FoldNet, Side};
-use crate::math::bernstein::{sign_changes, value};
+use crate::math::bernstein::{sign_changes, split, value};
 use crate::spline::PatchGrid;
 use glam::DMat4;
 use std::sync::Arc;
@@ -125,21 +125,6 @@ fn graphs(net: &Arc<FoldNet>, cell: &Cell, over_v: bool, out: &mut Traced) {
     }
 }
 
-/// De Casteljau's algorithm: `row` becomes the coefficients over the first share, the result has those over the rest.
-fn split(row: &mut [f64]) -> Vec<f64> {
-    let n = row.len();
-    let mut work = row.to_vec();
-    let mut rest = work.clone();
-    for level in 0..n {
-        row[level] = work[0];
-        rest[n - 1 - level] = work[n - 1 - level];
-        for i in 0..n - 1 - level {
-            work[i] = work[i] * (1.0 - SHARE) + work[i + 1] * SHARE;
-        }
-    }
-    rest
-}
-
 fn divide(cell: Cell, (n, k): (usize, usize), cells: &mut Vec<Cell>) {
     let level = cell.level + 1;
     let parts = |(a, b): (f64, f64)| {
@@ -148,13 +133,13 @@ fn divide(cell: Cell, (n, k): (usize, usize), cells: &mut Vec<Cell>) {
     };
     let (mut left, mut right) = (cell.values.clone(), cell.values);
     for (l, r) in left.chunks_exact_mut(n + 1).zip(right.chunks_exact_mut(n + 1)) {
-        r.copy_from_slice(&split(l));
+        r.copy_from_slice(&split(l, SHARE));
     }
     for (u, half) in parts(cell.u).into_iter().zip([left, right]) {
         let (mut low, mut high) = (half.clone(), half);
         for i in 0..=n {
             let mut column: Vec<f64> = (0..=k).map(|j| low[j * (n + 1) + i]).collect();
-            let rest = split(&mut column);
+            let rest = split(&mut column, SHARE);
             for j in 0..=k {
                 low[j * (n + 1) + i] = column[j];
                 high[j * (n + 1) + i] = rest[j];

@@ -144,22 +144,6 @@ pub(super) fn horner_jet<P: Control>(points: &[P], t: f64) -> (P, P) {
     (a * (1.0 - t) + b * t, (b - a) * n as f64)
 }
 
-/// de Casteljau's triangle at `t`: overwrites `points` with the control points of `[0, t]` and
-/// returns those of `[t, 1]`. Valid for any real `t` (extrapolation included).
-pub(super) fn split<P: Control>(points: &mut [P], t: f64) -> Vec<P> {
-    let n = points.len();
-    let mut work = points.to_vec();
-    let mut right = work.clone();
-    for level in 0..n {
-        points[level] = work[0];
-        right[n - 1 - level] = work[n - 1 - level];
-        for i in 0..n - 1 - level {
-            work[i] = work[i] * (1.0 - t) + work[i + 1] * t;
-        }
-    }
-    right
-}
-
 #[cfg(test)]
 mod tests {
     use super::*;

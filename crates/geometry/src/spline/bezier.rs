@@ -1,6 +1,7 @@
 //! One rational Bézier curve and the piece of a B-spline that it is.
 
 use super::{Control, bernstein};
+use crate::math::bernstein::split;
 
 /// A rational Bézier curve over `[0, 1]`; `points.len() - 1` is its degree.
 #[derive(Clone, Debug, PartialEq)]
@@ -49,7 +50,7 @@ impl<P: Control> Bezier<P> {
     /// The control points of `[0, t]` and of `[t, 1]`.
     pub fn split(&self, t: f64) -> (Self, Self) {
         let mut left = self.points.clone();
-        let right = bernstein::split(&mut left, t);
+        let right = split(&mut left, t);
         (Self { points: left }, Self { points: right })
     }
 

@@ -2,6 +2,7 @@
 
 use super::bernstein::{FULL, Row};
 use super::{Control, MAX_DEGREE, bernstein};
+use crate::math::bernstein::split;
 use glam::{DVec3, DVec4};
 
 /// A rational Bézier patch over `[0, 1]²`.
@@ -130,7 +131,7 @@ impl Patch {
         let mut right = self.clone();
         for j in 0..=self.degree_v {
             let range = j * n..(j + 1) * n;
-            right.points[range.clone()].copy_from_slice(&bernstein::split(&mut left.points[range], t));
+            right.points[range.clone()].copy_from_slice(&split(&mut left.points[range], t));
         }
         (left, right)
     }

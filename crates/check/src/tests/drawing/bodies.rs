@@ -140,7 +140,7 @@ fn a_plate_with_a_hole_shows_what_is_behind_the_hole() {
     same_segments(&hidden, &[&rest[..], &others[..]].concat());
 }
 
-/// What is asked for and nothing else.
+/// A drawing has the kinds of lines that its settings name, and no others.
 #[test]
 fn settings_choose_the_kinds() {
     let model = alone(shapes::cylinder(0.8, 1.0).unwrap().part);

@@ -84,7 +84,7 @@ fn each_fault_is_seen() {
     assert!(missing > 500 && stray == 0);
 }
 
-/// Hidden lines may be there, dashed, where they are asked for.
+/// With hidden lines in the settings, pixels of hidden edges are no faults.
 #[test]
 fn hidden_lines_are_excused_where_asked_for() {
     let (model, camera, [visible, hidden]) = cube();
