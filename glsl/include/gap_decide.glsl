@@ -21,7 +21,7 @@ struct Situation {
     bool isolated;     // no border is near: nothing is seen, between patches on both sides
     bool empty;        // no patch is seen
     bool empty_beside; // a neighbour shows the background
-    bool other_beside; // a neighbour shows a mesh or solid behind `own`
+    bool other_beside; // a neighbour shows a mesh or solid
     bool other;        // a mesh or solid is behind the pixel
     float other_depth;
     bool cut_open;     // a volume trims the scene

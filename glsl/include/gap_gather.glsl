@@ -107,9 +107,8 @@ Question ask_beside(inout Situation s, ivec2 at, ivec2 step_, bool within) {
     uint steps = first_that_counts(at, step_, band, within, beside, seen);
     bool nothing = steps == 1u && sees_nothing(seen.x);
     uvec2 there = nothing && SCENE_HAS_MESHES_OR_SOLIDS ? imageLoad(others, beside).xy : uvec2(0u);
-    // a mesh or solid before the own face may hide its neighbour: it tells nothing
     if (nothing && there.x == 0u) s.empty_beside = true;
-    if (nothing && there.x != 0u && other_depth(there, vec2(beside) + 0.5) > s.own.depth) s.other_beside = true;
+    if (nothing && there.x != 0u) s.other_beside = true;
     return Question(steps != 0u && !sees_nothing(seen.x), seen, steps > 1u ? FROM_BEYOND : FROM_BESIDE, RADIUS_OF_OUTSIDE);
 }
 
