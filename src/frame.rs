@@ -214,7 +214,7 @@ impl Frame<'_> {
     ) {
         let stages = self.stages;
         let behind = stages.transparency.iter().map(|layers| &layers.behind);
-        for image in behind.chain(stages.smooth_trims.iter().map(|trims| &trims.resolved)) {
+        for image in behind.chain(stages.unmixed()) {
             barrier::images(cmd, &[(image, Access::FRAGMENT_READ.discarded(), Access::COLOUR_WRITE)]);
         }
         if let Some(pass) = resolve {
@@ -222,6 +222,9 @@ impl Frame<'_> {
         }
         if let Some(smooth_trims) = &stages.smooth_trims {
             times.scope(cmd, "coverage", || smooth_trims.record(self, cmd, &self.trim_test()));
+        }
+        if let Some(smooth_borders) = &stages.smooth_borders {
+            times.scope(cmd, "borders", || smooth_borders.record(self, cmd, &self.trim_test()));
         }
         if let (Some(layers), Some(solids)) = (&stages.transparency, self.solids()) {
             times.scope(cmd, "layers", || layers.record(self, cmd, &solids, drawing));

@@ -6,7 +6,7 @@ mod style;
 
 pub(crate) use edges::LineStyle;
 pub use edges::{BadEdges, EdgeChoice, EdgeSettings, TangentEdges, UnknownEdges};
-pub use samples::{Samples, UnknownSamples};
+pub use samples::{Samples, Smooth, UnknownSamples, UnknownSmooth};
 pub use style::{Style, UnknownStyle};
 
 use crate::model::{Colour, Images};
@@ -231,14 +231,8 @@ pub struct SceneSettings {
     pub editable: bool,
     /// Samples of each pixel's colour: edges are smoothed where there are more than one.
     pub samples: Samples,
-    /// The borders of trimmed faces are smooth: each pixel there is a mixture, in linear colour, of the faces that it
-    /// sees, weighted by the area that the exact trim curves cut from it. Costs far less than [`samples`](Self::samples), of which there must
-    /// be one, and smooths nothing else: silhouettes of curved faces, meshes and Boolean solids stay as they are. All
-    /// images but the colour stay as they are, bit for bit, and so do pixels away from borders, but that colours above
-    /// 1 are cut off there, too. [`TrimWay::Auto`] is
-    /// [`TrimWay::Exact`] then. Settings that exclude it give
-    /// [`RenderError::SmoothTrims`](crate::renderer::RenderError::SmoothTrims).
-    pub smooth_trims: bool,
+    /// Which borders are smooth. Costs far less than [`samples`](Self::samples), of which there must be one.
+    pub smooth: Smooth,
     /// Frames may have an image of thickness: rays are followed through all solids.
     pub thickness: bool,
     /// Mark contacts and overlaps, and count their pixels: rays are followed through all solids.

@@ -110,7 +110,7 @@ pub enum RenderError {
     /// [`sun`](crate::picture::SceneSettings::sun) has no length, or no numbers.
     #[error("the direction towards the sun must be finite and not 0, not {0}")]
     Sun(glam::DVec3),
-    /// [`smooth_trims`](crate::picture::SceneSettings::smooth_trims) beside something that it does not go with.
+    /// [`Smooth::Trims`](crate::picture::Smooth::Trims) beside something that it does not go with.
     #[error("smooth trims do not go with {0}")]
     SmoothTrims(&'static str),
     /// [`edges`](crate::picture::SceneSettings::edges) that cannot be drawn.

@@ -63,7 +63,12 @@ pub struct TrimTest {
     pub gap_fill: &'static Shader,
     /// Both again, within a volume that trims the scene; `None`: the way draws no such scene.
     pub within: Option<Within>,
+    /// Pass `border_mix`, and within a volume; `None`: the way smooths no borders.
+    pub border_mix: Option<[&'static Shader; 2]>,
 }
+
+/// Pass `border_mix` of scenes without trims, and within a volume.
+pub static BORDER_MIX_PLAIN: [&Shader; 2] = [&BORDER_MIX_PLAIN_COMP, &BORDER_MIX_PLAIN_VOLUME_COMP];
 
 /// Shaders of scenes that a volume trims: `glsl/include/volume.glsl`.
 #[derive(Clone, Copy, Debug)]
@@ -81,6 +86,7 @@ pub static TRIM_TABLE: TrimTest = TrimTest {
     operand_patch: &OPERAND_PATCH_TABLE_FRAG,
     gap_fill: &GAP_FILL_TABLE_COMP,
     within: Some(Within { visibility: &VISIBILITY_TABLE_VOLUME_FRAG, gap_fill: &GAP_FILL_TABLE_VOLUME_COMP }),
+    border_mix: Some([&BORDER_MIX_TABLE_COMP, &BORDER_MIX_TABLE_VOLUME_COMP]),
 };
 /// Cells with lists of arcs.
 pub static TRIM_EXACT: TrimTest = TrimTest {
@@ -89,6 +95,7 @@ pub static TRIM_EXACT: TrimTest = TrimTest {
     operand_patch: &OPERAND_PATCH_EXACT_FRAG,
     gap_fill: &GAP_FILL_EXACT_COMP,
     within: Some(Within { visibility: &VISIBILITY_EXACT_VOLUME_FRAG, gap_fill: &GAP_FILL_EXACT_VOLUME_COMP }),
+    border_mix: Some([&BORDER_MIX_EXACT_COMP, &BORDER_MIX_EXACT_VOLUME_COMP]),
 };
 
 /// No test at all.
@@ -99,6 +106,7 @@ pub static TRIM_UNTRIMMED: TrimTest = TrimTest {
     operand_patch: &BASELINE_OPERAND_PATCH_UNTRIMMED_FRAG,
     gap_fill: &BASELINE_GAP_FILL_UNTRIMMED_COMP,
     within: None,
+    border_mix: None,
 };
 
 /// Bisection of monotone pieces.
@@ -109,6 +117,7 @@ pub static TRIM_BISECT: TrimTest = TrimTest {
     operand_patch: &BASELINE_OPERAND_PATCH_BISECT_FRAG,
     gap_fill: &BASELINE_GAP_FILL_BISECT_COMP,
     within: None,
+    border_mix: None,
 };
 
 /// Trim textures.
@@ -119,6 +128,7 @@ pub static TRIM_TEXTURE: TrimTest = TrimTest {
     operand_patch: &BASELINE_OPERAND_PATCH_TEXTURE_FRAG,
     gap_fill: &BASELINE_GAP_FILL_TEXTURE_COMP,
     within: None,
+    border_mix: None,
 };
 
 #[cfg(test)]

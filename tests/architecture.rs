@@ -52,6 +52,7 @@ const RECORDS: &[&str] = &[
     "src/frame.rs",
     "src/frame/reuse.rs",
     "src/frame/antialiasing/samples.rs",
+    "src/frame/antialiasing/smooth_borders.rs",
     "src/frame/antialiasing/smooth_trims.rs",
     "src/frame/baselines/mod.rs",
     "src/frame/common/mod.rs",

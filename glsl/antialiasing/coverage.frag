@@ -29,9 +29,9 @@ layout(binding = 8, rgba32f) readonly uniform image2D resolved; // linear colour
 #include "refine.glsl"
 #include "gap_radius.glsl"
 #include "visible.glsl"
+#include "on_pixel.glsl"
+#include "unmixed.glsl"
 
-// A surface counts at the pixel when its point projects this close to the centre.
-const float ON_PIXEL_PX = 0.05;
 // Relative depth within which faces touch.
 const float TOUCHES = 1e-5;
 // Two points of a face are on one sheet of it when they are this near: else a seam runs between the pixels.
@@ -75,17 +75,6 @@ Covering covering(uvec2 seen, vec2 pixel) {
     return c;
 }
 
-vec4 colour_at(ivec2 at) {
-    vec4 seen = imageLoad(resolved, at);
-    if (seen.a < UNSEEN) return vec4(seen.rgb, 1.0);
-    float opacity = max(frame.background.a, 0.0);
-    return vec4(frame.background.rgb * opacity, opacity);
-}
-
-bool is_in_picture(ivec2 at) {
-    return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(frame.size)));
-}
-
 vec4 mixed(ivec2 at, uvec2 own, uint own_face) {
     vec2 pixel = vec2(at) + 0.5;
     float depth = imageLoad(resolved, at).a;
@@ -122,16 +111,16 @@ vec4 mixed(ivec2 at, uvec2 own, uint own_face) {
         if (!goes_on && !(there.depth < depth * (1.0 + TOUCHES))) {
             // it begins where the face that is seen here ends
             if (!here.cover.cut || dot(there.cover.outward, here.cover.outward) >= 0.0) continue;
-            next += there.cover.share * colour_at(beside);
+            next += there.cover.share * unmixed_at(beside);
             next_share += there.cover.share;
             continue;
         }
         float share = min(there.cover.share, rest);
-        sum += share * colour_at(beside);
+        sum += share * unmixed_at(beside);
         rest -= share;
     }
     float share = here.cover.cut ? min(here.cover.share, rest) : rest;
-    sum += share * colour_at(at);
+    sum += share * unmixed_at(at);
     rest -= share;
     if (next_share > 0.0) {
         share = min(next_share, rest);
@@ -144,7 +133,7 @@ vec4 mixed(ivec2 at, uvec2 own, uint own_face) {
         ivec2 beyond = at + (size > 0.0 ? ivec2(roundEven(outward / size)) : ivec2(0));
         // a border may leave the picture, and a slit be narrower than a pixel
         if (!is_in_picture(beyond) || placed_face(imageLoad(visibility, beyond).xy) == own_face) beyond = other;
-        sum += rest * colour_at(beyond);
+        sum += rest * unmixed_at(beyond);
     }
     return sum;
 }
@@ -160,5 +149,5 @@ void main() {
         ivec2 beside = at + ivec2(sign(DIRECTIONS[k]));
         if (is_in_picture(beside)) alone = alone && placed_face(imageLoad(visibility, beside).xy) == own_face;
     }
-    write_mean(alone ? colour_at(at) : mixed(at, own, own_face));
+    write_mean(alone ? unmixed_at(at) : mixed(at, own, own_face));
 }

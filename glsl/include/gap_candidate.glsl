@@ -3,6 +3,8 @@
 #ifndef GAP_CANDIDATE_GLSL
 #define GAP_CANDIDATE_GLSL
 
+#include "on_pixel.glsl"
+
 // What a face is at the pixel's centre.
 const uint ABSENT = 0u;
 const uint NEAR = 1u;    // a border or silhouette of it is within the gap radius
@@ -24,9 +26,6 @@ struct Candidate {
     vec2 slope;  // of its depth, a pixel
     uvec2 word;  // for the visibility buffer
 };
-
-// A surface passes the centre when its nearest point projects this close to it.
-const float ON_PIXEL_PX = 0.05;
 
 Candidate no_candidate() {
     return Candidate(ABSENT, FROM_BESIDE, 0u, false, false, 3.0e38, 3.0e38, vec2(0.0), uvec2(0u));

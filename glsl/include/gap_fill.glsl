@@ -33,6 +33,7 @@ layout(scalar, binding = 14) readonly buffer Positions { vec3 positions[]; };
 #include "refine.glsl"
 #include "gap_radius.glsl"
 #include "visible.glsl"
+#include "face_point.glsl"
 #include "gap_candidate.glsl"
 #include "gap_decide.glsl"
 #include "gap_surface.glsl"

@@ -64,10 +64,10 @@ Sample surface_under(Face face, uint n, View view, vec2 uv, vec2 pixel, out Patc
                 drawn = place;
             }
             vec2 step_;
-            bool farther = step_from(patch_, best, view, step_);
+            bool farther = step_from(patch_, best, view, CLOSE_ENOUGH, step_);
             // on a plane no other evaluation is needed, unless the step leads out of it or falls short
             Sample there = along_plane(best, view, step_, pixel);
-            bool arrives = clamp(there.uv, 0.0, 1.0) == there.uv && !misses(there);
+            bool arrives = clamp(there.uv, 0.0, 1.0) == there.uv && !misses(there, CLOSE_ENOUGH);
             if (farther && patch_.bend == vec3(0.0) && arrives) {
                 best = there;
                 step_ = vec2(0.0);

@@ -57,10 +57,10 @@ mat2 pixels_along(Sample s, View view) {
     return mat2((qu.xy - p * qu.w) / s.q.w, (qv.xy - p * qv.w) / s.q.w);
 }
 
-bool misses(Sample s) { return dot(s.miss, s.miss) >= CLOSE_ENOUGH * CLOSE_ENOUGH; }
+bool misses(Sample s, float close) { return dot(s.miss, s.miss) >= close * close; }
 
 // Where Newton's method goes from there on the patch, if anywhere.
-bool step_from(Patch patch_, Sample s, View view, out vec2 step_) {
+bool step_from(Patch patch_, Sample s, View view, float close, out vec2 step_) {
     mat2 along = pixels_along(s, view);
     vec2 pu = along[0];
     vec2 pv = along[1];
@@ -68,7 +68,7 @@ bool step_from(Patch patch_, Sample s, View view, out vec2 step_) {
     step_ = vec2(s.miss.x * pv.y - s.miss.y * pv.x, pu.x * s.miss.y - pu.y * s.miss.x) / det;
     vec2 steps = abs(step_) / (MAX_STEP * pieces_of(patch_.shape));
     step_ /= max(max(steps.x, steps.y), 1.0);
-    return misses(s) && abs(det) >= 1e-12;
+    return misses(s, close) && abs(det) >= 1e-12;
 }
 
 // The sample a step back on a plane, where the derivatives are the same everywhere.
@@ -80,8 +80,8 @@ Sample along_plane(Sample s, View view, vec2 step_, vec2 pixel) {
     return s;
 }
 
-// One call of `sample_at`, which drivers copy to where it is called.
-Sample refine(Patch patch_, View view, vec2 uv, vec2 pixel) {
+// Until the point is as close as `close`, pixels. One call of `sample_at`, which drivers copy to where it is called.
+Sample refine_to(Patch patch_, View view, vec2 uv, vec2 pixel, float close) {
     Net net = net_of(patch_);
     Sample best;
     best.uv = uv;
@@ -91,9 +91,11 @@ Sample refine(Patch patch_, View view, vec2 uv, vec2 pixel) {
         bool nearer = i == 0u || dot(next.miss, next.miss) < dot(best.miss, best.miss);
         if (nearer) best = next;
         if (!nearer) break;
-        if (!step_from(patch_, best, view, step_)) break;
+        if (!step_from(patch_, best, view, close, step_)) break;
     }
     return best;
 }
+
+Sample refine(Patch patch_, View view, vec2 uv, vec2 pixel) { return refine_to(patch_, view, uv, pixel, CLOSE_ENOUGH); }
 
 #endif

@@ -47,15 +47,17 @@ uint trim_area(FaceInstance fi, Face face, vec2 lo, vec2 hi) {
 }
 #endif
 
-// Ways to compare with: src/baselines.
-#ifdef TRIM_BY_BISECT
-#include "baselines/bisect.glsl"
-#endif
-
+// No face of the scene has trims; or, to compare with, none of them is asked for.
 #ifdef TRIM_BY_UNTRIMMED
+#define TRIM_BUFFERS 0
 bool trim_inside(FaceInstance fi, Face face, vec2 uv) {
     return true;
 }
+#endif
+
+// Ways to compare with: src/baselines.
+#ifdef TRIM_BY_BISECT
+#include "baselines/bisect.glsl"
 #endif
 
 #ifdef TRIM_BY_TEXTURE

@@ -25,6 +25,24 @@ pub mod border_cells {
     pub const BORDER_BANDS: u32 = 4;
     pub const BORDER_COLUMNS: f32 = 128.0;
 }
+pub mod border_find {
+    pub const GROUP: u32 = 64;
+    pub const LANES: i32 = 64;
+    pub const OTHER: u32 = 0xffffffff;
+    pub const ROWS: i32 = 16;
+}
+pub mod border_mix {
+    pub const AROUND: u32 = 9;
+    pub const CLOSE_PX: f32 = 0.02;
+    pub const MOST_SHEETS: u32 = 4;
+    pub const NOBODY: u32 = 15;
+    pub const OWN: u32 = 4;
+    pub const POINTS: u32 = 16;
+}
+pub mod border_pixel {
+    pub const JUMP_OF_CLIMB: f32 = 0.5;
+    pub const JUMP_PX: f32 = 2.0;
+}
 pub mod bound {
     pub const DEPTH_SHARE: f32 = 1.5;
 }
@@ -35,7 +53,6 @@ pub mod coverage {
     pub const CHORDS: u32 = 8;
     pub const MOST_CELLS: u32 = 128;
     pub const MOST_FACES: u32 = 4;
-    pub const ON_PIXEL_PX: f32 = 0.05;
     pub const SAME_SHEET_PX: f32 = 4.0;
     pub const TOUCHES: f32 = 1e-5;
 }
@@ -89,6 +106,11 @@ pub mod exact {
     pub const FAR: f32 = 1e30;
     pub const MARGIN: f32 = 0.25;
 }
+pub mod face_point {
+    pub const BEYOND: f32 = 1e-4;
+    pub const MAX_HOPS: u32 = 8;
+    pub const ROUNDED: f32 = 1e-5;
+}
 pub mod factor {
     pub const SPARE: f32 = 0.125;
     pub const UP: f32 = 1.00001;
@@ -99,7 +121,6 @@ pub mod gap_candidate {
     pub const FROM_BEYOND: u32 = 1;
     pub const FROM_FOLD: u32 = 2;
     pub const NEAR: u32 = 1;
-    pub const ON_PIXEL_PX: f32 = 0.05;
     pub const PRESENT: u32 = 2;
 }
 pub mod gap_decide {
@@ -123,11 +144,11 @@ pub mod gap_radius {
     pub const SQUARE: f32 = 0.8;
 }
 pub mod gap_surface {
-    pub const BEYOND: f32 = 1e-4;
-    pub const MAX_HOPS: u32 = 8;
     pub const RADIUS_OF_INSIDE: u32 = 1;
     pub const RADIUS_OF_OUTSIDE: u32 = 2;
-    pub const ROUNDED: f32 = 1e-5;
+}
+pub mod on_pixel {
+    pub const ON_PIXEL_PX: f32 = 0.05;
 }
 pub mod patch_normal {
     pub const FIRST_INWARDS: f32 = 1e-3;

@@ -39,8 +39,6 @@ pub(crate) struct Counts {
     pub trim: Option<TakenWay>,
     /// Of each pixel.
     pub samples: Samples,
-    /// Pass `coverage` mixes pixels at the borders of trimmed faces.
-    pub smooths_trims: bool,
     /// The first leaf of items that rays are followed through; there are some.
     pub followed_leaf: u32,
     pub is_followed: bool,
@@ -80,7 +78,6 @@ impl Counts {
             mesh_instances: count(data.meshes.instances.len()),
             trim: data.trim_way(),
             samples: data.samples,
-            smooths_trims: data.smooths_trims(),
             followed_leaf: data.solids.followed,
             is_followed: data.solids.is_followed(),
             thickness: data.thickness,

@@ -1,8 +1,10 @@
 //! What a scene needs of each stage: its passes, made with the scene; and with them its buffers, made for pictures of one
 //! size.
 
+use super::antialiasing::border_mix::BorderMix;
 use super::antialiasing::coverage::Coverage;
 use super::antialiasing::samples::{self, MoreSamples};
+use super::antialiasing::smooth_borders::{self, SmoothBorders};
 use super::antialiasing::smooth_trims::{self, SmoothTrims};
 use super::capacities::Capacities;
 use super::common::room::Room;
@@ -18,7 +20,7 @@ use super::tessellation::{self, Tessellation};
 use super::transparency::{self, Transparency};
 use super::trim::{self, Trim};
 use super::visibility::{self, Visibility};
-use crate::gpu::{Device, GpuError};
+use crate::gpu::{Device, GpuError, Image};
 use crate::scene::SceneData;
 use std::sync::Arc;
 
@@ -35,6 +37,7 @@ pub(crate) struct Passes {
     samples: Option<Arc<samples::Passes>>,
     transparency: Option<Arc<transparency::Passes>>,
     smooth_trims: Option<Arc<Coverage>>,
+    smooth_borders: Option<Arc<BorderMix>>,
     edges: Option<Arc<edges::Passes>>,
 }
 
@@ -73,6 +76,7 @@ impl Passes {
             samples: samples.map(Arc::new),
             transparency: transparency::Passes::new(device, data, formats)?.map(Arc::new),
             smooth_trims: smooth_trims::pass(device, data, formats)?.map(Arc::new),
+            smooth_borders: smooth_borders::pass(device, data, formats, test)?.map(Arc::new),
             edges: edges::Passes::new(device, data, formats)?.map(Arc::new),
         })
     }
@@ -94,6 +98,7 @@ pub(crate) struct Stages {
     pub(super) transparency: Option<Transparency>,
     pub(super) samples: Option<MoreSamples>,
     pub(super) smooth_trims: Option<SmoothTrims>,
+    pub(super) smooth_borders: Option<SmoothBorders>,
     pub(super) edges: Option<EdgeStage>,
 }
 
@@ -124,6 +129,7 @@ impl Stages {
             transparency: p.transparency.as_ref().map(|p| Transparency::new(room, p)).transpose()?,
             samples: p.samples.as_ref().map(|p| MoreSamples::new(room, p)).transpose()?,
             smooth_trims: p.smooth_trims.as_ref().map(|p| SmoothTrims::new(room, p)).transpose()?,
+            smooth_borders: p.smooth_borders.as_ref().map(|p| SmoothBorders::new(room, p)).transpose()?,
             edges: p.edges.as_ref().map(|p| EdgeStage::new(room, p)).transpose()?,
         })
     }
@@ -131,6 +137,12 @@ impl Stages {
     /// They suffice for a picture of this size.
     pub(crate) fn suffice(&self, capacities: Capacities, size: (u32, u32)) -> bool {
         self.size == size && self.capacities.takes_as_much(capacities)
+    }
+
+    /// Linear colour and depth, where a later pass mixes the colour from it.
+    pub(super) fn unmixed(&self) -> Option<&Image> {
+        let trims = self.smooth_trims.as_ref().map(|trims| &trims.resolved);
+        trims.or(self.smooth_borders.as_ref().map(|borders| &borders.resolved))
     }
 
     /// Of the picture.

@@ -1,4 +1,4 @@
-//! How many samples a pixel's colour is made of.
+//! How pixels with borders are made: several samples, or borders that are mixed.
 
 /// The number of samples whose mean a pixel's colour is.
 ///
@@ -62,3 +62,52 @@ impl std::str::FromStr for Samples {
 #[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("`{0}` samples a pixel: there may be 1, 4 or 8")]
 pub struct UnknownSamples(String);
+
+/// Which borders are smooth in pictures of one sample a pixel. Pixels there are mixtures, in linear colour, of what they
+/// see. All images but the colour stay those of the pixels' centres, bit for bit, and so do pixels away from borders, but
+/// that colours above 1 are cut off there, too.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Hash)]
+#[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[cfg_attr(feature = "serde", serde(rename_all = "lowercase"))]
+pub enum Smooth {
+    /// None: a pixel shows what its centre sees.
+    #[default]
+    None,
+    /// Those of trimmed faces, by the area that the exact trim curves cut from each pixel; silhouettes of curved faces,
+    /// meshes and Boolean solids stay as they are. [`TrimWay::Auto`](super::TrimWay::Auto) is
+    /// [`TrimWay::Exact`](super::TrimWay::Exact) then. What does not go with it is
+    /// [`RenderError::SmoothTrims`](crate::renderer::RenderError::SmoothTrims).
+    Trims,
+    /// Those of faces, silhouettes and folds among them, by sixteen points of each pixel at a border: the surfaces that
+    /// the pixels around see are asked for, exactly. A mesh or Boolean solid is smooth where a face ends before it, and
+    /// rough by itself. Pictures of several samples, and those with something to see through or to mark, stay as they
+    /// are.
+    Borders,
+}
+
+impl Smooth {
+    /// All.
+    pub const ALL: [Self; 3] = [Self::None, Self::Trims, Self::Borders];
+
+    /// What the command line calls it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::None => "none",
+            Self::Trims => "trims",
+            Self::Borders => "borders",
+        }
+    }
+}
+
+impl std::str::FromStr for Smooth {
+    type Err = UnknownSmooth;
+
+    fn from_str(name: &str) -> Result<Self, UnknownSmooth> {
+        Self::ALL.into_iter().find(|smooth| smooth.name() == name).ok_or_else(|| UnknownSmooth(name.to_owned()))
+    }
+}
+
+/// No borders are called so.
+#[derive(Clone, Debug, PartialEq, Eq, thiserror::Error)]
+#[error("smooth are none, trims or borders, and not `{0}`")]
+pub struct UnknownSmooth(String);

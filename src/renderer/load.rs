@@ -12,7 +12,7 @@ use crate::frame::capacities::Capacities;
 use crate::frame::counts::Counts;
 use crate::frame::shading::resolve;
 use crate::model::{LoopAt, Model, TrimLoop};
-use crate::picture::{EdgeSettings, SceneSettings, TakenWay, TrimWay};
+use crate::picture::{EdgeSettings, SceneSettings, Smooth, TakenWay, TrimWay};
 use crate::scene::{Cut, SceneData, SceneRequest, Told, UndrawnEdges, UndrawnSolid};
 
 /// The source of a scene: a model, or the part cut out of it for a view.
@@ -141,7 +141,7 @@ impl Renderer {
         }
         settings.edges.map_or(Ok(()), |edges| edges.check())?;
         let mut data = of.data(settings)?;
-        if settings.smooth_trims {
+        if settings.smooth == Smooth::Trims {
             validate::check_smooth_trims(&data, settings)?;
         }
         let may_change = settings.trim == TrimWay::Auto && data.trim_way() == Some(TakenWay::Table);

@@ -18,7 +18,7 @@ use crate::abi;
 use crate::model::{Bounds, Instance, Isolated, Items, Model, Part, SolidError};
 #[cfg(any(test, feature = "baselines"))]
 use crate::picture::SceneSettings;
-use crate::picture::{Highlight, Samples, TakenWay};
+use crate::picture::{Highlight, Samples, Smooth, TakenWay};
 use glam::{DAffine3, DMat3, DVec3};
 use rayon::prelude::*;
 use std::borrow::Cow;
@@ -88,8 +88,8 @@ pub(crate) struct SceneData {
     way: Option<TakenWay>,
     /// Of each pixel.
     pub samples: Samples,
-    /// The borders of trimmed faces are wanted smooth.
-    smooth_trims: bool,
+    /// Which borders are wanted smooth.
+    smooth: Smooth,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
     /// Where what the table trims is; `None` where there is no table, too.
@@ -160,7 +160,12 @@ impl SceneData {
         extent: impl Fn(usize, f64) -> f64,
     ) -> Result<Self, UndrawnSolid> {
         let way = taken(model, settings);
-        let trim = Trimming { way, smooth: settings.smooth_trims, editable: settings.editable, extent: f64::INFINITY };
+        let trim = Trimming {
+            way,
+            smooth: settings.smooth == Smooth::Trims,
+            editable: settings.editable,
+            extent: f64::INFINITY,
+        };
         let edits = settings.editable && matches!(way, TakenWay::Table | TakenWay::Exact);
         let edit = edits.then(EditScene::default);
         let all = settings.thickness || settings.highlight.is_some();
@@ -209,7 +214,7 @@ impl SceneData {
             volume,
             way: Some(way),
             samples: settings.samples,
-            smooth_trims: settings.smooth_trims,
+            smooth: settings.smooth,
             edit,
             ..Self::default()
         };
@@ -316,7 +321,13 @@ impl SceneData {
 
     /// Pass `coverage` mixes pixels at the borders of trimmed faces: there are some that are seen themselves.
     pub(crate) fn smooths_trims(&self) -> bool {
-        self.smooth_trims && self.has_patches && self.trim_way() == Some(TakenWay::Exact)
+        self.smooth == Smooth::Trims && self.has_patches && self.trim_way() == Some(TakenWay::Exact)
+    }
+
+    /// Pass `border_mix` mixes pixels at the borders of faces: there are some, and the picture is of one sample, and opaque.
+    pub(crate) fn smooths_borders(&self) -> bool {
+        let alone = self.samples == Samples::One && !self.is_layered;
+        self.smooth == Smooth::Borders && self.has_patches && alone
     }
 
     /// Patches may lie behind others, and enough of them to ask. Those of operands are crossed whatever lies before them,

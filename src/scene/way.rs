@@ -17,7 +17,7 @@ use super::request::SceneRequest;
 use super::whole_view::Ball;
 use crate::abi;
 use crate::model::{Face, Mesh, Model, Part, Shape};
-use crate::picture::{SceneSettings, TakenWay, TrimWay};
+use crate::picture::{SceneSettings, Smooth, TakenWay, TrimWay};
 use rayon::prelude::*;
 
 /// Rows that the table is expected to have at most where [`TrimWay::Auto`] takes it.
@@ -47,7 +47,7 @@ pub(super) fn taken(model: &Model, settings: SceneRequest) -> TakenWay {
     match settings.trim {
         TrimWay::Table => TakenWay::Table,
         TrimWay::Exact => TakenWay::Exact,
-        TrimWay::Auto if settings.smooth_trims || !suits_table(model) => TakenWay::Exact,
+        TrimWay::Auto if settings.smooth != Smooth::None || !suits_table(model) => TakenWay::Exact,
         TrimWay::Auto => TakenWay::Table,
     }
 }
@@ -180,7 +180,7 @@ mod tests {
         let many = repeated(&bracket, fewest);
         assert_eq!(trim_way(&many, auto), Some(TrimWay::Exact));
         assert_eq!(trim_way(&many, SceneSettings { trim: TrimWay::Table, ..auto }), Some(TrimWay::Table));
-        assert_eq!(trim_way(&bracket, SceneSettings { smooth_trims: true, ..auto }), Some(TrimWay::Exact));
+        assert_eq!(trim_way(&bracket, SceneSettings { smooth: Smooth::Trims, ..auto }), Some(TrimWay::Exact));
         let mut plain = bracket.clone();
         plain.parts.iter_mut().flat_map(|p| &mut p.faces).for_each(|f| f.loops.clear());
         assert_eq!(trim_way(&plain, auto), None);

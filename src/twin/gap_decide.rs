@@ -8,9 +8,9 @@
 //! A choice is the shader's wherever no two depths that it compares differ by rounding alone.
 
 use crate::abi::Frame;
-pub use crate::abi::constants::gap_candidate::ON_PIXEL_PX;
 use crate::abi::constants::gap_decide::SAME_DEPTH;
 use crate::abi::constants::gap_radius::GAP_SLACK;
+pub use crate::abi::constants::on_pixel::ON_PIXEL_PX;
 
 /// Farther than anything.
 pub const FARTHEST: f32 = 3.0e38;

@@ -6,7 +6,7 @@ use crate::targets::{DEPTH_FORMAT, Targets};
 use ash::vk;
 use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, Model, Projection};
-use selvedge::picture::{FrameSettings, Samples, SceneSettings};
+use selvedge::picture::{FrameSettings, Samples, SceneSettings, Smooth};
 use selvedge::renderer::{FrameInput, Renderer, TargetFormats, Targets as Into};
 
 const SIZE: (u32, u32) = (120, 90);
@@ -155,7 +155,7 @@ fn smooth_trims_blend_with_what_the_host_drew() {
     let host = Host::new();
     let format = vk::Format::R8G8B8A8_SRGB;
     let mut renderer = renderer(&host, &shapes::plate(), format);
-    let smooth = SceneSettings { smooth_trims: true, ..Default::default() };
+    let smooth = SceneSettings { smooth: Smooth::Trims, ..Default::default() };
     renderer.upload_with(&shapes::plate(), smooth).unwrap();
     let targets = Targets::new(&host, SIZE, format);
     let camera = Camera { eye: DVec3::new(1.0, -2.0, 10.0), up: DVec3::Y, ..camera() };

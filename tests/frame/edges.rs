@@ -45,8 +45,9 @@ pub fn covered(tracer: &Tracer, camera: &Camera) -> Vec<f64> {
 
 /// Of a thing of one colour before white: the share that is seen less the true one, of pixels that it covers in part.
 pub fn coverage_errors(picture: &Picture, truth: &[f64]) -> Vec<f64> {
-    let whole = truth.iter().position(|t| *t == 1.0).expect("a pixel that is covered");
-    let ink = 1.0 - linear(picture.colour[whole]).x;
+    // the first of them may be covered but for a corner
+    let whole = (0..truth.len()).filter(|&i| truth[i] == 1.0);
+    let ink = whole.map(|i| 1.0 - linear(picture.colour[i]).x).fold(0.0, f64::max);
     let shown = |i: usize| (1.0 - linear(picture.colour[i]).x) / ink;
     (0..truth.len()).filter(|&i| truth[i] > 0.0 && truth[i] < 1.0).map(|i| shown(i) - truth[i]).collect()
 }

@@ -10,7 +10,7 @@ use glam::{DVec2, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, LoopAt, Model, Projection};
 use selvedge::picture::{
-    FrameSettings, FrameStats, Highlight, Levels, Outputs, Picture, Samples, SceneSettings, SolidWay, TrimWay,
+    FrameSettings, FrameStats, Highlight, Levels, Outputs, Picture, Samples, SceneSettings, Smooth, SolidWay, TrimWay,
 };
 
 const SIZE: (u32, u32) = (96, 80);
@@ -249,7 +249,7 @@ fn whatever_follows_draws_what_is_kept() {
         ("samples", &beside, SceneSettings { samples: Samples::Four, ..default }),
         ("a sun", &beside, SceneSettings { sun: Some(DVec3::new(-0.5, 0.4, 0.9)), ..default }),
         ("bands", &beside, in_bands(&beside)),
-        ("smooth trims", &beside, SceneSettings { smooth_trims: true, trim: TrimWay::Exact, ..default }),
+        ("smooth trims", &beside, SceneSettings { smooth: Smooth::Trims, trim: TrimWay::Exact, ..default }),
         ("marks", &beside, SceneSettings { highlight, ..default }),
         ("glass", &clear, default),
         ("glass, samples", &clear, SceneSettings { samples: Samples::Four, ..default }),

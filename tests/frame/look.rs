@@ -5,7 +5,7 @@ use crate::shapes;
 use crate::support::{assert_silent, perspective, watched_with};
 use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, srgb};
-use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Style};
+use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, Style};
 use selvedge_check::light::{Key, studio};
 use std::f64::consts::PI;
 
@@ -85,7 +85,7 @@ fn a_style_changes_colours_alone() {
 #[test]
 fn what_is_drawn_on_nothing_can_be_laid_over_anything() {
     let samples = |samples| SceneSettings { samples, ..SceneSettings::default() };
-    let smooth = SceneSettings { smooth_trims: true, ..SceneSettings::default() };
+    let smooth = SceneSettings { smooth: Smooth::Trims, ..SceneSettings::default() };
     let cases = [
         ("patches", shapes::plate(), SceneSettings::default()),
         ("four samples", shapes::plate(), samples(Samples::Four)),

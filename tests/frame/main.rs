@@ -39,6 +39,7 @@ mod shadows;
 #[path = "../shapes/mod.rs"]
 mod shapes;
 mod smooth;
+mod smooth_borders;
 mod smooth_trims;
 mod solids;
 mod stair;

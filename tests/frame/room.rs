@@ -5,7 +5,7 @@ use crate::support::{assert_identical, assert_silent, watched_with};
 use glam::{DAffine3, DQuat, DVec2, DVec3};
 use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, Model, Projection};
-use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, SolidWay, TrimWay};
+use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, SolidWay, TrimWay};
 
 /// Its buffers grow with the view.
 const BY_TABLE: SceneSettings = SceneSettings {
@@ -13,7 +13,7 @@ const BY_TABLE: SceneSettings = SceneSettings {
     solids: SolidWay::Events,
     editable: false,
     samples: Samples::One,
-    smooth_trims: false,
+    smooth: Smooth::None,
     thickness: false,
     highlight: None,
     sun: None,

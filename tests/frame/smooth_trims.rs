@@ -9,14 +9,14 @@ use crate::support::{assert_identical, assert_silent, orthographic, perspective,
 use glam::{DVec2, DVec3};
 use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, LoopAt, Model, Projection, TrimLoop};
-use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, Samples, SceneSettings, TrimWay};
+use selvedge::picture::{FrameSettings, Highlight, Outputs, Picture, Samples, SceneSettings, Smooth, TrimWay};
 use selvedge::renderer::RenderError;
 use selvedge::spline::{Bezier, Control};
 use selvedge_check::Tracer;
 
 const SIZE: (u32, u32) = (64, 48);
 
-const SMOOTH: SceneSettings = SceneSettings { smooth_trims: true, ..plain() };
+const SMOOTH: SceneSettings = SceneSettings { smooth: Smooth::Trims, ..plain() };
 
 const fn plain() -> SceneSettings {
     SceneSettings {
@@ -24,7 +24,7 @@ const fn plain() -> SceneSettings {
         solids: selvedge::picture::SolidWay::Events,
         editable: false,
         samples: Samples::One,
-        smooth_trims: false,
+        smooth: Smooth::None,
         thickness: false,
         highlight: None,
         sun: None,
@@ -180,7 +180,7 @@ fn only_smooth_trims_have_what_they_need() {
         renderer.render(&camera(&model), &FrameSettings::default(), Outputs::default()).unwrap();
         let objects = renderer.objects();
         let of_coverage: Vec<_> =
-            objects.iter().filter(|o| *o == "coverage" || *o == "resolved" || o.contains("smooth trims")).collect();
+            objects.iter().filter(|o| *o == "coverage" || *o == "resolved" || o.contains("unmixed")).collect();
         // the pass, its image, and the pipeline that draws into that
         assert_eq!(of_coverage.len(), if has { 3 } else { 0 }, "{}: {of_coverage:?}", model.name);
         assert_silent(renderer);

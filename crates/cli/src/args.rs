@@ -20,7 +20,7 @@ use crate::trims::Way;
 use crate::values::{at_least_one, direction, mebibytes, times, tolerance, vector, zoom};
 use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
-use selvedge::picture::{Levels, Samples, SolidWay, Style, TrimWay};
+use selvedge::picture::{Levels, Samples, Smooth, SolidWay, Style, TrimWay};
 use selvedge_io::import::Import;
 use std::path::PathBuf;
 use std::str::FromStr;
@@ -78,9 +78,17 @@ pub struct EdgeArgs {
     /// Samples of each pixel's colour, 1, 4 or 8: smooth edges, at about as many times the cost
     #[arg(long, value_name = "N", default_value = "1")]
     pub samples: Samples,
-    /// Smooth the borders of trimmed faces, and nothing else, by the area that they cover of a pixel; trims exactly
-    #[arg(long)]
-    pub smooth_trims: bool,
+    /// Borders that are smooth in pictures of one sample: those of all faces (borders, in pictures of one sample), those of
+    /// trimmed faces by the area that they cover of a pixel (trims; trims exactly), or none
+    #[arg(long, value_name = "none|trims|borders")]
+    smooth: Option<Smooth>,
+}
+
+impl EdgeArgs {
+    /// Several samples smooth all borders by themselves.
+    pub fn smooth(&self) -> Smooth {
+        self.smooth.unwrap_or(if self.samples == Samples::One { Smooth::Borders } else { Smooth::None })
+    }
 }
 
 /// What a picture looks like.

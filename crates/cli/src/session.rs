@@ -147,8 +147,7 @@ impl Session {
 
     /// The same with smooth edges, on a device that is open.
     pub fn smooth(on: HeadlessRenderer, args: &FrameArgs, import: &Import, edges: &EdgeArgs) -> Result<Self> {
-        let EdgeArgs { samples, smooth_trims } = *edges;
-        let scene = SceneSettings { samples, smooth_trims, ..SceneSettings::default() };
+        let scene = SceneSettings { samples: edges.samples, smooth: edges.smooth(), ..SceneSettings::default() };
         Self::with(on, args, import, scene, Arc::new(import.model.clone()))
     }
 
@@ -160,8 +159,8 @@ impl Session {
         model: &Arc<Model>,
         (edges, lines): (&EdgeArgs, Option<EdgeSettings>),
     ) -> Result<Self> {
-        let EdgeArgs { samples, smooth_trims } = *edges;
-        let scene = SceneSettings { samples, smooth_trims, edges: lines, ..SceneSettings::default() };
+        let scene =
+            SceneSettings { samples: edges.samples, smooth: edges.smooth(), edges: lines, ..SceneSettings::default() };
         Self::with(on, args, import, scene, Arc::clone(model))
     }
 

@@ -56,7 +56,7 @@ fn targets(device: &Device, data: &SceneData, formats: resolve::Formats) -> Resu
     // lines and numbers are those of the pixels' centres
     let beside = formats.aovs || formats.depth.is_some() || data.thickness || formats.numbers || data.has_lines();
     let into = match data.samples {
-        Samples::One if data.smooths_trims() => resolve::Destination::Unmixed,
+        Samples::One if data.smooths_trims() || data.smooths_borders() => resolve::Destination::Unmixed,
         Samples::One if data.is_layered => resolve::Destination::Behind { writes_depth: true },
         Samples::One => resolve::Destination::Targets,
         Samples::Four | Samples::Eight if !beside => return Ok(None),
@@ -172,7 +172,7 @@ impl<'a> Frame<'a> {
         };
         let mut into: Vec<_> = self.colour.iter().zip(nowhere).map(cleared).collect();
         let behind = self.stages.transparency.as_ref().and_then(|layers| layers.behind_layers());
-        let unmixed = self.stages.smooth_trims.as_ref().map(|trims| &trims.resolved);
+        let unmixed = self.stages.unmixed();
         if let Some(image) = behind.or(unmixed) {
             into[0] = Attachment { image, load: Load::ColourF32([0.0, 0.0, 0.0, resolve::UNSEEN]) };
         }

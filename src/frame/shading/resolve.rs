@@ -119,7 +119,7 @@ pub(crate) enum Destination {
         /// Of the host's target.
         writes_depth: bool,
     },
-    /// What pass `coverage` mixes, in the colour's place: as what is behind layers.
+    /// What pass `coverage` or `border_mix` mixes, in the colour's place: as what is behind layers.
     Unmixed,
 }
 
@@ -184,7 +184,7 @@ impl Resolve {
             Destination::AllButColour => (formats.colour, Blend::Leave, ", beside samples"),
             Destination::Behind { writes_depth: true } => (BEHIND_FORMAT, Blend::Replace, ", behind layers"),
             Destination::Behind { writes_depth: false } => (BEHIND_FORMAT, Blend::Replace, ", behind layers, samples"),
-            Destination::Unmixed => (BEHIND_FORMAT, Blend::Replace, ", smooth trims"),
+            Destination::Unmixed => (BEHIND_FORMAT, Blend::Replace, ", unmixed"),
         };
         let mut colour = vec![ColourTarget { format, blend }];
         if formats.aovs {

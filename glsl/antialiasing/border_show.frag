@@ -1,0 +1,18 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `border_show`: pixels as passes `resolve` and `border_write` left them, into the host's colour.
+#include "scene.glsl"
+#include "view.glsl"
+
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
+layout(binding = 1, rgba32f) readonly uniform image2D resolved;
+
+#include "mean.glsl"
+#include "unmixed.glsl"
+
+void main() {
+    ivec2 at = ivec2(gl_FragCoord.xy);
+    vec4 seen = imageLoad(resolved, at);
+    write_mean(seen.a < 0.0 ? vec4(seen.rgb, -seen.a) : unmixed(seen));
+}

@@ -1,0 +1,174 @@
+// Pass `border_mix`: pixels at borders are mixed from the colours around them. One thread a pixel of the list.
+//
+//     ┌────────────┐    sixteen points of the pixel, each in a row and a column of its own. At each of them the sheets that
+//     │·  A  ╲     │    the nine pixels around see are asked, by their exact surfaces and trims, whether they are there:
+//     │    ·  ╲  B │    the nearest is seen. Where none is, it is what the nearest of those pixels shows that see no patch.
+//     │  ·     ╲  ·│
+//     └────────────┘    a sheet shows the colour of the pixel that sees it
+//
+// A sheet is a face as it is seen from one side: one that hides a part of itself has several. Meshes and Boolean solids
+// are as the pixel's centre has them. The trim test is that of one way (trim.glsl).
+#include "scene.glsl"
+#include "view.glsl"
+
+layout(local_size_x = 64) in;
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
+layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
+layout(binding = 8, rgba32f) readonly uniform image2D resolved; // linear colour, depth; UNSEEN where nothing is
+#include "border_pixel.glsl"
+layout(scalar, binding = 9) buffer List { BorderPixel list[]; };
+layout(scalar, binding = 10) readonly buffer Dispatch { uvec3 dispatch; uint count; };
+
+#define TRIM_BINDING 11
+#include "trim.glsl"
+#ifdef WITHIN_VOLUME
+#define VOLUME_BINDING (TRIM_BINDING + TRIM_BUFFERS)
+#include "volume.glsl"
+#endif
+#include "placed.glsl"
+#include "patch.glsl"
+#include "patch_place.glsl"
+#include "refine.glsl"
+#include "visible.glsl"
+#include "shade.glsl"
+#include "face_point.glsl"
+#include "unmixed.glsl"
+
+const uint POINTS = 16u;
+const uint MOST_SHEETS = 4u;
+const uint AROUND = 9u; // pixels, the own one in the middle
+const uint OWN = 4u;
+const uint NOBODY = 15u;
+// How close the points come, pixels: far less than a sixteenth.
+const float CLOSE_PX = 0.02;
+
+// The pixel's points: Hammersley's.
+vec2 point_of(uint k) {
+    return (vec2(k, bitfieldReverse(k) >> 28) + 0.5) / float(POINTS) - 0.5;
+}
+
+ivec2 around(ivec2 at, uint n) { return at + ivec2(n % 3u, n / 3u) - 1; }
+
+// A sheet, as the pixel `at` sees it.
+struct Sheet {
+    vec2 pixel; // where it is seen
+    uint item;
+    FaceInstance fi;
+    Face face;
+    Patch patch_;
+    View view;
+    vec2 uv;
+    mat2 uv_along; // how far (u, v) moves with the pixel
+};
+
+Sheet sheet_at(ivec2 at) {
+    uvec2 seen = imageLoad(visibility, at).xy;
+    Sheet s;
+    s.pixel = vec2(at) + 0.5;
+    s.item = seen_item(seen.x);
+    s.fi = face_instance_at(face_instance_of(s.item));
+    s.face = face_at(s.fi.face);
+    s.view = view_at(s.fi.instance);
+    s.patch_ = patch_at(s.face.first_patch + s.item - s.fi.first_item);
+    // a word's (u, v) has 16 bits, which in a large patch are a part of a pixel
+    Sample here = refine_to(s.patch_, s.view, unpack_uv(seen.y), s.pixel, CLOSE_PX);
+    mat2 along = pixels_along(here, s.view);
+    float det = determinant(along);
+    s.uv_along = mat2(0.0);
+    if (abs(det) >= 1e-12) s.uv_along = inverse(along);
+    s.uv = here.uv - s.uv_along * here.miss;
+    return s;
+}
+
+// Depth of a sheet at a point of the picture; UNSEEN where it is not.
+float depth_at(Sheet s, vec2 pixel) {
+    vec2 step_ = s.uv_along * (pixel - s.pixel);
+    // beside a fold it may lead anywhere
+    if (any(greaterThan(abs(step_), vec2(MAX_STEP * pieces_of(s.patch_.shape))))) step_ = vec2(0.0);
+    Sample there = refine_to(s.patch_, s.view, s.uv + step_, pixel, CLOSE_PX);
+    vec2 uv = there.uv - s.uv_along * there.miss; // the rest of the way
+    bool is = length(there.miss) <= ON_PIXEL_PX && is_there(s.fi, s.face, s.item, s.patch_, uv);
+#ifdef WITHIN_VOLUME
+    is = is && in_volume(there.q, ON_PX);
+#endif
+    return is ? there.q.z : UNSEEN;
+}
+
+// Whether the own face's depth jumps between the own pixel and the one that is `step_` away: more than to the other side.
+bool jumps_to(ivec2 at, ivec2 step_, float own) {
+    float ahead = imageLoad(resolved, at + step_).a - own;
+    ivec2 other = at - step_;
+    float back = is_in_picture(other) ? imageLoad(resolved, other).a - own : 0.0;
+    return abs(ahead) >= abs(back) && jumps(back, ahead, own);
+}
+
+// Which pixel, of those whose bit is set, is nearest to a point of the own one; NOBODY of none.
+uint nearest_of(uint pixels, vec2 from) {
+    uint nearest = NOBODY;
+    float least = UNSEEN;
+    for (uint n = 0u; n < AROUND; ++n) {
+        vec2 way = vec2(n % 3u, n / 3u) - 1.0 - from;
+        float distance_ = dot(way, way);
+        if ((pixels >> n & 1u) == 0u || distance_ >= least) continue;
+        least = distance_;
+        nearest = n;
+    }
+    return nearest;
+}
+
+void main() {
+    uint n = gl_GlobalInvocationID.x;
+    if (n >= count) return;
+    ivec2 at = pixel_of(list[n]);
+    uvec2 own = imageLoad(visibility, at).xy;
+    bool own_patch = !sees_nothing(own.x) && !sees_other(own.x);
+    float depths[POINTS];
+    uint shown[POINTS]; // a pixel around
+    float own_depth = imageLoad(resolved, at).a;
+    bool other = !own_patch && own_depth < UNSEEN;
+    for (uint k = 0u; k < POINTS; ++k) {
+        depths[k] = other ? own_depth : UNSEEN;
+        shown[k] = other ? OWN : NOBODY;
+    }
+    uint no_patch = 0u; // bits of pixels around
+    uint met[MOST_SHEETS]; // face, and pixel around
+    uint met_from[MOST_SHEETS];
+    uint met_count = 0u;
+    for (uint k = 0u; k < AROUND; ++k) {
+        uint from = (k + OWN) % AROUND; // the own one first
+        ivec2 beside = around(at, from);
+        if (!is_in_picture(beside)) continue;
+        uint seen = imageLoad(visibility, beside).x;
+        if (sees_nothing(seen) || sees_other(seen)) {
+            no_patch |= 1u << from;
+            continue;
+        }
+        uint face = face_instance_of(seen_item(seen)) << 1;
+        // a second sheet of the own face
+        if (own_patch && k > 0u && face == met[0] && jumps_to(at, beside - at, own_depth)) face |= 1u;
+        bool known = met_count == MOST_SHEETS;
+        for (uint i = 0u; i < met_count; ++i) known = known || met[i] == face;
+        if (known) continue;
+        met[met_count] = face;
+        met_from[met_count++] = from;
+    }
+    // a loop of its own: threads that run together meet their sheets at different pixels
+    for (uint n = 0u; n < met_count; ++n) {
+        Sheet s = sheet_at(around(at, met_from[n]));
+        for (uint i = 0u; i < POINTS; ++i) {
+            float depth = depth_at(s, vec2(at) + 0.5 + point_of(i));
+            if (!(depth < depths[i])) continue;
+            depths[i] = depth;
+            shown[i] = met_from[n];
+        }
+    }
+    vec4 sum = vec4(0.0);
+    for (uint k = 0u; k < POINTS; ++k) {
+        uint from = shown[k];
+        if (from == NOBODY) from = nearest_of(no_patch, point_of(k));
+        if (from == NOBODY) from = OWN; // a gap between faces
+        sum += unmixed_at(around(at, from));
+    }
+    sum /= float(POINTS);
+    list[n].mean = uvec2(packHalf2x16(sum.rg), packHalf2x16(sum.ba));
+}

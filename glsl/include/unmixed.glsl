@@ -1,0 +1,18 @@
+// What pass `resolve` left of a pixel, for those that mix it with its neighbours. Needs `frame`, `resolved` and shade.glsl.
+#ifndef UNMIXED_GLSL
+#define UNMIXED_GLSL
+
+// Linear, multiplied by its opacity.
+vec4 unmixed(vec4 seen) {
+    if (seen.a < UNSEEN) return vec4(seen.rgb, 1.0);
+    float opacity = max(frame.background.a, 0.0);
+    return vec4(frame.background.rgb * opacity, opacity);
+}
+
+vec4 unmixed_at(ivec2 at) { return unmixed(imageLoad(resolved, at)); }
+
+bool is_in_picture(ivec2 at) {
+    return all(greaterThanEqual(at, ivec2(0))) && all(lessThan(at, ivec2(frame.size)));
+}
+
+#endif

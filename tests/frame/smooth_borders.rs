@@ -1,0 +1,116 @@
+//! Smooth borders: pixels at the borders of faces, silhouettes and folds, against exact rays and against the same frame
+//! sixteen times as large.
+//!
+//! Eight points a pixel, each in a row and a column of its own, are off by a sixteenth at a straight edge on average, and
+//! what no pixel around sees is not mixed: a corner of less than a pixel, a hole that no centre sees through.
+
+use crate::edges::{blocks, contrast_errors, coverage_errors, covered, root_mean_square};
+use crate::shapes;
+use crate::support::{assert_identical, assert_silent, orthographic, perspective, render, watched_with};
+use selvedge::model::{Camera, Model};
+use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, TrimWay};
+use selvedge_check::Tracer;
+
+const SIZE: (u32, u32) = (96, 72);
+
+fn settings(smooth: Smooth, trim: TrimWay) -> SceneSettings {
+    SceneSettings { smooth, trim, ..SceneSettings::default() }
+}
+
+fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
+    let mut renderer = watched_with(model, settings);
+    let picture = render(&mut renderer, camera);
+    assert_silent(renderer);
+    picture
+}
+
+/// A plate with a round hole: straight and bent trims before nothing.
+#[test]
+fn outlines_cover_what_exact_rays_say() {
+    let model = shapes::plate();
+    let tracer = Tracer::new(&model);
+    for camera in [perspective(&model, SIZE), orthographic(&model, SIZE)] {
+        let truth = covered(&tracer, &camera);
+        for way in TrimWay::ALL.iter().copied() {
+            let errors = |smooth| coverage_errors(&draw(&model, settings(smooth, way), &camera), &truth);
+            let (rough, smooth) = (errors(Smooth::None), errors(Smooth::Borders));
+            let mean = smooth.iter().map(|e| e.abs()).sum::<f64>() / smooth.len() as f64;
+            let far = smooth.iter().filter(|e| e.abs() > 0.125).count();
+            let (rough, rms) = (root_mean_square(&rough), root_mean_square(&smooth));
+            println!("{way:?}: {rough:.4}, {rms:.4}; mean {mean:.4}, {far} of {}", smooth.len());
+            assert!(smooth.len() > 60 && rough > 0.2, "{rough}");
+            // points know a straight border to a sixteenth, 1/24 on average where it runs along a row or a column of them
+            let bound = 1.0 / 24.0;
+            assert!(mean <= bound && far == 0, "{way:?}: {rms} of {rough}, mean {mean}, {far} far off");
+        }
+    }
+}
+
+/// Faces that meet, hide each other and themselves.
+#[test]
+fn borders_are_as_the_frame_sixteen_times_as_large() {
+    let mut cube = shapes::cube();
+    for (i, face) in cube.parts[0].faces.iter_mut().enumerate() {
+        let on = |bit: usize| if (i + 1) & bit != 0 { 0.9 } else { 0.1 };
+        face.colour = Some([on(1), on(2), on(4), 1.0]);
+    }
+    // of the last one half is a Boolean solid, which is rough by itself
+    for (model, bound) in [(cube, 0.2), (shapes::cylinder(), 0.25), (shapes::wave(), 0.25), (shapes::beside(), 0.7)] {
+        for camera in [perspective(&model, SIZE), orthographic(&model, SIZE)] {
+            let mut fine = watched_with(&model, settings(Smooth::None, TrimWay::Auto));
+            let blocks = blocks(&mut fine, &camera);
+            assert_silent(fine);
+            let errors = |smooth| contrast_errors(&draw(&model, settings(smooth, TrimWay::Auto), &camera), &blocks);
+            let (rough, smooth) = (errors(Smooth::None), errors(Smooth::Borders));
+            let pixels = rough.len();
+            let (rough, smooth) = (root_mean_square(&rough), root_mean_square(&smooth));
+            println!("{}: {rough:.4}, smooth {smooth:.4}, {pixels} pixels", model.name);
+            assert!(pixels > 50 && smooth <= bound * rough, "{}: {smooth} of {rough}", model.name);
+        }
+    }
+}
+
+/// Images but the colour are as without, bit for bit, and so is the colour of pixels whose eight neighbours see the same
+/// face at depths that do not jump.
+#[test]
+fn nothing_else_changes() {
+    for shape in shapes::all() {
+        let camera = perspective(&shape.model, SIZE);
+        let [before, after] = [Smooth::None, Smooth::Borders].map(|smooth| {
+            let picture = draw(&shape.model, settings(smooth, TrimWay::Exact), &camera);
+            let at = |i: usize, k: i32| {
+                let (x, y) = (i as i32 % SIZE.0 as i32 + k % 3 - 1, i as i32 / SIZE.0 as i32 + k / 3 - 1);
+                let within = (0..SIZE.0 as i32).contains(&x) && (0..SIZE.1 as i32).contains(&y);
+                within.then_some((y * SIZE.0 as i32 + x) as usize)
+            };
+            (picture, at)
+        });
+        let ((before, at), (after, _)) = (before, after);
+        let same_colour = Picture { colour: before.colour.clone(), stats: before.stats.clone(), ..after.clone() };
+        assert_identical(&before, &same_colour, shape.name);
+        for i in 0..before.face.len() {
+            let around: Vec<usize> = (0..9).filter_map(|k| at(i, k)).collect();
+            let nothing = around.iter().all(|&n| before.face[n] == 0);
+            assert!(!nothing || before.colour[i] == after.colour[i], "{}: pixel {i}", shape.name);
+        }
+    }
+}
+
+/// Passes, images and lists exist where borders are smoothed, and there are faces; several samples need none.
+#[test]
+fn only_smooth_borders_have_what_they_need() {
+    let of_borders = |model: &Model, settings: SceneSettings| {
+        let mut renderer = watched_with(model, settings);
+        renderer.render(&perspective(model, SIZE), &FrameSettings::default(), Outputs::default()).unwrap();
+        let objects = renderer.objects();
+        assert_silent(renderer);
+        objects.iter().filter(|o| o.starts_with("border ") && *o != "border depths" || *o == "resolved").count()
+    };
+    let smooth = settings(Smooth::Borders, TrimWay::Auto);
+    // four passes, the image, the list and its dispatch
+    assert_eq!(of_borders(&shapes::plate(), smooth), 7);
+    assert_eq!(of_borders(&shapes::wave(), smooth), 7);
+    assert_eq!(of_borders(&shapes::plate(), settings(Smooth::None, TrimWay::Auto)), 0);
+    assert_eq!(of_borders(&shapes::plate(), SceneSettings { samples: Samples::Four, ..smooth }), 0);
+    assert_eq!(of_borders(&shapes::solids::holes(2), smooth), 0);
+}
