@@ -10,15 +10,19 @@
 //!
 //! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the GPU can count (the
 //! trim table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete:
-//! false`, and the next `record` into its slot makes them larger. A view from very near is resolved by what [`DeepZoom`]
-//! cuts for it.
+//! false`, and the next `record` into its slot makes them larger. A view from very near is resolved by what is cut out of
+//! the model for it: [`Renderer::prepare`].
 
 mod centres;
 mod constants;
 mod edit;
+mod error;
 mod history;
+mod instances;
 mod load;
+mod report;
 mod slot;
+mod source;
 mod validate;
 
 use crate::abi;
@@ -31,14 +35,18 @@ use crate::frame::solids::Solids;
 use crate::frame::transparency::solid_layers;
 use crate::frame::{Frame, Near, Passes, Stages, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, TexelBuffer, Uploads};
-use crate::model::{Camera, CameraError, ModelError};
-use crate::picture::{BadEdges, FrameSettings, FrameStats, PassTime, PoolBytes, TakenWay};
-pub use crate::scene::{Cut, DeepZoom, DeepZoomUpload, EditError, UndrawnEdges, UndrawnSolid, trim_way};
-use crate::scene::{Scene, SceneData, Write};
+use crate::model::{Camera, Model};
+use crate::picture::{FrameSettings, PoolBytes};
+use crate::scene::{Cut, Scene, SceneData, Write};
+pub use crate::scene::{EditError, InstanceError, UndrawnEdges, UndrawnSolid, trim_way};
 use ash::vk;
+pub use error::RenderError;
 use history::History;
-use load::Fallback;
+pub use report::FrameReport;
 use slot::Slot;
+use source::Source;
+use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Formats of the images that the host will pass to [`Renderer::record`].
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -86,64 +94,12 @@ pub struct FrameInput<'a> {
     pub targets: Targets<'a>,
 }
 
-/// Why a frame was not recorded.
-#[derive(Debug, thiserror::Error)]
-pub enum RenderError {
-    /// The camera shows nothing.
-    #[error("camera: {0}")]
-    Camera(#[from] CameraError),
-    /// Vulkan or its memory.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    /// [`FrameSettings::tolerance_px`] is below [`FrameSettings::LEAST_TOLERANCE_PX`].
-    #[error("the tolerance must be at least {least} pixels, not {0}", least = FrameSettings::LEAST_TOLERANCE_PX)]
-    Tolerance(f64),
-    /// The model cannot be drawn.
-    #[error("model: {0}")]
-    Model(#[from] ModelError),
-    /// The model, or what this view needs of it.
-    #[error(transparent)]
-    TooMany(#[from] TooMany),
-    /// A Boolean solid that cannot be drawn.
-    #[error(transparent)]
-    Solid(#[from] UndrawnSolid),
-    /// [`sun`](crate::picture::SceneSettings::sun) has no length, or no numbers.
-    #[error("the direction towards the sun must be finite and not 0, not {0}")]
-    Sun(glam::DVec3),
-    /// [`smooth_trims`](crate::picture::SceneSettings::smooth_trims) beside something that it does not go with.
-    #[error("smooth trims do not go with {0}")]
-    SmoothTrims(&'static str),
-    /// [`edges`](crate::picture::SceneSettings::edges) that cannot be drawn.
-    #[error(transparent)]
-    Edges(#[from] BadEdges),
-    /// A part whose edges are no curves.
-    #[error("edges: {0}")]
-    UndrawnEdges(#[from] UndrawnEdges),
-    /// A target of another size than the camera's.
-    #[error("the target `{name}` is {width} x {height}, the camera's picture another size")]
-    TargetSize {
-        /// Its name.
-        name: String,
-        /// Its width.
-        width: u32,
-        /// Its height.
-        height: u32,
-    },
-}
-
-/// What became of a frame.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FrameReport {
-    /// Every buffer sufficed; otherwise record the frame again.
-    pub complete: bool,
-    /// What it cost.
-    pub stats: FrameStats,
-}
-
 /// A renderer on a host's device.
 pub struct Renderer {
     device: Device,
     formats: TargetFormats,
+    source: Option<Source>,
+    /// Of the source: as it is, or what was cut out of it.
     loaded: Option<Loaded>,
     slots: Vec<Slot>,
     /// The slot recorded last.
@@ -158,12 +114,18 @@ struct Loaded {
     passes: Passes,
     scene: Option<Scene>,
     stages: Option<Stages>,
-    /// Edits that the next frame copies.
+    /// Edits of loops that the next frame copies.
     edits: Vec<Write>,
+    /// The same of placed parts, by their offsets.
+    changes: BTreeMap<u64, Write>,
+    /// Some placed part is elsewhere since the frame before.
+    moved: bool,
     /// What the frame before left; `None`: its buffers are gone.
     history: Option<History>,
-    /// The model, where it may have to be trimmed another way.
-    fallback: Option<Box<Fallback>>,
+    /// It may be trimmed exactly, where a view needs too much of the table.
+    may_be_exact: bool,
+    /// What it was cut by, where it may be.
+    cut: Option<Box<Cut>>,
 }
 
 impl Loaded {
@@ -212,7 +174,7 @@ impl Renderer {
     /// As [`new`](Self::new), on a device that is already on loan.
     pub(crate) fn on(device: &Device, formats: TargetFormats, frame_slots: usize) -> Result<Self, GpuError> {
         let slots = (0..frame_slots.max(1)).map(|_| Slot::new(device)).collect::<Result<_, _>>()?;
-        Ok(Self { device: device.clone(), formats, loaded: None, slots, last: None })
+        Ok(Self { device: device.clone(), formats, source: None, loaded: None, slots, last: None })
     }
 
     /// Records one frame: compute, draws, and the picture into the targets.
@@ -290,14 +252,19 @@ impl Renderer {
             targets.depth.is_some() == self.formats.depth.is_some(),
             "the targets are those of TargetFormats::depth"
         );
+        self.prepare(input.camera)?;
         self.make_room(input.slot, input.camera)?;
         // SAFETY: the caller's promise.
         let cmd = unsafe { Commands::new(&self.device, cmd) };
         let Some(loaded) = &mut self.loaded else { panic!("upload a model before recording") };
         let slot = &mut self.slots[input.slot];
         let view = (*input.camera, input.settings);
+        if loaded.moved {
+            loaded.data.settle();
+        }
         let table = loaded.data.table_view(input.camera, Budget::of(tolerance).beside());
-        let history = History::after(loaded.history, view, table, !loaded.edits.is_empty(), loaded.counts.hides);
+        let edited = loaded.moved || !loaded.edits.is_empty();
+        let history = History::after(loaded.history, view, table, edited, loaded.counts.hides);
         slot.write(&self.device, loaded, input, &self.formats, &history)?;
         if loaded.scene.is_none() {
             let (scene, uploads) = Scene::record(&cmd, &loaded.data)?;
@@ -306,6 +273,7 @@ impl Renderer {
             loaded.data.drop_uploaded();
         }
         slot.edit_bytes = 0;
+        loaded.edits.extend(std::mem::take(&mut loaded.changes).into_values());
         if let Some(scene) = loaded.scene.as_ref().filter(|_| !loaded.edits.is_empty()) {
             let uploads = Frame::edit(&cmd, scene, &loaded.edits)?;
             slot.edit_bytes = uploads.staging_bytes();
@@ -357,6 +325,7 @@ impl Renderer {
         frame.record(&cmd, &mut slot.times);
         // only now: a frame that was not recorded left nothing
         loaded.history = Some(history);
+        loaded.moved = false;
         (slot.recorded, slot.reused) = (true, history.reuses_view);
         slot.capacities = Some(loaded.capacities);
         slot.size = input.camera.size;
@@ -365,50 +334,15 @@ impl Renderer {
         Ok(())
     }
 
-    /// What became of the frame recorded last into `slot`, which has finished on the GPU; `None`
-    /// when there was none.
-    ///
-    /// # Errors
-    /// [`GpuError`].
-    pub fn report(&self, slot: usize) -> Result<Option<FrameReport>, GpuError> {
-        let slot = &self.slots[slot];
-        if !slot.recorded {
-            return Ok(None);
-        }
-        let c = slot.read_counters();
-        let scopes = slot.times.read()?;
-        let stats = FrameStats {
-            passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
-            reused: slot.reused,
-            trim: self.loaded.as_ref().and_then(|l| l.counts.trim).and_then(TakenWay::reported),
-            patches: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.items)),
-            triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
-            sub_patches: u64::from(c.plain) + u64::from(c.trimmed),
-            trim_rows: u64::from(c.rows),
-            trim_segments: u64::from(c.segments),
-            trim_intercepts: u64::from(c.intercepts),
-            gap_candidates: u64::from(c.gap_candidates),
-            clamps: u64::from(c.clamps),
-            hidden_patches: u64::from(c.hidden),
-            fragments: u64::from(c.fragments),
-            mended: u64::from(c.mended),
-            unpaired: u64::from(c.unpaired),
-            contact_pixels: u64::from(c.contacts),
-            overlap_pixels: u64::from(c.overlaps),
-            open_clear: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.open)),
-            shadowless: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.shadowless)),
-            shadow_deviation: self.loaded.as_ref().and_then(|l| l.data.sun.as_ref()).map_or(0.0, |sun| sun.deviation),
-            edge_chords: u64::from(c.edge_chords),
-            layers: u64::from(c.layers),
-            bands: slot.bands,
-            solid_bytes: slot.solid_bytes.clone(),
-            retries: 0,
-            edit_bytes: slot.edit_bytes,
-            pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),
-            device: self.device.name().to_owned(),
-            driver: self.device.driver().to_owned(),
-        };
-        Ok(Some(FrameReport { complete: c.failed == 0, stats }))
+    /// The model that was uploaded, as edits and changes of instances have made it.
+    pub fn model(&self) -> Option<&Arc<Model>> {
+        self.source.as_ref().map(|source| &source.model)
+    }
+
+    /// What was uploaded.
+    #[cfg(feature = "headless")]
+    pub(crate) fn source(&self) -> Option<&Source> {
+        self.source.as_ref()
     }
 
     /// Names of the buffers, images and pipelines that exist for the loaded model.
@@ -436,7 +370,7 @@ impl Renderer {
                 Ok(grown) => grown,
                 // a picture of another size may have room
                 Err(_) if drawn != size => loaded.capacities,
-                Err(too_many) if too_many.is_of_table() && loaded.fallback.is_some() => {
+                Err(too_many) if too_many.is_of_table() && loaded.may_be_exact => {
                     self.load_exact()?;
                     return self.make_room(slot, camera);
                 }

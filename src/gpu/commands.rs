@@ -103,15 +103,8 @@ impl<'a> Commands<'a> {
         unsafe { self.device.raw().cmd_draw(self.raw, count, copies, vertices.start, instances.start) };
     }
 
-    /// Makes `draws` draws of `VkDrawIndirectCommand`, packed, at `offset` bytes of `arguments`.
-    pub fn draw_indirect(&self, arguments: &Buffer, offset: u64, draws: u32) {
-        let stride = size_of::<vk::DrawIndirectCommand>() as u32;
-        // SAFETY: recording within `rendering`; a graphics pipeline is bound.
-        unsafe { self.device.raw().cmd_draw_indirect(self.raw, arguments.handle(), offset, draws, stride) };
-    }
-
-    /// As [`draw_indirect`](Self::draw_indirect), but the GPU wrote the number of draws at
-    /// `count_offset` bytes of `count`; at most `most` are made.
+    /// Draws whose arguments the GPU wrote at `offset` bytes of a buffer, and their number at `count_offset` bytes of
+    /// `count`; at most `most` are made.
     pub fn draw_indirect_count(&self, arguments: &Buffer, offset: u64, count: &Buffer, count_offset: u64, most: u32) {
         let (arguments, count) = (arguments.handle(), count.handle());
         let stride = size_of::<vk::DrawIndirectCommand>() as u32;

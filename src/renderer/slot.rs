@@ -13,7 +13,7 @@ use crate::gpu::{
 };
 use crate::model::Camera;
 use crate::picture::PoolBytes;
-use crate::scene::{TableView, seen_by, view};
+use crate::scene::{TableView, seen_by};
 use ash::vk;
 use glam::{DMat4, DVec3};
 
@@ -88,7 +88,7 @@ impl Slot {
         history: &History,
     ) -> Result<(), GpuError> {
         let pixels = input.camera.pixel_matrix();
-        let views: Vec<abi::View> = loaded.data.placements.iter().map(|p| view(pixels, *p)).collect();
+        let views = loaded.data.views(pixels);
         let bytes = size_of_val(views.as_slice()) as u64;
         if self.views.as_ref().is_none_or(|b| b.bytes() < bytes) {
             let made = upload_views(device, "views", bytes)?;
@@ -123,8 +123,7 @@ impl Slot {
         centre: abi::Frame,
     ) -> Result<(), GpuError> {
         let offsets = loaded.counts.samples.offsets();
-        let placements = &loaded.data.placements;
-        let bytes = (placements.len() * size_of::<abi::View>()) as u64;
+        let bytes = (loaded.data.placements.len() * size_of::<abi::View>()) as u64;
         if self.samples.len() != offsets.len() || self.samples.iter().any(|s| s.views.bytes() < bytes) {
             self.retired.extend(std::mem::take(&mut self.samples).into_iter().flat_map(gone));
             for _ in offsets {
@@ -133,7 +132,7 @@ impl Slot {
         }
         for (sample, &offset) in self.samples.iter_mut().zip(offsets) {
             let pixels = beside(camera.pixel_matrix(), offset);
-            let views: Vec<abi::View> = placements.iter().map(|p| view(pixels, *p)).collect();
+            let views = loaded.data.views(pixels);
             sample.views.write(0, &views);
             let offset = offset.map(|x| x as f32);
             sample.constants.write(0, &[abi::Frame { offset, encode_srgb: abi::ENCODE_SUMMED, ..centre }]);
@@ -160,7 +159,7 @@ impl Slot {
             return Ok(());
         }
         let pixels = wider.pixel_matrix();
-        let views: Vec<abi::View> = loaded.data.placements.iter().map(|p| view(pixels, *p)).collect();
+        let views = loaded.data.views(pixels);
         let bytes = size_of_val(views.as_slice()) as u64;
         if self.table.as_ref().is_none_or(|table| table.views.bytes() < bytes) {
             let made = view_buffers(device, ["trim table constants", "trim table views"], bytes)?;

@@ -98,6 +98,8 @@ pub(crate) enum EditTarget {
     Cells,
     Curves,
     CurvePoints,
+    /// Of placed parts.
+    Instances,
     /// Of [`ExactScene::all`](super::ExactScene::all), by number.
     Exact(usize),
 }
@@ -235,6 +237,7 @@ impl SceneData {
                 EditTarget::Cells => bytemuck::cast_slice_mut(&mut self.cells),
                 EditTarget::Curves => bytemuck::cast_slice_mut(&mut self.curves),
                 EditTarget::CurvePoints => bytemuck::cast_slice_mut(&mut self.curve_points),
+                EditTarget::Instances => bytemuck::cast_slice_mut(&mut self.instances),
                 EditTarget::Exact(array) => self.exact.bytes_mut(array),
             };
             bytes[w.offset as usize..][..w.bytes.len()].copy_from_slice(&w.bytes);

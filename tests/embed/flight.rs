@@ -97,6 +97,56 @@ fn sizes_and_models_change_in_flight() {
     assert_eq!(host.shutdown(), [""; 0]);
 }
 
+/// A sphere goes from left to right, one place a frame, while the other slot's frame is in flight: each frame has it where
+/// it was when that frame was recorded, and where an upload has it.
+#[test]
+fn a_part_moves_while_frames_are_in_flight() {
+    let host = Host::new();
+    let mut model = painted(shapes::sphere(), RED);
+    model.parts.extend(painted(shapes::cube(), GREEN).parts);
+    model.instances.push(shapes::placed(DAffine3::from_translation(DVec3::new(0.0, 9.0, 0.0)), Some(GREEN)));
+    model.instances[1].part = 1;
+    let size = (120, 60);
+    let eye = DVec3::new(0.0, -40.0, 0.0);
+    let (target, up) = (DVec3::ZERO, DVec3::Z);
+    let projection = selvedge::model::Projection::Perspective { fov_y: 0.4 };
+    let camera = Camera { eye, target, up, projection, depth_range: (1.0, 100.0), size };
+    let place = |frame: usize| DAffine3::from_translation(DVec3::X * (2.5 * frame as f64 - 10.0));
+    let targets = [(); SLOTS].map(|()| Targets::new(&host, size, FORMAT));
+    let mut seen = Vec::new();
+    let mut live = renderer(&host, &model, FORMAT);
+    for frame in 0..9 {
+        let slot = frame % SLOTS;
+        host.wait(slot);
+        if frame >= SLOTS {
+            seen.push(targets[slot].values());
+        }
+        live.set_transform(0, place(frame)).unwrap();
+        live.set_visible(1, frame % 3 != 1).unwrap();
+        record(&host, &mut live, slot, &targets[slot], &camera, 0.5);
+    }
+    (9 - SLOTS..9).for_each(|frame| {
+        host.wait(frame % SLOTS);
+        seen.push(targets[frame % SLOTS].values());
+    });
+    drop(live);
+    let mut fresh = renderer(&host, &model, FORMAT);
+    for (frame, seen) in seen.iter().enumerate() {
+        let mut model = model.clone();
+        model.instances[0].transform = place(frame);
+        if frame % 3 == 1 {
+            model.instances.pop();
+        }
+        fresh.upload(&model).unwrap();
+        record(&host, &mut fresh, 0, &targets[0], &camera, 0.5);
+        host.wait(0);
+        assert!(*seen == targets[0].values(), "frame {frame}");
+    }
+    drop(fresh);
+    targets.into_iter().for_each(|targets| targets.destroy(&host));
+    assert_eq!(host.shutdown(), [""; 0]);
+}
+
 /// A view that needs more rows than the first table holds: the report says so, a frame of the other slot
 /// is in flight meanwhile, and the next frame into the slot is whole.
 #[test]

@@ -26,6 +26,7 @@ mod layers;
 mod ledges;
 mod lengths;
 mod light;
+mod living;
 mod look;
 mod meshes;
 mod narrow;

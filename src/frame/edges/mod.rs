@@ -26,7 +26,6 @@ use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, b
 use crate::picture::EdgeSettings;
 use crate::scene::SceneData;
 use crate::shaders::constant;
-use ash::vk;
 use std::sync::Arc;
 
 /// The passes of scenes with lines.
@@ -95,7 +94,7 @@ impl EdgeStage {
             counts: room.words("edge chord counts", items)?,
             starts: room.words("edge chord starts", items + 1)?,
             chords: room.structs::<Chord>("edge chords", room.capacities.edges.chords)?,
-            draw: room.indirect::<vk::DrawIndirectCommand>("edge draw", 1)?,
+            draw: room.indirect::<u32>("edge draw", divide::DRAW_WORDS)?,
             best: room.words("best lines", room.size.0 * room.size.1)?,
         })
     }
