@@ -58,6 +58,7 @@ pub(crate) mod counts;
 pub(crate) mod edges;
 pub(crate) mod gaps;
 pub(crate) mod occlusion;
+pub(crate) mod pick;
 mod reuse;
 pub(crate) mod shading;
 mod shadows;

@@ -20,6 +20,7 @@ mod error;
 mod history;
 mod instances;
 mod load;
+mod pick;
 mod report;
 mod slot;
 mod source;
@@ -37,8 +38,8 @@ use crate::frame::{Frame, Near, Passes, Stages, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, TexelBuffer, Uploads};
 use crate::model::{Camera, Model};
 use crate::picture::{FrameSettings, PoolBytes};
-use crate::scene::{Cut, Scene, SceneData, Write};
-pub use crate::scene::{EditError, InstanceError, UndrawnEdges, UndrawnSolid, trim_way};
+use crate::scene::{Cut, Picking, Scene, SceneData, Write};
+pub use crate::scene::{EditError, Hit, InstanceError, UndrawnEdges, UndrawnSolid, trim_way};
 use ash::vk;
 pub use error::RenderError;
 use history::History;
@@ -104,6 +105,8 @@ pub struct Renderer {
     slots: Vec<Slot>,
     /// The slot recorded last.
     last: Option<usize>,
+    /// The next frame reads back what this pixel shows.
+    pick: Option<(u32, u32)>,
 }
 
 /// A model and what its frames need. Fields drop in order: nothing outlives the device.
@@ -112,6 +115,7 @@ struct Loaded {
     counts: Counts,
     capacities: Capacities,
     passes: Passes,
+    picking: Arc<Picking>,
     scene: Option<Scene>,
     stages: Option<Stages>,
     /// Edits of loops that the next frame copies.
@@ -174,7 +178,7 @@ impl Renderer {
     /// As [`new`](Self::new), on a device that is already on loan.
     pub(crate) fn on(device: &Device, formats: TargetFormats, frame_slots: usize) -> Result<Self, GpuError> {
         let slots = (0..frame_slots.max(1)).map(|_| Slot::new(device)).collect::<Result<_, _>>()?;
-        Ok(Self { device: device.clone(), formats, source: None, loaded: None, slots, last: None })
+        Ok(Self { device: device.clone(), formats, source: None, loaded: None, slots, last: None, pick: None })
     }
 
     /// Records one frame: compute, draws, and the picture into the targets.
@@ -323,6 +327,8 @@ impl Renderer {
         };
         slot.times.reset(&cmd);
         frame.record(&cmd, &mut slot.times);
+        let Some(source) = &self.source else { unreachable!("it was loaded") };
+        pick::record(self.pick.take(), &mut slot.pick, (&self.device, &cmd, &frame), (source, loaded, input))?;
         // only now: a frame that was not recorded left nothing
         loaded.history = Some(history);
         loaded.moved = false;

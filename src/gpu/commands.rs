@@ -223,6 +223,26 @@ impl<'a> Commands<'a> {
         unsafe { self.device.raw().cmd_copy_buffer(self.raw, from.handle(), to.handle(), &[region]) };
     }
 
+    /// Copies one pixel of a colour image in layout `GENERAL` to `offset` bytes of a buffer; it has so many bytes.
+    ///
+    /// # Panics
+    /// When the pixel is not in the image, or its bytes do not fit.
+    pub fn copy_pixel(&self, from: &Image, (x, y): (u32, u32), to: &Buffer, (offset, bytes): (u64, u64)) {
+        let (width, height) = from.size();
+        assert!(x < width && y < height && offset + bytes <= to.bytes(), "pixel {x}, {y} of `{}`", from.name());
+        let layers = vk::ImageSubresourceLayers::default().aspect_mask(vk::ImageAspectFlags::COLOR).layer_count(1);
+        let region = vk::BufferImageCopy::default()
+            .buffer_offset(offset)
+            .image_subresource(layers)
+            .image_offset(vk::Offset3D { x: x as i32, y: y as i32, z: 0 })
+            .image_extent(vk::Extent3D { width: 1, height: 1, depth: 1 });
+        let layout = vk::ImageLayout::GENERAL;
+        // SAFETY: recording outside rendering; both belong to this device.
+        unsafe {
+            self.device.raw().cmd_copy_image_to_buffer(self.raw, from.handle(), layout, to.handle(), &[region]);
+        }
+    }
+
     /// Copies one aspect of an image, rows packed: [`Access::TRANSFER_READ`] to
     /// [`Access::TRANSFER_WRITE`].
     pub fn copy_image(&self, from: &Image, aspect: vk::ImageAspectFlags, to: &Buffer) {

@@ -4,7 +4,7 @@ use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
 use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
 use crate::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
-use crate::renderer::{EditError, FrameInput, InstanceError, RenderError, Renderer, TargetFormats, Targets};
+use crate::renderer::{EditError, FrameInput, Hit, InstanceError, RenderError, Renderer, TargetFormats, Targets};
 use crate::scene::SceneRequest;
 use ash::vk;
 use bytemuck::Pod;
@@ -160,6 +160,16 @@ impl HeadlessRenderer {
     /// When no model was uploaded.
     pub fn set_selected(&mut self, instance: usize, highlight: Option<Colour>) -> Result<(), InstanceError> {
         self.renderer.set_selected(instance, highlight)
+    }
+
+    /// Lets the next picture read back what it shows at a pixel: see [`Renderer::pick`].
+    pub fn pick(&mut self, x: u32, y: u32) {
+        self.renderer.pick(x, y);
+    }
+
+    /// What the last picture shows there: see [`Renderer::picked`].
+    pub fn picked(&self) -> Option<Hit> {
+        self.renderer.picked(0)
     }
 
     /// Renders one picture and waits for it.

@@ -110,8 +110,9 @@ impl Renderer {
     }
 
     /// As [`upload_shared`](Self::upload_shared), of what another renderer had.
-    pub(crate) fn upload_source(&mut self, source: Source, progress: Told<'_>) -> Result<(), RenderError> {
+    pub(crate) fn upload_source(&mut self, mut source: Source, progress: Told<'_>) -> Result<(), RenderError> {
         let loaded = Loaded::new(&self.device, self.formats, &source, (None, source.request), progress)?;
+        source.upload = self.source.as_ref().map_or(0, |before| before.upload + 1);
         self.source = Some(source);
         self.replace(loaded);
         Ok(())
@@ -169,6 +170,10 @@ impl Loaded {
                 Some(cut) => data.find_edges_of_cut(whole, cut, edges)?,
             }
         }
+        let picking = match &cut {
+            None => data.picking(whole, |_, face| face),
+            Some(cut) => data.picking(&cut.model, |part, face| cut.face_of(part, face)),
+        };
         data.show(&whole.instances, &source.shown);
         let counts = Counts::of(&data);
         counts.check()?;
@@ -180,6 +185,7 @@ impl Loaded {
             counts,
             capacities: Capacities::first(counts, draw_vertices(device)),
             passes,
+            picking: Arc::new(picking),
             scene: None,
             stages: None,
             edits: Vec::new(),

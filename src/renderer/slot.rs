@@ -3,6 +3,7 @@
 use super::centres::SlotCentres;
 use super::constants::constants;
 use super::history::History;
+use super::pick::SlotPick;
 use super::{FrameInput, Loaded, Retired, TargetFormats};
 use crate::abi;
 use crate::abi::Counters;
@@ -29,6 +30,7 @@ pub(super) struct Slot {
     /// What the trim table is made of, where that is another view.
     pub(super) table: Option<ViewBuffers>,
     pub(super) centres: SlotCentres,
+    pub(super) pick: Option<SlotPick>,
     pub(super) counters: ReadBack,
     /// What `counters` has room for, and how many the frame reports.
     pub(super) counter_room: usize,
@@ -58,6 +60,7 @@ impl Slot {
             samples: Vec::new(),
             table: None,
             centres: SlotCentres::default(),
+            pick: None,
             counters: read_counters(device, 1)?,
             counter_room: 1,
             counted: 1,

@@ -16,6 +16,8 @@ pub(crate) struct Source {
     pub(super) request: SceneRequest,
     /// Of each instance.
     pub(super) shown: Vec<Shown>,
+    /// Told from those of other models.
+    pub(super) upload: u64,
     deep_zoom: DeepZoom,
     /// What this camera sees is loaded.
     approached: Option<Camera>,
@@ -26,7 +28,7 @@ impl Source {
     pub(super) fn new(model: Arc<Model>, request: SceneRequest) -> Self {
         let shown = vec![Shown::default(); model.instances.len()];
         let deep_zoom = DeepZoom::new(&model);
-        Self { model, request, shown, deep_zoom, approached: None }
+        Self { model, request, shown, upload: 0, deep_zoom, approached: None }
     }
 
     /// The same, not loaded yet, with another request.

@@ -16,7 +16,7 @@ use super::sun::SunData;
 use super::trimmed::Trimmed;
 use super::way::taken;
 use crate::abi;
-use crate::model::{Bounds, Instance, Isolated, Items, Model, Part, SolidError};
+use crate::model::{Bounds, Instance, Isolated, Items, Mesh, Model, Part, SolidError};
 #[cfg(any(test, feature = "baselines"))]
 use crate::picture::SceneSettings;
 use crate::picture::{Highlight, Samples, TakenWay};
@@ -127,6 +127,8 @@ pub(crate) struct SceneData {
     pub(super) parts: Vec<(DVec3, usize)>,
     /// Lines along edges, where they are wanted.
     pub edges: Option<EdgeData>,
+    /// Boolean solids that are drawn as meshes, the last ones of `meshes`.
+    pub(super) isolated: Vec<Mesh>,
     /// Images have the numbers of edges, parts and instances.
     pub has_numbers: bool,
 }
@@ -290,6 +292,7 @@ impl SceneData {
             data.push_instance(&instance, origin, 0..0, 0);
             data.meshes.push_outward(mesh, origin, data.instances.len() as u32 - 1);
         }
+        data.isolated = isolated.map_or_else(Vec::new, |isolated| isolated.meshes);
         data.push_operands(trim);
         if !data.links.is_empty() {
             data.links.resize(4 * data.patches.len(), abi::Link::default());

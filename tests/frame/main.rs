@@ -32,6 +32,7 @@ mod meshes;
 mod narrow;
 mod objects;
 mod operands;
+mod picks;
 mod real_solids;
 mod regular;
 mod room;

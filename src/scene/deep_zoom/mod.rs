@@ -78,7 +78,7 @@ pub(crate) enum DeepZoomUpload {
 #[derive(Clone, Debug, PartialEq)]
 pub(crate) struct Cut {
     /// Faces that are seen, or windows of them.
-    pub(super) model: Model,
+    pub(crate) model: Model,
     /// Of each of its parts: how large is what its views would show, were they [`VIEW_PX`] wide. Units of the part.
     pub(super) extents: Vec<f64>,
     /// Of each of its parts, where it is from.
@@ -122,6 +122,13 @@ struct Sight {
     perspective: bool,
     /// Pixels per part unit at unit depth, or everywhere in a parallel view.
     pixels: f64,
+}
+
+impl Cut {
+    /// Of a part of it and a face of that: the face of the whole model's part.
+    pub(crate) fn face_of(&self, part: usize, face: usize) -> usize {
+        self.sources[part].faces[face]
+    }
 }
 
 impl Sight {
