@@ -47,8 +47,8 @@ fn picks(renderer: &mut HeadlessRenderer, model: &Model, camera: &Camera) -> Pic
             found.beside += 1;
             continue;
         };
-        // depths of solids are those of the image; of meshes among their operands the rasteriser makes them
-        let (unit, off) = if hit.instance.is_some() { (1e-9, 1e-6) } else { (1e-5, 1e-3) };
+        // a millionth of a pixel; depths of solids are those of the image, of meshes among their operands the rasteriser makes them
+        let (unit, off) = if hit.instance.is_some() { (1e-8, 1e-6) } else { (1e-5, 1e-3) };
         assert!(hit.point.distance(exact.point) <= unit * hit.depth, "{x}, {y}: {hit:?} {exact:?}");
         if let Some(normal) = hit.normal.filter(|_| model.parts.iter().all(|part| part.meshes.is_empty())) {
             assert!(normal.distance(exact.normal) < off, "{x}, {y}: {hit:?} {exact:?}");
