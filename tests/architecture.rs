@@ -17,7 +17,7 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("csg", &[]),
     // selvedge-io
     ("brep", &["math", "spline", "trim", "model"]),
-    ("import", &["brep", "construct", "csg", "native", "spline", "model"]),
+    ("import", &["brep", "construct", "csg", "native", "math", "spline", "model"]),
     ("export", &["construct", "csg", "edges", "spline", "trim", "model"]),
     ("native", &["model"]),
     // selvedge-check: Cargo says it all

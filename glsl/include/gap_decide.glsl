@@ -21,7 +21,7 @@ struct Situation {
     bool isolated;     // no border is near: nothing is seen, between patches on both sides
     bool empty;        // no patch is seen
     bool empty_beside; // a neighbour shows the background
-    bool other_beside; // a neighbour shows a mesh or solid behind `own`
+    bool other_beside; // a neighbour shows a mesh or solid
     bool other;        // a mesh or solid is behind the pixel
     float other_depth;
     bool cut_open;     // a volume trims the scene
@@ -134,8 +134,14 @@ void consider(inout Evidence e, Situation s, Candidate c) {
 // there within the gap radius, before `b`: to show it is off by no more than that.
 bool covers(Candidate a, Candidate b, vec2 pixel) {
     if (max(a.miss, b.miss) > ON_PIXEL_PX) return false; // a surface's own silhouette
-    Outline of_a = outline_of(a, pixel);
-    Outline of_b = outline_of(b, pixel);
+    Outline of_a;
+    Outline of_b;
+    for (uint k = 0u; k < 2u; ++k) { // one call, which drivers copy to where it is called
+        of_a = of_b;
+        Candidate c = a;
+        if (k == 1u) c = b;
+        of_b = outline_of(c, pixel);
+    }
     bool together = dot(of_a.into, of_b.into) > 0.0 && of_a.ends && of_b.ends;
     return together && a.depth - b.depth + dot(a.slope - b.slope, of_a.into) < 0.0;
 }

@@ -44,7 +44,7 @@ float other_depth(uvec2 seen, vec2 pixel) {
     return facet_at(seen.y, view_at(mesh_instances[seen_mesh_instance(seen.x)].instance), pixel).depth;
 }
 
-// The situation but for what the neighbours show.
+// The situation but for the own face and what the neighbours show.
 Situation situation_at(uint listed, ivec2 at, vec2 pixel, bool within) {
     uvec2 seen = imageLoad(visibility, at).xy;
     uvec2 other = SCENE_HAS_MESHES_OR_SOLIDS ? imageLoad(others, at).xy : uvec2(0u);
@@ -57,8 +57,6 @@ Situation situation_at(uint listed, ivec2 at, vec2 pixel, bool within) {
     s.other = other.x != 0u;
     s.other_depth = s.other ? other_depth(other, pixel) : 3.0e38;
     s.own = no_candidate();
-    uint radius = s.border ? RADIUS_OF_INSIDE | RADIUS_OF_OUTSIDE : RADIUS_OF_INSIDE;
-    if (!s.empty) s.own = candidate_at(seen, pixel, FROM_BESIDE, radius);
     s.seen = seen;
 #ifdef WITHIN_VOLUME
     s.cut_open = true;
@@ -66,14 +64,6 @@ Situation situation_at(uint listed, ivec2 at, vec2 pixel, bool within) {
     s.cut_open = false;
 #endif
     return s;
-}
-
-// A curved face can show its front at the same pixel, narrower than the tessellation's error: across the fold.
-void gather_across_fold(inout Evidence e, Situation s, vec2 pixel) {
-    for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
-        uvec2 seen = uvec2(s.seen.x, pack_uv(unpack_uv(s.seen.y) + ACROSS * DIRECTIONS[k]));
-        consider(e, s, candidate_at(seen, pixel, FROM_FOLD, RADIUS_OF_OUTSIDE));
-    }
 }
 
 // The first pixel that counts, `step_` by `step_`; returns how many steps away, 0 without one.
@@ -90,27 +80,57 @@ uint first_that_counts(ivec2 at, ivec2 step_, uint band, bool within, out ivec2 
     return found;
 }
 
-// All candidates, and what the neighbours show beside patches. `within`: the eye is within a solid, so what is seen of it
-// is from behind, and counts though it is marked.
+// A face to ask about the pixel: the arguments of `candidate_at`, and whether there is one.
+struct Question {
+    bool asked;
+    uvec2 seen;
+    uint from;
+    uint radius;
+};
+
+Question ask_own(Situation s) {
+    uint radius = s.border ? RADIUS_OF_INSIDE | RADIUS_OF_OUTSIDE : RADIUS_OF_INSIDE;
+    return Question(!s.empty, s.seen, FROM_BESIDE, radius);
+}
+
+// A curved face can show its front at the same pixel, narrower than the tessellation's error: across the fold.
+Question ask_across_fold(Situation s, vec2 direction) {
+    uvec2 seen = uvec2(s.seen.x, pack_uv(unpack_uv(s.seen.y) + ACROSS * direction));
+    return Question(true, seen, FROM_FOLD, RADIUS_OF_OUTSIDE);
+}
+
+// A neighbour; or, where it shows no patch, what that tells the situation.
+Question ask_beside(inout Situation s, ivec2 at, ivec2 step_, bool within) {
+    ivec2 beside;
+    uvec2 seen;
+    uint band = is_interior(s) ? WIDE_BAND_PX : BAND_PX;
+    uint steps = first_that_counts(at, step_, band, within, beside, seen);
+    bool nothing = steps == 1u && sees_nothing(seen.x);
+    uvec2 there = nothing && SCENE_HAS_MESHES_OR_SOLIDS ? imageLoad(others, beside).xy : uvec2(0u);
+    if (nothing && there.x == 0u) s.empty_beside = true;
+    if (nothing && there.x != 0u) s.other_beside = true;
+    return Question(steps != 0u && !sees_nothing(seen.x), seen, steps > 1u ? FROM_BEYOND : FROM_BESIDE, RADIUS_OF_OUTSIDE);
+}
+
+// All candidates, the own face first, and what the neighbours show beside patches. `within`: the eye is within a solid, so
+// what is seen of it is from behind, and counts though it is marked. One call of `candidate_at`, which drivers copy to
+// where it is called:
+//
+//     n   0     1 … 8             9 … 16
+//         own   across its fold   the neighbours
 Evidence gather(inout Situation s, ivec2 at, vec2 pixel, bool within) {
     Evidence e = no_evidence(s);
-    if (!s.border) gather_across_fold(e, s, pixel);
-    uint band = is_interior(s) ? WIDE_BAND_PX : BAND_PX;
-    for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
-        ivec2 beside;
-        uvec2 seen;
-        uint steps = first_that_counts(at, ivec2(sign(DIRECTIONS[k])), band, within, beside, seen);
-        if (steps == 0u) continue;
-        if (sees_nothing(seen.x)) {
-            if (steps > 1u) continue;
-            uvec2 there = SCENE_HAS_MESHES_OR_SOLIDS ? imageLoad(others, beside).xy : uvec2(0u);
-            // a mesh or solid before the own face may hide its neighbour: it tells nothing
-            if (there.x == 0u) s.empty_beside = true;
-            else if (other_depth(there, vec2(beside) + 0.5) > s.own.depth) s.other_beside = true;
-            continue;
+    uint n = 0u;
+    while (n <= 2u * DIRECTION_COUNT) {
+        Question q = ask_own(s);
+        if (n > 0u) q = ask_across_fold(s, DIRECTIONS[(n - 1u) % DIRECTION_COUNT]);
+        if (n > DIRECTION_COUNT) q = ask_beside(s, at, ivec2(sign(DIRECTIONS[(n - 1u) % DIRECTION_COUNT])), within);
+        if (q.asked) {
+            Candidate c = candidate_at(q.seen, pixel, q.from, q.radius);
+            if (n == 0u) s.own = c;
+            else consider(e, s, c);
         }
-        uint from = steps > 1u ? FROM_BEYOND : FROM_BESIDE;
-        consider(e, s, candidate_at(seen, pixel, from, RADIUS_OF_OUTSIDE));
+        n += n == 0u && s.border ? DIRECTION_COUNT + 1u : 1u; // a border has no fold
     }
     return e;
 }

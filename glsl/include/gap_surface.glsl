@@ -42,29 +42,42 @@ bool is_there(FaceInstance fi, Face face, uint item, Patch patch_, vec2 uv) {
 // one in which it ended.
 Sample refine_across(FaceInstance fi, Face face, View view, inout uint item, vec2 uv, vec2 pixel) {
     ivec2 count = ivec2(face.count_u, face.count_v);
-    Sample s = refine(patch_at(face.first_patch + item - fi.first_item), view, uv, pixel);
-    for (uint hop = 0u; hop < MAX_HOPS; ++hop) {
-        int n = int(item - fi.first_item);
-        ivec2 place = place_of(face, n);
-        ivec2 next = clamp(place + way_beyond(s.uv, BEYOND), ivec2(0), count - 1);
-        if (next == place) break;
-        Patch there = patch_at(patch_in(face, next));
-        if (side_of(there.shape) == SIDE_OUTSIDE) break; // it has no control points
-        Patch here = patch_at(face.first_patch + uint(n));
-        vec2 from = (here.domain.xy + s.uv * here.domain.zw - there.domain.xy) / there.domain.zw;
-        Sample t = refine(there, view, clamp(from, 0.0, 1.0), pixel);
-        // beside a silhouette it may not come as near: then the first patch's continuation is better
-        bool on = length(t.miss) <= max(length(s.miss), ON_PIXEL_PX);
+    uint number = face.first_patch + item - fi.first_item;
+    Patch patch_ = patch_at(number);
+    Sample s;
+    for (uint hop = 0u; hop <= MAX_HOPS; ++hop) {
+        Sample t = refine(patch_, view, uv, pixel);
+        // beside a silhouette the next patch may not come as near: then the first one's continuation is better
+        bool on = hop == 0u || length(t.miss) <= max(length(s.miss), ON_PIXEL_PX);
         if (on) {
-            item = fi.first_item + patch_in(face, next) - face.first_patch;
+            item = fi.first_item + number - face.first_patch;
             s = t;
         }
         if (!on) break; // only now: see refine.glsl
+        ivec2 place = place_of(face, int(item - fi.first_item));
+        ivec2 next = clamp(place + way_beyond(s.uv, BEYOND), ivec2(0), count - 1);
+        number = patch_in(face, next);
+        Patch there = patch_at(number);
+        if (next == place || side_of(there.shape) == SIDE_OUTSIDE) break; // that has no control points
+        uv = (patch_.domain.xy + s.uv * patch_.domain.zw - there.domain.xy) / there.domain.zw;
+        uv = clamp(uv, 0.0, 1.0);
+        patch_ = there;
     }
     return s;
 }
 
-// The face that `seen` names, at the pixel's centre. Of `radius` the points are tested that RADIUS_OF_ names.
+// Whether the face's point at (u, v), which it has, lies within the gap radius of the pixel.
+bool reaches(Patch patch_, View view, vec2 uv, vec2 pixel) {
+    vec4 q = to_pixel(view, vec4(patch_jet(patch_.first, patch_.shape, uv).point, 1.0));
+#ifdef WITHIN_VOLUME
+    // each alone may reach to the pixel from beside the corner in which they meet
+    if (!in_volume(q, ON_PX)) return false;
+#endif
+    return distance(q.xy / q.w, pixel) <= GAP_SLACK * frame.gap_radius_px;
+}
+
+// The face that `seen` names, at the pixel's centre, and, as RADIUS_OF_ of `radius` says, at points of the gap radius. One
+// call of what takes long, which drivers copy to where it is called.
 Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius) {
     uint item = seen_item(seen.x);
     FaceInstance fi = face_instance_at(face_instance_of(item));
@@ -74,47 +87,42 @@ Candidate candidate_at(uvec2 seen, vec2 pixel, uint from, uint radius) {
     Patch patch_ = patch_at(face.first_patch + item - fi.first_item);
     uvec2 word = uvec2(item + 1u, pack_uv(clamp(s.uv, vec2(-1.0), vec2(2.0))));
     Candidate c = Candidate(ABSENT, from, fi.face + 1u, false, true, s.q.z, length(s.miss), vec2(0.0), word);
+    bool within = true;
 #ifdef WITHIN_VOLUME
     if (!in_volume(s.q, GAP_SLACK * frame.gap_radius_px)) return c;
-    bool inside = in_volume(s.q, ON_PX) && is_there(fi, face, item, patch_, s.uv);
-#else
-    bool inside = is_there(fi, face, item, patch_, s.uv);
+    within = in_volume(s.q, ON_PX);
 #endif
-    c.inside = inside;
-    if (c.miss > ON_PIXEL_PX) {
-        // a silhouette beside the pixel
-        if (inside && c.miss <= GAP_SLACK * frame.gap_radius_px) c.kind = NEAR;
-        return c;
-    }
+    bool passes = c.miss <= ON_PIXEL_PX;
     mat2 along = pixels_along(s, view);
     vec2 pu = along[0];
     vec2 pv = along[1];
     float det = pu.x * pv.y - pu.y * pv.x;
-    c.away = looks_away(det, face, instance_at(fi.instance));
-    if (inside) c.kind = PRESENT;
-    if (abs(det) < 1e-12) return c;
-    float zu = row_times(view.depth, vec4(s.jet.du, 0.0));
-    float zv = row_times(view.depth, vec4(s.jet.dv, 0.0));
-    c.slope = vec2(zu * pv.y - zv * pu.y, zv * pu.x - zu * pv.x) / det;
-    if ((radius & (inside ? RADIUS_OF_INSIDE : RADIUS_OF_OUTSIDE)) == 0u) return c;
-    for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
-        vec2 step_ = frame.gap_radius_px * DIRECTIONS[k];
-        vec2 duv = vec2(step_.x * pv.y - step_.y * pv.x, pu.x * step_.y - pu.y * step_.x) / det;
+    bool has_slope = passes && !(abs(det) < 1e-12);
+    if (passes) c.away = looks_away(det, face, instance_at(fi.instance));
+    if (has_slope) {
+        float zu = row_times(view.depth, vec4(s.jet.du, 0.0));
+        float zv = row_times(view.depth, vec4(s.jet.dv, 0.0));
+        c.slope = vec2(zu * pv.y - zv * pu.y, zv * pu.x - zu * pv.x) / det;
+    }
+    for (uint k = 0u; k <= DIRECTION_COUNT; ++k) {
+        vec2 duv = vec2(0.0); // the centre first
+        if (k != 0u) {
+            vec2 step_ = frame.gap_radius_px * DIRECTIONS[k - 1u];
+            duv = vec2(step_.x * pv.y - step_.y * pv.x, pu.x * step_.y - pu.y * step_.x) / det;
+        }
         bool there = is_there(fi, face, item, patch_, s.uv + duv);
-        if (inside && !there) {
-            c.kind = NEAR;
-            break;
+        bool settled;
+        if (k == 0u) {
+            c.inside = there && within;
+            if (c.inside && passes) c.kind = PRESENT;
+            // a silhouette beside the pixel
+            if (c.inside && !passes && c.miss <= GAP_SLACK * frame.gap_radius_px) c.kind = NEAR;
+            settled = !has_slope || (radius & (c.inside ? RADIUS_OF_INSIDE : RADIUS_OF_OUTSIDE)) == 0u;
+        } else {
+            settled = there != c.inside && (c.inside || reaches(patch_, view, s.uv + duv, pixel));
+            if (settled) c.kind = NEAR;
         }
-        if (inside || !there) continue;
-        vec4 q = to_pixel(view, vec4(patch_jet(patch_.first, patch_.shape, s.uv + duv).point, 1.0));
-#ifdef WITHIN_VOLUME
-        // each alone may reach to the pixel from beside the corner in which they meet
-        if (!in_volume(q, ON_PX)) continue;
-#endif
-        if (distance(q.xy / q.w, pixel) <= GAP_SLACK * frame.gap_radius_px) {
-            c.kind = NEAR;
-            break;
-        }
+        if (settled) break;
     }
     return c;
 }
@@ -131,12 +139,15 @@ Outline outline_of(Candidate c, vec2 pixel) {
     // a word's (u, v) has 16 bits, which in a large patch are a part of a pixel
     vec2 at = s.uv - uv_along * s.miss;
     vec2 sum = vec2(0.0);
-    for (uint k = 0u; k < DIRECTION_COUNT; ++k) {
-        vec2 step_ = frame.gap_radius_px * DIRECTIONS[k];
-        if (is_there(fi, face, item, patch_, at + uv_along * step_)) sum += step_;
+    bool there;
+    for (uint k = 0u; k <= DIRECTION_COUNT; ++k) {
+        bool last = k == DIRECTION_COUNT; // the other way
+        vec2 step_ = frame.gap_radius_px * DIRECTIONS[k % DIRECTION_COUNT];
+        if (last) step_ = -0.5 * frame.gap_radius_px / max(length(sum), 1e-6) * sum;
+        there = is_there(fi, face, item, patch_, at + uv_along * step_);
+        if (there && !last) sum += step_;
     }
-    vec2 out_ = -0.5 * frame.gap_radius_px / max(length(sum), 1e-6) * sum;
-    return Outline(sum, !is_there(fi, face, item, patch_, at + uv_along * out_));
+    return Outline(sum, !there);
 }
 
 #endif

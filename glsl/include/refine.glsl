@@ -80,16 +80,18 @@ Sample along_plane(Sample s, View view, vec2 step_, vec2 pixel) {
     return s;
 }
 
+// One call of `sample_at`, which drivers copy to where it is called.
 Sample refine(Patch patch_, View view, vec2 uv, vec2 pixel) {
     Net net = net_of(patch_);
-    Sample best = sample_at(patch_, net, view, uv, pixel);
-    for (uint i = 0u; i < NEWTON_STEPS; ++i) {
-        vec2 step_;
-        if (!step_from(patch_, best, view, step_)) break;
+    Sample best;
+    best.uv = uv;
+    vec2 step_ = vec2(0.0);
+    for (uint i = 0u; i <= NEWTON_STEPS; ++i) {
         Sample next = sample_at(patch_, net, view, best.uv - step_, pixel);
-        bool nearer = dot(next.miss, next.miss) < dot(best.miss, best.miss);
+        bool nearer = i == 0u || dot(next.miss, next.miss) < dot(best.miss, best.miss);
         if (nearer) best = next;
         if (!nearer) break;
+        if (!step_from(patch_, best, view, step_)) break;
     }
     return best;
 }

@@ -58,7 +58,9 @@ impl Buffer {
         if info.usage.contains(vk::BufferUsageFlags::STORAGE_BUFFER) && bytes > limit {
             return Err(GpuError::TooLarge { resource: info.name.to_owned(), bytes, limit });
         }
-        let create = vk::BufferCreateInfo::default().size(bytes).usage(info.usage);
+        let texels = info.usage.contains(vk::BufferUsageFlags::UNIFORM_TEXEL_BUFFER);
+        let size = if texels { device.quirks().texel_buffer_bytes(bytes) } else { bytes };
+        let create = vk::BufferCreateInfo::default().size(size).usage(info.usage);
         // SAFETY: the device is alive while `Device` is.
         let handle = unsafe { device.raw().create_buffer(&create, None) }.named("vkCreateBuffer", info.name)?;
         // SAFETY: the buffer was just made from this device.

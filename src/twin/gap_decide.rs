@@ -101,7 +101,7 @@ pub struct Situation {
     pub empty: bool,
     /// A neighbour shows the background.
     pub empty_beside: bool,
-    /// A neighbour shows a mesh or solid behind `own`.
+    /// A neighbour shows a mesh or solid.
     pub other_beside: bool,
     /// Depth of a mesh or solid behind the pixel.
     pub other: Option<f32>,

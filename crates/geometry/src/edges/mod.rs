@@ -26,6 +26,7 @@ mod vertices;
 
 pub use sheet::Sheet;
 
+use crate::math::golden::section;
 use crate::model::{Bounds, Edge, EdgeLimits, EdgeUse, Edges, Face, Part};
 use crate::spline::SplineError;
 use glam::DVec3;
@@ -151,22 +152,8 @@ fn nearest(curve: &dyn Fn(f64) -> DVec3, samples: &[DVec3], p: DVec3, worth: f64
         return (best, least.sqrt());
     }
     let at = |t: f64| curve(t).distance_squared(p);
-    let (mut a, mut b) = ((best - step).max(0.0), (best + step).min(1.0));
-    let inner = |a: f64, b: f64| (a + 0.381_966 * (b - a), a + 0.618_034 * (b - a));
-    let (mut c, mut d) = inner(a, b);
-    let (mut at_c, mut at_d) = (at(c), at(d));
-    for _ in 0..SECTIONS {
-        if at_c < at_d {
-            (b, d, at_d) = (d, c, at_c);
-            c = inner(a, b).0;
-            at_c = at(c);
-        } else {
-            (a, c, at_c) = (c, d, at_d);
-            d = inner(a, b).1;
-            at_d = at(d);
-        }
-    }
-    let t = 0.5 * (a + b);
+    let [c, d] = section(((best - step).max(0.0), (best + step).min(1.0)), SECTIONS, at);
+    let t = 0.5 * (c + d);
     let found = at(t);
     if found <= least { (t, found.sqrt()) } else { (best, least.sqrt()) }
 }

@@ -7,12 +7,14 @@
 //!   eigen       ── along which axes is a quadric?         rotations of Jacobi
 //!   bernstein   ── where does a polynomial change sign?    isolation by sign variations
 //!   root        ── one root in a bracket                   false position, never slower than bisection
+//!   golden      ── where is one valley lowest?          golden section, one value a step
 //!   random      ── which test case?                       the same sequence everywhere
 //! ```
 
 pub mod banded;
 pub mod bernstein;
 pub mod eigen;
+pub mod golden;
 pub mod octahedral;
 pub mod orientation;
 pub mod random;

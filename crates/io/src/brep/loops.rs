@@ -14,6 +14,7 @@
 use super::strand::{Path, Strand};
 use super::support::{Form, Support};
 use super::{BuildError, law};
+use crate::math::golden::section;
 use crate::spline::Control;
 use glam::{DVec2, DVec3};
 
@@ -207,25 +208,9 @@ fn extremes(nodes: &[f64], at: impl Fn(f64) -> DVec2, bounds: &mut (DVec2, DVec2
             if value(samples[i]) + (value(samples[i]) - least) < limit - 1e-9 * limit.abs() {
                 continue;
             }
-            // golden section: one point a step; a parabola's top is known to rounding where its place is to 1e-8
-            const SECTION: f64 = 0.618_033_988_749_894_9;
             const STEPS: usize = 38;
-            let (mut a, mut b) = (nodes[before], nodes[after]);
-            let inner = |a: f64, b: f64| (b - (b - a) * SECTION, a + (b - a) * SECTION);
-            let (mut c, mut d) = inner(a, b);
-            let (mut at_c, mut at_d) = (at(c), at(d));
-            for _ in 0..STEPS {
-                if value(at_c) >= value(at_d) {
-                    (b, d, at_d) = (d, c, at_c);
-                    c = inner(a, b).0;
-                    at_c = at(c);
-                } else {
-                    (a, c, at_c) = (c, d, at_d);
-                    d = inner(a, b).1;
-                    at_d = at(d);
-                }
-            }
-            *bounds = [at_c, at_d].iter().fold(*bounds, hold);
+            let inner = section((nodes[before], nodes[after]), STEPS, |t| -value(at(t)));
+            *bounds = inner.map(&at).iter().fold(*bounds, hold);
         }
     }
 }

@@ -1,6 +1,7 @@
 //! Points of curves and parameters of points: what trimming by points needs.
 
 use crate::brep::{CurveGeometry, Frame};
+use crate::math::golden::section;
 use crate::spline::BSpline;
 use glam::{DVec3, DVec4};
 
@@ -108,8 +109,8 @@ pub(super) fn parameter(curve: &CurveGeometry, p: DVec3) -> Option<f64> {
     t.is_finite().then_some(t)
 }
 
-/// Nearest of a few samples a span, then golden-section steps between its neighbours.
-fn nearest(spline: &BSpline<DVec4>, p: DVec3) -> f64 {
+/// Parameter of the point nearest to `p`: of a few samples a span, then by golden section between its neighbours.
+pub(super) fn nearest(spline: &BSpline<DVec4>, p: DVec3) -> f64 {
     const SAMPLES: usize = 16;
     const STEPS: usize = 60; // 0.618^60 < 1e-12
     let distance = |t: f64| (spline.point(t) - p).length_squared();
@@ -118,17 +119,8 @@ fn nearest(spline: &BSpline<DVec4>, p: DVec3) -> f64 {
     let count = spans * SAMPLES;
     let at = |i: usize| a + (b - a) * i as f64 / count as f64;
     let best = (0..=count).min_by(|&i, &j| distance(at(i)).total_cmp(&distance(at(j)))).unwrap_or(0);
-    let (mut low, mut high) = (at(best.saturating_sub(1)), at((best + 1).min(count)));
-    let golden = (5f64.sqrt() - 1.0) * 0.5;
-    for _ in 0..STEPS {
-        let (s, t) = (high - (high - low) * golden, low + (high - low) * golden);
-        if distance(s) < distance(t) {
-            high = t;
-        } else {
-            low = s;
-        }
-    }
-    let t = (low + high) * 0.5;
+    let [c, d] = section((at(best.saturating_sub(1)), at((best + 1).min(count))), STEPS, distance);
+    let t = 0.5 * (c + d);
     // ends are what trimming names most often: keep them exact
     let candidates = [a, b, t];
     candidates.into_iter().min_by(|s, t| distance(*s).total_cmp(&distance(*t))).unwrap_or(t)

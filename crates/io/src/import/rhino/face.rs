@@ -8,6 +8,7 @@
 
 use crate::brep::crossing_note;
 use crate::import::chain::chain;
+use crate::import::locate::nearest;
 use crate::model::{Face, SurfaceKind, TrimLoop};
 use crate::spline::{BSpline, Bezier, Control, PatchGrid, Surface};
 use cadmpeg_ir::document::CadIr;
@@ -205,20 +206,10 @@ fn close(ring: &Ring, grid: &PatchGrid, notes: &mut Vec<String>) -> Result<TrimL
 fn distance(trim: &BSpline<DVec3>, grid: &PatchGrid, edge: &BSpline<DVec4>) -> f64 {
     let (a, b) = trim.domain();
     let at = |i: usize| trim.point(a + (b - a) * i as f64 / (COMPARED - 1) as f64);
-    (0..COMPARED).map(at).map(|p| nearest(edge, grid.point(p.x, p.y))).fold(0.0, f64::max)
+    (0..COMPARED).map(at).map(|p| off(edge, grid.point(p.x, p.y))).fold(0.0, f64::max)
 }
 
-/// Distance of a point from a curve: the best of a few samples a control point, then golden sections.
-fn nearest(curve: &BSpline<DVec4>, p: DVec3) -> f64 {
-    let (a, b) = curve.domain();
-    let steps = 4 * curve.points().len() + 16;
-    let far = |t: f64| (curve.point(t) - p).length();
-    let at = |i: usize| a + (b - a) * i as f64 / steps as f64;
-    let best = (0..=steps).min_by(|&i, &j| far(at(i)).total_cmp(&far(at(j)))).unwrap_or(0);
-    let (mut lo, mut hi) = (at(best.saturating_sub(1)), at((best + 1).min(steps)));
-    for _ in 0..60 {
-        let (x, y) = (lo + (hi - lo) * 0.382, lo + (hi - lo) * 0.618);
-        if far(x) < far(y) { hi = y } else { lo = x }
-    }
-    far(0.5 * (lo + hi)).min(far(at(best)))
+/// Distance of a point from a curve.
+fn off(curve: &BSpline<DVec4>, p: DVec3) -> f64 {
+    (curve.point(nearest(curve, p)) - p).length()
 }
