@@ -133,6 +133,7 @@ impl Frame<'_> {
     /// Records the whole frame.
     pub(crate) fn record(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
         self.wait(cmd);
+        self.stages.shading.begin(cmd);
         match &self.stages.samples {
             Some(samples) => {
                 self.unless_seen(cmd, || self.make(cmd, times));

@@ -24,6 +24,7 @@ mod pick;
 mod report;
 mod slot;
 mod source;
+mod targets;
 mod validate;
 
 use crate::abi;
@@ -35,7 +36,7 @@ use crate::frame::shading::{numbers, resolve};
 use crate::frame::solids::Solids;
 use crate::frame::transparency::solid_layers;
 use crate::frame::{Frame, Near, Passes, Stages, target};
-use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, TexelBuffer, Uploads};
+use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Load, TexelBuffer, Uploads};
 use crate::model::{Camera, Model};
 use crate::picture::{FrameSettings, PoolBytes};
 use crate::scene::{Cut, Picking, Scene, SceneData, Write};
@@ -48,39 +49,7 @@ use slot::Slot;
 use source::Source;
 use std::collections::BTreeMap;
 use std::sync::Arc;
-
-/// Formats of the images that the host will pass to [`Renderer::record`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TargetFormats {
-    /// Colour target; an sRGB format encodes by itself, for others the renderer encodes.
-    pub colour: vk::Format,
-    /// Depth target, if the host wants the model's depth among its own. Reversed: at distance `z` along the view axis
-    /// `near (far - z) / (z (far - near))` in a perspective view and `(far - z) / (far - near)` in a parallel one; 1 at
-    /// the near plane, 0 at the far one. Tested with `GREATER_OR_EQUAL`, and written.
-    pub depth: Option<vk::Format>,
-    /// Four more colour targets follow: [`Renderer::AOV_FORMATS`].
-    pub aovs: bool,
-    /// There are images of numbers: [`Renderer::NUMBER_FORMAT`].
-    pub numbers: bool,
-}
-
-/// The host's images for one frame, all of the camera's size: [`Image::borrowed`] makes them of Vulkan
-/// handles.
-///
-/// Barriers around the frame are the host's: what it did before must be ordered before
-/// [`Access::COLOUR_WRITE`](crate::gpu::Access::COLOUR_WRITE) and
-/// [`Access::DEPTH_WRITE`](crate::gpu::Access::DEPTH_WRITE), what it does next after them.
-#[derive(Clone, Copy, Debug)]
-pub struct Targets<'a> {
-    /// In layout `COLOR_ATTACHMENT_OPTIMAL` before and after.
-    pub colour: &'a Image,
-    /// In layout `DEPTH_STENCIL_ATTACHMENT_OPTIMAL` before and after.
-    pub depth: Option<&'a Image>,
-    /// Depth, face, (u, v) and normal; layouts as for `colour`.
-    pub aovs: Option<[&'a Image; 4]>,
-    /// Numbers of edges, parts and instances, as [`Picture`](crate::picture::Picture) has them; layouts as for `colour`.
-    pub numbers: Option<[&'a Image; 3]>,
-}
+pub use targets::{Aovs, TargetFormats, Targets};
 
 /// One frame.
 #[derive(Clone, Copy, Debug)]
@@ -196,66 +165,14 @@ impl Renderer {
     /// the frame recorded before into the same slot has finished on the GPU; frames are submitted in
     /// the order in which they are recorded, to one queue.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, input: &FrameInput<'_>) -> Result<(), RenderError> {
-        // SAFETY: the caller's promise.
-        unsafe { self.record_with(cmd, input, None) }
-    }
-
-    /// As [`record`](Self::record), and the length of each pixel's ray within solids, between near and far plane and in
-    /// model units, into an image of [`THICKNESS_FORMAT`](Self::THICKNESS_FORMAT) of the camera's size: Boolean solids
-    /// and closed parts, where several overlap counted once; 0 where there is none. Its layouts and barriers are as
-    /// those of the colour target. The model was uploaded with
-    /// [`thickness`](crate::picture::SceneSettings::thickness).
-    ///
-    /// # Errors
-    /// As [`record`](Self::record).
-    ///
-    /// # Panics
-    /// As [`record`](Self::record), and where the model was uploaded without
-    /// [`thickness`](crate::picture::SceneSettings::thickness).
-    ///
-    /// # Safety
-    /// As [`record`](Self::record).
-    pub unsafe fn record_with_thickness(
-        &mut self,
-        cmd: vk::CommandBuffer,
-        input: &FrameInput<'_>,
-        thickness: &Image,
-    ) -> Result<(), RenderError> {
-        let wanted = self.loaded.as_ref().is_none_or(|l| l.counts.thickness);
-        assert!(wanted, "the model is uploaded with SceneSettings::thickness");
-        // SAFETY: the caller's promise.
-        unsafe { self.record_with(cmd, input, Some(thickness)) }
-    }
-
-    /// # Safety
-    /// As [`record`](Self::record).
-    unsafe fn record_with(
-        &mut self,
-        cmd: vk::CommandBuffer,
-        input: &FrameInput<'_>,
-        thickness: Option<&Image>,
-    ) -> Result<(), RenderError> {
         input.camera.check()?;
         let tolerance = input.settings.tolerance_px;
         if !(tolerance >= FrameSettings::LEAST_TOLERANCE_PX && tolerance.is_finite()) {
             return Err(RenderError::Tolerance(tolerance));
         }
-        let targets = input.targets;
-        for image in [Some(targets.colour), targets.depth, thickness]
-            .into_iter()
-            .chain(targets.aovs.iter().flatten().chain(targets.numbers.iter().flatten()).map(|i| Some(*i)))
-        {
-            if let Some(image) = image.filter(|i| i.size() != input.camera.size) {
-                let (width, height) = image.size();
-                return Err(RenderError::TargetSize { name: image.name().to_owned(), width, height });
-            }
-        }
-        assert!(targets.aovs.is_some() == self.formats.aovs, "the targets are those of TargetFormats::aovs");
-        assert!(targets.numbers.is_some() == self.formats.numbers, "the targets are those of TargetFormats::numbers");
-        assert!(
-            targets.depth.is_some() == self.formats.depth.is_some(),
-            "the targets are those of TargetFormats::depth"
-        );
+        input.targets.check(&self.formats, input.camera.size)?;
+        let wanted = self.loaded.as_ref().is_none_or(|l| l.counts.thickness);
+        assert!(wanted || !self.formats.outputs.thickness, "the model is uploaded with SceneSettings::thickness");
         self.prepare(input.camera)?;
         self.make_room(input.slot, input.camera)?;
         // SAFETY: the caller's promise.
@@ -288,8 +205,8 @@ impl Renderer {
             unreachable!("made above")
         };
         let keep = input.settings.background.is_none();
-        let mut colour = vec![target(targets.colour, keep)];
-        colour.extend(targets.aovs.iter().flatten().map(|image| target(image, keep)));
+        let targets = input.targets;
+        let colour = targets.colours(&self.formats, stages, keep);
         let depth = targets.depth.map(|image| {
             let whole = target(image, keep);
             if keep { whole } else { Attachment { load: Load::Depth(0.0), ..whole } }
@@ -322,8 +239,8 @@ impl Renderer {
             colour: &colour,
             background: constants::background(input, &self.formats),
             depth,
-            thickness: thickness.map(|image| Attachment { image, load: Load::ColourF32([0.0; 4]) }),
-            numbers: targets.numbers.map(|images| images.map(|image| target(image, keep))),
+            thickness: targets.thickness.map(|image| Attachment { image, load: Load::ColourF32([0.0; 4]) }),
+            numbers: targets.numbers(&self.formats, stages, keep),
         };
         slot.times.reset(&cmd);
         frame.record(&cmd, &mut slot.times);

@@ -18,7 +18,7 @@ use super::tessellation::{self, Tessellation};
 use super::transparency::{self, Transparency};
 use super::trim::{self, Trim};
 use super::visibility::{self, Visibility};
-use crate::gpu::{Device, GpuError};
+use crate::gpu::{Device, GpuError, Image};
 use crate::scene::SceneData;
 use std::sync::Arc;
 
@@ -136,6 +136,12 @@ impl Stages {
     /// Of the picture.
     pub(crate) fn size(&self) -> (u32, u32) {
         self.size
+    }
+
+    /// In place of an image that the host does not want, but that is drawn with others: depth, face, (u, v), normal, edge,
+    /// part, instance.
+    pub(crate) fn spare(&self, number: usize) -> Option<&Image> {
+        self.shading.spare(number)
     }
 
     /// Boolean solids, where the scene has some.

@@ -4,7 +4,7 @@ use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
 use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
 use crate::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
-use crate::renderer::{EditError, FrameInput, Hit, InstanceError, RenderError, Renderer, TargetFormats, Targets};
+use crate::renderer::{Aovs, EditError, FrameInput, Hit, InstanceError, RenderError, Renderer, TargetFormats, Targets};
 use crate::scene::SceneRequest;
 use ash::vk;
 use bytemuck::Pod;
@@ -44,7 +44,7 @@ impl HeadlessRenderer {
     /// [`HeadlessError`]: no loader, no device, no validation layers.
     pub fn new(options: &HeadlessOptions) -> Result<Self, HeadlessError> {
         let device = HeadlessDevice::new(options)?;
-        let formats = TargetFormats { colour: COLOUR_FORMAT, depth: None, aovs: false, numbers: false };
+        let formats = TargetFormats::new(COLOUR_FORMAT);
         let renderer = Renderer::on(device.device(), formats, 1)?;
         Ok(Self {
             renderer: ManuallyDrop::new(renderer),
@@ -239,20 +239,16 @@ impl HeadlessRenderer {
         let renderer = &mut *self.renderer;
         self.device.try_submit(|cmd| -> Result<(), RenderError> {
             images.begin(cmd);
-            let targets = Targets {
-                colour: &images.colour.0,
-                depth: None,
-                aovs: images.aovs.as_ref().map(|aovs| std::array::from_fn(|i| &aovs[i].0)),
-                numbers: images.numbers.as_ref().map(|numbers| std::array::from_fn(|i| &numbers[i].0)),
-            };
+            let aov = |i: usize| images.aovs.as_ref().map(|aovs| &aovs[i].0);
+            let number = |i: usize| images.numbers.as_ref().map(|numbers| &numbers[i].0);
+            let [depth, face, uv, normal] = [0, 1, 2, 3].map(aov);
+            let [edge, part, instance] = [0, 1, 2].map(number);
+            let aovs = Aovs { depth, face, uv, normal, edge, part, instance };
+            let thickness = images.thickness.as_ref().map(|(image, _)| image);
+            let targets = Targets { aovs, thickness, ..Targets::new(&images.colour.0) };
             let input = FrameInput { camera, settings: *settings, slot: 0, targets };
             // SAFETY: recording; the submission is waited for, so the slot is free again.
-            unsafe {
-                match &images.thickness {
-                    Some((thickness, _)) => renderer.record_with_thickness(cmd.raw(), &input, thickness),
-                    None => renderer.record(cmd.raw(), &input),
-                }
-            }?;
+            unsafe { renderer.record(cmd.raw(), &input) }?;
             images.end(cmd);
             Ok(())
         })??;
@@ -263,13 +259,23 @@ impl HeadlessRenderer {
     /// Makes targets of this size, and a renderer that writes these images.
     fn prepare(&mut self, size: (u32, u32), outputs: Outputs) -> Result<(), HeadlessError> {
         let thickness = outputs.thickness;
-        let aovs = outputs.depth || outputs.face || outputs.uv || outputs.normal;
-        let formats = TargetFormats { aovs, numbers: outputs.has_numbers(), ..self.formats };
         let Some(source) = self.renderer.source() else { panic!("upload a model before rendering") };
         let mut request = source.request();
-        let follows = thickness && !request.thickness;
         request.settings.thickness |= thickness;
-        if formats != self.formats || follows {
+        // images that one pass makes come together: another choice among them makes no other renderer
+        let (points, numbers) = (outputs.has_points(), outputs.has_numbers());
+        let outputs = Outputs {
+            depth: points,
+            face: points,
+            uv: points,
+            normal: points,
+            thickness: request.thickness,
+            edge: numbers,
+            part: numbers,
+            instance: numbers,
+        };
+        let formats = TargetFormats { outputs, ..self.formats };
+        if formats != self.formats {
             let source = source.with(request);
             let mut renderer = Renderer::on(self.device.device(), formats, 1)?;
             renderer.upload_source(source, &|_| ())?;
@@ -334,7 +340,8 @@ impl TargetImages {
         let colour = target("colour", COLOUR_FORMAT, 4)?;
         let [depth, face, uv, normal] = Renderer::AOV_FORMATS;
         let aovs = formats
-            .aovs
+            .outputs
+            .has_points()
             .then(|| {
                 Ok::<_, GpuError>([
                     target("depth", depth, 4)?,
@@ -347,7 +354,7 @@ impl TargetImages {
         let thickness = thickness.then(|| target("thickness", Renderer::THICKNESS_FORMAT, 4)).transpose()?;
         let number = |name| target(name, Renderer::NUMBER_FORMAT, 4);
         let numbers = || Ok::<_, GpuError>([number("edge")?, number("part")?, number("instance")?]);
-        let numbers = formats.numbers.then(numbers).transpose()?;
+        let numbers = formats.outputs.has_numbers().then(numbers).transpose()?;
         Ok(Self { colour, aovs, thickness, numbers })
     }
 

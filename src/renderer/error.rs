@@ -7,6 +7,7 @@ use crate::picture::{BadEdges, FrameSettings};
 
 /// Why a frame was not recorded.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum RenderError {
     /// The camera shows nothing.
     #[error("camera: {0}")]

@@ -14,7 +14,6 @@ use super::{Loaded, RenderError, Renderer, Retired, TargetFormats, validate};
 use crate::frame::Passes;
 use crate::frame::capacities::Capacities;
 use crate::frame::counts::Counts;
-use crate::frame::shading::resolve;
 use crate::gpu::Device;
 use crate::model::{Camera, Model};
 use crate::picture::{SceneSettings, TakenWay, TrimWay};
@@ -163,7 +162,7 @@ impl Loaded {
             data_of = data(request.exact())?;
         }
         let mut data = data_of;
-        data.has_numbers = formats.numbers;
+        data.has_numbers = formats.outputs.has_numbers();
         if let Some(edges) = request.edges {
             match &cut {
                 None => data.find_edges(whole, edges)?,
@@ -177,8 +176,7 @@ impl Loaded {
         data.show(&whole.instances, &source.shown);
         let counts = Counts::of(&data);
         counts.check()?;
-        let TargetFormats { colour, depth, aovs, numbers } = formats;
-        let passes = Passes::new(device, &data, resolve::Formats { colour, depth, aovs, numbers })?;
+        let passes = Passes::new(device, &data, formats.of_passes())?;
         let may_be_exact = may_change && too_many.is_none();
         Ok(Self {
             data,

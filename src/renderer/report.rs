@@ -6,6 +6,7 @@ use crate::picture::{FrameStats, PassTime, PoolBytes, TakenWay};
 
 /// What became of a frame.
 #[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
 pub struct FrameReport {
     /// Every buffer sufficed; otherwise record the frame again.
     pub complete: bool,

@@ -107,8 +107,11 @@ impl Slot {
         self.write_table(device, loaded, (input.camera, history), centre)?;
         // one drawing a sample, and one at the centre for the images that are no mean of samples
         let loaded_has = loaded.counts.thickness || loaded.counts.lines;
-        let beside =
-            formats.aovs || formats.numbers || formats.depth.is_some() || loaded_has || self.samples.is_empty();
+        let beside = formats.outputs.has_points()
+            || formats.outputs.has_numbers()
+            || formats.depth.is_some()
+            || loaded_has
+            || self.samples.is_empty();
         self.counted = self.samples.len() + usize::from(beside);
         if self.counter_room < self.counted {
             self.counters = read_counters(device, self.counted)?;

@@ -26,6 +26,7 @@ use glam::DVec2;
 
 /// Why a loop was not replaced; the scene is as it was.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum EditError {
     /// The model was uploaded without [`SceneSettings::editable`](crate::picture::SceneSettings::editable).
     #[error("the model was not uploaded as editable")]

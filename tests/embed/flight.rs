@@ -27,7 +27,7 @@ fn record(host: &Host, renderer: &mut Renderer, slot: usize, targets: &Targets, 
     targets.draw(host, cmd, [0.0, 0.0, 0.0, 1.0], &[]);
     targets.hand_over(host, cmd);
     let settings = FrameSettings { tolerance_px, background: None, ..FrameSettings::default() };
-    let into = Into { colour: &targets.colour, depth: Some(&targets.depth), aovs: None, numbers: None };
+    let into = Into { depth: Some(&targets.depth), ..Into::new(&targets.colour) };
     // SAFETY: recording; `begin` waited for the slot's frame before.
     unsafe { renderer.record(cmd, &FrameInput { camera, settings, slot, targets: into }) }.unwrap();
     targets.read_back(host, cmd);
@@ -206,7 +206,7 @@ fn a_target_of_another_size_is_refused() {
     let targets = Targets::new(&host, (32, 32), FORMAT);
     let camera = Camera::around(model.control_bounds(), DVec3::X, DVec3::Z, 0.6, (32, 31));
     let cmd = host.begin(0);
-    let into = Into { colour: &targets.colour, depth: Some(&targets.depth), aovs: None, numbers: None };
+    let into = Into { depth: Some(&targets.depth), ..Into::new(&targets.colour) };
     let input = FrameInput { camera: &camera, settings: FrameSettings::default(), slot: 0, targets: into };
     // SAFETY: recording; nothing is in flight.
     match unsafe { renderer.record(cmd, &input) } {
