@@ -12,6 +12,8 @@
 mod instance;
 mod messages;
 mod renderer;
+#[cfg(test)]
+mod tests;
 
 pub use messages::{Message, Severity};
 pub use renderer::HeadlessRenderer;

@@ -80,8 +80,8 @@ impl Renderer {
         placed.check(nth, model.parts.len())?;
         let part = &model.parts[placed.part];
         // an open part has no inside, and is drawn opaque whatever its faces are
-        let stays_opaque = placed.is_opaque(part) || placed.colour.is_none() && !part.closed;
-        if placed.colour != model.instances[nth].colour && !stays_opaque {
+        let stays_opaque = || placed.is_opaque(part) || placed.colour.is_none() && !part.closed;
+        if placed.colour != model.instances[nth].colour && !stays_opaque() {
             return Err(InstanceError::SeenThrough(nth));
         }
         match loaded.data.change(nth, &placed, shown) {
