@@ -247,8 +247,9 @@ impl Picked<'_> {
             let q = to_pixels * jet.point.extend(1.0);
             let at = q.xy() / q.w;
             let miss = self.pixel - at;
-            if !(miss.length() < best.0) {
-                break; // it comes no nearer
+            let comes_nearer = miss.length() < best.0;
+            if !comes_nearer {
+                break;
             }
             best = (miss.length(), uv);
             let along = [jet.du, jet.dv].map(|d| {
