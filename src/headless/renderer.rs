@@ -261,6 +261,7 @@ impl HeadlessRenderer {
         let thickness = outputs.thickness;
         let Some(source) = self.renderer.source() else { panic!("upload a model before rendering") };
         let mut request = source.request();
+        let lacks_thickness = thickness && !request.thickness;
         request.settings.thickness |= thickness;
         // images that one pass makes come together: another choice among them makes no other renderer
         let (points, numbers) = (outputs.has_points(), outputs.has_numbers());
@@ -275,7 +276,7 @@ impl HeadlessRenderer {
             instance: numbers,
         };
         let formats = TargetFormats { outputs, ..self.formats };
-        if formats != self.formats {
+        if formats != self.formats || lacks_thickness {
             let source = source.with(request);
             let mut renderer = Renderer::on(self.device.device(), formats, 1)?;
             renderer.upload_source(source, &|_| ())?;
