@@ -58,6 +58,7 @@ pub(crate) mod counts;
 pub(crate) mod edges;
 pub(crate) mod gaps;
 pub(crate) mod occlusion;
+pub(crate) mod pick;
 mod reuse;
 pub(crate) mod shading;
 mod shadows;
@@ -132,6 +133,7 @@ impl Frame<'_> {
     /// Records the whole frame.
     pub(crate) fn record(&self, cmd: &Commands<'_>, times: &mut Timestamps) {
         self.wait(cmd);
+        self.stages.shading.begin(cmd);
         match &self.stages.samples {
             Some(samples) => {
                 self.unless_seen(cmd, || self.make(cmd, times));

@@ -287,7 +287,12 @@ impl Outputs {
         instance: false,
     };
 
-    /// The image of edges, parts or instances.
+    /// An image of depth, face, (u, v) or normal.
+    pub fn has_points(self) -> bool {
+        self.depth || self.face || self.uv || self.normal
+    }
+
+    /// An image of edges, parts or instances.
     pub fn has_numbers(self) -> bool {
         self.edge || self.part || self.instance
     }
@@ -348,6 +353,7 @@ impl Picture {
 /// The cost of a frame, and counts of the places where the promise does not hold.
 #[derive(Clone, Debug, Default, PartialEq)]
 #[cfg_attr(feature = "serde", derive(serde::Serialize))]
+#[non_exhaustive]
 pub struct FrameStats {
     /// Name and GPU time in milliseconds of each pass, in order. Where pixels have several samples, passes are those of
     /// the first one; the others are `more samples`, and the images beside the colour `centre sample`.

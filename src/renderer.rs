@@ -10,15 +10,21 @@
 //!
 //! The renderer never submits, waits, or destroys what is the host's. Buffers whose size only the GPU can count (the
 //! trim table, the list of sub-patches) may be too small for a new view: the report of that frame says `complete:
-//! false`, and the next `record` into its slot makes them larger. A view from very near is resolved by what [`DeepZoom`]
-//! cuts for it.
+//! false`, and the next `record` into its slot makes them larger. A view from very near is resolved by what is cut out of
+//! the model for it: [`Renderer::prepare`].
 
 mod centres;
 mod constants;
 mod edit;
+mod error;
 mod history;
+mod instances;
 mod load;
+mod pick;
+mod report;
 mod slot;
+mod source;
+mod targets;
 mod validate;
 
 use crate::abi;
@@ -30,48 +36,20 @@ use crate::frame::shading::{numbers, resolve};
 use crate::frame::solids::Solids;
 use crate::frame::transparency::solid_layers;
 use crate::frame::{Frame, Near, Passes, Stages, target};
-use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Image, Load, TexelBuffer, Uploads};
-use crate::model::{Camera, CameraError, ModelError};
-use crate::picture::{BadEdges, FrameSettings, FrameStats, PassTime, PoolBytes, TakenWay};
-pub use crate::scene::{Cut, DeepZoom, DeepZoomUpload, EditError, UndrawnEdges, UndrawnSolid, trim_way};
-use crate::scene::{Scene, SceneData, Write};
+use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Load, TexelBuffer, Uploads};
+use crate::model::{Camera, Model};
+use crate::picture::{FrameSettings, PoolBytes};
+use crate::scene::{Cut, Picking, Scene, SceneData, Write};
+pub use crate::scene::{EditError, Hit, InstanceError, UndrawnEdges, UndrawnSolid, trim_way};
 use ash::vk;
+pub use error::RenderError;
 use history::History;
-use load::Fallback;
+pub use report::FrameReport;
 use slot::Slot;
-
-/// Formats of the images that the host will pass to [`Renderer::record`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub struct TargetFormats {
-    /// Colour target; an sRGB format encodes by itself, for others the renderer encodes.
-    pub colour: vk::Format,
-    /// Depth target, if the host wants the model's depth among its own. Reversed: at distance `z` along the view axis
-    /// `near (far - z) / (z (far - near))` in a perspective view and `(far - z) / (far - near)` in a parallel one; 1 at
-    /// the near plane, 0 at the far one. Tested with `GREATER_OR_EQUAL`, and written.
-    pub depth: Option<vk::Format>,
-    /// Four more colour targets follow: [`Renderer::AOV_FORMATS`].
-    pub aovs: bool,
-    /// There are images of numbers: [`Renderer::NUMBER_FORMAT`].
-    pub numbers: bool,
-}
-
-/// The host's images for one frame, all of the camera's size: [`Image::borrowed`] makes them of Vulkan
-/// handles.
-///
-/// Barriers around the frame are the host's: what it did before must be ordered before
-/// [`Access::COLOUR_WRITE`](crate::gpu::Access::COLOUR_WRITE) and
-/// [`Access::DEPTH_WRITE`](crate::gpu::Access::DEPTH_WRITE), what it does next after them.
-#[derive(Clone, Copy, Debug)]
-pub struct Targets<'a> {
-    /// In layout `COLOR_ATTACHMENT_OPTIMAL` before and after.
-    pub colour: &'a Image,
-    /// In layout `DEPTH_STENCIL_ATTACHMENT_OPTIMAL` before and after.
-    pub depth: Option<&'a Image>,
-    /// Depth, face, (u, v) and normal; layouts as for `colour`.
-    pub aovs: Option<[&'a Image; 4]>,
-    /// Numbers of edges, parts and instances, as [`Picture`](crate::picture::Picture) has them; layouts as for `colour`.
-    pub numbers: Option<[&'a Image; 3]>,
-}
+use source::Source;
+use std::collections::BTreeMap;
+use std::sync::Arc;
+pub use targets::{Aovs, TargetFormats, Targets};
 
 /// One frame.
 #[derive(Clone, Copy, Debug)]
@@ -86,68 +64,18 @@ pub struct FrameInput<'a> {
     pub targets: Targets<'a>,
 }
 
-/// Why a frame was not recorded.
-#[derive(Debug, thiserror::Error)]
-pub enum RenderError {
-    /// The camera shows nothing.
-    #[error("camera: {0}")]
-    Camera(#[from] CameraError),
-    /// Vulkan or its memory.
-    #[error(transparent)]
-    Gpu(#[from] GpuError),
-    /// [`FrameSettings::tolerance_px`] is below [`FrameSettings::LEAST_TOLERANCE_PX`].
-    #[error("the tolerance must be at least {least} pixels, not {0}", least = FrameSettings::LEAST_TOLERANCE_PX)]
-    Tolerance(f64),
-    /// The model cannot be drawn.
-    #[error("model: {0}")]
-    Model(#[from] ModelError),
-    /// The model, or what this view needs of it.
-    #[error(transparent)]
-    TooMany(#[from] TooMany),
-    /// A Boolean solid that cannot be drawn.
-    #[error(transparent)]
-    Solid(#[from] UndrawnSolid),
-    /// [`sun`](crate::picture::SceneSettings::sun) has no length, or no numbers.
-    #[error("the direction towards the sun must be finite and not 0, not {0}")]
-    Sun(glam::DVec3),
-    /// [`Smooth::Trims`](crate::picture::Smooth::Trims) beside something that it does not go with.
-    #[error("smooth trims do not go with {0}")]
-    SmoothTrims(&'static str),
-    /// [`edges`](crate::picture::SceneSettings::edges) that cannot be drawn.
-    #[error(transparent)]
-    Edges(#[from] BadEdges),
-    /// A part whose edges are no curves.
-    #[error("edges: {0}")]
-    UndrawnEdges(#[from] UndrawnEdges),
-    /// A target of another size than the camera's.
-    #[error("the target `{name}` is {width} x {height}, the camera's picture another size")]
-    TargetSize {
-        /// Its name.
-        name: String,
-        /// Its width.
-        width: u32,
-        /// Its height.
-        height: u32,
-    },
-}
-
-/// What became of a frame.
-#[derive(Clone, Debug, PartialEq)]
-pub struct FrameReport {
-    /// Every buffer sufficed; otherwise record the frame again.
-    pub complete: bool,
-    /// What it cost.
-    pub stats: FrameStats,
-}
-
 /// A renderer on a host's device.
 pub struct Renderer {
     device: Device,
     formats: TargetFormats,
+    source: Option<Source>,
+    /// Of the source: as it is, or what was cut out of it.
     loaded: Option<Loaded>,
     slots: Vec<Slot>,
     /// The slot recorded last.
     last: Option<usize>,
+    /// The next frame reads back what this pixel shows.
+    pick: Option<(u32, u32)>,
 }
 
 /// A model and what its frames need. Fields drop in order: nothing outlives the device.
@@ -156,14 +84,21 @@ struct Loaded {
     counts: Counts,
     capacities: Capacities,
     passes: Passes,
+    picking: Arc<Picking>,
     scene: Option<Scene>,
     stages: Option<Stages>,
-    /// Edits that the next frame copies.
+    /// Edits of loops that the next frame copies.
     edits: Vec<Write>,
+    /// The same of placed parts, by their offsets.
+    changes: BTreeMap<u64, Write>,
+    /// Some placed part is elsewhere since the frame before.
+    moved: bool,
     /// What the frame before left; `None`: its buffers are gone.
     history: Option<History>,
-    /// The model, where it may have to be trimmed another way.
-    fallback: Option<Box<Fallback>>,
+    /// It may be trimmed exactly, where a view needs too much of the table.
+    may_be_exact: bool,
+    /// What it was cut by, where it may be.
+    cut: Option<Box<Cut>>,
 }
 
 impl Loaded {
@@ -212,7 +147,7 @@ impl Renderer {
     /// As [`new`](Self::new), on a device that is already on loan.
     pub(crate) fn on(device: &Device, formats: TargetFormats, frame_slots: usize) -> Result<Self, GpuError> {
         let slots = (0..frame_slots.max(1)).map(|_| Slot::new(device)).collect::<Result<_, _>>()?;
-        Ok(Self { device: device.clone(), formats, loaded: None, slots, last: None })
+        Ok(Self { device: device.clone(), formats, source: None, loaded: None, slots, last: None, pick: None })
     }
 
     /// Records one frame: compute, draws, and the picture into the targets.
@@ -230,74 +165,27 @@ impl Renderer {
     /// the frame recorded before into the same slot has finished on the GPU; frames are submitted in
     /// the order in which they are recorded, to one queue.
     pub unsafe fn record(&mut self, cmd: vk::CommandBuffer, input: &FrameInput<'_>) -> Result<(), RenderError> {
-        // SAFETY: the caller's promise.
-        unsafe { self.record_with(cmd, input, None) }
-    }
-
-    /// As [`record`](Self::record), and the length of each pixel's ray within solids, between near and far plane and in
-    /// model units, into an image of [`THICKNESS_FORMAT`](Self::THICKNESS_FORMAT) of the camera's size: Boolean solids
-    /// and closed parts, where several overlap counted once; 0 where there is none. Its layouts and barriers are as
-    /// those of the colour target. The model was uploaded with
-    /// [`thickness`](crate::picture::SceneSettings::thickness).
-    ///
-    /// # Errors
-    /// As [`record`](Self::record).
-    ///
-    /// # Panics
-    /// As [`record`](Self::record), and where the model was uploaded without
-    /// [`thickness`](crate::picture::SceneSettings::thickness).
-    ///
-    /// # Safety
-    /// As [`record`](Self::record).
-    pub unsafe fn record_with_thickness(
-        &mut self,
-        cmd: vk::CommandBuffer,
-        input: &FrameInput<'_>,
-        thickness: &Image,
-    ) -> Result<(), RenderError> {
-        let wanted = self.loaded.as_ref().is_none_or(|l| l.counts.thickness);
-        assert!(wanted, "the model is uploaded with SceneSettings::thickness");
-        // SAFETY: the caller's promise.
-        unsafe { self.record_with(cmd, input, Some(thickness)) }
-    }
-
-    /// # Safety
-    /// As [`record`](Self::record).
-    unsafe fn record_with(
-        &mut self,
-        cmd: vk::CommandBuffer,
-        input: &FrameInput<'_>,
-        thickness: Option<&Image>,
-    ) -> Result<(), RenderError> {
         input.camera.check()?;
         let tolerance = input.settings.tolerance_px;
         if !(tolerance >= FrameSettings::LEAST_TOLERANCE_PX && tolerance.is_finite()) {
             return Err(RenderError::Tolerance(tolerance));
         }
-        let targets = input.targets;
-        for image in [Some(targets.colour), targets.depth, thickness]
-            .into_iter()
-            .chain(targets.aovs.iter().flatten().chain(targets.numbers.iter().flatten()).map(|i| Some(*i)))
-        {
-            if let Some(image) = image.filter(|i| i.size() != input.camera.size) {
-                let (width, height) = image.size();
-                return Err(RenderError::TargetSize { name: image.name().to_owned(), width, height });
-            }
-        }
-        assert!(targets.aovs.is_some() == self.formats.aovs, "the targets are those of TargetFormats::aovs");
-        assert!(targets.numbers.is_some() == self.formats.numbers, "the targets are those of TargetFormats::numbers");
-        assert!(
-            targets.depth.is_some() == self.formats.depth.is_some(),
-            "the targets are those of TargetFormats::depth"
-        );
+        input.targets.check(&self.formats, input.camera.size)?;
+        let wanted = self.loaded.as_ref().is_none_or(|l| l.counts.thickness);
+        assert!(wanted || !self.formats.outputs.thickness, "the model is uploaded with SceneSettings::thickness");
+        self.prepare(input.camera)?;
         self.make_room(input.slot, input.camera)?;
         // SAFETY: the caller's promise.
         let cmd = unsafe { Commands::new(&self.device, cmd) };
         let Some(loaded) = &mut self.loaded else { panic!("upload a model before recording") };
         let slot = &mut self.slots[input.slot];
         let view = (*input.camera, input.settings);
+        if loaded.moved {
+            loaded.data.settle();
+        }
         let table = loaded.data.table_view(input.camera, Budget::of(tolerance).beside());
-        let history = History::after(loaded.history, view, table, !loaded.edits.is_empty(), loaded.counts.hides);
+        let edited = loaded.moved || !loaded.edits.is_empty();
+        let history = History::after(loaded.history, view, table, edited, loaded.counts.hides);
         slot.write(&self.device, loaded, input, &self.formats, &history)?;
         if loaded.scene.is_none() {
             let (scene, uploads) = Scene::record(&cmd, &loaded.data)?;
@@ -306,6 +194,7 @@ impl Renderer {
             loaded.data.drop_uploaded();
         }
         slot.edit_bytes = 0;
+        loaded.edits.extend(std::mem::take(&mut loaded.changes).into_values());
         if let Some(scene) = loaded.scene.as_ref().filter(|_| !loaded.edits.is_empty()) {
             let uploads = Frame::edit(&cmd, scene, &loaded.edits)?;
             slot.edit_bytes = uploads.staging_bytes();
@@ -316,8 +205,8 @@ impl Renderer {
             unreachable!("made above")
         };
         let keep = input.settings.background.is_none();
-        let mut colour = vec![target(targets.colour, keep)];
-        colour.extend(targets.aovs.iter().flatten().map(|image| target(image, keep)));
+        let targets = input.targets;
+        let colour = targets.colours(&self.formats, stages, keep);
         let depth = targets.depth.map(|image| {
             let whole = target(image, keep);
             if keep { whole } else { Attachment { load: Load::Depth(0.0), ..whole } }
@@ -350,13 +239,16 @@ impl Renderer {
             colour: &colour,
             background: constants::background(input, &self.formats),
             depth,
-            thickness: thickness.map(|image| Attachment { image, load: Load::ColourF32([0.0; 4]) }),
-            numbers: targets.numbers.map(|images| images.map(|image| target(image, keep))),
+            thickness: targets.thickness.map(|image| Attachment { image, load: Load::ColourF32([0.0; 4]) }),
+            numbers: targets.numbers(&self.formats, stages, keep),
         };
         slot.times.reset(&cmd);
         frame.record(&cmd, &mut slot.times);
+        let Some(source) = &self.source else { unreachable!("it was loaded") };
+        pick::record(self.pick.take(), &mut slot.pick, (&self.device, &cmd, &frame), (source, loaded, input))?;
         // only now: a frame that was not recorded left nothing
         loaded.history = Some(history);
+        loaded.moved = false;
         (slot.recorded, slot.reused) = (true, history.reuses_view);
         slot.capacities = Some(loaded.capacities);
         slot.size = input.camera.size;
@@ -365,50 +257,15 @@ impl Renderer {
         Ok(())
     }
 
-    /// What became of the frame recorded last into `slot`, which has finished on the GPU; `None`
-    /// when there was none.
-    ///
-    /// # Errors
-    /// [`GpuError`].
-    pub fn report(&self, slot: usize) -> Result<Option<FrameReport>, GpuError> {
-        let slot = &self.slots[slot];
-        if !slot.recorded {
-            return Ok(None);
-        }
-        let c = slot.read_counters();
-        let scopes = slot.times.read()?;
-        let stats = FrameStats {
-            passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
-            reused: slot.reused,
-            trim: self.loaded.as_ref().and_then(|l| l.counts.trim).and_then(TakenWay::reported),
-            patches: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.items)),
-            triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
-            sub_patches: u64::from(c.plain) + u64::from(c.trimmed),
-            trim_rows: u64::from(c.rows),
-            trim_segments: u64::from(c.segments),
-            trim_intercepts: u64::from(c.intercepts),
-            gap_candidates: u64::from(c.gap_candidates),
-            clamps: u64::from(c.clamps),
-            hidden_patches: u64::from(c.hidden),
-            fragments: u64::from(c.fragments),
-            mended: u64::from(c.mended),
-            unpaired: u64::from(c.unpaired),
-            contact_pixels: u64::from(c.contacts),
-            overlap_pixels: u64::from(c.overlaps),
-            open_clear: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.open)),
-            shadowless: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.shadowless)),
-            shadow_deviation: self.loaded.as_ref().and_then(|l| l.data.sun.as_ref()).map_or(0.0, |sun| sun.deviation),
-            edge_chords: u64::from(c.edge_chords),
-            layers: u64::from(c.layers),
-            bands: slot.bands,
-            solid_bytes: slot.solid_bytes.clone(),
-            retries: 0,
-            edit_bytes: slot.edit_bytes,
-            pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),
-            device: self.device.name().to_owned(),
-            driver: self.device.driver().to_owned(),
-        };
-        Ok(Some(FrameReport { complete: c.failed == 0, stats }))
+    /// The model that was uploaded, as edits and changes of instances have made it.
+    pub fn model(&self) -> Option<&Arc<Model>> {
+        self.source.as_ref().map(|source| &source.model)
+    }
+
+    /// What was uploaded.
+    #[cfg(feature = "headless")]
+    pub(crate) fn source(&self) -> Option<&Source> {
+        self.source.as_ref()
     }
 
     /// Names of the buffers, images and pipelines that exist for the loaded model.
@@ -436,7 +293,7 @@ impl Renderer {
                 Ok(grown) => grown,
                 // a picture of another size may have room
                 Err(_) if drawn != size => loaded.capacities,
-                Err(too_many) if too_many.is_of_table() && loaded.fallback.is_some() => {
+                Err(too_many) if too_many.is_of_table() && loaded.may_be_exact => {
                     self.load_exact()?;
                     return self.make_room(slot, camera);
                 }

@@ -50,6 +50,7 @@ const UNSAFE: &[&str] = &["gpu", "renderer", "headless"];
 /// that has steps of its own.
 const RECORDS: &[&str] = &[
     "src/frame.rs",
+    "src/frame/pick.rs",
     "src/frame/reuse.rs",
     "src/frame/antialiasing/samples.rs",
     "src/frame/antialiasing/smooth_borders.rs",

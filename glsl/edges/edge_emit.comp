@@ -17,7 +17,7 @@ layout(scalar, binding = 5) readonly buffer ChordStarts { uint chord_starts[]; }
 layout(scalar, binding = 6) buffer CountersBuffer { Counters counters; };
 layout(scalar, binding = 7) readonly buffer EdgeLines { EdgeLine edge_lines[]; };
 layout(scalar, binding = 8) writeonly buffer Chords { Chord chords[]; };
-layout(scalar, binding = 9) writeonly buffer EdgeDraw { uint edge_draw[4]; };
+layout(scalar, binding = 9) writeonly buffer EdgeDraw { uint edge_draw[5]; }; // the draw, and that there is one
 
 layout(scalar, push_constant) uniform Push {
     uint item_count;
@@ -66,6 +66,7 @@ void main() {
         edge_draw[1] = min(total, push.capacity);
         edge_draw[2] = 0u;
         edge_draw[3] = 0u;
+        edge_draw[4] = 1u;
     }
     EdgeItem item = edge_items[i];
     EdgePiece piece = edge_pieces[item.piece];

@@ -42,12 +42,13 @@ Lit lit_at(vec3 colour, vec3 n, bool two_sided, Ray ray, float depth, uint surfa
 #endif
 }
 
-// A point of a surface, as for `lit_at`. `own` is the surface's colour, which the instance's overrides.
+// A point of a surface, as for `lit_at`. `own` is the surface's colour; the instance's lies over it.
 void write_surface(
     uint own, Instance instance, vec3 n, bool solid, float depth, uint id, vec2 uv, uint surface
 ) {
     vec4 placed = unpackUnorm4x8(instance.colour);
-    vec4 colour = placed.a > 0.0 ? placed : unpackUnorm4x8(own);
+    vec4 under = unpackUnorm4x8(own);
+    vec4 colour = placed.a < 1.0 ? mix(under, placed, placed.a) : placed;
     Lit at = lit_at(colour.rgb, n, !solid, eye_ray(frame, gl_FragCoord.xy), depth, surface);
     vec3 lit = at.light;
     out_colour = BEHIND ? vec4(clamp(lit, 0.0, 1.0), depth) : encode(vec4(lit, 1.0), frame.encode_srgb);

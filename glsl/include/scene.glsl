@@ -93,7 +93,7 @@ struct FaceInstance {
 struct Instance {
     mat3 normal;   // part to model, for normals (columns)
     float scale;   // largest stretch of the transform
-    uint colour;   // as Face.colour; opacity 0: the faces keep theirs
+    uint colour;   // over those of its faces, as much as its opacity
     uint mirrored; // 1 when the transform turns the space inside out
 
     uint shell;    // of its FACE_OPERAND faces: which operand of the Boolean solids they bound

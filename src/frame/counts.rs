@@ -126,6 +126,7 @@ impl Counts {
 /// The model, or what a view needs of it, is more than the engine counts.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[error("{count} {what} are too many: at most {most} can be drawn; {help}")]
+#[non_exhaustive]
 pub struct TooMany {
     /// What there is too much of.
     pub what: &'static str,

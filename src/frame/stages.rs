@@ -150,6 +150,12 @@ impl Stages {
         self.size
     }
 
+    /// In place of an image that the host does not want, but that is drawn with others: depth, face, (u, v), normal, edge,
+    /// part, instance.
+    pub(crate) fn spare(&self, number: usize) -> Option<&Image> {
+        self.shading.spare(number)
+    }
+
     /// Boolean solids, where the scene has some.
     pub(crate) fn solids(&self) -> Option<&Solids> {
         self.solids.as_ref()

@@ -103,15 +103,8 @@ impl<'a> Commands<'a> {
         unsafe { self.device.raw().cmd_draw(self.raw, count, copies, vertices.start, instances.start) };
     }
 
-    /// Makes `draws` draws of `VkDrawIndirectCommand`, packed, at `offset` bytes of `arguments`.
-    pub fn draw_indirect(&self, arguments: &Buffer, offset: u64, draws: u32) {
-        let stride = size_of::<vk::DrawIndirectCommand>() as u32;
-        // SAFETY: recording within `rendering`; a graphics pipeline is bound.
-        unsafe { self.device.raw().cmd_draw_indirect(self.raw, arguments.handle(), offset, draws, stride) };
-    }
-
-    /// As [`draw_indirect`](Self::draw_indirect), but the GPU wrote the number of draws at
-    /// `count_offset` bytes of `count`; at most `most` are made.
+    /// Draws whose arguments the GPU wrote at `offset` bytes of a buffer, and their number at `count_offset` bytes of
+    /// `count`; at most `most` are made.
     pub fn draw_indirect_count(&self, arguments: &Buffer, offset: u64, count: &Buffer, count_offset: u64, most: u32) {
         let (arguments, count) = (arguments.handle(), count.handle());
         let stride = size_of::<vk::DrawIndirectCommand>() as u32;
@@ -228,6 +221,26 @@ impl<'a> Commands<'a> {
         let region = vk::BufferCopy { src_offset: from_offset, dst_offset: to_offset, size: bytes };
         // SAFETY: recording outside rendering; the regions lie within the buffers.
         unsafe { self.device.raw().cmd_copy_buffer(self.raw, from.handle(), to.handle(), &[region]) };
+    }
+
+    /// Copies one pixel of a colour image in layout `GENERAL` to `offset` bytes of a buffer; it has so many bytes.
+    ///
+    /// # Panics
+    /// When the pixel is not in the image, or its bytes do not fit.
+    pub fn copy_pixel(&self, from: &Image, (x, y): (u32, u32), to: &Buffer, (offset, bytes): (u64, u64)) {
+        let (width, height) = from.size();
+        assert!(x < width && y < height && offset + bytes <= to.bytes(), "pixel {x}, {y} of `{}`", from.name());
+        let layers = vk::ImageSubresourceLayers::default().aspect_mask(vk::ImageAspectFlags::COLOR).layer_count(1);
+        let region = vk::BufferImageCopy::default()
+            .buffer_offset(offset)
+            .image_subresource(layers)
+            .image_offset(vk::Offset3D { x: x as i32, y: y as i32, z: 0 })
+            .image_extent(vk::Extent3D { width: 1, height: 1, depth: 1 });
+        let layout = vk::ImageLayout::GENERAL;
+        // SAFETY: recording outside rendering; both belong to this device.
+        unsafe {
+            self.device.raw().cmd_copy_image_to_buffer(self.raw, from.handle(), layout, to.handle(), &[region]);
+        }
     }
 
     /// Copies one aspect of an image, rows packed: [`Access::TRANSFER_READ`] to

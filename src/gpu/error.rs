@@ -4,6 +4,7 @@ use ash::vk;
 
 /// A failure that the caller could not foresee. Misuse panics instead, naming the invariant.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum GpuError {
     /// A Vulkan function returned an error.
     #[error("{call} failed for `{resource}`: {result}")]

@@ -45,6 +45,18 @@ impl ReadBack {
         barrier::buffers(cmd, &[(&self.buffer, Access::TRANSFER_WRITE, Access::HOST_READ)]);
     }
 
+    /// Records the copies of one pixel of each image, of so many bytes, one after another; the images are in layout
+    /// `GENERAL`, and what touches them next to a copy is ordered by [`Access::TRANSFER_READ`].
+    ///
+    /// # Panics
+    /// When they do not fit.
+    pub fn record_pixels(&self, cmd: &Commands<'_>, from: &[&Image], at: (u32, u32), bytes: u64) {
+        for (nth, image) in (0..).zip(from) {
+            cmd.copy_pixel(image, at, &self.buffer, (nth * bytes, bytes));
+        }
+        barrier::buffers(cmd, &[(&self.buffer, Access::TRANSFER_WRITE, Access::HOST_READ)]);
+    }
+
     /// The first `count` values, after the fence.
     ///
     /// # Panics

@@ -28,6 +28,11 @@ pub struct Attachment<'a> {
 }
 
 impl Attachment<'_> {
+    /// The same, with what is there.
+    pub fn again(&self) -> Self {
+        Self { load: Load::Keep, ..*self }
+    }
+
     pub(crate) fn info(&self, access: Access) -> vk::RenderingAttachmentInfo<'static> {
         let (load_op, clear) = match self.load {
             Load::Keep => (vk::AttachmentLoadOp::LOAD, vk::ClearValue::default()),

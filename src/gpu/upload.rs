@@ -63,6 +63,36 @@ impl Uploads {
         Ok(())
     }
 
+    /// Records copies of bytes to offsets of several buffers, from one staging buffer: [`Access::TRANSFER_WRITE`].
+    ///
+    /// # Errors
+    /// See [`Buffer::new`], for the staging buffer.
+    ///
+    /// # Panics
+    /// When some bytes do not fit.
+    pub fn scatter(
+        &mut self,
+        cmd: &Commands<'_>,
+        name: &str,
+        copies: &[(&Buffer, u64, &[u8])],
+    ) -> Result<(), GpuError> {
+        let bytes = copies.iter().map(|(_, _, data)| data.len() as u64).sum();
+        if bytes == 0 {
+            return Ok(());
+        }
+        let (name, usage) = (format!("staging of {name}"), vk::BufferUsageFlags::TRANSFER_SRC);
+        let info = BufferInfo { name: &name, bytes, usage, pool: Pool::Transient, location: MemoryLocation::Upload };
+        let mut staging = Buffer::new(cmd.device(), &info)?;
+        let mut from = 0;
+        for (target, offset, data) in copies.iter().filter(|(_, _, data)| !data.is_empty()) {
+            staging.write(from, data);
+            cmd.copy(&staging, from, target, *offset, data.len() as u64);
+            from += data.len() as u64;
+        }
+        self.staging.push(staging);
+        Ok(())
+    }
+
     /// Makes every copy so far visible to what follows.
     pub fn finish(&self, cmd: &Commands<'_>, next: Access) {
         barrier::memory(cmd, Access::TRANSFER_WRITE, next);

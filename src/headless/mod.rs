@@ -12,6 +12,8 @@
 mod instance;
 mod messages;
 mod renderer;
+#[cfg(test)]
+mod tests;
 
 pub use messages::{Message, Severity};
 pub use renderer::HeadlessRenderer;
@@ -36,6 +38,7 @@ pub struct HeadlessOptions {
 
 /// Why there is no device.
 #[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
 pub enum HeadlessError {
     /// The system has no Vulkan loader.
     #[error("no Vulkan loader on this system (on Debian: apt install libvulkan1 mesa-vulkan-drivers): {source}")]

@@ -2,12 +2,13 @@
 
 use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
 use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
-use crate::model::{Camera, LoopAt, Model, TrimLoop};
+use crate::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
-use crate::renderer::{DeepZoom, DeepZoomUpload, EditError, FrameInput, RenderError, Renderer, TargetFormats, Targets};
+use crate::renderer::{Aovs, EditError, FrameInput, Hit, InstanceError, RenderError, Renderer, TargetFormats, Targets};
 use crate::scene::SceneRequest;
 use ash::vk;
 use bytemuck::Pod;
+use glam::DAffine3;
 use std::mem::ManuallyDrop;
 use std::sync::Arc;
 use std::time::Duration;
@@ -26,8 +27,6 @@ pub struct HeadlessRenderer {
     device: ManuallyDrop<HeadlessDevice>,
     /// What the renderer draws into.
     formats: TargetFormats,
-    model: Option<(Arc<Model>, SceneRequest)>,
-    deep_zoom: DeepZoom,
 }
 
 /// Images of one size, and the buffers that they are copied to.
@@ -45,15 +44,13 @@ impl HeadlessRenderer {
     /// [`HeadlessError`]: no loader, no device, no validation layers.
     pub fn new(options: &HeadlessOptions) -> Result<Self, HeadlessError> {
         let device = HeadlessDevice::new(options)?;
-        let formats = TargetFormats { colour: COLOUR_FORMAT, depth: None, aovs: false, numbers: false };
+        let formats = TargetFormats::new(COLOUR_FORMAT);
         let renderer = Renderer::on(device.device(), formats, 1)?;
         Ok(Self {
             renderer: ManuallyDrop::new(renderer),
             targets: ManuallyDrop::new(None),
             device: ManuallyDrop::new(device),
             formats,
-            model: None,
-            deep_zoom: DeepZoom::default(),
         })
     }
 
@@ -107,8 +104,6 @@ impl HeadlessRenderer {
         request: SceneRequest,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<(), HeadlessError> {
-        self.deep_zoom = DeepZoom::new(&model);
-        let (model, _) = self.model.insert((model, request));
         Ok(self.renderer.upload_request(model, request, progress)?)
     }
 
@@ -120,11 +115,61 @@ impl HeadlessRenderer {
     /// # Panics
     /// When no model was uploaded.
     pub fn edit_loop(&mut self, at: LoopAt, new: &TrimLoop) -> Result<(), EditError> {
-        self.renderer.edit_loop(at, new)?;
-        if let Some((model, _)) = &mut self.model {
-            Arc::make_mut(model).parts[at.part].faces[at.face].loops[at.trim_loop] = new.clone();
-        }
-        Ok(())
+        self.renderer.edit_loop(at, new)
+    }
+
+    /// See [`Renderer::set_transform`].
+    ///
+    /// # Errors
+    /// [`InstanceError`]; the scene is as it was.
+    ///
+    /// # Panics
+    /// When no model was uploaded.
+    pub fn set_transform(&mut self, instance: usize, transform: DAffine3) -> Result<(), InstanceError> {
+        self.renderer.set_transform(instance, transform)
+    }
+
+    /// See [`Renderer::set_visible`].
+    ///
+    /// # Errors
+    /// [`InstanceError`]; the scene is as it was.
+    ///
+    /// # Panics
+    /// When no model was uploaded.
+    pub fn set_visible(&mut self, instance: usize, visible: bool) -> Result<(), InstanceError> {
+        self.renderer.set_visible(instance, visible)
+    }
+
+    /// See [`Renderer::set_colour`].
+    ///
+    /// # Errors
+    /// [`InstanceError`]; the scene is as it was.
+    ///
+    /// # Panics
+    /// When no model was uploaded.
+    pub fn set_colour(&mut self, instance: usize, colour: Option<Colour>) -> Result<(), InstanceError> {
+        self.renderer.set_colour(instance, colour)
+    }
+
+    /// See [`Renderer::set_selected`].
+    ///
+    /// # Errors
+    /// [`InstanceError`]; the scene is as it was.
+    ///
+    /// # Panics
+    /// When no model was uploaded.
+    pub fn set_selected(&mut self, instance: usize, highlight: Option<Colour>) -> Result<(), InstanceError> {
+        self.renderer.set_selected(instance, highlight)
+    }
+
+    /// Lets the next picture read back what it shows at a pixel: see [`Renderer::pick`].
+    pub fn pick(&mut self, x: u32, y: u32) {
+        self.renderer.pick(x, y);
+    }
+
+    /// What the last picture shows there: see [`Renderer::picked`].
+    pub fn picked(&self) -> Option<Hit> {
+        self.renderer.picked(0)
     }
 
     /// Renders one picture and waits for it.
@@ -142,7 +187,6 @@ impl HeadlessRenderer {
     ) -> Result<Picture, HeadlessError> {
         camera.check().map_err(RenderError::from)?;
         self.prepare(camera.size, outputs)?;
-        self.approach(camera)?;
         let (mut retries, mut edit_bytes) = (0, 0);
         let stats = loop {
             let report = self.frame(camera, settings)?;
@@ -186,7 +230,6 @@ impl HeadlessRenderer {
             ManuallyDrop::drop(&mut self.targets);
             ManuallyDrop::take(&mut self.device)
         };
-        self.model = None;
         std::mem::forget(self);
         device.shutdown().iter().map(ToString::to_string).collect()
     }
@@ -196,20 +239,16 @@ impl HeadlessRenderer {
         let renderer = &mut *self.renderer;
         self.device.try_submit(|cmd| -> Result<(), RenderError> {
             images.begin(cmd);
-            let targets = Targets {
-                colour: &images.colour.0,
-                depth: None,
-                aovs: images.aovs.as_ref().map(|aovs| std::array::from_fn(|i| &aovs[i].0)),
-                numbers: images.numbers.as_ref().map(|numbers| std::array::from_fn(|i| &numbers[i].0)),
-            };
+            let aov = |i: usize| images.aovs.as_ref().map(|aovs| &aovs[i].0);
+            let number = |i: usize| images.numbers.as_ref().map(|numbers| &numbers[i].0);
+            let [depth, face, uv, normal] = [0, 1, 2, 3].map(aov);
+            let [edge, part, instance] = [0, 1, 2].map(number);
+            let aovs = Aovs { depth, face, uv, normal, edge, part, instance };
+            let thickness = images.thickness.as_ref().map(|(image, _)| image);
+            let targets = Targets { aovs, thickness, ..Targets::new(&images.colour.0) };
             let input = FrameInput { camera, settings: *settings, slot: 0, targets };
             // SAFETY: recording; the submission is waited for, so the slot is free again.
-            unsafe {
-                match &images.thickness {
-                    Some((thickness, _)) => renderer.record_with_thickness(cmd.raw(), &input, thickness),
-                    None => renderer.record(cmd.raw(), &input),
-                }
-            }?;
+            unsafe { renderer.record(cmd.raw(), &input) }?;
             images.end(cmd);
             Ok(())
         })??;
@@ -220,19 +259,29 @@ impl HeadlessRenderer {
     /// Makes targets of this size, and a renderer that writes these images.
     fn prepare(&mut self, size: (u32, u32), outputs: Outputs) -> Result<(), HeadlessError> {
         let thickness = outputs.thickness;
-        let aovs = outputs.depth || outputs.face || outputs.uv || outputs.normal;
-        let formats = TargetFormats { aovs, numbers: outputs.has_numbers(), ..self.formats };
-        let followed = self.model.as_ref().is_some_and(|(_, settings)| settings.thickness);
-        if let Some((_, settings)) = self.model.as_mut().filter(|_| thickness) {
-            settings.settings.thickness = true;
-        }
-        if formats != self.formats || thickness && !followed {
+        let Some(source) = self.renderer.source() else { panic!("upload a model before rendering") };
+        let mut request = source.request();
+        let lacks_thickness = thickness && !request.thickness;
+        request.settings.thickness |= thickness;
+        // images that one pass makes come together: another choice among them makes no other renderer
+        let (points, numbers) = (outputs.has_points(), outputs.has_numbers());
+        let outputs = Outputs {
+            depth: points,
+            face: points,
+            uv: points,
+            normal: points,
+            thickness: request.thickness,
+            edge: numbers,
+            part: numbers,
+            instance: numbers,
+        };
+        let formats = TargetFormats { outputs, ..self.formats };
+        if formats != self.formats || lacks_thickness {
+            let source = source.with(request);
             let mut renderer = Renderer::on(self.device.device(), formats, 1)?;
-            let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
-            renderer.upload_request(model, *settings, &|_| ())?;
+            renderer.upload_source(source, &|_| ())?;
             *self.renderer = renderer;
             self.formats = formats;
-            self.deep_zoom = DeepZoom::new(model);
             *self.targets = None;
         }
         let fits = |t: &TargetImages| t.colour.0.size() == size && t.thickness.is_some() == thickness;
@@ -241,23 +290,6 @@ impl HeadlessRenderer {
             *self.targets = Some(TargetImages::new(self.device.device(), size, formats, thickness)?);
         }
         Ok(())
-    }
-
-    /// Loads the scene that resolves this view: the whole model, or close up the part of it in view.
-    fn approach(&mut self, camera: &Camera) -> Result<(), HeadlessError> {
-        let Some((model, settings)) = &self.model else { panic!("upload a model before rendering") };
-        // loops that are being edited stay where they are, and parts are followed through as a whole
-        let whole = settings.editable || settings.thickness || settings.highlight.is_some();
-        let wanted = if whole { DeepZoomUpload::Same } else { self.deep_zoom.of(model, camera) };
-        let uploaded = match &wanted {
-            DeepZoomUpload::Same => Ok(()),
-            DeepZoomUpload::Whole => self.renderer.upload_request(model, *settings, &|_| ()),
-            DeepZoomUpload::Cut(near) => self.renderer.upload_cut_request(model, near, *settings),
-        };
-        if uploaded.is_err() {
-            self.deep_zoom.forget();
-        }
-        Ok(uploaded?)
     }
 
     fn read(&self, size: (u32, u32), outputs: Outputs, stats: FrameStats) -> Picture {
@@ -269,7 +301,7 @@ impl HeadlessRenderer {
             read.filter(|_| wanted).map_or_else(Vec::new, |r| r.values(count))
         }
         let normals: Vec<[f32; 4]> = values(aov(3), outputs.normal, count);
-        let has_sun = self.model.as_ref().is_some_and(|(_, settings)| settings.sun.is_some());
+        let has_sun = self.renderer.source().is_some_and(|source| source.request().sun.is_some());
         Picture {
             size,
             colour: images.colour.1.values(count),
@@ -309,7 +341,8 @@ impl TargetImages {
         let colour = target("colour", COLOUR_FORMAT, 4)?;
         let [depth, face, uv, normal] = Renderer::AOV_FORMATS;
         let aovs = formats
-            .aovs
+            .outputs
+            .has_points()
             .then(|| {
                 Ok::<_, GpuError>([
                     target("depth", depth, 4)?,
@@ -322,7 +355,7 @@ impl TargetImages {
         let thickness = thickness.then(|| target("thickness", Renderer::THICKNESS_FORMAT, 4)).transpose()?;
         let number = |name| target(name, Renderer::NUMBER_FORMAT, 4);
         let numbers = || Ok::<_, GpuError>([number("edge")?, number("part")?, number("instance")?]);
-        let numbers = formats.numbers.then(numbers).transpose()?;
+        let numbers = formats.outputs.has_numbers().then(numbers).transpose()?;
         Ok(Self { colour, aovs, thickness, numbers })
     }
 

@@ -75,7 +75,7 @@ fn compare(gpu: &Gpu, given: &View, expected: &View) -> Result<(), Mismatch> {
     let chord_counts = gpu.upload("counts", &vec![u32::MAX; n]);
     let counters = gpu.upload("counters", &[Counters::default()]);
     let chords = gpu.upload("chords", &vec![Chord::default(); ROOM as usize]);
-    let draw = gpu.upload("draw", &[0u32; 4]);
+    let draw = gpu.upload("draw", &[0u32; 5]);
     let bindings = Bindings {
         frame: &frame,
         views: &views,
@@ -99,7 +99,7 @@ fn compare(gpu: &Gpu, given: &View, expected: &View) -> Result<(), Mismatch> {
     }
     let flat: Vec<Chord> = twin.into_iter().flatten().collect();
     same("edge chords", &gpu.read(&chords, flat.len()), &flat)?;
-    same("edge draw", &gpu.read(&draw, 4), &[6, total, 0, 0])?;
+    same("edge draw", &gpu.read(&draw, 5), &[6, total, 0, 0, 1])?;
     let told = gpu.read::<Counters>(&counters, 1);
     same("counters", &[told[0].edge_chords, told[0].clamps, told[0].failed], &[total, clamps, 0])
 }

@@ -75,6 +75,7 @@ pub(crate) enum LineStyle {
 
 /// Settings that draw nothing sensible.
 #[derive(Clone, Copy, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum BadEdges {
     /// A width.
     #[error("the width of edge lines must be from 0 to {most} pixels, not {0}", most = EdgeSettings::MOST_WIDTH)]

@@ -3,6 +3,7 @@
 use super::{EditError, Renderer};
 use crate::model::{LoopAt, TrimLoop};
 use glam::DVec2;
+use std::sync::Arc;
 
 impl Renderer {
     /// Moves one control point of a trim loop to `to` in the `(u, v)` of its face; the next frame recorded
@@ -31,11 +32,11 @@ impl Renderer {
     /// # Panics
     /// When no model was uploaded.
     pub fn edit_loop(&mut self, at: LoopAt, new: &TrimLoop) -> Result<(), EditError> {
-        let Some(loaded) = &mut self.loaded else { panic!("upload a model before editing it") };
+        let (Some(source), Some(loaded)) = (&mut self.source, &mut self.loaded) else {
+            panic!("upload a model before editing it")
+        };
         let writes = loaded.data.edit.as_mut().ok_or(EditError::NotEditable)?.replace(at, new)?;
-        if let Some(fallback) = &mut loaded.fallback {
-            fallback.edit(at, new);
-        }
+        Arc::make_mut(&mut source.model).parts[at.part].faces[at.face].loops[at.trim_loop] = new.clone();
         if loaded.scene.is_some() {
             loaded.edits.extend(writes);
         } else {

@@ -31,8 +31,8 @@ pub(super) struct History {
 }
 
 impl History {
-    /// The history after the next frame. `table`: the view that its trim table is built for. `edited`: some trim changes
-    /// between the two frames. `hides`: the scene has occlusion culling.
+    /// The history after the next frame. `table`: the view that its trim table is built for. `edited`: some trim
+    /// changes between the two frames, or a placed part moves. `hides`: the scene has occlusion culling.
     pub(super) fn after(
         before: Option<Self>,
         view: (Camera, FrameSettings),

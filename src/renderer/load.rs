@@ -1,72 +1,29 @@
-//! Loading a model, and loading it once more to be trimmed exactly where the trim table has no room for a view.
+//! Loading a model; loading what a near view needs of it; and loading it once more to be trimmed exactly where the trim
+//! table has no room for a view.
 //!
 //! ```text
-//!   Auto ──rows expected──▶ few ──▶ Table, with the model as a fallback ──a view needs too many──▶ Exact
+//!   Auto ──rows expected──▶ few ──▶ Table ──a view needs too many──▶ Exact
 //!             └────────────▶ many ─▶ Exact
+//!
+//!   whole model ◀──from afar── record ──near──▶ what the view sees, cut out of it (scene/deep_zoom)
 //! ```
 
 use super::constants::draw_vertices;
+use super::source::Source;
 use super::{Loaded, RenderError, Renderer, Retired, TargetFormats, validate};
 use crate::frame::Passes;
 use crate::frame::capacities::Capacities;
 use crate::frame::counts::Counts;
-use crate::frame::shading::resolve;
-use crate::model::{LoopAt, Model, TrimLoop};
-use crate::picture::{EdgeSettings, SceneSettings, Smooth, TakenWay, TrimWay};
-use crate::scene::{Cut, SceneData, SceneRequest, Told, UndrawnEdges, UndrawnSolid};
-
-/// The source of a scene: a model, or the part cut out of it for a view.
-#[derive(Clone, Copy)]
-struct Source<'a> {
-    whole: &'a Model,
-    cut: Option<&'a Cut>,
-    progress: Told<'a>,
-}
-
-impl Source<'_> {
-    fn data(self, settings: SceneRequest) -> Result<SceneData, UndrawnSolid> {
-        match self.cut {
-            None => SceneData::telling(self.whole, settings, self.progress),
-            Some(cut) => SceneData::cut_from(self.whole, cut, settings),
-        }
-    }
-
-    fn find_edges(self, data: &mut SceneData, settings: EdgeSettings) -> Result<(), UndrawnEdges> {
-        match self.cut {
-            None => data.find_edges(self.whole, settings),
-            Some(cut) => data.find_edges_of_cut(self.whole, cut, settings),
-        }
-    }
-}
-
-/// A copy of the model, loaded once more where the table does not suffice for a view.
-pub(super) struct Fallback {
-    whole: Model,
-    cut: Option<Cut>,
-    settings: SceneRequest,
-}
-
-impl Fallback {
-    fn new(of: Source<'_>, settings: SceneRequest) -> Self {
-        // beside a cut, shadows and edges alone need the whole model
-        let whole = if of.cut.is_none() || settings.sun.is_some() || settings.edges.is_some() {
-            of.whole.clone()
-        } else {
-            Model::default()
-        };
-        Self { whole, cut: of.cut.cloned(), settings }
-    }
-
-    /// The loop is another one now.
-    pub(super) fn edit(&mut self, at: LoopAt, new: &TrimLoop) {
-        let model = self.cut.as_mut().map_or(&mut self.whole, |cut| &mut cut.model);
-        model.parts[at.part].faces[at.face].loops[at.trim_loop] = new.clone();
-    }
-}
+use crate::gpu::Device;
+use crate::model::{Camera, Model};
+use crate::picture::{SceneSettings, Smooth, TakenWay, TrimWay};
+use crate::scene::{Cut, DeepZoomUpload, SceneData, SceneRequest, Told};
+use std::sync::Arc;
 
 impl Renderer {
     /// Replaces the model: makes the pipelines that it needs; the next [`record`](Self::record)
-    /// copies its data. Frames in flight keep the old one until their slots come round.
+    /// copies its data. Frames in flight keep the old one until their slots come round. The renderer keeps a copy of the
+    /// model: [`upload_shared`](Self::upload_shared) makes none.
     ///
     /// # Errors
     /// [`RenderError::Model`] where [`Model::check`] fails, [`RenderError::TooMany`], [`RenderError::Gpu`]; the model before
@@ -94,86 +51,147 @@ impl Renderer {
         settings: SceneSettings,
         progress: &(dyn Fn(usize) + Sync),
     ) -> Result<(), RenderError> {
-        self.upload_request(model, settings.into(), progress)
+        self.upload_shared(Arc::new(model.clone()), settings, progress)
     }
 
-    /// As [`upload_with`](Self::upload_with), of what [`DeepZoom`](super::DeepZoom) cut out of a model for a view: shadows
-    /// are those of the whole model, of which all spline faces that cast them are made triangles for each cut.
+    /// As [`upload_with_progress`](Self::upload_with_progress), of a model that is not copied. Edits and changes of
+    /// instances copy it first where somebody else shares it still.
     ///
     /// # Errors
     /// As [`upload`](Self::upload).
-    pub fn upload_cut(&mut self, whole: &Model, cut: &Cut, settings: SceneSettings) -> Result<(), RenderError> {
-        self.upload_cut_request(whole, cut, settings.into())
+    pub fn upload_shared(
+        &mut self,
+        model: Arc<Model>,
+        settings: SceneSettings,
+        progress: &(dyn Fn(usize) + Sync),
+    ) -> Result<(), RenderError> {
+        self.upload_request(model, settings.into(), progress)
     }
 
-    /// The same model once more, trimmed exactly: the table has no room for a view of it.
-    pub(super) fn load_exact(&mut self) -> Result<(), RenderError> {
-        let Some(fallback) = self.loaded.as_mut().and_then(|loaded| loaded.fallback.take()) else { return Ok(()) };
-        let Fallback { whole, cut, settings } = &*fallback;
-        let of = Source { whole, cut: cut.as_ref(), progress: &|_| () };
-        self.load(of, settings.exact())
+    /// Loads what a view of this camera needs, as [`record`](Self::record) does by itself. From afar that is the model as
+    /// it is. From so near that single precision would show, it is what the view sees, cut out of the model in double
+    /// precision: it serves the views from near by, too. A host whose views come near calls this where it may take as long as
+    /// an upload. With settings under which the model stays as a whole (`editable`, `thickness`, `highlight`) it does
+    /// nothing.
+    ///
+    /// # Errors
+    /// As [`upload`](Self::upload), and [`RenderError::Camera`]; what was loaded stays.
+    ///
+    /// # Panics
+    /// When no model was uploaded.
+    pub fn prepare(&mut self, camera: &Camera) -> Result<(), RenderError> {
+        camera.check()?;
+        let Some(source) = &mut self.source else { panic!("upload a model before recording") };
+        let cut = match source.wanted(camera) {
+            DeepZoomUpload::Same => return Ok(()),
+            DeepZoomUpload::Whole => None,
+            DeepZoomUpload::Cut(cut) => Some(cut),
+        };
+        match Loaded::new(&self.device, self.formats, source, (cut, source.request), &|_| ()) {
+            Ok(loaded) => self.replace(loaded),
+            Err(error) => {
+                source.forget();
+                return Err(error);
+            }
+        }
+        Ok(())
     }
 
-    /// As [`upload_with_progress`](Self::upload_with_progress).
+    /// As [`upload_shared`](Self::upload_shared).
     pub(crate) fn upload_request(
         &mut self,
-        model: &Model,
+        model: Arc<Model>,
         request: SceneRequest,
         progress: Told<'_>,
     ) -> Result<(), RenderError> {
-        self.load(Source { whole: model, cut: None, progress }, request)
+        model.check()?;
+        self.upload_source(Source::new(model, request), progress)
     }
 
-    /// As [`upload_cut`](Self::upload_cut).
-    pub(crate) fn upload_cut_request(
-        &mut self,
-        whole: &Model,
-        cut: &Cut,
-        request: SceneRequest,
-    ) -> Result<(), RenderError> {
-        self.load(Source { whole, cut: Some(cut), progress: &|_| () }, request)
+    /// As [`upload_shared`](Self::upload_shared), of what another renderer had.
+    pub(crate) fn upload_source(&mut self, mut source: Source, progress: Told<'_>) -> Result<(), RenderError> {
+        let loaded = Loaded::new(&self.device, self.formats, &source, (None, source.request), progress)?;
+        source.upload = self.source.as_ref().map_or(0, |before| before.upload + 1);
+        self.source = Some(source);
+        self.replace(loaded);
+        Ok(())
     }
 
-    fn load(&mut self, of: Source<'_>, settings: SceneRequest) -> Result<(), RenderError> {
-        validate::check_sun(*settings)?;
-        if of.cut.is_none() {
-            of.whole.check()?; // a cut is of a model that was
-        }
-        settings.edges.map_or(Ok(()), |edges| edges.check())?;
-        let mut data = of.data(settings)?;
-        if settings.smooth == Smooth::Trims {
-            validate::check_smooth_trims(&data, settings)?;
-        }
-        let may_change = settings.trim == TrimWay::Auto && data.trim_way() == Some(TakenWay::Table);
-        let too_many = Counts::of(&data).check().err().filter(|too_many| may_change && too_many.is_of_table());
-        if too_many.is_some() {
-            data = of.data(settings.exact())?;
-        }
-        data.has_numbers = self.formats.numbers;
-        if let Some(edges) = settings.edges {
-            of.find_edges(&mut data, edges)?;
-        }
-        let fallback = (may_change && too_many.is_none()).then(|| Box::new(Fallback::new(of, settings)));
-        let counts = Counts::of(&data);
-        counts.check()?;
-        let TargetFormats { colour, depth, aovs, numbers } = self.formats;
-        let formats = resolve::Formats { colour, depth, aovs, numbers };
-        let passes = Passes::new(&self.device, &data, formats)?;
-        let loaded = Loaded {
-            data,
-            counts,
-            capacities: Capacities::first(counts, draw_vertices(&self.device)),
-            passes,
-            scene: None,
-            stages: None,
-            edits: Vec::new(),
-            history: None,
-            fallback,
-        };
+    /// The same once more, trimmed exactly: the table has no room for a view of it.
+    pub(super) fn load_exact(&mut self) -> Result<(), RenderError> {
+        let (Some(source), Some(loaded)) = (&self.source, &mut self.loaded) else { return Ok(()) };
+        loaded.may_be_exact = false;
+        let loaded = (loaded.cut.take(), source.request.exact());
+        let loaded = Loaded::new(&self.device, self.formats, source, loaded, &|_| ())?;
+        self.replace(loaded);
+        Ok(())
+    }
+
+    fn replace(&mut self, loaded: Loaded) {
         if let Some(old) = self.loaded.replace(loaded) {
             self.retire(Retired::Loaded(Box::new(old)));
             self.slots.iter_mut().for_each(|slot| slot.capacities = None);
         }
-        Ok(())
+    }
+}
+
+impl Loaded {
+    /// Of a whole model, or of what was cut out of it for a view: shadows are those of the whole model, of which all spline
+    /// faces that cast them are made triangles for each cut.
+    fn new(
+        device: &Device,
+        formats: TargetFormats,
+        source: &Source,
+        (cut, request): (Option<Box<Cut>>, SceneRequest),
+        progress: Told<'_>,
+    ) -> Result<Self, RenderError> {
+        validate::check_sun(*request)?;
+        request.edges.map_or(Ok(()), |edges| edges.check())?;
+        let whole = &*source.model;
+        let data = |request| match &cut {
+            None => SceneData::telling(whole, request, progress),
+            Some(cut) => SceneData::cut_from(whole, cut, request),
+        };
+        let mut data_of = data(request)?;
+        if request.smooth == Smooth::Trims {
+            validate::check_smooth_trims(&data_of, request)?;
+        }
+        let may_change = request.trim == TrimWay::Auto && data_of.trim_way() == Some(TakenWay::Table);
+        let too_many = Counts::of(&data_of).check().err().filter(|too_many| may_change && too_many.is_of_table());
+        if too_many.is_some() {
+            data_of = data(request.exact())?;
+        }
+        let mut data = data_of;
+        data.has_numbers = formats.outputs.has_numbers();
+        if let Some(edges) = request.edges {
+            match &cut {
+                None => data.find_edges(whole, edges)?,
+                Some(cut) => data.find_edges_of_cut(whole, cut, edges)?,
+            }
+        }
+        let picking = match &cut {
+            None => data.picking(whole, |_, face| face),
+            Some(cut) => data.picking(&cut.model, |part, face| cut.face_of(part, face)),
+        };
+        data.show(&whole.instances, &source.shown);
+        let counts = Counts::of(&data);
+        counts.check()?;
+        let passes = Passes::new(device, &data, formats.of_passes())?;
+        let may_be_exact = may_change && too_many.is_none();
+        Ok(Self {
+            data,
+            counts,
+            capacities: Capacities::first(counts, draw_vertices(device)),
+            passes,
+            picking: Arc::new(picking),
+            scene: None,
+            stages: None,
+            edits: Vec::new(),
+            changes: Default::default(),
+            moved: false,
+            history: None,
+            may_be_exact,
+            cut: cut.filter(|_| may_be_exact),
+        })
     }
 }

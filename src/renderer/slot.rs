@@ -3,6 +3,7 @@
 use super::centres::SlotCentres;
 use super::constants::constants;
 use super::history::History;
+use super::pick::SlotPick;
 use super::{FrameInput, Loaded, Retired, TargetFormats};
 use crate::abi;
 use crate::abi::Counters;
@@ -13,7 +14,7 @@ use crate::gpu::{
 };
 use crate::model::Camera;
 use crate::picture::PoolBytes;
-use crate::scene::{TableView, seen_by, view};
+use crate::scene::{TableView, seen_by};
 use ash::vk;
 use glam::{DMat4, DVec3};
 
@@ -29,6 +30,7 @@ pub(super) struct Slot {
     /// What the trim table is made of, where that is another view.
     pub(super) table: Option<ViewBuffers>,
     pub(super) centres: SlotCentres,
+    pub(super) pick: Option<SlotPick>,
     pub(super) counters: ReadBack,
     /// What `counters` has room for, and how many the frame reports.
     pub(super) counter_room: usize,
@@ -58,6 +60,7 @@ impl Slot {
             samples: Vec::new(),
             table: None,
             centres: SlotCentres::default(),
+            pick: None,
             counters: read_counters(device, 1)?,
             counter_room: 1,
             counted: 1,
@@ -88,7 +91,7 @@ impl Slot {
         history: &History,
     ) -> Result<(), GpuError> {
         let pixels = input.camera.pixel_matrix();
-        let views: Vec<abi::View> = loaded.data.placements.iter().map(|p| view(pixels, *p)).collect();
+        let views = loaded.data.views(pixels);
         let bytes = size_of_val(views.as_slice()) as u64;
         if self.views.as_ref().is_none_or(|b| b.bytes() < bytes) {
             let made = upload_views(device, "views", bytes)?;
@@ -104,8 +107,11 @@ impl Slot {
         self.write_table(device, loaded, (input.camera, history), centre)?;
         // one drawing a sample, and one at the centre for the images that are no mean of samples
         let loaded_has = loaded.counts.thickness || loaded.counts.lines;
-        let beside =
-            formats.aovs || formats.numbers || formats.depth.is_some() || loaded_has || self.samples.is_empty();
+        let beside = formats.outputs.has_points()
+            || formats.outputs.has_numbers()
+            || formats.depth.is_some()
+            || loaded_has
+            || self.samples.is_empty();
         self.counted = self.samples.len() + usize::from(beside);
         if self.counter_room < self.counted {
             self.counters = read_counters(device, self.counted)?;
@@ -123,8 +129,7 @@ impl Slot {
         centre: abi::Frame,
     ) -> Result<(), GpuError> {
         let offsets = loaded.counts.samples.offsets();
-        let placements = &loaded.data.placements;
-        let bytes = (placements.len() * size_of::<abi::View>()) as u64;
+        let bytes = (loaded.data.placements.len() * size_of::<abi::View>()) as u64;
         if self.samples.len() != offsets.len() || self.samples.iter().any(|s| s.views.bytes() < bytes) {
             self.retired.extend(std::mem::take(&mut self.samples).into_iter().flat_map(gone));
             for _ in offsets {
@@ -133,7 +138,7 @@ impl Slot {
         }
         for (sample, &offset) in self.samples.iter_mut().zip(offsets) {
             let pixels = beside(camera.pixel_matrix(), offset);
-            let views: Vec<abi::View> = placements.iter().map(|p| view(pixels, *p)).collect();
+            let views = loaded.data.views(pixels);
             sample.views.write(0, &views);
             let offset = offset.map(|x| x as f32);
             sample.constants.write(0, &[abi::Frame { offset, encode_srgb: abi::ENCODE_SUMMED, ..centre }]);
@@ -160,7 +165,7 @@ impl Slot {
             return Ok(());
         }
         let pixels = wider.pixel_matrix();
-        let views: Vec<abi::View> = loaded.data.placements.iter().map(|p| view(pixels, *p)).collect();
+        let views = loaded.data.views(pixels);
         let bytes = size_of_val(views.as_slice()) as u64;
         if self.table.as_ref().is_none_or(|table| table.views.bytes() < bytes) {
             let made = view_buffers(device, ["trim table constants", "trim table views"], bytes)?;

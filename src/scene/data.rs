@@ -6,6 +6,7 @@ use super::edges::EdgeData;
 use super::edit::EditScene;
 use super::exact::ExactData;
 use super::face::{Body, Cuts, FaceData, Trimming, pack_colour};
+use super::instance::{LivePart, Shown, placed_part, stretch};
 use super::link::link;
 use super::mesh::Meshes;
 use super::parts::{PlacedPart, Told, each_made};
@@ -15,11 +16,11 @@ use super::sun::SunData;
 use super::trimmed::Trimmed;
 use super::way::taken;
 use crate::abi;
-use crate::model::{Bounds, Instance, Isolated, Items, Model, Part, SolidError};
+use crate::model::{Bounds, Instance, Isolated, Items, Mesh, Model, Part, SolidError};
 #[cfg(any(test, feature = "baselines"))]
 use crate::picture::SceneSettings;
 use crate::picture::{Highlight, Samples, Smooth, TakenWay};
-use glam::{DAffine3, DMat3, DVec3};
+use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
 use std::borrow::Cow;
 use std::ops::Range;
@@ -92,6 +93,12 @@ pub(crate) struct SceneData {
     smooth: Smooth,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
+    /// Of each placement: nobody sees it; empty where all are seen.
+    pub(super) hidden: Vec<bool>,
+    /// Of each instance of the model, where it is drawn as faces alone; empty in what was cut out of it.
+    pub(super) live: Vec<Option<LivePart>>,
+    /// Placed parts cast shadows, which were made with the scene.
+    pub(super) casts_shadows: bool,
     /// Where what the table trims is; `None` where there is no table, too.
     pub trimmed: Option<Trimmed>,
     /// Boolean solids.
@@ -120,6 +127,8 @@ pub(crate) struct SceneData {
     pub(super) parts: Vec<(DVec3, usize)>,
     /// Lines along edges, where they are wanted.
     pub edges: Option<EdgeData>,
+    /// Boolean solids that are drawn as meshes, the last ones of `meshes`.
+    pub(super) isolated: Vec<Mesh>,
     /// Images have the numbers of edges, parts and instances.
     pub has_numbers: bool,
 }
@@ -266,11 +275,16 @@ impl SceneData {
             }
         });
         first_faces.resize(model.parts.len(), data.faces.len());
+        data.casts_shadows = data.sun.is_some() && !is_cut;
+        data.live = vec![None; if is_whole { whole.instances.len() } else { 0 }];
         for (instance, nth) in model.instances.iter().zip(drawn) {
             data.sources.push([instance.part as u32 + 1, nth as u32 + 1]);
             let part = &model.parts[instance.part];
-            let first = first_faces[instance.part];
-            data.push_instance(instance, origins[instance.part], first..first + part.faces.len(), 0);
+            let (origin, first) = (origins[instance.part], first_faces[instance.part]);
+            if is_whole && !(all && part.closed && !is_cut) {
+                data.live[nth] = Some(LivePart { number: data.instances.len() as u32, origin });
+            }
+            data.push_instance(instance, origin, first..first + part.faces.len(), 0);
         }
         data.parts = origins.iter().copied().zip(first_faces.iter().copied()).collect();
         if let Some(edit) = &mut data.edit {
@@ -283,6 +297,7 @@ impl SceneData {
             data.push_instance(&instance, origin, 0..0, 0);
             data.meshes.push_outward(mesh, origin, data.instances.len() as u32 - 1);
         }
+        data.isolated = isolated.map_or_else(Vec::new, |isolated| isolated.meshes);
         data.push_operands(trim);
         if !data.links.is_empty() {
             data.links.resize(4 * data.patches.len(), abi::Link::default());
@@ -354,7 +369,9 @@ impl SceneData {
         let edit = self.edit.take();
         let sun = self.sun.take().map(SunData::directions_only);
         let trimmed = self.trimmed.take();
-        *self = Self { placements, trimmed, solids, volume, edit, sun, ..Self::default() };
+        let (hidden, live) = (std::mem::take(&mut self.hidden), std::mem::take(&mut self.live));
+        let casts_shadows = self.casts_shadows;
+        *self = Self { placements, hidden, live, casts_shadows, trimmed, solids, volume, edit, sun, ..Self::default() };
     }
 
     /// Operands of Boolean solids without equations are placed as parts are, after them.
@@ -435,24 +452,7 @@ impl SceneData {
     }
 
     fn push_instance(&mut self, i: &Instance, origin: DVec3, faces: Range<usize>, shell: u32) {
-        let linear = i.transform.matrix3;
-        // normals transform by the cofactors: the inverse transposed times the determinant, which
-        // also exists for singular transforms; the sign of the determinant is told apart
-        let cofactor = DMat3::from_cols(
-            linear.y_axis.cross(linear.z_axis),
-            linear.z_axis.cross(linear.x_axis),
-            linear.x_axis.cross(linear.y_axis),
-        );
-        let unit = 1.0 / cofactor.to_cols_array().iter().fold(0.0f64, |m, x| m.max(x.abs())).max(f64::MIN_POSITIVE);
-        let mirrored = linear.determinant() < 0.0;
-        self.instances.push(abi::Instance {
-            normal: (cofactor * unit).to_cols_array_2d().map(|c| c.map(|x| x as f32)),
-            scale: (stretch(linear) as f32).next_up(),
-            colour: i.colour.map_or(0, |c| pack_colour([c[0], c[1], c[2], 1.0])),
-            mirrored: u32::from(mirrored),
-            shell,
-            ..abi::Instance::default()
-        });
+        self.instances.push(placed_part(i.transform, Shown::default().over(i.colour), shell));
         self.placements.push(i.transform * DAffine3::from_translation(origin));
         let instance = self.instances.len() as u32 - 1;
         for face in faces {
@@ -492,20 +492,4 @@ fn drawn_as_faces<'a>(model: &'a Model, items: Option<&Items>) -> Cow<'a, Model>
         model.to_mut().instances.retain(|_| drawn.next() == Some(&true));
     }
     model
-}
-
-/// The largest factor by which a linear map lengthens a vector, rounded up: exact for similarity
-/// transforms, else the bound `sqrt(|M|_1 |M|_inf)`.
-pub(super) fn stretch(m: DMat3) -> f64 {
-    let gram = m.transpose() * m;
-    let s2 = gram.x_axis.x;
-    let off = gram - DMat3::from_diagonal(DVec3::splat(s2));
-    if off.to_cols_array().iter().all(|x| x.abs() <= 1e-9 * s2) {
-        return s2.sqrt() * (1.0 + 1e-9);
-    }
-    let columns = [m.x_axis, m.y_axis, m.z_axis].map(|c| c.abs().element_sum());
-    let t = m.transpose();
-    let rows = [t.x_axis, t.y_axis, t.z_axis].map(|c| c.abs().element_sum());
-    let most = |x: [f64; 3]| x.into_iter().fold(0.0, f64::max);
-    (most(columns) * most(rows)).sqrt()
 }

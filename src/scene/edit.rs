@@ -26,6 +26,7 @@ use glam::DVec2;
 
 /// Why a loop was not replaced; the scene is as it was.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
+#[non_exhaustive]
 pub enum EditError {
     /// The model was uploaded without [`SceneSettings::editable`](crate::picture::SceneSettings::editable).
     #[error("the model was not uploaded as editable")]
@@ -98,6 +99,8 @@ pub(crate) enum EditTarget {
     Cells,
     Curves,
     CurvePoints,
+    /// Of placed parts.
+    Instances,
     /// Of [`ExactScene::all`](super::ExactScene::all), by number.
     Exact(usize),
 }
@@ -235,6 +238,7 @@ impl SceneData {
                 EditTarget::Cells => bytemuck::cast_slice_mut(&mut self.cells),
                 EditTarget::Curves => bytemuck::cast_slice_mut(&mut self.curves),
                 EditTarget::CurvePoints => bytemuck::cast_slice_mut(&mut self.curve_points),
+                EditTarget::Instances => bytemuck::cast_slice_mut(&mut self.instances),
                 EditTarget::Exact(array) => self.exact.bytes_mut(array),
             };
             bytes[w.offset as usize..][..w.bytes.len()].copy_from_slice(&w.bytes);

@@ -28,6 +28,8 @@ pub(crate) struct Meshes {
     pub draws: Vec<(Range<u32>, Range<u32>)>,
     /// Of each part, of each of its meshes: its first triangle, where it is placed.
     pub first_triangles: Vec<Vec<u32>>,
+    /// Of each of those that belong to parts: its number in its part.
+    pub numbers: Vec<u32>,
     /// From this draw on only the triangles that face the eye are seen: Boolean solids.
     pub outward: usize,
 }
@@ -40,9 +42,10 @@ impl Meshes {
         let mut all = Self::default();
         for ((part, &origin), placed) in model.parts.iter().zip(origins).zip(&placed) {
             let mut first_triangles = Vec::with_capacity(part.meshes.len());
-            for mesh in &part.meshes {
+            for (number, mesh) in (0..).zip(&part.meshes) {
                 first_triangles.push(all.triangles.len() as u32);
                 if !mesh.triangles().is_empty() && !placed.is_empty() {
+                    all.numbers.push(number);
                     all.push(mesh, origin, part.closed && !open, placed);
                 }
             }

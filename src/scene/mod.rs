@@ -24,9 +24,11 @@ mod exact;
 mod face;
 mod fine;
 mod flatten;
+mod instance;
 mod link;
 mod mesh;
 mod parts;
+mod picking;
 mod request;
 mod solids;
 mod sub_patches;
@@ -39,7 +41,7 @@ mod way;
 mod whole_view;
 
 pub(crate) use data::{Division, SceneData};
-pub use deep_zoom::{Cut, DeepZoom, DeepZoomUpload};
+pub(crate) use deep_zoom::{Cut, DeepZoom, DeepZoomUpload};
 pub(crate) use edges::EdgeData;
 pub use edges::UndrawnEdges;
 pub use edit::EditError;
@@ -48,7 +50,11 @@ pub(crate) use edit::{EditTarget, Write};
 pub(crate) use exact::ExactData;
 #[cfg(any(test, feature = "baselines"))]
 pub(crate) use flatten::{Cuts, flattened};
+pub use instance::InstanceError;
+pub(crate) use instance::Shown;
 pub(crate) use parts::Told;
+pub use picking::Hit;
+pub(crate) use picking::{Picked, Picking};
 pub(crate) use request::SceneRequest;
 pub use solids::UndrawnSolid;
 pub(crate) use solids::{Asked, Blister, SolidData};
@@ -58,5 +64,7 @@ pub(crate) use upload::BaselineScene;
 #[cfg(feature = "baselines")]
 pub(crate) use upload::TableScene;
 pub(crate) use upload::{EdgeBuffers, ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, Trims};
-pub(crate) use view::{focal_and_slant, seen_by, view};
+#[cfg(any(test, feature = "baselines"))]
+pub(crate) use view::view;
+pub(crate) use view::{focal_and_slant, seen_by};
 pub use way::trim_way;

@@ -65,6 +65,7 @@ pub(crate) struct SolidData {
 /// Why a solid is not drawn.
 #[derive(Clone, Debug, PartialEq, thiserror::Error)]
 #[allow(missing_docs)] // the messages say what each field is
+#[non_exhaustive]
 pub enum UndrawnSolid {
     /// There are too many primitives, or their expression is too large.
     #[error(transparent)]

@@ -13,7 +13,8 @@ use super::view_cell::view_cell;
 use super::whole_view::Ball;
 use crate::model::{Bounds, Camera};
 use crate::picture::TakenWay;
-use glam::Vec3;
+use glam::{DAffine3, Vec3};
+use std::ops::Range;
 
 /// Cells that share a box: a few bytes for each, and yet boxes that are not much larger than a cell.
 const GROUP: usize = 16;
@@ -40,9 +41,22 @@ impl TableView {
 /// Where what the table trims is, in the model's coordinates.
 #[derive(Clone, Debug)]
 pub(crate) struct Trimmed {
-    ball: Ball,
-    /// Of some of its cells each.
+    ball: Option<Ball>,
+    /// Of some cells of one instance each; empty where nobody sees it.
     boxes: Vec<Bounds>,
+    /// Of each placed part, which boxes are its own.
+    placed: Vec<PlacedBoxes>,
+    /// Of the cells of all faces, in the coordinates of their part's centre.
+    cells: Vec<[[f32; 3]; 2]>,
+}
+
+/// Boxes of one placed part.
+#[derive(Clone, Debug)]
+struct PlacedBoxes {
+    boxes: Range<usize>,
+    cells: Range<usize>,
+    /// Around all of its boxes.
+    around: Bounds,
 }
 
 impl Trimmed {
@@ -51,26 +65,48 @@ impl Trimmed {
         if data.trim_way() != Some(TakenWay::Table) {
             return None;
         }
-        let boxes: Vec<Bounds> = data
-            .cell_items
-            .chunks(GROUP)
-            .zip((0..).step_by(GROUP))
-            .map(|(group, first)| {
-                let cells = group.iter().zip(first..).map(|(&placed, item)| box_of(data, placed, item));
-                cells.fold(Bounds::EMPTY, Bounds::union)
-            })
-            .collect();
-        let ball = Ball::around(boxes.iter().copied().fold(Bounds::EMPTY, Bounds::union))?;
-        Some(Self { ball, boxes })
+        let cells = data.cells.iter().map(|cell| [cell.box_min, cell.box_max]).collect();
+        let mut trimmed = Self { ball: None, boxes: Vec::new(), placed: Vec::new(), cells };
+        let mut faces = data.face_instances.iter().peekable();
+        for (number, placement) in (0..).zip(&data.placements) {
+            // the faces of a part follow each other, and so do their cells
+            let mut cells = 0..0;
+            while let Some(face) = faces.next_if(|face| face.instance == number) {
+                let face = face.face as usize;
+                let next = data.faces.get(face + 1);
+                let end = next.map_or(data.cells.len(), |next| next.first_cell as usize);
+                let first = data.faces[face].first_cell as usize;
+                cells = if cells.is_empty() { first..end } else { cells.start..end };
+            }
+            let first = trimmed.boxes.len();
+            trimmed.boxes.resize(first + cells.len().div_ceil(GROUP), Bounds::EMPTY);
+            trimmed.placed.push(PlacedBoxes { boxes: first..trimmed.boxes.len(), cells, around: Bounds::EMPTY });
+            trimmed.place(number as usize, Some(placement));
+        }
+        trimmed.settle();
+        Some(trimmed)
+    }
+
+    /// The part of this number is placed so, or not seen. [`settle`](Self::settle) follows.
+    pub(super) fn place(&mut self, number: usize, placement: Option<&DAffine3>) {
+        let Some(part) = self.placed.get_mut(number) else { return };
+        let boxes = &mut self.boxes[part.boxes.clone()];
+        for (bounds, cells) in boxes.iter_mut().zip(self.cells[part.cells.clone()].chunks(GROUP)) {
+            let seen = cells.iter().flat_map(|cell| placement.map(|placement| box_of(cell, placement)));
+            *bounds = seen.fold(Bounds::EMPTY, Bounds::union);
+        }
+        part.around = boxes.iter().copied().fold(Bounds::EMPTY, Bounds::union);
+    }
+
+    /// All parts are placed.
+    pub(super) fn settle(&mut self) {
+        self.ball = Ball::around(self.placed.iter().map(|part| part.around).fold(Bounds::EMPTY, Bounds::union));
     }
 }
 
-/// Of a cell of the face instance.
-fn box_of(data: &SceneData, placed: u32, item: u32) -> Bounds {
-    let placed = data.face_instances[placed as usize];
-    let cell = data.cells[(data.faces[placed.face as usize].first_cell + item - placed.first_cell) as usize];
-    let [min, max] = [cell.box_min, cell.box_max].map(|p| Vec3::from_array(p).as_dvec3());
-    let placement = data.placements[placed.instance as usize];
+/// Of a cell, as placed.
+fn box_of(cell: &[[f32; 3]; 2], placement: &DAffine3) -> Bounds {
+    let [min, max] = cell.map(|p| Vec3::from_array(p).as_dvec3());
     let corners = Bounds { min, max }.corners().map(|corner| placement.transform_point3(corner));
     corners.into_iter().fold(Bounds::EMPTY, Bounds::with)
 }
@@ -79,10 +115,11 @@ impl SceneData {
     /// What a trim table for this view and so many pixels beside it is made of; `None` where there is no table.
     pub(crate) fn table_view(&self, camera: &Camera, beside_px: f64) -> Option<TableView> {
         let trimmed = self.trimmed.as_ref()?;
-        if let Some(density) = trimmed.ball.table_density(camera) {
+        let ball = trimmed.ball.as_ref()?;
+        if let Some(density) = ball.table_density(camera) {
             return Some(TableView::Everywhere(density));
         }
-        let wider = view_cell(camera, beside_px, &trimmed.ball, &trimmed.boxes);
+        let wider = view_cell(camera, beside_px, ball, &trimmed.boxes);
         Some(TableView::Of(wider.unwrap_or(*camera)))
     }
 }

@@ -214,7 +214,7 @@ impl Sight {
     fn nearest(&self, boxes: &[Bounds]) -> Option<f64> {
         let (near, far) = self.depth_range;
         let mut nearest2 = f64::INFINITY;
-        for bounds in boxes {
+        for bounds in boxes.iter().filter(|bounds| !bounds.is_empty()) {
             let half = 0.5 * (bounds.max - bounds.min);
             let to = bounds.centre() - self.eye;
             let distance2 = (to.abs() - half).max(DVec3::ZERO).length_squared();

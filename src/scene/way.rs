@@ -12,7 +12,7 @@
 //! exact way (`renderer/load.rs`). The renderer keeps a copy of the model for that, which is why [`MOST_POINTS`] is a bound, too.
 
 use super::cells::strips;
-use super::data::stretch;
+use super::instance::stretch;
 use super::request::SceneRequest;
 use super::whole_view::Ball;
 use crate::abi;

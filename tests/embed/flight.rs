@@ -27,7 +27,7 @@ fn record(host: &Host, renderer: &mut Renderer, slot: usize, targets: &Targets, 
     targets.draw(host, cmd, [0.0, 0.0, 0.0, 1.0], &[]);
     targets.hand_over(host, cmd);
     let settings = FrameSettings { tolerance_px, background: None, ..FrameSettings::default() };
-    let into = Into { colour: &targets.colour, depth: Some(&targets.depth), aovs: None, numbers: None };
+    let into = Into { depth: Some(&targets.depth), ..Into::new(&targets.colour) };
     // SAFETY: recording; `begin` waited for the slot's frame before.
     unsafe { renderer.record(cmd, &FrameInput { camera, settings, slot, targets: into }) }.unwrap();
     targets.read_back(host, cmd);
@@ -97,6 +97,56 @@ fn sizes_and_models_change_in_flight() {
     assert_eq!(host.shutdown(), [""; 0]);
 }
 
+/// A sphere goes from left to right, one place a frame, while the other slot's frame is in flight: each frame has it where
+/// it was when that frame was recorded, and where an upload has it.
+#[test]
+fn a_part_moves_while_frames_are_in_flight() {
+    let host = Host::new();
+    let mut model = painted(shapes::sphere(), RED);
+    model.parts.extend(painted(shapes::cube(), GREEN).parts);
+    model.instances.push(shapes::placed(DAffine3::from_translation(DVec3::new(0.0, 9.0, 0.0)), Some(GREEN)));
+    model.instances[1].part = 1;
+    let size = (120, 60);
+    let eye = DVec3::new(0.0, -40.0, 0.0);
+    let (target, up) = (DVec3::ZERO, DVec3::Z);
+    let projection = selvedge::model::Projection::Perspective { fov_y: 0.4 };
+    let camera = Camera { eye, target, up, projection, depth_range: (1.0, 100.0), size };
+    let place = |frame: usize| DAffine3::from_translation(DVec3::X * (2.5 * frame as f64 - 10.0));
+    let targets = [(); SLOTS].map(|()| Targets::new(&host, size, FORMAT));
+    let mut seen = Vec::new();
+    let mut live = renderer(&host, &model, FORMAT);
+    for frame in 0..9 {
+        let slot = frame % SLOTS;
+        host.wait(slot);
+        if frame >= SLOTS {
+            seen.push(targets[slot].values());
+        }
+        live.set_transform(0, place(frame)).unwrap();
+        live.set_visible(1, frame % 3 != 1).unwrap();
+        record(&host, &mut live, slot, &targets[slot], &camera, 0.5);
+    }
+    (9 - SLOTS..9).for_each(|frame| {
+        host.wait(frame % SLOTS);
+        seen.push(targets[frame % SLOTS].values());
+    });
+    drop(live);
+    let mut fresh = renderer(&host, &model, FORMAT);
+    for (frame, seen) in seen.iter().enumerate() {
+        let mut model = model.clone();
+        model.instances[0].transform = place(frame);
+        if frame % 3 == 1 {
+            model.instances.pop();
+        }
+        fresh.upload(&model).unwrap();
+        record(&host, &mut fresh, 0, &targets[0], &camera, 0.5);
+        host.wait(0);
+        assert!(*seen == targets[0].values(), "frame {frame}");
+    }
+    drop(fresh);
+    targets.into_iter().for_each(|targets| targets.destroy(&host));
+    assert_eq!(host.shutdown(), [""; 0]);
+}
+
 /// A view that needs more rows than the first table holds: the report says so, a frame of the other slot
 /// is in flight meanwhile, and the next frame into the slot is whole.
 #[test]
@@ -156,7 +206,7 @@ fn a_target_of_another_size_is_refused() {
     let targets = Targets::new(&host, (32, 32), FORMAT);
     let camera = Camera::around(model.control_bounds(), DVec3::X, DVec3::Z, 0.6, (32, 31));
     let cmd = host.begin(0);
-    let into = Into { colour: &targets.colour, depth: Some(&targets.depth), aovs: None, numbers: None };
+    let into = Into { depth: Some(&targets.depth), ..Into::new(&targets.colour) };
     let input = FrameInput { camera: &camera, settings: FrameSettings::default(), slot: 0, targets: into };
     // SAFETY: recording; nothing is in flight.
     match unsafe { renderer.record(cmd, &input) } {

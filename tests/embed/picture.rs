@@ -17,7 +17,7 @@ const WALL: f64 = 9.0;
 
 /// The renderer on the host's device; the model is uploaded.
 pub fn renderer(host: &Host, model: &Model, colour: vk::Format) -> Renderer {
-    let formats = TargetFormats { colour, depth: Some(DEPTH_FORMAT), aovs: false, numbers: false };
+    let formats = TargetFormats { depth: Some(DEPTH_FORMAT), ..TargetFormats::new(colour) };
     // SAFETY: the host's device meets the requirements and outlives the renderer.
     let mut renderer = unsafe { Renderer::new(host.lend(), formats, crate::host::SLOTS) }.unwrap();
     renderer.upload(model).unwrap();
@@ -63,7 +63,7 @@ fn draw(host: &Host, renderer: &mut Renderer, targets: &Targets, camera: &Camera
     targets.draw(host, cmd, HOST_BLUE, &[(third, third, wall), (2 * third, third, 1.0)]);
     targets.hand_over(host, cmd);
     let settings = FrameSettings { background, ..FrameSettings::default() };
-    let into = Into { colour: &targets.colour, depth: Some(&targets.depth), aovs: None, numbers: None };
+    let into = Into { depth: Some(&targets.depth), ..Into::new(&targets.colour) };
     // SAFETY: recording; the slot's frame was waited for.
     unsafe { renderer.record(cmd, &FrameInput { camera, settings, slot: 0, targets: into }) }.unwrap();
     targets.overlay(host, cmd, 8, [1.0, 0.0, 0.0, 1.0]);

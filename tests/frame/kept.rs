@@ -81,7 +81,9 @@ fn passes(picture: &Picture) -> Vec<&str> {
 
 /// All that a frame tells but its time, and what was drawn anew.
 fn counts(picture: &Picture) -> FrameStats {
-    FrameStats { passes: Vec::new(), reused: false, triangles: 0, ..picture.stats.clone() }
+    let mut stats = picture.stats.clone();
+    (stats.passes, stats.reused, stats.triangles) = (Vec::new(), false, 0);
+    stats
 }
 
 /// Whether the next picture of a viewer makes a trim table. It is as a fresh renderer draws it, of as many rows.

@@ -204,6 +204,7 @@ impl Tracer {
     }
 
     /// The nearest hit, sooner than [`Tracer::hits`] would find it.
+    #[doc(alias = "pick_exact")]
     pub fn first(&self, camera: &Camera, pixel: DVec2) -> Option<Hit> {
         self.probe(camera).first(pixel)
     }

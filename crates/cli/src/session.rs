@@ -217,7 +217,8 @@ impl Session {
     pub fn measured(&mut self, camera: &Camera, outputs: Outputs, first: &FrameStats) -> Result<Measured> {
         let settings = FrameSettings { all_passes: true, ..self.settings };
         let again = during("drawing again, to measure", || self.renderer.render(camera, &settings, outputs))?.stats;
-        let frame = FrameStats { retries: first.retries, ..again };
+        let mut frame = again;
+        frame.retries = first.retries;
         Ok(Measured { frame, first_frame: self.first_frame })
     }
 

@@ -41,7 +41,7 @@ impl Passes {
         if data.samples == Samples::One {
             return Ok(None);
         }
-        let sums = resolve::Formats { colour: average::SUM_FORMAT, aovs: false, ..formats };
+        let sums = resolve::Formats { colour: average::SUM_FORMAT, aovs: [false; 4], ..formats };
         let into = match data.is_layered {
             true => resolve::Destination::Behind { writes_depth: false },
             false => resolve::Destination::Sum,

@@ -14,6 +14,9 @@ use crate::gpu::{Buffer, Commands, Device, GpuError, Resource, TexelBuffer};
 use crate::shaders;
 use bytemuck::{Pod, Zeroable};
 
+/// Words of the draw and of how many there are.
+pub(crate) const DRAW_WORDS: u32 = 5;
+
 /// The passes.
 pub(crate) struct Divide {
     count: Kernel,

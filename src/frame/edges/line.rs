@@ -15,6 +15,9 @@ use crate::scene::{EdgeBuffers, MeshBuffers};
 use crate::shaders;
 use bytemuck::{Pod, Zeroable};
 
+/// Bytes before the number of draws.
+const COUNT_OFFSET: u64 = 16;
+
 /// The pass.
 pub(crate) struct Line {
     pipeline: Pipeline,
@@ -48,7 +51,7 @@ impl Line {
         Ok(Self { pipeline: Draw { constants, ..draw }.pipeline(device)? })
     }
 
-    /// What `draw` says, over a picture of the visibility image's size.
+    /// What `draw` says, and its number, over a picture of the visibility image's size.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, params: Params, draw: &Buffer) {
         let (e, placed) = (b.edges, b.placed.resources());
         let seen = [b.visibility.into(), b.others.into(), Resource::from(&e.face_keys), b.sources.into()];
@@ -64,7 +67,8 @@ impl Line {
             .collect();
         cmd.rendering(b.visibility.size(), &[], None, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&params));
-            cmd.draw_indirect(draw, 0, 1);
+            // lavapipe (Mesa 25.0.7) takes the number of draws of a draw without a count from the draw with one before it
+            cmd.draw_indirect_count(draw, 0, draw, COUNT_OFFSET, 1);
         });
     }
 }

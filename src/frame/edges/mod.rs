@@ -26,12 +26,13 @@ use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, b
 use crate::picture::EdgeSettings;
 use crate::scene::SceneData;
 use crate::shaders::constant;
-use ash::vk;
 use std::sync::Arc;
 
 /// The passes of scenes with lines.
 pub(crate) struct Passes {
     settings: EdgeSettings,
+    /// The host wants their numbers.
+    has_edge_image: bool,
     divide: divide::Divide,
     line: line::Line,
     /// Where outlines of curved faces are wanted, and there are patches.
@@ -44,9 +45,10 @@ impl Passes {
     pub(super) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<Self>, GpuError> {
         let Some(edges) = data.edges.as_ref().filter(|_| data.has_lines()) else { return Ok(None) };
         let constants = constants(data);
-        let numbers = formats.numbers.then_some(NUMBER_FORMAT);
+        let numbers = formats.numbers[0].then_some(NUMBER_FORMAT);
         Ok(Some(Self {
             settings: edges.settings,
+            has_edge_image: formats.numbers[0],
             divide: divide::Divide::new(device)?,
             line: line::Line::new(device, &constants)?,
             fold: (edges.settings.silhouettes && data.has_patches)
@@ -95,7 +97,7 @@ impl EdgeStage {
             counts: room.words("edge chord counts", items)?,
             starts: room.words("edge chord starts", items + 1)?,
             chords: room.structs::<Chord>("edge chords", room.capacities.edges.chords)?,
-            draw: room.indirect::<vk::DrawIndirectCommand>("edge draw", 1)?,
+            draw: room.indirect::<u32>("edge draw", divide::DRAW_WORDS)?,
             best: room.words("best lines", room.size.0 * room.size.1)?,
         })
     }
@@ -171,7 +173,8 @@ impl EdgeStage {
             others: v.of_others(),
         };
         let colours = show::Colours { seen: passes.settings.colour, hidden: passes.settings.hidden_colour };
-        let into: Vec<_> = frame.colour.iter().take(1).chain(frame.numbers.iter().flat_map(|n| n.first())).collect();
+        let numbers = frame.numbers.iter().filter(|_| passes.has_edge_image);
+        let into: Vec<_> = frame.colour.iter().take(1).chain(numbers.flat_map(|n| n.first())).collect();
         let again = into.iter().map(|a| (a.image, Access::COLOUR_WRITE, Access::COLOUR_WRITE));
         barrier::images(cmd, &again.collect::<Vec<_>>());
         let into: Vec<_> = into.into_iter().map(|a| Attachment { load: Load::Keep, ..*a }).collect();

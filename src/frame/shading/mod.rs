@@ -7,9 +7,11 @@ pub(crate) mod seen_squares;
 use super::common::room::Room;
 use super::{Frame, solids};
 use crate::abi::TILE;
-use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load};
+use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, barrier};
 use crate::picture::Samples;
 use crate::scene::SceneData;
+use ash::vk;
+use resolve::AOV_FORMATS;
 use seen_squares::SeenSquares;
 use std::sync::Arc;
 
@@ -21,6 +23,7 @@ pub(crate) struct Passes {
     squares: Option<Arc<SeenSquares>>,
     /// Where images of numbers are wanted.
     numbers: Option<numbers::Numbers>,
+    formats: resolve::Formats,
 }
 
 impl Passes {
@@ -28,7 +31,8 @@ impl Passes {
         Ok(Self {
             resolve: targets(device, data, formats)?,
             squares: data.has_surfaces().then(|| SeenSquares::new(device)).transpose()?.map(Arc::new),
-            numbers: formats.numbers.then(|| numbers::Numbers::new(device)).transpose()?,
+            formats,
+            numbers: formats.has_numbers().then(|| numbers::Numbers::new(device)).transpose()?,
         })
     }
 }
@@ -54,7 +58,8 @@ pub(super) fn kinds(data: &SceneData) -> resolve::Kinds {
 /// The pass into the host's targets; `None` where samples make all of them.
 fn targets(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<resolve::Resolve>, GpuError> {
     // lines and numbers are those of the pixels' centres
-    let beside = formats.aovs || formats.depth.is_some() || data.thickness || formats.numbers || data.has_lines();
+    let beside =
+        formats.has_aovs() || formats.depth.is_some() || data.thickness || formats.has_numbers() || data.has_lines();
     let into = match data.samples {
         Samples::One if data.smooths_trims() || data.smooths_borders() => resolve::Destination::Unmixed,
         Samples::One if data.is_layered => resolve::Destination::Behind { writes_depth: true },
@@ -78,6 +83,9 @@ const NOWHERE: [Load; 4] = [
 pub(crate) struct Shading {
     passes: Arc<Passes>,
     squares: Option<Squares>,
+    /// What passes draw that the host does not want, beside what it wants: images of depth, face, (u, v), normal, edge, part
+    /// and instance, which are drawn together.
+    spare: [Option<Image>; 7],
 }
 
 /// Tiles that see a patch or a mesh.
@@ -92,7 +100,28 @@ impl Shading {
             let buffer = room.words("seen squares", room.squares(TILE))?;
             Ok::<_, GpuError>(Squares { pass: Arc::clone(pass), buffer })
         };
-        Ok(Self { passes: Arc::clone(passes), squares: passes.squares.as_ref().map(squares).transpose()? })
+        let formats = &passes.formats;
+        let mut spare = [const { None }; 7];
+        let all = AOV_FORMATS.iter().copied().chain([numbers::NUMBER_FORMAT; 3]);
+        for ((k, format), is_wanted) in all.enumerate().zip(formats.aovs.into_iter().chain(formats.numbers)) {
+            let is_drawn = if k < AOV_FORMATS.len() { formats.has_aovs() } else { formats.has_numbers() };
+            if is_drawn && !is_wanted {
+                spare[k] = Some(room.image("spare image", format, vk::ImageUsageFlags::COLOR_ATTACHMENT)?);
+            }
+        }
+        let squares = passes.squares.as_ref().map(squares).transpose()?;
+        Ok(Self { passes: Arc::clone(passes), squares, spare })
+    }
+
+    /// Spare images are drawn into; what they held goes.
+    pub(super) fn begin(&self, cmd: &Commands<'_>) {
+        let again = (Access::COLOUR_WRITE.discarded(), Access::COLOUR_WRITE);
+        barrier::images(cmd, &self.spare.iter().flatten().map(|image| (image, again.0, again.1)).collect::<Vec<_>>());
+    }
+
+    /// The image in place of the one of this number that the host does not want.
+    pub(super) fn spare(&self, number: usize) -> Option<&Image> {
+        self.spare[number].as_ref()
     }
 
     /// The pass into the host's targets; `None` where samples make all of them.

@@ -101,8 +101,20 @@ pub(crate) struct SolidKinds {
 pub(crate) struct Formats {
     pub colour: vk::Format,
     pub depth: Option<vk::Format>,
-    pub aovs: bool,
-    pub numbers: bool,
+    /// There are images of depth, face, (u, v) and normal.
+    pub aovs: [bool; 4],
+    /// And of edges, parts and instances.
+    pub numbers: [bool; 3],
+}
+
+impl Formats {
+    pub(crate) fn has_aovs(&self) -> bool {
+        self.aovs.contains(&true)
+    }
+
+    pub(crate) fn has_numbers(&self) -> bool {
+        self.numbers.contains(&true)
+    }
 }
 
 /// Where the picture goes.
@@ -187,7 +199,7 @@ impl Resolve {
             Destination::Unmixed => (BEHIND_FORMAT, Blend::Replace, ", unmixed"),
         };
         let mut colour = vec![ColourTarget { format, blend }];
-        if formats.aovs {
+        if formats.has_aovs() {
             colour.extend(AOV_FORMATS.map(|format| ColourTarget { format, blend: Blend::Replace }));
         }
         let of = if kinds.sun { SUN } else { STUDIO };
@@ -207,7 +219,7 @@ impl Resolve {
         };
         let behind = matches!(into, Destination::Behind { .. } | Destination::Unmixed);
         let of_all = [
-            (constant::HAS_AOVS, u32::from(formats.aovs)),
+            (constant::HAS_AOVS, u32::from(formats.has_aovs())),
             (constant::BEHIND, u32::from(behind)),
             (constant::SOLIDS_HAVE, kinds.solids.map_or(abi::SURFACE_PLANE, |s| s.surfaces)),
         ];

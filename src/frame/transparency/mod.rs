@@ -59,9 +59,9 @@ impl Passes {
             Samples::One => For::Colour(formats.colour),
             Samples::Four | Samples::Eight => For::Sample(average::SUM_FORMAT),
         };
-        let aovs: &[_] = if formats.aovs { &resolve::AOV_FORMATS } else { &[] };
+        let aovs: &[_] = if formats.has_aovs() { &resolve::AOV_FORMATS } else { &[] };
         let first = For::First { colour: formats.colour, aovs };
-        let beside = formats.aovs || formats.depth.is_some();
+        let beside = formats.has_aovs() || formats.depth.is_some();
         Ok(Some(Self {
             colour: data.is_layered.then(|| make(colour)).transpose()?,
             first: (data.is_layered && beside).then(|| make(first)).transpose()?,
@@ -130,7 +130,7 @@ impl Transparency {
         let w = WRITE_TO_READ.0;
         let rows = || band.rows.clone();
         cmd.after(w | Access::INDIRECT_READ, Access::FRAGMENT_WRITE);
-        let depth = frame.depth.as_ref().map(kept);
+        let depth = frame.depth.as_ref().map(Attachment::again);
         if let Some(pass) = passes.colour.as_ref().filter(|_| drawing != Drawing::Beside) {
             drawn_again(frame, cmd);
             // colours are laid over what is there
@@ -142,7 +142,7 @@ impl Transparency {
         }
         if let Some(pass) = passes.first.as_ref().filter(|_| drawing != Drawing::Sample) {
             drawn_again(frame, cmd);
-            let all: Vec<_> = frame.colour.iter().map(kept).collect();
+            let all: Vec<_> = frame.colour.iter().map(Attachment::again).collect();
             pass.record(cmd, &bindings, &all, depth, rows());
         }
         if let (Some(pass), Some(target)) = (&passes.thickness, frame.thickness.filter(|_| drawing != Drawing::Sample))
@@ -152,11 +152,6 @@ impl Transparency {
         }
         cmd.after(Access::FRAGMENT_WRITE, w | Access::INDIRECT_READ);
     }
-}
-
-/// The same attachment, with what is there.
-fn kept<'a>(attachment: &Attachment<'a>) -> Attachment<'a> {
-    Attachment { load: Load::Keep, ..*attachment }
 }
 
 /// The targets are drawn into once more.

@@ -1,7 +1,7 @@
-//! Edits of trim loops, before everything else of a frame.
+//! Edits of trim loops and of placed parts, before everything else of a frame.
 //!
 //! ```text
-//!   frames before ──read──▶ patches, curves, arcs and what sorts them ◀──copies of what was edited
+//!   frames before ──read──▶ patches, curves, arcs and what sorts them; placed parts ◀──copies of what was edited
 //! ```
 
 use crate::frame::Frame;
@@ -15,11 +15,8 @@ impl Frame<'_> {
         let reads = Access::COMPUTE_READ | Access::VERTEX_READ | Access::FRAGMENT_READ;
         let copied = Access::TRANSFER_WRITE;
         barrier::memory(cmd, reads, copied);
-        for write in writes {
-            if let Some(target) = target(scene, write.to) {
-                uploads.write(cmd, target, write.offset, &write.bytes)?;
-            }
-        }
+        let copies = writes.iter().filter_map(|w| Some((target(scene, w.to)?, w.offset, w.bytes.as_slice())));
+        uploads.scatter(cmd, "edits", &copies.collect::<Vec<_>>())?;
         uploads.finish(cmd, reads);
         Ok(uploads)
     }
@@ -27,6 +24,9 @@ impl Frame<'_> {
 
 /// `None` where another way trims than the one that the edit was made for: never.
 fn target(scene: &Scene, to: EditTarget) -> Option<&Buffer> {
+    if to == EditTarget::Instances {
+        return Some(&scene.instances);
+    }
     match (to, scene.trims.as_ref()?) {
         (EditTarget::Patches, _) => Some(&scene.patches),
         (EditTarget::Cells, Trims::Table(trims)) => Some(&trims.cells),

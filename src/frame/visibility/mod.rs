@@ -65,10 +65,12 @@ impl Visibility {
             vk::ImageUsageFlags::empty()
         };
         let apart = counts.trim.is_some() && (counts.mesh_instances > 0 || counts.leaves > 0);
-        let others = || room.image("visibility of others", VISIBILITY_FORMAT, DRAWN_AND_READ);
+        // pixels of them are read back
+        let usage = DRAWN_AND_READ | vk::ImageUsageFlags::TRANSFER_SRC;
+        let others = || room.image("visibility of others", VISIBILITY_FORMAT, usage);
         Ok(Self {
             passes: Arc::clone(passes),
-            image: room.image("visibility", VISIBILITY_FORMAT, DRAWN_AND_READ)?,
+            image: room.image("visibility", VISIBILITY_FORMAT, usage)?,
             others: apart.then(others).transpose()?,
             depth: room.image(
                 "visibility depth",

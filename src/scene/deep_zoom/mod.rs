@@ -23,12 +23,12 @@
 mod edges;
 mod loops;
 
-use super::data::stretch;
 use super::focal_and_slant;
+use super::instance::{Shown, stretch};
 use super::sub_patches::VIEW_PX;
 use super::view_cell::view_cell;
 use super::whole_view::Ball;
-use crate::model::{Bounds, Camera, Face, Instance, Model, Part, TrimLoop};
+use crate::model::{Bounds, Camera, Face, Instance, Model, Part, Solid, TrimLoop};
 use crate::spline::{Patch, PatchGrid};
 use crate::trim::{LoopIndex, RectSide};
 pub(super) use edges::KnownEdges;
@@ -51,12 +51,13 @@ const MOST_WINDOWS: usize = 4096;
 const MOST_DEPTH: u32 = 90;
 
 /// Cuts what views see out of one model. Keeps the patches of faces that were seen close up.
-#[derive(Debug, Default)]
-pub struct DeepZoom {
+#[derive(Debug)]
+pub(crate) struct DeepZoom {
     /// Of each part, of each face.
     faces: Vec<Vec<Known>>,
-    /// Around the model.
-    ball: Option<Ball>,
+    /// Of each part, meshes included; and of the solids.
+    bounds: Vec<Bounds>,
+    solids: Bounds,
     edges: KnownEdges,
     /// What was told last; `None`: nothing that holds.
     held: Option<Held>,
@@ -64,20 +65,20 @@ pub struct DeepZoom {
 
 /// What a view wants uploaded.
 #[derive(Clone, Debug, PartialEq)]
-pub enum DeepZoomUpload {
+pub(crate) enum DeepZoomUpload {
     /// What was wanted last serves this view, too; at first that is the model as it is.
     Same,
     /// The model as it is.
     Whole,
-    /// This in its place: [`Renderer::upload_cut`](crate::renderer::Renderer::upload_cut).
+    /// This in its place.
     Cut(Box<Cut>),
 }
 
 /// What views from near by see of a model.
 #[derive(Clone, Debug, PartialEq)]
-pub struct Cut {
+pub(crate) struct Cut {
     /// Faces that are seen, or windows of them.
-    pub model: Model,
+    pub(crate) model: Model,
     /// Of each of its parts: how large is what its views would show, were they [`VIEW_PX`] wide. Units of the part.
     pub(super) extents: Vec<f64>,
     /// Of each of its parts, where it is from.
@@ -121,6 +122,13 @@ struct Sight {
     perspective: bool,
     /// Pixels per part unit at unit depth, or everywhere in a parallel view.
     pixels: f64,
+}
+
+impl Cut {
+    /// Of a part of it and a face of that: the face of the whole model's part.
+    pub(crate) fn face_of(&self, part: usize, face: usize) -> usize {
+        self.sources[part].faces[face]
+    }
 }
 
 impl Sight {
@@ -193,24 +201,32 @@ impl Window {
 
 impl DeepZoom {
     /// Of a model that has been uploaded as it is. Looks at nothing but control points.
-    pub fn new(model: &Model) -> Self {
+    pub(crate) fn new(model: &Model) -> Self {
         let known = |face: &Face| Known { bounds: face.surface.bounds(), cut: None };
         let faces = model.parts.iter().map(|part| part.faces.iter().map(known).collect()).collect();
-        let ball = Ball::around(model.control_bounds());
-        Self { faces, ball, edges: KnownEdges::default(), held: Some(Held::Whole) }
+        let solids = model.solids.iter().map(Solid::bounds).filter(|b| b.min.is_finite() && b.max.is_finite());
+        Self {
+            faces,
+            bounds: model.parts.iter().map(Part::control_bounds).collect(),
+            solids: solids.fold(Bounds::EMPTY, Bounds::union),
+            edges: KnownEdges::default(),
+            held: Some(Held::Whole),
+        }
     }
 
-    /// What to upload for this view of `model`, the one that this was made for, in place of what was told last.
+    /// What to upload for this view of `model`, in place of what was told last. Its parts are those of the model that this
+    /// was made for, and so are their loops; its instances are as many, and shown like this.
     ///
-    /// Cost where that serves this view, too: some 0.2 µs a placed face.
-    pub fn of(&mut self, model: &Model, camera: &Camera) -> DeepZoomUpload {
-        let seen = self.seen(model, camera);
+    /// Cost where that serves this view, too: some 0.2 µs an instance; and a placed face, where one may be close.
+    pub(crate) fn of(&mut self, model: &Model, shown: &[Shown], camera: &Camera) -> DeepZoomUpload {
+        let seen = if self.may_be_close(model, shown, camera) { self.seen(model, shown, camera) } else { Vec::new() };
         if !seen.iter().any(Seen::is_close) {
             let held = self.held.replace(Held::Whole);
             return if held == Some(Held::Whole) { DeepZoomUpload::Same } else { DeepZoomUpload::Whole };
         }
         let boxes: Vec<Bounds> = seen.iter().flat_map(|seen| self.boxes(model, seen, camera.eye)).collect();
-        let wider = self.ball.and_then(|ball| view_cell(camera, BESIDE_PX, &ball, &boxes)).unwrap_or(*camera);
+        let ball = self.ball(model, shown);
+        let wider = ball.and_then(|ball| view_cell(camera, BESIDE_PX, &ball, &boxes)).unwrap_or(*camera);
         let held = self.held.replace(Held::Cut(wider));
         if held == self.held {
             return DeepZoomUpload::Same;
@@ -225,7 +241,7 @@ impl DeepZoom {
         };
         let edges = self.edges.clone();
         let mut near = Cut { model: none, extents: Vec::new(), sources: Vec::new(), camera: wider, edges };
-        for seen in self.seen(model, &wider) {
+        for seen in self.seen(model, shown, &wider) {
             let instance = &model.instances[seen.placed];
             self.add(&mut near, &model.parts[instance.part], instance, &seen);
         }
@@ -233,12 +249,29 @@ impl DeepZoom {
     }
 
     /// What was told last was not uploaded: the next view is told again.
-    pub fn forget(&mut self) {
+    pub(crate) fn forget(&mut self) {
         self.held = None;
     }
 
+    /// Around what is shown of the model.
+    fn ball(&self, model: &Model, shown: &[Shown]) -> Option<Ball> {
+        let visible = model.instances.iter().zip(shown).filter(|(_, shown)| shown.visible);
+        let bounds = visible.map(|(instance, _)| (self.bounds[instance.part], instance));
+        let placed = bounds.filter(|(bounds, _)| !bounds.is_empty()).map(|(b, i)| placed((b.min, b.max), i));
+        Ball::around(placed.fold(self.solids, Bounds::union))
+    }
+
+    /// False where no face is: each lies in the box of its part.
+    fn may_be_close(&self, model: &Model, shown: &[Shown], camera: &Camera) -> bool {
+        model.instances.iter().zip(shown).filter(|(_, shown)| shown.visible).any(|(instance, _)| {
+            let bounds = self.bounds[instance.part];
+            let pixels = Sight::new(camera, instance).of_box((bounds.min, bounds.max));
+            pixels.is_some_and(|pixels| pixels * 0.5 * bounds.diagonal() > MOST_PX)
+        })
+    }
+
     /// What a camera sees of each placed part.
-    fn seen(&mut self, model: &Model, camera: &Camera) -> Vec<Seen> {
+    fn seen(&mut self, model: &Model, shown: &[Shown], camera: &Camera) -> Vec<Seen> {
         let spans: Vec<f64> = self.faces.iter().map(|faces| span(faces)).collect();
         let coarse = |(placed, instance): (usize, &Instance)| {
             let sight = Sight::new(camera, instance);
@@ -254,7 +287,8 @@ impl DeepZoom {
             };
             Seen { placed, sight, faces }
         };
-        let mut all: Vec<_> = model.instances.iter().enumerate().map(coarse).collect();
+        let visible = model.instances.iter().enumerate().filter(|(nth, _)| shown[*nth].visible);
+        let mut all: Vec<_> = visible.map(coarse).collect();
         // a face's box may come nearer than its patches
         for Seen { placed, sight, faces } in &mut all {
             let part = model.instances[*placed].part;

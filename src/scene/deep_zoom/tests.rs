@@ -14,6 +14,11 @@ fn random_loop(r: &mut Random) -> TrimLoop {
 }
 
 /// Within windows from the size of the loop down to a millionth, most at a point of the loop.
+/// Every instance is shown.
+fn all_of(model: &Model) -> Vec<Shown> {
+    vec![Shown::default(); model.instances.len()]
+}
+
 #[test]
 fn a_clipped_loop_winds_alike_in_the_window() {
     let mut r = Random::new(3);
@@ -83,7 +88,10 @@ fn camera(model: &Model, uv: DVec2, distance: f64) -> Camera {
 #[test]
 fn an_ordinary_view_keeps_the_model() {
     let model = wavy();
-    assert_eq!(DeepZoom::new(&model).of(&model, &camera(&model, DVec2::splat(0.5), 10.0)), DeepZoomUpload::Same);
+    assert_eq!(
+        DeepZoom::new(&model).of(&model, &all_of(&model), &camera(&model, DVec2::splat(0.5), 10.0)),
+        DeepZoomUpload::Same
+    );
 }
 
 /// At (u, v) in the picture there is a window, small enough, and its surface is the face's; windows stay few.
@@ -96,7 +104,7 @@ fn windows_cover_what_is_seen() {
     for distance in [1e-2, 1e-4, 1e-6] {
         for uv in [DVec2::new(0.45, 0.2), DVec2::new(0.5, 0.4), DVec2::new(0.6, 0.65), DVec2::new(0.0, 1.0)] {
             let camera = camera(&model, uv, distance);
-            let DeepZoomUpload::Cut(cut) = deep_zoom.of(&model, &camera) else {
+            let DeepZoomUpload::Cut(cut) = deep_zoom.of(&model, &all_of(&model), &camera) else {
                 panic!("too close for single precision")
             };
             let near = &cut.model;
@@ -136,7 +144,9 @@ fn windows_cover_what_is_seen() {
 #[test]
 fn windows_overlap_by_little() {
     let model = wavy();
-    let DeepZoomUpload::Cut(cut) = DeepZoom::new(&model).of(&model, &camera(&model, DVec2::splat(0.5), 1e-4)) else {
+    let DeepZoomUpload::Cut(cut) =
+        DeepZoom::new(&model).of(&model, &all_of(&model), &camera(&model, DVec2::splat(0.5), 1e-4))
+    else {
         panic!("too close for single precision")
     };
     let domains = cut.model.parts.iter().flat_map(|p| &p.faces).map(|f| <[_; 2]>::from(f.surface.domain()));
@@ -157,19 +167,19 @@ fn a_view_that_hardly_moves_keeps_what_was_cut() {
     let mut deep_zoom = DeepZoom::new(&model);
     let whole = camera(&model, DVec2::splat(0.5), 10.0);
     let start = camera(&model, DVec2::new(0.45, 0.2), 1e-3);
-    assert_eq!(deep_zoom.of(&model, &whole), DeepZoomUpload::Same);
+    assert_eq!(deep_zoom.of(&model, &all_of(&model), &whole), DeepZoomUpload::Same);
     let mut told = [0; 2]; // that serves, too; cut anew
     for step in 0..100 {
         let by = DVec3::new(1.0, 0.5, 0.0) * 1e-3 * 0.6 / 600.0 * f64::from(step);
         let moved = Camera { eye: start.eye + by, target: start.target + by, ..start };
-        match deep_zoom.of(&model, &moved) {
+        match deep_zoom.of(&model, &all_of(&model), &moved) {
             DeepZoomUpload::Same => told[0] += 1,
             DeepZoomUpload::Whole => panic!("too close for single precision"),
             DeepZoomUpload::Cut(cut) => {
                 told[1] += 1;
                 assert_eq!(cut.extents.len(), cut.model.parts.len());
                 assert_eq!(
-                    DeepZoom::new(&model).of(&model, &moved),
+                    DeepZoom::new(&model).of(&model, &all_of(&model), &moved),
                     DeepZoomUpload::Cut(cut),
                     "what was drawn before counts"
                 );
@@ -178,7 +188,7 @@ fn a_view_that_hardly_moves_keeps_what_was_cut() {
     }
     assert!(told[0] >= 80 && told[1] >= 1, "{told:?}");
     deep_zoom.forget();
-    assert!(matches!(deep_zoom.of(&model, &start), DeepZoomUpload::Cut(_)));
-    assert_eq!(deep_zoom.of(&model, &whole), DeepZoomUpload::Whole);
-    assert_eq!(deep_zoom.of(&model, &whole), DeepZoomUpload::Same);
+    assert!(matches!(deep_zoom.of(&model, &all_of(&model), &start), DeepZoomUpload::Cut(_)));
+    assert_eq!(deep_zoom.of(&model, &all_of(&model), &whole), DeepZoomUpload::Whole);
+    assert_eq!(deep_zoom.of(&model, &all_of(&model), &whole), DeepZoomUpload::Same);
 }

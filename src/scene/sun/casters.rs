@@ -15,7 +15,7 @@ use super::SunData;
 use super::faces::{FacePlan, Near};
 use crate::abi::{OWN_PLANE, SunFacet, SunTriangle};
 use crate::model::{Bounds, Model, Part};
-use crate::scene::data::stretch;
+use crate::scene::instance::stretch;
 use crate::scene::solids::{Operand, SolidData};
 use glam::{DAffine3, DMat2, DVec2, DVec3};
 use rayon::prelude::*;

@@ -288,8 +288,9 @@ mod tests {
         let pass = |name: &str, gpu_ms| PassTime { name: name.into(), gpu_ms };
         let passes = [("trim table", 2.0), (UNTESTED, 5.5), ("visibility", 7.0), ("gaps", 1.0), ("resolve", 3.0)];
         let passes: Vec<_> = passes.map(|(name, ms)| pass(name, ms)).into();
-        let turning = FrameStats { passes: passes[1..].to_vec(), ..FrameStats::default() };
-        let all = FrameStats { passes, ..FrameStats::default() };
+        let (mut turning, mut all) = (FrameStats::default(), FrameStats::default());
+        turning.passes = passes[1..].to_vec();
+        all.passes = passes;
         let cost = cost(&all, &turning, vec![("trim rows".into(), 12)]);
         assert_eq!((cost.trim_ms, cost.own_passes_ms, cost.gaps_ms, cost.frame_ms), (3.5, 2.0, 1.0, 13.0));
         assert_eq!((cost.turning_trim_ms, cost.turning_frame_ms), (1.5, 11.0));

@@ -50,6 +50,7 @@ const LENGTHS: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
 /// Why a camera shows nothing.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
 #[allow(missing_docs)]
+#[non_exhaustive]
 pub enum CameraError {
     #[error("the camera has a coordinate that is not a number")]
     NotFinite,

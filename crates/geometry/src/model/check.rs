@@ -109,7 +109,11 @@ impl Model {
 }
 
 impl Instance {
-    fn check(&self, instance: usize, parts: usize) -> Result<(), ModelError> {
+    /// Checks that it can be drawn as the instance of this number, in a model of so many parts.
+    ///
+    /// # Errors
+    /// [`ModelError::Part`], [`ModelError::Transform`], [`ModelError::Flat`], [`ModelError::Colour`].
+    pub fn check(&self, instance: usize, parts: usize) -> Result<(), ModelError> {
         if self.part >= parts {
             return Err(ModelError::Part { instance, part: self.part, parts });
         }

@@ -1,0 +1,116 @@
+//! A host's images, each by itself; and what crosses threads.
+
+use super::{HeadlessDevice, HeadlessError, HeadlessOptions, HeadlessRenderer};
+use crate::gpu::{Access, Device, Image, ImageInfo, Pool, ReadBack, barrier};
+use crate::model::{Camera, Model};
+use crate::picture::{EdgeSettings, FrameSettings, Outputs, Picture, SceneSettings};
+use crate::renderer::{Aovs, FrameInput, RenderError, Renderer, TargetFormats, Targets};
+use ash::vk;
+use glam::DVec3;
+
+const SIZE: (u32, u32) = (64, 48);
+const ALL: Outputs = Outputs { edge: true, part: true, instance: true, ..Outputs::ALL };
+
+fn image(device: &Device, name: &str, format: vk::Format, texel: u64) -> (Image, ReadBack, u64) {
+    let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT | vk::ImageUsageFlags::TRANSFER_SRC;
+    let image = Image::new(device, &ImageInfo { name, size: SIZE, format, usage, pool: Pool::Transient }).unwrap();
+    let bytes = u64::from(SIZE.0 * SIZE.1) * texel;
+    (image, ReadBack::new(device, name, bytes).unwrap(), bytes)
+}
+
+/// The images of one frame of these outputs, in the order of their fields behind the colour; empty where there is none.
+fn drawn(device: &HeadlessDevice, model: &Model, settings: SceneSettings, outputs: Outputs) -> Vec<Vec<u8>> {
+    let gpu = device.device();
+    let formats = TargetFormats { outputs, ..TargetFormats::new(vk::Format::R8G8B8A8_SRGB) };
+    let mut renderer = Renderer::on(gpu, formats, 1).unwrap();
+    renderer.upload_with(model, settings).unwrap();
+    let Outputs { depth, face, uv, normal, edge, part, instance, .. } = outputs;
+    let [of_depth, of_face, of_uv, of_normal] = Renderer::AOV_FORMATS;
+    let number = Renderer::NUMBER_FORMAT;
+    let named = [
+        ("colour", true, formats.colour, 4),
+        ("depth", depth, of_depth, 4),
+        ("face", face, of_face, 4),
+        ("uv", uv, of_uv, 8),
+        ("normal", normal, of_normal, 16),
+        ("edge", edge, number, 4),
+        ("part", part, number, 4),
+        ("instance", instance, number, 4),
+    ];
+    let made = named.map(|(name, wanted, format, texel)| wanted.then(|| image(gpu, name, format, texel)));
+    let of = |k: usize| made[k].as_ref().map(|(image, ..)| image);
+    let [depth, face, uv, normal] = [1, 2, 3, 4].map(of);
+    let [edge, part, instance] = [5, 6, 7].map(of);
+    let aovs = Aovs { depth, face, uv, normal, edge, part, instance };
+    let targets = Targets { aovs, ..Targets::new(of(0).unwrap()) };
+    let bounds = model.control_bounds();
+    let camera = Camera::around(bounds, DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, SIZE);
+    let input = FrameInput { camera: &camera, settings: FrameSettings::default(), slot: 0, targets };
+    let there = || made.iter().flatten();
+    while !renderer.report(0).unwrap().is_some_and(|report| report.complete) {
+        let recorded = device.try_submit(|cmd| {
+            let new = there().map(|(i, ..)| (i, Access::TRANSFER_READ.discarded(), Access::COLOUR_WRITE));
+            barrier::images(cmd, &new.collect::<Vec<_>>());
+            // SAFETY: recording; the submission is waited for.
+            unsafe { renderer.record(cmd.raw(), &input) }?;
+            let end = there().map(|(i, ..)| (i, Access::COLOUR_WRITE, Access::TRANSFER_READ));
+            barrier::images(cmd, &end.collect::<Vec<_>>());
+            there().for_each(|(i, read, _)| read.record_image(cmd, i, vk::ImageAspectFlags::COLOR));
+            Ok::<_, RenderError>(())
+        });
+        recorded.unwrap().unwrap();
+    }
+    made.iter()
+        .map(|made| made.as_ref().map_or_else(Vec::new, |(_, read, bytes)| read.values(*bytes as usize)))
+        .collect()
+}
+
+/// Any choice of images: each is the same as among all of them.
+#[test]
+fn each_image_stands_by_itself() {
+    let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/bracket.step");
+    let mut model = selvedge_io::import::open(&path).unwrap().model;
+    let device = HeadlessDevice::new(&HeadlessOptions { device: None, validation: true }).unwrap();
+    let one = |k: usize| Outputs {
+        depth: k == 0,
+        face: k == 1,
+        uv: k == 2,
+        normal: k == 3,
+        edge: k == 4,
+        part: k == 5,
+        instance: k == 6,
+        thickness: false,
+    };
+    let settings = SceneSettings { edges: Some(EdgeSettings::default()), ..SceneSettings::default() };
+    for is_clear in [false, true] {
+        if is_clear {
+            model.instances[0].colour = Some([0.1, 0.2, 0.9, 0.5]);
+        }
+        let all = drawn(&device, &model, settings, ALL);
+        let some = Outputs { face: true, normal: true, instance: true, ..Outputs::default() };
+        let singles = if is_clear { 1..2 } else { 0..7 };
+        for outputs in singles.map(one).chain([some]) {
+            let own = drawn(&device, &model, settings, outputs);
+            for (k, (own, all)) in own.iter().zip(&all).enumerate() {
+                assert!(own.is_empty() || own == all, "image {k} of {outputs:?}, seen through: {is_clear}");
+            }
+            let wanted = outputs.has_points() || outputs.has_numbers();
+            assert_eq!(own[1..].iter().any(|image| !image.is_empty()), wanted);
+        }
+    }
+    let messages = device.shutdown();
+    assert!(messages.is_empty(), "{messages:?}");
+}
+
+#[test]
+fn what_hosts_hold_crosses_threads() {
+    fn crosses<T: Send + Sync>() {}
+    crosses::<Renderer>();
+    crosses::<Image>();
+    crosses::<Model>();
+    crosses::<Camera>();
+    crosses::<RenderError>();
+    crosses::<HeadlessRenderer>();
+    crosses::<HeadlessError>();
+    crosses::<Picture>();
+}

@@ -1,0 +1,52 @@
+//! Why a model was not uploaded, or a frame not recorded.
+
+use super::{TooMany, UndrawnEdges, UndrawnSolid};
+use crate::gpu::GpuError;
+use crate::model::{CameraError, ModelError};
+use crate::picture::{BadEdges, FrameSettings};
+
+/// Why a frame was not recorded.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum RenderError {
+    /// The camera shows nothing.
+    #[error("camera: {0}")]
+    Camera(#[from] CameraError),
+    /// Vulkan or its memory.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// [`FrameSettings::tolerance_px`] is below [`FrameSettings::LEAST_TOLERANCE_PX`].
+    #[error("the tolerance must be at least {least} pixels, not {0}", least = FrameSettings::LEAST_TOLERANCE_PX)]
+    Tolerance(f64),
+    /// The model cannot be drawn.
+    #[error("model: {0}")]
+    Model(#[from] ModelError),
+    /// The model, or what this view needs of it.
+    #[error(transparent)]
+    TooMany(#[from] TooMany),
+    /// A Boolean solid that cannot be drawn.
+    #[error(transparent)]
+    Solid(#[from] UndrawnSolid),
+    /// [`sun`](crate::picture::SceneSettings::sun) has no length, or no numbers.
+    #[error("the direction towards the sun must be finite and not 0, not {0}")]
+    Sun(glam::DVec3),
+    /// [`Smooth::Trims`](crate::picture::Smooth::Trims) beside something that it does not go with.
+    #[error("smooth trims do not go with {0}")]
+    SmoothTrims(&'static str),
+    /// [`edges`](crate::picture::SceneSettings::edges) that cannot be drawn.
+    #[error(transparent)]
+    Edges(#[from] BadEdges),
+    /// A part whose edges are no curves.
+    #[error("edges: {0}")]
+    UndrawnEdges(#[from] UndrawnEdges),
+    /// A target of another size than the camera's.
+    #[error("the target `{name}` is {width} x {height}, the camera's picture another size")]
+    TargetSize {
+        /// Its name.
+        name: String,
+        /// Its width.
+        width: u32,
+        /// Its height.
+        height: u32,
+    },
+}

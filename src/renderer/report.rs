@@ -1,0 +1,63 @@
+//! What became of a frame, once the GPU has finished it.
+
+use super::Renderer;
+use crate::gpu::GpuError;
+use crate::picture::{FrameStats, PassTime, PoolBytes, TakenWay};
+
+/// What became of a frame.
+#[derive(Clone, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct FrameReport {
+    /// Every buffer sufficed; otherwise record the frame again.
+    pub complete: bool,
+    /// What it cost.
+    pub stats: FrameStats,
+}
+
+impl Renderer {
+    /// What became of the frame recorded last into `slot`, which has finished on the GPU; `None`
+    /// when there was none.
+    ///
+    /// # Errors
+    /// [`GpuError`].
+    pub fn report(&self, slot: usize) -> Result<Option<FrameReport>, GpuError> {
+        let slot = &self.slots[slot];
+        if !slot.recorded {
+            return Ok(None);
+        }
+        let c = slot.read_counters();
+        let scopes = slot.times.read()?;
+        let stats = FrameStats {
+            passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
+            reused: slot.reused,
+            trim: self.loaded.as_ref().and_then(|l| l.counts.trim).and_then(TakenWay::reported),
+            patches: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.items)),
+            triangles: scopes.iter().filter_map(|s| s.statistics).map(|s| s.triangles).sum(),
+            sub_patches: u64::from(c.plain) + u64::from(c.trimmed),
+            trim_rows: u64::from(c.rows),
+            trim_segments: u64::from(c.segments),
+            trim_intercepts: u64::from(c.intercepts),
+            gap_candidates: u64::from(c.gap_candidates),
+            clamps: u64::from(c.clamps),
+            hidden_patches: u64::from(c.hidden),
+            fragments: u64::from(c.fragments),
+            mended: u64::from(c.mended),
+            unpaired: u64::from(c.unpaired),
+            contact_pixels: u64::from(c.contacts),
+            overlap_pixels: u64::from(c.overlaps),
+            open_clear: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.open)),
+            shadowless: self.loaded.as_ref().map_or(0, |l| u64::from(l.counts.shadowless)),
+            shadow_deviation: self.loaded.as_ref().and_then(|l| l.data.sun.as_ref()).map_or(0.0, |sun| sun.deviation),
+            edge_chords: u64::from(c.edge_chords),
+            layers: u64::from(c.layers),
+            bands: slot.bands,
+            solid_bytes: slot.solid_bytes.clone(),
+            retries: 0,
+            edit_bytes: slot.edit_bytes,
+            pools: self.device.pool_bytes().map(|(p, bytes)| PoolBytes { name: p.name().to_owned(), bytes }).to_vec(),
+            device: self.device.name().to_owned(),
+            driver: self.device.driver().to_owned(),
+        };
+        Ok(Some(FrameReport { complete: c.failed == 0, stats }))
+    }
+}

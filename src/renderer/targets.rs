@@ -1,0 +1,146 @@
+//! The host's images: their formats, and those of one frame.
+
+use super::RenderError;
+use crate::frame::shading::resolve;
+use crate::frame::{Stages, target};
+use crate::gpu::{Attachment, Image};
+use crate::picture::Outputs;
+use ash::vk;
+
+/// Formats of the images that the host will pass to [`Renderer::record`](super::Renderer::record).
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct TargetFormats {
+    /// Colour target; an sRGB format encodes by itself, for others the renderer encodes.
+    pub colour: vk::Format,
+    /// Depth target, if the host wants the model's depth among its own. Reversed: at distance `z` along the view axis
+    /// `near (far - z) / (z (far - near))` in a perspective view and `(far - z) / (far - near)` in a parallel one; 1 at
+    /// the near plane, 0 at the far one. Tested with `GREATER_OR_EQUAL`, and written.
+    pub depth: Option<vk::Format>,
+    /// Which other images there are, each of the format that [`Aovs`] and [`Targets`] name. With `thickness` models are
+    /// uploaded with [`SceneSettings::thickness`](crate::picture::SceneSettings::thickness); a frame may leave its image
+    /// out.
+    pub outputs: Outputs,
+}
+
+/// The host's images for one frame, all of the camera's size: [`Image::borrowed`] makes them of Vulkan
+/// handles.
+///
+/// Barriers around the frame are the host's: what it did before must be ordered before
+/// [`Access::COLOUR_WRITE`](crate::gpu::Access::COLOUR_WRITE) and
+/// [`Access::DEPTH_WRITE`](crate::gpu::Access::DEPTH_WRITE), what it does next after them.
+#[derive(Clone, Copy, Debug)]
+pub struct Targets<'a> {
+    /// In layout `COLOR_ATTACHMENT_OPTIMAL` before and after, as all images but `depth`.
+    pub colour: &'a Image,
+    /// In layout `DEPTH_STENCIL_ATTACHMENT_OPTIMAL` before and after.
+    pub depth: Option<&'a Image>,
+    /// Images beside the colour.
+    pub aovs: Aovs<'a>,
+    /// The length of each pixel's ray within solids, between near and far plane and in model units: Boolean solids and
+    /// closed parts, where several overlap counted once; 0 where there is none. `R32_SFLOAT`.
+    pub thickness: Option<&'a Image>,
+}
+
+/// Images of what each pixel's centre sees, those that [`TargetFormats::outputs`] names.
+/// [`Picture`](crate::picture::Picture) says what each holds.
+#[derive(Clone, Copy, Debug, Default)]
+pub struct Aovs<'a> {
+    /// `R32_SFLOAT`.
+    pub depth: Option<&'a Image>,
+    /// `R32_UINT`.
+    pub face: Option<&'a Image>,
+    /// `R32G32_SFLOAT`.
+    pub uv: Option<&'a Image>,
+    /// `R32G32B32A32_SFLOAT`. The fourth component is 1, but 0 for background and where
+    /// [`sun`](crate::picture::SceneSettings::sun) does not reach.
+    pub normal: Option<&'a Image>,
+    /// `R32_UINT`.
+    pub edge: Option<&'a Image>,
+    /// `R32_UINT`.
+    pub part: Option<&'a Image>,
+    /// `R32_UINT`.
+    pub instance: Option<&'a Image>,
+}
+
+impl TargetFormats {
+    /// A colour target alone.
+    pub fn new(colour: vk::Format) -> Self {
+        Self { colour, depth: None, outputs: Outputs::default() }
+    }
+
+    /// As the passes want them.
+    pub(super) fn of_passes(self) -> resolve::Formats {
+        let o = self.outputs;
+        let (aovs, numbers) = ([o.depth, o.face, o.uv, o.normal], [o.edge, o.part, o.instance]);
+        resolve::Formats { colour: self.colour, depth: self.depth, aovs, numbers }
+    }
+}
+
+impl<'a> Targets<'a> {
+    /// A colour target alone.
+    pub fn new(colour: &'a Image) -> Self {
+        Self { colour, depth: None, aovs: Aovs::default(), thickness: None }
+    }
+
+    fn points(&self) -> [Option<&'a Image>; 4] {
+        let Aovs { depth, face, uv, normal, .. } = self.aovs;
+        [depth, face, uv, normal]
+    }
+
+    fn all_numbers(&self) -> [Option<&'a Image>; 3] {
+        let Aovs { edge, part, instance, .. } = self.aovs;
+        [edge, part, instance]
+    }
+
+    /// They have the size of the picture.
+    ///
+    /// # Panics
+    /// When they are not those of `formats`.
+    pub(super) fn check(&self, formats: &TargetFormats, size: (u32, u32)) -> Result<(), RenderError> {
+        let fixed = [Some(self.colour), self.depth, self.thickness];
+        for image in fixed.into_iter().chain(self.points()).chain(self.all_numbers()).flatten() {
+            if image.size() != size {
+                let (width, height) = image.size();
+                return Err(RenderError::TargetSize { name: image.name().to_owned(), width, height });
+            }
+        }
+        let is_there = |image: Option<&Image>| image.is_some();
+        let [depth, face, uv, normal] = self.points().map(is_there);
+        let [edge, part, instance] = self.all_numbers().map(is_there);
+        assert!(self.thickness.is_none() || formats.outputs.thickness, "TargetFormats::outputs has a thickness");
+        let thickness = formats.outputs.thickness;
+        let outputs = Outputs { depth, face, uv, normal, thickness, edge, part, instance };
+        assert_eq!(outputs, formats.outputs, "the targets are those of TargetFormats::outputs");
+        assert_eq!(is_there(self.depth), formats.depth.is_some(), "the targets are those of TargetFormats::depth");
+        Ok(())
+    }
+
+    /// What pass `resolve` draws into.
+    pub(super) fn colours<'b>(&self, formats: &TargetFormats, stages: &'b Stages, keep: bool) -> Vec<Attachment<'b>>
+    where
+        'a: 'b,
+    {
+        let aovs = self.points().into_iter().enumerate().filter(|_| formats.outputs.has_points());
+        let aovs = aovs.map(|(k, image)| target(image.unwrap_or_else(|| spare(stages, k)), keep));
+        [target(self.colour, keep)].into_iter().chain(aovs).collect()
+    }
+
+    /// Images of edges, parts and instances, where there is one of them.
+    pub(super) fn numbers<'b>(
+        &self,
+        formats: &TargetFormats,
+        stages: &'b Stages,
+        keep: bool,
+    ) -> Option<[Attachment<'b>; 3]>
+    where
+        'a: 'b,
+    {
+        let images = self.all_numbers();
+        let of = |k: usize| target(images[k].unwrap_or_else(|| spare(stages, 4 + k)), keep);
+        formats.outputs.has_numbers().then(|| [0, 1, 2].map(of))
+    }
+}
+
+fn spare(stages: &Stages, number: usize) -> &Image {
+    stages.spare(number).expect("what the host does not want is drawn into an image of the stage")
+}

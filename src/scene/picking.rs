@@ -1,0 +1,274 @@
+//! What a pixel of the visibility images means, as a point of the model in `f64`.
+//!
+//! ```text
+//!   word, (u, v) of a triangle  ─▶ item ─▶ face of an instance ──Newton in f64──▶ exact point under the pixel's centre
+//!   word, triangle of a mesh    ─▶ mesh of an instance         ──plane──────────▶
+//!   word, depth of a solid      ─▶ primitive                   ──ray────────────▶
+//! ```
+//!
+//! Cost: a binary search in the scene's placed faces, and one surface point a step of Newton's method.
+
+use super::data::SceneData;
+use crate::abi;
+use crate::abi::constants::visible::{GAP_CANDIDATE, SEEN_KIND, SEEN_MESH, SEEN_OPERAND, SEEN_SOLID};
+use crate::model::{Camera, Face, Mesh, Model};
+use glam::{DAffine3, DMat4, DVec2, DVec3, Vec4Swizzles};
+
+/// Steps of Newton's method, which doubles the digits with each: the start is within a pixel or so.
+const MOST_STEPS: usize = 32;
+/// It has arrived, pixels.
+const THERE_PX: f64 = 1e-9;
+/// Of the domain, the longest step.
+const LONGEST_STEP: f64 = 0.25;
+
+/// What a pixel shows.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Hit {
+    /// Index into [`Model::instances`](crate::model::Model::instances); `None` of Boolean solids.
+    pub instance: Option<usize>,
+    /// Index into [`Model::parts`](crate::model::Model::parts); `None` of Boolean solids.
+    pub part: Option<usize>,
+    /// Index into [`Part::faces`](crate::model::Part::faces); `None` of meshes and of Boolean solids.
+    pub face: Option<usize>,
+    /// Index into [`Part::meshes`](crate::model::Part::meshes), and the triangle.
+    pub triangle: Option<(usize, usize)>,
+    /// Its number in the image of faces: [`Face::id`](crate::model::Face::id), [`Mesh::id`](crate::model::Mesh::id) or
+    /// [`Primitive::id`](crate::model::Primitive::id).
+    pub id: u32,
+    /// Parameters in the face's domain; of a triangle, the weights of its second and third corner; `None` of Boolean
+    /// solids.
+    pub uv: Option<DVec2>,
+    /// The point, model coordinates.
+    pub point: DVec3,
+    /// Unit outward normal of the face or the triangle, model coordinates; `None` of Boolean solids, and where there is
+    /// none.
+    pub normal: Option<DVec3>,
+    /// Distance from the eye along the view axis, model units.
+    pub depth: f64,
+}
+
+/// What the scene's numbers stand for.
+#[derive(Debug, Default)]
+pub(crate) struct Picking {
+    /// First item of each placed face, its face and its instance in the scene.
+    placed: Vec<[u32; 3]>,
+    faces: Vec<PickFace>,
+    /// Rectangle of each patch in the unit square of its face.
+    patches: Vec<[f32; 4]>,
+    /// Of each instance of the scene: the model's, plus 1.
+    sources: Vec<u32>,
+    /// Mesh of its part, and first triangle, of each mesh of the scene that is one.
+    meshes: Vec<[u32; 2]>,
+    /// Mesh and instance.
+    mesh_instances: Vec<[u32; 2]>,
+    /// Solids that are drawn as meshes, which come last, and their first triangles.
+    isolated: Vec<(Mesh, u32)>,
+    /// Number of the primitive of each side, then of each triangle of operands.
+    sides: Vec<u32>,
+}
+
+/// A face of the scene.
+#[derive(Clone, Copy, Debug, Default)]
+struct PickFace {
+    /// Of the model; `None` of those that bound operands.
+    face: Option<u32>,
+    first_patch: u32,
+    id: u32,
+    /// Of the surface that was uploaded: origin and size.
+    domain: [f64; 4],
+}
+
+impl SceneData {
+    /// What its numbers stand for: faces are those of `shown`, and `face_of` has, of a part and a face of it, the face of
+    /// the model.
+    pub(crate) fn picking(&self, shown: &Model, face_of: impl Fn(usize, usize) -> usize) -> Picking {
+        let mut faces = vec![PickFace::default(); self.faces.len()];
+        for (made, face) in faces.iter_mut().zip(&self.faces) {
+            (made.first_patch, made.id) = (face.first_patch, face.id);
+        }
+        let of_operands = |face: &abi::Face| face.flags & abi::FACE_OPERAND != 0;
+        let end = self.faces.iter().position(of_operands).unwrap_or(self.faces.len());
+        let ends = self.parts.iter().skip(1).map(|(_, first)| *first).chain([end]);
+        for (part, (&(_, first), end)) in self.parts.iter().zip(ends).enumerate() {
+            if end - first != shown.parts[part].faces.len() {
+                continue; // it is not placed
+            }
+            for (nth, face) in shown.parts[part].faces.iter().enumerate() {
+                let ((u0, u1), (v0, v1)) = face.surface.domain();
+                let made = &mut faces[first + nth];
+                (made.face, made.domain) = (Some(face_of(part, nth) as u32), [u0, v0, u1 - u0, v1 - v0]);
+            }
+        }
+        let first_triangles = self.meshes.meshes.iter().map(|mesh| mesh.first_triangle);
+        let isolated = self.isolated.iter().cloned().zip(first_triangles.clone().skip(self.meshes.numbers.len()));
+        let s = &self.solids;
+        let of_leaf = |leaf: u32| s.leaves[leaf as usize].id;
+        let of_meshes = s.operand_meshes.iter().zip(&s.operand_draws);
+        let triangles =
+            of_meshes.flat_map(|(mesh, corners)| std::iter::repeat_n(of_leaf(mesh.leaf), corners.len() / 3));
+        Picking {
+            placed: self.face_instances.iter().map(|f| [f.first_item, f.face, f.instance]).collect(),
+            faces,
+            patches: self.patches.iter().map(|patch| patch.domain).collect(),
+            sources: self.sources.iter().map(|source| source[1]).collect(),
+            meshes: self.meshes.numbers.iter().zip(first_triangles).map(|(nth, first)| [*nth, first]).collect(),
+            mesh_instances: self.meshes.instances.iter().map(|m| [m.mesh, m.instance]).collect(),
+            isolated: isolated.collect(),
+            sides: s.leaf_surfaces.iter().map(|side| of_leaf(side.leaf)).chain(triangles).collect(),
+        }
+    }
+}
+
+/// A pixel of a frame.
+pub(crate) struct Picked<'a> {
+    pub model: &'a Model,
+    /// Of the model's instances, when the frame was recorded.
+    pub transforms: &'a [DAffine3],
+    pub camera: &'a Camera,
+    /// Its centre.
+    pub pixel: DVec2,
+}
+
+impl Picking {
+    /// What the pixel's words mean: that of `visibility`, where it sees nothing that of `others`.
+    pub(crate) fn hit(&self, of: &Picked<'_>, words: [[u32; 2]; 2]) -> Option<Hit> {
+        let sees = |word: &[u32; 2]| word[0] & !GAP_CANDIDATE != 0;
+        let [seen, second] = words.into_iter().find(sees)?;
+        let number = (seen & !(GAP_CANDIDATE | SEEN_KIND)) as usize;
+        match seen & SEEN_KIND {
+            SEEN_MESH => self.mesh(of, number, second as usize),
+            SEEN_SOLID => Some(of.on_solid(*self.sides.get(number)?, second)),
+            SEEN_OPERAND => Some(of.on_solid(self.faces[self.placed_item(number - 1)[1] as usize].id, second)),
+            _ => self.patch(of, number - 1, second),
+        }
+    }
+
+    fn placed_item(&self, item: usize) -> [u32; 3] {
+        let next = self.placed.partition_point(|placed| placed[0] as usize <= item);
+        self.placed[next - 1] // placed faces without patches have the first item of the next one
+    }
+
+    fn patch(&self, of: &Picked<'_>, item: usize, second: u32) -> Option<Hit> {
+        let [first_item, face, instance] = self.placed_item(item);
+        let made = self.faces[face as usize];
+        let instance = (self.sources[instance as usize] as usize).checked_sub(1)?;
+        let part = of.model.instances[instance].part;
+        let number = made.face? as usize;
+        let face = &of.model.parts[part].faces[number];
+        let patch = self.patches[made.first_patch as usize + item - first_item as usize].map(f64::from);
+        let within = [second & 0xffff, second >> 16].map(|x| f64::from(x) / 65535.0 * 3.0 - 1.0);
+        let at = |k: usize| made.domain[k] + made.domain[2 + k] * (patch[k] + patch[2 + k] * within[k]);
+        let (uv, point, normal) = of.refined(face, &of.transforms[instance], DVec2::new(at(0), at(1)));
+        Some(Hit {
+            instance: Some(instance),
+            part: Some(part),
+            face: Some(number),
+            triangle: None,
+            id: made.id,
+            uv: Some(uv),
+            point,
+            normal,
+            depth: of.depth(point),
+        })
+    }
+
+    fn mesh(&self, of: &Picked<'_>, placed: usize, triangle: usize) -> Option<Hit> {
+        let [number, instance] = *self.mesh_instances.get(placed)?;
+        if let Some(isolated) = (number as usize).checked_sub(self.meshes.len()) {
+            let (mesh, first) = self.isolated.get(isolated)?;
+            let (_, point, normal) = of.on_triangle(mesh.corners(triangle - *first as usize), &DAffine3::IDENTITY);
+            return Some(Hit { normal, ..of.nowhere(mesh.id, point) });
+        }
+        let [nth, first] = self.meshes[number as usize];
+        let instance = (self.sources[instance as usize] as usize).checked_sub(1)?;
+        let part = of.model.instances[instance].part;
+        let mesh = &of.model.parts[part].meshes[nth as usize];
+        let triangle = triangle - first as usize;
+        let (uv, point, normal) = of.on_triangle(mesh.corners(triangle), &of.transforms[instance]);
+        Some(Hit {
+            instance: Some(instance),
+            part: Some(part),
+            face: None,
+            triangle: Some((nth as usize, triangle)),
+            id: mesh.id,
+            uv: Some(uv),
+            point,
+            normal,
+            depth: of.depth(point),
+        })
+    }
+}
+
+impl Picked<'_> {
+    fn depth(&self, point: DVec3) -> f64 {
+        let (_, _, forward) = self.camera.axes();
+        (point - self.camera.eye).dot(forward)
+    }
+
+    fn on_solid(&self, id: u32, depth: u32) -> Hit {
+        let depth = f64::from(f32::from_bits(depth));
+        let (origin, direction) = self.camera.ray(self.pixel);
+        let (_, _, forward) = self.camera.axes();
+        self.nowhere(id, origin + direction * (depth / direction.dot(forward)))
+    }
+
+    /// Of no part.
+    fn nowhere(&self, id: u32, point: DVec3) -> Hit {
+        let depth = self.depth(point);
+        Hit { instance: None, part: None, face: None, triangle: None, id, uv: None, point, normal: None, depth }
+    }
+
+    /// Where the ray meets the plane of a placed triangle: weights, point, normal.
+    fn on_triangle(&self, corners: [DVec3; 3], transform: &DAffine3) -> (DVec2, DVec3, Option<DVec3>) {
+        let [a, b, c] = corners.map(|p| transform.transform_point3(p));
+        let (ab, ac) = (b - a, c - a);
+        let across = ab.cross(ac);
+        let (origin, direction) = self.camera.ray(self.pixel);
+        let t = (a - origin).dot(across) / direction.dot(across);
+        let point = origin + direction * t;
+        let ap = point - a;
+        let size = across.length_squared();
+        let uv = DVec2::new(ap.cross(ac).dot(across), ab.cross(ap).dot(across)) / size;
+        let outward = if transform.matrix3.determinant() < 0.0 { -across } else { across };
+        (uv, point, outward.try_normalize())
+    }
+
+    /// The point of a placed face that is seen at the pixel's centre, or the nearest in the picture that Newton's method
+    /// finds, from (u, v) on.
+    fn refined(&self, face: &Face, transform: &DAffine3, mut uv: DVec2) -> (DVec2, DVec3, Option<DVec3>) {
+        let to_pixels = self.camera.pixel_matrix() * DMat4::from(*transform);
+        let ((u0, u1), (v0, v1)) = face.surface.domain();
+        let (low, high) = (DVec2::new(u0, v0), DVec2::new(u1, v1));
+        let mut best = (f64::INFINITY, uv);
+        for _ in 0..MOST_STEPS {
+            uv = uv.clamp(low, high);
+            let jet = face.surface.jet2(uv.x, uv.y);
+            let q = to_pixels * jet.point.extend(1.0);
+            let at = q.xy() / q.w;
+            let miss = self.pixel - at;
+            let comes_nearer = miss.length() < best.0;
+            if !comes_nearer {
+                break;
+            }
+            best = (miss.length(), uv);
+            let along = [jet.du, jet.dv].map(|d| {
+                let d = to_pixels * d.extend(0.0);
+                (d.xy() - at * d.w) / q.w
+            });
+            let det = along[0].perp_dot(along[1]);
+            let step = DVec2::new(miss.perp_dot(along[1]), along[0].perp_dot(miss)) / det;
+            if best.0 < THERE_PX || !step.is_finite() {
+                break;
+            }
+            let long = (step.abs() / (high - low)).max_element() / LONGEST_STEP;
+            uv += step / long.max(1.0);
+        }
+        let (_, uv) = best;
+        let jet = face.surface.jet2(uv.x, uv.y);
+        let [du, dv] = [jet.du, jet.dv].map(|d| transform.transform_vector3(d));
+        let inward = face.same_sense == (transform.matrix3.determinant() < 0.0);
+        let normal = du.cross(dv).try_normalize().map(|n| if inward { -n } else { n });
+        (uv, transform.transform_point3(jet.point), normal)
+    }
+}

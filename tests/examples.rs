@@ -1,0 +1,73 @@
+//! Every example runs, and does what it says. Needs a Vulkan driver.
+
+#![allow(dead_code)] // their `main`
+
+use std::path::{Path, PathBuf};
+
+#[path = "../examples/arrays.rs"]
+mod arrays;
+#[path = "../examples/boolean_solid.rs"]
+mod boolean_solid;
+#[path = "../examples/edit_trim.rs"]
+mod edit_trim;
+#[path = "../examples/host_engine/main.rs"]
+mod host_engine;
+#[path = "../examples/render_to_png.rs"]
+mod render_to_png;
+#[path = "../examples/two_views.rs"]
+mod two_views;
+
+fn sample(name: &str) -> PathBuf {
+    Path::new(env!("CARGO_MANIFEST_DIR")).join("samples").join(name)
+}
+
+#[test]
+fn a_png_has_the_picture() {
+    let png = std::env::temp_dir().join(format!("selvedge-example-{}.png", std::process::id()));
+    render_to_png::run(&sample("bracket.step"), &png, (64, 48)).unwrap();
+    let file = std::io::BufReader::new(std::fs::File::open(&png).unwrap());
+    let mut reader = png::Decoder::new(file).read_info().unwrap();
+    let mut pixels = vec![0; reader.output_buffer_size().unwrap()];
+    reader.next_frame(&mut pixels).unwrap();
+    std::fs::remove_file(&png).unwrap();
+    let drawn = pixels.chunks(4).filter(|c| c[..3] != [255; 3]).count();
+    assert_eq!(pixels.len(), 64 * 48 * 4);
+    assert!(drawn > 400, "{drawn} pixels are not white");
+    let missing = render_to_png::run(&sample("none.step"), &png, (64, 48)).unwrap_err();
+    assert!(missing.to_string().contains("none.step"), "{missing}");
+}
+
+#[test]
+fn arrays_tell_of_faces() {
+    let faces = arrays::run(&sample("bracket.step"), (64, 48)).unwrap();
+    assert!(faces.len() > 3, "{} faces are seen", faces.len());
+    assert!(faces.values().all(|seen| seen.pixels > 0 && seen.nearest <= seen.farthest && seen.farthest.is_finite()));
+}
+
+#[test]
+fn a_solid_shows_all_of_its_primitives() {
+    let picture = boolean_solid::run((64, 48)).unwrap();
+    for id in 1..=3 {
+        assert!(picture.face.contains(&id), "primitive {id}");
+    }
+}
+
+#[test]
+fn an_edit_moves_a_hole() {
+    let edit = edit_trim::run(&sample("bracket.step"), (160, 120)).unwrap();
+    assert!(edit.pixels > 0 && edit.bytes > 0 && edit.bytes < 1 << 16, "{} pixels, {} bytes", edit.pixels, edit.bytes);
+}
+
+#[test]
+fn both_views_follow_a_step() {
+    let views = two_views::run(&sample("assembly.step"), 2).unwrap();
+    let [first, second] = &views[..] else { panic!("two steps") };
+    assert!(first[0].depth != second[0].depth && first[1].depth != second[1].depth);
+    assert_eq!((first[0].size, first[1].size), ((320, 240), (200, 200)));
+}
+
+#[test]
+fn an_engine_draws_frames_in_flight() {
+    let whole = host_engine::run(&sample("assembly.step"), 6, (64, 48)).unwrap().whole;
+    assert!(whole >= 4, "{whole} of 6 frames were whole"); // the first two may lack room
+}

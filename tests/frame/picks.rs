@@ -1,0 +1,146 @@
+//! What a frame shows at a pixel, against exact rays: the same face, and the same point in double precision.
+
+use crate::hidden::crowd;
+use crate::shapes::{self, operands, solids};
+use crate::support::{assert_silent, orthographic, perspective, watched};
+use glam::{DAffine3, DVec2, DVec3};
+use selvedge::headless::HeadlessRenderer;
+use selvedge::model::{Camera, Model};
+use selvedge::picture::{FrameSettings, Outputs};
+use selvedge_check::Tracer;
+
+const SIZE: (u32, u32) = (60, 48);
+const ALL: Outputs = Outputs { part: true, instance: true, ..Outputs::ALL };
+
+/// What was picked: pixels that see the background; the same face as the ray through their centre, the same point; or
+/// another face, beside a border.
+#[derive(Debug, Default)]
+struct Picks {
+    none: usize,
+    same: usize,
+    beside: usize,
+}
+
+/// Picks every seventh pixel. A point of Boolean solids is as exact as their depth image.
+fn picks(renderer: &mut HeadlessRenderer, model: &Model, camera: &Camera) -> Picks {
+    let tracer = Tracer::new(model);
+    let settings = FrameSettings::default();
+    let picture = renderer.render(camera, &settings, ALL).unwrap();
+    let mut found = Picks::default();
+    for at in (0..SIZE.0 * SIZE.1).step_by(7) {
+        let (x, y) = (at % SIZE.0, at / SIZE.0);
+        renderer.pick(x, y);
+        renderer.render(camera, &settings, ALL).unwrap();
+        let hit = renderer.picked();
+        let at = at as usize;
+        assert_eq!(hit.map_or(0, |hit| hit.id), picture.face[at], "{x}, {y}");
+        let Some(hit) = hit else {
+            found.none += 1;
+            continue;
+        };
+        assert_eq!(hit.instance.map_or(0, |i| i as u32 + 1), picture.instance[at], "{x}, {y}");
+        assert_eq!(hit.part.map_or(0, |i| i as u32 + 1), picture.part[at], "{x}, {y}");
+        let near = |a: f64, b: f64, unit: f64| (a - b).abs() <= 1e-4 * unit;
+        let pixel = DVec2::new(f64::from(x), f64::from(y)) + 0.5;
+        let exact = tracer.first(camera, pixel).filter(|exact| exact.face == hit.id);
+        let Some(exact) = exact.filter(|exact| near(exact.depth, hit.depth, hit.depth)) else {
+            found.beside += 1;
+            continue;
+        };
+        // a millionth of a pixel; depths of solids are those of the image, of meshes among their operands the rasteriser makes them
+        let (unit, off) = if hit.instance.is_some() { (1e-8, 1e-6) } else { (1e-5, 1e-3) };
+        assert!(hit.point.distance(exact.point) <= unit * hit.depth, "{x}, {y}: {hit:?} {exact:?}");
+        if let Some(normal) = hit.normal.filter(|_| model.parts.iter().all(|part| part.meshes.is_empty())) {
+            assert!(normal.distance(exact.normal) < off, "{x}, {y}: {hit:?} {exact:?}");
+        }
+        if let (Some(face), Some(uv)) = (hit.face, hit.uv) {
+            assert_eq!(face, exact.face_index, "{x}, {y}");
+            let part = &model.parts[exact.part];
+            let p = part.faces[face].surface.jet(uv.x, uv.y).point;
+            let p = model.instances[exact.instance].transform.transform_point3(p);
+            assert!(p.distance(exact.point) <= unit * hit.depth, "{x}, {y}: {hit:?} {exact:?}");
+        }
+        if let Some((mesh, _)) = hit.triangle {
+            assert_eq!(model.parts[exact.part].faces.len() + mesh, exact.face_index, "{x}, {y}");
+            assert!(hit.uv.unwrap().distance(exact.uv) < 1e-6, "{x}, {y}: {hit:?} {exact:?}");
+        }
+        found.same += 1;
+    }
+    found
+}
+
+fn check(name: &str, model: &Model, cameras: &[Camera]) {
+    let mut renderer = watched(model);
+    for camera in cameras {
+        let found = picks(&mut renderer, model, camera);
+        assert!(found.same > 40 && found.beside <= found.same / 8, "{name}: {found:?}");
+    }
+    assert_silent(renderer);
+}
+
+#[test]
+fn faces_are_picked_exactly() {
+    let model = crowd();
+    check("crowd", &model, &[perspective(&model, SIZE), orthographic(&model, SIZE)]);
+    let mirrored = shapes::mirrored();
+    check("mirrored", &mirrored, &[perspective(&mirrored, SIZE)]);
+}
+
+#[test]
+fn triangles_and_solids_are_picked() {
+    let globe = shapes::globe();
+    check("globe", &globe, &[perspective(&globe, SIZE), orthographic(&globe, SIZE)]);
+    let holes = solids::holes(3);
+    check("holes", &holes, &[perspective(&holes, SIZE)]);
+    for (name, model) in operands::meshes().into_iter().chain(operands::splines()).take(4) {
+        check(name, &model, &[perspective(&model, SIZE)]);
+    }
+}
+
+/// Close up, where what a view sees is cut out of the model, (u, v) are those of the whole face.
+#[test]
+fn a_face_is_picked_close_up() {
+    let model = shapes::ripple();
+    let mut camera = perspective(&model, SIZE);
+    let target = model.parts[0].faces[0].surface.jet(0.4, 0.6).point;
+    let distance = 1e-4;
+    camera.eye = target + (camera.eye - camera.target).normalize() * distance;
+    (camera.target, camera.depth_range) = (target, (0.1 * distance, 10.0));
+    check("close", &model, &[camera]);
+}
+
+/// The hit is that of the frame, whatever moves later; there is none without a call, beside the picture, of another model.
+#[test]
+fn a_pick_is_of_its_frame() {
+    let model = shapes::sphere();
+    let mut renderer = watched(&model);
+    let camera = perspective(&model, SIZE);
+    let settings = FrameSettings::default();
+    let draw = |renderer: &mut HeadlessRenderer| drop(renderer.render(&camera, &settings, ALL).unwrap());
+    draw(&mut renderer);
+    assert_eq!(renderer.picked(), None, "nobody asked");
+    renderer.pick(30, 24);
+    draw(&mut renderer);
+    let hit = renderer.picked().unwrap();
+    assert!((hit.point.length() - shapes::SPHERE_RADIUS).abs() < 1e-9, "{hit:?}");
+    let up = DVec3::new(0.0, 0.0, 0.5);
+    renderer.set_transform(0, DAffine3::from_translation(up)).unwrap();
+    assert_eq!(renderer.picked(), Some(hit), "it is of the frame before");
+    renderer.pick(30, 24);
+    draw(&mut renderer);
+    let moved = renderer.picked().unwrap();
+    assert!(((moved.point - up).length() - shapes::SPHERE_RADIUS).abs() < 1e-9, "{moved:?}");
+    draw(&mut renderer);
+    assert_eq!(renderer.picked(), None, "nobody asked again");
+    for (x, y) in [(SIZE.0, 0), (0, SIZE.1), (0, 0)] {
+        renderer.pick(x, y);
+        draw(&mut renderer);
+        assert_eq!(renderer.picked(), None, "{x}, {y}");
+    }
+    renderer.pick(30, 24);
+    draw(&mut renderer);
+    assert!(renderer.picked().is_some());
+    renderer.upload(&shapes::cube()).unwrap();
+    assert_eq!(renderer.picked(), None, "of another model");
+    assert_silent(renderer);
+}
