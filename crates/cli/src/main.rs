@@ -6,6 +6,7 @@
 //!   trims    ways to trim, side by side       sweep   time against error, over many settings
 //!   convert  model ─▶ the engine's own form
 //!   export   model ─▶ STEP file                draw    lines of a view ─▶ SVG
+//!   view     models in a window
 //! ```
 //!
 //! Results go to standard output, everything else to standard error.
@@ -37,6 +38,8 @@ mod target;
 mod trims;
 mod values;
 mod verdict;
+#[cfg(feature = "view")]
+mod view;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -82,6 +85,8 @@ fn main() -> ExitCode {
         Command::Sweep(args) => sweep::run(args),
         Command::Trims(args) => trims::run(args),
         Command::Convert(args) => convert::run(args),
+        #[cfg(feature = "view")]
+        Command::View(args) => view::run(args),
     };
     match result {
         Ok(Outcome::Good) => ExitCode::SUCCESS,
