@@ -46,13 +46,17 @@ pub enum Command {
     ShowAll,
     /// See through what is selected, or no more.
     SeeThrough,
-    /// Write the picture to a file.
+    /// Ask where the picture is to be written, or no more.
     Screenshot,
+    /// Write it there.
+    WritePicture,
+    /// Check the view against exact rays.
+    Check,
     /// The line of `selvedge render` for this view, to the clipboard.
     CopyCommand,
     /// A text to the clipboard.
     CopyText(String),
-    /// Measure what is selected.
+    /// Keep what is measured of the selection in the list.
     Measure,
     /// Show the help, or hide it.
     Help,
@@ -104,10 +108,12 @@ pub fn shortcuts() -> Vec<Shortcut> {
         (Key::I, NONE, Command::Isolate, "hide everything else"),
         (Key::A, NONE, Command::ShowAll, "show everything"),
         (Key::X, NONE, Command::SeeThrough, "see through selection"),
-        (Key::M, NONE, Command::Measure, "measure selection"),
+        (Key::M, NONE, Command::Measure, "keep the measurement"),
         (Key::Z, CTRL, Command::Undo, "undo"),
         (Key::Z, CTRL.plus(SHIFT), Command::Redo, "redo"),
         (Key::S, CTRL, Command::Screenshot, "write the picture to a file"),
+        (Key::S, CTRL.plus(SHIFT), Command::WritePicture, "write it there at once"),
+        (Key::K, NONE, Command::Check, "check this view against exact rays"),
         (Key::C, CTRL.plus(SHIFT), Command::CopyCommand, "copy the command of this view"),
         (Key::Escape, NONE, Command::Clear, "select nothing"),
         (Key::Questionmark, NONE, Command::Help, "help"),

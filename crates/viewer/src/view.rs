@@ -38,6 +38,8 @@ struct Drag {
     held: Option<DVec3>,
     /// It has left the place where it began.
     moved: bool,
+    /// The view before it can be gone back to.
+    remembered: bool,
 }
 
 /// What the cursor was over when it was looked up.
@@ -208,7 +210,7 @@ impl View {
     /// A button went down at `cursor`; the point under it is wanted: [`hold`](Self::hold).
     pub fn press(&mut self, cursor: DVec2) {
         self.transition = None;
-        self.drag.get_or_insert(Drag { start: cursor, last: cursor, held: None, moved: false });
+        self.drag.get_or_insert(Drag { start: cursor, last: cursor, held: None, moved: false, remembered: false });
     }
 
     /// A drag waits for the point under its start.
@@ -228,12 +230,11 @@ impl View {
     /// The cursor is at another place, with these buttons and keys down.
     pub fn moved(&mut self, cursor: DVec2, held: Held, (preset, style): (Preset, OrbitStyle), now: Instant) {
         let Some(drag) = &mut self.drag else { return };
-        let first = !drag.moved && drag.start.distance(cursor) > CLICK_PX;
-        drag.moved |= first;
+        drag.moved |= drag.start.distance(cursor) > CLICK_PX;
         let (Some(point), true) = (drag.held, drag.moved) else { return };
         let step = cursor - drag.last;
         drag.last = cursor;
-        if first {
+        if !std::mem::replace(&mut drag.remembered, true) {
             self.remember();
         }
         let Some(action) = preset.action(held) else { return };

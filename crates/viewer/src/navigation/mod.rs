@@ -24,6 +24,8 @@ pub const FOV: f64 = 35.0 * std::f64::consts::PI / 180.0;
 const MARGIN: f64 = 1.06;
 /// The near plane is no farther than this share of the distance to the target: what the hand holds is not cut away.
 const NEAR: f64 = 0.05;
+/// An up direction that sinks below the horizon by less is that of a view from the pole, rounded.
+const LEVEL: f64 = 1e-9;
 /// Smallest lengths that the camera's depths may have, model units.
 const LEAST_DEPTH: f64 = 1e-12;
 
@@ -46,9 +48,9 @@ pub fn orbit(camera: &Camera, pivot: DVec3, drag: DVec2, style: OrbitStyle) -> C
         OrbitStyle::Free => DQuat::from_axis_angle(up, -step.x) * DQuat::from_axis_angle(right, -step.y),
         OrbitStyle::Turntable => {
             // where the eye would pass over the pole it stops there
-            let elevation = (-forward.z).clamp(-1.0, 1.0).asin();
+            let elevation = (-forward.z).atan2(up.z);
             let quarter = std::f64::consts::FRAC_PI_2;
-            let rise = if up.z >= 0.0 {
+            let rise = if up.z >= -LEVEL {
                 step.y.clamp(-quarter - elevation, quarter - elevation)
             } else {
                 step.y // upside down: the hand finds its own way back

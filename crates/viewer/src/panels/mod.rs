@@ -8,6 +8,7 @@
 //!   └ status: under the cursor, size, promise, warnings ───────────┘
 //! ```
 
+mod handles;
 mod overlay;
 mod properties;
 mod status;
@@ -15,11 +16,13 @@ mod toolbar;
 mod tree;
 
 use crate::commands::{self, Command};
-use crate::pick::PickFilter;
+use crate::measure::Measurement;
+use crate::pick::{PickFilter, Picked};
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::view::View;
 use glam::DVec3;
+use selvedge::model::Camera;
 use selvedge::picture::{FrameStats, Style};
 use std::collections::BTreeMap;
 use std::path::{Path, PathBuf};
@@ -55,6 +58,44 @@ pub struct Ui {
     pub show_selection: bool,
     /// The point of the last click.
     pub clicked: Option<DVec3>,
+    /// The selection is to be measured.
+    pub wants_measure: bool,
+    /// What was measured of it.
+    pub measurement: Option<Measurement>,
+    /// It is kept once it is there.
+    keeps: bool,
+    /// Measurements that are kept.
+    pub kept: Vec<Measurement>,
+    /// Where pictures go.
+    pub shot: Shot,
+    /// What the judge said last.
+    pub verdict: Option<Verdict>,
+}
+
+/// A picture to be written.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// The window that asks for it is open.
+    pub open: bool,
+    /// The file.
+    pub path: PathBuf,
+    /// Width and height.
+    pub size: (u32, u32),
+    /// Nothing behind the model.
+    pub transparent: bool,
+}
+
+/// What the judge says of a view.
+#[derive(Clone, Debug)]
+pub struct Verdict {
+    /// The view.
+    pub camera: Camera,
+    /// Pixels that it looked at.
+    pub sampled: u64,
+    /// Those that break the promise.
+    pub wrong: u64,
+    /// Pixels that do not simply agree, the worst first, a thousand at most.
+    pub pixels: Vec<[u32; 2]>,
 }
 
 impl Default for Ui {
@@ -72,6 +113,12 @@ impl Default for Ui {
             quit: false,
             show_selection: false,
             clicked: None,
+            wants_measure: false,
+            measurement: None,
+            keeps: false,
+            kept: Vec::new(),
+            shot: Shot { open: false, path: PathBuf::from("view.png"), size: (1280, 720), transparent: false },
+            verdict: None,
         }
     }
 }
@@ -105,13 +152,42 @@ impl Ui {
 
     /// Other files are open now.
     pub fn opened(&mut self) {
-        self.clicked = None;
+        (self.clicked, self.measurement, self.verdict) = (None, None, None);
+        self.kept.clear();
+    }
+
+    /// The selection was measured.
+    pub fn measured(&mut self, measurement: Option<Measurement>) {
+        for value in measurement.iter().flat_map(|m| &m.values) {
+            tracing::info!("{}: {} {}", value.what, value.value, value.unit);
+        }
+        if std::mem::take(&mut self.keeps) {
+            self.kept.extend(measurement.clone());
+        }
+        self.measurement = measurement;
+    }
+
+    /// The judge has looked.
+    pub fn judged(&mut self, verdict: Verdict) {
+        self.tell(match verdict.wrong {
+            0 => format!("Checked {} pixels: all as promised.", verdict.sampled),
+            wrong => format!("Checked {} pixels: {wrong} are wrong.", verdict.sampled),
+        });
+        self.verdict = Some(verdict);
+    }
+
+    /// The selection is another one: faces, edges and corners are measured at once, parts when somebody asks.
+    fn remeasure(&mut self, session: &Session) {
+        self.measurement = None;
+        let quick = session.selection.iter().all(|picked| !matches!(picked, Picked::Instance(_)));
+        self.wants_measure = quick && (1..=2).contains(&session.selection.len());
     }
 
     /// A click has changed the selection.
     pub fn selected(&mut self, session: &Session, point: Option<DVec3>) {
         self.show_selection = true;
         self.clicked = point;
+        self.remeasure(session);
         if let Some(picked) = session.selection.last() {
             tracing::info!("selected {}", crate::describe::short(&session.world, picked));
             for (what, value) in crate::describe::long(&session.world, picked) {
@@ -128,7 +204,8 @@ impl Ui {
             Command::Redo => drop(session.scene.redo()),
             Command::Clear => {
                 session.select(None, false);
-                (self.help, self.warnings) = (false, false);
+                (self.help, self.warnings, self.shot.open) = (false, false, false);
+                (self.measurement, self.verdict) = (None, None);
             }
             Command::Hide => {
                 session.scene.change(|state| chosen.iter().for_each(|item| state.set_hidden(*item, true)));
@@ -147,6 +224,11 @@ impl Ui {
                 }
             }),
             Command::Help => self.help = !self.help,
+            Command::Screenshot => self.shot.open = !self.shot.open,
+            Command::Measure => match &self.measurement {
+                Some(measurement) => self.kept.push(measurement.clone()),
+                None => (self.wants_measure, self.keeps) = (true, true),
+            },
             _ => {}
         }
     }

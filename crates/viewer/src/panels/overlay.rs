@@ -17,7 +17,7 @@ const HOVERED: Color32 = Color32::from_rgb(255, 150, 20);
 const SELECTED: Color32 = Color32::from_rgb(30, 110, 255);
 
 /// Draws it.
-pub fn show(ctx: &egui::Context, rect: Rect, ui: &mut Ui, session: &Session, facts: &Facts<'_>) {
+pub fn show(ctx: &egui::Context, rect: Rect, ui: &mut Ui, session: &mut Session, facts: &Facts<'_>) {
     if rect.width() < CUBE || rect.height() < CUBE {
         return;
     }
@@ -29,18 +29,46 @@ pub fn show(ctx: &egui::Context, rect: Rect, ui: &mut Ui, session: &Session, fac
     for (picked, colour) in all {
         mark(&painter, &place, &session.world, picked, colour);
     }
+    for measurement in ui.kept.iter().chain(&ui.measurement) {
+        measurement.dimensions.iter().for_each(|(ends, text)| dimension(&painter, &place, *ends, text));
+    }
+    wrong_pixels(&painter, &place, ui);
+    super::handles::show(ctx, &place, session);
     view_cube(ctx, rect, ui, facts.view.camera());
 }
 
+/// A line between two points with what is measured there.
+fn dimension(painter: &egui::Painter, place: &Place<'_>, ends: [DVec3; 2], text: &str) {
+    let (Some(a), Some(b)) = (place.of(ends[0]), place.of(ends[1])) else { return };
+    painter.line_segment([a, b], Stroke::new(1.5, SELECTED));
+    for end in [a, b] {
+        painter.circle_filled(end, 3.0, SELECTED);
+    }
+    let galley = painter.layout_no_wrap(text.to_owned(), egui::FontId::proportional(13.0), Color32::WHITE);
+    let at = a + (b - a) * 0.5 - galley.size() * 0.5;
+    painter.rect_filled(Rect::from_min_size(at, galley.size()).expand(3.0), 3.0, SELECTED);
+    painter.galley(at, galley, Color32::WHITE);
+}
+
+/// Pixels that the judge named, while the view is the one that it looked at.
+fn wrong_pixels(painter: &egui::Painter, place: &Place<'_>, ui: &Ui) {
+    let Some(verdict) = ui.verdict.as_ref().filter(|v| v.camera == *place.camera && v.wrong > 0) else { return };
+    for [x, y] in &verdict.pixels {
+        let at = DVec2::new(f64::from(*x) + 0.5, f64::from(*y) + 0.5) * place.to_points;
+        let at = Pos2::new(place.rect.min.x + at.x as f32, place.rect.min.y + at.y as f32);
+        painter.circle_filled(at, 2.5, Color32::RED);
+    }
+}
+
 /// From the model to the panel.
-struct Place<'a> {
-    camera: &'a Camera,
-    rect: Rect,
-    to_points: f64,
+pub(super) struct Place<'a> {
+    pub camera: &'a Camera,
+    pub rect: Rect,
+    pub to_points: f64,
 }
 
 impl Place<'_> {
-    fn of(&self, p: DVec3) -> Option<Pos2> {
+    pub fn of(&self, p: DVec3) -> Option<Pos2> {
         let (pixel, depth) = self.camera.project(p)?;
         (depth >= self.camera.depth_range.0).then(|| {
             let at = pixel * self.to_points;

@@ -3,6 +3,7 @@
 use super::Ui;
 use crate::commands::Command;
 use crate::describe;
+use crate::measure::{CSV_HEADER, Measurement};
 use crate::session::Session;
 
 /// Things that are described at length; others are named.
@@ -13,7 +14,6 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
     panel.heading("Selection");
     if session.selection.is_empty() {
         panel.label("Click a face, an edge, a corner. Shift adds.");
-        return;
     }
     egui::ScrollArea::vertical().auto_shrink(false).show(panel, |area| {
         let world = session.world.clone();
@@ -27,7 +27,51 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
                 table(list, ui, i, &describe::long(&world, picked));
             });
         }
+        measured(area, ui);
     });
+}
+
+/// What is measured of the selection, and what is kept.
+fn measured(area: &mut egui::Ui, ui: &mut Ui) {
+    if let Some(measurement) = ui.measurement.clone() {
+        area.separator();
+        area.heading("Measured");
+        values(area, ui, MOST, &measurement);
+        if area.button("Keep (M)").clicked() {
+            ui.commands.push(Command::Measure);
+        }
+    }
+    if ui.kept.is_empty() {
+        return;
+    }
+    area.separator();
+    area.horizontal(|row| {
+        row.heading("Kept");
+        if row.small_button("Copy text").clicked() {
+            let text: Vec<String> = ui.kept.iter().map(Measurement::text).collect();
+            ui.commands.push(Command::CopyText(text.join("\n\n")));
+        }
+        if row.small_button("Copy CSV").clicked() {
+            let rows: String = ui.kept.iter().map(Measurement::csv).collect();
+            ui.commands.push(Command::CopyText(CSV_HEADER.to_owned() + &rows));
+        }
+    });
+    let mut removed = None;
+    for (i, measurement) in ui.kept.clone().iter().enumerate() {
+        egui::CollapsingHeader::new(&measurement.title).id_salt(("kept", i)).default_open(true).show(area, |list| {
+            values(list, ui, MOST + 1 + i, measurement);
+            if list.small_button("Remove").clicked() {
+                removed = Some(i);
+            }
+        });
+    }
+    removed.into_iter().for_each(|i| drop(ui.kept.remove(i)));
+}
+
+fn values(list: &mut egui::Ui, ui: &mut Ui, nth: usize, measurement: &Measurement) {
+    let numbers = measurement.values.iter().map(|v| (v.what, format!("{} {}", describe::number(v.value), v.unit)));
+    let points = measurement.points.iter().map(|(what, p)| (*what, describe::vector(*p)));
+    table(list, ui, nth, &numbers.chain(points).collect());
 }
 
 /// Names and values; a click on a value copies it.

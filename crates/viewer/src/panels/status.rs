@@ -86,6 +86,7 @@ pub fn windows(ctx: &egui::Context, ui: &mut Ui, session: &Session, settings: &S
         });
     });
     ui.warnings = open;
+    shot(ctx, ui);
     let mut open = ui.help;
     egui::Window::new("Keys and buttons").open(&mut open).default_width(360.0).show(ctx, |window| {
         let preset = settings.preset;
@@ -112,4 +113,28 @@ pub fn windows(ctx: &egui::Context, ui: &mut Ui, session: &Session, settings: &S
         });
     });
     ui.help = open;
+}
+
+/// Where a picture goes, and how large it is.
+fn shot(ctx: &egui::Context, ui: &mut Ui) {
+    let mut open = ui.shot.open;
+    let mut wanted = false;
+    egui::Window::new("Write picture").open(&mut open).show(ctx, |window| {
+        let shot = &mut ui.shot;
+        let mut path = shot.path.to_string_lossy().into_owned();
+        if window.text_edit_singleline(&mut path).changed() {
+            shot.path = path.into();
+        }
+        window.horizontal(|row| {
+            row.add(egui::DragValue::new(&mut shot.size.0).range(1..=16384));
+            row.label("x");
+            row.add(egui::DragValue::new(&mut shot.size.1).range(1..=16384));
+            row.checkbox(&mut shot.transparent, "transparent");
+        });
+        wanted = window.button("Write").clicked();
+    });
+    ui.shot.open = open;
+    if wanted {
+        ui.commands.push(Command::WritePicture);
+    }
 }

@@ -83,7 +83,8 @@ fn file(menu: &mut egui::Ui, ui: &mut Ui, session: &Session, settings: &Settings
         }
     });
     menu.separator();
-    item(menu, "Write picture", Command::Screenshot);
+    item(menu, "Write picture...", Command::Screenshot);
+    item(menu, "Check this view", Command::Check);
     item(menu, "Copy command of this view", Command::CopyCommand);
     menu.separator();
     item(menu, "Quit", Command::Quit);

@@ -6,8 +6,9 @@ use super::engine::{Engine, Outcome, Request, Uploaded};
 use super::screen::{Frame, Picture, Screen};
 use super::waiter::Waiter;
 use super::{Closed, Failure, ViewError, ViewOptions};
+use crate::measure::Measurement;
 use crate::navigation::gesture::Held;
-use crate::panels::{Facts, Ui};
+use crate::panels::{Facts, Ui, Verdict};
 use crate::pick::{Mark, Picked};
 use crate::session::{Loaded, Loader, LoaderEvent, Session};
 use crate::settings::{Lines, Settings, Theme};
@@ -37,6 +38,10 @@ pub enum Event {
     Chosen(Vec<PathBuf>),
     /// An open file has changed.
     Changed(PathBuf),
+    /// What was selected has been measured.
+    Measured(Vec<Picked>, Option<Measurement>),
+    /// A picture was judged: which pixels are wrong, or why it was not.
+    Judged(Result<Verdict, String>),
     /// The panels want to be drawn again.
     Repaint,
 }
@@ -273,6 +278,9 @@ impl App {
         self.view.advance(now);
         let output = self.run_panels();
         self.obey(now);
+        if std::mem::take(&mut self.ui.wants_measure) {
+            self.measure();
+        }
         self.keep_settings();
         let request = Request {
             world: Arc::clone(&self.session.world),
@@ -369,7 +377,11 @@ impl App {
         let pixel = |x: f32, most: u32| ((x * pixels).round().max(0.0) as u32).min(most);
         let (x, y) = (pixel(view.min.x, size.width), pixel(view.min.y, size.height));
         let (right, bottom) = (pixel(view.max.x, size.width), pixel(view.max.y, size.height));
-        self.rect = ViewRect { x, y, width: right.saturating_sub(x), height: bottom.saturating_sub(y) };
+        let rect = ViewRect { x, y, width: right.saturating_sub(x), height: bottom.saturating_sub(y) };
+        if rect != self.rect {
+            tracing::debug!("view of {} x {} at {x}, {y}", rect.width, rect.height);
+        }
+        self.rect = rect;
         self.view.resize((self.rect.width, self.rect.height));
         copied.into_iter().for_each(|text| self.to_clipboard(text));
         output
@@ -424,6 +436,7 @@ impl App {
     pub fn frame_done(&mut self, result: Result<(), vk::Result>) -> Result<(), ViewError> {
         let Some(Flight { picture, pick, camera, free }) = self.flight.take() else { return Ok(()) };
         result?;
+        tracing::debug!("frame");
         let Some(Opened { engine, screen, .. }) = &mut self.opened else { return Ok(()) };
         screen.free_textures(&free)?;
         if let Some((due, settings, generation, start)) = picture {

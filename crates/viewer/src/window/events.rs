@@ -102,6 +102,19 @@ impl ApplicationHandler<Event> for App {
             Event::Loader(event) => self.loader(event),
             Event::Chosen(paths) => paths.into_iter().for_each(|path| self.load(path)),
             Event::Changed(path) => drop(self.ui.changed.insert(path, Instant::now())),
+            Event::Measured(selection, measured) => {
+                if selection == self.session.selection {
+                    self.ui.measured(measured);
+                }
+                self.redraw();
+            }
+            Event::Judged(verdict) => {
+                match verdict {
+                    Ok(verdict) => self.ui.judged(verdict),
+                    Err(why) => self.ui.tell(why),
+                }
+                self.redraw();
+            }
             Event::EdgesFound | Event::Repaint => self.redraw(),
         }
     }
@@ -286,7 +299,8 @@ impl App {
                     self.copy(text);
                 }
                 Command::CopyText(text) => self.copy(text),
-                Command::Screenshot => self.screenshot(),
+                Command::WritePicture => self.write_picture(),
+                Command::Check => self.check(),
                 Command::Quit => self.ui.quit = true,
                 other => self.ui.obey(other, &mut self.session),
             }
@@ -319,10 +333,6 @@ impl App {
         tracing::info!("copied: {text}");
         self.context.copy_text(text);
         self.ui.tell("Copied.".to_owned());
-    }
-
-    fn screenshot(&mut self) {
-        self.ui.tell("Screenshots are not there yet.".to_owned());
     }
 }
 

@@ -12,9 +12,11 @@ mod composite;
 mod context;
 mod engine;
 mod events;
+mod photograph;
 mod screen;
 mod swapchain;
 mod targets;
+mod tasks;
 mod waiter;
 
 use selvedge::ash::vk;

@@ -167,7 +167,7 @@ impl Screen {
         self.begin()?;
         if let Some(picture) = picture {
             let target = self.target(picture.camera.size)?;
-            match self.record_picture(picture, target) {
+            match self.record_into(picture, &self.targets[target]) {
                 Ok(()) => self.shown = Some(target),
                 Err(error) => {
                     // what was recorded is thrown away
@@ -182,7 +182,7 @@ impl Screen {
         failed.map_or(Ok(true), |error| Err(Failure::Picture(error)))
     }
 
-    fn begin(&self) -> Result<(), ViewError> {
+    pub(super) fn begin(&self) -> Result<(), ViewError> {
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
         // SAFETY: the command buffer is not in use; to begin it resets it.
         Ok(unsafe { self.context.device.begin_command_buffer(self.context.cmd, &begin) }?)
@@ -203,8 +203,8 @@ impl Screen {
         Ok(self.targets.len() - 1)
     }
 
-    fn record_picture(&self, picture: Picture<'_>, target: usize) -> Result<(), RenderError> {
-        let targets = &self.targets[target];
+    /// Records the engine's picture into images of its size.
+    pub(super) fn record_into(&self, picture: Picture<'_>, targets: &Targets) -> Result<(), RenderError> {
         targets.begin(&self.context);
         let Picture { renderer, camera, settings } = picture;
         let input = FrameInput { camera, settings, slot: 0, targets: targets.engine() };
@@ -258,6 +258,20 @@ impl Screen {
         unsafe { context.device.cmd_end_rendering(context.cmd) };
         record_barriers(context, &[barrier(image, attachment, presented)]);
         Ok(drawn?)
+    }
+
+    /// Submits what is recorded, without a window, and waits.
+    pub(super) fn submit_and_wait(&self) -> Result<(), ViewError> {
+        let Context { device, queue, cmd, fence, .. } = &self.context;
+        let commands = [vk::CommandBufferSubmitInfo::default().command_buffer(*cmd)];
+        let submit = vk::SubmitInfo2::default().command_buffer_infos(&commands);
+        // SAFETY: the command buffer is recording, the fence not in use.
+        unsafe {
+            device.end_command_buffer(*cmd)?;
+            device.reset_fences(&[*fence])?;
+            device.queue_submit2(*queue, &[submit], *fence)?;
+            Ok(device.wait_for_fences(&[*fence], true, u64::MAX)?)
+        }
     }
 
     fn submit(&self, image: u32) -> Result<Presented, ViewError> {

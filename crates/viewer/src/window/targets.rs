@@ -121,17 +121,29 @@ impl Targets {
 
     /// Copies the pixels of `around` to the buffer.
     pub fn copy(&self, context: &Context, to: &PickBuffer, around: Area) {
+        let images = (1..COUNT).map(|i| (i, BYTES[i - 1]));
+        self.copy_area(context, to.buffer, images, around);
+    }
+
+    /// Copies whole images, by their numbers and bytes of a pixel, to a buffer with room for them.
+    pub fn copy_all(&self, context: &Context, to: vk::Buffer, images: impl IntoIterator<Item = (usize, u64)>) {
+        let (width, height) = self.size();
+        self.copy_area(context, to, images, Area { x: 0, y: 0, width, height });
+    }
+
+    fn copy_area(&self, context: &Context, to: vk::Buffer, images: impl IntoIterator<Item = (usize, u64)>, area: Area) {
         let mut offset = 0;
-        for (i, (image, ..)) in self.images.iter().enumerate().skip(1) {
+        for (i, bytes) in images {
             let layers = vk::ImageSubresourceLayers::default().aspect_mask(vk::ImageAspectFlags::COLOR).layer_count(1);
             let region = vk::BufferImageCopy::default()
                 .buffer_offset(offset)
                 .image_subresource(layers)
-                .image_offset(vk::Offset3D { x: around.x as i32, y: around.y as i32, z: 0 })
-                .image_extent(vk::Extent3D { width: around.width, height: around.height, depth: 1 });
-            // SAFETY: recording; the area lies in the image, and the buffer has room for the largest one.
-            unsafe { context.device.cmd_copy_image_to_buffer(context.cmd, *image, L::GENERAL, to.buffer, &[region]) };
-            offset += BYTES[i - 1] * u64::from(around.width * around.height);
+                .image_offset(vk::Offset3D { x: area.x as i32, y: area.y as i32, z: 0 })
+                .image_extent(vk::Extent3D { width: area.width, height: area.height, depth: 1 });
+            let image = self.images[i].0;
+            // SAFETY: recording; the area lies in the image, and the buffer has room for it.
+            unsafe { context.device.cmd_copy_image_to_buffer(context.cmd, image, L::GENERAL, to, &[region]) };
+            offset += bytes * u64::from(area.width) * u64::from(area.height);
         }
         let host = [vk::MemoryBarrier2::default()
             .src_stage_mask(S::ALL_TRANSFER)
