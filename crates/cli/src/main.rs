@@ -93,9 +93,18 @@ fn main() -> ExitCode {
         Ok(Outcome::Broken) => ExitCode::from(BROKEN),
         Err(error) => {
             eprintln!("selvedge: {}", explained(&error));
-            ExitCode::from(if error.is::<HeadlessError>() { DEVICE } else { USAGE })
+            ExitCode::from(if is_of_device(&error) { DEVICE } else { USAGE })
         }
     }
+}
+
+/// There is no usable device, or it failed.
+fn is_of_device(error: &anyhow::Error) -> bool {
+    #[cfg(feature = "view")]
+    if view::is_of_device(error) {
+        return true;
+    }
+    error.is::<HeadlessError>()
 }
 
 /// The error and its causes in one line; a message that quotes its cause needs it only once.

@@ -3,7 +3,7 @@
 use crate::Outcome;
 use crate::args::ViewArgs;
 use anyhow::Result;
-use selvedge_viewer::{ViewOptions, run as run_window, settings};
+use selvedge_viewer::{ViewError, ViewOptions, run as run_window, settings};
 use std::path::PathBuf;
 
 /// Opens the window, and returns when it is closed.
@@ -19,4 +19,9 @@ pub fn run(args: &ViewArgs) -> Result<Outcome> {
     })?;
     closed.messages.iter().for_each(|message| tracing::error!("validation: {message}"));
     Ok(if closed.messages.is_empty() { Outcome::Good } else { Outcome::Broken })
+}
+
+/// The window's device is missing, or failed.
+pub fn is_of_device(error: &anyhow::Error) -> bool {
+    error.downcast_ref::<ViewError>().is_some_and(ViewError::is_of_device)
 }

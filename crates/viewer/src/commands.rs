@@ -50,6 +50,12 @@ pub enum Command {
     Screenshot,
     /// Write it there.
     WritePicture,
+    /// Drag trim loops, or no more.
+    Trims,
+    /// Ask where the model is to be saved, or no more.
+    SaveAs,
+    /// Save it there.
+    Save,
     /// Check the view against exact rays.
     Check,
     /// The line of `selvedge render` for this view, to the clipboard.
@@ -111,6 +117,8 @@ pub fn shortcuts() -> Vec<Shortcut> {
         (Key::M, NONE, Command::Measure, "keep the measurement"),
         (Key::Z, CTRL, Command::Undo, "undo"),
         (Key::Z, CTRL.plus(SHIFT), Command::Redo, "redo"),
+        (Key::T, NONE, Command::Trims, "drag trim loops of the selected face"),
+        (Key::E, CTRL, Command::SaveAs, "save the model"),
         (Key::S, CTRL, Command::Screenshot, "write the picture to a file"),
         (Key::S, CTRL.plus(SHIFT), Command::WritePicture, "write it there at once"),
         (Key::K, NONE, Command::Check, "check this view against exact rays"),

@@ -1,11 +1,11 @@
 //! What a selected thing is, exactly, and the command that draws the view.
 
-use crate::panels::Ui;
-use crate::pick::Picked;
+use crate::session::Picked;
 use crate::session::{Session, World};
 use crate::settings::{Lines, Settings};
 use glam::DVec3;
 use selvedge::model::{Camera, EdgeKind, Face, Projection, SurfaceKind};
+use selvedge::picture::Style;
 
 /// Lines of a description: what, and its value.
 pub type Description = Vec<(&'static str, String)>;
@@ -163,7 +163,7 @@ fn quoted(word: &str) -> String {
 }
 
 /// The line of `selvedge render` for this view. It draws one file: the first one, where several are open.
-pub fn command(session: &Session, camera: &Camera, settings: &Settings, ui: &Ui) -> String {
+pub fn command(session: &Session, camera: &Camera, settings: &Settings, style: Style) -> String {
     let triple = |p: DVec3| p.to_array().map(|x| format!("{x}")).join(",");
     let file = session.world.files.first().map_or("FILE".into(), |file| file.path.to_string_lossy());
     let mut words = vec!["selvedge".to_owned(), "render".to_owned(), quoted(&file)];
@@ -177,7 +177,7 @@ pub fn command(session: &Session, camera: &Camera, settings: &Settings, ui: &Ui)
         Projection::Perspective { fov_y } => push("--fov", format!("{}", fov_y.to_degrees())),
         Projection::Orthographic { height } => push("--ortho", format!("{height}")),
     }
-    push("--style", ui.style.name().to_owned());
+    push("--style", style.name().to_owned());
     for section in session.scene.now().sections.iter().filter(|s| s.on) {
         push("--section", format!("{},{}", triple(section.normal), section.offset));
     }

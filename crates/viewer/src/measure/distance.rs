@@ -168,12 +168,13 @@ impl<'a> Sampled<'a> {
 
 /// The smallest distance between two things; `None` where one of them has no points.
 pub fn smallest(a: &[Sampled<'_>], b: &[Sampled<'_>]) -> Option<Distance> {
-    let mut pairs: Vec<(f64, &Sampled<'_>, &Sampled<'_>, Vec<(f64, Look, Look)>)> = Vec::new();
-    for (x, y) in a.iter().flat_map(|x| b.iter().map(move |y| (x, y))) {
-        let near = nearest(x, y);
-        let least = near.first()?.0 - x.gap - y.gap;
-        pairs.push((least, x, y, near));
-    }
+    let all = a.iter().flat_map(|x| b.iter().map(move |y| (x, y)));
+    let mut pairs: Vec<_> = all
+        .filter_map(|(x, y)| {
+            let near = nearest(x, y);
+            Some((near.first()?.0 - x.gap - y.gap, x, y, near))
+        })
+        .collect();
     pairs.sort_by(|p, q| p.0.total_cmp(&q.0));
     let mut best: Option<Distance> = None;
     for (least, x, y, starts) in pairs {

@@ -17,7 +17,7 @@ pub mod mass;
 pub mod surface;
 
 use crate::describe;
-use crate::pick::Picked;
+use crate::session::Picked;
 use crate::session::World;
 use curve::{Circle, CurveShape};
 use distance::{Distance, Sampled};
@@ -220,12 +220,12 @@ fn pair(world: &World, a: &Picked, b: &Picked, all: &mut Measurement) -> Option<
         let angle = if d_is_normal == e_is_normal { angle } else { 90.0 - angle };
         all.add("angle", angle, 0.0, "°");
     }
-    if let (Some((c, along_c)), Some((d, along_d))) = (middle_a, middle_b) {
-        if let Some((p, q)) = between(c, along_c, d, along_d) {
-            let what = if along_c.is_some() || along_d.is_some() { "between axes" } else { "between centres" };
-            all.add(what, p.distance(q), 0.0, "mm");
-            all.dimension([p, q], "axes", p.distance(q));
-        }
+    if let (Some((c, along_c)), Some((d, along_d))) = (middle_a, middle_b)
+        && let Some((p, q)) = between(c, along_c, d, along_d)
+    {
+        let what = if along_c.is_some() || along_d.is_some() { "between axes" } else { "between centres" };
+        all.add(what, p.distance(q), 0.0, "mm");
+        all.dimension([p, q], "axes", p.distance(q));
     }
     Some(())
 }

@@ -212,14 +212,12 @@ fn smallest(mut a: [[f64; 6]; 6]) -> Option<[f64; 6]> {
                 let t = theta.signum() / (theta.abs() + theta.hypot(1.0));
                 let c = 1.0 / t.hypot(1.0);
                 let s = t * c;
-                for k in 0..6 {
-                    (a[k][p], a[k][q]) = (c * a[k][p] - s * a[k][q], s * a[k][p] + c * a[k][q]);
-                }
-                for k in 0..6 {
-                    (a[p][k], a[q][k]) = (c * a[p][k] - s * a[q][k], s * a[p][k] + c * a[q][k]);
-                }
-                for row in &mut vectors {
+                for row in a.iter_mut().chain(&mut vectors) {
                     (row[p], row[q]) = (c * row[p] - s * row[q], s * row[p] + c * row[q]);
+                }
+                let (above, below) = (a[p], a[q]);
+                for (k, (x, y)) in above.into_iter().zip(below).enumerate() {
+                    (a[p][k], a[q][k]) = (c * x - s * y, s * x + c * y);
                 }
             }
         }

@@ -14,10 +14,12 @@ mod properties;
 mod status;
 mod toolbar;
 mod tree;
+mod trims;
 
 use crate::commands::{self, Command};
 use crate::measure::Measurement;
-use crate::pick::{PickFilter, Picked};
+use crate::pick::PickFilter;
+use crate::session::Picked;
 use crate::session::Session;
 use crate::settings::Settings;
 use crate::view::View;
@@ -70,6 +72,12 @@ pub struct Ui {
     pub shot: Shot,
     /// What the judge said last.
     pub verdict: Option<Verdict>,
+    /// Trim loops of the selected face can be dragged.
+    pub trims: bool,
+    /// What is to be known of the selected face.
+    pub notice: Option<String>,
+    /// Where the model is saved, while that is asked for.
+    pub save: Option<PathBuf>,
 }
 
 /// A picture to be written.
@@ -119,6 +127,9 @@ impl Default for Ui {
             kept: Vec::new(),
             shot: Shot { open: false, path: PathBuf::from("view.png"), size: (1280, 720), transparent: false },
             verdict: None,
+            trims: false,
+            notice: None,
+            save: None,
         }
     }
 }
@@ -224,6 +235,10 @@ impl Ui {
                 }
             }),
             Command::Help => self.help = !self.help,
+            Command::Trims => self.trims = !self.trims,
+            Command::SaveAs => {
+                self.save = if self.save.is_none() { Some(PathBuf::from("edited.selvedge")) } else { None };
+            }
             Command::Screenshot => self.shot.open = !self.shot.open,
             Command::Measure => match &self.measurement {
                 Some(measurement) => self.kept.push(measurement.clone()),

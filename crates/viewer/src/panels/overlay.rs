@@ -3,7 +3,7 @@
 use super::{Facts, Ui};
 use crate::commands::Command;
 use crate::navigation::cube;
-use crate::pick::Picked;
+use crate::session::Picked;
 use crate::session::{Session, World};
 use egui::{Color32, Pos2, Rect, Shape, Stroke};
 use glam::{DVec2, DVec3};
@@ -33,6 +33,8 @@ pub fn show(ctx: &egui::Context, rect: Rect, ui: &mut Ui, session: &mut Session,
         measurement.dimensions.iter().for_each(|(ends, text)| dimension(&painter, &place, *ends, text));
     }
     wrong_pixels(&painter, &place, ui);
+    ui.notice = None;
+    super::trims::show(ctx, &place, ui, session);
     super::handles::show(ctx, &place, session);
     view_cube(ctx, rect, ui, facts.view.camera());
 }

@@ -15,6 +15,9 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
     if session.selection.is_empty() {
         panel.label("Click a face, an edge, a corner. Shift adds.");
     }
+    if let Some(notice) = &ui.notice {
+        panel.colored_label(panel.visuals().warn_fg_color, notice);
+    }
     egui::ScrollArea::vertical().auto_shrink(false).show(panel, |area| {
         let world = session.world.clone();
         for (i, picked) in session.selection.iter().enumerate() {

@@ -33,10 +33,10 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &Session, facts: &Facts<
                 _ => format!("{width} x {height}"),
             };
             right.label(size).on_hover_text(facts.device);
-            if let Some(message) = ui.messages.last() {
-                if right.add(egui::Label::new(message).truncate().sense(egui::Sense::click())).clicked() {
-                    ui.warnings = true;
-                }
+            if let Some(message) = ui.messages.last()
+                && right.add(egui::Label::new(message).truncate().sense(egui::Sense::click())).clicked()
+            {
+                ui.warnings = true;
             }
         });
     });
@@ -87,6 +87,7 @@ pub fn windows(ctx: &egui::Context, ui: &mut Ui, session: &Session, settings: &S
     });
     ui.warnings = open;
     shot(ctx, ui);
+    save(ctx, ui);
     let mut open = ui.help;
     egui::Window::new("Keys and buttons").open(&mut open).default_width(360.0).show(ctx, |window| {
         let preset = settings.preset;
@@ -136,5 +137,24 @@ fn shot(ctx: &egui::Context, ui: &mut Ui) {
     ui.shot.open = open;
     if wanted {
         ui.commands.push(Command::WritePicture);
+    }
+}
+
+/// Where the model goes, as it was edited.
+fn save(ctx: &egui::Context, ui: &mut Ui) {
+    let Some(path) = &mut ui.save else { return };
+    let (mut open, mut wanted) = (true, false);
+    egui::Window::new("Save model").open(&mut open).show(ctx, |window| {
+        window.label("A file .selvedge, bit for bit, or .step:");
+        let mut text = path.to_string_lossy().into_owned();
+        if window.text_edit_singleline(&mut text).changed() {
+            *path = text.into();
+        }
+        wanted = window.button("Save").clicked();
+    });
+    if wanted {
+        ui.commands.push(Command::Save);
+    } else if !open {
+        ui.save = None;
     }
 }

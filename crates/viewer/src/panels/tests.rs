@@ -1,7 +1,7 @@
 //! Panels without a window: what they say, and what a click does.
 
 use super::*;
-use crate::pick::Picked;
+use crate::session::Picked;
 use crate::session::{Loaded, World};
 use std::sync::Arc;
 
@@ -51,7 +51,7 @@ impl Bench {
             device: "none",
         };
         let Self { ctx, ui, session, settings, .. } = self;
-        let output = ctx.run(input, |ctx| drop(show(ctx, ui, session, settings, &facts)));
+        let output = ctx.run(input, |ctx| _ = show(ctx, ui, session, settings, &facts));
         texts(&output)
     }
 

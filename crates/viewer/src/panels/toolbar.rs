@@ -44,6 +44,12 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session, settings: 
         }
         row.separator();
         let mut explosion = session.scene.now().explosion;
+        let trims =
+            row.selectable_label(ui.trims, "Trims").on_hover_text("Drag the trim loops of the selected face (T)");
+        if trims.clicked() {
+            ui.commands.push(Command::Trims);
+        }
+        row.separator();
         row.label("Explode");
         let slider = row.add(egui::Slider::new(&mut explosion, 0.0..=1.0).show_value(false));
         drag(&slider, session, |state| state.explosion = explosion);
@@ -83,6 +89,7 @@ fn file(menu: &mut egui::Ui, ui: &mut Ui, session: &Session, settings: &Settings
         }
     });
     menu.separator();
+    item(menu, "Save model...", Command::SaveAs);
     item(menu, "Write picture...", Command::Screenshot);
     item(menu, "Check this view", Command::Check);
     item(menu, "Copy command of this view", Command::CopyCommand);

@@ -2,7 +2,7 @@
 
 use super::Ui;
 use crate::commands::Command;
-use crate::pick::Picked;
+use crate::session::Picked;
 use crate::session::Session;
 use selvedge::model::GREY;
 

@@ -8,16 +8,17 @@
 //! ```
 
 pub mod file;
+pub mod picked;
 pub mod shown;
 pub mod undo;
 pub mod world;
 
 pub use file::{Loaded, Loader, LoaderEvent};
+pub use picked::Picked;
 pub use shown::{SceneState, Section, Shown};
 pub use undo::History;
 pub use world::{FilePart, World};
 
-use crate::pick::Picked;
 use std::sync::Arc;
 
 /// Everything of a session that is no window.

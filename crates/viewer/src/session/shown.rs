@@ -2,7 +2,7 @@
 
 use super::World;
 use glam::{DAffine3, DVec3};
-use selvedge::model::{Bounds, Colour, Instance, Model, SolidError};
+use selvedge::model::{Bounds, Colour, Instance, Model, SolidError, TrimLoop};
 use serde::{Deserialize, Serialize};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -51,7 +51,12 @@ pub struct SceneState {
     pub sections: Vec<Section>,
     /// How far parts are moved apart: 0 not at all, 1 by half the model's size.
     pub explosion: f64,
+    /// Trim loops that were changed: of a part, a face, a loop.
+    pub edits: BTreeMap<LoopKey, TrimLoop>,
 }
+
+/// Numbers of a part, of a face of it, of a loop of that.
+pub type LoopKey = (usize, usize, usize);
 
 /// Most sections at a time.
 pub const MOST_SECTIONS: usize = 3;
@@ -59,7 +64,7 @@ pub const MOST_SECTIONS: usize = 3;
 const CLEAR: f32 = 0.25;
 
 /// What is drawn.
-#[derive(Debug, Default)]
+#[derive(Clone, Debug, Default)]
 pub struct Shown {
     /// For the engine.
     pub model: Model,
@@ -85,6 +90,22 @@ impl SceneState {
         self.hidden = (0..all).filter(|item| !items.contains(item)).collect();
     }
 
+    /// A model with the trim loops that were changed.
+    pub fn edit(&self, model: &mut Model) {
+        for (&(part, face, trim_loop), changed) in &self.edits {
+            let faces = model.parts.get_mut(part).map(|part| &mut part.faces);
+            let loops = faces.and_then(|faces| faces.get_mut(face)).map(|face| &mut face.loops);
+            if let Some(found) = loops.and_then(|loops| loops.get_mut(trim_loop)) {
+                found.clone_from(changed);
+            }
+        }
+    }
+
+    /// The same state but for its trim loops.
+    pub fn differs_in_loops_alone(&self, other: &Self) -> bool {
+        Self { edits: BTreeMap::new(), ..self.clone() } == Self { edits: BTreeMap::new(), ..other.clone() }
+    }
+
     /// The model that is drawn.
     pub fn show(&self, world: &World) -> Shown {
         let count = world.model.instances.len();
@@ -96,6 +117,7 @@ impl SceneState {
         };
         let solids = world.model.solids.iter().enumerate();
         model.solids.extend(solids.filter(|(i, _)| !self.hidden.contains(&(count + i))).map(|(_, s)| s.clone()));
+        self.edit(&mut model);
         let mut failed = None;
         for section in self.sections.iter().filter(|section| section.on) {
             match model.section(section.normal, section.offset) {
@@ -199,6 +221,25 @@ mod tests {
         assert_eq!(shown.instances[0].colour, Some([1.0, 0.0, 0.0, CLEAR]));
         assert_eq!(shown.instances[1].colour.map(|c| c[3]), Some(CLEAR));
         assert_eq!(shown.instances[2].colour, world.model.instances[2].colour);
+    }
+
+    #[test]
+    fn changed_loops_are_drawn_and_undone() {
+        let world = world();
+        let (part, face) = (0..world.model.parts.len())
+            .flat_map(|p| (0..world.model.parts[p].faces.len()).map(move |f| (p, f)))
+            .find(|(p, f)| !world.model.parts[*p].faces[*f].loops.is_empty())
+            .expect("a trimmed face");
+        let before = world.model.parts[part].faces[face].loops[0].clone();
+        let to = before.curves().next().expect("a curve").point(0.0) + 0.01;
+        let after = before.with_point(0, 0, to).expect("a loop");
+        let mut state = SceneState::default();
+        state.edits.insert((part, face, 0), after.clone());
+        state.edits.insert((part, face, 999), after.clone());
+        assert_eq!(state.show(&world).model.parts[part].faces[face].loops[0], after);
+        assert!(state.differs_in_loops_alone(&SceneState::default()));
+        assert!(!state.differs_in_loops_alone(&SceneState { explosion: 0.5, ..SceneState::default() }));
+        assert_eq!(SceneState::default().show(&world).model.parts[part].faces[face].loops[0], before);
     }
 
     #[test]

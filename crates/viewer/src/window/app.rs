@@ -9,7 +9,8 @@ use super::{Closed, Failure, ViewError, ViewOptions};
 use crate::measure::Measurement;
 use crate::navigation::gesture::Held;
 use crate::panels::{Facts, Ui, Verdict};
-use crate::pick::{Mark, Picked};
+use crate::pick::Mark;
+use crate::session::Picked;
 use crate::session::{Loaded, Loader, LoaderEvent, Session};
 use crate::settings::{Lines, Settings, Theme};
 use crate::view::{Due, Hover, View};
@@ -255,7 +256,7 @@ impl App {
         };
         let edges = EdgeSettings { which, silhouettes, hidden: hidden_lines, ..EdgeSettings::default() };
         let edges = (which != EdgeChoice::None || silhouettes).then_some(edges);
-        SceneSettings { edges, smooth_trims: smooth, ..SceneSettings::default() }
+        SceneSettings { edges, smooth_trims: smooth, editable: self.ui.trims, ..SceneSettings::default() }
     }
 
     /// Settings of the pictures in the window.
@@ -383,12 +384,12 @@ impl App {
         }
         self.rect = rect;
         self.view.resize((self.rect.width, self.rect.height));
-        copied.into_iter().for_each(|text| self.to_clipboard(text));
+        copied.into_iter().for_each(|text| self.set_clipboard(text));
         output
     }
 
     /// The desktop's clipboard; what was copied is there as long as the window is.
-    fn to_clipboard(&mut self, text: String) {
+    fn set_clipboard(&mut self, text: String) {
         if self.clipboard.is_none() {
             self.clipboard = arboard::Clipboard::new().ok();
         }

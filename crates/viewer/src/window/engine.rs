@@ -6,9 +6,10 @@
 //! ```
 
 use crate::session::{SceneState, Shown, World};
-use selvedge::model::Camera;
+use selvedge::model::{Camera, LoopAt};
 use selvedge::picture::SceneSettings;
 use selvedge::renderer::{DeepZoom, DeepZoomUpload, RenderError, Renderer};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
 
@@ -93,7 +94,7 @@ impl Engine {
     /// Begins to upload what is asked for, unless it is there or on its way; no frame is in flight. `done` is called by
     /// the thread.
     pub fn want(&mut self, request: &Request, done: impl FnOnce(Box<Uploaded>) + Send + 'static) {
-        if self.is_busy() || self.asked.as_ref() == Some(request) || request.world.is_empty() {
+        if self.is_busy() || self.asked.as_ref() == Some(request) || request.world.is_empty() || self.edits(request) {
             return;
         }
         let Some(mut renderer) = self.renderer.take() else { return };
@@ -115,13 +116,51 @@ impl Engine {
         }));
     }
 
+    /// Changes trim loops in place, where nothing else differs from what was asked for last.
+    fn edits(&mut self, request: &Request) -> bool {
+        let (Some(asked), Some((current, shown)), Some(renderer)) =
+            (&self.asked, &mut self.current, &mut self.renderer)
+        else {
+            return false;
+        };
+        let same = Arc::ptr_eq(&asked.world, &request.world) && asked.settings == request.settings;
+        if !(same && current.settings.editable && asked.state.differs_in_loops_alone(&request.state)) {
+            return false;
+        }
+        let (old, new) = (&asked.state.edits, &request.state.edits);
+        let changed: BTreeSet<_> = old.keys().chain(new.keys()).filter(|key| old.get(key) != new.get(key)).collect();
+        let model = &mut Arc::make_mut(shown).model;
+        for key in changed {
+            let (part, face, trim_loop) = *key;
+            let Some(original) =
+                request.world.model.parts.get(part).and_then(|p| p.faces.get(face)?.loops.get(trim_loop))
+            else {
+                continue;
+            };
+            let wanted = new.get(key).unwrap_or(original);
+            if let Err(error) = renderer.edit_loop(LoopAt { part, face, trim_loop }, wanted) {
+                // uploaded anew, it is drawn
+                tracing::info!("{error}");
+                return false;
+            }
+            model.parts[part].faces[face].loops[trim_loop] = wanted.clone();
+        }
+        current.state = request.state.clone();
+        self.asked = Some(request.clone());
+        self.generation += 1;
+        true
+    }
+
     /// Whether the renderer holds what this view sees; else begins to upload it.
     pub fn resolves(&mut self, camera: &Camera, done: impl FnOnce(Box<Uploaded>) + Send + 'static) -> bool {
         let Some((request, shown)) = &self.current else { return false };
         if self.is_busy() {
             return false;
         }
-        // parts are followed through as a whole where something is seen through
+        // loops that are being edited stay where they are
+        if request.settings.editable {
+            return true;
+        }
         let wanted = self.deep_zoom.of(&shown.model, camera);
         if wanted == DeepZoomUpload::Same {
             return true;

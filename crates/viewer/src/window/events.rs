@@ -21,10 +21,10 @@ const NOTCH_PX: f64 = 40.0;
 
 impl ApplicationHandler<Event> for App {
     fn resumed(&mut self, events: &ActiveEventLoop) {
-        if self.opened.is_none() {
-            if let Err(error) = self.open_window(events) {
-                self.fail(error, events);
-            }
+        if self.opened.is_none()
+            && let Err(error) = self.open_window(events)
+        {
+            self.fail(error, events);
         }
     }
 
@@ -169,10 +169,12 @@ impl App {
             self.pick = self.view.wants_point();
         } else if self.held.any() {
             self.held.button(button, false);
-            if !self.held.any() && self.view.release() && button == Button::Left {
-                if let Some(at) = self.over_view() {
-                    (self.click, self.pick) = (Some(self.held.shift), Some(at));
-                }
+            if !self.held.any()
+                && self.view.release()
+                && button == Button::Left
+                && let Some(at) = self.over_view()
+            {
+                (self.click, self.pick) = (Some(self.held.shift), Some(at));
             }
         }
         self.redraw();
@@ -295,12 +297,14 @@ impl App {
                 Command::Previous => drop(self.view.previous(smooth, now)),
                 Command::Turn(x, y) => self.view.turn(DVec2::new(x, y), self.settings.orbit, now),
                 Command::CopyCommand => {
-                    let text = crate::describe::command(&self.session, self.view.camera(), &self.settings, &self.ui);
+                    let text =
+                        crate::describe::command(&self.session, self.view.camera(), &self.settings, self.ui.style);
                     self.copy(text);
                 }
                 Command::CopyText(text) => self.copy(text),
                 Command::WritePicture => self.write_picture(),
                 Command::Check => self.check(),
+                Command::Save => self.save(),
                 Command::Quit => self.ui.quit = true,
                 other => self.ui.obey(other, &mut self.session),
             }

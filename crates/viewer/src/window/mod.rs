@@ -98,6 +98,11 @@ impl<E: Into<ViewError>> From<E> for Failure {
 }
 
 impl ViewError {
+    /// The device is missing, or failed; otherwise the window is.
+    pub fn is_of_device(&self) -> bool {
+        !matches!(self, Self::Window(_) | Self::Loop(_) | Self::NoValidation)
+    }
+
     /// The device is gone; everything can be made anew from what the host holds.
     pub(crate) fn is_device_lost(&self) -> bool {
         match self {

@@ -6,9 +6,11 @@ use super::photograph::Photograph;
 use super::screen::Picture;
 use crate::measure;
 use crate::panels::{Shot, Verdict};
-use selvedge::model::{Camera, Images};
+use selvedge::model::{Camera, Images, Model};
 use selvedge::picture::FrameSettings;
 use selvedge_check::{JudgeOptions, Tracer, judge};
+use selvedge_io::{export, native};
+use std::error::Error;
 use std::fs::File;
 use std::io::BufWriter;
 use std::path::Path;
@@ -64,6 +66,20 @@ impl App {
         self.ui.shot.open = false;
     }
 
+    /// Saves all open files as one model, with the trim loops that were changed.
+    pub fn save(&mut self) {
+        let Some(path) = self.ui.save.take() else { return };
+        let mut model = self.session.world.model.clone();
+        self.session.scene.now().edit(&mut model);
+        let told = match save(&path, &model) {
+            Ok(warnings) if warnings.is_empty() => format!("{} is saved.", path.display()),
+            Ok(warnings) => format!("{} is saved, but: {}", path.display(), warnings.join("; ")),
+            Err(error) => format!("{} is not saved: {error}", path.display()),
+        };
+        tracing::info!("{told}");
+        self.ui.tell(told);
+    }
+
     /// Draws the view once more and lets the judge look at it, in a thread.
     pub fn check(&mut self) {
         let (camera, settings) = (*self.view.camera(), self.frame_settings());
@@ -83,6 +99,24 @@ impl App {
             drop(proxy.send_event(Event::Judged(Ok(verdict))));
         });
     }
+}
+
+/// A model in the form that the file's name says, there as a whole or as it was; what of it is not written.
+fn save(path: &Path, model: &Model) -> Result<Vec<String>, Box<dyn Error>> {
+    let mut bytes = Vec::new();
+    let mut warnings = Vec::new();
+    match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        Some("selvedge") => bytes = native::write(model),
+        Some("step" | "stp") => {
+            let told = export::step(model, &mut bytes)?;
+            warnings.extend(told.iter().map(|w| format!("{}: {}", w.item, w.message)));
+        }
+        _ => return Err("its name ends neither in .selvedge nor in .step".into()),
+    }
+    let beside = path.with_extension("new");
+    std::fs::write(&beside, bytes)?;
+    std::fs::rename(beside, path)?;
+    Ok(warnings)
 }
 
 /// A PNG file, there as a whole or as it was.
