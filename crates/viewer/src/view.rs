@@ -207,10 +207,11 @@ impl View {
         self.set(to, now);
     }
 
-    /// A button went down at `cursor`; the point under it is wanted: [`hold`](Self::hold).
+    /// A button went down at `cursor`; the point under it is wanted, unless it is known: [`hold`](Self::hold).
     pub fn press(&mut self, cursor: DVec2) {
         self.transition = None;
-        self.drag.get_or_insert(Drag { start: cursor, last: cursor, held: None, moved: false, remembered: false });
+        let known = self.hover.filter(|hover| hover.cursor.distance(cursor) < 1.0).and_then(|hover| hover.hit.point);
+        self.drag.get_or_insert(Drag { start: cursor, last: cursor, held: known, moved: false, remembered: false });
     }
 
     /// A drag waits for the point under its start.
@@ -359,7 +360,7 @@ mod tests {
         view.moved(start + 50.0, held(Button::Right), MODE, now);
         assert_eq!(view.camera.project(point).expect("in front").0, start_pixel, "nothing moves yet");
         view.hold(Some(point));
-        view.moved(start + 90.0, held(Button::Right), MODE, now);
+        view.moved(start + 50.0, held(Button::Right), MODE, now);
         let at = view.camera.project(point).expect("in front").0;
         assert!(at.distance(start_pixel) < 1e-6 && view.is_dragging());
         assert!(!view.release() && view.previous(false, now));

@@ -469,6 +469,7 @@ impl App {
             self.view.hover = Some(Hover { cursor: at, hit });
             if self.view.wants_point().is_some_and(|start| start.distance(at) < 1.0) {
                 self.view.hold(hit.point);
+                self.catch_up();
             }
             if let Some(add) = self.click.take() {
                 self.session.select(hit.picked, add);

@@ -141,11 +141,16 @@ impl App {
         }
     }
 
-    fn cursor_moved(&mut self) {
+    /// Tells the view where the cursor is by now.
+    pub fn catch_up(&mut self) {
         let Some(cursor) = self.cursor else { return };
         let at = cursor - DVec2::new(f64::from(self.rect.x), f64::from(self.rect.y));
         let mode = (self.settings.preset, self.settings.orbit);
         self.view.moved(at, self.held, mode, Instant::now());
+    }
+
+    fn cursor_moved(&mut self) {
+        self.catch_up();
         match (self.view.is_dragging(), self.over_view()) {
             (false, Some(at)) => self.pick = Some(self.view.wants_point().unwrap_or(at)),
             (false, None) => self.view.hover = None,
@@ -168,6 +173,11 @@ impl App {
             self.view.press(at);
             self.pick = self.view.wants_point();
         } else if self.held.any() {
+            if self.view.wants_point().is_some() {
+                // it is over before the point was known
+                self.view.hold(None);
+                self.catch_up();
+            }
             self.held.button(button, false);
             if !self.held.any()
                 && self.view.release()
