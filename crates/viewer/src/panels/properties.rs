@@ -18,8 +18,10 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
     if let Some(notice) = &ui.notice {
         panel.colored_label(panel.visuals().warn_fg_color, notice);
     }
-    egui::ScrollArea::vertical().auto_shrink(false).show(panel, |area| {
+    // what is wider than the panel scrolls: the picture keeps its size
+    egui::ScrollArea::both().auto_shrink(false).show(panel, |area| {
         let world = session.world.clone();
+        measured(area, ui);
         for (i, picked) in session.selection.iter().enumerate() {
             let title = describe::short(&world, picked);
             if i >= MOST {
@@ -30,26 +32,24 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session) {
                 table(list, ui, i, &describe::long(&world, picked));
             });
         }
-        measured(area, ui);
     });
 }
 
 /// What is measured of the selection, and what is kept.
 fn measured(area: &mut egui::Ui, ui: &mut Ui) {
     if let Some(measurement) = ui.measurement.clone() {
-        area.separator();
-        area.heading("Measured");
+        area.strong("Measured");
         values(area, ui, MOST, &measurement);
         if area.button("Keep (M)").clicked() {
             ui.commands.push(Command::Measure);
         }
+        area.separator();
     }
     if ui.kept.is_empty() {
         return;
     }
-    area.separator();
     area.horizontal(|row| {
-        row.heading("Kept");
+        row.strong("Kept");
         if row.small_button("Copy text").clicked() {
             let text: Vec<String> = ui.kept.iter().map(Measurement::text).collect();
             ui.commands.push(Command::CopyText(text.join("\n\n")));
@@ -68,6 +68,7 @@ fn measured(area: &mut egui::Ui, ui: &mut Ui) {
             }
         });
     }
+    area.separator();
     removed.into_iter().for_each(|i| drop(ui.kept.remove(i)));
 }
 

@@ -25,6 +25,7 @@ struct Bench {
     session: Session,
     settings: Settings,
     view: View,
+    rect: egui::Rect,
 }
 
 impl Bench {
@@ -35,7 +36,7 @@ impl Bench {
         session.open(World::new(&[Arc::new(Loaded { path, import })]));
         session.world.find_edges();
         let (ui, settings, view) = (Ui::default(), Settings::default(), View::default());
-        Self { ctx: egui::Context::default(), ui, session, settings, view }
+        Self { ctx: egui::Context::default(), ui, session, settings, view, rect: egui::Rect::NOTHING }
     }
 
     fn frame(&mut self, events: Vec<egui::Event>) -> Vec<(String, egui::Rect)> {
@@ -50,14 +51,43 @@ impl Bench {
             view: &self.view,
             device: "none",
         };
-        let Self { ctx, ui, session, settings, .. } = self;
-        let output = ctx.run(input, |ctx| _ = show(ctx, ui, session, settings, &facts));
+        let Self { ctx, ui, session, settings, rect, .. } = self;
+        let output = ctx.run(input, |ctx| *rect = show(ctx, ui, session, settings, &facts));
         texts(&output)
     }
 
     fn says(&mut self, what: &str) -> bool {
         self.frame(Vec::new());
         self.frame(Vec::new()).iter().any(|(text, _)| text.contains(what))
+    }
+
+    /// Where a point of the model is, once the view has the size of its panel.
+    fn place(&mut self, p: DVec3) -> egui::Pos2 {
+        for _ in 0..3 {
+            self.frame(Vec::new());
+            self.view.resize((self.rect.width() as u32, self.rect.height() as u32));
+        }
+        self.view.set_bounds(self.session.world.bounds);
+        self.view.reset(Instant::now());
+        let (pixel, _) = self.view.camera().project(p).expect("in front");
+        self.rect.min + egui::Vec2::new(pixel.x as f32, pixel.y as f32)
+    }
+
+    /// A drag with the left button.
+    fn drag(&mut self, from: egui::Pos2, by: egui::Vec2) {
+        let button = |pos, pressed| egui::Event::PointerButton {
+            pos,
+            button: egui::PointerButton::Primary,
+            pressed,
+            modifiers: egui::Modifiers::NONE,
+        };
+        self.frame(vec![egui::Event::PointerMoved(from)]);
+        self.frame(vec![egui::Event::PointerMoved(from)]);
+        self.frame(vec![button(from, true)]);
+        for i in 1..=4 {
+            self.frame(vec![egui::Event::PointerMoved(from + by * (i as f32 / 4.0))]);
+        }
+        self.frame(vec![button(from + by, false)]);
     }
 
     fn click(&mut self, what: &str) {
@@ -137,4 +167,43 @@ fn the_help_has_the_preset_s_buttons_and_every_key() {
     bench.ui.obey(Command::Help, &mut bench.session);
     bench.settings.preset = crate::navigation::gesture::Preset::Catia;
     assert!(bench.says("hold middle and click left") && bench.says("open files"));
+}
+
+#[test]
+fn a_section_follows_its_handle_and_is_undone_as_one() {
+    let mut bench = Bench::new();
+    let bounds = bench.session.world.bounds;
+    let section = crate::session::Section::across(DVec3::X, bounds);
+    bench.session.scene.change(|state| state.sections.push(section));
+    let from = bench.place(bounds.centre());
+    let to = bench.place(bounds.centre() + DVec3::X * 10.0);
+    bench.drag(from, to - from);
+    let moved = bench.session.scene.now().sections[0].offset - section.offset;
+    // perspective: the arrow is nearer at its tip
+    assert!((moved - 10.0).abs() < 1.5, "{moved}");
+    assert!(bench.session.scene.undo() && bench.session.scene.now().sections[0] == section);
+}
+
+#[test]
+fn a_trim_point_follows_the_hand_on_its_surface() {
+    let mut bench = Bench::new();
+    let world = bench.session.world.clone();
+    let instance = 0;
+    let part = world.model.instances[instance].part;
+    let seen = |f: &&selvedge::model::Face| !f.loops.is_empty() && f.loops[0].curves().len() < 8;
+    let face = world.model.parts[part].faces.iter().position(|f| seen(&f)).expect("a trimmed face");
+    let of_face = &world.model.parts[part].faces[face];
+    let before = of_face.loops[0].curves().next().expect("a curve").point(0.0);
+    let inside = before.lerp(of_face.loops[0].curves().nth(2).expect("a curve").point(0.0), 0.1);
+    let point =
+        |uv: glam::DVec2| world.model.instances[instance].transform.transform_point3(of_face.surface.point(uv.x, uv.y));
+    bench.session.select(Some(Picked::Face { instance, face, uv: before }), false);
+    bench.ui.trims = true;
+    let (from, to) = (bench.place(point(before)), bench.place(point(inside)));
+    bench.drag(from, to - from);
+    let edits = &bench.session.scene.now().edits;
+    let after = edits[&(part, face, 0)].curves().next().expect("a curve").point(0.0);
+    // the hand is where its point is seen, to the rounding of single precision
+    assert!(point(after).distance(point(inside)) < 1e-3 * world.bounds.diagonal(), "{after} {inside}");
+    assert!(bench.session.scene.undo() && bench.session.scene.now().edits.is_empty());
 }

@@ -3,22 +3,22 @@
 use super::composite::ViewRect;
 use super::context::DeviceOptions;
 use super::engine::{Engine, Outcome, Request, Uploaded};
+use super::look::background;
 use super::screen::{Frame, Picture, Screen};
 use super::waiter::Waiter;
 use super::{Closed, Failure, ViewError, ViewOptions};
 use crate::measure::Measurement;
 use crate::navigation::gesture::Held;
 use crate::panels::{Facts, Ui, Verdict};
-use crate::pick::Mark;
 use crate::session::Picked;
 use crate::session::{Loaded, Loader, LoaderEvent, Session};
-use crate::settings::{Lines, Settings, Theme};
+use crate::settings::{Settings, Theme};
 use crate::view::{Due, Hover, View};
 use crate::watch::Watcher;
 use glam::DVec2;
 use selvedge::ash::vk;
 use selvedge::model::Camera;
-use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, FrameStats, SceneSettings};
+use selvedge::picture::{FrameSettings, FrameStats};
 use std::path::PathBuf;
 use std::sync::Arc;
 use std::time::Instant;
@@ -247,27 +247,6 @@ impl App {
         (inside && !self.ui.pointer_taken).then_some(at)
     }
 
-    fn scene_settings(&self) -> SceneSettings {
-        let Settings { lines, silhouettes, hidden_lines, smooth, .. } = self.settings;
-        let which = match lines {
-            Lines::All => EdgeChoice::All,
-            Lines::Sharp => EdgeChoice::Sharp,
-            Lines::None => EdgeChoice::None,
-        };
-        let edges = EdgeSettings { which, silhouettes, hidden: hidden_lines, ..EdgeSettings::default() };
-        let edges = (which != EdgeChoice::None || silhouettes).then_some(edges);
-        SceneSettings { edges, smooth_trims: smooth, editable: self.ui.trims, ..SceneSettings::default() }
-    }
-
-    /// Settings of the pictures in the window.
-    pub fn frame_settings(&self) -> FrameSettings {
-        FrameSettings {
-            style: self.ui.style,
-            background: Some(background(self.context.style().visuals.dark_mode)),
-            ..FrameSettings::default()
-        }
-    }
-
     /// One frame; none while one is in flight.
     pub fn draw(&mut self) -> Result<(), ViewError> {
         if self.flight.is_some() || self.opened.is_none() {
@@ -412,27 +391,6 @@ impl App {
         }
     }
 
-    /// What is hovered and selected, by the numbers of the picture that is shown.
-    fn marks(&self) -> (Option<Mark>, Vec<Mark>) {
-        let Some(shown) = self.opened.as_ref().and_then(|o| o.engine.shown()) else { return (None, Vec::new()) };
-        let number = |instance: usize| shown.instances.iter().position(|i| *i == instance).map(|i| i as u32 + 1);
-        let mark = |picked: &Picked| match *picked {
-            Picked::Face { instance, face, .. } => {
-                let part = self.session.world.model.instances.get(instance)?.part;
-                let id = self.session.world.model.parts[part].faces.get(face)?.id;
-                Some(Mark { instance: number(instance)?, face: id })
-            }
-            Picked::Instance(instance) => Some(Mark { instance: number(instance)?, face: 0 }),
-            Picked::Number { instance: None, id } => Some(Mark { instance: 0, face: id }),
-            Picked::Number { instance: Some(instance), id } => Some(Mark { instance: number(instance)?, face: id }),
-            // the panels draw them
-            Picked::Edge { .. } | Picked::Vertex { .. } => None,
-        };
-        let dragging = self.view.is_dragging();
-        let hovered = self.view.hover.as_ref().filter(|_| !dragging).and_then(|h| mark(h.hit.picked.as_ref()?));
-        (hovered, self.session.selection.iter().filter_map(mark).collect())
-    }
-
     /// The frame in flight has finished.
     pub fn frame_done(&mut self, result: Result<(), vk::Result>) -> Result<(), ViewError> {
         let Some(Flight { picture, pick, camera, free }) = self.flight.take() else { return Ok(()) };
@@ -515,11 +473,6 @@ impl App {
             None => Ok(Closed { messages: self.messages }),
         }
     }
-}
-
-/// Behind the model, linear light.
-fn background(dark: bool) -> [f32; 4] {
-    if dark { [0.030, 0.032, 0.037, 1.0] } else { [0.80, 0.82, 0.85, 1.0] }
 }
 
 /// The pixel of a picture at a place of the view.

@@ -12,6 +12,7 @@ mod composite;
 mod context;
 mod engine;
 mod events;
+mod look;
 mod photograph;
 mod screen;
 mod swapchain;
