@@ -58,10 +58,9 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, session: &mut Session) {
         let (low, high) = section.range(bounds);
         let offset = (section.offset + step).clamp(low, high);
         if response.drag_started() {
-            session.scene.change(|state| state.sections[i].offset = offset);
-        } else {
-            session.scene.go_on(|state| state.sections[i].offset = offset);
+            session.scene.begin();
         }
+        session.scene.go_on(|state| state.sections[i].offset = offset);
     }
 }
 

@@ -249,6 +249,13 @@ impl Ui {
     }
 }
 
+/// What the panels are drawn with: once a frame, since a key or a drag counts once.
+pub fn context() -> egui::Context {
+    let ctx = egui::Context::default();
+    ctx.options_mut(|options| options.max_passes = std::num::NonZeroUsize::MIN);
+    ctx
+}
+
 /// Shows all panels; returns where the picture is, points.
 pub fn show(
     ctx: &egui::Context,

@@ -36,7 +36,7 @@ impl Bench {
         session.open(World::new(&[Arc::new(Loaded { path, import })]));
         session.world.find_edges();
         let (ui, settings, view) = (Ui::default(), Settings::default(), View::default());
-        Self { ctx: egui::Context::default(), ui, session, settings, view, rect: egui::Rect::NOTHING }
+        Self { ctx: context(), ui, session, settings, view, rect: egui::Rect::NOTHING }
     }
 
     fn frame(&mut self, events: Vec<egui::Event>) -> Vec<(String, egui::Rect)> {

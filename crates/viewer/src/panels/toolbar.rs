@@ -62,9 +62,12 @@ pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &mut Session, settings: 
 
 /// A slider is one change from its press to its release.
 fn drag(slider: &egui::Response, session: &mut Session, change: impl FnOnce(&mut crate::session::SceneState)) {
-    if slider.dragged() && !slider.drag_started() {
+    if slider.drag_started() {
+        session.scene.begin();
+    }
+    if slider.dragged() {
         session.scene.go_on(change);
-    } else if slider.changed() || slider.drag_started() {
+    } else if slider.changed() {
         session.scene.change(change);
     }
 }

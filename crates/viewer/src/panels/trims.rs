@@ -6,7 +6,7 @@
 
 use super::Ui;
 use super::overlay::Place;
-use crate::pick::on_surface;
+use crate::pick::towards;
 use crate::session::{Picked, Session};
 use egui::{Color32, Stroke, Vec2};
 use glam::{DVec2, DVec3};
@@ -57,6 +57,7 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, ui: &mut Ui, session: &mut S
         ui.notice = Some(format!("This face has {} trim points, more than can be gripped.", all.len()));
         return;
     }
+    let mut gripped = None;
     for handle in all {
         let point = placed.transform.transform_point3(of_face.surface.point(handle.uv.x, handle.uv.y));
         let Some(at) = place.of(point) else { continue };
@@ -70,21 +71,24 @@ pub fn show(ctx: &egui::Context, place: &Place<'_>, ui: &mut Ui, session: &mut S
             painter.circle(rect.center(), 4.0, fill, Stroke::new(1.5, Color32::from_rgb(30, 110, 255)));
             response
         });
-        let response = response.inner;
-        let Some(hand) = response.interact_pointer_pos().filter(|_| response.dragged()) else { continue };
-        let pixel = (hand - place.rect.min) / place.to_points as f32;
-        let (origin, direction) = place.camera.ray(DVec2::new(f64::from(pixel.x), f64::from(pixel.y)));
-        let back = placed.transform.inverse();
-        let ray = (back.transform_point3(origin), back.transform_vector3(direction));
-        let Some((uv, _)) = on_surface(&of_face.surface, ray, handle.uv) else { continue };
-        match loops[handle.trim_loop].with_point(handle.curve, handle.point, uv) {
-            Ok(moved) => {
-                let put = |state: &mut crate::session::SceneState| _ = state.edits.insert(key(handle.trim_loop), moved);
-                if response.drag_started() { session.scene.change(put) } else { session.scene.go_on(put) }
-            }
-            Err(error) => ui.notice = Some(error.to_string()),
+        if response.inner.dragged() {
+            gripped = Some((handle, response.inner));
         }
-        return;
+    }
+    let Some((handle, response)) = gripped else { return };
+    if response.drag_started() {
+        session.scene.begin();
+    }
+    let Some(hand) = response.interact_pointer_pos() else { return };
+    let pixel = (hand - place.rect.min) / place.to_points as f32;
+    let (origin, direction) = place.camera.ray(DVec2::new(f64::from(pixel.x), f64::from(pixel.y)));
+    let back = placed.transform.inverse();
+    let ray = (back.transform_point3(origin), back.transform_vector3(direction));
+    // beyond the surface its border is followed
+    let Some((uv, ..)) = towards(&of_face.surface, ray, handle.uv) else { return };
+    match loops[handle.trim_loop].with_point(handle.curve, handle.point, uv) {
+        Ok(moved) => session.scene.go_on(|state| _ = state.edits.insert(key(handle.trim_loop), moved)),
+        Err(error) => ui.notice = Some(error.to_string()),
     }
 }
 

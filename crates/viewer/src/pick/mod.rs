@@ -9,7 +9,7 @@
 use crate::session::{Picked, World};
 use glam::{DVec2, DVec3};
 use selvedge::model::Camera;
-use selvedge::spline::Surface;
+use selvedge::spline::{Jet2, Surface};
 
 /// Pixels from the cursor within which an edge is picked, and not the face under it.
 const EDGE_PX: f64 = 3.0;
@@ -174,38 +174,45 @@ impl Samples {
     }
 }
 
-/// The parameters and the point where a ray meets a surface, near `uv`: Newton's method on two planes through the ray.
-/// `None` where it does not get nearer, as at silhouettes.
+/// The parameters and the point where a ray meets a surface, near `uv`. `None` where it meets none, as beside its borders.
 ///
 /// Accuracy: some roundings of the surface's coordinates.
-pub fn on_surface(surface: &Surface, (origin, direction): (DVec3, DVec3), uv: DVec2) -> Option<(DVec2, DVec3)> {
-    const STEPS: usize = 24;
+pub fn on_surface(surface: &Surface, ray: (DVec3, DVec3), uv: DVec2) -> Option<(DVec2, DVec3)> {
+    let (uv, point, distance) = towards(surface, ray, uv)?;
+    let (low, high) = surface.bounds();
+    // what does not reach the ray is no answer
+    (distance <= 1e-9 * (high - low).length()).then_some((uv, point))
+}
+
+/// The parameters within the domain from which Newton's method gets no nearer to a ray, with the point there and its
+/// distance from the ray: two planes through the ray are met, by steps that are halved until they lead nearer.
+pub fn towards(surface: &Surface, (origin, direction): (DVec3, DVec3), uv: DVec2) -> Option<(DVec2, DVec3, f64)> {
+    const STEPS: usize = 40;
+    const HALVINGS: i32 = 8;
     let (a, b) = direction.normalize().any_orthonormal_pair();
     let ((u0, u1), (v0, v1)) = surface.domain();
     let (low, high) = (DVec2::new(u0, v0), DVec2::new(u1, v1));
-    let mut best: Option<(f64, DVec2, DVec3)> = None;
+    let off = |jet: &Jet2| DVec2::new((jet.point - origin).dot(a), (jet.point - origin).dot(b));
     let mut at = uv.clamp(low, high);
+    let mut jet = surface.jet2(at.x, at.y);
+    let mut apart = off(&jet);
     for _ in 0..STEPS {
-        let jet = surface.jet2(at.x, at.y);
-        let off = jet.point - origin;
-        let (f, g) = (off.dot(a), off.dot(b));
-        let distance = f.hypot(g);
-        if !distance.is_finite() || best.is_some_and(|(least, ..)| distance >= least) {
-            break;
-        }
-        best = Some((distance, at, jet.point));
         let (fu, fv, gu, gv) = (jet.du.dot(a), jet.dv.dot(a), jet.du.dot(b), jet.dv.dot(b));
         let det = fu * gv - fv * gu;
-        let step = DVec2::new(f * gv - g * fv, g * fu - f * gu) / det;
+        let step = DVec2::new(apart.x * gv - apart.y * fv, apart.y * fu - apart.x * gu) / det;
         if !step.is_finite() {
             break;
         }
-        at = (at - step).clamp(low, high);
+        let nearer = (0..HALVINGS).find_map(|halvings| {
+            let next = (at - step * 0.5_f64.powi(halvings)).clamp(low, high);
+            let there = surface.jet2(next.x, next.y);
+            (off(&there).length() < apart.length()).then_some((next, there))
+        });
+        let Some((next, there)) = nearer else { break };
+        (at, jet) = (next, there);
+        apart = off(&jet);
     }
-    // what does not reach the ray is no answer
-    let size = surface.bounds();
-    let (distance, uv, point) = best?;
-    (distance <= 1e-9 * (size.1 - size.0).length()).then_some((uv, point))
+    apart.is_finite().then(|| (at, jet.point, apart.length()))
 }
 
 #[cfg(test)]

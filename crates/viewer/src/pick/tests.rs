@@ -97,3 +97,29 @@ fn the_background_and_numbers_without_a_part_are_told() {
     let hit = one(pixel, sample).pick(&world, &[0], &camera, pixel + 40.0, PickFilter::Any);
     assert_eq!(hit.picked, None);
 }
+
+/// From afar, and beside the border, where the nearest point of the border's line is taken.
+#[test]
+fn the_hand_is_followed_to_the_border_of_a_surface() {
+    let world = world();
+    for face in &world.model.parts[0].faces {
+        let surface = &face.surface;
+        let ((u0, u1), (v0, v1)) = surface.domain();
+        let at = |a: f64, b: f64| DVec2::new(u0 + (u1 - u0) * a, v0 + (v1 - v0) * b);
+        let (from, to) = (at(0.4, 0.45), at(0.5, 0.55));
+        let jet = surface.jet2(to.x, to.y);
+        let Some(normal) = surface.normal(to.x, to.y) else { continue };
+        let (_, point, distance) = towards(surface, (jet.point + normal, -normal), from).expect("numbers");
+        assert!(distance < 1e-9 && point.distance(jet.point) < 1e-8, "face {}: {distance}", face.id);
+        // half a domain beyond the border
+        let corner = surface.jet2(u1, v1);
+        let beyond = corner.point + corner.du * (0.5 * (u1 - u0)) + corner.dv * (0.5 * (v1 - v0));
+        let Some(normal) = surface.normal(u1, v1) else { continue };
+        let (uv, ..) = towards(surface, (beyond + normal, -normal), from).expect("numbers");
+        assert!(uv.x >= u0 && uv.x <= u1 && uv.y >= v0 && uv.y <= v1);
+        let start = surface.point(from.x, from.y).reject_from(normal);
+        let end = surface.point(uv.x, uv.y).reject_from(normal);
+        let beyond = beyond.reject_from(normal);
+        assert!(end.distance(beyond) < start.distance(beyond), "face {}", face.id);
+    }
+}

@@ -36,6 +36,12 @@ impl<T: Clone + PartialEq> History<T> {
         self.before.push(std::mem::replace(&mut self.now, next));
     }
 
+    /// A drag begins: what [`go_on`](Self::go_on) does from now on is one change.
+    pub fn begin(&mut self) {
+        self.undone.clear();
+        self.before.push(self.now.clone());
+    }
+
     /// Goes on with the change made last, as a drag does: no state of its own.
     pub fn go_on(&mut self, change: impl FnOnce(&mut T)) {
         change(&mut self.now);
@@ -43,6 +49,10 @@ impl<T: Clone + PartialEq> History<T> {
 
     /// Back to the state before; false where there is none.
     pub fn undo(&mut self) -> bool {
+        // a drag that led back is no change
+        while self.before.last() == Some(&self.now) {
+            self.before.pop();
+        }
         let Some(before) = self.before.pop() else { return false };
         self.undone.push(std::mem::replace(&mut self.now, before));
         true
@@ -82,5 +92,10 @@ mod tests {
         assert_eq!(history.has(), (true, false));
         (0..300).for_each(|i| history.change(|x| *x = 100 + i));
         assert_eq!((0..400).filter(|_| history.undo()).count(), MOST);
+        let mut dragged = History::new(0);
+        dragged.begin();
+        (1..5).for_each(|i| dragged.go_on(|x| *x = i));
+        dragged.begin();
+        assert!(dragged.undo() && *dragged.now() == 0 && !dragged.undo());
     }
 }

@@ -140,7 +140,7 @@ impl App {
             options,
             proxy,
             opened: None,
-            context: egui::Context::default(),
+            context: crate::panels::context(),
             session: Session::default(),
             view: View::default(),
             ui,
@@ -213,7 +213,7 @@ impl App {
         self.messages.extend(screen.shutdown());
         let (waiter, engine, screen) = self.open_device(&window)?;
         // textures of the panels are gone: the context sends them again
-        self.context = egui::Context::default();
+        self.context = crate::panels::context();
         let input = egui_winit::State::new(
             self.context.clone(),
             egui::ViewportId::ROOT,
