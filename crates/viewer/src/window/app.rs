@@ -111,8 +111,8 @@ pub struct App {
     pub held: Held,
     /// What lies there is wanted: pixels of the view.
     pub pick: Option<DVec2>,
-    /// A click waits for what lies under it; it adds to the selection.
-    pub click: Option<bool>,
+    /// A click waits for what lies under it: whether it adds to the selection, and where it is, pixels of the view.
+    pub click: Option<(bool, DVec2)>,
     pub failed: Option<ViewError>,
     clipboard: Option<arboard::Clipboard>,
     messages: Vec<String>,
@@ -289,7 +289,10 @@ impl App {
         let seen_by = in_picture.map(|_| due.camera).or(self.picture.map(|p| p.camera));
         // what lies under a resting cursor changes with the picture
         let rests = in_picture.is_some() && !self.view.is_dragging();
-        let pick = self.pick.take().or(under.filter(|_| rests)).filter(|_| seen_by.is_some());
+        // without a picture there is nothing to click
+        self.click = self.click.filter(|_| seen_by.is_some());
+        let clicked = self.click.map(|(_, at)| at);
+        let pick = clicked.or(self.pick.take()).or(under.filter(|_| rests)).filter(|_| seen_by.is_some());
         screen.set_textures(&output.textures_delta)?;
         let shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
         let frame = Frame {
@@ -429,14 +432,15 @@ impl App {
                 self.view.hold(hit.point);
                 self.catch_up();
             }
-            if let Some(add) = self.click.take() {
+            // an answer about an earlier place is none to a click
+            if let Some((add, _)) = self.click.take_if(|(_, place)| place.distance(at) < 0.5) {
                 self.session.select(hit.picked, add);
                 self.ui.selected(&self.session, hit.point);
                 self.again = true;
             }
             self.again |= before != hit.picked;
         }
-        if self.again || self.pick.is_some() {
+        if self.again || self.pick.is_some() || self.click.is_some() {
             self.redraw();
         }
         Ok(())

@@ -184,7 +184,7 @@ impl App {
                 && button == Button::Left
                 && let Some(at) = self.over_view()
             {
-                (self.click, self.pick) = (Some(self.held.shift), Some(at));
+                self.click = Some((self.held.shift, at));
             }
         }
         self.redraw();
