@@ -22,6 +22,22 @@ const MAY_USE: &[(&str, &[&str])] = &[
     ("native", &["model"]),
     // selvedge-check: Cargo says it all
     ("check", &[]),
+    // selvedge-viewer: what knows no window
+    ("navigation", &[]),
+    ("pacing", &[]),
+    ("watch", &[]),
+    ("session", &[]),
+    ("settings", &["navigation"]),
+    ("commands", &["navigation"]),
+    ("pick", &["session"]),
+    ("view", &["navigation", "pacing", "pick"]),
+    ("describe", &["session", "settings"]),
+    ("measure", &["describe", "session"]),
+    ("panels", &["commands", "describe", "measure", "navigation", "pick", "session", "settings", "view"]),
+    (
+        "window",
+        &["commands", "describe", "measure", "navigation", "panels", "pick", "session", "settings", "view", "watch"],
+    ),
     // the engine: what knows no GPU
     ("picture", &["baselines", "model"]),
     ("budget", &[]),
@@ -43,9 +59,9 @@ const MAY_USE: &[(&str, &[&str])] = &[
 ];
 
 /// Modules that may name Vulkan's types.
-const VULKAN: &[&str] = &["gpu", "scene", "frame", "renderer", "headless"];
+const VULKAN: &[&str] = &["gpu", "scene", "frame", "renderer", "headless", "window"];
 /// Modules that may hold `unsafe`: the layer itself, and those that speak for a host or to one.
-const UNSAFE: &[&str] = &["gpu", "renderer", "headless"];
+const UNSAFE: &[&str] = &["gpu", "renderer", "headless", "window"];
 /// Files beside `gpu` and `headless` that may record barriers: the frame, the records of its stages, and the one pass
 /// that has steps of its own.
 const RECORDS: &[&str] = &[
@@ -94,7 +110,7 @@ const NO_PASSES: &[&str] = &[
 const HOSTS: &[&str] =
     &["println!", "print!(", "eprintln!", "eprint!(", "dbg!(", "std::env::", "process::exit", "process::abort"];
 /// Sources of the library crates.
-const LIBRARIES: &[&str] = &["src", "crates/geometry/src", "crates/io/src", "crates/check/src"];
+const LIBRARIES: &[&str] = &["src", "crates/geometry/src", "crates/io/src", "crates/check/src", "crates/viewer/src"];
 /// Longest source file.
 const MOST_LINES: usize = 500;
 

@@ -4,12 +4,16 @@ mod draw;
 mod images;
 mod lines;
 mod read;
+#[cfg(feature = "view")]
+mod view;
 mod write;
 
 pub use draw::DrawArgs;
 pub use images::{Aov, Image};
 pub use lines::LineArgs;
 pub use read::{ReadArgs, SubdivideArgs};
+#[cfg(feature = "view")]
+pub use view::ViewArgs;
 pub use write::{ConvertArgs, ExportArgs};
 
 use crate::backdrop::Backdrop;
@@ -70,6 +74,10 @@ pub enum Command {
     /// Write a model in another form, so that it is read once and opens fast; needs no GPU
     #[command(after_help = STATUSES)]
     Convert(ConvertArgs),
+    /// Show models in a window: turn, pick, measure, cut
+    #[cfg(feature = "view")]
+    #[command(after_help = STATUSES)]
+    View(ViewArgs),
 }
 
 /// How smooth edges are.

@@ -6,6 +6,7 @@
 //!   trims    ways to trim, side by side       sweep   time against error, over many settings
 //!   convert  model ─▶ the engine's own form
 //!   export   model ─▶ STEP file                draw    lines of a view ─▶ SVG
+//!   view     models in a window
 //! ```
 //!
 //! Results go to standard output, everything else to standard error.
@@ -37,6 +38,8 @@ mod target;
 mod trims;
 mod values;
 mod verdict;
+#[cfg(feature = "view")]
+mod view;
 
 use args::{Cli, Command};
 use clap::Parser;
@@ -82,15 +85,26 @@ fn main() -> ExitCode {
         Command::Sweep(args) => sweep::run(args),
         Command::Trims(args) => trims::run(args),
         Command::Convert(args) => convert::run(args),
+        #[cfg(feature = "view")]
+        Command::View(args) => view::run(args),
     };
     match result {
         Ok(Outcome::Good) => ExitCode::SUCCESS,
         Ok(Outcome::Broken) => ExitCode::from(BROKEN),
         Err(error) => {
             eprintln!("selvedge: {}", explained(&error));
-            ExitCode::from(if error.is::<HeadlessError>() { DEVICE } else { USAGE })
+            ExitCode::from(if is_of_device(&error) { DEVICE } else { USAGE })
         }
     }
+}
+
+/// There is no usable device, or it failed.
+fn is_of_device(error: &anyhow::Error) -> bool {
+    #[cfg(feature = "view")]
+    if view::is_of_device(error) {
+        return true;
+    }
+    error.is::<HeadlessError>()
 }
 
 /// The error and its causes in one line; a message that quotes its cause needs it only once.

@@ -9,7 +9,8 @@ Made from `selvedge help COMMAND`. Results go to standard output, warnings to st
 
 The arrays of `--aov` are samples at pixel centres, row 0 on top. Model files: STEP, IGES, OBJ, STL, 3MF, AMF,
 PLY, OFF, glTF, Rhino `.3dm`, BezierView `.bv`, OpenSCAD `.csg` and `.scad`, BRL-CAD `.asc`, `.selvedge`, and
-[scenes](scene.md) in TOML. Built with `--no-default-features`, the program reads no Rhino files.
+[scenes](scene.md) in TOML. Built with `--no-default-features`, the program reads no Rhino files
+and has no window.
 ";
 
 /// What the program prints when it is asked for help.

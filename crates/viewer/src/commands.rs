@@ -1,0 +1,195 @@
+//! What a person can ask for, and the keys that ask for it.
+
+use crate::navigation::standard::StandardView;
+use egui::{Key, Modifiers};
+use glam::DVec3;
+use std::path::PathBuf;
+
+/// One wish; panels and keys collect them, the window fulfils them.
+#[derive(Clone, Debug, PartialEq)]
+pub enum Command {
+    /// Show the dialog of files.
+    OpenDialog,
+    /// Open a file beside the others.
+    Open(PathBuf),
+    /// Close a file, by its place among the open ones.
+    Close(usize),
+    /// Read all open files again.
+    Reload,
+    /// Give up what is being read.
+    Cancel,
+    /// The whole model in the picture.
+    Fit,
+    /// The selection in the picture.
+    FitSelection,
+    /// From a standard direction.
+    Standard(StandardView),
+    /// From a direction of the view cube.
+    LookFrom(DVec3),
+    /// Perspective or parallel, the other one.
+    Projection,
+    /// The view before.
+    Previous,
+    /// Turn by pixels, right and down.
+    Turn(f64, f64),
+    /// Undo the last change of what is shown.
+    Undo,
+    /// Do it again.
+    Redo,
+    /// Nothing is selected or measured any more.
+    Clear,
+    /// Hide what is selected.
+    Hide,
+    /// Hide everything else.
+    Isolate,
+    /// Show everything.
+    ShowAll,
+    /// See through what is selected, or no more.
+    SeeThrough,
+    /// Ask where the picture is to be written, or no more.
+    Screenshot,
+    /// Write it there.
+    WritePicture,
+    /// Drag trim loops, or no more.
+    Trims,
+    /// Ask where the model is to be saved, or no more.
+    SaveAs,
+    /// Save it there.
+    Save,
+    /// Check the view against exact rays.
+    Check,
+    /// The line of `selvedge render` for this view, to the clipboard.
+    CopyCommand,
+    /// A text to the clipboard.
+    CopyText(String),
+    /// Keep what is measured of the selection in the list.
+    Measure,
+    /// Show the help, or hide it.
+    Help,
+    /// Close the window.
+    Quit,
+}
+
+/// A key and what it does.
+#[derive(Clone, Debug)]
+pub struct Shortcut {
+    /// The key.
+    pub key: Key,
+    /// What is held beside it.
+    pub modifiers: Modifiers,
+    /// What it does.
+    pub command: Command,
+    /// In words, for the help.
+    pub what: &'static str,
+}
+
+const NONE: Modifiers = Modifiers::NONE;
+const CTRL: Modifiers = Modifiers::COMMAND;
+const SHIFT: Modifiers = Modifiers::SHIFT;
+/// One press of an arrow key: 15 degrees at a picture 600 pixels high.
+const TURN_PX: f64 = 50.0;
+
+/// All keys, in the order of the help.
+pub fn shortcuts() -> Vec<Shortcut> {
+    use StandardView::{Back, Bottom, Front, Iso, Left, Right, Top};
+    let list = [
+        (Key::O, CTRL, Command::OpenDialog, "open files"),
+        (Key::R, CTRL, Command::Reload, "read open files again"),
+        (Key::Home, NONE, Command::Fit, "all in view"),
+        (Key::F, NONE, Command::FitSelection, "selection in view"),
+        (Key::Num1, NONE, Command::Standard(Front), "front"),
+        (Key::Num1, CTRL, Command::Standard(Back), "back"),
+        (Key::Num3, NONE, Command::Standard(Right), "right"),
+        (Key::Num3, CTRL, Command::Standard(Left), "left"),
+        (Key::Num7, NONE, Command::Standard(Top), "top"),
+        (Key::Num7, CTRL, Command::Standard(Bottom), "bottom"),
+        (Key::Num9, NONE, Command::Standard(Iso), "iso"),
+        (Key::Num5, NONE, Command::Projection, "perspective or parallel"),
+        (Key::Backspace, NONE, Command::Previous, "previous view"),
+        (Key::ArrowLeft, NONE, Command::Turn(-TURN_PX, 0.0), "turn left"),
+        (Key::ArrowRight, NONE, Command::Turn(TURN_PX, 0.0), "turn right"),
+        (Key::ArrowUp, NONE, Command::Turn(0.0, -TURN_PX), "turn up"),
+        (Key::ArrowDown, NONE, Command::Turn(0.0, TURN_PX), "turn down"),
+        (Key::H, NONE, Command::Hide, "hide selection"),
+        (Key::I, NONE, Command::Isolate, "hide everything else"),
+        (Key::A, NONE, Command::ShowAll, "show everything"),
+        (Key::X, NONE, Command::SeeThrough, "see through selection"),
+        (Key::M, NONE, Command::Measure, "keep the measurement"),
+        (Key::Z, CTRL, Command::Undo, "undo"),
+        (Key::Z, CTRL.plus(SHIFT), Command::Redo, "redo"),
+        (Key::T, NONE, Command::Trims, "drag trim loops of the selected face"),
+        (Key::E, CTRL, Command::SaveAs, "save the model"),
+        (Key::S, CTRL, Command::Screenshot, "write the picture to a file"),
+        (Key::S, CTRL.plus(SHIFT), Command::WritePicture, "write it there at once"),
+        (Key::K, NONE, Command::Check, "check this view against exact rays"),
+        (Key::C, CTRL.plus(SHIFT), Command::CopyCommand, "copy the command of this view"),
+        (Key::Escape, NONE, Command::Clear, "select nothing"),
+        (Key::Questionmark, NONE, Command::Help, "help"),
+        (Key::Q, CTRL, Command::Quit, "close"),
+    ];
+    list.map(|(key, modifiers, command, what)| Shortcut { key, modifiers, command, what }).to_vec()
+}
+
+impl Shortcut {
+    /// As the help shows it.
+    pub fn label(&self) -> String {
+        let mut label = String::new();
+        for (held, name) in [(self.modifiers.command, "Ctrl + "), (self.modifiers.shift, "Shift + ")] {
+            if held {
+                label.push_str(name);
+            }
+        }
+        label + self.key.symbol_or_name()
+    }
+
+    /// Its key went down with just what it wants held; a question mark needs shift on some keyboards.
+    fn is_pressed(&self, input: &egui::InputState) -> bool {
+        let exact = |held: Modifiers| {
+            held.command == self.modifiers.command
+                && !held.alt
+                && (held.shift == self.modifiers.shift || self.key == Key::Questionmark)
+        };
+        input.events.iter().any(|event| match event {
+            egui::Event::Key { key, pressed: true, modifiers, .. } => *key == self.key && exact(*modifiers),
+            _ => false,
+        })
+    }
+}
+
+/// What the keys that went down ask for; nothing while a text is typed.
+pub fn pressed(ctx: &egui::Context) -> Vec<Command> {
+    if ctx.wants_keyboard_input() {
+        return Vec::new();
+    }
+    ctx.input(|input| {
+        shortcuts().into_iter().filter(|shortcut| shortcut.is_pressed(input)).map(|shortcut| shortcut.command).collect()
+    })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    fn after(key: Key, modifiers: Modifiers) -> Vec<Command> {
+        let ctx = egui::Context::default();
+        let event = egui::Event::Key { key, physical_key: None, pressed: true, repeat: false, modifiers };
+        let input = egui::RawInput { events: vec![event], modifiers, ..Default::default() };
+        let mut commands = Vec::new();
+        let _ = ctx.run(input, |ctx| commands = pressed(ctx));
+        commands
+    }
+
+    #[test]
+    fn no_two_keys_are_one_and_each_does_what_it_says() {
+        let all = shortcuts();
+        for (i, shortcut) in all.iter().enumerate() {
+            let twin = all[..i].iter().find(|s| s.key == shortcut.key && s.modifiers == shortcut.modifiers);
+            assert!(twin.is_none(), "{} twice", shortcut.label());
+            let mut held = shortcut.modifiers;
+            held.ctrl = held.command;
+            assert_eq!(after(shortcut.key, held), std::slice::from_ref(&shortcut.command));
+        }
+        assert_eq!(after(Key::Questionmark, SHIFT), [Command::Help]);
+        assert_eq!(after(Key::H, Modifiers::ALT), []);
+    }
+}

@@ -1,0 +1,215 @@
+//! What a selected thing is, exactly, and the command that draws the view.
+
+use crate::session::Picked;
+use crate::session::{Session, World};
+use crate::settings::{Lines, Settings};
+use glam::DVec3;
+use selvedge::model::{Camera, EdgeKind, Face, Projection, SurfaceKind};
+use selvedge::picture::Style;
+
+/// Lines of a description: what, and its value.
+pub type Description = Vec<(&'static str, String)>;
+
+/// A number as the panels show it: 12 digits, no more zeros than it needs.
+pub fn number(x: f64) -> String {
+    if x == 0.0 {
+        return "0".to_owned();
+    }
+    let digits = (11 - x.abs().log10().floor() as i32).clamp(0, 15) as usize;
+    let text = format!("{x:.digits$}");
+    if text.contains('.') { text.trim_end_matches('0').trim_end_matches('.').to_owned() } else { text }
+}
+
+/// A point or a direction.
+pub fn vector(p: DVec3) -> String {
+    p.to_array().map(number).join(", ")
+}
+
+/// A face's kind in words.
+pub fn kind(kind: SurfaceKind) -> &'static str {
+    match kind {
+        SurfaceKind::Plane => "plane",
+        SurfaceKind::Cylinder => "cylinder",
+        SurfaceKind::Cone => "cone",
+        SurfaceKind::Sphere => "sphere",
+        SurfaceKind::Torus => "torus",
+        SurfaceKind::Revolution => "surface of revolution",
+        SurfaceKind::Extrusion => "extrusion",
+        SurfaceKind::Offset => "offset surface",
+        SurfaceKind::BSpline => "B-spline surface",
+    }
+}
+
+/// One line for the cursor's place.
+pub fn short(world: &World, picked: &Picked) -> String {
+    let part = |instance: usize| &world.model.parts[world.model.instances[instance].part];
+    match *picked {
+        Picked::Face { instance, face, .. } => {
+            let face = &part(instance).faces[face];
+            format!("{} #{} of {}", kind(face.kind), face.id, world.instance_name(instance))
+        }
+        Picked::Edge { instance, edge } => {
+            let edges = world.edges_of(world.model.instances[instance].part);
+            let source = edges.and_then(|e| e.edges.get(edge)).and_then(|e| e.source);
+            let number = source.map_or(format!("{}", edge + 1), |source| source.to_string());
+            format!("edge {number} of {}", world.instance_name(instance))
+        }
+        Picked::Vertex { instance, vertex } => format!("vertex {} of {}", vertex + 1, world.instance_name(instance)),
+        Picked::Instance(instance) => world.instance_name(instance),
+        Picked::Number { instance: Some(instance), id } => format!("face #{id} of {}", world.instance_name(instance)),
+        Picked::Number { instance: None, id } => format!("face #{id} of a solid"),
+    }
+}
+
+/// Everything that is known of it.
+pub fn long(world: &World, picked: &Picked) -> Description {
+    let mut lines = Vec::new();
+    if let Some(instance) = picked.instance() {
+        lines.push(("part", world.instance_name(instance)));
+    }
+    match *picked {
+        Picked::Face { instance, face, uv } => {
+            let placed = &world.model.instances[instance];
+            let part = &world.model.parts[placed.part];
+            face_lines(&part.faces[face], &mut lines);
+            let surface = &part.faces[face].surface;
+            let jet = surface.jet2(uv.x, uv.y);
+            lines.push(("(u, v)", format!("{}, {}", number(uv.x), number(uv.y))));
+            lines.push(("point", vector(placed.transform.transform_point3(jet.point))));
+            if let Some(normal) = surface.normal(uv.x, uv.y) {
+                let outward = if part.faces[face].same_sense { normal } else { -normal };
+                lines.push(("normal", vector(placed.transform.transform_vector3(outward).normalize())));
+            }
+        }
+        Picked::Edge { instance, edge } => {
+            let part = world.model.instances[instance].part;
+            if let Some(edge) = world.edges_of(part).and_then(|edges| edges.edges.get(edge)) {
+                let kind = match edge.kind {
+                    EdgeKind::Sharp => "sharp edge",
+                    EdgeKind::Smooth => "smooth edge",
+                    EdgeKind::Seam => "seam",
+                    EdgeKind::Border => "border",
+                };
+                lines.push(("edge", kind.to_owned()));
+                lines.extend(edge.source.map(|source| ("in the file", source.to_string())));
+                if edge.turn.is_finite() {
+                    lines.push(("turns by", format!("{}°", number(edge.turn.to_degrees()))));
+                }
+                let faces = edge.uses.iter().map(|used| format!("#{}", world.model.parts[part].faces[used.face].id));
+                lines.push(("faces", faces.collect::<Vec<_>>().join(", ")));
+            }
+        }
+        Picked::Vertex { instance, vertex } => {
+            let placed = &world.model.instances[instance];
+            if let Some(p) = world.edges_of(placed.part).and_then(|edges| edges.vertices.get(vertex)) {
+                lines.push(("point", vector(placed.transform.transform_point3(*p))));
+            }
+        }
+        Picked::Instance(instance) => {
+            let part = &world.model.parts[world.model.instances[instance].part];
+            lines.push(("faces", part.faces.len().to_string()));
+            lines.push(("closed", if part.closed { "yes" } else { "no" }.to_owned()));
+        }
+        Picked::Number { id, .. } => lines.push(("in the file", format!("#{id}"))),
+    }
+    lines
+}
+
+fn face_lines(face: &Face, lines: &mut Description) {
+    lines.push(("face", kind(face.kind).to_owned()));
+    lines.push(("in the file", format!("#{}", face.id)));
+    let ((pu, pv), (nu, nv)) = (face.surface.degrees(), face.surface.counts());
+    lines.push(("degree", format!("{pu} x {pv}")));
+    lines.push(("control points", format!("{nu} x {nv}")));
+    let (u, v) = face.surface.knots();
+    lines.push(("knots", format!("{} x {}", u.len(), v.len())));
+    lines.push(("rational", if face.surface.is_polynomial() { "no" } else { "yes" }.to_owned()));
+    let curves: usize = face.loops.iter().map(|l| l.curves().count()).sum();
+    lines.push(("trims", format!("{} loops, {curves} curves", face.loops.len())));
+}
+
+/// Points around what is selected.
+pub fn extent(session: &Session) -> Vec<DVec3> {
+    let world = &session.world;
+    let mut points = Vec::new();
+    for picked in &session.selection {
+        let Some(placed) = picked.instance().and_then(|i| world.model.instances.get(i)) else { continue };
+        let part = &world.model.parts[placed.part];
+        let bounds = match *picked {
+            Picked::Face { face, .. } => part.faces[face].control_bounds(),
+            Picked::Edge { edge, .. } => {
+                let edge = world.edges_of(placed.part).and_then(|edges| edges.edges.get(edge));
+                let ends = edge.into_iter().flat_map(|e| &e.curve).flat_map(|span| &span.piece.points);
+                let own = ends.map(|p| p.truncate() / p.w);
+                own.fold(selvedge::model::Bounds::EMPTY, selvedge::model::Bounds::with)
+            }
+            _ => part.control_bounds(),
+        };
+        if !bounds.is_empty() {
+            points.extend(bounds.corners().map(|p| placed.transform.transform_point3(p)));
+        }
+    }
+    points
+}
+
+/// A word of a command line, quoted for a shell where it must be.
+fn quoted(word: &str) -> String {
+    let plain = |c: char| c.is_ascii_alphanumeric() || "-_./,=".contains(c);
+    if !word.is_empty() && word.chars().all(plain) {
+        word.to_owned()
+    } else {
+        format!("'{}'", word.replace('\'', r"'\''"))
+    }
+}
+
+/// The line of `selvedge render` for this view. It draws one file: the first one, where several are open.
+pub fn command(session: &Session, camera: &Camera, settings: &Settings, style: Style) -> String {
+    let triple = |p: DVec3| p.to_array().map(|x| format!("{x}")).join(",");
+    let file = session.world.files.first().map_or("FILE".into(), |file| file.path.to_string_lossy());
+    let mut words = vec!["selvedge".to_owned(), "render".to_owned(), quoted(&file)];
+    let mut push = |name: &str, value: String| words.push(format!("{name}={}", quoted(&value)));
+    push("--output", "view.png".to_owned());
+    push("--size", format!("{}x{}", camera.size.0, camera.size.1));
+    push("--eye", triple(camera.eye));
+    push("--target", triple(camera.target));
+    push("--up", triple(camera.up));
+    match camera.projection {
+        Projection::Perspective { fov_y } => push("--fov", format!("{}", fov_y.to_degrees())),
+        Projection::Orthographic { height } => push("--ortho", format!("{height}")),
+    }
+    push("--style", style.name().to_owned());
+    for section in session.scene.now().sections.iter().filter(|s| s.on) {
+        push("--section", format!("{},{}", triple(section.normal), section.offset));
+    }
+    let edges = match settings.lines {
+        Lines::All => "all",
+        Lines::Sharp => "sharp",
+        Lines::None => "none",
+    };
+    push("--edges", edges.to_owned());
+    for (flag, on) in [
+        ("--silhouettes", settings.silhouettes),
+        ("--hidden-lines", settings.hidden_lines),
+        ("--smooth-trims", settings.smooth),
+    ] {
+        words.extend(on.then(|| flag.to_owned()));
+    }
+    words.join(" ")
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn numbers_have_the_digits_that_they_need() {
+        let all = [0.0, 5.0, -0.5, 12.7, 1.0 / 3.0, 1234567.0, 2.0e-7, 25.4 / 3.0];
+        let text = all.map(number);
+        assert_eq!(text, ["0", "5", "-0.5", "12.7", "0.333333333333", "1234567", "0.0000002", "8.46666666667"]);
+    }
+
+    #[test]
+    fn words_of_a_shell_are_quoted() {
+        assert_eq!([quoted("a/b.step"), quoted("a b"), quoted("it's")], ["a/b.step", "'a b'", r"'it'\''s'"]);
+    }
+}

@@ -1,0 +1,205 @@
+//! Mouse buttons and keys to moves, in the manner of other programs.
+//!
+//! | style | rotate | pan | zoom |
+//! |---|---|---|---|
+//! | SolidWorks | M | Ctrl+M | wheel, Shift+M |
+//! | Creo | M | Shift+M | wheel, Ctrl+M |
+//! | Onshape | R | M, Ctrl+R | wheel |
+//! | CATIA | M+L or M+R | M | hold M, click L or R, drag |
+//! | Blender, FreeCAD | M; FreeCAD M+L | Shift+M; FreeCAD M | wheel, Ctrl+M |
+//! | F3D, trackpad | L | M, Shift+L | wheel |
+//!
+//! L, M, R are the buttons. A left button that goes down and up in one place selects, whatever the style.
+
+use serde::{Deserialize, Serialize};
+
+/// Whose manner.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[allow(missing_docs)]
+pub enum Preset {
+    SolidWorks,
+    Creo,
+    #[default]
+    Onshape,
+    Catia,
+    Blender,
+    FreeCad,
+    F3d,
+    Trackpad,
+}
+
+/// What a drag does.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum Action {
+    /// Turn about the point under the cursor.
+    Orbit,
+    /// Move with the cursor.
+    Pan,
+    /// Closer and farther.
+    Zoom,
+}
+
+/// A mouse button.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum Button {
+    Left,
+    Middle,
+    Right,
+}
+
+/// What is held down.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+pub struct Held {
+    /// Left, middle and right button.
+    pub buttons: [bool; 3],
+    /// The control key.
+    pub ctrl: bool,
+    /// The shift key.
+    pub shift: bool,
+    /// A left or right button came up while the middle one was down: CATIA's zoom.
+    tapped: bool,
+}
+
+impl Preset {
+    /// All of them, as menus list them.
+    pub const ALL: [Self; 8] = [
+        Self::SolidWorks,
+        Self::Creo,
+        Self::Onshape,
+        Self::Catia,
+        Self::Blender,
+        Self::FreeCad,
+        Self::F3d,
+        Self::Trackpad,
+    ];
+
+    /// As menus name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::SolidWorks => "SolidWorks",
+            Self::Creo => "Creo",
+            Self::Onshape => "Onshape",
+            Self::Catia => "CATIA",
+            Self::Blender => "Blender",
+            Self::FreeCad => "FreeCAD",
+            Self::F3d => "F3D",
+            Self::Trackpad => "Trackpad",
+        }
+    }
+
+    /// How one rotates, pans and zooms, for the help.
+    pub fn hints(self) -> [&'static str; 3] {
+        match self {
+            Self::SolidWorks => ["middle", "Ctrl + middle", "wheel, Shift + middle"],
+            Self::Creo => ["middle", "Shift + middle", "wheel, Ctrl + middle"],
+            Self::Onshape => ["right", "middle, Ctrl + right", "wheel"],
+            Self::Catia => ["middle + left, middle + right", "middle", "wheel, hold middle and click left, drag"],
+            Self::Blender => ["middle", "Shift + middle", "wheel, Ctrl + middle"],
+            Self::FreeCad => ["middle + left, middle + right", "middle", "wheel"],
+            Self::F3d | Self::Trackpad => ["left", "middle, Shift + left", "wheel"],
+        }
+    }
+
+    /// What a drag does while these are held.
+    pub fn action(self, held: Held) -> Option<Action> {
+        use Action::{Orbit, Pan, Zoom};
+        let [left, middle, right] = held.buttons;
+        let alone = |button: Button| held.buttons == [Button::Left, Button::Middle, Button::Right].map(|b| b == button);
+        let (l, m, r) = (alone(Button::Left), alone(Button::Middle), alone(Button::Right));
+        match self {
+            Self::SolidWorks if m => Some(if held.ctrl {
+                Pan
+            } else if held.shift {
+                Zoom
+            } else {
+                Orbit
+            }),
+            Self::Creo | Self::Blender if m => Some(if held.shift {
+                Pan
+            } else if held.ctrl {
+                Zoom
+            } else {
+                Orbit
+            }),
+            Self::Onshape if m || r && held.ctrl => Some(Pan),
+            Self::Onshape if r => Some(Orbit),
+            Self::Catia | Self::FreeCad if middle && (left || right) => Some(Orbit),
+            Self::Catia if m && held.tapped => Some(Zoom),
+            Self::Catia | Self::FreeCad if m => Some(Pan),
+            Self::F3d | Self::Trackpad if m || l && held.shift => Some(Pan),
+            Self::F3d | Self::Trackpad if l => Some(Orbit),
+            _ => None,
+        }
+    }
+}
+
+impl Held {
+    /// A button went down or came up.
+    pub fn button(&mut self, button: Button, down: bool) {
+        self.buttons[button as usize] = down;
+        let middle = self.buttons[Button::Middle as usize];
+        self.tapped = middle && (self.tapped || !down);
+    }
+
+    /// Whether any button is down.
+    pub fn any(self) -> bool {
+        self.buttons.contains(&true)
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    /// Buttons in the order in which they go down, `^` for control, `+` for shift; a small letter comes up again.
+    fn held(keys: &str) -> Held {
+        let mut held = Held::default();
+        for key in keys.chars() {
+            match key {
+                '^' => held.ctrl = true,
+                '+' => held.shift = true,
+                'L' | 'l' => held.button(Button::Left, key == 'L'),
+                'M' | 'm' => held.button(Button::Middle, key == 'M'),
+                'R' | 'r' => held.button(Button::Right, key == 'R'),
+                _ => unreachable!("{key}"),
+            }
+        }
+        held
+    }
+
+    /// The table above, and what it does not have.
+    #[test]
+    fn each_style_moves_as_its_users_know() {
+        use Action::{Orbit, Pan, Zoom};
+        let table = [
+            (Preset::SolidWorks, [("M", Some(Orbit)), ("^M", Some(Pan)), ("+M", Some(Zoom)), ("L", None), ("R", None)]),
+            (Preset::Creo, [("M", Some(Orbit)), ("+M", Some(Pan)), ("^M", Some(Zoom)), ("L", None), ("ML", None)]),
+            (Preset::Onshape, [("R", Some(Orbit)), ("M", Some(Pan)), ("^R", Some(Pan)), ("L", None), ("LR", None)]),
+            (
+                Preset::Catia,
+                [("ML", Some(Orbit)), ("MR", Some(Orbit)), ("M", Some(Pan)), ("MLl", Some(Zoom)), ("L", None)],
+            ),
+            (Preset::Blender, [("M", Some(Orbit)), ("+M", Some(Pan)), ("^M", Some(Zoom)), ("L", None), ("R", None)]),
+            (
+                Preset::FreeCad,
+                [("ML", Some(Orbit)), ("MR", Some(Orbit)), ("M", Some(Pan)), ("MLl", Some(Pan)), ("L", None)],
+            ),
+            (Preset::F3d, [("L", Some(Orbit)), ("M", Some(Pan)), ("+L", Some(Pan)), ("R", None), ("", None)]),
+            (Preset::Trackpad, [("L", Some(Orbit)), ("M", Some(Pan)), ("+L", Some(Pan)), ("R", None), ("", None)]),
+        ];
+        assert_eq!(table.map(|(preset, _)| preset), Preset::ALL);
+        for (preset, moves) in table {
+            for (keys, action) in moves {
+                assert_eq!(preset.action(held(keys)), action, "{preset:?} {keys}");
+            }
+        }
+    }
+
+    #[test]
+    fn a_tap_ends_with_the_middle_button() {
+        assert_eq!(Preset::Catia.action(held("MLlmM")), Some(Action::Pan));
+        assert!(!held("MLlm").any());
+    }
+}

@@ -1,0 +1,280 @@
+//! What surrounds the picture: tree, properties, toolbar, status, help; and what is drawn over it.
+//!
+//! ```text
+//!   ┌ toolbar: file, views, styles, lines, sections ───────────────┐
+//!   │ tree   │                                       ┌cube┐│ what  │
+//!   │        │            the picture                └────┘│ it is │
+//!   ├────────┴─────────────────────────────────────────────┴───────┤
+//!   └ status: under the cursor, size, promise, warnings ───────────┘
+//! ```
+
+mod handles;
+mod overlay;
+mod properties;
+mod status;
+mod toolbar;
+mod tree;
+mod trims;
+
+use crate::commands::{self, Command};
+use crate::measure::Measurement;
+use crate::pick::PickFilter;
+use crate::session::Picked;
+use crate::session::Session;
+use crate::settings::Settings;
+use crate::view::View;
+use glam::DVec3;
+use selvedge::model::Camera;
+use selvedge::picture::{FrameStats, Style};
+use std::collections::BTreeMap;
+use std::path::{Path, PathBuf};
+use std::time::Instant;
+
+/// Messages that are kept.
+const MOST_MESSAGES: usize = 50;
+
+/// What the panels remember from frame to frame.
+#[derive(Debug)]
+pub struct Ui {
+    /// What a click takes.
+    pub filter: PickFilter,
+    /// How surfaces are shown.
+    pub style: Style,
+    /// What is looked for in the tree.
+    pub search: String,
+    /// The help is open.
+    pub help: bool,
+    /// The list of warnings is open.
+    pub warnings: bool,
+    /// What a person should know, the last one last.
+    pub messages: Vec<String>,
+    /// Wishes that the window has to fulfil.
+    pub commands: Vec<Command>,
+    /// The pointer is over a panel, or held by one.
+    pub pointer_taken: bool,
+    /// Open files that were written, and when.
+    pub changed: BTreeMap<PathBuf, Instant>,
+    /// The window is to be closed.
+    pub quit: bool,
+    /// The tree scrolls to the selection once.
+    pub show_selection: bool,
+    /// The point of the last click.
+    pub clicked: Option<DVec3>,
+    /// The selection is to be measured.
+    pub wants_measure: bool,
+    /// What was measured of it.
+    pub measurement: Option<Measurement>,
+    /// It is kept once it is there.
+    keeps: bool,
+    /// Measurements that are kept.
+    pub kept: Vec<Measurement>,
+    /// Where pictures go.
+    pub shot: Shot,
+    /// What the judge said last.
+    pub verdict: Option<Verdict>,
+    /// Trim loops of the selected face can be dragged.
+    pub trims: bool,
+    /// What is to be known of the selected face.
+    pub notice: Option<String>,
+    /// Where the model is saved, while that is asked for.
+    pub save: Option<PathBuf>,
+}
+
+/// A picture to be written.
+#[derive(Clone, Debug)]
+pub struct Shot {
+    /// The window that asks for it is open.
+    pub open: bool,
+    /// The file.
+    pub path: PathBuf,
+    /// Width and height.
+    pub size: (u32, u32),
+    /// Nothing behind the model.
+    pub transparent: bool,
+}
+
+/// What the judge says of a view.
+#[derive(Clone, Debug)]
+pub struct Verdict {
+    /// The view.
+    pub camera: Camera,
+    /// Pixels that it looked at.
+    pub sampled: u64,
+    /// Those that break the promise.
+    pub wrong: u64,
+    /// Pixels that do not simply agree, the worst first, a thousand at most.
+    pub pixels: Vec<[u32; 2]>,
+}
+
+impl Default for Ui {
+    fn default() -> Self {
+        Self {
+            filter: PickFilter::default(),
+            style: Style::default(),
+            search: String::new(),
+            help: false,
+            warnings: false,
+            messages: Vec::new(),
+            commands: Vec::new(),
+            pointer_taken: false,
+            changed: BTreeMap::new(),
+            quit: false,
+            show_selection: false,
+            clicked: None,
+            wants_measure: false,
+            measurement: None,
+            keeps: false,
+            kept: Vec::new(),
+            shot: Shot { open: false, path: PathBuf::from("view.png"), size: (1280, 720), transparent: false },
+            verdict: None,
+            trims: false,
+            notice: None,
+            save: None,
+        }
+    }
+}
+
+/// What the panels are told of the rest.
+pub struct Facts<'a> {
+    /// Files that are being read: stage, and share of it.
+    pub loading: Vec<(&'a Path, &'a str, Option<f32>)>,
+    /// Of the picture that was drawn last.
+    pub stats: Option<&'a FrameStats>,
+    /// What of the settings does not apply to this model.
+    pub notice: Option<&'a str>,
+    /// The engine is being given another model.
+    pub busy: bool,
+    /// Size of the picture that is shown.
+    pub picture: Option<(u32, u32)>,
+    /// The view.
+    pub view: &'a View,
+    /// Name of the device.
+    pub device: &'a str,
+}
+
+impl Ui {
+    /// Tells something.
+    pub fn tell(&mut self, message: String) {
+        if self.messages.len() == MOST_MESSAGES {
+            self.messages.remove(0);
+        }
+        self.messages.push(message);
+    }
+
+    /// Other files are open now.
+    pub fn opened(&mut self) {
+        (self.clicked, self.measurement, self.verdict) = (None, None, None);
+        self.kept.clear();
+    }
+
+    /// The selection was measured.
+    pub fn measured(&mut self, measurement: Option<Measurement>) {
+        for value in measurement.iter().flat_map(|m| &m.values) {
+            tracing::info!("{}: {} {}", value.what, value.value, value.unit);
+        }
+        if std::mem::take(&mut self.keeps) {
+            self.kept.extend(measurement.clone());
+        }
+        self.measurement = measurement;
+    }
+
+    /// The judge has looked.
+    pub fn judged(&mut self, verdict: Verdict) {
+        self.tell(match verdict.wrong {
+            0 => format!("Checked {} pixels: all as promised.", verdict.sampled),
+            wrong => format!("Checked {} pixels: {wrong} are wrong.", verdict.sampled),
+        });
+        self.verdict = Some(verdict);
+    }
+
+    /// The selection is another one: faces, edges and corners are measured at once, parts when somebody asks.
+    fn remeasure(&mut self, session: &Session) {
+        self.measurement = None;
+        let quick = session.selection.iter().all(|picked| !matches!(picked, Picked::Instance(_)));
+        self.wants_measure = quick && (1..=2).contains(&session.selection.len());
+    }
+
+    /// A click has changed the selection.
+    pub fn selected(&mut self, session: &Session, point: Option<DVec3>) {
+        self.show_selection = true;
+        self.clicked = point;
+        self.remeasure(session);
+        if let Some(picked) = session.selection.last() {
+            tracing::info!("selected {}", crate::describe::short(&session.world, picked));
+            for (what, value) in crate::describe::long(&session.world, picked) {
+                tracing::debug!("{what}: {value}");
+            }
+        }
+    }
+
+    /// Fulfils a wish that concerns the session alone.
+    pub fn obey(&mut self, command: Command, session: &mut Session) {
+        let (chosen, world) = (session.selected_instances(), session.world.clone());
+        match command {
+            Command::Undo => drop(session.scene.undo()),
+            Command::Redo => drop(session.scene.redo()),
+            Command::Clear => {
+                session.select(None, false);
+                (self.help, self.warnings, self.shot.open) = (false, false, false);
+                (self.measurement, self.verdict) = (None, None);
+            }
+            Command::Hide => {
+                session.scene.change(|state| chosen.iter().for_each(|item| state.set_hidden(*item, true)));
+                session.select(None, false);
+            }
+            Command::Isolate if !chosen.is_empty() => session.scene.change(|state| state.isolate(&chosen, &world)),
+            Command::ShowAll => session.scene.change(|state| state.hidden.clear()),
+            Command::SeeThrough => session.scene.change(|state| {
+                let all = chosen.iter().all(|i| state.clear.contains(i));
+                for i in &chosen {
+                    if all {
+                        state.clear.remove(i)
+                    } else {
+                        state.clear.insert(*i)
+                    };
+                }
+            }),
+            Command::Help => self.help = !self.help,
+            Command::Trims => self.trims = !self.trims,
+            Command::SaveAs => {
+                self.save = if self.save.is_none() { Some(PathBuf::from("edited.selvedge")) } else { None };
+            }
+            Command::Screenshot => self.shot.open = !self.shot.open,
+            Command::Measure => match &self.measurement {
+                Some(measurement) => self.kept.push(measurement.clone()),
+                None => (self.wants_measure, self.keeps) = (true, true),
+            },
+            _ => {}
+        }
+    }
+}
+
+/// What the panels are drawn with: once a frame, since a key or a drag counts once.
+pub fn context() -> egui::Context {
+    let ctx = egui::Context::default();
+    ctx.options_mut(|options| options.max_passes = std::num::NonZeroUsize::MIN);
+    ctx
+}
+
+/// Shows all panels; returns where the picture is, points.
+pub fn show(
+    ctx: &egui::Context,
+    ui: &mut Ui,
+    session: &mut Session,
+    settings: &mut Settings,
+    facts: &Facts<'_>,
+) -> egui::Rect {
+    ui.commands.extend(commands::pressed(ctx));
+    egui::TopBottomPanel::top("toolbar").show(ctx, |panel| toolbar::show(panel, ui, session, settings, facts));
+    egui::TopBottomPanel::bottom("status").show(ctx, |panel| status::show(panel, ui, session, facts));
+    egui::SidePanel::left("tree").default_width(220.0).show(ctx, |panel| tree::show(panel, ui, session));
+    egui::SidePanel::right("properties").default_width(240.0).show(ctx, |panel| properties::show(panel, ui, session));
+    let rect = ctx.available_rect();
+    overlay::show(ctx, rect, ui, session, facts);
+    status::windows(ctx, ui, session, settings, facts);
+    ui.pointer_taken = ctx.is_using_pointer() || ctx.is_pointer_over_area();
+    rect
+}
+
+#[cfg(test)]
+mod tests;

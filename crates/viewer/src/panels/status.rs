@@ -1,0 +1,160 @@
+//! The line below the picture, and the windows that it opens: warnings, messages, help.
+
+use super::{Facts, Ui};
+use crate::commands::{Command, shortcuts};
+use crate::describe;
+use crate::session::Session;
+use crate::settings::Settings;
+
+/// Shows the line.
+pub fn show(panel: &mut egui::Ui, ui: &mut Ui, session: &Session, facts: &Facts<'_>) {
+    for (path, stage, share) in &facts.loading {
+        panel.horizontal(|row| {
+            let name = path.file_name().unwrap_or_default().to_string_lossy();
+            let bar = egui::ProgressBar::new(share.unwrap_or(0.0)).text(format!("{name}: {stage}"));
+            row.add(bar.desired_width(320.0).animate(false));
+            if row.button("Cancel").clicked() {
+                ui.commands.push(Command::Cancel);
+            }
+        });
+    }
+    panel.horizontal(|row| {
+        badge(row, ui, session, facts);
+        row.separator();
+        let under = facts.view.hover.and_then(|hover| {
+            let name = describe::short(&session.world, hover.hit.picked.as_ref()?);
+            Some(hover.hit.point.map_or(name.clone(), |p| format!("{name}   {}", point(p))))
+        });
+        row.label(under.unwrap_or_default());
+        row.with_layout(egui::Layout::right_to_left(egui::Align::Center), |right| {
+            let (width, height) = facts.view.camera().size;
+            let size = match facts.picture {
+                Some(size) if size != (width, height) => format!("{} x {} of {width} x {height}", size.0, size.1),
+                _ => format!("{width} x {height}"),
+            };
+            right.label(size).on_hover_text(facts.device);
+            if let Some(message) = ui.messages.last()
+                && right.add(egui::Label::new(message).truncate().sense(egui::Sense::click())).clicked()
+            {
+                ui.warnings = true;
+            }
+        });
+    });
+}
+
+/// A point as the status line shows it: shorter than in the panel.
+fn point(p: glam::DVec3) -> String {
+    p.to_array().map(|x| format!("{x:.4}")).join("  ")
+}
+
+/// What the picture promises.
+fn badge(row: &mut egui::Ui, ui: &mut Ui, session: &Session, facts: &Facts<'_>) {
+    let warnings: usize = session.world.files.iter().map(|file| file.warnings.len()).sum();
+    let incomplete = session.world.files.iter().any(|file| !file.complete);
+    let clamps = facts.stats.map_or(0, |stats| stats.clamps);
+    let (good, bad) = (egui::Color32::from_rgb(60, 160, 80), row.visuals().warn_fg_color);
+    let (text, colour) = match () {
+        () if session.world.is_empty() => ("no file".to_owned(), row.visuals().weak_text_color()),
+        () if facts.busy => ("working".to_owned(), row.visuals().weak_text_color()),
+        () if clamps > 0 => (format!("{clamps} places not as promised"), bad),
+        () if incomplete => ("not all of the file".to_owned(), bad),
+        () if facts.notice.is_some() => ("exact, with a note".to_owned(), bad),
+        () => ("exact within 0.5 px".to_owned(), good),
+    };
+    row.colored_label(colour, text);
+    if row.small_button(format!("{warnings} warnings")).clicked() {
+        ui.warnings = !ui.warnings;
+    }
+}
+
+/// Windows over the picture.
+pub fn windows(ctx: &egui::Context, ui: &mut Ui, session: &Session, settings: &Settings, facts: &Facts<'_>) {
+    let mut open = ui.warnings;
+    egui::Window::new("Warnings").open(&mut open).default_width(480.0).show(ctx, |window| {
+        egui::ScrollArea::vertical().max_height(360.0).show(window, |area| {
+            if let Some(notice) = facts.notice {
+                area.label(notice);
+            }
+            for message in ui.messages.iter().rev() {
+                area.label(message);
+            }
+            for file in &session.world.files {
+                area.strong(&file.name);
+                area.label(&file.summary);
+                file.warnings.iter().for_each(|warning| drop(area.label(warning)));
+            }
+        });
+    });
+    ui.warnings = open;
+    shot(ctx, ui);
+    save(ctx, ui);
+    let mut open = ui.help;
+    egui::Window::new("Keys and buttons").open(&mut open).default_width(360.0).show(ctx, |window| {
+        let preset = settings.preset;
+        window.strong(format!("Mouse, as in {}", preset.name()));
+        egui::Grid::new("mouse").num_columns(2).striped(true).show(window, |grid| {
+            for (what, hint) in ["turn", "move", "zoom"].into_iter().zip(preset.hints()) {
+                grid.label(what);
+                grid.label(hint);
+                grid.end_row();
+            }
+            grid.label("select");
+            grid.label("left click; Shift adds");
+            grid.end_row();
+        });
+        window.separator();
+        egui::ScrollArea::vertical().max_height(320.0).show(window, |area| {
+            egui::Grid::new("keys").num_columns(2).striped(true).show(area, |grid| {
+                for shortcut in shortcuts() {
+                    grid.monospace(shortcut.label());
+                    grid.label(shortcut.what);
+                    grid.end_row();
+                }
+            });
+        });
+    });
+    ui.help = open;
+}
+
+/// Where a picture goes, and how large it is.
+fn shot(ctx: &egui::Context, ui: &mut Ui) {
+    let mut open = ui.shot.open;
+    let mut wanted = false;
+    egui::Window::new("Write picture").open(&mut open).show(ctx, |window| {
+        let shot = &mut ui.shot;
+        let mut path = shot.path.to_string_lossy().into_owned();
+        if window.text_edit_singleline(&mut path).changed() {
+            shot.path = path.into();
+        }
+        window.horizontal(|row| {
+            row.add(egui::DragValue::new(&mut shot.size.0).range(1..=16384));
+            row.label("x");
+            row.add(egui::DragValue::new(&mut shot.size.1).range(1..=16384));
+            row.checkbox(&mut shot.transparent, "transparent");
+        });
+        wanted = window.button("Write").clicked();
+    });
+    ui.shot.open = open;
+    if wanted {
+        ui.commands.push(Command::WritePicture);
+    }
+}
+
+/// Where the model goes, as it was edited.
+fn save(ctx: &egui::Context, ui: &mut Ui) {
+    let Some(path) = &mut ui.save else { return };
+    let (mut open, mut wanted) = (true, false);
+    egui::Window::new("Save model").open(&mut open).show(ctx, |window| {
+        window.label("A file .selvedge, bit for bit, or .step:");
+        let mut text = path.to_string_lossy().into_owned();
+        if window.text_edit_singleline(&mut text).changed() {
+            *path = text.into();
+        }
+        wanted = window.button("Save").clicked();
+    });
+    if wanted {
+        ui.commands.push(Command::Save);
+    } else if !open {
+        ui.save = None;
+    }
+}

@@ -1,0 +1,218 @@
+//! Panels without a window: what they say, and what a click does.
+
+use super::*;
+use crate::session::Picked;
+use crate::session::{Loaded, World};
+use std::sync::Arc;
+
+/// Texts of a frame, with where they are.
+fn texts(output: &egui::FullOutput) -> Vec<(String, egui::Rect)> {
+    fn walk(shape: &egui::Shape, all: &mut Vec<(String, egui::Rect)>) {
+        match shape {
+            egui::Shape::Text(text) => all.push((text.galley.text().to_owned(), text.visual_bounding_rect())),
+            egui::Shape::Vec(shapes) => shapes.iter().for_each(|shape| walk(shape, all)),
+            _ => {}
+        }
+    }
+    let mut all = Vec::new();
+    output.shapes.iter().for_each(|clipped| walk(&clipped.shape, &mut all));
+    all
+}
+
+struct Bench {
+    ctx: egui::Context,
+    ui: Ui,
+    session: Session,
+    settings: Settings,
+    view: View,
+    rect: egui::Rect,
+}
+
+impl Bench {
+    fn new() -> Self {
+        let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../samples/assembly.step");
+        let import = selvedge_io::import::open(&path).expect("a sample");
+        let mut session = Session::default();
+        session.open(World::new(&[Arc::new(Loaded { path, import })]));
+        session.world.find_edges();
+        let (ui, settings, view) = (Ui::default(), Settings::default(), View::default());
+        Self { ctx: context(), ui, session, settings, view, rect: egui::Rect::NOTHING }
+    }
+
+    fn frame(&mut self, events: Vec<egui::Event>) -> Vec<(String, egui::Rect)> {
+        let screen = egui::Rect::from_min_size(egui::Pos2::ZERO, egui::Vec2::new(1280.0, 800.0));
+        let input = egui::RawInput { screen_rect: Some(screen), events, ..Default::default() };
+        let facts = Facts {
+            loading: vec![(Path::new("x/big.step"), "faces", Some(0.5))],
+            stats: None,
+            notice: None,
+            busy: false,
+            picture: None,
+            view: &self.view,
+            device: "none",
+        };
+        let Self { ctx, ui, session, settings, rect, .. } = self;
+        let output = ctx.run(input, |ctx| *rect = show(ctx, ui, session, settings, &facts));
+        texts(&output)
+    }
+
+    fn says(&mut self, what: &str) -> bool {
+        self.frame(Vec::new());
+        self.frame(Vec::new()).iter().any(|(text, _)| text.contains(what))
+    }
+
+    /// Where a point of the model is, once the view has the size of its panel.
+    fn place(&mut self, p: DVec3) -> egui::Pos2 {
+        for _ in 0..3 {
+            self.frame(Vec::new());
+            self.view.resize((self.rect.width() as u32, self.rect.height() as u32));
+        }
+        self.view.set_bounds(self.session.world.bounds);
+        self.view.reset(Instant::now());
+        let (pixel, _) = self.view.camera().project(p).expect("in front");
+        self.rect.min + egui::Vec2::new(pixel.x as f32, pixel.y as f32)
+    }
+
+    /// A drag with the left button.
+    fn drag(&mut self, from: egui::Pos2, by: egui::Vec2) {
+        let button = |pos, pressed| egui::Event::PointerButton {
+            pos,
+            button: egui::PointerButton::Primary,
+            pressed,
+            modifiers: egui::Modifiers::NONE,
+        };
+        self.frame(vec![egui::Event::PointerMoved(from)]);
+        self.frame(vec![egui::Event::PointerMoved(from)]);
+        self.frame(vec![button(from, true)]);
+        for i in 1..=4 {
+            self.frame(vec![egui::Event::PointerMoved(from + by * (i as f32 / 4.0))]);
+        }
+        self.frame(vec![button(from + by, false)]);
+    }
+
+    fn click(&mut self, what: &str) {
+        self.frame(Vec::new());
+        let all = self.frame(Vec::new());
+        let (_, place) = all.iter().find(|(text, _)| text == what).unwrap_or_else(|| panic!("no {what} in {all:?}"));
+        let pos = place.center();
+        let button = |pressed| egui::Event::PointerButton {
+            pos,
+            button: egui::PointerButton::Primary,
+            pressed,
+            modifiers: egui::Modifiers::NONE,
+        };
+        self.frame(vec![egui::Event::PointerMoved(pos)]);
+        self.frame(vec![button(true)]);
+        self.frame(vec![button(false)]);
+    }
+}
+
+#[test]
+fn the_tree_names_every_part_and_the_search_finds_one() {
+    let mut bench = Bench::new();
+    let world = bench.session.world.clone();
+    let names: Vec<String> = (0..world.model.instances.len()).map(|i| world.instance_name(i)).collect();
+    for name in &names {
+        assert!(bench.says(name), "{name}");
+    }
+    let wanted = names[1].clone();
+    bench.ui.search = wanted.to_uppercase();
+    let found = bench.frame(Vec::new());
+    let listed = |name: &String| found.iter().any(|(text, _)| text == name);
+    assert!(listed(&wanted));
+    let other = names.iter().find(|n| !n.contains(&wanted)).expect("another name");
+    assert!(!listed(other), "{other}");
+}
+
+#[test]
+fn progress_warnings_and_the_promise_are_told() {
+    let mut bench = Bench::new();
+    assert!(bench.says("big.step: faces") && bench.says("exact within 0.5 px"));
+    bench.click("Cancel");
+    assert_eq!(bench.ui.commands, [Command::Cancel]);
+}
+
+#[test]
+fn a_click_in_the_tree_selects_and_the_panel_says_what_it_is() {
+    let mut bench = Bench::new();
+    let name = bench.session.world.instance_name(0);
+    bench.click(&name);
+    assert_eq!(bench.session.selection.len(), 1);
+    bench.session.select(Some(Picked::Face { instance: 0, face: 0, uv: glam::DVec2::ZERO }), false);
+    let id = bench.session.world.model.parts[bench.session.world.model.instances[0].part].faces[0].id;
+    assert!(bench.says(&format!("#{id}")) && bench.says("control points"));
+}
+
+#[test]
+fn buttons_hide_and_show_again() {
+    let mut bench = Bench::new();
+    bench.session.select(Some(Picked::Instance(1)), false);
+    bench.click("Hide");
+    let wishes = std::mem::take(&mut bench.ui.commands);
+    assert_eq!(wishes, [Command::Hide]);
+    bench.ui.obey(Command::Hide, &mut bench.session);
+    assert!(bench.session.scene.now().hidden.contains(&1) && bench.session.selection.is_empty());
+    bench.click("Show all");
+    bench.ui.obey(Command::ShowAll, &mut bench.session);
+    assert!(bench.session.scene.now().hidden.is_empty());
+    bench.ui.obey(Command::Undo, &mut bench.session);
+    assert!(bench.session.scene.now().hidden.contains(&1));
+}
+
+#[test]
+fn the_help_has_the_preset_s_buttons_and_every_key() {
+    let mut bench = Bench::new();
+    assert!(!bench.says("Keys and buttons"));
+    bench.click("?");
+    bench.ui.obey(Command::Help, &mut bench.session);
+    bench.settings.preset = crate::navigation::gesture::Preset::Catia;
+    assert!(bench.says("hold middle and click left") && bench.says("open files"));
+}
+
+#[test]
+fn a_section_follows_its_handle_and_is_undone_as_one() {
+    let mut bench = Bench::new();
+    let bounds = bench.session.world.bounds;
+    let section = crate::session::Section::across(DVec3::X, bounds);
+    bench.session.scene.change(|state| state.sections.push(section));
+    let from = bench.place(bounds.centre());
+    let to = bench.place(bounds.centre() + DVec3::X * 10.0);
+    bench.drag(from, to - from);
+    let moved = bench.session.scene.now().sections[0].offset - section.offset;
+    // perspective: the arrow is nearer at its tip
+    assert!((moved - 10.0).abs() < 1.5, "{moved}");
+    assert!(bench.session.scene.undo() && bench.session.scene.now().sections[0] == section);
+}
+
+#[test]
+fn a_trim_point_follows_the_hand_on_its_surface() {
+    let mut bench = Bench::new();
+    let world = bench.session.world.clone();
+    let instance = 0;
+    let part = world.model.instances[instance].part;
+    let seen = |f: &&selvedge::model::Face| !f.loops.is_empty() && f.loops[0].curves().len() < 8;
+    let face = world.model.parts[part].faces.iter().position(|f| seen(&f)).expect("a trimmed face");
+    let of_face = &world.model.parts[part].faces[face];
+    let before = of_face.loops[0].curves().next().expect("a curve").point(0.0);
+    let inside = before.lerp(of_face.loops[0].curves().nth(2).expect("a curve").point(0.0), 0.1);
+    let point =
+        |uv: glam::DVec2| world.model.instances[instance].transform.transform_point3(of_face.surface.point(uv.x, uv.y));
+    bench.session.select(Some(Picked::Face { instance, face, uv: before }), false);
+    bench.ui.trims = true;
+    let (from, to) = (bench.place(point(before)), bench.place(point(inside)));
+    bench.drag(from, to - from);
+    // of points that are seen in one place the upper one is gripped
+    let camera = *bench.view.camera();
+    let corner = bench.rect.min;
+    let nearest = |trim_loop: &selvedge::model::TrimLoop| {
+        let points = trim_loop.curves().flat_map(|curve| curve.points).map(|p| point(p.truncate() / p.z));
+        let pixels = points
+            .filter_map(|p| camera.project(p))
+            .map(|(pixel, _)| (corner + egui::Vec2::new(pixel.x as f32, pixel.y as f32)).distance(to));
+        pixels.fold(f32::INFINITY, f32::min)
+    };
+    let edits = &bench.session.scene.now().edits;
+    let (far, near) = (nearest(&of_face.loops[0]), nearest(&edits[&(part, face, 0)]));
+    assert!(far > 2.0 && near < 0.5, "{near} pixels from the hand, {far} before");
+    assert!(bench.session.scene.undo() && bench.session.scene.now().edits.is_empty());
+}

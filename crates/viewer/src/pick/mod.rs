@@ -1,0 +1,219 @@
+//! From the images around the cursor to the face, edge or vertex under it.
+//!
+//! ```text
+//!   pixels within REACH of the cursor
+//!      an edge's number nearest to it, within EDGE_PX ─▶ edge ─▶ an end of it within VERTEX_PX on the screen ─▶ vertex
+//!      else the face of the cursor's own pixel         ─▶ face, and (u, v) ─Newton─▶ the point under the cursor, in f64
+//! ```
+
+use crate::session::{Picked, World};
+use glam::{DVec2, DVec3};
+use selvedge::model::Camera;
+use selvedge::spline::{Jet2, Surface};
+
+/// Pixels from the cursor within which an edge is picked, and not the face under it.
+const EDGE_PX: f64 = 3.0;
+/// The same of an edge's end.
+const VERTEX_PX: f64 = 7.0;
+
+/// One pixel of the engine's images.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Sample {
+    /// Along the view axis, `+inf` for background.
+    pub depth: f32,
+    /// [`Face::id`](selvedge::model::Face::id), 0 for background.
+    pub face: u32,
+    /// In the face's domain.
+    pub uv: [f32; 2],
+    /// Outward.
+    pub normal: [f32; 3],
+    /// Number of the edge over all parts, from 1 on; 0 without one.
+    pub edge: u32,
+    /// Number of the part, from 1 on; 0 for background and Boolean solids.
+    pub part: u32,
+    /// Number of the instance, from 1 on; 0 for background and Boolean solids.
+    pub instance: u32,
+}
+
+/// Pixels around the cursor.
+#[derive(Clone, Debug, Default, PartialEq)]
+pub struct Samples {
+    /// The first one's place in the picture.
+    pub corner: (u32, u32),
+    /// Of a row.
+    pub width: u32,
+    /// Row after row.
+    pub samples: Vec<Sample>,
+}
+
+/// A face of the shown picture, or all faces of an instance, as the composite pass marks them.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, bytemuck::Pod, bytemuck::Zeroable)]
+#[repr(C)]
+pub struct Mark {
+    /// As in [`Sample::instance`].
+    pub instance: u32,
+    /// As in [`Sample::face`]; 0: every face.
+    pub face: u32,
+}
+
+/// What may be picked.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
+#[allow(missing_docs)]
+pub enum PickFilter {
+    #[default]
+    Any,
+    Faces,
+    Edges,
+    Vertices,
+    Parts,
+}
+
+impl PickFilter {
+    /// All of them, as menus list them.
+    pub const ALL: [Self; 5] = [Self::Any, Self::Faces, Self::Edges, Self::Vertices, Self::Parts];
+
+    /// As menus name it.
+    pub fn name(self) -> &'static str {
+        match self {
+            Self::Any => "Anything",
+            Self::Faces => "Faces",
+            Self::Edges => "Edges",
+            Self::Vertices => "Vertices",
+            Self::Parts => "Parts",
+        }
+    }
+}
+
+/// What the cursor is over.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Hit {
+    /// The thing; `None` over the background.
+    pub picked: Option<Picked>,
+    /// The point under the cursor, model coordinates; exact on spline faces.
+    pub point: Option<DVec3>,
+}
+
+impl Samples {
+    fn at(&self, pixel: (u32, u32)) -> Option<&Sample> {
+        let (x, y) = (pixel.0.checked_sub(self.corner.0)?, pixel.1.checked_sub(self.corner.1)?);
+        (x < self.width).then(|| self.samples.get((y * self.width + x) as usize)).flatten()
+    }
+
+    /// Each pixel with its distance from the cursor, in pixels.
+    fn around(&self, cursor: DVec2) -> impl Iterator<Item = (f64, &Sample)> {
+        let width = self.width.max(1);
+        (0..).zip(&self.samples).map(move |(i, sample): (u32, _)| {
+            let pixel = DVec2::new(f64::from(self.corner.0 + i % width), f64::from(self.corner.1 + i / width)) + 0.5;
+            (pixel.distance(cursor), sample)
+        })
+    }
+
+    /// What lies under `cursor`, pixels of the picture of `camera`; `shown` has the session's instance of each one of the
+    /// picture's.
+    pub fn pick(&self, world: &World, shown: &[usize], camera: &Camera, cursor: DVec2, filter: PickFilter) -> Hit {
+        let Some(sample) = self.at((cursor.x.max(0.0) as u32, cursor.y.max(0.0) as u32)) else {
+            return Hit { picked: None, point: None };
+        };
+        let instance_of = |number: u32| shown.get((number as usize).checked_sub(1)?).copied();
+        let instance = instance_of(sample.instance);
+        let face = instance.and_then(|i| {
+            let part = &world.model.parts[world.model.instances[i].part];
+            Some((i, part.faces.iter().position(|f| f.id == sample.face)?))
+        });
+        let seen = (sample.face != 0).then(|| {
+            let (origin, direction) = camera.ray(cursor);
+            let (_, _, forward) = camera.axes();
+            let near = origin + direction * (f64::from(sample.depth) / direction.dot(forward));
+            let uv = DVec2::new(f64::from(sample.uv[0]), f64::from(sample.uv[1]));
+            let exact = face.and_then(|(instance, face)| {
+                let placed = &world.model.instances[instance];
+                let surface = &world.model.parts[placed.part].faces[face].surface;
+                let back = placed.transform.inverse();
+                let ray = (back.transform_point3(near), back.transform_vector3(direction));
+                let (uv, point) = on_surface(surface, ray, uv)?;
+                Some((uv, placed.transform.transform_point3(point)))
+            });
+            exact.unwrap_or((uv, near))
+        });
+        let point = seen.map(|(_, point)| point);
+        let edge = || {
+            let near = self.around(cursor).filter(|(distance, s)| s.edge != 0 && *distance <= EDGE_PX);
+            let (_, found) = near.min_by(|a, b| a.0.total_cmp(&b.0))?;
+            let (part, edge) = world.edge(found.edge)?;
+            // a line beside a silhouette lies over another part, or over none
+            let of_part = |s: &Sample| s.part as usize == part + 1;
+            let beside = || self.around(cursor).filter(|(_, s)| of_part(s)).min_by(|a, b| a.0.total_cmp(&b.0));
+            let number = if of_part(found) { found.instance } else { beside()?.1.instance };
+            Some((instance_of(number)?, part, edge))
+        };
+        let vertex = || {
+            let (instance, part, edge) = edge()?;
+            let transform = world.model.instances[instance].transform;
+            let edges = world.edges_of(part)?;
+            let on_screen = |vertex: &usize| {
+                let p = transform.transform_point3(*edges.vertices.get(*vertex)?);
+                Some((camera.project(p)?.0.distance(cursor), *vertex))
+            };
+            let ends = edges.edges.get(edge)?.ends;
+            let nearest = ends.iter().filter_map(on_screen).min_by(|a, b| a.0.total_cmp(&b.0))?;
+            (nearest.0 <= VERTEX_PX).then_some(Picked::Vertex { instance, vertex: nearest.1 })
+        };
+        let as_edge = || edge().map(|(instance, _, edge)| Picked::Edge { instance, edge });
+        let as_face = || match face {
+            Some((instance, face)) => seen.map(|(uv, _)| Picked::Face { instance, face, uv }),
+            None => (sample.face != 0).then_some(Picked::Number { instance, id: sample.face }),
+        };
+        let picked = match filter {
+            PickFilter::Any => vertex().or_else(as_edge).or_else(as_face),
+            PickFilter::Faces => as_face(),
+            PickFilter::Edges => as_edge(),
+            PickFilter::Vertices => vertex(),
+            PickFilter::Parts => instance.map(Picked::Instance).or_else(as_face),
+        };
+        Hit { picked, point }
+    }
+}
+
+/// The parameters and the point where a ray meets a surface, near `uv`. `None` where it meets none, as beside its borders.
+///
+/// Accuracy: some roundings of the surface's coordinates.
+pub fn on_surface(surface: &Surface, ray: (DVec3, DVec3), uv: DVec2) -> Option<(DVec2, DVec3)> {
+    let (uv, point, distance) = towards(surface, ray, uv)?;
+    let (low, high) = surface.bounds();
+    // what does not reach the ray is no answer
+    (distance <= 1e-9 * (high - low).length()).then_some((uv, point))
+}
+
+/// The parameters within the domain from which Newton's method gets no nearer to a ray, with the point there and its
+/// distance from the ray: two planes through the ray are met, by steps that are halved until they lead nearer.
+pub fn towards(surface: &Surface, (origin, direction): (DVec3, DVec3), uv: DVec2) -> Option<(DVec2, DVec3, f64)> {
+    const STEPS: usize = 40;
+    const HALVINGS: i32 = 8;
+    let (a, b) = direction.normalize().any_orthonormal_pair();
+    let ((u0, u1), (v0, v1)) = surface.domain();
+    let (low, high) = (DVec2::new(u0, v0), DVec2::new(u1, v1));
+    let off = |jet: &Jet2| DVec2::new((jet.point - origin).dot(a), (jet.point - origin).dot(b));
+    let mut at = uv.clamp(low, high);
+    let mut jet = surface.jet2(at.x, at.y);
+    let mut apart = off(&jet);
+    for _ in 0..STEPS {
+        let (fu, fv, gu, gv) = (jet.du.dot(a), jet.dv.dot(a), jet.du.dot(b), jet.dv.dot(b));
+        let det = fu * gv - fv * gu;
+        let step = DVec2::new(apart.x * gv - apart.y * fv, apart.y * fu - apart.x * gu) / det;
+        if !step.is_finite() {
+            break;
+        }
+        let nearer = (0..HALVINGS).find_map(|halvings| {
+            let next = (at - step * 0.5_f64.powi(halvings)).clamp(low, high);
+            let there = surface.jet2(next.x, next.y);
+            (off(&there).length() < apart.length()).then_some((next, there))
+        });
+        let Some((next, there)) = nearer else { break };
+        (at, jet) = (next, there);
+        apart = off(&jet);
+    }
+    apart.is_finite().then(|| (at, jet.point, apart.length()))
+}
+
+#[cfg(test)]
+mod tests;

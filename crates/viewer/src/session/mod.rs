@@ -1,0 +1,91 @@
+//! What is open, and what is done with it: files, visibility, colours, sections, selection; plain data without a window.
+//!
+//! ```text
+//!   files ─merge─▶ World: one model, where each file's parts are, edges of each part
+//!                     │
+//!   SceneState ───────┴─show─▶ Shown: the model that is drawn, and which instance of the world each of its is
+//!   (hidden, see-through, colours, sections, explosion; undone and redone)
+//! ```
+
+pub mod file;
+pub mod picked;
+pub mod shown;
+pub mod undo;
+pub mod world;
+
+pub use file::{Loaded, Loader, LoaderEvent};
+pub use picked::Picked;
+pub use shown::{SceneState, Section, Shown};
+pub use undo::History;
+pub use world::{FilePart, World};
+
+use std::sync::Arc;
+
+/// Everything of a session that is no window.
+#[derive(Debug, Default)]
+pub struct Session {
+    /// What is open.
+    pub world: Arc<World>,
+    /// How it is shown; changes are undone and redone.
+    pub scene: History<SceneState>,
+    /// What is selected, in the order of clicks.
+    pub selection: Vec<Picked>,
+}
+
+impl Session {
+    /// Replaces what is open. What is hidden, coloured and cut stays where the placed parts are as many as before and
+    /// have the same names; the selection goes, since numbers may mean something else.
+    pub fn open(&mut self, world: World) {
+        if !world.has_parts_of(&self.world) {
+            let sections = self.scene.now().sections.clone();
+            self.scene = History::new(SceneState { sections, ..SceneState::default() });
+        }
+        self.world = Arc::new(world);
+        self.selection.clear();
+    }
+
+    /// A click: replaces the selection, or adds to it and takes away from it what it holds.
+    pub fn select(&mut self, picked: Option<Picked>, add: bool) {
+        if !add {
+            self.selection.clear();
+            self.selection.extend(picked);
+            return;
+        }
+        let Some(picked) = picked else { return };
+        match self.selection.iter().position(|held| held.is_same(&picked)) {
+            Some(held) => drop(self.selection.remove(held)),
+            None => self.selection.push(picked),
+        }
+    }
+
+    /// Things in the tree that the selection is of.
+    pub fn selected_instances(&self) -> Vec<usize> {
+        let mut all: Vec<usize> = self.selection.iter().filter_map(Picked::instance).collect();
+        all.sort_unstable();
+        all.dedup();
+        all
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::DVec2;
+
+    #[test]
+    fn a_click_replaces_and_shift_adds_and_takes_away() {
+        let face = |face, u| Picked::Face { instance: 0, face, uv: DVec2::new(u, 0.0) };
+        let mut session = Session::default();
+        session.select(Some(face(1, 0.1)), false);
+        session.select(Some(face(2, 0.2)), true);
+        assert_eq!(session.selection.len(), 2);
+        session.select(Some(face(1, 0.7)), true);
+        assert_eq!(session.selection, [face(2, 0.2)]);
+        session.select(None, true);
+        assert_eq!(session.selection.len(), 1);
+        session.select(Some(Picked::Instance(3)), false);
+        assert_eq!((session.selection.len(), session.selected_instances()), (1, vec![3]));
+        session.select(None, false);
+        assert!(session.selection.is_empty());
+    }
+}

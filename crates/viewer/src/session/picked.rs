@@ -1,0 +1,59 @@
+//! Things of the model that are selected.
+
+use glam::DVec2;
+
+/// Something of the model; numbers are those of the session's model, from 0 on.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Picked {
+    /// A face of a placed part.
+    Face {
+        /// In the model's instances.
+        instance: usize,
+        /// In the part's faces.
+        face: usize,
+        /// Where it was picked, in the face's domain.
+        uv: DVec2,
+    },
+    /// An edge of a placed part.
+    Edge {
+        /// In the model's instances.
+        instance: usize,
+        /// In the part's edges.
+        edge: usize,
+    },
+    /// An end of edges of a placed part.
+    Vertex {
+        /// In the model's instances.
+        instance: usize,
+        /// In the part's vertices.
+        vertex: usize,
+    },
+    /// A placed part.
+    Instance(usize),
+    /// A face that is known by its number alone: of a Boolean solid, a section or a mesh.
+    Number {
+        /// Its placed part, if it has one.
+        instance: Option<usize>,
+        /// As in [`Sample::face`].
+        id: u32,
+    },
+}
+
+impl Picked {
+    /// The same thing, wherever it was picked.
+    pub fn is_same(&self, other: &Self) -> bool {
+        match (self, other) {
+            (Self::Face { instance: a, face: f, .. }, Self::Face { instance: b, face: g, .. }) => a == b && f == g,
+            (a, b) => a == b,
+        }
+    }
+
+    /// The placed part that it is of.
+    pub fn instance(&self) -> Option<usize> {
+        match *self {
+            Self::Face { instance, .. } | Self::Edge { instance, .. } | Self::Vertex { instance, .. } => Some(instance),
+            Self::Instance(instance) => Some(instance),
+            Self::Number { instance, .. } => instance,
+        }
+    }
+}

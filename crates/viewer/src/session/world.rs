@@ -1,0 +1,170 @@
+//! All open files as one model.
+
+use super::Loaded;
+use selvedge::model::{Bounds, Edges, Instance, Model};
+use std::ops::Range;
+use std::path::PathBuf;
+use std::sync::{Arc, OnceLock};
+
+/// Where a file's things are in the model.
+#[derive(Clone, Debug, PartialEq)]
+pub struct FilePart {
+    /// The file.
+    pub path: PathBuf,
+    /// Its name, as the tree has it.
+    pub name: String,
+    /// Its instances.
+    pub instances: Range<usize>,
+    /// Its Boolean solids.
+    pub solids: Range<usize>,
+    /// Its format, as it names it.
+    pub format: String,
+    /// One line: what is there, and what is missing.
+    pub summary: String,
+    /// Everything of the file is drawn.
+    pub complete: bool,
+    /// What was left out or mended, a line each.
+    pub warnings: Vec<String>,
+}
+
+/// One model of all open files.
+#[derive(Debug)]
+pub struct World {
+    /// Parts and instances of all files, one after another.
+    pub model: Model,
+    /// The files in the order in which they were opened.
+    pub files: Vec<FilePart>,
+    /// Box of all that is drawn.
+    pub bounds: Bounds,
+    /// What was lost when files were put together.
+    pub notices: Vec<String>,
+    edges: OnceLock<PartEdges>,
+}
+
+impl Default for World {
+    fn default() -> Self {
+        Self {
+            model: Model::default(),
+            files: Vec::new(),
+            bounds: Bounds::EMPTY,
+            notices: Vec::new(),
+            edges: OnceLock::new(),
+        }
+    }
+}
+
+/// Edges of each part; of a part without curves, none, and why.
+#[derive(Debug, Default)]
+struct PartEdges {
+    parts: Vec<Edges>,
+    /// The number of each part's first edge, from 1 on, as the engine counts; and one more at the end.
+    first: Vec<u32>,
+}
+
+impl World {
+    /// Puts files together.
+    pub fn new(files: &[Arc<Loaded>]) -> Self {
+        let mut world = Self::default();
+        for file in files {
+            world.add(file);
+        }
+        world.bounds = world.model.bounds();
+        world
+    }
+
+    fn add(&mut self, file: &Loaded) {
+        let (model, of_file) = (&mut self.model, &file.import.model);
+        let (first_part, first_instance) = (model.parts.len(), model.instances.len());
+        let first_solid = model.solids.len();
+        model.parts.extend(of_file.parts.iter().cloned());
+        let placed = |i: &Instance| Instance { part: i.part + first_part, ..i.clone() };
+        model.instances.extend(of_file.instances.iter().map(placed));
+        model.solids.extend(of_file.solids.iter().cloned());
+        model.coincident = model.coincident.or(of_file.coincident);
+        if first_instance + first_solid == 0 {
+            (model.name, model.unit) = (of_file.name.clone(), of_file.unit.clone());
+            model.trim = of_file.trim.clone();
+        } else if model.trim.is_some() || of_file.trim.is_some() {
+            model.trim = None;
+            self.notices.push("Several files are open: the volume that cuts one of them is left out.".to_owned());
+        }
+        let summary = file.import.summary();
+        let warning = |w: &selvedge_io::import::Warning| {
+            let times = if w.count > 1 { format!(" ({} times)", w.count) } else { String::new() };
+            match w.place {
+                selvedge_io::import::Place::File => format!("{}{times}", w.message),
+                selvedge_io::import::Place::Line(line) => format!("line {line}: {}{times}", w.message),
+                selvedge_io::import::Place::Entity { id, line } => format!("#{id}, line {line}: {}{times}", w.message),
+            }
+        };
+        self.files.push(FilePart {
+            path: file.path.clone(),
+            name: file.path.file_name().map(|n| n.to_string_lossy().into_owned()).unwrap_or_default(),
+            instances: first_instance..self.model.instances.len(),
+            solids: first_solid..self.model.solids.len(),
+            format: file.import.report.format.clone(),
+            summary: summary.to_string(),
+            complete: summary.is_complete(),
+            warnings: file.import.warnings.iter().map(warning).collect(),
+        });
+    }
+
+    /// Every placed part has its name and place in the other's list, too.
+    pub fn has_parts_of(&self, other: &Self) -> bool {
+        let named = |i: &Instance, world: &Self| (i.name.clone(), world.model.parts[i.part].name.clone());
+        self.model.instances.len() == other.model.instances.len()
+            && self.model.solids.len() == other.model.solids.len()
+            && self.model.instances.iter().zip(&other.model.instances).all(|(a, b)| named(a, self) == named(b, other))
+    }
+
+    /// Nothing is open, or nothing of it can be drawn.
+    pub fn is_empty(&self) -> bool {
+        self.model.instances.is_empty() && self.model.solids.is_empty()
+    }
+
+    /// How a placed part is called.
+    pub fn instance_name(&self, instance: usize) -> String {
+        let Some(placed) = self.model.instances.get(instance) else { return String::new() };
+        let part = &self.model.parts[placed.part].name;
+        match (placed.name.as_str(), part.as_str()) {
+            ("", "") => format!("Part {}", instance + 1),
+            ("", part) => part.to_owned(),
+            (name, _) => name.to_owned(),
+        }
+    }
+
+    /// Finds the edges of all parts, which takes a while; later calls do nothing.
+    pub fn find_edges(&self) {
+        self.edges.get_or_init(|| {
+            let parts: Vec<Edges> = self
+                .model
+                .parts
+                .iter()
+                .map(|part| {
+                    part.edges().unwrap_or_else(|error| {
+                        tracing::warn!("edges of {}: {error}", part.name);
+                        Edges::default()
+                    })
+                })
+                .collect();
+            let mut first = vec![1];
+            for edges in &parts {
+                first.push(first[first.len() - 1] + (edges.edges.len() + edges.of_meshes.len()) as u32);
+            }
+            PartEdges { parts, first }
+        });
+    }
+
+    /// The edges of a part, once they are found.
+    pub fn edges_of(&self, part: usize) -> Option<&Edges> {
+        self.edges.get()?.parts.get(part)
+    }
+
+    /// Part and edge of a number in the engine's image of edges; `None` for sides of facets, and before edges are found.
+    pub fn edge(&self, number: u32) -> Option<(usize, usize)> {
+        let edges = self.edges.get()?;
+        let part = edges.first.partition_point(|first| *first <= number).checked_sub(1)?;
+        let edge = (number - edges.first[part]) as usize;
+        (edge < edges.parts.get(part)?.edges.len()).then_some((part, edge))
+    }
+}

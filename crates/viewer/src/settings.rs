@@ -1,0 +1,176 @@
+//! What is remembered from one session to the next: a JSON file in the user's folder of settings.
+//!
+//! Fields that this version does not know are kept as they are, and fields that are missing have their default: newer and
+//! older versions share one file.
+
+use crate::navigation::OrbitStyle;
+use crate::navigation::gesture::Preset;
+use serde::{Deserialize, Serialize};
+use std::io;
+use std::path::{Path, PathBuf};
+
+/// Most files that are remembered.
+const MOST_RECENT: usize = 12;
+
+/// Light or dark.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[allow(missing_docs)]
+pub enum Theme {
+    #[default]
+    System,
+    Light,
+    Dark,
+}
+
+/// Which lines are drawn along edges.
+#[derive(Clone, Copy, Debug, Default, PartialEq, Eq, Serialize, Deserialize)]
+#[serde(rename_all = "lowercase")]
+#[allow(missing_docs)]
+pub enum Lines {
+    #[default]
+    All,
+    Sharp,
+    None,
+}
+
+/// The user's choices.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+#[serde(default)]
+pub struct Settings {
+    /// Whose mouse.
+    pub preset: Preset,
+    /// How a drag turns the model.
+    pub orbit: OrbitStyle,
+    /// Views change at once.
+    pub reduced_motion: bool,
+    /// Light or dark.
+    pub theme: Theme,
+    /// Size of text, times that of the display.
+    pub text: f32,
+    /// Lines along edges.
+    pub lines: Lines,
+    /// Outlines of curved faces.
+    pub silhouettes: bool,
+    /// Hidden lines, dashed.
+    pub hidden_lines: bool,
+    /// Borders of trimmed faces are smooth.
+    pub smooth: bool,
+    /// Files opened last, the last one first.
+    pub recent: Vec<PathBuf>,
+    /// What other versions have written.
+    #[serde(flatten)]
+    pub others: serde_json::Map<String, serde_json::Value>,
+}
+
+impl Default for Settings {
+    fn default() -> Self {
+        Self {
+            preset: Preset::default(),
+            orbit: OrbitStyle::default(),
+            reduced_motion: false,
+            theme: Theme::default(),
+            text: 1.0,
+            lines: Lines::default(),
+            silhouettes: true,
+            hidden_lines: false,
+            smooth: true,
+            recent: Vec::new(),
+            others: serde_json::Map::new(),
+        }
+    }
+}
+
+/// Where settings are, by the XDG Base Directory Specification 0.8: `$XDG_CONFIG_HOME`, else `~/.config`.
+pub fn path(config_home: Option<PathBuf>, home: Option<PathBuf>) -> Option<PathBuf> {
+    let absolute = config_home.filter(|folder| folder.is_absolute());
+    let folder = absolute.or_else(|| home.map(|home| home.join(".config")))?;
+    Some(folder.join("selvedge").join("viewer.json"))
+}
+
+impl Settings {
+    /// Reads them; the defaults where there is no file yet.
+    ///
+    /// # Errors
+    /// When the file cannot be read, or is damaged: naming the line.
+    pub fn read(path: &Path) -> io::Result<Self> {
+        let text = match std::fs::read(path) {
+            Err(error) if error.kind() == io::ErrorKind::NotFound => return Ok(Self::default()),
+            text => text?,
+        };
+        let mut settings: Self = serde_json::from_slice(&text)?;
+        settings.text = settings.text.clamp(0.5, 4.0);
+        settings.recent.truncate(MOST_RECENT);
+        Ok(settings)
+    }
+
+    /// Writes them; the file is there as a whole or as it was.
+    ///
+    /// # Errors
+    /// When it cannot be written.
+    pub fn write(&self, path: &Path) -> io::Result<()> {
+        let folder = path.parent().unwrap_or(Path::new("."));
+        std::fs::create_dir_all(folder)?;
+        let beside = path.with_extension("json.new");
+        std::fs::write(&beside, serde_json::to_vec_pretty(self)?)?;
+        std::fs::rename(&beside, path)
+    }
+
+    /// A file was opened.
+    pub fn opened(&mut self, file: &Path) {
+        let file = std::path::absolute(file).unwrap_or_else(|_| file.to_owned());
+        self.recent.retain(|known| *known != file);
+        self.recent.insert(0, file);
+        self.recent.truncate(MOST_RECENT);
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_file_of_another_version_is_read_and_kept() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("a/b/viewer.json");
+        assert_eq!(Settings::read(&path).expect("no file yet"), Settings::default());
+        std::fs::create_dir_all(path.parent().expect("a folder")).expect("made");
+        std::fs::write(&path, r#"{"preset": "catia", "later": {"x": 1}, "text": 99}"#).expect("written");
+        let mut settings = Settings::read(&path).expect("read");
+        assert_eq!((settings.preset, settings.text, settings.lines), (Preset::Catia, 4.0, Lines::All));
+        settings.opened(Path::new("/x/a.step"));
+        settings.write(&path).expect("written");
+        let again = Settings::read(&path).expect("read");
+        assert_eq!(again, settings);
+        assert_eq!(again.others["later"]["x"], 1);
+        assert_eq!(std::fs::read_dir(path.parent().expect("a folder")).expect("a list").count(), 1);
+    }
+
+    #[test]
+    fn a_damaged_file_is_told_and_not_replaced() {
+        let folder = tempfile::tempdir().expect("a folder");
+        let path = folder.path().join("viewer.json");
+        std::fs::write(&path, "{\n\"preset\": 3}").expect("written");
+        let error = Settings::read(&path).expect_err("damaged").to_string();
+        assert!(error.contains("line 2"), "{error}");
+    }
+
+    #[test]
+    fn recent_files_are_each_there_once_and_the_last_is_first() {
+        let mut settings = Settings::default();
+        for name in ["/a", "/b", "/a"] {
+            settings.opened(Path::new(name));
+        }
+        assert_eq!(settings.recent, [PathBuf::from("/a"), PathBuf::from("/b")]);
+        (0..50).for_each(|i| settings.opened(Path::new(&format!("/{i}"))));
+        assert_eq!((settings.recent.len(), settings.recent[0].clone()), (MOST_RECENT, PathBuf::from("/49")));
+    }
+
+    #[test]
+    fn the_folder_is_that_of_the_specification() {
+        let at = |config: Option<&str>, home: Option<&str>| path(config.map(PathBuf::from), home.map(PathBuf::from));
+        assert_eq!(at(Some("/c"), Some("/h")), Some(PathBuf::from("/c/selvedge/viewer.json")));
+        assert_eq!(at(Some("relative"), Some("/h")), Some(PathBuf::from("/h/.config/selvedge/viewer.json")));
+        assert_eq!(at(None, None), None);
+    }
+}

@@ -1,0 +1,407 @@
+//! The view of the model: its camera, how the hand moves it, and which picture of it is due.
+//!
+//! ```text
+//!   press ─▶ Drag, waits for the point under the cursor ─▶ moves ─▶ camera ─▶ a picture of fewer pixels, in time
+//!                                                                     └─ still for SETTLE ─▶ every pixel, once
+//! ```
+//!
+//! Times are handed in, and no window is known here.
+
+use crate::navigation::gesture::{Action, Held, Preset};
+use crate::navigation::transition::{DURATION, Transition};
+use crate::navigation::{self, FOV, OrbitStyle};
+use crate::pacing::Pacing;
+use crate::pick::Hit;
+use glam::{DVec2, DVec3};
+use selvedge::model::{Bounds, Camera, Projection};
+use std::time::{Duration, Instant};
+
+/// A hand that rests so long has stopped.
+pub const SETTLE: Duration = Duration::from_millis(80);
+/// A button that comes up within so many pixels of where it went down is a click.
+const CLICK_PX: f64 = 4.0;
+/// One notch of the wheel.
+const NOTCH: f64 = 0.84;
+/// A zoom drag over the height of the view.
+const ZOOM_DRAG: f64 = 12.0;
+/// Most views that "previous view" leads back to.
+const MOST_VIEWS: usize = 50;
+/// Where the first view looks from: as the pictures of `selvedge render`.
+const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
+
+/// A drag, from the press on.
+#[derive(Clone, Copy, Debug)]
+struct Drag {
+    start: DVec2,
+    last: DVec2,
+    /// The point that turns or sticks; `None` until it is known.
+    held: Option<DVec3>,
+    /// It has left the place where it began.
+    moved: bool,
+    /// The view before it can be gone back to.
+    remembered: bool,
+}
+
+/// What the cursor was over when it was looked up.
+#[derive(Clone, Copy, Debug)]
+pub struct Hover {
+    /// Pixels of the view.
+    pub cursor: DVec2,
+    /// What is there.
+    pub hit: Hit,
+}
+
+/// The view.
+#[derive(Debug)]
+pub struct View {
+    camera: Camera,
+    bounds: Bounds,
+    before: Vec<Camera>,
+    drag: Option<Drag>,
+    /// The point that the wheel zooms to, and the cursor that it is for.
+    anchor: Option<(DVec2, DVec3)>,
+    transition: Option<(Transition, Instant)>,
+    moved: Option<Instant>,
+    /// Chooses the size of moving pictures.
+    pub pacing: Pacing,
+    /// The last answer about the cursor.
+    pub hover: Option<Hover>,
+}
+
+/// A picture that is due.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Due {
+    /// Its size is the picture's.
+    pub camera: Camera,
+    /// Pixels of it along a side for one of the view.
+    pub scale: f64,
+}
+
+impl Default for View {
+    fn default() -> Self {
+        let bounds = Bounds { min: DVec3::splat(-1.0), max: DVec3::ONE };
+        Self {
+            camera: Camera::around(bounds, FROM, DVec3::Z, FOV, (1, 1)),
+            bounds,
+            before: Vec::new(),
+            drag: None,
+            anchor: None,
+            transition: None,
+            moved: None,
+            pacing: Pacing::default(),
+            hover: None,
+        }
+    }
+}
+
+impl View {
+    /// The camera, as large as the view.
+    pub fn camera(&self) -> &Camera {
+        &self.camera
+    }
+
+    /// What is drawn lies within this box.
+    pub fn set_bounds(&mut self, bounds: Bounds) {
+        if !bounds.is_empty() {
+            self.bounds = bounds;
+            self.camera = navigation::settle(&self.camera, bounds);
+        }
+    }
+
+    /// The view has so many pixels.
+    pub fn resize(&mut self, size: (u32, u32)) {
+        if size.0 > 0 && size.1 > 0 && size != self.camera.size {
+            self.camera.size = size;
+            self.anchor = None;
+        }
+    }
+
+    fn set(&mut self, camera: Camera, now: Instant) {
+        let camera = navigation::settle(&camera, self.bounds);
+        if camera != self.camera {
+            self.camera = camera;
+            self.moved = Some(now);
+        }
+    }
+
+    fn remember(&mut self) {
+        if self.before.last() != Some(&self.camera) {
+            if self.before.len() == MOST_VIEWS {
+                self.before.remove(0);
+            }
+            self.before.push(self.camera);
+        }
+    }
+
+    /// Goes to another view, at once or over a fifth of a second.
+    pub fn go(&mut self, to: Camera, smooth: bool, now: Instant) {
+        self.remember();
+        self.towards(to, smooth, now);
+    }
+
+    fn towards(&mut self, to: Camera, smooth: bool, now: Instant) {
+        self.anchor = None;
+        let to = navigation::settle(&Camera { size: self.camera.size, ..to }, self.bounds);
+        if smooth {
+            self.transition = Some((Transition::new(self.camera, to, self.bounds), now));
+            self.moved = Some(now);
+        } else {
+            self.set(to, now);
+        }
+    }
+
+    /// Where a transition ends, or where it is.
+    pub fn goal(&self) -> Camera {
+        self.transition.map_or(self.camera, |(transition, _)| transition.end())
+    }
+
+    /// The whole model in the picture, from the same direction.
+    pub fn fit(&mut self, smooth: bool, now: Instant) {
+        let to = navigation::fit(&self.goal(), &self.bounds.corners());
+        self.go(to, smooth, now);
+    }
+
+    /// The first view of a model: all of it, from a little above its front right.
+    pub fn reset(&mut self, now: Instant) {
+        let to = Camera::around(self.bounds, FROM, DVec3::Z, FOV, self.camera.size);
+        let to = if self.is_parallel() { navigation::other_projection(&to) } else { to };
+        self.set(navigation::fit(&to, &self.bounds.corners()), now);
+        self.before.clear();
+    }
+
+    /// Some points in the picture, from the same direction.
+    pub fn fit_points(&mut self, points: &[DVec3], smooth: bool, now: Instant) {
+        let to = navigation::fit(&self.goal(), points);
+        self.go(to, smooth, now);
+    }
+
+    /// The whole model from another direction.
+    pub fn look_from(&mut self, from: DVec3, up: DVec3, smooth: bool, now: Instant) {
+        let to = navigation::looking(&self.goal(), from, up);
+        self.go(navigation::fit(&to, &self.bounds.corners()), smooth, now);
+    }
+
+    /// Parallel or perspective, the other one.
+    pub fn toggle_projection(&mut self, now: Instant) {
+        let to = navigation::other_projection(&self.goal());
+        self.go(to, false, now);
+    }
+
+    /// A parallel view.
+    pub fn is_parallel(&self) -> bool {
+        matches!(self.goal().projection, Projection::Orthographic { .. })
+    }
+
+    /// The view before this one; false where there is none.
+    pub fn previous(&mut self, smooth: bool, now: Instant) -> bool {
+        let Some(before) = self.before.pop() else { return false };
+        self.towards(before, smooth, now);
+        true
+    }
+
+    /// Turns by pixels about the middle of the model, as keys do.
+    pub fn turn(&mut self, pixels: DVec2, style: OrbitStyle, now: Instant) {
+        self.remember();
+        let to = navigation::orbit(&self.goal(), self.bounds.centre(), pixels, style);
+        self.transition = None;
+        self.set(to, now);
+    }
+
+    /// A button went down at `cursor`; the point under it is wanted, unless it is known: [`hold`](Self::hold).
+    pub fn press(&mut self, cursor: DVec2) {
+        self.transition = None;
+        let known = self.hover.filter(|hover| hover.cursor.distance(cursor) < 1.0).and_then(|hover| hover.hit.point);
+        self.drag.get_or_insert(Drag { start: cursor, last: cursor, held: known, moved: false, remembered: false });
+    }
+
+    /// A drag waits for the point under its start.
+    pub fn wants_point(&self) -> Option<DVec2> {
+        self.drag.filter(|drag| drag.held.is_none()).map(|drag| drag.start)
+    }
+
+    /// The point under the start of the drag; without one, what lies behind the cursor as deep as the model's middle.
+    pub fn hold(&mut self, point: Option<DVec3>) {
+        let (camera, middle) = (self.camera, self.bounds.centre());
+        if let Some(drag) = &mut self.drag {
+            let depth = navigation::depth(&camera, middle);
+            drag.held = Some(point.unwrap_or_else(|| navigation::at_depth(&camera, drag.start, depth)));
+        }
+    }
+
+    /// The cursor is at another place, with these buttons and keys down.
+    pub fn moved(&mut self, cursor: DVec2, held: Held, (preset, style): (Preset, OrbitStyle), now: Instant) {
+        let Some(drag) = &mut self.drag else { return };
+        drag.moved |= drag.start.distance(cursor) > CLICK_PX;
+        let (Some(point), true) = (drag.held, drag.moved) else { return };
+        let step = cursor - drag.last;
+        drag.last = cursor;
+        if !std::mem::replace(&mut drag.remembered, true) {
+            self.remember();
+        }
+        let Some(action) = preset.action(held) else { return };
+        let camera = match action {
+            Action::Orbit => {
+                let turned = navigation::orbit(&self.camera, point, step, style);
+                navigation::aimed(&turned, point)
+            }
+            Action::Pan => navigation::pan(&self.camera, point, cursor),
+            Action::Zoom => {
+                let height = f64::from(self.camera.size.1);
+                let factor = (step.y / height * ZOOM_DRAG.ln()).exp();
+                navigation::aimed(&navigation::zoom(&self.camera, point, factor), point)
+            }
+        };
+        self.anchor = None;
+        self.set(camera, now);
+    }
+
+    /// The last button came up; true when it was a click and not a drag.
+    pub fn release(&mut self) -> bool {
+        self.drag.take().is_some_and(|drag| !drag.moved)
+    }
+
+    /// A drag moves the view.
+    pub fn is_dragging(&self) -> bool {
+        self.drag.is_some_and(|drag| drag.moved)
+    }
+
+    /// The wheel, by notches, upwards closer.
+    pub fn wheel(&mut self, cursor: DVec2, notches: f64, now: Instant) {
+        let known = self.anchor.filter(|(at, _)| at.distance(cursor) < 2.0).map(|(_, point)| point);
+        let hovered = self.hover.filter(|h| h.cursor.distance(cursor) < 2.0).and_then(|h| h.hit.point);
+        let behind = || {
+            let depth = navigation::depth(&self.camera, self.camera.target);
+            navigation::at_depth(&self.camera, cursor, depth)
+        };
+        let point = known.or(hovered).unwrap_or_else(behind);
+        self.anchor = Some((cursor, point));
+        self.transition = None;
+        let zoomed = navigation::zoom(&self.camera, point, NOTCH.powf(notches.clamp(-8.0, 8.0)));
+        self.set(navigation::aimed(&zoomed, point), now);
+    }
+
+    /// Moves a transition on.
+    pub fn advance(&mut self, now: Instant) {
+        let Some((transition, start)) = self.transition else { return };
+        let share = now.saturating_duration_since(start).as_secs_f64() / DURATION.as_secs_f64();
+        let camera = transition.at(share, self.bounds);
+        if share >= 1.0 {
+            self.transition = None;
+        }
+        self.set(camera, now);
+    }
+
+    /// The picture of the view as it is now: of fewer pixels while it moves.
+    pub fn due(&self, now: Instant) -> Due {
+        let moves = self.moving(now);
+        let scale = if moves { self.pacing.scale() } else { 1.0 };
+        let size = Pacing::size(scale, self.camera.size);
+        Due { camera: Camera { size, ..self.camera }, scale }
+    }
+
+    /// The view moves, or did a moment ago.
+    pub fn moving(&self, now: Instant) -> bool {
+        self.transition.is_some() || self.moved.is_some_and(|moved| now.saturating_duration_since(moved) < SETTLE)
+    }
+
+    /// When something is to be drawn though nothing happens: the next step of a transition, or the still picture.
+    pub fn wake(&self, now: Instant) -> Option<Instant> {
+        match (self.transition, self.moved) {
+            (Some(_), _) => Some(now),
+            (None, Some(moved)) if self.moving(now) => Some(moved + SETTLE),
+            _ => None,
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::navigation::gesture::Button;
+
+    const BOX: Bounds = Bounds { min: DVec3::ZERO, max: DVec3::new(40.0, 30.0, 20.0) };
+    const MODE: (Preset, OrbitStyle) = (Preset::Onshape, OrbitStyle::Turntable);
+
+    fn view(now: Instant) -> View {
+        let mut view = View::default();
+        view.resize((800, 600));
+        view.set_bounds(BOX);
+        view.reset(now);
+        view
+    }
+
+    fn held(button: Button) -> Held {
+        let mut held = Held::default();
+        held.button(button, true);
+        held
+    }
+
+    #[test]
+    fn a_moving_view_has_fewer_pixels_and_a_still_one_all() {
+        let start = Instant::now();
+        let mut view = view(start);
+        let later = start + Duration::from_secs(1);
+        assert_eq!((view.due(later).scale, view.wake(later)), (1.0, None));
+        view.wheel(DVec2::new(300.0, 200.0), 1.0, later);
+        assert!(view.due(later).scale < 1.0);
+        let wake = view.wake(later).expect("the still picture");
+        assert_eq!((view.due(wake).scale, view.due(wake).camera.size), (1.0, (800, 600)));
+        assert_eq!(view.wake(wake), None);
+    }
+
+    #[test]
+    fn a_drag_waits_for_its_point_and_holds_it() {
+        let now = Instant::now();
+        let mut view = view(now);
+        let (start, point) = (DVec2::new(420.0, 310.0), DVec3::new(40.0, 0.0, 20.0));
+        let start_pixel = view.camera.project(point).expect("in front").0;
+        view.press(start);
+        assert_eq!(view.wants_point(), Some(start));
+        view.moved(start + 50.0, held(Button::Right), MODE, now);
+        assert_eq!(view.camera.project(point).expect("in front").0, start_pixel, "nothing moves yet");
+        view.hold(Some(point));
+        view.moved(start + 50.0, held(Button::Right), MODE, now);
+        let at = view.camera.project(point).expect("in front").0;
+        assert!(at.distance(start_pixel) < 1e-6 && view.is_dragging());
+        assert!(!view.release() && view.previous(false, now));
+    }
+
+    #[test]
+    fn a_press_in_one_place_is_a_click() {
+        let now = Instant::now();
+        let mut view = view(now);
+        view.press(DVec2::new(10.0, 10.0));
+        view.hold(None);
+        view.moved(DVec2::new(12.0, 11.0), held(Button::Left), MODE, now);
+        assert!(view.release() && !view.release());
+        assert!(!view.previous(false, now));
+    }
+
+    #[test]
+    fn the_wheel_keeps_its_anchor_while_the_cursor_rests() {
+        let now = Instant::now();
+        let mut view = view(now);
+        let point = DVec3::new(40.0, 30.0, 20.0);
+        let cursor = view.camera.project(point).expect("in front").0;
+        view.hover = Some(Hover { cursor, hit: Hit { picked: None, point: Some(point) } });
+        for _ in 0..40 {
+            view.wheel(cursor, 1.0, now);
+            assert!(view.camera.project(point).expect("in front").0.distance(cursor) < 1e-5);
+        }
+    }
+
+    #[test]
+    fn a_transition_ends_at_its_goal_and_leads_back() {
+        let start = Instant::now();
+        let mut view = view(start);
+        let first = view.camera;
+        view.look_from(DVec3::Z, DVec3::Y, true, start);
+        let goal = view.goal();
+        view.advance(start + DURATION / 2);
+        assert!(view.camera != goal && view.camera != first && view.wake(start + DURATION / 2).is_some());
+        view.advance(start + DURATION);
+        assert_eq!(view.camera, goal);
+        assert!(view.previous(false, start + DURATION));
+        assert_eq!(view.camera.eye, first.eye);
+    }
+}

@@ -1,0 +1,490 @@
+//! The window's state, and one frame of it.
+
+use super::composite::ViewRect;
+use super::context::DeviceOptions;
+use super::engine::{Engine, Outcome, Request, Uploaded};
+use super::look::background;
+use super::screen::{Frame, Picture, Screen};
+use super::waiter::Waiter;
+use super::{Closed, Failure, ViewError, ViewOptions};
+use crate::measure::Measurement;
+use crate::navigation::gesture::Held;
+use crate::panels::{Facts, Ui, Verdict};
+use crate::session::Picked;
+use crate::session::{Loaded, Loader, LoaderEvent, Session};
+use crate::settings::{Settings, Theme};
+use crate::view::{Due, Hover, View};
+use crate::watch::Watcher;
+use glam::DVec2;
+use selvedge::ash::vk;
+use selvedge::model::Camera;
+use selvedge::picture::{FrameSettings, FrameStats};
+use std::path::PathBuf;
+use std::sync::Arc;
+use std::time::Instant;
+use winit::event_loop::{ActiveEventLoop, EventLoopProxy};
+use winit::window::Window;
+
+/// What other threads tell the window.
+pub enum Event {
+    /// The frame that was submitted has finished.
+    FrameDone(Result<(), vk::Result>),
+    /// A file.
+    Loader(LoaderEvent),
+    /// The engine's renderer comes back.
+    Uploaded(Box<Uploaded>),
+    /// Edges can be picked now.
+    EdgesFound,
+    /// Files were chosen.
+    Chosen(Vec<PathBuf>),
+    /// An open file has changed.
+    Changed(PathBuf),
+    /// What was selected has been measured.
+    Measured(Vec<Picked>, Option<Measurement>),
+    /// A picture was judged: which pixels are wrong, or why it was not.
+    Judged(Result<Verdict, String>),
+    /// The panels want to be drawn again.
+    Repaint,
+}
+
+/// A file that is being read.
+pub struct Loading {
+    pub loader: Loader,
+    pub stage: &'static str,
+    pub share: Option<f32>,
+}
+
+/// A frame on its way.
+struct Flight {
+    /// The engine's picture in it, and when it was begun.
+    picture: Option<(Due, FrameSettings, u64, Instant)>,
+    /// Where it looks for what lies there: pixels of the view.
+    pick: Option<DVec2>,
+    /// The picture that the pick reads.
+    camera: Option<Camera>,
+    free: Vec<egui::TextureId>,
+}
+
+/// The picture that the window shows.
+#[derive(Clone, Copy, PartialEq)]
+pub struct ShownPicture {
+    pub camera: Camera,
+    settings: FrameSettings,
+    generation: u64,
+}
+
+/// What lives as long as the window.
+pub struct Opened {
+    pub window: Arc<Window>,
+    pub input: egui_winit::State,
+    // in the order in which they go
+    pub waiter: Waiter,
+    pub engine: Engine,
+    pub screen: Screen,
+}
+
+/// Everything.
+pub struct App {
+    pub options: ViewOptions,
+    pub proxy: EventLoopProxy<Event>,
+    pub opened: Option<Opened>,
+    pub context: egui::Context,
+    pub session: Session,
+    pub view: View,
+    pub ui: Ui,
+    pub settings: Settings,
+    /// As they are in the file.
+    kept: Settings,
+    pub files: Vec<Arc<Loaded>>,
+    pub loading: Vec<Loading>,
+    pub watcher: Option<Watcher>,
+    flight: Option<Flight>,
+    /// Drawn again once the frame in flight is done.
+    pub again: bool,
+    /// Drawn again then, whatever happens.
+    pub wake: Option<Instant>,
+    pub picture: Option<ShownPicture>,
+    pub stats: Option<FrameStats>,
+    pub rect: ViewRect,
+    /// Pixels of the window.
+    pub cursor: Option<DVec2>,
+    pub held: Held,
+    /// What lies there is wanted: pixels of the view.
+    pub pick: Option<DVec2>,
+    /// A click waits for what lies under it: whether it adds to the selection, and where it is, pixels of the view.
+    pub click: Option<(bool, DVec2)>,
+    pub failed: Option<ViewError>,
+    clipboard: Option<arboard::Clipboard>,
+    messages: Vec<String>,
+    /// The first picture is there.
+    seen: bool,
+    begun: Instant,
+}
+
+impl App {
+    pub fn new(options: ViewOptions, proxy: EventLoopProxy<Event>) -> Self {
+        let mut ui = Ui::default();
+        let read = options.settings.as_deref().map(Settings::read);
+        let settings = match read {
+            Some(Ok(settings)) => settings,
+            Some(Err(error)) => {
+                ui.tell(format!("The settings cannot be read and are left as they are: {error}"));
+                Settings::default()
+            }
+            None => Settings::default(),
+        };
+        let watched = proxy.clone();
+        let watcher = Watcher::new(move |path| drop(watched.send_event(Event::Changed(path))));
+        let watcher = watcher.inspect_err(|e| ui.tell(format!("Files are not watched: {e}"))).ok();
+        Self {
+            options,
+            proxy,
+            opened: None,
+            context: crate::panels::context(),
+            session: Session::default(),
+            view: View::default(),
+            ui,
+            kept: settings.clone(),
+            settings,
+            files: Vec::new(),
+            loading: Vec::new(),
+            watcher,
+            flight: None,
+            again: false,
+            wake: None,
+            picture: None,
+            stats: None,
+            rect: ViewRect::default(),
+            cursor: None,
+            held: Held::default(),
+            pick: None,
+            click: None,
+            failed: None,
+            clipboard: None,
+            messages: Vec::new(),
+            seen: false,
+            begun: Instant::now(),
+        }
+    }
+
+    /// Opens window and device; begins to read the files.
+    pub fn open_window(&mut self, events: &ActiveEventLoop) -> Result<(), ViewError> {
+        let mut attributes = Window::default_attributes().with_title("selvedge");
+        if let Some((width, height)) = self.options.size {
+            attributes = attributes.with_inner_size(winit::dpi::LogicalSize::new(width, height));
+        }
+        let window = events.create_window(attributes).map_err(|e| ViewError::Window(e.to_string()))?;
+        let window = Arc::new(window);
+        let scale = Some(window.scale_factor() as f32);
+        let root = egui::ViewportId::ROOT;
+        let input = egui_winit::State::new(self.context.clone(), root, &window, scale, window.theme(), None);
+        let proxy = self.proxy.clone();
+        self.context.set_request_repaint_callback(move |info| {
+            if info.delay.is_zero() {
+                drop(proxy.send_event(Event::Repaint));
+            }
+        });
+        let (waiter, engine, screen) = self.open_device(&window)?;
+        tracing::info!("window on {} after {:.0?}", screen.context.name, self.begun.elapsed());
+        self.opened = Some(Opened { window, input, waiter, engine, screen });
+        for file in std::mem::take(&mut self.options.files) {
+            self.load(file);
+        }
+        self.redraw();
+        Ok(())
+    }
+
+    fn open_device(&self, window: &Window) -> Result<(Waiter, Engine, Screen), ViewError> {
+        let ViewOptions { device, validation, .. } = &self.options;
+        let options = DeviceOptions { device: device.clone(), validation: *validation };
+        let screen = Screen::new(window, &options)?;
+        let engine = Engine::new(screen.renderer()?);
+        let proxy = self.proxy.clone();
+        let done = move |result| drop(proxy.send_event(Event::FrameDone(result)));
+        Ok((Waiter::new(screen.context.device.clone(), done), engine, screen))
+    }
+
+    /// Everything of the device anew: it was lost.
+    pub fn reopen_device(&mut self) -> Result<(), ViewError> {
+        let Some(Opened { window, input, waiter, mut engine, screen }) = self.opened.take() else { return Ok(()) };
+        engine.wait();
+        screen.context.wait();
+        drop((waiter, engine));
+        self.messages.extend(screen.shutdown());
+        let (waiter, engine, screen) = self.open_device(&window)?;
+        // textures of the panels are gone: the context sends them again
+        self.context = crate::panels::context();
+        let input = egui_winit::State::new(
+            self.context.clone(),
+            egui::ViewportId::ROOT,
+            &window,
+            Some(input.egui_ctx().pixels_per_point()),
+            window.theme(),
+            None,
+        );
+        self.opened = Some(Opened { window, input, waiter, engine, screen });
+        (self.flight, self.picture) = (None, None);
+        self.ui.tell("The device was lost and is open again.".to_owned());
+        self.redraw();
+        Ok(())
+    }
+
+    /// A frame is due.
+    pub fn redraw(&mut self) {
+        if self.flight.is_some() {
+            self.again = true;
+        } else if let Some(opened) = &self.opened {
+            opened.window.request_redraw();
+        }
+    }
+
+    /// The cursor in pixels of the view, where it is over it and not over a panel.
+    pub fn over_view(&self) -> Option<DVec2> {
+        let cursor = self.cursor?;
+        let ViewRect { x, y, width, height } = self.rect;
+        let at = cursor - DVec2::new(f64::from(x), f64::from(y));
+        let inside = at.min_element() >= 0.0 && at.x < f64::from(width) && at.y < f64::from(height);
+        (inside && !self.ui.pointer_taken).then_some(at)
+    }
+
+    /// One frame; none while one is in flight.
+    pub fn draw(&mut self) -> Result<(), ViewError> {
+        if self.flight.is_some() || self.opened.is_none() {
+            self.again = true;
+            return Ok(());
+        }
+        self.again = false;
+        let now = Instant::now();
+        self.view.advance(now);
+        let output = self.run_panels();
+        self.obey(now);
+        if std::mem::take(&mut self.ui.wants_measure) {
+            self.measure();
+        }
+        self.keep_settings();
+        let request = Request {
+            world: Arc::clone(&self.session.world),
+            state: self.session.scene.now().clone(),
+            settings: self.scene_settings(),
+        };
+        let (due, settings, marks) = (self.view.due(now), self.frame_settings(), self.marks());
+        let under = self.over_view();
+        let Some(Opened { window, waiter, engine, screen, .. }) = &mut self.opened else { return Ok(()) };
+        let uploaded = |proxy: &EventLoopProxy<Event>| {
+            let proxy = proxy.clone();
+            move |uploaded| drop(proxy.send_event(Event::Uploaded(uploaded)))
+        };
+        engine.want(&request, uploaded(&self.proxy));
+        if self.session.world.is_empty() {
+            screen.blank();
+            self.picture = None;
+        }
+        let wanted = ShownPicture { camera: due.camera, settings, generation: engine.generation };
+        let is_new = self.picture != Some(wanted) && due.camera.size.0 > 1 && !self.session.world.is_empty();
+        let is_new = is_new && engine.resolves(&due.camera, uploaded(&self.proxy));
+        let generation = engine.generation;
+        let picture = if is_new { engine.renderer() } else { None };
+        let picture = picture.map(|renderer| Picture { renderer, camera: &due.camera, settings });
+        let in_picture = picture.is_some().then_some((due, settings, generation, now));
+        let seen_by = in_picture.map(|_| due.camera).or(self.picture.map(|p| p.camera));
+        // what lies under a resting cursor changes with the picture
+        let rests = in_picture.is_some() && !self.view.is_dragging();
+        // without a picture there is nothing to click
+        self.click = self.click.filter(|_| seen_by.is_some());
+        let clicked = self.click.map(|(_, at)| at);
+        let pick = clicked.or(self.pick.take()).or(under.filter(|_| rests)).filter(|_| seen_by.is_some());
+        screen.set_textures(&output.textures_delta)?;
+        let shapes = self.context.tessellate(output.shapes, output.pixels_per_point);
+        let frame = Frame {
+            view: self.rect,
+            pick: pick.zip(seen_by).map(|(at, camera)| pixel_of(at, camera.size, self.rect)),
+            marks: (marks.0, &marks.1),
+            panels: (&shapes, output.pixels_per_point),
+            background: background(self.context.style().visuals.dark_mode),
+        };
+        let free = output.textures_delta.free;
+        let drawn = match screen.draw(window, picture, &frame) {
+            Ok(drawn) => drawn,
+            Err(Failure::Picture(error)) => {
+                self.ui.tell(format!("This view cannot be drawn: {error}"));
+                // shown as it is until the view changes
+                self.picture = Some(wanted);
+                true
+            }
+            Err(Failure::Screen(error)) => return Err(error),
+        };
+        if drawn {
+            waiter.watch(screen.context.fence);
+            self.flight = Some(Flight { picture: in_picture, pick, camera: seen_by, free });
+        } else {
+            screen.free_textures(&free)?;
+        }
+        let repaint = output.viewport_output.get(&egui::ViewportId::ROOT).map(|v| v.repaint_delay);
+        let repaint = repaint.and_then(|delay| now.checked_add(delay)).filter(|_| drawn);
+        self.wake = [repaint, self.view.wake(now)].into_iter().flatten().min();
+        Ok(())
+    }
+
+    fn run_panels(&mut self) -> egui::FullOutput {
+        let theme = match self.settings.theme {
+            Theme::System => egui::ThemePreference::System,
+            Theme::Light => egui::ThemePreference::Light,
+            Theme::Dark => egui::ThemePreference::Dark,
+        };
+        self.context.set_theme(theme);
+        if (self.context.zoom_factor() - self.settings.text).abs() > 1e-3 {
+            self.context.set_zoom_factor(self.settings.text);
+        }
+        let Some(Opened { window, input, engine, screen, .. }) = &mut self.opened else { unreachable!("checked") };
+        let raw = input.take_egui_input(window);
+        let facts = Facts {
+            loading: self.loading.iter().map(|l| (l.loader.path.as_path(), l.stage, l.share)).collect(),
+            stats: self.stats.as_ref(),
+            notice: engine.notice.as_deref(),
+            busy: engine.is_busy(),
+            picture: screen.shown(),
+            view: &self.view,
+            device: &screen.context.name,
+        };
+        let (session, ui, settings) = (&mut self.session, &mut self.ui, &mut self.settings);
+        let (mut view, mut copied) = (egui::Rect::NOTHING, None);
+        let output = self.context.run(raw, |ctx| view = crate::panels::show(ctx, ui, session, settings, &facts));
+        for command in &output.platform_output.commands {
+            if let egui::OutputCommand::CopyText(text) = command {
+                copied = Some(text.clone());
+            }
+        }
+        input.handle_platform_output(window, output.platform_output.clone());
+        let pixels = output.pixels_per_point;
+        let size = window.inner_size();
+        let pixel = |x: f32, most: u32| ((x * pixels).round().max(0.0) as u32).min(most);
+        let (x, y) = (pixel(view.min.x, size.width), pixel(view.min.y, size.height));
+        let (right, bottom) = (pixel(view.max.x, size.width), pixel(view.max.y, size.height));
+        let rect = ViewRect { x, y, width: right.saturating_sub(x), height: bottom.saturating_sub(y) };
+        if rect != self.rect {
+            tracing::debug!("view of {} x {} at {x}, {y}", rect.width, rect.height);
+        }
+        self.rect = rect;
+        self.view.resize((self.rect.width, self.rect.height));
+        copied.into_iter().for_each(|text| self.set_clipboard(text));
+        output
+    }
+
+    /// The desktop's clipboard; what was copied is there as long as the window is.
+    fn set_clipboard(&mut self, text: String) {
+        if self.clipboard.is_none() {
+            self.clipboard = arboard::Clipboard::new().ok();
+        }
+        let copied = self.clipboard.as_mut().map(|clipboard| clipboard.set_text(text));
+        match copied {
+            Some(Ok(())) => {}
+            Some(Err(error)) => self.ui.tell(format!("Not copied: {error}")),
+            None => self.ui.tell("Not copied: there is no clipboard.".to_owned()),
+        }
+    }
+
+    fn keep_settings(&mut self) {
+        if self.settings == self.kept {
+            return;
+        }
+        self.kept = self.settings.clone();
+        let written = self.options.settings.as_deref().map(|path| self.settings.write(path));
+        if let Some(Err(error)) = written {
+            self.ui.tell(format!("The settings cannot be written: {error}"));
+        }
+    }
+
+    /// The frame in flight has finished.
+    pub fn frame_done(&mut self, result: Result<(), vk::Result>) -> Result<(), ViewError> {
+        let Some(Flight { picture, pick, camera, free }) = self.flight.take() else { return Ok(()) };
+        result?;
+        tracing::debug!("frame");
+        let Some(Opened { engine, screen, .. }) = &mut self.opened else { return Ok(()) };
+        screen.free_textures(&free)?;
+        if let Some((due, settings, generation, start)) = picture {
+            self.view.pacing.took(due.scale, start.elapsed());
+            let report = match engine.renderer() {
+                Some(renderer) => renderer.report(0)?,
+                None => None,
+            };
+            let complete = report.as_ref().is_some_and(|r| r.complete);
+            self.stats = report.map(|r| r.stats);
+            let shown = ShownPicture { camera: due.camera, settings, generation };
+            if complete {
+                self.picture = Some(shown);
+            }
+            self.again |= !complete;
+            if !self.seen && complete {
+                self.seen = true;
+                tracing::info!("first picture after {:.0?}", self.begun.elapsed());
+            }
+            let (width, height) = due.camera.size;
+            tracing::debug!("picture of {width} x {height} in {:.1?}, complete: {complete}", start.elapsed());
+        }
+        let samples = screen.picked();
+        let shown = engine.shown().cloned();
+        if let (Some(at), Some(camera), Some(samples), Some(shown)) = (pick, camera, samples, shown) {
+            let scale = f64::from(camera.size.0) / f64::from(self.rect.width.max(1));
+            let hit = samples.pick(&self.session.world, &shown.instances, &camera, at * scale, self.ui.filter);
+            let before = self.view.hover.and_then(|h| h.hit.picked);
+            self.view.hover = Some(Hover { cursor: at, hit });
+            if self.view.wants_point().is_some_and(|start| start.distance(at) < 1.0) {
+                self.view.hold(hit.point);
+                self.catch_up();
+            }
+            // an answer about an earlier place is none to a click
+            if let Some((add, _)) = self.click.take_if(|(_, place)| place.distance(at) < 0.5) {
+                self.session.select(hit.picked, add);
+                self.ui.selected(&self.session, hit.point);
+                self.again = true;
+            }
+            self.again |= before != hit.picked;
+        }
+        if self.again || self.pick.is_some() || self.click.is_some() {
+            self.redraw();
+        }
+        Ok(())
+    }
+
+    /// The engine's thread is done.
+    pub fn uploaded(&mut self, uploaded: Uploaded) {
+        let Some(opened) = &mut self.opened else { return };
+        match opened.engine.take(uploaded) {
+            Outcome::Failed(error) => {
+                tracing::error!("{error}");
+                self.ui.tell(format!("It cannot be drawn: {error}"));
+            }
+            Outcome::Model | Outcome::Cut => {}
+        }
+        self.redraw();
+    }
+
+    /// Frees everything.
+    pub fn close(mut self) -> Result<Closed, ViewError> {
+        for loading in &self.loading {
+            loading.loader.cancel();
+        }
+        if let Some(Opened { window, input, waiter, mut engine, screen }) = self.opened.take() {
+            // a renderer that a thread holds comes back by the queue of events, which goes with the loop
+            engine.wait();
+            screen.context.wait();
+            drop((waiter, engine, input));
+            self.messages.extend(screen.shutdown());
+            drop(window);
+        }
+        match self.failed {
+            Some(error) => Err(error),
+            None => Ok(Closed { messages: self.messages }),
+        }
+    }
+}
+
+/// The pixel of a picture at a place of the view.
+fn pixel_of(at: DVec2, picture: (u32, u32), rect: ViewRect) -> (u32, u32) {
+    let scale = DVec2::new(
+        f64::from(picture.0) / f64::from(rect.width.max(1)),
+        f64::from(picture.1) / f64::from(rect.height.max(1)),
+    );
+    let pixel = (at * scale).max(DVec2::ZERO);
+    (pixel.x as u32, pixel.y as u32)
+}

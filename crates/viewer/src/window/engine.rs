@@ -1,0 +1,212 @@
+//! The engine's renderer, which a thread takes while it uploads: the window goes on meanwhile.
+//!
+//! ```text
+//!   Ready ──request──▶ Uploading (thread: model of the state, upload) ──Uploaded──▶ Ready, or the renderer before
+//!     └──view from near──▶ Uploading (thread: what the view sees, cut out in f64)
+//! ```
+
+use crate::session::{SceneState, Shown, World};
+use selvedge::model::{Camera, LoopAt};
+use selvedge::picture::SceneSettings;
+use selvedge::renderer::{DeepZoom, DeepZoomUpload, RenderError, Renderer};
+use std::collections::BTreeSet;
+use std::sync::Arc;
+use std::thread::{self, JoinHandle};
+
+/// What is to be drawn.
+#[derive(Clone, Debug)]
+pub struct Request {
+    pub world: Arc<World>,
+    pub state: SceneState,
+    pub settings: SceneSettings,
+}
+
+impl PartialEq for Request {
+    fn eq(&self, other: &Self) -> bool {
+        Arc::ptr_eq(&self.world, &other.world) && self.state == other.state && self.settings == other.settings
+    }
+}
+
+/// What a thread brings back.
+pub struct Uploaded {
+    renderer: Renderer,
+    deep_zoom: DeepZoom,
+    /// `None`: another part of the same model.
+    request: Option<(Request, Arc<Shown>)>,
+    result: Result<(), RenderError>,
+    /// What had to be left out.
+    notice: Option<String>,
+}
+
+/// What became of an upload.
+pub enum Outcome {
+    /// Another model, or the same in another state, is drawn from now on.
+    Model,
+    /// Another part of it.
+    Cut,
+    /// Why not; what was there before is drawn on.
+    Failed(RenderError),
+}
+
+/// The renderer and what it holds.
+pub struct Engine {
+    renderer: Option<Renderer>,
+    deep_zoom: DeepZoom,
+    thread: Option<JoinHandle<()>>,
+    /// Held by the renderer.
+    current: Option<(Request, Arc<Shown>)>,
+    /// Asked for last.
+    asked: Option<Request>,
+    /// What of the model is not drawn as the settings say.
+    pub notice: Option<String>,
+    /// Counts what was uploaded: pictures of another count are old.
+    pub generation: u64,
+}
+
+impl Engine {
+    pub fn new(renderer: Renderer) -> Self {
+        Self {
+            renderer: Some(renderer),
+            deep_zoom: DeepZoom::default(),
+            thread: None,
+            current: None,
+            asked: None,
+            notice: None,
+            generation: 0,
+        }
+    }
+
+    /// A thread uploads.
+    pub fn is_busy(&self) -> bool {
+        self.renderer.is_none()
+    }
+
+    /// What is drawn.
+    pub fn shown(&self) -> Option<&Arc<Shown>> {
+        self.current.as_ref().map(|(_, shown)| shown)
+    }
+
+    /// The renderer, when it holds a model.
+    pub fn renderer(&mut self) -> Option<&mut Renderer> {
+        self.renderer.as_mut().filter(|_| self.current.is_some())
+    }
+
+    /// Begins to upload what is asked for, unless it is there or on its way; no frame is in flight. `done` is called by
+    /// the thread.
+    pub fn want(&mut self, request: &Request, done: impl FnOnce(Box<Uploaded>) + Send + 'static) {
+        if self.is_busy() || self.asked.as_ref() == Some(request) || request.world.is_empty() || self.edits(request) {
+            return;
+        }
+        let Some(mut renderer) = self.renderer.take() else { return };
+        self.asked = Some(request.clone());
+        let request = request.clone();
+        self.thread = Some(thread::spawn(move || {
+            let shown = Arc::new(request.state.show(&request.world));
+            let mut notice = shown.failed.as_ref().map(|error| format!("A section is not cut: {error}."));
+            let mut settings = request.settings;
+            let mut result = renderer.upload_with(&shown.model, settings);
+            if let Err(RenderError::SmoothTrims(what)) = result {
+                notice = Some(format!("Borders are not smooth: that does not go with {what}."));
+                settings.smooth_trims = false;
+                result = renderer.upload_with(&shown.model, settings);
+            }
+            let deep_zoom = DeepZoom::new(&shown.model);
+            let request = Request { settings, ..request };
+            done(Box::new(Uploaded { renderer, deep_zoom, request: Some((request, shown)), result, notice }));
+        }));
+    }
+
+    /// Changes trim loops in place, where nothing else differs from what was asked for last.
+    fn edits(&mut self, request: &Request) -> bool {
+        let (Some(asked), Some((current, shown)), Some(renderer)) =
+            (&self.asked, &mut self.current, &mut self.renderer)
+        else {
+            return false;
+        };
+        let same = Arc::ptr_eq(&asked.world, &request.world) && asked.settings == request.settings;
+        if !(same && current.settings.editable && asked.state.differs_in_loops_alone(&request.state)) {
+            return false;
+        }
+        let (old, new) = (&asked.state.edits, &request.state.edits);
+        let changed: BTreeSet<_> = old.keys().chain(new.keys()).filter(|key| old.get(key) != new.get(key)).collect();
+        let model = &mut Arc::make_mut(shown).model;
+        for key in changed {
+            let (part, face, trim_loop) = *key;
+            let Some(original) =
+                request.world.model.parts.get(part).and_then(|p| p.faces.get(face)?.loops.get(trim_loop))
+            else {
+                continue;
+            };
+            let wanted = new.get(key).unwrap_or(original);
+            if let Err(error) = renderer.edit_loop(LoopAt { part, face, trim_loop }, wanted) {
+                // uploaded anew, it is drawn
+                tracing::info!("{error}");
+                return false;
+            }
+            model.parts[part].faces[face].loops[trim_loop] = wanted.clone();
+        }
+        current.state = request.state.clone();
+        self.asked = Some(request.clone());
+        self.generation += 1;
+        true
+    }
+
+    /// Whether the renderer holds what this view sees; else begins to upload it.
+    pub fn resolves(&mut self, camera: &Camera, done: impl FnOnce(Box<Uploaded>) + Send + 'static) -> bool {
+        let Some((request, shown)) = &self.current else { return false };
+        if self.is_busy() {
+            return false;
+        }
+        // loops that are being edited stay where they are
+        if request.settings.editable {
+            return true;
+        }
+        let wanted = self.deep_zoom.of(&shown.model, camera);
+        if wanted == DeepZoomUpload::Same {
+            return true;
+        }
+        let Some(mut renderer) = self.renderer.take() else { return false };
+        let (shown, settings) = (Arc::clone(shown), request.settings);
+        let deep_zoom = std::mem::take(&mut self.deep_zoom);
+        self.thread = Some(thread::spawn(move || {
+            let result = match &wanted {
+                DeepZoomUpload::Cut(cut) => renderer.upload_cut(&shown.model, cut, settings),
+                _ => renderer.upload_with(&shown.model, settings),
+            };
+            done(Box::new(Uploaded { renderer, deep_zoom, request: None, result, notice: None }));
+        }));
+        false
+    }
+
+    /// Takes back what the thread has.
+    pub fn take(&mut self, uploaded: Uploaded) -> Outcome {
+        let Uploaded { renderer, deep_zoom, request, result, notice } = uploaded;
+        if let Some(thread) = self.thread.take() {
+            // it has nothing left to do
+            let _ = thread.join();
+        }
+        self.renderer = Some(renderer);
+        let is_model = request.is_some();
+        if let Err(error) = result {
+            if !is_model {
+                self.deep_zoom = deep_zoom;
+                self.deep_zoom.forget();
+            }
+            return Outcome::Failed(error);
+        }
+        self.deep_zoom = deep_zoom;
+        self.generation += 1;
+        if let Some(current) = request {
+            self.current = Some(current);
+            self.notice = notice;
+        }
+        if is_model { Outcome::Model } else { Outcome::Cut }
+    }
+
+    /// Waits for the thread; what it brings is in the queue of events then, and must be taken or dropped.
+    pub fn wait(&mut self) {
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}

@@ -1,0 +1,357 @@
+//! Events of the window and of other threads, and wishes fulfilled.
+
+use super::app::{App, Event, Loading, Opened};
+use crate::commands::Command;
+use crate::navigation::gesture::Button;
+use crate::navigation::standard::up_from;
+use crate::session::{Loader, LoaderEvent, World};
+use glam::DVec2;
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+use std::time::{Duration, Instant};
+use winit::application::ApplicationHandler;
+use winit::event::{ElementState, MouseButton, MouseScrollDelta, StartCause, WindowEvent};
+use winit::event_loop::{ActiveEventLoop, ControlFlow};
+use winit::window::WindowId;
+
+/// A file that was written is read again when it has rested so long.
+const REST: Duration = Duration::from_millis(300);
+/// Pixels of a trackpad for one notch of a wheel.
+const NOTCH_PX: f64 = 40.0;
+
+impl ApplicationHandler<Event> for App {
+    fn resumed(&mut self, events: &ActiveEventLoop) {
+        if self.opened.is_none()
+            && let Err(error) = self.open_window(events)
+        {
+            self.fail(error, events);
+        }
+    }
+
+    fn new_events(&mut self, _: &ActiveEventLoop, cause: StartCause) {
+        if matches!(cause, StartCause::ResumeTimeReached { .. }) {
+            self.read_changed(Instant::now());
+            if self.wake.is_some_and(|wake| wake <= Instant::now()) {
+                self.wake = None;
+                self.redraw();
+            }
+        }
+    }
+
+    fn about_to_wait(&mut self, events: &ActiveEventLoop) {
+        let changed = self.ui.changed.values().map(|at| *at + REST).min();
+        let next = [self.wake, changed].into_iter().flatten().min();
+        events.set_control_flow(next.map_or(ControlFlow::Wait, ControlFlow::WaitUntil));
+        if self.ui.quit {
+            events.exit();
+        }
+    }
+
+    fn window_event(&mut self, events: &ActiveEventLoop, _: WindowId, event: WindowEvent) {
+        let Some(Opened { window, input, screen, .. }) = &mut self.opened else { return };
+        let response = input.on_window_event(window, &event);
+        match &event {
+            WindowEvent::CloseRequested => events.exit(),
+            WindowEvent::Resized(_) | WindowEvent::ScaleFactorChanged { .. } => {
+                screen.resized();
+                self.redraw();
+            }
+            WindowEvent::RedrawRequested => {
+                if let Err(error) = self.draw() {
+                    self.recover(error, events);
+                }
+                return;
+            }
+            WindowEvent::DroppedFile(path) => self.load(path.clone()),
+            WindowEvent::ModifiersChanged(modifiers) => {
+                (self.held.ctrl, self.held.shift) = (modifiers.state().control_key(), modifiers.state().shift_key());
+            }
+            WindowEvent::CursorMoved { position, .. } => {
+                self.cursor = Some(DVec2::new(position.x, position.y));
+                self.cursor_moved();
+            }
+            WindowEvent::CursorLeft { .. } => {
+                self.cursor = None;
+                self.view.hover = None;
+                self.redraw();
+            }
+            WindowEvent::MouseInput { state, button, .. } => self.button(*state, *button),
+            WindowEvent::MouseWheel { delta, .. } => {
+                let notches = match delta {
+                    MouseScrollDelta::LineDelta(_, lines) => f64::from(*lines),
+                    MouseScrollDelta::PixelDelta(pixels) => pixels.y / NOTCH_PX,
+                };
+                self.wheel(notches);
+            }
+            WindowEvent::PinchGesture { delta, .. } => self.wheel(*delta * 8.0),
+            _ => {}
+        }
+        if response.repaint {
+            self.redraw();
+        }
+    }
+
+    fn user_event(&mut self, events: &ActiveEventLoop, event: Event) {
+        match event {
+            Event::FrameDone(result) => {
+                if let Err(error) = self.frame_done(result) {
+                    self.recover(error, events);
+                }
+            }
+            Event::Uploaded(uploaded) => self.uploaded(*uploaded),
+            Event::Loader(event) => self.loader(event),
+            Event::Chosen(paths) => paths.into_iter().for_each(|path| self.load(path)),
+            Event::Changed(path) => drop(self.ui.changed.insert(path, Instant::now())),
+            Event::Measured(selection, measured) => {
+                if selection == self.session.selection {
+                    self.ui.measured(measured);
+                }
+                self.redraw();
+            }
+            Event::Judged(verdict) => {
+                match verdict {
+                    Ok(verdict) => self.ui.judged(verdict),
+                    Err(why) => self.ui.tell(why),
+                }
+                self.redraw();
+            }
+            Event::EdgesFound | Event::Repaint => self.redraw(),
+        }
+    }
+
+    fn exiting(&mut self, _: &ActiveEventLoop) {
+        tracing::info!("closing");
+    }
+}
+
+impl App {
+    fn fail(&mut self, error: super::ViewError, events: &ActiveEventLoop) {
+        self.failed.get_or_insert(error);
+        events.exit();
+    }
+
+    /// Goes on after a lost device; every other error closes the window.
+    fn recover(&mut self, error: super::ViewError, events: &ActiveEventLoop) {
+        if !error.is_device_lost() {
+            return self.fail(error, events);
+        }
+        tracing::error!("{error}");
+        if let Err(error) = self.reopen_device() {
+            self.fail(error, events);
+        }
+    }
+
+    /// Tells the view where the cursor is by now.
+    pub fn catch_up(&mut self) {
+        let Some(cursor) = self.cursor else { return };
+        let at = cursor - DVec2::new(f64::from(self.rect.x), f64::from(self.rect.y));
+        let mode = (self.settings.preset, self.settings.orbit);
+        self.view.moved(at, self.held, mode, Instant::now());
+    }
+
+    fn cursor_moved(&mut self) {
+        self.catch_up();
+        match (self.view.is_dragging(), self.over_view()) {
+            (false, Some(at)) => self.pick = Some(self.view.wants_point().unwrap_or(at)),
+            (false, None) => self.view.hover = None,
+            _ => {}
+        }
+        self.redraw();
+    }
+
+    fn button(&mut self, state: ElementState, button: MouseButton) {
+        let button = match button {
+            MouseButton::Left => Button::Left,
+            MouseButton::Middle => Button::Middle,
+            MouseButton::Right => Button::Right,
+            _ => return,
+        };
+        let down = state == ElementState::Pressed;
+        if down {
+            let Some(at) = self.over_view() else { return };
+            self.held.button(button, true);
+            self.view.press(at);
+            self.pick = self.view.wants_point();
+        } else if self.held.any() {
+            if self.view.wants_point().is_some() {
+                // it is over before the point was known
+                self.view.hold(None);
+                self.catch_up();
+            }
+            self.held.button(button, false);
+            if !self.held.any()
+                && self.view.release()
+                && button == Button::Left
+                && let Some(at) = self.over_view()
+            {
+                self.click = Some((self.held.shift, at));
+            }
+        }
+        self.redraw();
+    }
+
+    fn wheel(&mut self, notches: f64) {
+        if let Some(at) = self.over_view() {
+            self.view.wheel(at, notches, Instant::now());
+            self.redraw();
+        }
+    }
+
+    /// Begins to read a file.
+    pub fn load(&mut self, path: PathBuf) {
+        if self.loading.iter().any(|l| l.loader.path == path) {
+            return;
+        }
+        let proxy = self.proxy.clone();
+        let loader = Loader::new(path, move |event| drop(proxy.send_event(Event::Loader(event))));
+        self.loading.push(Loading { loader, stage: "reading", share: None });
+        self.redraw();
+    }
+
+    fn loader(&mut self, event: LoaderEvent) {
+        let ended = |app: &mut Self, path: &Path| app.loading.retain(|l| l.loader.path != path);
+        match event {
+            LoaderEvent::Progress { path, stage, share } => {
+                if let Some(loading) = self.loading.iter_mut().find(|l| l.loader.path == path) {
+                    (loading.stage, loading.share) = (stage, share);
+                }
+            }
+            LoaderEvent::Failed(path, why) => {
+                ended(self, &path);
+                tracing::error!("{why}");
+                self.ui.tell(why);
+            }
+            LoaderEvent::Cancelled(path) => {
+                ended(self, &path);
+                self.ui.tell(format!("{}: given up", path.display()));
+            }
+            LoaderEvent::Loaded(loaded) => {
+                ended(self, &loaded.path);
+                let (faces, warnings) = (loaded.import.model.face_count(), loaded.import.warnings.len());
+                tracing::info!("read {}: {faces} faces, {warnings} warnings", loaded.path.display());
+                self.settings.opened(&loaded.path);
+                if let Some(Err(error)) = self.watcher.as_mut().map(|watcher| watcher.add(&loaded.path)) {
+                    self.ui.tell(format!("{} is not watched: {error}", loaded.path.display()));
+                }
+                match self.files.iter().position(|file| file.path == loaded.path) {
+                    Some(known) => self.files[known] = loaded,
+                    None => self.files.push(loaded),
+                }
+                self.put_together();
+            }
+        }
+        self.redraw();
+    }
+
+    /// All open files as one model.
+    fn put_together(&mut self) {
+        let first = self.session.world.is_empty();
+        self.session.open(World::new(&self.files));
+        self.ui.opened();
+        let world = Arc::clone(&self.session.world);
+        world.notices.iter().for_each(|notice| self.ui.tell(notice.clone()));
+        self.view.set_bounds(world.bounds);
+        self.view.hover = None;
+        if first {
+            self.view.reset(Instant::now());
+        }
+        let title = self.files.iter().filter_map(|f| f.path.file_name()).map(|n| n.to_string_lossy());
+        let title: Vec<_> = title.collect();
+        if let Some(opened) = &self.opened {
+            opened.window.set_title(&format!("{} - selvedge", title.join(", ")));
+        }
+        let proxy = self.proxy.clone();
+        std::thread::spawn(move || {
+            world.find_edges();
+            drop(proxy.send_event(Event::EdgesFound));
+        });
+    }
+
+    /// Reads again what has changed on the disk and rests.
+    fn read_changed(&mut self, now: Instant) {
+        let rested: Vec<PathBuf> =
+            self.ui.changed.iter().filter(|(_, at)| **at + REST <= now).map(|(path, _)| path.clone()).collect();
+        for path in rested {
+            self.ui.changed.remove(&path);
+            tracing::info!("{} has changed", path.display());
+            self.load(path);
+        }
+    }
+
+    /// Fulfils what panels and keys have asked for.
+    pub fn obey(&mut self, now: Instant) {
+        let smooth = !self.settings.reduced_motion;
+        for command in std::mem::take(&mut self.ui.commands) {
+            tracing::debug!("{command:?}");
+            match command {
+                Command::OpenDialog => self.open_dialog(),
+                Command::Open(path) => self.load(path),
+                Command::Close(file) => self.close_file(file),
+                Command::Reload => {
+                    let paths: Vec<_> = self.files.iter().map(|f| f.path.clone()).collect();
+                    paths.into_iter().for_each(|path| self.load(path));
+                }
+                Command::Cancel => self.loading.iter().for_each(|l| l.loader.cancel()),
+                Command::Fit => self.view.fit(smooth, now),
+                Command::FitSelection => {
+                    let points = crate::describe::extent(&self.session);
+                    if points.is_empty() {
+                        self.view.fit(smooth, now);
+                    } else {
+                        self.view.fit_points(&points, smooth, now);
+                    }
+                }
+                Command::Standard(view) => self.view.look_from(view.from(), view.up(), smooth, now),
+                Command::LookFrom(from) => self.view.look_from(from, up_from(from), smooth, now),
+                Command::Projection => self.view.toggle_projection(now),
+                Command::Previous => drop(self.view.previous(smooth, now)),
+                Command::Turn(x, y) => self.view.turn(DVec2::new(x, y), self.settings.orbit, now),
+                Command::CopyCommand => {
+                    let text =
+                        crate::describe::command(&self.session, self.view.camera(), &self.settings, self.ui.style);
+                    self.copy(text);
+                }
+                Command::CopyText(text) => self.copy(text),
+                Command::WritePicture => self.write_picture(),
+                Command::Check => self.check(),
+                Command::Save => self.save(),
+                Command::Quit => self.ui.quit = true,
+                other => self.ui.obey(other, &mut self.session),
+            }
+            self.again = true;
+        }
+    }
+
+    fn close_file(&mut self, file: usize) {
+        if file < self.files.len() {
+            let closed = self.files.remove(file);
+            if let Some(watcher) = &mut self.watcher {
+                watcher.remove(&closed.path);
+            }
+            self.put_together();
+        }
+    }
+
+    /// The dialog of the desktop, which a thread waits for.
+    fn open_dialog(&mut self) {
+        let proxy = self.proxy.clone();
+        std::thread::spawn(move || {
+            let dialog = rfd::FileDialog::new().set_title("Open").add_filter("CAD files", ENDINGS);
+            if let Some(paths) = dialog.add_filter("All files", &["*"]).pick_files() {
+                drop(proxy.send_event(Event::Chosen(paths)));
+            }
+        });
+    }
+
+    fn copy(&mut self, text: String) {
+        tracing::info!("copied: {text}");
+        self.context.copy_text(text);
+        self.ui.tell("Copied.".to_owned());
+    }
+}
+
+/// Endings of files that are read.
+const ENDINGS: &[&str] = &[
+    "step", "stp", "stpz", "p21", "iges", "igs", "obj", "stl", "3mf", "amf", "ply", "off", "gltf", "glb", "3dm", "bv",
+    "csg", "asc", "selvedge", "toml", "gz",
+];

@@ -1,0 +1,57 @@
+//! What the window shows, as the engine and the composite pass have it.
+
+use super::app::App;
+use crate::pick::Mark;
+use crate::session::Picked;
+use crate::settings::{Lines, Settings};
+use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, SceneSettings};
+
+impl App {
+    /// Settings of the model that is drawn.
+    pub fn scene_settings(&self) -> SceneSettings {
+        let Settings { lines, silhouettes, hidden_lines, smooth, .. } = self.settings;
+        let which = match lines {
+            Lines::All => EdgeChoice::All,
+            Lines::Sharp => EdgeChoice::Sharp,
+            Lines::None => EdgeChoice::None,
+        };
+        let edges = EdgeSettings { which, silhouettes, hidden: hidden_lines, ..EdgeSettings::default() };
+        let edges = (which != EdgeChoice::None || silhouettes).then_some(edges);
+        SceneSettings { edges, smooth_trims: smooth, editable: self.ui.trims, ..SceneSettings::default() }
+    }
+
+    /// Settings of the pictures in the window.
+    pub fn frame_settings(&self) -> FrameSettings {
+        FrameSettings {
+            style: self.ui.style,
+            background: Some(background(self.context.style().visuals.dark_mode)),
+            ..FrameSettings::default()
+        }
+    }
+
+    /// What is hovered and selected, by the numbers of the picture that is shown.
+    pub fn marks(&self) -> (Option<Mark>, Vec<Mark>) {
+        let Some(shown) = self.opened.as_ref().and_then(|o| o.engine.shown()) else { return (None, Vec::new()) };
+        let number = |instance: usize| shown.instances.iter().position(|i| *i == instance).map(|i| i as u32 + 1);
+        let mark = |picked: &Picked| match *picked {
+            Picked::Face { instance, face, .. } => {
+                let part = self.session.world.model.instances.get(instance)?.part;
+                let id = self.session.world.model.parts[part].faces.get(face)?.id;
+                Some(Mark { instance: number(instance)?, face: id })
+            }
+            Picked::Instance(instance) => Some(Mark { instance: number(instance)?, face: 0 }),
+            Picked::Number { instance: None, id } => Some(Mark { instance: 0, face: id }),
+            Picked::Number { instance: Some(instance), id } => Some(Mark { instance: number(instance)?, face: id }),
+            // the panels draw them
+            Picked::Edge { .. } | Picked::Vertex { .. } => None,
+        };
+        let dragging = self.view.is_dragging();
+        let hovered = self.view.hover.as_ref().filter(|_| !dragging).and_then(|h| mark(h.hit.picked.as_ref()?));
+        (hovered, self.session.selection.iter().filter_map(mark).collect())
+    }
+}
+
+/// Behind the model, linear light.
+pub fn background(dark: bool) -> [f32; 4] {
+    if dark { [0.030, 0.032, 0.037, 1.0] } else { [0.80, 0.82, 0.85, 1.0] }
+}

@@ -1,0 +1,136 @@
+//! The window: events in, frames out. What Vulkan needs of `unsafe` lives here.
+//!
+//! ```text
+//!   winit ─events─▶ App ─▶ View (camera), Session (what is shown), panels (egui)
+//!                    │
+//!                    ├─▶ Engine: uploads in a thread
+//!                    └─▶ Screen: a frame when something has changed; none otherwise
+//! ```
+
+mod app;
+mod composite;
+mod context;
+mod engine;
+mod events;
+mod look;
+mod photograph;
+mod screen;
+mod swapchain;
+mod targets;
+mod tasks;
+mod waiter;
+
+use selvedge::ash::vk;
+use selvedge::gpu::GpuError;
+use selvedge::renderer::RenderError;
+use std::path::PathBuf;
+use winit::event_loop::EventLoop;
+
+/// How to open the window.
+#[derive(Clone, Debug, Default)]
+pub struct ViewOptions {
+    /// Files to open.
+    pub files: Vec<PathBuf>,
+    /// A part of the name of the Vulkan device to use.
+    pub device: Option<String>,
+    /// The validation layer is on; [`Closed::messages`] has what it says.
+    pub validation: bool,
+    /// Where settings are kept; `None` keeps none.
+    pub settings: Option<PathBuf>,
+    /// Width and height of the window, points; `None` leaves them to the system.
+    pub size: Option<(u32, u32)>,
+}
+
+/// What is left when the window is closed.
+#[derive(Clone, Debug, Default)]
+pub struct Closed {
+    /// What the validation layer said.
+    pub messages: Vec<String>,
+}
+
+/// Why there is no window, or none any more.
+#[derive(Debug, thiserror::Error)]
+pub enum ViewError {
+    /// The system's windows.
+    #[error("window: {0}")]
+    Window(String),
+    /// No event loop: no display.
+    #[error("no window can be opened: {0}")]
+    Loop(#[from] winit::error::EventLoopError),
+    /// The Vulkan loader is missing.
+    #[error("Vulkan is not installed: {0}")]
+    NoLoader(String),
+    /// The validation layer is asked for and missing.
+    #[error("the validation layer VK_LAYER_KHRONOS_validation is not installed")]
+    NoValidation,
+    /// No device draws and presents.
+    #[error("no Vulkan device can draw to this window: {0}")]
+    NoDevice(String),
+    /// A call of Vulkan.
+    #[error("Vulkan: {0}")]
+    Vulkan(#[from] vk::Result),
+    /// No memory on the device.
+    #[error("device memory: {0}")]
+    Memory(String),
+    /// The engine.
+    #[error(transparent)]
+    Render(#[from] RenderError),
+    /// The engine's Vulkan layer.
+    #[error(transparent)]
+    Gpu(#[from] GpuError),
+    /// The panels.
+    #[error("panels: {0}")]
+    Panels(#[from] egui_ash_renderer::RendererError),
+}
+
+/// Why a frame is not as it should be.
+#[derive(Debug)]
+pub(crate) enum Failure {
+    /// The window is shown without a new picture.
+    Picture(RenderError),
+    /// Nothing is shown.
+    Screen(ViewError),
+}
+
+impl<E: Into<ViewError>> From<E> for Failure {
+    fn from(error: E) -> Self {
+        Self::Screen(error.into())
+    }
+}
+
+impl ViewError {
+    /// The device is missing, or failed; otherwise the window is.
+    pub fn is_of_device(&self) -> bool {
+        !matches!(self, Self::Window(_) | Self::Loop(_) | Self::NoValidation)
+    }
+
+    /// The device is gone; everything can be made anew from what the host holds.
+    pub(crate) fn is_device_lost(&self) -> bool {
+        match self {
+            Self::Vulkan(result) => *result == vk::Result::ERROR_DEVICE_LOST,
+            Self::Gpu(GpuError::Vulkan { result, .. })
+            | Self::Render(RenderError::Gpu(GpuError::Vulkan { result, .. })) => {
+                *result == vk::Result::ERROR_DEVICE_LOST
+            }
+            _ => false,
+        }
+    }
+}
+
+/// Opens a window and returns when it is closed. On Linux any thread may call it, elsewhere the main one.
+///
+/// # Errors
+/// [`ViewError`] where no window or device can be opened, or the device fails for good.
+pub fn run(options: ViewOptions) -> Result<Closed, ViewError> {
+    let mut builder = EventLoop::with_user_event();
+    #[cfg(target_os = "linux")]
+    {
+        use winit::platform::{wayland::EventLoopBuilderExtWayland, x11::EventLoopBuilderExtX11};
+        EventLoopBuilderExtX11::with_any_thread(&mut builder, true);
+        EventLoopBuilderExtWayland::with_any_thread(&mut builder, true);
+    }
+    let events = builder.build()?;
+    let mut app = app::App::new(options, events.create_proxy());
+    events.run_app(&mut app)?;
+    app.close()
+}

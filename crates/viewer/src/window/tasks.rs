@@ -1,0 +1,133 @@
+//! Work beside the frames: measuring and judging in threads, pictures to files.
+
+use super::Failure;
+use super::app::{App, Event, Opened};
+use super::photograph::Photograph;
+use super::screen::Picture;
+use crate::measure;
+use crate::panels::{Shot, Verdict};
+use selvedge::model::{Camera, Images, Model};
+use selvedge::picture::FrameSettings;
+use selvedge_check::{JudgeOptions, Tracer, judge};
+use selvedge_io::{export, native};
+use std::error::Error;
+use std::fs::File;
+use std::io::BufWriter;
+use std::path::Path;
+use std::sync::Arc;
+
+/// Pixels that the judge looks at, beside those at which the face changes.
+const JUDGED: usize = 20_000;
+
+impl App {
+    /// Measures the selection in a thread.
+    pub fn measure(&mut self) {
+        let (world, selection) = (Arc::clone(&self.session.world), self.session.selection.clone());
+        let proxy = self.proxy.clone();
+        std::thread::spawn(move || {
+            let measured = measure::measure(&world, &selection);
+            drop(proxy.send_event(Event::Measured(selection, measured)));
+        });
+    }
+
+    /// The engine's picture of a view, waited for. `None`, and told, where there is none.
+    fn photograph(&mut self, camera: &Camera, settings: FrameSettings) -> Option<Photograph> {
+        let Opened { engine, screen, .. } = self.opened.as_mut()?;
+        let Some(renderer) = engine.renderer() else {
+            self.ui.tell("There is no model to draw yet.".to_owned());
+            return None;
+        };
+        match screen.photograph(&mut Picture { renderer, camera, settings }) {
+            Ok(photograph) => Some(photograph),
+            Err(Failure::Picture(error)) => {
+                self.ui.tell(format!("No picture: {error}"));
+                None
+            }
+            Err(Failure::Screen(error)) => {
+                self.ui.tell(format!("No picture: {error}"));
+                None
+            }
+        }
+    }
+
+    /// Writes the picture that the panel asks for.
+    pub fn write_picture(&mut self) {
+        let Shot { path, size, transparent, .. } = self.ui.shot.clone();
+        let usual = self.frame_settings();
+        let background = if transparent { Some([0.0; 4]) } else { usual.background };
+        let camera = Camera { size, ..*self.view.camera() };
+        let Some(photograph) = self.photograph(&camera, FrameSettings { background, ..usual }) else { return };
+        let told = match write(&path, &photograph) {
+            Ok(()) => format!("{} is written, {} x {}.", path.display(), size.0, size.1),
+            Err(error) => format!("{} is not written: {error}", path.display()),
+        };
+        tracing::info!("{told}");
+        self.ui.tell(told);
+        self.ui.shot.open = false;
+    }
+
+    /// Saves all open files as one model, with the trim loops that were changed.
+    pub fn save(&mut self) {
+        let Some(path) = self.ui.save.take() else { return };
+        let mut model = self.session.world.model.clone();
+        self.session.scene.now().edit(&mut model);
+        let told = match save(&path, &model) {
+            Ok(warnings) if warnings.is_empty() => format!("{} is saved.", path.display()),
+            Ok(warnings) => format!("{} is saved, but: {}", path.display(), warnings.join("; ")),
+            Err(error) => format!("{} is not saved: {error}", path.display()),
+        };
+        tracing::info!("{told}");
+        self.ui.tell(told);
+    }
+
+    /// Draws the view once more and lets the judge look at it, in a thread.
+    pub fn check(&mut self) {
+        let (camera, settings) = (*self.view.camera(), self.frame_settings());
+        let Some(shown) = self.opened.as_ref().and_then(|o| o.engine.shown()).map(Arc::clone) else { return };
+        let Some(photograph) = self.photograph(&camera, settings) else { return };
+        self.ui.tell("The view is being checked against exact rays.".to_owned());
+        let (proxy, limit_px) = (self.proxy.clone(), settings.tolerance_px);
+        std::thread::spawn(move || {
+            let Photograph { size, depth, face, normal, .. } = &photograph;
+            let images = Images { size: *size, depth, face, normal, ..Images::default() };
+            let options = JudgeOptions { samples: Some(JUDGED), limit_px, listed: 1000, ..JudgeOptions::default() };
+            let judgement = judge(&Tracer::new(&shown.model), &camera, &images, &options);
+            let wrong = judgement.wrong + judgement.folds.beyond + judgement.folds.wrong_depth;
+            let pixels = judgement.mismatches.iter().map(|m| m.pixel).collect();
+            tracing::info!("checked {} pixels: {wrong} wrong", judgement.sampled);
+            let verdict = Verdict { camera, sampled: judgement.sampled, wrong, pixels };
+            drop(proxy.send_event(Event::Judged(Ok(verdict))));
+        });
+    }
+}
+
+/// A model in the form that the file's name says, there as a whole or as it was; what of it is not written.
+fn save(path: &Path, model: &Model) -> Result<Vec<String>, Box<dyn Error>> {
+    let mut bytes = Vec::new();
+    let mut warnings = Vec::new();
+    match path.extension().and_then(|e| e.to_str()).map(str::to_ascii_lowercase).as_deref() {
+        Some("selvedge") => bytes = native::write(model),
+        Some("step" | "stp") => {
+            let told = export::step(model, &mut bytes)?;
+            warnings.extend(told.iter().map(|w| format!("{}: {}", w.item, w.message)));
+        }
+        _ => return Err("its name ends neither in .selvedge nor in .step".into()),
+    }
+    let beside = path.with_extension("new");
+    std::fs::write(&beside, bytes)?;
+    std::fs::rename(beside, path)?;
+    Ok(warnings)
+}
+
+/// A PNG file, there as a whole or as it was.
+fn write(path: &Path, photograph: &Photograph) -> Result<(), png::EncodingError> {
+    let beside = path.with_extension("png.new");
+    let mut encoder = png::Encoder::new(BufWriter::new(File::create(&beside)?), photograph.size.0, photograph.size.1);
+    encoder.set_color(png::ColorType::Rgba);
+    encoder.set_depth(png::BitDepth::Eight);
+    encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
+    let mut writer = encoder.write_header()?;
+    writer.write_image_data(photograph.colour.as_flattened())?;
+    writer.finish()?;
+    Ok(std::fs::rename(beside, path)?)
+}

@@ -1,0 +1,42 @@
+//! A thread that waits for frames, so that the window never does.
+
+use selvedge::ash::{self, vk};
+use std::sync::mpsc::{self, Sender};
+use std::thread::{self, JoinHandle};
+
+/// Waits for one fence after another.
+pub struct Waiter {
+    fences: Option<Sender<vk::Fence>>,
+    thread: Option<JoinHandle<()>>,
+}
+
+impl Waiter {
+    /// `done` is called by the thread when a fence is signalled, with Vulkan's answer.
+    pub fn new(device: ash::Device, done: impl Fn(Result<(), vk::Result>) + Send + 'static) -> Self {
+        let (fences, submitted) = mpsc::channel();
+        let thread = thread::spawn(move || {
+            for fence in submitted {
+                // SAFETY: the fence outlives the thread, and is not reset before the answer.
+                done(unsafe { device.wait_for_fences(&[fence], true, u64::MAX) });
+            }
+        });
+        Self { fences: Some(fences), thread: Some(thread) }
+    }
+
+    /// The fence was submitted.
+    pub fn watch(&self, fence: vk::Fence) {
+        if let Some(fences) = &self.fences {
+            // the thread ends only when this end is dropped
+            let _ = fences.send(fence);
+        }
+    }
+}
+
+impl Drop for Waiter {
+    fn drop(&mut self) {
+        self.fences = None;
+        if let Some(thread) = self.thread.take() {
+            let _ = thread.join();
+        }
+    }
+}
