@@ -6,18 +6,17 @@
 //!   trims    ways to trim, side by side       sweep   time against error, over many settings
 //!   convert  model ─▶ the engine's own form
 //!   export   model ─▶ STEP file                draw    lines of a view ─▶ SVG
+//!   thumbnail model ─▶ small picture
 //! ```
 //!
 //! Results go to standard output, everything else to standard error.
 
 mod args;
-mod backdrop;
 mod bench;
 mod camera;
 mod check;
 mod convert;
 mod cut;
-mod directions;
 mod draw;
 mod edit;
 mod export;
@@ -34,6 +33,7 @@ mod session;
 mod sheet;
 mod sweep;
 mod target;
+mod thumbnail;
 mod trims;
 mod values;
 mod verdict;
@@ -49,7 +49,7 @@ use std::process::ExitCode;
 enum Outcome {
     /// Everything asked for was done, and every promise looked at was kept.
     Good,
-    /// A picture is not what it promises to be.
+    /// A picture is not what it promises to be, or some of many files failed.
     Broken,
 }
 
@@ -81,6 +81,7 @@ fn main() -> ExitCode {
         Command::Bench(args) => bench::run(args),
         Command::Sweep(args) => sweep::run(args),
         Command::Trims(args) => trims::run(args),
+        Command::Thumbnail(args) => thumbnail::run(args),
         Command::Convert(args) => convert::run(args),
     };
     match result {

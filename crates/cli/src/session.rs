@@ -266,16 +266,26 @@ impl Session {
     ///
     /// True when it said anything.
     pub fn complaints(&self) -> bool {
-        Self::tell(&self.renderer.messages())
+        tell(&self.renderer.messages())
+    }
+
+    /// The device, for another model.
+    pub fn into_renderer(self) -> HeadlessRenderer {
+        self.renderer
     }
 
     /// Frees the device; the same of all that the layer said, of what was left over, too.
     pub fn close(self) -> bool {
-        Self::tell(&self.renderer.shutdown())
+        close(self.renderer)
     }
+}
 
-    fn tell(messages: &[String]) -> bool {
-        messages.iter().for_each(|message| tracing::error!("validation: {message}"));
-        !messages.is_empty()
-    }
+/// Frees a device; true when the validation layer said anything, which is told on standard error.
+pub fn close(renderer: HeadlessRenderer) -> bool {
+    tell(&renderer.shutdown())
+}
+
+fn tell(messages: &[String]) -> bool {
+    messages.iter().for_each(|message| tracing::error!("validation: {message}"));
+    !messages.is_empty()
 }

@@ -3,6 +3,7 @@
 use crate::values::{length, mebibytes};
 use clap::{Args, ValueEnum};
 use selvedge::construct::subdivide::Scheme;
+use selvedge_session::memory;
 use std::path::PathBuf;
 
 /// Which files are taken.
@@ -28,14 +29,6 @@ impl ReadArgs {
             None => memory() / 4 * 3,
         }
     }
-}
-
-/// The machine's, or what the group of processes may use of it.
-fn memory() -> u64 {
-    let mut system = sysinfo::System::new();
-    system.refresh_memory();
-    let group = system.cgroup_limits().map_or(u64::MAX, |limits| limits.total_memory);
-    system.total_memory().min(group)
 }
 
 /// What becomes of polygons.

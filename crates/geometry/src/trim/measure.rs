@@ -106,12 +106,14 @@ impl Face {
         let curvatures = |s: f64, t: f64| {
             let jet = at(s, t);
             let normal = jet.du.cross(jet.dv).normalize_or_zero();
-            [(jet.duu, jet.du), (jet.dvv, jet.dv)].map(|(second, first)| (second.dot(normal) / first.length_squared()).abs())
+            [(jet.duu, jet.du), (jet.dvv, jet.dv)]
+                .map(|(second, first)| (second.dot(normal) / first.length_squared()).abs())
         };
         let samples = [curvatures(0.21, 0.33), curvatures(0.47, 0.59), curvatures(0.78, 0.87)];
         let constant = |k: usize| {
             let of = samples.map(|pair| pair[k]);
-            let (least, most) = (of.iter().copied().fold(f64::INFINITY, f64::min), of.iter().copied().fold(0.0, f64::max));
+            let (least, most) =
+                (of.iter().copied().fold(f64::INFINITY, f64::min), of.iter().copied().fold(0.0, f64::max));
             (most.is_finite() && most > 0.0 && most - least <= ROUND * most).then_some(most)
         };
         // the curves along a cylinder are straight, and the parallels of a torus change their curvature

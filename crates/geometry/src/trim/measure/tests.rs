@@ -60,7 +60,14 @@ fn holes_are_no_area() {
     let square = [corner(1.0, 1.0), corner(19.0, 1.0), corner(19.0, 9.0), corner(1.0, 9.0)];
     let sides = (0..4).map(|k| Bezier::<DVec3>::line(square[k], square[(k + 1) % 4])).collect();
     let border = TrimLoop::new(sides, DVec2::ZERO).expect("closed");
-    let face = |loops| Face { id: 1, kind: SurfaceKind::Plane, surface: surface.clone(), loops, same_sense: true, colour: None };
+    let face = |loops| Face {
+        id: 1,
+        kind: SurfaceKind::Plane,
+        surface: surface.clone(),
+        loops,
+        same_sense: true,
+        colour: None,
+    };
     near(face(Vec::new()).area(), 800.0);
     near(face(vec![border.clone()]).area(), 4.0 * 18.0 * 8.0);
     let hole = circle(corner(10.0, 5.0), 3.0).reversed();
@@ -71,6 +78,11 @@ fn holes_are_no_area() {
 fn edges_have_the_length_of_their_circles() {
     let can = cylinder(5.0, 7.0).unwrap().part;
     let edges = can.edges().expect("edges");
-    let rim: f64 = edges.edges.iter().filter(|e| e.uses.iter().any(|u| can.faces[u.face].kind == SurfaceKind::Plane)).map(|e| e.length()).sum();
+    let rim: f64 = edges
+        .edges
+        .iter()
+        .filter(|e| e.uses.iter().any(|u| can.faces[u.face].kind == SurfaceKind::Plane))
+        .map(|e| e.length())
+        .sum();
     near(rim, 2.0 * 2.0 * PI * 5.0);
 }
