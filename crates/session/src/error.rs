@@ -8,6 +8,7 @@ use std::any::Any;
 use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
 use std::sync::Arc;
 use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
 
 /// Why a file gives no model, or a job no picture.
 #[derive(Debug, thiserror::Error)]
@@ -39,8 +40,8 @@ pub enum SessionError {
     /// Settings of lines that draw nothing sensible.
     #[error(transparent)]
     Edges(#[from] BadEdges),
-    /// The caller said [`Stop::set`].
-    #[error("stopped")]
+    /// The caller said [`Stop::set`], or the time of [`Stop::within`] is over.
+    #[error("stopped before it was done")]
     Stopped,
     /// The renderer was closed, or has failed in a way that it does not survive.
     #[error("the renderer is closed")]
@@ -50,26 +51,34 @@ pub enum SessionError {
     Panicked(String),
 }
 
-/// A flag that ends an import or an upload: set from any thread, seen between two faces.
+/// A flag that ends an import or an upload: set from any thread or by time, seen between two faces.
 #[derive(Clone, Debug, Default)]
-pub struct Stop(Arc<AtomicBool>);
+pub struct Stop {
+    set: Arc<AtomicBool>,
+    until: Option<Instant>,
+}
 
 /// What unwinds through the library to the caller who stopped it.
 struct Stopping;
 
 impl Stop {
+    /// Set by itself once this time is over; a time without end is none.
+    pub fn within(time: Duration) -> Self {
+        Self { until: Instant::now().checked_add(time), ..Self::default() }
+    }
+
     /// From now on.
     pub fn set(&self) {
-        self.0.store(true, Ordering::Relaxed);
+        self.set.store(true, Ordering::Relaxed);
     }
 
     /// Whether it was set.
     pub fn is_set(&self) -> bool {
-        self.0.load(Ordering::Relaxed)
+        self.set.load(Ordering::Relaxed) || self.until.is_some_and(|until| Instant::now() >= until)
     }
 
     /// Unwinds to [`guarded`] if it was set: progress callbacks cannot say no.
-    pub(crate) fn check(&self) {
+    pub fn check(&self) {
         if self.is_set() {
             resume_unwind(Box::new(Stopping));
         }
@@ -79,7 +88,10 @@ impl Stop {
 /// Runs work whose progress callbacks call [`Stop::check`]; a panic becomes an error.
 ///
 /// What the work had in hand may be half done: the caller throws it away.
-pub(crate) fn guarded<T>(work: impl FnOnce() -> Result<T, SessionError>) -> Result<T, SessionError> {
+///
+/// # Errors
+/// Those of the work, [`SessionError::Stopped`], [`SessionError::Panicked`].
+pub fn guarded<T>(work: impl FnOnce() -> Result<T, SessionError>) -> Result<T, SessionError> {
     catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|cause| Err(unwound(cause)))
 }
 
@@ -90,4 +102,30 @@ fn unwound(cause: Box<dyn Any + Send>) -> SessionError {
     let text = cause.downcast_ref::<String>().cloned();
     let text = text.or_else(|| cause.downcast_ref::<&str>().map(|text| (*text).to_owned()));
     SessionError::Panicked(text.unwrap_or_else(|| "no message".to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_unwinds_is_told_by_its_cause() {
+        let late = Stop::within(Duration::ZERO);
+        let stopped: Result<(), SessionError> = guarded(|| {
+            late.check();
+            Ok(())
+        });
+        assert!(matches!(stopped, Err(SessionError::Stopped)));
+        let early = Stop::within(Duration::MAX);
+        let done: Result<u8, SessionError> = guarded(|| {
+            early.check();
+            Ok(7)
+        });
+        assert!(matches!(done, Ok(7)));
+        early.clone().set();
+        assert!(early.is_set());
+        let number = 3;
+        let broken: Result<(), SessionError> = guarded(|| panic!("{number} is no invariant"));
+        assert_eq!(broken.expect_err("a panic").to_string(), "internal error: 3 is no invariant");
+    }
 }

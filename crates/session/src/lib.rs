@@ -26,7 +26,7 @@ mod worker;
 pub use backdrop::{Backdrop, colour};
 pub use camera::{CameraFile, FOV_DEG, FROM, Lens, Pinhole, Viewpoint, bounds, fitted, whole};
 pub use directions::{Direction, Directions, NAMED};
-pub use error::{SessionError, Stop};
+pub use error::{SessionError, Stop, guarded};
 pub use images::{Image, Values};
 pub use lines::lines;
 pub use png::{save as save_png, write as write_png};

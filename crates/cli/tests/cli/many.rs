@@ -100,6 +100,23 @@ fn the_first_failure_ends_it_where_that_is_wanted() {
     assert!(!folder.path().join("a_iso.png").exists());
 }
 
+/// A file that takes too long is one that fails; nothing takes less than a nanosecond.
+#[test]
+fn a_file_has_its_time() {
+    let (folder, names) = files();
+    let names = [names[0].clone(), names[2].clone()];
+    let output = render(&names, &folder.path().join("{stem}_{view}.png"), &["--limit-s", "1e-9"]);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    for name in ["a.step", "c.csg"] {
+        assert!(told.contains(&format!("{name}: reading it takes more seconds than --limit-s allows")), "{told}");
+    }
+    assert!(told.contains("0 of 2 files drawn, 0 skipped, 2 failed"), "{told}");
+    refused(&["info", &names[0], "--limit-s", "0"], "above 0");
+    refused(&["info", &names[0], "--limit-s", "1e-9"], "--limit-s");
+    assert_eq!(selvedge(&["info", &names[0], "--limit-s", "1e9"]).status.code(), Some(0));
+}
+
 #[test]
 fn two_files_do_not_go_to_one_place() {
     let (folder, names) = files();
