@@ -139,7 +139,7 @@ typedef struct SelvedgeRendererOptions {
     size_t struct_size;
     // Part of the device's name; null takes a discrete GPU, else an integrated one, else the CPU.
     const char *device;
-    // Not 0: load Vulkan's validation layer.
+    // Not 0: load Vulkan's validation layer; what it says of a picture is SELVEDGE_STATUS_RENDER.
     uint32_t validation;
 } SelvedgeRendererOptions;
 

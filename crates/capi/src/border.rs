@@ -39,7 +39,7 @@ impl From<SessionError> for Failure {
         let status = match &error {
             SessionError::Import(_) | SessionError::Nothing { .. } => SelvedgeStatus::File,
             SessionError::Device(_) => SelvedgeStatus::Device,
-            SessionError::Draw(_) | SessionError::Closed => SelvedgeStatus::Render,
+            SessionError::Draw(_) | SessionError::Validation(_) | SessionError::Closed => SelvedgeStatus::Render,
             SessionError::Camera(_) | SessionError::Edges(_) => SelvedgeStatus::Argument,
             _ => SelvedgeStatus::Internal,
         };

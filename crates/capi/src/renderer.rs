@@ -24,7 +24,7 @@ pub struct SelvedgeRendererOptions {
     pub struct_size: usize,
     /// Part of the device's name; null takes a discrete GPU, else an integrated one, else the CPU.
     pub device: *const c_char,
-    /// Not 0: load Vulkan's validation layer.
+    /// Not 0: load Vulkan's validation layer; what it says of a picture is SELVEDGE_STATUS_RENDER.
     pub validation: u32,
 }
 

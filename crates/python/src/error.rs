@@ -26,7 +26,7 @@ pub fn raised(py: Python<'_>, error: &SessionError) -> PyErr {
         SessionError::Camera(_) | SessionError::Pinhole(_) | SessionError::Edges(_) => PyValueError::new_err(text),
         SessionError::Device(_) => instance(py, "DeviceError", (text,)),
         SessionError::Closed => instance(py, "ClosedError", (text,)),
-        SessionError::Draw(_) => instance(py, "RenderError", (text,)),
+        SessionError::Draw(_) | SessionError::Validation(_) => instance(py, "RenderError", (text,)),
         _ => PyRuntimeError::new_err(text),
     }
 }

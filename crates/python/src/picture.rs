@@ -2,12 +2,13 @@
 
 use numpy::ndarray::{Array2, Array3};
 use numpy::{Element, PyArray, PyReadonlyArray3};
-use pyo3::exceptions::{PyAttributeError, PyOSError, PyValueError};
+use pyo3::exceptions::{PyAttributeError, PyOSError, PyRuntimeWarning, PyValueError};
 use pyo3::prelude::*;
 use pyo3::types::{PyBytes, PyDict};
 use selvedge::picture::{Outputs, Picture as Drawn};
 use selvedge_session::{CameraFile, Image, save_png, write_png};
 use serde::Serialize;
+use std::ffi::CString;
 use std::path::PathBuf;
 
 /// A finished picture: an array for each output, row 0 on top.
@@ -29,6 +30,14 @@ impl Picture {
     /// The arrays take over the picture's memory: nothing is copied.
     pub fn new(py: Python<'_>, drawn: Drawn, outputs: Outputs, camera: &CameraFile) -> PyResult<Self> {
         let Drawn { size, colour, depth, face, uv, normal, thickness, edge, part, instance, stats, .. } = drawn;
+        if stats.clamps > 0 {
+            let text = format!(
+                "{} places of the picture do not keep the promise of accuracy: stats[\"clamps\"]",
+                stats.clamps
+            );
+            let text = CString::new(text).unwrap_or_default();
+            PyErr::warn(py, &py.get_type::<PyRuntimeWarning>(), &text, 2)?;
+        }
         let images = PyDict::new(py);
         images.set_item("colour", cube(py, size, 4, colour.into_flattened())?)?;
         let floats = [(Image::Depth, outputs.depth, depth), (Image::Thickness, outputs.thickness, thickness)];

@@ -197,6 +197,12 @@ def test_what_the_renderer_refuses_is_a_render_error(renderer, block):
     assert renderer.render(block, size=SIZE).size == SIZE
 
 
+def test_the_validation_layer_has_nothing_to_say(block):
+    with selvedge.Renderer(validation=True) as watched:
+        picture = watched.render(block, size=SIZE, outputs=["depth", "part"])
+    assert np.isfinite(picture.depth).any()
+
+
 def test_no_such_device():
     with pytest.raises(selvedge.DeviceError, match="no such"):
         selvedge.Renderer("no such device")

@@ -40,6 +40,9 @@ pub enum SessionError {
     /// Settings of lines that draw nothing sensible.
     #[error(transparent)]
     Edges(#[from] BadEdges),
+    /// The validation layer found something while a picture was drawn.
+    #[error("validation: {0}")]
+    Validation(String),
     /// The caller said [`Stop::set`], or the time of [`Stop::within`] is over.
     #[error("stopped before it was done")]
     Stopped,

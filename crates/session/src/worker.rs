@@ -41,6 +41,8 @@ pub struct Job {
 pub struct Drawer {
     renderer: HeadlessRenderer,
     loaded: Option<(Arc<Model>, SceneSettings)>,
+    /// Messages of the validation layer that were told.
+    told: usize,
 }
 
 impl Drawer {
@@ -49,10 +51,11 @@ impl Drawer {
     /// # Errors
     /// [`SessionError::Device`].
     pub fn new(options: &DeviceOptions) -> Result<Self, SessionError> {
-        Ok(Self { renderer: HeadlessRenderer::new(options).map_err(SessionError::Device)?, loaded: None })
+        Ok(Self { renderer: HeadlessRenderer::new(options).map_err(SessionError::Device)?, loaded: None, told: 0 })
     }
 
-    /// Draws one picture. [`Stop`] is looked at before it begins and between two faces of an upload.
+    /// Draws one picture. [`Stop`] is looked at before it begins and between two faces of an upload. What the validation
+    /// layer says of it is an error.
     ///
     /// # Errors
     /// [`SessionError`]; the next job is drawn all the same.
@@ -71,12 +74,10 @@ impl Drawer {
         let frame = FrameSettings { background: Some(job.backdrop.colour()), ..job.frame };
         let mut picture = self.renderer.render(&job.camera, &frame, job.outputs)?;
         job.backdrop.under(picture.size, &mut picture.colour);
-        Ok(picture)
-    }
-
-    /// What the validation layer has said so far.
-    pub fn messages(&self) -> Vec<String> {
-        self.renderer.messages()
+        let messages = self.renderer.messages();
+        let new = messages.get(self.told..).filter(|new| !new.is_empty()).map(|new| new.join("; "));
+        self.told = messages.len();
+        new.map_or(Ok(picture), |new| Err(SessionError::Validation(new)))
     }
 }
 

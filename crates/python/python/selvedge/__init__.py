@@ -79,7 +79,7 @@ class Renderer:
     """A Vulkan device that draws models; a context manager, which closes it.
 
     device: part of the device's name; without it a discrete GPU, else an integrated one, else the CPU.
-    validation: load Vulkan's validation layer.
+    validation: load Vulkan's validation layer; what it says of a picture is a RenderError.
 
     Raises DeviceError. Several threads may use one renderer: it draws their pictures in the order in which they ask.
     """
