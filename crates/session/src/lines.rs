@@ -7,7 +7,7 @@ use selvedge::picture::EdgeSettings;
 const LEAST_PX: f64 = 1.0;
 
 /// The usual lines, `width_px` pixels wide in a picture of this height. Without a width they are as wide as the renderer's own,
-/// but never thinner than [`LEAST_PX`].
+/// but never thinner than one pixel.
 pub fn lines(width_px: Option<f64>, height: u32) -> EdgeSettings {
     let usual = EdgeSettings::default();
     let at_1080 = EdgeSettings::HEIGHT / f64::from(height.max(1));
