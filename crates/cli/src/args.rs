@@ -3,22 +3,24 @@
 mod draw;
 mod images;
 mod lines;
+mod many;
 mod read;
+mod thumbnail;
 #[cfg(feature = "view")]
 mod view;
 mod write;
 
 pub use draw::DrawArgs;
-pub use images::{Aov, Image};
+pub use images::Aov;
 pub use lines::LineArgs;
+pub use many::ManyArgs;
 pub use read::{ReadArgs, SubdivideArgs};
+pub use thumbnail::ThumbnailArgs;
 #[cfg(feature = "view")]
 pub use view::ViewArgs;
 pub use write::{ConvertArgs, ExportArgs};
 
-use crate::backdrop::Backdrop;
 use crate::cut::CutArgs;
-use crate::directions::Directions;
 use crate::sweep::Divided;
 use crate::trims::Way;
 use crate::values::{at_least_one, direction, mebibytes, times, tolerance, vector, zoom};
@@ -26,11 +28,13 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use selvedge::picture::{Levels, Samples, Smooth, SolidWay, Style, TrimWay};
 use selvedge_io::import::Import;
+use selvedge_session::Backdrop;
+use selvedge_session::Directions;
 use std::path::PathBuf;
 use std::str::FromStr;
 
 /// Told at the end of every help text.
-const STATUSES: &str = "Exit status: 0 done; 1 a picture breaks the accuracy promise; 2 wrong usage, a file that cannot \
+const STATUSES: &str = "Exit status: 0 done; 1 a picture breaks the accuracy promise, or some of many files failed; 2 wrong usage, a file that cannot \
                         be read or written or of which nothing can be drawn, or with --strict not all of it; 3 no usable \
                         Vulkan device, or the device failed.";
 
@@ -47,7 +51,7 @@ pub struct Cli {
 
 #[derive(Debug, Subcommand)]
 pub enum Command {
-    /// Draw a model to a PNG file
+    /// Draw models to PNG files
     #[command(after_help = STATUSES)]
     Render(RenderArgs),
     /// Draw the lines of a view to an SVG file: visible edges and silhouettes as curves; needs no GPU
@@ -71,6 +75,9 @@ pub enum Command {
     /// Put the ways to trim side by side: time, memory and error over zoom, picture size and each way's accuracy
     #[command(after_help = STATUSES)]
     Trims(TrimsArgs),
+    /// Draw a small square picture for file managers, on nothing
+    #[command(after_help = STATUSES)]
+    Thumbnail(ThumbnailArgs),
     /// Write a model in another form, so that it is read once and opens fast; needs no GPU
     #[command(after_help = STATUSES)]
     Convert(ConvertArgs),
@@ -93,9 +100,9 @@ pub struct EdgeArgs {
 }
 
 impl EdgeArgs {
-    /// Several samples smooth all borders by themselves.
+    /// As it is said, or by default.
     pub fn smooth(&self) -> Smooth {
-        self.smooth.unwrap_or(if self.samples == Samples::One { Smooth::Borders } else { Smooth::None })
+        self.samples.smooth_by_default(self.smooth)
     }
 }
 
@@ -121,9 +128,13 @@ impl LookArgs {
 
 #[derive(Debug, Args)]
 pub struct RenderArgs {
-    /// The model: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, BezierView .bv, .scad, .csg, .asc,
-    /// .selvedge or a scene .toml; `-` is standard input
-    pub model: PathBuf,
+    /// The models: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, BezierView .bv, .scad, .csg, .asc,
+    /// .selvedge or a scene .toml; `-` is standard input. Of several, each adds its name where the names of the outputs say
+    /// {stem}; the next is read while one is drawn
+    #[arg(required = true)]
+    pub models: Vec<PathBuf>,
+    #[command(flatten)]
+    pub many: ManyArgs,
     #[command(flatten)]
     pub read: ReadArgs,
     #[command(flatten)]
@@ -136,7 +147,7 @@ pub struct RenderArgs {
     pub output: PathBuf,
     /// Standard views, as large as the model fits: iso, front, right, back, left, top, bottom, or AZIMUTH,ELEVATION in
     /// degrees, azimuth 0 the front and 90 the right; several with commas
-    #[arg(long, value_name = "VIEWS", allow_hyphen_values = true, conflicts_with_all = ["eye", "target", "camera"])]
+    #[arg(long, value_name = "VIEWS", allow_hyphen_values = true, visible_alias = "views", conflicts_with_all = ["eye", "target", "camera"])]
     pub view: Option<Directions>,
     /// All views in one picture, side by side; those with names where --view names none
     #[arg(long, conflicts_with_all = ["aov", "stats", "camera_out", "eye", "target", "camera"])]

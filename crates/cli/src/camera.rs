@@ -1,4 +1,4 @@
-//! Cameras from the command line, the built-in views, and the camera file for other programs.
+//! Cameras from the command line, and the built-in views.
 //!
 //! ```text
 //!   whole     the model in the picture, as large as it fits, from FROM
@@ -8,16 +8,13 @@
 //! ```
 
 use crate::args::{CameraArgs, Size, Views};
-use crate::directions::Direction;
 use anyhow::{Context, Result, bail};
 use glam::{DVec2, DVec3};
 use selvedge::model::{Bounds, Camera, Face, Model, Projection};
 use selvedge_check::{Hit, Tracer};
 use selvedge_io::import::{Import, NamedCamera};
-use serde::Serialize;
+use selvedge_session::{Direction, FOV_DEG, FROM};
 
-/// From the model towards the eye: front, right, a little above; no axis of the model seen edge-on.
-const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
 /// How much nearer the close view is. At six times a 1080p picture shows what 6480 lines would: far
 /// past what a mesh made for the whole view resolves.
 const CLOSER: f64 = 6.0;
@@ -26,12 +23,12 @@ const LOOKS: usize = 48;
 /// Low enough that a silhouette crosses many surfaces, high enough that a flat model shows its face.
 const GRAZING_DEG: f64 = 8.0;
 
-/// Vertical field of view where nothing is said.
-const FOV_DEG: f64 = 35.0;
 /// Field of view in radians that stands for a parallel view where a model is framed: off by no more than its share.
 const NARROW: f64 = 1e-4;
 /// Size of a picture where nothing is said.
 const SIZE: Size = Size(1920, 1080);
+
+pub use selvedge_session::{CameraFile, bounds, whole};
 
 /// A camera and what it is called in reports.
 #[derive(Clone, Debug)]
@@ -180,23 +177,9 @@ impl CameraArgs {
     }
 }
 
-/// The box of what a picture of the whole model shows: that of its control points where nothing is left of it, so that
-/// there is a picture that says so.
-pub fn bounds(model: &Model) -> Bounds {
-    let bounds = model.bounds();
-    if bounds.is_empty() { model.control_bounds() } else { bounds }
-}
-
-/// All of the model in the picture, whatever is asked for.
-pub fn whole(bounds: Bounds, size: (u32, u32)) -> Camera {
-    Camera::around(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size)
-}
-
 /// `camera` with a depth range that holds the model, checked.
-fn fitted(mut camera: Camera, bounds: Bounds) -> Result<Camera> {
-    camera.fit_depth(bounds);
-    camera.check().context("the camera shows nothing")?;
-    Ok(camera)
+fn fitted(camera: Camera, bounds: Bounds) -> Result<Camera> {
+    selvedge_session::fitted(camera, bounds).context("the camera shows nothing")
 }
 
 /// `times` closer to the start of the trim curve or the vertex nearest to the eye: certainly in sight, and at
@@ -269,38 +252,6 @@ pub fn zoomed(model: &Model, size: (u32, u32), zoom: f64) -> Camera {
     }
     camera.fit_depth(bounds);
     camera
-}
-
-/// A camera as other programs read it.
-#[derive(Debug, Serialize)]
-pub struct CameraFile {
-    eye: [f64; 3],
-    target: [f64; 3],
-    up: [f64; 3],
-    /// Vertical field of view, degrees.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    fovy: Option<f64>,
-    /// Half the height of a parallel view, millimetres.
-    #[serde(skip_serializing_if = "Option::is_none")]
-    ortho: Option<f64>,
-    size: [u32; 2],
-}
-
-impl From<&Camera> for CameraFile {
-    fn from(camera: &Camera) -> Self {
-        let (fovy, ortho) = match camera.projection {
-            Projection::Perspective { fov_y } => (Some(fov_y.to_degrees()), None),
-            Projection::Orthographic { height } => (None, Some(height * 0.5)),
-        };
-        Self {
-            eye: camera.eye.into(),
-            target: camera.target.into(),
-            up: camera.up.into(),
-            fovy,
-            ortho,
-            size: camera.size.into(),
-        }
-    }
 }
 
 #[cfg(test)]
@@ -376,19 +327,6 @@ mod tests {
     fn an_eye_without_a_target_looks_at_the_middle() {
         let camera = framing(&["--eye", "0,-90,5"]).expect("camera");
         assert_eq!((camera.eye, camera.target), (DVec3::new(0.0, -90.0, 5.0), BOX.centre()));
-    }
-
-    #[test]
-    fn the_file_holds_degrees_or_half_the_height() {
-        let text = |words: &[&str]| {
-            let camera = framing(words).expect("camera");
-            serde_json::to_value(CameraFile::from(&camera)).expect("serialises")
-        };
-        let fov = text(&["--fov", "40", "--size", "64x48"]);
-        assert!((fov["fovy"].as_f64().expect("degrees") - 40.0).abs() < 1e-12 && fov.get("ortho").is_none());
-        assert_eq!(fov["size"], serde_json::json!([64, 48]));
-        let ortho = text(&["--ortho", "20"]);
-        assert!(ortho["ortho"] == 10.0 && ortho.get("fovy").is_none());
     }
 
     #[test]

@@ -7,18 +7,17 @@
 //!   convert  model ─▶ the engine's own form
 //!   export   model ─▶ STEP file                draw    lines of a view ─▶ SVG
 //!   view     models in a window
+//!   thumbnail model ─▶ small picture
 //! ```
 //!
 //! Results go to standard output, everything else to standard error.
 
 mod args;
-mod backdrop;
 mod bench;
 mod camera;
 mod check;
 mod convert;
 mod cut;
-mod directions;
 mod draw;
 mod edit;
 mod export;
@@ -35,6 +34,7 @@ mod session;
 mod sheet;
 mod sweep;
 mod target;
+mod thumbnail;
 mod trims;
 mod values;
 mod verdict;
@@ -52,7 +52,7 @@ use std::process::ExitCode;
 enum Outcome {
     /// Everything asked for was done, and every promise looked at was kept.
     Good,
-    /// A picture is not what it promises to be.
+    /// A picture is not what it promises to be, or some of many files failed.
     Broken,
 }
 
@@ -84,6 +84,7 @@ fn main() -> ExitCode {
         Command::Bench(args) => bench::run(args),
         Command::Sweep(args) => sweep::run(args),
         Command::Trims(args) => trims::run(args),
+        Command::Thumbnail(args) => thumbnail::run(args),
         Command::Convert(args) => convert::run(args),
         #[cfg(feature = "view")]
         Command::View(args) => view::run(args),

@@ -1,10 +1,11 @@
 //! The output of all commands: results, JSON, pictures, warnings.
 
-use crate::target;
+use crate::{npy, target};
 use anyhow::Result;
 use comfy_table::{Table, TableComponent, presets};
-use selvedge::picture::FrameStats;
+use selvedge::picture::{FrameStats, Picture};
 use selvedge_io::import::Import;
+use selvedge_session::{Image, Values};
 use serde::Serialize;
 use std::path::{Path, PathBuf};
 
@@ -31,15 +32,20 @@ pub fn json(path: &Path, value: &impl Serialize) -> Result<()> {
 }
 
 /// sRGB colour and opacity, row 0 on top.
-pub fn png(path: &Path, (width, height): (u32, u32), pixels: &[[u8; 4]]) -> Result<()> {
-    target::write(path, |to| {
-        let mut encoder = png::Encoder::new(to, width, height);
-        encoder.set_color(png::ColorType::Rgba);
-        encoder.set_depth(png::BitDepth::Eight);
-        encoder.set_source_srgb(png::SrgbRenderingIntent::RelativeColorimetric);
-        let mut writer = encoder.write_header()?;
-        writer.write_image_data(pixels.as_flattened())?;
-        Ok(writer.finish()?)
+pub fn png(path: &Path, size: (u32, u32), pixels: &[[u8; 4]]) -> Result<()> {
+    target::write(path, |to| Ok(selvedge_session::write_png(to, size, pixels)?))
+}
+
+/// An image as a NumPy array.
+pub fn npy(path: &Path, image: Image, picture: &Picture) -> Result<()> {
+    let (width, height) = (picture.size.0 as usize, picture.size.1 as usize);
+    target::write(path, |mut to| {
+        match image.of(picture) {
+            Values::Floats(1, values) => npy::write(&mut to, &[height, width], values)?,
+            Values::Floats(channels, values) => npy::write(&mut to, &[height, width, channels], values)?,
+            Values::Numbers(values) => npy::write(&mut to, &[height, width], values)?,
+        }
+        Ok(())
     })
 }
 

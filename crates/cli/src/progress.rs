@@ -2,6 +2,7 @@
 
 use indicatif::{HumanBytes, ProgressBar, ProgressDrawTarget, ProgressStyle};
 use selvedge_io::import::Stage;
+use std::sync::atomic::{AtomicBool, Ordering};
 use std::sync::mpsc;
 use std::thread;
 use std::time::Duration;
@@ -15,6 +16,9 @@ const SPINNER: &str = "{spinner} {msg}";
 const COUNTER: &str = "{spinner} {msg}: {human_pos}";
 /// Work that knows how much there is.
 const BAR: &str = "{spinner} {msg} {bar:30} {human_pos} of {human_len}, {eta} left";
+
+/// Files, whose times differ.
+const FILES: &str = "{bar:30} {human_pos} of {human_len} files, {per_sec}, {eta} left; {msg}";
 
 /// The same of bytes.
 const BYTES: &str = "{spinner} {msg} {bar:30} {bytes} of {total_bytes}, {eta} left";
@@ -79,7 +83,8 @@ fn spin<T>(what: &str, template: &str, work: impl FnOnce(&ProgressBar) -> T) -> 
         let running = running; // dropped when the work ends, by a panic too
         scope.spawn(|| {
             let ended = ended;
-            if ended.recv_timeout(SILENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
+            let alone = !MANY.load(Ordering::Relaxed);
+            if alone && ended.recv_timeout(SILENCE) == Err(mpsc::RecvTimeoutError::Timeout) {
                 bar.set_draw_target(ProgressDrawTarget::stderr());
                 bar.enable_steady_tick(Duration::from_millis(100));
                 let _ = ended.recv(); // only ever fails: nothing is sent, the sender is dropped
@@ -90,6 +95,40 @@ fn spin<T>(what: &str, template: &str, work: impl FnOnce(&ProgressBar) -> T) -> 
         drop(running);
         result
     })
+}
+
+/// Many files: one line for all of them, in place of those of each.
+pub struct Files(ProgressBar);
+
+/// Set while a [`Files`] is shown.
+static MANY: AtomicBool = AtomicBool::new(false);
+
+/// Begins a line of so many files.
+pub fn files(count: usize) -> Files {
+    MANY.store(true, Ordering::Relaxed);
+    let bar = ProgressBar::new(count as u64).with_style(style(FILES));
+    bar.enable_steady_tick(Duration::from_millis(500));
+    Files(bar)
+}
+
+impl Files {
+    /// One more is done.
+    pub fn one(&self, name: &str) {
+        self.0.set_message(name.to_owned());
+        self.0.inc(1);
+    }
+
+    /// A line on standard error, above the bar.
+    pub fn tell(&self, line: &str) {
+        self.0.suspend(|| eprintln!("{line}"));
+    }
+}
+
+impl Drop for Files {
+    fn drop(&mut self) {
+        self.0.finish_and_clear();
+        MANY.store(false, Ordering::Relaxed);
+    }
 }
 
 #[cfg(test)]

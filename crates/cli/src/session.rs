@@ -3,12 +3,13 @@
 use crate::args::{EdgeArgs, FrameArgs, ReadArgs, SubdivideArgs};
 use crate::progress::{advancing, during, importing};
 use crate::{camera, openscad, output, target};
-use anyhow::{Context, Result, bail};
+use anyhow::{Error, Result, anyhow, bail};
 use glam::DVec3;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use selvedge::picture::{EdgeSettings, FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
 use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
+use selvedge_session::{SessionError, guarded};
 use serde::Serialize;
 use std::io;
 use std::path::Path;
@@ -57,24 +58,35 @@ fn imported(
     tell: &(dyn Fn(Stage) + Sync),
 ) -> Result<Import> {
     let folders = Folders::new(read.search.clone());
+    let stop = read.stop();
+    let tell = |stage| {
+        stop.check();
+        tell(stage);
+    };
     let options = Options {
-        progress: Some(tell),
+        progress: Some(&tell),
         most_bytes: Some(read.most_bytes()),
         files: Some(&folders),
         facets: facets(subdivide),
     };
-    let import = match subdivide.subdivide {
-        Some(_) if target::is_standard(path) => bail!("--subdivide reads a file, not standard input"),
-        Some(smooth) => import::open_subdivided(path, smooth.scheme(), subdivide.within, &options),
-        None if target::is_standard(path) => import::read_from(&mut io::stdin().lock(), name, &options),
-        None => import::open_with(path, &options),
-    };
-    match import {
-        Err(error @ (ImportError::TooLarge { .. } | ImportError::Expansion { .. })) => {
-            Err(error).context("more than --limit-mib allows")
-        }
-        import => Ok(import?),
+    if subdivide.subdivide.is_some() && target::is_standard(path) {
+        bail!("--subdivide reads a file, not standard input");
     }
+    let import = guarded(|| {
+        Ok(match subdivide.subdivide {
+            Some(smooth) => import::open_subdivided(path, smooth.scheme(), subdivide.within, &options),
+            None if target::is_standard(path) => import::read_from(&mut io::stdin().lock(), name, &options),
+            None => import::open_with(path, &options),
+        }?)
+    });
+    import.map_err(|error| match error {
+        SessionError::Import(error @ (ImportError::TooLarge { .. } | ImportError::Expansion { .. })) => {
+            Error::from(error).context("more than --limit-mib allows")
+        }
+        SessionError::Import(error) => error.into(),
+        SessionError::Stopped => anyhow!("{name}: reading it takes more seconds than --limit-s allows"),
+        error => Error::from(error).context(name.to_owned()),
+    })
 }
 
 /// Refuses a file of which nothing can be drawn, and with `--strict` one of which anything is left out; else tells what.
@@ -266,16 +278,26 @@ impl Session {
     ///
     /// True when it said anything.
     pub fn complaints(&self) -> bool {
-        Self::tell(&self.renderer.messages())
+        tell(&self.renderer.messages())
+    }
+
+    /// The device, for another model.
+    pub fn into_renderer(self) -> HeadlessRenderer {
+        self.renderer
     }
 
     /// Frees the device; the same of all that the layer said, of what was left over, too.
     pub fn close(self) -> bool {
-        Self::tell(&self.renderer.shutdown())
+        close(self.renderer)
     }
+}
 
-    fn tell(messages: &[String]) -> bool {
-        messages.iter().for_each(|message| tracing::error!("validation: {message}"));
-        !messages.is_empty()
-    }
+/// Frees a device; true when the validation layer said anything, which is told on standard error.
+pub fn close(renderer: HeadlessRenderer) -> bool {
+    tell(&renderer.shutdown())
+}
+
+fn tell(messages: &[String]) -> bool {
+    messages.iter().for_each(|message| tracing::error!("validation: {message}"));
+    !messages.is_empty()
 }

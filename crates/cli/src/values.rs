@@ -54,6 +54,12 @@ pub fn mebibytes(text: &str) -> Result<f64, String> {
     text.parse::<f64>().ok().filter(|x| x.is_finite() && *x > 0.0).ok_or_else(|| "wants a number of MiB above 0".into())
 }
 
+/// A time; longer ones are none.
+pub fn seconds(text: &str) -> Result<f64, String> {
+    let good = text.parse::<f64>().ok().filter(|s| *s > 0.0 && *s <= 1e9);
+    good.ok_or_else(|| "wants a number of seconds above 0".into())
+}
+
 /// A magnification.
 pub fn zoom(text: &str) -> Result<f64, String> {
     let good = text.parse::<f64>().ok().filter(|z| (1.0..=1e6).contains(z));

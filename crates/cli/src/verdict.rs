@@ -11,6 +11,8 @@ use selvedge::picture::{EdgeSettings, Picture};
 use selvedge_check::drawing::{DrawingSettings, LineImage, LineJudgement, judge_lines};
 use selvedge_check::{JudgeOptions, Judgement, SunJudgement, SunTracer, Tracer, judge, judge_sun};
 
+pub use selvedge_session::{worst_shift_px, wrong};
+
 /// Judges about `samples` pixels of a picture, and every one at which the face changes. In a view `times` closer than
 /// the whole model faces that much nearer to each other are told apart.
 pub fn of(
@@ -59,14 +61,4 @@ pub fn of_lines(
     let settings = DrawingSettings { silhouettes: false, hidden: drawn.hidden, ..DrawingSettings::default() };
     let width = drawn.width * f64::from(camera.size.1) / EdgeSettings::HEIGHT;
     Ok(judge_lines(model, tracer, camera, &settings, LineImage { lines: &picture.edge, width })?)
-}
-
-/// Pixels that break the promise: the wrong face, or the right face's wrong sheet.
-pub fn wrong(judgement: &Judgement) -> u64 {
-    judgement.wrong + judgement.folds.beyond + judgement.folds.wrong_depth
-}
-
-/// The largest distance at which a pixel is right, of faces and sheets of faces.
-pub fn worst_shift_px(judgement: &Judgement) -> f64 {
-    judgement.worst_shift_px.max(judgement.folds.worst_shift_px)
 }

@@ -1,6 +1,6 @@
 //! Images beside the colour.
 
-use clap::ValueEnum;
+use selvedge_session::Image;
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -11,19 +11,6 @@ pub struct Aov {
     pub file: PathBuf,
 }
 
-/// The images of [`Aov`].
-#[derive(Clone, Copy, Debug, PartialEq, Eq, ValueEnum)]
-pub enum Image {
-    Depth,
-    Face,
-    Uv,
-    Normal,
-    Thickness,
-    Edge,
-    Part,
-    Instance,
-}
-
 impl FromStr for Aov {
     type Err = String;
     fn from_str(text: &str) -> Result<Self, String> {
@@ -32,6 +19,6 @@ impl FromStr for Aov {
                 .to_string()
         };
         let (image, file) = text.split_once('=').filter(|(_, file)| !file.is_empty()).ok_or_else(wanted)?;
-        Ok(Self { image: Image::from_str(image, false).map_err(|_| wanted())?, file: file.into() })
+        Ok(Self { image: image.parse().map_err(|_| wanted())?, file: file.into() })
     }
 }

@@ -1,10 +1,10 @@
 //! Lines along edges: `--edges` and what goes with it.
 
-use crate::backdrop::colour;
 use anyhow::Result;
 use clap::Args;
 use selvedge::model::Colour;
 use selvedge::picture::{EdgeChoice, EdgeSettings, TangentEdges};
+use selvedge_session::colour;
 
 /// Which lines are drawn, and how.
 #[derive(Debug, Args)]

@@ -1,9 +1,11 @@
 //! How files are read, whatever becomes of them.
 
-use crate::values::{length, mebibytes};
+use crate::values::{length, mebibytes, seconds};
 use clap::{Args, ValueEnum};
 use selvedge::construct::subdivide::Scheme;
+use selvedge_session::{Stop, memory};
 use std::path::PathBuf;
+use std::time::Duration;
 
 /// Which files are taken.
 #[derive(Clone, Debug, Default, Args)]
@@ -18,9 +20,17 @@ pub struct ReadArgs {
     /// Most MiB of a file that are read, gzip undone; three quarters of the machine's memory without it, and 4096 at most
     #[arg(long, value_name = "MIB", value_parser = mebibytes)]
     pub limit_mib: Option<f64>,
+    /// Most seconds that a file is read; without it as many as it takes
+    #[arg(long, value_name = "SECONDS", value_parser = seconds)]
+    pub limit_s: Option<f64>,
 }
 
 impl ReadArgs {
+    /// The flag that ends reading a file, which begins now.
+    pub fn stop(&self) -> Stop {
+        self.limit_s.map_or_else(Stop::default, |seconds| Stop::within(Duration::from_secs_f64(seconds)))
+    }
+
     /// Most bytes of a file.
     pub fn most_bytes(&self) -> u64 {
         match self.limit_mib {
@@ -28,14 +38,6 @@ impl ReadArgs {
             None => memory() / 4 * 3,
         }
     }
-}
-
-/// The machine's, or what the group of processes may use of it.
-fn memory() -> u64 {
-    let mut system = sysinfo::System::new();
-    system.refresh_memory();
-    let group = system.cgroup_limits().map_or(u64::MAX, |limits| limits.total_memory);
-    system.total_memory().min(group)
 }
 
 /// What becomes of polygons.

@@ -1,4 +1,5 @@
 use super::*;
+use selvedge_session::Image;
 
 #[test]
 fn clap_accepts_the_definition() {

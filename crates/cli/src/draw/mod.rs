@@ -4,7 +4,6 @@ mod svg;
 
 use crate::args::DrawArgs;
 use crate::camera::CameraFile;
-use crate::directions::Direction;
 use crate::progress::during;
 use crate::render::named_for;
 use crate::target::{self, JSON, SVG, Target};
@@ -14,6 +13,7 @@ use selvedge::model::{Camera, Projection};
 use selvedge::picture::{EdgeChoice, TangentEdges};
 use selvedge_check::Tracer;
 use selvedge_check::drawing::{Drawing, DrawingSettings};
+use selvedge_session::Direction;
 use std::path::PathBuf;
 use std::time::Instant;
 use svg::Page;

@@ -10,7 +10,6 @@ mod deep;
 mod solids;
 mod text;
 mod tiles;
-mod tree;
 
 use crate::args::InfoArgs;
 use crate::{Outcome, output, remains, session};
@@ -19,11 +18,11 @@ use selvedge::model::{EdgeCounts, Mesh, Model, Part, SurfaceKind};
 use selvedge::picture::{SceneSettings, TrimWay};
 use selvedge::renderer::trim_way;
 use selvedge_io::import::{FaceRecord, Import, ImportReport, Summary};
+use selvedge_session::Node;
 use serde::Serialize;
 use solids::SolidRow;
 use std::collections::BTreeMap;
 use tiles::Tiles;
-use tree::Node;
 
 /// Counts of a model; *distinct* where nothing else is said, *instances* counts placed copies.
 #[derive(Debug, Serialize)]

@@ -1,6 +1,7 @@
 //! The command line: arguments, messages, exit statuses; and models through every command.
 
 mod draw;
+mod many;
 mod missing;
 mod outputs;
 mod reading;

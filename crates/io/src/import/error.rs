@@ -59,3 +59,42 @@ pub enum ImportError {
     #[error("{file}:{line}: {message}")]
     Solid { file: String, line: usize, message: String },
 }
+
+impl ImportError {
+    /// The file.
+    pub fn file(&self) -> &str {
+        match self {
+            Self::Read { file, .. }
+            | Self::Format { file }
+            | Self::TooLarge { file, .. }
+            | Self::NoFile { file, .. }
+            | Self::Expansion { file, .. }
+            | Self::NotStep { file }
+            | Self::NoData { file, .. }
+            | Self::NotIges { file }
+            | Self::IgesForm { file, .. }
+            | Self::NoDirectory { file, .. }
+            | Self::Nonsense { file, .. }
+            | Self::Nothing { file, .. }
+            | Self::Rhino { file, .. }
+            | Self::Native { file, .. }
+            | Self::Scene { file, .. }
+            | Self::Construct { file, .. }
+            | Self::Mesh { file, .. }
+            | Self::Solid { file, .. } => file,
+        }
+    }
+
+    /// The line, counted from 1, where one is at fault.
+    pub fn line(&self) -> Option<usize> {
+        match self {
+            Self::NotStep { .. } | Self::NotIges { .. } | Self::IgesForm { .. } => Some(1),
+            Self::NoData { line, .. }
+            | Self::NoDirectory { line, .. }
+            | Self::Nonsense { line, .. }
+            | Self::Scene { line, .. }
+            | Self::Solid { line, .. } => Some(*line),
+            _ => None,
+        }
+    }
+}

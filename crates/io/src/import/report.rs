@@ -126,6 +126,17 @@ pub struct FaceRecord {
     pub notes: Vec<String>,
 }
 
+impl Place {
+    /// The line and the entity's number, where there are any.
+    pub fn numbers(self) -> (Option<usize>, Option<u32>) {
+        match self {
+            Self::File => (None, None),
+            Self::Line(line) => (Some(line), None),
+            Self::Entity { id, line } => (Some(line), Some(id)),
+        }
+    }
+}
+
 impl fmt::Display for Warning {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.place {

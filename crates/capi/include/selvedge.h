@@ -1,0 +1,290 @@
+// CAD files to exact pictures, depths, normals and face numbers: libselvedge_c. docs/c.md has the tour.
+//
+// Made by cbindgen from crates/capi: SELVEDGE_WRITE_HEADER=1 cargo test -p selvedge-capi writes it.
+
+#ifndef SELVEDGE_H
+#define SELVEDGE_H
+
+#include <stddef.h>
+#include <stdint.h>
+
+// sRGB and opacity, 4 bytes a pixel; every picture has it.
+#define SELVEDGE_COLOUR (1 << 0)
+
+// Distance along the view axis, millimetres, one float a pixel; +infinity is background.
+#define SELVEDGE_DEPTH (1 << 1)
+
+// Number of the face in the file, one uint32_t a pixel; 0 is background.
+#define SELVEDGE_FACE (1 << 2)
+
+// Parameters in the face's domain, two floats a pixel; NaN is background.
+#define SELVEDGE_UV (1 << 3)
+
+// Unit outward normal in model axes, three floats a pixel; 0 is background.
+#define SELVEDGE_NORMAL (1 << 4)
+
+// Length of the ray within solids and closed parts, millimetres, one float a pixel.
+#define SELVEDGE_THICKNESS (1 << 5)
+
+// Number of the edge whose line covers the pixel, one uint32_t a pixel; 0 is none. The colour shows the lines, too.
+#define SELVEDGE_EDGE (1 << 6)
+
+// Index of the part, plus 1, one uint32_t a pixel; 0 is none.
+#define SELVEDGE_PART (1 << 7)
+
+// Index of the instance, plus 1, one uint32_t a pixel; 0 is none.
+#define SELVEDGE_INSTANCE (1 << 8)
+
+// uint8_t
+#define SELVEDGE_UINT8 1
+
+// uint32_t
+#define SELVEDGE_UINT32 2
+
+// float
+#define SELVEDGE_FLOAT32 3
+
+// How a call ended.
+typedef enum SelvedgeStatus {
+    // Everything asked for was done.
+    SELVEDGE_STATUS_OK = 0,
+    // A pointer, size, number or name that cannot be used.
+    SELVEDGE_STATUS_ARGUMENT = 1,
+    // A file that cannot be read, of which nothing can be drawn, or that cannot be written.
+    SELVEDGE_STATUS_FILE = 2,
+    // There is no usable Vulkan device.
+    SELVEDGE_STATUS_DEVICE = 3,
+    // The model cannot be drawn so, or the device failed.
+    SELVEDGE_STATUS_RENDER = 4,
+    // A defect of the library.
+    SELVEDGE_STATUS_INTERNAL = 5,
+} SelvedgeStatus;
+
+// A model. Free it with selvedge_model_free; renderers and pictures do not need it any more then.
+typedef struct SelvedgeModel SelvedgeModel;
+
+// A finished picture.
+typedef struct SelvedgePicture SelvedgePicture;
+
+// A device that draws. Several threads may use one: it draws their pictures in turn.
+typedef struct SelvedgeRenderer SelvedgeRenderer;
+
+// How to read. Zeros are the defaults.
+typedef struct SelvedgeReadOptions {
+    // sizeof(SelvedgeReadOptions)
+    size_t struct_size;
+    // Most bytes of a file, gzip undone; 0: three quarters of the machine's memory.
+    uint64_t limit_bytes;
+    // Not 0: a file of which anything is left out is SELVEDGE_STATUS_FILE.
+    uint32_t strict;
+} SelvedgeReadOptions;
+
+// What a model holds.
+typedef struct SelvedgeModelInfo {
+    // sizeof(SelvedgeModelInfo)
+    size_t struct_size;
+    // Smallest coordinates, millimetres.
+    double low[3];
+    // Largest coordinates.
+    double high[3];
+    // Distinct bodies; images of parts count them from 1.
+    uint64_t parts;
+    // Placed bodies; images of instances count them from 1.
+    uint64_t instances;
+    // Distinct faces.
+    uint64_t faces;
+    // See selvedge_model_warning.
+    uint64_t warnings;
+    // 1: all that the file states is there.
+    uint32_t complete;
+    // What is drawn and what is missing, one sentence; lives as long as the model.
+    const char *summary;
+} SelvedgeModelInfo;
+
+// Something in the file that was left out, healed or guessed.
+typedef struct SelvedgeWarning {
+    // sizeof(SelvedgeWarning)
+    size_t struct_size;
+    // The file; lives as long as the model, as does the message.
+    const char *file;
+    // What was wrong and what was done.
+    const char *message;
+    // Counted from 1; 0 for the file as a whole.
+    uint64_t line;
+    // Number of the entity, of STEP's #123 it is 123; 0 for none.
+    uint32_t entity;
+    // How many occurrences this one stands for.
+    uint64_t count;
+} SelvedgeWarning;
+
+// An image of a picture: rows without gaps, the first on top, the channels of a pixel together.
+typedef struct SelvedgeImage {
+    // sizeof(SelvedgeImage)
+    size_t struct_size;
+    // width x height x channels numbers; lives as long as the picture.
+    const void *data;
+    // SELVEDGE_UINT8, SELVEDGE_UINT32 or SELVEDGE_FLOAT32.
+    uint32_t kind;
+    // Numbers a pixel.
+    uint32_t channels;
+    // Pixels.
+    uint32_t width;
+    // Pixels.
+    uint32_t height;
+} SelvedgeImage;
+
+// Which device. Zeros are the defaults.
+typedef struct SelvedgeRendererOptions {
+    // sizeof(SelvedgeRendererOptions)
+    size_t struct_size;
+    // Part of the device's name; null takes a discrete GPU, else an integrated one, else the CPU.
+    const char *device;
+    // Not 0: load Vulkan's validation layer; what it says of a picture is SELVEDGE_STATUS_RENDER.
+    uint32_t validation;
+} SelvedgeRendererOptions;
+
+// A picture to be drawn. Zeros and null are the defaults, but for width and height.
+typedef struct SelvedgeView {
+    // sizeof(SelvedgeView)
+    size_t struct_size;
+    // Pixels, 1 to 16384.
+    uint32_t width;
+    // Pixels, 1 to 16384.
+    uint32_t height;
+    // iso, front, right, back, left, top, bottom, or "AZIMUTH,ELEVATION" in degrees: as large as the model fits. Null: iso,
+    // or from `eye` where eye and target differ.
+    const char *standard;
+    // Position of the eye, millimetres.
+    double eye[3];
+    // Point that the eye looks at.
+    double target[3];
+    // Direction that points up in the picture; zeros: 0, 0, 1.
+    double up[3];
+    // Vertical field of view from `eye`, degrees; 0: 35.
+    double fov;
+    // Not 0: a parallel view from `eye`; the height of the picture in millimetres.
+    double ortho;
+    // Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on.
+    uint32_t outputs;
+    // 1, 4 or 8 samples of each pixel's colour; 0: 1.
+    uint32_t samples;
+    // shaded, clay, normals or zebra; null: shaded.
+    const char *style;
+    // A CSS colour, gradient or none; null: gradient.
+    const char *background;
+    // Lines along edges: all, sharp or none; null: none, and all where SELVEDGE_EDGE is among the outputs.
+    const char *edges;
+    // Width of lines in pixels; 0: 1 or more, and more in high pictures.
+    double line_width;
+    // Direction towards a sun that casts shadows; zeros: a studio's light.
+    double sun[3];
+    // Largest distance in pixels between a drawn boundary and the true one, at least 0.1; 0: 0.5.
+    double tolerance;
+} SelvedgeView;
+
+
+
+#ifdef __cplusplus
+extern "C" {
+#endif // __cplusplus
+
+// One sentence about the last call of this thread that returned a status: it names file and line or entity. Empty after
+// SELVEDGE_STATUS_OK. Valid until the next such call of this thread.
+const char *selvedge_last_error(void);
+
+// The library's version, as in "0.1.0".
+const char *selvedge_version(void);
+
+// Reads a file: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, .csg and others, by its content. `options` may
+// be null.
+//
+// # Safety
+// Pointers are null or point to what they say.
+enum SelvedgeStatus selvedge_open(const char *path,
+                                  const struct SelvedgeReadOptions *options,
+                                  struct SelvedgeModel **model);
+
+// The same of a file's content; `name` stands for it in messages, and its ending tells the format where the content does
+// not.
+//
+// # Safety
+// Pointers are null or point to what they say; `bytes` to `count` bytes.
+enum SelvedgeStatus selvedge_open_bytes(const void *bytes,
+                                        size_t count,
+                                        const char *name,
+                                        const struct SelvedgeReadOptions *options,
+                                        struct SelvedgeModel **model);
+
+// Fills `info`, whose struct_size is set.
+//
+// # Safety
+// Pointers are null or point to what they say.
+enum SelvedgeStatus selvedge_model_info(const struct SelvedgeModel *model, struct SelvedgeModelInfo *info);
+
+// Fills `warning`, whose struct_size is set, with the one of this index, counted from 0.
+//
+// # Safety
+// Pointers are null or point to what they say.
+enum SelvedgeStatus selvedge_model_warning(const struct SelvedgeModel *model,
+                                           uint64_t index,
+                                           struct SelvedgeWarning *warning);
+
+// Frees a model; null is allowed.
+//
+// # Safety
+// What was made here and is used by no other call at the same time.
+void selvedge_model_free(struct SelvedgeModel *model);
+
+// Fills `image`, whose struct_size is set, with the one of this flag: SELVEDGE_COLOUR, or one of the view's outputs.
+//
+// # Safety
+// Pointers are null or point to what they say.
+enum SelvedgeStatus selvedge_picture_image(const struct SelvedgePicture *picture,
+                                           uint32_t which,
+                                           struct SelvedgeImage *image);
+
+// Places where the frame could not keep the promise of accuracy; 0 in a good picture, and for null.
+//
+// # Safety
+// Null, or a picture.
+uint64_t selvedge_picture_clamps(const struct SelvedgePicture *picture);
+
+// Writes the colour as a PNG file.
+//
+// # Safety
+// Pointers are null or point to what they say.
+enum SelvedgeStatus selvedge_picture_save_png(const struct SelvedgePicture *picture, const char *path);
+
+// Frees a picture and its images; null is allowed.
+//
+// # Safety
+// What was made here and is used by no other call at the same time.
+void selvedge_picture_free(struct SelvedgePicture *picture);
+
+// Opens a device; `options` may be null.
+//
+// # Safety
+// Pointers are null or point to what they say.
+enum SelvedgeStatus selvedge_renderer_new(const struct SelvedgeRendererOptions *options,
+                                          struct SelvedgeRenderer **renderer);
+
+// Draws a picture and waits for it. A model that was drawn by the call before is not prepared again.
+//
+// # Safety
+// Pointers are null or point to what they say.
+enum SelvedgeStatus selvedge_render(const struct SelvedgeRenderer *renderer,
+                                    const struct SelvedgeModel *model,
+                                    const struct SelvedgeView *view,
+                                    struct SelvedgePicture **picture);
+
+// Frees the device; null is allowed.
+//
+// # Safety
+// What was made here and is used by no other call at the same time.
+void selvedge_renderer_free(struct SelvedgeRenderer *renderer);
+
+#ifdef __cplusplus
+}  // extern "C"
+#endif  // __cplusplus
+
+#endif  /* SELVEDGE_H */

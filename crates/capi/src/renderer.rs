@@ -1,0 +1,249 @@
+//! Renderers: a device and a thread that draws on it.
+
+use crate::border::{Failure, SelvedgeStatus, Sized, argument, border, free, handle, place, taken, text};
+use crate::model::{NO_TEXT, SelvedgeModel};
+use crate::picture::{SelvedgePicture, images};
+use glam::DVec3;
+use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Samples, SceneSettings, Style};
+use selvedge_session::{Backdrop, DeviceOptions, Directions, FOV_DEG, Image, Job, Lens, Viewpoint, Worker, lines};
+use std::ffi::c_char;
+use std::str::FromStr;
+use std::sync::Arc;
+use std::time::Duration;
+
+/// A device that draws. Several threads may use one: it draws their pictures in turn.
+pub struct SelvedgeRenderer {
+    worker: Worker,
+}
+
+/// Which device. Zeros are the defaults.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct SelvedgeRendererOptions {
+    /// sizeof(SelvedgeRendererOptions)
+    pub struct_size: usize,
+    /// Part of the device's name; null takes a discrete GPU, else an integrated one, else the CPU.
+    pub device: *const c_char,
+    /// Not 0: load Vulkan's validation layer; what it says of a picture is SELVEDGE_STATUS_RENDER.
+    pub validation: u32,
+}
+
+/// A picture to be drawn. Zeros and null are the defaults, but for width and height.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct SelvedgeView {
+    /// sizeof(SelvedgeView)
+    pub struct_size: usize,
+    /// Pixels, 1 to 16384.
+    pub width: u32,
+    /// Pixels, 1 to 16384.
+    pub height: u32,
+    /// iso, front, right, back, left, top, bottom, or "AZIMUTH,ELEVATION" in degrees: as large as the model fits. Null: iso,
+    /// or from `eye` where eye and target differ.
+    pub standard: *const c_char,
+    /// Position of the eye, millimetres.
+    pub eye: [f64; 3],
+    /// Point that the eye looks at.
+    pub target: [f64; 3],
+    /// Direction that points up in the picture; zeros: 0, 0, 1.
+    pub up: [f64; 3],
+    /// Vertical field of view from `eye`, degrees; 0: 35.
+    pub fov: f64,
+    /// Not 0: a parallel view from `eye`; the height of the picture in millimetres.
+    pub ortho: f64,
+    /// Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on.
+    pub outputs: u32,
+    /// 1, 4 or 8 samples of each pixel's colour; 0: 1.
+    pub samples: u32,
+    /// shaded, clay, normals or zebra; null: shaded.
+    pub style: *const c_char,
+    /// A CSS colour, gradient or none; null: gradient.
+    pub background: *const c_char,
+    /// Lines along edges: all, sharp or none; null: none, and all where SELVEDGE_EDGE is among the outputs.
+    pub edges: *const c_char,
+    /// Width of lines in pixels; 0: 1 or more, and more in high pictures.
+    pub line_width: f64,
+    /// Direction towards a sun that casts shadows; zeros: a studio's light.
+    pub sun: [f64; 3],
+    /// Largest distance in pixels between a drawn boundary and the true one, at least 0.1; 0: 0.5.
+    pub tolerance: f64,
+}
+
+const NO_VIEW: SelvedgeView = SelvedgeView {
+    struct_size: 0,
+    width: 0,
+    height: 0,
+    standard: NO_TEXT,
+    eye: [0.0; 3],
+    target: [0.0; 3],
+    up: [0.0; 3],
+    fov: 0.0,
+    ortho: 0.0,
+    outputs: 0,
+    samples: 0,
+    style: NO_TEXT,
+    background: NO_TEXT,
+    edges: NO_TEXT,
+    line_width: 0.0,
+    sun: [0.0; 3],
+    tolerance: 0.0,
+};
+
+// SAFETY: each begins with its size and consists of numbers and pointers
+unsafe impl Sized for SelvedgeRendererOptions {}
+// SAFETY: as above
+unsafe impl Sized for SelvedgeView {}
+
+/// Opens a device; `options` may be null.
+///
+/// # Safety
+/// Pointers are null or point to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn selvedge_renderer_new(
+    options: *const SelvedgeRendererOptions,
+    renderer: *mut *mut SelvedgeRenderer,
+) -> SelvedgeStatus {
+    border(|| {
+        let usual = SelvedgeRendererOptions { struct_size: 0, device: NO_TEXT, validation: 0 };
+        // SAFETY: as the caller promises
+        let (place, options) = unsafe { (place(renderer)?, taken(options, usual)?) };
+        // SAFETY: as the caller promises
+        let device = unsafe { text("the device's name", options.device) }?.map(str::to_owned);
+        let worker = Worker::new(DeviceOptions { device, validation: options.validation != 0 })?;
+        *place = Box::into_raw(Box::new(SelvedgeRenderer { worker }));
+        Ok(())
+    })
+}
+
+/// Draws a picture and waits for it. A model that was drawn by the call before is not prepared again.
+///
+/// # Safety
+/// Pointers are null or point to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn selvedge_render(
+    renderer: *const SelvedgeRenderer,
+    model: *const SelvedgeModel,
+    view: *const SelvedgeView,
+    picture: *mut *mut SelvedgePicture,
+) -> SelvedgeStatus {
+    border(|| {
+        // SAFETY: as the caller promises
+        let (place, renderer) = unsafe { (place(picture)?, handle("renderer", renderer)?) };
+        if view.is_null() {
+            return Err(argument("the view is a null pointer"));
+        }
+        // SAFETY: as the caller promises
+        let (model, view) = unsafe { (handle("model", model)?, taken(view, NO_VIEW)?) };
+        // SAFETY: the texts are the caller's
+        let job = unsafe { view.job(model) }?;
+        let asked = view.outputs;
+        let ticket = renderer.worker.submit(job)?;
+        let drawn = loop {
+            if let Some(answer) = ticket.wait(Duration::MAX) {
+                break answer?;
+            }
+        };
+        *place = SelvedgePicture::boxed(drawn, asked);
+        Ok(())
+    })
+}
+
+/// The word, or the one that stands for nothing said.
+///
+/// # Safety
+/// As [`text`].
+unsafe fn word<T: FromStr>(what: &str, from: *const c_char, usual: &str) -> Result<T, Failure>
+where
+    T::Err: ToString,
+{
+    // SAFETY: as the caller promises
+    let word = unsafe { text(what, from) }?.unwrap_or(usual);
+    word.parse().map_err(|error: T::Err| argument(error.to_string()))
+}
+
+/// The vector, or what stands for zeros.
+fn or(given: [f64; 3], usual: DVec3) -> DVec3 {
+    if given == [0.0; 3] { usual } else { given.into() }
+}
+
+impl SelvedgeView {
+    /// # Safety
+    /// Its texts are null, or end with a zero.
+    unsafe fn job(&self, model: &SelvedgeModel) -> Result<Job, Failure> {
+        let images = images(self.outputs)?;
+        let usual = if images.contains(&Image::Edge) { "all" } else { "none" };
+        // SAFETY: as the caller promises
+        let (style, backdrop, which) = unsafe {
+            (
+                word::<Style>("the style", self.style, "shaded")?,
+                word::<Backdrop>("the background", self.background, "gradient")?,
+                word::<EdgeChoice>("the choice of edges", self.edges, usual)?,
+            )
+        };
+        let drawn = (which != EdgeChoice::None)
+            .then(|| EdgeSettings { which, ..lines(Some(self.line_width).filter(|w| *w != 0.0), self.height) });
+        if let Some(drawn) = &drawn {
+            drawn.check().map_err(|error| argument(error.to_string()))?;
+        }
+        let samples = self.samples.max(1).to_string();
+        let samples: Samples =
+            samples.parse().map_err(|error: selvedge::picture::UnknownSamples| argument(error.to_string()))?;
+        let tolerance_px = if self.tolerance == 0.0 { 0.5 } else { self.tolerance };
+        if !(tolerance_px >= FrameSettings::LEAST_TOLERANCE_PX && tolerance_px.is_finite()) {
+            return Err(argument(format!(
+                "the tolerance must be at least {} pixels",
+                FrameSettings::LEAST_TOLERANCE_PX
+            )));
+        }
+        let sun = Some(DVec3::from(self.sun)).filter(|sun| *sun != DVec3::ZERO);
+        // SAFETY: as the caller promises
+        let viewpoint = unsafe { self.viewpoint() }?;
+        let model = Arc::clone(&model.loaded.model);
+        let camera = viewpoint.camera(&model, (self.width, self.height))?;
+        Ok(Job {
+            camera,
+            scene: SceneSettings {
+                edges: drawn,
+                samples,
+                smooth: samples.smooth_by_default(None),
+                sun,
+                ..SceneSettings::default()
+            },
+            frame: FrameSettings { tolerance_px, style, ..FrameSettings::default() },
+            outputs: Image::outputs(images),
+            backdrop,
+            model,
+        })
+    }
+
+    /// # Safety
+    /// As [`SelvedgeView::job`].
+    unsafe fn viewpoint(&self) -> Result<Viewpoint, Failure> {
+        if self.standard.is_null() && self.eye != self.target {
+            let lens = match (self.fov, self.ortho) {
+                (0.0, 0.0) => Lens::Fov(FOV_DEG),
+                (fov, 0.0) => Lens::Fov(fov),
+                (0.0, height) => Lens::Ortho(height),
+                _ => return Err(argument("fov and ortho exclude each other")),
+            };
+            let (eye, target, up) = (self.eye.into(), self.target.into(), or(self.up, DVec3::Z));
+            return Ok(Viewpoint::LookAt { eye, target, up, lens });
+        }
+        // SAFETY: as the caller promises
+        let directions = unsafe { word::<Directions>("the view", self.standard, "iso") }?;
+        match directions.0.as_slice() {
+            [one] => Ok(Viewpoint::Standard(*one)),
+            _ => Err(argument("one view a picture")),
+        }
+    }
+}
+
+/// Frees the device; null is allowed.
+///
+/// # Safety
+/// What was made here and is used by no other call at the same time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn selvedge_renderer_free(renderer: *mut SelvedgeRenderer) {
+    // SAFETY: as the caller promises
+    unsafe { free(renderer) }
+}

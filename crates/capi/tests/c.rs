@@ -1,0 +1,98 @@
+//! C programs are compiled with every warning an error and run under the address sanitizer: no error, no leak.
+
+use std::path::{Path, PathBuf};
+use std::process::{Command, Output};
+use std::{env, fs};
+
+fn folder() -> &'static Path {
+    Path::new(env!("CARGO_MANIFEST_DIR"))
+}
+
+fn root() -> PathBuf {
+    folder().join("../..")
+}
+
+/// Where cargo puts the library for this test.
+fn libraries() -> PathBuf {
+    let folder = env::current_exe().expect("a path").parent().expect("a folder").to_owned();
+    assert!(folder.join("libselvedge_c.so").is_file(), "{}: the library was not built", folder.display());
+    folder
+}
+
+fn compiled(source: &Path, into: &Path) -> PathBuf {
+    let program = into.join(source.file_stem().expect("a name"));
+    let libraries = libraries();
+    let version = format!("-DSELVEDGE_TEST_VERSION=\"{}\"", env!("CARGO_PKG_VERSION"));
+    let mut cc = Command::new("cc");
+    cc.args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-pedantic", "-g", "-fsanitize=address,undefined", &version]);
+    cc.arg("-I").arg(folder().join("include")).arg(source).arg(folder().join("tests/keep_loaded.c"));
+    cc.arg("-rdynamic").arg("-o").arg(&program).arg("-L").arg(&libraries).args(["-lselvedge_c", "-lm"]);
+    cc.arg(format!("-Wl,-rpath,{}", libraries.display()));
+    let output = cc.output().expect("cc runs");
+    assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
+    program
+}
+
+/// The program with the library that it was linked to: cargo's own path for libraries has others.
+fn watched(program: &Path) -> Command {
+    let mut command = Command::new(program);
+    let suppressions = format!("suppressions={}:print_suppressions=0", folder().join("tests/leaks.supp").display());
+    command.env_remove("LD_LIBRARY_PATH").env("LSAN_OPTIONS", suppressions);
+    command.env("UBSAN_OPTIONS", "halt_on_error=1").env_remove("ASAN_OPTIONS");
+    command
+}
+
+fn good(output: &Output) {
+    let said = |bytes: &[u8]| String::from_utf8_lossy(bytes).into_owned();
+    assert!(output.status.success(), "{}\n{}\n{}", output.status, said(&output.stdout), said(&output.stderr));
+}
+
+#[test]
+fn every_call_refuses_what_it_must() {
+    let into = tempfile::tempdir().expect("a folder");
+    let program = compiled(&folder().join("tests/border.c"), into.path());
+    good(&watched(&program).output().expect("it runs"));
+}
+
+/// The sanitizer would tell.
+#[test]
+fn a_handle_that_is_not_freed_is_seen() {
+    let into = tempfile::tempdir().expect("a folder");
+    let source = into.path().join("leak.c");
+    // several, for a copy of the last one's address may be left on the stack
+    let text = r#"
+#include <selvedge.h>
+int main(void)
+{
+    SelvedgeModel* model;
+    for (int i = 0; i < 8; ++i) {
+        selvedge_open_bytes("sphere(1);", 10, "a.csg", NULL, &model);
+    }
+    model = NULL;
+    return *selvedge_last_error() != 0;
+}
+"#;
+    fs::write(&source, text).expect("written");
+    let output = watched(&compiled(&source, into.path())).output().expect("it runs");
+    let said = String::from_utf8_lossy(&output.stderr).into_owned();
+    assert!(!output.status.success() && said.contains("detected memory leaks"), "{}: {said}", output.status);
+}
+
+#[test]
+fn the_example_draws_a_picture() {
+    let into = tempfile::tempdir().expect("a folder");
+    let program = compiled(&root().join("examples/c/render.c"), into.path());
+    let picture = into.path().join("bracket.png");
+    let run = |model: &str| {
+        let mut command = watched(&program);
+        command.arg(root().join(model)).arg(&picture).args(["64", "48"]).output().expect("it runs")
+    };
+    let output = run("samples/bracket.step");
+    good(&output);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    assert!(said.contains("faces") && said.contains("of 3072 pixels"), "{said}");
+    assert_eq!(&fs::read(&picture).expect("a picture")[..8], b"\x89PNG\r\n\x1a\n");
+    let refused = run("samples/none.step");
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("none.step"));
+}

@@ -1,0 +1,26 @@
+//! Many files in one call.
+
+use clap::Args;
+use std::path::PathBuf;
+
+/// What becomes of the others when one file is done, or fails.
+#[derive(Debug, Default, Args)]
+pub struct ManyArgs {
+    /// End at the first file that fails; without it, it is told, the others are drawn, and the exit status is 1
+    #[arg(long)]
+    pub fail_fast: bool,
+    /// Leave files alone of which every output is there
+    #[arg(long)]
+    pub skip_existing: bool,
+    /// Write a table as the pictures are drawn, a row each: file, its SHA-256, view, output, drawn, skipped or failed and
+    /// why, camera, counts, warnings, seconds
+    #[arg(long, value_name = "OUT.csv")]
+    pub manifest: Option<PathBuf>,
+}
+
+impl ManyArgs {
+    /// Any of them was given.
+    pub fn is_asked(&self) -> bool {
+        self.fail_fast || self.skip_existing || self.manifest.is_some()
+    }
+}

@@ -1,0 +1,46 @@
+//! `selvedge thumbnail`: a small picture for file managers.
+//!
+//! The call is that of a freedesktop thumbnailer (`Exec=selvedge thumbnail %i %o %s`): the output's name is a temporary one
+//! with any ending, and the caller adds what the thumbnail standard wants in its PNG.
+
+use crate::args::ThumbnailArgs;
+use crate::{Outcome, target};
+use anyhow::{Error, Result};
+use selvedge::picture::{FrameSettings, Outputs, Samples, SceneSettings};
+use selvedge_session::{
+    Backdrop, DeviceOptions, Drawer, Job, Loaded, NAMED, ReadOptions, SessionError, Source, Stop, Viewpoint, lines,
+    read, write_png,
+};
+use std::sync::Arc;
+
+/// Draws the model from the first of the standard views.
+pub fn run(args: &ThumbnailArgs) -> Result<Outcome> {
+    let stop = Stop::default();
+    let Loaded { model, .. } =
+        read(Source::Path(&args.model), &ReadOptions::default(), &stop, &|_| ()).map_err(told)?;
+    let camera = Viewpoint::Standard(NAMED[0]).camera(&model, (args.size, args.size)).map_err(told)?;
+    let job = Job {
+        model: Arc::clone(&model),
+        camera,
+        scene: SceneSettings {
+            samples: Samples::Eight,
+            edges: Some(lines(None, args.size)),
+            ..SceneSettings::default()
+        },
+        frame: FrameSettings::default(),
+        outputs: Outputs::default(),
+        backdrop: Backdrop::Nothing,
+    };
+    let mut drawer = Drawer::new(&DeviceOptions { device: args.device.clone(), validation: false }).map_err(told)?;
+    let picture = drawer.draw(&job, &stop).map_err(told)?;
+    target::write(&args.output, |to| Ok(write_png(to, picture.size, &picture.colour)?))?;
+    Ok(Outcome::Good)
+}
+
+/// What a device fails with has an exit status of its own.
+fn told(error: SessionError) -> Error {
+    match error {
+        SessionError::Device(error) | SessionError::Draw(error) => error.into(),
+        error => error.into(),
+    }
+}

@@ -1,0 +1,169 @@
+//! Many files in one call, and thumbnails.
+
+use super::{refused, selvedge, text};
+use std::fs;
+use std::path::{Path, PathBuf};
+use std::process::Command;
+
+fn sample(name: &str) -> String {
+    format!("{}/../../samples/{name}", env!("CARGO_MANIFEST_DIR"))
+}
+
+/// A folder with a whole file, one that is none, and another whole one, in this order.
+fn files() -> (tempfile::TempDir, Vec<String>) {
+    let folder = tempfile::tempdir().expect("a folder");
+    let path = |name: &str| folder.path().join(name).display().to_string();
+    let names = ["a.step", "b.step", "c.csg"].map(path);
+    fs::copy(sample("bracket.step"), &names[0]).expect("a copy");
+    fs::write(&names[1], "ISO-10303-21;\nHEADER;\n").expect("written");
+    fs::write(&names[2], "sphere(4);\n").expect("written");
+    (folder, names.to_vec())
+}
+
+const SMALL: [&str; 4] = ["--size", "48x32", "--views", "iso,front"];
+
+fn render(files: &[String], output: &Path, more: &[&str]) -> std::process::Output {
+    let output = output.display().to_string();
+    let files = files.iter().map(String::as_str);
+    let all: Vec<&str> =
+        ["render"].into_iter().chain(files).chain(["-o", &output]).chain(SMALL).chain(more.iter().copied()).collect();
+    selvedge(&all)
+}
+
+/// Rows of a table, each by the names of its columns.
+fn rows(path: &Path) -> Vec<std::collections::HashMap<String, String>> {
+    csv::Reader::from_path(path).expect("a table").deserialize().map(|row| row.expect("a row")).collect()
+}
+
+#[test]
+fn a_file_that_fails_costs_itself_only() {
+    let (folder, names) = files();
+    let pattern = folder.path().join("{stem}_{view}.png");
+    let depth = format!("depth={}", folder.path().join("{stem}.npy").display());
+    let manifest = folder.path().join("all.csv");
+    let output = render(&names, &pattern, &["--aov", &depth, "--manifest", &manifest.display().to_string()]);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    assert!(told.contains("b.step:") && told.contains("DATA section"), "{told}");
+    assert!(told.contains("2 of 3 files drawn, 0 skipped, 1 failed"), "{told}");
+
+    // the same as each by itself
+    for (name, stem) in [(&names[0], "a"), (&names[2], "c")] {
+        let alone = folder.path().join(format!("alone_{stem}_{{view}}.png"));
+        assert_eq!(render(std::slice::from_ref(name), &alone, &[]).status.code(), Some(0));
+        for view in ["iso", "front"] {
+            let read =
+                |start: &str| fs::read(folder.path().join(format!("{start}{stem}_{view}.png"))).expect("a picture");
+            assert_eq!(read(""), read("alone_"), "{stem} {view}");
+            assert!(folder.path().join(format!("{stem}_{view}.npy")).is_file());
+        }
+    }
+
+    let table = rows(&manifest);
+    let of = |column: &str| table.iter().map(|row| row[column].as_str()).collect::<Vec<_>>();
+    assert_eq!(of("status"), ["drawn", "drawn", "failed", "failed", "drawn", "drawn"]);
+    assert_eq!(of("view"), ["iso", "front", "iso", "front", "iso", "front"]);
+    assert!(table[2]["error"].contains("b.step") && table[0]["error"].is_empty());
+    // sha256sum of `sphere(4);` and a line feed
+    assert_eq!(table[4]["sha256"], "80f0b0189d147596e5ca9ec87427f8f326cea7fe1e4ad0602ed221488ef6bd90");
+    let camera: serde_json::Value = serde_json::from_str(&table[0]["camera"]).expect("JSON");
+    assert_eq!(camera["size"], serde_json::json!([48, 32]));
+    assert!(table[0]["faces"].parse::<usize>().expect("a count") > 10 && table[0]["clamps"] == "0");
+    assert!(table[0]["draw_s"].parse::<f64>().expect("seconds") > 0.0);
+}
+
+#[test]
+fn what_is_there_is_left_alone() {
+    let (folder, names) = files();
+    let pattern = folder.path().join("{stem}_{view}.png");
+    let names = [names[0].clone(), names[2].clone()];
+    for view in ["iso", "front"] {
+        fs::write(folder.path().join(format!("a_{view}.png")), "mine").expect("written");
+    }
+    fs::write(folder.path().join("c_iso.png"), "half").expect("written");
+    let manifest = folder.path().join("all.csv");
+    let output = render(&names, &pattern, &["--skip-existing", "--manifest", &manifest.display().to_string()]);
+    assert_eq!(output.status.code(), Some(0), "{}", text(&output.stderr));
+    assert!(text(&output.stderr).contains("1 of 2 files drawn, 1 skipped, 0 failed"));
+    assert_eq!(fs::read(folder.path().join("a_iso.png")).expect("a file"), b"mine");
+    assert_ne!(fs::read(folder.path().join("c_iso.png")).expect("a file"), b"half");
+    let states: Vec<_> = rows(&manifest).into_iter().map(|row| row["status"].clone()).collect();
+    assert_eq!(states, ["skipped", "skipped", "drawn", "drawn"]);
+}
+
+#[test]
+fn the_first_failure_ends_it_where_that_is_wanted() {
+    let (folder, mut names) = files();
+    names.swap(0, 1);
+    let output = render(&names, &folder.path().join("{stem}_{view}.png"), &["--fail-fast"]);
+    assert_eq!(output.status.code(), Some(2), "{}", text(&output.stderr));
+    assert!(!folder.path().join("a_iso.png").exists());
+}
+
+/// A file that takes too long is one that fails; nothing takes less than a nanosecond.
+#[test]
+fn a_file_has_its_time() {
+    let (folder, names) = files();
+    let names = [names[0].clone(), names[2].clone()];
+    let output = render(&names, &folder.path().join("{stem}_{view}.png"), &["--limit-s", "1e-9"]);
+    let told = text(&output.stderr);
+    assert_eq!(output.status.code(), Some(1), "{told}");
+    for name in ["a.step", "c.csg"] {
+        assert!(told.contains(&format!("{name}: reading it takes more seconds than --limit-s allows")), "{told}");
+    }
+    assert!(told.contains("0 of 2 files drawn, 0 skipped, 2 failed"), "{told}");
+    refused(&["info", &names[0], "--limit-s", "0"], "above 0");
+    refused(&["info", &names[0], "--limit-s", "1e-9"], "--limit-s");
+    assert_eq!(selvedge(&["info", &names[0], "--limit-s", "1e9"]).status.code(), Some(0));
+}
+
+#[test]
+fn two_files_do_not_go_to_one_place() {
+    let (folder, names) = files();
+    let [a, c] = [&names[0], &names[2]];
+    let out = |name: &str| folder.path().join(name).display().to_string();
+    refused(&["render", a, c, "-o", &out("one.png")], "{stem} stands for a file's name");
+    let other = folder.path().join("other");
+    fs::create_dir(&other).expect("a folder");
+    let twin = other.join("a.csg").display().to_string();
+    fs::copy(c, &twin).expect("a copy");
+    refused(&["render", a, &twin, "-o", &out("{stem}.png")], "both");
+    refused(&["render", a, c, "-o", &out("{stem}.png"), "--aov", &format!("depth={}", out("d.npy"))], "{stem}");
+}
+
+/// The call of the file that desktops read, with what the specification puts in place of its fields.
+#[test]
+fn desktops_get_their_thumbnails() {
+    let desktop = concat!(env!("CARGO_MANIFEST_DIR"), "/../../desktop/selvedge.thumbnailer");
+    let entry = fs::read_to_string(desktop).expect("the entry");
+    assert_eq!(entry.lines().next(), Some("[Thumbnailer Entry]"));
+    let exec = entry.lines().find_map(|line| line.strip_prefix("Exec=")).expect("a call");
+    let folder = tempfile::tempdir().expect("a folder");
+    let output = folder.path().join(".thumbnail.J8TT7Z");
+    let of = |model: &str, size: &str| {
+        let mut words = exec.split(' ').map(|word| match word {
+            "%i" => model.to_owned(),
+            "%o" => output.display().to_string(),
+            "%s" => size.to_owned(),
+            word => word.to_owned(),
+        });
+        assert_eq!(words.next().as_deref(), Some("selvedge"));
+        Command::new(env!("CARGO_BIN_EXE_selvedge")).args(words).output().expect("it runs")
+    };
+    let made = of(&sample("bracket.step"), "128");
+    assert!(made.status.success(), "{}", text(&made.stderr));
+    let decoder = png::Decoder::new(std::io::BufReader::new(fs::File::open(&output).expect("a picture")));
+    let mut reader = decoder.read_info().expect("PNG");
+    assert_eq!((reader.info().width, reader.info().height), (128, 128));
+    let mut pixels = vec![0; reader.output_buffer_size().expect("a size")];
+    reader.next_frame(&mut pixels).expect("pixels");
+    let opaque = pixels.chunks(4).filter(|pixel| pixel[3] == 255).count();
+    assert!(pixels[3] == 0 && opaque > 128 * 128 / 5, "{opaque} opaque pixels");
+
+    let mime = fs::read_to_string(PathBuf::from(desktop).with_file_name("selvedge-mime.xml")).expect("the types");
+    assert!(mime.contains("model/step") && entry.contains("model/step;"));
+    fs::remove_file(&output).expect("removed");
+    assert_eq!(of(&sample("none.step"), "128").status.code(), Some(2));
+    assert_eq!(of(&sample("bracket.step"), "0").status.code(), Some(2));
+    assert!(!output.exists());
+}

@@ -1,0 +1,197 @@
+//! Renderers, and the judge.
+
+use crate::camera::{Camera, viewpoint};
+use crate::error::raised;
+use crate::model::Model;
+use crate::picture::{Picture, plain};
+use crate::waiting::{apart, until};
+use glam::DVec3;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
+use pyo3::prelude::*;
+use selvedge::model::Camera as View;
+use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Outputs, Samples, SceneSettings, Smooth, Style};
+use selvedge_session::{Backdrop, CameraFile, DeviceOptions, Image, Job, SessionError, Ticket, Verdict, Worker, lines};
+use std::str::FromStr;
+use std::sync::{Arc, Mutex, PoisonError, RwLock};
+
+/// Longest side of a picture, pixels.
+const MOST_PIXELS: i64 = 16_384;
+
+/// A device, and a thread that draws on it; see ``selvedge.Renderer``.
+#[pyclass(frozen, module = "selvedge._native")]
+pub struct Renderer {
+    /// Nothing once it is closed.
+    worker: RwLock<Option<Worker>>,
+}
+
+/// How a picture is drawn, as ``selvedge.Renderer.render`` has it.
+#[derive(FromPyObject)]
+#[pyo3(from_item_all)]
+pub struct Settings<'py> {
+    view: Option<String>,
+    camera: Option<PyRef<'py, Camera>>,
+    size: (i64, i64),
+    outputs: Vec<String>,
+    style: String,
+    background: String,
+    edges: Option<String>,
+    silhouettes: bool,
+    hidden_lines: bool,
+    line_width: Option<f64>,
+    samples: u32,
+    smooth: Option<String>,
+    sun: Option<[f64; 3]>,
+    tolerance: f64,
+}
+
+/// A word of a list, or ValueError with the list.
+fn word<T: FromStr>(text: &str) -> PyResult<T>
+where
+    T::Err: ToString,
+{
+    text.parse().map_err(|error: T::Err| PyValueError::new_err(error.to_string()))
+}
+
+impl Settings<'_> {
+    fn pixels(&self) -> PyResult<(u32, u32)> {
+        let (width, height) = self.size;
+        let range = 1..=MOST_PIXELS;
+        if !(range.contains(&width) && range.contains(&height)) {
+            let text = format!("size must be (width, height), each from 1 to {MOST_PIXELS}, not ({width}, {height})");
+            return Err(PyValueError::new_err(text));
+        }
+        Ok((width as u32, height as u32))
+    }
+
+    fn outputs(&self) -> PyResult<Outputs> {
+        let beside = self.outputs.iter().filter(|name| *name != "colour");
+        Ok(Image::outputs(beside.map(|name| word::<Image>(name)).collect::<PyResult<Vec<_>>>()?))
+    }
+
+    /// Lines in the picture; the image of edges is made of them.
+    fn lines(&self, outputs: Outputs, size: (u32, u32)) -> PyResult<Option<EdgeSettings>> {
+        let usual = if outputs.edge { "all" } else { "none" };
+        let which: EdgeChoice = word(self.edges.as_deref().unwrap_or(usual))?;
+        let (silhouettes, hidden) = (self.silhouettes, self.hidden_lines);
+        let settings = EdgeSettings { which, silhouettes, hidden, ..lines(self.line_width, size.1) };
+        settings.check().map_err(|error| PyValueError::new_err(error.to_string()))?;
+        Ok((which != EdgeChoice::None || self.silhouettes).then_some(settings))
+    }
+
+    fn job(&self, py: Python<'_>, model: &Model) -> PyResult<Job> {
+        let (size, outputs) = (self.pixels()?, self.outputs()?);
+        if !(self.tolerance >= FrameSettings::LEAST_TOLERANCE_PX && self.tolerance.is_finite()) {
+            let least = FrameSettings::LEAST_TOLERANCE_PX;
+            return Err(PyValueError::new_err(format!(
+                "tolerance must be at least {least} pixels, not {}",
+                self.tolerance
+            )));
+        }
+        let viewpoint = viewpoint(self.view.as_deref(), self.camera.as_deref())?;
+        let model = Arc::clone(&model.loaded.model);
+        let camera = py.detach(|| viewpoint.camera(&model, size)).map_err(|error| raised(py, &error))?;
+        let samples: Samples = word(&self.samples.to_string())?;
+        let scene = SceneSettings {
+            edges: self.lines(outputs, size)?,
+            samples,
+            smooth: samples.smooth_by_default(self.smooth.as_deref().map(word::<Smooth>).transpose()?),
+            sun: self.sun.map(DVec3::from),
+            ..SceneSettings::default()
+        };
+        let frame = FrameSettings {
+            tolerance_px: self.tolerance,
+            style: word::<Style>(&self.style)?,
+            ..FrameSettings::default()
+        };
+        Ok(Job { model, camera, scene, frame, outputs, backdrop: word::<Backdrop>(&self.background)? })
+    }
+}
+
+impl Renderer {
+    fn order(&self, py: Python<'_>, job: Job) -> PyResult<Pending> {
+        let (outputs, camera) = (job.outputs, job.camera);
+        let worker = self.worker.read().unwrap_or_else(PoisonError::into_inner);
+        let ticket = worker.as_ref().ok_or(SessionError::Closed).and_then(|worker| worker.submit(job));
+        let ticket = ticket.map_err(|error| raised(py, &error))?;
+        Ok(Pending { ticket: Mutex::new(Some(ticket)), outputs, camera })
+    }
+}
+
+#[pymethods]
+impl Renderer {
+    #[new]
+    #[pyo3(signature = (device, validation))]
+    fn new(py: Python<'_>, device: Option<String>, validation: bool) -> PyResult<Self> {
+        let worker = apart(py, move |_| Worker::new(DeviceOptions { device, validation }))?;
+        Ok(Self { worker: RwLock::new(Some(worker)) })
+    }
+
+    /// Sends a picture to the device's thread.
+    fn submit(&self, py: Python<'_>, model: &Model, settings: Settings<'_>) -> PyResult<Pending> {
+        let job = settings.job(py, model)?;
+        self.order(py, job)
+    }
+
+    /// Frees the device once the pictures sent before are drawn.
+    fn close(&self, py: Python<'_>) {
+        let worker = self.worker.write().unwrap_or_else(PoisonError::into_inner).take();
+        py.detach(|| drop(worker));
+    }
+
+    /// Whether it was closed.
+    #[getter]
+    fn closed(&self) -> bool {
+        self.worker.read().unwrap_or_else(PoisonError::into_inner).is_none()
+    }
+}
+
+/// A picture that will be there.
+#[pyclass(frozen, module = "selvedge._native")]
+pub struct Pending {
+    ticket: Mutex<Option<Ticket>>,
+    outputs: Outputs,
+    camera: View,
+}
+
+impl Pending {
+    fn drawn(&self, py: Python<'_>) -> PyResult<selvedge::picture::Picture> {
+        let ticket = self.ticket.lock().unwrap_or_else(PoisonError::into_inner).take();
+        let ticket = ticket.ok_or_else(|| PyRuntimeError::new_err("the picture was taken before"))?;
+        let ticket = Mutex::new(ticket);
+        let locked = || ticket.lock().unwrap_or_else(PoisonError::into_inner);
+        until(py, || locked().stop(), |at_most| locked().wait(at_most))
+    }
+}
+
+#[pymethods]
+impl Pending {
+    /// Waits for the picture; once.
+    fn result(&self, py: Python<'_>) -> PyResult<Picture> {
+        let drawn = self.drawn(py)?;
+        Picture::new(py, drawn, self.outputs, &CameraFile::from(&self.camera))
+    }
+
+    /// The picture is not drawn if it is not begun.
+    fn cancel(&self) {
+        if let Some(ticket) = &*self.ticket.lock().unwrap_or_else(PoisonError::into_inner) {
+            ticket.stop();
+        }
+    }
+}
+
+/// Draws and judges; see ``selvedge.check``.
+#[pyfunction]
+pub fn check<'py>(
+    py: Python<'py>,
+    renderer: &Renderer,
+    model: &Model,
+    settings: Settings<'_>,
+    judged: usize,
+) -> PyResult<Bound<'py, PyAny>> {
+    let images = Outputs { edge: false, ..Outputs::ALL };
+    let job = Job { outputs: images, ..settings.job(py, model)? };
+    let (model, camera, tolerance) = (Arc::clone(&job.model), job.camera, job.frame.tolerance_px);
+    let drawn = renderer.order(py, job)?.drawn(py)?;
+    let verdict = apart(py, move |stop| Verdict::new(&model, &camera, &drawn, judged, tolerance, stop))?;
+    plain(py, &verdict)
+}

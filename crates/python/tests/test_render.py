@@ -1,0 +1,306 @@
+"""Models to arrays."""
+
+import math
+import pathlib
+import signal
+import subprocess
+import sys
+import threading
+
+import numpy as np
+import pytest
+import selvedge
+
+SAMPLES = pathlib.Path(__file__).parents[3] / "samples"
+SIZE = (96, 64)
+SHAPES = {
+    "colour": (np.uint8, (64, 96, 4)),
+    "depth": (np.float32, (64, 96)),
+    "face": (np.uint32, (64, 96)),
+    "uv": (np.float32, (64, 96, 2)),
+    "normal": (np.float32, (64, 96, 3)),
+    "thickness": (np.float32, (64, 96)),
+    "part": (np.uint32, (64, 96)),
+    "instance": (np.uint32, (64, 96)),
+    "edge": (np.uint32, (64, 96)),
+}
+# x, y, z of the block; names of the views and the axis that they look along
+SIDES = (2.0, 3.0, 5.0)
+CORNERS = [(x, y, z) for x in (0, SIDES[0]) for y in (0, SIDES[1]) for z in (0, SIDES[2])]
+QUADS = ["1 2 4 3", "5 7 8 6", "1 5 6 2", "3 4 8 7", "1 3 7 5", "2 6 8 4"]
+
+
+@pytest.fixture(scope="module")
+def renderer():
+    with selvedge.Renderer() as renderer:
+        yield renderer
+
+
+@pytest.fixture(scope="module")
+def bracket():
+    return selvedge.open(SAMPLES / "bracket.step")
+
+
+@pytest.fixture(scope="module")
+def block():
+    text = "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "".join(f"f {quad}\n" for quad in QUADS)
+    return selvedge.open(text.encode(), name="block.obj")
+
+
+def test_every_output_has_its_shape_and_dtype(renderer, bracket):
+    picture = renderer.render(bracket, "iso", SIZE, ["depth", "face", "uv", "normal"])
+    have_shapes(picture, ["colour", "depth", "face", "uv", "normal"])
+    seen = picture.face != 0
+    assert 0.1 < seen.mean() < 0.95
+    assert set(np.unique(picture.face[seen])) <= {face.number for face in bracket.faces}
+    np.testing.assert_array_equal(np.isfinite(picture.depth), seen)
+    np.testing.assert_array_equal(np.isnan(picture.uv[..., 0]), ~seen)
+    np.testing.assert_allclose(np.linalg.norm(picture.normal[seen], axis=-1), 1.0, atol=1e-5)
+
+
+def test_numbers_name_parts_instances_and_edges(renderer, block):
+    # 4 mm high where the top is, 15 mm away; the top hides everything else
+    fov = math.degrees(2 * math.atan(2 / 15))
+    camera = selvedge.Camera.look_at((1, 1.5, 20), (1, 1.5, 0), up=(0, 1, 0), fov=fov)
+    picture = renderer.render(block, size=SIZE, outputs=["part", "instance", "edge", "thickness"], camera=camera)
+    have_shapes(picture, ["colour", "part", "instance", "edge", "thickness"])
+    seen = picture.part != 0
+    # 2 of 6 by 3 of 4 millimetres
+    assert seen.mean() == pytest.approx(1 / 3 * 3 / 4, abs=0.03)
+    assert set(picture.part[seen]) == set(picture.instance[seen]) == {1}
+    # rays that end on the ground, by the cosine longer; at the border they leave through a side
+    inside = picture.thickness[seen] > SIDES[2] * 0.9999
+    assert inside.mean() > 0.4 and picture.thickness.max() < SIDES[2] * 1.02
+    assert (picture.thickness[~seen] == 0).all()
+    top = {edge.number for edge in block.edges if (edge.ends[:, 2] == SIDES[2]).all()}
+    assert set(np.unique(picture.edge)) == top | {0}
+    assert picture.edge[32, 48] == 0
+
+
+def have_shapes(picture, names):
+    assert set(picture.images) == set(names)
+    for name in names:
+        array = getattr(picture, name)
+        assert (array.dtype, array.shape) == SHAPES[name], name
+        assert array is picture.images[name] and array.flags.writeable and array.flags.c_contiguous
+
+
+def test_an_image_that_was_not_asked_for_says_so(renderer, block):
+    picture = renderer.render(block, size=SIZE)
+    with pytest.raises(AttributeError, match='outputs=."depth".'):
+        picture.depth
+    with pytest.raises(AttributeError, match="no attribute"):
+        picture.colours
+
+
+def test_arrays_outlive_everything(bracket):
+    renderer = selvedge.Renderer()
+    depth = renderer.render(bracket, size=SIZE, outputs=["depth"]).depth
+    copy = depth.copy()
+    renderer.close()
+    np.testing.assert_array_equal(depth, copy)
+
+
+def test_runs_are_the_same_bytes(renderer, bracket):
+    first = renderer.render(bracket, "iso", SIZE, ["depth", "normal"])
+    with selvedge.Renderer() as other:
+        again = other.render(bracket, "iso", SIZE, ["depth", "normal"])
+    for name in first.images:
+        assert first.images[name].tobytes() == again.images[name].tobytes(), name
+
+
+@pytest.mark.parametrize(("view", "axis", "sign"), [("front", 1, -1), ("right", 0, 1), ("top", 2, 1), ("back", 1, 1)])
+def test_a_view_sees_the_side_that_it_names(renderer, block, view, axis, sign):
+    picture = renderer.render(block, view, SIZE, ["normal", "depth"])
+    seen = np.isfinite(picture.depth)
+    expected = np.zeros(3)
+    expected[axis] = sign
+    np.testing.assert_allclose(picture.normal[seen], np.broadcast_to(expected, picture.normal[seen].shape), atol=1e-6)
+
+
+def opencv(width, height, focal, eye):
+    """K, R and t of a camera at eye that looks along -z of the model, x to the right."""
+    K = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1.0]])
+    R = np.diag([1.0, -1.0, -1.0])
+    return K, R, -R @ np.asarray(eye, float)
+
+
+def test_a_calibrated_camera_sees_points_where_opencv_projects_them(renderer, block):
+    width, height = 120, 100
+    K, R, t = opencv(width, height, 160.0, (1.0, 1.4, 12.0))
+    camera = selvedge.Camera.opencv(K, R, t.reshape(3, 1))
+    picture = renderer.render(block, size=(width, height), outputs=["depth", "face"], camera=camera)
+    top = np.array([(x, y, SIDES[2]) for x in (0.0, SIDES[0]) for y in (0.0, SIDES[1])])
+    seen = (R @ top.T).T + t
+    pixels = seen @ K.T
+    pixels = pixels[:, :2] / pixels[:, 2:]
+    rows, columns = np.nonzero(picture.face)
+    # the top is nearest: its corners bound what is seen; a pixel is seen if its centre is inside
+    low, high = pixels.min(axis=0), pixels.max(axis=0)
+    assert (columns.min(), rows.min()) == tuple(np.ceil(low).astype(int))
+    assert (columns.max(), rows.max()) == tuple(np.floor(high).astype(int))
+    np.testing.assert_allclose(picture.depth[rows, columns], 12.0 - SIDES[2], rtol=1e-6)
+
+
+def test_cameras_that_show_nothing_are_refused(renderer, block):
+    K, R, t = opencv(*SIZE, 100.0, (0, 0, 9))
+    off = K + np.array([[0, 0, 5.0], [0, 0, 0], [0, 0, 0]])
+    for bad in (selvedge.Camera.opencv(off, R, t), selvedge.Camera.opencv(K, R * 2, t)):
+        with pytest.raises(ValueError):
+            renderer.render(block, size=SIZE, camera=bad)
+    with pytest.raises(ValueError):
+        selvedge.Camera.opencv(K[:2], R, t)
+    with pytest.raises(ValueError, match="coincide"):
+        renderer.render(block, size=SIZE, camera=selvedge.Camera.look_at((1, 2, 3), (1, 2, 3)))
+    with pytest.raises(ValueError, match="exclude"):
+        selvedge.Camera.look_at((1, 2, 3), (0, 0, 0), fov=30, ortho=2)
+    with pytest.raises(TypeError):
+        selvedge.Camera.look_at("eye", (0, 0, 0))
+
+
+@pytest.mark.parametrize(
+    ("arguments", "error", "told"),
+    [
+        ({"size": (0, 64)}, ValueError, "1 to 16384"),
+        ({"size": (64, -1)}, ValueError, "1 to 16384"),
+        ({"size": (16385, 64)}, ValueError, "1 to 16384"),
+        ({"size": (64.5, 64)}, TypeError, "size"),
+        ({"size": 64}, TypeError, "size"),
+        ({"outputs": "depth"}, TypeError, "outputs"),
+        ({"outputs": ["depths"]}, ValueError, "depth, face"),
+        ({"view": "side"}, ValueError, "iso, front"),
+        ({"view": "iso,front"}, ValueError, "one view"),
+        ({"view": 3}, TypeError, "view"),
+        ({"style": "toon"}, ValueError, "clay"),
+        ({"background": "whitish"}, ValueError, "CSS colour"),
+        ({"edges": "some"}, ValueError, "sharp"),
+        ({"edges": "all", "line_width": -1.0}, ValueError, "width"),
+        ({"samples": 3}, ValueError, "1, 4 or 8"),
+        ({"tolerance": 0.0}, ValueError, "0.1"),
+        ({"tolerance": float("nan")}, ValueError, "0.1"),
+        ({"camera": "iso"}, TypeError, "camera"),
+    ],
+)
+def test_wrong_arguments_are_typed_errors(renderer, block, arguments, error, told):
+    with pytest.raises(error, match=told):
+        renderer.render(block, **{"size": SIZE, **arguments})
+
+
+def test_what_is_no_model_is_a_type_error(renderer):
+    with pytest.raises(TypeError):
+        renderer.render("part.step")
+
+
+def test_what_the_renderer_refuses_is_a_render_error(renderer, block):
+    with pytest.raises(selvedge.RenderError):
+        renderer.render(block, size=SIZE, samples=4, smooth="trims")
+    assert renderer.render(block, size=SIZE).size == SIZE
+
+
+def test_the_validation_layer_has_nothing_to_say(block):
+    with selvedge.Renderer(validation=True) as watched:
+        picture = watched.render(block, size=SIZE, outputs=["depth", "part"])
+    assert np.isfinite(picture.depth).any()
+
+
+def test_no_such_device():
+    with pytest.raises(selvedge.DeviceError, match="no such"):
+        selvedge.Renderer("no such device")
+
+
+def test_a_closed_renderer_says_so(block):
+    renderer = selvedge.Renderer()
+    renderer.close()
+    renderer.close()
+    assert renderer.closed
+    with pytest.raises(selvedge.ClosedError):
+        renderer.render(block, size=SIZE)
+
+
+def test_many_pictures_come_in_order_from_a_generator(renderer, block):
+    views = ["front", "right", "top", "front", "iso"]
+    opened = []
+
+    def jobs():
+        for view in views:
+            opened.append(view)
+            yield {"model": block, "view": view, "size": SIZE, "outputs": ["depth"]}
+
+    pictures = list(renderer.render_many(jobs()))
+    assert opened == views
+    for view, picture in zip(views, pictures):
+        np.testing.assert_array_equal(picture.depth, renderer.render(block, view, SIZE, ["depth"]).depth)
+    with pytest.raises(TypeError, match="sizes"):
+        list(renderer.render_many([{"model": block, "sizes": SIZE}]))
+    # given up in the middle, the renderer goes on
+    many = renderer.render_many({"model": block, "size": SIZE} for _ in range(20))
+    next(many)
+    many.close()
+    assert renderer.render(block, size=SIZE).size == SIZE
+
+
+def test_threads_share_a_renderer(renderer, block, bracket):
+    expected = {id(model): renderer.render(model, size=SIZE).colour for model in (block, bracket)}
+    wrong = []
+
+    def draw(model):
+        for _ in range(2):
+            if not np.array_equal(renderer.render(model, size=SIZE).colour, expected[id(model)]):
+                wrong.append(model)
+
+    threads = [threading.Thread(target=draw, args=(model,)) for model in (block, bracket)]
+    for thread in threads:
+        thread.start()
+    for thread in threads:
+        thread.join()
+    assert not wrong
+
+
+def test_a_picture_saves_and_shows_itself(renderer, block, tmp_path):
+    picture = renderer.render(block, size=SIZE)
+    picture.save(tmp_path / "block.png")
+    saved = (tmp_path / "block.png").read_bytes()
+    assert saved[:8] == b"\x89PNG\r\n\x1a\n" and saved == picture._repr_png_()
+    assert (int.from_bytes(saved[16:20], "big"), int.from_bytes(saved[20:24], "big")) == SIZE
+    with pytest.raises(ValueError, match=".png"):
+        picture.save(tmp_path / "block.jpg")
+    with pytest.raises(OSError, match="cannot write"):
+        picture.save(tmp_path / "none" / "block.png")
+
+
+def test_the_judge_finds_the_promise_kept(renderer, bracket):
+    verdict = selvedge.check(bracket, "iso", (160, 120), judged=2000, renderer=renderer)
+    assert verdict["kept"] and verdict["seen"] and verdict["wrong"] == 0
+    assert verdict["judged"] >= 2000 and verdict["worst_shift_px"] <= 0.5
+    assert verdict["judgement"]["agree"] > 0 and verdict["camera"]["size"] == [160, 120]
+
+
+INTERRUPTED = """
+import selvedge, signal, sys, threading, time
+spheres = "".join(f"v {i % 100} {i // 100} {(i * 7919) % 97 / 9}\\n" for i in range(100 * 100))
+quads = "".join(f"f {a+1} {a+2} {a+102} {a+101}\\n" for a in range(9800) if a % 100 < 99)
+model = selvedge.open((spheres + quads).encode(), name="sheet.obj")
+renderer = selvedge.Renderer()
+if sys.argv[1] == "render":
+    work = lambda: [renderer.render(model, size=(4000, 4000), samples=8, outputs=["depth"]) for _ in range(50)]
+else:
+    work = lambda: [selvedge.open(sys.argv[1]) for _ in range(1000)]
+print("ready", flush=True)
+begun = time.monotonic()
+try:
+    work()
+except KeyboardInterrupt:
+    print("interrupted", flush=True)
+    import os
+    os._exit(0)
+"""
+
+
+@pytest.mark.parametrize("work", ["render", str(SAMPLES / "assembly.step")])
+def test_control_c_ends_it(work):
+    child = subprocess.Popen([sys.executable, "-c", INTERRUPTED, work], stdout=subprocess.PIPE, text=True)
+    assert child.stdout.readline() == "ready\n"
+    with pytest.raises(subprocess.TimeoutExpired):  # it is at work
+        child.wait(0.5)
+    child.send_signal(signal.SIGINT)
+    assert child.communicate(timeout=10)[0] == "interrupted\n"

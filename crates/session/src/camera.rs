@@ -1,0 +1,265 @@
+//! Cameras that frame a model, look from somewhere, or are those of a calibrated picture; the camera file for others.
+//!
+//! ```text
+//!   OpenCV      x right, y down, z ahead; pixel (0, 0) has its centre at (0, 0)      p ~ K (R X + t)
+//!   here        y down in pixels; pixel (0, 0) has its centre at (0.5, 0.5)
+//!   eye = -Rᵀ t      ahead = third row of R      up = -second row      fov_y = 2 atan(height / 2 f)
+//! ```
+
+use crate::directions::Direction;
+use crate::error::SessionError;
+use glam::{DMat3, DVec3};
+use selvedge::model::{Bounds, Camera, CameraError, Model, Projection};
+use serde::Serialize;
+
+/// From the model towards the eye: front, right, a little above; no axis of the model seen edge-on.
+pub const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
+/// Vertical field of view where nothing is said, degrees.
+pub const FOV_DEG: f64 = 35.0;
+/// How far a rotation may be from one, and a calibration from square pixels and a middle, each in its own units: what
+/// decimal files round off.
+const ROUNDED: f64 = 1e-6;
+
+/// How wide a view is.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Lens {
+    /// Vertical field of view, degrees.
+    Fov(f64),
+    /// Parallel; the height of the picture in model units.
+    Ortho(f64),
+}
+
+impl Default for Lens {
+    fn default() -> Self {
+        Self::Fov(FOV_DEG)
+    }
+}
+
+impl Lens {
+    fn projection(self) -> Projection {
+        match self {
+            Self::Fov(degrees) => Projection::Perspective { fov_y: degrees.to_radians() },
+            Self::Ortho(height) => Projection::Orthographic { height },
+        }
+    }
+}
+
+/// A calibrated camera and its pose, as OpenCV has them.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub struct Pinhole {
+    /// `fx 0 cx / 0 fy cy / 0 0 1`, pixels.
+    pub intrinsics: DMat3,
+    /// Model to camera axes.
+    pub rotation: DMat3,
+    /// The model's origin in camera axes, model units.
+    pub translation: DVec3,
+    /// Where the middle of the first pixel is: 0 in OpenCV, 0.5 where pixels are counted from their corners.
+    pub first_pixel: f64,
+}
+
+/// Where a picture is taken from.
+#[derive(Clone, Copy, Debug, PartialEq)]
+pub enum Viewpoint {
+    /// From a standard direction, as large as the model fits.
+    Standard(Direction),
+    /// From a point to another.
+    LookAt {
+        /// The eye, model units.
+        eye: DVec3,
+        /// What is in the middle of the picture.
+        target: DVec3,
+        /// What is up in the picture.
+        up: DVec3,
+        /// How wide.
+        lens: Lens,
+    },
+    /// By matrices.
+    Pinhole(Pinhole),
+}
+
+impl Viewpoint {
+    /// The camera, its depth range that of the model.
+    ///
+    /// # Errors
+    /// [`SessionError::Camera`], [`SessionError::Pinhole`].
+    pub fn camera(&self, model: &Model, size: (u32, u32)) -> Result<Camera, SessionError> {
+        // nothing is framed in a picture without pixels
+        if size.0 == 0 || size.1 == 0 {
+            return Err(CameraError::Size.into());
+        }
+        let camera = match *self {
+            Self::Standard(direction) => {
+                Camera::framing(model, direction.from(), direction.up(), FOV_DEG.to_radians(), size)
+            }
+            Self::LookAt { eye, target, up, lens } => {
+                Camera { eye, target, up, projection: lens.projection(), depth_range: (1.0, 2.0), size }
+            }
+            Self::Pinhole(pinhole) => pinhole.camera(size)?,
+        };
+        // what has no direction has no depth either
+        camera.check()?;
+        Ok(fitted(camera, bounds(model))?)
+    }
+}
+
+impl Pinhole {
+    fn camera(&self, (width, height): (u32, u32)) -> Result<Camera, SessionError> {
+        let Self { intrinsics: k, rotation, translation, first_pixel } = *self;
+        let bad = |why| Err(SessionError::Pinhole(why));
+        if !(k.is_finite() && rotation.is_finite() && translation.is_finite() && first_pixel.is_finite()) {
+            return bad("a camera matrix has an entry that is not a number");
+        }
+        let turned = rotation * rotation.transpose() - DMat3::IDENTITY;
+        if turned.to_cols_array().iter().any(|x| x.abs() > ROUNDED) || rotation.determinant() < 0.0 {
+            return bad("R is no rotation: its rows are not at right angles and of length 1, or it mirrors");
+        }
+        let (fx, fy) = (k.x_axis.x, k.y_axis.y);
+        let below = [k.x_axis.y, k.x_axis.z, k.y_axis.z, k.y_axis.x];
+        if !(fx > 0.0 && fy > 0.0) || below.iter().any(|x| x.abs() > ROUNDED) || (k.z_axis.z - 1.0).abs() > ROUNDED {
+            return bad("K must be [[fx, 0, cx], [0, fy, cy], [0, 0, 1]] with fx and fy above 0");
+        }
+        if (fx / fy - 1.0).abs() > ROUNDED {
+            return bad("fx and fy differ: pixels are square here");
+        }
+        let middle = 0.5 - first_pixel;
+        let off = (k.z_axis.x + middle - 0.5 * f64::from(width)).abs();
+        let off = off.max((k.z_axis.y + middle - 0.5 * f64::from(height)).abs());
+        if off > ROUNDED * f64::from(width.max(height)) {
+            return bad(
+                "the principal point is not the middle of the picture: cx = (width - 1) / 2 and cy = (height - 1) / 2 in \
+                 OpenCV's pixels, width / 2 and height / 2 where pixels are counted from their corners",
+            );
+        }
+        let rows = rotation.transpose(); // columns are the rows
+        let eye = -(rows * translation);
+        let projection = Projection::Perspective { fov_y: 2.0 * (0.5 * f64::from(height) / fy).atan() };
+        Ok(Camera {
+            eye,
+            target: eye + rows.z_axis,
+            up: -rows.y_axis,
+            projection,
+            depth_range: (1.0, 2.0),
+            size: (width, height),
+        })
+    }
+}
+
+/// The box of what a picture of the whole model shows: that of its control points where nothing is left of it, so that
+/// there is a picture that says so.
+pub fn bounds(model: &Model) -> Bounds {
+    let bounds = model.bounds();
+    if bounds.is_empty() { model.control_bounds() } else { bounds }
+}
+
+/// All of the model in the picture, whatever is asked for.
+pub fn whole(bounds: Bounds, size: (u32, u32)) -> Camera {
+    Camera::around(bounds, FROM, DVec3::Z, FOV_DEG.to_radians(), size)
+}
+
+/// `camera` with a depth range that holds the model, checked.
+///
+/// # Errors
+/// As [`Camera::check`].
+pub fn fitted(mut camera: Camera, bounds: Bounds) -> Result<Camera, CameraError> {
+    camera.fit_depth(bounds);
+    camera.check()?;
+    Ok(camera)
+}
+
+/// A camera as other programs read it.
+#[derive(Clone, Copy, Debug, Serialize)]
+pub struct CameraFile {
+    /// The eye, model units.
+    pub eye: [f64; 3],
+    /// What is in the middle of the picture.
+    pub target: [f64; 3],
+    /// What is up in the picture.
+    pub up: [f64; 3],
+    /// Vertical field of view, degrees.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub fovy: Option<f64>,
+    /// Half the height of a parallel view, millimetres.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub ortho: Option<f64>,
+    /// Width and height, pixels.
+    pub size: [u32; 2],
+}
+
+impl From<&Camera> for CameraFile {
+    fn from(camera: &Camera) -> Self {
+        let (fovy, ortho) = match camera.projection {
+            Projection::Perspective { fov_y } => (Some(fov_y.to_degrees()), None),
+            Projection::Orthographic { height } => (None, Some(height * 0.5)),
+        };
+        Self {
+            eye: camera.eye.into(),
+            target: camera.target.into(),
+            up: camera.up.into(),
+            fovy,
+            ortho,
+            size: camera.size.into(),
+        }
+    }
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use glam::{DVec2, EulerRot};
+
+    fn pinhole() -> Pinhole {
+        // a picture of 640 x 480: OpenCV's middle is half a pixel before ours
+        let intrinsics = DMat3::from_cols(DVec3::X * 800.0, DVec3::Y * 800.0, DVec3::new(319.5, 239.5, 1.0));
+        let rotation = DMat3::from_euler(EulerRot::XYZ, 0.3, -0.5, 0.2);
+        Pinhole { intrinsics, rotation, translation: DVec3::new(0.2, -0.1, 9.0), first_pixel: 0.0 }
+    }
+
+    /// By OpenCV's own formula, computed beside.
+    #[test]
+    fn points_fall_where_opencv_projects_them() {
+        let pinhole = pinhole();
+        let camera = pinhole.camera((640, 480)).expect("a camera");
+        for point in [DVec3::ZERO, DVec3::new(1.0, -0.5, 0.7), DVec3::new(-1.1, 0.9, -0.3)] {
+            let seen = pinhole.intrinsics * (pinhole.rotation * point + pinhole.translation);
+            let (pixel, depth) = camera.project(point).expect("in front");
+            let expected = DVec2::new(seen.x / seen.z, seen.y / seen.z) + 0.5;
+            assert!((pixel - expected).length() < 1e-9 && (depth - seen.z).abs() < 1e-12, "{pixel} for {expected}");
+        }
+    }
+
+    #[test]
+    fn matrices_of_no_camera_are_refused() {
+        let good = pinhole();
+        let with = |change: fn(&mut Pinhole)| {
+            let mut pinhole = good;
+            change(&mut pinhole);
+            pinhole.camera((640, 480)).expect_err("refused").to_string()
+        };
+        assert!(with(|p| p.intrinsics.z_axis.x = 320.0).contains("principal point"));
+        assert!(with(|p| p.first_pixel = 0.5).contains("principal point"));
+        assert!(with(|p| p.intrinsics.x_axis.x = 810.0).contains("fx and fy"));
+        assert!(with(|p| p.intrinsics.y_axis.x = 1.0).contains("K must be"));
+        assert!(with(|p| p.rotation.x_axis *= -1.0).contains("no rotation"));
+        assert!(with(|p| p.rotation *= 1.01).contains("no rotation"));
+        assert!(with(|p| p.translation.x = f64::NAN).contains("not a number"));
+        let corners = Pinhole { first_pixel: 0.5, ..good };
+        let corners = Pinhole {
+            intrinsics: DMat3::from_cols(DVec3::X * 800.0, DVec3::Y * 800.0, DVec3::new(320.0, 240.0, 1.0)),
+            ..corners
+        };
+        assert_eq!(corners.camera((640, 480)).expect("a camera"), good.camera((640, 480)).expect("a camera"));
+    }
+
+    #[test]
+    fn the_file_holds_degrees_or_half_the_height() {
+        let text = |projection| {
+            let camera = Camera { projection, ..whole(Bounds { min: DVec3::ZERO, max: DVec3::ONE }, (64, 48)) };
+            serde_json::to_value(CameraFile::from(&camera)).expect("serialises")
+        };
+        let fov = text(Projection::Perspective { fov_y: 40f64.to_radians() });
+        assert!((fov["fovy"].as_f64().expect("degrees") - 40.0).abs() < 1e-12 && fov.get("ortho").is_none());
+        assert_eq!(fov["size"], serde_json::json!([64, 48]));
+        let ortho = text(Projection::Orthographic { height: 20.0 });
+        assert!(ortho["ortho"] == 10.0 && ortho.get("fovy").is_none());
+    }
+}

@@ -1,0 +1,134 @@
+//! Why there is no model or no picture, and how a caller ends what takes too long.
+
+use selvedge::headless::HeadlessError;
+use selvedge::model::CameraError;
+use selvedge::picture::BadEdges;
+use selvedge_io::import::{ImportError, Summary};
+use std::any::Any;
+use std::panic::{AssertUnwindSafe, catch_unwind, resume_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
+use std::time::{Duration, Instant};
+
+/// Why a file gives no model, or a job no picture.
+#[derive(Debug, thiserror::Error)]
+#[non_exhaustive]
+pub enum SessionError {
+    /// The file cannot be read, or is not of a known format.
+    #[error(transparent)]
+    Import(#[from] ImportError),
+    /// Nothing of the file can be drawn.
+    #[error("{file}: {summary}")]
+    Nothing {
+        /// The file.
+        file: String,
+        /// What it holds in place of surfaces.
+        summary: Box<Summary>,
+    },
+    /// No device, or none that suffices.
+    #[error(transparent)]
+    Device(HeadlessError),
+    /// The model cannot be drawn, or the device failed.
+    #[error(transparent)]
+    Draw(#[from] HeadlessError),
+    /// The camera shows nothing.
+    #[error("the camera shows nothing: {0}")]
+    Camera(#[from] CameraError),
+    /// A matrix that no camera of the renderer has.
+    #[error("{0}")]
+    Pinhole(&'static str),
+    /// Settings of lines that draw nothing sensible.
+    #[error(transparent)]
+    Edges(#[from] BadEdges),
+    /// The validation layer found something while a picture was drawn.
+    #[error("validation: {0}")]
+    Validation(String),
+    /// The caller said [`Stop::set`], or the time of [`Stop::within`] is over.
+    #[error("stopped before it was done")]
+    Stopped,
+    /// The renderer was closed, or has failed in a way that it does not survive.
+    #[error("the renderer is closed")]
+    Closed,
+    /// A defect: an invariant of the library does not hold.
+    #[error("internal error: {0}")]
+    Panicked(String),
+}
+
+/// A flag that ends an import or an upload: set from any thread or by time, seen between two faces.
+#[derive(Clone, Debug, Default)]
+pub struct Stop {
+    set: Arc<AtomicBool>,
+    until: Option<Instant>,
+}
+
+/// What unwinds through the library to the caller who stopped it.
+struct Stopping;
+
+impl Stop {
+    /// Set by itself once this time is over; a time without end is none.
+    pub fn within(time: Duration) -> Self {
+        Self { until: Instant::now().checked_add(time), ..Self::default() }
+    }
+
+    /// From now on.
+    pub fn set(&self) {
+        self.set.store(true, Ordering::Relaxed);
+    }
+
+    /// Whether it was set.
+    pub fn is_set(&self) -> bool {
+        self.set.load(Ordering::Relaxed) || self.until.is_some_and(|until| Instant::now() >= until)
+    }
+
+    /// Unwinds to [`guarded`] if it was set: progress callbacks cannot say no.
+    pub fn check(&self) {
+        if self.is_set() {
+            resume_unwind(Box::new(Stopping));
+        }
+    }
+}
+
+/// Runs work whose progress callbacks call [`Stop::check`]; a panic becomes an error.
+///
+/// What the work had in hand may be half done: the caller throws it away.
+///
+/// # Errors
+/// Those of the work, [`SessionError::Stopped`], [`SessionError::Panicked`].
+pub fn guarded<T>(work: impl FnOnce() -> Result<T, SessionError>) -> Result<T, SessionError> {
+    catch_unwind(AssertUnwindSafe(work)).unwrap_or_else(|cause| Err(unwound(cause)))
+}
+
+fn unwound(cause: Box<dyn Any + Send>) -> SessionError {
+    if cause.is::<Stopping>() {
+        return SessionError::Stopped;
+    }
+    let text = cause.downcast_ref::<String>().cloned();
+    let text = text.or_else(|| cause.downcast_ref::<&str>().map(|text| (*text).to_owned()));
+    SessionError::Panicked(text.unwrap_or_else(|| "no message".to_owned()))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_unwinds_is_told_by_its_cause() {
+        let late = Stop::within(Duration::ZERO);
+        let stopped: Result<(), SessionError> = guarded(|| {
+            late.check();
+            Ok(())
+        });
+        assert!(matches!(stopped, Err(SessionError::Stopped)));
+        let early = Stop::within(Duration::MAX);
+        let done: Result<u8, SessionError> = guarded(|| {
+            early.check();
+            Ok(7)
+        });
+        assert!(matches!(done, Ok(7)));
+        early.clone().set();
+        assert!(early.is_set());
+        let number = 3;
+        let broken: Result<(), SessionError> = guarded(|| panic!("{number} is no invariant"));
+        assert_eq!(broken.expect_err("a panic").to_string(), "internal error: 3 is no invariant");
+    }
+}

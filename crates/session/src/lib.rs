@@ -1,0 +1,36 @@
+//! From a CAD file to pictures in memory: what the program, the C library and the Python package share.
+//!
+//! ```text
+//!   path, bytes ──read──▶ Loaded { model, warnings, … } ──┐
+//!                         directions, views ──▶ Camera ───┼─▶ Job ──Worker, a thread with a device──▶ Picture
+//!                         outputs, backdrop ──────────────┘                     images ─▶ arrays, PNG
+//! ```
+//!
+//! A [`Worker`] draws one picture after another; its caller waits as long as it likes, and reads the next file
+//! meanwhile. A flag ends an import or an upload between two faces.
+#![warn(missing_docs)]
+#![forbid(unsafe_code)]
+
+mod backdrop;
+mod camera;
+mod directions;
+mod error;
+mod images;
+mod lines;
+mod png;
+mod read;
+mod tree;
+mod verdict;
+mod worker;
+
+pub use backdrop::{Backdrop, colour};
+pub use camera::{CameraFile, FOV_DEG, FROM, Lens, Pinhole, Viewpoint, bounds, fitted, whole};
+pub use directions::{Direction, Directions, NAMED};
+pub use error::{SessionError, Stop, guarded};
+pub use images::{Image, Values};
+pub use lines::lines;
+pub use png::{save as save_png, write as write_png};
+pub use read::{Loaded, ReadOptions, Source, memory, read};
+pub use tree::{Body, Node};
+pub use verdict::{Verdict, worst_shift_px, wrong};
+pub use worker::{DeviceOptions, Drawer, Job, Ticket, Worker};

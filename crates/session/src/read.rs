@@ -1,0 +1,154 @@
+//! Files and bytes to models that have something to draw.
+
+use crate::error::{SessionError, Stop, guarded};
+use selvedge::model::Model;
+use selvedge_io::import::{
+    self, Facets, Folders, Import, ImportReport, NamedCamera, Options, PictureSettings, Stage, Summary, Warning,
+};
+use std::path::{Path, PathBuf};
+use std::sync::Arc;
+
+/// Where a model comes from.
+#[derive(Clone, Copy, Debug)]
+pub enum Source<'a> {
+    /// A file. Files that it names are looked for beside it.
+    Path(&'a Path),
+    /// The content of one.
+    Bytes {
+        /// All of it, gzip or not.
+        bytes: &'a [u8],
+        /// Stands for the file in messages; its ending tells the format where the content does not.
+        name: &'a str,
+    },
+}
+
+/// How to read.
+#[derive(Clone, Debug, Default)]
+pub struct ReadOptions {
+    /// Most bytes of a file, gzip undone; three quarters of the machine's memory without it.
+    pub most_bytes: Option<u64>,
+    /// Folders in which other files are looked for, too.
+    pub search: Vec<PathBuf>,
+}
+
+/// A model, and what is known about the file.
+#[derive(Clone, Debug)]
+pub struct Loaded {
+    /// The file as messages name it.
+    pub file: String,
+    /// Shared with the renderer.
+    pub model: Arc<Model>,
+    /// What is drawn and what is missing.
+    pub summary: Summary,
+    /// What was left out or healed.
+    pub warnings: Vec<Warning>,
+    /// Cameras that a scene names.
+    pub cameras: Vec<NamedCamera>,
+    /// What a scene asks of its picture.
+    pub picture: PictureSettings,
+    /// Counts for people.
+    pub report: ImportReport,
+}
+
+/// Reads a model that has something to draw. `progress` as in [`Options::progress`].
+///
+/// # Errors
+/// [`SessionError::Import`], [`SessionError::Nothing`], [`SessionError::Stopped`].
+pub fn read(
+    source: Source<'_>,
+    how: &ReadOptions,
+    stop: &Stop,
+    progress: &(dyn Fn(Stage) + Sync),
+) -> Result<Loaded, SessionError> {
+    let tell = |stage: Stage| {
+        stop.check();
+        progress(stage);
+    };
+    let folders = Folders::new(how.search.clone());
+    let options = Options {
+        progress: Some(&tell),
+        most_bytes: Some(how.most_bytes.unwrap_or_else(|| memory() / 4 * 3)),
+        files: Some(&folders),
+        facets: Facets::Round,
+    };
+    let (file, import) = match source {
+        Source::Path(path) => (path.display().to_string(), guarded(|| Ok(import::open_with(path, &options)?))),
+        Source::Bytes { mut bytes, name } => {
+            (name.to_owned(), guarded(|| Ok(import::read_from(&mut bytes, name, &options)?)))
+        }
+    };
+    Loaded::new(file, import?)
+}
+
+impl Loaded {
+    /// Of an import.
+    ///
+    /// # Errors
+    /// [`SessionError::Nothing`].
+    pub fn new(file: String, import: Import) -> Result<Self, SessionError> {
+        let summary = import.summary();
+        if summary.draws_nothing() {
+            return Err(SessionError::Nothing { file, summary: Box::new(summary) });
+        }
+        let Import { model, warnings, report, cameras, picture } = import;
+        Ok(Self { file, model: Arc::new(model), summary, warnings, cameras, picture, report })
+    }
+}
+
+/// Bytes of memory: the machine's, or what the group of processes may use of it.
+pub fn memory() -> u64 {
+    let mut system = sysinfo::System::new();
+    system.refresh_memory();
+    let group = system.cgroup_limits().map_or(u64::MAX, |limits| limits.total_memory);
+    system.total_memory().min(group)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    const BRACKET: &[u8] = include_bytes!("../../../samples/bracket.step");
+
+    fn bytes<'a>(bytes: &'a [u8], name: &'a str) -> Result<Loaded, SessionError> {
+        read(Source::Bytes { bytes, name }, &ReadOptions::default(), &Stop::default(), &|_| ())
+    }
+
+    #[test]
+    fn bytes_and_paths_hold_the_same() {
+        let path = Path::new(concat!(env!("CARGO_MANIFEST_DIR"), "/../../samples/bracket.step"));
+        let of_path = read(Source::Path(path), &ReadOptions::default(), &Stop::default(), &|_| ()).expect("a model");
+        let of_bytes = bytes(BRACKET, "bracket.step").expect("a model");
+        assert_eq!(of_path.model, of_bytes.model);
+        assert_eq!(of_bytes.file, "bracket.step");
+    }
+
+    #[test]
+    fn what_cannot_be_drawn_is_an_error_that_names_the_file() {
+        let damaged = bytes(b"ISO-10303-21;", "cut.step").expect_err("no data");
+        assert!(
+            matches!(damaged, SessionError::Import(_)) && damaged.to_string().starts_with("cut.step:"),
+            "{damaged}"
+        );
+        let empty = bytes(b"group();", "none.csg").expect_err("nothing");
+        assert!(matches!(empty, SessionError::Nothing { .. }), "{empty}");
+        assert!(empty.to_string().starts_with("none.csg: nothing of it can be drawn"), "{empty}");
+        let few = ReadOptions { most_bytes: Some(100), ..ReadOptions::default() };
+        let source = Source::Bytes { bytes: BRACKET, name: "bracket.step" };
+        let large = read(source, &few, &Stop::default(), &|_| ()).expect_err("too large");
+        assert!(large.to_string().contains("100 bytes"), "{large}");
+    }
+
+    /// From the first face on: the import has gone its whole way until then.
+    #[test]
+    fn a_flag_ends_an_import() {
+        let stop = Stop::default();
+        let at_a_face = |stage: Stage| {
+            if matches!(stage, Stage::Faces { built: 1.., .. }) {
+                stop.set();
+            }
+        };
+        let source = Source::Bytes { bytes: BRACKET, name: "bracket.step" };
+        let ended = read(source, &ReadOptions::default(), &stop, &at_a_face).expect_err("stopped");
+        assert!(matches!(ended, SessionError::Stopped), "{ended}");
+    }
+}
