@@ -281,7 +281,6 @@ impl App {
         }
         let wanted = ShownPicture { camera: due.camera, settings, generation: engine.generation };
         let is_new = self.picture != Some(wanted) && due.camera.size.0 > 1 && !self.session.world.is_empty();
-        let is_new = is_new && engine.resolves(&due.camera, uploaded(&self.proxy));
         let generation = engine.generation;
         let picture = if is_new { engine.renderer() } else { None };
         let picture = picture.map(|renderer| Picture { renderer, camera: &due.camera, settings });

@@ -2,13 +2,12 @@
 //!
 //! ```text
 //!   Ready ──request──▶ Uploading (thread: model of the state, upload) ──Uploaded──▶ Ready, or the renderer before
-//!     └──view from near──▶ Uploading (thread: what the view sees, cut out in f64)
 //! ```
 
 use crate::session::{SceneState, Shown, World};
-use selvedge::model::{Camera, LoopAt};
-use selvedge::picture::SceneSettings;
-use selvedge::renderer::{DeepZoom, DeepZoomUpload, RenderError, Renderer};
+use selvedge::model::LoopAt;
+use selvedge::picture::{SceneSettings, Smooth};
+use selvedge::renderer::{RenderError, Renderer};
 use std::collections::BTreeSet;
 use std::sync::Arc;
 use std::thread::{self, JoinHandle};
@@ -30,7 +29,6 @@ impl PartialEq for Request {
 /// What a thread brings back.
 pub struct Uploaded {
     renderer: Renderer,
-    deep_zoom: DeepZoom,
     /// `None`: another part of the same model.
     request: Option<(Request, Arc<Shown>)>,
     result: Result<(), RenderError>,
@@ -51,7 +49,6 @@ pub enum Outcome {
 /// The renderer and what it holds.
 pub struct Engine {
     renderer: Option<Renderer>,
-    deep_zoom: DeepZoom,
     thread: Option<JoinHandle<()>>,
     /// Held by the renderer.
     current: Option<(Request, Arc<Shown>)>,
@@ -65,15 +62,7 @@ pub struct Engine {
 
 impl Engine {
     pub fn new(renderer: Renderer) -> Self {
-        Self {
-            renderer: Some(renderer),
-            deep_zoom: DeepZoom::default(),
-            thread: None,
-            current: None,
-            asked: None,
-            notice: None,
-            generation: 0,
-        }
+        Self { renderer: Some(renderer), thread: None, current: None, asked: None, notice: None, generation: 0 }
     }
 
     /// A thread uploads.
@@ -107,12 +96,11 @@ impl Engine {
             let mut result = renderer.upload_with(&shown.model, settings);
             if let Err(RenderError::SmoothTrims(what)) = result {
                 notice = Some(format!("Borders are not smooth: that does not go with {what}."));
-                settings.smooth_trims = false;
+                settings.smooth = Smooth::None;
                 result = renderer.upload_with(&shown.model, settings);
             }
-            let deep_zoom = DeepZoom::new(&shown.model);
             let request = Request { settings, ..request };
-            done(Box::new(Uploaded { renderer, deep_zoom, request: Some((request, shown)), result, notice }));
+            done(Box::new(Uploaded { renderer, request: Some((request, shown)), result, notice }));
         }));
     }
 
@@ -151,36 +139,9 @@ impl Engine {
         true
     }
 
-    /// Whether the renderer holds what this view sees; else begins to upload it.
-    pub fn resolves(&mut self, camera: &Camera, done: impl FnOnce(Box<Uploaded>) + Send + 'static) -> bool {
-        let Some((request, shown)) = &self.current else { return false };
-        if self.is_busy() {
-            return false;
-        }
-        // loops that are being edited stay where they are
-        if request.settings.editable {
-            return true;
-        }
-        let wanted = self.deep_zoom.of(&shown.model, camera);
-        if wanted == DeepZoomUpload::Same {
-            return true;
-        }
-        let Some(mut renderer) = self.renderer.take() else { return false };
-        let (shown, settings) = (Arc::clone(shown), request.settings);
-        let deep_zoom = std::mem::take(&mut self.deep_zoom);
-        self.thread = Some(thread::spawn(move || {
-            let result = match &wanted {
-                DeepZoomUpload::Cut(cut) => renderer.upload_cut(&shown.model, cut, settings),
-                _ => renderer.upload_with(&shown.model, settings),
-            };
-            done(Box::new(Uploaded { renderer, deep_zoom, request: None, result, notice: None }));
-        }));
-        false
-    }
-
     /// Takes back what the thread has.
     pub fn take(&mut self, uploaded: Uploaded) -> Outcome {
-        let Uploaded { renderer, deep_zoom, request, result, notice } = uploaded;
+        let Uploaded { renderer, request, result, notice } = uploaded;
         if let Some(thread) = self.thread.take() {
             // it has nothing left to do
             let _ = thread.join();
@@ -188,13 +149,8 @@ impl Engine {
         self.renderer = Some(renderer);
         let is_model = request.is_some();
         if let Err(error) = result {
-            if !is_model {
-                self.deep_zoom = deep_zoom;
-                self.deep_zoom.forget();
-            }
             return Outcome::Failed(error);
         }
-        self.deep_zoom = deep_zoom;
         self.generation += 1;
         if let Some(current) = request {
             self.current = Some(current);

@@ -4,7 +4,7 @@ use super::app::App;
 use crate::pick::Mark;
 use crate::session::Picked;
 use crate::settings::{Lines, Settings};
-use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, SceneSettings};
+use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, SceneSettings, Smooth};
 
 impl App {
     /// Settings of the model that is drawn.
@@ -17,7 +17,8 @@ impl App {
         };
         let edges = EdgeSettings { which, silhouettes, hidden: hidden_lines, ..EdgeSettings::default() };
         let edges = (which != EdgeChoice::None || silhouettes).then_some(edges);
-        SceneSettings { edges, smooth_trims: smooth, editable: self.ui.trims, ..SceneSettings::default() }
+        let smooth = if smooth { Smooth::Borders } else { Smooth::None };
+        SceneSettings { edges, smooth, editable: self.ui.trims, ..SceneSettings::default() }
     }
 
     /// Settings of the pictures in the window.

@@ -14,7 +14,8 @@ use ash::vk;
 use gpu_allocator::MemoryLocation;
 use gpu_allocator::vulkan::{Allocation, AllocationCreateDesc, AllocationScheme};
 use selvedge::gpu::Image;
-use selvedge::renderer::{Renderer, TargetFormats, Targets as EngineTargets};
+use selvedge::picture::Outputs;
+use selvedge::renderer::{Aovs, TargetFormats, Targets as EngineTargets};
 use selvedge::{ash, gpu_allocator};
 use std::sync::PoisonError;
 use vk::{AccessFlags2 as A, ImageLayout as L, PipelineStageFlags2 as S};
@@ -22,7 +23,11 @@ use vk::{AccessFlags2 as A, ImageLayout as L, PipelineStageFlags2 as S};
 /// As the engine's own pictures have it: encoded by the format.
 pub const COLOUR_FORMAT: vk::Format = vk::Format::R8G8B8A8_SRGB;
 /// What the engine draws into.
-pub const FORMATS: TargetFormats = TargetFormats { colour: COLOUR_FORMAT, depth: None, aovs: true, numbers: true };
+pub const FORMATS: TargetFormats = TargetFormats {
+    colour: COLOUR_FORMAT,
+    depth: None,
+    outputs: Outputs { edge: true, part: true, instance: true, ..Outputs::ALL },
+};
 const COUNT: usize = 8;
 
 /// One side of a barrier.
@@ -49,9 +54,9 @@ pub struct Targets {
 const NAMES: [&str; COUNT] = ["colour", "depth", "face", "uv", "normal", "edge", "part", "instance"];
 
 fn formats() -> [vk::Format; COUNT] {
-    let [depth, face, uv, normal] = Renderer::AOV_FORMATS;
-    let number = Renderer::NUMBER_FORMAT;
-    [COLOUR_FORMAT, depth, face, uv, normal, number, number, number]
+    use vk::Format as F;
+    let number = F::R32_UINT;
+    [COLOUR_FORMAT, F::R32_SFLOAT, number, F::R32G32_SFLOAT, F::R32G32B32A32_SFLOAT, number, number, number]
 }
 
 const WHOLE: vk::ImageSubresourceRange = vk::ImageSubresourceRange {
@@ -95,13 +100,10 @@ impl Targets {
 
     /// For the engine.
     pub fn engine(&self) -> EngineTargets<'_> {
-        let [colour, depth, face, uv, normal, edge, part, instance] = &self.borrowed;
-        EngineTargets {
-            colour,
-            depth: None,
-            aovs: Some([depth, face, uv, normal]),
-            numbers: Some([edge, part, instance]),
-        }
+        let [colour, rest @ ..] = &self.borrowed;
+        let [depth, face, uv, normal, edge, part, instance] = rest.each_ref().map(Some);
+        let aovs = Aovs { depth, face, uv, normal, edge, part, instance };
+        EngineTargets { colour, depth: None, aovs, thickness: None }
     }
 
     /// The engine may draw: what they held goes.
