@@ -187,11 +187,8 @@ pub fn command(session: &Session, camera: &Camera, settings: &Settings, style: S
         Lines::None => "none",
     };
     push("--edges", edges.to_owned());
-    for (flag, on) in [
-        ("--silhouettes", settings.silhouettes),
-        ("--hidden-lines", settings.hidden_lines),
-        ("--smooth-trims", settings.smooth),
-    ] {
+    push("--smooth", if settings.smooth { "borders" } else { "none" }.to_owned());
+    for (flag, on) in [("--silhouettes", settings.silhouettes), ("--hidden-lines", settings.hidden_lines)] {
         words.extend(on.then(|| flag.to_owned()));
     }
     words.join(" ")
