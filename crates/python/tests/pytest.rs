@@ -18,7 +18,12 @@ fn module() -> PathBuf {
 fn python_passes_its_tests() {
     let root = Path::new(env!("CARGO_MANIFEST_DIR")).join("../..");
     let python = env::var_os("SELVEDGE_PYTHON").map_or_else(|| root.join(".venv/bin/python"), PathBuf::from);
-    assert!(python.is_file(), "{}: no such Python; tools/setup makes one", python.display());
+    let asked = env::var_os("SELVEDGE_PYTHON").is_some();
+    let has_modules = || Command::new(&python).args(["-c", "import numpy, pytest"]).status().is_ok_and(|s| s.success());
+    if !asked && !has_modules() {
+        eprintln!("SKIPPED: {}: no Python with numpy and pytest; tools/python makes one", python.display());
+        return;
+    }
     let site = tempfile::tempdir().expect("a folder");
     let package = site.path().join("selvedge");
     fs::create_dir(&package).expect("a folder");
