@@ -17,9 +17,7 @@
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::draw::Draw;
 use crate::frame::common::kernel::Kernel;
-use crate::gpu::{
-    Attachment, Blend, Buffer, ColourTarget, Commands, Device, GpuError, Image, Pipeline, Resource, TexelBuffer,
-};
+use crate::gpu::{Attachment, Blend, Buffer, ColourTarget, Commands, Device, GpuError, Image, Pipeline, Resource};
 use crate::shaders::{self, BORDER_MIX_PLAIN, TrimTest, constant};
 use ash::vk;
 
@@ -56,7 +54,6 @@ pub(crate) struct BorderMix {
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
     pub placed: Placed<'a>,
-    pub items: &'a TexelBuffer,
     pub visibility: &'a Image,
     /// Linear colour and depth.
     pub resolved: &'a Image,
@@ -99,8 +96,14 @@ impl BorderMix {
     /// Lists the pixels at borders.
     pub(crate) fn find(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
         let (width, height) = b.visibility.size();
-        let resources =
-            [b.frame.into(), b.items.into(), b.visibility.into(), b.resolved.into(), b.list.into(), b.dispatch.into()];
+        let resources = [
+            b.frame.into(),
+            b.placed.items.into(),
+            b.visibility.into(),
+            b.resolved.into(),
+            b.list.into(),
+            b.dispatch.into(),
+        ];
         self.find.record_grid(cmd, &resources, [width.div_ceil(PART[0]), height.div_ceil(PART[1]), 1]);
     }
 

@@ -64,7 +64,6 @@ impl SmoothBorders {
         let bindings = border_mix::Bindings {
             frame: frame.constants,
             placed: frame.scene.placed(frame.views),
-            items: &frame.scene.items,
             visibility: &frame.stages.visibility.image,
             resolved: &self.resolved,
             list: &self.list,

@@ -34,7 +34,7 @@ pub enum Picked {
     Number {
         /// Its placed part, if it has one.
         instance: Option<usize>,
-        /// As in [`Sample::face`].
+        /// As in `Sample::face`.
         id: u32,
     },
 }

@@ -43,7 +43,7 @@ fn circle(centre: DVec2, radius: f64) -> TrimLoop {
     let points = [(1.0, 0.0), (1.0, 1.0), (0.0, 1.0), (-1.0, 1.0), (-1.0, 0.0), (-1.0, -1.0), (0.0, -1.0), (1.0, -1.0)];
     let at = |k: usize| {
         let (x, y) = points[k % 8];
-        corner(x, y, if k % 2 == 0 { 1.0 } else { FRAC_1_SQRT_2 })
+        corner(x, y, if k.is_multiple_of(2) { 1.0 } else { FRAC_1_SQRT_2 })
     };
     let quarter = |k: usize| Bezier { points: vec![at(2 * k), at(2 * k + 1), at(2 * k + 2)] };
     TrimLoop::new((0..4).map(quarter).collect(), DVec2::splat(1e-12)).expect("closed")
