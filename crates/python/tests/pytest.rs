@@ -1,6 +1,6 @@
 //! Hands the module to Python and runs the tests beside this file.
 //!
-//! `SELVEDGE_PYTHON` names a Python with numpy and pytest; without it that of `.venv`, which `tools/setup` makes.
+//! `SELVEDGE_PYTHON` names a Python with numpy and pytest; without it that of `.venv`, which `tools/python` makes.
 
 use std::path::{Path, PathBuf};
 use std::process::Command;
