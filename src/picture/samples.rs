@@ -27,12 +27,6 @@ impl Samples {
         }
     }
 
-    /// Which borders a program smooths beside so many samples, where its user says nothing else: several samples smooth all
-    /// by themselves.
-    pub fn smooth_by_default(self, said: Option<Smooth>) -> Smooth {
-        said.unwrap_or(if self == Self::One { Smooth::Borders } else { Smooth::None })
-    }
-
     /// Where they lie, pixels from the centre, y down; none for [`One`](Self::One). Source: Vulkan 1.3, section 25.3
     /// (standard sample locations).
     pub(crate) fn offsets(self) -> &'static [[f64; 2]] {

@@ -1,8 +1,7 @@
 //! Smooth borders: pixels at the borders of faces, silhouettes and folds, against exact rays and against the same frame
 //! sixteen times as large.
 //!
-//! Eight points a pixel, each in a row and a column of its own, are off by a sixteenth at a straight edge on average, and
-//! what no pixel around sees is not mixed: a corner of less than a pixel, a hole that no centre sees through.
+//! What no pixel around sees is not mixed: a corner of less than a pixel, a hole that no centre sees through.
 
 use crate::edges::{blocks, contrast_errors, coverage_errors, covered, root_mean_square};
 use crate::shapes;
@@ -39,7 +38,8 @@ fn outlines_cover_what_exact_rays_say() {
             let (rough, rms) = (root_mean_square(&rough), root_mean_square(&smooth));
             println!("{way:?}: {rough:.4}, {rms:.4}; mean {mean:.4}, {far} of {}", smooth.len());
             assert!(smooth.len() > 60 && rough > 0.2, "{rough}");
-            // points know a straight border to a sixteenth, 1/24 on average where it runs along a row or a column of them
+            // sixteen points know straight lines to 0.031 on average over all of them; the plate has some that run along
+            // rows of pixels, and eight bits a colour
             let bound = 1.0 / 24.0;
             assert!(mean <= bound && far == 0, "{way:?}: {rms} of {rough}, mean {mean}, {far} far off");
         }
@@ -71,29 +71,36 @@ fn borders_are_as_the_frame_sixteen_times_as_large() {
 }
 
 /// Images but the colour are as without, bit for bit, and so is the colour of pixels whose eight neighbours see the same
-/// face at depths that do not jump.
+/// face, in a row of depths that bends by less than a quarter of what it climbs; and of those that see nothing.
 #[test]
 fn nothing_else_changes() {
+    let (width, height) = (SIZE.0 as usize, SIZE.1 as usize);
+    let mut alone = 0;
     for shape in shapes::all() {
         let camera = perspective(&shape.model, SIZE);
-        let [before, after] = [Smooth::None, Smooth::Borders].map(|smooth| {
-            let picture = draw(&shape.model, settings(smooth, TrimWay::Exact), &camera);
-            let at = |i: usize, k: i32| {
-                let (x, y) = (i as i32 % SIZE.0 as i32 + k % 3 - 1, i as i32 / SIZE.0 as i32 + k / 3 - 1);
-                let within = (0..SIZE.0 as i32).contains(&x) && (0..SIZE.1 as i32).contains(&y);
-                within.then_some((y * SIZE.0 as i32 + x) as usize)
-            };
-            (picture, at)
-        });
-        let ((before, at), (after, _)) = (before, after);
+        let [before, after] =
+            [Smooth::None, Smooth::Borders].map(|smooth| draw(&shape.model, settings(smooth, TrimWay::Exact), &camera));
         let same_colour = Picture { colour: before.colour.clone(), stats: before.stats.clone(), ..after.clone() };
         assert_identical(&before, &same_colour, shape.name);
-        for i in 0..before.face.len() {
-            let around: Vec<usize> = (0..9).filter_map(|k| at(i, k)).collect();
-            let nothing = around.iter().all(|&n| before.face[n] == 0);
-            assert!(!nothing || before.colour[i] == after.colour[i], "{}: pixel {i}", shape.name);
+        let straight = |i: usize| {
+            [1, width - 1, width, width + 1].iter().all(|way| {
+                let [a, b] = [before.depth[i - way], before.depth[i + way]].map(|depth| depth - before.depth[i]);
+                (a + b).abs() <= 0.25 * (b - a).abs()
+            })
+        };
+        for (x, y) in (1..height - 1).flat_map(|y| (1..width - 1).map(move |x| (x, y))) {
+            let i = y * width + x;
+            let around = (0..9).map(|k| before.face[(y + k / 3 - 1) * width + x + k % 3 - 1]);
+            let same = around.into_iter().all(|face| face == before.face[i]);
+            // several placed copies have one face's number
+            let one = before.face[i] == 0 || shape.model.instances.len() == 1 && straight(i);
+            if same && one {
+                alone += 1;
+                assert_eq!(before.colour[i], after.colour[i], "{}: pixel {x} {y}", shape.name);
+            }
         }
     }
+    assert!(alone > 10_000, "{alone}");
 }
 
 /// Passes, images and lists exist where borders are smoothed, and there are faces; several samples need none.

@@ -14,7 +14,7 @@ pub enum SelvedgeStatus {
     Ok = 0,
     /// A pointer, size, number or name that cannot be used.
     Argument = 1,
-    /// A file that cannot be read, of which nothing can be drawn, or that cannot be written.
+    /// A file cannot be read or written, or nothing of it can be drawn.
     File = 2,
     /// There is no usable Vulkan device.
     Device = 3,
@@ -24,7 +24,7 @@ pub enum SelvedgeStatus {
     Internal = 5,
 }
 
-/// Why a call does not do what it is asked for.
+/// What a call reports when it fails: its status and a sentence.
 pub struct Failure(pub SelvedgeStatus, pub String);
 
 pub type Outcome = Result<(), Failure>;
@@ -155,7 +155,7 @@ pub unsafe fn text<'a>(what: &str, from: *const c_char) -> Result<Option<&'a str
 /// A handle of the caller's.
 ///
 /// # Safety
-/// Null, or what this library made and nobody has freed.
+/// The pointer is null, or this library made it and nobody has freed it.
 pub unsafe fn handle<'a, T>(what: &str, from: *const T) -> Result<&'a T, Failure> {
     // SAFETY: as the caller promises
     unsafe { from.as_ref() }.ok_or_else(|| argument(format!("the {what} is a null pointer")))
@@ -175,7 +175,7 @@ pub unsafe fn place<'a, T>(to: *mut *mut T) -> Result<&'a mut *mut T, Failure> {
 /// Frees a handle.
 ///
 /// # Safety
-/// Null, or what this library made and nobody has freed.
+/// The pointer is null, or this library made it and nobody has freed it.
 pub unsafe fn free<T>(handle: *mut T) {
     if !handle.is_null() {
         // SAFETY: as the caller promises; a panic while it is freed ends here

@@ -5,8 +5,7 @@
 //!   selvedge_renderer_new ──▶ SelvedgeRenderer ──selvedge_render──▶ SelvedgePicture ──▶ SelvedgeImage: pointer, size, kind
 //! ```
 //!
-//! Every call that may fail returns a `SelvedgeStatus`; `selvedge_last_error`
-//! has the sentence. No panic crosses the border. Every struct begins with its size as the caller knows it, so that a
+//! Every call that may fail returns a `SelvedgeStatus`; `selvedge_last_error` has the sentence. No panic crosses the border. Every struct begins with its size as the caller knows it, so that a
 //! program built against an older header runs with a newer library: fields that it does not know have their defaults.
 //! `include/selvedge.h` is made from these files by cbindgen.
 #![warn(missing_docs)]

@@ -24,7 +24,7 @@ pub struct SelvedgeReadOptions {
     pub struct_size: usize,
     /// Most bytes of a file, gzip undone; 0: three quarters of the machine's memory.
     pub limit_bytes: u64,
-    /// Not 0: a file of which anything is left out is SELVEDGE_STATUS_FILE.
+    /// If this is not 0, a file fails with SELVEDGE_STATUS_FILE when anything of it is left out.
     pub strict: u32,
 }
 

@@ -5,7 +5,9 @@ use crate::model::{NO_TEXT, SelvedgeModel};
 use crate::picture::{SelvedgePicture, images};
 use glam::DVec3;
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Samples, SceneSettings, Style};
-use selvedge_session::{Backdrop, DeviceOptions, Directions, FOV_DEG, Image, Job, Lens, Viewpoint, Worker, lines};
+use selvedge_session::{
+    Backdrop, DeviceOptions, Directions, FOV_DEG, Image, Job, Lens, Viewpoint, Worker, lines, smooth,
+};
 use std::ffi::c_char;
 use std::str::FromStr;
 use std::sync::Arc;
@@ -205,7 +207,7 @@ impl SelvedgeView {
             scene: SceneSettings {
                 edges: drawn,
                 samples,
-                smooth: samples.smooth_by_default(None),
+                smooth: smooth(None, samples),
                 sun,
                 ..SceneSettings::default()
             },

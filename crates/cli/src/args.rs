@@ -102,7 +102,7 @@ pub struct EdgeArgs {
 impl EdgeArgs {
     /// As it is said, or by default.
     pub fn smooth(&self) -> Smooth {
-        self.samples.smooth_by_default(self.smooth)
+        selvedge_session::smooth(self.smooth, self.samples)
     }
 }
 

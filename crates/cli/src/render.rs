@@ -47,7 +47,7 @@ struct Drawn {
     draw_s: f64,
 }
 
-/// Draws everything of a file that has been read, and tells of each picture when its files are written.
+/// Draws all pictures of a file that has been read, and reports each one when its files are written.
 fn drawn(
     args: &RenderArgs,
     task: &Task,

@@ -10,7 +10,9 @@ use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use selvedge::model::Camera as View;
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Outputs, Samples, SceneSettings, Smooth, Style};
-use selvedge_session::{Backdrop, CameraFile, DeviceOptions, Image, Job, SessionError, Ticket, Verdict, Worker, lines};
+use selvedge_session::{
+    Backdrop, CameraFile, DeviceOptions, Image, Job, SessionError, Ticket, Verdict, Worker, lines, smooth,
+};
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
 
@@ -94,7 +96,7 @@ impl Settings<'_> {
         let scene = SceneSettings {
             edges: self.lines(outputs, size)?,
             samples,
-            smooth: samples.smooth_by_default(self.smooth.as_deref().map(word::<Smooth>).transpose()?),
+            smooth: smooth(self.smooth.as_deref().map(word::<Smooth>).transpose()?, samples),
             sun: self.sun.map(DVec3::from),
             ..SceneSettings::default()
         };

@@ -11,8 +11,8 @@
 //!
 //! Reads: everything that the bindings name but what it writes. Writes: `find`: `list` and `dispatch`; `mix`: `list`;
 //! `write`: `resolved`, at pixels of the list; `show`: the colour target, over what the host keeps.
-//! What an edge covers of a pixel is off by at most a sixteenth where it is straight and all that it separates is seen by
-//! some pixel around.
+//! Where a border is straight and pixels around see both of its sides, sixteen points know its share of the pixel to 0.14,
+//! and to 0.03 on average over all straight lines.
 
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::draw::Draw;

@@ -6,10 +6,11 @@ use std::path::PathBuf;
 /// What becomes of the others when one file is done, or fails.
 #[derive(Debug, Default, Args)]
 pub struct ManyArgs {
-    /// End at the first file that fails; without it, it is told, the others are drawn, and the exit status is 1
+    /// Stop at the first file that fails. Without this option the failure is told, all other files are drawn, and the exit
+    /// status is 1
     #[arg(long)]
     pub fail_fast: bool,
-    /// Leave files alone of which every output is there
+    /// Skip files whose outputs all exist
     #[arg(long)]
     pub skip_existing: bool,
     /// Write a table as the pictures are drawn, a row each: file, its SHA-256, view, output, drawn, skipped or failed and

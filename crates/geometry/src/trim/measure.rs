@@ -9,12 +9,11 @@
 //! sums of Gauss-Legendre rules, those along curves halved until two halves agree with the whole to [`AGREE`]. Smooth
 //! integrands give 1e-9 of the value or better; a loop that crosses itself counts by its winding number.
 
+use crate::math::gauss::{integrate, rule, within};
 use crate::model::{Edge, Face, SurfaceKind};
 use crate::spline::{Bezier, Surface};
 use glam::{DVec3, DVec4};
 
-/// Points of one rule: exact for polynomials of degree 23.
-const POINTS: usize = 12;
 /// Share of the whole by which a rule and its two halves may differ.
 const AGREE: f64 = 1e-10;
 /// Halvings of one curve at most: a kink at a knot line is then within a millionth of the curve.
@@ -22,50 +21,14 @@ const MOST_HALVINGS: u32 = 20;
 /// Share by which curvatures of one circle may differ: roundings of second derivatives.
 const ROUND: f64 = 1e-7;
 
-/// Nodes in (0, 1) and weights of the Gauss-Legendre rule, by Newton's method on the Legendre polynomial.
-fn rule() -> [(f64, f64); POINTS] {
-    std::array::from_fn(|i| {
-        let n = POINTS as f64;
-        let mut x = (std::f64::consts::PI * (i as f64 + 0.75) / (n + 0.5)).cos();
-        let mut slope = 1.0;
-        for _ in 0..8 {
-            let (mut p, mut before) = (1.0, 0.0);
-            for k in 0..POINTS {
-                let k = k as f64;
-                (p, before) = (((2.0 * k + 1.0) * x * p - k * before) / (k + 1.0), p);
-            }
-            slope = n * (x * p - before) / (x * x - 1.0);
-            x -= p / slope;
-        }
-        (0.5 * (1.0 - x), 1.0 / ((1.0 - x * x) * slope * slope))
-    })
-}
-
-/// The integral over `[a, b]` by one rule.
-fn once(rule: &[(f64, f64)], f: &dyn Fn(f64) -> f64, a: f64, b: f64) -> f64 {
-    (b - a) * rule.iter().map(|(x, w)| w * f(a + (b - a) * x)).sum::<f64>()
-}
-
-/// The same, halved until halves agree within `slack`.
-fn halved(rule: &[(f64, f64)], f: &dyn Fn(f64) -> f64, (a, b): (f64, f64), slack: f64, left: u32) -> f64 {
-    let whole = once(rule, f, a, b);
-    let middle = 0.5 * (a + b);
-    let halves = [(a, middle), (middle, b)];
-    let sum: f64 = halves.iter().map(|&(a, b)| once(rule, f, a, b)).sum();
-    if left == 0 || (sum - whole).abs() <= slack {
-        return sum;
-    }
-    halves.iter().map(|&half| halved(rule, f, half, 0.5 * slack, left - 1)).sum()
-}
-
 /// `F(u, v)`, with a rule a knot span.
-fn strip(rule: &[(f64, f64)], surface: &Surface, spans: &[f64], u: f64, v: f64) -> f64 {
+fn strip(surface: &Surface, spans: &[f64], u: f64, v: f64) -> f64 {
     let density = |u: f64| {
         let jet = surface.jet2(u, v);
-        jet.du.cross(jet.dv).length()
+        [jet.du.cross(jet.dv).length()]
     };
     let ends = |pair: &[f64]| (pair[0], pair[1].min(u));
-    spans.windows(2).map(ends).filter(|(a, b)| b > a).map(|(a, b)| once(rule, &density, a, b)).sum()
+    spans.windows(2).map(ends).filter(|(a, b)| b > a).map(|(a, b)| rule(&density, a, b)[0]).sum()
 }
 
 impl Face {
@@ -73,14 +36,13 @@ impl Face {
     ///
     /// Cost: some hundred evaluations of the surface for each trim curve and each knot span in u.
     pub fn area(&self) -> f64 {
-        let rule = rule();
         let ((u0, u1), (v0, v1)) = self.surface.domain();
         let mut spans: Vec<f64> = self.surface.knots().0.iter().copied().filter(|u| (u0..=u1).contains(u)).collect();
         spans.dedup();
-        let up_to = |u: f64, v: f64| strip(&rule, &self.surface, &spans, u, v);
+        let up_to = |u: f64, v: f64| strip(&self.surface, &spans, u, v);
         let mut rows: Vec<f64> = self.surface.knots().1.iter().copied().filter(|v| (v0..=v1).contains(v)).collect();
         rows.dedup();
-        let row = |pair: &[f64]| once(&rule, &|v| up_to(u1, v), pair[0], pair[1]);
+        let row = |pair: &[f64]| rule(&|v| [up_to(u1, v)], pair[0], pair[1])[0];
         let whole: f64 = rows.windows(2).map(row).sum();
         if self.loops.is_empty() {
             return whole;
@@ -90,9 +52,9 @@ impl Face {
                 let (p, d) = curve.jet(t);
                 let (u, v) = (p.x / p.z, p.y / p.z);
                 let inside = v >= v0 && v <= v1;
-                if inside { up_to(u.min(u1), v) * (d.y - v * d.z) / p.z } else { 0.0 }
+                [if inside { up_to(u.min(u1), v) * (d.y - v * d.z) / p.z } else { 0.0 }]
             };
-            halved(&rule, &f, (0.0, 1.0), AGREE * whole, MOST_HALVINGS)
+            within(&f, (0.0, 1.0), [AGREE * whole], MOST_HALVINGS).0[0]
         };
         self.loops.iter().flat_map(|l| l.curves()).map(along).sum::<f64>().abs()
     }
@@ -126,15 +88,13 @@ impl Face {
 impl Edge {
     /// Length of the curve in space, model units, in the coordinates of the part.
     pub fn length(&self) -> f64 {
-        let rule = rule();
         let of = |curve: &Bezier<DVec4>| {
             let speed = |t: f64| {
                 let (p, d) = curve.jet(t);
                 let point = p.truncate() / p.w;
-                ((d.truncate() - point * d.w) / p.w).length()
+                [((d.truncate() - point * d.w) / p.w).length()]
             };
-            let about = once(&rule, &speed, 0.0, 1.0);
-            halved(&rule, &speed, (0.0, 1.0), AGREE * about, MOST_HALVINGS)
+            integrate(&speed, (0.0, 1.0), AGREE).0[0]
         };
         self.curve.iter().map(|span| of(&span.piece)).sum()
     }

@@ -1,9 +1,9 @@
 //! Length of an edge, and the line or circle that it is.
 
-use super::integrate::integrate;
 use glam::{DAffine3, DVec3, DVec4};
 use selvedge::model::Edge;
 use selvedge::spline::Bezier;
+use selvedge_geometry::math::gauss::integrate;
 
 /// Points of a curve are on a line or circle within this share of its size: roundings of what a file states in 12 digits.
 pub const SAME: f64 = 1e-9;

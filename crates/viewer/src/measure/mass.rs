@@ -7,10 +7,10 @@
 //!
 //! Loops run counter-clockwise and holes clockwise, as the model promises, so their sums need no test for inside.
 
-use super::integrate::{integrate, rule};
 use glam::{DAffine3, DVec3};
 use selvedge::model::{Face, Instance, Part, TrimLoop};
 use selvedge::spline::{Bezier, Surface};
+use selvedge_geometry::math::gauss::{integrate, rule};
 
 /// Of the integrals along the loops.
 const TOLERANCE: f64 = 1e-12;

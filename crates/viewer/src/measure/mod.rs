@@ -12,7 +12,6 @@
 
 pub mod curve;
 pub mod distance;
-pub mod integrate;
 pub mod mass;
 pub mod surface;
 

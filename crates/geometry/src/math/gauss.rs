@@ -1,11 +1,16 @@
 //! Integrals of several functions at once: Gauss's rule of 16 points, halved until two answers agree.
+//!
+//! ```text
+//!   rule over [a, b]  ─── as much as the rules over its halves? ──▶ their sum
+//!                                        └─ no ──▶ each half in the same way
+//! ```
 
 use std::sync::OnceLock;
 
 /// Points of the rule.
 const POINTS: usize = 16;
-/// Halvings; what does not settle by then is told by the error.
-const MOST_DEPTH: u32 = 14;
+/// Halvings of [`integrate`]; what does not settle by then is told by the error.
+const HALVINGS: u32 = 14;
 
 /// Abscissae in `[-1, 1]` and weights, roots of the Legendre polynomial by Newton's method.
 ///
@@ -49,10 +54,19 @@ pub fn integrate<const N: usize>(
     (a, b): (f64, f64),
     tolerance: f64,
 ) -> ([f64; N], [f64; N]) {
-    let whole = rule(f, a, b);
     let scale = rule(&|t| f(t).map(f64::abs), a, b);
+    within(f, (a, b), scale.map(|s| s * tolerance), HALVINGS)
+}
+
+/// The same, with pieces halved while answers are farther apart than `allowed`, of the whole, and at most `halvings` times.
+pub fn within<const N: usize>(
+    f: &impl Fn(f64) -> [f64; N],
+    (a, b): (f64, f64),
+    allowed: [f64; N],
+    halvings: u32,
+) -> ([f64; N], [f64; N]) {
     let mut total = ([0.0; N], [0.0; N]);
-    halve(f, (a, b), whole, &scale.map(|s| s * tolerance), MOST_DEPTH, &mut total);
+    halve(f, (a, b), rule(f, a, b), &allowed, halvings, &mut total);
     total
 }
 

@@ -1,0 +1,20 @@
+//! Which borders are smooth where nobody says.
+
+use selvedge::picture::{Samples, Smooth};
+
+/// As it is said; else the borders of all faces, but that several samples smooth all by themselves.
+pub fn smooth(said: Option<Smooth>, samples: Samples) -> Smooth {
+    said.unwrap_or(if samples == Samples::One { Smooth::Borders } else { Smooth::None })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn what_is_said_counts() {
+        assert_eq!(smooth(None, Samples::One), Smooth::Borders);
+        assert_eq!(smooth(None, Samples::Eight), Smooth::None);
+        assert_eq!(smooth(Some(Smooth::Trims), Samples::Eight), Smooth::Trims);
+    }
+}
