@@ -50,7 +50,7 @@ typedef enum SelvedgeStatus {
     SELVEDGE_STATUS_OK = 0,
     // A pointer, size, number or name that cannot be used.
     SELVEDGE_STATUS_ARGUMENT = 1,
-    // A file that cannot be read, of which nothing can be drawn, or that cannot be written.
+    // A file cannot be read or written, or nothing of it can be drawn.
     SELVEDGE_STATUS_FILE = 2,
     // There is no usable Vulkan device.
     SELVEDGE_STATUS_DEVICE = 3,
@@ -75,7 +75,7 @@ typedef struct SelvedgeReadOptions {
     size_t struct_size;
     // Most bytes of a file, gzip undone; 0: three quarters of the machine's memory.
     uint64_t limit_bytes;
-    // Not 0: a file of which anything is left out is SELVEDGE_STATUS_FILE.
+    // If this is not 0, a file fails with SELVEDGE_STATUS_FILE when anything of it is left out.
     uint32_t strict;
 } SelvedgeReadOptions;
 
