@@ -37,13 +37,14 @@ fn the_reference_is_what_help_prints() {
         text += &format!("\n## selvedge {command}\n\n```text\n{}\n```\n", lines.join("\n").trim());
     }
     assert!(text.contains("## selvedge render") && text.contains("--tolerance"), "help is not read");
+    let has_window = cfg!(feature = "view");
     let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("../../docs/cli.md");
     if std::env::var_os("SELVEDGE_WRITE_DOCS").is_some() {
-        assert!(cfg!(feature = "view"), "the program with its window writes it");
+        assert!(has_window, "the program with its window writes it");
         fs::write(&path, &text).unwrap();
     }
     let mut written = fs::read_to_string(&path).unwrap_or_default();
-    if !cfg!(feature = "view") {
+    if !has_window {
         let from = written.find("\n## selvedge view\n").expect("a section of the window");
         let to = written[from + 1..].find("\n## ").map_or(written.len(), |n| from + 1 + n);
         written.replace_range(from..to, "");
