@@ -77,6 +77,8 @@ const RECORDS: &[&str] = &[
     "src/frame/edges/mod.rs",
     "src/frame/gaps/mod.rs",
     "src/frame/occlusion/mod.rs",
+    "src/frame/shading/contact.rs",
+    "src/frame/shading/linear.rs",
     "src/frame/shading/mod.rs",
     "src/frame/shadows/mod.rs",
     "src/frame/solids/mod.rs",

@@ -33,6 +33,12 @@ pub enum RenderError {
     /// [`Smooth::Trims`](crate::picture::Smooth::Trims) beside something that it does not go with.
     #[error("smooth trims do not go with {0}")]
     SmoothTrims(&'static str),
+    /// [`ambient`](crate::picture::SceneSettings::ambient) that is no radius.
+    #[error("the radius of ambient occlusion must be finite and above 0, not {0}")]
+    AmbientRadius(f64),
+    /// [`ambient`](crate::picture::SceneSettings::ambient) beside several samples.
+    #[error("ambient occlusion does not go with several samples a pixel")]
+    AmbientSamples,
     /// [`edges`](crate::picture::SceneSettings::edges) that cannot be drawn.
     #[error(transparent)]
     Edges(#[from] BadEdges),

@@ -146,6 +146,7 @@ impl Loaded {
         progress: Told<'_>,
     ) -> Result<Self, RenderError> {
         validate::check_sun(*request)?;
+        validate::check_ambient(*request)?;
         request.edges.map_or(Ok(()), |edges| edges.check())?;
         let whole = &*source.model;
         let data = |request| match &cut {

@@ -90,7 +90,9 @@ pub(crate) struct SceneData {
     /// Of each pixel.
     pub samples: Samples,
     /// Which borders are wanted smooth.
-    smooth: Smooth,
+    pub(super) smooth: Smooth,
+    /// Radius of ambient occlusion, where it is wanted.
+    pub ambient: Option<f64>,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
     /// Of each placement: nobody sees it; empty where all are seen.
@@ -224,6 +226,7 @@ impl SceneData {
             way: Some(way),
             samples: settings.samples,
             smooth: settings.smooth,
+            ambient: settings.ambient,
             edit,
             ..Self::default()
         };
@@ -332,17 +335,6 @@ impl SceneData {
     /// How faces are trimmed; `None` when no patch is.
     pub(crate) fn trim_way(&self) -> Option<TakenWay> {
         self.way.filter(|_| self.has_trimmed)
-    }
-
-    /// Pass `coverage` mixes pixels at the borders of trimmed faces: there are some that are seen themselves.
-    pub(crate) fn smooths_trims(&self) -> bool {
-        self.smooth == Smooth::Trims && self.has_patches && self.trim_way() == Some(TakenWay::Exact)
-    }
-
-    /// Pass `border_mix` mixes pixels at the borders of faces: there are some, and the picture is of one sample, and opaque.
-    pub(crate) fn smooths_borders(&self) -> bool {
-        let alone = self.samples == Samples::One && !self.is_layered;
-        self.smooth == Smooth::Borders && self.has_patches && alone
     }
 
     /// Patches may lie behind others, and enough of them to ask. Those of operands are crossed whatever lies before them,

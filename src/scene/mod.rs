@@ -27,6 +27,7 @@ mod flatten;
 mod instance;
 mod link;
 mod mesh;
+mod mixed;
 mod parts;
 mod picking;
 mod request;

@@ -25,6 +25,7 @@ const fn plain() -> SceneSettings {
         editable: false,
         samples: Samples::One,
         smooth: Smooth::None,
+        ambient: None,
         thickness: false,
         highlight: None,
         sun: None,

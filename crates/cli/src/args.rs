@@ -28,8 +28,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use selvedge::picture::{Levels, Samples, Smooth, SolidWay, Style, TrimWay};
 use selvedge_io::import::Import;
-use selvedge_session::Backdrop;
-use selvedge_session::Directions;
+use selvedge_session::{Ambient, Backdrop, Directions};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -117,6 +116,10 @@ pub struct LookArgs {
     /// the eye blue) or zebra (stripes of a striped room, reflected: they break where surfaces do)
     #[arg(long, value_name = "STYLE", default_value = "shaded")]
     pub style: Style,
+    /// Ambient occlusion: what lies close to other things is darker. The radius beyond which nothing is close, in units of the
+    /// model; auto is a twenty-fifth of its diagonal. Without it auto, but none with several samples
+    #[arg(long, value_name = "RADIUS|auto|none")]
+    pub ao: Option<Ambient>,
 }
 
 impl LookArgs {

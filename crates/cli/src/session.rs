@@ -9,7 +9,7 @@ use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use selvedge::picture::{EdgeSettings, FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
 use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
-use selvedge_session::{SessionError, guarded};
+use selvedge_session::{Ambient, SessionError, guarded};
 use serde::Serialize;
 use std::io;
 use std::path::Path;
@@ -169,10 +169,15 @@ impl Session {
         args: &FrameArgs,
         import: &Import,
         model: &Arc<Model>,
-        (edges, lines): (&EdgeArgs, Option<EdgeSettings>),
+        (edges, ao, lines): (&EdgeArgs, Option<Ambient>, Option<EdgeSettings>),
     ) -> Result<Self> {
-        let scene =
-            SceneSettings { samples: edges.samples, smooth: edges.smooth(), edges: lines, ..SceneSettings::default() };
+        let scene = SceneSettings {
+            samples: edges.samples,
+            smooth: edges.smooth(),
+            ambient: Ambient::radius(ao, edges.samples, model),
+            edges: lines,
+            ..SceneSettings::default()
+        };
         Self::with(on, args, import, scene, Arc::clone(model))
     }
 
