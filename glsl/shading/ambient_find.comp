@@ -27,7 +27,7 @@ float depth_at(ivec2 at) { return imageLoad(resolved, at).a; }
 
 const float PI = 3.14159265;
 const int SLICES = 2;
-const int STEPS = 4; // in each direction
+const int HORIZON_STEPS = 4; // in each direction
 // The radius in the picture is at most this share of its height: farther steps would miss what lies between.
 const float MOST_HEIGHT = 0.2;
 // What lies farther than this share of the radius counts less and less.
@@ -39,8 +39,8 @@ float sky_below(float h, float g) { return 0.25 * (cos(g) + 2.0 * h * sin(g) - c
 // the ray: pixels lie beside the slice by a part of a pixel, those of a plane on it all the same.
 float elevation(ivec2 at, vec3 p, vec3 n, vec2 step_px, float first) {
     float highest = 0.0;
-    for (int i = 0; i < STEPS; ++i) {
-        float way = (float(i) + first) / float(STEPS);
+    for (int i = 0; i < HORIZON_STEPS; ++i) {
+        float way = (float(i) + first) / float(HORIZON_STEPS);
         ivec2 beside = ivec2(floor(vec2(at) + 0.5 + step_px * way * way));
         float depth = depth_beside(beside);
         if (beside == at || depth >= UNSEEN) continue;

@@ -6,10 +6,10 @@ pub mod along {
 }
 pub mod ambient_find {
     pub const FADES: f32 = 0.75;
+    pub const HORIZON_STEPS: i32 = 4;
     pub const MOST_HEIGHT: f32 = 0.2;
     pub const PI: f32 = 3.14159265;
     pub const SLICES: i32 = 2;
-    pub const STEPS: i32 = 4;
 }
 pub mod ambient_write {
     pub const OFF: f32 = 0.1;
