@@ -2,10 +2,10 @@
 
 use crate::args::{EdgeArgs, FrameArgs, ReadArgs, SubdivideArgs};
 use crate::progress::{advancing, during, importing};
-use crate::{camera, openscad, output, target};
+use crate::{camera, device, openscad, output, target};
 use anyhow::{Error, Result, anyhow, bail};
 use glam::DVec3;
-use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
+use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use selvedge::picture::{EdgeSettings, FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
 use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
@@ -147,7 +147,7 @@ pub fn opened(args: &FrameArgs) -> Result<HeadlessRenderer> {
 
 /// The same without a word, beside something else.
 pub fn device(args: &FrameArgs) -> Result<HeadlessRenderer> {
-    Ok(HeadlessRenderer::new(&HeadlessOptions { device: args.device.clone(), validation: args.validation })?)
+    Ok(HeadlessRenderer::new(&device::options(args.device.as_deref(), args.validation))?)
 }
 
 impl Session {
