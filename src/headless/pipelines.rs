@@ -15,6 +15,7 @@ use std::fs::File;
 use std::hash::Hasher;
 use std::io::{self, Read, Write};
 use std::path::{Path, PathBuf};
+use std::sync::atomic::{AtomicU64, Ordering};
 
 const MAGIC: &[u8; 8] = b"SELVEDGE";
 /// Bytes of what tells a device and its driver.
@@ -68,7 +69,10 @@ impl PipelineFile {
         }
         let folder = self.path.parent().unwrap_or(Path::new("."));
         std::fs::create_dir_all(folder)?;
-        let beside = self.path.with_extension(format!("{}.new", std::process::id()));
+        // devices of one process may end at the same time
+        static NTH: AtomicU64 = AtomicU64::new(0);
+        let nth = NTH.fetch_add(1, Ordering::Relaxed);
+        let beside = self.path.with_extension(format!("{}.{nth}.new", std::process::id()));
         let body = [&self.identity, data].concat();
         let written = File::create(&beside).and_then(|mut file| {
             file.write_all(MAGIC)?;

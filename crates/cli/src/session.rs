@@ -126,7 +126,7 @@ pub struct Session {
 /// What the first frame took: drivers compile for it, and for no other one.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct FirstFrame {
-    /// The driver's time for the pipelines of the scene, made one by one.
+    /// The driver's time for the pipelines of the scene, each by itself, though several are made at once.
     pub pipelines_ms: f64,
     /// From the call to the picture in host memory, with what the driver compiles when it first runs a shader.
     pub wall_ms: f64,
