@@ -124,10 +124,26 @@ fn rows_sorted(chain: &Chain, mut intercepts: Vec<u32>) -> Vec<u32> {
     intercepts
 }
 
+/// The loops a little higher, by no simple share of their domains: no scan line then touches a flat border, or where a loop
+/// turns back. There another arithmetic may count two crossings more or less, as the picture may have either.
+fn nudged(mut case: Case) -> Case {
+    const BY: f32 = 3.77e-4;
+    for curve in &mut case.data.curves {
+        curve.start[1] += BY;
+        curve.end[1] += BY;
+    }
+    // u, v and 1 times the weight
+    for point in case.data.curve_points.chunks_exact_mut(3) {
+        point[1] += BY * point[2];
+    }
+    case
+}
+
 #[test]
 fn parity() {
     for gpu in Gpu::all() {
         for case in cases() {
+            let case = if gpu.is_exact() { case } else { nudged(case) };
             let chain = Chain::new(&case);
             let intercepts = rows_sorted(&chain, chain.intercepts.clone()).len();
             assert!(intercepts > 100, "only {intercepts} to compare");
@@ -140,7 +156,7 @@ fn parity() {
 /// A control point moved so that some intercept leaves its bound, and one so that other lines are crossed.
 #[test]
 fn a_difference_is_seen() {
-    let case = &cases()[0];
+    let case = &nudged(cases().remove(0));
     let chain = Chain::new(case);
     let twin = rows_sorted(&chain, chain.intercepts.clone());
     let cubic = *case.data.curves.iter().find(|c| c.degree == 3).unwrap();
@@ -169,7 +185,7 @@ fn a_difference_is_seen() {
 /// The imitation is another arithmetic; its bounds are small beside what is wrong.
 #[test]
 fn other_arithmetic_makes_other_intercepts() {
-    let case = &cases()[0];
+    let case = &nudged(cases().remove(0));
     let chain = Chain::new(case);
     let twin = rows_sorted(&chain, chain.intercepts.clone());
     let bounds = bounds(&chain, twin.len(), case);
