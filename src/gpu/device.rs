@@ -103,10 +103,6 @@ impl Device {
         };
         // SAFETY: the caller's promise.
         let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
-        let text = |chars: &[std::ffi::c_char]| {
-            let bytes: Vec<u8> = chars.iter().map(|&c| c as u8).take_while(|&c| c != 0).collect();
-            String::from_utf8_lossy(&bytes).into_owned()
-        };
         Self(Arc::new(Inner {
             push_descriptor: ash::khr::push_descriptor::Device::new(instance, &device),
             debug_utils: debug_names.then(|| ash::ext::debug_utils::Device::new(instance, &device)),
@@ -329,6 +325,12 @@ impl std::fmt::Debug for Device {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "Device({}, {})", self.0.name, self.0.driver)
     }
+}
+
+/// Vulkan's text in an array of fixed size.
+pub(crate) fn text(chars: &[std::ffi::c_char]) -> String {
+    let bytes: Vec<u8> = chars.iter().map(|&c| c as u8).take_while(|&c| c != 0).collect();
+    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 /// An entry in the list of live objects.

@@ -66,4 +66,6 @@ pub use {
     upload::Uploads,
 };
 
+#[cfg(feature = "headless")]
+pub(crate) use device::text;
 pub(crate) use error::Named;

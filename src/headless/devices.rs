@@ -2,7 +2,7 @@
 
 use super::instance::{Instance, rank};
 use super::{HeadlessError, HeadlessOptions};
-use crate::gpu::{Named, Quirks, Requirements};
+use crate::gpu::{Named, Quirks, Requirements, text};
 use ash::vk;
 
 /// A device, as it describes itself.
@@ -98,10 +98,6 @@ fn of(instance: &Instance, physical: vk::PhysicalDevice, chosen: Option<vk::Phys
         // SAFETY: as above; structs of Vulkan 1.3.
         unsafe { raw.get_physical_device_properties2(physical, &mut all) };
     }
-    let text = |chars: &[std::ffi::c_char]| {
-        let bytes: Vec<u8> = chars.iter().map(|&c| c as u8).take_while(|&c| c != 0).collect();
-        String::from_utf8_lossy(&bytes).into_owned()
-    };
     let limits = &plain.limits;
     let local = |heap: &&vk::MemoryHeap| heap.flags.contains(vk::MemoryHeapFlags::DEVICE_LOCAL);
     let vertices = Quirks::of(driver.driver_id).max_tessellated_vertices_per_draw;

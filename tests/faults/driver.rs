@@ -59,7 +59,7 @@ fn with<T>(f: impl FnOnce(&mut State) -> T) -> T {
 
 /// The double, one at a time.
 pub struct Driver {
-    loader: ash::Entry,
+    _loader: ash::Entry,
     _turn: MutexGuard<'static, ()>,
 }
 
@@ -77,12 +77,11 @@ impl Driver {
             handles: 1,
             ..State::default()
         });
-        Self { loader, _turn: turn }
+        Self { _loader: loader, _turn: turn }
     }
 
     /// What the engine takes for the system's Vulkan.
     pub fn entry(&self) -> ash::Entry {
-        let _kept_loaded = &self.loader;
         // SAFETY: the double answers as the loader does.
         unsafe { ash::Entry::from_static_fn(ash::StaticFn { get_instance_proc_addr }) }
     }
@@ -235,7 +234,8 @@ unsafe extern "system" fn destroy_device(device: vk::Device, none: Callbacks) {
 /// Other calls that may fail, and what the null driver does.
 macro_rules! calls {
     ($($function:ident $name:literal ($($argument:ident: $type:ty),*) $null:expr;)*) => {
-        $(unsafe extern "system" fn $function($($argument: $type),*) -> vk::Result {
+        $(#[allow(clippy::too_many_arguments)] // as many as Vulkan has
+        unsafe extern "system" fn $function($($argument: $type),*) -> vk::Result {
             call($name, || match real($name) {
                 // SAFETY: as Vulkan's rules for the call promise.
                 Some(real) => unsafe {
