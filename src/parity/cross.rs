@@ -141,16 +141,15 @@ fn nudged(mut case: Case) -> Case {
 
 #[test]
 fn parity() {
-    for gpu in Gpu::all() {
-        for case in cases() {
-            let case = if gpu.is_exact() { case } else { nudged(case) };
-            let chain = Chain::new(&case);
-            let intercepts = rows_sorted(&chain, chain.intercepts.clone()).len();
-            assert!(intercepts > 100, "only {intercepts} to compare");
-            compare(&gpu, &case, (&case, &chain)).unwrap();
-        }
-        gpu.finish();
+    let gpu = Gpu::new();
+    for case in cases() {
+        let case = if gpu.is_exact() { case } else { nudged(case) };
+        let chain = Chain::new(&case);
+        let intercepts = rows_sorted(&chain, chain.intercepts.clone()).len();
+        assert!(intercepts > 100, "only {intercepts} to compare");
+        compare(&gpu, &case, (&case, &chain)).unwrap();
     }
+    gpu.finish();
 }
 
 /// A control point moved so that some intercept leaves its bound, and one so that other lines are crossed.
@@ -182,7 +181,8 @@ fn a_difference_is_seen() {
     }
 }
 
-/// The imitation is another arithmetic; its bounds are small beside what is wrong.
+/// Imitations are another arithmetic, within the bounds, which are small beside what is wrong. They err everywhere at once,
+/// so an intercept beside a border of bins may be counted in another row: intercepts alone are compared.
 #[test]
 fn other_arithmetic_makes_other_intercepts() {
     let case = &nudged(cases().remove(0));
@@ -197,7 +197,7 @@ fn other_arithmetic_makes_other_intercepts() {
         let others = left.iter().zip(&twin).filter(|(gpu, twin)| gpu != twin).count();
         let most = left.iter().zip(&twin).zip(&bounds).map(|((g, t), bound)| (u_of(*g) - u_of(*t)).abs() / bound);
         let most = most.fold(0.0, f32::max);
-        println!("{others} of {} intercepts differ, by up to {most} of their bounds", twin.len());
+        assert!(most <= 1.0, "{others} of {} intercepts differ, by up to {most} of their bounds", twin.len());
         assert!(others > 0 || !gpu.device().driver().contains("llvmpipe"), "nothing is imitated");
         gpu.finish();
     }
