@@ -50,40 +50,48 @@ impl Passes {
         let trim = trim::Passes::new(device, data)?;
         let test = trim.as_ref().map(trim::Passes::test);
         // a driver takes milliseconds for each pipeline, and as many threads as ask it
-        let (solids, (patches, pictures)) = rayon::join(
-            || solids::Passes::new(device, data, test),
-            || {
-                rayon::join(
-                    || {
-                        let tessellation = tessellation::Passes::new(device, data)?;
-                        let occlusion = occlusion::Passes::new(device, data)?;
-                        Ok((tessellation, occlusion, visibility::Passes::new(device, data, test)?))
-                    },
-                    || {
-                        let shading = shading::Passes::new(device, data, formats)?;
-                        let samples = samples::Passes::new(device, data, formats)?;
-                        Ok((shading, samples, common::Passes::new(device, data)?))
-                    },
-                )
-            },
+        let pictures = || {
+            let shading = shading::Passes::new(device, data, formats)?;
+            let samples = samples::Passes::new(device, data, formats)?;
+            let linear = linear::Passes::new(device, data, formats)?;
+            let contact = contact::Passes::new(device, data)?;
+            Ok::<_, GpuError>((shading, samples, (linear, contact), common::Passes::new(device, data)?))
+        };
+        let patches = || {
+            let tessellation = tessellation::Passes::new(device, data)?;
+            let occlusion = occlusion::Passes::new(device, data)?;
+            Ok::<_, GpuError>((tessellation, occlusion, visibility::Passes::new(device, data, test)?))
+        };
+        let gaps = || test.map(|test| gaps::passes(device, data, test)).transpose();
+        let over = || {
+            let transparency = transparency::Passes::new(device, data, formats)?;
+            let smooth_trims = smooth_trims::pass(device, data, formats)?;
+            let smooth_borders = smooth_borders::pass(device, data, test)?;
+            Ok::<_, GpuError>((transparency, smooth_trims, smooth_borders, edges::Passes::new(device, data, formats)?))
+        };
+        let ((gaps, over), (solids, (patches, pictures))) = rayon::join(
+            || rayon::join(gaps, over),
+            || rayon::join(|| solids::Passes::new(device, data, test), || rayon::join(patches, pictures)),
         );
-        let ((tessellation, occlusion, visibility), (shading, samples, common)) = (patches?, pictures?);
+        let ((tessellation, occlusion, visibility), pictures) = (patches?, pictures?);
+        let (shading, samples, (linear, contact), common) = pictures;
+        let (transparency, smooth_trims, smooth_borders, edges) = over?;
         Ok(Self {
             common: Arc::new(common),
             tessellation: tessellation.map(Arc::new),
             occlusion: occlusion.map(Arc::new),
-            gaps: test.map(|test| gaps::passes(device, data, test)).transpose()?.map(Arc::new),
+            gaps: gaps?.map(Arc::new),
             trim,
             solids: solids?,
             visibility: Arc::new(visibility),
             shading: Arc::new(shading),
             samples: samples.map(Arc::new),
-            transparency: transparency::Passes::new(device, data, formats)?.map(Arc::new),
-            smooth_trims: smooth_trims::pass(device, data, formats)?.map(Arc::new),
-            smooth_borders: smooth_borders::pass(device, data, test)?.map(Arc::new),
-            linear: linear::Passes::new(device, data, formats)?.map(Arc::new),
-            contact: contact::Passes::new(device, data)?.map(Arc::new),
-            edges: edges::Passes::new(device, data, formats)?.map(Arc::new),
+            transparency: transparency.map(Arc::new),
+            smooth_trims: smooth_trims.map(Arc::new),
+            smooth_borders: smooth_borders.map(Arc::new),
+            linear: linear.map(Arc::new),
+            contact: contact.map(Arc::new),
+            edges: edges.map(Arc::new),
         })
     }
 }

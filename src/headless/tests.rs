@@ -70,7 +70,7 @@ fn drawn(device: &HeadlessDevice, model: &Model, settings: SceneSettings, output
 fn each_image_stands_by_itself() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/bracket.step");
     let mut model = selvedge_io::import::open(&path).unwrap().model;
-    let device = HeadlessDevice::new(&HeadlessOptions { device: None, validation: true }).unwrap();
+    let device = HeadlessDevice::new(&HeadlessOptions { validation: true, ..Default::default() }).unwrap();
     let one = |k: usize| Outputs {
         depth: k == 0,
         face: k == 1,

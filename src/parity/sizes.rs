@@ -38,16 +38,17 @@ fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: [&[u32]; 2], expected:
 
 #[test]
 fn parity() {
-    let gpu = Gpu::new();
-    for case in cases() {
-        let chain = Chain::new(&case);
-        let starts = [chain.strip_starts.as_slice(), chain.segment_starts.as_slice()];
-        compare(&gpu, &case.frame, &chain.density.seen_bins, starts, starts).unwrap();
-        let mut many = chain.segment_starts.clone(); // more than one dispatch can hold
-        *many.last_mut().unwrap() = 9_000_000;
-        compare(&gpu, &case.frame, &chain.density.seen_bins, [starts[0], &many], [starts[0], &many]).unwrap();
+    for gpu in Gpu::all() {
+        for case in cases() {
+            let chain = Chain::new(&case);
+            let starts = [chain.strip_starts.as_slice(), chain.segment_starts.as_slice()];
+            compare(&gpu, &case.frame, &chain.density.seen_bins, starts, starts).unwrap();
+            let mut many = chain.segment_starts.clone(); // more than one dispatch can hold
+            *many.last_mut().unwrap() = 9_000_000;
+            compare(&gpu, &case.frame, &chain.density.seen_bins, [starts[0], &many], [starts[0], &many]).unwrap();
+        }
+        gpu.finish();
     }
-    gpu.finish();
 }
 
 #[test]

@@ -5,6 +5,13 @@ use crate::gpu::GpuError;
 use crate::model::{CameraError, ModelError};
 use crate::picture::{BadEdges, FrameSettings};
 
+impl RenderError {
+    /// What failed of Vulkan or its memory.
+    pub fn gpu(&self) -> Option<&GpuError> {
+        if let Self::Gpu(error) = self { Some(error) } else { None }
+    }
+}
+
 /// Why a frame was not recorded.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]

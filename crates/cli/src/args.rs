@@ -1,5 +1,6 @@
 //! The arguments of the command line, checked before any file is opened.
 
+mod devices;
 mod draw;
 mod images;
 mod lines;
@@ -10,6 +11,7 @@ mod thumbnail;
 mod view;
 mod write;
 
+pub use devices::DevicesArgs;
 pub use draw::DrawArgs;
 pub use images::Aov;
 pub use lines::LineArgs;
@@ -80,6 +82,9 @@ pub enum Command {
     /// Write a model in another form, so that it is read once and opens fast; needs no GPU
     #[command(after_help = STATUSES)]
     Convert(ConvertArgs),
+    /// List Vulkan devices: what each lacks, and the limits that matter
+    #[command(after_help = STATUSES)]
+    Devices(DevicesArgs),
     /// Show models in a window: turn, pick, measure, cut
     #[cfg(feature = "view")]
     #[command(after_help = STATUSES)]

@@ -2,10 +2,10 @@
 
 use crate::args::{EdgeArgs, FrameArgs, ReadArgs, SubdivideArgs};
 use crate::progress::{advancing, during, importing};
-use crate::{camera, openscad, output, target};
+use crate::{camera, device, openscad, output, target};
 use anyhow::{Error, Result, anyhow, bail};
 use glam::DVec3;
-use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
+use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use selvedge::picture::{EdgeSettings, FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
 use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
@@ -126,7 +126,7 @@ pub struct Session {
 /// What the first frame took: drivers compile for it, and for no other one.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct FirstFrame {
-    /// The driver's time for the pipelines of the scene, made one by one.
+    /// The driver's time for the pipelines of the scene, each by itself, though several are made at once.
     pub pipelines_ms: f64,
     /// From the call to the picture in host memory, with what the driver compiles when it first runs a shader.
     pub wall_ms: f64,
@@ -147,7 +147,7 @@ pub fn opened(args: &FrameArgs) -> Result<HeadlessRenderer> {
 
 /// The same without a word, beside something else.
 pub fn device(args: &FrameArgs) -> Result<HeadlessRenderer> {
-    Ok(HeadlessRenderer::new(&HeadlessOptions { device: args.device.clone(), validation: args.validation })?)
+    Ok(HeadlessRenderer::new(&device::options(args.device.as_deref(), args.validation))?)
 }
 
 impl Session {
