@@ -1,0 +1,194 @@
+"""How wrong pictures are, by the surfaces and trims themselves: Open CASCADE's ray against each face, no mesh.
+
+    job      model, camera, seconds (for the rays of the truth, and for the searches of each picture), pictures: {name: {path, own}}
+    results  {boundary, sampled, alone}, then for each picture {name, worst_px, p999_px, off, beyond}
+
+Sampled are the pixels at changes of face, found by halving the cells of a grid whose corners see different faces, cell by cell in random order
+until the time is up. Where a picture shows another face than the ray at a pixel's centre, the picture's face is looked for around it:
+the least distance at which a ray sees it is the error there. `p999_px` is the error that one in a thousand of the boundary's pixels exceeds. Errors
+are distances of the list below, rounded up; beyond the last one, a pixel counts as `beyond`, and as twice that distance.
+
+Pictures that are `own` number faces in another way: each of the kernel's faces is the number that most of its pixels have. A pixel
+at which all pictures agree against the ray is left out, and counted as `alone`: the kernel's ray is at fault there, for its own
+mesher says otherwise.
+"""
+
+import math
+import random
+import time
+
+import numpy
+from OCP.IntCurvesFace import IntCurvesFace_Intersector
+from OCP.TopAbs import TopAbs_IN, TopAbs_ON
+from OCP.gp import gp_Dir, gp_Lin, gp_Pnt
+
+from . import job, shapes, tell
+
+DISTANCES = [1 / 16, 1 / 8, 1 / 4, 3 / 8, 1 / 2, 3 / 4, 1, 1.5, 2, 3, 4, 6, 8]
+DIRECTIONS = 16
+# cells of the grid that is halved, and tiles of faces, pixels
+CELL, TILE = 16, 32
+# of a picture, pixels that are searched around
+SEARCHES = 200
+# of the diagonal: faces as near to each other are one to a ray
+TIE = 1e-6
+# the kernel's own tolerance, millimetres
+TOLERANCE = 1e-7
+
+
+def unit(v):
+    return v / numpy.linalg.norm(v)
+
+
+class Rays:
+    """The camera's rays against faces, which stand in tiles of the picture."""
+
+    def __init__(self, found, camera, tie):
+        self.width, self.height = camera["size"]
+        self.eye, target, up = (numpy.array(camera[name], float) for name in ("eye", "target", "up"))
+        self.forward = unit(target - self.eye)
+        self.right = unit(numpy.cross(self.forward, up))
+        self.up = numpy.cross(self.right, self.forward)
+        self.tan = math.tan(math.radians(camera["fovy"]) / 2)
+        self.tie, self.found, self.made = tie, found, {}
+        self.tiles = {}
+        for number, face in enumerate(found):
+            for tile in self.covered(face):
+                self.tiles.setdefault(tile, []).append(number)
+
+    def covered(self, face):
+        """Tiles that the projected box of a face meets."""
+        corners = shapes.box(face)
+        if corners is None:
+            return
+        points = numpy.array([[corners[k >> a & 1][a] for a in range(3)] for k in range(8)])
+        apart = points - self.eye
+        depth = apart @ self.forward
+        low, high = (0, 0), (self.width, self.height)
+        if depth.min() > 0:
+            x = (1 + apart @ self.right / (depth * self.tan * self.width / self.height)) * self.width / 2
+            y = (1 - apart @ self.up / (depth * self.tan)) * self.height / 2
+            low, high = (x.min() - 1, y.min() - 1), (x.max() + 1, y.max() + 1)
+        span = lambda k, most: range(max(int(low[k]), 0) // TILE, min(int(min(high[k], 1e9)), most) // TILE + 1)
+        yield from ((i, j) for i in span(0, self.width) for j in span(1, self.height))
+
+    def at(self, x, y):
+        """Numbers of the faces that the ray through a point of the picture sees first: more than one where they meet."""
+        faces = self.tiles.get((int(x) // TILE, int(y) // TILE), [])
+        if not faces:
+            return [-1]
+        ray = self.forward + self.right * ((2 * x / self.width - 1) * self.tan * self.width / self.height)
+        ray = unit(ray + self.up * ((1 - 2 * y / self.height) * self.tan))
+        line = gp_Lin(gp_Pnt(*map(float, self.eye)), gp_Dir(*map(float, ray)))
+        hits = []
+        for number in faces:
+            held = self.made.get(number)
+            if held is None:
+                held = self.made[number] = IntCurvesFace_Intersector(self.found[number], TOLERANCE)
+            held.Perform(line, 0.0, 1e12)
+            if held.IsDone():
+                for k in range(1, held.NbPnt() + 1):
+                    if held.State(k) in (TopAbs_IN, TopAbs_ON):
+                        hits.append((held.WParameter(k), number))
+        if not hits:
+            return [-1]
+        nearest = min(hits)[0]
+        # the nearest first
+        return [number for depth, number in sorted(hits) if depth <= nearest + self.tie]
+
+    def centre(self, pixel):
+        return self.at(pixel[0] + 0.5, pixel[1] + 0.5)
+
+
+def boundary(rays, seconds):
+    """What the rays through pixels at changes of face see, by pixel; and through all pixels that were asked for."""
+    seen, changes = {}, set()
+
+    def face(x, y):
+        pixel = min(x, rays.width - 1), min(y, rays.height - 1)
+        if pixel not in seen:
+            seen[pixel] = rays.centre(pixel)
+        return seen[pixel][0]
+
+    cells = [(x, y) for y in range(0, rays.height, CELL) for x in range(0, rays.width, CELL)]
+    random.Random(1).shuffle(cells)
+    end = time.monotonic() + seconds
+    for cell in cells:
+        if time.monotonic() > end:
+            break
+        parts = [(*cell, CELL)]
+        while parts:
+            x, y, side = parts.pop()
+            corners = [(x, y), (x + side, y), (x, y + side), (x + side, y + side)]
+            if len({face(*corner) for corner in corners}) == 1:
+                continue
+            if side == 1:
+                changes.update(corner for corner in corners if corner in seen)
+            else:
+                half = side // 2
+                parts += [(x, y, half), (x + half, y, half), (x, y + half, half), (x + half, y + half, half)]
+    return {pixel: seen[pixel] for pixel in changes}, seen
+
+
+def named(image, seen):
+    """For a picture with numbers of its own, that of each of the kernel's faces; 0 is its background."""
+    votes = {}
+    for (x, y), faces in seen.items():
+        votes.setdefault(faces[0], {}).setdefault(int(image[y, x]), 0)
+        votes[faces[0]][int(image[y, x])] += 1
+    names = {face: max(of, key=of.get) for face, of in votes.items()}
+    names[-1] = 0
+    return names
+
+
+def judged(rays, image, names, wrong, count, seconds):
+    """Errors of a picture at the pixels where it is wrong."""
+    name = lambda face: names.get(face) if names is not None else face
+    order = list(wrong)
+    random.Random(2).shuffle(order)
+    end, found = time.monotonic() + seconds, []
+    for pixel in order[:SEARCHES]:
+        if time.monotonic() > end:
+            break
+        drawn = int(image[pixel[1], pixel[0]])
+        found.append(shift(rays, pixel, lambda faces: any(name(face) == drawn for face in faces)))
+    result = {"off": len(wrong), "searched": len(found), "beyond": sum(math.isinf(s) for s in found)}
+    found = sorted(min(s, 2 * DISTANCES[-1]) for s in found)
+    result["worst_px"] = found[-1] if found else 0.0
+    # each that was searched stands for as many
+    rank = int(0.001 * count * len(found) / len(wrong)) if wrong and found else 0
+    result["p999_px"] = found[-1 - rank] if rank < len(found) else 0.0
+    return result
+
+
+def shift(rays, pixel, right):
+    """The least of the distances at which a ray sees what is right; infinite beyond them."""
+    for distance in DISTANCES:
+        for k in range(DIRECTIONS):
+            turn = 2 * math.pi * k / DIRECTIONS
+            if right(rays.at(pixel[0] + 0.5 + distance * math.cos(turn), pixel[1] + 0.5 + distance * math.sin(turn))):
+                return distance
+    return math.inf
+
+
+def main():
+    wanted = job()
+    shape, _ = shapes.read(wanted["model"])
+    rays = Rays(shapes.faces(shape), wanted["camera"], TIE * shapes.diagonal(shape))
+    truth, seen = boundary(rays, wanted["seconds"])
+    images, wrong = {}, {}
+    for name, picture in wanted["pictures"].items():
+        image = numpy.load(picture["path"]).astype(numpy.int64)
+        names = named(image, seen) if picture["own"] else None
+        images[name] = (image, names)
+        right = lambda face: face if names is None else names.get(face)
+        wrong[name] = {p for p, faces in truth.items() if int(image[p[1], p[0]]) not in map(right, faces)}
+    alone = set.intersection(*wrong.values()) if len(wrong) > 1 else set()
+    tell({"boundary": len(truth) - len(alone), "sampled": len(seen), "alone": len(alone)})
+    for name, (image, names) in images.items():
+        found = judged(rays, image, names, wrong[name] - alone, len(truth) - len(alone), wanted["seconds"])
+        tell({"name": name, **found})
+
+
+if __name__ == "__main__":
+    main()
