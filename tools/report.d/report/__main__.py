@@ -15,10 +15,19 @@ from . import machine, markdown, plots
 from .peers import Peers
 from .program import Program
 from .rows import Report, Section
-from .sections import surfaces
+from .sections import first_use, frames, least, reading, scale, solids, stability, surfaces, trims, zoom
 
 SECTIONS = {
     "surfaces": surfaces,
+    "zoom": zoom,
+    "trims": trims,
+    "solids": solids,
+    "scale": scale,
+    "stability": stability,
+    "least": least,
+    "first_use": first_use,
+    "frames": frames,
+    "reading": reading,
 }
 
 

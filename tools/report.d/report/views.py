@@ -5,16 +5,16 @@ import math
 FOV_DEG, ELEVATION_DEG, STEP_DEG = 35.0, 30.0, 3.0
 
 
-def turned(bounds, size, step):
+def turned(bounds, size, step, fov=FOV_DEG):
     """The whole model from 30 degrees above its front, turned by so many steps: the frames of `selvedge bench --motion turn`."""
     low, high = bounds
     centre = [(a + b) / 2 for a, b in zip(low, high)]
     around, up = math.radians(STEP_DEG * step), math.radians(ELEVATION_DEG)
     towards = (math.sin(around) * math.cos(up), -math.cos(around) * math.cos(up), math.sin(up))
-    half = math.atan(math.tan(math.radians(FOV_DEG) / 2) * min(size[0] / size[1], 1))
+    half = math.atan(math.tan(math.radians(fov) / 2) * min(size[0] / size[1], 1))
     distance = math.dist(low, high) / 2 / math.sin(half)
     eye = [c + distance * t for c, t in zip(centre, towards)]
-    return {"eye": eye, "target": centre, "up": [0.0, 0.0, 1.0], "fovy": FOV_DEG, "size": list(size)}
+    return {"eye": eye, "target": centre, "up": [0.0, 0.0, 1.0], "fovy": fov, "size": list(size)}
 
 
 def turn(bounds, size, frames):

@@ -1,7 +1,8 @@
 """How wrong pictures are, by the surfaces and trims themselves: Open CASCADE's ray against each face, no mesh.
 
-    job      model, camera, seconds (for the rays of the truth, and for the searches of each picture), pictures: {name: {path, own}}
-    results  {boundary, sampled, alone}, then for each picture {name, worst_px, p999_px, off, beyond}
+    job      model, seconds (for the rays of the truth, and for the searches of each picture), views: {name: {camera, pictures}},
+             pictures: {name: {path, own}}
+    results  {view, boundary, sampled, alone, pictures: {name: {worst_px, p999_px, off, searched, beyond}}}, one a view
 
 Sampled are the pixels at changes of face, found by halving the cells of a grid whose corners see different faces, cell by cell in random order
 until the time is up. Where a picture shows another face than the ray at a pixel's centre, the picture's face is looked for around it:
@@ -171,23 +172,29 @@ def shift(rays, pixel, right):
     return math.inf
 
 
-def main():
-    wanted = job()
-    shape, _ = shapes.read(wanted["model"])
-    rays = Rays(shapes.faces(shape), wanted["camera"], TIE * shapes.diagonal(shape))
-    truth, seen = boundary(rays, wanted["seconds"])
+def view(found, diagonal, camera, pictures, seconds):
+    """All pictures of one camera."""
+    rays = Rays(found, camera, TIE * diagonal)
+    truth, seen = boundary(rays, seconds)
     images, wrong = {}, {}
-    for name, picture in wanted["pictures"].items():
+    for name, picture in pictures.items():
         image = numpy.load(picture["path"]).astype(numpy.int64)
         names = named(image, seen) if picture["own"] else None
         images[name] = (image, names)
         right = lambda face: face if names is None else names.get(face)
         wrong[name] = {p for p, faces in truth.items() if int(image[p[1], p[0]]) not in map(right, faces)}
     alone = set.intersection(*wrong.values()) if len(wrong) > 1 else set()
-    tell({"boundary": len(truth) - len(alone), "sampled": len(seen), "alone": len(alone)})
-    for name, (image, names) in images.items():
-        found = judged(rays, image, names, wrong[name] - alone, len(truth) - len(alone), wanted["seconds"])
-        tell({"name": name, **found})
+    count = len(truth) - len(alone)
+    errors = {n: judged(rays, image, names, wrong[n] - alone, count, seconds) for n, (image, names) in images.items()}
+    return {"boundary": count, "sampled": len(seen), "alone": len(alone), "pictures": errors}
+
+
+def main():
+    wanted = job()
+    shape, _ = shapes.read(wanted["model"])
+    found, diagonal = shapes.faces(shape), shapes.diagonal(shape)
+    for name, one in wanted["views"].items():
+        tell({"view": name, **view(found, diagonal, one["camera"], one["pictures"], wanted["seconds"])})
 
 
 if __name__ == "__main__":
