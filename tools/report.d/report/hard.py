@@ -15,6 +15,7 @@ class Case:
     danger: str
     scene: str
     views: list = field(default_factory=lambda: ["--views", "all"])
+    known: str = ""
 
 
 def surface(name, points, extra="", weights=None):
@@ -91,6 +92,10 @@ def sheets(gap):
     return both + '[part.both]\nsurfaces = ["left", "right"]\n'
 
 
+# what docs/accuracy.md excepts
+OTHER_DEGREES = "untrimmed faces that meet with other degrees may leave a pixel open between them"
+SLIVERS = "slivers narrower than a pixel are a pixel in a picture"
+TOLD = "the promise is void where a frame counts a clamp"
 CLOSER = ["--zoom", "1,100,1000000"]
 CASES = [
     Case("poles", "collapsed edges, singular normals", solid("ball", "sphere", radius=20, faces=True)),
@@ -104,7 +109,7 @@ CASES = [
     Case("loop along the border", "a loop touches the domain's edge", trimmed(disc(0.5, 0.25, 0.25))),
     Case("holes of 0.3 pixels", "lost or grown", trimmed(*grid(12, 0.00075))),
     Case("slit of 0.1 pixels", "closed, or open too wide", trimmed('"slit"', curves=polygon("slit", [(0.1, 0.5), (0.9, 0.5), (0.9, 0.5005), (0.1, 0.5005)]))),
-    Case("1,600 holes in a face", "more crossings than a row holds", trimmed(*grid(40, 0.008))),
+    Case("900 holes in a face", "more crossings than a row holds", trimmed(*grid(30, 0.01))),
     Case("degree 15", "digits lost in high powers", wavy("high", n=16, height=14.0)),
     Case("weights 100:1", "points crowd together", surface("heavy", net(4, 4, lambda i, j: 12.0 * ((i + j) % 2)), weights=[[1, 100, 1, 1], [1, 1, 100, 1], [100, 1, 1, 1], [1, 1, 1, 100]])),
     Case("weights 1,000:1", "the same", surface("heavier", net(4, 4, lambda i, j: 12.0 * ((i + j) % 2)), weights=[[1, 0.001, 1, 1], [1, 1, 1000, 1], [1000, 1, 1, 1], [1, 1, 1, 0.001]])),
@@ -112,14 +117,14 @@ CASES = [
     Case("folded sheet", "it hides itself", surface("fold", [[(x, 10 * j - 15, z) for x, z in ((-20, 0), (30, 0), (-30, 20), (20, 20))] for j in range(4)])),
     Case("aspect 200:1", "one factor for both sides", surface("strip", net(4, 4, lambda i, j: 0.05 * (-1) ** i, width=100.0, depth=0.5))),
     Case("edge-on", "a silhouette of no width", wavy("flat", height=0.0), ["--eye", "0,-80,0.01", "--target", "0,0,0"]),
-    Case("near plane through a patch", "control points behind the eye", wavy("near"), ["--eye", "0,-14,4", "--target", "0,10,-2"]),
-    Case("shared side, other degree and direction", "a crack", sheets(0.0)),
-    Case("gap of 1e-6", "a crack that the file has", sheets(1e-6)),
+    Case("near plane through a patch", "control points behind the eye", wavy("near"), ["--eye", "0,-14,4", "--target", "0,10,-2"], TOLD),
+    Case("shared side, other degree and direction", "a crack", sheets(0.0), known=OTHER_DEGREES),
+    Case("gap of 1e-6", "a crack that the file has", sheets(1e-6), known=OTHER_DEGREES),
     Case("10^6 zoom", "digits of a float", trimmed(disc(0.5, 0.5, 0.2)), CLOSER),
     Case("10^6 offset", "0.06 is the last digit of a float", trimmed(disc(0.5, 0.5, 0.2)), ["--views", "all", "--moved", "1000000,1000000,1000000"]),
     Case("coincident faces", "which of two is in front", solid("A", "block", size=[20, 20, 20]) + solid("B", "block", size=[20, 20, 20], at=[20, 0, 0]) + solid("C", "block", size=[10, 10, 10], at=[5, 5, 10]) + boolean("(A+B)-C")),
     Case("shells of 0.001", "front and back in one pixel", solid("A", "sphere", radius=20) + solid("B", "sphere", radius=19.999) + solid("C", "block", size=[40, 40, 40]) + boolean("A-B-C")),
-    Case("tangent solids", "they touch along a line", solid("A", "block", size=[40, 40, 20]) + solid("B", "cylinder", radius=10, height=40, at=[20, 10, -10]) + boolean("A-B")),
+    Case("tangent solids", "they touch along a line", solid("A", "block", size=[40, 40, 20]) + solid("B", "cylinder", radius=10, height=40, at=[20, 10, -10]) + boolean("A-B"), known=SLIVERS),
     Case("overlap of 1e-6", "thinner than the tie", solid("A", "block", size=[20, 20, 20]) + solid("B", "block", size=[20, 20, 20], at=[19.999999, 5, 5]) + boolean("A+B")),
 ]  # fmt: skip
 

@@ -42,13 +42,15 @@ def heading(report):
 
 
 def losses(report):
-    lines = [f"* **broken**: {s.number}. {p.what}: {p.violations:,} of {p.cases:,}" for s, p in report.broken()]
+    told = lambda s, p: f"{s.number}. {p.what}: {p.violations:,} of {p.cases:,}"
+    lines = [f"* **broken**: {told(s, p)}" for s, p in report.broken()]
     lines += [f"* **failed**: {s.number}. {s.title}: {s.failure}" for s in report.sections if s.failure]
     behind = [(s, c) for s, c in report.contests() if c.verdict() == "behind"]
     for section, contest in sorted(behind, key=lambda row: (not row[1].lost(), row[1].ratio().median)):
         mark = "**lost**: " if contest.lost() else ""
         times = 1 / contest.ratio().median
         lines.append(f"* {mark}{section.number}. {contest.what}: {times:.2g} times {contest.peer}'s {interval(contest)}")
+    lines += [f"* known: {told(s, p)}; {p.known}" for s, p in report.promises() if p.violated() and p.known]
     return "\n".join(lines) or "Nowhere in this run."
 
 

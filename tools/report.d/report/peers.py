@@ -32,6 +32,8 @@ class Peers:
 
     def __init__(self, scratch):
         self.scratch, self.count = scratch, 0
+        # of the last process: empty where it ended well
+        self.problem = ""
         self.versions = {}
         for name, (package, module) in PACKAGES.items():
             if importlib.util.find_spec(module):
@@ -62,6 +64,9 @@ class Peers:
         if windowed:
             command = ["xvfb-run", "-a", "-s", SCREEN, *command]
         out, problem, _ = run(command, limit_s)
+        if problem:
+            print(f"   {program}: {problem}", file=sys.stderr, flush=True)
+        self.problem = problem
         found = [json.loads(line[len("RESULT ") :]) for line in out.splitlines() if line.startswith("RESULT ")]
         if not found:
             raise Unmeasurable(f"{program} told nothing: {problem}")

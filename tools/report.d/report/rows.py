@@ -10,7 +10,7 @@ we are ahead. With `claim` "ahead" the project says that it wins; "open" claims 
     unreached       the peer got nowhere: no setting of its is as right, or it drew nothing; we are ahead
     not measured    `why` says why
 
-A promise counts violations; it has no noise. A cell of a table that could not be measured is a `Missing`.
+A promise counts violations; it has no noise, and a violation that no document excepts makes the run fail. A cell of a table that could not be measured is a `Missing`.
 """
 
 import dataclasses
@@ -86,15 +86,20 @@ class Contest:
 
 @dataclass
 class Promise:
-    """Violations of something that must always hold, out of how many cases."""
+    """Violations of something that must always hold, out of how many cases; `known` says where the documents except them."""
 
     what: str
     violations: int = 0
     cases: int = 0
     why: str = ""
+    known: str = ""
+
+    def violated(self):
+        return not self.why and self.violations > 0
 
     def broken(self):
-        return not self.why and self.violations > 0
+        """Violated where no document says so."""
+        return self.violated() and not self.known
 
 
 @dataclass

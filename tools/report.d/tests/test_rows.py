@@ -40,6 +40,11 @@ class Verdicts(unittest.TestCase):
         self.assertEqual(report(promises=[Promise("pixels", 0, 100)]).exit_status(), 0)
         self.assertEqual(report(promises=[Promise("pixels", 1, 100)]).exit_status(), 1)
 
+    def test_a_known_exception_is_told_and_does_not(self):
+        known = report(promises=[Promise("pixels", 7, 100, known="docs/accuracy.md says so")])
+        self.assertEqual(known.exit_status(), 0)
+        self.assertIn("pixels: 7 of 100; docs/accuracy.md says so", markdown.text(known, {}))
+
     def test_a_section_that_failed_fails_the_run(self):
         self.assertEqual(report(WON, failure="the program ended with status 3").exit_status(), 1)
 

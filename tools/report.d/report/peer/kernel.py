@@ -9,9 +9,9 @@ until the time is up. Where a picture shows another face than the ray at a pixel
 the least distance at which a ray sees it is the error there. `p999_px` is the error that one in a thousand of the boundary's pixels exceeds. Errors
 are distances of the list below, rounded up; beyond the last one, a pixel counts as `beyond`, and as twice that distance.
 
-Pictures that are `own` number faces in another way: each of the kernel's faces is the number that most of its pixels have. A pixel
-at which all pictures agree against the ray is left out, and counted as `alone`: the kernel's ray is at fault there, for its own
-mesher says otherwise.
+Pictures that are `own` number faces in another way: each of the kernel's faces is the number that most rays through the inside of the picture's
+faces find. A pixel at which the last picture and the last `own` one are both wrong is left out, and counted as `alone`: two that share
+nothing say that the kernel's ray is at fault there. Their order is from coarse to fine.
 """
 
 import math
@@ -35,6 +35,10 @@ SEARCHES = 200
 TIE = 1e-6
 # the kernel's own tolerance, millimetres
 TOLERANCE = 1e-7
+# the end of a ray, millimetres
+FAR = 1e9
+# rays through the inside of each face of a picture, and how far inside, pixels
+NAMING, INSIDE = 6, 2
 
 
 def unit(v):
@@ -65,10 +69,12 @@ class Rays:
         points = numpy.array([[corners[k >> a & 1][a] for a in range(3)] for k in range(8)])
         apart = points - self.eye
         depth = apart @ self.forward
+        across, upwards = apart @ self.right / (self.tan * self.width / self.height), apart @ self.up / self.tan
+        if depth.max() <= 0 or any((side > depth).all() for side in (across, -across, upwards, -upwards)):
+            return  # beyond one side of what the camera sees
         low, high = (0, 0), (self.width, self.height)
         if depth.min() > 0:
-            x = (1 + apart @ self.right / (depth * self.tan * self.width / self.height)) * self.width / 2
-            y = (1 - apart @ self.up / (depth * self.tan)) * self.height / 2
+            x, y = (1 + across / depth) * self.width / 2, (1 - upwards / depth) * self.height / 2
             low, high = (x.min() - 1, y.min() - 1), (x.max() + 1, y.max() + 1)
         span = lambda k, most: range(max(int(low[k]), 0) // TILE, min(int(min(high[k], 1e9)), most) // TILE + 1)
         yield from ((i, j) for i in span(0, self.width) for j in span(1, self.height))
@@ -86,7 +92,10 @@ class Rays:
             held = self.made.get(number)
             if held is None:
                 held = self.made[number] = IntCurvesFace_Intersector(self.found[number], TOLERANCE)
-            held.Perform(line, 0.0, 1e12)
+            try:
+                held.Perform(line, 0.0, FAR)
+            except Exception:  # the kernel's own: a surface that it cannot intersect has no hit
+                continue
             if held.IsDone():
                 for k in range(1, held.NbPnt() + 1):
                     if held.State(k) in (TopAbs_IN, TopAbs_ON):
@@ -131,15 +140,22 @@ def boundary(rays, seconds):
     return {pixel: seen[pixel] for pixel in changes}, seen
 
 
-def named(image, seen):
+def named(rays, image):
     """For a picture with numbers of its own, that of each of the kernel's faces; 0 is its background."""
-    votes = {}
-    for (x, y), faces in seen.items():
-        votes.setdefault(faces[0], {}).setdefault(int(image[y, x]), 0)
-        votes[faces[0]][int(image[y, x])] += 1
-    names = {face: max(of, key=of.get) for face, of in votes.items()}
-    names[-1] = 0
-    return names
+    inner = numpy.ones(image.shape, bool)
+    for shift in range(-INSIDE, INSIDE + 1):
+        inner &= (numpy.roll(image, shift, 0) == image) & (numpy.roll(image, shift, 1) == image)
+    votes, draw = {}, numpy.random.default_rng(1)
+    for number in numpy.unique(image):
+        if number == 0:
+            continue
+        pixels = numpy.argwhere((image == number) & inner)
+        if not len(pixels):
+            pixels = numpy.argwhere(image == number)
+        for y, x in draw.permutation(pixels)[:NAMING]:
+            of = votes.setdefault(rays.centre((x, y))[0], {})
+            of[int(number)] = of.get(int(number), 0) + 1
+    return {**{face: max(of, key=of.get) for face, of in votes.items()}, -1: 0}
 
 
 def judged(rays, image, names, wrong, count, seconds):
@@ -176,14 +192,15 @@ def view(found, diagonal, camera, pictures, seconds):
     """All pictures of one camera."""
     rays = Rays(found, camera, TIE * diagonal)
     truth, seen = boundary(rays, seconds)
-    images, wrong = {}, {}
+    images, wrong, last = {}, {}, {}
     for name, picture in pictures.items():
         image = numpy.load(picture["path"]).astype(numpy.int64)
-        names = named(image, seen) if picture["own"] else None
+        names = named(rays, image) if picture["own"] else None
+        last[picture["own"]] = name
         images[name] = (image, names)
         right = lambda face: face if names is None else names.get(face)
         wrong[name] = {p for p, faces in truth.items() if int(image[p[1], p[0]]) not in map(right, faces)}
-    alone = set.intersection(*wrong.values()) if len(wrong) > 1 else set()
+    alone = set.intersection(*(wrong[name] for name in last.values())) if len(last) > 1 else set()
     count = len(truth) - len(alone)
     errors = {n: judged(rays, image, names, wrong[n] - alone, count, seconds) for n, (image, names) in images.items()}
     return {"boundary": count, "sampled": len(seen), "alone": len(alone), "pictures": errors}

@@ -1,9 +1,9 @@
 """A viewer of triangles over zooms: with one mesh for all of them, and with a mesh for each.
 
-    job      model, views: {name: {camera, deflection}}, fixed (deflection of the one mesh, of the diagonal), most_mesh_s, ids (a folder)
-    results  {view, fixed: {frame_ms, ids}, remeshed: {mesh_s, frame_ms, triangles, ids} or {stopped}}
+    job      model, views: {name: {camera, deflection}}, meshes (names of views), fixed (deflection of the one mesh, of the diagonal), ids (a folder)
+    results  {view, kind: fixed, frame_ms, ids} for all views, then {view, kind: remeshed, mesh_s, triangles, frame_ms, ids} for each of `meshes`
 
-Deflections of views are lengths. VTK draws; a frame is the median of several. Run within an X server.
+Deflections of views are lengths. The mesher cannot be stopped but with its process. VTK draws; a frame is the median of several. Run within an X server.
 """
 
 import statistics
@@ -12,7 +12,6 @@ import time
 import numpy
 
 from . import job, shapes, tell
-from .meshed import GROWTH
 from .vtk_viewer import VtkViewer
 
 FRAMES = 5
@@ -40,20 +39,15 @@ def main():
     vtk = VtkViewer(size)
     shapes.mesh(shape, wanted["fixed"] * shapes.diagonal(shape))
     vtk.load(shapes.triangles(found))
-    fixed = {name: drawn(vtk, view["camera"], f"{wanted['ids']}/fixed-{name}.npy") for name, view in wanted["views"].items()}
-    last, finer = 0.0, None
     for name, view in wanted["views"].items():
-        # meshes of a tolerance a hundred times as small
-        steps = finer / view["deflection"] if finer else 1.0
-        if last * min(steps, 10.0) ** 0.9 * (GROWTH if steps > 10 else 1.0) > wanted["most_mesh_s"]:
-            why = f"the mesh before took {last:.1f} s; {wanted['most_mesh_s']} s are given"
-            tell({"view": name, "fixed": fixed[name], "remeshed": {"stopped": why}})
-            continue
-        last, finer = shapes.mesh(shape, view["deflection"]), view["deflection"]
+        tell({"view": name, "kind": "fixed", **drawn(vtk, view["camera"], f"{wanted['ids']}/fixed-{name}.npy")})
+    for name in wanted["meshes"]:
+        view = wanted["views"][name]
+        took = shapes.mesh(shape, view["deflection"])
         triangles = shapes.triangles(found)
         vtk.load(triangles)
-        remeshed = {"mesh_s": last, "triangles": len(triangles[1]), **drawn(vtk, view["camera"], f"{wanted['ids']}/meshed-{name}.npy")}
-        tell({"view": name, "fixed": fixed[name], "remeshed": remeshed})
+        of_view = drawn(vtk, view["camera"], f"{wanted['ids']}/remeshed-{name}.npy")
+        tell({"view": name, "kind": "remeshed", "mesh_s": took, "triangles": len(triangles[1]), **of_view})
 
 
 if __name__ == "__main__":
