@@ -54,6 +54,7 @@ def measured(name, context):
         traceback.print_exc()
         section = Section(list(SECTIONS).index(name) + 1, name.replace("_", " ").capitalize(), "", failure=f"{type(error).__name__}: {error}")
     section.seconds = time.monotonic() - start
+    print(f"   {section.seconds:.0f} s", file=sys.stderr, flush=True)
     return section
 
 

@@ -52,7 +52,7 @@ class Case:
         self.file.write_text(scenes.toml(self.scene))
         bounds = context.program.info(self.file)["bounds"]
         size = context.pick((640, 480), (1024, 768))
-        self.frames = context.pick(6, 12)
+        self.frames = context.pick(4, 12)
         self.camera = self.view(bounds, size, 0)
         self.turn = [self.view(bounds, size, step) for step in range(self.frames)]
         self.size = "{}x{}".format(*size)
