@@ -33,10 +33,19 @@ SECTIONS = {
 
 def options():
     parser = argparse.ArgumentParser(prog="tools/report", description="Speed against error, beside everybody else.")
-    parser.add_argument("--quick", action="store_true", help="fewer files, sizes and rounds: below ten minutes on two cores")
+    parser.add_argument(
+        "--quick", action="store_true", help="fewer files, sizes and rounds: below ten minutes on two cores"
+    )
     parser.add_argument("--device", metavar="NAME", help="part of the name of the Vulkan device")
-    parser.add_argument("--out", type=Path, metavar="DIR", help="folder of benchmarks.md, benchmarks.json and benchmarks/; docs without it")
-    parser.add_argument("--only", nargs="+", choices=SECTIONS, metavar="SECTION", help=f"needs --out; of {', '.join(SECTIONS)}")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="folder of benchmarks.md, benchmarks.json and benchmarks/; docs without it",
+    )
+    parser.add_argument(
+        "--only", nargs="+", choices=SECTIONS, metavar="SECTION", help=f"needs --out; of {', '.join(SECTIONS)}"
+    )
     chosen = parser.parse_args()
     if chosen.only and not chosen.out:
         parser.error("--only is part of a report: name a folder with --out")
@@ -52,7 +61,12 @@ def measured(name, context):
         section = SECTIONS[name].measure(context)
     except Exception as error:  # one section does not cost the others
         traceback.print_exc()
-        section = Section(list(SECTIONS).index(name) + 1, name.replace("_", " ").capitalize(), "", failure=f"{type(error).__name__}: {error}")
+        section = Section(
+            list(SECTIONS).index(name) + 1,
+            name.replace("_", " ").capitalize(),
+            "",
+            failure=f"{type(error).__name__}: {error}",
+        )
     section.seconds = time.monotonic() - start
     print(f"   {section.seconds:.0f} s", file=sys.stderr, flush=True)
     return section
@@ -98,7 +112,10 @@ def main():
         write(report, chosen.out)
     print(chosen.out / "benchmarks.md")
     for section, contest in report.lost():
-        print(f"lost: {section.number}. {contest.what}, beside {contest.peer}: {markdown.interval(contest)}", file=sys.stderr)
+        print(
+            f"lost: {section.number}. {contest.what}, beside {contest.peer}: {markdown.interval(contest)}",
+            file=sys.stderr,
+        )
     for section, promise in report.broken():
         print(f"broken: {section.number}. {promise.what}: {promise.violations} of {promise.cases}", file=sys.stderr)
     sys.exit(report.exit_status())

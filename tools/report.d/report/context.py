@@ -28,7 +28,11 @@ class Context:
         return path if path and path.exists() else None
 
     def absent(self, name):
-        return Missing(f"{name} is not in the folder that SELVEDGE_MODELS names" if self.models else "SELVEDGE_MODELS names no folder")
+        return Missing(
+            f"{name} is not in the folder that SELVEDGE_MODELS names"
+            if self.models
+            else "SELVEDGE_MODELS names no folder"
+        )
 
     def shown(self, *words):
         """A command of the program as it stands in the document."""

@@ -1,6 +1,7 @@
 """Hard cases as scene files: what could go wrong in each, and how it is looked at.
 
-Sheets are 40 by 30 millimetres, their parameters run from 0 to 1, and a picture of a whole one at 320 x 240 shows it some 200 pixels wide.
+Sheets are 40 by 30 millimetres, their parameters run from 0 to 1, and a picture of a whole one at 320 x 240 shows it
+some 200 pixels wide.
 """
 
 import math
@@ -26,7 +27,9 @@ def surface(name, points, extra="", weights=None):
 
 def net(n, m, height, width=40.0, depth=30.0):
     """Points over a rectangle, at heights by column and row."""
-    return [[(width * (i / (n - 1) - 0.5), depth * (j / (m - 1) - 0.5), height(i, j)) for i in range(n)] for j in range(m)]
+    return [
+        [(width * (i / (n - 1) - 0.5), depth * (j / (m - 1) - 0.5), height(i, j)) for i in range(n)] for j in range(m)
+    ]
 
 
 def wavy(name, extra="", n=4, height=6.0):
@@ -86,7 +89,11 @@ def sheets(gap):
     left = [[(-20 + 20 * i / 3, 30 * (j / 3 - 0.5), 5 * math.sin(2 * j / 3)) for i in range(4)] for j in range(4)]
     edge = [row[3] for row in left]
     # the side's degree is raised by one: the same curve
-    raised = [edge[0], *(tuple((k * a + (4 - k) * b) / 4 for a, b in zip(edge[k - 1], edge[k])) for k in (1, 2, 3)), edge[3]]
+    raised = [
+        edge[0],
+        *(tuple((k * a + (4 - k) * b) / 4 for a, b in zip(edge[k - 1], edge[k])) for k in (1, 2, 3)),
+        edge[3],
+    ]
     right = [[(p[0] + gap + 20 * i / 3, p[1], p[2] + 2 * i) for i in range(4)] for p in reversed(raised)]
     both = surface("left", left) + surface("right", right)
     return both + '[part.both]\nsurfaces = ["left", "right"]\n'
@@ -101,36 +108,120 @@ CASES = [
     Case("poles", "collapsed edges, singular normals", solid("ball", "sphere", radius=20, faces=True)),
     Case("tip of a cone", "no normal at the tip", solid("cone", "cone", bottom=15, top=0, height=30, faces=True)),
     Case("seams", "loops across a seam", solid("ring", "torus", major=20, minor=7, faces=True)),
-    Case("corners on scan lines", "counted twice or not at all", trimmed('"stair"', curves=polygon("stair", stair(10)))),
+    Case(
+        "corners on scan lines", "counted twice or not at all", trimmed('"stair"', curves=polygon("stair", stair(10)))
+    ),
     Case("edges along scan lines", "|dv| of 1e-7", trimmed('"fan"', curves=polygon("fan", fan(9, 1.0)))),
-    Case("inflection along a scan line", "a triple root", trimmed('["bend", "back"]', curves=bezier("bend", [(0.2, 0.45), (0.4, 0.55), (0.6, 0.45), (0.8, 0.55)]) + path("back", [(0.8, 0.55), (0.8, 0.9), (0.2, 0.9), (0.2, 0.45)]))),
-    Case("cusp", "no direction where the curve turns back", trimmed('["cusp", "back"]', curves=bezier("cusp", [(0.2, 0.2), (0.8, 0.8), (0.2, 0.8), (0.8, 0.2)]) + path("back", [(0.8, 0.2), (0.2, 0.2)]))),
+    Case(
+        "inflection along a scan line",
+        "a triple root",
+        trimmed(
+            '["bend", "back"]',
+            curves=bezier("bend", [(0.2, 0.45), (0.4, 0.55), (0.6, 0.45), (0.8, 0.55)])
+            + path("back", [(0.8, 0.55), (0.8, 0.9), (0.2, 0.9), (0.2, 0.45)]),
+        ),
+    ),
+    Case(
+        "cusp",
+        "no direction where the curve turns back",
+        trimmed(
+            '["cusp", "back"]',
+            curves=bezier("cusp", [(0.2, 0.2), (0.8, 0.8), (0.2, 0.8), (0.8, 0.2)])
+            + path("back", [(0.8, 0.2), (0.2, 0.2)]),
+        ),
+    ),
     Case("tangent loops", "two loops share a point", trimmed(disc(0.35, 0.5, 0.15), disc(0.65, 0.5, 0.15))),
     Case("loop along the border", "a loop touches the domain's edge", trimmed(disc(0.5, 0.25, 0.25))),
     Case("holes of 0.3 pixels", "lost or grown", trimmed(*grid(12, 0.00075))),
-    Case("slit of 0.1 pixels", "closed, or open too wide", trimmed('"slit"', curves=polygon("slit", [(0.1, 0.5), (0.9, 0.5), (0.9, 0.5005), (0.1, 0.5005)]))),
+    Case(
+        "slit of 0.1 pixels",
+        "closed, or open too wide",
+        trimmed('"slit"', curves=polygon("slit", [(0.1, 0.5), (0.9, 0.5), (0.9, 0.5005), (0.1, 0.5005)])),
+    ),
     Case("900 holes in a face", "more crossings than a row holds", trimmed(*grid(30, 0.01))),
     Case("degree 15", "digits lost in high powers", wavy("high", n=16, height=14.0)),
-    Case("weights 100:1", "points crowd together", surface("heavy", net(4, 4, lambda i, j: 12.0 * ((i + j) % 2)), weights=[[1, 100, 1, 1], [1, 1, 100, 1], [100, 1, 1, 1], [1, 1, 1, 100]])),
-    Case("weights 1,000:1", "the same", surface("heavier", net(4, 4, lambda i, j: 12.0 * ((i + j) % 2)), weights=[[1, 0.001, 1, 1], [1, 1, 1000, 1], [1000, 1, 1, 1], [1, 1, 1, 0.001]])),
+    Case(
+        "weights 100:1",
+        "points crowd together",
+        surface(
+            "heavy",
+            net(4, 4, lambda i, j: 12.0 * ((i + j) % 2)),
+            weights=[[1, 100, 1, 1], [1, 1, 100, 1], [100, 1, 1, 1], [1, 1, 1, 100]],
+        ),
+    ),
+    Case(
+        "weights 1,000:1",
+        "the same",
+        surface(
+            "heavier",
+            net(4, 4, lambda i, j: 12.0 * ((i + j) % 2)),
+            weights=[[1, 0.001, 1, 1], [1, 1, 1000, 1], [1000, 1, 1, 1], [1, 1, 1, 0.001]],
+        ),
+    ),
     Case("collapsed side", "three corners", surface("fan", [[(0, -15, 0)] * 4, *net(4, 4, lambda i, j: 3.0 * i)[1:]])),
-    Case("folded sheet", "it hides itself", surface("fold", [[(x, 10 * j - 15, z) for x, z in ((-20, 0), (30, 0), (-30, 20), (20, 20))] for j in range(4)])),
-    Case("aspect 200:1", "one factor for both sides", surface("strip", net(4, 4, lambda i, j: 0.05 * (-1) ** i, width=100.0, depth=0.5))),
+    Case(
+        "folded sheet",
+        "it hides itself",
+        surface("fold", [[(x, 10 * j - 15, z) for x, z in ((-20, 0), (30, 0), (-30, 20), (20, 20))] for j in range(4)]),
+    ),
+    Case(
+        "aspect 200:1",
+        "one factor for both sides",
+        surface("strip", net(4, 4, lambda i, j: 0.05 * (-1) ** i, width=100.0, depth=0.5)),
+    ),
     Case("edge-on", "a silhouette of no width", wavy("flat", height=0.0), ["--eye", "0,-80,0.01", "--target", "0,0,0"]),
-    Case("near plane through a patch", "control points behind the eye", wavy("near"), ["--eye", "0,-14,4", "--target", "0,10,-2"], TOLD),
+    Case(
+        "near plane through a patch",
+        "control points behind the eye",
+        wavy("near"),
+        ["--eye", "0,-14,4", "--target", "0,10,-2"],
+        TOLD,
+    ),
     Case("shared side, other degree and direction", "a crack", sheets(0.0), known=OTHER_DEGREES),
     Case("gap of 1e-6", "a crack that the file has", sheets(1e-6), known=OTHER_DEGREES),
     Case("10^6 zoom", "digits of a float", trimmed(disc(0.5, 0.5, 0.2)), CLOSER),
-    Case("10^6 offset", "0.06 is the last digit of a float", trimmed(disc(0.5, 0.5, 0.2)), ["--views", "all", "--moved", "1000000,1000000,1000000"]),
-    Case("coincident faces", "which of two is in front", solid("A", "block", size=[20, 20, 20]) + solid("B", "block", size=[20, 20, 20], at=[20, 0, 0]) + solid("C", "block", size=[10, 10, 10], at=[5, 5, 10]) + boolean("(A+B)-C")),
-    Case("shells of 0.001", "front and back in one pixel", solid("A", "sphere", radius=20) + solid("B", "sphere", radius=19.999) + solid("C", "block", size=[40, 40, 40]) + boolean("A-B-C")),
-    Case("tangent solids", "they touch along a line", solid("A", "block", size=[40, 40, 20]) + solid("B", "cylinder", radius=10, height=40, at=[20, 10, -10]) + boolean("A-B"), known=SLIVERS),
-    Case("overlap of 1e-6", "thinner than the tie", solid("A", "block", size=[20, 20, 20]) + solid("B", "block", size=[20, 20, 20], at=[19.999999, 5, 5]) + boolean("A+B")),
-]  # fmt: skip
+    Case(
+        "10^6 offset",
+        "0.06 is the last digit of a float",
+        trimmed(disc(0.5, 0.5, 0.2)),
+        ["--views", "all", "--moved", "1000000,1000000,1000000"],
+    ),
+    Case(
+        "coincident faces",
+        "which of two is in front",
+        solid("A", "block", size=[20, 20, 20])
+        + solid("B", "block", size=[20, 20, 20], at=[20, 0, 0])
+        + solid("C", "block", size=[10, 10, 10], at=[5, 5, 10])
+        + boolean("(A+B)-C"),
+    ),
+    Case(
+        "shells of 0.001",
+        "front and back in one pixel",
+        solid("A", "sphere", radius=20)
+        + solid("B", "sphere", radius=19.999)
+        + solid("C", "block", size=[40, 40, 40])
+        + boolean("A-B-C"),
+    ),
+    Case(
+        "tangent solids",
+        "they touch along a line",
+        solid("A", "block", size=[40, 40, 20])
+        + solid("B", "cylinder", radius=10, height=40, at=[20, 10, -10])
+        + boolean("A-B"),
+        known=SLIVERS,
+    ),
+    Case(
+        "overlap of 1e-6",
+        "thinner than the tie",
+        solid("A", "block", size=[20, 20, 20])
+        + solid("B", "block", size=[20, 20, 20], at=[19.999999, 5, 5])
+        + boolean("A+B"),
+    ),
+]
 
 
 def random_sheets(draw, count):
-    """Surfaces of degree 1 to 6 with weights up to 30:1, each with up to four loops that do not meet; their number, and that of loops."""
+    """Surfaces of degree 1 to 6 with weights up to 30:1, each with up to four loops that do not meet; how many loops."""
     text, instances, loops, side = "", "", 0, math.ceil(math.sqrt(count))
     for k in range(count):
         n, m = draw.randint(2, 7), draw.randint(2, 7)
@@ -169,7 +260,14 @@ def random_tree(draw, leaves):
         at = [round(draw.uniform(-22, 22), 6) for _ in range(3)]
         turn = [round(draw.uniform(0, 90), 6) for _ in range(3)]
         name, size = f"A{k}", lambda: round(draw.uniform(3, 12), 6)
-        keys = draw.choice([("block", {"size": [size(), size(), size()]}), ("sphere", {"radius": size()}), ("cylinder", {"radius": size(), "height": 2 * size()}), ("torus", {"major": 12.0 + size(), "minor": size() / 2})])  # fmt: skip
+        keys = draw.choice(
+            [
+                ("block", {"size": [size(), size(), size()]}),
+                ("sphere", {"radius": size()}),
+                ("cylinder", {"radius": size(), "height": 2 * size()}),
+                ("torus", {"major": 12.0 + size(), "minor": size() / 2}),
+            ]
+        )
         text += solid(name, keys[0], at=at, rotate=turn, **keys[1])
         tree = f"({tree}{draw.choice('+--')}{name})"
     return text + boolean(tree)

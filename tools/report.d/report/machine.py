@@ -28,7 +28,9 @@ def load():
 def commit():
     """With a plus where tracked files differ from it."""
     git = lambda *words: subprocess.run(["git", *words], cwd=ROOT, capture_output=True, text=True).stdout.strip()
-    return (git("rev-parse", "--short", "HEAD") or "unknown") + ("+" if git("status", "--porcelain", "--untracked-files=no") else "")
+    return (git("rev-parse", "--short", "HEAD") or "unknown") + (
+        "+" if git("status", "--porcelain", "--untracked-files=no") else ""
+    )
 
 
 def date():
@@ -36,7 +38,7 @@ def date():
 
 
 def shown(command, folders=()):
-    """A command as a reader can run it: the program's name, files without the folders they stand in, no folders of scratch.
+    """A command as a reader can run it: the program's name, no folders of this machine.
 
     `folders` are pairs of a path and what stands for it.
     """

@@ -3,14 +3,21 @@
 from .noise import median
 from .rows import Missing
 
-VERDICT_WORDS = {"ahead": "ahead", "even": "even", "behind": "behind", "unreached": "ahead", "not measured": "not measured"}
+VERDICT_WORDS = {
+    "ahead": "ahead",
+    "even": "even",
+    "behind": "behind",
+    "unreached": "ahead",
+    "not measured": "not measured",
+}
 
 
 def text(report, plots):
     """`plots` are paths of pictures, relative to the document, by the plots' names."""
     parts = [
         "# Benchmarks",
-        f"Written by `{report.command}`: current figures only, each from this run. Dated experiments stand in [notes](notes).",
+        f"Written by `{report.command}`: current figures only, each from this run. Dated experiments stand in "
+        "[notes](notes).",
         heading(report),
         "## Where we lose",
         losses(report),
@@ -34,9 +41,15 @@ def heading(report):
     ]
     count = lambda verdict: sum(c.verdict() == verdict for _, c in report.contests())
     ahead = count("ahead") + count("unreached")
-    rows.append(("contests", f"{ahead} ahead, {count('even')} even, {count('behind')} behind, {count('not measured')} not measured"))
+    rows.append(
+        (
+            "contests",
+            f"{ahead} ahead, {count('even')} even, {count('behind')} behind, {count('not measured')} not measured",
+        )
+    )
     return table(["", ""], rows) + (
-        "\n\nCompetitors take turns; a ratio is theirs to ours, the median over the rounds with its 95 % bootstrap interval: above 1 "
+        "\n\nCompetitors take turns; a ratio is theirs to ours, the median over the rounds with its 95 % bootstrap "
+        "interval: above 1 "
         "we are ahead, and an interval that holds 1 is even. A **claim** that is behind makes the run fail."
     )
 
@@ -49,7 +62,9 @@ def losses(report):
     for section, contest in sorted(behind, key=lambda row: (not row[1].lost(), row[1].ratio().median)):
         mark = "**lost**: " if contest.lost() else ""
         times = 1 / contest.ratio().median
-        lines.append(f"* {mark}{section.number}. {contest.what}: {times:.2g} times {contest.peer}'s {interval(contest)}")
+        lines.append(
+            f"* {mark}{section.number}. {contest.what}: {times:.2g} times {contest.peer}'s {interval(contest)}"
+        )
     lines += [f"* known: {told(s, p)}; {p.known}" for s, p in report.promises() if p.violated() and p.known]
     return "\n".join(lines) or "Nowhere in this run."
 
@@ -89,7 +104,9 @@ def contests(rows):
     body = []
     for c in rows:
         measured = c.ratio() is not None
-        verdict = VERDICT_WORDS[c.verdict()] + (", **claim lost**" if c.lost() else ", claimed" if c.claim == "ahead" else "")
+        verdict = VERDICT_WORDS[c.verdict()] + (
+            ", **claim lost**" if c.lost() else ", claimed" if c.claim == "ahead" else ""
+        )
         ours, theirs = (median_of(values, measured) for values in (c.ours, c.theirs))
         ratio = interval(c) if measured else c.reason()
         body.append([c.what, c.peer, c.unit, ours, theirs, ratio, verdict])

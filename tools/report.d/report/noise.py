@@ -1,8 +1,9 @@
 """Medians, and how far they may be trusted: bootstrap intervals of paired ratios, exponents of growth.
 
-Rounds are paired: in each, all competitors run one after another on the same machine, so that other work slows all of them. The
-ratio of a round has little of that in it; what is left is the noise, and the spread of the rounds' ratios measures it. Source: B. Efron,
-R. Tibshirani, An Introduction to the Bootstrap, 1993, chapter 13 (percentile intervals).
+Rounds are paired: in each, all competitors run one after another on the same machine, so that other work slows all of
+them. The ratio of a round has little of that in it; what is left is the noise, and the spread of the rounds' ratios
+measures it. Source: B. Efron, R. Tibshirani, An Introduction to the Bootstrap, 1993, chapter 13 (percentile
+intervals).
 """
 
 import math

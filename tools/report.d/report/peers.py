@@ -1,6 +1,7 @@
 """The others: which are there, and runs of each in a process of its own.
 
-`tools/report` installs Python packages into a folder of the build and writes why it could not; what comes from Debian is used where it is.
+`tools/report` installs Python packages into a folder of the build and writes why it could not; what comes from Debian
+is used where it is.
 """
 
 import importlib.metadata
@@ -74,15 +75,25 @@ class Peers:
 
 
 def run(command, limit_s, allowed=(0,)):
-    """Standard output, what went wrong (empty where nothing did), and seconds. Ends the whole group of processes at the limit."""
+    """Standard output, what went wrong (empty where nothing did), and seconds; at the limit its group is ended."""
     environment = {**os.environ, "PYTHONPATH": str(ROOT / "tools/report.d")}
     start = time.perf_counter()
     process = subprocess.Popen(
-        [str(word) for word in command], cwd=ROOT, env=environment, stdout=subprocess.PIPE, stderr=subprocess.PIPE, text=True, start_new_session=True
+        [str(word) for word in command],
+        cwd=ROOT,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
     )
     try:
         out, told = process.communicate(timeout=limit_s)
-        problem = "" if process.returncode in allowed else f"status {process.returncode}: {(told.strip().splitlines() or ['no word'])[-1]}"
+        problem = (
+            ""
+            if process.returncode in allowed
+            else f"status {process.returncode}: {(told.strip().splitlines() or ['no word'])[-1]}"
+        )
     except subprocess.TimeoutExpired:
         os.killpg(process.pid, 15)
         out, _ = process.communicate()

@@ -1,7 +1,7 @@
 """What a report holds: contests, promises, tables and plots, by section.
 
-A contest is one quantity, the smaller the better, measured of us and of a peer in the same rounds. Its ratio is theirs to ours: above 1
-we are ahead. With `claim` "ahead" the project says that it wins; "open" claims nothing.
+A contest is one quantity, the smaller the better, measured of us and of a peer in the same rounds. Its ratio is
+theirs to ours: above 1 we are ahead. With `claim` "ahead" the project says that it wins; "open" claims nothing.
 
     verdict         of the interval of the ratio              lost: a claim that is
     ahead           all of it is above 1
@@ -10,7 +10,8 @@ we are ahead. With `claim` "ahead" the project says that it wins; "open" claims 
     unreached       the peer got nowhere: no setting of its is as right, or it drew nothing; we are ahead
     not measured    `why` says why
 
-A promise counts violations; it has no noise, and a violation that no document excepts makes the run fail. A cell of a table that could not be measured is a `Missing`.
+A promise counts violations; it has no noise, and a violation that no document excepts makes the run fail. A cell of a
+table that could not be measured is a `Missing`.
 """
 
 import dataclasses
@@ -86,7 +87,7 @@ class Contest:
 
 @dataclass
 class Promise:
-    """Violations of something that must always hold, out of how many cases; `known` says where the documents except them."""
+    """Violations of something that must hold, out of how many cases; `known` says which document excepts them."""
 
     what: str
     violations: int = 0

@@ -1,8 +1,10 @@
-"""Boolean solids that all competitors get: from one description as a scene of ours, as OpenSCAD's, as POV-Ray's, and as plain data.
+"""Boolean solids that all competitors get: from one description as a scene of ours, as OpenSCAD's, as POV-Ray's, and
+as plain data.
 
-A primitive is `{shape, …, at, turn}`: block (size, centred), sphere (radius), cylinder (radius, height), torus (major, minor); turned about x
-by `turn` degrees, then moved by `at`. A scene has primitives by name and an expression of them, `+` `*` `-` and brackets. The paper's models
-(J. Hable, J. Rossignac, Blister, SIGGRAPH 2005) are not public: these have its numbers of primitives, and of triangles.
+A primitive is `{shape, …, at, turn}`: block (size, centred), sphere (radius), cylinder (radius, height), torus
+(major, minor); turned about x by `turn` degrees, then moved by `at`. A scene has primitives by name and an expression
+of them, `+` `*` `-` and brackets. The paper's models (J. Hable, J. Rossignac, Blister, SIGGRAPH 2005) are not public:
+these have its numbers of primitives, and of triangles.
 """
 
 import math
@@ -75,7 +77,11 @@ def gear():
         "C": primitive("torus", (0, 0, 12), major=20, minor=5),
         "D": primitive("torus", major=20, minor=5),
     }
-    ring = lambda radius, degrees: (round(radius * math.cos(math.radians(degrees)), 9), round(radius * math.sin(math.radians(degrees)), 9), -1)
+    ring = lambda radius, degrees: (
+        round(radius * math.cos(math.radians(degrees)), 9),
+        round(radius * math.sin(math.radians(degrees)), 9),
+        -1,
+    )
     parts |= {f"T{k}": primitive("cylinder", ring(41, 9 * k), radius=1.9, height=14) for k in range(40)}
     parts |= {f"L{k}": primitive("cylinder", ring(30, 90 * k + 45), radius=4, height=14) for k in range(4)}
     return Scene("gear", parts, "A-(" + "+".join(name for name in parts if name != "A") + ")")
@@ -85,7 +91,10 @@ def plate(holes):
     """A plate with a grid of holes."""
     side = round(math.sqrt(holes))
     parts = {"A": primitive("block", size=[side, side, 2], centred=False)}
-    parts |= {f"H{k}": primitive("cylinder", (k % side + 0.5, k // side + 0.5, -1), radius=0.3, height=4) for k in range(holes)}
+    parts |= {
+        f"H{k}": primitive("cylinder", (k % side + 0.5, k // side + 0.5, -1), radius=0.3, height=4)
+        for k in range(holes)
+    }
     return Scene(f"plate{holes}", parts, "A-(" + "+".join(f"H{k}" for k in range(holes)) + ")")
 
 
@@ -158,15 +167,18 @@ def scad(scene, segments):
 
 
 def pov(scene, camera):
-    """A scene for POV-Ray, which has no facets either; its axes run the other way round, so the picture is mirrored back."""
+    """A scene for POV-Ray, which has no facets either; its axes are left-handed, so `right` is turned round."""
 
     def shape(part):
-        at, text = part["at"], {
-            "block": lambda: "box {{ {}, {} ".format(*map(vector, block_corners(part))),
-            "sphere": lambda: f"sphere {{ 0, {part['radius']} ",
-            "cylinder": lambda: f"cylinder {{ 0, <0, 0, {part['height']}>, {part['radius']} ",
-            "torus": lambda: f"torus {{ {part['major']}, {part['minor']} rotate <90, 0, 0> ",
-        }[part["shape"]]()
+        at, text = (
+            part["at"],
+            {
+                "block": lambda: "box {{ {}, {} ".format(*map(vector, block_corners(part))),
+                "sphere": lambda: f"sphere {{ 0, {part['radius']} ",
+                "cylinder": lambda: f"cylinder {{ 0, <0, 0, {part['height']}>, {part['radius']} ",
+                "torus": lambda: f"torus {{ {part['major']}, {part['minor']} rotate <90, 0, 0> ",
+            }[part["shape"]](),
+        )
         return f"{text} rotate <{part['turn']}, 0, 0> translate {vector(at)} }}"
 
     def whole(tree):
@@ -177,19 +189,21 @@ def pov(scene, camera):
 
     width, height = camera["size"]
     across = math.degrees(2 * math.atan(math.tan(math.radians(camera["fovy"]) / 2) * width / height))
-    look = f"location {vector(camera['eye'])} up y right {-width / height}*x sky {vector(camera['up'])} angle {across} look_at {vector(camera['target'])}"
-    light = f"light_source {{ {vector(camera['eye'])}, rgb 1 shadowless }}"
+    eye, target, up = (vector(camera[name]) for name in ("eye", "target", "up"))
+    look = f"location {eye} up y right {-width / height}*x sky {up} angle {across} look_at {target}"
+    light = f"light_source {{ {eye}, rgb 1 shadowless }}"
     return (
         "#version 3.7; global_settings { assumed_gamma 1.0 }\nbackground { rgb 1 }\n"
-        f"camera {{ perspective {look} }}\n{light}\nobject {{ {whole(scene.tree())} pigment {{ rgb <0.2, 0.3, 0.4> }} }}\n"
+        f"camera {{ perspective {look} }}\n{light}\n"
+        f"object {{ {whole(scene.tree())} pigment {{ rgb <0.2, 0.3, 0.4> }} }}\n"
     )
 
 
 def flat(tree):
     """Operands of a chain of one operator: of differences the first, then all that is taken away."""
     operands = []
-    while not isinstance(tree, str) and (not operands or tree[0] == operator):
-        operator = tree[0]
+    operator = None if isinstance(tree, str) else tree[0]
+    while not isinstance(tree, str) and tree[0] == operator:
         operands.append(tree[2])
         tree = tree[1]
     return [tree, *reversed(operands)]

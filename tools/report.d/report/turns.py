@@ -2,8 +2,8 @@
 
     round 1   A B C      round 2   B C A      round 3   C A B      ...
 
-Each round begins with another one, so that none always follows the same. Rounds go on until their time is used up, but there are
-`least` of them in any case, for without them the noise is unknown.
+Each round begins with another one, so that none always follows the same. Rounds go on until their time is used up,
+but there are `least` of them in any case, for without them the noise is unknown.
 """
 
 import time

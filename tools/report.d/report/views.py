@@ -1,4 +1,4 @@
-"""Cameras that all competitors get: eye, target, up, fovy (degrees from top to bottom) and size, millimetres and pixels."""
+"""Cameras that all competitors get: eye, target, up (mm), fovy (degrees from top to bottom) and size (pixels)."""
 
 import math
 
@@ -6,7 +6,7 @@ FOV_DEG, ELEVATION_DEG, STEP_DEG = 35.0, 30.0, 3.0
 
 
 def turned(bounds, size, step, fov=FOV_DEG):
-    """The whole model from 30 degrees above its front, turned by so many steps: the frames of `selvedge bench --motion turn`."""
+    """The whole model from 30 degrees above its front, turned by steps, as `selvedge bench --motion turn` does."""
     low, high = bounds
     centre = [(a + b) / 2 for a, b in zip(low, high)]
     around, up = math.radians(STEP_DEG * step), math.radians(ELEVATION_DEG)
@@ -23,4 +23,6 @@ def turn(bounds, size, frames):
 
 def pixel_mm(camera):
     """Side of a pixel at the camera's target."""
-    return 2 * math.tan(math.radians(camera["fovy"]) / 2) * math.dist(camera["eye"], camera["target"]) / camera["size"][1]
+    return (
+        2 * math.tan(math.radians(camera["fovy"]) / 2) * math.dist(camera["eye"], camera["target"]) / camera["size"][1]
+    )

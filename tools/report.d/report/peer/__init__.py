@@ -1,5 +1,6 @@
-"""Programs that run in processes of their own, by the packages of others. Each takes a file with its job, and prints results as lines
-that begin with `RESULT`, one as soon as it is known, so that a limit of time keeps what came before it.
+"""Programs that run in processes of their own, by the packages of others. Each takes a file with its job, and prints
+results as lines that begin with `RESULT`, one as soon as it is known, so that a limit of time keeps what came before
+it.
 """
 
 import json

@@ -1,10 +1,12 @@
-"""How wrong pictures of a Boolean solid are: rays through the primitives' own equations, in double precision, with code of its own.
+"""How wrong pictures of a Boolean solid are: rays through the primitives' own equations, in double precision, with
+code of its own.
 
-    job      scene: {primitives, tree} (scenes.py), camera, seconds, pictures: {name: path of a PNG, or of an image of faces as .npy}
+    job      scene: {primitives, tree} (scenes.py), camera, seconds,
+             pictures: {name: path of a PNG, or of an image of faces as .npy}
     results  {boundary, sampled, pictures: {name: {worst_px, p999_px, off, searched, beyond}}}
 
-Judged is where the solid ends: whether a pixel shows it at all. A PNG shows the background where it has the colour of its
-upper left corner; in an image of faces that is 0.
+Judged is where the solid ends: whether a pixel shows it at all. A PNG shows the background where it has the colour of
+its upper left corner; in an image of faces that is 0.
 """
 
 import math
@@ -62,9 +64,13 @@ def spans(part, eye, ray):
     turned = lambda v: (v[0], cos * v[1] + sin * v[2], -sin * v[1] + cos * v[2])
     o, d = turned(eye - numpy.array(part["at"], float)), turned(ray)
     if part["shape"] == "sphere":
-        return quadratic(sum(x * x for x in d), sum(a * b for a, b in zip(o, d)), sum(x * x for x in o) - part["radius"] ** 2)
+        return quadratic(
+            sum(x * x for x in d), sum(a * b for a, b in zip(o, d)), sum(x * x for x in o) - part["radius"] ** 2
+        )
     if part["shape"] == "cylinder":
-        round_ = quadratic(d[0] ** 2 + d[1] ** 2, o[0] * d[0] + o[1] * d[1], o[0] ** 2 + o[1] ** 2 - part["radius"] ** 2)
+        round_ = quadratic(
+            d[0] ** 2 + d[1] ** 2, o[0] * d[0] + o[1] * d[1], o[0] ** 2 + o[1] ** 2 - part["radius"] ** 2
+        )
         return clipped(round_, slab(o[2], d[2], 0, part["height"]))
     if part["shape"] == "torus":
         return torus(o, d, part["major"], part["minor"])
@@ -98,14 +104,14 @@ def clipped(found, by):
 
 
 def torus(o, d, major, minor):
-    """Between the real roots of (|p|^2 + R^2 - r^2)^2 = 4 R^2 (x^2 + y^2), p = o + t d with |d| = 1, taken from the point nearest to the middle."""
+    """Between the real roots of (|p|^2 + R^2 - r^2)^2 = 4 R^2 (x^2 + y^2), p = o + t d with |d| = 1."""
     middle = -sum(a * b for a, b in zip(o, d))
     o = [a + middle * b for a, b in zip(o, d)]
     if sum(x * x for x in o) > (major + minor) ** 2:
         return []
     k = sum(x * x for x in o) + major**2 - minor**2
     flat = [d[0] ** 2 + d[1] ** 2, 2 * (o[0] * d[0] + o[1] * d[1]), o[0] ** 2 + o[1] ** 2]
-    # o is at right angles to d
+    # of t^4, t^3, ...: o is at right angles to d, because t runs from the point nearest to the middle
     roots = numpy.roots([1, 0, 2 * k - 4 * major**2 * flat[0], -4 * major**2 * flat[1], k * k - 4 * major**2 * flat[2]])
     real = sorted(float(r.real) + middle for r in roots if abs(r.imag) < 1e-9 * max(1.0, abs(r)))
     return list(zip(real[::2], real[1::2]))

@@ -1,7 +1,8 @@
-"""F3D, the viewer of many formats: it meshes by Open CASCADE, within a length and an angle that are options of its readers.
+"""F3D, the viewer of many formats: it meshes by Open CASCADE, within a length and an angle that are options of its
+readers.
 
-    job      model, camera, turn (cameras), deflections (lengths)
-    results  {deflection, first_s, turning_ms} for each: from the file, which it reads anew, to the first picture
+job      model, camera, turn (cameras), deflections (lengths) results  {deflection, first_s, turning_ms, standing_ms}
+for each: from the file, which it reads anew, to the first picture
 """
 
 import time
@@ -36,7 +37,9 @@ def main():
 
         look(wanted["camera"])
         first = time.perf_counter() - start
-        tell({"deflection": deflection, "first_s": first, "turning_ms": turned(look, wanted["turn"])})
+        turn = wanted["turn"]
+        standing = turned(look, [wanted["camera"]] * len(turn))
+        tell({"deflection": deflection, "first_s": first, "turning_ms": turned(look, turn), "standing_ms": standing})
 
 
 if __name__ == "__main__":

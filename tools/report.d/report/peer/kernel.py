@@ -1,17 +1,19 @@
 """How wrong pictures are, by the surfaces and trims themselves: Open CASCADE's ray against each face, no mesh.
 
-    job      model, seconds (for the rays of the truth, and for the searches of each picture), views: {name: {camera, pictures}},
-             pictures: {name: {path, own}}
+    job      model, seconds (for the rays of the truth, and for the searches of each picture),
+             views: {name: {camera, pictures: {name: {path, own}}}}
     results  {view, boundary, sampled, alone, pictures: {name: {worst_px, p999_px, off, searched, beyond}}}, one a view
 
-Sampled are the pixels at changes of face, found by halving the cells of a grid whose corners see different faces, cell by cell in random order
-until the time is up. Where a picture shows another face than the ray at a pixel's centre, the picture's face is looked for around it:
-the least distance at which a ray sees it is the error there. `p999_px` is the error that one in a thousand of the boundary's pixels exceeds. Errors
-are distances of the list below, rounded up; beyond the last one, a pixel counts as `beyond`, and as twice that distance.
+Sampled are the pixels at changes of face, found by halving the cells of a grid whose corners see different faces,
+cell by cell in random order until the time is up. Where a picture shows another face than the ray at a pixel's
+centre, the picture's face is looked for around it: the least distance at which a ray sees it is the error there.
+`p999_px` is the error that one in a thousand of the boundary's pixels exceeds. Errors are distances of the list
+below, rounded up; beyond the last one, a pixel counts as `beyond`, and as twice that distance.
 
-Pictures that are `own` number faces in another way: each of the kernel's faces is the number that most rays through the inside of the picture's
-faces find. A pixel at which the last picture and the last `own` one are both wrong is left out, and counted as `alone`: two that share
-nothing say that the kernel's ray is at fault there. Their order is from coarse to fine.
+Pictures that are `own` number faces in another way: each of the kernel's faces is the number that most rays through
+the inside of the picture's faces find. A pixel at which the last picture and the last `own` one are both wrong is
+left out, and counted as `alone`: two that share nothing say that the kernel's ray is at fault there. Their order is
+from coarse to fine.
 """
 
 import math
@@ -80,7 +82,7 @@ class Rays:
         yield from ((i, j) for i in span(0, self.width) for j in span(1, self.height))
 
     def at(self, x, y):
-        """Numbers of the faces that the ray through a point of the picture sees first: more than one where they meet."""
+        """Numbers of the faces that the ray through a point sees first: more than one where they meet."""
         faces = self.tiles.get((int(x) // TILE, int(y) // TILE), [])
         if not faces:
             return [-1]

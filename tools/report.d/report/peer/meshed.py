@@ -1,12 +1,14 @@
 """Viewers of triangles: Open CASCADE's (V3d) and VTK, over the deflections of one mesher.
 
-    job      model, camera, turn (cameras), deflections (of the diagonal), most_mesh_s, ids (a folder, or null), wants (viewers)
+    job      model, camera, turn (cameras), deflections (of the diagonal), most_mesh_s, ids (a folder, or null),
+             wants (viewers)
     results  {read_s, diagonal}, then for each deflection
-             {deflection, mesh_s, triangles, ids, occ: {first_s, turning_ms}, vtk: the same}; or {deflection, stopped} where the
-             one before took so long to mesh that this one would not be done in time
+             {deflection, mesh_s, triangles, ids, occ: {first_s, turning_ms, standing_ms}, vtk: the same};
+             or {deflection, stopped} where the one before took so long to mesh that this one would not be done in time
 
-First pictures are the seconds from a mesh to its first frame, with the window's; handing the triangles to VTK is not counted, because a
-program in C++ would not do it from Python. Frames in a row are timed as one. Run within an X server.
+First pictures are the seconds from a mesh to its first frame, with the window's; handing the triangles to VTK is not
+counted, because a program in C++ would not do it from Python. Frames in a row are timed as one. Run within an X
+server.
 """
 
 import time
@@ -60,16 +62,16 @@ class OccViewer:
         self.view.Redraw()
 
     def shown(self, shape, camera, turn):
-        """Seconds to the first frame of the meshed shape, milliseconds of one that turns."""
+        """Seconds to the first frame of the meshed shape, milliseconds of one that turns, and of one that stands."""
         start = time.perf_counter()
         drawn = AIS_Shape(shape)
         drawn.Attributes().SetAutoTriangulation(False)
         self.context.Display(drawn, 1, -1, False)
         self.look(camera)
         first = time.perf_counter() - start
-        turning = turned(self.look, turn)
+        frames = {"turning_ms": turned(self.look, turn), "standing_ms": turned(self.look, [camera] * len(turn))}
         self.context.Remove(drawn, False)
-        return {"first_s": self.made_s + first, "turning_ms": turning}
+        return {"first_s": self.made_s + first, **frames}
 
 
 def main():
@@ -84,7 +86,12 @@ def main():
     last = 0.0
     for deflection in wanted["deflections"]:
         if last * GROWTH > wanted["most_mesh_s"]:
-            tell({"deflection": deflection, "stopped": f"the mesh before took {last:.1f} s, {wanted['most_mesh_s']} s are given"})
+            tell(
+                {
+                    "deflection": deflection,
+                    "stopped": f"the mesh before took {last:.1f} s, {wanted['most_mesh_s']} s are given",
+                }
+            )
             continue
         last = shapes.mesh(shape, deflection * diagonal)
         result = {"deflection": deflection, "mesh_s": last, "ids": None}

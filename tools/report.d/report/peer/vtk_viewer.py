@@ -35,7 +35,10 @@ class VtkViewer:
         self.data.SetPoints(held)
         cells = vtk.vtkCellArray()
         offsets = numpy.arange(0, 3 * len(corners) + 1, 3, dtype=numpy.int64)
-        cells.SetData(numpy_to_vtkIdTypeArray(offsets, deep=True), numpy_to_vtkIdTypeArray(corners.astype(numpy.int64).ravel(), deep=True))
+        cells.SetData(
+            numpy_to_vtkIdTypeArray(offsets, deep=True),
+            numpy_to_vtkIdTypeArray(corners.astype(numpy.int64).ravel(), deep=True),
+        )
         self.data.SetPolys(cells)
         code = numbers + 1
         bytes_ = numpy.stack([code & 255, code >> 8 & 255, code >> 16 & 255], -1).astype(numpy.uint8)
@@ -51,15 +54,15 @@ class VtkViewer:
         self.window.Render()
 
     def shown(self, camera, turn):
-        """Seconds to the first frame, milliseconds of one that turns."""
+        """Seconds to the first frame, milliseconds of one that turns, and of one that stands."""
         start = time.perf_counter()
         self.mapper.SetInputData(self.data)
         self.renderer.AddActor(self.actor)
         self.look(camera)
         first = time.perf_counter() - start
-        turning = turned(self.look, turn)
+        frames = {"turning_ms": turned(self.look, turn), "standing_ms": turned(self.look, [camera] * len(turn))}
         self.renderer.RemoveActor(self.actor)
-        return {"first_s": self.made_s + first, "turning_ms": turning}
+        return {"first_s": self.made_s + first, **frames}
 
     def faces(self, camera):
         """The number of the face at each pixel's centre, -1 where there is none; row 0 on top."""

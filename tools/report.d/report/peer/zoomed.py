@@ -1,9 +1,12 @@
 """A viewer of triangles over zooms: with one mesh for all of them, and with a mesh for each.
 
-    job      model, views: {name: {camera, deflection}}, meshes (names of views), fixed (deflection of the one mesh, of the diagonal), ids (a folder)
-    results  {view, kind: fixed, frame_ms, ids} for all views, then {view, kind: remeshed, mesh_s, triangles, frame_ms, ids} for each of `meshes`
+    job      model, views: {name: {camera, deflection}}, meshes (names of views), ids (a folder),
+             fixed (deflection of the one mesh, of the diagonal)
+    results  {view, kind: fixed, frame_ms, ids} for all views,
+             then {view, kind: remeshed, mesh_s, triangles, frame_ms, ids} for each of `meshes`
 
-Deflections of views are lengths. The mesher cannot be stopped but with its process. VTK draws; a frame is the median of several. Run within an X server.
+Deflections of views are lengths. The mesher cannot be stopped but with its process. VTK draws; a frame is the median
+of several. Run within an X server.
 """
 
 import statistics

@@ -10,7 +10,9 @@ from ..machine import ROOT
 from ..rows import Missing, Section, Table
 from ..turns import Unmeasurable
 
-TEXT = "A clone has the history of one commit; the build is the release program with its window, on all cores, with crates that are downloaded already."
+TEXT = """\
+A clone has the history of one commit; the build is the release program with its window, on all cores, with crates that
+are downloaded already."""
 LONG = Missing("takes many minutes: only without --quick")
 
 
@@ -18,13 +20,28 @@ def measure(context):
     section = Section(8, "First use", TEXT)
     rows = [["the program", megabytes(context.program.path), "", ""]]
     library = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "release/libselvedge_c.so"
-    rows.append(["the library for hosts in C", megabytes(library) if library.exists() else Missing("not built: tools/install_c"), "", ""])
-    camera = {"eye": [100.0, -160.0, 110.0], "target": [0.0, 0.0, 0.0], "up": [0.0, 0.0, 1.0], "fovy": 35.0, "size": [640, 480]}
+    rows.append(
+        [
+            "the library for hosts in C",
+            megabytes(library) if library.exists() else Missing("not built: tools/install_c"),
+            "",
+            "",
+        ]
+    )
+    camera = {
+        "eye": [100.0, -160.0, 110.0],
+        "target": [0.0, 0.0, 0.0],
+        "up": [0.0, 0.0, 1.0],
+        "fovy": 35.0,
+        "size": [640, 480],
+    }
     sample = context.model("samples/panel.step")
     cold, warm = (context.program.render(sample, camera, stats=False)["seconds"] for _ in range(2))
     rows.append(["the first picture, samples/panel.step", "", cold, ""])
     rows.append(["the second", "", warm, ""])
-    rows += context.pick(lambda: [["a clone", source_megabytes(), "", ""], ["a cold build", LONG, LONG, LONG]], lambda: built(section))()
+    rows += context.pick(
+        lambda: [["a clone", source_megabytes(), "", ""], ["a cold build", LONG, LONG, LONG]], lambda: built(section)
+    )()
     section.tables.append(Table("", ["", "MB", "seconds", "CPU seconds"], rows))
     section.commands.append(context.shown("render", sample, "--size", "640x480", "-o", "picture.png"))
     return section
@@ -49,8 +66,18 @@ def built(section):
         rows = []
         words = [
             ("a clone", ["git", "clone", "-q", "--depth", "1", ROOT.as_uri(), clone], folder, clone),
-            ("a cold build", ["cargo", "build", "-q", "--release", "--offline", "-p", "selvedge-cli", "--target-dir", target], clone, target),
-            ("the first picture from it", [target / "release/selvedge", "render", "samples/panel.step", "-o", target / "a.png"], clone, target / "a.png"),
+            (
+                "a cold build",
+                ["cargo", "build", "-q", "--release", "--offline", "-p", "selvedge-cli", "--target-dir", target],
+                clone,
+                target,
+            ),
+            (
+                "the first picture from it",
+                [target / "release/selvedge", "render", "samples/panel.step", "-o", target / "a.png"],
+                clone,
+                target / "a.png",
+            ),
         ]
         for name, command, within, made in words:
             before, start = os.times(), time.monotonic()

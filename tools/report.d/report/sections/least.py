@@ -16,8 +16,9 @@ PLANE = '[surface.plane]\nshape = "plane"\nu = [-20, 20]\nv = [-15, 15]\n'
 SHEET = hard.wavy("sheet")
 TRIMMED = hard.wavy("sheet", 'border = true\nloops = [{ curves = "disc", at = [0.5, 0.5], scale = 0.2 }]\n') + hard.DISC
 MESH = '[file.tetra]\npath = "tetra.obj"\n'
-SOLID = '[solid.A]\nshape = "sphere"\nradius = 20\n[solid.B]\nshape = "cylinder"\nradius = 8\nheight = 60\nat = [0, 0, -30]\n[solid.whole]\nshape = "boolean"\nof = "A-B"\n'
-GLASS = SOLID.replace("radius = 20", 'radius = 20\ncolour = "#7fa8d080"')
+BORE = hard.solid("B", "cylinder", radius=8, height=60, at=[0, 0, -30]) + hard.boolean("A-B")
+SOLID = hard.solid("A", "sphere", radius=20) + BORE
+GLASS = hard.solid("A", "sphere", radius=20) + 'colour = "#7fa8d080"\n' + BORE
 SUN = SOLID + "[picture]\nsun = [0.3, -0.5, 0.8]\n"
 TETRA = "v 0 0 0\nv 20 0 0\nv 0 20 0\nv 0 0 20\nf 1 3 2\nf 1 2 4\nf 2 3 4\nf 3 1 4\n"
 # scene, and the features that it has
@@ -31,8 +32,8 @@ SCENES = {
     "a solid in the sun": (SUN, ["solids", "a sun"]),
 }
 TEXT = """\
-What exists after two frames of 320 x 240 pixels, by name. What belongs to trims, meshes, solids, layers or a sun exists in scenes with them alone; the last
-column counts what a scene has that the plane has not."""
+What exists after two frames of 320 x 240 pixels, by name. What belongs to trims, meshes, solids, layers or a sun
+exists in scenes with them alone; the last column counts what a scene has that the plane has not."""
 
 
 def measure(context):
@@ -43,7 +44,13 @@ def measure(context):
     for name, (scene, _) in SCENES.items():
         path = folder / f"{name.replace(' ', '-')}.toml"
         path.write_text(f"selvedge = 1\n{scene}")
-        camera = {"eye": [50.0, -80.0, 55.0], "target": [0.0, 0.0, 0.0], "up": [0.0, 0.0, 1.0], "fovy": 35.0, "size": [320, 240]}
+        camera = {
+            "eye": [50.0, -80.0, 55.0],
+            "target": [0.0, 0.0, 0.0],
+            "up": [0.0, 0.0, 1.0],
+            "fovy": 35.0,
+            "size": [320, 240],
+        }
         found[name] = context.program.render(path, camera)["stats"]["objects"]
     plane = {one["name"] for one in found["a plane"]}
     rows, others, cases = [], [], 0
@@ -57,7 +64,9 @@ def measure(context):
     section.tables.append(Table("", ["scene", "pipelines", "buffers and images", "MiB", "beyond the plane's"], rows))
     told = "" if not others else ": " + "; ".join(f"{what} of {scene}" for scene, what in others[:5])
     section.promises.append(Promise(f"an object is of what the scene has{told}", len(others), cases))
-    section.commands.append(context.shown("render", "SCENE.toml", "--size", SIZE, "-o", "picture.png", "--stats", "stats.json"))
+    section.commands.append(
+        context.shown("render", "SCENE.toml", "--size", SIZE, "-o", "picture.png", "--stats", "stats.json")
+    )
     return section
 
 

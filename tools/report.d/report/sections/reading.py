@@ -4,21 +4,33 @@ from ..rows import Contest, Section
 from ..turns import Unmeasurable, rounds
 
 FILES = [
-    "samples/panel.step", "samples/assembly.step", "nist_pmi_2.stp", "framework_printable_case_full.stp", "impeller.igs", "nist_827-9999-904.stp",
-]  # fmt: skip
+    "samples/panel.step",
+    "samples/assembly.step",
+    "nist_pmi_2.stp",
+    "framework_printable_case_full.stp",
+    "impeller.igs",
+    "nist_827-9999-904.stp",
+]
 TEXT = """\
-From bytes on disk to a valid model, on all cores, in a fresh process each time; of Open CASCADE the reader's two steps, read and transfer, all files in one process."""
+From bytes on disk to a valid model, on all cores, in a fresh process each time; of Open CASCADE the reader's two
+steps, read and transfer, all files in one process."""
 
 
 def measure(context):
     section = Section(10, "Reading files", TEXT)
     names = context.pick(FILES[:4], FILES)
     there = {name: context.model(name) for name in names if context.model(name)}
-    section.contests += [Contest(f"reading, {name}", "Open CASCADE", "ms", why=context.absent(name).why) for name in names if name not in there]
+    section.contests += [
+        Contest(f"reading, {name}", "Open CASCADE", "ms", why=context.absent(name).why)
+        for name in names
+        if name not in there
+    ]
 
     def theirs():
         context.peers.needed("Open CASCADE")
-        found = context.peers.results("reading", {"models": [str(path) for path in there.values()]}, limit_s=context.pick(60, 300))
+        found = context.peers.results(
+            "reading", {"models": [str(path) for path in there.values()]}, limit_s=context.pick(60, 300)
+        )
         if len(found) < len(there):
             raise Unmeasurable(f"it read {len(found)} of {len(there)} files")
         return [1e3 * one["read_s"] for one in found]

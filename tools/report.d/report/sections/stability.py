@@ -11,8 +11,9 @@ from ..turns import Unmeasurable
 SEED = 1
 PIXEL = "a pixel right within half a pixel,"
 TEXT = """\
-Each case is a scene file, drawn and judged by `selvedge check`: pixels against rays through the exact model in double precision. *In doubt* counts rays that
-the reference gave up. *Wrong* pixels are right nowhere within half a pixel. The seed of a random case is its number."""
+Each case is a scene file, drawn and judged by `selvedge check`: pixels against rays through the exact model in double
+precision. *In doubt* counts rays that the reference gave up. *Wrong* pixels are right nowhere within half a pixel.
+The seed of a random case is its number."""
 
 
 def measure(context):
@@ -31,14 +32,26 @@ def measure(context):
             if isinstance(found, str):
                 rows.append([case.name, case.danger, on, Missing(found), "", "", "", ""])
             else:
-                rows.append([case.name, case.danger, on, found.judged, found.wrong, found.worst, found.clamps, found.doubt])
-                pixels, clamps = whole.setdefault(case.known, (Promise(f"{PIXEL} in hard cases"), Promise("no clamp in a view of a hard case")))
-                for promise, violations, cases in ((pixels, found.wrong, found.judged), (clamps, found.clamps, found.views)):
+                rows.append(
+                    [case.name, case.danger, on, found.judged, found.wrong, found.worst, found.clamps, found.doubt]
+                )
+                pixels, clamps = whole.setdefault(
+                    case.known, (Promise(f"{PIXEL} in hard cases"), Promise("no clamp in a view of a hard case"))
+                )
+                for promise, violations, cases in (
+                    (pixels, found.wrong, found.judged),
+                    (clamps, found.clamps, found.views),
+                ):
                     promise.violations, promise.cases = promise.violations + violations, promise.cases + cases
                     promise.known = case.known and f"docs/accuracy.md: {case.known}"
     head = ["case", "what could go wrong", "device", "pixels judged", "wrong", "worst, px", "clamps", "in doubt"]
     section.tables.append(Table("Hard cases", head, rows))
-    section.promises += [promise for both in whole.values() for promise in both if promise.cases and (promise.violations or not promise.known)]
+    section.promises += [
+        promise
+        for both in whole.values()
+        for promise in both
+        if promise.cases and (promise.violations or not promise.known)
+    ]
     soak(context, section, judge)
     section.commands.append(context.shown("check", "CASE.toml", "--views", "all", *judge.options))
     return section
@@ -68,7 +81,9 @@ class Judge:
         path.write_text(scene)
         on = ["--device", device] if device and not self.context.program.on else []
         try:
-            return Found(self.context.program.check(path, *views, *self.options, *on, limit_s=self.context.pick(60, 600)))
+            return Found(
+                self.context.program.check(path, *views, *self.options, *on, limit_s=self.context.pick(60, 600))
+            )
         except Unmeasurable as error:
             return str(error)
 
@@ -97,11 +112,17 @@ def soak(context, section, judge):
                     failures.append(f"case {number}: {found.clamps} clamps")
             number += 1
         counts = f"{total.patches:,} patches, {total.parts:,} trims" if kind == "sheets" else f"{total.parts:,} leaves"
-        rows.append([kind, number - SEED, counts, total.judged, total.wrong, total.worst, "; ".join([*failures, *wrong][:3])])
+        rows.append(
+            [kind, number - SEED, counts, total.judged, total.wrong, total.worst, "; ".join([*failures, *wrong][:3])]
+        )
         what = f"{PIXEL} in random {kind}"
         section.promises.append(Promise(what, total.wrong, total.judged, "" if total.judged else failures[0]))
-        section.promises.append(Promise(f"a random case of {kind} drawn, without a clamp", len(failures), number - SEED))
-    section.tables.append(Table("Random cases", ["of", "cases", "with", "pixels judged", "wrong", "worst, px", "which"], rows))
+        section.promises.append(
+            Promise(f"a random case of {kind} drawn, without a clamp", len(failures), number - SEED)
+        )
+    section.tables.append(
+        Table("Random cases", ["of", "cases", "with", "pixels judged", "wrong", "worst, px", "which"], rows)
+    )
 
 
 class Total:

@@ -1,4 +1,5 @@
-"""1. Time against error: ours over tolerances, viewers of triangles over deflections, the same files, view and size in turn."""
+"""1. Time against error: ours over tolerances, viewers of triangles over deflections, the same files, view and size
+in turn."""
 
 import statistics
 
@@ -14,19 +15,28 @@ ERRORS = [0.125, 0.25, 0.5, 1.0, 2.0]
 CLAIMED_PX, CLAIMED_BYTES = 0.5, 1_000_000
 # where triangles are right, an error is drawn as so much: less is not told apart
 LEAST_PX = 1 / 16
+# what is measured of each setting, in this order
+QUANTITIES = [("first picture", "s"), ("turning frame", "ms"), ("standing frame", "ms")]
+# the tolerance at which standing frames are drawn
+STANDING_PX = 0.5
 VIEWERS = {"occ": "Open CASCADE", "vtk": "VTK"}
 TEXT = """\
-*First picture* is from the file: of ours the whole process, with the device, the driver's pipelines and the PNG; of the others from the
-first byte read to the first frame, without the start of their process, with the window. *Turning* is a frame of a turn by three degrees each: of
-ours with the picture read back to host memory, of the others until it is shown. Errors are judged by the kernel's rays against
-surfaces and trims, at pixels where the face changes; *99.9 %* is exceeded by one in a thousand of them. One picture of the triangles is
-judged for all viewers that draw them. Claimed is the first picture within half a pixel of files of a megabyte and more."""
+*First picture* is from the file: of ours the whole process, with the device, the driver's pipelines and the PNG; of
+the others from the first byte read to the first frame, without the start of their process, with the window. *Turning*
+is a frame of a turn by three degrees each: of ours with the picture read back to host memory, of the others until it
+is shown; *standing* is one of a view that stands, as a viewer draws it. Errors are judged by the kernel's rays
+against surfaces and trims, at pixels where the face changes; *99.9 %* is exceeded by one in a thousand of them. One
+picture of the triangles is judged for all viewers that draw them. Claimed is the first picture within half a pixel of
+files of a megabyte and more."""
 
 
 def measure(context):
     section = Section(1, "Time against error, surfaces", TEXT)
     section.promises.append(Promise("no boundary pixel beyond the tolerance, by the kernel's rays"))
-    files, sizes = context.pick(FILES_QUICK, FILES), context.pick([(960, 540)], [(960, 540), (1920, 1080), (3840, 2160)])
+    files, sizes = (
+        context.pick(FILES_QUICK, FILES),
+        context.pick([(960, 540)], [(960, 540), (1920, 1080), (3840, 2160)]),
+    )
     for name in files:
         model = context.model(name)
         if model is None:
@@ -57,17 +67,43 @@ class Case:
         self.what = f"{model.name}, {size[0]}x{size[1]}"
 
     def ours(self):
-        """By tolerance: seconds to the first picture, milliseconds of a turning frame."""
+        """By tolerance: seconds to the first picture, milliseconds of a frame that turns, and that stands or None."""
         found = {}
         for tolerance in self.tolerances:
             first = self.context.program.render(self.model, self.camera, "--tolerance", tolerance, stats=False)
-            options = ["--motion", "turn", "--judged", 0, "--frames", self.frames, "--tolerance", tolerance]
-            (report,) = self.context.program.bench([self.model], *options, "--size", "{}x{}".format(*self.size))
-            found[tolerance] = (first["seconds"], report["of"]["wall clock, with read-back"])
+            turning = self.bench("turn", tolerance)["wall clock, with read-back"]
+            standing = (
+                self.bench("still", tolerance)["reused: wall clock, with read-back"]
+                if tolerance == STANDING_PX
+                else None
+            )
+            found[tolerance] = (first["seconds"], turning, standing)
         return found
 
+    def bench(self, motion, tolerance):
+        """Medians by name."""
+        words = [
+            "--motion",
+            motion,
+            "--judged",
+            0,
+            "--frames",
+            self.frames,
+            "--tolerance",
+            tolerance,
+            "--size",
+            "{}x{}".format(*self.size),
+        ]
+        return self.context.program.bench([self.model], *words)[0]["of"]
+
     def job(self, **more):
-        return {"model": str(self.model), "camera": self.camera, "turn": self.turn, "most_mesh_s": self.most_mesh_s, **more}
+        return {
+            "model": str(self.model),
+            "camera": self.camera,
+            "turn": self.turn,
+            "most_mesh_s": self.most_mesh_s,
+            **more,
+        }
 
     def meshed(self):
         """By viewer and deflection, the same; where the mesher was stopped, why."""
@@ -81,7 +117,7 @@ class Case:
                 timed = result.get(key)
                 if timed:
                     first = head["read_s"] + result["mesh_s"] + timed["first_s"]
-                    found[name][result["deflection"]] = (first, timed["turning_ms"])
+                    found[name][result["deflection"]] = (first, timed["turning_ms"], timed["standing_ms"])
         return found
 
     def f3d(self):
@@ -89,7 +125,11 @@ class Case:
         diagonal = sum((b - a) ** 2 for a, b in zip(*self.bounds)) ** 0.5
         job = self.job(deflections=[d * diagonal for d in self.f3d_deflections])
         results = self.context.peers.results("f3d_viewer", job, windowed=True, limit_s=self.most_mesh_s * 20)
-        return {d: (r["first_s"], r["turning_ms"]) for d, r in zip(self.f3d_deflections, results) if "first_s" in r}
+        return {
+            d: (r["first_s"], r["turning_ms"], r["standing_ms"])
+            for d, r in zip(self.f3d_deflections, results)
+            if "first_s" in r
+        }
 
     def judged(self):
         """Errors by the kernel: of our tolerances, of deflections; the counts of the boundary."""
@@ -99,7 +139,9 @@ class Case:
         results = self.context.peers.results("meshed", job, windowed=True, limit_s=self.most_mesh_s * 20)
         pictures = {f"mesh {r['deflection']}": {"path": r["ids"], "own": False} for r in results if r.get("ids")}
         for tolerance in sorted(self.tolerances, reverse=True):
-            drawn = self.context.program.render(self.model, self.camera, "--tolerance", tolerance, images=["face"], stats=False)
+            drawn = self.context.program.render(
+                self.model, self.camera, "--tolerance", tolerance, images=["face"], stats=False
+            )
             pictures[f"ours {tolerance}"] = {"path": str(drawn["face"]), "own": True}
         seconds = self.context.pick(6, 60)
         whole = {"whole": {"camera": self.camera, "pictures": pictures}}
@@ -110,7 +152,9 @@ class Case:
     def into(self, section):
         """Measures, and adds what was found."""
         seconds = self.context.pick(45, 600)
-        results = rounds({"ours": self.ours, "meshed": self.meshed, "F3D": self.f3d}, seconds, most=self.context.pick(3, 5))
+        results = rounds(
+            {"ours": self.ours, "meshed": self.meshed, "F3D": self.f3d}, seconds, most=self.context.pick(3, 5)
+        )
         if isinstance(results["ours"], Unmeasurable):
             raise results["ours"]
         try:
@@ -141,16 +185,36 @@ class Case:
         rows = []
         for name, (kind, found) in competitors.items():
             if isinstance(found, Unmeasurable):
-                rows.append([name, "", *[Missing(str(found))] * 2, "", "", ""])
+                rows.append([name, "", *[Missing(str(found))] * 3, "", "", ""])
                 continue
             for setting in self.settings(found):
-                first, turning = zip(*(one[setting] for one in found))
+                times = [None if None in of else statistics.median(of) for of in zip(*(one[setting] for one in found))]
                 error = errors.get(f"{kind} {setting}")
-                worst = [f"> {error['worst_px'] / 2:g}" if error["beyond"] else error["worst_px"], error["p999_px"], error["off"]] if error else [""] * 3
+                worst = (
+                    [
+                        f"> {error['worst_px'] / 2:g}" if error["beyond"] else error["worst_px"],
+                        error["p999_px"],
+                        error["off"],
+                    ]
+                    if error
+                    else [""] * 3
+                )
                 unit = f"{setting:g} px" if kind == "ours" else f"{setting:g} of the diagonal"
-                rows.append([name, unit, statistics.median(first), statistics.median(turning), *worst])
-        text = f"{head['boundary']:,} pixels at changes of face judged, {head['alone']} left out at which all pictures agree against the rays."
-        columns = ["", "within", "first picture, s", "turning, ms", "worst, px", "99.9 %, px", "pixels off"]
+                rows.append([name, unit, *times, *worst])
+        text = (
+            f"{head['boundary']:,} pixels at changes of face judged, {head['alone']} left out at which both our finest "
+            "picture and the finest mesh are off the rays."
+        )
+        columns = [
+            "",
+            "within",
+            "first picture, s",
+            "turning, ms",
+            "standing, ms",
+            "worst, px",
+            "99.9 %, px",
+            "pixels off",
+        ]
         section.tables.append(Table(self.what, columns, rows, text))
 
     def curve(self, kind, found, errors, k):
@@ -158,16 +222,23 @@ class Case:
         points = []
         for setting in self.settings(found):
             error = errors.get(f"{kind} {setting}")
-            if error:
-                points.append((max(error["p999_px"], LEAST_PX), statistics.median(one[setting][k] for one in found)))
+            times = [one[setting][k] for one in found]
+            if error and None not in times:
+                points.append((max(error["p999_px"], LEAST_PX), statistics.median(times)))
         return points
 
     def plots(self, section, competitors, errors):
-        for k, (quantity, unit) in enumerate([("first picture", "s"), ("turning frame", "ms")]):
-            lines = [Line(name, self.curve(kind, found, errors, k), name == "selvedge") for name, (kind, found) in competitors.items() if not isinstance(found, Unmeasurable)]
+        for k, (quantity, unit) in enumerate(QUANTITIES[:2]):
+            lines = [
+                Line(name, self.curve(kind, found, errors, k), name == "selvedge")
+                for name, (kind, found) in competitors.items()
+                if not isinstance(found, Unmeasurable)
+            ]
             if any(line.points for line in lines):
                 key = f"{self.model.stem}-{self.size[0]}-{quantity.split()[0]}"
-                section.plots.append(Plot(key, f"{quantity}: {self.what}", "99.9 % boundary error, px", f"{quantity}, {unit}", lines))
+                section.plots.append(
+                    Plot(key, f"{quantity}: {self.what}", "99.9 % boundary error, px", f"{quantity}, {unit}", lines)
+                )
 
     def contests(self, section, competitors, errors):
         """At each error, our quickest tolerance beside the peer's quickest deflection, round by round."""
@@ -175,14 +246,16 @@ class Case:
         for name, (kind, found) in competitors.items():
             if name == "selvedge":
                 continue
-            for k, (quantity, unit) in enumerate([("first picture", "s"), ("turning frame", "ms")]):
+            for k, (quantity, unit) in enumerate(QUANTITIES):
                 if isinstance(found, Unmeasurable) or not errors:
                     why = str(found) if isinstance(found, Unmeasurable) else "no kernel to judge by"
                     section.contests.append(Contest(f"{quantity}, {self.what}", name, unit, why=why))
                     continue
                 before = None
                 for error in ERRORS:
-                    contest = self.contest(f"{quantity}, {self.what}, within {error:g} px", name, unit, kind, ours, found, errors, k, error)
+                    contest = self.contest(
+                        f"{quantity}, {self.what}, within {error:g} px", name, unit, kind, ours, found, errors, k, error
+                    )
                     # a larger error that changes neither side's setting is the same contest
                     if contest and (contest.ours, contest.theirs, contest.unreached) != before:
                         section.contests.append(contest)

@@ -1,4 +1,5 @@
-"""3. Trimming: the plots of R. Wu and J. Peters, Correct resolution rendering of trimmed spline surfaces, 2014, for all ways to trim."""
+"""3. Trimming: the plots of R. Wu and J. Peters, Correct resolution rendering of trimmed spline surfaces, 2014, for
+all ways to trim."""
 
 import statistics
 
@@ -7,16 +8,25 @@ from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
 # the engine's own; the others are baselines
 OURS = ("table", "exact")
 TEXT = """\
-The engine's ways to trim, `table` and `exact`, beside other methods: bisection (the paper's), a texture of the trim, and triangles made
-in advance. *Trims* is what the tests cost in the passes of a frame, *turning* the same of a view that turns. The least of the frames of
-each round counts, and the table has medians over the rounds."""
+The engine's ways to trim, `table` and `exact`, beside other methods: bisection (the paper's), a texture of the trim,
+and triangles made in advance. *Trims* is what the tests cost in the passes of a frame, *turning* the same of a view
+that turns. The least of the frames of each round counts, and the table has medians over the rounds."""
 
 
 def measure(context):
     section = Section(3, "Trimming", TEXT)
-    zooms, sizes = context.pick("1,10,100", "1,10,100,1000"), context.pick("400x400,800x800", "400x400,800x800,1600x1600,3840x2160")
+    zooms, sizes = (
+        context.pick("1,100", "1,10,100,1000"),
+        context.pick("200x200,400x400", "400x400,800x800,1600x1600,3840x2160"),
+    )
     size, holes = context.pick("400x400", "800x800"), context.pick(20, 100)
-    models = [m for m in map(context.model, ["samples/panel.step", *context.pick([], ["nist_pmi_2.stp", "m6_countersunk_screw.step"])]) if m]
+    models = [
+        m
+        for m in map(
+            context.model, ["samples/panel.step", *context.pick([], ["nist_pmi_2.stp", "m6_countersunk_screw.step"])]
+        )
+        if m
+    ]
     words = [*models, "--no-knobs", "--holes", holes, "--zooms", zooms, "--sizes", sizes, "--size", size]
     words += ["--frames", context.pick(2, 5), "--samples", context.pick(500, 2000)]
     found = []
@@ -68,7 +78,19 @@ def table(section, model, found):
         times = [cell(found, at, column) for column in ("trim_ms", "frame_ms", "turning_trim_ms", "turning_frame_ms")]
         error = [int(row["wrong"]), float(row["worst_shift_px"])] if row["wrong"] else ["", ""]
         rows.append([at[1], int(at[2]), at[3], *times, share, cell(found, at, "trim_bytes", 2**-20), *error])
-    head = ["way", "zoom", "picture", "trims, ms", "frame, ms", "turning: trims", "frame, ms", "of the frame", "trims, MiB", "wrong pixels", "worst, px"]
+    head = [
+        "way",
+        "zoom",
+        "picture",
+        "trims, ms",
+        "frame, ms",
+        "turning: trims",
+        "frame, ms",
+        "of the frame",
+        "trims, MiB",
+        "wrong pixels",
+        "worst, px",
+    ]
     section.tables.append(Table(model, head, rows))
 
 
@@ -80,15 +102,29 @@ def plots(section, model, found, size):
         drawn = []
         for way in ways:
             ats = [at for at in found[0] if at[:2] == (model, way) and chosen(at) and values(found, at, column)]
-            drawn.append(Line(way, [(x(at), statistics.median(values(found, at, column)) * scale) for at in ats], way in OURS))
+            drawn.append(
+                Line(way, [(x(at), statistics.median(values(found, at, column)) * scale) for at in ats], way in OURS)
+            )
         return drawn
 
     zoom, pixels = lambda at: at[2], lambda at: float(int(at[3].split("x")[0]) * int(at[3].split("x")[1]))
     of_zoom, of_size = lambda at: at[3] == size, lambda at: at[2] == 1
     section.plots += [
         Plot(f"trims-{name}-zoom", f"trims over zoom: {model}", "zoom", "trims, ms", lines(zoom, "trim_ms", of_zoom)),
-        Plot(f"trims-{name}-size", f"trims over picture size: {model}", "pixels", "trims, ms", lines(pixels, "trim_ms", of_size)),
-        Plot(f"trims-{name}-memory", f"memory over zoom: {model}", "zoom", "trims, MiB", lines(zoom, "trim_bytes", of_zoom, 2**-20)),
+        Plot(
+            f"trims-{name}-size",
+            f"trims over picture size: {model}",
+            "pixels",
+            "trims, ms",
+            lines(pixels, "trim_ms", of_size),
+        ),
+        Plot(
+            f"trims-{name}-memory",
+            f"memory over zoom: {model}",
+            "zoom",
+            "trims, MiB",
+            lines(zoom, "trim_bytes", of_zoom, 2**-20),
+        ),
     ]
 
 
@@ -100,12 +136,16 @@ def contests(section, model, found, size):
         other = lambda way: (model, way, at[2], at[3])
         what = f"{model}, {int(at[2])} times"
         ours = [quickest(one, [other(way) for way in OURS]) for one in found]
-        section.contests.append(Contest(f"trims, {what}", "bisection", "ms", ours, values(found, at, "trim_ms"), "ahead"))
+        section.contests.append(
+            Contest(f"trims, {what}", "bisection", "ms", ours, values(found, at, "trim_ms"), "ahead")
+        )
         texture = values(found[:1], other("texture"), "trim_bytes")
         # a texture that is as right as it is at the closest view needs a texel a pixel
         claim = "ahead" if at[2] >= 100 else "open"
         least = min(values(found[:1], other(way), "trim_bytes")[0] for way in OURS)
-        section.contests.append(Contest(f"memory, {what}", "a trim texture", "bytes", [least], texture, claim, exact=True))
+        section.contests.append(
+            Contest(f"memory, {what}", "a trim texture", "bytes", [least], texture, claim, exact=True)
+        )
 
 
 def quickest(one, ats):
