@@ -221,7 +221,7 @@ CASES = [
 
 
 def random_sheets(draw, count):
-    """Surfaces of degree 1 to 6 with weights up to 30:1, each with up to four loops that do not meet; how many loops."""
+    """Surfaces of degree 1 to 6, weights up to 30:1, each with up to four loops that do not meet; how many loops."""
     text, instances, loops, side = "", "", 0, math.ceil(math.sqrt(count))
     for k in range(count):
         n, m = draw.randint(2, 7), draw.randint(2, 7)

@@ -52,6 +52,8 @@ class Contest:
             raise ValueError(f"{self.what}: {len(self.ours)} rounds of ours, {len(self.theirs)} of {self.peer}")
         if not self.why and not self.unreached and not self.ours:
             raise ValueError(f"{self.what}: neither rounds nor a reason")
+        if any(figure <= 0 for figure in [*self.ours, *self.theirs]):
+            raise ValueError(f"{self.what}: a figure that is not above 0 has no ratio")
         if self.unreached and not self.why:
             raise ValueError(f"{self.what}: what did {self.peer} not reach?")
 

@@ -60,6 +60,7 @@ class Verdicts(unittest.TestCase):
     def test_a_row_is_measured_or_says_why_not(self):
         self.assertRaises(ValueError, contest, [], [])
         self.assertRaises(ValueError, contest, [1.0], [])
+        self.assertRaises(ValueError, contest, [0.0], [1.0])
         self.assertRaises(ValueError, contest, [], [], unreached=True)
         self.assertEqual(contest([], [], why="not installed").verdict(), "not measured")
         self.assertEqual(contest([], [], unreached=True, why="not within 5 s").verdict(), "unreached")

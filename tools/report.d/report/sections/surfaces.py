@@ -63,7 +63,7 @@ class Case:
         self.tolerances = context.pick([0.5, 1.0], [0.1, 0.25, 0.5, 1.0, 2.0, 4.0])
         self.deflections = context.pick([1e-2, 1e-3, 1e-4, 1e-5], [1e-2, 1e-3, 1e-4, 1e-5, 1e-6])
         self.f3d_deflections = context.pick([1e-3, 1e-4], self.deflections)
-        self.most_mesh_s = context.pick(6, 120)
+        self.most_mesh_s = context.pick(10, 120)
         self.what = f"{model.name}, {size[0]}x{size[1]}"
 
     def ours(self):

@@ -7,6 +7,8 @@ from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
 
 # the engine's own; the others are baselines
 OURS = ("table", "exact")
+FILES_QUICK = ["samples/panel.step"]
+FILES = [*FILES_QUICK, "nist_pmi_2.stp", "m6_countersunk_screw.step"]
 TEXT = """\
 The engine's ways to trim, `table` and `exact`, beside other methods: bisection (the paper's), a texture of the trim,
 and triangles made in advance. *Trims* is what the tests cost in the passes of a frame, *turning* the same of a view
@@ -15,18 +17,10 @@ that turns. The least of the frames of each round counts, and the table has medi
 
 def measure(context):
     section = Section(3, "Trimming", TEXT)
-    zooms, sizes = (
-        context.pick("1,100", "1,10,100,1000"),
-        context.pick("200x200,400x400", "400x400,800x800,1600x1600,3840x2160"),
-    )
+    zooms = context.pick("1,100", "1,10,100,1000")
+    sizes = context.pick("200x200,400x400", "400x400,800x800,1600x1600,3840x2160")
     size, holes = context.pick("400x400", "800x800"), context.pick(20, 100)
-    models = [
-        m
-        for m in map(
-            context.model, ["samples/panel.step", *context.pick([], ["nist_pmi_2.stp", "m6_countersunk_screw.step"])]
-        )
-        if m
-    ]
+    models = [model for model in map(context.model, context.pick(FILES_QUICK, FILES)) if model]
     words = [*models, "--no-knobs", "--holes", holes, "--zooms", zooms, "--sizes", sizes, "--size", size]
     words += ["--frames", context.pick(2, 5), "--samples", context.pick(500, 2000)]
     found = []
@@ -133,26 +127,26 @@ def contests(section, model, found, size):
     for at in found[0]:
         if at[:2] != (model, "bisect") or at[3] != size:
             continue
-        other = lambda way: (model, way, at[2], at[3])
+        other = lambda way, at=at: (model, way, at[2], at[3])
         what = f"{model}, {int(at[2])} times"
-        ours = [quickest(one, [other(way) for way in OURS]) for one in found]
-        section.contests.append(
-            Contest(f"trims, {what}", "bisection", "ms", ours, values(found, at, "trim_ms"), "ahead")
-        )
-        texture = values(found[:1], other("texture"), "trim_bytes")
+        ours, theirs = ([cost(one, ats) for one in found] for ats in ([other(way) for way in OURS], [at]))
+        section.contests.append(contest(f"trims, {what}", "bisection", "ms", ours, theirs, "ahead"))
         # a texture that is as right as it is at the closest view needs a texel a pixel
         claim = "ahead" if at[2] >= 100 else "open"
-        least = min(values(found[:1], other(way), "trim_bytes")[0] for way in OURS)
+        least = min((values(found[:1], other(way), "trim_bytes") for way in OURS), default=[])
+        texture = values(found[:1], other("texture"), "trim_bytes")
         section.contests.append(
-            Contest(f"memory, {what}", "a trim texture", "bytes", [least], texture, claim, exact=True)
+            contest(f"memory, {what}", "a trim texture", "bytes", least, texture, claim, exact=True)
         )
 
 
-def quickest(one, ats):
-    # differences of two drawings can be below zero
-    return max(min(float(one[at]["trim_ms"]) for at in ats), noise_floor(one, ats))
+def contest(what, peer, unit, ours, theirs, claim, exact=False):
+    if None in ours or None in theirs or not theirs:
+        return Contest(what, peer, unit, why="the device has no room for it")
+    return Contest(what, peer, unit, ours, theirs, claim, exact)
 
 
-def noise_floor(one, ats):
-    """A hundredth of the frame: less is not told apart from nothing."""
-    return 0.01 * min(float(one[at]["frame_ms"]) for at in ats)
+def cost(one, ats):
+    """Milliseconds of the quickest way; at least a hundredth of its frame: differences of two drawings may be below 0."""
+    texts = [(one[at]["trim_ms"], one[at]["frame_ms"]) for at in ats if at in one and one[at]["trim_ms"]]
+    return min((max(float(trims), 0.01 * float(frame)) for trims, frame in texts), default=None)
