@@ -98,9 +98,8 @@ def main():
         context = given.Context(chosen.quick, program, Peers(scratch), scratch, given.models())
         load = machine.load()
         sections = [measured(name, context) for name in chosen.only or SECTIONS]
-        words = [word for word in sys.argv[1:]]
         report = Report(
-            command=shlex.join(["tools/report", *words]),
+            command=shlex.join(["tools/report", *sys.argv[1:]]),
             date=machine.date(),
             machine=machine.processor(),
             device=program.device or "none was used",

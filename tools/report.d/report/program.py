@@ -99,7 +99,8 @@ class Program:
         return float(value) * UNITS[unit]
 
     def seen(self, stats):
-        self.device = f"{stats['device']} ({stats['driver']})"
+        # of the first frame: others may be asked for beside it
+        self.device = self.device or f"{stats['device']} ({stats['driver']})"
 
 
 def at(camera):
@@ -107,6 +108,16 @@ def at(camera):
     point = lambda name: "--{}={}".format(name, ",".join(repr(float(x)) for x in camera[name]))
     width, height = camera["size"]
     return [point("eye"), point("target"), point("up"), "--fov", repr(camera["fovy"]), "--size", f"{width}x{height}"]
+
+
+def wrong(judgement):
+    """Pixels that break the promise: the wrong face, or the right face's wrong sheet."""
+    return judgement["wrong"] + judgement["folds"]["beyond"] + judgement["folds"]["wrong_depth"]
+
+
+def worst_shift_px(judgement):
+    """Of faces, and of sheets of faces."""
+    return max(judgement["worst_shift_px"], judgement["folds"]["worst_shift_px"])
 
 
 def passes_ms(stats):

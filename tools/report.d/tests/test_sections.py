@@ -4,7 +4,7 @@ import pathlib
 import unittest
 
 from report.rows import Section
-from report.sections import surfaces, trims, zoom
+from report.sections import stability, surfaces, trims, zoom
 
 SIZE = "400x400"
 
@@ -84,12 +84,20 @@ class Sized:
         return type("Stat", (), {"st_size": self.bytes})
 
 
+class Stability(unittest.TestCase):
+    def test_a_wrong_sheet_of_the_right_face_is_wrong(self):
+        folds = {"beyond": 2, "wrong_depth": 3, "worst_shift_px": 1.5}
+        judgement = {"sampled": 90, "wrong": 1, "worst_shift_px": 0.6, "given_up": 0, "folds": folds}
+        found = stability.Found([{"judgement": judgement, "stats": {"clamps": 4, "patches": 1}}] * 2)
+        self.assertEqual((found.wrong, found.worst, found.clamps, found.judged), (12, 1.5, 8, 180))
+
+
 class Zoom(unittest.TestCase):
     def test_a_mesh_that_is_not_done_is_not_reached(self):
         section = Section(2, "", "")
         camera = {"eye": [0, 0, 9], "target": [0, 0, 0], "fovy": 35.0, "size": [4, 3]}
         cameras = {"1": camera, "1000": camera}
-        judged = [{"judgement": {"worst_shift_px": 0.1}}] * 2
+        judged = [{"judgement": {"worst_shift_px": 0.1, "folds": {"worst_shift_px": 0.2}}}] * 2
         ours = [{name: {"passes": [{"gpu_ms": 10.0}]} for name in cameras}] * 3
         drawn = {("fixed", name): {"frame_ms": 2.0} for name in cameras}
         meshed = [drawn | {("remeshed", "1"): {"frame_ms": 2.0, "mesh_s": 0.1}}] * 3

@@ -3,7 +3,7 @@
 import random
 import time
 
-from .. import hard
+from .. import hard, program
 from ..rows import Missing, Promise, Section, Table
 from ..turns import Unmeasurable
 
@@ -32,29 +32,24 @@ def measure(context):
             if isinstance(found, str):
                 rows.append([case.name, case.danger, on, Missing(found), "", "", "", ""])
             else:
-                rows.append(
-                    [case.name, case.danger, on, found.judged, found.wrong, found.worst, found.clamps, found.doubt]
-                )
-                pixels, clamps = whole.setdefault(
-                    case.known, (Promise(f"{PIXEL} in hard cases"), Promise("no clamp in a view of a hard case"))
-                )
-                for promise, violations, cases in (
-                    (pixels, found.wrong, found.judged),
-                    (clamps, found.clamps, found.views),
-                ):
-                    promise.violations, promise.cases = promise.violations + violations, promise.cases + cases
-                    promise.known = case.known and f"docs/accuracy.md: {case.known}"
+                figures = [found.judged, found.wrong, found.worst, found.clamps, found.doubt]
+                rows.append([case.name, case.danger, on, *figures])
+                pixels, clamps = whole.setdefault(case.known, promises(case.known))
+                pixels.violations, pixels.cases = pixels.violations + found.wrong, pixels.cases + found.judged
+                clamps.violations, clamps.cases = clamps.violations + found.clamps, clamps.cases + found.views
     head = ["case", "what could go wrong", "device", "pixels judged", "wrong", "worst, px", "clamps", "in doubt"]
     section.tables.append(Table("Hard cases", head, rows))
-    section.promises += [
-        promise
-        for both in whole.values()
-        for promise in both
-        if promise.cases and (promise.violations or not promise.known)
-    ]
+    both = [promise for pair in whole.values() for promise in pair]
+    section.promises += [promise for promise in both if promise.violations or not promise.known]
     soak(context, section, judge)
     section.commands.append(context.shown("check", "CASE.toml", "--views", "all", *judge.options))
     return section
+
+
+def promises(known):
+    """What hard cases must keep, and where a document excepts them."""
+    known = known and f"docs/accuracy.md: {known}"
+    return Promise(f"{PIXEL} in hard cases", known=known), Promise("no clamp in a view of a hard case", known=known)
 
 
 class Found:
@@ -64,8 +59,8 @@ class Found:
         self.views = len(views)
         judgements = [view["judgement"] for view in views]
         self.judged = sum(j["sampled"] for j in judgements)
-        self.wrong = sum(j["wrong"] for j in judgements)
-        self.worst = max(j["worst_shift_px"] for j in judgements)
+        self.wrong = sum(map(program.wrong, judgements))
+        self.worst = max(map(program.worst_shift_px, judgements))
         self.clamps = sum(view["stats"]["clamps"] for view in views)
         self.doubt = sum(j["given_up"] for j in judgements)
         self.patches = max(view["stats"]["patches"] for view in views)

@@ -33,10 +33,8 @@ files of a megabyte and more."""
 def measure(context):
     section = Section(1, "Time against error, surfaces", TEXT)
     section.promises.append(Promise("no boundary pixel beyond the tolerance, by the kernel's rays"))
-    files, sizes = (
-        context.pick(FILES_QUICK, FILES),
-        context.pick([(960, 540)], [(960, 540), (1920, 1080), (3840, 2160)]),
-    )
+    files = context.pick(FILES_QUICK, FILES)
+    sizes = context.pick([(960, 540)], [(960, 540), (1920, 1080), (3840, 2160)])
     for name in files:
         model = context.model(name)
         if model is None:
@@ -72,28 +70,16 @@ class Case:
         for tolerance in self.tolerances:
             first = self.context.program.render(self.model, self.camera, "--tolerance", tolerance, stats=False)
             turning = self.bench("turn", tolerance)["wall clock, with read-back"]
-            standing = (
-                self.bench("still", tolerance)["reused: wall clock, with read-back"]
-                if tolerance == STANDING_PX
-                else None
-            )
+            standing = None
+            if tolerance == STANDING_PX:
+                standing = self.bench("still", tolerance)["reused: wall clock, with read-back"]
             found[tolerance] = (first["seconds"], turning, standing)
         return found
 
     def bench(self, motion, tolerance):
         """Medians by name."""
-        words = [
-            "--motion",
-            motion,
-            "--judged",
-            0,
-            "--frames",
-            self.frames,
-            "--tolerance",
-            tolerance,
-            "--size",
-            "{}x{}".format(*self.size),
-        ]
+        words = ["--motion", motion, "--judged", 0, "--frames", self.frames, "--tolerance", tolerance]
+        words += ["--size", "{}x{}".format(*self.size)]
         return self.context.program.bench([self.model], *words)[0]["of"]
 
     def job(self, **more):

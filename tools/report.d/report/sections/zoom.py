@@ -42,7 +42,7 @@ def measure(context):
     section.promises.append(
         Promise(
             "a pixel right within half a pixel, by the project's reference",
-            sum(v["judgement"]["wrong"] for v in judged),
+            sum(program.wrong(v["judgement"]) for v in judged),
             sum(v["judgement"]["sampled"] for v in judged),
         )
     )
@@ -120,7 +120,7 @@ def fill(section, file, cameras, judged, results, errors, stopped):
         mine = [program.passes_ms(one[name]) for one in results["ours"]]
         lines["ours"].append((float(name), statistics.median(mine)))
         cells = [int(name), views.pixel_mm(camera), statistics.median(mine)]
-        cells += [error(errors[name], "ours"), view["judgement"]["worst_shift_px"]]
+        cells += [error(errors[name], "ours"), program.worst_shift_px(view["judgement"])]
         for kind in ("fixed", "remeshed"):
             what = f"frame, {file}, {int(name):,} times"
             peer = "VTK, fixed mesh" if kind == "fixed" else "VTK, a mesh a zoom"
