@@ -1,6 +1,5 @@
 """What sections make of made-up measurements: nothing is run."""
 
-import pathlib
 import unittest
 
 from report.rows import Section
@@ -120,6 +119,7 @@ class Kernel(unittest.TestCase):
         import tempfile
 
         import numpy
+
         from report.peer import kernel
 
         # a block that ends at the picture's middle, seen along z; pixels are 1 unit wide in the plane of its top

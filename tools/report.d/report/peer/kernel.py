@@ -21,9 +21,9 @@ import random
 import time
 
 import numpy
+from OCP.gp import gp_Dir, gp_Lin, gp_Pnt
 from OCP.IntCurvesFace import IntCurvesFace_Intersector
 from OCP.TopAbs import TopAbs_IN, TopAbs_ON
-from OCP.gp import gp_Dir, gp_Lin, gp_Pnt
 
 from . import job, shapes, tell
 

@@ -16,12 +16,12 @@ import time
 import numpy
 from OCP.AIS import AIS_InteractiveContext, AIS_Shape
 from OCP.Aspect import Aspect_DisplayConnection
+from OCP.gp import gp_Dir, gp_Pnt
 from OCP.Graphic3d import Graphic3d_Camera
 from OCP.OpenGl import OpenGl_GraphicDriver
 from OCP.Quantity import Quantity_Color, Quantity_TOC_RGB
 from OCP.V3d import V3d_Viewer
 from OCP.Xw import Xw_Window
-from OCP.gp import gp_Dir, gp_Pnt
 
 from . import job, shapes, tell
 from .turn import turned
