@@ -65,6 +65,9 @@ class Surfaces(unittest.TestCase):
         never = self.ERRORS | {"mesh 0.0001": 0.8}
         self.assertEqual(self.contest(0.25, never).verdict(), "unreached")
 
+    def test_a_plot_shows_the_quickest_of_each_error(self):
+        self.assertEqual(surfaces.front([(0.5, 3), (0.1, 9), (0.5, 2)]), [(0.1, 9), (0.5, 2)])
+
     def test_pixels_beyond_the_tolerance_are_counted(self):
         self.assertEqual(surfaces.beyond({"beyond": 0, "worst_px": 0.5}, 0.5), 0)
         self.assertEqual(surfaces.beyond({"beyond": 0, "worst_px": 0.75}, 0.5), 1)

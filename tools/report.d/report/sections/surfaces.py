@@ -216,7 +216,7 @@ class Case:
     def plots(self, section, competitors, errors):
         for k, (quantity, unit) in enumerate(QUANTITIES[:2]):
             lines = [
-                Line(name, self.curve(kind, found, errors, k), name == "selvedge")
+                Line(name, front(self.curve(kind, found, errors, k)), name == "selvedge")
                 for name, (kind, found) in competitors.items()
                 if not isinstance(found, Unmeasurable)
             ]
@@ -259,6 +259,11 @@ class Case:
             return Contest(what, name, unit, claim=claim, unreached=True, why="none of its settings is as right")
         many = min(len(mine), len(theirs))
         return Contest(what, name, unit, mine[:many], theirs[:many], claim)
+
+
+def front(curve):
+    """The quickest setting of each error."""
+    return [(off, min(time for other, time in curve if other == off)) for off in sorted({off for off, _ in curve})]
 
 
 def beyond(error, tolerance):
