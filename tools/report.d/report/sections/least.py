@@ -3,13 +3,13 @@
 from .. import hard
 from ..rows import Promise, Section, Table
 
-# what names of objects begin with or hold, by what they are for
+# what names of objects hold, by what they are for
 FEATURES = {
-    "trims": ("trim", "gap"),
+    "trims": ("trim", "gap "),
     "meshes": ("mesh",),
-    "solids": ("solid", "blist", "primitive"),
-    "layers": ("layer", "clear"),
-    "a sun": ("shadow", "sun"),
+    "solids": ("solid",),
+    "layers": ("layer",),
+    "a sun": ("shadow",),
 }
 SIZE = "320x240"
 PLANE = '[surface.plane]\nshape = "plane"\nu = [-20, 20]\nv = [-15, 15]\n'
