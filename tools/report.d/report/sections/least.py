@@ -9,7 +9,7 @@ FEATURES = {
     "meshes": ("mesh",),
     "solids": ("solid",),
     "layers": ("layer",),
-    "a sun": ("shadow",),
+    "a sun": ("sun",),
 }
 SIZE = "320x240"
 PLANE = '[surface.plane]\nshape = "plane"\nu = [-20, 20]\nv = [-15, 15]\n'
