@@ -6,7 +6,7 @@ def write(plot, path):
     import matplotlib
 
     matplotlib.use("svg")
-    matplotlib.rcParams.update({"svg.hashsalt": "selvedge", "font.size": 9})
+    matplotlib.rcParams.update({"svg.hashsalt": "selvedge", "svg.fonttype": "none", "font.size": 9})
     from matplotlib import pyplot
 
     figure, axes = pyplot.subplots(figsize=(6.4, 4.2), layout="constrained")

@@ -11,7 +11,7 @@ WAYS = ["events", "cst", "blister"]
 SCENES_QUICK = ["widget", "complex", "gear"]
 SCENES = [*SCENES_QUICK, "plate100", "plate1000"]
 # facets around a round primitive
-SEGMENTS_QUICK, SEGMENTS = [64], [32, 128, 512]
+SEGMENTS_QUICK, SEGMENTS = [64], [32, 128]
 # degrees from top to bottom: OpenSCAD's, which no option changes
 FOV_DEG = 22.5
 # beside the solid's own box, so that no way draws it beyond the picture

@@ -9,6 +9,9 @@ from ..turns import Unmeasurable, rounds
 
 FILES_QUICK = ["samples/bracket.step", "first/occt_screw.step", "nist_pmi_2.stp"]
 FILES = [*FILES_QUICK, "framework_printable_case_full.stp", "impeller.igs"]
+# of these all sizes, of the others the middle one
+ALL_SIZES = ["samples/bracket.step", "nist_pmi_2.stp"]
+SIZES_QUICK, SIZES = [(960, 540)], [(960, 540), (1920, 1080), (3840, 2160)]
 # an error of at most so much, pixels
 ERRORS = [0.125, 0.25, 0.5, 1.0, 2.0]
 # what the project claims: a picture within half a pixel sooner from the file, where the file is large
@@ -34,13 +37,12 @@ def measure(context):
     section = Section(1, "Time against error, surfaces", TEXT)
     section.promises.append(Promise("no boundary pixel beyond the tolerance, by the kernel's rays"))
     files = context.pick(FILES_QUICK, FILES)
-    sizes = context.pick([(960, 540)], [(960, 540), (1920, 1080), (3840, 2160)])
     for name in files:
         model = context.model(name)
         if model is None:
             section.contests.append(Contest(f"first picture, {name}", "all", "s", why=context.absent(name).why))
             continue
-        for size in sizes:
+        for size in context.pick(SIZES_QUICK, SIZES if name in ALL_SIZES else SIZES[1:2]):
             context.say(f"{name}, {size[0]}x{size[1]}")
             Case(context, model, size).into(section)
     promise = section.promises[0]
@@ -55,13 +57,13 @@ class Case:
     def __init__(self, context, model, size):
         self.context, self.model, self.size = context, model, size
         self.bounds = context.program.info(model)["bounds"]
-        self.frames = context.pick(6, 12)
+        self.frames = 6
         self.camera = views.turned(self.bounds, size, 0)
         self.turn = views.turn(self.bounds, size, self.frames)
-        self.tolerances = context.pick([0.5, 1.0], [0.1, 0.25, 0.5, 1.0, 2.0, 4.0])
+        self.tolerances = context.pick([0.5, 1.0], [0.1, 0.25, 0.5, 1.0, 4.0])
         self.deflections = context.pick([1e-2, 1e-3, 1e-4, 1e-5], [1e-2, 1e-3, 1e-4, 1e-5, 1e-6])
         self.f3d_deflections = context.pick([1e-3, 1e-4], self.deflections)
-        self.most_mesh_s = context.pick(10, 120)
+        self.most_mesh_s = context.pick(10, 30)
         self.what = f"{model.name}, {size[0]}x{size[1]}"
 
     def ours(self):
@@ -129,7 +131,7 @@ class Case:
                 self.model, self.camera, "--tolerance", tolerance, images=["face"], stats=False
             )
             pictures[f"ours {tolerance}"] = {"path": str(drawn["face"]), "own": True}
-        seconds = self.context.pick(6, 60)
+        seconds = self.context.pick(6, 15)
         whole = {"whole": {"camera": self.camera, "pictures": pictures}}
         job = {"model": str(self.model), "views": whole, "seconds": seconds}
         (head,) = self.context.peers.results("kernel", job, limit_s=60 + seconds * (1 + len(pictures)))
@@ -137,7 +139,7 @@ class Case:
 
     def into(self, section):
         """Measures, and adds what was found."""
-        seconds = self.context.pick(45, 600)
+        seconds = self.context.pick(45, 180)
         results = rounds(
             {"ours": self.ours, "meshed": self.meshed, "F3D": self.f3d}, seconds, most=self.context.pick(3, 5)
         )

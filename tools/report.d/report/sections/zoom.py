@@ -52,7 +52,7 @@ def measure(context):
     folder = context.program.folder()
 
     reached = list(cameras)
-    limit_s, stopped = context.pick(20, 120), {}
+    limit_s, stopped = context.pick(20, 60), {}
 
     def meshed():
         """By kind and view; a view whose mesh is not done in time is not tried again."""
