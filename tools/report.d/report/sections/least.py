@@ -2,6 +2,7 @@
 
 from .. import hard
 from ..rows import Promise, Section, Table
+from ..turns import Unmeasurable
 
 # what names of objects hold, by what they are for
 FEATURES = {
@@ -51,7 +52,10 @@ def measure(context):
             "fovy": 35.0,
             "size": [320, 240],
         }
-        found[name] = context.program.render(path, camera)["stats"]["objects"]
+        stats = context.program.render(path, camera)["stats"]
+        if "objects" not in stats:
+            raise Unmeasurable(f"{context.program.path.name} is an older build, which lists no objects")
+        found[name] = stats["objects"]
     plane = {one["name"] for one in found["a plane"]}
     rows, others, cases = [], [], 0
     for name, objects in found.items():
