@@ -132,12 +132,21 @@ pub struct FirstFrame {
     pub wall_ms: f64,
 }
 
-/// A frame's statistics, and what the session's first one took.
+/// A frame's statistics, what the session's first one took, and what exists for the scene.
 #[derive(Debug, Serialize)]
 pub struct Measured {
     #[serde(flatten)]
     pub frame: FrameStats,
     pub first_frame: Option<FirstFrame>,
+    pub objects: Vec<Object>,
+}
+
+/// A buffer, an image or a pipeline.
+#[derive(Debug, Serialize)]
+pub struct Object {
+    pub name: String,
+    /// Of memory; 0 for a pipeline.
+    pub bytes: u64,
 }
 
 /// Opens the device that is asked for.
@@ -236,7 +245,8 @@ impl Session {
         let again = during("drawing again, to measure", || self.renderer.render(camera, &settings, outputs))?.stats;
         let mut frame = again;
         frame.retries = first.retries;
-        Ok(Measured { frame, first_frame: self.first_frame })
+        let objects = self.renderer.object_bytes().into_iter().map(|(name, bytes)| Object { name, bytes }).collect();
+        Ok(Measured { frame, first_frame: self.first_frame, objects })
     }
 
     /// Whether any pixel of the picture shows the model.
