@@ -26,6 +26,7 @@ mod slot;
 mod source;
 mod targets;
 mod validate;
+mod viewport;
 
 use crate::abi;
 use crate::budget::Budget;
@@ -35,6 +36,7 @@ pub use crate::frame::counts::TooMany;
 use crate::frame::shading::{numbers, resolve};
 use crate::frame::solids::Solids;
 use crate::frame::transparency::solid_layers;
+use crate::frame::viewport as rectangle;
 use crate::frame::{Frame, Near, Passes, Stages, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Load, TexelBuffer, Uploads};
 use crate::model::{Camera, Model};
@@ -50,6 +52,7 @@ use source::Source;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 pub use targets::{Aovs, TargetFormats, Targets};
+use viewport::Viewport;
 
 /// One frame.
 #[derive(Clone, Copy, Debug)]
@@ -76,6 +79,8 @@ pub struct Renderer {
     last: Option<usize>,
     /// The next frame reads back what this pixel shows.
     pick: Option<(u32, u32)>,
+    /// What frames draw into whose targets are larger than their picture.
+    viewport: Option<Viewport>,
 }
 
 /// A model and what its frames need. Fields drop in order: nothing outlives the device.
@@ -115,6 +120,7 @@ impl Loaded {
 #[allow(dead_code)] // held for their drop
 enum Retired {
     Stages(Box<Stages>),
+    Viewport(Box<Viewport>),
     Loaded(Box<Loaded>),
     Uploads(Uploads),
     Buffer(Buffer),
@@ -147,7 +153,8 @@ impl Renderer {
     /// As [`new`](Self::new), on a device that is already on loan.
     pub(crate) fn on(device: &Device, formats: TargetFormats, frame_slots: usize) -> Result<Self, GpuError> {
         let slots = (0..frame_slots.max(1)).map(|_| Slot::new(device)).collect::<Result<_, _>>()?;
-        Ok(Self { device: device.clone(), formats, source: None, loaded: None, slots, last: None, pick: None })
+        let device = device.clone();
+        Ok(Self { device, formats, source: None, loaded: None, slots, last: None, pick: None, viewport: None })
     }
 
     /// Records one frame: compute, draws, and the picture into the targets.
@@ -175,6 +182,7 @@ impl Renderer {
         assert!(wanted || !self.formats.outputs.thickness, "the model is uploaded with SceneSettings::thickness");
         self.prepare(input.camera)?;
         self.make_room(input.slot, input.camera)?;
+        self.make_viewport(&input.targets, input.camera.size)?;
         // SAFETY: the caller's promise.
         let cmd = unsafe { Commands::new(&self.device, cmd) };
         let Some(loaded) = &mut self.loaded else { panic!("upload a model before recording") };
@@ -205,7 +213,9 @@ impl Renderer {
             unreachable!("made above")
         };
         let keep = input.settings.background.is_none();
-        let targets = input.targets;
+        let own = self.viewport.as_ref().zip(input.targets.corner);
+        let pairs = own.map(|(viewport, corner)| (viewport.pairs(&input.targets), corner));
+        let targets = own.map_or(input.targets, |(viewport, _)| viewport.targets(&input.targets));
         let colour = targets.colours(&self.formats, stages, keep);
         let depth = targets.depth.map(|image| {
             let whole = target(image, keep);
@@ -243,7 +253,13 @@ impl Renderer {
             numbers: targets.numbers(&self.formats, stages, keep),
         };
         slot.times.reset(&cmd);
+        if let Some((pairs, corner)) = &pairs {
+            rectangle::begin(&cmd, pairs, *corner, keep);
+        }
         frame.record(&cmd, &mut slot.times);
+        if let Some((pairs, corner)) = &pairs {
+            rectangle::end(&cmd, pairs, *corner);
+        }
         let Some(source) = &self.source else { unreachable!("it was loaded") };
         pick::record(self.pick.take(), &mut slot.pick, (&self.device, &cmd, &frame), (source, loaded, input))?;
         // only now: a frame that was not recorded left nothing
