@@ -160,7 +160,7 @@ fn a_hit_has_the_edge_whose_line_is_there() {
         let (mut same, mut other, mut away) = (0, 0, 0);
         for (x, y) in (1..SIZE.1 - 1).flat_map(|y| (1..SIZE.0 - 1).map(move |x| (x, y))) {
             let beside = || (0..9).map(|k| edge(x + k % 3 - 1, y + k / 3 - 1));
-            if (x + 3 * y) % 5 != 0 && edge(x, y) == 0 {
+            if !(x + 3 * y).is_multiple_of(if edge(x, y) == 0 { 17 } else { 2 }) {
                 continue;
             }
             renderer.pick(x, y);
@@ -180,7 +180,7 @@ fn a_hit_has_the_edge_whose_line_is_there() {
                 }
             }
         }
-        assert!(same > 60 && other * 8 < same && away > 40, "{same} the same, {other} others, {away} away");
+        assert!(same > 30 && other * 8 < same && away > 20, "{same} the same, {other} others, {away} away");
         assert_silent(renderer);
     }
 }
