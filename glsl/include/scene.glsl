@@ -147,7 +147,7 @@ bool is_drawn(uint tau) { return tau != 0u && (tau & TAU_HIDDEN) == 0u; }
 // One frame's view.
 struct Frame {
     vec2 size;          // pixels
-    float focal;        // pixels per unit slope; parallel view: pixels per model unit
+    float focal;        // pixels per unit slope, the most; parallel view: pixels per model unit
     float slant;        // largest stretch of a pixel towards the picture's corners, >= 1
     float near;
     float far;
@@ -186,6 +186,8 @@ struct Frame {
     float spread_px;    // how far from the centre samples lie, along each axis
     uint samples;       // of each pixel's colour
     uint style;         // STYLE_*
+    vec2 focal_px;      // as `focal`, across and down
+    vec2 principal_px;  // where the view axis is seen
 };
 
 // Frame.style.

@@ -57,6 +57,8 @@ pub struct Frame {
     pub spread_px: f32,
     pub samples: u32,
     pub style: u32,
+    pub focal_px: [f32; 2],
+    pub principal_px: [f32; 2],
 }
 
 impl Counters {
