@@ -320,7 +320,7 @@ impl SelvedgeHost {
     }
 }
 
-/// Makes a model what the frames show. Of `view` samples, edges, line_width and sun count. Nothing waits: what frames in flight
+/// Makes a model what the frames show. Of `view` samples, edges, line_width, ambient and sun count. Nothing waits: what frames in flight
 /// use is freed with their slots.
 ///
 /// # Safety
@@ -335,7 +335,7 @@ pub unsafe extern "C" fn selvedge_host_upload(
         // SAFETY: as the caller promises
         let (host, model, view) = unsafe { (handle("host", host)?, handle("model", model)?, taken(view, NO_VIEW)?) };
         // SAFETY: as the caller promises
-        let scene = unsafe { view.scene(host.formats.outputs.edge) }?;
+        let scene = unsafe { view.scene(host.formats.outputs.edge, &model.loaded.model) }?;
         let shared = Arc::clone(&model.loaded.model);
         host.renderer().upload_shared(Arc::clone(&shared), scene, &|_| ()).map_err(render)?;
         *host.model.lock().unwrap_or_else(PoisonError::into_inner) = Some(shared);

@@ -7,7 +7,7 @@ use glam::{DMat3, DVec3};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Samples, SceneSettings, Style};
 use selvedge_session::{
-    Backdrop, DeviceOptions, Directions, FOV_DEG, Image, Job, Lens, Pinhole, Viewpoint, Worker, colour, lines, smooth,
+    Ambient, Backdrop, DeviceOptions, Directions, FOV_DEG, Image, Job, Lens, Pinhole, Viewpoint, Worker, colour, lines, smooth,
 };
 use std::ffi::c_char;
 use std::str::FromStr;
@@ -77,6 +77,9 @@ pub struct SelvedgeView {
     pub rotation: [f64; 9],
     /// The model's origin in its axes, millimetres: a point X is seen at K (R X + t).
     pub translation: [f64; 3],
+    /// Radius of ambient occlusion, millimetres; 0: a twenty-fifth of the model's diagonal, but none with several samples;
+    /// below 0: none.
+    pub ambient: f64,
 }
 
 pub(crate) const NO_VIEW: SelvedgeView = SelvedgeView {
@@ -100,6 +103,7 @@ pub(crate) const NO_VIEW: SelvedgeView = SelvedgeView {
     intrinsics: [0.0; 4],
     rotation: [0.0; 9],
     translation: [0.0; 3],
+    ambient: 0.0,
 };
 
 // SAFETY: each begins with its size and consists of numbers and pointers
@@ -188,7 +192,7 @@ impl SelvedgeView {
         unsafe {
             Ok(Job {
                 camera: self.camera_of(&model.loaded.model)?,
-                scene: self.scene(images.contains(&Image::Edge))?,
+                scene: self.scene(images.contains(&Image::Edge), &model.loaded.model)?,
                 frame: self.frame()?,
                 outputs: Image::outputs(images),
                 backdrop: word::<Backdrop>("the background", self.background, "gradient")?,
@@ -201,7 +205,7 @@ impl SelvedgeView {
     ///
     /// # Safety
     /// As [`SelvedgeView::job`].
-    pub(crate) unsafe fn scene(&self, has_edge_image: bool) -> Result<SceneSettings, Failure> {
+    pub(crate) unsafe fn scene(&self, has_edge_image: bool, model: &Model) -> Result<SceneSettings, Failure> {
         let usual = if has_edge_image { "all" } else { "none" };
         // SAFETY: as the caller promises
         let which = unsafe { word::<EdgeChoice>("the choice of edges", self.edges, usual) }?;
@@ -215,7 +219,12 @@ impl SelvedgeView {
             samples.parse().map_err(|error: selvedge::picture::UnknownSamples| argument(error.to_string()))?;
         let sun = Some(DVec3::from(self.sun)).filter(|sun| *sun != DVec3::ZERO);
         let smooth = smooth(None, samples);
-        Ok(SceneSettings { edges: drawn, samples, smooth, sun, ..SceneSettings::default() })
+        let ambient = match self.ambient {
+            radius if radius < 0.0 => Some(Ambient::None),
+            radius => Some(Ambient::Radius(radius)).filter(|_| radius != 0.0),
+        };
+        let ambient = Ambient::radius(ambient, samples, model);
+        Ok(SceneSettings { edges: drawn, samples, smooth, ambient, sun, ..SceneSettings::default() })
     }
 
     /// # Safety
