@@ -112,6 +112,13 @@ impl Loaded {
     }
 }
 
+/// Bytes of one list: the largest are read as texels.
+fn range(device: &Device) -> u32 {
+    let limits = device.limits();
+    let texels = u64::from(limits.max_texel_buffer_elements) * TexelBuffer::LEAST_BYTES;
+    limits.max_storage_buffer_range.min(u32::try_from(texels).unwrap_or(u32::MAX))
+}
+
 #[allow(dead_code)] // held for their drop
 enum Retired {
     Stages(Box<Stages>),
@@ -283,10 +290,7 @@ impl Renderer {
         finished.retired.clear();
         finished.recorded = false;
         let Some(loaded) = &mut self.loaded else { return Ok(()) };
-        let limits = self.device.limits();
-        // the largest lists are read as texels
-        let texels = u64::from(limits.max_texel_buffer_elements) * TexelBuffer::LEAST_BYTES;
-        let range = limits.max_storage_buffer_range.min(u32::try_from(texels).unwrap_or(u32::MAX));
+        let range = range(&self.device);
         let capacities = match (had, report) {
             // else another slot's frame has made them larger since
             (Some(had), Some(c)) if had == loaded.capacities => match had.grown(&c, loaded.counts, drawn, range) {

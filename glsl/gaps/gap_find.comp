@@ -19,6 +19,7 @@
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
+#include "grid.glsl"
 layout(binding = 1, rg32ui) uniform uimage2D visibility;
 layout(scalar, binding = 2) writeonly buffer GapCandidates { GapCandidate candidates[]; };
 layout(scalar, binding = 3) buffer Dispatch { uvec3 dispatch; }; // of the second step; zero before
@@ -125,8 +126,7 @@ void main() {
             continue;
         }
         candidates[at].pixel = uint(pixel.x) | uint(pixel.y) << 16 | flags;
-        atomicMax(dispatch.x, at / GROUP + 1u);
-        atomicMax(dispatch.y, 1u);
-        atomicMax(dispatch.z, 1u);
+        uvec3 grid = grid_of(at / GROUP + 1u);
+        for (uint axis = 0u; axis < 3u; ++axis) atomicMax(dispatch[axis], grid[axis]);
     }
 }

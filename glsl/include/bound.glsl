@@ -10,6 +10,7 @@
 layout(constant_id = 24) const bool SCENE_HAS_CONES = false;
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
@@ -28,7 +29,7 @@ layout(binding = 10) uniform samplerBuffer points;                    // one a h
 vec2 factors_of(Patch patch_, View view, uint instance, Seen seen);
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
+    uint item = thread_number();
     if (item >= frame.item_count) return;
     FaceInstance fi = face_instances[item_face_instance[item]];
     Face face = faces[fi.face];

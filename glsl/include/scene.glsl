@@ -186,6 +186,7 @@ struct Frame {
     float spread_px;    // how far from the centre samples lie, along each axis
     uint samples;       // of each pixel's colour
     uint style;         // STYLE_*
+    uint most_groups;   // workgroups in one row of a dispatch
 };
 
 // Frame.style.

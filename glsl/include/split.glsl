@@ -6,6 +6,7 @@
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 2) readonly buffer Faces { Face faces[]; };

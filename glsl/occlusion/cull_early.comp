@@ -6,13 +6,14 @@
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Hidden { uint hidden[]; };
 layout(scalar, binding = 2) buffer Taus { uint taus[]; };
 layout(scalar, binding = 3) buffer CountersBuffer { Counters counters; };
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
+    uint item = thread_number();
     if (item >= frame.item_count || taus[item] == 0u) return;
     if (hidden[item] == 0u) return;
     taus[item] |= TAU_HIDDEN;

@@ -9,6 +9,7 @@
 #include "tiles.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
@@ -27,7 +28,7 @@ layout(scalar, binding = 12) buffer CountersBuffer { Counters counters; };
 #include "behind.glsl"
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
+    uint item = thread_number();
     if (item >= frame.item_count) return;
     uint tau = taus[item];
     if (tau == 0u) {

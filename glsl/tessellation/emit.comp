@@ -11,6 +11,7 @@
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer FactorsBuffer { Factors factors[]; };
 layout(scalar, binding = 2) readonly buffer SubPatchStarts { uint sub_patch_starts[]; };
@@ -27,7 +28,7 @@ layout(scalar, binding = 6) buffer CountersBuffer { Counters counters; };
 
 void main() {
     uint n = frame.item_count;
-    uint item = gl_GlobalInvocationID.x;
+    uint item = thread_number();
     if (item >= n) return;
     if (item == 0u) {
         counters.plain += sub_patch_starts[n];

@@ -23,7 +23,7 @@ uint tau_at(ivec2 place, uint axis, int steps) {
 }
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
+    uint item = thread_number();
     if (item >= frame.item_count) return;
     FaceInstance fi = face_instances[item_face_instance[item]];
     Face face = faces[fi.face];

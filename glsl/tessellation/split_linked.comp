@@ -83,7 +83,7 @@ uint splits_beyond(uint patch_, uint side) {
 }
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
+    uint item = thread_number();
     if (item >= frame.item_count) return;
     FaceInstance fi = face_instances[item_face_instance[item]];
     item_of_patch_0 = fi.first_item - faces[fi.face].first_patch;

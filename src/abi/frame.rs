@@ -57,6 +57,7 @@ pub struct Frame {
     pub spread_px: f32,
     pub samples: u32,
     pub style: u32,
+    pub most_groups: u32,
 }
 
 impl Counters {

@@ -67,15 +67,17 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// Starts `groups` workgroups in x.
+    /// Starts at least `groups` workgroups: in x, or where those are more than the device takes in x, in as many rows of
+    /// that many as they need. The shader numbers them by `glsl/include/thread.glsl`, and leaves out those that are too many.
     ///
     /// # Panics
-    /// When there are more than `maxComputeWorkGroupCount`.
+    /// When the device does not take so many in x and y.
     pub fn dispatch(&self, groups: u32) {
-        let limit = self.device.limits().max_compute_work_group_count[0];
-        assert!(groups <= limit, "{groups} workgroups where {limit} are the most");
-        // SAFETY: recording; a compute pipeline is bound.
-        unsafe { self.device.raw().cmd_dispatch(self.raw, groups, 1, 1) };
+        let [most, most_rows, _] = self.device.limits().max_compute_work_group_count;
+        let columns = groups.min(most);
+        let rows = groups.div_ceil(columns.max(1)).max(1);
+        assert!(rows <= most_rows, "{groups} workgroups where {most_rows} rows of {most} are the most");
+        self.dispatch_grid([columns, rows, 1]);
     }
 
     /// Starts a grid of workgroups.

@@ -18,7 +18,7 @@ mod tests;
 pub use messages::{Message, Severity};
 pub use renderer::HeadlessRenderer;
 
-use crate::gpu::{Commands, Device, GpuError, HostDevice, Named, Requirements};
+use crate::gpu::{Commands, Device, GpuError, HostDevice, LowerLimits, Named, Requirements};
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use instance::Instance;
@@ -104,6 +104,15 @@ impl HeadlessDevice {
     /// # Errors
     /// [`HeadlessError`], each with what to install or choose.
     pub fn new(options: &HeadlessOptions) -> Result<Self, HeadlessError> {
+        Self::limited(options, LowerLimits::NONE)
+    }
+
+    /// As [`new`](Self::new), with lower limits.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    #[doc(hidden)]
+    pub fn limited(options: &HeadlessOptions, lower: LowerLimits) -> Result<Self, HeadlessError> {
         let instance = Instance::new(options)?;
         let physical = instance.choose(options.device.as_deref())?;
         let messages = instance.messages.clone();
@@ -148,7 +157,7 @@ impl HeadlessDevice {
             pipeline_statistics: core.pipeline_statistics_query == vk::TRUE,
         };
         // SAFETY: made above with the requirements; `Parts` and `Drop` keep it until the last user is gone.
-        let device = unsafe { Device::new(host) };
+        let device = unsafe { Device::limited(host, lower) };
         let queue = Mutex::new(Queue::new(raw, queue_family)?);
         let parts = Parts { queue, device, _allocator: allocator, _owned: owned, _instance: instance };
         Ok(Self { parts: ManuallyDrop::new(parts), messages })

@@ -1,7 +1,7 @@
 //! A whole picture in host memory: device, targets, frame, read-back.
 
 use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
-use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
+use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, LowerLimits, Pool, ReadBack, barrier};
 use crate::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
 use crate::renderer::{Aovs, EditError, FrameInput, Hit, InstanceError, RenderError, Renderer, TargetFormats, Targets};
@@ -43,7 +43,16 @@ impl HeadlessRenderer {
     /// # Errors
     /// [`HeadlessError`]: no loader, no device, no validation layers.
     pub fn new(options: &HeadlessOptions) -> Result<Self, HeadlessError> {
-        let device = HeadlessDevice::new(options)?;
+        Self::limited(options, LowerLimits::NONE)
+    }
+
+    /// As [`new`](Self::new), with lower limits.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    #[doc(hidden)]
+    pub fn limited(options: &HeadlessOptions, lower: LowerLimits) -> Result<Self, HeadlessError> {
+        let device = HeadlessDevice::limited(options, lower)?;
         let formats = TargetFormats::new(COLOUR_FORMAT);
         let renderer = Renderer::on(device.device(), formats, 1)?;
         Ok(Self {

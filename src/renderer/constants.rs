@@ -72,6 +72,7 @@ pub(super) fn constants(
         spread_px: counts.samples.offsets().iter().flatten().fold(0.0f64, |far, x| far.max(x.abs())) as f32,
         samples: counts.samples.count(),
         style: input.settings.style as u32,
+        most_groups: device.limits().max_compute_work_group_count[0],
         ..abi::Frame::default()
     };
     seen_by(camera, frame)

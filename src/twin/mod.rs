@@ -24,6 +24,7 @@ pub mod emit;
 pub mod exact;
 pub mod factor;
 pub mod gap_decide;
+pub mod grid;
 pub mod lines;
 pub mod occlusion;
 pub mod operand_sort;

@@ -9,6 +9,7 @@ mod bands;
 mod borders;
 #[path = "../shapes/cages.rs"]
 mod cages;
+mod ceilings;
 mod closed;
 mod cuts;
 mod distance;

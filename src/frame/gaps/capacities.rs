@@ -2,7 +2,7 @@
 
 use crate::abi::{Counters, GapCandidate};
 use crate::frame::capacities::grown;
-use crate::frame::counts::Counts;
+use crate::frame::counts::{Counts, SMALLER, TooMany};
 
 /// Room for what only the GPU can count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -17,7 +17,9 @@ impl Capacities {
     }
 
     /// What the frame that reported `c` would have needed.
-    pub(crate) fn grown(self, c: &Counters, range: u32) -> Self {
-        Self { candidates: grown(self.candidates, c.gap_candidates, range / size_of::<GapCandidate>() as u32) }
+    pub(crate) fn grown(self, c: &Counters, range: u32) -> Result<Self, TooMany> {
+        let (wanted, bytes) = (("pixels at gaps", c.gap_candidates), size_of::<GapCandidate>());
+        TooMany::of_bytes(wanted, bytes, range, SMALLER).map_or(Ok(()), Err)?;
+        Ok(Self { candidates: grown(self.candidates, c.gap_candidates, range / bytes as u32) })
     }
 }
