@@ -76,6 +76,8 @@ pub struct Renderer {
     last: Option<usize>,
     /// The next frame reads back what this pixel shows.
     pick: Option<(u32, u32)>,
+    /// No frame is drawn in part: it counts before it draws. Else the first one alone, and those after buffers were made.
+    pub(crate) counts_first: bool,
 }
 
 /// A model and what its frames need. Fields drop in order: nothing outlives the device.
@@ -154,7 +156,16 @@ impl Renderer {
     /// As [`new`](Self::new), on a device that is already on loan.
     pub(crate) fn on(device: &Device, formats: TargetFormats, frame_slots: usize) -> Result<Self, GpuError> {
         let slots = (0..frame_slots.max(1)).map(|_| Slot::new(device)).collect::<Result<_, _>>()?;
-        Ok(Self { device: device.clone(), formats, source: None, loaded: None, slots, last: None, pick: None })
+        Ok(Self {
+            device: device.clone(),
+            formats,
+            source: None,
+            loaded: None,
+            slots,
+            last: None,
+            pick: None,
+            counts_first: false,
+        })
     }
 
     /// Records one frame: compute, draws, and the picture into the targets.
@@ -208,9 +219,8 @@ impl Renderer {
             slot.retired.push(Retired::Uploads(uploads));
             loaded.edits.clear();
         }
-        let (Some(scene), Some(stages), Some(views)) = (&loaded.scene, &loaded.stages, &slot.views) else {
-            unreachable!("made above")
-        };
+        let (Some(scene), Some(stages)) = (&loaded.scene, &loaded.stages) else { unreachable!("made above") };
+        let (Some(views), Some(in_sight)) = (&slot.views, &slot.in_sight) else { unreachable!("written above") };
         let keep = input.settings.background.is_none();
         let targets = input.targets;
         let colour = targets.colours(&self.formats, stages, keep);
@@ -231,6 +241,7 @@ impl Renderer {
             capacities: loaded.capacities,
             constants: &slot.constants,
             views,
+            in_sight: (in_sight, slot.items_in_sight),
             samples: &slot.samples,
             table_view: slot.table.as_ref(),
             centres: slot.centres.solids(),
@@ -238,6 +249,7 @@ impl Renderer {
             occlusion: history.occlusion,
             keeps: history.reuses_view,
             keeps_table: history.reuses_table,
+            counts_first: self.counts_first || loaded.history.is_none(),
             shell_pixels: &shell_pixels,
             volume_places: slot.centres.volume(),
             sun: slot.centres.sun(),

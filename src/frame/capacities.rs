@@ -43,9 +43,10 @@ impl Capacities {
         Self { solids: self.solids.expecting(crossings, counts), ..self }
     }
 
-    /// See [`solids::Capacities::for_picture`].
+    /// See [`solids::Capacities::for_picture`] and [`gaps::Capacities::for_picture`].
     pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), range: u32) -> Result<Self, TooMany> {
-        Ok(Self { solids: self.solids.for_picture(counts, size, range)?, ..self })
+        let gaps = self.gaps.for_picture(counts, size, range);
+        Ok(Self { gaps, solids: self.solids.for_picture(counts, size, range)?, ..self })
     }
 
     /// Buffers made for these take as much as those made for `others`.

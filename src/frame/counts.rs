@@ -18,6 +18,8 @@ pub(crate) struct Counts {
     pub wide_strips: u32,
     pub curves: u32,
     pub face_instances: u32,
+    /// Something beside patches reads the views of placed parts that are out of sight.
+    pub views_all: bool,
     /// Patches may lie behind others.
     pub hides: bool,
     /// Patches or meshes are seen themselves.
@@ -61,6 +63,7 @@ pub(crate) struct Counts {
 impl Counts {
     pub(crate) fn of(data: &SceneData) -> Self {
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let by_view = !matches!(data.trim_way(), None | Some(TakenWay::Exact)) || data.has_lines();
         Self {
             items: data.items.len() as u32,
             cells: data.cell_items.len() as u32,
@@ -68,6 +71,7 @@ impl Counts {
             wide_strips: count(data.wide_strips.len()),
             curves: data.curve_items.len() as u32,
             face_instances: data.face_instances.len() as u32,
+            views_all: by_view || data.has_meshes() || data.has_operands || !data.solids.leaves.is_empty(),
             hides: data.hides(),
             has_surfaces: data.has_surfaces(),
             leaves: data.solids.leaves.len() as u32,
@@ -132,7 +136,7 @@ impl Counts {
 
 /// The model, or what a view needs of it, is more than the engine counts, or than a buffer of the device holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{count} {what} are too many: at most {most} can be drawn{}; {help}", Why(*bytes))]
+#[error("{count} {what} are too many: at most {most} can be drawn{}; {help}", Why(.bytes))]
 #[non_exhaustive]
 pub struct TooMany {
     /// What there is too much of.
@@ -148,9 +152,9 @@ pub struct TooMany {
 }
 
 /// Why no more can be drawn, as [`TooMany`] says it.
-struct Why(Option<(u64, u64)>);
+struct Why<'a>(&'a Option<(u64, u64)>);
 
-impl fmt::Display for Why {
+impl fmt::Display for Why<'_> {
     fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
         match self.0 {
             Some((wanted, most)) => {

@@ -203,6 +203,16 @@ impl<'a> Commands<'a> {
         unsafe { self.device.raw().cmd_fill_buffer(self.raw, buffer.handle(), 0, vk::WHOLE_SIZE, word) };
     }
 
+    /// Clears a colour image of whole numbers: [`Access::TRANSFER_WRITE`].
+    pub fn clear(&self, image: &Image, word: u32) {
+        let colour = vk::ClearColorValue { uint32: [word; 4] };
+        let range =
+            vk::ImageSubresourceRange::default().aspect_mask(vk::ImageAspectFlags::COLOR).level_count(1).layer_count(1);
+        let layout = ImageAccess::from(Access::TRANSFER_WRITE).layout;
+        // SAFETY: recording outside rendering; the image belongs to this device.
+        unsafe { self.device.raw().cmd_clear_color_image(self.raw, image.handle(), layout, &colour, &[range]) };
+    }
+
     /// Fills one word, the `nth`, as a transfer write.
     pub fn fill_word(&self, buffer: &Buffer, nth: u64, word: u32) {
         let bytes = size_of::<u32>() as u64;

@@ -36,21 +36,21 @@ pub struct HostDevice<'a> {
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct LowerLimits {
     /// Of `maxComputeWorkGroupCount`, in x.
-    pub work_groups: u32,
+    pub work_groups: Option<u32>,
     /// Of `maxStorageBufferRange`, in bytes, and of the bytes of a texel buffer.
-    pub storage_range: u32,
+    pub storage_range: Option<u32>,
 }
 
 impl LowerLimits {
     /// The device's own.
-    pub const NONE: Self = Self { work_groups: u32::MAX, storage_range: u32::MAX };
+    pub const NONE: Self = Self { work_groups: None, storage_range: None };
 
     fn lower(self, limits: &mut vk::PhysicalDeviceLimits) {
-        let least = |limit: &mut u32, lower: u32| *limit = lower.min(*limit);
+        let least = |limit: &mut u32, lower: Option<u32>| *limit = lower.map_or(*limit, |lower| lower.min(*limit));
         least(&mut limits.max_compute_work_group_count[0], self.work_groups);
         least(&mut limits.max_storage_buffer_range, self.storage_range);
-        let texels = u64::from(self.storage_range) / TexelBuffer::LEAST_BYTES;
-        least(&mut limits.max_texel_buffer_elements, texels as u32);
+        let texels = self.storage_range.map(|bytes| bytes / TexelBuffer::LEAST_BYTES as u32);
+        least(&mut limits.max_texel_buffer_elements, texels);
     }
 }
 

@@ -37,6 +37,13 @@ struct TargetImages {
     numbers: Option<[(Image, ReadBack); 3]>,
 }
 
+/// Whoever waits for a whole picture has no use for a part of one.
+fn renderer(device: &Device, formats: TargetFormats) -> Result<Renderer, GpuError> {
+    let mut renderer = Renderer::on(device, formats, 1)?;
+    renderer.counts_first = true;
+    Ok(renderer)
+}
+
 impl HeadlessRenderer {
     /// Makes the device.
     ///
@@ -54,7 +61,7 @@ impl HeadlessRenderer {
     pub fn limited(options: &HeadlessOptions, lower: LowerLimits) -> Result<Self, HeadlessError> {
         let device = HeadlessDevice::limited(options, lower)?;
         let formats = TargetFormats::new(COLOUR_FORMAT);
-        let renderer = Renderer::on(device.device(), formats, 1)?;
+        let renderer = renderer(device.device(), formats)?;
         Ok(Self {
             renderer: ManuallyDrop::new(renderer),
             targets: ManuallyDrop::new(None),
@@ -287,7 +294,7 @@ impl HeadlessRenderer {
         let formats = TargetFormats { outputs, ..self.formats };
         if formats != self.formats || lacks_thickness {
             let source = source.with(request);
-            let mut renderer = Renderer::on(self.device.device(), formats, 1)?;
+            let mut renderer = renderer(self.device.device(), formats)?;
             renderer.upload_source(source, &|_| ())?;
             *self.renderer = renderer;
             self.formats = formats;

@@ -157,6 +157,7 @@ pub(super) struct SceneBuffers {
     pub curves: TexelBuffer,
     pub curve_points: TexelBuffer,
     pub curve_items: TexelBuffer,
+    pub in_sight: Buffer,
 }
 
 impl SceneBuffers {
@@ -176,6 +177,7 @@ impl SceneBuffers {
             curves: gpu.upload_texels("curves", &d.curves, Texel::U32x4),
             curve_points: gpu.upload_texels("curve points", &d.curve_points, Texel::Numbers),
             curve_items: gpu.upload_texels("curve items", &d.curve_items, Texel::Words),
+            in_sight: gpu.upload("items in sight", &case.runs),
         }
     }
 
@@ -198,6 +200,7 @@ impl SceneBuffers {
             counters,
             cones,
             points: &self.points,
+            in_sight: &self.in_sight,
         }
     }
 }

@@ -6,6 +6,7 @@ use super::edges::EdgeData;
 use super::edit::EditScene;
 use super::exact::ExactData;
 use super::face::{Body, Cuts, FaceData, Trimming, pack_colour};
+use super::in_sight::{PlacedBox, boxes};
 use super::instance::{LivePart, Shown, placed_part, stretch};
 use super::link::link;
 use super::mesh::Meshes;
@@ -93,6 +94,8 @@ pub(crate) struct SceneData {
     smooth: Smooth,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
+    /// Of each placement: its patches.
+    pub(super) boxes: Vec<PlacedBox>,
     /// Of each placement: nobody sees it; empty where all are seen.
     pub(super) hidden: Vec<bool>,
     /// Of each instance of the model, where it is drawn as faces alone; empty in what was cut out of it.
@@ -312,6 +315,7 @@ impl SceneData {
         }
         data.sources.resize(data.instances.len(), [0; 2]);
         data.trimmed = Trimmed::by_table(&data);
+        data.boxes = boxes(&data);
         Ok(data)
     }
 
@@ -363,7 +367,7 @@ impl SceneData {
 
     /// Frees the arrays that the GPU has; the placements and centres stay.
     pub(crate) fn drop_uploaded(&mut self) {
-        let placements = std::mem::take(&mut self.placements);
+        let (placements, boxes) = (std::mem::take(&mut self.placements), std::mem::take(&mut self.boxes));
         let solids = std::mem::take(&mut self.solids).centres_only();
         let volume = self.volume.take().map(SolidData::centres_only);
         let edit = self.edit.take();
@@ -371,7 +375,19 @@ impl SceneData {
         let trimmed = self.trimmed.take();
         let (hidden, live) = (std::mem::take(&mut self.hidden), std::mem::take(&mut self.live));
         let casts_shadows = self.casts_shadows;
-        *self = Self { placements, hidden, live, casts_shadows, trimmed, solids, volume, edit, sun, ..Self::default() };
+        *self = Self {
+            placements,
+            boxes,
+            hidden,
+            live,
+            casts_shadows,
+            trimmed,
+            solids,
+            volume,
+            edit,
+            sun,
+            ..Self::default()
+        };
     }
 
     /// Operands of Boolean solids without equations are placed as parts are, after them.

@@ -22,6 +22,7 @@ mod hard_solids;
 mod hard_trims;
 mod hard_views;
 mod hidden;
+mod in_sight;
 mod kept;
 mod layers;
 mod ledges;

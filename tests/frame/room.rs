@@ -79,8 +79,8 @@ fn more_sub_patches_than_the_first_list_holds() {
     assert_eq!(picture.stats.clamps, 0, "{:?}", picture.stats);
 }
 
-/// What a table has room for, of a device that binds so much: half a million scan lines.
-const LITTLE: LowerLimits = LowerLimits { storage_range: 1 << 22, ..LowerLimits::NONE };
+/// What a table has room for, of a device that binds so much: two million scan lines.
+const LITTLE: LowerLimits = LowerLimits { storage_range: Some(1 << 24), ..LowerLimits::NONE };
 
 fn with_little(model: &Model, settings: SceneSettings) -> HeadlessRenderer {
     let mut renderer = limited(LITTLE);
@@ -115,7 +115,7 @@ fn a_view_beyond_the_table_is_trimmed_exactly() {
     let (whole, close) = (onto(&model, 1.0), onto(&model, 300.0));
     let mut by_table = with_little(&model, BY_TABLE);
     let refused = finely(&mut by_table, &close).unwrap_err().to_string();
-    let told = ["scan lines are too many: at most 524288", "this device binds 4194304", "`exact`"];
+    let told = ["scan lines are too many: at most 2097152", "this device binds 16777216", "`exact`"];
     assert!(told.iter().all(|text| refused.contains(text)), "{refused}");
     let kept = finely(&mut by_table, &whole).unwrap();
 

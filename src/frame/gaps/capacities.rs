@@ -4,6 +4,9 @@ use crate::abi::{Counters, GapCandidate};
 use crate::frame::capacities::grown;
 use crate::frame::counts::{Counts, SMALLER, TooMany};
 
+/// Pixels of a picture of which one looks through a gap, in a scene with many narrow faces.
+const PIXELS_OF_A_CANDIDATE: u64 = 8;
+
 /// Room for what only the GPU can count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub(crate) struct Capacities {
@@ -14,6 +17,15 @@ impl Capacities {
     /// A first guess that fits most scenes in full view.
     pub(crate) fn first(counts: Counts) -> Self {
         Self { candidates: u32::from(counts.trim.is_some()) * (1 << 14) }
+    }
+
+    /// The same, with room for one of so many pixels of a picture where a storage buffer of `range` bytes has it: most often
+    /// that is enough.
+    pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), range: u32) -> Self {
+        let some = u64::from(size.0) * u64::from(size.1) / PIXELS_OF_A_CANDIDATE;
+        let most = range / size_of::<GapCandidate>() as u32;
+        let some = if counts.trim.is_some() { some.min(most.into()) as u32 } else { 0 };
+        Self { candidates: self.candidates.max(some) }
     }
 
     /// What the frame that reported `c` would have needed.

@@ -113,9 +113,9 @@ impl Lists {
     pub fn hold(&self, rows: u32, entries: Entries) -> bool {
         let [leaves, fragments] = entries.bytes();
         let range = u64::from(self.limits.range);
-        let counted = !self.has_fragments
-            || self.pixels(rows) <= u64::from(scan::MAX_COUNT)
-                && size_of::<u32>() as u64 * (self.pixels(rows) + 1) <= range;
+        // a word a pixel: of its crossings, or of where its ray goes on
+        let counted = self.pixels(rows) < u64::from(scan::MAX_COUNT)
+            && size_of::<u32>() as u64 * (self.pixels(rows) + 1) <= range;
         counted && leaves.max(fragments) <= range && self.counted_bytes(rows) + leaves + fragments <= self.limits.budget
     }
 
