@@ -229,14 +229,29 @@ impl Frame<'_> {
         if let Some(pass) = resolve {
             times.scope(cmd, "resolve", || stages.shading.record(self, cmd, pass));
         }
-        if let Some(smooth_trims) = &stages.smooth_trims {
-            times.scope(cmd, "coverage", || smooth_trims.record(self, cmd, &self.trim_test()));
+        let behind = stages.transparency.as_ref().map(|layers| &layers.behind);
+        let mut written = Access::COLOUR_WRITE;
+        if let (Some(contact), Some(resolved)) = (&stages.contact, behind.or(stages.unmixed())) {
+            times.scope(cmd, "ambient", || contact.record(self, cmd, resolved));
+            written = Access::COMPUTE_WRITE;
         }
-        if let Some(smooth_borders) = &stages.smooth_borders {
-            times.scope(cmd, "borders", || smooth_borders.record(self, cmd, &self.trim_test()));
+        if let Some(linear) = &stages.linear {
+            let (resolved, test) = ((&linear.resolved, written), self.trim_test());
+            match &stages.smooth_trims {
+                Some(smooth_trims) => {
+                    times.scope(cmd, "coverage", || smooth_trims.record(self, cmd, resolved, &test));
+                }
+                None => times.scope(cmd, "borders", || {
+                    if let Some(smooth_borders) = &stages.smooth_borders {
+                        smooth_borders.record(self, cmd, resolved, &test);
+                        written = Access::COMPUTE_WRITE;
+                    }
+                    linear.show(self, cmd, written);
+                }),
+            }
         }
         if let (Some(layers), Some(solids)) = (&stages.transparency, self.solids()) {
-            times.scope(cmd, "layers", || layers.record(self, cmd, &solids, drawing));
+            times.scope(cmd, "layers", || layers.record(self, cmd, &solids, (drawing, written)));
         }
         let counters = &stages.common.counters;
         barrier::buffers(cmd, &[(counters, Access::COMPUTE_WRITE | Access::INDIRECT_READ, Access::TRANSFER_READ)]);

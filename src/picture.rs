@@ -233,6 +233,10 @@ pub struct SceneSettings {
     pub samples: Samples,
     /// Which borders are smooth. Costs far less than [`samples`](Self::samples), of which there must be one.
     pub smooth: Smooth,
+    /// Ambient occlusion: what lies close to other things gets less of the sky's light. The radius, in units of the model, beyond
+    /// which nothing is close; `None` for none. It changes colours alone, of the styles that show light. There must be one
+    /// sample a pixel.
+    pub ambient: Option<f64>,
     /// Frames may have an image of thickness: rays are followed through all solids.
     pub thickness: bool,
     /// Mark contacts and overlaps, and count their pixels: rays are followed through all solids.

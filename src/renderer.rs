@@ -17,6 +17,7 @@ mod centres;
 mod constants;
 mod edit;
 mod error;
+mod failure;
 mod history;
 mod instances;
 mod load;
@@ -74,10 +75,14 @@ pub struct Renderer {
     slots: Vec<Slot>,
     /// The slot recorded last.
     last: Option<usize>,
+    /// The slot recorded before that one.
+    before: Option<usize>,
     /// The next frame reads back what this pixel shows.
     pick: Option<(u32, u32)>,
     /// No frame is drawn in part: it counts before it draws. Else the first one alone, and those after buffers were made.
     pub(crate) counts_first: bool,
+    /// A frame never reached the GPU, and what it would have copied is not there: the source is loaded anew.
+    stale: bool,
 }
 
 /// A model and what its frames need. Fields drop in order: nothing outlives the device.
@@ -163,16 +168,19 @@ impl Renderer {
             loaded: None,
             slots,
             last: None,
+            before: None,
             pick: None,
             counts_first: false,
+            stale: false,
         })
     }
 
     /// Records one frame: compute, draws, and the picture into the targets.
     ///
     /// # Errors
-    /// [`RenderError`]; the renderer goes on. After [`RenderError::Gpu`] the command buffer may hold
-    /// copies from buffers that are gone: reset it. After the others it is as it was.
+    /// [`RenderError`]; the renderer goes on, as if the call had not been, unless the device is lost. After
+    /// [`RenderError::Gpu`] the command buffer may hold copies from buffers that are gone: reset it. After the others it is
+    /// as it was.
     ///
     /// # Panics
     /// When no model was uploaded, the slot does not exist, or the targets are not those of
@@ -191,6 +199,18 @@ impl Renderer {
         input.targets.check(&self.formats, input.camera.size)?;
         let wanted = self.loaded.as_ref().is_none_or(|l| l.counts.thickness);
         assert!(wanted || !self.formats.outputs.thickness, "the model is uploaded with SceneSettings::thickness");
+        // SAFETY: the caller's promise.
+        let recorded = unsafe { self.record_checked(cmd, input) };
+        self.noting(recorded)
+    }
+
+    /// The same of an input that is right.
+    ///
+    /// # Safety
+    /// See [`Self::record`].
+    unsafe fn record_checked(&mut self, cmd: vk::CommandBuffer, input: &FrameInput<'_>) -> Result<(), RenderError> {
+        let tolerance = input.settings.tolerance_px;
+        self.reload()?;
         self.prepare(input.camera)?;
         self.make_room(input.slot, input.camera)?;
         // SAFETY: the caller's promise.
@@ -205,22 +225,12 @@ impl Renderer {
         let edited = loaded.moved || !loaded.edits.is_empty();
         let history = History::after(loaded.history, view, table, edited, loaded.counts.hides);
         slot.write(&self.device, loaded, input, &self.formats, &history)?;
-        if loaded.scene.is_none() {
-            let (scene, uploads) = Scene::record(&cmd, &loaded.data)?;
-            slot.retired.push(Retired::Uploads(uploads));
-            loaded.scene = Some(scene);
-            loaded.data.drop_uploaded();
-        }
-        slot.edit_bytes = 0;
+        let new = if loaded.scene.is_none() { Some(Scene::record(&cmd, &loaded.data)?) } else { None };
         loaded.edits.extend(std::mem::take(&mut loaded.changes).into_values());
-        if let Some(scene) = loaded.scene.as_ref().filter(|_| !loaded.edits.is_empty()) {
-            let uploads = Frame::edit(&cmd, scene, &loaded.edits)?;
-            slot.edit_bytes = uploads.staging_bytes();
-            slot.retired.push(Retired::Uploads(uploads));
-            loaded.edits.clear();
-        }
-        let (Some(scene), Some(stages)) = (&loaded.scene, &loaded.stages) else { unreachable!("made above") };
+        let scene = loaded.scene.as_ref().or(new.as_ref().map(|(scene, _)| scene));
+        let (Some(scene), Some(stages)) = (scene, &loaded.stages) else { unreachable!("made above") };
         let (Some(views), Some(in_sight)) = (&slot.views, &slot.in_sight) else { unreachable!("written above") };
+        let edits = (!loaded.edits.is_empty()).then(|| Frame::edit(&cmd, scene, &loaded.edits)).transpose()?;
         let keep = input.settings.background.is_none();
         let targets = input.targets;
         let colour = targets.colours(&self.formats, stages, keep);
@@ -264,15 +274,24 @@ impl Renderer {
         slot.times.reset(&cmd);
         frame.record(&cmd, &mut slot.times);
         let Some(source) = &self.source else { unreachable!("it was loaded") };
-        pick::record(self.pick.take(), &mut slot.pick, (&self.device, &cmd, &frame), (source, loaded, input))?;
+        pick::record(self.pick, &mut slot.pick, (&self.device, &cmd, &frame), (source, loaded, input))?;
         // only now: a frame that was not recorded left nothing
+        self.pick = None;
+        slot.edit_bytes = edits.as_ref().map_or(0, Uploads::staging_bytes);
+        slot.retired.extend(edits.map(Retired::Uploads));
+        loaded.edits.clear();
+        if let Some((scene, uploads)) = new {
+            slot.retired.push(Retired::Uploads(uploads));
+            loaded.scene = Some(scene);
+            loaded.data.drop_uploaded();
+        }
         loaded.history = Some(history);
         loaded.moved = false;
         (slot.recorded, slot.reused) = (true, history.reuses_view);
         slot.capacities = Some(loaded.capacities);
         slot.size = input.camera.size;
         (slot.bands, slot.solid_bytes) = (loaded.bands(), loaded.solid_bytes());
-        self.last = Some(input.slot);
+        self.before = self.last.replace(input.slot);
         Ok(())
     }
 

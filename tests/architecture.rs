@@ -77,6 +77,8 @@ const RECORDS: &[&str] = &[
     "src/frame/edges/mod.rs",
     "src/frame/gaps/mod.rs",
     "src/frame/occlusion/mod.rs",
+    "src/frame/shading/contact.rs",
+    "src/frame/shading/linear.rs",
     "src/frame/shading/mod.rs",
     "src/frame/shadows/mod.rs",
     "src/frame/solids/mod.rs",
@@ -273,6 +275,16 @@ fn a_forbidden_use_is_seen() {
     assert_eq!(for_tests("src/lib.rs", declares), ["src/parity.rs", "src/parity/"]);
     assert_eq!(for_tests("src/twin/mod.rs", declares), ["src/twin/parity.rs", "src/twin/parity/"]);
     assert_eq!(for_tests("src/twin/factor.rs", declares)[0], "src/twin/factor/parity.rs");
+}
+
+/// Devices have subgroups of 4 to 128 invocations: no shader asks for theirs.
+#[test]
+fn no_shader_depends_on_the_size_of_a_subgroup() {
+    let shaders = files("glsl").into_iter().filter(|path| path.extension().is_none_or(|e| e != "spv"));
+    let texts: Vec<_> = shaders.map(|path| (relative(&path), fs::read_to_string(&path).unwrap())).collect();
+    assert!(texts.len() > 80, "only {} files were found", texts.len());
+    let asks = texts.iter().filter(|(_, text)| text.to_lowercase().contains("subgroup"));
+    assert_eq!(asks.map(|(path, _)| path).collect::<Vec<_>>(), [""; 0]);
 }
 
 /// Names that mean one thing in GLSL and another in Rust.

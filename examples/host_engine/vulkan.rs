@@ -70,7 +70,18 @@ impl Engine {
         let (instance, device, allocator) = (&self.instance, self.device.clone(), Arc::clone(&self.allocator));
         let (debug_names, pipeline_statistics) = (false, false);
         let (physical, queue_family) = (self.physical, self.family);
-        HostDevice { instance, physical, device, queue_family, allocator, debug_names, pipeline_statistics }
+        let (pipeline_cache, memory_budget) = (vk::PipelineCache::null(), None);
+        HostDevice {
+            instance,
+            physical,
+            device,
+            queue_family,
+            allocator,
+            debug_names,
+            pipeline_statistics,
+            pipeline_cache,
+            memory_budget,
+        }
     }
 
     pub fn wait(&self, slot: usize) -> Result<(), vk::Result> {

@@ -53,6 +53,9 @@ const float FOLD_BESIDE = 0.25;
 const float FOLD_COSINE = 0.2;
 // From the centre of the pixel that sees the face.
 const float FOLD_REACH_PX = 1.5;
+// A step that leads farther leads to no fold within reach: steps are twice as long as the way to one, which is the square of
+// the way on the surface.
+const float FOLD_FAR_PX = 16.0;
 // Neighbours whose (u, v) differ by no more, of the patch, are on one sheet.
 const float SAME_PLACE = 0.05;
 
@@ -81,7 +84,8 @@ bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s) {
     ivec2 place = place_of(face, n);
     Patch patch_ = patch_at(patch_in(face, place));
     vec2 moved = vec2(1e9);
-    for (uint i = 0u; i <= FOLD_STEPS; ++i) {
+    bool lost = false; // in the loop's condition: what refine.glsl says of loops that are left
+    for (uint i = 0u; i <= FOLD_STEPS && !lost; ++i) {
         Net net = net_of(patch_);
         s = sample_at(patch_, net, view, uv, pixel);
         if (dot(moved, moved) < ARRIVED_PX * ARRIVED_PX || i == FOLD_STEPS) break;
@@ -100,6 +104,8 @@ bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s) {
         vec2 run = along * fold;
         float runs = dot(run, run);
         if (runs > 0.0) to -= dot(s.miss + along * to, run) / runs * fold;
+        vec2 far = along * to;
+        lost = dot(far, far) > FOLD_FAR_PX * FOLD_FAR_PX;
         vec2 steps = abs(to) / MAX_STEP;
         to /= max(max(steps.x, steps.y), 1.0);
         moved = along * to;
@@ -116,7 +122,7 @@ bool find_fold(Face face, int n, View view, vec2 uv, vec2 pixel, out Sample s) {
     vec3 dv = seen_from_eye(to_pixel(view, vec4(s.jet.dv, 0.0)));
     vec3 ray = frame.perspective != 0u ? normalize(seen_from_eye(s.q)) : vec3(0.0, 0.0, 1.0);
     float cosine = abs(dot(normalize(cross(normalize(du), normalize(dv))), ray));
-    return within && dot(moved, moved) < ARRIVED_PX * ARRIVED_PX && cosine < FOLD_COSINE;
+    return within && !lost && dot(moved, moved) < ARRIVED_PX * ARRIVED_PX && cosine < FOLD_COSINE;
 }
 
 void main() {

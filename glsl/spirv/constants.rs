@@ -4,6 +4,17 @@ pub mod along {
     pub const ALONG_BEHIND: u32 = 4;
     pub const ALONG_INSIDE: u32 = 1;
 }
+pub mod ambient_find {
+    pub const FADES: f32 = 0.75;
+    pub const HORIZON_STEPS: i32 = 4;
+    pub const MOST_HEIGHT: f32 = 0.2;
+    pub const PI: f32 = 3.14159265;
+    pub const SLICES: i32 = 2;
+}
+pub mod ambient_write {
+    pub const OFF: f32 = 0.1;
+    pub const STRENGTH: f32 = 0.75;
+}
 pub mod behind {
     pub const CELL_PX: f32 = 32.0;
     pub const DEPTH_ROUNDING: f32 = 1e-5;
@@ -70,6 +81,7 @@ pub mod edge_divide {
 pub mod edge_fold {
     pub const FOLD_BESIDE: f32 = 0.25;
     pub const FOLD_COSINE: f32 = 0.2;
+    pub const FOLD_FAR_PX: f32 = 16.0;
     pub const FOLD_REACH_PX: f32 = 1.5;
     pub const FOLD_SHEET_PX: f32 = 0.25;
     pub const FOLD_STEPS: u32 = 12;

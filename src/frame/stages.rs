@@ -14,6 +14,8 @@ use super::edges::{self, EdgeStage};
 use super::gaps::gap_fill::GapFill;
 use super::gaps::{self, Gaps};
 use super::occlusion::{self, Occlusion};
+use super::shading::contact::{self, Contact};
+use super::shading::linear::{self, Linear};
 use super::shading::{self, Shading, resolve};
 use super::solids::{self, Solids};
 use super::tessellation::{self, Tessellation};
@@ -36,6 +38,8 @@ pub(crate) struct Passes {
     shading: Arc<shading::Passes>,
     samples: Option<Arc<samples::Passes>>,
     transparency: Option<Arc<transparency::Passes>>,
+    linear: Option<Arc<linear::Passes>>,
+    contact: Option<Arc<contact::Passes>>,
     smooth_trims: Option<Arc<Coverage>>,
     smooth_borders: Option<Arc<BorderMix>>,
     edges: Option<Arc<edges::Passes>>,
@@ -46,38 +50,48 @@ impl Passes {
         let trim = trim::Passes::new(device, data)?;
         let test = trim.as_ref().map(trim::Passes::test);
         // a driver takes milliseconds for each pipeline, and as many threads as ask it
-        let (solids, (patches, pictures)) = rayon::join(
-            || solids::Passes::new(device, data, test),
-            || {
-                rayon::join(
-                    || {
-                        let tessellation = tessellation::Passes::new(device, data)?;
-                        let occlusion = occlusion::Passes::new(device, data)?;
-                        Ok((tessellation, occlusion, visibility::Passes::new(device, data, test)?))
-                    },
-                    || {
-                        let shading = shading::Passes::new(device, data, formats)?;
-                        let samples = samples::Passes::new(device, data, formats)?;
-                        Ok((shading, samples, common::Passes::new(device, data)?))
-                    },
-                )
-            },
+        let pictures = || {
+            let shading = shading::Passes::new(device, data, formats)?;
+            let samples = samples::Passes::new(device, data, formats)?;
+            let linear = linear::Passes::new(device, data, formats)?;
+            let contact = contact::Passes::new(device, data)?;
+            Ok::<_, GpuError>((shading, samples, (linear, contact), common::Passes::new(device, data)?))
+        };
+        let patches = || {
+            let tessellation = tessellation::Passes::new(device, data)?;
+            let occlusion = occlusion::Passes::new(device, data)?;
+            Ok::<_, GpuError>((tessellation, occlusion, visibility::Passes::new(device, data, test)?))
+        };
+        let gaps = || test.map(|test| gaps::passes(device, data, test)).transpose();
+        let over = || {
+            let transparency = transparency::Passes::new(device, data, formats)?;
+            let smooth_trims = smooth_trims::pass(device, data, formats)?;
+            let smooth_borders = smooth_borders::pass(device, data, test)?;
+            Ok::<_, GpuError>((transparency, smooth_trims, smooth_borders, edges::Passes::new(device, data, formats)?))
+        };
+        let ((gaps, over), (solids, (patches, pictures))) = rayon::join(
+            || rayon::join(gaps, over),
+            || rayon::join(|| solids::Passes::new(device, data, test), || rayon::join(patches, pictures)),
         );
-        let ((tessellation, occlusion, visibility), (shading, samples, common)) = (patches?, pictures?);
+        let ((tessellation, occlusion, visibility), pictures) = (patches?, pictures?);
+        let (shading, samples, (linear, contact), common) = pictures;
+        let (transparency, smooth_trims, smooth_borders, edges) = over?;
         Ok(Self {
             common: Arc::new(common),
             tessellation: tessellation.map(Arc::new),
             occlusion: occlusion.map(Arc::new),
-            gaps: test.map(|test| gaps::passes(device, data, test)).transpose()?.map(Arc::new),
+            gaps: gaps?.map(Arc::new),
             trim,
             solids: solids?,
             visibility: Arc::new(visibility),
             shading: Arc::new(shading),
             samples: samples.map(Arc::new),
-            transparency: transparency::Passes::new(device, data, formats)?.map(Arc::new),
-            smooth_trims: smooth_trims::pass(device, data, formats)?.map(Arc::new),
-            smooth_borders: smooth_borders::pass(device, data, formats, test)?.map(Arc::new),
-            edges: edges::Passes::new(device, data, formats)?.map(Arc::new),
+            transparency: transparency.map(Arc::new),
+            smooth_trims: smooth_trims.map(Arc::new),
+            smooth_borders: smooth_borders.map(Arc::new),
+            linear: linear.map(Arc::new),
+            contact: contact.map(Arc::new),
+            edges: edges.map(Arc::new),
         })
     }
 }
@@ -97,6 +111,8 @@ pub(crate) struct Stages {
     pub(super) shading: Shading,
     pub(super) transparency: Option<Transparency>,
     pub(super) samples: Option<MoreSamples>,
+    pub(super) linear: Option<Linear>,
+    pub(super) contact: Option<Contact>,
     pub(super) smooth_trims: Option<SmoothTrims>,
     pub(super) smooth_borders: Option<SmoothBorders>,
     pub(super) edges: Option<EdgeStage>,
@@ -128,7 +144,9 @@ impl Stages {
             shading: Shading::new(room, &p.shading)?,
             transparency: p.transparency.as_ref().map(|p| Transparency::new(room, p)).transpose()?,
             samples: p.samples.as_ref().map(|p| MoreSamples::new(room, p)).transpose()?,
-            smooth_trims: p.smooth_trims.as_ref().map(|p| SmoothTrims::new(room, p)).transpose()?,
+            linear: p.linear.as_ref().map(|p| Linear::new(room, p)).transpose()?,
+            contact: p.contact.as_ref().map(|p| Contact::new(room, p)).transpose()?,
+            smooth_trims: p.smooth_trims.as_ref().map(SmoothTrims::new),
             smooth_borders: p.smooth_borders.as_ref().map(|p| SmoothBorders::new(room, p)).transpose()?,
             edges: p.edges.as_ref().map(|p| EdgeStage::new(room, p)).transpose()?,
         })
@@ -141,8 +159,7 @@ impl Stages {
 
     /// Linear colour and depth, where a later pass mixes the colour from it.
     pub(super) fn unmixed(&self) -> Option<&Image> {
-        let trims = self.smooth_trims.as_ref().map(|trims| &trims.resolved);
-        trims.or(self.smooth_borders.as_ref().map(|borders| &borders.resolved))
+        self.linear.as_ref().map(|linear| &linear.resolved)
     }
 
     /// Of the picture.

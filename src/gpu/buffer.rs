@@ -137,7 +137,8 @@ impl Buffer {
 
 impl Drop for Buffer {
     fn drop(&mut self) {
+        let Some(device) = self.registration.device().living() else { return };
         // SAFETY: owned here; the GPU has finished with it, as the type's contract says.
-        unsafe { self.registration.device().raw().destroy_buffer(self.handle, None) }
+        unsafe { device.destroy_buffer(self.handle, None) }
     }
 }

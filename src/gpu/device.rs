@@ -1,16 +1,17 @@
 //! The host's device: functions, limits, allocator, living pipelines, and a list of living objects.
 
+use super::budget::Heaps;
 use super::description::Description;
 use super::memory::lock;
 use super::pipeline::Made;
-use super::{Pool, Quirks, TexelBuffer};
+use super::{GpuError, Pool, Quirks, TexelBuffer};
 use ash::vk;
 use ash::vk::Handle;
 use gpu_allocator::vulkan::Allocator;
 use std::collections::{BTreeMap, HashMap};
 use std::ffi::CString;
-use std::sync::atomic::{AtomicI64, AtomicU64, Ordering};
-use std::sync::{Arc, Mutex, MutexGuard, Weak};
+use std::sync::atomic::{AtomicBool, AtomicI64, AtomicU64, Ordering};
+use std::sync::{Arc, Mutex, MutexGuard, OnceLock, Weak};
 use std::time::{Duration, Instant};
 
 /// What a host hands over. The engine destroys none of it.
@@ -29,6 +30,11 @@ pub struct HostDevice<'a> {
     pub debug_names: bool,
     /// The device has the feature `pipelineStatisticsQuery`: the triangle count is measured.
     pub pipeline_statistics: bool,
+    /// The host's cache, which every pipeline is made with; null for none. It outlives the device's last user, and no call
+    /// of the host's merges into it meanwhile.
+    pub pipeline_cache: vk::PipelineCache,
+    /// Bytes that the engine may take on this device; `None`: what its heaps have.
+    pub memory_budget: Option<u64>,
 }
 
 /// Limits to take in place of a device's own where they are lower: tests come to them with little work.
@@ -65,6 +71,8 @@ struct Inner {
     queue_family: u32,
     timestamp_bits: u32,
     pipeline_statistics: bool,
+    pipeline_cache: vk::PipelineCache,
+    heaps: Heaps,
     limits: vk::PhysicalDeviceLimits,
     name: String,
     driver: String,
@@ -76,7 +84,18 @@ struct Inner {
     next_object: AtomicU64,
     pipelines: Mutex<HashMap<Description, Weak<Made>>>,
     pipeline_nanoseconds: AtomicU64,
+    /// The call that told of the device's loss, and its object.
+    lost: OnceLock<(&'static str, String)>,
+    /// Its handle must not be used any more.
+    gone: AtomicBool,
+    /// What becomes of each shader: tests imitate other arithmetic.
+    #[cfg(test)]
+    rewriting: OnceLock<Rewriting>,
 }
+
+/// One SPIR-V module to another.
+#[cfg(test)]
+pub(crate) type Rewriting = fn(&[u32]) -> Vec<u32>;
 
 impl Device {
     /// Takes the host's device on loan.
@@ -94,7 +113,8 @@ impl Device {
     /// # Safety
     /// As [`new`](Self::new).
     pub(crate) unsafe fn limited(host: HostDevice<'_>, lower: LowerLimits) -> Self {
-        let HostDevice { instance, physical, device, queue_family, allocator, debug_names, pipeline_statistics } = host;
+        let HostDevice { instance, physical, device, queue_family, allocator, debug_names, .. } = host;
+        let HostDevice { pipeline_statistics, pipeline_cache, memory_budget, .. } = host;
         let mut driver = vk::PhysicalDeviceDriverProperties::default();
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
         // SAFETY: the caller's promise; driver properties are part of Vulkan 1.2.
@@ -116,10 +136,6 @@ impl Device {
         };
         // SAFETY: the caller's promise.
         let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
-        let text = |chars: &[std::ffi::c_char]| {
-            let bytes: Vec<u8> = chars.iter().map(|&c| c as u8).take_while(|&c| c != 0).collect();
-            String::from_utf8_lossy(&bytes).into_owned()
-        };
         Self(Arc::new(Inner {
             push_descriptor: ash::khr::push_descriptor::Device::new(instance, &device),
             debug_utils: debug_names.then(|| ash::ext::debug_utils::Device::new(instance, &device)),
@@ -127,6 +143,9 @@ impl Device {
             queue_family,
             timestamp_bits: families[queue_family as usize].timestamp_valid_bits,
             pipeline_statistics,
+            pipeline_cache,
+            // SAFETY: the caller's promise.
+            heaps: unsafe { Heaps::new(instance, physical, memory_budget) },
             limits: properties.limits,
             name: text(&properties.device_name),
             driver: format!("{} {}", text(&driver.driver_name), text(&driver.driver_info)),
@@ -138,7 +157,65 @@ impl Device {
             next_object: AtomicU64::new(0),
             pipelines: Mutex::default(),
             pipeline_nanoseconds: AtomicU64::new(0),
+            lost: OnceLock::new(),
+            gone: AtomicBool::new(false),
+            #[cfg(test)]
+            rewriting: OnceLock::new(),
         }))
+    }
+
+    /// Nothing more can be drawn with it.
+    pub fn is_lost(&self) -> bool {
+        self.0.lost.get().is_some()
+    }
+
+    /// A call returned `VK_ERROR_DEVICE_LOST`.
+    pub(crate) fn set_lost(&self, call: &'static str, resource: &str) {
+        // the first call alone is told
+        let _ = self.0.lost.set((call, resource.to_owned()));
+    }
+
+    /// Remembers an error that the device does not survive.
+    pub(crate) fn note(&self, error: &GpuError) {
+        if let GpuError::DeviceLost { call, resource } = error {
+            self.set_lost(call, resource);
+        }
+    }
+
+    /// Rewrites every shader from now on.
+    #[cfg(test)]
+    pub(crate) fn rewrite(&self, rewriting: Rewriting) {
+        let _ = self.0.rewriting.set(rewriting);
+    }
+
+    #[cfg(test)]
+    pub(super) fn rewriting(&self) -> Option<Rewriting> {
+        self.0.rewriting.get().copied()
+    }
+
+    /// Its handle is not valid any more: what was made from it frees host memory alone.
+    pub(crate) fn abandon(&self) {
+        self.0.gone.store(true, Ordering::Relaxed);
+    }
+
+    /// Its handle is not valid any more.
+    #[cfg(feature = "headless")]
+    pub(crate) fn is_gone(&self) -> bool {
+        self.living().is_none()
+    }
+
+    /// [`GpuError::DeviceLost`] since the first call that told of it.
+    pub(crate) fn alive(&self) -> Result<(), GpuError> {
+        match self.0.lost.get() {
+            None => Ok(()),
+            Some((call, resource)) => Err(GpuError::DeviceLost { call, resource: resource.clone() }),
+        }
+    }
+
+    /// Vulkan's functions to free what was made, `None` where its handle is not valid any more. A lost device is not gone:
+    /// its objects are to be destroyed before it (Vulkan 1.3, section 5.2.3, "Lost Device").
+    pub(super) fn living(&self) -> Option<&ash::Device> {
+        (!self.0.gone.load(Ordering::Relaxed)).then_some(&self.0.raw)
     }
 
     /// Vulkan's functions for this device.
@@ -215,6 +292,19 @@ impl Device {
         self.0.timestamp_bits
     }
 
+    pub(super) fn pipeline_cache(&self) -> vk::PipelineCache {
+        self.0.pipeline_cache
+    }
+
+    pub(super) fn heaps(&self) -> &Heaps {
+        &self.0.heaps
+    }
+
+    /// Bytes that the engine may take on this device, where the host said so.
+    pub fn memory_budget(&self) -> Option<u64> {
+        self.0.heaps.most()
+    }
+
     pub(crate) fn pipeline_statistics(&self) -> bool {
         self.0.pipeline_statistics
     }
@@ -268,6 +358,12 @@ impl std::fmt::Debug for Device {
     fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
         write!(f, "Device({}, {})", self.0.name, self.0.driver)
     }
+}
+
+/// Vulkan's text in an array of fixed size.
+pub(crate) fn text(chars: &[std::ffi::c_char]) -> String {
+    let bytes: Vec<u8> = chars.iter().map(|&c| c as u8).take_while(|&c| c != 0).collect();
+    String::from_utf8_lossy(&bytes).into_owned()
 }
 
 /// An entry in the list of live objects.

@@ -1,12 +1,32 @@
 //! What can go wrong below the passes: a Vulkan failure names its call, an allocation its resource.
 
 use ash::vk;
+use gpu_allocator::AllocationError;
 
 /// A failure that the caller could not foresee. Misuse panics instead, naming the invariant.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
 pub enum GpuError {
-    /// A Vulkan function returned an error.
+    /// The device is gone: nothing more can be drawn with it. What was made from it may only be dropped; a new renderer on
+    /// a new device takes the same model.
+    #[error("{call} failed for `{resource}`: the device is lost; make a new device and a renderer on it")]
+    DeviceLost {
+        /// The function that told it first, as Vulkan spells it.
+        call: &'static str,
+        /// Name of the object that it was called for.
+        resource: String,
+    },
+    /// The driver found no memory.
+    #[error("{call} failed for `{resource}`: no {memory} memory; draw a smaller picture or fewer parts at once")]
+    OutOfMemory {
+        /// The function, as Vulkan spells it.
+        call: &'static str,
+        /// Name of the object that it was called for.
+        resource: String,
+        /// Whose memory it is.
+        memory: MemoryOwner,
+    },
+    /// A Vulkan function returned another error.
     #[error("{call} failed for `{resource}`: {result}")]
     Vulkan {
         /// The function, as Vulkan spells it.
@@ -16,7 +36,23 @@ pub enum GpuError {
         /// What it returned.
         result: vk::Result,
     },
-    /// The allocator found no memory.
+    /// More than the engine may take: nothing was allocated.
+    #[error(
+        "`{resource}` needs {bytes} bytes, but {left} are left of {most}{of}; give it more, draw a smaller picture or fewer parts at once"
+    )]
+    OverBudget {
+        /// Name of the buffer or image.
+        resource: String,
+        /// Bytes that it needs.
+        bytes: u64,
+        /// Bytes that are left.
+        left: u64,
+        /// Bytes that there are.
+        most: u64,
+        /// Who says so: the host, or a heap of the device.
+        of: BudgetOwner,
+    },
+    /// The allocator has no memory to give, for another reason than the driver's.
     #[error("no memory for `{resource}` ({bytes} bytes): {source}")]
     Allocation {
         /// Name of the buffer or image.
@@ -24,7 +60,7 @@ pub enum GpuError {
         /// Bytes that it needs.
         bytes: u64,
         /// The allocator's reason.
-        source: gpu_allocator::AllocationError,
+        source: AllocationError,
     },
     /// A storage buffer larger than a shader of this device may see.
     #[error(
@@ -40,14 +76,102 @@ pub enum GpuError {
     },
 }
 
+/// Whose memory ended.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum MemoryOwner {
+    /// The host's: `VK_ERROR_OUT_OF_HOST_MEMORY`.
+    Host,
+    /// The device's: `VK_ERROR_OUT_OF_DEVICE_MEMORY`.
+    Device,
+}
+
+impl std::fmt::Display for MemoryOwner {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Host => "host",
+            Self::Device => "device",
+        })
+    }
+}
+
+/// Who says how much memory there is.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub enum BudgetOwner {
+    /// [`HostDevice::memory_budget`](super::HostDevice::memory_budget).
+    Host,
+    /// The driver, of a heap.
+    Heap,
+}
+
+impl std::fmt::Display for BudgetOwner {
+    fn fmt(&self, f: &mut std::fmt::Formatter<'_>) -> std::fmt::Result {
+        f.write_str(match self {
+            Self::Host => " that the engine may take",
+            Self::Heap => " of the device's heap",
+        })
+    }
+}
+
+impl GpuError {
+    /// Nothing more can be drawn with the device.
+    pub fn is_device_lost(&self) -> bool {
+        matches!(self, Self::DeviceLost { .. })
+    }
+
+    /// Less may fit: the renderer goes on.
+    pub fn is_out_of_memory(&self) -> bool {
+        matches!(
+            self,
+            Self::OutOfMemory { .. } | Self::OverBudget { .. } | Self::Allocation { .. } | Self::TooLarge { .. }
+        )
+    }
+
+    /// What a call returned for an object.
+    fn of(result: vk::Result, call: &'static str, resource: &str) -> Self {
+        let resource = resource.to_owned();
+        match result {
+            vk::Result::ERROR_DEVICE_LOST => Self::DeviceLost { call, resource },
+            vk::Result::ERROR_OUT_OF_HOST_MEMORY => Self::OutOfMemory { call, resource, memory: MemoryOwner::Host },
+            vk::Result::ERROR_OUT_OF_DEVICE_MEMORY => Self::OutOfMemory { call, resource, memory: MemoryOwner::Device },
+            result => Self::Vulkan { call, resource, result },
+        }
+    }
+
+    /// Why the allocator gave no memory. It passes on by words alone what `vkAllocateMemory` and `vkMapMemory` returned,
+    /// but for the commonest.
+    pub(super) fn of_allocator(source: AllocationError, resource: &str, bytes: u64) -> Self {
+        let call = match &source {
+            AllocationError::FailedToMap(_) => "vkMapMemory",
+            _ => "vkAllocateMemory",
+        };
+        let result = match &source {
+            AllocationError::OutOfMemory => Some(vk::Result::ERROR_OUT_OF_DEVICE_MEMORY),
+            AllocationError::FailedToMap(words) | AllocationError::Internal(words) => {
+                let told =
+                    |result: &vk::Result| words.contains(&result.to_string()) || words.contains(&format!("{result:?}"));
+                TYPED.into_iter().find(told)
+            }
+            _ => None,
+        };
+        match result {
+            Some(result) => Self::of(result, call, resource),
+            None => Self::Allocation { resource: resource.to_owned(), bytes, source },
+        }
+    }
+}
+
+/// Results that have an error of their own.
+const TYPED: [vk::Result; 3] =
+    [vk::Result::ERROR_DEVICE_LOST, vk::Result::ERROR_OUT_OF_HOST_MEMORY, vk::Result::ERROR_OUT_OF_DEVICE_MEMORY];
+
 /// Gives a bare `vk::Result` the name of its call and object.
 pub(crate) trait Named<T> {
-    /// The value, or [`GpuError::Vulkan`].
+    /// The value, or the error of the call.
     fn named(self, call: &'static str, resource: &str) -> Result<T, GpuError>;
 }
 
 impl<T> Named<T> for Result<T, vk::Result> {
     fn named(self, call: &'static str, resource: &str) -> Result<T, GpuError> {
-        self.map_err(|result| GpuError::Vulkan { call, resource: resource.to_owned(), result })
+        self.map_err(|result| GpuError::of(result, call, resource))
     }
 }

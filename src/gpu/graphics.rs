@@ -173,7 +173,7 @@ impl Pipeline {
             create = create.tessellation_state(&tessellation);
         }
         // SAFETY: layout and modules belong to this device and outlive the call.
-        let make = || unsafe { device.raw().create_graphics_pipelines(vk::PipelineCache::null(), &[create], None) };
+        let make = || unsafe { device.raw().create_graphics_pipelines(device.pipeline_cache(), &[create], None) };
         let made = device.timing_pipeline(make);
         let handle = made.map_err(|(_, result)| result).named("vkCreateGraphicsPipelines", info.name)?[0];
         Ok(Self::of_made(

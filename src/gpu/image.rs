@@ -158,8 +158,7 @@ fn whole(aspect: vk::ImageAspectFlags) -> vk::ImageSubresourceRange {
 
 impl Drop for Image {
     fn drop(&mut self) {
-        let Some(registration) = &self.registration else { return };
-        let device = registration.device().raw();
+        let Some(device) = self.registration.as_ref().and_then(|owned| owned.device().living()) else { return };
         // SAFETY: owned here; the GPU has finished with them, as the type's contract says.
         unsafe {
             device.destroy_image_view(self.view, None);
@@ -201,7 +200,8 @@ impl Sampler {
 
 impl Drop for Sampler {
     fn drop(&mut self) {
+        let Some(device) = self.device.living() else { return };
         // SAFETY: owned here; the GPU has finished with it.
-        unsafe { self.device.raw().destroy_sampler(self.handle, None) }
+        unsafe { device.destroy_sampler(self.handle, None) }
     }
 }

@@ -81,10 +81,11 @@ impl Layout {
 
 impl Drop for Layout {
     fn drop(&mut self) {
+        let Some(device) = self.device.living() else { return };
         // SAFETY: owned here; what was recorded with it has finished, as `Pipeline` demands.
         unsafe {
-            self.device.raw().destroy_pipeline_layout(self.pipeline, None);
-            self.device.raw().destroy_descriptor_set_layout(self.set, None);
+            device.destroy_pipeline_layout(self.pipeline, None);
+            device.destroy_descriptor_set_layout(self.set, None);
         }
     }
 }

@@ -71,18 +71,17 @@ impl Memory {
         location: MemoryLocation,
         linear: bool,
     ) -> Result<Self, GpuError> {
-        let location = match location {
+        let kind = match location {
             MemoryLocation::Device => AllocatorLocation::GpuOnly,
             MemoryLocation::Upload => AllocatorLocation::CpuToGpu,
             MemoryLocation::ReadBack => AllocatorLocation::GpuToCpu,
         };
         let allocation_scheme = AllocationScheme::GpuAllocatorManaged;
-        let description = AllocationCreateDesc { name, requirements, location, linear, allocation_scheme };
-        let allocation = device.allocator().allocate(&description).map_err(|source| GpuError::Allocation {
-            resource: name.to_owned(),
-            bytes: requirements.size,
-            source,
-        })?;
+        let description = AllocationCreateDesc { name, requirements, location: kind, linear, allocation_scheme };
+        let size = requirements.size;
+        device.heaps().check(device, name, (requirements.memory_type_bits, location), size)?;
+        let of_allocator = |source| GpuError::of_allocator(source, name, size);
+        let allocation = device.allocator().allocate(&description).map_err(of_allocator)?;
         device.count_bytes(pool, allocation.size() as i64);
         Ok(Self { device: device.clone(), allocation: ManuallyDrop::new(allocation), pool })
     }
@@ -110,6 +109,9 @@ impl Drop for Memory {
         self.device.count_bytes(self.pool, -(self.allocation.size() as i64));
         // SAFETY: the allocation is taken once, here.
         let allocation = unsafe { ManuallyDrop::take(&mut self.allocation) };
+        if self.device.living().is_none() {
+            return; // the memory went with its device
+        }
         // `free` fails only for memory of another allocator, which `new` rules out.
         let freed = self.device.allocator().free(allocation);
         debug_assert!(freed.is_ok(), "freed memory that this allocator did not make");

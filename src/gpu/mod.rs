@@ -19,6 +19,7 @@
 pub mod barrier;
 
 mod access;
+mod budget;
 mod buffer;
 mod commands;
 mod description;
@@ -41,7 +42,7 @@ mod upload;
 // for hosts
 pub use access::{Access, ImageAccess};
 pub use device::{Device, HostDevice};
-pub use error::GpuError;
+pub use error::{BudgetOwner, GpuError, MemoryOwner};
 pub use image::Image;
 pub use memory::Pool;
 pub use quirks::Quirks;
@@ -66,4 +67,6 @@ pub use {
     upload::Uploads,
 };
 
+#[cfg(feature = "headless")]
+pub(crate) use device::text;
 pub(crate) use error::Named;

@@ -76,7 +76,7 @@ impl Pipeline {
             .specialization_info(&special);
         let create = vk::ComputePipelineCreateInfo::default().stage(stage).layout(layout.pipeline);
         // SAFETY: layout and module belong to this device and outlive the call.
-        let make = || unsafe { device.raw().create_compute_pipelines(vk::PipelineCache::null(), &[create], None) };
+        let make = || unsafe { device.raw().create_compute_pipelines(device.pipeline_cache(), &[create], None) };
         let made = device.timing_pipeline(make);
         let handle = made.map_err(|(_, result)| result).named("vkCreateComputePipelines", info.name)?[0];
         Ok(Self::of_made(
@@ -144,8 +144,9 @@ impl Pipeline {
 
 impl Drop for Made {
     fn drop(&mut self) {
+        let Some(device) = self.device.living() else { return };
         // SAFETY: owned here; the GPU has finished with it, as the type's contract says.
-        unsafe { self.device.raw().destroy_pipeline(self.handle, None) }
+        unsafe { device.destroy_pipeline(self.handle, None) }
     }
 }
 
@@ -177,6 +178,10 @@ pub(super) struct Module<'a> {
 
 impl<'a> Module<'a> {
     pub(super) fn new(device: &'a Device, name: &str, spirv: &[u32]) -> Result<Self, GpuError> {
+        #[cfg(test)]
+        let rewritten = device.rewriting().map(|rewrite| rewrite(spirv));
+        #[cfg(test)]
+        let spirv = rewritten.as_deref().unwrap_or(spirv);
         let create = vk::ShaderModuleCreateInfo::default().code(spirv);
         // SAFETY: the device is alive; the words come from the build's compiler.
         let handle = unsafe { device.raw().create_shader_module(&create, None) }.named("vkCreateShaderModule", name)?;

@@ -95,10 +95,14 @@ impl Requirements {
         let core = all.features;
         let mut names = Self::missing_features(&core, &v12, &v13);
         // SAFETY: as the caller promises.
-        let extensions = unsafe { instance.enumerate_device_extension_properties(physical) }.unwrap_or_default();
-        for wanted in Self::DEVICE_EXTENSIONS {
-            if !extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(wanted)) {
-                names.push(format!("extension {}", wanted.to_string_lossy()));
+        match unsafe { instance.enumerate_device_extension_properties(physical) } {
+            Ok(extensions) => {
+                let has = |wanted: &CStr| extensions.iter().any(|e| e.extension_name_as_c_str() == Ok(wanted));
+                let lacking = Self::DEVICE_EXTENSIONS.iter().filter(|wanted| !has(wanted));
+                names.extend(lacking.map(|wanted| format!("extension {}", wanted.to_string_lossy())));
+            }
+            Err(error) => {
+                names.push(format!("a list of its extensions (vkEnumerateDeviceExtensionProperties: {error})"))
             }
         }
         // SAFETY: as the caller promises.

@@ -92,7 +92,8 @@ impl Deref for TexelBuffer {
 
 impl Drop for TexelBuffer {
     fn drop(&mut self) {
+        let Some(device) = self.device.living() else { return };
         // SAFETY: owned here; the GPU has finished with it, as the buffer's contract says.
-        unsafe { self.device.raw().destroy_buffer_view(self.view, None) }
+        unsafe { device.destroy_buffer_view(self.view, None) }
     }
 }

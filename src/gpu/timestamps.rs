@@ -167,10 +167,11 @@ impl Timestamps {
 
 impl Drop for Timestamps {
     fn drop(&mut self) {
+        let Some(device) = self.device.living() else { return };
         // SAFETY: owned here; the frames that used them have finished. Destroying null is allowed.
         unsafe {
-            self.device.raw().destroy_query_pool(self.times, None);
-            self.device.raw().destroy_query_pool(self.statistics.unwrap_or_default(), None);
+            device.destroy_query_pool(self.times, None);
+            device.destroy_query_pool(self.statistics.unwrap_or_default(), None);
         }
     }
 }

@@ -1,5 +1,6 @@
 //! Loader, instance, layers, and the choice of a device.
 
+use super::devices::lacks;
 use super::messages::Messages;
 use super::{HeadlessError, HeadlessOptions};
 use crate::gpu::{Named, Requirements};
@@ -19,9 +20,7 @@ pub(super) struct Instance {
 }
 
 impl Instance {
-    pub(super) fn new(options: &HeadlessOptions) -> Result<Self, HeadlessError> {
-        // SAFETY: the system's Vulkan loader is trusted as any shared library of the system is.
-        let entry = unsafe { ash::Entry::load() }.map_err(|source| HeadlessError::NoLoader { source })?;
+    pub(super) fn new(entry: ash::Entry, options: &HeadlessOptions) -> Result<Self, HeadlessError> {
         let extensions = extensions_of(&entry, None);
         let debug_utils = extensions.iter().any(|name| name == ash::ext::debug_utils::NAME);
         let mut layers = Vec::new();
@@ -66,7 +65,15 @@ impl Instance {
         if layer_settings {
             enabled.push(ash::ext::layer_settings::NAME.as_ptr());
         }
+        // devices on top of another API are listed only then
+        let portability = extensions.iter().any(|name| name == ash::khr::portability_enumeration::NAME);
+        let mut flags = vk::InstanceCreateFlags::empty();
+        if portability {
+            enabled.push(ash::khr::portability_enumeration::NAME.as_ptr());
+            flags |= vk::InstanceCreateFlags::ENUMERATE_PORTABILITY_KHR;
+        }
         let mut create = vk::InstanceCreateInfo::default()
+            .flags(flags)
             .application_info(&app)
             .enabled_layer_names(&layers)
             .enabled_extension_names(&enabled);
@@ -91,11 +98,18 @@ impl Instance {
         Ok(this)
     }
 
+    /// It runs on top of another API.
+    pub(super) fn is_portable(&self, physical: vk::PhysicalDevice) -> bool {
+        // SAFETY: the device belongs to this instance.
+        let all = unsafe { self.raw.enumerate_device_extension_properties(physical) }.unwrap_or_default();
+        all.iter().any(|e| e.extension_name_as_c_str() == Ok(ash::khr::portability_subset::NAME))
+    }
+
     /// The device whose name holds `wanted`, or else the most capable kind of device that meets the
     /// requirements.
     pub(super) fn choose(&self, wanted: Option<&str>) -> Result<vk::PhysicalDevice, HeadlessError> {
         // SAFETY: the instance is alive.
-        let all = unsafe { self.raw.enumerate_physical_devices() }.unwrap_or_default();
+        let all = unsafe { self.raw.enumerate_physical_devices() }.named("vkEnumeratePhysicalDevices", "instance")?;
         if all.is_empty() {
             return Err(HeadlessError::NoDevice);
         }
@@ -115,7 +129,7 @@ impl Instance {
             if missing.is_empty() {
                 usable.push((rank(properties.device_type), physical));
             } else {
-                lacking.push(format!("{name} lacks {}", missing.join(", ")));
+                lacking.push(format!("{name} lacks {}", lacks(&missing)));
             }
         }
         match (usable.iter().min_by_key(|(rank, _)| *rank), wanted) {
@@ -148,7 +162,7 @@ fn extensions_of(entry: &ash::Entry, layer: Option<&CStr>) -> Vec<std::ffi::CStr
 }
 
 /// Discrete before integrated before virtual before CPU.
-fn rank(kind: vk::PhysicalDeviceType) -> u32 {
+pub(super) fn rank(kind: vk::PhysicalDeviceType) -> u32 {
     match kind {
         vk::PhysicalDeviceType::DISCRETE_GPU => 0,
         vk::PhysicalDeviceType::INTEGRATED_GPU => 1,

@@ -9,12 +9,15 @@
 //! Everything made from [`HeadlessDevice::device`] is dropped before it. [`HeadlessDevice::shutdown`] names what is still
 //! alive, and the leaks that the validation layers find.
 
+mod devices;
 mod instance;
 mod messages;
+mod pipelines;
 mod renderer;
 #[cfg(test)]
 mod tests;
 
+pub use devices::{DeviceLimits, DeviceSummary, devices};
 pub use messages::{Message, Severity};
 pub use renderer::HeadlessRenderer;
 
@@ -23,7 +26,10 @@ use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use instance::Instance;
 use messages::Messages;
+use pipelines::PipelineFile;
+use std::io;
 use std::mem::ManuallyDrop;
+use std::path::{Path, PathBuf};
 use std::sync::{Arc, Mutex, PoisonError};
 
 /// Which device, and how closely it is watched.
@@ -34,6 +40,11 @@ pub struct HeadlessOptions {
     pub device: Option<String>,
     /// Validation and synchronisation validation, collected in [`HeadlessDevice::messages`].
     pub validation: bool,
+    /// Where compiled pipelines are kept from one run to the next: a file for each device and driver; `None`: nowhere. A
+    /// damaged or foreign file is ignored.
+    pub pipeline_folder: Option<PathBuf>,
+    /// See [`HostDevice::memory_budget`].
+    pub memory_budget: Option<u64>,
 }
 
 /// Why there is no device.
@@ -83,6 +94,17 @@ pub enum HeadlessError {
     Gpu(#[from] GpuError),
 }
 
+impl HeadlessError {
+    /// What failed of Vulkan or its memory.
+    pub fn gpu(&self) -> Option<&GpuError> {
+        match self {
+            Self::Gpu(error) => Some(error),
+            Self::Render(error) => error.gpu(),
+            _ => None,
+        }
+    }
+}
+
 /// A device of our own, without a window.
 pub struct HeadlessDevice {
     parts: ManuallyDrop<Parts>,
@@ -93,6 +115,7 @@ pub struct HeadlessDevice {
 struct Parts {
     queue: Mutex<Queue>,
     device: Device,
+    cache: Option<Cache>,
     _allocator: Arc<Mutex<Allocator>>,
     _owned: OwnedDevice,
     _instance: Instance,
@@ -113,7 +136,19 @@ impl HeadlessDevice {
     /// As [`new`](Self::new).
     #[doc(hidden)]
     pub fn limited(options: &HeadlessOptions, lower: LowerLimits) -> Result<Self, HeadlessError> {
-        let instance = Instance::new(options)?;
+        // SAFETY: the system's Vulkan loader is trusted as any shared library of the system is.
+        let entry = unsafe { ash::Entry::load() }.map_err(|source| HeadlessError::NoLoader { source })?;
+        Self::on_entry(entry, options, lower)
+    }
+
+    /// As [`new`](Self::new), on another Vulkan than the system's: a test's double of the driver.
+    #[doc(hidden)]
+    pub fn of_entry(entry: ash::Entry, options: &HeadlessOptions) -> Result<Self, HeadlessError> {
+        Self::on_entry(entry, options, LowerLimits::NONE)
+    }
+
+    fn on_entry(entry: ash::Entry, options: &HeadlessOptions, lower: LowerLimits) -> Result<Self, HeadlessError> {
+        let instance = Instance::new(entry, options)?;
         let physical = instance.choose(options.device.as_deref())?;
         let messages = instance.messages.clone();
 
@@ -126,7 +161,9 @@ impl HeadlessDevice {
         let family = unsafe { Requirements::queue_family(&instance.raw, physical) };
         let Some(queue_family) = family else { return Err(HeadlessError::NoDevice) };
         let queues = [vk::DeviceQueueCreateInfo::default().queue_family_index(queue_family).queue_priorities(&[1.0])];
-        let extensions: Vec<_> = Requirements::DEVICE_EXTENSIONS.iter().map(|name| name.as_ptr()).collect();
+        let mut extensions: Vec<_> = Requirements::DEVICE_EXTENSIONS.iter().map(|name| name.as_ptr()).collect();
+        // to be enabled where it is there (VUID-VkDeviceCreateInfo-pProperties-04451)
+        extensions.extend(instance.is_portable(physical).then_some(ash::khr::portability_subset::NAME.as_ptr()));
         let create = vk::DeviceCreateInfo::default()
             .queue_create_infos(&queues)
             .enabled_extension_names(&extensions)
@@ -147,6 +184,9 @@ impl HeadlessDevice {
         };
         let allocator = Allocator::new(&description).map_err(|source| HeadlessError::Allocator { source })?;
         let allocator = Arc::new(Mutex::new(allocator));
+        let folder = options.pipeline_folder.as_deref();
+        let cache =
+            folder.map(|folder| Cache::new(&raw, folder, pipelines::identity(&instance.raw, physical))).transpose()?;
         let host = HostDevice {
             instance: &instance.raw,
             physical,
@@ -155,11 +195,13 @@ impl HeadlessDevice {
             allocator: allocator.clone(),
             debug_names: instance.debug_utils,
             pipeline_statistics: core.pipeline_statistics_query == vk::TRUE,
+            pipeline_cache: cache.as_ref().map_or(vk::PipelineCache::null(), |cache| cache.handle),
+            memory_budget: options.memory_budget,
         };
         // SAFETY: made above with the requirements; `Parts` and `Drop` keep it until the last user is gone.
         let device = unsafe { Device::limited(host, lower) };
         let queue = Mutex::new(Queue::new(raw, queue_family)?);
-        let parts = Parts { queue, device, _allocator: allocator, _owned: owned, _instance: instance };
+        let parts = Parts { queue, device, cache, _allocator: allocator, _owned: owned, _instance: instance };
         Ok(Self { parts: ManuallyDrop::new(parts), messages })
     }
 
@@ -189,7 +231,17 @@ impl HeadlessDevice {
         record: impl FnOnce(&Commands<'_>) -> Result<R, E>,
     ) -> Result<Result<R, E>, GpuError> {
         let queue = self.parts.queue.lock().unwrap_or_else(PoisonError::into_inner);
-        queue.submit(&self.parts.device, record)
+        self.device().alive()?;
+        queue.submit(&self.parts.device, record).inspect_err(|error| self.device().note(error))
+    }
+
+    /// Keeps the pipelines compiled so far in the file of [`HeadlessOptions::pipeline_folder`]; so does the drop, which tells
+    /// no error.
+    ///
+    /// # Errors
+    /// Of the file system, or of the driver.
+    pub fn save_pipelines(&mut self) -> io::Result<()> {
+        self.parts.cache.as_mut().map_or(Ok(()), Cache::save)
     }
 
     /// What the validation layers have said so far, oldest first.
@@ -212,14 +264,53 @@ impl HeadlessDevice {
 
 impl Drop for HeadlessDevice {
     fn drop(&mut self) {
-        if self.parts.device.is_last() {
+        if !self.parts.device.is_lost() {
+            let _ = self.save_pipelines(); // they are compiled again next time
+        }
+        if self.parts.device.is_last() && !self.parts.device.is_gone() {
             // SAFETY: dropped once, here; nothing made from the device lives.
             unsafe { ManuallyDrop::drop(&mut self.parts) };
             return;
         }
         // Whatever lives may still be used and will free itself: the device must stay for it.
-        let text = format!("alive after their device: {}", self.parts.device.objects().join(", "));
+        let objects = self.parts.device.objects();
+        let text = if objects.is_empty() {
+            "the GPU never finished: its device stays".to_owned()
+        } else {
+            format!("alive after their device: {}", objects.join(", "))
+        };
         self.messages.push(Message { severity: Severity::Error, id: "selvedge-leak".to_owned(), text });
+    }
+}
+
+/// A cache of compiled pipelines and its file.
+struct Cache {
+    device: ash::Device,
+    handle: vk::PipelineCache,
+    file: PipelineFile,
+}
+
+impl Cache {
+    fn new(device: &ash::Device, folder: &Path, identity: [u8; pipelines::IDENTITY]) -> Result<Self, GpuError> {
+        let (file, data) = PipelineFile::open(folder, identity);
+        let create = vk::PipelineCacheCreateInfo::default().initial_data(&data);
+        // SAFETY: the device is alive; the data is what its driver gave.
+        let handle =
+            unsafe { device.create_pipeline_cache(&create, None) }.named("vkCreatePipelineCache", "pipelines")?;
+        Ok(Self { device: device.clone(), handle, file })
+    }
+
+    fn save(&mut self) -> io::Result<()> {
+        // SAFETY: made by this device.
+        let data = unsafe { self.device.get_pipeline_cache_data(self.handle) };
+        self.file.write(&data.map_err(io::Error::other)?)
+    }
+}
+
+impl Drop for Cache {
+    fn drop(&mut self) {
+        // SAFETY: no pipeline is being made.
+        unsafe { self.device.destroy_pipeline_cache(self.handle, None) }
     }
 }
 
@@ -275,8 +366,9 @@ impl Queue {
     ) -> Result<Result<R, E>, GpuError> {
         let raw = &self.device;
         let begin = vk::CommandBufferBeginInfo::default().flags(vk::CommandBufferUsageFlags::ONE_TIME_SUBMIT);
-        // SAFETY: the submission before has finished, so the pool may be reset; the lock keeps others away.
+        // SAFETY: the submission before has finished, so fence and pool may be reset; the lock keeps others away.
         unsafe {
+            raw.reset_fences(&[self.fence]).named("vkResetFences", "headless")?;
             raw.reset_command_pool(self.pool, vk::CommandPoolResetFlags::empty())
                 .named("vkResetCommandPool", "headless")?;
             raw.begin_command_buffer(self.commands, &begin).named("vkBeginCommandBuffer", "headless")?;
@@ -292,10 +384,28 @@ impl Queue {
         unsafe {
             raw.end_command_buffer(self.commands).named("vkEndCommandBuffer", "headless")?;
             raw.queue_submit2(self.queue, &[submit], self.fence).named("vkQueueSubmit2", "headless")?;
-            raw.wait_for_fences(&[self.fence], true, u64::MAX).named("vkWaitForFences", "headless")?;
-            raw.reset_fences(&[self.fence]).named("vkResetFences", "headless")?;
         }
-        Ok(result)
+        self.wait(device).map(|()| result)
+    }
+
+    /// Waits until the GPU has finished; where even that fails, whatever it uses stays for it.
+    fn wait(&self, device: &Device) -> Result<(), GpuError> {
+        // SAFETY: the fence was submitted.
+        let waited = unsafe { self.device.wait_for_fences(&[self.fence], true, u64::MAX) };
+        let waited = match waited {
+            // The frame goes on without us. Another call to wait by may need less.
+            Err(vk::Result::ERROR_OUT_OF_HOST_MEMORY | vk::Result::ERROR_OUT_OF_DEVICE_MEMORY) => {
+                // SAFETY: the lock keeps others away from the queue.
+                unsafe { self.device.queue_wait_idle(self.queue) }.named("vkQueueWaitIdle", "headless")
+            }
+            waited => waited.named("vkWaitForFences", "headless"),
+        };
+        waited.inspect_err(|error| {
+            if !error.is_device_lost() {
+                device.set_lost("vkQueueWaitIdle", "headless");
+                device.abandon();
+            }
+        })
     }
 }
 

@@ -59,7 +59,14 @@ impl HeadlessRenderer {
     /// As [`new`](Self::new).
     #[doc(hidden)]
     pub fn limited(options: &HeadlessOptions, lower: LowerLimits) -> Result<Self, HeadlessError> {
-        let device = HeadlessDevice::limited(options, lower)?;
+        Self::on(HeadlessDevice::limited(options, lower)?)
+    }
+
+    /// On a device of the caller's choice.
+    ///
+    /// # Errors
+    /// [`HeadlessError::Gpu`].
+    pub fn on(device: HeadlessDevice) -> Result<Self, HeadlessError> {
         let formats = TargetFormats::new(COLOUR_FORMAT);
         let renderer = renderer(device.device(), formats)?;
         Ok(Self {
@@ -202,6 +209,12 @@ impl HeadlessRenderer {
         outputs: Outputs,
     ) -> Result<Picture, HeadlessError> {
         camera.check().map_err(RenderError::from)?;
+        self.device.device().alive()?;
+        let drawn = self.drawn(camera, settings, outputs);
+        drawn.inspect_err(|error| error.gpu().into_iter().for_each(|error| self.device.device().note(error)))
+    }
+
+    fn drawn(&mut self, camera: &Camera, settings: &FrameSettings, outputs: Outputs) -> Result<Picture, HeadlessError> {
         self.prepare(camera.size, outputs)?;
         let (mut retries, mut edit_bytes) = (0, 0);
         let stats = loop {
@@ -216,6 +229,11 @@ impl HeadlessRenderer {
             }
         };
         Ok(self.read(camera.size, outputs, FrameStats { retries, edit_bytes, ..stats }))
+    }
+
+    /// The model that was uploaded, as edits have made it: see [`Renderer::model`].
+    pub fn model(&self) -> Option<&Arc<Model>> {
+        self.renderer.model()
     }
 
     /// Validation messages so far.
@@ -253,7 +271,7 @@ impl HeadlessRenderer {
     fn frame(&mut self, camera: &Camera, settings: &FrameSettings) -> Result<(bool, FrameStats), HeadlessError> {
         let Some(images) = &*self.targets else { unreachable!("prepared before") };
         let renderer = &mut *self.renderer;
-        self.device.try_submit(|cmd| -> Result<(), RenderError> {
+        let submitted = self.device.try_submit(|cmd| -> Result<(), RenderError> {
             images.begin(cmd);
             let aov = |i: usize| images.aovs.as_ref().map(|aovs| &aovs[i].0);
             let number = |i: usize| images.numbers.as_ref().map(|numbers| &numbers[i].0);
@@ -267,7 +285,11 @@ impl HeadlessRenderer {
             unsafe { renderer.record(cmd.raw(), &input) }?;
             images.end(cmd);
             Ok(())
-        })??;
+        });
+        if submitted.is_err() {
+            self.renderer.discard(0);
+        }
+        submitted??;
         let report = self.renderer.report(0)?.expect("a frame was recorded");
         Ok((report.complete, report.stats))
     }

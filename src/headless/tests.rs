@@ -72,7 +72,7 @@ fn drawn(device: &HeadlessDevice, model: &Model, settings: SceneSettings, output
 fn each_image_stands_by_itself() {
     let path = std::path::Path::new(env!("CARGO_MANIFEST_DIR")).join("samples/bracket.step");
     let mut model = selvedge_io::import::open(&path).unwrap().model;
-    let device = HeadlessDevice::new(&HeadlessOptions { device: None, validation: true }).unwrap();
+    let device = HeadlessDevice::new(&HeadlessOptions { validation: true, ..Default::default() }).unwrap();
     let one = |k: usize| Outputs {
         depth: k == 0,
         face: k == 1,
@@ -121,7 +121,8 @@ fn tall() -> Model {
 /// A first frame without room counts what it needs and draws no patch; the second draws the picture.
 #[test]
 fn no_picture_is_drawn_twice() {
-    let (model, device) = (tall(), HeadlessDevice::new(&HeadlessOptions { device: None, validation: true }).unwrap());
+    let (model, device) =
+        (tall(), HeadlessDevice::new(&HeadlessOptions { validation: true, ..Default::default() }).unwrap());
     let format = vk::Format::R8G8B8A8_SRGB;
     let mut renderer = Renderer::on(device.device(), TargetFormats::new(format), 1).unwrap();
     renderer.upload(&model).unwrap();

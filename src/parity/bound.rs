@@ -27,18 +27,19 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
 
 #[test]
 fn parity() {
-    let gpu = Gpu::new();
-    for case in cases() {
-        compare(&gpu, &case, &case).unwrap();
-        // so tight that some factors exceed what can be split
-        let mut fine = case.clone();
-        fine.frame.deviation_px *= 1e-6;
-        let mut counters = Counters::default();
-        twin::bound::bound(&fine.frame, &fine.scene(), &mut counters);
-        assert!(counters.clamps > 0);
-        compare(&gpu, &fine, &fine).unwrap();
+    for gpu in Gpu::all() {
+        for case in cases() {
+            compare(&gpu, &case, &case).unwrap();
+            // so tight that some factors exceed what can be split
+            let mut fine = case.clone();
+            fine.frame.deviation_px *= 1e-6;
+            let mut counters = Counters::default();
+            twin::bound::bound(&fine.frame, &fine.scene(), &mut counters);
+            assert!(counters.clamps > 0);
+            compare(&gpu, &fine, &fine).unwrap();
+        }
+        gpu.finish();
     }
-    gpu.finish();
 }
 
 /// A closed part without trims, as it is and mirrored, from around it, every third view parallel.

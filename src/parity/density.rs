@@ -37,14 +37,15 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
 
 #[test]
 fn parity() {
-    let gpu = Gpu::new();
-    for case in cases() {
-        compare(&gpu, &case, &case).unwrap();
-        let mut whole = case.clone();
-        whole.frame.table_density = 12.5;
-        compare(&gpu, &whole, &whole).unwrap();
+    for gpu in Gpu::all() {
+        for case in cases() {
+            compare(&gpu, &case, &case).unwrap();
+            let mut whole = case.clone();
+            whole.frame.table_density = 12.5;
+            compare(&gpu, &whole, &whole).unwrap();
+        }
+        gpu.finish();
     }
-    gpu.finish();
 }
 
 /// The same density everywhere, whatever is seen; and it is more than any of these views asks for.

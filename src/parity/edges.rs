@@ -106,11 +106,12 @@ fn compare(gpu: &Gpu, given: &View, expected: &View) -> Result<(), Mismatch> {
 
 #[test]
 fn parity() {
-    let gpu = Gpu::new();
-    for view in views() {
-        compare(&gpu, &view, &view).unwrap();
+    for gpu in Gpu::all() {
+        for view in views() {
+            compare(&gpu, &view, &view).unwrap();
+        }
+        gpu.finish();
     }
-    gpu.finish();
 }
 
 #[test]

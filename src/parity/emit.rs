@@ -45,12 +45,13 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &Chain, expected: &Chain) -> Result<
 
 #[test]
 fn parity() {
-    let gpu = Gpu::new();
-    for case in cases() {
-        let chain = Chain::new(&case);
-        compare(&gpu, &case.frame, &chain, &chain).unwrap();
+    for gpu in Gpu::all() {
+        for case in cases() {
+            let chain = Chain::new(&case);
+            compare(&gpu, &case.frame, &chain, &chain).unwrap();
+        }
+        gpu.finish();
     }
-    gpu.finish();
 }
 
 #[test]

@@ -273,11 +273,12 @@ mod parity {
 
     #[test]
     fn parity() {
-        let gpu = Gpu::new();
-        let (faces, points) = faces();
-        let data = data(&faces);
-        compare(&gpu, &data, &data, &points).unwrap();
-        gpu.finish();
+        for gpu in Gpu::all() {
+            let (faces, points) = faces();
+            let data = data(&faces);
+            compare(&gpu, &data, &data, &points).unwrap();
+            gpu.finish();
+        }
     }
 
     #[test]

@@ -16,7 +16,7 @@ fn a_frame_counts_what_the_twins_count() {
     let gpu = Gpu::new();
     let slack = gpu.slack();
     gpu.finish();
-    let options = HeadlessOptions { device: None, validation: true };
+    let options = HeadlessOptions { validation: true, ..Default::default() };
     let mut renderer = HeadlessRenderer::new(&options).unwrap();
     let (model, mut cameras) = model_and_cameras();
     let narrow = Camera { projection: Projection::Perspective { fov_y: 0.1 }, ..cameras[0] };

@@ -139,16 +139,17 @@ fn compare(
 
 #[test]
 fn parity() {
-    let gpu = Gpu::new();
-    let situations = situations();
-    let answers = compare(&gpu, &situations, &situations).unwrap();
-    // every kind of choice, often: nothing, what was seen, the own face, a candidate
-    let own = MOST_CANDIDATES as u32 + 1;
-    let count = |kind: fn(u32, u32) -> bool| answers.iter().filter(|word| kind(word[0], own)).count();
-    let kinds =
-        [count(|w, _| w == 0), count(|w, _| w == 77), count(|w, own| w == own), count(|w, own| w > 0 && w < own)];
-    assert!(kinds.iter().all(|&n| n > SITUATIONS / 200), "{kinds:?}");
-    gpu.finish();
+    for gpu in Gpu::all() {
+        let situations = situations();
+        let answers = compare(&gpu, &situations, &situations).unwrap();
+        // every kind of choice, often: nothing, what was seen, the own face, a candidate
+        let own = MOST_CANDIDATES as u32 + 1;
+        let count = |kind: fn(u32, u32) -> bool| answers.iter().filter(|word| kind(word[0], own)).count();
+        let kinds =
+            [count(|w, _| w == 0), count(|w, _| w == 77), count(|w, own| w == own), count(|w, own| w > 0 && w < own)];
+        assert!(kinds.iter().all(|&n| n > SITUATIONS / 200), "{kinds:?}");
+        gpu.finish();
+    }
 }
 
 /// The candidate that one situation chooses, gone.

@@ -1,6 +1,7 @@
 //! A watched device, the way to and from it, and comparisons that name the place.
 
 use super::Case;
+use super::arithmetic::Imitation;
 use crate::bindings::Bounded;
 use crate::gpu::{
     Access, Binding, Buffer, Commands, ComputeInfo, Device, Pipeline, Pool, ReadBack, Resource, Texel, TexelBuffer,
@@ -13,7 +14,11 @@ use bytemuck::Pod;
 use std::fmt::Debug;
 
 /// A device under validation and synchronisation validation.
-pub(super) struct Gpu(HeadlessDevice);
+pub(super) struct Gpu {
+    watched: HeadlessDevice,
+    /// Quotients and roots are rounded correctly.
+    is_exact: bool,
+}
 
 /// How far a result may be from the twin's.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -34,18 +39,41 @@ pub(super) struct Mismatch {
 
 impl Gpu {
     pub(super) fn new() -> Self {
-        let options = HeadlessOptions { device: None, validation: true };
-        Self(HeadlessDevice::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}")))
+        let options = HeadlessOptions { validation: true, ..Default::default() };
+        let watched = HeadlessDevice::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"));
+        let is_exact = watched.device().driver().contains("llvmpipe");
+        Self { watched, is_exact }
+    }
+
+    /// The device as it is, and where its arithmetic is exact, others imitated by it.
+    pub(super) fn all() -> Vec<Self> {
+        let mut all = vec![Self::new()];
+        if all[0].is_exact {
+            all.extend(Imitation::ALL.map(Self::imitating));
+        }
+        all
+    }
+
+    /// With the quotients and roots of another GPU.
+    pub(super) fn imitating(imitation: Imitation) -> Self {
+        let gpu = Self { is_exact: false, ..Self::new() };
+        gpu.device().rewrite(imitation.rewriting());
+        gpu
     }
 
     pub(super) fn device(&self) -> &Device {
-        self.0.device()
+        self.watched.device()
+    }
+
+    /// Quotients and roots are rounded correctly.
+    pub(super) fn is_exact(&self) -> bool {
+        self.is_exact
     }
 
     /// None where quotients and roots are rounded correctly. Elsewhere Vulkan grants 2.5 and 3 units in
     /// the last place an operation; no pass chains more than eight of them.
     pub(super) fn slack(&self) -> Slack {
-        if self.device().driver().contains("llvmpipe") {
+        if self.is_exact {
             Slack { count: 0, relative: 0.0 }
         } else {
             Slack { count: 1, relative: 24.0 * f32::EPSILON }
@@ -61,7 +89,7 @@ impl Gpu {
             uploads.finish(cmd, Access::COMPUTE_WRITE | Access::INDIRECT_READ | Access::UNIFORM_READ);
             (buffer, uploads)
         };
-        self.0.submit(record).unwrap().0
+        self.watched.submit(record).unwrap().0
     }
 
     /// The same, for shaders that fetch texels, too.
@@ -73,7 +101,7 @@ impl Gpu {
             uploads.finish(cmd, Access::COMPUTE_READ);
             (TexelBuffer::new(cmd.device(), buffer, texel).unwrap(), uploads)
         };
-        self.0.submit(record).unwrap().0
+        self.watched.submit(record).unwrap().0
     }
 
     /// What the exact trim test reads, in its order.
@@ -116,7 +144,7 @@ impl Gpu {
 
     /// Records, submits, waits.
     pub(super) fn run(&self, record: impl FnOnce(&Commands<'_>)) {
-        self.0.submit(record).unwrap();
+        self.watched.submit(record).unwrap();
     }
 
     /// The first `count` values of a buffer that a pass wrote.
@@ -132,7 +160,7 @@ impl Gpu {
 
     /// Anything that the validation layers said fails the test.
     pub(super) fn finish(self) {
-        let messages: Vec<_> = self.0.shutdown().iter().map(ToString::to_string).collect();
+        let messages: Vec<_> = self.watched.shutdown().iter().map(ToString::to_string).collect();
         assert!(messages.is_empty(), "validation messages:\n{}", messages.join("\n"));
     }
 }

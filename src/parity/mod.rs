@@ -27,6 +27,8 @@ use glam::DVec4;
 pub(crate) use crate::fixtures::{Case, Random};
 pub(crate) use shapes::{placed, untrimmed};
 
+#[cfg(feature = "headless")]
+mod arithmetic;
 #[cfg(all(feature = "headless", feature = "baselines"))]
 mod baseline_slefe;
 #[cfg(feature = "headless")]

@@ -97,27 +97,30 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case) -> Result<(), Mismatch> {
 
 #[test]
 fn parity() {
-    let gpu = Gpu::new();
-    let mut random = Random::new(23);
-    for most in [3, 12, 300] {
-        let case = case(&mut random, most);
-        compare(&gpu, &case, &case).unwrap();
-        let less = Case { frame: Frame { fragment_capacity: case.frame.fragment_capacity / 2, ..case.frame }, ..case };
-        compare(&gpu, &less, &less).unwrap();
+    for gpu in Gpu::all() {
+        let mut random = Random::new(23);
+        for most in [3, 12, 300] {
+            let case = case(&mut random, most);
+            compare(&gpu, &case, &case).unwrap();
+            let less =
+                Case { frame: Frame { fragment_capacity: case.frame.fragment_capacity / 2, ..case.frame }, ..case };
+            compare(&gpu, &less, &less).unwrap();
+        }
+        // of more than can be counted: half of the pixels are told, and the band
+        let whole = case(&mut random, 3);
+        let wraps = |(i, start): (usize, u32)| {
+            if i >= whole.starts.len() / 2 { start.wrapping_sub(900) } else { start | 1 << 31 }
+        };
+        let starts = whole.starts.iter().copied().enumerate().map(wraps).collect();
+        let wrapped = Case { starts, ..whole };
+        compare(&gpu, &wrapped, &wrapped).unwrap();
+        // one depth off is seen
+        let given = case(&mut Random::new(4), 6);
+        let mut other = case(&mut Random::new(4), 6);
+        other.fragments.iter_mut().for_each(|f| f.depth += if f.what == 3 { 7.0 } else { 0.0 });
+        assert!(compare(&gpu, &other, &given).is_err());
+        gpu.finish();
     }
-    // of more than can be counted: half of the pixels are told, and the band
-    let whole = case(&mut random, 3);
-    let wraps =
-        |(i, start): (usize, u32)| if i >= whole.starts.len() / 2 { start.wrapping_sub(900) } else { start | 1 << 31 };
-    let starts = whole.starts.iter().copied().enumerate().map(wraps).collect();
-    let wrapped = Case { starts, ..whole };
-    compare(&gpu, &wrapped, &wrapped).unwrap();
-    // one depth off is seen
-    let given = case(&mut Random::new(4), 6);
-    let mut other = case(&mut Random::new(4), 6);
-    other.fragments.iter_mut().for_each(|f| f.depth += if f.what == 3 { 7.0 } else { 0.0 });
-    assert!(compare(&gpu, &other, &given).is_err());
-    gpu.finish();
 }
 
 fn fragment(bits: u32, depth: f32) -> Fragment {

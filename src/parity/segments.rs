@@ -36,14 +36,15 @@ fn compare(gpu: &Gpu, given: &Case, expected: &Case, chain: &Chain) -> Result<()
 
 #[test]
 fn parity() {
-    let gpu = Gpu::new();
-    for case in cases() {
-        compare(&gpu, &case, &case, &Chain::new(&case)).unwrap();
-        let mut fine = case.clone(); // more segments than a curve can have
-        fine.frame.chord_px *= 1e-12;
-        compare(&gpu, &fine, &fine, &Chain::new(&case)).unwrap();
+    for gpu in Gpu::all() {
+        for case in cases() {
+            compare(&gpu, &case, &case, &Chain::new(&case)).unwrap();
+            let mut fine = case.clone(); // more segments than a curve can have
+            fine.frame.chord_px *= 1e-12;
+            compare(&gpu, &fine, &fine, &Chain::new(&case)).unwrap();
+        }
+        gpu.finish();
     }
-    gpu.finish();
 }
 
 #[test]

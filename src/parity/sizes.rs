@@ -39,25 +39,26 @@ fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: [&[u32]; 2], expected:
 
 #[test]
 fn parity() {
-    let gpu = Gpu::new();
-    for case in cases() {
-        let chain = Chain::new(&case);
-        let starts = [chain.strip_starts.as_slice(), chain.segment_starts.as_slice()];
-        compare(&gpu, &case.frame, &chain.density.seen_bins, starts, starts).unwrap();
-        // more than one row of a dispatch holds, and more than can be numbered
-        for segments in [9_000_000, MOST_SEGMENTS + 1] {
-            let mut many = chain.segment_starts.clone();
-            *many.last_mut().unwrap() = segments;
-            for most_groups in [7, 1 << 16, u32::MAX] {
-                let frame = Frame { most_groups, ..case.frame };
-                compare(&gpu, &frame, &chain.density.seen_bins, [starts[0], &many], [starts[0], &many]).unwrap();
+    for gpu in Gpu::all() {
+        for case in cases() {
+            let chain = Chain::new(&case);
+            let starts = [chain.strip_starts.as_slice(), chain.segment_starts.as_slice()];
+            compare(&gpu, &case.frame, &chain.density.seen_bins, starts, starts).unwrap();
+            // more than one row of a dispatch holds, and more than can be numbered
+            for segments in [9_000_000, MOST_SEGMENTS + 1] {
+                let mut many = chain.segment_starts.clone();
+                *many.last_mut().unwrap() = segments;
+                for most_groups in [7, 1 << 16, u32::MAX] {
+                    let frame = Frame { most_groups, ..case.frame };
+                    compare(&gpu, &frame, &chain.density.seen_bins, [starts[0], &many], [starts[0], &many]).unwrap();
+                }
             }
+            let mut wrapped = chain.strip_starts.clone();
+            *wrapped.last_mut().unwrap() = 0;
+            compare(&gpu, &case.frame, &chain.density.seen_bins, [&wrapped, starts[1]], [&wrapped, starts[1]]).unwrap();
         }
-        let mut wrapped = chain.strip_starts.clone();
-        *wrapped.last_mut().unwrap() = 0;
-        compare(&gpu, &case.frame, &chain.density.seen_bins, [&wrapped, starts[1]], [&wrapped, starts[1]]).unwrap();
+        gpu.finish();
     }
-    gpu.finish();
 }
 
 #[test]

@@ -93,38 +93,40 @@ fn compare(gpu: &Gpu, frame: &Frame, given: &[Rect], expected: &[Rect]) -> Resul
 
 #[test]
 fn parity() {
-    let gpu = Gpu::new();
-    let mut random = Random::new(17);
-    // the last are more than one run, and more than drivers let a loop have steps
-    for (size, count) in [([333.0, 211.0], 300), ([16.0, 16.0], 3), ([700.0, 40.0], 1200), ([260.0, 40.0], 70_000)] {
-        let frame = Frame { size, band_height: 4096, ..Frame::default() };
-        let rects = random_rects(&mut random, twin::solid_rects::tile_count(&frame), count);
-        let frame = Frame { leaf_count: rects.len() as u32, ..frame };
-        let room = Frame { block_leaf_capacity: 1 << 20, tile_leaf_capacity: 1 << 20, ..frame };
-        compare(&gpu, &room, &rects, &rects).unwrap();
-        // of a band of one row of tiles, and of those that are left
-        for (band_top, band_height) in [(16, 16), (32, 512)] {
-            if (band_top as f32) < size[1] {
-                compare(&gpu, &Frame { band_top, band_height, ..room }, &rects, &rects).unwrap();
+    for gpu in Gpu::all() {
+        let mut random = Random::new(17);
+        // the last are more than one run, and more than drivers let a loop have steps
+        for (size, count) in [([333.0, 211.0], 300), ([16.0, 16.0], 3), ([700.0, 40.0], 1200), ([260.0, 40.0], 70_000)]
+        {
+            let frame = Frame { size, band_height: 4096, ..Frame::default() };
+            let rects = random_rects(&mut random, twin::solid_rects::tile_count(&frame), count);
+            let frame = Frame { leaf_count: rects.len() as u32, ..frame };
+            let room = Frame { block_leaf_capacity: 1 << 20, tile_leaf_capacity: 1 << 20, ..frame };
+            compare(&gpu, &room, &rects, &rects).unwrap();
+            // of a band of one row of tiles, and of those that are left
+            for (band_top, band_height) in [(16, 16), (32, 512)] {
+                if (band_top as f32) < size[1] {
+                    compare(&gpu, &Frame { band_top, band_height, ..room }, &rects, &rects).unwrap();
+                }
             }
+            // too little room: what fits is there, the rest is told
+            let tight = Frame { block_leaf_capacity: 3, tile_leaf_capacity: 2, ..frame };
+            compare(&gpu, &tight, &rects, &rects).unwrap();
+            let mut other = rects.clone();
+            other[0] = twin::solid_rects::NOWHERE;
+            assert_eq!(compare(&gpu, &room, &other, &rects).unwrap_err().buffer, "block counts");
         }
-        // too little room: what fits is there, the rest is told
-        let tight = Frame { block_leaf_capacity: 3, tile_leaf_capacity: 2, ..frame };
-        compare(&gpu, &tight, &rects, &rects).unwrap();
-        let mut other = rects.clone();
-        other[0] = twin::solid_rects::NOWHERE;
-        assert_eq!(compare(&gpu, &room, &other, &rects).unwrap_err().buffer, "block counts");
+        // so many in one block that a driver may end the loop over them: either right or told of
+        let frame = Frame { size: [32.0, 16.0], band_height: 4096, leaf_count: 300_000, ..Frame::default() };
+        let room = Frame { block_leaf_capacity: 1 << 20, tile_leaf_capacity: 1 << 20, ..frame };
+        let rect = |n: u32| {
+            let tile = [u32::from(n.is_multiple_of(9)), 0];
+            Rect { first: tile, last: tile }
+        };
+        let rects: Vec<Rect> = (0..frame.leaf_count).map(rect).collect();
+        if let Err(mismatch) = compare(&gpu, &room, &rects, &rects) {
+            assert_eq!(mismatch.buffer, "counters");
+        }
+        gpu.finish();
     }
-    // so many in one block that a driver may end the loop over them: either right or told of
-    let frame = Frame { size: [32.0, 16.0], band_height: 4096, leaf_count: 300_000, ..Frame::default() };
-    let room = Frame { block_leaf_capacity: 1 << 20, tile_leaf_capacity: 1 << 20, ..frame };
-    let rect = |n: u32| {
-        let tile = [u32::from(n.is_multiple_of(9)), 0];
-        Rect { first: tile, last: tile }
-    };
-    let rects: Vec<Rect> = (0..frame.leaf_count).map(rect).collect();
-    if let Err(mismatch) = compare(&gpu, &room, &rects, &rects) {
-        assert_eq!(mismatch.buffer, "counters");
-    }
-    gpu.finish();
 }

@@ -104,13 +104,14 @@ fn flips_of(rows: &Rows, counts: &[u32], words: &[u32]) -> Vec<u32> {
 
 #[test]
 fn parity() {
-    let gpu = Gpu::new();
-    let mut random = Random::new(2);
-    for case in cases() {
-        let rows = Rows::of(&Chain::new(&case));
-        compare(&gpu, &case.frame, &rows.clone().shuffled(&mut random), &rows).unwrap();
+    for gpu in Gpu::all() {
+        let mut random = Random::new(2);
+        for case in cases() {
+            let rows = Rows::of(&Chain::new(&case));
+            compare(&gpu, &case.frame, &rows.clone().shuffled(&mut random), &rows).unwrap();
+        }
+        gpu.finish();
     }
-    gpu.finish();
 }
 
 /// Rows far longer than a drawing has, with equal entries, negative `u` and windings of any sign.

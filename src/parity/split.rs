@@ -41,20 +41,21 @@ fn compare(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<()
 
 #[test]
 fn parity() {
-    let gpu = Gpu::new();
-    for case in cases() {
-        let taus = Chain::new(&case).taus;
-        compare(&gpu, &case, &taus, &taus).unwrap();
+    for gpu in Gpu::all() {
+        for case in cases() {
+            let taus = Chain::new(&case).taus;
+            compare(&gpu, &case, &taus, &taus).unwrap();
+        }
+        // the same grids with factors of every size, and patches that nobody sees
+        let (case, mut random) = (&cases()[0], Random::new(1));
+        for _ in 0..20 {
+            let mut tau = || (1 << random.integer(0, 12)).max(random.integer(1, 4096)).min(random.integer(1, 4096));
+            let mut taus: Vec<u32> = case.data.items.iter().map(|_| tau() | tau() << 16).collect();
+            taus.iter_mut().step_by(5).for_each(|t| *t = 0);
+            compare(&gpu, case, &taus, &taus).unwrap();
+        }
+        gpu.finish();
     }
-    // the same grids with factors of every size, and patches that nobody sees
-    let (case, mut random) = (&cases()[0], Random::new(1));
-    for _ in 0..20 {
-        let mut tau = || (1 << random.integer(0, 12)).max(random.integer(1, 4096)).min(random.integer(1, 4096));
-        let mut taus: Vec<u32> = case.data.items.iter().map(|_| tau() | tau() << 16).collect();
-        taus.iter_mut().step_by(5).for_each(|t| *t = 0);
-        compare(&gpu, case, &taus, &taus).unwrap();
-    }
-    gpu.finish();
 }
 
 /// Faces that share sides, whole and in parts.

@@ -206,12 +206,13 @@ mod parity {
 
     #[test]
     fn parity() {
-        let gpu = Gpu::new();
-        for case in cases() {
-            let chain = Chain::new(&case);
-            compare(&gpu, &case, &chain, &chain).unwrap();
+        for gpu in Gpu::all() {
+            for case in cases() {
+                let chain = Chain::new(&case);
+                compare(&gpu, &case, &chain, &chain).unwrap();
+            }
+            gpu.finish();
         }
-        gpu.finish();
     }
 
     #[test]

@@ -5,6 +5,13 @@ use crate::gpu::GpuError;
 use crate::model::{CameraError, ModelError};
 use crate::picture::{BadEdges, FrameSettings};
 
+impl RenderError {
+    /// What failed of Vulkan or its memory.
+    pub fn gpu(&self) -> Option<&GpuError> {
+        if let Self::Gpu(error) = self { Some(error) } else { None }
+    }
+}
+
 /// Why a frame was not recorded.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -33,6 +40,12 @@ pub enum RenderError {
     /// [`Smooth::Trims`](crate::picture::Smooth::Trims) beside something that it does not go with.
     #[error("smooth trims do not go with {0}")]
     SmoothTrims(&'static str),
+    /// [`ambient`](crate::picture::SceneSettings::ambient) that is no radius.
+    #[error("the radius of ambient occlusion must be finite and above 0, not {0}")]
+    AmbientRadius(f64),
+    /// [`ambient`](crate::picture::SceneSettings::ambient) beside several samples.
+    #[error("ambient occlusion does not go with several samples a pixel")]
+    AmbientSamples,
     /// [`edges`](crate::picture::SceneSettings::edges) that cannot be drawn.
     #[error(transparent)]
     Edges(#[from] BadEdges),

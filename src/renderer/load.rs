@@ -81,6 +81,7 @@ impl Renderer {
     /// When no model was uploaded.
     pub fn prepare(&mut self, camera: &Camera) -> Result<(), RenderError> {
         camera.check()?;
+        self.device.alive()?;
         let Some(source) = &mut self.source else { panic!("upload a model before recording") };
         let cut = match source.wanted(camera) {
             DeepZoomUpload::Same => return Ok(()),
@@ -91,7 +92,7 @@ impl Renderer {
             Ok(loaded) => self.replace(loaded),
             Err(error) => {
                 source.forget();
-                return Err(error);
+                return self.noting(Err(error));
             }
         }
         Ok(())
@@ -110,7 +111,10 @@ impl Renderer {
 
     /// As [`upload_shared`](Self::upload_shared), of what another renderer had.
     pub(crate) fn upload_source(&mut self, mut source: Source, progress: Told<'_>) -> Result<(), RenderError> {
-        let loaded = Loaded::new(&self.device, self.formats, &source, (None, source.request), progress)?;
+        self.device.alive()?;
+        let loaded = Loaded::new(&self.device, self.formats, &source, (None, source.request), progress);
+        let loaded = self.noting(loaded)?;
+        self.stale = false;
         source.upload = self.source.as_ref().map_or(0, |before| before.upload + 1);
         self.source = Some(source);
         self.replace(loaded);
@@ -127,7 +131,7 @@ impl Renderer {
         Ok(())
     }
 
-    fn replace(&mut self, loaded: Loaded) {
+    pub(super) fn replace(&mut self, loaded: Loaded) {
         if let Some(old) = self.loaded.replace(loaded) {
             self.retire(Retired::Loaded(Box::new(old)));
             self.slots.iter_mut().for_each(|slot| slot.capacities = None);
@@ -138,7 +142,7 @@ impl Renderer {
 impl Loaded {
     /// Of a whole model, or of what was cut out of it for a view: shadows are those of the whole model, of which all spline
     /// faces that cast them are made triangles for each cut.
-    fn new(
+    pub(super) fn new(
         device: &Device,
         formats: TargetFormats,
         source: &Source,
@@ -146,6 +150,7 @@ impl Loaded {
         progress: Told<'_>,
     ) -> Result<Self, RenderError> {
         validate::check_sun(*request)?;
+        validate::check_ambient(*request)?;
         request.edges.map_or(Ok(()), |edges| edges.check())?;
         let whole = &*source.model;
         let data = |request| match &cut {

@@ -44,10 +44,10 @@ impl Renderer {
     /// of them.
     ///
     /// `None`: the frame was recorded without a call of [`pick`](Self::pick), the pixel shows the background or lies beside
-    /// the picture, or another model was uploaded since.
+    /// the picture, another model was uploaded since, or the device is lost.
     pub fn picked(&self, slot: usize) -> Option<Hit> {
         let slot = &self.slots[slot];
-        let pick = slot.pick.as_ref().filter(|_| slot.recorded)?;
+        let pick = slot.pick.as_ref().filter(|_| slot.recorded && !self.device.is_lost())?;
         let asked = pick.asked.as_ref()?;
         let source = self.source.as_ref().filter(|source| source.upload == asked.upload)?;
         let words = pick.words.values::<[u32; 2]>(2);

@@ -21,12 +21,13 @@ impl Renderer {
     /// # Errors
     /// [`GpuError`].
     pub fn report(&self, slot: usize) -> Result<Option<FrameReport>, GpuError> {
+        self.device.alive()?;
         let slot = &self.slots[slot];
         if !slot.recorded {
             return Ok(None);
         }
         let c = slot.read_counters();
-        let scopes = slot.times.read()?;
+        let scopes = slot.times.read().inspect_err(|error| self.device.note(error))?;
         let stats = FrameStats {
             passes: scopes.iter().map(|s| PassTime { name: s.name.clone(), gpu_ms: s.gpu_ms }).collect(),
             reused: slot.reused,

@@ -17,6 +17,15 @@ pub(super) fn check_smooth_trims(data: &SceneData, settings: SceneRequest) -> Re
     refused.map_or(Ok(()), |what| Err(RenderError::SmoothTrims(what)))
 }
 
+/// Ambient occlusion has a radius, and one sample.
+pub(super) fn check_ambient(settings: SceneSettings) -> Result<(), RenderError> {
+    match settings.ambient {
+        Some(radius) if !(radius.is_finite() && radius > 0.0) => Err(RenderError::AmbientRadius(radius)),
+        Some(_) if settings.samples != Samples::One => Err(RenderError::AmbientSamples),
+        _ => Ok(()),
+    }
+}
+
 /// The direction towards the sun is finite and has a length.
 pub(super) fn check_sun(settings: SceneSettings) -> Result<(), RenderError> {
     let nowhere = settings.sun.filter(|s| !s.is_finite() || *s == glam::DVec3::ZERO);

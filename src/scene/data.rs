@@ -10,7 +10,7 @@ use super::in_sight::{PlacedBox, boxes};
 use super::instance::{LivePart, Shown, placed_part, stretch};
 use super::link::link;
 use super::mesh::Meshes;
-use super::parts::{PlacedPart, Told, each_made};
+use super::parts::{PlacedPart, Told, drawn_as_faces, each_made};
 use super::request::SceneRequest;
 use super::solids::{Lists, SolidData, UndrawnSolid};
 use super::sun::SunData;
@@ -23,7 +23,6 @@ use crate::picture::SceneSettings;
 use crate::picture::{Highlight, Samples, Smooth, TakenWay};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
-use std::borrow::Cow;
 use std::ops::Range;
 
 /// Patches below which it is not worth while to ask which of them lie behind others.
@@ -91,7 +90,9 @@ pub(crate) struct SceneData {
     /// Of each pixel.
     pub samples: Samples,
     /// Which borders are wanted smooth.
-    smooth: Smooth,
+    pub(super) smooth: Smooth,
+    /// Radius of ambient occlusion, where it is wanted.
+    pub ambient: Option<f64>,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
     /// Of each placement: its patches.
@@ -227,6 +228,7 @@ impl SceneData {
             way: Some(way),
             samples: settings.samples,
             smooth: settings.smooth,
+            ambient: settings.ambient,
             edit,
             ..Self::default()
         };
@@ -336,17 +338,6 @@ impl SceneData {
     /// How faces are trimmed; `None` when no patch is.
     pub(crate) fn trim_way(&self) -> Option<TakenWay> {
         self.way.filter(|_| self.has_trimmed)
-    }
-
-    /// Pass `coverage` mixes pixels at the borders of trimmed faces: there are some that are seen themselves.
-    pub(crate) fn smooths_trims(&self) -> bool {
-        self.smooth == Smooth::Trims && self.has_patches && self.trim_way() == Some(TakenWay::Exact)
-    }
-
-    /// Pass `border_mix` mixes pixels at the borders of faces: there are some, and the picture is of one sample, and opaque.
-    pub(crate) fn smooths_borders(&self) -> bool {
-        let alone = self.samples == Samples::One && !self.is_layered;
-        self.smooth == Smooth::Borders && self.has_patches && alone
     }
 
     /// Patches may lie behind others, and enough of them to ask. Those of operands are crossed whatever lies before them,
@@ -498,14 +489,4 @@ impl SceneData {
             repeat(&mut self.curve_items, curves);
         }
     }
-}
-
-/// The model without the instances that are followed as solids.
-fn drawn_as_faces<'a>(model: &'a Model, items: Option<&Items>) -> Cow<'a, Model> {
-    let mut model = Cow::Borrowed(model);
-    if let Some(items) = items.filter(|items| items.drawn.contains(&false)) {
-        let mut drawn = items.drawn.iter();
-        model.to_mut().instances.retain(|_| drawn.next() == Some(&true));
-    }
-    model
 }

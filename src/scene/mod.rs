@@ -28,6 +28,7 @@ mod in_sight;
 mod instance;
 mod link;
 mod mesh;
+mod mixed;
 mod parts;
 mod picking;
 mod request;

@@ -20,6 +20,15 @@
 //! meet the box, each between the cell's borders. Where they are more than [`MOST_CELLS`], what the centre sees counts as the
 //! whole pixel.
 
+//! ```text
+//!   what another GPU may make of it, whose quotients and roots err by d = 2.5 * 2^-23 and 2 d:
+//!     way      of a border's point: 4 d pixels to a domain     quotient of the point, slide along the arc, clipping
+//!     share    2 way + 4 d       a pixel has two pixels of border; `swept` is an eighth of a quotient, at 16 ends
+//!     outward  32 way + 32 d     16 chords of two ends
+//! ```
+//!
+//! The arithmetic is `precise`: nothing is contracted, and quotients and roots alone differ.
+
 use super::exact::Exact;
 pub use crate::abi::constants::coverage::{CHORDS, MOST_CELLS};
 use crate::abi::{ARC_UP, ExactArc};
@@ -33,6 +42,27 @@ pub struct Cover {
     pub outward: [f32; 2],
     /// A border runs through the pixel.
     pub cut: bool,
+}
+
+/// How far another GPU's [`Cover`] may be off.
+#[cfg(test)]
+#[derive(Clone, Copy, Debug)]
+pub struct Bound {
+    /// Of the share.
+    pub share: f32,
+    /// Of either number of `outward`; whether a border shorter than this cuts the pixel is open.
+    pub outward: f32,
+}
+
+#[cfg(test)]
+impl Bound {
+    /// Of a pixel.
+    pub fn of(along: Along) -> Self {
+        const D: f32 = 2.5 * f32::EPSILON;
+        let pixels = along.as_flattened().iter().fold(0.0f32, |most, x| most.max(x.abs()));
+        let way = 4.0 * D * pixels;
+        Self { share: 2.0 * way + 4.0 * D, outward: 32.0 * (way + D) }
+    }
 }
 
 /// The pixel's length and width in the domain's directions: how far the pixel moves with u, and with v.

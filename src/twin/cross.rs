@@ -10,6 +10,18 @@
 //!
 //! A scan line has a row in each bin that is seen (`bins.rs`).
 //!
+//! ```text
+//!   what another GPU may make of u:   point + min(|Δu|, |Δu / Δv| (line + 2 point)) + 2 d |Δu|
+//!     d      a quotient's error: 2.5 units in the last place, 2.5 * 2^-23
+//!     point  of a chord's end: 0 at the curve's ends; else 2 d along a straight line, (3 degree + 2) d
+//!     line   of a scan line's v: two quotients of numbers up to 1, 2.5 d
+//! ```
+//!
+//! The arithmetic is `precise`: nothing is contracted, and quotients alone differ. Of an inner point of a curve these are the
+//! parameter, the quotients of its binomials, and that of the weight. Its speed and the spread of its control points are
+//! taken as one and a half domains. `u` is kept between the chord's ends, so it errs by no more than their distance. A scan
+//! line nearer to a chord's end than `line + point` may cross the chord beside it instead: `u` is anywhere along that one.
+//!
 //! An intercept is `u` as order-preserving bits, its lowest bit the direction: 1 upwards. In which
 //! order a row receives its intercepts is left to the GPU; the rows compare as sets.
 
@@ -26,7 +38,7 @@ use crate::abi::{BORDER_BANDS, Frame, StripRows};
 pub fn count(frame: &Frame, scene: &Scene<'_>, strips: &[StripRows], segment_starts: &[u32]) -> (Vec<u32>, Vec<i32>) {
     let mut counts = vec![0; frame.row_capacity as usize];
     let mut windings = vec![0; frame.row_capacity as usize];
-    crossings(frame, scene, strips, segment_starts, |chord, row, _| {
+    crossings(frame, scene, strips, segment_starts, |chord, (row, _), _| {
         counts[row] += 1;
         if chord.rows.bins > 1 {
             windings[row] += if chord.upwards { 1 } else { -1 };
@@ -45,13 +57,44 @@ pub fn insert(
     row_counts: &mut [u32],
     intercepts: &mut [u32],
 ) {
-    crossings(frame, scene, strips, segment_starts, |_, row, intercept| {
+    crossings(frame, scene, strips, segment_starts, |_, (row, _), intercept| {
         row_counts[row] -= 1;
         let at = (row_starts[row] + row_counts[row]) as usize;
         if at < frame.intercept_capacity as usize {
             intercepts[at] = intercept;
         }
     });
+}
+
+/// Row, intercept, and how far from it another GPU's may be; infinite where another chord may have it.
+#[cfg(test)]
+pub fn bounded(
+    frame: &Frame,
+    scene: &Scene<'_>,
+    strips: &[StripRows],
+    segment_starts: &[u32],
+) -> Vec<(usize, u32, f32)> {
+    let mut all = Vec::new();
+    crossings(frame, scene, strips, segment_starts, |chord, (row, v), intercept| {
+        let [across, up] = [0, 1].map(|axis| (chord.high[axis] - chord.low[axis]).abs());
+        let (point, line) = (chord.point_error, 2.5 * QUOTIENT_ERROR);
+        let slid = (across / up * (line + 2.0 * point)).min(across);
+        let is_at_end = [chord.low, chord.high].iter().any(|end| (end[1] - v).abs() <= line + point);
+        let bound = if is_at_end { f32::INFINITY } else { point + slid + 2.0 * QUOTIENT_ERROR * across };
+        all.push((row, intercept, bound));
+    });
+    all
+}
+
+/// Of a quotient, relative: 2.5 units in the last place (Vulkan 1.3, appendix A, "Precision and Operation of SPIR-V
+/// Instructions").
+#[cfg(test)]
+const QUOTIENT_ERROR: f32 = 2.5 * f32::EPSILON;
+
+/// Of an inner point of a curve, in its domain.
+#[cfg(test)]
+fn point_error(degree: u32) -> f32 {
+    if degree == 1 { 2.0 * QUOTIENT_ERROR } else { (3 * degree + 2) as f32 * QUOTIENT_ERROR }
 }
 
 /// Order-preserving bits of a number.
@@ -91,6 +134,9 @@ struct Chord {
     strips: f32,
     bins: u32,
     rows: StripRows,
+    /// How far another GPU may have its ends.
+    #[cfg(test)]
+    point_error: f32,
 }
 
 impl Chord {
@@ -105,13 +151,13 @@ impl Chord {
     }
 }
 
-/// Row and intercept of every crossing, segment by segment.
+/// Row, `v` of its scan line, and intercept of every crossing, segment by segment.
 fn crossings(
     frame: &Frame,
     scene: &Scene<'_>,
     strips: &[StripRows],
     segment_starts: &[u32],
-    mut visit: impl FnMut(&Chord, usize, u32),
+    mut visit: impl FnMut(&Chord, (usize, f32), u32),
 ) {
     chords(frame, scene, strips, segment_starts, |chord| {
         let (a, b, mu) = (chord.low, chord.high, chord.rows.lines as f32);
@@ -134,7 +180,7 @@ fn crossings(
             if bin > chord.rows.last_bin() || row >= frame.row_capacity {
                 continue;
             }
-            visit(chord, row as usize, intercept | u32::from(chord.upwards));
+            visit(chord, (row as usize, v), intercept | u32::from(chord.upwards));
         }
     });
 }
@@ -156,13 +202,26 @@ fn chords(
             let to = curve_point(&curve, scene.curve_points, i + 1, n);
             let upwards = from[1] < to[1];
             let (low, high) = if upwards { (from, to) } else { (to, from) };
+            #[cfg(test)]
+            let point_error = if n > 1 { point_error(curve.degree) } else { 0.0 };
             let (first, last) = strips_of(low[1], high[1], face.strip_count());
             let bins = face.bin_count();
             for k in first..=last {
                 let item = placed.first_bin + k * bins;
                 let rows = strips[item as usize];
                 let (of_face, strip_count) = (k as f32, face.strip_count() as f32);
-                let chord = Chord { low, high, upwards, item, of_face, strips: strip_count, bins, rows };
+                let chord = Chord {
+                    low,
+                    high,
+                    upwards,
+                    item,
+                    of_face,
+                    strips: strip_count,
+                    bins,
+                    rows,
+                    #[cfg(test)]
+                    point_error,
+                };
                 let is_right = bin_of(chord.reach().0, bins) > rows.last_bin();
                 let is_left = bin_of(curve.range_u[1], bins) < rows.first_bin;
                 if rows.lines > 0 && !is_right && !is_left {

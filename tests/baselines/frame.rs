@@ -1,6 +1,6 @@
 //! Frames trimmed by each baseline against the exact reference, watched by the validation layers.
 
-use crate::watched::{self, assert_silent};
+use crate::watched::{self, assert_silent, sample};
 use glam::{DAffine3, DVec3};
 use selvedge::baselines::pretessellated::pretessellated;
 use selvedge::baselines::{SceneOptions, Sorted, TrimMethod, many_holes, texture};
@@ -10,16 +10,11 @@ use selvedge::model::{Camera, Instance, Model, Projection};
 use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings, TrimWay};
 use selvedge::renderer::RenderError;
 use selvedge_check::{JudgeOptions, Judgement, Tracer, judge};
-use std::path::Path;
 
 const SIZE: (u32, u32) = (320, 240);
 
 fn camera(model: &Model) -> Camera {
     Camera::around(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 35f64.to_radians(), SIZE)
-}
-
-fn sample(name: &str) -> Model {
-    selvedge_io::import::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("samples").join(name)).unwrap().model
 }
 
 fn panel() -> Model {

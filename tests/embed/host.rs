@@ -125,6 +125,8 @@ impl Host {
             allocator: Arc::clone(&self.allocator),
             debug_names: true,
             pipeline_statistics: false,
+            pipeline_cache: vk::PipelineCache::null(),
+            memory_budget: None,
         }
     }
 

@@ -5,6 +5,7 @@
 //! mesa-vulkan-drivers vulkan-validationlayers`. Without them these tests fail and say so.
 
 mod accuracy;
+mod ambient;
 mod bands;
 mod borders;
 #[path = "../shapes/cages.rs"]

@@ -16,6 +16,7 @@ const BY_TABLE: SceneSettings = SceneSettings {
     editable: false,
     samples: Samples::One,
     smooth: Smooth::None,
+    ambient: None,
     thickness: false,
     highlight: None,
     sun: None,

@@ -2,22 +2,16 @@
 //! golden image would hold, measured in pixels of shift instead of bits.
 
 use crate::support::{assert_silent, render, watched};
+use crate::watched::sample;
 use glam::{DVec2, DVec3};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::Picture;
 use selvedge_check::{JudgeOptions, Judgement, Tracer, judge};
-use std::path::Path;
 
 /// Small, so that features of a pixel and below are met often.
 const SIZE: (u32, u32) = (480, 300);
 /// From above and beside, and from a low angle.
 const VIEWS: [DVec3; 2] = [DVec3::new(1.0, -1.6, 1.1), DVec3::new(-1.2, -1.0, 0.35)];
-
-/// A missing sample fails: its absence is not a pass.
-fn sample(name: &str) -> Model {
-    let path = Path::new(env!("CARGO_MANIFEST_DIR")).join("samples").join(name);
-    selvedge_io::import::open(&path).unwrap().model
-}
 
 fn camera(model: &Model, from: DVec3) -> Camera {
     Camera::around(model.control_bounds(), from, DVec3::Z, 35f64.to_radians(), SIZE)

@@ -111,7 +111,11 @@ fn only_smooth_borders_have_what_they_need() {
         renderer.render(&perspective(model, SIZE), &FrameSettings::default(), Outputs::default()).unwrap();
         let objects = renderer.objects();
         assert_silent(renderer);
-        objects.iter().filter(|o| o.starts_with("border ") && *o != "border depths" || *o == "resolved").count()
+        let of_all = ["resolved", "linear_show"];
+        objects
+            .iter()
+            .filter(|o| o.starts_with("border ") && *o != "border depths" || of_all.contains(&o.as_str()))
+            .count()
     };
     let smooth = settings(Smooth::Borders, TrimWay::Auto);
     // four passes, the image, the list and its dispatch

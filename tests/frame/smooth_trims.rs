@@ -25,6 +25,7 @@ const fn plain() -> SceneSettings {
         editable: false,
         samples: Samples::One,
         smooth: Smooth::None,
+        ambient: None,
         thickness: false,
         highlight: None,
         sun: None,
@@ -205,7 +206,7 @@ fn a_loop_that_is_edited_is_smooth_at_once() {
 
 #[test]
 fn what_does_not_go_with_it_is_refused() {
-    let mut renderer = HeadlessRenderer::new(&HeadlessOptions { device: None, validation: false }).unwrap();
+    let mut renderer = HeadlessRenderer::new(&HeadlessOptions::default()).unwrap();
     let mut refused = |settings: SceneSettings| match renderer.upload_with(&shapes::beside(), settings) {
         Err(HeadlessError::Render(RenderError::SmoothTrims(what))) => what.to_owned(),
         other => panic!("{other:?}"),

@@ -3,11 +3,11 @@
 
 use crate::shapes::borders;
 use crate::support::{assert_identical, assert_silent, render, watched};
+use crate::watched::sample;
 use glam::{DAffine3, DVec2, DVec3};
 use selvedge::model::{Camera, Model, Projection};
 use selvedge::picture::Picture;
 use selvedge_check::{JudgeOptions, Tracer, judge};
-use std::path::Path;
 
 const SIZE: (u32, u32) = (160, 120);
 
@@ -64,10 +64,6 @@ fn keeps_the_promise(model: &Model, times: f64) {
     // known: a million times closer to where face 0 begins, one strip of its trim table wants more lines than there are
     assert!(clamps <= u64::from(times > 1e5), "{clamps} clamps");
     assert_silent(renderer);
-}
-
-fn sample(name: &str) -> Model {
-    selvedge_io::import::open(&Path::new(env!("CARGO_MANIFEST_DIR")).join("samples").join(name)).unwrap().model
 }
 
 #[test]

@@ -3,7 +3,7 @@
 use crate::support::{assert_silent, watched};
 use ash::vk;
 use selvedge::gpu::{
-    Binding, Buffer, BufferInfo, ComputeInfo, GpuError, Image, ImageInfo, MemoryLocation, Pipeline, Pool,
+    Binding, BudgetOwner, Buffer, BufferInfo, ComputeInfo, GpuError, Image, ImageInfo, MemoryLocation, Pipeline, Pool,
 };
 use selvedge::headless::{HeadlessDevice, HeadlessError, HeadlessOptions, Severity};
 use selvedge::internals::scan::Scan;
@@ -84,7 +84,7 @@ fn a_buffer_beyond_the_device_is_refused_by_name() {
 
 #[test]
 fn an_unknown_device_is_answered_with_those_there_are() {
-    let options = HeadlessOptions { device: Some("no such device".to_owned()), validation: false };
+    let options = HeadlessOptions { device: Some("no such device".to_owned()), ..Default::default() };
     match HeadlessDevice::new(&options) {
         Err(HeadlessError::NoSuchDevice { wanted, present }) => {
             assert_eq!(wanted, "no such device");
@@ -140,4 +140,77 @@ fn pipelines_of_one_description_are_one() {
     assert!(device.pipeline_time() > before, "made once more");
     drop((anew, other));
     assert_silent(watched);
+}
+
+/// What does not fit is refused before it is allocated, and told with what there is; then less fits.
+#[test]
+fn more_than_the_budget_is_refused_before_it_is_allocated() {
+    const MIB: u64 = 1 << 20;
+    let options = HeadlessOptions { validation: true, memory_budget: Some(2 * MIB), ..Default::default() };
+    let watched = HeadlessDevice::new(&options).unwrap();
+    let device = watched.device();
+    let make = |name, bytes| Buffer::storage(device, Pool::Transient, name, bytes);
+    let first = make("first", MIB).unwrap();
+    let taken: u64 = device.pool_bytes().iter().map(|(_, bytes)| bytes).sum();
+    let refused = make("second", MIB + MIB / 2).unwrap_err();
+    let GpuError::OverBudget { resource, bytes, left, most, of } = &refused else { panic!("{refused}") };
+    assert_eq!((resource.as_str(), *left, *most, *of), ("second", 2 * MIB - taken, 2 * MIB, BudgetOwner::Host));
+    assert!(*bytes >= MIB + MIB / 2 && refused.is_out_of_memory() && refused.to_string().contains("smaller picture"));
+    assert_eq!(device.pool_bytes().iter().map(|(_, bytes)| bytes).sum::<u64>(), taken, "nothing was allocated");
+    assert_eq!(device.objects(), ["first"]);
+    let image = ImageInfo {
+        name: "image",
+        size: (1024, 1024),
+        format: vk::Format::R32_UINT,
+        usage: vk::ImageUsageFlags::TRANSFER_SRC,
+        pool: Pool::Transient,
+    };
+    assert!(matches!(Image::new(device, &image), Err(GpuError::OverBudget { .. })), "images are counted, too");
+    drop(first);
+    drop(make("second", MIB + MIB / 2).expect("there is room now"));
+    assert_silent(watched);
+}
+
+/// Without a budget of the host's a heap bounds what is taken: no device has an exabyte.
+#[test]
+fn what_no_heap_has_is_refused() {
+    let watched = watched();
+    let usage = vk::BufferUsageFlags::TRANSFER_DST;
+    let info =
+        BufferInfo { name: "giant", bytes: 1 << 40, usage, pool: Pool::Transient, location: MemoryLocation::Device };
+    match Buffer::new(watched.device(), &info) {
+        Err(GpuError::OverBudget { resource, of: BudgetOwner::Heap, left, most, .. }) => {
+            assert!(resource == "giant" && left <= most && most > 0);
+        }
+        Err(GpuError::OutOfMemory { .. }) => {} // the driver refuses the buffer itself
+        other => panic!("{:?}", other.map(|buffer| buffer.bytes())),
+    }
+    drop(watched);
+}
+
+/// Pipelines are kept in a file from one device to the next; a file that is not one is ignored.
+#[test]
+fn pipelines_are_kept_in_a_file() {
+    let folder = std::env::temp_dir().join(format!("selvedge-lifetimes-{}", std::process::id()));
+    let _ = std::fs::remove_dir_all(&folder);
+    let options =
+        HeadlessOptions { validation: true, pipeline_folder: Some(folder.clone()), ..HeadlessOptions::default() };
+    let kept = || std::fs::read_dir(&folder).unwrap().map(|entry| entry.unwrap().path()).collect::<Vec<_>>();
+    let run = || {
+        let watched = HeadlessDevice::new(&options).unwrap();
+        drop(Scan::new(watched.device(), true).unwrap());
+        assert_silent(watched);
+    };
+    run();
+    let [file] = kept().try_into().expect("one device, one file");
+    let whole = std::fs::read(&file).unwrap();
+    run();
+    assert_eq!(kept().len(), 1);
+    std::fs::write(&file, &whole[..whole.len() / 2]).unwrap();
+    run();
+    assert_eq!(std::fs::read(&file).unwrap()[..8], whole[..8], "written anew");
+    std::fs::write(&file, b"no pipelines at all").unwrap();
+    run();
+    assert_eq!(std::fs::read(&file).unwrap().len(), whole.len());
+    std::fs::remove_dir_all(&folder).unwrap();
 }

@@ -6,7 +6,7 @@ use selvedge::headless::{HeadlessDevice, HeadlessOptions};
 
 /// A device under validation and synchronisation validation.
 pub fn watched() -> HeadlessDevice {
-    let options = HeadlessOptions { device: None, validation: true };
+    let options = HeadlessOptions { validation: true, ..Default::default() };
     HeadlessDevice::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"))
 }
 

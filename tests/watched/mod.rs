@@ -2,6 +2,16 @@
 
 use selvedge::gpu::LowerLimits;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
+use selvedge::model::Model;
+use std::path::Path;
+
+/// A sample of the repository. A missing one fails: its absence is not a pass.
+#[allow(dead_code)] // not every binary draws samples
+pub fn sample(name: &str) -> Model {
+    // as cargo runs the test; of a binary that was packed the place where it was built is not there
+    let root = std::env::var("CARGO_MANIFEST_DIR").unwrap_or_else(|_| env!("CARGO_MANIFEST_DIR").to_owned());
+    selvedge_io::import::open(&Path::new(&root).join("samples").join(name)).unwrap().model
+}
 
 /// A renderer without a model, under validation and synchronisation validation.
 pub fn renderer() -> HeadlessRenderer {
@@ -10,7 +20,7 @@ pub fn renderer() -> HeadlessRenderer {
 
 /// The same on a device with lower limits.
 pub fn limited(lower: LowerLimits) -> HeadlessRenderer {
-    let options = HeadlessOptions { device: None, validation: true };
+    let options = HeadlessOptions { validation: true, ..Default::default() };
     HeadlessRenderer::limited(&options, lower).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"))
 }
 

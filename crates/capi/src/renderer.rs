@@ -111,7 +111,7 @@ pub unsafe extern "C" fn selvedge_renderer_new(
         let (place, options) = unsafe { (place(renderer)?, taken(options, usual)?) };
         // SAFETY: as the caller promises
         let device = unsafe { text("the device's name", options.device) }?.map(str::to_owned);
-        let worker = Worker::new(DeviceOptions { device, validation: options.validation != 0 })?;
+        let worker = Worker::new(DeviceOptions { device, validation: options.validation != 0, ..Default::default() })?;
         *place = Box::into_raw(Box::new(SelvedgeRenderer { worker }));
         Ok(())
     })

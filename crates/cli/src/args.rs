@@ -1,5 +1,6 @@
 //! The arguments of the command line, checked before any file is opened.
 
+mod devices;
 mod draw;
 mod images;
 mod lines;
@@ -10,6 +11,7 @@ mod thumbnail;
 mod view;
 mod write;
 
+pub use devices::DevicesArgs;
 pub use draw::DrawArgs;
 pub use images::Aov;
 pub use lines::LineArgs;
@@ -28,8 +30,7 @@ use clap::{Args, Parser, Subcommand, ValueEnum};
 use glam::DVec3;
 use selvedge::picture::{Levels, Samples, Smooth, SolidWay, Style, TrimWay};
 use selvedge_io::import::Import;
-use selvedge_session::Backdrop;
-use selvedge_session::Directions;
+use selvedge_session::{Ambient, Backdrop, Directions};
 use std::path::PathBuf;
 use std::str::FromStr;
 
@@ -81,6 +82,9 @@ pub enum Command {
     /// Write a model in another form, so that it is read once and opens fast; needs no GPU
     #[command(after_help = STATUSES)]
     Convert(ConvertArgs),
+    /// List Vulkan devices: what each lacks, and the limits that matter
+    #[command(after_help = STATUSES)]
+    Devices(DevicesArgs),
     /// Show models in a window: turn, pick, measure, cut
     #[cfg(feature = "view")]
     #[command(after_help = STATUSES)]
@@ -117,6 +121,10 @@ pub struct LookArgs {
     /// the eye blue) or zebra (stripes of a striped room, reflected: they break where surfaces do)
     #[arg(long, value_name = "STYLE", default_value = "shaded")]
     pub style: Style,
+    /// Ambient occlusion: what lies close to other things is darker. The radius beyond which nothing is close, in units of the
+    /// model; auto is a twenty-fifth of its diagonal. Without it auto, but none with several samples
+    #[arg(long, value_name = "RADIUS|auto|none")]
+    pub ao: Option<Ambient>,
 }
 
 impl LookArgs {
@@ -168,7 +176,7 @@ pub struct RenderArgs {
     /// --edges: number of the edge whose line covers the pixel, 0 is none), part and instance (u32, H x W, counted from 1, 0 is none)
     #[arg(long, value_name = "IMAGE=FILE.npy")]
     pub aov: Vec<Aov>,
-    /// Write statistics as JSON, of the same frame drawn once more; what the driver compiles for the first one stands apart, as `first_frame`
+    /// Write statistics as JSON, of the same frame drawn once more; what the driver compiles for the first one stands apart, as `first_frame`, and `objects` are the pipelines, buffers and images that exist
     #[arg(long, value_name = "FILE.json")]
     pub stats: Option<PathBuf>,
     /// Write the camera as JSON: eye, target, up, fovy in degrees (or ortho: half the height), size

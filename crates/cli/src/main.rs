@@ -8,6 +8,7 @@
 //!   export   model ─▶ STEP file                draw    lines of a view ─▶ SVG
 //!   view     models in a window
 //!   thumbnail model ─▶ small picture
+//!   devices  what the system's GPUs offer, and lack
 //! ```
 //!
 //! Results go to standard output, everything else to standard error.
@@ -18,6 +19,7 @@ mod camera;
 mod check;
 mod convert;
 mod cut;
+mod device;
 mod draw;
 mod edit;
 mod export;
@@ -86,6 +88,7 @@ fn main() -> ExitCode {
         Command::Trims(args) => trims::run(args),
         Command::Thumbnail(args) => thumbnail::run(args),
         Command::Convert(args) => convert::run(args),
+        Command::Devices(args) => device::run(args),
         #[cfg(feature = "view")]
         Command::View(args) => view::run(args),
     };

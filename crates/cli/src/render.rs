@@ -69,7 +69,8 @@ fn drawn(
     // the renderer shares it: large models are there once
     let model = Arc::new(std::mem::take(&mut import.model));
     let begun = Instant::now();
-    let mut session = Session::of_one(device()?, &args.frame, &import, &model, (&args.edges, args.lines.settings()?))?;
+    let looks = (&args.edges, args.look.ao, args.lines.settings()?);
+    let mut session = Session::of_one(device()?, &args.frame, &import, &model, looks)?;
     let upload_s = begun.elapsed().as_secs_f64();
     let backdrop = args.look.backdrop(&import);
     session.look(backdrop.colour(), args.look.style);

@@ -2,14 +2,14 @@
 
 use crate::args::{EdgeArgs, FrameArgs, ReadArgs, SubdivideArgs};
 use crate::progress::{advancing, during, importing};
-use crate::{camera, openscad, output, target};
+use crate::{camera, device, openscad, output, target};
 use anyhow::{Error, Result, anyhow, bail};
 use glam::DVec3;
-use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
+use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use selvedge::picture::{EdgeSettings, FrameSettings, FrameStats, Highlight, Outputs, Picture, SceneSettings, Style};
 use selvedge_io::import::{self, Facets, Folders, Import, ImportError, Options, Stage};
-use selvedge_session::{SessionError, guarded};
+use selvedge_session::{Ambient, SessionError, guarded};
 use serde::Serialize;
 use std::io;
 use std::path::Path;
@@ -126,18 +126,27 @@ pub struct Session {
 /// What the first frame took: drivers compile for it, and for no other one.
 #[derive(Clone, Copy, Debug, Serialize)]
 pub struct FirstFrame {
-    /// The driver's time for the pipelines of the scene, made one by one.
+    /// The driver's time for the pipelines of the scene, each by itself, though several are made at once.
     pub pipelines_ms: f64,
     /// From the call to the picture in host memory, with what the driver compiles when it first runs a shader.
     pub wall_ms: f64,
 }
 
-/// A frame's statistics, and what the session's first one took.
+/// A frame's statistics, what the session's first one took, and what exists for the scene.
 #[derive(Debug, Serialize)]
 pub struct Measured {
     #[serde(flatten)]
     pub frame: FrameStats,
     pub first_frame: Option<FirstFrame>,
+    pub objects: Vec<Object>,
+}
+
+/// A buffer, an image or a pipeline.
+#[derive(Debug, Serialize)]
+pub struct Object {
+    pub name: String,
+    /// Of memory; 0 for a pipeline.
+    pub bytes: u64,
 }
 
 /// Opens the device that is asked for.
@@ -147,7 +156,7 @@ pub fn opened(args: &FrameArgs) -> Result<HeadlessRenderer> {
 
 /// The same without a word, beside something else.
 pub fn device(args: &FrameArgs) -> Result<HeadlessRenderer> {
-    Ok(HeadlessRenderer::new(&HeadlessOptions { device: args.device.clone(), validation: args.validation })?)
+    Ok(HeadlessRenderer::new(&device::options(args.device.as_deref(), args.validation))?)
 }
 
 impl Session {
@@ -169,10 +178,15 @@ impl Session {
         args: &FrameArgs,
         import: &Import,
         model: &Arc<Model>,
-        (edges, lines): (&EdgeArgs, Option<EdgeSettings>),
+        (edges, ao, lines): (&EdgeArgs, Option<Ambient>, Option<EdgeSettings>),
     ) -> Result<Self> {
-        let scene =
-            SceneSettings { samples: edges.samples, smooth: edges.smooth(), edges: lines, ..SceneSettings::default() };
+        let scene = SceneSettings {
+            samples: edges.samples,
+            smooth: edges.smooth(),
+            ambient: Ambient::radius(ao, edges.samples, model),
+            edges: lines,
+            ..SceneSettings::default()
+        };
         Self::with(on, args, import, scene, Arc::clone(model))
     }
 
@@ -231,7 +245,8 @@ impl Session {
         let again = during("drawing again, to measure", || self.renderer.render(camera, &settings, outputs))?.stats;
         let mut frame = again;
         frame.retries = first.retries;
-        Ok(Measured { frame, first_frame: self.first_frame })
+        let objects = self.renderer.object_bytes().into_iter().map(|(name, bytes)| Object { name, bytes }).collect();
+        Ok(Measured { frame, first_frame: self.first_frame, objects })
     }
 
     /// Whether any pixel of the picture shows the model.

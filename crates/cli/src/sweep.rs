@@ -19,12 +19,12 @@ use crate::args::{Size, SubdivideArgs, SweepArgs};
 use crate::camera::closer;
 use crate::progress::during;
 use crate::target::{self, CSV, Target};
-use crate::{Outcome, output, session, verdict};
+use crate::{Outcome, device, output, session, verdict};
 use anyhow::{Result, bail};
 use glam::{DAffine3, DVec3};
 use selvedge::baselines::SceneOptions;
 use selvedge::baselines::factors::Seen;
-use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
+use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameSettings, FrameStats, Outputs, SceneSettings};
 use selvedge_check::Tracer;
@@ -130,7 +130,7 @@ fn models(args: &SweepArgs) -> Result<Vec<(String, Model)>> {
 }
 
 fn renderer(args: &SweepArgs) -> Result<HeadlessRenderer> {
-    Ok(HeadlessRenderer::new(&HeadlessOptions { device: args.device.clone(), validation: false })?)
+    Ok(HeadlessRenderer::new(&device::options(args.device.as_deref(), false))?)
 }
 
 /// With the model in as many scenes as the ways to divide ask for.

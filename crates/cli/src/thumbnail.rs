@@ -4,12 +4,11 @@
 //! with any ending, and the caller adds what the thumbnail standard wants in its PNG.
 
 use crate::args::ThumbnailArgs;
-use crate::{Outcome, target};
+use crate::{Outcome, device, target};
 use anyhow::{Error, Result};
 use selvedge::picture::{FrameSettings, Outputs, Samples, SceneSettings};
 use selvedge_session::{
-    Backdrop, DeviceOptions, Drawer, Job, Loaded, NAMED, ReadOptions, SessionError, Source, Stop, Viewpoint, lines,
-    read, write_png,
+    Backdrop, Drawer, Job, Loaded, NAMED, ReadOptions, SessionError, Source, Stop, Viewpoint, lines, read, write_png,
 };
 use std::sync::Arc;
 
@@ -31,7 +30,7 @@ pub fn run(args: &ThumbnailArgs) -> Result<Outcome> {
         outputs: Outputs::default(),
         backdrop: Backdrop::Nothing,
     };
-    let mut drawer = Drawer::new(&DeviceOptions { device: args.device.clone(), validation: false }).map_err(told)?;
+    let mut drawer = Drawer::new(&device::options(args.device.as_deref(), false)).map_err(told)?;
     let picture = drawer.draw(&job, &stop).map_err(told)?;
     target::write(&args.output, |to| Ok(write_png(to, picture.size, &picture.colour)?))?;
     Ok(Outcome::Good)

@@ -124,7 +124,7 @@ impl Renderer {
     #[new]
     #[pyo3(signature = (device, validation))]
     fn new(py: Python<'_>, device: Option<String>, validation: bool) -> PyResult<Self> {
-        let worker = apart(py, move |_| Worker::new(DeviceOptions { device, validation }))?;
+        let worker = apart(py, move |_| Worker::new(DeviceOptions { device, validation, ..Default::default() }))?;
         Ok(Self { worker: RwLock::new(Some(worker)) })
     }
 

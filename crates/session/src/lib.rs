@@ -11,6 +11,7 @@
 #![warn(missing_docs)]
 #![forbid(unsafe_code)]
 
+mod ambient;
 mod backdrop;
 mod camera;
 mod directions;
@@ -24,6 +25,7 @@ mod tree;
 mod verdict;
 mod worker;
 
+pub use ambient::Ambient;
 pub use backdrop::{Backdrop, colour};
 pub use camera::{CameraFile, FOV_DEG, FROM, Lens, Pinhole, Viewpoint, bounds, fitted, whole};
 pub use directions::{Direction, Directions, NAMED};

@@ -1,7 +1,7 @@
 //! Pass `border_mix`: pixels at the borders of faces are mixed from the colours around them.
 //!
 //! ```text
-//!   visibility, resolved ──find──▶ list of pixels ──mix──▶ their means ──write──▶ resolved ──show──▶ the host's colour
+//!   visibility, resolved ──find──▶ list of pixels ──mix──▶ their means ──write──▶ resolved
 //!
 //!        ┌────────────┐    sixteen points of the pixel: which of the surfaces that the pixels around see is nearest
 //!        │·  A  ╲     │    there, by its exact point and its trims?
@@ -10,16 +10,14 @@
 //! ```
 //!
 //! Reads: everything that the bindings name but what it writes. Writes: `find`: `list` and `dispatch`; `mix`: `list`;
-//! `write`: `resolved`, at pixels of the list; `show`: the colour target, over what the host keeps.
+//! `write`: `resolved`, at pixels of the list.
 //! Where a border is straight and pixels around see both of its sides, sixteen points know its share of the pixel to 0.14,
 //! and to 0.03 on average over all straight lines.
 
 use crate::bindings::{Placed, Primitives};
-use crate::frame::common::draw::Draw;
 use crate::frame::common::kernel::Kernel;
-use crate::gpu::{Attachment, Blend, Buffer, ColourTarget, Commands, Device, GpuError, Image, Pipeline, Resource};
+use crate::gpu::{Buffer, Commands, Device, GpuError, Image, Resource};
 use crate::shaders::{self, BORDER_MIX_PLAIN, TrimTest, constant};
-use ash::vk;
 
 /// Columns and rows of the picture that a workgroup of the first step looks for borders in.
 const PART: [u32; 2] = [62, 16];
@@ -42,12 +40,11 @@ pub(crate) struct Kinds<'a> {
     pub volume: Option<u32>,
 }
 
-/// The pass, in its four steps.
+/// The pass, in its three steps.
 pub(crate) struct BorderMix {
     find: Kernel,
     mix: Kernel,
     write: Kernel,
-    show: Pipeline,
 }
 
 /// Its buffers and images.
@@ -68,7 +65,7 @@ pub(crate) struct Bindings<'a> {
 
 impl BorderMix {
     /// `None` where the way to trim smooths no borders.
-    pub(crate) fn new(device: &Device, colour: vk::Format, kinds: &Kinds<'_>) -> Result<Option<Self>, GpuError> {
+    pub(crate) fn new(device: &Device, kinds: &Kinds<'_>) -> Result<Option<Self>, GpuError> {
         let Some([alone, within]) = kinds.test.map_or(Some(BORDER_MIX_PLAIN), |test| test.border_mix) else {
             return Ok(None);
         };
@@ -83,13 +80,10 @@ impl BorderMix {
         let way = kinds.test.map_or("no trims", |test| test.way);
         let volume = if kinds.volume.is_some() { ", within a volume" } else { "" };
         let shader = if kinds.volume.is_some() { within } else { alone };
-        let colour = [ColourTarget { format: colour, blend: Blend::Over }];
-        let show = Draw::new("border show", &shaders::RESOLVE_VERT, &shaders::BORDER_SHOW_FRAG);
         Ok(Some(Self {
             find: Kernel::new(device, "border find", &shaders::BORDER_FIND_COMP, &[others])?,
             mix: Kernel::new(device, &format!("border mix ({way}{volume})"), shader, &constants)?,
             write: Kernel::new(device, "border write", &shaders::BORDER_WRITE_COMP, &[])?,
-            show: Draw { colour: &colour, ..show }.pipeline(device)?,
         }))
     }
 
@@ -120,14 +114,5 @@ impl BorderMix {
     pub(crate) fn write(&self, cmd: &Commands<'_>, b: &Bindings<'_>) {
         let resources = [b.frame.into(), b.list.into(), b.dispatch.into(), b.resolved.into()];
         self.write.record_indirect(cmd, &resources, (b.dispatch, 0));
-    }
-
-    /// One triangle over the target, which is kept or zero before.
-    pub(crate) fn show(&self, cmd: &Commands<'_>, b: &Bindings<'_>, colour: Attachment<'_>) {
-        let resources = [b.frame.into(), b.resolved.into()];
-        cmd.rendering(b.visibility.size(), &[colour], None, || {
-            cmd.bind(&self.show, &resources, &[]);
-            cmd.draw(3, 0, 1);
-        });
     }
 }

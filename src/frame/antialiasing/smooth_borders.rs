@@ -1,26 +1,20 @@
 //! Smooth borders of all faces.
 //!
 //! ```text
-//!   resolve ──▶ linear colour and depth ──border_mix──▶ the host's colour
+//!   resolve ──▶ linear colour and depth ──border_mix──▶ linear colour
 //!           ──▶ the host's depth, depth, face, (u, v), normal: those of the pixels' centres, as without it
 //! ```
 
 use super::border_mix::{self, BorderMix, BorderPixel, Dispatch, Kinds};
 use crate::frame::Frame;
-use crate::frame::common::room::{DRAWN_AND_READ, Room};
-use crate::frame::shading::resolve;
-use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, Resource, barrier};
+use crate::frame::common::room::Room;
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Image, Resource, barrier};
 use crate::scene::{SceneData, SolidData};
 use crate::shaders::TrimTest;
 use std::sync::Arc;
 
 /// The pass; `None` where no borders are smoothed.
-pub(crate) fn pass(
-    device: &Device,
-    data: &SceneData,
-    formats: resolve::Formats,
-    test: Option<&TrimTest>,
-) -> Result<Option<BorderMix>, GpuError> {
+pub(crate) fn pass(device: &Device, data: &SceneData, test: Option<&TrimTest>) -> Result<Option<BorderMix>, GpuError> {
     if !data.smooths_borders() {
         return Ok(None);
     }
@@ -31,14 +25,12 @@ pub(crate) fn pass(
         others: data.has_meshes() || data.solids.kinds().is_some(),
         volume: data.volume.as_ref().and_then(SolidData::kinds),
     };
-    BorderMix::new(device, formats.colour, &kinds)
+    BorderMix::new(device, &kinds)
 }
 
 /// The stage.
 pub(crate) struct SmoothBorders {
     pass: Arc<BorderMix>,
-    /// What is mixed: linear colour and depth.
-    pub resolved: Image,
     list: Buffer,
     dispatch: Buffer,
 }
@@ -47,25 +39,29 @@ impl SmoothBorders {
     pub(crate) fn new(room: &Room<'_>, pass: &Arc<BorderMix>) -> Result<Self, GpuError> {
         Ok(Self {
             pass: Arc::clone(pass),
-            resolved: room.image("resolved", resolve::BEHIND_FORMAT, DRAWN_AND_READ)?,
             list: room.structs::<BorderPixel>("border pixels", room.size.0 * room.size.1)?,
             dispatch: room.indirect::<Dispatch>("border dispatch", 1)?,
         })
     }
 
-    /// Pixels at the borders of faces are mixed from what pass `resolve` drew; all go to the host's colour.
-    pub(crate) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, test: &[Resource<'_>]) {
+    /// Pixels at the borders of faces are mixed from what is `resolved`, `written` before; a compute shader writes them.
+    pub(crate) fn record(
+        &self,
+        frame: &Frame<'_>,
+        cmd: &Commands<'_>,
+        (resolved, written): (&Image, Access),
+        test: &[Resource<'_>],
+    ) {
         let (w, r) = (Access::COMPUTE_WRITE, Access::COMPUTE_READ);
-        let shown = Access::FRAGMENT_READ;
         cmd.after(r | Access::INDIRECT_READ, Access::TRANSFER_WRITE);
         cmd.fill(&self.dispatch, 0);
         barrier::buffers(cmd, &[(&self.dispatch, Access::TRANSFER_WRITE, r | w), (&self.list, r, w)]);
-        barrier::images(cmd, &[(&self.resolved, Access::COLOUR_WRITE, r)]);
+        barrier::images(cmd, &[(resolved, written, r)]);
         let bindings = border_mix::Bindings {
             frame: frame.constants,
             placed: frame.scene.placed(frame.views),
             visibility: &frame.stages.visibility.image,
-            resolved: &self.resolved,
+            resolved,
             list: &self.list,
             dispatch: &self.dispatch,
             trim: test,
@@ -75,13 +71,7 @@ impl SmoothBorders {
         barrier::buffers(cmd, &[(&self.dispatch, w, r | Access::INDIRECT_READ), (&self.list, w, r | w)]);
         self.pass.mix(cmd, &bindings);
         barrier::buffers(cmd, &[(&self.list, w, r)]);
-        barrier::images(cmd, &[(&self.resolved, r, w)]);
+        barrier::images(cmd, &[(resolved, r, w)]);
         self.pass.write(cmd, &bindings);
-        barrier::images(cmd, &[(&self.resolved, w, shown)]);
-        let load = match frame.colour[0].load {
-            Load::Discard => Load::ColourF32([0.0; 4]),
-            load => load,
-        };
-        self.pass.show(cmd, &bindings, Attachment { load, ..frame.colour[0] });
     }
 }

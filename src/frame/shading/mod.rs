@@ -1,5 +1,9 @@
 //! Where each kind of thing is seen, and its exact point, normal and light: into the host's targets, or what is mixed later.
 
+pub(crate) mod ambient;
+pub(crate) mod contact;
+pub(crate) mod linear;
+pub(crate) mod linear_show;
 pub(crate) mod numbers;
 pub(crate) mod resolve;
 pub(crate) mod seen_squares;
@@ -61,7 +65,7 @@ fn targets(device: &Device, data: &SceneData, formats: resolve::Formats) -> Resu
     let beside =
         formats.has_aovs() || formats.depth.is_some() || data.thickness || formats.has_numbers() || data.has_lines();
     let into = match data.samples {
-        Samples::One if data.smooths_trims() || data.smooths_borders() => resolve::Destination::Unmixed,
+        Samples::One if data.is_mixed() => resolve::Destination::Unmixed,
         Samples::One if data.is_layered => resolve::Destination::Behind { writes_depth: true },
         Samples::One => resolve::Destination::Targets,
         Samples::Four | Samples::Eight if !beside => return Ok(None),

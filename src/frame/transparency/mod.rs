@@ -88,10 +88,16 @@ impl Transparency {
         self.passes.colour.as_ref().map(|_| &self.behind)
     }
 
-    /// Layers over what pass `resolve` drew, and lengths within solids. Where lists are those of one band, they are
-    /// made again.
-    pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, solids: &SolidParts<'_>, drawing: Drawing) {
-        barrier::images(cmd, &[(&self.behind, Access::COLOUR_WRITE, Access::FRAGMENT_READ)]);
+    /// Layers over what is behind them, `written` before, and lengths within solids. Where lists are those of one band, they
+    /// are made again.
+    pub(super) fn record(
+        &self,
+        frame: &Frame<'_>,
+        cmd: &Commands<'_>,
+        solids: &SolidParts<'_>,
+        (drawing, written): (Drawing, Access),
+    ) {
+        barrier::images(cmd, &[(&self.behind, written, Access::FRAGMENT_READ)]);
         let mut counted_again = false;
         for band in frame.bands() {
             if !band.is_whole {

@@ -13,15 +13,14 @@
 use super::way::{Contender, Way};
 use crate::args::TrimsArgs;
 use crate::progress::during;
-use crate::verdict;
+use crate::{device, verdict};
 use anyhow::Result;
 use glam::DQuat;
 use selvedge::baselines::{SceneOptions, pretessellated::pretessellated, texture};
 use selvedge::gpu::GpuError;
-use selvedge::headless::{HeadlessError, HeadlessOptions, HeadlessRenderer};
+use selvedge::headless::{HeadlessError, HeadlessRenderer};
 use selvedge::model::{Camera, Model};
 use selvedge::picture::{FrameSettings, FrameStats, Outputs};
-use selvedge::renderer::RenderError;
 use selvedge_check::Tracer;
 use serde::Serialize;
 use std::time::Instant;
@@ -112,7 +111,7 @@ impl<'a> Bench<'a> {
     }
 
     fn renderer(&self, model: &Model, contender: Contender, untested: bool) -> Result<HeadlessRenderer> {
-        let options = HeadlessOptions { device: self.args.device.clone(), validation: false };
+        let options = device::options(self.args.device.as_deref(), false);
         let mut renderer = HeadlessRenderer::new(&options)?;
         let (settings, options) = contender.scene();
         renderer.upload_baseline(model, settings, SceneOptions { untested, ..options })?;
@@ -229,11 +228,7 @@ fn quickest(
 
 /// What the frame needs is more than the device has.
 fn no_room(error: &HeadlessError) -> bool {
-    let gpu = match error {
-        HeadlessError::Gpu(gpu) | HeadlessError::Render(RenderError::Gpu(gpu)) => gpu,
-        _ => return false,
-    };
-    matches!(gpu, GpuError::TooLarge { .. } | GpuError::Allocation { .. })
+    error.gpu().is_some_and(GpuError::is_out_of_memory)
 }
 
 fn time(stats: &FrameStats, pass: &str) -> f64 {

@@ -1,5 +1,6 @@
 //! The command line: arguments, messages, exit statuses; and models through every command.
 
+mod devices;
 mod draw;
 mod many;
 mod missing;
@@ -32,7 +33,7 @@ fn help_names_every_command_and_the_exit_statuses() {
     let help = selvedge(&["--help"]);
     assert_eq!(help.status.code(), Some(0));
     let help = text(&help.stdout);
-    let commands = ["render", "draw", "info", "check", "bench", "trims", "sweep", "convert"];
+    let commands = ["render", "draw", "info", "check", "bench", "trims", "sweep", "convert", "devices"];
     for word in commands.into_iter().chain(["Exit status: 0 done; 1 a picture breaks"]) {
         assert!(help.contains(word), "{word} in {help}");
     }

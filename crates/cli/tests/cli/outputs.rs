@@ -130,6 +130,11 @@ fn a_dash_is_standard_output() {
     assert_eq!(stats["reused"], false, "every pass is measured");
     let passes: f64 = stats["passes"].as_array().unwrap().iter().map(|pass| pass["gpu_ms"].as_f64().unwrap()).sum();
     assert!(passes > 0.0, "{stats}");
+    // what exists for the scene: buffers take memory, pipelines none that is known
+    let objects = stats["objects"].as_array().unwrap();
+    let bytes = |name: &str| objects.iter().find(|o| o["name"] == name).and_then(|o| o["bytes"].as_u64());
+    assert!(bytes("patches").is_some_and(|bytes| bytes > 0) && bytes("bound") == Some(0), "{stats}");
+    assert_eq!(bytes("meshes"), None, "the scene has none");
     let verdicts = selvedge(&["check", &scene, "--samples", "100", "--json", "-"]);
     done(&verdicts);
     assert_eq!(serde_json::from_slice::<serde_json::Value>(&verdicts.stdout).unwrap()[0]["kept"], true);

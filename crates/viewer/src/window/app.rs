@@ -196,7 +196,7 @@ impl App {
 
     fn open_device(&self, window: &Window) -> Result<(Waiter, Engine, Screen), ViewError> {
         let ViewOptions { device, validation, .. } = &self.options;
-        let options = DeviceOptions { device: device.clone(), validation: *validation };
+        let options = DeviceOptions { device: device.clone(), validation: *validation, ..Default::default() };
         let screen = Screen::new(window, &options)?;
         let engine = Engine::new(screen.renderer()?);
         let proxy = self.proxy.clone();

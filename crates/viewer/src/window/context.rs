@@ -137,6 +137,8 @@ impl Context {
             allocator: Arc::clone(&self.allocator),
             debug_names: self.debug.is_some(),
             pipeline_statistics: false,
+            pipeline_cache: vk::PipelineCache::null(),
+            memory_budget: None,
         }
     }
 

@@ -108,10 +108,7 @@ impl ViewError {
     pub(crate) fn is_device_lost(&self) -> bool {
         match self {
             Self::Vulkan(result) => *result == vk::Result::ERROR_DEVICE_LOST,
-            Self::Gpu(GpuError::Vulkan { result, .. })
-            | Self::Render(RenderError::Gpu(GpuError::Vulkan { result, .. })) => {
-                *result == vk::Result::ERROR_DEVICE_LOST
-            }
+            Self::Gpu(error) | Self::Render(RenderError::Gpu(error)) => error.is_device_lost(),
             _ => false,
         }
     }

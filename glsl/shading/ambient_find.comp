@@ -1,0 +1,100 @@
+#version 460
+#extension GL_EXT_scalar_block_layout : require
+#extension GL_GOOGLE_include_directive : require
+// Pass `ambient_find`: how much of the sky around each pixel's point is hidden by what else the picture shows within the radius. One thread a pixel. Source: J. Jiménez, X. Wu, A. Pesce, A. Jarabo, Practical Realtime Strategies for Accurate
+// Indirect Occlusion (SIGGRAPH course 2016), whose integral over a slice is exact.
+//
+//        h0 ╲     ^ v     ╱ h1        a slice through the ray: seen from the point, what is within the radius hides
+//            ╲    │    ╱              all below its horizon. Sky that is left, by the cosine with n, of cos γ + γ sin γ:
+//      ▟▙     ╲   │ ╱   ▟▙               |n'| (a(h0) + a(h1)),  a(h) = (cos γ + 2 h sin γ - cos(2 h - γ)) / 4
+//    ▟█▀▀▀▀▀▀▀▀▀▀▀●▀▀▀▀▀▀▀█▙          n' is n in the slice, γ its angle from v
+//
+// A pixel takes SLICES slices; the sixteen pixels of a square of four take different ones, and pass `ambient_write` their mean.
+#include "scene.glsl"
+#include "view.glsl"
+#include "shade.glsl"
+
+layout(local_size_x = 8, local_size_y = 8) in;
+layout(scalar, binding = 0) uniform Frames { Frame frame; };
+layout(binding = 1, rgba32f) readonly uniform image2D resolved;  // linear colour, depth; UNSEEN where nothing is
+layout(binding = 2, rg32f) writeonly uniform image2D ambient;    // hidden share of the sky, depth
+
+layout(scalar, push_constant) uniform Push { float radius; } push; // in units of the model
+
+float depth_at(ivec2 at) { return imageLoad(resolved, at).a; }
+
+#include "ambient.glsl"
+
+const float PI = 3.14159265;
+const int SLICES = 2;
+const int HORIZON_STEPS = 4; // in each direction
+// The radius in the picture is at most this share of its height: farther steps would miss what lies between.
+const float MOST_HEIGHT = 0.2;
+// What lies farther than this share of the radius counts less and less.
+const float FADES = 0.75;
+
+float sky_below(float h, float g) { return 0.25 * (cos(g) + 2.0 * h * sin(g) - cos(2.0 * h - g)); }
+
+// Sine of the largest elevation over the tangent plane of what the picture shows in one direction. By that, not by the angle with
+// the ray: pixels lie beside the slice by a part of a pixel, those of a plane on it all the same.
+float elevation(ivec2 at, vec3 p, vec3 n, vec2 step_px, float first) {
+    float highest = 0.0;
+    for (int i = 0; i < HORIZON_STEPS; ++i) {
+        float way = (float(i) + first) / float(HORIZON_STEPS);
+        ivec2 beside = ivec2(floor(vec2(at) + 0.5 + step_px * way * way));
+        float depth = depth_beside(beside);
+        if (beside == at || depth >= UNSEEN) continue;
+        vec3 d = point_at(beside, depth) - p;
+        float far = length(d);
+        float counts = clamp((1.0 - far / push.radius) / (1.0 - FADES), 0.0, 1.0);
+        highest = max(highest, dot(d, n) / far * counts);
+    }
+    return highest;
+}
+
+// Hidden share of the sky over a point with normal `n`, towards the eye along `v`.
+float hidden_at(ivec2 at, vec3 p, vec3 n, vec3 v, float reach_px) {
+    int number = (((at.x + at.y) & 3) << 2) + (at.x & 3);
+    float first = (0.5 + float((at.y - at.x) & 3)) / 4.0;
+    float sum = 0.0;
+    for (int i = 0; i < SLICES; ++i) {
+        float turn = PI * (float(i) + float(number) / 16.0) / float(SLICES);
+        vec2 direction = vec2(cos(turn), sin(turn));
+        vec3 along = direction.x * frame.right - direction.y * frame.up;
+        vec3 across = along - dot(along, v) * v;
+        vec3 axis = normalize(cross(across, v));
+        vec3 within = n - axis * dot(n, axis);
+        float size = max(length(within), 1e-6);
+        float g = sign(dot(across, within)) * acos(clamp(dot(within, v) / size, 0.0, 1.0));
+        // in the slice, directions at an angle from n' have its cosine times |n'| as the sine of their elevation
+        float before = acos(min(elevation(at, p, n, -reach_px * direction, first) / size, 1.0));
+        float after = acos(min(elevation(at, p, n, reach_px * direction, first) / size, 1.0));
+        // exactly 0 where nothing rises: the sky of two slices alone would not be 1
+        sum += size * (cos(g) + g * sin(g) - sky_below(g - before, g) - sky_below(g + after, g));
+    }
+    return clamp(sum / float(SLICES), 0.0, 1.0);
+}
+
+void main() {
+    ivec2 at = ivec2(gl_GlobalInvocationID.xy);
+    if (!in_picture(at)) return;
+    float depth = depth_at(at);
+    float hidden = 0.0;
+    int x = 0;
+    int y = 0;
+    if (depth < UNSEEN) {
+        x = like_beside(at, ivec2(1, 0), depth);
+        y = like_beside(at, ivec2(0, 1), depth);
+    }
+    float reach_px = push.radius * frame.focal / (frame.perspective != 0u ? depth : 1.0);
+    if (x != 0 && y != 0 && reach_px >= 1.0) {
+        vec3 p = point_at(at, depth);
+        vec3 right = float(x) * (point_at(at + ivec2(x, 0), depth_at(at + ivec2(x, 0))) - p);
+        vec3 down = float(y) * (point_at(at + ivec2(0, y), depth_at(at + ivec2(0, y))) - p);
+        vec3 v = -normalize(eye_ray(frame, vec2(at) + 0.5).d);
+        vec3 n = normalize(cross(down, right));
+        if (dot(n, v) < 0.0) n = -n;
+        hidden = hidden_at(at, p, n, v, min(reach_px, MOST_HEIGHT * frame.size.y));
+    }
+    imageStore(ambient, at, vec4(hidden, depth, 0.0, 0.0));
+}

@@ -1,0 +1,58 @@
+//! Pass `ambient`: what lies close to other things gets less of the sky's light.
+//!
+//! ```text
+//!   resolved ──find──▶ what each pixel's own slices hide of the sky ──write──▶ mean of 4 x 4 pixels ──▶ resolved
+//! ```
+//!
+//! Reads: `frame`, `resolved`. Writes: `find`: `ambient`; `write`: the colours of `resolved`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError, Image};
+use crate::shaders;
+use ash::vk;
+
+/// Hidden share of the sky, and depth.
+pub(crate) const AMBIENT_FORMAT: vk::Format = vk::Format::R32G32_SFLOAT;
+
+/// Pixels of a workgroup, both ways.
+const GROUP: u32 = 8;
+
+/// The pass, in its two steps.
+pub(crate) struct Ambient {
+    find: Kernel,
+    write: Kernel,
+}
+
+/// Its buffer and images.
+pub(crate) struct Bindings<'a> {
+    pub frame: &'a Buffer,
+    /// Linear colour and depth.
+    pub resolved: &'a Image,
+    pub ambient: &'a Image,
+}
+
+impl Ambient {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        Ok(Self {
+            find: Kernel::new(device, "ambient find", &shaders::AMBIENT_FIND_COMP, &[])?,
+            write: Kernel::new(device, "ambient write", &shaders::AMBIENT_WRITE_COMP, &[])?,
+        })
+    }
+
+    /// One thread a pixel; what is farther than `radius`, in units of the model, hides nothing.
+    pub(crate) fn find(&self, cmd: &Commands<'_>, b: &Bindings<'_>, radius: f32) {
+        self.find.bind(cmd, &[b.frame.into(), b.resolved.into(), b.ambient.into()], bytemuck::bytes_of(&radius));
+        cmd.dispatch_grid(groups(b.resolved));
+    }
+
+    /// One thread a pixel.
+    pub(crate) fn write(&self, cmd: &Commands<'_>, b: &Bindings<'_>, radius: f32) {
+        self.write.bind(cmd, &[b.frame.into(), b.ambient.into(), b.resolved.into()], bytemuck::bytes_of(&radius));
+        cmd.dispatch_grid(groups(b.resolved));
+    }
+}
+
+fn groups(image: &Image) -> [u32; 3] {
+    let (width, height) = image.size();
+    [width.div_ceil(GROUP), height.div_ceil(GROUP), 1]
+}

@@ -1,0 +1,62 @@
+//! What pass `resolve` sees, for passes that change its colours: linear colour and depth.
+//!
+//! ```text
+//!   resolve ──▶ resolved ──(ambient)──(border_mix)──linear_show──▶ the host's colour
+//!                                   └─coverage───────────────────▶
+//! ```
+
+use super::linear_show::LinearShow;
+use super::resolve;
+use crate::frame::Frame;
+use crate::frame::common::room::{DRAWN_AND_READ, Room};
+use crate::gpu::{Access, Attachment, Commands, Device, GpuError, Image, Load, barrier};
+use crate::scene::SceneData;
+use std::sync::Arc;
+
+/// The pass; pass `coverage` draws into the host's colour itself.
+pub(crate) struct Passes {
+    show: Option<LinearShow>,
+}
+
+impl Passes {
+    /// `None` where the host's colour is what pass `resolve` draws.
+    pub(crate) fn new(device: &Device, data: &SceneData, formats: resolve::Formats) -> Result<Option<Self>, GpuError> {
+        if !data.is_mixed() {
+            return Ok(None);
+        }
+        let show = (!data.smooths_trims()).then(|| LinearShow::new(device, formats.colour)).transpose()?;
+        Ok(Some(Self { show }))
+    }
+}
+
+/// The stage.
+pub(crate) struct Linear {
+    passes: Arc<Passes>,
+    /// Linear colour and depth.
+    pub resolved: Image,
+}
+
+impl Linear {
+    pub(crate) fn new(room: &Room<'_>, passes: &Arc<Passes>) -> Result<Self, GpuError> {
+        let resolved = room.image("resolved", resolve::BEHIND_FORMAT, DRAWN_AND_READ)?;
+        Ok(Self { passes: Arc::clone(passes), resolved })
+    }
+
+    /// All pixels, as they are `written` last, to the host's colour.
+    pub(crate) fn show(&self, frame: &Frame<'_>, cmd: &Commands<'_>, written: Access) {
+        let Some(show) = &self.passes.show else { return };
+        barrier::images(cmd, &[(&self.resolved, written, Access::FRAGMENT_READ)]);
+        show.record(cmd, frame.constants, &self.resolved, frame.colour_over_nothing());
+    }
+}
+
+impl<'a> Frame<'a> {
+    /// The host's colour, for a pass that draws every pixel over what is there.
+    pub(crate) fn colour_over_nothing(&self) -> Attachment<'a> {
+        let load = match self.colour[0].load {
+            Load::Discard => Load::ColourF32([0.0; 4]),
+            load => load,
+        };
+        Attachment { load, ..self.colour[0] }
+    }
+}

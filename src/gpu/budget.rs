@@ -1,0 +1,125 @@
+//! How much memory may be taken: what the host says, else what the driver says of each heap.
+//!
+//! ```text
+//!   the host's budget      all of the engine's memory on this device  + the new object  <=  budget
+//!   else, of the heap that the object would come from:
+//!     VK_EXT_memory_budget   what the process uses there              + the new object  <=  heapBudget
+//!     without it             all of the engine's memory               + the new object  <=  size of the heap
+//! ```
+//!
+//! The driver's figures are read anew for each object: other programs take memory, too. The heap is that of the first memory
+//! type that the allocator looks for; where that type has no room the allocator may take another, so only a device whose
+//! heaps all lack room is refused.
+
+use super::{BudgetOwner, Device, GpuError, MemoryLocation};
+use ash::vk;
+use vk::MemoryPropertyFlags as Kind;
+
+/// Heaps of a device, and what may be taken of them.
+pub(super) struct Heaps {
+    instance: ash::Instance,
+    physical: vk::PhysicalDevice,
+    memory: vk::PhysicalDeviceMemoryProperties,
+    tells_budget: bool,
+    most: Option<u64>,
+}
+
+/// What is left, and of how much.
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+struct Room {
+    left: u64,
+    most: u64,
+}
+
+impl Heaps {
+    /// # Safety
+    /// The physical device belongs to the instance, which lives as long as the value.
+    pub(super) unsafe fn new(instance: &ash::Instance, physical: vk::PhysicalDevice, most: Option<u64>) -> Self {
+        // SAFETY: the caller's promise.
+        let (memory, extensions) = unsafe {
+            (
+                instance.get_physical_device_memory_properties(physical),
+                instance.enumerate_device_extension_properties(physical).unwrap_or_default(),
+            )
+        };
+        let tells = |e: &vk::ExtensionProperties| e.extension_name_as_c_str() == Ok(ash::ext::memory_budget::NAME);
+        let tells_budget = extensions.iter().any(tells);
+        Self { instance: instance.clone(), physical, memory, tells_budget, most }
+    }
+
+    pub(super) fn most(&self) -> Option<u64> {
+        self.most
+    }
+
+    /// Refuses an object of so many bytes that does not fit.
+    pub(super) fn check(
+        &self,
+        device: &Device,
+        name: &str,
+        (types, location): (u32, MemoryLocation),
+        bytes: u64,
+    ) -> Result<(), GpuError> {
+        let taken = device.pool_bytes().iter().map(|(_, bytes)| bytes).sum();
+        let (room, of) = match self.most {
+            Some(most) => (Room { left: most.saturating_sub(taken), most }, BudgetOwner::Host),
+            None => match self.of_heaps(types, location, taken) {
+                Some(room) => (room, BudgetOwner::Heap),
+                None => return Ok(()), // the allocator says that there is no such memory
+            },
+        };
+        if bytes <= room.left {
+            return Ok(());
+        }
+        Err(GpuError::OverBudget { resource: name.to_owned(), bytes, left: room.left, most: room.most, of })
+    }
+
+    /// The heap with the most room among those that an object may come from.
+    fn of_heaps(&self, types: u32, location: MemoryLocation, taken: u64) -> Option<Room> {
+        let mut budget = vk::PhysicalDeviceMemoryBudgetPropertiesEXT::default();
+        if self.tells_budget {
+            let mut memory = vk::PhysicalDeviceMemoryProperties2::default().push_next(&mut budget);
+            // SAFETY: as `new` demands; the device knows the struct.
+            unsafe { self.instance.get_physical_device_memory_properties2(self.physical, &mut memory) };
+        }
+        let of_heap = |heap: u32| {
+            let (budget, used) = (budget.heap_budget[heap as usize], budget.heap_usage[heap as usize]);
+            let (most, used) =
+                if self.tells_budget { (budget, used) } else { (self.memory.memory_heaps[heap as usize].size, taken) };
+            Room { left: most.saturating_sub(used), most }
+        };
+        heaps_of(&self.memory, types, location).map(of_heap).max_by_key(|room| room.left)
+    }
+}
+
+/// Heaps of the memory types that the allocator may take.
+fn heaps_of(
+    memory: &vk::PhysicalDeviceMemoryProperties,
+    types: u32,
+    location: MemoryLocation,
+) -> impl Iterator<Item = u32> {
+    let wanted = match location {
+        MemoryLocation::Device => Kind::DEVICE_LOCAL,
+        MemoryLocation::Upload | MemoryLocation::ReadBack => Kind::HOST_VISIBLE | Kind::HOST_COHERENT,
+    };
+    let all = memory.memory_types_as_slice().iter().enumerate();
+    let may = move |(i, kind): &(usize, &vk::MemoryType)| types & 1 << i != 0 && kind.property_flags.contains(wanted);
+    all.filter(may).map(|(_, kind)| kind.heap_index)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn an_object_comes_from_heaps_of_its_kind() {
+        let mut memory = vk::PhysicalDeviceMemoryProperties { memory_type_count: 3, ..Default::default() };
+        let kinds = [Kind::DEVICE_LOCAL, Kind::HOST_VISIBLE | Kind::HOST_COHERENT, Kind::HOST_VISIBLE];
+        for (i, kind) in kinds.into_iter().enumerate() {
+            memory.memory_types[i] = vk::MemoryType { property_flags: kind, heap_index: 10 + i as u32 };
+        }
+        let heaps = |types, location| heaps_of(&memory, types, location).collect::<Vec<_>>();
+        assert_eq!(heaps(0b111, MemoryLocation::Device), [10]);
+        assert_eq!(heaps(0b111, MemoryLocation::Upload), [11]);
+        assert_eq!(heaps(0b101, MemoryLocation::ReadBack), [0; 0]);
+    }
+}

@@ -1,0 +1,62 @@
+//! What becomes of a renderer when a device, or a frame, is lost.
+//!
+//! ```text
+//!   a call returns DEVICE_LOST ─▶ every later call returns GpuError::DeviceLost; drop frees handles and host memory
+//!   the handle itself is gone  ─▶ abandon: drop frees host memory alone
+//!   a frame was not submitted  ─▶ discard: what it would have copied is copied again by the next one
+//! ```
+
+use super::{Loaded, RenderError, Renderer};
+
+impl Renderer {
+    /// A call of the host's own returned `VK_ERROR_DEVICE_LOST`: every later call returns
+    /// [`GpuError::DeviceLost`](crate::gpu::GpuError::DeviceLost). The renderer's own calls are noted by themselves.
+    ///
+    /// Its drop then makes no call but those that free handles. Vulkan allows them on a lost device, and demands them before
+    /// `vkDestroyDevice` (1.3, section 5.2.3, "Lost Device").
+    pub fn device_lost(&mut self) {
+        self.device.set_lost("a call of the host", "device");
+    }
+
+    /// The device's handle is not valid any more: nothing of this renderer makes a Vulkan call from here on, and its drop
+    /// frees host memory alone.
+    pub fn abandon(&mut self) {
+        self.device_lost();
+        self.device.abandon();
+    }
+
+    /// The frame recorded last, into `slot`, never reached the GPU: the host reset its command buffer, or the submission
+    /// failed. The next [`record`](Self::record) loads the model anew, with every edit and change so far, because the GPU
+    /// does not have what the frame would have copied.
+    ///
+    /// # Panics
+    /// When the slot does not exist.
+    pub fn discard(&mut self, slot: usize) {
+        let discarded = &mut self.slots[slot];
+        discarded.recorded = false;
+        discarded.capacities = None;
+        self.stale = self.source.is_some();
+        if self.last == Some(slot) {
+            self.last = self.before.take().filter(|before| *before != slot);
+        }
+        // frames in flight may use what it replaced
+        let retired = std::mem::take(&mut self.slots[slot].retired);
+        retired.into_iter().for_each(|what| self.retire(what));
+    }
+
+    /// Loads the source anew, where a frame was discarded.
+    pub(super) fn reload(&mut self) -> Result<(), RenderError> {
+        self.device.alive()?;
+        let (true, Some(source)) = (self.stale, &mut self.source) else { return Ok(()) };
+        source.forget();
+        let loaded = Loaded::new(&self.device, self.formats, source, (None, source.request), &|_| ())?;
+        self.replace(loaded);
+        self.stale = false;
+        Ok(())
+    }
+
+    /// Remembers an error that the device does not survive.
+    pub(super) fn noting<T>(&self, result: Result<T, RenderError>) -> Result<T, RenderError> {
+        result.inspect_err(|error| error.gpu().into_iter().for_each(|error| self.device.note(error)))
+    }
+}

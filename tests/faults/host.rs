@@ -1,0 +1,134 @@
+//! A host that loses its device, or a frame, in ways that the renderer must be told of.
+
+use crate::driver::Driver;
+use crate::shapes;
+use ash::vk;
+use glam::DVec3;
+use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use selvedge::gpu::{Device, HostDevice, Image, ImageInfo, Pool, Requirements};
+use selvedge::model::Camera;
+use selvedge::picture::FrameSettings;
+use selvedge::renderer::{FrameInput, RenderError, Renderer, TargetFormats, Targets};
+use std::sync::{Arc, Mutex};
+
+const SIZE: (u32, u32) = (48, 32);
+const FORMAT: vk::Format = vk::Format::R8G8B8A8_UNORM;
+
+struct Host {
+    instance: ash::Instance,
+    physical: vk::PhysicalDevice,
+    device: ash::Device,
+    allocator: Arc<Mutex<Allocator>>,
+    _entry: ash::Entry,
+}
+
+impl Host {
+    fn new(driver: &Driver) -> Self {
+        let entry = driver.entry();
+        // SAFETY: plain Vulkan in its usual order; every struct outlives the call that it is given to.
+        unsafe {
+            let app = vk::ApplicationInfo::default().api_version(Requirements::API_VERSION);
+            let create = vk::InstanceCreateInfo::default().application_info(&app);
+            let instance = entry.create_instance(&create, None).unwrap();
+            let physical = instance.enumerate_physical_devices().unwrap()[0];
+            let device = instance.create_device(physical, &vk::DeviceCreateInfo::default(), None).unwrap();
+            let description = AllocatorCreateDesc {
+                instance: instance.clone(),
+                device: device.clone(),
+                physical_device: physical,
+                debug_settings: Default::default(),
+                buffer_device_address: false,
+                allocation_sizes: Default::default(),
+            };
+            let allocator = Arc::new(Mutex::new(Allocator::new(&description).unwrap()));
+            Self { instance, physical, device, allocator, _entry: entry }
+        }
+    }
+
+    fn lend(&self) -> HostDevice<'_> {
+        HostDevice {
+            instance: &self.instance,
+            physical: self.physical,
+            device: self.device.clone(),
+            queue_family: 0,
+            allocator: Arc::clone(&self.allocator),
+            debug_names: false,
+            pipeline_statistics: false,
+            pipeline_cache: vk::PipelineCache::null(),
+            memory_budget: None,
+        }
+    }
+}
+
+/// The renderer, and a target on a loan of its own.
+fn drawn(host: &Host) -> (Renderer, Image, Camera) {
+    let model = shapes::cube();
+    let camera = Camera::around(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, SIZE);
+    // SAFETY: the host outlives both.
+    let (mut renderer, device) =
+        unsafe { (Renderer::new(host.lend(), TargetFormats::new(FORMAT), 2).unwrap(), Device::new(host.lend())) };
+    let usage = vk::ImageUsageFlags::COLOR_ATTACHMENT;
+    let target =
+        Image::new(&device, &ImageInfo { name: "target", size: SIZE, format: FORMAT, usage, pool: Pool::Transient });
+    renderer.upload(&model).unwrap();
+    (renderer, target.unwrap(), camera)
+}
+
+fn record(renderer: &mut Renderer, target: &Image, camera: &Camera, slot: usize) -> Result<(), RenderError> {
+    let input = FrameInput { camera, settings: FrameSettings::default(), slot, targets: Targets::new(target) };
+    // SAFETY: the null driver looks at no command buffer.
+    unsafe { renderer.record(vk::CommandBuffer::null(), &input) }
+}
+
+/// Where the handle is gone nothing is called at all; after a loss that the host met, nothing but what frees.
+#[test]
+fn a_device_that_the_host_lost_is_not_touched() {
+    for is_gone in [false, true] {
+        let driver = Driver::new(true);
+        let host = Host::new(&driver);
+        let (mut renderer, target, camera) = drawn(&host);
+        for slot in [0, 1] {
+            record(&mut renderer, &target, &camera, slot).unwrap();
+        }
+        drop(target);
+        let before = driver.living().len();
+        driver.plan(None);
+        if is_gone {
+            renderer.abandon()
+        } else {
+            renderer.device_lost()
+        }
+        for error in
+            [renderer.report(0).unwrap_err().to_string(), renderer.upload(&shapes::plate()).unwrap_err().to_string()]
+        {
+            assert!(error.starts_with("a call of the host failed for `device`: the device is lost"), "{error}");
+        }
+        assert!(renderer.picked(0).is_none() && renderer.prepare(&camera).is_err());
+        drop(renderer);
+        assert_eq!(driver.count(), 0, "no call but those that free");
+        let left = driver.living().into_iter().filter(|kind| !["-", "vkFreeMemory"].contains(kind)).count();
+        assert_eq!(left == 0, !is_gone, "{left} of {before} handles");
+    }
+}
+
+/// A frame that was not submitted has copied nothing: the next one copies all of it again.
+#[test]
+fn a_discarded_frame_is_uploaded_again() {
+    let driver = Driver::new(true);
+    let host = Host::new(&driver);
+    let (mut renderer, target, camera) = drawn(&host);
+    let made = |renderer: &mut Renderer, slot| {
+        driver.plan(None);
+        record(renderer, &target, &camera, slot).unwrap();
+        driver.calls().get("vkCreateBuffer").copied().unwrap_or_default()
+    };
+    let first = made(&mut renderer, 0);
+    let second = made(&mut renderer, 1);
+    assert!(second < first / 2, "the scene is there: {second} buffers after {first}");
+    renderer.discard(1);
+    assert!(renderer.report(1).unwrap().is_none());
+    let third = made(&mut renderer, 1);
+    assert!(third > first / 2, "the scene is made again: {third} buffers after {first}");
+    let fourth = made(&mut renderer, 0);
+    assert!(fourth < first / 2, "once: {fourth} buffers");
+}

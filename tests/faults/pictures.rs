@@ -1,0 +1,114 @@
+//! After a failure the next picture is the right one, bit for bit: nothing of a frame that was not drawn is missing in it.
+
+use crate::driver::{Driver, Fault};
+use crate::shapes;
+use ash::vk;
+use glam::{DVec2, DVec3};
+use selvedge::headless::{HeadlessDevice, HeadlessOptions, HeadlessRenderer};
+use selvedge::model::{Camera, LoopAt, Model};
+use selvedge::picture::{FrameSettings, Outputs, Picture, SceneSettings};
+use std::collections::{BTreeMap, BTreeSet};
+use std::sync::Arc;
+
+const SIZE: (u32, u32) = (48, 32);
+
+fn draw(renderer: &mut HeadlessRenderer, camera: &Camera) -> Result<Picture, String> {
+    renderer.render(camera, &FrameSettings::default(), Outputs::ALL).map_err(|error| error.to_string())
+}
+
+fn bits(picture: &Picture) -> (Vec<[u8; 4]>, Vec<u32>) {
+    (picture.colour.clone(), picture.depth.iter().map(|d| d.to_bits()).collect())
+}
+
+fn opened(driver: &Driver) -> HeadlessRenderer {
+    let device = HeadlessDevice::of_entry(driver.entry(), &HeadlessOptions::default()).unwrap();
+    HeadlessRenderer::on(device).unwrap()
+}
+
+const AT: LoopAt = LoopAt { part: 0, face: 0, trim_loop: 1 };
+
+/// A model before and after an edit that shows.
+fn edited() -> [Model; 2] {
+    let before = shapes::plate();
+    let mut after = before.clone();
+    let hole = &mut after.parts[0].faces[0].loops[AT.trim_loop];
+    *hole = hole.translated(DVec2::new(0.25, 0.125)).unwrap();
+    [before, after]
+}
+
+fn editable() -> SceneSettings {
+    SceneSettings { editable: true, ..SceneSettings::default() }
+}
+
+/// Calls of a run, each with the first, the middle and the last time that it was made.
+fn turns(calls: BTreeMap<&'static str, u32>) -> Vec<(&'static str, u32)> {
+    let thrice =
+        |(call, count): (_, u32)| BTreeSet::from([0, count / 2, count - 1]).into_iter().map(move |n| (call, n));
+    calls.into_iter().flat_map(thrice).collect()
+}
+
+#[test]
+fn memory_that_ends_once_leaves_no_mark() {
+    let driver = Driver::new(false);
+    let [before, after] = edited();
+    let camera = Camera::around(before.control_bounds(), DVec3::new(0.3, -0.6, 1.1), DVec3::Z, 0.6, SIZE);
+    let mut renderer = opened(&driver);
+    renderer.upload_with(&after, editable()).unwrap();
+    let of_after = bits(&draw(&mut renderer, &camera).unwrap());
+    renderer.upload_with(&before, editable()).unwrap();
+    driver.plan(None);
+    let of_before = bits(&draw(&mut renderer, &camera).unwrap());
+    let of_first = turns(driver.calls());
+    assert_ne!(of_before, of_after, "the edit shows");
+    let next = &after.parts[0].faces[0].loops[AT.trim_loop];
+    renderer.edit_loop(AT, next).unwrap();
+    driver.plan(None);
+    assert_eq!(bits(&draw(&mut renderer, &camera).unwrap()), of_after);
+    let of_edit = turns(driver.calls());
+    assert!(of_first.len() >= 20 && of_edit.len() >= 10, "{of_first:?}, {of_edit:?}");
+    let failing = |renderer: &mut HeadlessRenderer, (call, nth), right: &_| {
+        let fault = Fault { call, nth, result: vk::Result::ERROR_OUT_OF_DEVICE_MEMORY };
+        driver.plan(Some(fault));
+        let failed = draw(renderer, &camera);
+        assert_eq!(driver.injected(), 1, "{fault:?}");
+        driver.plan(None);
+        let drawn = draw(renderer, &camera).unwrap_or_else(|error| panic!("{error} after {fault:?}"));
+        assert!(bits(&drawn) == *right, "another picture after {fault:?}, {:?}", failed.err());
+    };
+    for turn in of_first {
+        renderer.upload_with(&before, editable()).unwrap();
+        failing(&mut renderer, turn, &of_before);
+    }
+    for turn in of_edit {
+        renderer.upload_with(&before, editable()).unwrap();
+        draw(&mut renderer, &camera).unwrap();
+        renderer.edit_loop(AT, next).unwrap();
+        failing(&mut renderer, turn, &of_after);
+    }
+    drop(renderer);
+    assert!(driver.living().is_empty(), "{:?}", driver.living());
+}
+
+#[test]
+fn a_new_device_takes_the_model_of_a_lost_one() {
+    let driver = Driver::new(false);
+    let [before, after] = edited();
+    let camera = Camera::around(before.control_bounds(), DVec3::new(0.3, -0.6, 1.1), DVec3::Z, 0.6, SIZE);
+    let mut renderer = opened(&driver);
+    renderer.upload_with(&before, editable()).unwrap();
+    draw(&mut renderer, &camera).unwrap();
+    renderer.edit_loop(AT, &after.parts[0].faces[0].loops[AT.trim_loop]).unwrap();
+    let right = bits(&draw(&mut renderer, &camera).unwrap());
+    for call in ["vkQueueSubmit2", "vkWaitForFences", "vkGetQueryPoolResults"] {
+        driver.plan(Some(Fault { call, nth: 0, result: vk::Result::ERROR_DEVICE_LOST }));
+        let error = draw(&mut renderer, &camera).unwrap_err();
+        assert!(error.starts_with(&format!("{call} failed for")) && error.contains("lost"), "{error}");
+        let model = Arc::clone(renderer.model().expect("it was uploaded"));
+        drop(renderer);
+        assert!(driver.living().is_empty(), "{:?}", driver.living());
+        driver.plan(None);
+        renderer = opened(&driver);
+        renderer.upload_shared(model, editable(), &|_| ()).unwrap();
+        assert!(bits(&draw(&mut renderer, &camera).unwrap()) == right, "{call}");
+    }
+}

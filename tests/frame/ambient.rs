@@ -1,0 +1,158 @@
+//! Ambient occlusion: what a wall hides of the sky, and that nothing but colours of light change.
+
+use crate::layers::in_glass;
+use crate::shapes;
+use crate::shapes::solids::{block, folded};
+use crate::support::{assert_identical, assert_silent, perspective, watched_with};
+use glam::{DVec2, DVec3};
+use selvedge::csg::Op;
+use selvedge::headless::HeadlessError;
+use selvedge::model::{Camera, Model, Projection, srgb};
+use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Style};
+use selvedge::renderer::RenderError;
+use std::f64::consts::PI;
+
+/// Of light, where no sky is seen: `STRENGTH` of ambient_write.comp.
+const STRENGTH: f64 = 0.75;
+
+fn settings(ambient: Option<f64>) -> SceneSettings {
+    SceneSettings { ambient, ..SceneSettings::default() }
+}
+
+fn draw(model: &Model, scene: SceneSettings, camera: &Camera, style: Style) -> Picture {
+    let mut renderer = watched_with(model, scene);
+    let settings = FrameSettings { style, ..FrameSettings::default() };
+    let picture = renderer.render(camera, &settings, Outputs::ALL).unwrap();
+    assert_silent(renderer);
+    picture
+}
+
+/// Share of the sky, weighted by the cosine, that an endless wall hides from a floor: `x` is how far away it is, of the length
+/// of rays. In a direction `p` from its normal, rays below the elevation acos(x / cos p) meet it; the integral of the squared
+/// sine of that is in closed form.
+fn hidden_by_wall(x: f64) -> f64 {
+    if x >= 1.0 { 0.0 } else { (x.acos() - x * (1.0 - x * x).sqrt()) / PI }
+}
+
+/// The floor beside a wall, as solids and as faces, from above in both projections: what a pixel loses lies between what rays
+/// lose that are as long as the radius, and as long as three quarters of it, where occlusion begins to fade; to a
+/// sixteenth, for of a horizon between two of the four steps a pixel knows the lower one.
+#[test]
+fn a_wall_hides_what_it_hides_from_rays() {
+    let radius = 1.0;
+    let parts = [block([-1.0, -8.0, -1.0], [0.0, 8.0, 4.0]), block([-1.0, -8.0, -1.0], [8.0, 8.0, 0.0])];
+    let solids = folded(Op::Union, parts.into());
+    for projection in [Projection::Orthographic { height: 6.0 }, Projection::Perspective { fov_y: 0.3 }] {
+        let camera = Camera {
+            eye: DVec3::new(16.0, 0.0, 12.0),
+            target: DVec3::ZERO,
+            up: DVec3::Z,
+            projection,
+            depth_range: (5.0, 60.0),
+            size: (320, 240),
+        };
+        let [before, after] = [None, Some(radius)].map(|r| draw(&solids, settings(r), &camera, Style::Shaded));
+        let (mut judged, mut seen, mut off) = (0, [0.0, 1.0f64], [0.0f64; 2]);
+        for i in (0..before.depth.len()).filter(|i| before.depth[*i].is_finite() && before.normal[*i][2] > 0.9) {
+            let (x, y) = (i % 320, i / 320);
+            let (from, ray) = camera.ray(DVec2::new(x as f64 + 0.5, y as f64 + 0.5));
+            let point = from + f64::from(before.depth[i]) * ray;
+            if !(0.1..2.0).contains(&point.x) || point.y.abs() > 2.0 {
+                continue;
+            }
+            let [b, a] = [&before, &after].map(|p| srgb::decoded(f64::from(p.colour[i][1]) / 255.0));
+            let hidden = (1.0 - a / b) / STRENGTH;
+            let (least, most) = (hidden_by_wall(point.x / (0.75 * radius)), hidden_by_wall(point.x / radius));
+            off = [off[0].max(least - hidden), off[1].max(hidden - most)];
+            seen = [seen[0].max(hidden), seen[1].min(hidden)];
+            judged += 1;
+        }
+        println!("{projection:?}: {judged} pixels, {seen:?}, off by {off:?}");
+        assert!(off[0] < 1.0 / 16.0 && off[1] < 1.0 / 16.0, "{projection:?}: {off:?}");
+        assert!(judged > 3000 && seen[0] > 0.3 && seen[1] < 0.02, "{judged}, {seen:?}");
+    }
+}
+
+/// A floor alone is as light as before, to a step of eight bits: rays along it meet nothing.
+#[test]
+fn a_floor_sees_all_of_the_sky() {
+    let model = folded(Op::Union, vec![block([-4.0, -4.0, -1.0], [4.0, 4.0, 0.0])]);
+    let camera = Camera {
+        eye: DVec3::new(3.0, -5.0, 1.0),
+        target: DVec3::ZERO,
+        up: DVec3::Z,
+        projection: Projection::Perspective { fov_y: 0.5 },
+        depth_range: (0.5, 60.0),
+        size: (160, 120),
+    };
+    let [before, after] = [None, Some(1.0)].map(|r| draw(&model, settings(r), &camera, Style::Clay));
+    let mut floor = 0;
+    for i in (0..before.colour.len()).filter(|i| before.normal[*i][2] > 0.9) {
+        floor += 1;
+        let off = before.colour[i].iter().zip(after.colour[i]).map(|(b, a)| b.abs_diff(a)).max().unwrap();
+        assert!(off <= 1, "pixel {i}: {:?} to {:?}", before.colour[i], after.colour[i]);
+    }
+    assert!(floor > 2000, "{floor}");
+}
+
+/// Of patches, meshes, solids and glass: the images are as without, bit for bit, and so are colours of styles that show no light;
+/// light gets less in some pixels, and more in none.
+#[test]
+fn nothing_but_light_changes() {
+    let mut darker = 0;
+    for (name, model) in shapes::all().into_iter().map(|s| (s.name, s.model)).chain([("glass", in_glass())]) {
+        let camera = perspective(&model, (96, 72));
+        let radius = (0.2 * model.control_bounds().diagonal()).max(1e-3);
+        let zebra = ["cube", "torus", "glass"].contains(&name).then_some(Style::Zebra);
+        for style in [Style::Shaded].into_iter().chain(zebra) {
+            let [before, after] = [None, Some(radius)].map(|r| draw(&model, settings(r), &camera, style));
+            let same_colour = Picture { colour: before.colour.clone(), stats: before.stats.clone(), ..after.clone() };
+            assert_identical(&before, &same_colour, name);
+            for (b, a) in before.colour.iter().zip(&after.colour) {
+                // a smooth picture is mixed of half floats
+                let off = if style == Style::Zebra { 0 } else { 1 };
+                assert!(
+                    (0..3).all(|k| a[k] <= b[k].saturating_add(off)) && a[3].abs_diff(b[3]) <= off,
+                    "{name}: {b:?} {a:?}"
+                );
+                assert!(style == Style::Shaded || a == b, "{name}: {b:?} {a:?}");
+                darker += usize::from(a[1].saturating_add(2) < b[1]);
+            }
+        }
+    }
+    assert!(darker > 2000, "{darker}");
+}
+
+/// Its passes and images are there where it is wanted, and nowhere else.
+#[test]
+fn it_exists_where_it_is_wanted() {
+    let of_ambient = |ambient| {
+        let model = shapes::cube();
+        let mut renderer = watched_with(&model, settings(ambient));
+        renderer.render(&perspective(&model, (64, 48)), &FrameSettings::default(), Outputs::default()).unwrap();
+        let objects = renderer.objects();
+        assert_silent(renderer);
+        objects.iter().filter(|o| o.starts_with("ambient") || *o == "resolved" || *o == "linear_show").count()
+    };
+    // two steps and what takes their colours to the host's; both images
+    assert_eq!((of_ambient(None), of_ambient(Some(0.1))), (0, 5));
+}
+
+#[test]
+fn bad_settings_are_told() {
+    let model = shapes::cube();
+    let refused = |scene: SceneSettings| {
+        let mut renderer = watched_with(&shapes::cube(), SceneSettings::default());
+        let error = renderer.upload_with(&model, scene).unwrap_err();
+        assert_silent(renderer);
+        match error {
+            HeadlessError::Render(error) => error,
+            error => panic!("{error}"),
+        }
+    };
+    for radius in [0.0, -1.0, f64::NAN, f64::INFINITY] {
+        assert!(matches!(refused(settings(Some(radius))), RenderError::AmbientRadius(_)), "{radius}");
+    }
+    let four = SceneSettings { samples: Samples::Four, ..settings(Some(1.0)) };
+    assert!(matches!(refused(four), RenderError::AmbientSamples));
+}

@@ -1,0 +1,124 @@
+"""`tools/report`: options, sections in order, what is written, the exit status."""
+
+import argparse
+import json
+import os
+import shlex
+import sys
+import tempfile
+import time
+import traceback
+from pathlib import Path
+
+from . import context as given
+from . import machine, markdown, plots
+from .peers import Peers
+from .program import Program
+from .rows import Report, Section
+from .sections import first_use, frames, least, reading, scale, solids, stability, surfaces, trims, zoom
+
+SECTIONS = {
+    "surfaces": surfaces,
+    "zoom": zoom,
+    "trims": trims,
+    "solids": solids,
+    "scale": scale,
+    "stability": stability,
+    "least": least,
+    "first_use": first_use,
+    "frames": frames,
+    "reading": reading,
+}
+
+
+def options():
+    parser = argparse.ArgumentParser(prog="tools/report", description="Speed against error, beside everybody else.")
+    parser.add_argument(
+        "--quick", action="store_true", help="fewer files, sizes and rounds: below ten minutes on two cores"
+    )
+    parser.add_argument("--device", metavar="NAME", help="part of the name of the Vulkan device")
+    parser.add_argument(
+        "--out",
+        type=Path,
+        metavar="DIR",
+        help="folder of benchmarks.md, benchmarks.json and benchmarks/; docs without it",
+    )
+    parser.add_argument(
+        "--only", nargs="+", choices=SECTIONS, metavar="SECTION", help=f"needs --out; of {', '.join(SECTIONS)}"
+    )
+    chosen = parser.parse_args()
+    if chosen.only and not chosen.out:
+        parser.error("--only is part of a report: name a folder with --out")
+    chosen.out = (chosen.out or machine.ROOT / "docs").resolve()
+    return chosen
+
+
+def measured(name, context):
+    """A section, which says so where it failed."""
+    print(f"== {name}", file=sys.stderr, flush=True)
+    start = time.monotonic()
+    try:
+        section = SECTIONS[name].measure(context)
+    except Exception as error:  # one section does not cost the others
+        traceback.print_exc()
+        section = Section(
+            list(SECTIONS).index(name) + 1,
+            name.replace("_", " ").capitalize(),
+            "",
+            failure=f"{type(error).__name__}: {error}",
+        )
+    section.seconds = time.monotonic() - start
+    print(f"   {section.seconds:.0f} s", file=sys.stderr, flush=True)
+    return section
+
+
+def write(report, out):
+    """Markdown, JSON and plots."""
+    folder = out / "benchmarks"
+    folder.mkdir(parents=True, exist_ok=True)
+    for old in folder.glob("*.svg"):
+        old.unlink()
+    drawn = {}
+    for section in report.sections:
+        for plot in section.plots:
+            try:
+                plots.write(plot, folder / f"{plot.name}.svg")
+                drawn[plot.name] = f"benchmarks/{plot.name}.svg"
+            except ImportError:
+                print("no plots: matplotlib is not there", file=sys.stderr)
+    (out / "benchmarks.json").write_text(json.dumps(report.as_json(), indent=1) + "\n")
+    (out / "benchmarks.md").write_text(markdown.text(report, drawn))
+
+
+def main():
+    chosen = options()
+    with tempfile.TemporaryDirectory() as scratch:
+        scratch = Path(scratch)
+        program = Program(Path(os.environ["SELVEDGE"]).resolve(), chosen.device, scratch)
+        context = given.Context(chosen.quick, program, Peers(scratch), scratch, given.models())
+        load = machine.load()
+        sections = [measured(name, context) for name in chosen.only or SECTIONS]
+        report = Report(
+            command=shlex.join(["tools/report", *sys.argv[1:]]),
+            date=machine.date(),
+            machine=machine.processor(),
+            device=program.device or "none was used",
+            commit=machine.commit(),
+            load=load,
+            peers=context.peers.versions,
+            sections=sections,
+        )
+        write(report, chosen.out)
+    print(chosen.out / "benchmarks.md")
+    for section, contest in report.lost():
+        print(
+            f"lost: {section.number}. {contest.what}, beside {contest.peer}: {markdown.interval(contest)}",
+            file=sys.stderr,
+        )
+    for section, promise in report.broken():
+        print(f"broken: {section.number}. {promise.what}: {promise.violations} of {promise.cases}", file=sys.stderr)
+    sys.exit(report.exit_status())
+
+
+if __name__ == "__main__":
+    main()

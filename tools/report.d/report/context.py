@@ -1,0 +1,48 @@
+"""What every section is given: options, the program, the peers, files, and scratch."""
+
+import os
+import sys
+from dataclasses import dataclass
+from pathlib import Path
+
+from .machine import ROOT, shown
+from .peers import Peers
+from .program import Program
+from .rows import Missing
+
+
+@dataclass
+class Context:
+    quick: bool
+    program: Program
+    peers: Peers
+    scratch: Path
+    models: Path | None
+
+    def pick(self, quick, whole):
+        return quick if self.quick else whole
+
+    def model(self, name):
+        """A file of `samples`, or of the folder that SELVEDGE_MODELS names; None where it is not there."""
+        path = ROOT / name if name.startswith("samples/") else self.models and self.models / name
+        return path if path and path.exists() else None
+
+    def absent(self, name):
+        return Missing(
+            f"{name} is not in the folder that SELVEDGE_MODELS names"
+            if self.models
+            else "SELVEDGE_MODELS names no folder"
+        )
+
+    def shown(self, *words):
+        """A command of the program as it stands in the document."""
+        folders = [(self.models, "$SELVEDGE_MODELS")] if self.models else []
+        return shown(["selvedge", *words], [*folders, (f"{ROOT}/", "")])
+
+    def say(self, text):
+        print(f"   {text}", file=sys.stderr, flush=True)
+
+
+def models():
+    folder = os.environ.get("SELVEDGE_MODELS")
+    return Path(folder).resolve() if folder else None

@@ -1,0 +1,166 @@
+"""The report as Markdown: where we lose first, then what could not be measured, then the sections."""
+
+from .noise import median
+from .rows import Missing
+
+VERDICT_WORDS = {
+    "ahead": "ahead",
+    "even": "even",
+    "behind": "behind",
+    "unreached": "ahead",
+    "not measured": "not measured",
+}
+
+
+def text(report, plots):
+    """`plots` are paths of pictures, relative to the document, by the plots' names."""
+    parts = [
+        "# Benchmarks",
+        f"Written by `{report.command}`: current figures only, each from this run. Dated experiments stand in "
+        "[notes](notes).",
+        heading(report),
+        "## Where we lose",
+        losses(report),
+        "## What was not measured",
+        absences(report),
+    ]
+    for section in report.sections:
+        parts.append(f"## {section.number}. {section.title}")
+        parts.append(section_text(section, plots))
+    return "\n\n".join(part for part in parts if part) + "\n"
+
+
+def heading(report):
+    peers = ", ".join(f"{name} {value}" for name, value in report.peers.items() if not isinstance(value, Missing))
+    rows = [
+        ("machine", f"{report.machine}; load {report.load}"),
+        ("device", report.device),
+        ("date, commit", f"{report.date}, {report.commit}"),
+        ("peers", peers or "none"),
+        ("seconds", f"{sum(section.seconds for section in report.sections):,.0f}"),
+    ]
+    count = lambda verdict: sum(c.verdict() == verdict for _, c in report.contests())
+    ahead = count("ahead") + count("unreached")
+    rows.append(
+        (
+            "contests",
+            f"{ahead} ahead, {count('even')} even, {count('behind')} behind, {count('not measured')} not measured",
+        )
+    )
+    return table(["", ""], rows) + (
+        "\n\nCompetitors take turns; a ratio is theirs to ours, the median over the rounds with its 95 % bootstrap "
+        "interval: above 1 "
+        "we are ahead, and an interval that holds 1 is even. A **claim** that is behind makes the run fail."
+    )
+
+
+def losses(report):
+    told = lambda s, p: f"{s.number}. {p.what}: {p.violations:,} of {p.cases:,}"
+    lines = [f"* **broken**: {told(s, p)}" for s, p in report.broken()]
+    lines += [f"* **failed**: {s.number}. {s.title}: {s.failure}" for s in report.sections if s.failure]
+    behind = [(s, c) for s, c in report.contests() if c.verdict() == "behind"]
+    for section, contest in sorted(behind, key=lambda row: (not row[1].lost(), row[1].ratio().median)):
+        mark = "**lost**: " if contest.lost() else ""
+        times = 1 / contest.ratio().median
+        lines.append(
+            f"* {mark}{section.number}. {contest.what}: {times:.2g} times {contest.peer}'s {interval(contest)}"
+        )
+    lines += [f"* known: {told(s, p)}; {p.known}" for s, p in report.promises() if p.violated() and p.known]
+    return "\n".join(lines) or "Nowhere in this run."
+
+
+def absences(report):
+    lines = [f"* {name}: {value.why}" for name, value in report.peers.items() if isinstance(value, Missing)]
+    grouped = {}
+    for section, contest in report.contests():
+        if contest.verdict() == "not measured":
+            grouped.setdefault((section.number, contest.reason()), []).append(f"{contest.what}, {contest.peer}")
+    for section, promise in report.promises():
+        if promise.why:
+            grouped.setdefault((section.number, promise.why), []).append(promise.what)
+    for (number, why), what in grouped.items():
+        named = what[0] if len(what) == 1 else f"{what[0]}, and {len(what) - 1} more"
+        lines.append(f"* {number}. {named}: {why}")
+    return "\n".join(lines) or "Nothing was left out."
+
+
+def section_text(section, plots):
+    parts = [section.text]
+    if section.failure:
+        parts.append(f"**This section failed**: {section.failure}")
+    for one in section.tables:
+        parts += [f"**{one.title}.** {one.text}".strip() if one.title else one.text, cells(one)]
+    if section.contests:
+        parts.append(contests(section.contests))
+    if section.promises:
+        parts.append(promises(section.promises))
+    parts += [f"![{plot.title}]({plots[plot.name]})" for plot in section.plots if plot.name in plots]
+    if section.commands:
+        parts.append("```sh\n" + "\n".join(section.commands) + "\n```")
+    return "\n\n".join(part for part in parts if part)
+
+
+def contests(rows):
+    body = []
+    for c in rows:
+        measured = c.ratio() is not None
+        verdict = VERDICT_WORDS[c.verdict()] + (
+            ", **claim lost**" if c.lost() else ", claimed" if c.claim == "ahead" else ""
+        )
+        ours, theirs = (median_of(values, measured) for values in (c.ours, c.theirs))
+        ratio = interval(c) if measured else c.reason()
+        body.append([c.what, c.peer, c.unit, ours, theirs, ratio, verdict])
+    return table(["contest", "peer", "unit", "ours", "theirs", "ratio", "verdict"], body)
+
+
+def median_of(values, measured):
+    return number(float(median(values))) if measured else ""
+
+
+def interval(contest):
+    found = contest.ratio()
+    if contest.exact:
+        return f"{found.median:.2f}"
+    return f"{found.median:.2f} [{found.low:.2f}, {found.high:.2f}]"
+
+
+def promises(rows):
+    body = [[p.what, p.why or f"{p.cases:,}", "" if p.why else f"{p.violations:,}"] for p in rows]
+    return table(["must hold", "cases", "violations"], body)
+
+
+def cells(one):
+    """A table, with a note for each reason why a figure is missing."""
+    reasons, rows = [], []
+    for row in one.rows:
+        line = []
+        for cell in row:
+            if isinstance(cell, Missing):
+                if cell.why not in reasons:
+                    reasons.append(cell.why)
+                line.append(f"({reasons.index(cell.why) + 1})")
+            else:
+                line.append(number(cell))
+        rows.append(line)
+    notes = "\n".join(f"({k + 1}) {why}  " for k, why in enumerate(reasons))
+    return table(one.head, rows) + (f"\n\n{notes}" if notes else "")
+
+
+def number(cell):
+    """Three digits, as much as a measurement is worth; words and whole numbers as they are."""
+    if isinstance(cell, bool) or cell is None:
+        return "" if cell is None else ("yes" if cell else "no")
+    if isinstance(cell, int):
+        return f"{cell:,}"
+    if not isinstance(cell, float):
+        return str(cell)
+    if cell == 0 or 0.001 <= abs(cell) < 1e6:
+        digits = 0 if abs(cell) >= 100 else 1 if abs(cell) >= 10 else 2 if abs(cell) >= 1 else 3
+        return f"{cell:,.{digits}f}"
+    return f"{cell:.1e}"
+
+
+def table(head, rows):
+    escape = lambda cell: str(cell).replace("|", "\\|").replace("\n", " ")
+    lines = ["| " + " | ".join(head) + " |", "|" + "---|" * len(head)]
+    return "\n".join(lines + ["| " + " | ".join(escape(cell) for cell in row) + " |" for row in rows])

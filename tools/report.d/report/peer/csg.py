@@ -1,0 +1,143 @@
+"""How wrong pictures of a Boolean solid are: rays through the primitives' own equations, in double precision, with
+code of its own.
+
+    job      scene: {primitives, tree} (scenes.py), camera, seconds,
+             pictures: {name: path of a PNG, or of an image of faces as .npy}
+    results  {boundary, sampled, pictures: {name: {worst_px, p999_px, off, searched, beyond}}}
+
+Judged is where the solid ends: whether a pixel shows it at all. A PNG shows the background where it has the colour of
+its upper left corner; in an image of faces that is 0.
+"""
+
+import math
+
+import numpy
+from PIL import Image
+
+from . import job, tell
+from .kernel import boundary, judged, unit
+
+# the colour of a pixel within so many steps of 255 of the corner's is the background: pictures are not dithered
+ALIKE = 2
+
+
+class Rays:
+    """The camera's rays against a tree of primitives: 0 where they meet the solid, -1 where they do not."""
+
+    def __init__(self, scene, camera):
+        self.width, self.height = camera["size"]
+        self.eye, target, up = (numpy.array(camera[name], float) for name in ("eye", "target", "up"))
+        self.forward = unit(target - self.eye)
+        self.right = unit(numpy.cross(self.forward, up))
+        self.up = numpy.cross(self.right, self.forward)
+        self.tan = math.tan(math.radians(camera["fovy"]) / 2)
+        self.tree, self.parts = scene["tree"], scene["primitives"]
+
+    def at(self, x, y):
+        ray = self.forward + self.right * ((2 * x / self.width - 1) * self.tan * self.width / self.height)
+        ray = unit(ray + self.up * ((1 - 2 * y / self.height) * self.tan))
+        within = {name: spans(part, self.eye, ray) for name, part in self.parts.items()}
+        ends = sorted({t for of in within.values() for span in of for t in span if t > 0})
+        for low, high in zip(ends, ends[1:]):
+            middle = (low + high) / 2
+            inside = {name for name, of in within.items() if any(a < middle < b for a, b in of)}
+            if member(self.tree, inside):
+                return [0]
+        return [-1]
+
+    def centre(self, pixel):
+        return self.at(pixel[0] + 0.5, pixel[1] + 0.5)
+
+
+def member(tree, inside):
+    if isinstance(tree, str):
+        return tree in inside
+    left = member(tree[1], inside)
+    if tree[0] == "+":
+        return left or member(tree[2], inside)
+    return left and member(tree[2], inside) == (tree[0] == "*")
+
+
+def spans(part, eye, ray):
+    """Where a ray is within a primitive: pairs of distances."""
+    cos, sin = math.cos(math.radians(part["turn"])), math.sin(math.radians(part["turn"]))
+    turned = lambda v: (v[0], cos * v[1] + sin * v[2], -sin * v[1] + cos * v[2])
+    o, d = turned(eye - numpy.array(part["at"], float)), turned(ray)
+    if part["shape"] == "sphere":
+        return quadratic(
+            sum(x * x for x in d), sum(a * b for a, b in zip(o, d)), sum(x * x for x in o) - part["radius"] ** 2
+        )
+    if part["shape"] == "cylinder":
+        round_ = quadratic(
+            d[0] ** 2 + d[1] ** 2, o[0] * d[0] + o[1] * d[1], o[0] ** 2 + o[1] ** 2 - part["radius"] ** 2
+        )
+        return clipped(round_, slab(o[2], d[2], 0, part["height"]))
+    if part["shape"] == "torus":
+        return torus(o, d, part["major"], part["minor"])
+    low = [-s / 2 if part["centred"] else 0 for s in part["size"]]
+    found = [(-math.inf, math.inf)]
+    for k in range(3):
+        found = clipped(found, slab(o[k], d[k], low[k], low[k] + part["size"][k]))
+    return found
+
+
+def quadratic(a, b, c):
+    """Where a t^2 + 2 b t + c < 0."""
+    root = b * b - a * c
+    if a == 0 or root <= 0:
+        return [(-math.inf, math.inf)] if a == 0 and c < 0 else []
+    root = math.sqrt(root)
+    return [((-b - root) / a, (-b + root) / a)]
+
+
+def slab(o, d, low, high):
+    """Where low < o + t d < high; empty as a pair that is the wrong way round."""
+    if d == 0:
+        return (-math.inf, math.inf) if low < o < high else (1, -1)
+    a, b = (low - o) / d, (high - o) / d
+    return (min(a, b), max(a, b))
+
+
+def clipped(found, by):
+    both = ((max(a, by[0]), min(b, by[1])) for a, b in found)
+    return [(a, b) for a, b in both if a < b]
+
+
+def torus(o, d, major, minor):
+    """Between the real roots of (|p|^2 + R^2 - r^2)^2 = 4 R^2 (x^2 + y^2), p = o + t d with |d| = 1."""
+    middle = -sum(a * b for a, b in zip(o, d))
+    o = [a + middle * b for a, b in zip(o, d)]
+    if sum(x * x for x in o) > (major + minor) ** 2:
+        return []
+    k = sum(x * x for x in o) + major**2 - minor**2
+    flat = [d[0] ** 2 + d[1] ** 2, 2 * (o[0] * d[0] + o[1] * d[1]), o[0] ** 2 + o[1] ** 2]
+    # of t^4, t^3, ...: o is at right angles to d, because t runs from the point nearest to the middle
+    roots = numpy.roots([1, 0, 2 * k - 4 * major**2 * flat[0], -4 * major**2 * flat[1], k * k - 4 * major**2 * flat[2]])
+    real = sorted(float(r.real) + middle for r in roots if abs(r.imag) < 1e-9 * max(1.0, abs(r)))
+    return list(zip(real[::2], real[1::2]))
+
+
+def covered(path):
+    """0 where a picture shows the solid, -1 where it does not."""
+    if path.endswith(".npy"):
+        return numpy.where(numpy.load(path) == 0, -1, 0)
+    pixels = numpy.asarray(Image.open(path).convert("RGB")).astype(int)
+    return numpy.where(abs(pixels - pixels[0, 0]).max(-1) <= ALIKE, -1, 0)
+
+
+def main():
+    wanted = job()
+    rays = Rays(wanted["scene"], wanted["camera"])
+    truth, seen = boundary(rays, wanted["seconds"])
+    errors = {}
+    for name, path in wanted["pictures"].items():
+        image = covered(path)
+        if image.shape != (rays.height, rays.width):
+            raise SystemExit(f"{name}: a picture of {image.shape[1]} x {image.shape[0]} pixels")
+        wrong = {p for p, faces in truth.items() if int(image[p[1], p[0]]) not in faces}
+        errors[name] = judged(rays, image, None, wrong, len(truth), wanted["seconds"])
+    tell({"boundary": len(truth), "sampled": len(seen), "pictures": errors})
+
+
+if __name__ == "__main__":
+    main()

@@ -1,0 +1,118 @@
+"""The others: which are there, and runs of each in a process of its own.
+
+`tools/report` installs Python packages into a folder of the build and writes why it could not; what comes from Debian
+is used where it is.
+"""
+
+import importlib.metadata
+import importlib.util
+import json
+import os
+import shutil
+import subprocess
+import sys
+import time
+
+from .machine import ROOT
+from .rows import Missing
+from .turns import Unmeasurable
+
+# names in the report: package, module
+PACKAGES = {
+    "Open CASCADE": ("cadquery-ocp", "OCP"),
+    "VTK": ("vtk", "vtkmodules"),
+    "F3D": ("f3d", "f3d"),
+    "Manifold": ("manifold3d", "manifold3d"),
+}
+DEBIAN = {"OpenSCAD": "openscad", "POV-Ray": "povray"}
+SCREEN = "-screen 0 3840x2160x24"
+
+
+class Peers:
+    """`versions` by name, a `Missing` for each that is not there."""
+
+    def __init__(self, scratch):
+        self.scratch, self.count = scratch, 0
+        # of the last process: empty where it ended well
+        self.problem = ""
+        self.versions = {}
+        for name, (package, module) in PACKAGES.items():
+            if importlib.util.find_spec(module):
+                self.versions[name] = importlib.metadata.version(package)
+            else:
+                self.versions[name] = Missing(f"not installed: {why_not(package)}")
+        for name, program in DEBIAN.items():
+            there = shutil.which(program)
+            self.versions[name] = version(program) if there else Missing(f"not installed: apt install {program}")
+        if not shutil.which("xvfb-run"):
+            for name in ("Open CASCADE", "VTK", "F3D", "OpenSCAD"):
+                self.versions[name] = Missing("no X server to draw in: apt install xvfb")
+
+    def has(self, name):
+        return not isinstance(self.versions[name], Missing)
+
+    def needed(self, name):
+        """Raises what stands in the rows of a peer that is not there."""
+        if not self.has(name):
+            raise Unmeasurable(f"{name}: {self.versions[name].why}")
+
+    def results(self, program, job, windowed=False, limit_s=300):
+        """What a program of `report.peer` told; of one that was stopped by the limit, what it told before."""
+        self.count += 1
+        path = self.scratch / f"job{self.count}.json"
+        path.write_text(json.dumps(job))
+        command = [sys.executable, "-m", f"report.peer.{program}", str(path)]
+        if windowed:
+            command = ["xvfb-run", "-a", "-s", SCREEN, *command]
+        out, problem, _ = run(command, limit_s)
+        if problem:
+            print(f"   {program}: {problem}", file=sys.stderr, flush=True)
+        self.problem = problem
+        found = [json.loads(line[len("RESULT ") :]) for line in out.splitlines() if line.startswith("RESULT ")]
+        if not found:
+            raise Unmeasurable(f"{program} told nothing: {problem}")
+        return found
+
+
+def run(command, limit_s, allowed=(0,)):
+    """Standard output, what went wrong (empty where nothing did), and seconds; at the limit its group is ended."""
+    environment = {**os.environ, "PYTHONPATH": str(ROOT / "tools/report.d")}
+    start = time.perf_counter()
+    process = subprocess.Popen(
+        [str(word) for word in command],
+        cwd=ROOT,
+        env=environment,
+        stdout=subprocess.PIPE,
+        stderr=subprocess.PIPE,
+        text=True,
+        start_new_session=True,
+    )
+    try:
+        out, told = process.communicate(timeout=limit_s)
+        problem = (
+            ""
+            if process.returncode in allowed
+            else f"status {process.returncode}: {(told.strip().splitlines() or ['no word'])[-1]}"
+        )
+    except subprocess.TimeoutExpired:
+        os.killpg(process.pid, 15)
+        out, _ = process.communicate()
+        problem = f"not done in {limit_s:.0f} s"
+    return out, problem, time.perf_counter() - start
+
+
+def version(program):
+    done = subprocess.run([program, "--version"], capture_output=True, text=True)
+    words = (done.stdout + done.stderr).split()
+    return next((word for word in words if word[0].isdigit()), "of unknown version")
+
+
+def why_not(package):
+    """What pip said; `tools/report` keeps it in the folder that REPORT_PIP names."""
+    folder = os.environ.get("REPORT_PIP", "")
+    path = os.path.join(folder, f"{package}.failed")
+    if folder and os.path.exists(path):
+        with open(path) as text:
+            lines = [line.strip() for line in text if line.strip()]
+        return lines[-1] if lines else "pip failed without a word"
+    return f"pip install {package}"

@@ -1,0 +1,91 @@
+"""8. First use: seconds and megabytes from a cold clone to the first picture, and what a host carries."""
+
+import os
+import subprocess
+import tempfile
+import time
+from pathlib import Path
+
+from ..machine import ROOT
+from ..rows import Missing, Section, Table
+from ..turns import Unmeasurable
+
+TEXT = """\
+A clone has the history of one commit; the build is the release program with its window, on all cores, with crates that
+are downloaded already."""
+LONG = Missing("takes many minutes: only without --quick")
+
+
+def measure(context):
+    section = Section(8, "First use", TEXT)
+    rows = [["the program", megabytes(context.program.path), "", ""]]
+    library = ROOT / os.environ.get("CARGO_TARGET_DIR", "target") / "release/libselvedge_c.so"
+    rows.append(
+        [
+            "the library for hosts in C",
+            megabytes(library) if library.exists() else Missing("not built: tools/install_c"),
+            "",
+            "",
+        ]
+    )
+    camera = {
+        "eye": [100.0, -160.0, 110.0],
+        "target": [0.0, 0.0, 0.0],
+        "up": [0.0, 0.0, 1.0],
+        "fovy": 35.0,
+        "size": [640, 480],
+    }
+    sample = context.model("samples/panel.step")
+    cold, warm = (context.program.render(sample, camera, stats=False)["seconds"] for _ in range(2))
+    rows.append(["the first picture, samples/panel.step", "", cold, ""])
+    rows.append(["the second", "", warm, ""])
+    rows += context.pick(
+        lambda: [["a clone", source_megabytes(), "", ""], ["a cold build", LONG, LONG, LONG]], lambda: built(section)
+    )()
+    section.tables.append(Table("", ["", "MB", "seconds", "CPU seconds"], rows))
+    section.commands.append(context.shown("render", sample, "--size", "640x480", "-o", "picture.png"))
+    return section
+
+
+def megabytes(path):
+    """Of a file, or of all in a folder."""
+    files = [path] if path.is_file() else [f for f in path.rglob("*") if f.is_file() and not f.is_symlink()]
+    return sum(f.stat().st_size for f in files) / 1e6
+
+
+def source_megabytes():
+    """Of the files of the commit."""
+    done = subprocess.run(["git", "archive", "HEAD"], cwd=ROOT, capture_output=True)
+    return len(done.stdout) / 1e6 if done.returncode == 0 else Missing("not a git repository")
+
+
+def built(section):
+    """Rows of a clone, a cold build in it, and the first picture from it."""
+    with tempfile.TemporaryDirectory() as folder:
+        clone, target = Path(folder) / "clone", Path(folder) / "target"
+        rows = []
+        words = [
+            ("a clone", ["git", "clone", "-q", "--depth", "1", ROOT.as_uri(), clone], folder, clone),
+            (
+                "a cold build",
+                ["cargo", "build", "-q", "--release", "--offline", "-p", "selvedge-cli", "--target-dir", target],
+                clone,
+                target,
+            ),
+            (
+                "the first picture from it",
+                [target / "release/selvedge", "render", "samples/panel.step", "-o", target / "a.png"],
+                clone,
+                target / "a.png",
+            ),
+        ]
+        for name, command, within, made in words:
+            before, start = os.times(), time.monotonic()
+            done = subprocess.run([str(word) for word in command], cwd=within, capture_output=True, text=True)
+            took, after = time.monotonic() - start, os.times()
+            if done.returncode != 0:
+                raise Unmeasurable(f"{name}: {(done.stderr.strip().splitlines() or ['no word'])[-1]}")
+            cpu = after.children_user + after.children_system - before.children_user - before.children_system
+            rows.append([name, megabytes(made), took, cpu])
+        section.commands += ["git clone --depth 1", "cargo build --release -p selvedge-cli"]
+        return rows

@@ -1,0 +1,50 @@
+"""10. Reading files, beside Open CASCADE."""
+
+from ..rows import Contest, Section
+from ..turns import Unmeasurable, rounds
+
+FILES = [
+    "samples/panel.step",
+    "samples/assembly.step",
+    "nist_pmi_2.stp",
+    "framework_printable_case_full.stp",
+    "impeller.igs",
+    "nist_827-9999-904.stp",
+]
+TEXT = """\
+From bytes on disk to a valid model, on all cores, in a fresh process each time; of Open CASCADE the reader's two
+steps, read and transfer, all files in one process."""
+
+
+def measure(context):
+    section = Section(10, "Reading files", TEXT)
+    names = context.pick(FILES[:4], FILES)
+    there = {name: context.model(name) for name in names if context.model(name)}
+    section.contests += [
+        Contest(f"reading, {name}", "Open CASCADE", "ms", why=context.absent(name).why)
+        for name in names
+        if name not in there
+    ]
+
+    def theirs():
+        context.peers.needed("Open CASCADE")
+        found = context.peers.results(
+            "reading", {"models": [str(path) for path in there.values()]}, limit_s=context.pick(60, 300)
+        )
+        if len(found) < len(there):
+            raise Unmeasurable(f"it read {len(found)} of {len(there)} files")
+        return [1e3 * one["read_s"] for one in found]
+
+    ours = lambda: [context.program.read_ms(path) for path in there.values()]
+    results = rounds({"ours": ours, "theirs": theirs}, context.pick(30, 300), most=context.pick(5, 9))
+    if isinstance(results["ours"], Unmeasurable):
+        raise results["ours"]
+    for k, name in enumerate(there):
+        what = f"reading, {name.split('/')[-1]}"
+        if isinstance(results["theirs"], Unmeasurable):
+            section.contests.append(Contest(what, "Open CASCADE", "ms", why=str(results["theirs"])))
+        else:
+            mine, other = ([one[k] for one in results[who]] for who in ("ours", "theirs"))
+            section.contests.append(Contest(what, "Open CASCADE", "ms", mine, other, "ahead"))
+    section.commands.append("selvedge -v info FILE")
+    return section

@@ -1,0 +1,107 @@
+"""5. Scale: patches, instances and the leaves of solids, each over decades: time, bytes, exponents of growth."""
+
+from .. import noise, scenes
+from ..rows import Line, Missing, Plot, Section, Table
+from ..turns import Unmeasurable
+
+TEXT = """\
+Patches are those of wavy bicubic sheets of 1,024 patches, each with a net of its own; instances are copies of
+`bracket.step`; leaves are the primitives of a plate with a grid of holes. All are seen whole, every pass recorded:
+the median of the frames. An exponent of 1 is growth in proportion, below 1 the cost of what does not grow; the last
+is that between the two largest."""
+
+
+def measure(context):
+    section = Section(5, "Scale", TEXT)
+    size, frames = context.pick("480x270", "1280x720"), context.pick(2, 5)
+    copies = context.pick("1,10,100", "1,10,100,1000,4000,9000")
+    words = ["--size", size]
+    series = [
+        (
+            "patches",
+            "patches",
+            lambda: swept(context, section, ["--degrees", "3", "--distinct"], copies, size, frames, "patches"),
+        ),
+        (
+            "instances",
+            "instances",
+            lambda: swept(
+                context,
+                section,
+                [context.model("samples/bracket.step")],
+                context.pick("1,10,100,1000", "1,10,100,1000,10000,100000"),
+                size,
+                frames,
+                "copies",
+            ),
+        ),
+        (
+            "leaves",
+            "leaves of a solid",
+            lambda: leaves(context, section, context.pick([9, 100, 1024], [9, 100, 1024, 10000, 99856]), words, frames),
+        ),
+    ]
+    exponents = []
+    for name, title, measured in series:
+        context.say(name)
+        points = measured()
+        rows = [[int(n), *(cells if not isinstance(cells, str) else [Missing(cells)] * 3)] for n, cells in points]
+        section.tables.append(
+            Table(title[0].upper() + title[1:], [title, "all passes, ms", "scene, MiB", "transient, MiB"], rows)
+        )
+        good = [(n, cells) for n, cells in points if not isinstance(cells, str)]
+        for k, what in enumerate(["time", "bytes of the scene", "transient bytes"]):
+            curve = [(n, cells[k]) for n, cells in good]
+            last = noise.exponent(curve[-2:])
+            exponents.append(
+                [
+                    title,
+                    what,
+                    *(
+                        Missing("fewer than two sizes were measured") if e is None else e
+                        for e in (noise.exponent(curve), last)
+                    ),
+                ]
+            )
+        line = Line("selvedge", [(n, cells[0]) for n, cells in good], True)
+        section.plots.append(Plot(f"scale-{name}", f"time over {title}", title, "all passes, ms", [line]))
+    section.tables.append(Table("Exponents", ["of", "", "over all", "last"], exponents))
+    return section
+
+
+def swept(context, section, what, copies, size, frames, column):
+    """`(number, [ms, MiB, MiB])` of each number of copies, or why not."""
+    points = []
+    for number in copies.split(","):
+        words = [*what, "--copies", number, "--sizes", size, "--frames", frames, "--samples", 0]
+        try:
+            (row,) = context.program.sweep(*words)
+        except Unmeasurable as error:
+            each = 1024 if column == "patches" else 1
+            points.append((int(number) * each, str(error)))
+            continue
+        mebibytes = [float(row[key]) / 2**20 for key in ("persistent_bytes", "transient_bytes")]
+        points.append((int(row[column]), [float(row["all_ms"]), *mebibytes]))
+    section.commands.append(
+        context.shown("sweep", *what, "--copies", copies, "--sizes", size, "--frames", frames, "--samples", 0)
+    )
+    return points
+
+
+def leaves(context, section, holes, words, frames):
+    points = []
+    for number in holes:
+        scene = scenes.plate(number)
+        path = context.program.folder() / f"{scene.name}.toml"
+        path.write_text(scenes.toml(scene))
+        try:
+            (report,) = context.program.bench([path], "--motion", "turn", "--judged", 0, "--frames", frames, *words)
+        except Unmeasurable as error:
+            points.append((number + 1, str(error)))
+            continue
+        bytes_ = lambda pool: report["largest"].get(f"pool: {pool}", 0.0) / 2**20
+        points.append((number + 1, [report["of"]["all passes"], bytes_("persistent"), bytes_("transient")]))
+    section.commands.append(
+        context.shown("bench", "plate.toml", "--motion", "turn", "--judged", 0, "--frames", frames, *words)
+    )
+    return points

@@ -1,0 +1,276 @@
+"""4. Boolean solids: three ways of ours, OpenSCAD's preview, Manifold's triangles, POV-Ray."""
+
+import statistics
+
+from .. import bumpy, scenes, views
+from ..peers import run
+from ..rows import Contest, Missing, Promise, Section, Table
+from ..turns import Unmeasurable, rounds
+
+WAYS = ["events", "cst", "blister"]
+SCENES_QUICK = ["widget", "complex", "gear"]
+SCENES = [*SCENES_QUICK, "plate100", "plate1000"]
+# facets around a round primitive
+SEGMENTS_QUICK, SEGMENTS = [64], [32, 128]
+# degrees from top to bottom: OpenSCAD's, which no option changes
+FOV_DEG = 22.5
+# beside the solid's own box, so that no way draws it beyond the picture
+AWAY = 1.02
+TEXT = """\
+The scenes have the numbers of primitives of the models of J. Hable and J. Rossignac, *Blister*, SIGGRAPH 2005, which
+are not public. *First picture* is the whole process of ours, OpenSCAD and POV-Ray, from the file to a PNG; of
+Manifold it is evaluation and VTK's window and first frame, without the start of its process. *Turning* is a frame of
+a turn by three degrees each; OpenSCAD and POV-Ray draw no turn. Errors are those of the outline, by rays through the
+primitives' own equations; OpenSCAD and Manifold draw as many facets around a round primitive as stands beside their
+names."""
+
+
+def measure(context):
+    section = Section(4, "Boolean solids", TEXT)
+    section.promises.append(Promise("an outline within half a pixel, by the primitives' equations"))
+    section.promises.append(Promise("a pixel of a solid right within half a pixel, by the project's reference"))
+    ways = []
+    for name in context.pick(SCENES_QUICK, SCENES):
+        context.say(name)
+        case = Case(context, name)
+        case.into(section)
+        ways += way_rows(name, len(case.scene.primitives), case.benches)
+    ways += bunnies(context)
+    head = [
+        "scene",
+        "primitives",
+        "way",
+        "solids, ms",
+        "turning frame, ms",
+        "layers",
+        "paper: peeled, in all",
+        "paper, s",
+        "of the way, MiB",
+        "transient, MiB",
+    ]
+    text = "Medians of pass `solids` and of the wall clock; the paper's figures are of a GeForce 6800, of other models."
+    section.tables.append(Table("Our ways beside the paper's", head, ways, text))
+    if not section.promises[0].cases:
+        section.promises[0].why = "no picture was judged"
+    return section
+
+
+class Case:
+    """One scene."""
+
+    def __init__(self, context, name):
+        self.context, self.name = context, name
+        self.scene = scenes.of_name(name)
+        self.folder = context.program.folder()
+        self.file = self.folder / f"{name}.toml"
+        self.file.write_text(scenes.toml(self.scene))
+        bounds = context.program.info(self.file)["bounds"]
+        size = context.pick((640, 480), (1024, 768))
+        self.frames = context.pick(4, 12)
+        self.camera = self.view(bounds, size, 0)
+        self.turn = [self.view(bounds, size, step) for step in range(self.frames)]
+        self.size = "{}x{}".format(*size)
+        self.segments = context.pick(SEGMENTS_QUICK, SEGMENTS)
+        self.benches = []
+        self.pictures = {}
+
+    def view(self, bounds, size, step):
+        camera = views.turned(bounds, size, step, FOV_DEG)
+        camera["eye"] = [t + AWAY * (e - t) for e, t in zip(camera["eye"], camera["target"])]
+        return camera
+
+    def ours(self):
+        """Of each way: seconds to the first picture, the report of a turn."""
+        found = {}
+        for way in WAYS:
+            first = self.context.program.render(self.file, self.camera, "--solids", way, images=["face"], stats=False)
+            options = ["--motion", "turn", "--solids", way, "--frames", self.frames, "--judged", 1, "--size", self.size]
+            (report,) = self.context.program.bench([self.file], *options)
+            self.pictures[f"selvedge, {way}"] = str(first["face"])
+            found[way] = (first["seconds"], report)
+        self.benches.append({way: report for way, (_, report) in found.items()})
+        return {
+            f"selvedge, {way}": (first, report["of"]["wall clock, with read-back"])
+            for way, (first, report) in found.items()
+        }
+
+    def openscad(self):
+        self.context.peers.needed("OpenSCAD")
+        found = {}
+        for segments in self.segments:
+            file, picture = self.folder / f"{segments}.scad", self.folder / f"{segments}.png"
+            file.write_text(scenes.scad(self.scene, segments))
+            at = ",".join(f"{x:.9f}" for x in [*self.camera["eye"], *self.camera["target"]])
+            size = "{},{}".format(*self.camera["size"])
+            command = [
+                "xvfb-run",
+                "-a",
+                "openscad",
+                "--preview",
+                f"--camera={at}",
+                f"--imgsize={size}",
+                "-o",
+                picture,
+                file,
+            ]
+            _, problem, took = run(command, self.context.pick(30, 300))
+            if problem or not picture.exists():
+                raise Unmeasurable(f"OpenSCAD drew nothing: {problem or 'no picture'}")
+            name = f"OpenSCAD, {segments}"
+            self.pictures[name] = str(picture)
+            found[name] = (took, None)
+        return found
+
+    def manifold(self):
+        self.context.peers.needed("Manifold")
+        self.context.peers.needed("VTK")
+        job = {
+            "scene": self.scene.data(),
+            "segments": self.segments,
+            "camera": self.camera,
+            "turn": self.turn,
+            "folder": str(self.folder),
+        }
+        found = {}
+        for one in self.context.peers.results(
+            "manifold_viewer", job, windowed=True, limit_s=self.context.pick(60, 300)
+        ):
+            name = f"Manifold, {one['segments']}"
+            self.pictures[name] = one["picture"]
+            found[name] = (one["evaluate_s"] + one["first_s"], one["turning_ms"])
+        return found
+
+    def povray(self):
+        self.context.peers.needed("POV-Ray")
+        file, picture = self.folder / "scene.pov", self.folder / "pov.png"
+        file.write_text(scenes.pov(self.scene, self.camera))
+        width, height = self.camera["size"]
+        _, problem, took = run(
+            ["povray", f"+I{file}", f"+O{picture}", f"+W{width}", f"+H{height}", "-D", "-A", "+FN8"],
+            self.context.pick(60, 600),
+        )
+        if problem or not picture.exists():
+            raise Unmeasurable(f"POV-Ray drew nothing: {problem or 'no picture'}")
+        self.pictures["POV-Ray"] = str(picture)
+        return {"POV-Ray": (took, None)}
+
+    def into(self, section):
+        competitors = {
+            "selvedge": self.ours,
+            "OpenSCAD": self.openscad,
+            "Manifold": self.manifold,
+            "POV-Ray": self.povray,
+        }
+        results = rounds(competitors, self.context.pick(25, 300), most=self.context.pick(3, 5))
+        if isinstance(results["selvedge"], Unmeasurable):
+            raise results["selvedge"]
+        errors, judged = self.errors()
+        rows = []
+        for name, found in results.items():
+            if isinstance(found, Unmeasurable):
+                rows.append([name, *[Missing(str(found))] * 2, "", "", ""])
+                continue
+            for setting in found[0]:
+                first, turning = zip(*(one[setting] for one in found))
+                turning = Missing("it draws no turn") if turning[0] is None else statistics.median(turning)
+                error = errors.get(setting)
+                worst = (
+                    [
+                        f"> {error['worst_px'] / 2:g}" if error["beyond"] else error["worst_px"],
+                        error["p999_px"],
+                        error["off"],
+                    ]
+                    if error
+                    else [""] * 3
+                )
+                rows.append([setting, statistics.median(first), turning, *worst])
+        text = f"{judged:,} pixels at the outline judged."
+        section.tables.append(
+            Table(
+                f"{self.name}, {self.size}",
+                ["", "first picture, s", "turning, ms", "worst, px", "99.9 %, px", "pixels off"],
+                rows,
+                text,
+            )
+        )
+        self.contests(section, results)
+        for way in WAYS:
+            error = errors.get(f"selvedge, {way}")
+            if error:
+                section.promises[0].cases += judged
+                section.promises[0].violations += error["beyond"] or int(error["worst_px"] > 0.5)
+            for report in self.benches[:1]:
+                section.promises[1].cases += report[way]["error"]["judged_pixels"]
+                section.promises[1].violations += report[way]["error"]["wrong_pixels"]
+
+    def errors(self):
+        try:
+            job = {
+                "scene": self.scene.data(),
+                "camera": self.camera,
+                "pictures": self.pictures,
+                "seconds": self.context.pick(4, 60),
+            }
+            (found,) = self.context.peers.results("csg", job, limit_s=120 + 4 * job["seconds"])
+        except Unmeasurable as error:
+            self.context.say(str(error))
+            return {}, 0
+        return found["pictures"], found["boundary"]
+
+    def contests(self, section, results):
+        """Way `events` beside the others, and beside our other ways."""
+        ours = results["selvedge"]
+        best = lambda one, k: one["selvedge, events"][k]
+        for way in WAYS[1:]:
+            theirs = [one[f"selvedge, {way}"][1] for one in ours]
+            section.contests.append(
+                Contest(
+                    f"turning frame, {self.name}", f"way {way}", "ms", [best(one, 1) for one in ours], theirs, "ahead"
+                )
+            )
+        for name, found in results.items():
+            if name == "selvedge":
+                continue
+            if isinstance(found, Unmeasurable):
+                section.contests.append(Contest(f"first picture, {self.name}", name, "s", why=str(found)))
+                continue
+            for setting in found[0]:
+                for k, quantity, unit in ((0, "first picture", "s"), (1, "turning frame", "ms")):
+                    if found[0][setting][k] is not None:
+                        many = min(len(ours), len(found))
+                        mine, theirs = [best(one, k) for one in ours[:many]], [one[setting][k] for one in found[:many]]
+                        section.contests.append(Contest(f"{quantity}, {self.name}", setting, unit, mine, theirs))
+
+
+def way_rows(name, primitives, benches):
+    """Rows of the table beside the paper's figures, of rounds of reports by way."""
+    rows = []
+    paper = scenes.PAPER.get(name)
+    for way in WAYS:
+        of = lambda quantity: statistics.median(one[way]["of"].get(quantity, 0.0) for one in benches)
+        largest = benches[0][way]["largest"]
+        mebibytes = lambda begins: sum(v for quantity, v in largest.items() if quantity.startswith(begins)) / 2**20
+        blister = way == "blister"
+        layers = [
+            of("layers") if blister else "",
+            f"{paper[0]}, {paper[1]}" if blister and paper else "",
+            paper[2] if blister and paper else "",
+        ]
+        times = [of("pass: solids"), of("wall clock, with read-back")]
+        rows.append([name, primitives, way, *times, *layers, mebibytes("solids: "), mebibytes("pool: transient")])
+    return rows
+
+
+def bunnies(context):
+    """The same of meshes as operands, which no peer gets: the paper's numbers of triangles, and one round."""
+    if context.quick:
+        return [["bunny", 4, "", *[Missing("574,000 triangles take minutes: only without --quick")] * 2, *[""] * 5]]
+    rows = []
+    for name in bumpy.TRIANGLES:
+        context.say(name)
+        path = bumpy.scene(context.program.folder(), name)
+        bench = lambda way: context.program.bench(
+            [path], "--motion", "turn", "--solids", way, "--frames", 2, "--judged", 0, "--size", "640x480"
+        )[0]
+        rows += way_rows(name, 4, [{way: bench(way) for way in WAYS}])
+    return rows

@@ -1,0 +1,166 @@
+"""2. Time against zoom, with error: triangles of one mesh, of a mesh for each zoom, and ours."""
+
+import statistics
+
+from .. import program, views
+from ..rows import Contest, Line, Missing, Plot, Promise, Section, Table
+from ..turns import Unmeasurable, rounds
+
+FILE, SAMPLE = "nist_pmi_2.stp", "samples/bracket.step"
+ZOOMS_QUICK, ZOOMS = [1, 10, 1_000, 1_000_000], [1, 10, 100, 1_000, 10_000, 100_000, 1_000_000]
+# deflection of the one mesh, of the diagonal: the default of Open CASCADE's viewer
+FIXED = 1e-3
+# a mesh for a view is within so many of its pixels
+WITHIN_PX = 0.5
+# the kernel's tolerance, millimetres, and how many of it a pixel must have for its rays to tell an error of a sixteenth
+KERNEL_MM, KERNEL_PIXEL = 1e-7, 32
+TEXT = """\
+Views so many times closer to the detail nearest to the eye. The *fixed* viewer draws one mesh within a thousandth of
+the diagonal; the other meshes anew for each view, within half a pixel of it, and its time is that of mesh and frame.
+Both draw by VTK what Open CASCADE meshes. Ours is a frame of all passes. Errors are those of the kernel's rays where
+a pixel is large enough beside the kernel's tolerance of 1e-7 mm; those of the project's own reference stand beside
+them for every zoom."""
+
+
+def measure(context):
+    section = Section(2, "Time against zoom", TEXT)
+    model = context.model(FILE) or context.model(SAMPLE)
+    size, zooms = context.pick((960, 540), (1920, 1080)), context.pick(ZOOMS_QUICK, ZOOMS)
+    words = [
+        "check",
+        model,
+        "--zoom",
+        ",".join(map(str, zooms)),
+        "--size",
+        "{}x{}".format(*size),
+        "--samples",
+        context.pick(2000, 20000),
+    ]
+    context.say("our pictures")
+    judged = context.program.check(model, *words[2:])
+    section.commands.append(context.shown(*words))
+    section.promises.append(
+        Promise(
+            "a pixel right within half a pixel, by the project's reference",
+            sum(program.wrong(v["judgement"]) for v in judged),
+            sum(v["judgement"]["sampled"] for v in judged),
+        )
+    )
+    cameras = {str(zoom): {**view["camera"], "size": list(size)} for zoom, view in zip(zooms, judged)}
+    least = context.pick(3, 5)
+    ours = lambda: {name: context.program.render(model, camera)["stats"] for name, camera in cameras.items()}
+    folder = context.program.folder()
+
+    reached = list(cameras)
+    limit_s, stopped = context.pick(20, 60), {}
+
+    def meshed():
+        """By kind and view; a view whose mesh is not done in time is not tried again."""
+        context.peers.needed("VTK")
+        wanted = {
+            name: {"camera": camera, "deflection": WITHIN_PX * views.pixel_mm(camera)}
+            for name, camera in cameras.items()
+        }
+        job = {"model": str(model), "views": wanted, "meshes": reached, "fixed": FIXED, "ids": str(folder)}
+        found = {
+            (one["kind"], one["view"]): one
+            for one in context.peers.results("zoomed", job, windowed=True, limit_s=limit_s)
+        }
+        late = [name for name in reached if ("remeshed", name) not in found]
+        reached[:] = [name for name in reached if name not in late]
+        # told once, for all rounds
+        stopped.update({name: f"{int(late[0]):,} times was not meshed within {limit_s} s" for name in late})
+        return found
+
+    context.say("in turn")
+    results = rounds({"ours": ours, "meshed": meshed}, context.pick(30, 600), least=3, most=least)
+    if isinstance(results["ours"], Unmeasurable):
+        raise results["ours"]
+    errors = kernel_errors(context, model, cameras, results["meshed"])
+    fill(section, model.name, cameras, judged, results, errors, stopped)
+    return section
+
+
+def kernel_errors(context, model, cameras, meshed):
+    """By zoom and picture; a reason in place of either."""
+    if isinstance(meshed, Unmeasurable):
+        return {name: str(meshed) for name in cameras}
+    wanted, errors = {}, {}
+    for name, camera in cameras.items():
+        if views.pixel_mm(camera) < KERNEL_PIXEL * KERNEL_MM:
+            errors[name] = f"a pixel is {views.pixel_mm(camera):.0e} mm, too little beside the kernel's tolerance"
+            continue
+        pictures = {
+            "ours": {
+                "path": str(context.program.render(model, camera, images=["face"], stats=False)["face"]),
+                "own": True,
+            }
+        }
+        for kind in ("fixed", "remeshed"):
+            if (kind, name) in meshed[0]:
+                pictures[kind] = {"path": meshed[0][kind, name]["ids"], "own": False}
+        wanted[name] = {"camera": camera, "pictures": pictures}
+    seconds = context.pick(4, 60)
+    job = {"model": str(model), "views": wanted, "seconds": seconds}
+    try:
+        found = context.peers.results("kernel", job, limit_s=60 + 4 * seconds * len(wanted))
+    except Unmeasurable as error:
+        return {name: errors.get(name, str(error)) for name in cameras}
+    return {
+        **{name: f"the kernel's rays: {context.peers.problem}" for name in cameras},
+        **errors,
+        **{one["view"]: one["pictures"] for one in found},
+    }
+
+
+def fill(section, file, cameras, judged, results, errors, stopped):
+    meshed = results["meshed"]
+    rows, lines = [], {"ours": [], "fixed": [], "remeshed": []}
+    for (name, camera), view in zip(cameras.items(), judged):
+        mine = [program.passes_ms(one[name]) for one in results["ours"]]
+        lines["ours"].append((float(name), statistics.median(mine)))
+        cells = [int(name), views.pixel_mm(camera), statistics.median(mine)]
+        cells += [error(errors[name], "ours"), program.worst_shift_px(view["judgement"])]
+        for kind in ("fixed", "remeshed"):
+            what = f"frame, {file}, {int(name):,} times"
+            peer = "VTK, fixed mesh" if kind == "fixed" else "VTK, a mesh a zoom"
+            claim = "ahead" if kind == "remeshed" and int(name) >= 10 else "open"
+            late = stopped.get(name) if kind == "remeshed" else None
+            if late or isinstance(meshed, Unmeasurable):
+                cells += [Missing(late or str(meshed)), ""]
+                section.contests.append(
+                    Contest(what, peer, "ms", claim=claim, unreached=bool(late), why=late or str(meshed))
+                )
+                continue
+            found = [one[kind, name] for one in meshed]
+            times = [one["frame_ms"] + 1e3 * one.get("mesh_s", 0.0) for one in found]
+            lines[kind].append((float(name), statistics.median(times)))
+            cells += [statistics.median(times), error(errors[name], kind)]
+            many = min(len(mine), len(times))
+            section.contests.append(Contest(what, peer, "ms", mine[:many], times[:many], claim))
+        rows.append(cells)
+    head = [
+        "zoom",
+        "a pixel, mm",
+        "ours, ms",
+        "worst, px",
+        "by our reference",
+        "fixed mesh, ms",
+        "worst, px",
+        "a mesh a zoom, ms",
+        "worst, px",
+    ]
+    section.tables.append(Table(file, head, rows))
+    names = {"ours": "selvedge", "fixed": "one mesh", "remeshed": "a mesh for each zoom"}
+    drawn = [Line(names[kind], points, kind == "ours") for kind, points in lines.items() if points]
+    section.plots.append(Plot("zoom", f"time over zoom: {file}", "zoom", "frame, ms", drawn))
+
+
+def error(of_view, kind):
+    """The worst error by the kernel, as a cell."""
+    if isinstance(of_view, str):
+        return Missing(of_view)
+    found = of_view.get(kind)
+    if found is None:
+        return ""
+    return f"> {found['worst_px'] / 2:g}" if found["beyond"] else found["worst_px"]

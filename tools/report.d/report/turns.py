@@ -1,0 +1,39 @@
+"""Rounds of all competitors in turn.
+
+    round 1   A B C      round 2   B C A      round 3   C A B      ...
+
+Each round begins with another one, so that none always follows the same. Rounds go on until their time is used up,
+but there are `least` of them in any case, for without them the noise is unknown.
+"""
+
+import time
+
+from .noise import FEWEST_ROUNDS
+
+
+def rounds(competitors, seconds, least=FEWEST_ROUNDS, most=9, clock=time.monotonic):
+    """Runs `competitors`, a dictionary of functions that return a measurement; for each a list, one entry a round.
+
+    A competitor that raises `Unmeasurable` is left out from then on: its list is what it raised.
+    """
+    results = {name: [] for name in competitors}
+    start, longest = clock(), 0.0
+    for number in range(most):
+        begun = clock()
+        if number >= least and begun - start + longest > seconds:
+            break
+        names = list(competitors)
+        turn = number % len(names)
+        for name in names[turn:] + names[:turn]:
+            if isinstance(results[name], Unmeasurable):
+                continue
+            try:
+                results[name].append(competitors[name]())
+            except Unmeasurable as error:
+                results[name] = error
+        longest = max(longest, clock() - begun)
+    return results
+
+
+class Unmeasurable(Exception):
+    """Why something could not be measured: what stands in its row."""

@@ -1,0 +1,46 @@
+"""Scenes of hard and random cases can be read, and are the same for the same number."""
+
+import random
+import tomllib
+import unittest
+
+from report import hard
+from report.sections import least
+
+
+class Scenes(unittest.TestCase):
+    def test_every_case_is_a_scene(self):
+        self.assertEqual(len({case.name for case in hard.CASES}), len(hard.CASES))
+        for case in hard.CASES:
+            with self.subTest(case.name):
+                scene = tomllib.loads(case.scene)
+                self.assertTrue(scene.keys() & {"surface", "solid"})
+                named = set(scene.get("curve", {}))
+                for surface in scene.get("surface", {}).values():
+                    for loop in surface.get("loops", []):
+                        of = loop["curves"] if isinstance(loop, dict) else loop
+                        self.assertLessEqual({of} if isinstance(of, str) else set(of), named)
+
+    def test_random_cases_follow_from_their_number(self):
+        for made in (lambda draw: hard.random_sheets(draw, 9)[0], lambda draw: hard.random_tree(draw, 9)):
+            texts = [made(random.Random(number)) for number in (1, 1, 2)]
+            self.assertEqual(texts[0], texts[1])
+            self.assertNotEqual(texts[0], texts[2])
+            tomllib.loads(texts[0])
+
+    def test_a_random_sheet_is_counted_with_its_loops(self):
+        text, loops = hard.random_sheets(random.Random(3), 12)
+        scene = tomllib.loads(text)
+        self.assertEqual(len(scene["surface"]), 12)
+        self.assertEqual(sum(len(one.get("loops", [])) for one in scene["surface"].values()), loops)
+
+
+class Least(unittest.TestCase):
+    def test_what_belongs_to_another_feature_is_told(self):
+        self.assertEqual(least.foreign("trim intercepts", []), ["trims"])
+        self.assertEqual(least.foreign("trim intercepts", ["trims"]), [])
+        self.assertEqual(least.foreign("patches", []), [])
+
+
+if __name__ == "__main__":
+    unittest.main()

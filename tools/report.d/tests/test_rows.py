@@ -1,0 +1,99 @@
+"""Whether a claim that was lost is told: made-up measurements, no peers, no processes."""
+
+import json
+import unittest
+
+from report import markdown
+from report.rows import Contest, Missing, Promise, Report, Section, Table
+
+
+def contest(ours, theirs, claim="ahead", **more):
+    return Contest("first picture, part.step", "Viewer", "ms", ours, theirs, claim, **more)
+
+
+def report(*contests, promises=(), failure=""):
+    section = Section(1, "Made up", "", contests=list(contests), promises=list(promises), failure=failure)
+    return Report("tools/report", "2026-01-01", "a machine", "a device", "abc", "0.1", {"Viewer": "1.0"}, [section])
+
+
+WON = contest([100, 110, 105], [300, 280, 330])
+LOST = contest([300, 280, 330], [100, 110, 105])
+NOISY = contest([100, 200, 300], [210, 180, 150])
+
+
+class Verdicts(unittest.TestCase):
+    def test_verdicts_follow_the_interval(self):
+        self.assertEqual([c.verdict() for c in (WON, LOST, NOISY)], ["ahead", "behind", "even"])
+
+    def test_a_lost_claim_fails_the_run(self):
+        self.assertEqual(report(WON).exit_status(), 0)
+        self.assertEqual(report(WON, LOST).exit_status(), 1)
+
+    def test_what_is_within_the_noise_does_not(self):
+        # two of three rounds were lost, by less than they differ
+        self.assertEqual(report(NOISY).exit_status(), 0)
+
+    def test_what_nobody_claims_does_not(self):
+        self.assertEqual(report(contest(LOST.ours, LOST.theirs, "open")).exit_status(), 0)
+
+    def test_a_broken_promise_fails_the_run(self):
+        self.assertEqual(report(promises=[Promise("pixels", 0, 100)]).exit_status(), 0)
+        self.assertEqual(report(promises=[Promise("pixels", 1, 100)]).exit_status(), 1)
+
+    def test_a_known_exception_is_told_and_does_not(self):
+        known = report(promises=[Promise("pixels", 7, 100, known="docs/accuracy.md says so")])
+        self.assertEqual(known.exit_status(), 0)
+        self.assertIn("pixels: 7 of 100; docs/accuracy.md says so", markdown.text(known, {}))
+
+    def test_a_section_that_failed_fails_the_run(self):
+        self.assertEqual(report(WON, failure="the program ended with status 3").exit_status(), 1)
+
+    def test_two_rounds_are_no_verdict(self):
+        two = contest([1, 1], [9, 9])
+        self.assertEqual((two.verdict(), two.lost()), ("not measured", False))
+        self.assertIn("2 rounds", two.reason())
+
+    def test_exact_quantities_need_no_rounds(self):
+        self.assertEqual(contest([5.0], [4.0], exact=True).verdict(), "behind")
+        self.assertEqual(contest([4.0], [4.0], exact=True).verdict(), "even")
+
+    def test_a_row_is_measured_or_says_why_not(self):
+        self.assertRaises(ValueError, contest, [], [])
+        self.assertRaises(ValueError, contest, [1.0], [])
+        self.assertRaises(ValueError, contest, [0.0], [1.0])
+        self.assertRaises(ValueError, contest, [], [], unreached=True)
+        self.assertEqual(contest([], [], why="not installed").verdict(), "not measured")
+        self.assertEqual(contest([], [], unreached=True, why="not within 5 s").verdict(), "unreached")
+
+
+class Written(unittest.TestCase):
+    def test_losses_come_first(self):
+        text = markdown.text(report(WON, LOST), {})
+        first = text.index("## Where we lose")
+        self.assertLess(first, text.index("## 1. Made up"))
+        self.assertIn("**lost**", text[first : text.index("## 1. Made up")])
+
+    def test_a_run_without_losses_says_so(self):
+        self.assertIn("Nowhere in this run.", markdown.text(report(WON), {}))
+
+    def test_what_is_missing_says_why(self):
+        whole = report(contest([], [], why="the viewer is not installed"))
+        whole.sections[0].tables.append(Table("", ["a", "b"], [[1, Missing("no room")]]))
+        whole.peers["Other"] = Missing("pip found no such package")
+        text = markdown.text(whole, {})
+        for why in ("the viewer is not installed", "no room", "pip found no such package"):
+            self.assertIn(why, text)
+
+    def test_json_holds_the_verdicts(self):
+        data = json.loads(json.dumps(report(WON, LOST, promises=[Promise("pixels", 2, 9)]).as_json()))
+        rows = data["sections"][0]["contests"]
+        self.assertEqual([(row["verdict"], row["lost"]) for row in rows], [("ahead", False), ("behind", True)])
+        self.assertTrue(data["sections"][0]["promises"][0]["broken"])
+        self.assertEqual((data["schema"], data["exit_status"]), (1, 1))
+
+    def test_a_table_of_uneven_rows_is_refused(self):
+        self.assertRaises(ValueError, Table, "", ["a", "b"], [[1]])
+
+
+if __name__ == "__main__":
+    unittest.main()

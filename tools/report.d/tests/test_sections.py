@@ -1,0 +1,159 @@
+"""What sections make of made-up measurements: nothing is run."""
+
+import unittest
+
+from report.rows import Section
+from report.sections import stability, surfaces, trims, zoom
+
+SIZE = "400x400"
+
+
+def trim_row(way, trims_ms, bytes_, zoom_=1):
+    row = {"model": "holes", "way": way, "zoom": str(zoom_), "width": "400", "height": "400", "wrong": "0"}
+    return row | {"trim_ms": str(trims_ms), "frame_ms": "50", "trim_bytes": str(bytes_)}
+
+
+class Trims(unittest.TestCase):
+    def contests(self, *ways):
+        section = Section(3, "", "")
+        trims.contests(section, "holes", [trims.unique([trim_row(*way) for way in ways])] * 3, SIZE)
+        return section.contests
+
+    def test_the_better_of_our_ways_counts(self):
+        time, memory = self.contests(("table", 9, 200), ("exact", 4, 80), ("bisect", 40, 1), ("texture", 1, 90))
+        self.assertEqual((time.ours, time.theirs, time.lost()), ([4.0] * 3, [40.0] * 3, False))
+        self.assertEqual((memory.ours, memory.theirs), ([80.0], [90.0]))
+
+    def test_slower_than_bisection_is_lost(self):
+        time, _ = self.contests(("table", 90, 1), ("exact", 80, 1), ("bisect", 40, 1), ("texture", 1, 1))
+        self.assertTrue(time.lost())
+
+    def test_below_zero_is_a_hundredth_of_the_frame(self):
+        time, _ = self.contests(("table", -3, 1), ("exact", 5, 1), ("bisect", 40, 1), ("texture", 1, 1))
+        self.assertEqual(time.ours, [0.5] * 3)
+
+    def test_a_texture_without_room_is_not_measured(self):
+        _, memory = self.contests(("table", 9, 1), ("exact", 4, 1), ("bisect", 40, 1), ("texture", "", ""))
+        self.assertEqual((memory.verdict(), memory.reason()), ("not measured", "the device has no room for it"))
+
+
+class Surfaces(unittest.TestCase):
+    """Ours: 0.5 px in 1 s; theirs: fine in 3 s, coarse in 0.1 s."""
+
+    ERRORS = {"ours 0.5": 0.2, "mesh 0.01": 0.9, "mesh 0.0001": 0.1}
+
+    def contest(self, error, errors=None, bytes_=2_000_000):
+        case = object.__new__(surfaces.Case)
+        case.model, case.what = Sized(bytes_), "part.step"
+        errors = {name: {"p999_px": off} for name, off in (errors or self.ERRORS).items()}
+        ours = [{0.5: (1.0 + k / 10, 20.0, 9.0)} for k in range(3)]
+        theirs = [{0.01: (0.1, 5.0, 5.0), 0.0001: (3.0 + k / 10, 9.0, 9.0)} for k in range(3)]
+        return case.contest("first picture", "VTK", "s", "mesh", ours, theirs, errors, 0, error)
+
+    def test_the_quickest_setting_that_is_as_right_counts(self):
+        fine, coarse = self.contest(0.25), self.contest(1.0)
+        self.assertEqual((fine.theirs, fine.verdict(), fine.claim), ([3.0, 3.1, 3.2], "ahead", "ahead"))
+        self.assertEqual((coarse.theirs, coarse.verdict(), coarse.claim), ([0.1] * 3, "behind", "open"))
+
+    def test_a_large_file_that_is_slower_within_half_a_pixel_is_lost(self):
+        right = self.ERRORS | {"mesh 0.01": 0.3}
+        self.assertTrue(self.contest(0.5, right).lost())
+        self.assertFalse(self.contest(0.5, right, bytes_=1000).lost())
+
+    def test_an_error_that_no_setting_reaches(self):
+        self.assertIsNone(self.contest(0.125))
+        never = self.ERRORS | {"mesh 0.0001": 0.8}
+        self.assertEqual(self.contest(0.25, never).verdict(), "unreached")
+
+    def test_a_plot_shows_the_quickest_of_each_error(self):
+        self.assertEqual(surfaces.front([(0.5, 3), (0.1, 9), (0.5, 2)]), [(0.1, 9), (0.5, 2)])
+
+    def test_pixels_beyond_the_tolerance_are_counted(self):
+        self.assertEqual(surfaces.beyond({"beyond": 0, "worst_px": 0.5}, 0.5), 0)
+        self.assertEqual(surfaces.beyond({"beyond": 0, "worst_px": 0.75}, 0.5), 1)
+        self.assertEqual(surfaces.beyond({"beyond": 7, "worst_px": 16.0}, 0.5), 7)
+
+
+class Sized:
+    """Stands for a file."""
+
+    name = "part.step"
+
+    def __init__(self, bytes_):
+        self.bytes = bytes_
+
+    def stat(self):
+        return type("Stat", (), {"st_size": self.bytes})
+
+
+class Stability(unittest.TestCase):
+    def test_a_wrong_sheet_of_the_right_face_is_wrong(self):
+        folds = {"beyond": 2, "wrong_depth": 3, "worst_shift_px": 1.5}
+        judgement = {"sampled": 90, "wrong": 1, "worst_shift_px": 0.6, "given_up": 0, "folds": folds}
+        found = stability.Found([{"judgement": judgement, "stats": {"clamps": 4, "patches": 1}}] * 2)
+        self.assertEqual((found.wrong, found.worst, found.clamps, found.judged), (12, 1.5, 8, 180))
+
+
+class Zoom(unittest.TestCase):
+    def test_a_mesh_that_is_not_done_is_not_reached(self):
+        section = Section(2, "", "")
+        camera = {"eye": [0, 0, 9], "target": [0, 0, 0], "fovy": 35.0, "size": [4, 3]}
+        cameras = {"1": camera, "1000": camera}
+        judged = [{"judgement": {"worst_shift_px": 0.1, "folds": {"worst_shift_px": 0.2}}}] * 2
+        ours = [{name: {"passes": [{"gpu_ms": 10.0}]} for name in cameras}] * 3
+        drawn = {("fixed", name): {"frame_ms": 2.0} for name in cameras}
+        meshed = [drawn | {("remeshed", "1"): {"frame_ms": 2.0, "mesh_s": 0.1}}] * 3
+        errors = dict.fromkeys(cameras, "no kernel")
+        results = {"ours": ours, "meshed": meshed}
+        zoom.fill(section, "part.step", cameras, judged, results, errors, {"1000": "not meshed within 20 s"})
+        verdicts = [contest.verdict() for contest in section.contests]
+        self.assertEqual(verdicts, ["behind", "ahead", "behind", "unreached"])
+        self.assertEqual(section.contests[1].theirs, [102.0] * 3)
+
+
+class Kernel(unittest.TestCase):
+    """The judges' searches, where their packages are there."""
+
+    def test_an_edge_that_is_off_by_a_distance(self):
+        try:
+            from report.peer import csg
+        except ImportError as missing:
+            self.skipTest(str(missing))
+        import tempfile
+
+        import numpy
+
+        from report.peer import kernel
+
+        # a block that ends at the picture's middle, seen along z; pixels are 1 unit wide in the plane of its top
+        tree = {
+            "tree": "A",
+            "primitives": {
+                "A": {"shape": "block", "at": [-50, -50, -5], "turn": 0, "size": [50, 100, 5], "centred": False}
+            },
+        }
+        camera = {
+            "eye": [-0.3, 0.2, 20],
+            "target": [-0.3, 0.2, 0],
+            "up": [0, 1, 0],
+            "fovy": 53.13010235415598,
+            "size": [20, 20],
+        }
+        rays = csg.Rays(tree, camera)
+        truth, _ = kernel.boundary(rays, 60)
+        columns = {x for x, _ in truth}
+        self.assertEqual(columns, {9, 10})
+        with tempfile.TemporaryDirectory() as folder:
+            image = numpy.zeros((20, 20), int)
+            image[:, :10] = 1
+            numpy.save(f"{folder}/right.npy", image)
+            self.assertTrue((csg.covered(f"{folder}/right.npy")[:, 9] == 0).all())
+        wrong = {(11, y) for y in range(20)}
+        image = numpy.where(numpy.arange(20) <= 11, 0, -1)[None, :].repeat(20, 0)
+        found = kernel.judged(rays, image, None, wrong, len(truth), 60)
+        # the edge is at x = 10.3, the pixel's centre at 11.5: 1.2 away, rounded up to 1.5
+        self.assertEqual((found["off"], found["beyond"], found["worst_px"]), (20, 0, 1.5))
+
+
+if __name__ == "__main__":
+    unittest.main()
