@@ -17,7 +17,7 @@ use super::sun::SunData;
 use super::trimmed::Trimmed;
 use super::way::taken;
 use crate::abi;
-use crate::model::{Bounds, Instance, Isolated, Items, Mesh, Model, Part, SolidError};
+use crate::model::{Bounds, Instance, Isolated, Mesh, Model, Part, SolidError};
 #[cfg(any(test, feature = "baselines"))]
 use crate::picture::SceneSettings;
 use crate::picture::{Highlight, Samples, Smooth, TakenWay};
