@@ -67,6 +67,7 @@ mod stages;
 pub(crate) mod tessellation;
 pub(crate) mod transparency;
 pub(crate) mod trim;
+pub(crate) mod viewport;
 pub(crate) mod visibility;
 
 pub(crate) use antialiasing::samples::ViewBuffers;

@@ -76,6 +76,7 @@ mod twin;
 #[doc(hidden)]
 pub mod internals {
     pub use crate::frame::common::scan;
+    pub use crate::scene::seen_by;
     /// The structures that Rust and GLSL share.
     pub mod abi {
         pub use crate::abi::*;

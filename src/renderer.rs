@@ -27,6 +27,7 @@ mod slot;
 mod source;
 mod targets;
 mod validate;
+mod viewport;
 
 use crate::abi;
 use crate::budget::Budget;
@@ -36,6 +37,7 @@ pub use crate::frame::counts::TooMany;
 use crate::frame::shading::{numbers, resolve};
 use crate::frame::solids::Solids;
 use crate::frame::transparency::solid_layers;
+use crate::frame::viewport as rectangle;
 use crate::frame::{Frame, Near, Passes, Stages, target};
 use crate::gpu::{Attachment, Buffer, Commands, Device, GpuError, HostDevice, Load, TexelBuffer, Uploads};
 use crate::model::{Camera, Model};
@@ -51,6 +53,7 @@ use source::Source;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 pub use targets::{Aovs, TargetFormats, Targets};
+use viewport::Viewport;
 
 /// One frame.
 #[derive(Clone, Copy, Debug)]
@@ -83,6 +86,8 @@ pub struct Renderer {
     pub(crate) counts_first: bool,
     /// A frame never reached the GPU, and what it would have copied is not there: the source is loaded anew.
     stale: bool,
+    /// What frames draw into whose targets are larger than their picture.
+    viewport: Option<Viewport>,
 }
 
 /// A model and what its frames need. Fields drop in order: nothing outlives the device.
@@ -129,6 +134,7 @@ fn range(device: &Device) -> u32 {
 #[allow(dead_code)] // held for their drop
 enum Retired {
     Stages(Box<Stages>),
+    Viewport(Box<Viewport>),
     Loaded(Box<Loaded>),
     Uploads(Uploads),
     Buffer(Buffer),
@@ -172,6 +178,7 @@ impl Renderer {
             pick: None,
             counts_first: false,
             stale: false,
+            viewport: None,
         })
     }
 
@@ -213,6 +220,7 @@ impl Renderer {
         self.reload()?;
         self.prepare(input.camera)?;
         self.make_room(input.slot, input.camera)?;
+        self.make_viewport(&input.targets, input.camera.size)?;
         // SAFETY: the caller's promise.
         let cmd = unsafe { Commands::new(&self.device, cmd) };
         let Some(loaded) = &mut self.loaded else { panic!("upload a model before recording") };
@@ -232,7 +240,9 @@ impl Renderer {
         let (Some(views), Some(in_sight)) = (&slot.views, &slot.in_sight) else { unreachable!("written above") };
         let edits = (!loaded.edits.is_empty()).then(|| Frame::edit(&cmd, scene, &loaded.edits)).transpose()?;
         let keep = input.settings.background.is_none();
-        let targets = input.targets;
+        let own = self.viewport.as_ref().zip(input.targets.corner);
+        let pairs = own.map(|(viewport, corner)| (viewport.pairs(&input.targets), corner));
+        let targets = own.map_or(input.targets, |(viewport, _)| viewport.targets(&input.targets));
         let colour = targets.colours(&self.formats, stages, keep);
         let depth = targets.depth.map(|image| {
             let whole = target(image, keep);
@@ -272,7 +282,13 @@ impl Renderer {
             numbers: targets.numbers(&self.formats, stages, keep),
         };
         slot.times.reset(&cmd);
+        if let Some((pairs, corner)) = &pairs {
+            rectangle::begin(&cmd, pairs, *corner, keep);
+        }
         frame.record(&cmd, &mut slot.times);
+        if let Some((pairs, corner)) = &pairs {
+            rectangle::end(&cmd, pairs, *corner);
+        }
         let Some(source) = &self.source else { unreachable!("it was loaded") };
         pick::record(self.pick, &mut slot.pick, (&self.device, &cmd, &frame), (source, loaded, input))?;
         // only now: a frame that was not recorded left nothing

@@ -90,6 +90,7 @@ const RECORDS: &[&str] = &[
     "src/frame/transparency/mod.rs",
     "src/frame/trim/edit.rs",
     "src/frame/trim/table.rs",
+    "src/frame/viewport.rs",
     "src/frame/visibility/mod.rs",
 ];
 /// Files of a stage's folder that are neither a pass nor a record.

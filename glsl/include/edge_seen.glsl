@@ -30,7 +30,7 @@ struct EdgePoint {
 };
 
 // Of a homogeneous pixel, or of a direction that moves it.
-vec3 seen_from_eye(vec4 q) { return vec3((q.xy - 0.5 * frame.size * q.w) / frame.focal, q.z); }
+vec3 seen_from_eye(vec4 q) { return vec3((q.xy - frame.principal_px * q.w) / frame.focal_px, q.z); }
 
 // How far the point lies before a plane through `on`, across `n`, whichever way that points.
 float before_plane(vec3 point, vec3 on, vec3 n) {

@@ -9,7 +9,7 @@ struct Ray {
 
 Ray eye_ray(Frame frame, vec2 pixel) {
     // in every pass the same bits
-    precise vec2 p = (pixel + frame.offset - 0.5 * frame.size) / frame.focal;
+    precise vec2 p = (pixel + frame.offset - frame.principal_px) / frame.focal_px;
     precise vec3 across = p.x * frame.right - p.y * frame.up;
     precise vec3 ahead = frame.forward + across;
     if (frame.perspective != 0u) return Ray(vec3(0.0), ahead);

@@ -147,7 +147,7 @@ bool is_drawn(uint tau) { return tau != 0u && (tau & TAU_HIDDEN) == 0u; }
 // One frame's view.
 struct Frame {
     vec2 size;          // pixels
-    float focal;        // pixels per unit slope; parallel view: pixels per model unit
+    float focal;        // pixels per unit slope, the most; parallel view: pixels per model unit
     float slant;        // largest stretch of a pixel towards the picture's corners, >= 1
     float near;
     float far;
@@ -188,6 +188,8 @@ struct Frame {
     uint samples;       // of each pixel's colour
     uint style;         // STYLE_*
     uint most_groups;   // workgroups in one row of a dispatch
+    vec2 focal_px;      // as `focal`, across and down
+    vec2 principal_px;  // where the view axis is seen
 };
 
 // Frame.style.

@@ -63,7 +63,7 @@ Seen see(View view, Frame frame, vec3 lo, vec3 hi, float margin, float far) {
         precise vec2 pixel = q.xy / q.w;
         seen.low = min(seen.low, pixel);
         seen.high = max(seen.high, pixel);
-        precise vec2 slope = (pixel - 0.5 * frame.size) / frame.focal;
+        precise vec2 slope = (pixel - frame.principal_px) / frame.focal_px;
         precise float slope2 = slope.x * slope.x + slope.y * slope.y;
         steepest = max(steepest, slope2);
         precise vec2 below = q.xy + margin * q.w;                 // negative left of and above the picture

@@ -40,11 +40,11 @@ Rect rect_of(Leaf leaf, vec3 centre) {
         lo = min(lo / nearest, lo / farthest);
         hi = max(hi / nearest, hi / farthest);
     }
-    lo = frame.focal * lo - MARGIN_PX;
-    hi = frame.focal * hi + MARGIN_PX;
+    lo = frame.focal_px * lo - MARGIN_PX;
+    hi = frame.focal_px * hi + MARGIN_PX;
     // y goes down in the picture
-    vec2 first = vec2(0.5 * frame.size.x + lo.x, 0.5 * frame.size.y - hi.y);
-    vec2 end = vec2(0.5 * frame.size.x + hi.x, 0.5 * frame.size.y - lo.y);
+    vec2 first = vec2(frame.principal_px.x + lo.x, frame.principal_px.y - hi.y);
+    vec2 end = vec2(frame.principal_px.x + hi.x, frame.principal_px.y - lo.y);
     if (any(lessThan(end, vec2(0.0))) || any(greaterThan(first, frame.size))) return NOWHERE;
     vec2 most = frame.size - 1.0;
     return Rect(uvec2(clamp(first, vec2(0.0), most)) / TILE, uvec2(clamp(end, vec2(0.0), most)) / TILE);

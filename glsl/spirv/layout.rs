@@ -128,7 +128,9 @@ const _: () = assert!(core::mem::offset_of!(crate::abi::Frame, spread_px) == 196
 const _: () = assert!(core::mem::offset_of!(crate::abi::Frame, samples) == 200);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Frame, style) == 204);
 const _: () = assert!(core::mem::offset_of!(crate::abi::Frame, most_groups) == 208);
-const _: () = assert!(core::mem::size_of::<crate::abi::Frame>() == 212);
+const _: () = assert!(core::mem::offset_of!(crate::abi::Frame, focal_px) == 212);
+const _: () = assert!(core::mem::offset_of!(crate::abi::Frame, principal_px) == 220);
+const _: () = assert!(core::mem::size_of::<crate::abi::Frame>() == 228);
 const _: () = assert!(core::mem::offset_of!(crate::abi::GapCandidate, pixel) == 0);
 const _: () = assert!(core::mem::offset_of!(crate::abi::GapCandidate, word) == 4);
 const _: () = assert!(core::mem::size_of::<crate::abi::GapCandidate>() == 12);

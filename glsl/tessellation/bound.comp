@@ -29,7 +29,7 @@ bool draw_closer(Patch patch_, View view, inout Seen seen) {
         precise vec2 pixel = q.xy / q.w;
         low = min(low, pixel);
         high = max(high, pixel);
-        precise vec2 slope = (pixel - 0.5 * frame.size) / frame.focal;
+        precise vec2 slope = (pixel - frame.principal_px) / frame.focal_px;
         precise float slope2 = slope.x * slope.x + slope.y * slope.y;
         steepest = max(steepest, slope2);
     }

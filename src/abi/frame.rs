@@ -59,6 +59,8 @@ pub struct Frame {
     pub samples: u32,
     pub style: u32,
     pub most_groups: u32,
+    pub focal_px: [f32; 2],
+    pub principal_px: [f32; 2],
 }
 
 impl Counters {

@@ -272,6 +272,29 @@ impl<'a> Commands<'a> {
         }
     }
 
+    /// Copies a rectangle of `size` pixels, every aspect, between images of one format, each with the rectangle's upper left
+    /// pixel: [`Access::TRANSFER_READ`] to [`Access::TRANSFER_WRITE`].
+    pub fn copy_rectangle(
+        &self,
+        (from, from_at): (&Image, (u32, u32)),
+        (to, to_at): (&Image, (u32, u32)),
+        size: (u32, u32),
+    ) {
+        let layers =
+            |image: &Image| vk::ImageSubresourceLayers::default().aspect_mask(image.range().aspect_mask).layer_count(1);
+        let offset = |(x, y): (u32, u32)| vk::Offset3D { x: x as i32, y: y as i32, z: 0 };
+        let region = vk::ImageCopy::default()
+            .src_subresource(layers(from))
+            .src_offset(offset(from_at))
+            .dst_subresource(layers(to))
+            .dst_offset(offset(to_at))
+            .extent(vk::Extent3D { width: size.0, height: size.1, depth: 1 });
+        let [read, write] = [Access::TRANSFER_READ, Access::TRANSFER_WRITE].map(|a| ImageAccess::from(a).layout);
+        let regions = [region];
+        // SAFETY: recording outside rendering; both belong to this device.
+        unsafe { self.device.raw().cmd_copy_image(self.raw, from.handle(), read, to.handle(), write, &regions) };
+    }
+
     /// Names what `record` records, for captures and validation messages.
     pub fn labelled<R>(&self, name: &str, record: impl FnOnce() -> R) -> R {
         let debug = self.device.debug_utils().zip(CString::new(name).ok());

@@ -73,8 +73,8 @@ fn faces_away(case: &Case, camera: &Camera, item: usize) -> bool {
         let jet = patch.jet(f64::from(c % 13) / 12.0, f64::from(c / 13) / 12.0);
         let normal = to_model.transform_vector3(jet.du).cross(to_model.transform_vector3(jet.dv)) * outward;
         let towards = match camera.projection {
-            Projection::Perspective { .. } => to_model.transform_point3(jet.point) - camera.eye,
             Projection::Orthographic { .. } => camera.axes().2,
+            _ => to_model.transform_point3(jet.point) - camera.eye,
         };
         normal.dot(towards) >= 0.0
     })

@@ -10,9 +10,9 @@ use crate::frame::solids::solid_rects;
 use crate::frame::solids::solid_squares;
 use crate::model::{Camera, Model, Primitive, Projection, Shape, Solid};
 use crate::picture::SceneSettings;
-use crate::scene::{SceneData, focal_and_slant};
+use crate::scene::{SceneData, seen_by};
 use crate::twin;
-use glam::{DAffine3, DVec3};
+use glam::{DAffine3, DVec2, DVec3};
 
 /// A tree of `count` leaves over as many primitives, of all operations.
 fn random_tree(random: &mut Random, count: u32) -> Tree {
@@ -301,24 +301,22 @@ fn frames(solid: &Solid) -> Vec<(Frame, Vec<[f32; 3]>)> {
         (DVec3::new(30.0, -20.0, 15.0), Projection::Perspective { fov_y: 0.6 }),
         (DVec3::new(1.0, -2.0, 0.5), Projection::Perspective { fov_y: 1.4 }),
         (DVec3::new(30.0, -20.0, 15.0), Projection::Orthographic { height: 12.0 }),
+        (
+            DVec3::new(30.0, -20.0, 15.0),
+            Projection::Pinhole { focal: DVec2::new(340.0, 310.0), principal: DVec2::new(60.25, 230.5) },
+        ),
     ] {
         let size = (333, 211);
         let camera = Camera { eye, target: DVec3::ZERO, up: DVec3::Z, projection, depth_range: (0.5, 60.0), size };
-        let (focal, slant) = focal_and_slant(&camera);
         let (right, up, forward) = camera.axes();
         let frame = Frame {
-            size: [333.0, 211.0],
-            focal: focal as f32,
-            slant: slant as f32,
-            near: 0.5,
-            far: 60.0,
-            perspective: u32::from(matches!(projection, Projection::Perspective { .. })),
             leaf_count: data.solids.leaves.len() as u32,
             right: right.as_vec3().to_array(),
             up: up.as_vec3().to_array(),
             forward: forward.as_vec3().to_array(),
             ..Frame::default()
         };
+        let frame = seen_by(&camera, frame);
         all.push((frame, data.solids.leaf_centres.iter().map(|c| (*c - eye).as_vec3().to_array()).collect()));
     }
     all
@@ -353,8 +351,8 @@ fn rects_hold_what_they_are_around() {
                 let along = |axis: [f32; 3]| (0..3).map(|k| f64::from(axis[k]) * p[k]).sum::<f64>();
                 let (x, y, z) = (along(frame.right), along(frame.up), along(frame.forward));
                 let w = if frame.perspective != 0 { z } else { 1.0 };
-                let focal = f64::from(frame.focal) / w;
-                let at = [166.5 + focal * x, 105.5 - focal * y];
+                let (focal, middle) = (frame.focal_px.map(f64::from), frame.principal_px.map(f64::from));
+                let at = [middle[0] + focal[0] * x / w, middle[1] - focal[1] * y / w];
                 let in_depth = z > f64::from(frame.near) && z < f64::from(frame.far);
                 if !in_depth || at[0] < 0.0 || at[1] < 0.0 || at[0] >= 333.0 || at[1] >= 211.0 {
                     continue;

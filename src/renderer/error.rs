@@ -62,4 +62,19 @@ pub enum RenderError {
         /// Its height.
         height: u32,
     },
+    /// A target that does not hold the rectangle at [`Targets::corner`](super::Targets::corner).
+    #[error("the target `{name}` is {width} x {height}: a picture of {} x {} at {}, {} is not within it",
+        .size.0, .size.1, .corner.0, .corner.1)]
+    TargetCorner {
+        /// Its name.
+        name: String,
+        /// Its width.
+        width: u32,
+        /// Its height.
+        height: u32,
+        /// Column and row.
+        corner: (u32, u32),
+        /// Of the camera's picture.
+        size: (u32, u32),
+    },
 }

@@ -7,6 +7,9 @@ use crate::gpu::{Attachment, Image};
 use crate::picture::Outputs;
 use ash::vk;
 
+/// Images that there may be in [`Targets`].
+pub(super) const TARGETS: usize = 10;
+
 /// Formats of the images that the host will pass to [`Renderer::record`](super::Renderer::record).
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
 pub struct TargetFormats {
@@ -22,8 +25,8 @@ pub struct TargetFormats {
     pub outputs: Outputs,
 }
 
-/// The host's images for one frame, all of the camera's size: [`Image::borrowed`] makes them of Vulkan
-/// handles.
+/// The host's images for one frame, all of the camera's size, or with a `corner` larger: [`Image::borrowed`] makes them
+/// of Vulkan handles.
 ///
 /// Barriers around the frame are the host's: what it did before must be ordered before
 /// [`Access::COLOUR_WRITE`](crate::gpu::Access::COLOUR_WRITE) and
@@ -39,6 +42,10 @@ pub struct Targets<'a> {
     /// The length of each pixel's ray within solids, between near and far plane and in model units: Boolean solids and
     /// closed parts, where several overlap counted once; 0 where there is none. `R32_SFLOAT`.
     pub thickness: Option<&'a Image>,
+    /// The column and row of all images at which the upper left pixel of the picture goes, in a rectangle of the camera's
+    /// size; beside it nothing is written. The images then have the usage `TRANSFER_DST`, and `TRANSFER_SRC` where
+    /// [`background`](crate::picture::FrameSettings::background) is `None`. `None`: the picture is the whole image.
+    pub corner: Option<(u32, u32)>,
 }
 
 /// Images of what each pixel's centre sees, those that [`TargetFormats::outputs`] names.
@@ -79,7 +86,25 @@ impl TargetFormats {
 impl<'a> Targets<'a> {
     /// A colour target alone.
     pub fn new(colour: &'a Image) -> Self {
-        Self { colour, depth: None, aovs: Aovs::default(), thickness: None }
+        Self { colour, depth: None, aovs: Aovs::default(), thickness: None, corner: None }
+    }
+
+    /// All of them.
+    pub(super) fn all(&self) -> [Option<&'a Image>; TARGETS] {
+        let Aovs { depth, face, uv, normal, edge, part, instance } = self.aovs;
+        [Some(self.colour), self.depth, self.thickness, depth, face, uv, normal, edge, part, instance]
+    }
+
+    /// Others in their place, by their number in [`Targets::all`]; they are whole images.
+    pub(super) fn replaced<'b>(&self, other: impl Fn(usize, &Image) -> Option<&'b Image>) -> Targets<'b>
+    where
+        'a: 'b,
+    {
+        let all = self.all();
+        let of = |nth: usize| all[nth].and_then(|image| other(nth, image));
+        let [depth, face, uv, normal, edge, part, instance] = [3, 4, 5, 6, 7, 8, 9].map(of);
+        let aovs = Aovs { depth, face, uv, normal, edge, part, instance };
+        Targets { colour: of(0).unwrap_or(self.colour), depth: of(1), thickness: of(2), aovs, corner: None }
     }
 
     fn points(&self) -> [Option<&'a Image>; 4] {
@@ -92,16 +117,24 @@ impl<'a> Targets<'a> {
         [edge, part, instance]
     }
 
-    /// They have the size of the picture.
+    /// They have the size of the picture, or hold its rectangle.
     ///
     /// # Panics
     /// When they are not those of `formats`.
     pub(super) fn check(&self, formats: &TargetFormats, size: (u32, u32)) -> Result<(), RenderError> {
-        let fixed = [Some(self.colour), self.depth, self.thickness];
-        for image in fixed.into_iter().chain(self.points()).chain(self.all_numbers()).flatten() {
-            if image.size() != size {
-                let (width, height) = image.size();
-                return Err(RenderError::TargetSize { name: image.name().to_owned(), width, height });
+        for image in self.all().into_iter().flatten() {
+            let (width, height) = image.size();
+            let holds = |(x, y): (u32, u32)| {
+                let fits = |from: u32, length: u32, all: u32| from.checked_add(length).is_some_and(|end| end <= all);
+                fits(x, size.0, width) && fits(y, size.1, height)
+            };
+            let name = || image.name().to_owned();
+            match self.corner {
+                None if image.size() != size => return Err(RenderError::TargetSize { name: name(), width, height }),
+                Some(corner) if !holds(corner) => {
+                    return Err(RenderError::TargetCorner { name: name(), width, height, corner, size });
+                }
+                _ => {}
             }
         }
         let is_there = |image: Option<&Image>| image.is_some();

@@ -9,6 +9,7 @@
 //! A pixel tells an edge's own faces by their keys, here their numbers in the scene, and by the model's instance.
 
 use super::data::SceneData;
+use super::deep_zoom::KnownEdges;
 use crate::abi;
 use crate::model::{Edges, Model, Part};
 use crate::picture::{EdgeSettings, LineStyle};
@@ -27,6 +28,8 @@ pub(crate) struct EdgeData {
     pub items: Vec<abi::EdgeItem>,
     /// Of each face of the scene.
     pub face_keys: Vec<u32>,
+    /// Of each part of the model.
+    pub(super) found: KnownEdges,
 }
 
 /// Where the scene has what a model has.
@@ -45,7 +48,7 @@ pub(crate) struct Placing<'a> {
 impl SceneData {
     /// Finds the edges of the model that the scene is made of.
     pub(crate) fn find_edges(&mut self, model: &Model, settings: EdgeSettings) -> Result<(), UndrawnEdges> {
-        let edges = edges_of(model)?;
+        let edges = KnownEdges::found(edges_of(model)?);
         let mut placed = vec![None; model.instances.len()];
         for (nth, [_, instance]) in (0..).zip(&self.sources).filter(|(_, source)| source[1] > 0) {
             placed[*instance as usize - 1] = Some(nth);
@@ -73,7 +76,7 @@ type Drawn = std::ops::Range<usize>;
 
 impl EdgeData {
     /// No lines yet, in a scene of so many faces, whose keys are their numbers.
-    pub(super) fn new(settings: EdgeSettings, faces: usize) -> Self {
+    pub(super) fn new(settings: EdgeSettings, faces: usize, found: KnownEdges) -> Self {
         Self {
             settings,
             pieces: Vec::new(),
@@ -82,18 +85,20 @@ impl EdgeData {
             own_faces: Vec::new(),
             items: Vec::new(),
             face_keys: (0..faces as u32).collect(),
+            found,
         }
     }
 
     /// Lines of all parts that are placed. Instances that the scene does not draw as faces get a placement of their own, behind
-    /// those of `placements`. `edges`: of each part of the model.
+    /// those of `placements`. `found`: of each part of the model.
     pub(super) fn of(
         settings: EdgeSettings,
         of: &Placing<'_>,
-        edges: &[Edges],
+        found: &KnownEdges,
         placements: &mut Vec<DAffine3>,
     ) -> Self {
-        let mut data = Self::new(settings, of.faces);
+        let edges = found.get().unwrap_or_default();
+        let mut data = Self::new(settings, of.faces, found.clone());
         let mut number = 1;
         let drawn: Vec<Drawn> = (0..of.model.parts.len())
             .map(|part| {

@@ -67,7 +67,8 @@ pub(crate) use upload::BaselineScene;
 #[cfg(feature = "baselines")]
 pub(crate) use upload::TableScene;
 pub(crate) use upload::{EdgeBuffers, ExactScene, MeshBuffers, Scene, Shells, Solids, SunTiles, Trims};
+pub use view::seen_by;
 #[cfg(any(test, feature = "baselines"))]
 pub(crate) use view::view;
-pub(crate) use view::{focal_and_slant, seen_by};
+pub(crate) use view::{focal_and_slant, half_slopes};
 pub use way::trim_way;

@@ -9,9 +9,12 @@
 //! Cost: a binary search in the scene's placed faces, and one surface point a step of Newton's method.
 
 use super::data::SceneData;
+use super::deep_zoom::KnownEdges;
 use crate::abi;
 use crate::abi::constants::visible::{GAP_CANDIDATE, SEEN_KIND, SEEN_MESH, SEEN_OPERAND, SEEN_SOLID};
+use crate::edges::nearest::nearest;
 use crate::model::{Camera, Face, Mesh, Model};
+use crate::picture::EdgeSettings;
 use glam::{DAffine3, DMat4, DVec2, DVec3, Vec4Swizzles};
 
 /// Steps of Newton's method, which doubles the digits with each: the start is within a pixel or so.
@@ -20,6 +23,9 @@ const MOST_STEPS: usize = 32;
 const THERE_PX: f64 = 1e-9;
 /// Of the domain, the longest step.
 const LONGEST_STEP: f64 = 0.25;
+
+/// Of a ray and a normal: at steeper faces an edge may lie that much farther away beside the pixel.
+const LEAST_COSINE: f64 = 0.05;
 
 /// What a pixel shows.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -41,6 +47,9 @@ pub struct Hit {
     pub uv: Option<DVec2>,
     /// The point, model coordinates.
     pub point: DVec3,
+    /// Index into [`Edges::edges`](crate::model::Edges::edges) of the part: the edge of the face that a line along it covers
+    /// here, in scenes with [`edges`](crate::picture::SceneSettings::edges); `None` elsewhere and of meshes.
+    pub edge: Option<usize>,
     /// Unit outward normal of the face or the triangle, model coordinates; `None` of Boolean solids, and where there is
     /// none.
     pub normal: Option<DVec3>,
@@ -66,6 +75,8 @@ pub(crate) struct Picking {
     isolated: Vec<(Mesh, u32)>,
     /// Number of the primitive of each side, then of each triangle of operands.
     sides: Vec<u32>,
+    /// Of the model's parts, and how they are drawn, in scenes with lines.
+    edges: Option<(KnownEdges, EdgeSettings)>,
 }
 
 /// A face of the scene.
@@ -115,6 +126,7 @@ impl SceneData {
             meshes: self.meshes.numbers.iter().zip(first_triangles).map(|(nth, first)| [*nth, first]).collect(),
             mesh_instances: self.meshes.instances.iter().map(|m| [m.mesh, m.instance]).collect(),
             isolated: isolated.collect(),
+            edges: self.edges.as_ref().map(|edges| (edges.found.clone(), edges.settings)),
             sides: s.leaf_surfaces.iter().map(|side| of_leaf(side.leaf)).chain(triangles).collect(),
         }
     }
@@ -140,8 +152,34 @@ impl Picking {
             SEEN_MESH => self.mesh(of, number, second as usize),
             SEEN_SOLID => Some(of.on_solid(*self.sides.get(number)?, second)),
             SEEN_OPERAND => Some(of.on_solid(self.faces[self.placed_item(number - 1)[1] as usize].id, second)),
-            _ => self.patch(of, number - 1, second),
+            _ => {
+                let hit = self.patch(of, number - 1, second)?;
+                Some(Hit { edge: self.edge(of, &hit), ..hit })
+            }
         }
+    }
+
+    /// The edge of the hit's face that is nearest to the pixel, within half a line and half the pixel, and beside the hit: what
+    /// lies behind the face is farther from the eye than its slope explains.
+    fn edge(&self, of: &Picked<'_>, hit: &Hit) -> Option<usize> {
+        let (known, settings) = self.edges.as_ref()?;
+        let (instance, part, face) = (hit.instance?, hit.part?, hit.face?);
+        let edges = &known.get()?[part].edges;
+        let transform = &of.transforms[instance];
+        let to_pixels = of.camera.pixel_matrix() * DMat4::from(*transform);
+        let within = 0.5 + 0.5 * settings.width * f64::from(of.camera.size.1) / EdgeSettings::HEIGHT;
+        let (_, ray) = of.camera.ray(of.pixel);
+        let cosine = hit.normal.map_or(1.0, |normal| normal.dot(ray).abs()).max(LEAST_COSINE);
+        let side = if of.camera.is_perspective() { hit.depth } else { 1.0 } / of.camera.focal_px().min_element();
+        let found = edges.iter().enumerate().filter_map(|(number, edge)| {
+            let is_own = settings.style(edge.kind).is_some() && edge.uses.iter().any(|u| u.face == face);
+            let near = is_own.then(|| nearest(edge, to_pixels, of.pixel, within))??;
+            let piece = (near.parameter as usize).min(edge.curve.len() - 1);
+            let point = edge.curve[piece].piece.point(near.parameter - piece as f64);
+            let behind = of.depth(transform.transform_point3(point)) - hit.depth;
+            (behind <= 2.0 * within * side / cosine).then_some((number, near.distance_px))
+        });
+        found.min_by(|a, b| a.1.total_cmp(&b.1)).map(|(number, _)| number)
     }
 
     fn placed_item(&self, item: usize) -> [u32; 3] {
@@ -166,6 +204,7 @@ impl Picking {
             face: Some(number),
             triangle: None,
             id: made.id,
+            edge: None,
             uv: Some(uv),
             point,
             normal,
@@ -192,6 +231,7 @@ impl Picking {
             face: None,
             triangle: Some((nth as usize, triangle)),
             id: mesh.id,
+            edge: None,
             uv: Some(uv),
             point,
             normal,
@@ -216,7 +256,8 @@ impl Picked<'_> {
     /// Of no part.
     fn nowhere(&self, id: u32, point: DVec3) -> Hit {
         let depth = self.depth(point);
-        Hit { instance: None, part: None, face: None, triangle: None, id, uv: None, point, normal: None, depth }
+        let (instance, part, face, triangle, edge) = (None, None, None, None, None);
+        Hit { instance, part, face, triangle, id, edge, uv: None, point, normal: None, depth }
     }
 
     /// Where the ray meets the plane of a placed triangle: weights, point, normal.

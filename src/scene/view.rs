@@ -1,8 +1,8 @@
 //! What shaders are told of a camera.
 
 use crate::abi;
-use crate::model::{Camera, Projection};
-use glam::{DAffine3, DMat4, DVec4};
+use crate::model::Camera;
+use glam::{DAffine3, DMat4, DVec2, DVec4};
 
 /// The rows that take a placed part to homogeneous pixels: composed in `f64`, rounded once.
 pub(crate) fn view(pixels: DMat4, placement: DAffine3) -> abi::View {
@@ -11,21 +11,33 @@ pub(crate) fn view(pixels: DMat4, placement: DAffine3) -> abi::View {
     abi::View { x: row(rows.x_axis), y: row(rows.y_axis), depth: row(rows.z_axis), w: row(rows.w_axis) }
 }
 
-/// Pixels per unit slope (or per model unit), and the largest stretch towards the picture's corners.
+/// Pixels per unit slope (or per model unit), of the longer focal length, and the largest stretch towards the picture's
+/// corners.
 pub(crate) fn focal_and_slant(camera: &Camera) -> (f64, f64) {
-    let (w, h) = (f64::from(camera.size.0), f64::from(camera.size.1));
-    match camera.projection {
-        Projection::Perspective { fov_y } => {
-            let focal = h * 0.5 / (fov_y * 0.5).tan();
-            let corner = (w * 0.5).hypot(h * 0.5) / focal;
-            (focal, (1.0 + corner * corner).sqrt())
-        }
-        Projection::Orthographic { height } => (h / height, 1.0),
+    let focal = camera.focal_px().max_element();
+    if !camera.is_perspective() {
+        return (focal, 1.0);
     }
+    let far = farthest_sides(camera) * (focal / camera.focal_px());
+    let corner = far.x.hypot(far.y) / focal;
+    (focal, (1.0 + corner * corner).sqrt())
+}
+
+/// How far the picture, so many pixels wider on each side, reaches from the view axis at a depth of 1, or in model units: to
+/// the farther one of two sides.
+pub(crate) fn half_slopes(camera: &Camera, margin_px: f64) -> DVec2 {
+    (farthest_sides(camera) + margin_px) / camera.focal_px()
+}
+
+/// Pixels from the view axis to the farther one of left and right, and of top and bottom.
+fn farthest_sides(camera: &Camera) -> DVec2 {
+    let size = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1));
+    let principal = camera.principal_px();
+    principal.max(size - principal)
 }
 
 /// `frame` as the camera sees it: those of its constants that say where what it shows is, and how large.
-pub(crate) fn seen_by(camera: &Camera, frame: abi::Frame) -> abi::Frame {
+pub fn seen_by(camera: &Camera, frame: abi::Frame) -> abi::Frame {
     let (focal, slant) = focal_and_slant(camera);
     abi::Frame {
         size: [camera.size.0 as f32, camera.size.1 as f32],
@@ -33,7 +45,9 @@ pub(crate) fn seen_by(camera: &Camera, frame: abi::Frame) -> abi::Frame {
         slant: slant as f32,
         near: camera.depth_range.0 as f32,
         far: camera.depth_range.1 as f32,
-        perspective: u32::from(matches!(camera.projection, Projection::Perspective { .. })),
+        perspective: u32::from(camera.is_perspective()),
+        focal_px: camera.focal_px().as_vec2().to_array(),
+        principal_px: camera.principal_px().as_vec2().to_array(),
         ..frame
     }
 }

@@ -22,8 +22,8 @@
 //! Cells follow from the view alone, and steps of a fourth of an octave keep their size while the view hardly changes. Axes and
 //! planes of coordinates are in the middle of cells: a view straight from the front does not come and go by roundings.
 
-use super::focal_and_slant;
 use super::whole_view::Ball;
+use super::{focal_and_slant, half_slopes};
 use crate::model::{Bounds, Camera, Projection};
 use glam::{DVec2, DVec3, Vec2Swizzles};
 use std::f64::consts::FRAC_1_SQRT_2;
@@ -42,6 +42,8 @@ const MOST_CELLS: f64 = 1e12;
 const LEAST_UPRIGHT: f64 = 0.05;
 /// Most that an eye and an axis of a cell move what is seen, in widths of the cell of axes.
 const MOST_MOVED: f64 = 4.0;
+/// Half of a table's picture in sides of the view's: 0.5 where the axis is in the middle, 1 where it is in a corner.
+const MOST_BESIDE: f64 = 1.0;
 /// Of all sums below.
 const ROUNDING: f64 = 1e-9;
 
@@ -49,12 +51,14 @@ const ROUNDING: f64 = 1e-9;
 /// What is trimmed lies in the ball, and in the boxes.
 pub(super) fn view_cell(camera: &Camera, margin_px: f64, ball: &Ball, boxes: &[Bounds]) -> Option<Camera> {
     let (focal, _) = focal_and_slant(camera);
+    // a table's picture is around its axis: off the middle, it is as wide as the wider side wants on both
+    let half = half_slopes(camera, margin_px);
     let size = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1));
-    let half = (0.5 * size + margin_px) / focal;
-    match camera.projection {
-        Projection::Perspective { .. } => perspective(camera, half, focal, boxes),
-        Projection::Orthographic { .. } => parallel(camera, half, focal, ball),
+    let own = (size + 2.0 * margin_px) / camera.focal_px();
+    if (half / own).max_element() > MOST_BESIDE {
+        return None;
     }
+    if camera.is_perspective() { perspective(camera, half, focal, boxes) } else { parallel(camera, half, focal, ball) }
 }
 
 /// `half`: of the picture, at a depth of 1.
@@ -258,12 +262,11 @@ mod tests {
             |last: f64| [-MARGIN_PX, last + MARGIN_PX, random.range(-MARGIN_PX, last)][random.integer(0, 2) as usize];
         let pixel = DVec2::new(side(width), side(height));
         let (origin, direction) = camera.ray(pixel);
-        if matches!(camera.projection, Projection::Orthographic { .. }) {
+        if !camera.is_perspective() {
             let p = origin + direction * random.range(0.0, 100.0);
             return (p, p.distance(ball.centre) <= ball.radius);
         }
-        let (focal, _) = focal_and_slant(camera);
-        let half = (DVec2::new(width, height) * 0.5 + MARGIN_PX) / focal;
+        let half = half_slopes(camera, MARGIN_PX);
         let nearest = Sight::new(camera, half).nearest(boxes).expect("it has a table for many views");
         (origin + direction * nearest * 10.0f64.powf(random.range(0.0, 1.0)), true)
     }
@@ -281,7 +284,12 @@ mod tests {
         let fov_y = if is_steep { 1.3 } else { 10.0f64.powf(random.range(-2.0, 0.0)) * 1.5 };
         let projection = match parallel {
             true => Projection::Orthographic { height: random.range(0.2, 4.0) },
-            false => Projection::Perspective { fov_y },
+            false if random.integer(0, 1) == 0 => Projection::Perspective { fov_y },
+            false => {
+                let focal = 180.0 / (0.5 * fov_y).tan();
+                let principal = DVec2::new(random.range(0.0, 640.0), random.range(0.0, 360.0));
+                Projection::Pinhole { focal: DVec2::new(focal, focal * random.range(0.6, 1.6)), principal }
+            }
         };
         Camera { eye, target, up, projection, depth_range: (0.05, 120.0), size: (640, 360) }
     }
@@ -291,8 +299,8 @@ mod tests {
         let (focal, _) = focal_and_slant(camera);
         let (at, depth) = camera.project(p)?;
         let stretch = match camera.projection {
-            Projection::Perspective { .. } => focal * p.distance(camera.eye) / (depth * depth),
             Projection::Orthographic { .. } => focal,
+            _ => focal * p.distance(camera.eye) / (depth * depth),
         };
         Some((at, depth, stretch))
     }

@@ -73,7 +73,7 @@ fn draw_closer(frame: &Frame, points: &[[f32; 4]], view: &View, seen: Seen) -> O
         for (a, pixel) in pixel.into_iter().enumerate() {
             (low[a], high[a]) = (low[a].min(pixel), high[a].max(pixel));
         }
-        let slope = std::array::from_fn::<f32, 2, _>(|a| (pixel[a] - 0.5 * frame.size[a]) / frame.focal);
+        let slope = std::array::from_fn::<f32, 2, _>(|a| (pixel[a] - frame.principal_px[a]) / frame.focal_px[a]);
         steepest = steepest.max(slope[0] * slope[0] + slope[1] * slope[1]);
     }
     if frame.perspective == 0 {

@@ -49,11 +49,12 @@ fn rect_of(frame: &Frame, leaf: &Leaf, centre: [f32; 3]) -> Rect {
             true => ((lo / nearest).min(lo / farthest), (hi / nearest).max(hi / farthest)),
             false => (lo, hi),
         };
-        (frame.focal * lo - MARGIN_PX, frame.focal * hi + MARGIN_PX)
+        (frame.focal_px[k] * lo - MARGIN_PX, frame.focal_px[k] * hi + MARGIN_PX)
     };
     let ((left, right), (down, up)) = (side(0), side(1));
-    let first = [0.5 * frame.size[0] + left, 0.5 * frame.size[1] - up];
-    let end = [0.5 * frame.size[0] + right, 0.5 * frame.size[1] - down];
+    let [across, down_to] = frame.principal_px;
+    let first = [across + left, down_to - up];
+    let end = [across + right, down_to - down];
     if (0..2).any(|k| end[k] < 0.0 || first[k] > frame.size[k]) {
         return NOWHERE;
     }

@@ -48,7 +48,7 @@ pub fn see(view: &View, frame: &Frame, lo: [f32; 3], hi: [f32; 3], margin: f32, 
         let [x, y, depth, w] = to_pixel(view, [pick(0), pick(1), pick(2), 1.0]);
         seen.w = seen.w.min(w);
         let pixel = [x / w, y / w];
-        let slope = std::array::from_fn::<f32, 2, _>(|a| (pixel[a] - 0.5 * frame.size[a]) / frame.focal);
+        let slope = std::array::from_fn::<f32, 2, _>(|a| (pixel[a] - frame.principal_px[a]) / frame.focal_px[a]);
         for (a, pixel) in pixel.into_iter().enumerate() {
             (seen.low[a], seen.high[a]) = (seen.low[a].min(pixel), seen.high[a].max(pixel));
         }

@@ -175,3 +175,68 @@ fn smooth_trims_blend_with_what_the_host_drew() {
     drop(renderer);
     assert_eq!(host.shutdown(), [""; 0]);
 }
+
+/// A picture in a rectangle of larger targets is that of a whole target, bit for bit, before a background and among what the
+/// host drew; beside the rectangle the host's colour and depth stay.
+#[test]
+fn a_rectangle_of_a_larger_target_holds_the_same_picture() {
+    let host = Host::new();
+    let format = vk::Format::R8G8B8A8_UNORM;
+    let mut renderer = renderer(&host, &shapes::plate(), format);
+    let camera = Camera { eye: DVec3::new(1.0, -2.0, 10.0), up: DVec3::Y, ..camera() };
+    let (x, y) = (37, 11);
+    let large = (SIZE.0 + 60, SIZE.1 + 20);
+    let wall = reversed(&camera, WALL) as f32;
+    let draw = |renderer: &mut Renderer, targets: &Targets, left: u32, corner, background| {
+        let cmd = host.begin(0);
+        targets.draw(&host, cmd, HOST_BLUE, &[(left + SIZE.0 / 3, SIZE.0 / 3, wall)]);
+        targets.hand_over(&host, cmd);
+        let settings = FrameSettings { background, ..FrameSettings::default() };
+        let into = Into { depth: Some(&targets.depth), corner, ..Into::new(&targets.colour) };
+        // SAFETY: recording; the slot's frame was waited for.
+        unsafe { renderer.record(cmd, &FrameInput { camera: &camera, settings, slot: 0, targets: into }) }.unwrap();
+        targets.hand_over(&host, cmd);
+        targets.read_back(&host, cmd);
+        host.submit(0);
+        host.wait(0);
+        targets.values()
+    };
+    let (whole, part) = (Targets::new(&host, SIZE, format), Targets::new(&host, large, format));
+    let made = |renderer: &Renderer| renderer.objects().iter().filter(|name| name.starts_with("viewport")).count();
+    for samples in [Samples::One, Samples::Four] {
+        renderer.upload_with(&shapes::plate(), SceneSettings { samples, ..Default::default() }).unwrap();
+        for background in [None, Some([0.5, 0.25, 0.125, 1.0])] {
+            let expected = draw(&mut renderer, &whole, 0, None, background);
+            assert_eq!(made(&renderer), 0, "a whole target wants no images");
+            let (colour, depth) = draw(&mut renderer, &part, x, Some((x, y)), background);
+            assert_eq!(made(&renderer), 2);
+            let (mut inside, mut plate) = (0, 0);
+            for (i, (column, row)) in (0..large.1).flat_map(|row| (0..large.0).map(move |c| (c, row))).enumerate() {
+                let within = (x..x + SIZE.0).contains(&column) && (y..y + SIZE.1).contains(&row);
+                if within {
+                    let k = ((row - y) * SIZE.0 + column - x) as usize;
+                    assert_eq!((colour[i], depth[i].to_bits()), (expected.0[k], expected.1[k].to_bits()), "pixel {k}");
+                    inside += 1;
+                    plate += usize::from(colour[i] != BLUE && depth[i] > 0.0);
+                } else {
+                    let third = (x + SIZE.0 / 3..x + 2 * (SIZE.0 / 3)).contains(&column);
+                    assert_eq!((colour[i], depth[i]), (BLUE, if third { wall } else { 0.0 }), "{column}, {row}");
+                }
+            }
+            assert!(inside == SIZE.0 * SIZE.1 && plate > 1000, "{plate} pixels of the plate");
+        }
+    }
+    for corner in [(61, 0), (0, 21), (u32::MAX, 0)] {
+        let cmd = host.begin(0);
+        let into = Into { depth: Some(&part.depth), corner: Some(corner), ..Into::new(&part.colour) };
+        let input = FrameInput { camera: &camera, settings: FrameSettings::default(), slot: 0, targets: into };
+        // SAFETY: recording; nothing is in flight.
+        let refused = unsafe { renderer.record(cmd, &input) }.expect_err("beside the target").to_string();
+        assert!(refused.contains("is not within it"), "{refused}");
+        host.submit(0);
+        host.wait(0);
+    }
+    drop(renderer);
+    [whole, part].into_iter().for_each(|targets| targets.destroy(&host));
+    assert_eq!(host.shutdown(), [""; 0]);
+}

@@ -198,7 +198,7 @@ fn image(
         .mip_levels(1)
         .array_layers(1)
         .samples(vk::SampleCountFlags::TYPE_1)
-        .usage(usage | vk::ImageUsageFlags::TRANSFER_SRC);
+        .usage(usage | vk::ImageUsageFlags::TRANSFER_SRC | vk::ImageUsageFlags::TRANSFER_DST);
     // SAFETY: the device is alive; the memory is bound before the view is made.
     unsafe {
         let image = host.device.create_image(&create, None).unwrap();

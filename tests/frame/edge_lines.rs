@@ -31,6 +31,11 @@ fn with(edges: EdgeSettings) -> SceneSettings {
     SceneSettings { edges: Some(edges), ..SceneSettings::default() }
 }
 
+/// With outlines, as [`faults`] wants it.
+pub fn draw_lines(model: &Model, camera: &Camera) -> Picture {
+    draw(model, with(lines()), camera)
+}
+
 fn draw(model: &Model, settings: SceneSettings, camera: &Camera) -> Picture {
     let mut renderer = watched_with(model, settings);
     let picture = renderer.render(camera, &FrameSettings::default(), ALL).unwrap();
@@ -50,7 +55,7 @@ const GOES_ON_PX: f64 = 10.0;
 
 /// Visible points without a line within half its width and half a pixel, and line pixels farther than that and a fifth from
 /// any point that may be seen: a tenth of a pixel for what chords may be off, a tenth for the points' own distance.
-fn faults(model: &Model, camera: &Camera, picture: &Picture) -> (usize, usize, usize) {
+pub fn faults(model: &Model, camera: &Camera, picture: &Picture) -> (usize, usize, usize) {
     let tracer = Tracer::new(model);
     let edges = EdgeTracer::new(model, &tracer).unwrap();
     let all = edges.points(camera, 0.2);

@@ -34,6 +34,7 @@ mod look;
 mod meshes;
 mod narrow;
 mod objects;
+mod off_centre;
 mod operands;
 mod picks;
 mod real_solids;

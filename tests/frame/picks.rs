@@ -2,11 +2,11 @@
 
 use crate::hidden::crowd;
 use crate::shapes::{self, operands, solids};
-use crate::support::{assert_silent, orthographic, perspective, watched};
+use crate::support::{assert_silent, orthographic, perspective, watched, watched_with};
 use glam::{DAffine3, DVec2, DVec3};
 use selvedge::headless::HeadlessRenderer;
 use selvedge::model::{Camera, Model};
-use selvedge::picture::{FrameSettings, Outputs};
+use selvedge::picture::{EdgeSettings, FrameSettings, Outputs, SceneSettings};
 use selvedge_check::Tracer;
 
 const SIZE: (u32, u32) = (60, 48);
@@ -143,4 +143,44 @@ fn a_pick_is_of_its_frame() {
     renderer.upload(&shapes::cube()).unwrap();
     assert_eq!(renderer.picked(), None, "of another model");
     assert_silent(renderer);
+}
+
+/// Where a line is drawn over a face, the hit has its edge, as the image of edges has it but for pixels between two lines; away
+/// from lines, and without them, it has none.
+#[test]
+fn a_hit_has_the_edge_whose_line_is_there() {
+    let lines = EdgeSettings { width: 2.5 * EdgeSettings::HEIGHT / f64::from(SIZE.1), ..EdgeSettings::default() };
+    for model in [shapes::cube(), shapes::plate(), shapes::cylinder()] {
+        let mut renderer = watched_with(&model, SceneSettings { edges: Some(lines), ..SceneSettings::default() });
+        let camera = perspective(&model, SIZE);
+        let settings = FrameSettings::default();
+        let outputs = Outputs { edge: true, ..ALL };
+        let picture = renderer.render(&camera, &settings, outputs).unwrap();
+        let edge = |x: u32, y: u32| picture.edge[(y * SIZE.0 + x) as usize];
+        let (mut same, mut other, mut away) = (0, 0, 0);
+        for (x, y) in (1..SIZE.1 - 1).flat_map(|y| (1..SIZE.0 - 1).map(move |x| (x, y))) {
+            let beside = || (0..9).map(|k| edge(x + k % 3 - 1, y + k / 3 - 1));
+            if !(x + 3 * y).is_multiple_of(if edge(x, y) == 0 { 17 } else { 2 }) {
+                continue;
+            }
+            renderer.pick(x, y);
+            renderer.render(&camera, &settings, outputs).unwrap();
+            let Some(hit) = renderer.picked() else { continue };
+            match (edge(x, y), hit.edge) {
+                (0, None) => away += 1,
+                (0, Some(_)) => assert!(beside().any(|edge| edge != 0), "{x}, {y}: {hit:?}"),
+                (number, Some(found)) if number == found as u32 + 1 => same += 1,
+                // of two lines, or of a neighbour's line that stands over this face
+                (_, Some(_)) => other += 1,
+                (number, None) => {
+                    let (part, face) = (hit.part.unwrap(), hit.face.unwrap());
+                    let found = model.parts[part].edges().unwrap();
+                    let is_own = found.edges[number as usize - 1].uses.iter().any(|u| u.face == face);
+                    assert!(!is_own, "{x}, {y}: line {number}, {hit:?}");
+                }
+            }
+        }
+        assert!(same > 30 && other * 8 < same && away > 20, "{same} the same, {other} others, {away} away");
+        assert_silent(renderer);
+    }
 }

@@ -43,7 +43,7 @@ fn views(model: &Model) -> Vec<Camera> {
 fn pixel(model: &Model, camera: &Camera) -> f64 {
     match camera.projection {
         Projection::Orthographic { height } => height / f64::from(SIZE.1),
-        Projection::Perspective { .. } => model.control_bounds().diagonal() / f64::from(SIZE.1),
+        _ => model.control_bounds().diagonal() / f64::from(SIZE.1),
     }
 }
 

@@ -1,6 +1,7 @@
 //! Deep zoom against the exact reference: a thousand and a million times closer, at the origin and far from it; and
 //! an eye close beside a bent face.
 
+use crate::off_centre::through;
 use crate::shapes::borders;
 use crate::support::{assert_identical, assert_silent, render, watched};
 use crate::watched::sample;
@@ -40,6 +41,10 @@ fn moved(mut model: Model, by: f64) -> Model {
 }
 
 fn keeps_the_promise(model: &Model, times: f64) {
+    keeps_it_through(model, times, |camera| camera);
+}
+
+fn keeps_it_through(model: &Model, times: f64, lens: impl Fn(Camera) -> Camera) {
     let tracer = Tracer::new(model);
     let mut renderer = watched(model);
     let faces = model.parts[model.instances[0].part].faces.len();
@@ -50,7 +55,7 @@ fn keeps_the_promise(model: &Model, times: f64) {
             if at.is_none() && !face_has_loops {
                 continue;
             }
-            let camera = closer(model, face, at, times);
+            let camera = lens(closer(model, face, at, times));
             let picture = render(&mut renderer, &camera);
             // what is a tie at the whole model's scale is not one here
             let options = JudgeOptions { tie: 1e-6 / times, ..JudgeOptions::default() };
@@ -74,6 +79,15 @@ fn bracket_a_thousand_times_closer() {
 #[test]
 fn bracket_a_million_times_closer() {
     keeps_the_promise(&sample("bracket.step"), 1e6);
+}
+
+/// The axis lies in a corner, and beside the picture: such views have windows of their own.
+#[test]
+fn bracket_closer_through_lenses_off_centre() {
+    let bracket = sample("bracket.step");
+    let lens = |x, y| move |camera: Camera| through(&camera, (DVec2::new(1.0, 0.9), DVec2::new(x, y)));
+    keeps_it_through(&bracket, 1e3, lens(2.0, 119.0));
+    keeps_it_through(&bracket, 1e6, lens(-150.0, 40.0));
 }
 
 #[test]

@@ -44,6 +44,15 @@
 // float
 #define SELVEDGE_FLOAT32 3
 
+// An edge's end.
+#define SELVEDGE_SNAP_VERTEX 1
+
+// The centre of a round edge.
+#define SELVEDGE_SNAP_CENTRE 2
+
+// A point on an edge.
+#define SELVEDGE_SNAP_EDGE 4
+
 // How a call ended.
 typedef enum SelvedgeStatus {
     // Everything asked for was done.
@@ -60,6 +69,9 @@ typedef enum SelvedgeStatus {
     SELVEDGE_STATUS_INTERNAL = 5,
 } SelvedgeStatus;
 
+// A renderer on the host's device. One thread uses it at a time.
+typedef struct SelvedgeHost SelvedgeHost;
+
 // A model. Free it with selvedge_model_free; renderers and pictures do not need it any more then.
 typedef struct SelvedgeModel SelvedgeModel;
 
@@ -68,6 +80,88 @@ typedef struct SelvedgePicture SelvedgePicture;
 
 // A device that draws. Several threads may use one: it draws their pictures in turn.
 typedef struct SelvedgeRenderer SelvedgeRenderer;
+
+// vkGetInstanceProcAddr.
+typedef void (*(*SelvedgeGetInstanceProcAddr)(void *instance, const char *name))(void);
+
+// A Vulkan device of the host's. All of it outlives the SelvedgeHost.
+typedef struct SelvedgeVulkan {
+    // sizeof(SelvedgeVulkan)
+    size_t struct_size;
+    // vkGetInstanceProcAddr of the loader.
+    SelvedgeGetInstanceProcAddr get_instance_proc_addr;
+    // VkInstance, made for Vulkan 1.3.
+    void *instance;
+    // VkPhysicalDevice for which selvedge_vulkan_missing says that nothing is.
+    void *physical_device;
+    // VkDevice with what selvedge_vulkan_features adds, and the extension VK_KHR_push_descriptor.
+    void *device;
+    // Family of the command buffers that are recorded into: graphics and compute.
+    uint32_t queue_family;
+    // Frames in flight; 0: 2.
+    uint32_t slots;
+    // VkFormat of the colour target.
+    uint32_t colour_format;
+    // VkFormat of a depth target of the host's, reversed: 1 near, 0 far. 0: there is none.
+    uint32_t depth_format;
+    // Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on, but for SELVEDGE_THICKNESS.
+    uint32_t outputs;
+} SelvedgeVulkan;
+
+// An image of the host's; 0 where there is none.
+typedef struct SelvedgeTarget {
+    // VkImage with one level and one layer.
+    uint64_t image;
+    // VkImageView of all of it.
+    uint64_t view;
+} SelvedgeTarget;
+
+// The host's images of one frame, all of one size. Colour images are in layout COLOR_ATTACHMENT_OPTIMAL before and after, the
+// depth target in DEPTH_STENCIL_ATTACHMENT_OPTIMAL. What the host did before is ordered before reads and writes of these
+// attachments, what it does next after them.
+typedef struct SelvedgeTargets {
+    // sizeof(SelvedgeTargets)
+    size_t struct_size;
+    // Of the images, pixels; 0: those of the view. Larger ones get the picture in a rectangle, and need the usage
+    // TRANSFER_DST, and TRANSFER_SRC where the view has no background.
+    uint32_t width;
+    // See width.
+    uint32_t height;
+    // Column of the images at which the picture's upper left pixel goes.
+    uint32_t x;
+    // Row of it.
+    uint32_t y;
+    // Of the format that the host gave.
+    struct SelvedgeTarget colour;
+    // Of the depth format that the host gave.
+    struct SelvedgeTarget depth_buffer;
+    // R32_SFLOAT: distance along the view axis, infinite for background.
+    struct SelvedgeTarget depth;
+    // R32_UINT.
+    struct SelvedgeTarget face;
+    // R32G32_SFLOAT.
+    struct SelvedgeTarget uv;
+    // R32G32B32A32_SFLOAT.
+    struct SelvedgeTarget normal;
+    // R32_UINT.
+    struct SelvedgeTarget edge;
+    // R32_UINT.
+    struct SelvedgeTarget part;
+    // R32_UINT.
+    struct SelvedgeTarget instance;
+} SelvedgeTargets;
+
+// What a finished frame reports.
+typedef struct SelvedgeReport {
+    // sizeof(SelvedgeReport)
+    size_t struct_size;
+    // 1: a frame was recorded into the slot.
+    uint32_t recorded;
+    // 1: it is whole. 0: a list was too short; the next frame recorded into the slot has the room.
+    uint32_t complete;
+    // Places where the frame could not keep the promise of accuracy.
+    uint64_t clamps;
+} SelvedgeReport;
 
 // How to read. Zeros are the defaults.
 typedef struct SelvedgeReadOptions {
@@ -180,7 +274,34 @@ typedef struct SelvedgeView {
     double sun[3];
     // Largest distance in pixels between a drawn boundary and the true one, at least 0.1; 0: 0.5.
     double tolerance;
+    // A calibrated camera in place of `standard` and `eye`, as OpenCV has it: fx, fy, cx, cy, pixels of this picture, the
+    // first pixel's centre being 0, 0. Zeros: none.
+    double intrinsics[4];
+    // Its rotation from model to camera axes (x right, y down, z ahead), row by row; zeros: none is turned.
+    double rotation[9];
+    // The model's origin in its axes, millimetres: a point X is seen at K (R X + t).
+    double translation[3];
 } SelvedgeView;
+
+// A point of a model near a place in a picture.
+typedef struct SelvedgeSnap {
+    // sizeof(SelvedgeSnap)
+    size_t struct_size;
+    // SELVEDGE_SNAP_VERTEX, SELVEDGE_SNAP_CENTRE or SELVEDGE_SNAP_EDGE; 0: there is none that is seen, and the rest is 0.
+    uint32_t kind;
+    // Number of the edge, as in the image of edges; of a vertex, of one that ends there.
+    uint32_t edge;
+    // Number of the placed body, as in the image of instances.
+    uint32_t instance;
+    // Millimetres.
+    double point[3];
+    // Where it is in the picture, pixels from the upper left corner; the first pixel's centre is 0.5, 0.5.
+    double pixel[2];
+    // From the place that was given, pixels.
+    double distance_px;
+    // Distance from the eye along the view axis, millimetres.
+    double depth;
+} SelvedgeSnap;
 
 
 
@@ -194,6 +315,74 @@ const char *selvedge_last_error(void);
 
 // The library's version, as in "0.1.0".
 const char *selvedge_version(void);
+
+// What the physical device lacks: SELVEDGE_STATUS_DEVICE, and selvedge_last_error lists it. Of `vulkan` the function, the
+// instance and the physical device are read.
+//
+// # Safety
+// The handles are alive.
+enum SelvedgeStatus selvedge_vulkan_missing(const struct SelvedgeVulkan *vulkan);
+
+// Sets the features that the device must have, and leaves the others: VkPhysicalDeviceFeatures,
+// VkPhysicalDeviceVulkan12Features and VkPhysicalDeviceVulkan13Features, whose sType and pNext the host sets.
+//
+// # Safety
+// Pointers to these structs, or null.
+enum SelvedgeStatus selvedge_vulkan_features(void *core, void *vulkan12, void *vulkan13);
+
+// Takes the host's device on loan.
+//
+// # Safety
+// Pointers are null or point to what they say; the handles are alive until the SelvedgeHost is freed.
+enum SelvedgeStatus selvedge_host_new(const struct SelvedgeVulkan *vulkan, struct SelvedgeHost **host);
+
+// Makes a model what the frames show. Of `view` samples, edges, line_width and sun count. Nothing waits: what frames in flight
+// use is freed with their slots.
+//
+// # Safety
+// Pointers are null or point to what they say.
+enum SelvedgeStatus selvedge_host_upload(const struct SelvedgeHost *host,
+                                         const struct SelvedgeModel *model,
+                                         const struct SelvedgeView *view);
+
+// Records a frame into a VkCommandBuffer of the host's. Of `view` size, camera, style, background and tolerance count; with a
+// null background the host's picture stays where the model is not. The frame recorded before into the slot has finished.
+//
+// # Safety
+// Pointers are null or point to what they say. `commands` is recording outside rendering, on the host's queue family, and is
+// submitted once; frames are submitted in the order in which they are recorded. After SELVEDGE_STATUS_RENDER it is reset.
+enum SelvedgeStatus selvedge_host_record(const struct SelvedgeHost *host,
+                                         void *commands,
+                                         uint32_t slot,
+                                         const struct SelvedgeView *view,
+                                         const struct SelvedgeTargets *targets);
+
+// Fills `report`, whose struct_size is set, with what the frame recorded last into the slot counted; it has finished.
+//
+// # Safety
+// Pointers are null or point to what they say.
+enum SelvedgeStatus selvedge_host_report(const struct SelvedgeHost *host, uint32_t slot, struct SelvedgeReport *report);
+
+// Places an instance anew, counted from 0: part to model coordinates, the columns x, y, z and the translation, millimetres.
+// The next frame shows it; nothing is uploaded again.
+//
+// # Safety
+// Pointers are null or point to what they say; `columns` to 12 numbers.
+enum SelvedgeStatus selvedge_host_set_transform(const struct SelvedgeHost *host,
+                                                uint64_t instance,
+                                                const double *columns);
+
+// Shows (not 0) or hides an instance, counted from 0.
+//
+// # Safety
+// The pointer is null or points to what it says.
+enum SelvedgeStatus selvedge_host_set_visible(const struct SelvedgeHost *host, uint64_t instance, uint32_t visible);
+
+// Gives the device back; null is allowed. The GPU has finished all frames.
+//
+// # Safety
+// What was made here and is used by no other call at the same time.
+void selvedge_host_free(struct SelvedgeHost *host);
 
 // Reads a file: STEP, IGES, OBJ, STL, 3MF, AMF, PLY, OFF, glTF, Rhino .3dm, .csg and others, by its content. `options` may
 // be null.
@@ -282,6 +471,20 @@ enum SelvedgeStatus selvedge_render(const struct SelvedgeRenderer *renderer,
 // # Safety
 // What was made here and is used by no other call at the same time.
 void selvedge_renderer_free(struct SelvedgeRenderer *renderer);
+
+// Fills `snap`, whose struct_size is set, with the point of these kinds that the view sees nearest to a place in its picture, and
+// within `radius` pixels of it. `kinds`: SELVEDGE_SNAP_VERTEX | SELVEDGE_SNAP_CENTRE | SELVEDGE_SNAP_EDGE; they go before one
+// another in this order. Of the view only size and camera count. In double precision, without a device.
+//
+// # Safety
+// Pointers are null or point to what they say.
+enum SelvedgeStatus selvedge_model_snap(const struct SelvedgeModel *model,
+                                        const struct SelvedgeView *view,
+                                        double x,
+                                        double y,
+                                        double radius,
+                                        uint32_t kinds,
+                                        struct SelvedgeSnap *snap);
 
 #ifdef __cplusplus
 }  // extern "C"

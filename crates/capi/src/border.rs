@@ -40,7 +40,9 @@ impl From<SessionError> for Failure {
             SessionError::Import(_) | SessionError::Nothing { .. } => SelvedgeStatus::File,
             SessionError::Device(_) => SelvedgeStatus::Device,
             SessionError::Draw(_) | SessionError::Validation(_) | SessionError::Closed => SelvedgeStatus::Render,
-            SessionError::Camera(_) | SessionError::Edges(_) => SelvedgeStatus::Argument,
+            SessionError::Camera(_) | SessionError::Pinhole(_) | SessionError::Edges(_) | SessionError::Snap => {
+                SelvedgeStatus::Argument
+            }
             _ => SelvedgeStatus::Internal,
         };
         Self(status, error.to_string())

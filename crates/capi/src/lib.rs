@@ -3,6 +3,7 @@
 //! ```text
 //!   selvedge_open ──▶ SelvedgeModel ────┐
 //!   selvedge_renderer_new ──▶ SelvedgeRenderer ──selvedge_render──▶ SelvedgePicture ──▶ SelvedgeImage: pointer, size, kind
+//!   selvedge_host_new, of the host's Vulkan device ──▶ SelvedgeHost ──selvedge_host_record──▶ the host's command buffer
 //! ```
 //!
 //! Every call that may fail returns a `SelvedgeStatus`; `selvedge_last_error` has the sentence. No panic crosses the border. Every struct begins with its size as the caller knows it, so that a
@@ -11,6 +12,8 @@
 #![warn(missing_docs)]
 
 mod border;
+mod host;
 mod model;
 mod picture;
 mod renderer;
+mod snap;

@@ -3,10 +3,11 @@
 use crate::border::{
     Failure, SelvedgeStatus, Sized, argument, border, c_text, free, given, handle, place, taken, text,
 };
-use selvedge_session::{Loaded, ReadOptions, Source, Stop, bounds, read};
+use selvedge_session::{Loaded, ReadOptions, Snapper, Source, Stop, bounds, read};
 use std::ffi::{CString, c_char, c_void};
 use std::path::Path;
 use std::ptr::null;
+use std::sync::OnceLock;
 
 /// A model. Free it with selvedge_model_free; renderers and pictures do not need it any more then.
 pub struct SelvedgeModel {
@@ -14,6 +15,8 @@ pub struct SelvedgeModel {
     summary: CString,
     /// File and message of each warning.
     warnings: Vec<(CString, CString)>,
+    /// Made when it is first asked.
+    pub(crate) snapper: OnceLock<Snapper>,
 }
 
 /// How to read. Zeros are the defaults.
@@ -139,7 +142,7 @@ impl SelvedgeModel {
         }
         let summary = c_text(&loaded.summary.to_string());
         let warnings = loaded.warnings.iter().map(|w| (c_text(&w.file), c_text(&w.message))).collect();
-        Ok(Box::into_raw(Box::new(Self { loaded, summary, warnings })))
+        Ok(Box::into_raw(Box::new(Self { loaded, summary, warnings, snapper: OnceLock::new() })))
     }
 }
 
@@ -154,7 +157,7 @@ pub unsafe extern "C" fn selvedge_model_info(
 ) -> SelvedgeStatus {
     border(|| {
         // SAFETY: as the caller promises
-        let SelvedgeModel { loaded, summary, warnings } = unsafe { handle("model", model) }?;
+        let SelvedgeModel { loaded, summary, warnings, .. } = unsafe { handle("model", model) }?;
         let bounds = bounds(&loaded.model);
         let value = SelvedgeModelInfo {
             struct_size: 0,

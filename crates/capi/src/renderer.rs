@@ -3,10 +3,12 @@
 use crate::border::{Failure, SelvedgeStatus, Sized, argument, border, free, handle, place, taken, text};
 use crate::model::{NO_TEXT, SelvedgeModel};
 use crate::picture::{SelvedgePicture, images};
-use glam::DVec3;
+use glam::{DMat3, DVec3};
+use selvedge::model::{Camera, Model};
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Samples, SceneSettings, Style};
 use selvedge_session::{
-    Backdrop, DeviceOptions, Directions, FOV_DEG, Image, Job, Lens, Viewpoint, Worker, lines, smooth,
+    Ambient, Backdrop, DeviceOptions, Directions, FOV_DEG, Image, Job, Lens, Pinhole, Viewpoint, Worker, colour, lines,
+    smooth,
 };
 use std::ffi::c_char;
 use std::str::FromStr;
@@ -69,9 +71,19 @@ pub struct SelvedgeView {
     pub sun: [f64; 3],
     /// Largest distance in pixels between a drawn boundary and the true one, at least 0.1; 0: 0.5.
     pub tolerance: f64,
+    /// A calibrated camera in place of `standard` and `eye`, as OpenCV has it: fx, fy, cx, cy, pixels of this picture, the
+    /// first pixel's centre being 0, 0. Zeros: none.
+    pub intrinsics: [f64; 4],
+    /// Its rotation from model to camera axes (x right, y down, z ahead), row by row; zeros: none is turned.
+    pub rotation: [f64; 9],
+    /// The model's origin in its axes, millimetres: a point X is seen at K (R X + t).
+    pub translation: [f64; 3],
+    /// Radius of ambient occlusion, millimetres; 0: a twenty-fifth of the model's diagonal, but none with several samples;
+    /// below 0: none.
+    pub ambient: f64,
 }
 
-const NO_VIEW: SelvedgeView = SelvedgeView {
+pub(crate) const NO_VIEW: SelvedgeView = SelvedgeView {
     struct_size: 0,
     width: 0,
     height: 0,
@@ -89,6 +101,10 @@ const NO_VIEW: SelvedgeView = SelvedgeView {
     line_width: 0.0,
     sun: [0.0; 3],
     tolerance: 0.0,
+    intrinsics: [0.0; 4],
+    rotation: [0.0; 9],
+    translation: [0.0; 3],
+    ambient: 0.0,
 };
 
 // SAFETY: each begins with its size and consists of numbers and pointers
@@ -173,15 +189,27 @@ impl SelvedgeView {
     /// Its texts are null, or end with a zero.
     unsafe fn job(&self, model: &SelvedgeModel) -> Result<Job, Failure> {
         let images = images(self.outputs)?;
-        let usual = if images.contains(&Image::Edge) { "all" } else { "none" };
         // SAFETY: as the caller promises
-        let (style, backdrop, which) = unsafe {
-            (
-                word::<Style>("the style", self.style, "shaded")?,
-                word::<Backdrop>("the background", self.background, "gradient")?,
-                word::<EdgeChoice>("the choice of edges", self.edges, usual)?,
-            )
-        };
+        unsafe {
+            Ok(Job {
+                camera: self.camera_of(&model.loaded.model)?,
+                scene: self.scene(images.contains(&Image::Edge), &model.loaded.model)?,
+                frame: self.frame()?,
+                outputs: Image::outputs(images),
+                backdrop: word::<Backdrop>("the background", self.background, "gradient")?,
+                model: Arc::clone(&model.loaded.model),
+            })
+        }
+    }
+
+    /// How a model is uploaded; lines are drawn where the image of edges is wanted.
+    ///
+    /// # Safety
+    /// As [`SelvedgeView::job`].
+    pub(crate) unsafe fn scene(&self, has_edge_image: bool, model: &Model) -> Result<SceneSettings, Failure> {
+        let usual = if has_edge_image { "all" } else { "none" };
+        // SAFETY: as the caller promises
+        let which = unsafe { word::<EdgeChoice>("the choice of edges", self.edges, usual) }?;
         let drawn = (which != EdgeChoice::None)
             .then(|| EdgeSettings { which, ..lines(Some(self.line_width).filter(|w| *w != 0.0), self.height) });
         if let Some(drawn) = &drawn {
@@ -190,6 +218,21 @@ impl SelvedgeView {
         let samples = self.samples.max(1).to_string();
         let samples: Samples =
             samples.parse().map_err(|error: selvedge::picture::UnknownSamples| argument(error.to_string()))?;
+        let sun = Some(DVec3::from(self.sun)).filter(|sun| *sun != DVec3::ZERO);
+        let smooth = smooth(None, samples);
+        let ambient = match self.ambient {
+            radius if radius < 0.0 => Some(Ambient::None),
+            radius => Some(Ambient::Radius(radius)).filter(|_| radius != 0.0),
+        };
+        let ambient = Ambient::radius(ambient, samples, model);
+        Ok(SceneSettings { edges: drawn, samples, smooth, ambient, sun, ..SceneSettings::default() })
+    }
+
+    /// # Safety
+    /// As [`SelvedgeView::job`].
+    unsafe fn frame(&self) -> Result<FrameSettings, Failure> {
+        // SAFETY: as the caller promises
+        let style = unsafe { word::<Style>("the style", self.style, "shaded") }?;
         let tolerance_px = if self.tolerance == 0.0 { 0.5 } else { self.tolerance };
         if !(tolerance_px >= FrameSettings::LEAST_TOLERANCE_PX && tolerance_px.is_finite()) {
             return Err(argument(format!(
@@ -197,30 +240,50 @@ impl SelvedgeView {
                 FrameSettings::LEAST_TOLERANCE_PX
             )));
         }
-        let sun = Some(DVec3::from(self.sun)).filter(|sun| *sun != DVec3::ZERO);
+        Ok(FrameSettings { tolerance_px, style, ..FrameSettings::default() })
+    }
+
+    /// The same over the host's picture, or over a colour.
+    ///
+    /// # Safety
+    /// As [`SelvedgeView::job`].
+    pub(crate) unsafe fn host_frame(&self) -> Result<FrameSettings, Failure> {
+        // SAFETY: as the caller promises
+        let (frame, background) = unsafe { (self.frame()?, text("the background", self.background)?) };
+        let background = background.map(colour).transpose().map_err(argument)?;
+        Ok(FrameSettings { background, ..frame })
+    }
+
+    /// # Safety
+    /// As [`SelvedgeView::job`].
+    pub(crate) unsafe fn camera_of(&self, model: &Model) -> Result<Camera, Failure> {
         // SAFETY: as the caller promises
         let viewpoint = unsafe { self.viewpoint() }?;
-        let model = Arc::clone(&model.loaded.model);
-        let camera = viewpoint.camera(&model, (self.width, self.height))?;
-        Ok(Job {
-            camera,
-            scene: SceneSettings {
-                edges: drawn,
-                samples,
-                smooth: smooth(None, samples),
-                sun,
-                ..SceneSettings::default()
-            },
-            frame: FrameSettings { tolerance_px, style, ..FrameSettings::default() },
-            outputs: Image::outputs(images),
-            backdrop,
-            model,
+        Ok(viewpoint.camera(model, (self.width, self.height))?)
+    }
+
+    /// The calibrated camera, where there is one.
+    fn pinhole(&self) -> Option<Pinhole> {
+        let [fx, fy, cx, cy] = self.intrinsics;
+        let turned = self.rotation != [0.0; 9];
+        let rotation = if turned { DMat3::from_cols_array(&self.rotation).transpose() } else { DMat3::IDENTITY };
+        (self.intrinsics != [0.0; 4]).then(|| Pinhole {
+            intrinsics: DMat3::from_cols(DVec3::X * fx, DVec3::Y * fy, DVec3::new(cx, cy, 1.0)),
+            rotation,
+            translation: self.translation.into(),
+            first_pixel: 0.0,
         })
     }
 
     /// # Safety
     /// As [`SelvedgeView::job`].
     unsafe fn viewpoint(&self) -> Result<Viewpoint, Failure> {
+        if let Some(pinhole) = self.pinhole() {
+            let alone = self.standard.is_null() && self.eye == self.target && self.fov == 0.0 && self.ortho == 0.0;
+            return alone
+                .then_some(Viewpoint::Pinhole(pinhole))
+                .ok_or_else(|| argument("intrinsics exclude standard, eye, fov and ortho"));
+        }
         if self.standard.is_null() && self.eye != self.target {
             let lens = match (self.fov, self.ortho) {
                 (0.0, 0.0) => Lens::Fov(FOV_DEG),

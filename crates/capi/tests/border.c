@@ -104,6 +104,10 @@ static int views(const SelvedgeRenderer* renderer, const SelvedgeModel* model)
     BAD(bad.eye[0] = INFINITY, "not a number");
     BAD((bad.eye[2] = 9.0, bad.up[2] = 1.0), "up direction");
     BAD((bad.eye[0] = 9.0, bad.fov = 20.0, bad.ortho = 2.0), "exclude");
+    BAD((bad.intrinsics[0] = 9.0, bad.standard = "iso"), "exclude");
+    BAD(bad.intrinsics[0] = 9.0, "fx and fy above 0");
+    BAD((bad.intrinsics[0] = bad.intrinsics[1] = 9.0, bad.rotation[0] = 2.0), "no rotation");
+    BAD((bad.intrinsics[0] = bad.intrinsics[1] = 9.0, bad.intrinsics[2] = 2e4), "principal point");
 
     const OldView old = { sizeof old, 48, 32 };
     WANT(OK, selvedge_render(renderer, model, (const SelvedgeView*)&old, &picture), "");
@@ -174,8 +178,68 @@ static int images(const SelvedgeRenderer* renderer, const SelvedgeModel* model)
     return 0;
 }
 
-int main(void)
+// by OpenCV's formula: from 9 mm over the ground, where the top's corners are seen, and nothing beside them
+static int calibrated(const SelvedgeRenderer* renderer, const SelvedgeModel* model)
 {
+    const SelvedgeView view = {
+        .struct_size = sizeof view,
+        .width = 60,
+        .height = 50,
+        .intrinsics = { 40.0, 44.0, 12.25, 30.25 },
+        .rotation = { 1, 0, 0, 0, -1, 0, 0, 0, -1 },
+        .translation = { -1.0, 1.5, 9.0 },
+        .outputs = SELVEDGE_DEPTH,
+    };
+    SelvedgePicture* picture = NULL;
+    WANT(OK, selvedge_render(renderer, model, &view, &picture), "");
+    SelvedgeImage image = { .struct_size = sizeof image };
+    WANT(OK, selvedge_picture_image(picture, SELVEDGE_DEPTH, &image), "");
+    const float* depth = image.data;
+    for (int row = 0; row < 50; ++row) {
+        for (int column = 0; column < 60; ++column) {
+            // the top lies at z = 5, 4 mm from the eye: x from 0 to 2 and y from 0 to 3 there
+            const double x = 1.0 + (column - 12.25) * 4.0 / 40.0, y = 1.5 - (row - 30.25) * 4.0 / 44.0;
+            const int on_top = x > 0.0 && x < 2.0 && y > 0.0 && y < 3.0;
+            assert((fabsf(depth[60 * row + column] - 4.0f) < 1e-5f) == on_top);
+        }
+    }
+    selvedge_picture_free(picture);
+    return 0;
+}
+
+// the block is a mesh and has no edges of faces; a STEP file's have
+static int snaps(const char* path)
+{
+    SelvedgeModel* model = NULL;
+    WANT(OK, selvedge_open(path, NULL, &model), "");
+    SelvedgeView view = { .struct_size = sizeof view, .width = 200, .height = 150, .standard = "iso" };
+    SelvedgeSnap snap = { .struct_size = sizeof snap };
+    const uint32_t all = SELVEDGE_SNAP_VERTEX | SELVEDGE_SNAP_CENTRE | SELVEDGE_SNAP_EDGE;
+    int vertices = 0;
+    for (int at = 0; at < 200 * 150; at += 37) {
+        const double x = at % 200 + 0.5, y = at / 200 + 0.5;
+        WANT(OK, selvedge_model_snap(model, &view, x, y, 3.0, all, &snap), "");
+        if (snap.kind != 0) {
+            assert(hypot(snap.pixel[0] - x, snap.pixel[1] - y) <= 3.0 + 1e-9 && snap.edge > 0 && snap.instance == 1);
+        }
+        vertices += snap.kind == SELVEDGE_SNAP_VERTEX;
+    }
+    assert(vertices > 0);
+    WANT(OK, selvedge_model_snap(model, &view, 1.0, 1.0, 3.0, all, &snap), "");
+    assert(snap.kind == 0 && snap.edge == 0);
+    WANT(ARGUMENT, selvedge_model_snap(model, &view, 1.0, 1.0, 0.0, all, &snap), "radius");
+    WANT(ARGUMENT, selvedge_model_snap(model, &view, NAN, 1.0, 3.0, all, &snap), "two numbers");
+    WANT(ARGUMENT, selvedge_model_snap(model, &view, 1.0, 1.0, 3.0, 8, &snap), "no choice");
+    WANT(ARGUMENT, selvedge_model_snap(model, &view, 1.0, 1.0, 3.0, 0, &snap), "no choice");
+    WANT(ARGUMENT, selvedge_model_snap(model, &view, 1.0, 1.0, 3.0, all, NULL), "null pointer");
+    WANT(ARGUMENT, selvedge_model_snap(NULL, &view, 1.0, 1.0, 3.0, all, &snap), "model is a null pointer");
+    selvedge_model_free(model);
+    return 0;
+}
+
+int main(int count, char** arguments)
+{
+    assert(count == 2);
     if (files()) {
         return 1;
     }
@@ -187,7 +251,7 @@ int main(void)
     WANT(OK, selvedge_renderer_new(NULL, &renderer), "");
     SelvedgeModel* model = NULL;
     WANT(OK, selvedge_open_bytes(BLOCK, sizeof BLOCK - 1, "block.obj", NULL, &model), "");
-    int bad = views(renderer, model) || images(renderer, model);
+    int bad = snaps(arguments[1]) || views(renderer, model) || images(renderer, model) || calibrated(renderer, model);
     selvedge_model_free(model);
     selvedge_renderer_free(renderer);
     selvedge_renderer_free(NULL);

@@ -20,13 +20,18 @@ fn libraries() -> PathBuf {
 }
 
 fn compiled(source: &Path, into: &Path) -> PathBuf {
+    linked(source, into, &[])
+}
+
+/// With further libraries.
+fn linked(source: &Path, into: &Path, beside: &[&str]) -> PathBuf {
     let program = into.join(source.file_stem().expect("a name"));
     let libraries = libraries();
     let version = format!("-DSELVEDGE_TEST_VERSION=\"{}\"", env!("CARGO_PKG_VERSION"));
     let mut cc = Command::new("cc");
     cc.args(["-std=c11", "-Wall", "-Wextra", "-Werror", "-pedantic", "-g", "-fsanitize=address,undefined", &version]);
     cc.arg("-I").arg(folder().join("include")).arg(source).arg(folder().join("tests/keep_loaded.c"));
-    cc.arg("-rdynamic").arg("-o").arg(&program).arg("-L").arg(&libraries).args(["-lselvedge_c", "-lm"]);
+    cc.arg("-rdynamic").arg("-o").arg(&program).arg("-L").arg(&libraries).args(["-lselvedge_c", "-lm"]).args(beside);
     cc.arg(format!("-Wl,-rpath,{}", libraries.display()));
     let output = cc.output().expect("cc runs");
     assert!(output.status.success(), "{}", String::from_utf8_lossy(&output.stderr));
@@ -51,7 +56,8 @@ fn good(output: &Output) {
 fn every_call_refuses_what_it_must() {
     let into = tempfile::tempdir().expect("a folder");
     let program = compiled(&folder().join("tests/border.c"), into.path());
-    good(&watched(&program).output().expect("it runs"));
+    let bracket = root().join("samples/bracket.step");
+    good(&watched(&program).arg(bracket).output().expect("it runs"));
 }
 
 /// The sanitizer would tell.
@@ -95,4 +101,27 @@ fn the_example_draws_a_picture() {
     let refused = run("samples/none.step");
     assert_eq!(refused.status.code(), Some(1));
     assert!(String::from_utf8_lossy(&refused.stderr).contains("none.step"));
+}
+
+/// Needs Vulkan's header: on Debian `apt install libvulkan-dev`.
+#[test]
+fn the_host_records_into_its_own_command_buffer() {
+    let into = tempfile::tempdir().expect("a folder");
+    let program = linked(&root().join("examples/c/host.c"), into.path(), &["-lvulkan"]);
+    let run = |model: &str| watched(&program).arg(root().join(model)).args(["96", "80"]).output().expect("it runs");
+    let output = run("samples/bracket.step");
+    good(&output);
+    let said = String::from_utf8_lossy(&output.stdout).into_owned();
+    let seen: usize = said.split(' ').next().and_then(|word| word.parse().ok()).unwrap_or(0);
+    assert!(seen > 300 && seen < 64 * 48 && said.contains(", 0 beside its rectangle"), "{said}");
+    let refused = run("samples/none.step");
+    assert_eq!(refused.status.code(), Some(1));
+    assert!(String::from_utf8_lossy(&refused.stderr).contains("none.step"));
+}
+
+/// What a host may get wrong is told before a frame.
+#[test]
+fn a_host_is_told_what_it_got_wrong() {
+    let into = tempfile::tempdir().expect("a folder");
+    good(&watched(&compiled(&folder().join("tests/host_border.c"), into.path())).output().expect("it runs"));
 }

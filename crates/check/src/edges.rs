@@ -22,6 +22,7 @@ use crate::spline::Control;
 use glam::{DAffine3, DVec2, DVec3, DVec4};
 use rayon::prelude::*;
 use selvedge_geometry::edges::EdgeError;
+use std::borrow::Cow;
 
 /// A hit is at a point of an edge within so many times what is known of the edge's place.
 pub const AT: f64 = 4.0;
@@ -67,7 +68,7 @@ pub struct EdgePoint {
 pub struct EdgeTracer<'a> {
     model: &'a Model,
     tracer: &'a Tracer,
-    parts: Vec<Edges>,
+    parts: Cow<'a, [Edges]>,
 }
 
 impl<'a> EdgeTracer<'a> {
@@ -78,7 +79,25 @@ impl<'a> EdgeTracer<'a> {
     pub fn new(model: &'a Model, tracer: &'a Tracer) -> Result<Self, (usize, EdgeError)> {
         let edges = |(part, p): (usize, &crate::model::Part)| p.edges().map_err(|e| (part, e));
         let parts = model.parts.par_iter().enumerate().map(edges).collect::<Result<_, _>>()?;
-        Ok(Self { model, tracer, parts })
+        Ok(Self { model, tracer, parts: Cow::Owned(parts) })
+    }
+
+    /// With edges that were found before, those of each of the model's parts.
+    pub fn with(model: &'a Model, tracer: &'a Tracer, parts: &'a [Edges]) -> Self {
+        Self { model, tracer, parts: Cow::Borrowed(parts) }
+    }
+
+    /// Instance and part of all that is placed.
+    pub(super) fn placed(&self) -> impl Iterator<Item = (usize, usize)> + '_ {
+        self.tracer.placed.iter().map(|placed| (placed.instance, placed.part))
+    }
+
+    pub(super) fn transform(&self, instance: usize) -> DAffine3 {
+        self.model.instances[instance].transform
+    }
+
+    pub(super) fn probe<'b>(&'b self, camera: &'b Camera) -> Probe<'b> {
+        self.tracer.probe(camera)
     }
 
     /// The edges of each part.

@@ -30,6 +30,7 @@ mod leaf;
 pub mod light;
 mod net;
 mod probe;
+mod snap;
 pub mod solids;
 mod solver;
 mod sun;
@@ -42,6 +43,7 @@ pub use judge::{
     Judgement, Mismatch, SMOOTH_PX, TURN, judge,
 };
 pub use probe::Probe;
+pub use snap::{Snap, SnapKind};
 pub use sun::{SunJudgement, SunTracer, judge_sun};
 
 use crate::model::{Bounds, Camera, Images, Items, Model};

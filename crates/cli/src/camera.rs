@@ -191,8 +191,8 @@ pub fn closer(model: &Model, mut camera: Camera, times: f64) -> Camera {
     let back = camera.eye - camera.target;
     camera.target = detail;
     match &mut camera.projection {
-        Projection::Perspective { .. } => camera.eye = detail + back / times,
         Projection::Orthographic { height } => (camera.eye, *height) = (detail + back, *height / times),
+        _ => camera.eye = detail + back / times,
     }
     camera
 }

@@ -23,7 +23,9 @@ pub fn raised(py: Python<'_>, error: &SessionError) -> PyErr {
             instance(py, class, (text, import.file(), import.line(), nowhere.1))
         }
         SessionError::Nothing { file, .. } => instance(py, "ReadError", (text, file, nowhere.0, nowhere.1)),
-        SessionError::Camera(_) | SessionError::Pinhole(_) | SessionError::Edges(_) => PyValueError::new_err(text),
+        SessionError::Camera(_) | SessionError::Pinhole(_) | SessionError::Edges(_) | SessionError::Snap => {
+            PyValueError::new_err(text)
+        }
         SessionError::Device(_) => instance(py, "DeviceError", (text,)),
         SessionError::Closed => instance(py, "ClosedError", (text,)),
         SessionError::Draw(_) | SessionError::Validation(_) => instance(py, "RenderError", (text,)),

@@ -1,21 +1,22 @@
 //! Models: what a file holds, as Python sees it.
 
-use crate::error::incomplete;
+use crate::camera::{Camera, viewpoint};
+use crate::error::{incomplete, raised};
 use crate::picture::plain;
 use crate::shape::{Edge, Face, corners};
 use crate::waiting::apart;
 use numpy::ndarray::Array2;
 use numpy::{PyArray, PyArray2};
-use pyo3::exceptions::PyRuntimeError;
+use pyo3::exceptions::{PyRuntimeError, PyValueError};
 use pyo3::prelude::*;
 use pyo3::pybacked::PyBackedBytes;
 use pyo3::sync::PyOnceLock;
 use pyo3::types::PyTuple;
 use selvedge::model;
 use selvedge_io::import;
-use selvedge_session::{Loaded, Node, ReadOptions, Source, bounds, read};
+use selvedge_session::{Loaded, Node, ReadOptions, SNAP_KINDS, Snapper, Source, bounds, read};
 use std::path::PathBuf;
-use std::sync::Arc;
+use std::sync::{Arc, OnceLock};
 
 /// Where a model comes from.
 #[derive(FromPyObject)]
@@ -49,7 +50,7 @@ pub fn open(
     if strict && !loaded.summary.is_complete() {
         return Err(incomplete(py, &loaded.file, &loaded.summary.to_string(), &loaded.warnings));
     }
-    Ok(Model { loaded: Arc::new(loaded), faces: PyOnceLock::new(), edges: PyOnceLock::new() })
+    Ok(Model { loaded: Arc::new(loaded), faces: PyOnceLock::new(), edges: PyOnceLock::new(), snapper: OnceLock::new() })
 }
 
 /// A model in memory, as ``selvedge.open`` reads it. Lengths are millimetres.
@@ -58,6 +59,7 @@ pub struct Model {
     pub loaded: Arc<Loaded>,
     faces: PyOnceLock<Py<PyTuple>>,
     edges: PyOnceLock<Py<PyTuple>>,
+    snapper: OnceLock<Arc<Snapper>>,
 }
 
 #[pymethods]
@@ -155,6 +157,49 @@ impl Model {
             Ok::<_, PyErr>(PyTuple::new(py, edges)?.unbind())
         };
         Ok(self.edges.get_or_try_init(py, made)?.clone_ref(py))
+    }
+
+    /// The point of the model to snap to that a view shows near a place in its picture.
+    ///
+    /// at: (x, y) in pixels from the upper left corner; the first pixel's centre is (0.5, 0.5). size, view, camera: as in
+    /// Renderer.render. radius: pixels. kinds: of "vertex" (an edge's end), "centre" (of a round edge) and "edge"; they go
+    /// before one another in this order.
+    ///
+    /// A dict: kind, point (millimetres), pixel, distance_px, depth, instance (place in Model.instances) and edge
+    /// (Edge.number); None where there is nothing that is seen. In double precision, without a device.
+    #[allow(clippy::too_many_arguments)] // keywords of Python
+    #[pyo3(signature = (at, radius = 8.0, view = None, size = (1920, 1080), *, camera = None, kinds = None))]
+    fn snap<'py>(
+        &self,
+        py: Python<'py>,
+        at: [f64; 2],
+        radius: f64,
+        view: Option<&str>,
+        size: (u32, u32),
+        camera: Option<PyRef<'_, Camera>>,
+        kinds: Option<Vec<String>>,
+    ) -> PyResult<Option<Bound<'py, PyAny>>> {
+        let kind = |name: &String| {
+            let known = SNAP_KINDS.iter().find(|(known, _)| known == name).map(|(_, kind)| *kind);
+            known.ok_or_else(|| PyValueError::new_err(format!("kinds are vertex, centre and edge, not {name}")))
+        };
+        let kinds = match kinds {
+            Some(names) => names.iter().map(kind).collect::<PyResult<Vec<_>>>()?,
+            None => SNAP_KINDS.map(|(_, kind)| kind).to_vec(),
+        };
+        let viewpoint = viewpoint(view, camera.as_deref())?;
+        let found = py.detach(|| {
+            let camera = viewpoint.camera(&self.loaded.model, size)?;
+            let snapper = match self.snapper.get() {
+                Some(snapper) => snapper,
+                None => {
+                    let made = Arc::new(Snapper::new(Arc::clone(&self.loaded.model))?);
+                    self.snapper.get_or_init(|| made)
+                }
+            };
+            snapper.snap(&camera, at, radius, &kinds)
+        });
+        found.map_err(|error| raised(py, &error))?.map(|snapped| plain(py, &snapped)).transpose()
     }
 
     /// What was left out or healed, in the order in which it was found.

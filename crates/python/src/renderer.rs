@@ -11,7 +11,7 @@ use pyo3::prelude::*;
 use selvedge::model::Camera as View;
 use selvedge::picture::{EdgeChoice, EdgeSettings, FrameSettings, Outputs, Samples, SceneSettings, Smooth, Style};
 use selvedge_session::{
-    Backdrop, CameraFile, DeviceOptions, Image, Job, SessionError, Ticket, Verdict, Worker, lines, smooth,
+    Ambient, Backdrop, CameraFile, DeviceOptions, Image, Job, SessionError, Ticket, Verdict, Worker, lines, smooth,
 };
 use std::str::FromStr;
 use std::sync::{Arc, Mutex, PoisonError, RwLock};
@@ -42,6 +42,7 @@ pub struct Settings<'py> {
     line_width: Option<f64>,
     samples: u32,
     smooth: Option<String>,
+    ao: Option<Bound<'py, PyAny>>,
     sun: Option<[f64; 3]>,
     tolerance: f64,
 }
@@ -93,10 +94,12 @@ impl Settings<'_> {
         let model = Arc::clone(&model.loaded.model);
         let camera = py.detach(|| viewpoint.camera(&model, size)).map_err(|error| raised(py, &error))?;
         let samples: Samples = word(&self.samples.to_string())?;
+        let ao = self.ao.as_ref().map(|said| word::<Ambient>(&said.str()?.to_string())).transpose()?;
         let scene = SceneSettings {
             edges: self.lines(outputs, size)?,
             samples,
             smooth: smooth(self.smooth.as_deref().map(word::<Smooth>).transpose()?, samples),
+            ambient: Ambient::radius(ao, samples, &model),
             sun: self.sun.map(DVec3::from),
             ..SceneSettings::default()
         };

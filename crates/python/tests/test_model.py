@@ -140,3 +140,32 @@ def test_a_cadquery_solid_is_read():
     cadquery = pytest.importorskip("cadquery")
     solid = cadquery.Workplane().box(1, 2, 3)
     assert sorted(face.area for face in selvedge.open(solid).faces) == pytest.approx([2, 2, 3, 3, 6, 6])
+
+
+def test_a_view_snaps_to_vertices_centres_and_edges(bracket):
+    camera = selvedge.Camera.look_at((60.0, -90.0, 70.0), tuple(bracket.bounds.mean(axis=0)), fov=40.0)
+    size = (320, 240)
+    seen = [bracket.snap((x, y), 3.0, size=size, camera=camera) for x in range(4, 320, 8) for y in range(4, 240, 8)]
+    kinds = {found["kind"] for found in seen if found}
+    assert "edge" in kinds and None in seen
+    low, high = bracket.bounds
+    for found in filter(None, seen):
+        assert found["distance_px"] <= 3.0 and 1 <= found["edge"] <= len(bracket.edges)
+        if found["kind"] != "centre":
+            assert (np.array(found["point"]) >= low - 1e-6).all() and (np.array(found["point"]) <= high + 1e-6).all()
+        if found["kind"] == "vertex":
+            ends = bracket.edges[found["edge"] - 1].ends
+            assert min(np.linalg.norm(ends - found["point"], axis=1)) < 1e-9
+            # the same pixel again: the point itself
+            again = bracket.snap(found["pixel"], 1.0, size=size, camera=camera, kinds=["vertex"])
+            assert again["point"] == found["point"] and again["distance_px"] < 1e-9
+    for arguments, told in (
+        ({"radius": 0.0}, "radius"),
+        ({"radius": math.nan}, "radius"),
+        ({"kinds": ["face"]}, "vertex, centre and edge"),
+        ({"size": (0, 5)}, "no pixels"),
+    ):
+        with pytest.raises(ValueError, match=told):
+            bracket.snap((5.0, 5.0), **arguments)
+    with pytest.raises(TypeError):
+        bracket.snap("here")

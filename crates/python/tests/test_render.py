@@ -120,7 +120,7 @@ def test_a_view_sees_the_side_that_it_names(renderer, block, view, axis, sign):
 
 def opencv(width, height, focal, eye):
     """K, R and t of a camera at eye that looks along -z of the model, x to the right."""
-    K = np.array([[focal, 0, (width - 1) / 2], [0, focal, (height - 1) / 2], [0, 0, 1.0]])
+    K = np.array([[focal, 0, (width - 1) / 2 + 7.25], [0, focal * 1.1, (height - 1) / 2 - 4.5], [0, 0, 1.0]])
     R = np.diag([1.0, -1.0, -1.0])
     return K, R, -R @ np.asarray(eye, float)
 
@@ -144,10 +144,18 @@ def test_a_calibrated_camera_sees_points_where_opencv_projects_them(renderer, bl
 
 def test_cameras_that_show_nothing_are_refused(renderer, block):
     K, R, t = opencv(*SIZE, 100.0, (0, 0, 9))
-    off = K + np.array([[0, 0, 5.0], [0, 0, 0], [0, 0, 0]])
-    for bad in (selvedge.Camera.opencv(off, R, t), selvedge.Camera.opencv(K, R * 2, t)):
-        with pytest.raises(ValueError):
-            renderer.render(block, size=SIZE, camera=bad)
+    beside = K + np.array([[0, 0, 2e4], [0, 0, 0], [0, 0, 0]])
+    oblong = K * np.array([[3.0], [1.0], [1.0]])
+    skewed = K + np.array([[0, 2.0, 0], [0, 0, 0], [0, 0, 0]])
+    cases = [
+        (beside, R, "principal point"),
+        (oblong, R, "focal lengths"),
+        (skewed, R, "K must"),
+        (K, R * 2, "no rotation"),
+    ]
+    for matrix, rotation, told in cases:
+        with pytest.raises(ValueError, match=told):
+            renderer.render(block, size=SIZE, camera=selvedge.Camera.opencv(matrix, rotation, t))
     with pytest.raises(ValueError):
         selvedge.Camera.opencv(K[:2], R, t)
     with pytest.raises(ValueError, match="coincide"):

@@ -3,7 +3,7 @@
 //! ```text
 //!   OpenCV      x right, y down, z ahead; pixel (0, 0) has its centre at (0, 0)      p ~ K (R X + t)
 //!   here        y down in pixels; pixel (0, 0) has its centre at (0.5, 0.5)
-//!   eye = -Rᵀ t      ahead = third row of R      up = -second row      fov_y = 2 atan(height / 2 f)
+//!   eye = -Rᵀ t      ahead = third row of R      up = -second row
 //! ```
 
 use crate::directions::Direction;
@@ -16,8 +16,7 @@ use serde::Serialize;
 pub const FROM: DVec3 = DVec3::new(1.0, -1.6, 1.1);
 /// Vertical field of view where nothing is said, degrees.
 pub const FOV_DEG: f64 = 35.0;
-/// How far a rotation may be from one, and a calibration from square pixels and a middle, each in its own units: what
-/// decimal files round off.
+/// How far a rotation may be from one, and what is 0 or 1 in a calibration from it: what decimal files round off.
 const ROUNDED: f64 = 1e-6;
 
 /// How wide a view is.
@@ -103,7 +102,7 @@ impl Viewpoint {
 }
 
 impl Pinhole {
-    fn camera(&self, (width, height): (u32, u32)) -> Result<Camera, SessionError> {
+    fn camera(&self, size: (u32, u32)) -> Result<Camera, SessionError> {
         let Self { intrinsics: k, rotation, translation, first_pixel } = *self;
         let bad = |why| Err(SessionError::Pinhole(why));
         if !(k.is_finite() && rotation.is_finite() && translation.is_finite() && first_pixel.is_finite()) {
@@ -118,29 +117,8 @@ impl Pinhole {
         if !(fx > 0.0 && fy > 0.0) || below.iter().any(|x| x.abs() > ROUNDED) || (k.z_axis.z - 1.0).abs() > ROUNDED {
             return bad("K must be [[fx, 0, cx], [0, fy, cy], [0, 0, 1]] with fx and fy above 0");
         }
-        if (fx / fy - 1.0).abs() > ROUNDED {
-            return bad("fx and fy differ: pixels are square here");
-        }
-        let middle = 0.5 - first_pixel;
-        let off = (k.z_axis.x + middle - 0.5 * f64::from(width)).abs();
-        let off = off.max((k.z_axis.y + middle - 0.5 * f64::from(height)).abs());
-        if off > ROUNDED * f64::from(width.max(height)) {
-            return bad(
-                "the principal point is not the middle of the picture: cx = (width - 1) / 2 and cy = (height - 1) / 2 in \
-                 OpenCV's pixels, width / 2 and height / 2 where pixels are counted from their corners",
-            );
-        }
-        let rows = rotation.transpose(); // columns are the rows
-        let eye = -(rows * translation);
-        let projection = Projection::Perspective { fov_y: 2.0 * (0.5 * f64::from(height) / fy).atan() };
-        Ok(Camera {
-            eye,
-            target: eye + rows.z_axis,
-            up: -rows.y_axis,
-            projection,
-            depth_range: (1.0, 2.0),
-            size: (width, height),
-        })
+        let (cx, cy) = (k.z_axis.x - first_pixel, k.z_axis.y - first_pixel);
+        Ok(Camera::from_intrinsics(fx, fy, cx, cy, size).posed(rotation, translation))
     }
 }
 
@@ -178,6 +156,9 @@ pub struct CameraFile {
     /// Vertical field of view, degrees.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub fovy: Option<f64>,
+    /// fx, fy, cx and cy of a calibrated camera, as OpenCV has them, pixels.
+    #[serde(skip_serializing_if = "Option::is_none")]
+    pub intrinsics: Option<[f64; 4]>,
     /// Half the height of a parallel view, millimetres.
     #[serde(skip_serializing_if = "Option::is_none")]
     pub ortho: Option<f64>,
@@ -187,15 +168,20 @@ pub struct CameraFile {
 
 impl From<&Camera> for CameraFile {
     fn from(camera: &Camera) -> Self {
-        let (fovy, ortho) = match camera.projection {
-            Projection::Perspective { fov_y } => (Some(fov_y.to_degrees()), None),
-            Projection::Orthographic { height } => (None, Some(height * 0.5)),
-        };
+        let (mut fovy, mut intrinsics, mut ortho) = (None, None, None);
+        match camera.projection {
+            Projection::Perspective { fov_y } => fovy = Some(fov_y.to_degrees()),
+            Projection::Orthographic { height } => ortho = Some(height * 0.5),
+            Projection::Pinhole { focal, principal } => {
+                intrinsics = Some([focal.x, focal.y, principal.x - 0.5, principal.y - 0.5]);
+            }
+        }
         Self {
             eye: camera.eye.into(),
             target: camera.target.into(),
             up: camera.up.into(),
             fovy,
+            intrinsics,
             ortho,
             size: camera.size.into(),
         }
@@ -208,8 +194,7 @@ mod tests {
     use glam::{DVec2, EulerRot};
 
     fn pinhole() -> Pinhole {
-        // a picture of 640 x 480: OpenCV's middle is half a pixel before ours
-        let intrinsics = DMat3::from_cols(DVec3::X * 800.0, DVec3::Y * 800.0, DVec3::new(319.5, 239.5, 1.0));
+        let intrinsics = DMat3::from_cols(DVec3::X * 800.0, DVec3::Y * 790.5, DVec3::new(301.25, 255.5, 1.0));
         let rotation = DMat3::from_euler(EulerRot::XYZ, 0.3, -0.5, 0.2);
         Pinhole { intrinsics, rotation, translation: DVec3::new(0.2, -0.1, 9.0), first_pixel: 0.0 }
     }
@@ -235,19 +220,19 @@ mod tests {
             change(&mut pinhole);
             pinhole.camera((640, 480)).expect_err("refused").to_string()
         };
-        assert!(with(|p| p.intrinsics.z_axis.x = 320.0).contains("principal point"));
-        assert!(with(|p| p.first_pixel = 0.5).contains("principal point"));
-        assert!(with(|p| p.intrinsics.x_axis.x = 810.0).contains("fx and fy"));
         assert!(with(|p| p.intrinsics.y_axis.x = 1.0).contains("K must be"));
         assert!(with(|p| p.rotation.x_axis *= -1.0).contains("no rotation"));
         assert!(with(|p| p.rotation *= 1.01).contains("no rotation"));
         assert!(with(|p| p.translation.x = f64::NAN).contains("not a number"));
         let corners = Pinhole { first_pixel: 0.5, ..good };
         let corners = Pinhole {
-            intrinsics: DMat3::from_cols(DVec3::X * 800.0, DVec3::Y * 800.0, DVec3::new(320.0, 240.0, 1.0)),
+            intrinsics: DMat3::from_cols(DVec3::X * 800.0, DVec3::Y * 790.5, DVec3::new(301.75, 256.0, 1.0)),
             ..corners
         };
         assert_eq!(corners.camera((640, 480)).expect("a camera"), good.camera((640, 480)).expect("a camera"));
+        let far = Viewpoint::Pinhole(Pinhole { first_pixel: 17_000.0, ..good });
+        let error = far.camera(&Model::default(), (640, 480)).expect_err("refused").to_string();
+        assert!(error.contains("principal point"), "{error}");
     }
 
     #[test]
@@ -261,5 +246,7 @@ mod tests {
         assert_eq!(fov["size"], serde_json::json!([64, 48]));
         let ortho = text(Projection::Orthographic { height: 20.0 });
         assert!(ortho["ortho"] == 10.0 && ortho.get("fovy").is_none());
+        let pinhole = serde_json::to_value(CameraFile::from(&pinhole().camera((640, 480)).expect("a camera")));
+        assert_eq!(pinhole.expect("serialises")["intrinsics"], serde_json::json!([800.0, 790.5, 301.25, 255.5]));
     }
 }

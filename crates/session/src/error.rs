@@ -1,5 +1,6 @@
 //! Why there is no model or no picture, and how a caller ends what takes too long.
 
+use selvedge::edges::EdgeError;
 use selvedge::headless::HeadlessError;
 use selvedge::model::CameraError;
 use selvedge::picture::BadEdges;
@@ -40,6 +41,17 @@ pub enum SessionError {
     /// Settings of lines that draw nothing sensible.
     #[error(transparent)]
     Edges(#[from] BadEdges),
+    /// A part whose edges cannot be found.
+    #[error("part {part}: {source}")]
+    Boundary {
+        /// Index of the part.
+        part: usize,
+        /// What is wrong with one of its faces.
+        source: EdgeError,
+    },
+    /// A place or a radius that cannot be snapped within.
+    #[error("the place must be two numbers and the radius a number above 0, in pixels")]
+    Snap,
     /// The validation layer found something while a picture was drawn.
     #[error("validation: {0}")]
     Validation(String),

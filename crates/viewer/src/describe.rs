@@ -176,6 +176,8 @@ pub fn command(session: &Session, camera: &Camera, settings: &Settings, style: S
     match camera.projection {
         Projection::Perspective { fov_y } => push("--fov", format!("{}", fov_y.to_degrees())),
         Projection::Orthographic { height } => push("--ortho", format!("{height}")),
+        // no view of the window is one, and no argument says it
+        Projection::Pinhole { .. } => {}
     }
     push("--style", style.name().to_owned());
     for section in session.scene.now().sections.iter().filter(|s| s.on) {

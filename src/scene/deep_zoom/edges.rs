@@ -28,6 +28,16 @@ impl PartialEq for KnownEdges {
 }
 
 impl KnownEdges {
+    /// Those of each part.
+    pub(in crate::scene) fn found(edges: Vec<Edges>) -> Self {
+        Self(Arc::new(OnceLock::from(Ok(edges))))
+    }
+
+    /// Where they were found.
+    pub(in crate::scene) fn get(&self) -> Option<&[Edges]> {
+        self.0.get()?.as_deref().ok()
+    }
+
     fn of(&self, model: &Model) -> Result<&[Edges], UndrawnEdges> {
         self.0.get_or_init(|| edges_of(model)).as_deref().map_err(Clone::clone)
     }
@@ -70,7 +80,7 @@ impl SceneData {
         let edges = cut.edges.of(whole)?;
         let first_faces = sums(whole.parts.iter().map(|part| part.faces.len()), 0);
         let numbers = sums(edges.iter().map(|e| e.edges.len() + e.of_meshes.len()), 1);
-        let mut data = EdgeData::new(settings, self.faces.len());
+        let mut data = EdgeData::new(settings, self.faces.len(), cut.edges.clone());
         // of each instance that is seen: the cut's part that has its meshes
         let mut seen: BTreeMap<usize, Option<usize>> = BTreeMap::new();
         for (nth, (source, &(_, first))) in cut.sources.iter().zip(&self.parts).enumerate() {

@@ -139,7 +139,7 @@ impl Sight {
             size: DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1)),
             near: camera.depth_range.0,
             far: camera.depth_range.1,
-            perspective: matches!(camera.projection, crate::model::Projection::Perspective { .. }),
+            perspective: camera.is_perspective(),
             pixels: focal * slant * stretch(instance.transform.matrix3),
         }
     }

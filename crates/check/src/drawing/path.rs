@@ -1,7 +1,7 @@
 //! Curves in the picture that may become lines: exact places, and polylines to find what meets what.
 
 use super::LineKind;
-use crate::model::{Camera, Projection};
+use crate::model::Camera;
 use glam::{DAffine3, DMat4, DVec2, DVec3, DVec4};
 use selvedge_geometry::edges::Sheet;
 use selvedge_geometry::silhouette::Fold;
@@ -48,7 +48,7 @@ impl View {
             matrix: camera.pixel_matrix(),
             size: DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1)),
             depth: camera.depth_range,
-            perspective: matches!(camera.projection, Projection::Perspective { .. }),
+            perspective: camera.is_perspective(),
             eye: camera.eye,
             forward: camera.axes().2,
         }

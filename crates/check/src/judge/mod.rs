@@ -28,7 +28,7 @@ mod search;
 pub use report::{Bin, Class, DepthErrors, Errors, Exactness, Folds, Judgement, Mismatch};
 
 use super::{Hit, Probe, Tracer};
-use crate::model::{Camera, Images, Projection};
+use crate::model::{Camera, Images};
 use glam::{DVec2, DVec3};
 use rayon::prelude::*;
 use report::Tally;
@@ -262,13 +262,10 @@ fn beside(centre: DVec2, far: f64) -> impl Iterator<Item = DVec2> {
     (0..8).map(move |k| centre + DVec2::from_angle(f64::from(k) * FRAC_PI_4) * far)
 }
 
-/// Side of a pixel in model units at `depth`.
+/// Shorter side of a pixel in model units at `depth`.
 fn pixel_size(camera: &Camera, depth: f64) -> f64 {
-    let h = f64::from(camera.size.1);
-    match camera.projection {
-        Projection::Perspective { fov_y } => depth * 2.0 * (fov_y * 0.5).tan() / h,
-        Projection::Orthographic { height } => height / h,
-    }
+    let focal = camera.focal_px().max_element();
+    if camera.is_perspective() { depth / focal } else { 1.0 / focal }
 }
 
 /// The depth error that a shift of two pixels explains on the hit's tangent plane (at least one

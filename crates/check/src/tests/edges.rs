@@ -23,10 +23,7 @@ fn of(part: Part, transforms: &[DAffine3]) -> Model {
 
 /// Towards the eye.
 fn to_eye(camera: &Camera, p: DVec3) -> DVec3 {
-    match camera.projection {
-        crate::model::Projection::Perspective { .. } => camera.eye - p,
-        crate::model::Projection::Orthographic { .. } => camera.eye - camera.target,
-    }
+    if camera.is_perspective() { camera.eye - p } else { camera.eye - camera.target }
 }
 
 /// All points, and how many of them are visible; each as the normals of its faces say.

@@ -7,3 +7,4 @@ mod judge;
 mod patches;
 mod quadrics;
 mod shapes;
+mod snap;

@@ -98,7 +98,7 @@ fn page(args: &DrawArgs, camera: &Camera) -> Result<Page> {
     let per_pixel = match (args.scale, camera.projection) {
         (None, _) => args.width / width,
         (Some(scale), Projection::Orthographic { height: seen }) => scale * seen / height,
-        (Some(_), Projection::Perspective { .. }) => {
+        (Some(_), _) => {
             bail!("--scale wants a parallel view: no --fov, --eye or --camera")
         }
     };

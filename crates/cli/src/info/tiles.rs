@@ -8,8 +8,9 @@
 use glam::DVec3;
 use selvedge::csg::Blist;
 use selvedge::internals::abi::{Frame, LEAF_UNBOUNDED, Leaf};
+use selvedge::internals::seen_by;
 use selvedge::internals::twin::solid_rects::{solid_rects, tile_count};
-use selvedge::model::{Bounds, Camera, Model, Projection, Solid};
+use selvedge::model::{Bounds, Camera, Model, Solid};
 use serde::Serialize;
 
 /// What a view's tiles hold once their Blists are folded.
@@ -102,23 +103,14 @@ fn leaf(bounds: Bounds, camera: &Camera) -> (Leaf, [f32; 3]) {
 }
 
 fn frame(camera: &Camera) -> Frame {
-    let size = [camera.size.0 as f32, camera.size.1 as f32];
-    let focal = match camera.projection {
-        Projection::Perspective { fov_y } => 0.5 * f64::from(size[1]) / (0.5 * fov_y).tan(),
-        Projection::Orthographic { height } => f64::from(size[1]) / height,
-    };
     let (right, up, forward) = camera.axes();
-    Frame {
-        size,
-        focal: focal as f32,
-        near: camera.depth_range.0 as f32,
-        far: camera.depth_range.1 as f32,
-        perspective: u32::from(matches!(camera.projection, Projection::Perspective { .. })),
+    let frame = Frame {
         right: right.as_vec3().to_array(),
         up: up.as_vec3().to_array(),
         forward: forward.as_vec3().to_array(),
         ..Frame::default()
-    }
+    };
+    seen_by(camera, frame)
 }
 
 #[cfg(test)]
@@ -126,7 +118,7 @@ mod tests {
     use super::*;
     use glam::DAffine3;
     use selvedge::csg::parse;
-    use selvedge::model::{Primitive, Shape};
+    use selvedge::model::{Primitive, Projection, Shape};
 
     /// Seen from above at one pixel a millimetre: 10 by 6 tiles.
     fn view() -> Camera {

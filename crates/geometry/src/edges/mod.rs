@@ -7,6 +7,8 @@
 //!   kind      sharp, smooth, seam, border: by the angle across it
 //!   mesh      creases and borders of triangles
 //!   flatten   an edge as a line in the picture
+//!   nearest   its point nearest to a pixel
+//!   curve     the line or circle that it is
 //! ```
 //!
 //! Edges are found on demand, not when a file is read. An import stores only what cannot be found again: the edge of the
@@ -16,10 +18,12 @@
 //! Tolerances, in shares of the diagonal of the part's control points: points within `1e-5` are one; where a part should
 //! be closed and is not, loops without partner may be `2e-4` apart; fits aim at `1e-8`.
 
+pub mod curve;
 pub mod flatten;
 mod join;
 mod kind;
 mod mesh;
+pub mod nearest;
 mod sheet;
 mod stretch;
 mod vertices;

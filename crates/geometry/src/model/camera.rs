@@ -8,7 +8,7 @@
 //! ```
 
 use super::Bounds;
-use glam::{DMat4, DVec2, DVec3, DVec4};
+use glam::{DMat3, DMat4, DVec2, DVec3, DVec4};
 
 /// How depth foreshortens.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -22,6 +22,14 @@ pub enum Projection {
     Orthographic {
         /// Height of the picture in model units.
         height: f64,
+    },
+    /// A calibrated camera, of a picture of [`Camera::size`]: the view axis need not be in the middle.
+    /// [`Camera::from_intrinsics`] takes the numbers as OpenCV has them.
+    Pinhole {
+        /// Pixels per unit slope, across and down.
+        focal: DVec2,
+        /// The principal point: the pixel position that the view axis is seen at.
+        principal: DVec2,
     },
 }
 
@@ -44,6 +52,10 @@ pub struct Camera {
 
 /// Smallest height of a picture beside what it lies at: a picture of 4096 rows then has steps of 16 roundings of `f64`.
 const LEAST_STEP: f64 = 4096.0 * 16.0 * f64::EPSILON;
+/// How much longer than the other one a focal length may be: bounds of the frame take the longer one.
+const MOST_OBLONG: f64 = 2.0;
+/// Pixels that the principal point may lie beside the picture: rows of single precision then resolve 1/500 pixel.
+const MOST_BESIDE: f64 = 16384.0;
 /// Lengths whose squares, times a count of pixels, are single-precision numbers.
 const LENGTHS: std::ops::RangeInclusive<f64> = 1e-15..=1e15;
 
@@ -60,6 +72,10 @@ pub enum CameraError {
     UpAlongAxis,
     #[error("the field of view must lie between 0 and 180 degrees, the orthographic height above 0")]
     Projection,
+    #[error("the focal lengths must lie above 0, the longer one at most twice the shorter one")]
+    Focal,
+    #[error("the principal point must lie within 16384 pixels of the picture")]
+    Principal,
     #[error("the field of view is so narrow that double precision tells no two pixels apart")]
     Narrow,
     #[error("the orthographic height is so small that double precision tells no two pixels apart there")]
@@ -91,9 +107,20 @@ impl Camera {
         let good = match self.projection {
             Projection::Perspective { fov_y } => fov_y > 0.0 && fov_y < std::f64::consts::PI,
             Projection::Orthographic { height } => height > 0.0 && height.is_finite(),
+            Projection::Pinhole { .. } => true,
         };
         if !good {
             return Err(CameraError::Projection);
+        }
+        if let Projection::Pinhole { focal, principal } = self.projection {
+            let (long, short) = (focal.max_element(), focal.min_element());
+            if !(focal.is_finite() && short > 0.0 && long <= MOST_OBLONG * short) {
+                return Err(CameraError::Focal);
+            }
+            let beside = (principal - self.pixels()).max(-principal);
+            if !(principal.is_finite() && beside.max_element() <= MOST_BESIDE) {
+                return Err(CameraError::Principal);
+            }
         }
         let (near, far) = self.depth_range;
         if !(near > 0.0 && far > near && far.is_finite()) {
@@ -104,6 +131,12 @@ impl Camera {
             Projection::Perspective { fov_y } if fov_y < LEAST_STEP => return Err(CameraError::Narrow),
             Projection::Orthographic { height } if !LENGTHS.contains(&height) => return Err(CameraError::Scale),
             Projection::Orthographic { height } if height < LEAST_STEP * place => return Err(CameraError::Small),
+            Projection::Pinhole { focal, .. } if focal.max_element() * LEAST_STEP > f64::from(self.size.1) => {
+                return Err(CameraError::Narrow);
+            }
+            Projection::Pinhole { focal, .. } if !LENGTHS.contains(&focal.min_element()) => {
+                return Err(CameraError::Scale);
+            }
             _ => {}
         }
         if !(LENGTHS.contains(&near) && LENGTHS.contains(&far) && place <= *LENGTHS.end()) {
@@ -113,6 +146,34 @@ impl Camera {
             return Err(CameraError::Size);
         }
         Ok(())
+    }
+
+    /// A calibrated camera, as OpenCV has it, of a picture of `size` pixels: a point `(x, y, z)` with x to the right, y down
+    /// and z ahead is seen at `(fx x / z + cx, fy y / z + cy)`, the centre of the first pixel being `(0, 0)`.
+    ///
+    /// It stands in the origin of the model and looks along its z axis; [`Camera::posed`] moves it. The depth range is
+    /// 1 to 2 until [`Camera::fit_depth`] sets it. Nothing is checked before [`Camera::check`].
+    ///
+    /// ```
+    /// # use selvedge_geometry::model::Camera;
+    /// # use glam::{DMat3, DVec2, DVec3};
+    /// let camera = Camera::from_intrinsics(800.0, 790.0, 300.0, 250.0, (640, 480)).posed(DMat3::IDENTITY, DVec3::Z * 4.0);
+    /// let (pixel, depth) = camera.project(DVec3::new(1.0, -0.5, 0.0)).unwrap();
+    /// // continuous positions have the first pixel's centre at (0.5, 0.5)
+    /// assert!(pixel.distance(DVec2::new(800.0 / 4.0 + 300.5, 790.0 * -0.5 / 4.0 + 250.5)) < 1e-12 && depth == 4.0);
+    /// ```
+    pub fn from_intrinsics(fx: f64, fy: f64, cx: f64, cy: f64, size: (u32, u32)) -> Self {
+        let projection = Projection::Pinhole { focal: DVec2::new(fx, fy), principal: DVec2::new(cx, cy) + 0.5 };
+        Self { eye: DVec3::ZERO, target: DVec3::Z, up: -DVec3::Y, projection, depth_range: (1.0, 2.0), size }
+    }
+
+    /// The same camera where a point `X` of the model has the coordinates `rotation * X + translation` of OpenCV: x to the
+    /// right, y down, z ahead. `rotation` is a rotation: its rows are the camera's axes.
+    #[must_use]
+    pub fn posed(self, rotation: DMat3, translation: DVec3) -> Self {
+        let axes = rotation.transpose();
+        let eye = -(axes * translation);
+        Self { eye, target: eye + axes.z_axis, up: -axes.y_axis, ..self }
     }
 
     /// A camera that shows the sphere around `bounds` from direction `from` (towards the eye); the depth range encloses it.
@@ -152,26 +213,45 @@ impl Camera {
         (right, right.cross(forward), forward)
     }
 
+    /// Whether rays leave from the eye; those of a parallel view leave from its plane.
+    pub fn is_perspective(&self) -> bool {
+        !matches!(self.projection, Projection::Orthographic { .. })
+    }
+
+    /// Width and height of the picture.
+    fn pixels(&self) -> DVec2 {
+        DVec2::new(f64::from(self.size.0), f64::from(self.size.1))
+    }
+
+    /// Pixels per unit slope, across and down; of a parallel view per model unit.
+    pub fn focal_px(&self) -> DVec2 {
+        let height_px = f64::from(self.size.1);
+        match self.projection {
+            Projection::Perspective { fov_y } => DVec2::splat(height_px * 0.5 / (fov_y * 0.5).tan()),
+            Projection::Orthographic { height } => DVec2::splat(height_px / height),
+            Projection::Pinhole { focal, .. } => focal,
+        }
+    }
+
+    /// The pixel position at which the view axis is seen: the middle of the picture, but for a [`Projection::Pinhole`].
+    pub fn principal_px(&self) -> DVec2 {
+        match self.projection {
+            Projection::Pinhole { principal, .. } => principal,
+            _ => self.pixels() * 0.5,
+        }
+    }
+
     /// Model coordinates to *homogeneous pixels* `(X, Y, D, W)`: the pixel is `(X / W, Y / W)` with
     /// `y` down, and `D` is the depth along the view axis times the model point's weight. `W` is the
     /// depth for a perspective view and 1 for a parallel one.
     pub fn pixel_matrix(&self) -> DMat4 {
         let (right, up, forward) = self.axes();
-        let (w, h) = (f64::from(self.size.0), f64::from(self.size.1));
+        let (focal, principal) = (self.focal_px(), self.principal_px());
         let row = |axis: DVec3| axis.extend(-axis.dot(self.eye));
         let (rx, ry, rz) = (row(right), row(up), row(forward));
-        let one = DVec4::W;
-        let (x, y, rw) = match self.projection {
-            Projection::Perspective { fov_y } => {
-                let focal = h * 0.5 / (fov_y * 0.5).tan(); // pixels per unit slope
-                (rx * focal + rz * (w * 0.5), ry * -focal + rz * (h * 0.5), rz)
-            }
-            Projection::Orthographic { height } => {
-                let scale = h / height; // pixels per model unit
-                (rx * scale + one * (w * 0.5), ry * -scale + one * (h * 0.5), one)
-            }
-        };
-        DMat4::from_cols(x, y, rz, rw).transpose()
+        let w = if self.is_perspective() { rz } else { DVec4::W };
+        let (x, y) = (rx * focal.x + w * principal.x, ry * -focal.y + w * principal.y);
+        DMat4::from_cols(x, y, rz, w).transpose()
     }
 
     /// Model coordinates to Vulkan's clip space, as the engine's depth target has it: x to the right, y down, depth 1 at
@@ -197,10 +277,7 @@ impl Camera {
         let (x, y, depth, w) = (pixels.x_axis, pixels.y_axis, pixels.z_axis, pixels.w_axis);
         let (near, far) = self.depth_range;
         let nearness = (DVec4::W * far - depth) / (far - near);
-        let nearness = match self.projection {
-            Projection::Perspective { .. } => nearness * near,
-            Projection::Orthographic { .. } => nearness,
-        };
+        let nearness = if self.is_perspective() { nearness * near } else { nearness };
         let across = |row: DVec4, size: u32| row * (2.0 / f64::from(size)) - w;
         DMat4::from_cols(across(x, self.size.0), across(y, self.size.1), nearness, w).transpose()
     }
@@ -208,18 +285,15 @@ impl Camera {
     /// The ray through pixel position `p` (continuous, `y` down): origin and unit direction.
     pub fn ray(&self, p: DVec2) -> (DVec3, DVec3) {
         let (right, up, forward) = self.axes();
-        let (w, h) = (f64::from(self.size.0), f64::from(self.size.1));
-        let (x, y) = (p.x - w * 0.5, h * 0.5 - p.y);
-        match self.projection {
-            Projection::Perspective { fov_y } => {
-                let focal = h * 0.5 / (fov_y * 0.5).tan();
-                (self.eye, (forward + (right * x + up * y) / focal).normalize())
-            }
-            Projection::Orthographic { height } => {
-                let unit = height / h;
-                (self.eye + right * (x * unit) + up * (y * unit), forward)
-            }
+        let principal = self.principal_px();
+        let (x, y) = (p.x - principal.x, principal.y - p.y);
+        if let Projection::Orthographic { height } = self.projection {
+            let unit = height / f64::from(self.size.1);
+            return (self.eye + right * (x * unit) + up * (y * unit), forward);
         }
+        let focal = self.focal_px();
+        let across = right * x + up * (y * (focal.x / focal.y));
+        (self.eye, (forward + across / focal.x).normalize())
     }
 
     /// Pixel position and depth of a model point; `None` behind the eye of a perspective view.
@@ -236,7 +310,8 @@ mod tests {
     /// Pixels and clip space say the same, in both projections; right, down and near have the signs that Vulkan has.
     #[test]
     fn clip_space_is_that_of_pixels() {
-        let lens = [Projection::Perspective { fov_y: 0.7 }, Projection::Orthographic { height: 3.0 }];
+        let off = Projection::Pinhole { focal: DVec2::new(250.0, 240.0), principal: DVec2::new(160.0, 90.0) };
+        let lens = [Projection::Perspective { fov_y: 0.7 }, Projection::Orthographic { height: 3.0 }, off];
         for projection in lens {
             let camera = Camera {
                 eye: DVec3::new(4.0, -3.0, 2.0),
@@ -252,13 +327,55 @@ mod tests {
                 let clip = camera.clip_matrix().project_point3(p);
                 let (pixel, depth) = camera.project(p).unwrap();
                 let expected = (pixel / DVec2::new(160.0, 90.0) - 1.0).extend(match projection {
-                    Projection::Perspective { .. } => (20.0 - depth) / 19.5 * 0.5 / depth,
                     Projection::Orthographic { .. } => (20.0 - depth) / 19.5,
+                    _ => (20.0 - depth) / 19.5 * 0.5 / depth,
                 });
                 assert!((clip - expected).abs().max_element() < 1e-12, "{clip} for {expected}");
                 let signs = (clip.x * a >= -1e-12, clip.y * b <= 1e-12); // the axis may be off by roundings
                 assert_eq!(signs, (true, true));
             }
         }
+    }
+
+    fn off_centre() -> Camera {
+        let rotation = DMat3::from_euler(glam::EulerRot::XYZ, 0.3, -0.5, 0.2);
+        let mut camera = Camera::from_intrinsics(812.5, 790.25, 170.75, 301.5, (640, 480));
+        camera.depth_range = (0.1, 100.0);
+        camera.posed(rotation, DVec3::new(0.2, -0.1, 9.0))
+    }
+
+    /// By OpenCV's formula, written out; and the ray of a pixel runs through what is seen there.
+    #[test]
+    fn calibrated_cameras_see_points_where_the_formula_says() {
+        let camera = off_centre();
+        assert_eq!(camera.check(), Ok(()));
+        let rotation = DMat3::from_euler(glam::EulerRot::XYZ, 0.3, -0.5, 0.2);
+        for point in [DVec3::ZERO, DVec3::new(1.0, -0.5, 0.7), DVec3::new(-3.1, 2.9, -4.3)] {
+            let seen = rotation * point + DVec3::new(0.2, -0.1, 9.0);
+            let expected =
+                DVec2::new(812.5 * seen.x / seen.z + 170.75, 790.25 * seen.y / seen.z + 301.5) + DVec2::splat(0.5);
+            let (pixel, depth) = camera.project(point).expect("in front");
+            assert!((pixel - expected).length() < 1e-9 && (depth - seen.z).abs() < 1e-12, "{pixel} for {expected}");
+            let (origin, direction) = camera.ray(pixel);
+            let beside = (point - origin).cross(direction).length();
+            assert!(beside < 1e-12 * point.distance(origin), "{beside}");
+        }
+    }
+
+    #[test]
+    fn calibrations_of_no_picture_are_refused() {
+        let with = |fx, fy, cx, cy| {
+            let camera = Camera::from_intrinsics(fx, fy, cx, cy, (640, 480));
+            camera.check().expect_err("refused")
+        };
+        for (fx, fy) in [(0.0, 500.0), (500.0, -1.0), (500.0, 1001.0), (f64::NAN, 500.0), (f64::INFINITY, 1.0)] {
+            assert_eq!(with(fx, fy, 320.0, 240.0), CameraError::Focal, "{fx} {fy}");
+        }
+        for (cx, cy) in [(f64::NAN, 240.0), (320.0, f64::INFINITY), (17100.0, 240.0), (320.0, -16500.0)] {
+            assert_eq!(with(500.0, 500.0, cx, cy), CameraError::Principal, "{cx} {cy}");
+        }
+        assert_eq!(with(1e15, 1e15, 320.0, 240.0), CameraError::Narrow);
+        assert_eq!(with(1e-16, 1e-16, 320.0, 240.0), CameraError::Scale);
+        assert_eq!(Camera::from_intrinsics(500.0, 1000.0, 17000.0, -16000.0, (640, 480)).check(), Ok(()));
     }
 }

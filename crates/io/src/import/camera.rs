@@ -110,7 +110,7 @@ fn fit(camera: &mut Camera, from: DVec3, bounds: Bounds, margin: f64, lens: Lens
             let reach = |p: &DVec3| spread(*p) / slope - p.dot(forward);
             corners.iter().map(reach).fold(1e-3 * radius, f64::max)
         }
-        Projection::Orthographic { .. } => {
+        _ => {
             if let Lens::Parallel { height: None } = lens {
                 let height = corners.iter().map(|p| 2.0 * spread(*p)).fold(1e-6 * radius, f64::max);
                 camera.projection = Projection::Orthographic { height };

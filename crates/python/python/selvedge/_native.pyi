@@ -32,6 +32,16 @@ class Model:
     def edges(self) -> tuple[Edge, ...]: ...
     @property
     def warnings(self) -> list[Warning]: ...
+    def snap(
+        self,
+        at: tuple[float, float],
+        radius: float = 8.0,
+        view: str | None = None,
+        size: tuple[int, int] = (1920, 1080),
+        *,
+        camera: Camera | None = None,
+        kinds: Sequence[str] | None = None,
+    ) -> dict[str, Any] | None: ...
 
 class Part:
     """A distinct body."""

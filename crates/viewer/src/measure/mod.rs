@@ -10,7 +10,6 @@
 //!
 //! Values carry an estimate of their own error; what limits them is what the file states.
 
-pub mod curve;
 pub mod distance;
 pub mod mass;
 pub mod surface;
@@ -18,9 +17,9 @@ pub mod surface;
 use crate::describe;
 use crate::session::Picked;
 use crate::session::World;
-use curve::{Circle, CurveShape};
 use distance::{Distance, Sampled};
 use glam::{DAffine3, DVec3};
+use selvedge_geometry::edges::curve::{self, Circle, CurveShape};
 use surface::SurfaceShape;
 
 /// One measured number.

@@ -9,9 +9,9 @@
 //! A shape counts when every point looked at is on it within [`SAME`] of its size, so a B-spline that is a cylinder is
 //! called one. Radii are as exact as the surface's control points.
 
-use super::curve::{SAME, circle_through};
 use glam::{DAffine3, DMat3, DVec3};
 use selvedge::model::Face;
+use selvedge_geometry::edges::curve::{SAME, circle_through};
 
 /// Points along each side of the face's part of the domain.
 const LOOKS: usize = 5;

@@ -74,7 +74,7 @@ pub fn zoom(camera: &Camera, anchor: DVec3, factor: f64) -> Camera {
     let to = |p: DVec3| anchor + (p - anchor) * factor;
     let projection = match camera.projection {
         Projection::Orthographic { height } => Projection::Orthographic { height: height * factor },
-        perspective => perspective,
+        other => other,
     };
     kept(camera, Camera { eye: to(camera.eye), target: to(camera.target), projection, ..*camera })
 }
@@ -128,7 +128,7 @@ pub fn settle(camera: &Camera, bounds: Bounds) -> Camera {
         }
     }
     settled.fit_depth(bounds);
-    if let Projection::Perspective { .. } = camera.projection {
+    if camera.is_perspective() {
         let held = camera.eye.distance(camera.target) * NEAR;
         let (near, far) = settled.depth_range;
         settled.depth_range = (near.min(held).max(LEAST_DEPTH), far);
@@ -150,13 +150,14 @@ pub fn fit(camera: &Camera, points: &[DVec3]) -> Camera {
         let from = *p - centre;
         (from.dot(right).abs(), from.dot(up).abs(), from.dot(forward))
     };
-    let (distance, projection) = match camera.projection {
+    let centred = Camera { projection: in_the_middle(camera), ..*camera };
+    let (distance, projection) = match centred.projection {
         Projection::Perspective { fov_y } => {
             let tan = (0.5 * fov_y).tan();
             let needed = points.iter().map(across).map(|(x, y, z)| (x / aspect).max(y) / tan * MARGIN - z);
-            (needed.fold(least, f64::max), camera.projection)
+            (needed.fold(least, f64::max), centred.projection)
         }
-        Projection::Orthographic { .. } => {
+        _ => {
             let half = points.iter().map(across).map(|(x, y, _)| (x / aspect).max(y)).fold(least, f64::max);
             (bounds.diagonal().max(least), Projection::Orthographic { height: 2.0 * half * MARGIN })
         }
@@ -173,7 +174,7 @@ pub fn looking(camera: &Camera, from: DVec3, up: DVec3) -> Camera {
 /// Parallel instead of perspective or the other way round; what lies at the target keeps its size.
 pub fn other_projection(camera: &Camera) -> Camera {
     let distance = camera.eye.distance(camera.target);
-    match camera.projection {
+    match in_the_middle(camera) {
         Projection::Perspective { fov_y } => {
             let height = 2.0 * distance * (0.5 * fov_y).tan();
             kept(camera, Camera { projection: Projection::Orthographic { height }, ..*camera })
@@ -183,6 +184,17 @@ pub fn other_projection(camera: &Camera) -> Camera {
             let eye = camera.target - forward * (0.5 * height / (0.5 * FOV).tan());
             kept(camera, Camera { eye, projection: Projection::Perspective { fov_y: FOV }, ..*camera })
         }
+        Projection::Pinhole { .. } => *camera,
+    }
+}
+
+/// The projection with its axis in the middle of the picture, as high as it is seen.
+fn in_the_middle(camera: &Camera) -> Projection {
+    match camera.projection {
+        Projection::Pinhole { focal, .. } => {
+            Projection::Perspective { fov_y: 2.0 * (0.5 * f64::from(camera.size.1) / focal.y).atan() }
+        }
+        other => other,
     }
 }
 

@@ -103,7 +103,7 @@ impl Targets {
         let [colour, rest @ ..] = &self.borrowed;
         let [depth, face, uv, normal, edge, part, instance] = rest.each_ref().map(Some);
         let aovs = Aovs { depth, face, uv, normal, edge, part, instance };
-        EngineTargets { colour, depth: None, aovs, thickness: None }
+        EngineTargets { aovs, ..EngineTargets::new(colour) }
     }
 
     /// The engine may draw: what they held goes.

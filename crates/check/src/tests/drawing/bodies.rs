@@ -20,10 +20,8 @@ pub fn cube_edges(camera: &Camera) -> [Vec<[DVec2; 2]>; 2] {
             for (end, x) in ends.iter_mut().zip([-0.5, 0.5]) {
                 (end[axis], end[(axis + 1) % 3], end[(axis + 2) % 3]) = (x, s, t);
             }
-            let to_eye = match camera.projection {
-                Projection::Orthographic { .. } => camera.eye,
-                Projection::Perspective { .. } => camera.eye - (ends[0] + ends[1]) * 0.5,
-            };
+            let middle = if camera.is_perspective() { (ends[0] + ends[1]) * 0.5 } else { DVec3::ZERO };
+            let to_eye = camera.eye - middle;
             let faces = [(axis + 1) % 3, (axis + 2) % 3].map(|k| ends[0][k] * to_eye[k] > 0.0);
             out[usize::from(!(faces[0] || faces[1]))].push(ends.map(|p| pixel(camera, p)));
         }
@@ -33,7 +31,10 @@ pub fn cube_edges(camera: &Camera) -> [Vec<[DVec2; 2]>; 2] {
 
 #[test]
 fn a_cube_has_nine_visible_edges_and_three_hidden_ones() {
-    for camera in [parallel(ISO, 2.0), perspective(ISO), perspective(DVec3::new(1.0, -3.0, 0.9))] {
+    let view = perspective(ISO);
+    let lens = Projection::Pinhole { focal: DVec2::new(900.0, 700.0), principal: DVec2::new(300.0, 350.0) };
+    let off_centre = Camera { projection: lens, ..view };
+    for camera in [parallel(ISO, 2.0), view, perspective(DVec3::new(1.0, -3.0, 0.9)), off_centre] {
         let [visible, hidden] = cube_edges(&camera);
         assert_eq!((visible.len(), hidden.len()), (9, 3));
         let drawing = drawn(&cube(), &camera);
@@ -94,10 +95,8 @@ fn a_ball_has_one_closed_silhouette() {
             assert!(outline.len() == 1 && outline[0].closed, "{eye}: {} strokes", outline.len());
             assert_eq!(drawing.lines.iter().filter(|l| l.kind != LineKind::Silhouette).count(), 0);
             // pixels to model units at the ball, which is as near as the eye's distance less its radius
-            let unit = match camera.projection {
-                Projection::Orthographic { height } => height / 600.0,
-                Projection::Perspective { fov_y } => 2.0 * (0.5 * fov_y).tan() * camera.eye.length() / 600.0,
-            };
+            let away = if camera.is_perspective() { camera.eye.length() } else { 1.0 };
+            let unit = away / camera.focal_px().y;
             let mut around = 0.0;
             let all = points(&outline[0].curves);
             for pair in all.windows(2) {

@@ -1,9 +1,9 @@
 //! Length of an edge, and the line or circle that it is.
 
+use crate::math::gauss::integrate;
+use crate::model::Edge;
+use crate::spline::{Bezier, Span};
 use glam::{DAffine3, DVec3, DVec4};
-use selvedge::model::Edge;
-use selvedge::spline::Bezier;
-use selvedge_geometry::math::gauss::integrate;
 
 /// Points of a curve are on a line or circle within this share of its size: roundings of what a file states in 12 digits.
 pub const SAME: f64 = 1e-9;
@@ -52,7 +52,7 @@ pub fn length(edge: &Edge, transform: DAffine3) -> (f64, f64) {
 
 /// The line or circle that a placed edge is.
 pub fn shape(edge: &Edge, transform: DAffine3) -> CurveShape {
-    let looks = |span: &selvedge::spline::Span<Bezier<DVec4>>| {
+    let looks = |span: &Span<Bezier<DVec4>>| {
         (0..=LOOKS).map(|i| transform.transform_point3(jet(&span.piece, i as f64 / LOOKS as f64).0)).collect::<Vec<_>>()
     };
     let points: Vec<DVec3> = edge.curve.iter().flat_map(looks).collect();

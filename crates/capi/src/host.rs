@@ -1,0 +1,490 @@
+//! A renderer on the host's own Vulkan device: it records into the host's command buffers, and never submits.
+//!
+//! ```text
+//!   host's instance, device ──selvedge_host_new──▶ SelvedgeHost ◀──selvedge_host_upload── SelvedgeModel
+//!       each frame, per slot:  selvedge_host_record(command buffer, view, targets) ─▶ the host submits, waits its fence
+//!                              selvedge_host_report(slot) ─▶ complete?
+//! ```
+
+use crate::border::{Failure, SelvedgeStatus, Sized, argument, border, free, given, handle, place, taken};
+use crate::model::SelvedgeModel;
+use crate::renderer::{NO_VIEW, SelvedgeView};
+use glam::{DAffine3, DVec3};
+use selvedge::ash::vk::Handle;
+use selvedge::ash::{self, vk};
+use selvedge::gpu::{HostDevice, Image, Requirements};
+use selvedge::gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
+use selvedge::model::Model;
+use selvedge::picture::Outputs;
+use selvedge::renderer::{Aovs, FrameInput, Renderer, TargetFormats, Targets};
+use std::ffi::{c_char, c_void};
+use std::sync::{Arc, Mutex, PoisonError};
+
+/// vkGetInstanceProcAddr.
+pub type SelvedgeGetInstanceProcAddr =
+    Option<unsafe extern "C" fn(instance: *mut c_void, name: *const c_char) -> Option<unsafe extern "C" fn()>>;
+
+/// A Vulkan device of the host's. All of it outlives the SelvedgeHost.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct SelvedgeVulkan {
+    /// sizeof(SelvedgeVulkan)
+    pub struct_size: usize,
+    /// vkGetInstanceProcAddr of the loader.
+    pub get_instance_proc_addr: SelvedgeGetInstanceProcAddr,
+    /// VkInstance, made for Vulkan 1.3.
+    pub instance: *mut c_void,
+    /// VkPhysicalDevice for which selvedge_vulkan_missing says that nothing is.
+    pub physical_device: *mut c_void,
+    /// VkDevice with what selvedge_vulkan_features adds, and the extension VK_KHR_push_descriptor.
+    pub device: *mut c_void,
+    /// Family of the command buffers that are recorded into: graphics and compute.
+    pub queue_family: u32,
+    /// Frames in flight; 0: 2.
+    pub slots: u32,
+    /// VkFormat of the colour target.
+    pub colour_format: u32,
+    /// VkFormat of a depth target of the host's, reversed: 1 near, 0 far. 0: there is none.
+    pub depth_format: u32,
+    /// Images beside the colour: SELVEDGE_DEPTH | SELVEDGE_NORMAL and so on, but for SELVEDGE_THICKNESS.
+    pub outputs: u32,
+}
+
+/// An image of the host's; 0 where there is none.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct SelvedgeTarget {
+    /// VkImage with one level and one layer.
+    pub image: u64,
+    /// VkImageView of all of it.
+    pub view: u64,
+}
+
+/// The host's images of one frame, all of one size. Colour images are in layout COLOR_ATTACHMENT_OPTIMAL before and after, the
+/// depth target in DEPTH_STENCIL_ATTACHMENT_OPTIMAL. What the host did before is ordered before reads and writes of these
+/// attachments, what it does next after them.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct SelvedgeTargets {
+    /// sizeof(SelvedgeTargets)
+    pub struct_size: usize,
+    /// Of the images, pixels; 0: those of the view. Larger ones get the picture in a rectangle, and need the usage
+    /// TRANSFER_DST, and TRANSFER_SRC where the view has no background.
+    pub width: u32,
+    /// See width.
+    pub height: u32,
+    /// Column of the images at which the picture's upper left pixel goes.
+    pub x: u32,
+    /// Row of it.
+    pub y: u32,
+    /// Of the format that the host gave.
+    pub colour: SelvedgeTarget,
+    /// Of the depth format that the host gave.
+    pub depth_buffer: SelvedgeTarget,
+    /// R32_SFLOAT: distance along the view axis, infinite for background.
+    pub depth: SelvedgeTarget,
+    /// R32_UINT.
+    pub face: SelvedgeTarget,
+    /// R32G32_SFLOAT.
+    pub uv: SelvedgeTarget,
+    /// R32G32B32A32_SFLOAT.
+    pub normal: SelvedgeTarget,
+    /// R32_UINT.
+    pub edge: SelvedgeTarget,
+    /// R32_UINT.
+    pub part: SelvedgeTarget,
+    /// R32_UINT.
+    pub instance: SelvedgeTarget,
+}
+
+/// What a finished frame reports.
+#[repr(C)]
+#[derive(Clone, Copy)]
+pub struct SelvedgeReport {
+    /// sizeof(SelvedgeReport)
+    pub struct_size: usize,
+    /// 1: a frame was recorded into the slot.
+    pub recorded: u32,
+    /// 1: it is whole. 0: a list was too short; the next frame recorded into the slot has the room.
+    pub complete: u32,
+    /// Places where the frame could not keep the promise of accuracy.
+    pub clamps: u64,
+}
+
+/// A renderer on the host's device. One thread uses it at a time.
+pub struct SelvedgeHost {
+    // dropped in this order: the allocator last, for the renderer frees its memory
+    renderer: Mutex<Renderer>,
+    model: Mutex<Option<Arc<Model>>>,
+    formats: TargetFormats,
+    slots: usize,
+    _allocator: Arc<Mutex<Allocator>>,
+}
+
+const NO_VULKAN: SelvedgeVulkan = SelvedgeVulkan {
+    struct_size: 0,
+    get_instance_proc_addr: None,
+    instance: std::ptr::null_mut(),
+    physical_device: std::ptr::null_mut(),
+    device: std::ptr::null_mut(),
+    queue_family: 0,
+    slots: 0,
+    colour_format: 0,
+    depth_format: 0,
+    outputs: 0,
+};
+
+const NO_TARGET: SelvedgeTarget = SelvedgeTarget { image: 0, view: 0 };
+
+const NO_TARGETS: SelvedgeTargets = SelvedgeTargets {
+    struct_size: 0,
+    width: 0,
+    height: 0,
+    x: 0,
+    y: 0,
+    colour: NO_TARGET,
+    depth_buffer: NO_TARGET,
+    depth: NO_TARGET,
+    face: NO_TARGET,
+    uv: NO_TARGET,
+    normal: NO_TARGET,
+    edge: NO_TARGET,
+    part: NO_TARGET,
+    instance: NO_TARGET,
+};
+
+// SAFETY: each begins with its size and consists of numbers and pointers; of the function pointer null is `None`
+unsafe impl Sized for SelvedgeVulkan {}
+// SAFETY: as above
+unsafe impl Sized for SelvedgeTargets {}
+// SAFETY: as above
+unsafe impl Sized for SelvedgeReport {}
+
+fn render(error: impl std::fmt::Display) -> Failure {
+    Failure(SelvedgeStatus::Render, error.to_string())
+}
+
+impl SelvedgeVulkan {
+    /// The instance's functions.
+    ///
+    /// # Safety
+    /// The function is the loader's, and the instance is alive.
+    unsafe fn instance(&self) -> Result<ash::Instance, Failure> {
+        let function = self.get_instance_proc_addr.ok_or_else(|| argument("get_instance_proc_addr is null"))?;
+        if self.instance.is_null() || self.physical_device.is_null() {
+            return Err(argument("the instance or the physical device is a null handle"));
+        }
+        // SAFETY: a dispatchable handle is a pointer; both functions take it and a text, and return a function
+        let get_instance_proc_addr =
+            unsafe { std::mem::transmute::<*const c_void, vk::PFN_vkGetInstanceProcAddr>(function as *const c_void) };
+        let entry = ash::StaticFn { get_instance_proc_addr };
+        // SAFETY: as the caller promises
+        Ok(unsafe { ash::Instance::load(&entry, vk::Instance::from_raw(self.instance as u64)) })
+    }
+
+    fn physical(&self) -> vk::PhysicalDevice {
+        vk::PhysicalDevice::from_raw(self.physical_device as u64)
+    }
+}
+
+/// What the physical device lacks: SELVEDGE_STATUS_DEVICE, and selvedge_last_error lists it. Of `vulkan` the function, the
+/// instance and the physical device are read.
+///
+/// # Safety
+/// The handles are alive.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn selvedge_vulkan_missing(vulkan: *const SelvedgeVulkan) -> SelvedgeStatus {
+    border(|| {
+        // SAFETY: as the caller promises
+        let missing = unsafe {
+            let vulkan = taken(vulkan, NO_VULKAN)?;
+            Requirements::missing(&vulkan.instance()?, vulkan.physical())
+        };
+        if missing.is_empty() {
+            return Ok(());
+        }
+        Err(Failure(SelvedgeStatus::Device, format!("the device lacks {}", missing.join(", "))))
+    })
+}
+
+/// Sets the features that the device must have, and leaves the others: VkPhysicalDeviceFeatures,
+/// VkPhysicalDeviceVulkan12Features and VkPhysicalDeviceVulkan13Features, whose sType and pNext the host sets.
+///
+/// # Safety
+/// Pointers to these structs, or null.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn selvedge_vulkan_features(
+    core: *mut c_void,
+    vulkan12: *mut c_void,
+    vulkan13: *mut c_void,
+) -> SelvedgeStatus {
+    border(|| {
+        // SAFETY: as the caller promises; the structs are those of Vulkan's header
+        let all = unsafe {
+            (
+                core.cast::<vk::PhysicalDeviceFeatures>().as_mut(),
+                vulkan12.cast::<vk::PhysicalDeviceVulkan12Features<'_>>().as_mut(),
+                vulkan13.cast::<vk::PhysicalDeviceVulkan13Features<'_>>().as_mut(),
+            )
+        };
+        let (Some(core), Some(vulkan12), Some(vulkan13)) = all else {
+            return Err(argument("a struct of features is a null pointer"));
+        };
+        Requirements::add_to(core, vulkan12, vulkan13);
+        Ok(())
+    })
+}
+
+/// Takes the host's device on loan.
+///
+/// # Safety
+/// Pointers are null or point to what they say; the handles are alive until the SelvedgeHost is freed.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn selvedge_host_new(
+    vulkan: *const SelvedgeVulkan,
+    host: *mut *mut SelvedgeHost,
+) -> SelvedgeStatus {
+    border(|| {
+        // SAFETY: as the caller promises
+        let (place, vulkan) = unsafe { (place(host)?, taken(vulkan, NO_VULKAN)?) };
+        // SAFETY: as the caller promises
+        let instance = unsafe { vulkan.instance() }?;
+        if vulkan.device.is_null() {
+            return Err(argument("the device is a null handle"));
+        }
+        let physical = vulkan.physical();
+        // SAFETY: as the caller promises
+        let device = unsafe { ash::Device::load(instance.fp_v1_0(), vk::Device::from_raw(vulkan.device as u64)) };
+        // SAFETY: as the caller promises
+        let families = unsafe { instance.get_physical_device_queue_family_properties(physical) };
+        let family = families.get(vulkan.queue_family as usize);
+        if !family.is_some_and(|f| f.queue_flags.contains(Requirements::QUEUE_FLAGS)) {
+            return Err(argument(format!("queue family {} is not one for graphics and compute", vulkan.queue_family)));
+        }
+        let outputs = outputs(vulkan.outputs)?;
+        let format = |number: u32| vk::Format::from_raw(number as i32);
+        let depth = (vulkan.depth_format != 0).then(|| format(vulkan.depth_format));
+        if vulkan.colour_format == 0 {
+            return Err(argument("colour_format is VK_FORMAT_UNDEFINED"));
+        }
+        let formats = TargetFormats { colour: format(vulkan.colour_format), depth, outputs };
+        let allocator = Allocator::new(&AllocatorCreateDesc {
+            instance: instance.clone(),
+            device: device.clone(),
+            physical_device: physical,
+            debug_settings: Default::default(),
+            buffer_device_address: false,
+            allocation_sizes: Default::default(),
+        });
+        let allocator = Arc::new(Mutex::new(allocator.map_err(render)?));
+        let lent = HostDevice {
+            instance: &instance,
+            physical,
+            device,
+            queue_family: vulkan.queue_family,
+            allocator: Arc::clone(&allocator),
+            debug_names: false,
+            pipeline_statistics: false,
+        };
+        let slots = if vulkan.slots == 0 { 2 } else { vulkan.slots as usize };
+        // SAFETY: as the caller promises
+        let renderer = unsafe { Renderer::new(lent, formats, slots) }.map_err(render)?;
+        let (renderer, model) = (Mutex::new(renderer), Mutex::default());
+        *place = Box::into_raw(Box::new(SelvedgeHost { renderer, model, formats, slots, _allocator: allocator }));
+        Ok(())
+    })
+}
+
+/// The images that a host can give.
+fn outputs(bits: u32) -> Result<Outputs, Failure> {
+    let outputs = selvedge_session::Image::outputs(crate::picture::images(bits)?);
+    if outputs.thickness {
+        return Err(argument("a host's frame has no image of thickness"));
+    }
+    Ok(outputs)
+}
+
+impl SelvedgeHost {
+    fn renderer(&self) -> std::sync::MutexGuard<'_, Renderer> {
+        self.renderer.lock().unwrap_or_else(PoisonError::into_inner)
+    }
+
+    fn slot(&self, slot: u32) -> Result<usize, Failure> {
+        let all = self.slots;
+        usize::try_from(slot).ok().filter(|slot| *slot < all).ok_or_else(|| argument(format!("slot {slot} of {all}")))
+    }
+
+    fn model(&self) -> Result<Arc<Model>, Failure> {
+        let model = self.model.lock().unwrap_or_else(PoisonError::into_inner);
+        model.clone().ok_or_else(|| argument("no model was uploaded"))
+    }
+}
+
+/// Makes a model what the frames show. Of `view` samples, edges, line_width, ambient and sun count. Nothing waits: what frames in flight
+/// use is freed with their slots.
+///
+/// # Safety
+/// Pointers are null or point to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn selvedge_host_upload(
+    host: *const SelvedgeHost,
+    model: *const SelvedgeModel,
+    view: *const SelvedgeView,
+) -> SelvedgeStatus {
+    border(|| {
+        // SAFETY: as the caller promises
+        let (host, model, view) = unsafe { (handle("host", host)?, handle("model", model)?, taken(view, NO_VIEW)?) };
+        // SAFETY: as the caller promises
+        let scene = unsafe { view.scene(host.formats.outputs.edge, &model.loaded.model) }?;
+        let shared = Arc::clone(&model.loaded.model);
+        host.renderer().upload_shared(Arc::clone(&shared), scene, &|_| ()).map_err(render)?;
+        *host.model.lock().unwrap_or_else(PoisonError::into_inner) = Some(shared);
+        Ok(())
+    })
+}
+
+/// Records a frame into a VkCommandBuffer of the host's. Of `view` size, camera, style, background and tolerance count; with a
+/// null background the host's picture stays where the model is not. The frame recorded before into the slot has finished.
+///
+/// # Safety
+/// Pointers are null or point to what they say. `commands` is recording outside rendering, on the host's queue family, and is
+/// submitted once; frames are submitted in the order in which they are recorded. After SELVEDGE_STATUS_RENDER it is reset.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn selvedge_host_record(
+    host: *const SelvedgeHost,
+    commands: *mut c_void,
+    slot: u32,
+    view: *const SelvedgeView,
+    targets: *const SelvedgeTargets,
+) -> SelvedgeStatus {
+    border(|| {
+        // SAFETY: as the caller promises
+        let (host, view, targets) =
+            unsafe { (handle("host", host)?, taken(view, NO_VIEW)?, taken(targets, NO_TARGETS)?) };
+        if commands.is_null() {
+            return Err(argument("the command buffer is a null handle"));
+        }
+        let (slot, model) = (host.slot(slot)?, host.model()?);
+        // SAFETY: as the caller promises
+        let (camera, settings) = unsafe { (view.camera_of(&model)?, view.host_frame()?) };
+        let whole = camera.size;
+        let size = if (targets.width, targets.height) == (0, 0) { whole } else { (targets.width, targets.height) };
+        let corner = (size != whole || (targets.x, targets.y) != (0, 0)).then_some((targets.x, targets.y));
+        let formats = host.formats;
+        let outputs = formats.outputs;
+        let [of_depth, of_face, of_uv, of_normal] = Renderer::AOV_FORMATS;
+        let number = Renderer::NUMBER_FORMAT;
+        let image = |name: &str, target: SelvedgeTarget, format: Option<vk::Format>| match (target.image, format) {
+            (0, None) => Ok(None),
+            (0, Some(_)) => Err(argument(format!("the frame lacks its image of {name}"))),
+            (_, None) => Err(argument(format!("the host was made without an image of {name}"))),
+            (_, Some(_)) if target.view == 0 => Err(argument(format!("the image of {name} has no view"))),
+            (image, Some(format)) => {
+                let (image, view) = (vk::Image::from_raw(image), vk::ImageView::from_raw(target.view));
+                // SAFETY: as the caller promises
+                Ok(Some(unsafe { Image::borrowed(name, image, view, size, format) }))
+            }
+        };
+        let colour = image("colour", targets.colour, Some(formats.colour))?;
+        let buffer = image("the depth buffer", targets.depth_buffer, formats.depth)?;
+        let depth = image("depth", targets.depth, outputs.depth.then_some(of_depth))?;
+        let face = image("face", targets.face, outputs.face.then_some(of_face))?;
+        let uv = image("uv", targets.uv, outputs.uv.then_some(of_uv))?;
+        let normal = image("normal", targets.normal, outputs.normal.then_some(of_normal))?;
+        let edge = image("edge", targets.edge, outputs.edge.then_some(number))?;
+        let part = image("part", targets.part, outputs.part.then_some(number))?;
+        let instance = image("instance", targets.instance, outputs.instance.then_some(number))?;
+        let Some(colour) = &colour else { return Err(argument("the frame lacks its image of colour")) };
+        let aovs = Aovs {
+            depth: depth.as_ref(),
+            face: face.as_ref(),
+            uv: uv.as_ref(),
+            normal: normal.as_ref(),
+            edge: edge.as_ref(),
+            part: part.as_ref(),
+            instance: instance.as_ref(),
+        };
+        let targets = Targets { depth: buffer.as_ref(), aovs, corner, ..Targets::new(colour) };
+        let input = FrameInput { camera: &camera, settings, slot, targets };
+        let commands = vk::CommandBuffer::from_raw(commands as u64);
+        // SAFETY: as the caller promises
+        unsafe { host.renderer().record(commands, &input) }.map_err(render)
+    })
+}
+
+/// Fills `report`, whose struct_size is set, with what the frame recorded last into the slot counted; it has finished.
+///
+/// # Safety
+/// Pointers are null or point to what they say.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn selvedge_host_report(
+    host: *const SelvedgeHost,
+    slot: u32,
+    report: *mut SelvedgeReport,
+) -> SelvedgeStatus {
+    border(|| {
+        // SAFETY: as the caller promises
+        let host = unsafe { handle("host", host) }?;
+        let found = host.renderer().report(host.slot(slot)?).map_err(render)?;
+        let value = SelvedgeReport {
+            struct_size: 0,
+            recorded: found.is_some().into(),
+            complete: found.as_ref().is_some_and(|found| found.complete).into(),
+            clamps: found.map_or(0, |found| found.stats.clamps),
+        };
+        // SAFETY: as the caller promises
+        unsafe { given(report, value) }
+    })
+}
+
+/// Places an instance anew, counted from 0: part to model coordinates, the columns x, y, z and the translation, millimetres.
+/// The next frame shows it; nothing is uploaded again.
+///
+/// # Safety
+/// Pointers are null or point to what they say; `columns` to 12 numbers.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn selvedge_host_set_transform(
+    host: *const SelvedgeHost,
+    instance: u64,
+    columns: *const f64,
+) -> SelvedgeStatus {
+    border(|| {
+        // SAFETY: as the caller promises
+        let (host, columns) = unsafe { (handle("host", host)?, columns.cast::<[f64; 12]>().as_ref()) };
+        let columns = columns.ok_or_else(|| argument("the transform is a null pointer"))?;
+        host.model()?;
+        let [x, y, z, t] = [0, 3, 6, 9].map(|k| DVec3::from_slice(&columns[k..k + 3]));
+        let instance = usize::try_from(instance).unwrap_or(usize::MAX);
+        let changed = host.renderer().set_transform(instance, DAffine3::from_cols(x, y, z, t));
+        changed.map_err(|error| argument(error.to_string()))
+    })
+}
+
+/// Shows (not 0) or hides an instance, counted from 0.
+///
+/// # Safety
+/// The pointer is null or points to what it says.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn selvedge_host_set_visible(
+    host: *const SelvedgeHost,
+    instance: u64,
+    visible: u32,
+) -> SelvedgeStatus {
+    border(|| {
+        // SAFETY: as the caller promises
+        let host = unsafe { handle("host", host) }?;
+        host.model()?;
+        let instance = usize::try_from(instance).unwrap_or(usize::MAX);
+        host.renderer().set_visible(instance, visible != 0).map_err(|error| argument(error.to_string()))
+    })
+}
+
+/// Gives the device back; null is allowed. The GPU has finished all frames.
+///
+/// # Safety
+/// What was made here and is used by no other call at the same time.
+#[unsafe(no_mangle)]
+pub unsafe extern "C" fn selvedge_host_free(host: *mut SelvedgeHost) {
+    // SAFETY: as the caller promises
+    unsafe { free(host) }
+}

@@ -1,0 +1,150 @@
+//! Points of a model to snap to: what lies near a pixel, and is seen.
+//!
+//! ```text
+//!    vertex   an edge's end             ●──────     nearer in the picture than the radius; not behind a face
+//!    centre   of a round edge       ( · )           of an edge of which something is seen
+//!    edge     its point nearest to the pixel  ──•──
+//! ```
+//!
+//! Vertices go before centres, and both before edges; within a kind the nearest one is taken that exact rays see. Edges of
+//! meshes have no points. Accuracy: that of the edges, [`Edges::deviation`]; of the rays, that of [`EdgeTracer`]. Cost: the boxes
+//! of all edges, and a ray for each candidate that is hidden.
+
+use super::{EdgeTracer, Probe, Visibility};
+use crate::model::{Camera, Edge, Edges};
+use glam::{DAffine3, DMat4, DVec2, DVec3};
+use selvedge_geometry::edges::curve::{CurveShape, shape};
+use selvedge_geometry::edges::nearest::nearest;
+
+/// What may be snapped to, in the order in which they are preferred.
+#[derive(Clone, Copy, Debug, PartialEq, Eq, Hash, PartialOrd, Ord)]
+pub enum SnapKind {
+    /// Where an edge begins or ends.
+    Vertex,
+    /// The centre of an edge that is a circle or an arc of one.
+    Centre,
+    /// A point on an edge.
+    Edge,
+}
+
+/// A point near a pixel.
+#[derive(Clone, Copy, Debug, PartialEq)]
+#[non_exhaustive]
+pub struct Snap {
+    /// What it is.
+    pub kind: SnapKind,
+    /// Index into [`Model::instances`](crate::model::Model::instances).
+    pub instance: usize,
+    /// Index into [`Model::parts`](crate::model::Model::parts).
+    pub part: usize,
+    /// Index into [`Edges::edges`] of the part: the edge, or one that ends at the vertex.
+    pub edge: usize,
+    /// Index into [`Edges::vertices`] of the part, of a vertex.
+    pub vertex: Option<usize>,
+    /// The point, model coordinates.
+    pub point: DVec3,
+    /// Where it is in the picture.
+    pub pixel: DVec2,
+    /// From the pixel that was given, pixels.
+    pub distance_px: f64,
+    /// Distance from the eye along the view axis, model units.
+    pub depth: f64,
+}
+
+/// Points of a round edge of which one must be seen.
+const LOOKS: u32 = 16;
+
+impl EdgeTracer<'_> {
+    /// The point of these kinds nearest to `pixel` that the camera sees within `radius_px` of it. Positions in the picture have
+    /// the first pixel's centre at (0.5, 0.5). `None`: there is none, or the radius is no number above 0.
+    pub fn snap(&self, camera: &Camera, pixel: DVec2, radius_px: f64, kinds: &[SnapKind]) -> Option<Snap> {
+        if !(radius_px > 0.0 && radius_px.is_finite() && pixel.is_finite()) {
+            return None;
+        }
+        let (near, far) = camera.depth_range;
+        let size = DVec2::new(f64::from(camera.size.0), f64::from(camera.size.1));
+        let mut found = Vec::new();
+        for (instance, part) in self.placed() {
+            let (edges, transform) = (&self.parts()[part], self.transform(instance));
+            let to_pixels = camera.pixel_matrix() * DMat4::from(transform);
+            for (number, edge) in edges.edges.iter().enumerate() {
+                let of = |kind, vertex, point| Candidate { kind, instance, part, edge: number, vertex, point };
+                let candidates = candidates(edge, edges, transform, kinds, &of, || {
+                    let at = nearest(edge, to_pixels, pixel, radius_px)?;
+                    let piece = (at.parameter as usize).min(edge.curve.len() - 1);
+                    Some(transform.transform_point3(edge.curve[piece].piece.point(at.parameter - piece as f64)))
+                });
+                found.extend(candidates.into_iter().filter_map(|candidate| {
+                    let (at, depth) = camera.project(candidate.point)?;
+                    let distance_px = at.distance(pixel);
+                    let inside = at.cmpge(DVec2::ZERO).all() && at.cmple(size).all() && depth >= near && depth <= far;
+                    (inside && distance_px <= radius_px).then(|| candidate.at(at, depth, distance_px))
+                }));
+            }
+        }
+        found.sort_by(|a: &Snap, b| a.kind.cmp(&b.kind).then(a.distance_px.total_cmp(&b.distance_px)));
+        let mut probe = self.probe(camera);
+        found.into_iter().find(|snap| self.is_seen(snap, &mut probe))
+    }
+
+    fn is_seen(&self, snap: &Snap, probe: &mut Probe<'_>) -> bool {
+        let camera = *probe.camera();
+        let mut sees = |point: DVec3| {
+            let visibility = self.visibility(snap.instance, snap.edge, point, probe);
+            matches!(visibility, Visibility::Visible | Visibility::Unsure)
+        };
+        if snap.kind != SnapKind::Centre {
+            return sees(snap.point);
+        }
+        let (curve, transform) = (&self.parts()[snap.part].edges[snap.edge].curve, self.transform(snap.instance));
+        let points = (0..LOOKS).map(|look| {
+            let t = (f64::from(look) + 0.5) / f64::from(LOOKS) * curve.len() as f64;
+            let piece = (t as usize).min(curve.len() - 1);
+            transform.transform_point3(curve[piece].piece.point(t - piece as f64))
+        });
+        points.filter(|p| camera.project(*p).is_some_and(|(_, depth)| depth > 0.0)).any(sees)
+    }
+}
+
+/// A point that may be snapped to.
+struct Candidate {
+    kind: SnapKind,
+    instance: usize,
+    part: usize,
+    edge: usize,
+    vertex: Option<usize>,
+    point: DVec3,
+}
+
+impl Candidate {
+    fn at(self, pixel: DVec2, depth: f64, distance_px: f64) -> Snap {
+        let Self { kind, instance, part, edge, vertex, point } = self;
+        Snap { kind, instance, part, edge, vertex, point, pixel, distance_px, depth }
+    }
+}
+
+/// Those of one edge; `on_edge` finds the point that is nearest.
+fn candidates(
+    edge: &Edge,
+    edges: &Edges,
+    transform: DAffine3,
+    kinds: &[SnapKind],
+    of: &dyn Fn(SnapKind, Option<usize>, DVec3) -> Candidate,
+    on_edge: impl FnOnce() -> Option<DVec3>,
+) -> Vec<Candidate> {
+    let wanted = |kind| kinds.contains(&kind);
+    let mut all = Vec::new();
+    if wanted(SnapKind::Vertex) {
+        let placed = |v: usize| transform.transform_point3(edges.vertices[v]);
+        all.extend(edge.ends.iter().map(|v| of(SnapKind::Vertex, Some(*v), placed(*v))));
+    }
+    if wanted(SnapKind::Centre)
+        && let CurveShape::Circle(circle) = shape(edge, transform)
+    {
+        all.push(of(SnapKind::Centre, None, circle.centre));
+    }
+    if wanted(SnapKind::Edge) {
+        all.extend(on_edge().map(|point| of(SnapKind::Edge, None, point)));
+    }
+    all
+}
