@@ -26,7 +26,7 @@ const SPARE_PX: f64 = 1.0;
 /// Pixels that boxes reach farther: twice what that pass adds for the rounding of a vertex.
 const ROUNDING_PX: f64 = 0.03125;
 /// Of what single precision makes of a depth, relative to what is added up for it.
-const DEPTH_ROUNDING: f64 = 1e-5;
+const SINGLE_ROUNDING: f64 = 1e-5;
 
 /// The patches of a placed part.
 #[derive(Clone, Copy, Debug, Default)]
@@ -111,7 +111,7 @@ impl PlacedBox {
         let rows = (pixels * DMat4::from(placement)).transpose();
         let [x, y, depth, w] = [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis];
         let of_depth = self.range(depth);
-        let rounding = DEPTH_ROUNDING * of_depth.terms;
+        let rounding = SINGLE_ROUNDING * of_depth.terms;
         let (near, far) = camera.depth_range;
         let is_before = of_depth.middle + of_depth.reach < near - rounding;
         let is_behind = of_depth.middle - of_depth.reach > far + rounding;

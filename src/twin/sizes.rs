@@ -12,7 +12,7 @@ use crate::abi::{Counters, Frame, StripRows};
 pub fn strips(strip_starts: &[u32], seen_bins: &[u32]) -> Vec<StripRows> {
     let of_strip = |(pair, &seen): (&[u32], &u32)| {
         let (first_bin, bins) = seen_range(seen);
-        StripRows { first: pair[0], lines: (pair[1] - pair[0]) / bins, first_bin, bins }
+        StripRows { first: pair[0], lines: pair[1].wrapping_sub(pair[0]) / bins, first_bin, bins }
     };
     strip_starts.windows(2).zip(seen_bins).map(of_strip).collect()
 }
