@@ -22,7 +22,7 @@ layout(scalar, binding = 6) readonly buffer SeenBins { uint seen_bins[]; }; // w
 
 const uint GROUP = 128u;        // threads of a workgroup in passes cross and sort
 const uint SCAN_BLOCK = 1024u;  // rows of a workgroup in the prefix sum
-const uint MOST_CHORDS = 0x80000000u; // numbers of threads behind the last do not wrap
+const uint MOST_NUMBERED = 0x80000000u; // numbers of threads behind the last do not wrap
 
 void main() {
     uint strip = thread_number();
@@ -40,9 +40,9 @@ void main() {
     uint segments = segment_starts[frame.curve_count];
     if (rows > frame.row_capacity) atomicOr(counters.failed, FAILED_ROWS);
     rows = min(rows, frame.row_capacity);
-    if (segments > MOST_CHORDS) {
+    if (segments > MOST_NUMBERED) {
         counters.clamps += 1u;
-        segments = MOST_CHORDS;
+        segments = MOST_NUMBERED;
     }
     counters.rows = rows;
     atomicMax(counters.wanted_rows, strip_starts[frame.bin_count]);

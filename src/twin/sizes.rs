@@ -4,7 +4,7 @@
 use super::FAILED_ROWS;
 use super::grid::grid_of;
 use super::u_bins::seen_range;
-pub use crate::abi::constants::sizes::MOST_CHORDS as MOST_SEGMENTS;
+pub use crate::abi::constants::sizes::MOST_NUMBERED as MOST_SEGMENTS;
 use crate::abi::constants::sizes::{GROUP, SCAN_BLOCK};
 use crate::abi::{Counters, Frame, StripRows};
 
