@@ -4,7 +4,7 @@
 //!   constants      of the frame, or the sun, in a uniform block: a driver fetches its words once for many invocations,
 //!                  where it gathers those of a storage buffer for each
 //!   placed patches views, faces' places, faces, patches, items, points           glsl/include/placed.glsl
-//!   bounded        views, instances, faces' places, faces, patches, items, taus, counters, cones, points
+//!   bounded        views, instances, faces' places, faces, patches, items, taus, counters, cones, points, in_sight
 //!                                                                                  glsl/include/bound.glsl
 //!   primitives     leaves, their sides, surfaces, surfaces' places         glsl/include/solids.glsl, volume.glsl
 //!   sun            sun, its tiles, …, primitives, leaves' centres, counts  glsl/include/sun.glsl
@@ -56,6 +56,8 @@ pub(crate) struct Bounded<'a> {
     pub cones: Option<&'a Buffer>,
     /// Control points.
     pub points: &'a TexelBuffer,
+    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
+    pub in_sight: &'a Buffer,
 }
 
 impl<'a> Bounded<'a> {
@@ -65,12 +67,13 @@ impl<'a> Bounded<'a> {
     }
 
     /// In binding order.
-    pub(crate) fn resources(&self) -> [Resource<'a>; 11] {
+    pub(crate) fn resources(&self) -> [Resource<'a>; 12] {
         let cones = self.cones.unwrap_or(self.frame); // not read then
         let placed = [self.views, self.instances, self.face_instances, self.faces, self.patches, self.items];
         let [views, instances, face_instances, faces, patches, items] = placed.map(Resource::from);
         let [frame, taus, counters, cones] = [self.frame, self.taus, self.counters, cones].map(Resource::from);
-        [frame, views, instances, face_instances, faces, patches, items, taus, counters, cones, self.points.into()]
+        let (points, in_sight) = (self.points.into(), self.in_sight.into());
+        [frame, views, instances, face_instances, faces, patches, items, taus, counters, cones, points, in_sight]
     }
 }
 

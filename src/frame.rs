@@ -85,7 +85,9 @@ pub(crate) struct Frame<'a> {
     /// This slot's constants and transforms, written by the host.
     pub constants: &'a Buffer,
     pub views: &'a TexelBuffer,
-    /// The same for each of a pixel's samples, where there are several.
+    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight, and how many items those are.
+    pub in_sight: (&'a Buffer, u32),
+    /// Constants and transforms for each of a pixel's samples, where there are several.
     pub samples: &'a [ViewBuffers],
     /// What the trim table is made of, where that is not this view.
     pub table_view: Option<&'a ViewBuffers>,
@@ -96,6 +98,8 @@ pub(crate) struct Frame<'a> {
     pub keeps: bool,
     /// So is the trim table.
     pub keeps_table: bool,
+    /// Patches are drawn only where all that they are drawn from had room.
+    pub counts_first: bool,
     /// Columns and rows of the pixels that operands without equations may be in.
     pub shell_pixels: &'a [Range<u32>; 2],
     /// Of the surfaces of the volume that trims the scene, seen from this frame's eye.
@@ -178,6 +182,9 @@ impl Frame<'_> {
         #[cfg(feature = "baselines")]
         if let Some(trim) = &stages.trim {
             trim.record_baseline(self, cmd, times);
+        }
+        if self.counts_first {
+            stages.common.gate(cmd);
         }
     }
 

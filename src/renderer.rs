@@ -82,6 +82,8 @@ pub struct Renderer {
     before: Option<usize>,
     /// The next frame reads back what this pixel shows.
     pick: Option<(u32, u32)>,
+    /// No frame is drawn in part: it counts before it draws. Else the first one alone, and those after buffers were made.
+    pub(crate) counts_first: bool,
     /// A frame never reached the GPU, and what it would have copied is not there: the source is loaded anew.
     stale: bool,
     /// What frames draw into whose targets are larger than their picture.
@@ -120,6 +122,13 @@ impl Loaded {
     fn solid_bytes(&self) -> Vec<PoolBytes> {
         self.stages.as_ref().and_then(Stages::solids).map_or_else(Vec::new, Solids::bytes)
     }
+}
+
+/// Bytes of one list: the largest are read as texels.
+fn range(device: &Device) -> u32 {
+    let limits = device.limits();
+    let texels = u64::from(limits.max_texel_buffer_elements) * TexelBuffer::LEAST_BYTES;
+    limits.max_storage_buffer_range.min(u32::try_from(texels).unwrap_or(u32::MAX))
 }
 
 #[allow(dead_code)] // held for their drop
@@ -167,6 +176,7 @@ impl Renderer {
             last: None,
             before: None,
             pick: None,
+            counts_first: false,
             stale: false,
             viewport: None,
         })
@@ -226,9 +236,8 @@ impl Renderer {
         let new = if loaded.scene.is_none() { Some(Scene::record(&cmd, &loaded.data)?) } else { None };
         loaded.edits.extend(std::mem::take(&mut loaded.changes).into_values());
         let scene = loaded.scene.as_ref().or(new.as_ref().map(|(scene, _)| scene));
-        let (Some(scene), Some(stages), Some(views)) = (scene, &loaded.stages, &slot.views) else {
-            unreachable!("made above")
-        };
+        let (Some(scene), Some(stages)) = (scene, &loaded.stages) else { unreachable!("made above") };
+        let (Some(views), Some(in_sight)) = (&slot.views, &slot.in_sight) else { unreachable!("written above") };
         let edits = (!loaded.edits.is_empty()).then(|| Frame::edit(&cmd, scene, &loaded.edits)).transpose()?;
         let keep = input.settings.background.is_none();
         let own = self.viewport.as_ref().zip(input.targets.corner);
@@ -252,6 +261,7 @@ impl Renderer {
             capacities: loaded.capacities,
             constants: &slot.constants,
             views,
+            in_sight: (in_sight, slot.items_in_sight),
             samples: &slot.samples,
             table_view: slot.table.as_ref(),
             centres: slot.centres.solids(),
@@ -259,6 +269,7 @@ impl Renderer {
             occlusion: history.occlusion,
             keeps: history.reuses_view,
             keeps_table: history.reuses_table,
+            counts_first: self.counts_first || loaded.history.is_none(),
             shell_pixels: &shell_pixels,
             volume_places: slot.centres.volume(),
             sun: slot.centres.sun(),
@@ -326,10 +337,7 @@ impl Renderer {
         finished.retired.clear();
         finished.recorded = false;
         let Some(loaded) = &mut self.loaded else { return Ok(()) };
-        let limits = self.device.limits();
-        // the largest lists are read as texels
-        let texels = u64::from(limits.max_texel_buffer_elements) * TexelBuffer::LEAST_BYTES;
-        let range = limits.max_storage_buffer_range.min(u32::try_from(texels).unwrap_or(u32::MAX));
+        let range = range(&self.device);
         let capacities = match (had, report) {
             // else another slot's frame has made them larger since
             (Some(had), Some(c)) if had == loaded.capacities => match had.grown(&c, loaded.counts, drawn, range) {

@@ -16,6 +16,7 @@
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
+#include "grid.glsl"
 #include "border_pixel.glsl"
 layout(binding = 1) uniform usamplerBuffer items; // a word a placed patch
 layout(binding = 2, rg32ui) readonly uniform uimage2D visibility;
@@ -73,8 +74,7 @@ void main() {
         ivec2 at = first + ivec2(0, findLSB(listed));
         uint n = atomicAdd(count, 1u);
         list[n].pixel = uint(at.x) | uint(at.y) << 16;
-        atomicMax(dispatch.x, n / GROUP + 1u);
-        atomicMax(dispatch.y, 1u);
-        atomicMax(dispatch.z, 1u);
+        uvec3 grid = grid_of(n / GROUP + 1u);
+        for (uint axis = 0u; axis < 3u; ++axis) atomicMax(dispatch[axis], grid[axis]);
     }
 }

@@ -7,6 +7,7 @@
 #include "view.glsl"
 #include "shade.glsl"
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 #include "border_pixel.glsl"
 layout(scalar, binding = 1) readonly buffer List { BorderPixel list[]; };
@@ -14,7 +15,7 @@ layout(scalar, binding = 2) readonly buffer Dispatch { uvec3 dispatch; uint coun
 layout(binding = 3, rgba32f) writeonly uniform image2D resolved; // of a mean: linear colour, less its opacity
 
 void main() {
-    uint n = gl_GlobalInvocationID.x;
+    uint n = thread_number();
     if (n >= count) return;
     vec4 mean = vec4(unpackHalf2x16(list[n].mean.x), unpackHalf2x16(list[n].mean.y));
     imageStore(resolved, pixel_of(list[n]), vec4(mean.rgb, mean.a > 0.0 ? -mean.a : UNSEEN));

@@ -6,7 +6,7 @@
 // curved surfaces, 2012. One thread an item. The same in f64: Way::Ipass of src/baselines/factors.
 #include "bound.glsl"
 
-layout(scalar, binding = 11) readonly buffer Slefes {
+layout(scalar, binding = 12) readonly buffer Slefes {
     uint segments;
     vec2 basis[]; // U_j, L_j at each break point, j after j, degree after degree from 2 on: src/baselines/slefe
 };

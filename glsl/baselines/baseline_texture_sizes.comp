@@ -6,6 +6,7 @@
 #include "baselines/texture.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) readonly buffer Knob { float texels_per_px; uint placed_count; };
 layout(scalar, binding = 1) readonly buffer FaceSpeeds { uint face_speeds[]; };
 layout(scalar, binding = 2) writeonly buffer Words { uint words[]; };
@@ -15,7 +16,7 @@ layout(scalar, binding = 3) buffer CountersBuffer { Counters counters; };
 const uint TOO_MANY = 0x7fffffffu;
 
 void main() {
-    uint placed = gl_GlobalInvocationID.x;
+    uint placed = thread_number();
     if (placed >= placed_count) return;
     vec2 speed = texture_speed(face_speeds[2u * placed], face_speeds[2u * placed + 1u]);
     TextureSize size = texture_size(speed, texels_per_px);

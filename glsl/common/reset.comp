@@ -8,6 +8,7 @@
 layout(constant_id = 25) const bool DRAWS_ONLY = false;
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 struct Draw {
     uint vertex_count;
     uint instance_count;
@@ -19,7 +20,7 @@ layout(scalar, binding = 1) writeonly buffer Draws { Draw draws[]; };
 layout(scalar, binding = 2) buffer CountersBuffer { Counters counters; };
 
 void main() {
-    uint draw = gl_GlobalInvocationID.x;
+    uint draw = thread_number();
     if (draw == 0u && DRAWS_ONLY) {
         counters.plain_draws = 0u;
         counters.trimmed_draws = 0u;

@@ -6,8 +6,9 @@
 
 void main() {
     uint count = element_count();
-    uint first = gl_WorkGroupID.x * BLOCK + gl_LocalInvocationIndex * PER_LANE;
+    uint block = workgroup_number();
+    uint first = block * BLOCK + gl_LocalInvocationIndex * PER_LANE;
     if (first >= count) return;
-    uint before = sums[gl_WorkGroupID.x];
+    uint before = sums[block];
     for (uint i = first; i < min(first + PER_LANE, count); ++i) offsets[i] += before;
 }

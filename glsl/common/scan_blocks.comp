@@ -6,7 +6,7 @@
 
 void main() {
     uint count = element_count();
-    uint block = gl_WorkGroupID.x;
+    uint block = workgroup_number();
     uint first = block * BLOCK + gl_LocalInvocationIndex * PER_LANE;
     uint mine[PER_LANE];
     uint sum = 0;
@@ -20,6 +20,6 @@ void main() {
         if (first + i < count) offsets[first + i] = offset;
         offset += mine[i];
     }
-    // Arguments written for a longer list may start more workgroups than there are blocks.
+    // There may be more workgroups than blocks: of the last row, or of arguments written for a longer list.
     if (gl_LocalInvocationIndex == 0 && block < block_count()) sums[block] = block_sum;
 }

@@ -8,6 +8,7 @@
 #include "edges.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 2) readonly buffer EdgeItems { EdgeItem edge_items[]; };
@@ -28,7 +29,7 @@ void put_chords(uint n, uint chords, float a, float b) { counted += chords; }
 #include "edge_divide.glsl"
 
 void main() {
-    uint i = gl_GlobalInvocationID.x;
+    uint i = thread_number();
     if (i >= push.item_count) return;
     EdgeItem item = edge_items[i];
     if (divide(edge_pieces[item.piece], views[item.placement])) atomicAdd(counters.clamps, 1u);

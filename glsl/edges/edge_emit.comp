@@ -8,6 +8,7 @@
 #include "edges.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 2) readonly buffer EdgeItems { EdgeItem edge_items[]; };
@@ -56,7 +57,7 @@ void put_chords(uint n, uint count, float a, float b) {
 }
 
 void main() {
-    uint i = gl_GlobalInvocationID.x;
+    uint i = thread_number();
     if (i >= push.item_count) return;
     if (i == 0u) {
         uint total = chord_starts[push.item_count];

@@ -18,7 +18,7 @@
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
 layout(binding = 8, rg32ui) readonly uniform uimage2D others; // in scenes without trims the same
-layout(scalar, binding = 9) buffer Lines { uint lines[]; };
+layout(binding = 9, r32ui) uniform uimage2D lines;
 // in scenes without meshes not read
 layout(scalar, binding = 10) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
 layout(scalar, binding = 11) readonly buffer Triangles { uint triangles[]; };
@@ -144,7 +144,6 @@ void main() {
         ++count;
     }
     if (alone) return;
-    uint pixel = uint(at.y) * uint(frame.size.x) + uint(at.x);
     for (uint i = 0u; i < count; ++i) {
         uint item = found[i].x - 1u;
         FaceInstance fi = face_instance_at(face_instance_of(item));
@@ -160,6 +159,6 @@ void main() {
         if (steps == 0u || distance(place, vec2(places[i]) + 0.5) > FOLD_REACH_PX) continue;
         own_face = fi;
         if (!is_seen(EdgePoint(place, seen_from_eye(s.q), vec2(FOLD_SHEET_PX, 0.0)), at)) continue;
-        atomicMax(lines[pixel], LINE_SEEN | steps << LINE_COVERAGE | LINE_FOLD);
+        imageAtomicMax(lines, at, LINE_SEEN | steps << LINE_COVERAGE | LINE_FOLD);
     }
 }

@@ -22,7 +22,7 @@ layout(scalar, binding = 13) readonly buffer EdgePieces { EdgePiece edge_pieces[
 layout(scalar, binding = 14) readonly buffer EdgeLines { EdgeLine edge_lines[]; };
 layout(scalar, binding = 15) readonly buffer OwnFaces { uint own_faces[]; };
 layout(binding = 16) uniform samplerBuffer edge_points;
-layout(scalar, binding = 17) buffer Lines { uint lines[]; };
+layout(binding = 17, r32ui) uniform uimage2D lines;
 // in scenes without meshes not read
 layout(scalar, binding = 18) readonly buffer MeshInstances { MeshInstance mesh_instances[]; };
 layout(scalar, binding = 19) readonly buffer Triangles { uint triangles[]; };
@@ -93,10 +93,9 @@ void main() {
     float half_px = push.half_px[c.style];
     float covered = line_coverage(length(from - share * along), half_px);
     ivec2 at = ivec2(gl_FragCoord.xy);
-    uint pixel = uint(at.y) * uint(frame.size.x) + uint(at.x);
     uint steps = uint(covered * LINE_STEPS + 0.5);
     uint best = LINE_SEEN | steps << LINE_COVERAGE | chord;
-    if (steps == 0u || lines[pixel] >= best) return;
+    if (steps == 0u || imageLoad(lines, at).x >= best) return;
     EdgeItem item = edge_items[c.item];
     EdgePiece piece = edge_pieces[item.piece];
     EdgePoint e = point_at(c, share, piece, view_at(item.placement));
@@ -105,5 +104,5 @@ void main() {
         if (push.hidden == 0u || steps == 0u) return;
         best = steps << LINE_COVERAGE | chord;
     }
-    atomicMax(lines[pixel], best);
+    imageAtomicMax(lines, at, best);
 }

@@ -9,7 +9,7 @@
 #include "visible.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 1) readonly buffer Lines { uint lines[]; };
+layout(binding = 1, r32ui) readonly uniform uimage2D lines;
 layout(scalar, binding = 2) readonly buffer Chords { Chord chords[]; };
 layout(scalar, binding = 3) readonly buffer EdgeItems { EdgeItem edge_items[]; };
 layout(scalar, binding = 4) readonly buffer EdgePieces { EdgePiece edge_pieces[]; };
@@ -32,7 +32,7 @@ const float EDGE_COVERS = 0.1;
 
 void main() {
     ivec2 at = ivec2(gl_FragCoord.xy);
-    uint line = lines[uint(at.y) * uint(frame.size.x) + uint(at.x)];
+    uint line = imageLoad(lines, at).x;
     if (line == 0u) discard;
     float covered = float((line & ~LINE_SEEN) >> LINE_COVERAGE) / LINE_STEPS;
     vec4 colour = (line & LINE_SEEN) != 0u ? push.colour : push.hidden;

@@ -15,16 +15,16 @@
 // skirt, is not listed: the second step would find nobody to ask.
 #include "scene.glsl"
 #include "visible.glsl"
-#include "words.glsl"
 
 layout(local_size_x = 64) in;
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
+#include "grid.glsl"
 layout(binding = 1, rg32ui) uniform uimage2D visibility;
 layout(scalar, binding = 2) writeonly buffer GapCandidates { GapCandidate candidates[]; };
 layout(scalar, binding = 3) buffer Dispatch { uvec3 dispatch; }; // of the second step; zero before
 layout(scalar, binding = 4) buffer CountersBuffer { Counters counters; };
 layout(binding = 5) uniform sampler2D depth; // reversed
-layout(binding = 6) uniform samplerBuffer border_depths;
+layout(binding = 6) uniform usampler2D border_depths; // the bits of depths
 
 const uint GROUP = 64u; // threads of a workgroup of the second step
 const int LANES = 64;
@@ -36,12 +36,14 @@ shared uint patches_seen[LANES];
 shared uint full_columns; // of backs
 shared uint among_backs[COLUMNS];
 
+bool has_border(ivec2 pixel) { return texelFetch(border_depths, pixel, 0).x != 0u; }
+
 // A solid's face from behind, without a skirt: what other threads mark has one, or sees nothing. Beside the picture there
 // is nobody to ask either.
 bool is_back(ivec2 pixel, ivec2 size) {
     if (any(lessThan(pixel, ivec2(0))) || any(greaterThanEqual(pixel, size))) return true;
     uint word = imageLoad(visibility, pixel).x;
-    return (word & GAP_CANDIDATE) != 0u && !sees_nothing(word) && number_at(border_depths, uint(pixel.y * size.x + pixel.x)) == 0.0;
+    return (word & GAP_CANDIDATE) != 0u && !sees_nothing(word) && !has_border(pixel);
 }
 
 // A column's bits: nothing but backs up to BAND above and below.
@@ -77,12 +79,12 @@ void main() {
             if (sees_nothing(word)) nothing |= bit;
             else patch_seen |= bit;
             if ((word & GAP_CANDIDATE) != 0u) candidate |= bit;
-            if (number_at(border_depths, uint(row * size.x + column)) > 0.0) has_skirt |= bit;
+            if (has_border(ivec2(column, row))) has_skirt |= bit;
         }
         // few have a skirt: the depth of the others is not looked at
         for (uint left_over = has_skirt; left_over != 0u; left_over &= left_over - 1u) {
             int row = top + findLSB(left_over);
-            float skirt = number_at(border_depths, uint(row * size.x + column));
+            float skirt = uintBitsToFloat(texelFetch(border_depths, ivec2(column, row), 0).x);
             if (skirt > texelFetch(depth, ivec2(column, row), 0).x) border_before |= left_over & (~left_over + 1u);
         }
     }
@@ -125,8 +127,7 @@ void main() {
             continue;
         }
         candidates[at].pixel = uint(pixel.x) | uint(pixel.y) << 16 | flags;
-        atomicMax(dispatch.x, at / GROUP + 1u);
-        atomicMax(dispatch.y, 1u);
-        atomicMax(dispatch.z, 1u);
+        uvec3 grid = grid_of(at / GROUP + 1u);
+        for (uint axis = 0u; axis < 3u; ++axis) atomicMax(dispatch[axis], grid[axis]);
     }
 }

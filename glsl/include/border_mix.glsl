@@ -12,6 +12,7 @@
 #include "view.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
 layout(binding = 8, rgba32f) readonly uniform image2D resolved; // linear colour, depth; UNSEEN where nothing is
@@ -117,7 +118,7 @@ uint nearest_of(uint pixels, vec2 from) {
 }
 
 void main() {
-    uint n = gl_GlobalInvocationID.x;
+    uint n = thread_number();
     if (n >= count) return;
     ivec2 at = pixel_of(list[n]);
     uvec2 own = imageLoad(visibility, at).xy;

@@ -1,5 +1,5 @@
 // Of passes that say how finely each patch must be divided: which patches can be seen. The entry point's `factors_of`
-// says what those need. One thread an item.
+// says what those need. One thread an item in sight.
 #ifndef BOUND_GLSL
 #define BOUND_GLSL
 
@@ -10,6 +10,7 @@
 layout(constant_id = 24) const bool SCENE_HAS_CONES = false;
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
@@ -22,14 +23,17 @@ layout(scalar, binding = 8) buffer CountersBuffer { Counters counters; };
 layout(scalar, binding = 9) readonly buffer Cones { vec4 cones[]; }; // where SCENE_HAS_CONES
 layout(binding = 10) uniform samplerBuffer points;                    // one a homogeneous control point
 
+#define IN_SIGHT_BINDING 11
+#include "in_sight.glsl"
 #include "cone.glsl"
 
 // Segments along u and v, whole numbers from 1 on.
 vec2 factors_of(Patch patch_, View view, uint instance, Seen seen);
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
-    if (item >= frame.item_count) return;
+    uint place = thread_number();
+    if (place >= frame.items_in_sight) return;
+    uint item = item_at(place);
     FaceInstance fi = face_instances[item_face_instance[item]];
     Face face = faces[fi.face];
     uint index = face.first_patch + item - fi.first_item;

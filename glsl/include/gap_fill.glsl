@@ -9,6 +9,7 @@
 #include "view.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 7, rg32ui) readonly uniform uimage2D visibility;
 layout(scalar, binding = 8) buffer GapCandidates { GapCandidate candidates[]; };
@@ -40,7 +41,7 @@ layout(scalar, binding = 14) readonly buffer Positions { vec3 positions[]; };
 #include "gap_gather.glsl"
 
 void main() {
-    uint n = gl_GlobalInvocationID.x;
+    uint n = thread_number();
     if (n >= min(counters.gap_candidates, frame.gap_candidate_capacity)) return;
     uint listed = candidates[n].pixel;
     ivec2 at = candidate_pixel(listed);

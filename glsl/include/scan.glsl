@@ -3,6 +3,7 @@
 #include "abi/scan.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(constant_id = 22) const bool COUNT_ON_GPU = false;
 
 layout(scalar, binding = 0) readonly buffer Values { uint values[]; };

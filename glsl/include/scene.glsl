@@ -158,7 +158,8 @@ struct Frame {
     float chord_px;     // budget of a trim curve's linear segments
     float table_density; // pixels a model unit that the trim table is for, whatever the view; 0: of what this one shows
     uint fixed_factor;  // of every patch; 0: what the bound asks for
-    uint item_count;
+    uint items_in_sight; // placed patches of placed parts that are in sight
+    uint run_count;     // of such items that follow one another
     uint cell_count;
     uint bin_count;     // of all strips of all placed faces
     uint curve_count;
@@ -186,6 +187,7 @@ struct Frame {
     float spread_px;    // how far from the centre samples lie, along each axis
     uint samples;       // of each pixel's colour
     uint style;         // STYLE_*
+    uint most_groups;   // workgroups in one row of a dispatch
     vec2 focal_px;      // as `focal`, across and down
     vec2 principal_px;  // where the view axis is seen
 };
@@ -247,6 +249,12 @@ struct Factors {
     uint edge_u; // segments of the sides v = 0 | v = 1 << 16
     uint edge_v; // segments of the sides u = 0 | u = 1 << 16
     uint splits; // sub-patches along u | along v << 16; powers of two
+};
+
+// Items in sight that follow one another (in_sight.glsl).
+struct ItemRun {
+    uint place; // of the first among all in sight
+    uint item;
 };
 
 struct SubPatch {

@@ -6,6 +6,7 @@
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer FaceInstances { FaceInstance face_instances[]; };
 layout(scalar, binding = 2) readonly buffer Faces { Face faces[]; };
@@ -13,9 +14,11 @@ layout(scalar, binding = 3) readonly buffer Patches { Patch patches[]; };
 layout(scalar, binding = 4) readonly buffer Items { uint item_face_instance[]; };
 layout(scalar, binding = 5) readonly buffer Taus { uint taus[]; };
 layout(scalar, binding = 6) writeonly buffer FactorsBuffer { Factors factors[]; };
-// sub-patches and tessellated vertices of each item: first all items as plain, then all as trimmed
+// sub-patches and tessellated vertices of each item in sight: first all of them as plain, then all as trimmed
 layout(scalar, binding = 7) writeonly buffer SubPatchCounts { uint sub_patch_counts[]; };
 layout(scalar, binding = 8) writeonly buffer VertexCounts { uint vertex_counts[]; };
+#define IN_SIGHT_BINDING 9
+#include "in_sight.glsl"
 
 uint power_of_two(uint x) { return x <= 1u ? 1u : 1u << (findMSB(x - 1u) + 1); }
 
@@ -46,7 +49,7 @@ void decide(uint axis, uint own, uvec2 others, uvec2 others_splits) {
     high[axis] = side_segments(own, others.y, others_splits.y, axis);
 }
 
-void write(uint item, uint patch_) {
+void write(uint place, uint item, uint patch_) {
     bool drawn = is_drawn(taus[item]);
     factors[item] = Factors(inner.x | inner.y << 16, low.x | high.x << 16, low.y | high.y << 16,
                             splits.x | splits.y << 16);
@@ -56,8 +59,9 @@ void write(uint item, uint patch_) {
     uint sub_patches = drawn ? splits.x * splits.y : 0u;
     uint vertices = sub_patches * (most.x + 1u) * (most.y + 1u);
     uint plain = side_of(patches[patch_].shape) == SIDE_INSIDE ? 1u : 0u;
-    sub_patch_counts[item] = sub_patches * plain;
-    sub_patch_counts[frame.item_count + item] = sub_patches * (1u - plain);
-    vertex_counts[item] = vertices * plain;
-    vertex_counts[frame.item_count + item] = vertices * (1u - plain);
+    uint as_trimmed = frame.items_in_sight + place;
+    sub_patch_counts[place] = sub_patches * plain;
+    sub_patch_counts[as_trimmed] = sub_patches * (1u - plain);
+    vertex_counts[place] = vertices * plain;
+    vertex_counts[as_trimmed] = vertices * (1u - plain);
 }

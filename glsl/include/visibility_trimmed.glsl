@@ -25,7 +25,7 @@
 #include "placed.glsl"
 
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
-layout(scalar, binding = 10) buffer BorderDepths { uint border_depths[]; }; // depth's bits for each pixel, 0 without a skirt
+layout(binding = 10, r32ui) uniform uimage2D border_depths; // depth's bits, 0 without a skirt
 
 #define TRIM_BINDING 11
 #include "trim.glsl"
@@ -119,8 +119,7 @@ void main() {
     // depths are not negative, so they order like their bits
     uint skirt_depth = floatBitsToUint(max(z - stand_back, 0.0));
     if (skirt || !whole) {
-        uvec2 pixel = uvec2(gl_FragCoord.xy);
-        atomicMax(border_depths[pixel.y * uint(frame.size.x) + pixel.x], skirt ? skirt_depth : skirt_depth + 1u);
+        imageAtomicMax(border_depths, ivec2(gl_FragCoord.xy), skirt ? skirt_depth : skirt_depth + 1u);
     }
     if (skirt) discard;
     visible = uvec2(item + 1u | (candidate ? GAP_CANDIDATE : 0u), pack_uv(uv));

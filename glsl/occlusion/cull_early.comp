@@ -2,18 +2,23 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `cull_early`: patches that lay behind others in the frame before are not drawn, unless pass `cull_late` finds that
-// they may be seen. One thread an item. Twin: src/twin/occlusion.rs.
+// they may be seen. One thread an item in sight. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Hidden { uint hidden[]; };
 layout(scalar, binding = 2) buffer Taus { uint taus[]; };
 layout(scalar, binding = 3) buffer CountersBuffer { Counters counters; };
+#define IN_SIGHT_BINDING 4
+#include "in_sight.glsl"
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
-    if (item >= frame.item_count || taus[item] == 0u) return;
+    uint place = thread_number();
+    if (place >= frame.items_in_sight) return;
+    uint item = item_at(place);
+    if (taus[item] == 0u) return;
     if (hidden[item] == 0u) return;
     taus[item] |= TAU_HIDDEN;
     atomicAdd(counters.hidden, 1u);

@@ -3,12 +3,13 @@
 #extension GL_GOOGLE_include_directive : require
 // Pass `cull_late`: which patches lie behind what has been drawn, wherever they could be seen. Those that do not, and
 // were left out by pass `cull_early`, are drawn now; those that do are left out of the next frame's first drawing. One
-// thread an item. Twin: src/twin/occlusion.rs.
+// thread an item in sight. Twin: src/twin/occlusion.rs.
 #include "scene.glsl"
 #include "view.glsl"
 #include "tiles.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
@@ -22,13 +23,16 @@ layout(scalar, binding = 9) buffer Taus { uint taus[]; };
 layout(scalar, binding = 10) writeonly buffer Hidden { uint hidden[]; };
 layout(scalar, binding = 11) readonly buffer Outside { uvec2 outside[]; }; // of each patch, behind.glsl
 layout(scalar, binding = 12) buffer CountersBuffer { Counters counters; };
+#define IN_SIGHT_BINDING 13
+#include "in_sight.glsl"
 
 #include "patch.glsl"
 #include "behind.glsl"
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
-    if (item >= frame.item_count) return;
+    uint place = thread_number();
+    if (place >= frame.items_in_sight) return;
+    uint item = item_at(place);
     uint tau = taus[item];
     if (tau == 0u) {
         hidden[item] = 0u;

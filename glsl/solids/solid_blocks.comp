@@ -10,6 +10,7 @@
 layout(constant_id = 6) const bool LISTS = false;
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Rects { Rect rects[]; };
 layout(scalar, binding = 2) buffer BlockCounts { uint block_counts[]; };
@@ -17,7 +18,7 @@ layout(scalar, binding = 3) readonly buffer BlockStarts { uint block_starts[]; }
 layout(scalar, binding = 4) writeonly buffer BlockLeaves { uint block_leaves[]; };
 
 void main() {
-    uint n = gl_GlobalInvocationID.x;
+    uint n = thread_number();
     uvec2 blocks = block_count(frame);
     uint runs = run_count(frame);
     if (n >= blocks.x * blocks.y * runs) return;

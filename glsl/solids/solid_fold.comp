@@ -18,6 +18,7 @@
 #include "tiles.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
 layout(scalar, binding = 2) readonly buffer TileStarts { uint tile_starts[]; };
@@ -72,7 +73,7 @@ uint fold(uint to, uint from, uint end) {
 
 // Items that rays are followed through are lists of their own, one after another: where each begins is marked.
 void main() {
-    uint n = gl_GlobalInvocationID.x;
+    uint n = thread_number();
     uvec2 tiles = band_tiles(frame);
     if (n >= tiles.x * tiles.y) return;
     uint start = min(tile_starts[n], frame.tile_leaf_capacity);

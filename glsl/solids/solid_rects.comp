@@ -8,6 +8,7 @@
 #include "tiles.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Leaves { Leaf leaves[]; };
 layout(scalar, binding = 2) readonly buffer LeafCentres { vec3 leaf_centres[]; };
@@ -50,7 +51,7 @@ Rect rect_of(Leaf leaf, vec3 centre) {
 }
 
 void main() {
-    uint n = gl_GlobalInvocationID.x;
+    uint n = thread_number();
     if (n >= frame.leaf_count) return;
     rects[n] = rect_of(leaves[n], leaf_centres[n]);
 }

@@ -8,6 +8,7 @@
 #include "tiles.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer TileEntries { uint tile_entries[]; };
 layout(scalar, binding = 2) writeonly buffer TileSquares { uint tile_squares[]; };
@@ -19,7 +20,7 @@ bool is_drawn(uvec2 tile) {
 #include "largest_square.glsl"
 
 void main() {
-    uint n = gl_GlobalInvocationID.x;
+    uint n = thread_number();
     uvec2 tiles = band_tiles(frame);
     if (n >= tiles.x * tiles.y) return;
     // the next band's tiles have squares of their own

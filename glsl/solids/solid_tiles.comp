@@ -12,6 +12,7 @@
 layout(constant_id = 6) const bool LISTS = false;
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Rects { Rect rects[]; };
 layout(scalar, binding = 2) readonly buffer BlockStarts { uint block_starts[]; };
@@ -32,7 +33,7 @@ void look_at(uint leaf) {
 }
 
 void main() {
-    uint n = gl_GlobalInvocationID.x;
+    uint n = thread_number();
     uvec2 tiles = band_tiles(frame);
     if (n >= tiles.x * tiles.y) return;
     tile = uvec2(n % tiles.x, frame.band_top / TILE + n / tiles.x);

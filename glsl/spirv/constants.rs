@@ -240,7 +240,7 @@ pub mod shells {
 }
 pub mod sizes {
     pub const GROUP: u32 = 128;
-    pub const MAX_GROUPS: u32 = 65535;
+    pub const MOST_NUMBERED: u32 = 0x80000000;
     pub const SCAN_BLOCK: u32 = 1024;
 }
 pub mod solid_cst {

@@ -2,7 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `bound`: which patches can be seen, and how finely each must be divided.
-// One thread an item. Twin: src/twin/bound.rs.
+// One thread an item in sight. Twin: src/twin/bound.rs.
 #include "bound.glsl"
 #include "factor.glsl"
 

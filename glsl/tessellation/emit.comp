@@ -1,7 +1,7 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `emit`: the list of sub-patches, and the draws that cover it. One thread an item.
+// Pass `emit`: the list of sub-patches, and the draws that cover it. One thread an item in sight.
 //
 //   vertices before an item  0 ..... draw_vertices ..... 2 draw_vertices ....
 //   draw that gets it        |   0   |        1         |        2
@@ -11,6 +11,7 @@
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer FactorsBuffer { Factors factors[]; };
 layout(scalar, binding = 2) readonly buffer SubPatchStarts { uint sub_patch_starts[]; };
@@ -24,25 +25,28 @@ struct Draw {
 };
 layout(scalar, binding = 5) buffer Draws { Draw draws[]; }; // plain, then trimmed: draw_capacity each
 layout(scalar, binding = 6) buffer CountersBuffer { Counters counters; };
+#define IN_SIGHT_BINDING 7
+#include "in_sight.glsl"
 
 void main() {
-    uint n = frame.item_count;
-    uint item = gl_GlobalInvocationID.x;
-    if (item >= n) return;
-    if (item == 0u) {
+    uint n = frame.items_in_sight;
+    uint place = thread_number();
+    if (place >= n) return;
+    if (place == 0u) {
         counters.plain += sub_patch_starts[n];
         counters.trimmed += sub_patch_starts[2u * n] - sub_patch_starts[n];
         if (sub_patch_starts[2u * n] > frame.sub_patch_capacity) atomicOr(counters.failed, FAILED_SUB_PATCHES);
     }
-    uint slot = item;
+    uint slot = place;
     uint group = 0u;
-    if (sub_patch_starts[item + 1u] == sub_patch_starts[item]) {
-        slot = n + item;
+    if (sub_patch_starts[place + 1u] == sub_patch_starts[place]) {
+        slot = n + place;
         group = 1u;
     }
     uint first = sub_patch_starts[slot];
     uint count = sub_patch_starts[slot + 1u] - first;
     if (count == 0u) return;
+    uint item = item_at(place);
     uint vertices = (vertex_starts[slot + 1u] - vertex_starts[slot]) / count;
     uint before = vertex_starts[slot] - (group == 0u ? 0u : vertex_starts[n]);
     uint across = factors[item].splits & 0xffffu;

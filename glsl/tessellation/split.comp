@@ -2,7 +2,7 @@
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
 // Pass `split`: one number of segments per shared side, and as many sub-patches as keep every
-// number within the hardware's limit. One thread an item. Twin: src/twin/split.rs.
+// number within the hardware's limit. One thread an item in sight. Twin: src/twin/split.rs.
 #include "split.glsl"
 
 uint first_item;
@@ -23,8 +23,9 @@ uint tau_at(ivec2 place, uint axis, int steps) {
 }
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
-    if (item >= frame.item_count) return;
+    uint place_ = thread_number();
+    if (place_ >= frame.items_in_sight) return;
+    uint item = item_at(place_);
     FaceInstance fi = face_instances[item_face_instance[item]];
     Face face = faces[fi.face];
     uint n = item - fi.first_item;
@@ -38,5 +39,5 @@ void main() {
         uvec2 others_splits = uvec2(splits_for(t[0], t[1], t[2]), splits_for(t[2], t[3], t[4]));
         decide(axis, t[2], uvec2(t[1], t[3]), others_splits);
     }
-    write(item, face.first_patch + n);
+    write(place_, item, face.first_patch + n);
 }

@@ -1,13 +1,13 @@
 #version 460
 #extension GL_EXT_scalar_block_layout : require
 #extension GL_GOOGLE_include_directive : require
-// Pass `split` in scenes where faces share sides (Link). One thread an item. Twin: src/twin/split.rs.
+// Pass `split` in scenes where faces share sides (Link). One thread an item in sight. Twin: src/twin/split.rs.
 //
 // A side's numbers are compared as numbers of the whole curve of its ring: a side that is a quarter of it asks for four
 // times as many, and gets a quarter of what is decided.
 #include "split.glsl"
 
-layout(scalar, binding = 9) readonly buffer Links { Link links[]; };
+layout(scalar, binding = 10) readonly buffer Links { Link links[]; };
 
 const uint NO_PATCH = 0xffffffffu;
 
@@ -83,8 +83,9 @@ uint splits_beyond(uint patch_, uint side) {
 }
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
-    if (item >= frame.item_count) return;
+    uint place_ = thread_number();
+    if (place_ >= frame.items_in_sight) return;
+    uint item = item_at(place_);
     FaceInstance fi = face_instances[item_face_instance[item]];
     item_of_patch_0 = fi.first_item - faces[fi.face].first_patch;
     uint patch_ = item - item_of_patch_0;
@@ -94,5 +95,5 @@ void main() {
         uvec2 others_splits = uvec2(splits_beyond(patch_, sides.x), splits_beyond(patch_, sides.y));
         decide(axis, tau_at(patch_, axis), others, others_splits);
     }
-    write(item, patch_);
+    write(place_, item, patch_);
 }

@@ -13,13 +13,18 @@
 #include "scene.glsl"
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1) uniform usamplerBuffer strips;
 layout(scalar, binding = 2) readonly buffer WideStrips { uint wide_strips[]; }; // bin items
 layout(scalar, binding = 3) buffer RowWindings { int row_windings[]; };
 
+layout(scalar, push_constant) uniform Push { uint wide_strip_count; } push;
+
 void main() {
-    StripRows rows = strip_rows(strips, wide_strips[gl_WorkGroupID.x]);
+    uint n = workgroup_number();
+    if (n >= push.wide_strip_count) return;
+    StripRows rows = strip_rows(strips, wide_strips[n]);
     for (uint line = gl_LocalInvocationID.x; line < rows.lines; line += gl_WorkGroupSize.x) {
         int winding = 0;
         for (uint bin = rows.first_bin; bin <= last_bin(rows); ++bin) {

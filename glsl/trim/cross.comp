@@ -22,6 +22,7 @@ layout(constant_id = 1) const bool SCENE_HAS_BINS = false;
 layout(constant_id = 26) const bool MARKS_BORDERS = false;
 
 layout(local_size_x = 128) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 // texels, which a driver fetches at once where it gathers words of storage buffers one by one
 layout(binding = 1) uniform usamplerBuffer face_instances;
@@ -73,7 +74,7 @@ void mark(uint bin_item, float lo, float hi, uvec4 columns) {
 }
 
 void main() {
-    uint segment = gl_GlobalInvocationID.x;
+    uint segment = thread_number();
     uint total = first_segment(frame.curve_count);
     if (segment >= total) return;
     uint item = curve_of(segment);

@@ -17,6 +17,7 @@
 layout(constant_id = 1) const bool SCENE_HAS_BINS = false;
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer Views { View views[]; };
 layout(scalar, binding = 2) readonly buffer Instances { Instance instances[]; };
@@ -43,7 +44,7 @@ float pixels_of(FaceInstance fi, Face face, Cell cell) {
 }
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
+    uint item = thread_number();
     if (item >= frame.cell_count) return;
     uint placed = cell_face_instance[item];
     FaceInstance fi = face_instances[placed];

@@ -11,6 +11,7 @@
 layout(constant_id = 1) const bool SCENE_HAS_BINS = false;
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(scalar, binding = 1) readonly buffer StripHeights { uint strip_heights[]; };
 layout(scalar, binding = 2) writeonly buffer StripCounts { uint strip_counts[]; };
@@ -18,7 +19,7 @@ layout(scalar, binding = 3) buffer CountersBuffer { Counters counters; };
 layout(scalar, binding = 4) readonly buffer SeenBins { uint seen_bins[]; };
 
 void main() {
-    uint strip = gl_GlobalInvocationID.x;
+    uint strip = thread_number();
     if (strip >= frame.bin_count) return;
     float lines = ceil(uintBitsToFloat(strip_heights[strip]) / frame.row_px);
     if (lines > float(MAX_ROWS)) atomicAdd(counters.clamps, 1u);

@@ -12,6 +12,7 @@
 layout(constant_id = 1) const bool SCENE_HAS_BINS = false;
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1) uniform usamplerBuffer face_instances;
 layout(binding = 2) uniform usamplerBuffer faces;
@@ -49,7 +50,7 @@ uint lines_of(FaceInstance fi, uint bins, uint lo, uint hi, Curve curve) {
 }
 
 void main() {
-    uint item = gl_GlobalInvocationID.x;
+    uint item = thread_number();
     if (item >= frame.curve_count) return;
     uint placed = word_at(curve_items, item);
     FaceInstance fi = face_instance_at(placed);

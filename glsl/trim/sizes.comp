@@ -10,7 +10,9 @@
 layout(constant_id = 1) const bool SCENE_HAS_BINS = false;
 
 layout(local_size_x = 64) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
+#include "grid.glsl"
 layout(scalar, binding = 1) readonly buffer StripStarts { uint strip_starts[]; };
 layout(scalar, binding = 2) readonly buffer SegmentStarts { uint segment_starts[]; };
 layout(scalar, binding = 3) writeonly buffer Dispatches { uvec3 dispatches[]; }; // cross, sort, scan of the rows
@@ -20,27 +22,32 @@ layout(scalar, binding = 6) readonly buffer SeenBins { uint seen_bins[]; }; // w
 
 const uint GROUP = 128u;        // threads of a workgroup in passes cross and sort
 const uint SCAN_BLOCK = 1024u;  // rows of a workgroup in the prefix sum
-const uint MAX_GROUPS = 65535u; // what every device can dispatch
+const uint MOST_NUMBERED = 0x80000000u; // numbers of threads behind the last do not wrap
 
 void main() {
-    uint strip = gl_GlobalInvocationID.x;
+    uint strip = thread_number();
     if (strip >= frame.bin_count) return;
     uint first_row = strip_starts[strip];
     uvec2 seen = SCENE_HAS_BINS ? seen_range(seen_bins[strip]) : uvec2(0u, 1u);
     strips[strip] = StripRows(first_row, (strip_starts[strip + 1u] - first_row) / seen.y, seen.x, seen.y);
+    if (strip_starts[strip + 1u] < first_row) {
+        // more than 32 bits count
+        atomicMax(counters.wanted_rows, 0xffffffffu);
+        atomicOr(counters.failed, FAILED_ROWS);
+    }
     if (strip != 0u) return;
     uint rows = strip_starts[frame.bin_count];
     uint segments = segment_starts[frame.curve_count];
-    if (rows > frame.row_capacity) counters.failed |= FAILED_ROWS;
+    if (rows > frame.row_capacity) atomicOr(counters.failed, FAILED_ROWS);
     rows = min(rows, frame.row_capacity);
-    if (segments > MAX_GROUPS * GROUP) {
+    if (segments > MOST_NUMBERED) {
         counters.clamps += 1u;
-        segments = MAX_GROUPS * GROUP;
+        segments = MOST_NUMBERED;
     }
     counters.rows = rows;
-    counters.wanted_rows = strip_starts[frame.bin_count];
+    atomicMax(counters.wanted_rows, strip_starts[frame.bin_count]);
     counters.segments = segments;
-    dispatches[0] = uvec3((segments + GROUP - 1u) / GROUP, 1u, 1u);
-    dispatches[1] = uvec3((rows + GROUP - 1u) / GROUP, 1u, 1u);
-    dispatches[2] = uvec3((rows + SCAN_BLOCK - 1u) / SCAN_BLOCK, 1u, 1u);
+    dispatches[0] = grid_of((segments + GROUP - 1u) / GROUP);
+    dispatches[1] = grid_of((rows + GROUP - 1u) / GROUP);
+    dispatches[2] = grid_of((rows + SCAN_BLOCK - 1u) / SCAN_BLOCK);
 }

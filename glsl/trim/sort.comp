@@ -18,6 +18,7 @@
 layout(constant_id = 1) const bool SCENE_HAS_BINS = false;
 
 layout(local_size_x = 128) in;
+#include "thread.glsl"
 layout(scalar, binding = 0) uniform Frames { Frame frame; };
 layout(binding = 1) uniform usamplerBuffer row_starts;
 layout(scalar, binding = 2) readonly buffer RowTotal { uint row_total; };
@@ -69,7 +70,7 @@ uint sort_few(uint first, uint count, int winding) {
 }
 
 void main() {
-    uint row = gl_GlobalInvocationID.x;
+    uint row = thread_number();
     uint row_count = counters.rows;
     if (row >= row_count) return;
     if (row == 0u) {

@@ -29,7 +29,8 @@ pub struct Frame {
     pub chord_px: f32,
     pub table_density: f32,
     pub fixed_factor: u32,
-    pub item_count: u32,
+    pub items_in_sight: u32,
+    pub run_count: u32,
     pub cell_count: u32,
     pub bin_count: u32,
     pub curve_count: u32,
@@ -57,6 +58,7 @@ pub struct Frame {
     pub spread_px: f32,
     pub samples: u32,
     pub style: u32,
+    pub most_groups: u32,
     pub focal_px: [f32; 2],
     pub principal_px: [f32; 2],
 }
@@ -122,6 +124,14 @@ pub struct Factors {
 pub struct GapCandidate {
     pub pixel: u32,
     pub word: [u32; 2],
+}
+
+/// Items in sight that follow one another.
+#[repr(C)]
+#[derive(Clone, Copy, Debug, Default, Pod, Zeroable, PartialEq, Eq)]
+pub struct ItemRun {
+    pub place: u32,
+    pub item: u32,
 }
 
 /// One entry of the draw list.

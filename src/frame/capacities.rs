@@ -43,9 +43,10 @@ impl Capacities {
         Self { solids: self.solids.expecting(crossings, counts), ..self }
     }
 
-    /// See [`solids::Capacities::for_picture`].
+    /// See [`solids::Capacities::for_picture`] and [`gaps::Capacities::for_picture`].
     pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), range: u32) -> Result<Self, TooMany> {
-        Ok(Self { solids: self.solids.for_picture(counts, size, range)?, ..self })
+        let gaps = self.gaps.for_picture(counts, size, range);
+        Ok(Self { gaps, solids: self.solids.for_picture(counts, size, range)?, ..self })
     }
 
     /// Buffers made for these take as much as those made for `others`.
@@ -57,9 +58,9 @@ impl Capacities {
     /// buffer of `range` bytes has it; the same when it had enough. `size` is that of the picture.
     pub(crate) fn grown(self, c: &Counters, counts: Counts, size: (u32, u32), range: u32) -> Result<Self, TooMany> {
         Ok(Self {
-            tessellation: self.tessellation.grown(c, range),
+            tessellation: self.tessellation.grown(c, range)?,
             trim: self.trim.grown(c, counts, range)?,
-            gaps: self.gaps.grown(c, range),
+            gaps: self.gaps.grown(c, range)?,
             solids: self.solids.grown(c, counts, size, range)?,
             edges: self.edges.grown(c, range)?,
         })
@@ -68,11 +69,10 @@ impl Capacities {
 
 #[cfg(test)]
 mod tests {
-    use super::super::counts::{MOST_SEEN, MOST_THREADS, MOST_TRIANGLES};
+    use super::super::counts::{MOST_SEEN, MOST_TRIANGLES};
     use super::*;
     use crate::abi::constants::scene::FAILED_DRAWS;
     use crate::picture::TakenWay;
-    use trim::capacities::MOST_ROWS;
 
     /// Every storage buffer of Vulkan's least capable device.
     const RANGE: u32 = 1 << 27;
@@ -108,16 +108,39 @@ mod tests {
 
     #[test]
     fn more_than_can_be_counted_is_an_error() {
-        let c = Counters { wanted_rows: MOST_ROWS + 1, failed: 4, ..Default::default() };
-        assert!(matches!(grown(first(), &c), Err(TooMany { what: "scan lines", .. })));
-        let counts = Counts { items: MOST_THREADS, ..Default::default() };
-        assert!(counts.check().is_ok());
-        assert!(matches!(Counts { curves: MOST_THREADS + 1, ..counts }.check(), Err(TooMany { .. })));
-        let counts = Counts { triangles: MOST_TRIANGLES, mesh_instances: MOST_SEEN, ..counts };
-        assert!(counts.check().is_ok());
+        let over = |counts: Counts| counts.check(u32::MAX).err().map(|error| (error.what, error.most, error.bytes));
+        let counts = Counts { mesh_instances: 1 << 26, triangles: u32::MAX / 12, ..Default::default() };
+        assert_eq!(over(counts), None);
         let more = Counts { triangles: MOST_TRIANGLES + 1, ..counts };
-        assert!(matches!(more.check(), Err(TooMany { what: "triangles", .. })));
+        assert_eq!(over(more), Some(("triangles", MOST_TRIANGLES, None)));
         let more = Counts { mesh_instances: MOST_SEEN + 1, ..counts };
-        assert!(matches!(more.check(), Err(TooMany { what: "placed meshes", .. })));
+        assert_eq!(over(more), Some(("placed meshes", MOST_SEEN, None)));
+    }
+
+    /// A hundred million patches and scan lines, where the device binds as much.
+    #[test]
+    fn what_no_buffer_holds_says_how_much_it_wants() {
+        const HUNDRED_MILLION: u32 = 100_000_000;
+        let counts = Counts { items: HUNDRED_MILLION, trim: Some(TakenWay::Table), ..Default::default() };
+        let rows = Counters { wanted_rows: HUNDRED_MILLION, failed: 4, ..Default::default() };
+        assert!(counts.check(u32::MAX).is_ok());
+        let grown = |range| first().grown(&rows, counts, (640, 480), range);
+        assert!(grown(u32::MAX).unwrap().trim.rows > HUNDRED_MILLION);
+        let over = counts.check(RANGE).unwrap_err();
+        assert_eq!((over.count, over.most), (HUNDRED_MILLION, RANGE / 16));
+        assert_eq!(
+            over.to_string(),
+            "100000000 patches are too many: at most 8388608 can be drawn, because they want 1600000000 bytes in one \
+             buffer, and this device binds 134217728; draw fewer parts at once, or place fewer copies"
+        );
+        let over = grown(RANGE).unwrap_err();
+        assert_eq!((over.what, over.most, over.bytes), ("scan lines", RANGE / 8, Some((800_000_000, RANGE.into()))));
+        assert!(over.is_of_table());
+        let more = Counters { plain: RANGE / 8 + 1, failed: 1, ..Default::default() };
+        let over = first().grown(&more, counts, (640, 480), RANGE).unwrap_err();
+        assert_eq!((over.what, over.most), ("parts of patches", RANGE / 8));
+        let more = Counters { gap_candidates: RANGE / 12 + 1, failed: 16, ..Default::default() };
+        let over = first().grown(&more, counts, (640, 480), RANGE).unwrap_err();
+        assert_eq!((over.what, over.most), ("pixels at gaps", RANGE / 12));
     }
 }

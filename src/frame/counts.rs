@@ -1,8 +1,12 @@
 //! What the scene has, and whether it can be counted.
 
+use super::common::kernel::MOST_THREADS;
 use super::solids::lists::{Limits, Lists};
+use super::trim::BorderCells;
+use crate::abi::{EdgeItem, Factors, Leaf, MeshInstance, StripRows};
 use crate::picture::{Samples, TakenWay};
 use crate::scene::SceneData;
+use std::fmt;
 
 /// What the scene has, per placed face.
 #[derive(Clone, Copy, Debug, Default, PartialEq, Eq)]
@@ -14,6 +18,8 @@ pub(crate) struct Counts {
     pub wide_strips: u32,
     pub curves: u32,
     pub face_instances: u32,
+    /// Something beside patches reads the views of placed parts that are out of sight.
+    pub views_all: bool,
     /// Patches may lie behind others.
     pub hides: bool,
     /// Patches or meshes are seen themselves.
@@ -57,6 +63,7 @@ pub(crate) struct Counts {
 impl Counts {
     pub(crate) fn of(data: &SceneData) -> Self {
         let count = |n: usize| u32::try_from(n).unwrap_or(u32::MAX);
+        let by_view = !matches!(data.trim_way(), None | Some(TakenWay::Exact)) || data.has_lines();
         Self {
             items: data.items.len() as u32,
             cells: data.cell_items.len() as u32,
@@ -64,6 +71,7 @@ impl Counts {
             wide_strips: count(data.wide_strips.len()),
             curves: data.curve_items.len() as u32,
             face_instances: data.face_instances.len() as u32,
+            views_all: by_view || data.has_meshes() || data.has_operands || !data.solids.leaves.is_empty(),
             hides: data.hides(),
             has_surfaces: data.has_surfaces(),
             leaves: data.solids.leaves.len() as u32,
@@ -102,30 +110,33 @@ impl Counts {
         Lists { size, has_fragments: self.has_fragments(), limits: self.limits(range) }
     }
 
-    /// Whether one dispatch covers each of them, and numbers tell them apart.
-    pub(crate) fn check(self) -> Result<(), TooMany> {
+    /// Whether numbers tell all of them apart, and one storage buffer of `range` bytes holds what each of them has.
+    pub(crate) fn check(self, range: u32) -> Result<(), TooMany> {
+        let border_cells = if self.operand_patches { size_of::<BorderCells>() } else { 0 };
+        let word = size_of::<u32>();
         let all = [
-            ("patches", self.items, MOST_THREADS, FEWER_PARTS),
-            ("cells", self.cells, MOST_THREADS, EXACT),
-            ("bins of v-strips", self.bins, MOST_THREADS, EXACT),
-            ("v-strips with several bins", self.wide_strips, MOST_GROUPS, EXACT),
-            ("curves", self.curves, MOST_THREADS, EXACT),
-            ("triangles", self.triangles, MOST_TRIANGLES, "draw fewer of the meshes, or coarser ones"),
-            ("primitives", self.leaves, MOST_THREADS, FEWER_SOLIDS),
-            ("placed meshes", self.mesh_instances, MOST_SEEN, FEWER_PARTS),
-            ("pieces of edges", self.edge_items, MOST_THREADS, "draw lines along fewer edges"),
-            ("sides of primitives", self.sides, MOST_SEEN, FEWER_SOLIDS),
+            ("patches", self.items, MOST_SEEN - 1, size_of::<Factors>(), FEWER_PARTS),
+            ("cells", self.cells, MOST_THREADS, word, EXACT),
+            ("bins of v-strips", self.bins, MOST_THREADS, border_cells.max(size_of::<StripRows>()), EXACT),
+            ("v-strips with several bins", self.wide_strips, MOST_THREADS, word, EXACT),
+            ("curves", self.curves, MOST_THREADS, word, EXACT),
+            ("triangles", self.triangles, MOST_TRIANGLES, 3 * word, "draw fewer of the meshes, or coarser ones"),
+            ("primitives", self.leaves, MOST_THREADS, size_of::<Leaf>(), FEWER_SOLIDS),
+            ("placed meshes", self.mesh_instances, MOST_SEEN, size_of::<MeshInstance>(), FEWER_PARTS),
+            ("pieces of edges", self.edge_items, MOST_THREADS, size_of::<EdgeItem>(), "draw lines along fewer edges"),
+            ("sides of primitives", self.sides, MOST_SEEN, word, FEWER_SOLIDS),
         ];
-        match all.into_iter().find(|(_, count, most, _)| count > most) {
-            Some((what, count, most, help)) => Err(TooMany { what, count, most, help }),
-            None => Ok(()),
-        }
+        let over = all.into_iter().find_map(|(what, count, most, bytes, help)| {
+            let over = TooMany::of_numbers(what, count, most, help);
+            over.or_else(|| TooMany::of_bytes((what, count), bytes, range, help))
+        });
+        over.map_or(Ok(()), Err)
     }
 }
 
-/// The model, or what a view needs of it, is more than the engine counts.
+/// The model, or what a view needs of it, is more than the engine counts, or than a buffer of the device holds.
 #[derive(Clone, Copy, Debug, PartialEq, Eq, thiserror::Error)]
-#[error("{count} {what} are too many: at most {most} can be drawn; {help}")]
+#[error("{count} {what} are too many: at most {most} can be drawn{}; {help}", Why(.bytes))]
 #[non_exhaustive]
 pub struct TooMany {
     /// What there is too much of.
@@ -134,11 +145,44 @@ pub struct TooMany {
     pub count: u32,
     /// How many there may be.
     pub most: u32,
+    /// Where memory is what is lacking: bytes that all of them take in one buffer, and the most that the device binds.
+    pub bytes: Option<(u64, u64)>,
     /// What to ask for in its place.
     pub help: &'static str,
 }
 
+/// Why no more can be drawn, as [`TooMany`] says it.
+struct Why<'a>(&'a Option<(u64, u64)>);
+
+impl fmt::Display for Why<'_> {
+    fn fmt(&self, f: &mut fmt::Formatter<'_>) -> fmt::Result {
+        match self.0 {
+            Some((wanted, most)) => {
+                write!(f, ", because they want {wanted} bytes in one buffer, and this device binds {most}")
+            }
+            None => Ok(()),
+        }
+    }
+}
+
 impl TooMany {
+    /// `None` where so many can be numbered.
+    pub(crate) fn of_numbers(what: &'static str, count: u32, most: u32, help: &'static str) -> Option<Self> {
+        (count > most).then_some(Self { what, count, most, bytes: None, help })
+    }
+
+    /// `None` where a buffer of `range` bytes holds so many of `bytes` each.
+    pub(crate) fn of_bytes(
+        (what, count): (&'static str, u32),
+        bytes: usize,
+        range: u32,
+        help: &'static str,
+    ) -> Option<Self> {
+        let wanted = u64::from(count) * bytes as u64;
+        let most = range / bytes as u32;
+        (count > most).then_some(Self { what, count, most, bytes: Some((wanted, range.into())), help })
+    }
+
     /// It is the trim table that has no room: the exact way needs none.
     pub(crate) fn is_of_table(&self) -> bool {
         self.help == EXACT
@@ -147,14 +191,10 @@ impl TooMany {
 
 /// [`TooMany::help`].
 pub(super) const EXACT: &str = "trim by the way `exact`, or by `auto`, which takes it where the other has no room";
-const FEWER_PARTS: &str = "draw fewer parts at once, or place fewer copies";
+pub(super) const FEWER_PARTS: &str = "draw fewer parts at once, or place fewer copies";
 const FEWER_SOLIDS: &str = "draw fewer of the Boolean solids at once";
 pub(super) const SMALLER: &str = "draw a smaller picture";
 
-/// Workgroups of a dispatch that every device takes.
-pub(super) const MOST_GROUPS: u32 = 65_535;
-/// Threads of one dispatch of the passes over what the scene has, 64 to a workgroup.
-pub(super) const MOST_THREADS: u32 = MOST_GROUPS * 64;
 /// Triangles whose corners, and vertices whose coordinates, have numbers of 32 bits.
 pub(super) const MOST_TRIANGLES: u32 = u32::MAX / 3;
 /// What the bits of the visibility image tell apart.

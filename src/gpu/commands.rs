@@ -67,15 +67,17 @@ impl<'a> Commands<'a> {
         }
     }
 
-    /// Starts `groups` workgroups in x.
+    /// Starts at least `groups` workgroups: in x, or where those are more than the device takes in x, in as many rows of
+    /// that many as they need. The shader numbers them by `glsl/include/thread.glsl`, and leaves out those that are too many.
     ///
     /// # Panics
-    /// When there are more than `maxComputeWorkGroupCount`.
+    /// When the device does not take so many in x and y.
     pub fn dispatch(&self, groups: u32) {
-        let limit = self.device.limits().max_compute_work_group_count[0];
-        assert!(groups <= limit, "{groups} workgroups where {limit} are the most");
-        // SAFETY: recording; a compute pipeline is bound.
-        unsafe { self.device.raw().cmd_dispatch(self.raw, groups, 1, 1) };
+        let [most, most_rows, _] = self.device.limits().max_compute_work_group_count;
+        let columns = groups.min(most);
+        let rows = groups.div_ceil(columns.max(1)).max(1);
+        assert!(rows <= most_rows, "{groups} workgroups where {most_rows} rows of {most} are the most");
+        self.dispatch_grid([columns, rows, 1]);
     }
 
     /// Starts a grid of workgroups.
@@ -199,6 +201,16 @@ impl<'a> Commands<'a> {
     pub fn fill(&self, buffer: &Buffer, word: u32) {
         // SAFETY: recording outside rendering; the buffer belongs to this device.
         unsafe { self.device.raw().cmd_fill_buffer(self.raw, buffer.handle(), 0, vk::WHOLE_SIZE, word) };
+    }
+
+    /// Clears a colour image of whole numbers: [`Access::TRANSFER_WRITE`].
+    pub fn clear(&self, image: &Image, word: u32) {
+        let colour = vk::ClearColorValue { uint32: [word; 4] };
+        let range =
+            vk::ImageSubresourceRange::default().aspect_mask(vk::ImageAspectFlags::COLOR).level_count(1).layer_count(1);
+        let layout = ImageAccess::from(Access::TRANSFER_WRITE).layout;
+        // SAFETY: recording outside rendering; the image belongs to this device.
+        unsafe { self.device.raw().cmd_clear_color_image(self.raw, image.handle(), layout, &colour, &[range]) };
     }
 
     /// Fills one word, the `nth`, as a transfer write.

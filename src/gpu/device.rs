@@ -4,7 +4,7 @@ use super::budget::Heaps;
 use super::description::Description;
 use super::memory::lock;
 use super::pipeline::Made;
-use super::{GpuError, Pool, Quirks};
+use super::{GpuError, Pool, Quirks, TexelBuffer};
 use ash::vk;
 use ash::vk::Handle;
 use gpu_allocator::vulkan::Allocator;
@@ -35,6 +35,29 @@ pub struct HostDevice<'a> {
     pub pipeline_cache: vk::PipelineCache,
     /// Bytes that the engine may take on this device; `None`: what its heaps have.
     pub memory_budget: Option<u64>,
+}
+
+/// Limits to take in place of a device's own where they are lower: tests come to them with little work.
+#[doc(hidden)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub struct LowerLimits {
+    /// Of `maxComputeWorkGroupCount`, in x.
+    pub work_groups: Option<u32>,
+    /// Of `maxStorageBufferRange`, in bytes, and of the bytes of a texel buffer.
+    pub storage_range: Option<u32>,
+}
+
+impl LowerLimits {
+    /// The device's own.
+    pub const NONE: Self = Self { work_groups: None, storage_range: None };
+
+    fn lower(self, limits: &mut vk::PhysicalDeviceLimits) {
+        let least = |limit: &mut u32, lower: Option<u32>| *limit = lower.map_or(*limit, |lower| lower.min(*limit));
+        least(&mut limits.max_compute_work_group_count[0], self.work_groups);
+        least(&mut limits.max_storage_buffer_range, self.storage_range);
+        let texels = self.storage_range.map(|bytes| bytes / TexelBuffer::LEAST_BYTES as u32);
+        least(&mut limits.max_texel_buffer_elements, texels);
+    }
 }
 
 /// A cheap handle to the host's device; every wrapper holds one.
@@ -81,13 +104,23 @@ impl Device {
     /// The handles are valid and fit together as [`HostDevice`] says, and stay so until the last
     /// clone of this value and everything made from it is dropped.
     pub unsafe fn new(host: HostDevice<'_>) -> Self {
+        // SAFETY: the caller's promise.
+        unsafe { Self::limited(host, LowerLimits::NONE) }
+    }
+
+    /// As [`new`](Self::new), with lower limits.
+    ///
+    /// # Safety
+    /// As [`new`](Self::new).
+    pub(crate) unsafe fn limited(host: HostDevice<'_>, lower: LowerLimits) -> Self {
         let HostDevice { instance, physical, device, queue_family, allocator, debug_names, .. } = host;
         let HostDevice { pipeline_statistics, pipeline_cache, memory_budget, .. } = host;
         let mut driver = vk::PhysicalDeviceDriverProperties::default();
         let mut properties = vk::PhysicalDeviceProperties2::default().push_next(&mut driver);
         // SAFETY: the caller's promise; driver properties are part of Vulkan 1.2.
         unsafe { instance.get_physical_device_properties2(physical, &mut properties) };
-        let properties = properties.properties;
+        let mut properties = properties.properties;
+        lower.lower(&mut properties.limits);
         // SAFETY: the caller's promise.
         let of_stencil = unsafe { instance.get_physical_device_format_properties(physical, vk::Format::S8_UINT) };
         let is_attachment = vk::FormatFeatureFlags::DEPTH_STENCIL_ATTACHMENT;

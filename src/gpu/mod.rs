@@ -53,6 +53,7 @@ pub use requirements::Requirements;
 pub use {
     buffer::{Buffer, BufferInfo},
     commands::Commands,
+    device::LowerLimits,
     graphics::{Blend, ColourTarget, DepthTest, GraphicsInfo, StencilTest},
     image::{ImageInfo, Sampler},
     layout::Binding,

@@ -21,7 +21,7 @@ pub use devices::{DeviceLimits, DeviceSummary, devices};
 pub use messages::{Message, Severity};
 pub use renderer::HeadlessRenderer;
 
-use crate::gpu::{Commands, Device, GpuError, HostDevice, Named, Requirements};
+use crate::gpu::{Commands, Device, GpuError, HostDevice, LowerLimits, Named, Requirements};
 use ash::vk;
 use gpu_allocator::vulkan::{Allocator, AllocatorCreateDesc};
 use instance::Instance;
@@ -127,14 +127,27 @@ impl HeadlessDevice {
     /// # Errors
     /// [`HeadlessError`], each with what to install or choose.
     pub fn new(options: &HeadlessOptions) -> Result<Self, HeadlessError> {
+        Self::limited(options, LowerLimits::NONE)
+    }
+
+    /// As [`new`](Self::new), with lower limits.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    #[doc(hidden)]
+    pub fn limited(options: &HeadlessOptions, lower: LowerLimits) -> Result<Self, HeadlessError> {
         // SAFETY: the system's Vulkan loader is trusted as any shared library of the system is.
         let entry = unsafe { ash::Entry::load() }.map_err(|source| HeadlessError::NoLoader { source })?;
-        Self::of_entry(entry, options)
+        Self::on_entry(entry, options, lower)
     }
 
     /// As [`new`](Self::new), on another Vulkan than the system's: a test's double of the driver.
     #[doc(hidden)]
     pub fn of_entry(entry: ash::Entry, options: &HeadlessOptions) -> Result<Self, HeadlessError> {
+        Self::on_entry(entry, options, LowerLimits::NONE)
+    }
+
+    fn on_entry(entry: ash::Entry, options: &HeadlessOptions, lower: LowerLimits) -> Result<Self, HeadlessError> {
         let instance = Instance::new(entry, options)?;
         let physical = instance.choose(options.device.as_deref())?;
         let messages = instance.messages.clone();
@@ -186,7 +199,7 @@ impl HeadlessDevice {
             memory_budget: options.memory_budget,
         };
         // SAFETY: made above with the requirements; `Parts` and `Drop` keep it until the last user is gone.
-        let device = unsafe { Device::new(host) };
+        let device = unsafe { Device::limited(host, lower) };
         let queue = Mutex::new(Queue::new(raw, queue_family)?);
         let parts = Parts { queue, device, cache, _allocator: allocator, _owned: owned, _instance: instance };
         Ok(Self { parts: ManuallyDrop::new(parts), messages })

@@ -1,7 +1,7 @@
 //! A whole picture in host memory: device, targets, frame, read-back.
 
 use super::{HeadlessDevice, HeadlessError, HeadlessOptions};
-use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, Pool, ReadBack, barrier};
+use crate::gpu::{Access, Commands, Device, GpuError, Image, ImageInfo, LowerLimits, Pool, ReadBack, barrier};
 use crate::model::{Camera, Colour, LoopAt, Model, TrimLoop};
 use crate::picture::{FrameSettings, FrameStats, Outputs, Picture, SceneSettings};
 use crate::renderer::{Aovs, EditError, FrameInput, Hit, InstanceError, RenderError, Renderer, TargetFormats, Targets};
@@ -37,13 +37,29 @@ struct TargetImages {
     numbers: Option<[(Image, ReadBack); 3]>,
 }
 
+/// Whoever waits for a whole picture has no use for a part of one.
+fn renderer(device: &Device, formats: TargetFormats) -> Result<Renderer, GpuError> {
+    let mut renderer = Renderer::on(device, formats, 1)?;
+    renderer.counts_first = true;
+    Ok(renderer)
+}
+
 impl HeadlessRenderer {
     /// Makes the device.
     ///
     /// # Errors
     /// [`HeadlessError`]: no loader, no device, no validation layers.
     pub fn new(options: &HeadlessOptions) -> Result<Self, HeadlessError> {
-        Self::on(HeadlessDevice::new(options)?)
+        Self::limited(options, LowerLimits::NONE)
+    }
+
+    /// As [`new`](Self::new), with lower limits.
+    ///
+    /// # Errors
+    /// As [`new`](Self::new).
+    #[doc(hidden)]
+    pub fn limited(options: &HeadlessOptions, lower: LowerLimits) -> Result<Self, HeadlessError> {
+        Self::on(HeadlessDevice::limited(options, lower)?)
     }
 
     /// On a device of the caller's choice.
@@ -52,7 +68,7 @@ impl HeadlessRenderer {
     /// [`HeadlessError::Gpu`].
     pub fn on(device: HeadlessDevice) -> Result<Self, HeadlessError> {
         let formats = TargetFormats::new(COLOUR_FORMAT);
-        let renderer = Renderer::on(device.device(), formats, 1)?;
+        let renderer = renderer(device.device(), formats)?;
         Ok(Self {
             renderer: ManuallyDrop::new(renderer),
             targets: ManuallyDrop::new(None),
@@ -300,7 +316,7 @@ impl HeadlessRenderer {
         let formats = TargetFormats { outputs, ..self.formats };
         if formats != self.formats || lacks_thickness {
             let source = source.with(request);
-            let mut renderer = Renderer::on(self.device.device(), formats, 1)?;
+            let mut renderer = renderer(self.device.device(), formats)?;
             renderer.upload_source(source, &|_| ())?;
             *self.renderer = renderer;
             self.formats = formats;

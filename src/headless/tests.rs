@@ -2,11 +2,13 @@
 
 use super::{HeadlessDevice, HeadlessError, HeadlessOptions, HeadlessRenderer};
 use crate::gpu::{Access, Device, Image, ImageInfo, Pool, ReadBack, barrier};
-use crate::model::{Camera, Model};
+use crate::model::{Camera, Model, Projection};
+use crate::parity::{placed, untrimmed};
 use crate::picture::{EdgeSettings, FrameSettings, Outputs, Picture, SceneSettings};
 use crate::renderer::{Aovs, FrameInput, RenderError, Renderer, TargetFormats, Targets};
+use crate::spline::Surface;
 use ash::vk;
-use glam::DVec3;
+use glam::{DAffine3, DVec3, DVec4};
 
 const SIZE: (u32, u32) = (64, 48);
 const ALL: Outputs = Outputs { edge: true, part: true, instance: true, ..Outputs::ALL };
@@ -98,6 +100,51 @@ fn each_image_stands_by_itself() {
             assert_eq!(own[1..].iter().any(|image| !image.is_empty()), wanted);
         }
     }
+    let messages = device.shutdown();
+    assert!(messages.is_empty(), "{messages:?}");
+}
+
+/// Many bicubic patches, as tall as many pixels: several sub-patches each, where there is room for one and 256 more.
+fn tall() -> Model {
+    let height = [[0.0, 1.0, -1.0, 0.0], [1.0, 3.0, 0.0, -1.0], [-1.0, 0.0, -3.0, 1.0], [0.5, -1.0, 1.0, 0.0]];
+    let at = |i: usize, j: usize| DVec4::new(i as f64, j as f64, 20.0 * height[j][i], 1.0);
+    let points = (0..4).flat_map(|j| (0..4).map(move |i| at(i, j))).collect();
+    let knots = || [vec![0.0; 4], vec![1.0; 4]].concat();
+    let surface = Surface::new((3, 3), knots(), knots(), points).unwrap();
+    let mut model = placed(vec![untrimmed(surface)], DAffine3::IDENTITY);
+    let one = model.instances[0].clone();
+    let beside = |k: u32| DAffine3::from_translation(DVec3::new(0.01 * f64::from(k), 0.0, 0.0));
+    model.instances.extend((1..128).map(|k| crate::model::Instance { transform: beside(k), ..one.clone() }));
+    model
+}
+
+/// A first frame without room counts what it needs and draws no patch; the second draws the picture.
+#[test]
+fn no_picture_is_drawn_twice() {
+    let (model, device) =
+        (tall(), HeadlessDevice::new(&HeadlessOptions { validation: true, ..Default::default() }).unwrap());
+    let format = vk::Format::R8G8B8A8_SRGB;
+    let mut renderer = Renderer::on(device.device(), TargetFormats::new(format), 1).unwrap();
+    renderer.upload(&model).unwrap();
+    let target = image(device.device(), "colour", format, 4).0;
+    let above = Camera::around(model.control_bounds(), DVec3::Z, DVec3::Y, 0.6, SIZE);
+    let camera = Camera { projection: Projection::Orthographic { height: 3.2 }, ..above };
+    let settings = FrameSettings { tolerance_px: FrameSettings::LEAST_TOLERANCE_PX, ..FrameSettings::default() };
+    let input = FrameInput { camera: &camera, settings, slot: 0, targets: Targets::new(&target) };
+    let mut frame = || {
+        let recorded = device.try_submit(|cmd| {
+            let new = (&target, Access::COLOUR_WRITE.discarded(), Access::COLOUR_WRITE);
+            barrier::images(cmd, &[new]);
+            // SAFETY: recording; the submission is waited for.
+            unsafe { renderer.record(cmd.raw(), &input) }
+        });
+        recorded.unwrap().unwrap();
+        let report = renderer.report(0).unwrap().unwrap();
+        (report.complete, report.stats.triangles > 0, report.stats.sub_patches > 384)
+    };
+    assert_eq!(frame(), (false, false, true));
+    assert_eq!(frame(), (true, true, true));
+    drop((renderer, target));
     let messages = device.shutdown();
     assert!(messages.is_empty(), "{messages:?}");
 }

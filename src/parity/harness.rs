@@ -185,6 +185,7 @@ pub(super) struct SceneBuffers {
     pub curves: TexelBuffer,
     pub curve_points: TexelBuffer,
     pub curve_items: TexelBuffer,
+    pub in_sight: Buffer,
 }
 
 impl SceneBuffers {
@@ -204,6 +205,7 @@ impl SceneBuffers {
             curves: gpu.upload_texels("curves", &d.curves, Texel::U32x4),
             curve_points: gpu.upload_texels("curve points", &d.curve_points, Texel::Numbers),
             curve_items: gpu.upload_texels("curve items", &d.curve_items, Texel::Words),
+            in_sight: gpu.upload("items in sight", &case.runs),
         }
     }
 
@@ -226,6 +228,7 @@ impl SceneBuffers {
             counters,
             cones,
             points: &self.points,
+            in_sight: &self.in_sight,
         }
     }
 }

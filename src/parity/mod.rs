@@ -48,7 +48,11 @@ mod frame;
 #[cfg(feature = "headless")]
 mod gap_decide;
 #[cfg(feature = "headless")]
+mod gate;
+#[cfg(feature = "headless")]
 mod harness;
+#[cfg(feature = "headless")]
+mod in_sight;
 #[cfg(feature = "headless")]
 mod lines;
 #[cfg(feature = "headless")]

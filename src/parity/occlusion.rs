@@ -41,7 +41,13 @@ fn compare_cull_early(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -
     let (hidden, taus) = (gpu.upload("hidden", given), gpu.upload("taus", &twin_taus));
     let counters = gpu.upload("counters", &[Counters::default()]);
     let pass = cull_early::CullEarly::new(gpu.device()).unwrap();
-    let bindings = cull_early::Bindings { frame: &s.frame, hidden: &hidden, taus: &taus, counters: &counters };
+    let bindings = cull_early::Bindings {
+        frame: &s.frame,
+        hidden: &hidden,
+        taus: &taus,
+        counters: &counters,
+        in_sight: &s.in_sight,
+    };
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
     let marked = twin::occlusion::cull_early(expected, &mut twin_taus);
     same("taus", &gpu.read(&taus, n), &twin_taus)?;
@@ -129,6 +135,7 @@ fn compare_cull_late(
         hidden: &hidden,
         outside: &outside,
         counters: &counters,
+        in_sight: &s.in_sight,
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));
     let on_gpu: Vec<u32> = gpu.read(&hidden, n);

@@ -6,6 +6,7 @@ use super::shapes::cases;
 use crate::abi::{Counters, Frame};
 use crate::frame::trim::sizes::{Bindings, Sizes};
 use crate::twin;
+use crate::twin::sizes::MOST_SEGMENTS;
 
 fn compare(gpu: &Gpu, frame: &Frame, seen: &[u32], given: [&[u32]; 2], expected: [&[u32]; 2]) -> Result<(), Mismatch> {
     // as the passes before may leave them
@@ -43,9 +44,18 @@ fn parity() {
             let chain = Chain::new(&case);
             let starts = [chain.strip_starts.as_slice(), chain.segment_starts.as_slice()];
             compare(&gpu, &case.frame, &chain.density.seen_bins, starts, starts).unwrap();
-            let mut many = chain.segment_starts.clone(); // more than one dispatch can hold
-            *many.last_mut().unwrap() = 9_000_000;
-            compare(&gpu, &case.frame, &chain.density.seen_bins, [starts[0], &many], [starts[0], &many]).unwrap();
+            // more than one row of a dispatch holds, and more than can be numbered
+            for segments in [9_000_000, MOST_SEGMENTS + 1] {
+                let mut many = chain.segment_starts.clone();
+                *many.last_mut().unwrap() = segments;
+                for most_groups in [7, 1 << 16, u32::MAX] {
+                    let frame = Frame { most_groups, ..case.frame };
+                    compare(&gpu, &frame, &chain.density.seen_bins, [starts[0], &many], [starts[0], &many]).unwrap();
+                }
+            }
+            let mut wrapped = chain.strip_starts.clone();
+            *wrapped.last_mut().unwrap() = 0;
+            compare(&gpu, &case.frame, &chain.density.seen_bins, [&wrapped, starts[1]], [&wrapped, starts[1]]).unwrap();
         }
         gpu.finish();
     }

@@ -29,6 +29,7 @@ fn compare(gpu: &Gpu, case: &Case, given: &[u32], expected: &[u32]) -> Result<()
         factors: &factors,
         sub_patch_counts: &sub_patch_counts,
         vertex_counts: &vertex_counts,
+        in_sight: &s.in_sight,
         links: links.as_ref(),
     };
     gpu.run(|cmd| pass.record(cmd, &bindings, n as u32));

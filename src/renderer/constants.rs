@@ -3,9 +3,10 @@
 use super::{FrameInput, Loaded, TargetFormats};
 use crate::abi;
 use crate::budget::Budget;
+use crate::frame::counts::Counts;
 use crate::gpu::Device;
 use crate::model::srgb;
-use crate::scene::{TableView, seen_by};
+use crate::scene::{InSight, Reach, TableView, seen_by};
 use ash::vk;
 
 /// The colour target's format encodes linear light by itself.
@@ -24,13 +25,13 @@ pub(super) fn background(input: &FrameInput<'_>, formats: &TargetFormats) -> [f3
     [encoded(r), encoded(g), encoded(b), opacity]
 }
 
-/// What every shader of the frame reads. `table`: where there is one.
+/// What every shader of the frame reads. `table`: where there is one; and which placed parts are in sight.
 pub(super) fn constants(
     device: &Device,
     loaded: &Loaded,
     input: &FrameInput<'_>,
     formats: &TargetFormats,
-    table: Option<&TableView>,
+    (table, in_sight): (Option<&TableView>, &InSight),
 ) -> abi::Frame {
     let camera = input.camera;
     let budget = Budget::of(input.settings.tolerance_px);
@@ -43,7 +44,8 @@ pub(super) fn constants(
         chord_px: budget.chord as f32,
         table_density: table.map_or(0.0, TableView::density),
         fixed_factor: input.settings.levels.fixed().unwrap_or(0),
-        item_count: counts.items,
+        items_in_sight: in_sight.items,
+        run_count: in_sight.runs.len() as u32,
         cell_count: counts.cells,
         bin_count: counts.bins,
         curve_count: counts.curves,
@@ -69,12 +71,25 @@ pub(super) fn constants(
         // with a negative opacity the shader leaves the background as it is
         background: input.settings.background.unwrap_or([0.0, 0.0, 0.0, -1.0]),
         offset: [0.0; 2],
-        spread_px: counts.samples.offsets().iter().flatten().fold(0.0f64, |far, x| far.max(x.abs())) as f32,
+        spread_px: spread_px(counts) as f32,
         samples: counts.samples.count(),
         style: input.settings.style as u32,
+        most_groups: device.limits().max_compute_work_group_count[0],
         ..abi::Frame::default()
     };
     seen_by(camera, frame)
+}
+
+/// How far from a pixel's centre its samples lie, along each axis.
+fn spread_px(counts: Counts) -> f64 {
+    counts.samples.offsets().iter().flatten().fold(0.0, |far, x| x.abs().max(far))
+}
+
+/// How far pass `bound` looks beside the picture and around a patch: `glsl/include/bound.glsl`.
+pub(super) fn reach(counts: Counts, tolerance_px: f64) -> Reach {
+    let budget = Budget::of(tolerance_px);
+    let skirt = if counts.trim.is_some() { budget.gap_radius } else { 0.0 };
+    Reach { beside_px: budget.gap_radius + 1.0, beyond_px: budget.deviation + spread_px(counts) + skirt }
 }
 
 /// Vertices before a sub-patch that the same draw has.

@@ -10,7 +10,7 @@
 
 use super::constants::draw_vertices;
 use super::source::Source;
-use super::{Loaded, RenderError, Renderer, Retired, TargetFormats, validate};
+use super::{Loaded, RenderError, Renderer, Retired, TargetFormats, range, validate};
 use crate::frame::Passes;
 use crate::frame::capacities::Capacities;
 use crate::frame::counts::Counts;
@@ -162,7 +162,8 @@ impl Loaded {
             validate::check_smooth_trims(&data_of, request)?;
         }
         let may_change = request.trim == TrimWay::Auto && data_of.trim_way() == Some(TakenWay::Table);
-        let too_many = Counts::of(&data_of).check().err().filter(|too_many| may_change && too_many.is_of_table());
+        let too_many =
+            Counts::of(&data_of).check(range(device)).err().filter(|too_many| may_change && too_many.is_of_table());
         if too_many.is_some() {
             data_of = data(request.exact())?;
         }
@@ -180,7 +181,7 @@ impl Loaded {
         };
         data.show(&whole.instances, &source.shown);
         let counts = Counts::of(&data);
-        counts.check()?;
+        counts.check(range(device))?;
         let passes = Passes::new(device, &data, formats.of_passes())?;
         let may_be_exact = may_change && too_many.is_none();
         Ok(Self {

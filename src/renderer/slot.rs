@@ -1,7 +1,7 @@
 //! A frame slot: the buffers that the CPU writes and reads for one frame in flight.
 
 use super::centres::SlotCentres;
-use super::constants::constants;
+use super::constants::{constants, reach};
 use super::history::History;
 use super::pick::SlotPick;
 use super::{FrameInput, Loaded, Retired, TargetFormats};
@@ -14,7 +14,7 @@ use crate::gpu::{
 };
 use crate::model::Camera;
 use crate::picture::PoolBytes;
-use crate::scene::{TableView, seen_by};
+use crate::scene::{InSight, TableView, seen_by};
 use ash::vk;
 use glam::{DMat4, DVec3};
 
@@ -25,6 +25,9 @@ const SCOPES: u32 = 17;
 pub(super) struct Slot {
     pub(super) constants: Buffer,
     pub(super) views: Option<TexelBuffer>,
+    /// [`ItemRun`](abi::ItemRun)s of the items in sight, and how many items those are.
+    pub(super) in_sight: Option<Buffer>,
+    pub(super) items_in_sight: u32,
     /// The same for each of a pixel's samples, where there are several.
     pub(super) samples: Vec<ViewBuffers>,
     /// What the trim table is made of, where that is another view.
@@ -57,6 +60,8 @@ impl Slot {
         Ok(Self {
             constants: upload_buffer(device, "frame constants", size_of::<abi::Frame>() as u64)?,
             views: None,
+            in_sight: None,
+            items_in_sight: 0,
             samples: Vec::new(),
             table: None,
             centres: SlotCentres::default(),
@@ -90,20 +95,21 @@ impl Slot {
         formats: &TargetFormats,
         history: &History,
     ) -> Result<(), GpuError> {
-        let pixels = input.camera.pixel_matrix();
-        let views = loaded.data.views(pixels);
-        let bytes = size_of_val(views.as_slice()) as u64;
+        let reach = reach(loaded.counts, input.settings.tolerance_px);
+        let in_sight = loaded.data.in_sight(input.camera, reach);
+        let bytes = view_bytes(loaded);
         if self.views.as_ref().is_none_or(|b| b.bytes() < bytes) {
             let made = upload_views(device, "views", bytes)?;
             self.retired.extend(self.views.replace(made).map(Retired::TexelBuffer));
         }
         if let Some(buffer) = &mut self.views {
-            buffer.write(0, &views);
+            write_views(buffer, loaded, input.camera.pixel_matrix(), &in_sight);
         }
+        self.write_in_sight(device, &in_sight)?;
         self.centres.write(device, &loaded.data, input.camera, &mut self.retired)?;
-        let centre = constants(device, loaded, input, formats, history.table.as_ref());
+        let centre = constants(device, loaded, input, formats, (history.table.as_ref(), &in_sight));
         self.constants.write(0, &[centre]);
-        self.write_samples(device, loaded, input.camera, centre)?;
+        self.write_samples(device, loaded, (input.camera, &in_sight), centre)?;
         self.write_table(device, loaded, (input.camera, history), centre)?;
         // one drawing a sample, and one at the centre for the images that are no mean of samples
         let loaded_has = loaded.counts.thickness || loaded.counts.lines;
@@ -120,16 +126,30 @@ impl Slot {
         Ok(())
     }
 
+    /// Writes the runs of the items in sight.
+    fn write_in_sight(&mut self, device: &Device, in_sight: &InSight) -> Result<(), GpuError> {
+        let bytes = size_of_val(in_sight.runs.as_slice()) as u64;
+        if self.in_sight.as_ref().is_none_or(|b| b.bytes() < bytes) {
+            let made = upload_buffer(device, "items in sight", bytes.next_power_of_two())?;
+            self.retired.extend(self.in_sight.replace(made).map(Retired::Buffer));
+        }
+        if let Some(buffer) = &mut self.in_sight {
+            buffer.write(0, &in_sight.runs);
+        }
+        self.items_in_sight = in_sight.items;
+        Ok(())
+    }
+
     /// Writes the views of a pixel's samples.
     fn write_samples(
         &mut self,
         device: &Device,
         loaded: &Loaded,
-        camera: &Camera,
+        (camera, in_sight): (&Camera, &InSight),
         centre: abi::Frame,
     ) -> Result<(), GpuError> {
         let offsets = loaded.counts.samples.offsets();
-        let bytes = (loaded.data.placements.len() * size_of::<abi::View>()) as u64;
+        let bytes = view_bytes(loaded);
         if self.samples.len() != offsets.len() || self.samples.iter().any(|s| s.views.bytes() < bytes) {
             self.retired.extend(std::mem::take(&mut self.samples).into_iter().flat_map(gone));
             for _ in offsets {
@@ -137,9 +157,7 @@ impl Slot {
             }
         }
         for (sample, &offset) in self.samples.iter_mut().zip(offsets) {
-            let pixels = beside(camera.pixel_matrix(), offset);
-            let views = loaded.data.views(pixels);
-            sample.views.write(0, &views);
+            write_views(&mut sample.views, loaded, beside(camera.pixel_matrix(), offset), in_sight);
             let offset = offset.map(|x| x as f32);
             sample.constants.write(0, &[abi::Frame { offset, encode_srgb: abi::ENCODE_SUMMED, ..centre }]);
         }
@@ -176,6 +194,24 @@ impl Slot {
             table.constants.write(0, &[seen_by(wider, centre)]);
         }
         Ok(())
+    }
+}
+
+fn view_bytes(loaded: &Loaded) -> u64 {
+    (loaded.data.placements.len() * size_of::<abi::View>()) as u64
+}
+
+/// Of placed parts that are out of sight nothing is read, but by what reads all.
+fn write_views(buffer: &mut TexelBuffer, loaded: &Loaded, pixels: DMat4, in_sight: &InSight) {
+    if loaded.counts.views_all {
+        return buffer.write(0, &loaded.data.views(pixels));
+    }
+    let views = loaded.data.views_of(pixels, &in_sight.parts);
+    let mut next = 0;
+    for following in in_sight.parts.chunk_by(|a, b| a + 1 == *b) {
+        let first = u64::from(following[0]) * size_of::<abi::View>() as u64;
+        buffer.write(first, &views[next..next + following.len()]);
+        next += following.len();
     }
 }
 

@@ -6,23 +6,23 @@ use super::edges::EdgeData;
 use super::edit::EditScene;
 use super::exact::ExactData;
 use super::face::{Body, Cuts, FaceData, Trimming, pack_colour};
+use super::in_sight::{PlacedBox, boxes};
 use super::instance::{LivePart, Shown, placed_part, stretch};
 use super::link::link;
 use super::mesh::Meshes;
-use super::parts::{PlacedPart, Told, each_made};
+use super::parts::{PlacedPart, Told, drawn_as_faces, each_made};
 use super::request::SceneRequest;
 use super::solids::{Lists, SolidData, UndrawnSolid};
 use super::sun::SunData;
 use super::trimmed::Trimmed;
 use super::way::taken;
 use crate::abi;
-use crate::model::{Bounds, Instance, Isolated, Items, Mesh, Model, Part, SolidError};
+use crate::model::{Bounds, Instance, Isolated, Mesh, Model, Part, SolidError};
 #[cfg(any(test, feature = "baselines"))]
 use crate::picture::SceneSettings;
 use crate::picture::{Highlight, Samples, Smooth, TakenWay};
 use glam::{DAffine3, DVec3};
 use rayon::prelude::*;
-use std::borrow::Cow;
 use std::ops::Range;
 
 /// Patches below which it is not worth while to ask which of them lie behind others.
@@ -95,6 +95,8 @@ pub(crate) struct SceneData {
     pub ambient: Option<f64>,
     /// Part (relative to its centre) to model, per instance.
     pub placements: Vec<DAffine3>,
+    /// Of each placement: its patches.
+    pub(super) boxes: Vec<PlacedBox>,
     /// Of each placement: nobody sees it; empty where all are seen.
     pub(super) hidden: Vec<bool>,
     /// Of each instance of the model, where it is drawn as faces alone; empty in what was cut out of it.
@@ -315,6 +317,7 @@ impl SceneData {
         }
         data.sources.resize(data.instances.len(), [0; 2]);
         data.trimmed = Trimmed::by_table(&data);
+        data.boxes = boxes(&data);
         Ok(data)
     }
 
@@ -355,7 +358,7 @@ impl SceneData {
 
     /// Frees the arrays that the GPU has; the placements and centres stay.
     pub(crate) fn drop_uploaded(&mut self) {
-        let placements = std::mem::take(&mut self.placements);
+        let (placements, boxes) = (std::mem::take(&mut self.placements), std::mem::take(&mut self.boxes));
         let solids = std::mem::take(&mut self.solids).centres_only();
         let volume = self.volume.take().map(SolidData::centres_only);
         let edit = self.edit.take();
@@ -363,7 +366,19 @@ impl SceneData {
         let trimmed = self.trimmed.take();
         let (hidden, live) = (std::mem::take(&mut self.hidden), std::mem::take(&mut self.live));
         let casts_shadows = self.casts_shadows;
-        *self = Self { placements, hidden, live, casts_shadows, trimmed, solids, volume, edit, sun, ..Self::default() };
+        *self = Self {
+            placements,
+            boxes,
+            hidden,
+            live,
+            casts_shadows,
+            trimmed,
+            solids,
+            volume,
+            edit,
+            sun,
+            ..Self::default()
+        };
     }
 
     /// Operands of Boolean solids without equations are placed as parts are, after them.
@@ -474,14 +489,4 @@ impl SceneData {
             repeat(&mut self.curve_items, curves);
         }
     }
-}
-
-/// The model without the instances that are followed as solids.
-fn drawn_as_faces<'a>(model: &'a Model, items: Option<&Items>) -> Cow<'a, Model> {
-    let mut model = Cow::Borrowed(model);
-    if let Some(items) = items.filter(|items| items.drawn.contains(&false)) {
-        let mut drawn = items.drawn.iter();
-        model.to_mut().instances.retain(|_| drawn.next() == Some(&true));
-    }
-    model
 }

@@ -24,6 +24,7 @@ mod exact;
 mod face;
 mod fine;
 mod flatten;
+mod in_sight;
 mod instance;
 mod link;
 mod mesh;
@@ -51,6 +52,7 @@ pub(crate) use edit::{EditTarget, Write};
 pub(crate) use exact::ExactData;
 #[cfg(any(test, feature = "baselines"))]
 pub(crate) use flatten::{Cuts, flattened};
+pub(crate) use in_sight::{InSight, Reach};
 pub use instance::InstanceError;
 pub(crate) use instance::Shown;
 pub(crate) use parts::Told;

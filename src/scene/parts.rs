@@ -6,9 +6,10 @@
 //! ```
 
 use super::face::{Body, Cuts, FaceData, Trimming};
-use crate::model::{Face, Part};
+use crate::model::{Face, Items, Model, Part};
 use glam::DVec3;
 use rayon::prelude::*;
+use std::borrow::Cow;
 use std::collections::HashMap;
 
 /// Faces that are made before they are handed on: work for all threads, and little memory beside that of a large scene.
@@ -117,6 +118,16 @@ pub(super) fn each_made(
         }
         start = end;
     }
+}
+
+/// The model without the instances that are followed as solids.
+pub(super) fn drawn_as_faces<'a>(model: &'a Model, items: Option<&Items>) -> Cow<'a, Model> {
+    let mut model = Cow::Borrowed(model);
+    if let Some(items) = items.filter(|items| items.drawn.contains(&false)) {
+        let mut drawn = items.drawn.iter();
+        model.to_mut().instances.retain(|_| drawn.next() == Some(&true));
+    }
+    model
 }
 
 #[cfg(test)]

@@ -12,7 +12,7 @@ use glam::Vec3;
 /// `tau_u | tau_v << 16` of each item; 0 for one that cannot be seen. Counts factors above
 /// [`MOST_SEGMENTS`] in `counters.clamps`.
 pub fn bound(frame: &Frame, scene: &Scene<'_>, counters: &mut Counters) -> Vec<u32> {
-    (0..frame.item_count as usize)
+    (0..frame.items_in_sight as usize)
         .map(|item| {
             let (placed, face, patch) = scene.item(item);
             let view = &scene.views[placed.instance as usize];

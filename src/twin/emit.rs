@@ -37,7 +37,7 @@ pub fn emit(
     (sub_patches, draws): (&mut [SubPatch], &mut [Draw]),
     counters: &mut Counters,
 ) {
-    let n = frame.item_count as usize;
+    let n = frame.items_in_sight as usize;
     counters.plain += sub_patch_starts[n];
     counters.trimmed += sub_patch_starts[2 * n] - sub_patch_starts[n];
     if sub_patch_starts[2 * n] > frame.sub_patch_capacity {

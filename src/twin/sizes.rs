@@ -2,18 +2,17 @@
 //! table, and the dispatches that follow from them.
 
 use super::FAILED_ROWS;
+use super::grid::grid_of;
 use super::u_bins::seen_range;
-use crate::abi::constants::sizes::{GROUP, MAX_GROUPS, SCAN_BLOCK};
+pub use crate::abi::constants::sizes::MOST_NUMBERED as MOST_SEGMENTS;
+use crate::abi::constants::sizes::{GROUP, SCAN_BLOCK};
 use crate::abi::{Counters, Frame, StripRows};
-
-/// Most segments that pass `cross` can be given.
-pub const MOST_SEGMENTS: u32 = MAX_GROUPS * GROUP;
 
 /// Where the rows of each strip are, at its first bin.
 pub fn strips(strip_starts: &[u32], seen_bins: &[u32]) -> Vec<StripRows> {
     let of_strip = |(pair, &seen): (&[u32], &u32)| {
         let (first_bin, bins) = seen_range(seen);
-        StripRows { first: pair[0], lines: (pair[1] - pair[0]) / bins, first_bin, bins }
+        StripRows { first: pair[0], lines: pair[1].wrapping_sub(pair[0]) / bins, first_bin, bins }
     };
     strip_starts.windows(2).zip(seen_bins).map(of_strip).collect()
 }
@@ -23,13 +22,16 @@ pub fn strips(strip_starts: &[u32], seen_bins: &[u32]) -> Vec<StripRows> {
 pub fn sizes(frame: &Frame, strip_starts: &[u32], segment_starts: &[u32], counters: &mut Counters) -> [[u32; 3]; 3] {
     let wanted = strip_starts[frame.bin_count as usize];
     let segments = segment_starts[frame.curve_count as usize];
-    if wanted > frame.row_capacity {
+    let starts = &strip_starts[..=frame.bin_count as usize];
+    let wrapped = starts.windows(2).any(|pair| pair[1] < pair[0]);
+    if wanted > frame.row_capacity || wrapped {
         counters.failed |= FAILED_ROWS;
     }
     counters.clamps += u32::from(segments > MOST_SEGMENTS);
     counters.rows = wanted.min(frame.row_capacity);
-    counters.wanted_rows = wanted;
+    // more than 32 bits count
+    counters.wanted_rows = if wrapped { u32::MAX } else { wanted };
     counters.segments = segments.min(MOST_SEGMENTS);
-    let groups = |threads: u32, group: u32| [threads.div_ceil(group), 1, 1];
+    let groups = |threads: u32, group: u32| grid_of(frame, threads.div_ceil(group));
     [groups(counters.segments, GROUP), groups(counters.rows, GROUP), groups(counters.rows, SCAN_BLOCK)]
 }

@@ -44,7 +44,7 @@ pub struct Split {
 
 /// Decides the segments of each item's sides from the factors of all patches of its part.
 pub fn split(frame: &Frame, scene: &Scene<'_>, taus: &[u32]) -> Split {
-    let n = frame.item_count as usize;
+    let n = frame.items_in_sight as usize;
     let mut out =
         Split { factors: Vec::with_capacity(n), sub_patch_counts: vec![0; 2 * n], vertex_counts: vec![0; 2 * n] };
     for item in 0..n {

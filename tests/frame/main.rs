@@ -10,6 +10,7 @@ mod bands;
 mod borders;
 #[path = "../shapes/cages.rs"]
 mod cages;
+mod ceilings;
 mod closed;
 mod cuts;
 mod distance;
@@ -22,6 +23,7 @@ mod hard_solids;
 mod hard_trims;
 mod hard_views;
 mod hidden;
+mod in_sight;
 mod kept;
 mod layers;
 mod ledges;

@@ -1,5 +1,6 @@
 //! A renderer that the validation layers watch, for all test crates that draw.
 
+use selvedge::gpu::LowerLimits;
 use selvedge::headless::{HeadlessOptions, HeadlessRenderer};
 use selvedge::model::Model;
 use std::path::Path;
@@ -14,8 +15,13 @@ pub fn sample(name: &str) -> Model {
 
 /// A renderer without a model, under validation and synchronisation validation.
 pub fn renderer() -> HeadlessRenderer {
+    limited(LowerLimits::NONE)
+}
+
+/// The same on a device with lower limits.
+pub fn limited(lower: LowerLimits) -> HeadlessRenderer {
     let options = HeadlessOptions { validation: true, ..Default::default() };
-    HeadlessRenderer::new(&options).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"))
+    HeadlessRenderer::limited(&options, lower).unwrap_or_else(|error| panic!("these tests need Vulkan: {error}"))
 }
 
 /// Ends the renderer; any message of the layers fails the test.

@@ -3,6 +3,9 @@
 use crate::gpu::{Buffer, Commands, ComputeInfo, Device, GpuError, Pipeline, Resource};
 use crate::shaders::Shader;
 
+/// Threads of one dispatch: those behind the last, which fill its row of workgroups, have numbers of 32 bits too.
+pub(crate) const MOST_THREADS: u32 = 1 << 31;
+
 /// The pipeline of one compute shader.
 #[derive(Debug)]
 pub(crate) struct Kernel {
@@ -40,9 +43,18 @@ impl Kernel {
         cmd.bind(&self.pipeline, resources, push_constants);
     }
 
-    /// As many workgroups as `threads` need, in x.
+    /// As many workgroups as `threads` need, and as fill their last row: [`Commands::dispatch`].
     pub(crate) fn record(&self, cmd: &Commands<'_>, resources: &[Resource<'_>], threads: u32) {
         self.bind(cmd, resources, &[]);
+        self.dispatch(cmd, threads);
+    }
+
+    /// The same for the pipeline bound last.
+    ///
+    /// # Panics
+    /// When there are more threads than [`MOST_THREADS`].
+    pub(crate) fn dispatch(&self, cmd: &Commands<'_>, threads: u32) {
+        assert!(threads <= MOST_THREADS, "{threads} threads where {MOST_THREADS} are the most");
         cmd.dispatch(threads.div_ceil(self.group[0]));
     }
 

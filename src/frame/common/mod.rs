@@ -1,6 +1,7 @@
 //! What several stages have in common: counters that begin at 0, prefix sums, and the draws of sub-patches.
 
 pub(crate) mod draw;
+pub(crate) mod gate;
 pub(crate) mod kernel;
 pub(crate) mod reset;
 pub(crate) mod room;
@@ -8,7 +9,7 @@ pub mod scan;
 
 use super::Frame;
 use crate::abi::Counters;
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError};
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, barrier};
 use crate::picture::TakenWay;
 use crate::scene::SceneData;
 use ash::vk;
@@ -19,12 +20,15 @@ use std::sync::Arc;
 pub(crate) struct Passes {
     reset: reset::Reset,
     pub(super) scan: scan::Scan,
+    /// In scenes with patches.
+    gate: Option<gate::Gate>,
 }
 
 impl Passes {
     pub(super) fn new(device: &Device, data: &SceneData) -> Result<Self, GpuError> {
         let scan = scan::Scan::new(device, data.trim_way() == Some(TakenWay::Table))?;
-        Ok(Self { reset: reset::Reset::new(device, false)?, scan })
+        let gate = (!data.items.is_empty()).then(|| gate::Gate::new(device)).transpose()?;
+        Ok(Self { reset: reset::Reset::new(device, false)?, scan, gate })
     }
 }
 
@@ -57,6 +61,15 @@ impl Common {
         self.passes.reset.record(cmd, &bindings, 2 * frame.capacities.tessellation.draws);
         let w = Access::COMPUTE_WRITE;
         cmd.after(w, w);
+    }
+
+    /// Patches are drawn only where all that they are drawn from had room.
+    pub(super) fn gate(&self, cmd: &Commands<'_>) {
+        let Some(gate) = &self.passes.gate else { return };
+        let (counted, drawn) = (Access::COMPUTE_WRITE, Access::COMPUTE_WRITE | Access::INDIRECT_READ);
+        barrier::buffers(cmd, &[(&self.counters, counted | Access::INDIRECT_READ, Access::COMPUTE_WRITE)]);
+        gate.record(cmd, &self.counters);
+        barrier::buffers(cmd, &[(&self.counters, counted, drawn)]);
     }
 
     /// One prefix sum; the total follows the last start.

@@ -21,6 +21,13 @@ pub(crate) const DRAWN_AND_READ: vk::ImageUsageFlags = vk::ImageUsageFlags::from
     vk::ImageUsageFlags::COLOR_ATTACHMENT.as_raw() | vk::ImageUsageFlags::STORAGE.as_raw(),
 );
 
+/// Images that begin cleared, where shaders count by atomics, and that others sample.
+pub(crate) const COUNTED: vk::ImageUsageFlags = vk::ImageUsageFlags::from_raw(
+    vk::ImageUsageFlags::STORAGE.as_raw()
+        | vk::ImageUsageFlags::SAMPLED.as_raw()
+        | vk::ImageUsageFlags::TRANSFER_DST.as_raw(),
+);
+
 impl Room<'_> {
     /// `n` words.
     pub(crate) fn words(&self, name: &str, n: u32) -> Result<Buffer, GpuError> {

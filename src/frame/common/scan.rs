@@ -28,8 +28,8 @@ use crate::shaders::{self, constant};
 /// Elements that one workgroup scans.
 pub const BLOCK: u32 = 1024;
 
-/// Most elements: one workgroup a block, within the 65,535 workgroups that every device takes.
-pub const MAX_COUNT: u32 = 1 << 24;
+/// Most elements: numbers of those that fill the last row of workgroups have 32 bits, too.
+pub const MAX_COUNT: u32 = 1 << 31;
 
 /// Blocks, and so words of `sums` and workgroups of the indirect arguments, for `count` elements.
 pub fn block_count(count: u32) -> u32 {

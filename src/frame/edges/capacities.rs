@@ -21,10 +21,10 @@ impl Capacities {
     /// What the frame that reported `c` would have needed.
     pub(crate) fn grown(self, c: &Counters, range: u32) -> Result<Self, TooMany> {
         let most = (range / size_of::<Chord>() as u32).min(LINE_CHORD);
-        if c.edge_chords > most {
-            let help = "draw lines along fewer edges";
-            return Err(TooMany { what: "chords of edges", count: c.edge_chords, most, help });
-        }
+        let (wanted, help) = (("chords of edges", c.edge_chords), "draw lines along fewer edges");
+        let over = TooMany::of_numbers(wanted.0, wanted.1, LINE_CHORD, help)
+            .or_else(|| TooMany::of_bytes(wanted, size_of::<Chord>(), range, help));
+        over.map_or(Ok(()), Err)?;
         Ok(Self { chords: grown(self.chords, c.edge_chords, most) })
     }
 }

@@ -68,7 +68,7 @@ impl Divide {
         let [frame, views, items, pieces] = [b.frame, b.views, b.items, b.pieces].map(Resource::from);
         let resources = [frame, views, items, pieces, b.points.into(), b.counts.into(), b.counters.into()];
         self.count.bind(cmd, &resources, bytemuck::bytes_of(&params));
-        self.count.dispatch_rows(cmd, [params.item_count, 1]);
+        self.count.dispatch(cmd, params.item_count);
     }
 
     /// The same, once `starts` has the sums; `chords` has room for `capacity`.
@@ -77,6 +77,6 @@ impl Divide {
         let written = [b.starts, b.counters, b.lines, b.chords, b.draw].map(Resource::from);
         let resources = [frame, views, items, pieces, b.points.into()].into_iter().chain(written).collect::<Vec<_>>();
         self.emit.bind(cmd, &resources, bytemuck::bytes_of(&EmitParams { all: params, capacity }));
-        self.emit.dispatch_rows(cmd, [params.item_count, 1]);
+        self.emit.dispatch(cmd, params.item_count);
     }
 }

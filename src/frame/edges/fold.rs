@@ -23,7 +23,7 @@ pub(crate) struct Bindings<'a> {
     pub placed: Placed<'a>,
     pub visibility: &'a Image,
     pub others: &'a Image,
-    pub best: &'a Buffer,
+    pub best: &'a Image,
     pub meshes: Option<&'a MeshBuffers>,
 }
 
@@ -35,7 +35,7 @@ impl Fold {
 
     /// One triangle over a picture of the visibility image's size; lines are twice `half_px` wide.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, half_px: f32) {
-        let meshes = b.meshes.map_or([b.best; 3], |m| [&m.instances, &m.triangles, &m.positions]);
+        let meshes = b.meshes.map_or([b.frame; 3], |m| [&m.instances, &m.triangles, &m.positions]);
         let resources: Vec<_> = [b.frame.into()]
             .into_iter()
             .chain(b.placed.resources())

@@ -32,7 +32,7 @@ pub(crate) struct Bindings<'a> {
     pub sources: &'a TexelBuffer,
     pub chords: &'a Buffer,
     pub edges: &'a EdgeBuffers,
-    pub best: &'a Buffer,
+    pub best: &'a Image,
     pub meshes: Option<&'a MeshBuffers>,
 }
 
@@ -56,7 +56,7 @@ impl Line {
         let (e, placed) = (b.edges, b.placed.resources());
         let seen = [b.visibility.into(), b.others.into(), Resource::from(&e.face_keys), b.sources.into()];
         let edges = [b.chords, &e.items, &e.pieces, &e.lines, &e.own_faces].map(Resource::from);
-        let meshes = b.meshes.map_or([b.best; 3], |m| [&m.instances, &m.triangles, &m.positions]);
+        let meshes = b.meshes.map_or([b.frame; 3], |m| [&m.instances, &m.triangles, &m.positions]);
         let resources: Vec<_> = [b.frame.into()]
             .into_iter()
             .chain(placed)

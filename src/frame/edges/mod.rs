@@ -17,15 +17,16 @@ pub(crate) mod show;
 
 pub(crate) use capacities::Capacities;
 
-use super::common::room::Room;
+use super::common::room::{COUNTED, Room};
 use super::shading::numbers::NUMBER_FORMAT;
 use super::shading::resolve;
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::Chord;
-use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Load, barrier};
+use crate::gpu::{Access, Attachment, Buffer, Commands, Device, GpuError, Image, Load, barrier};
 use crate::picture::EdgeSettings;
 use crate::scene::SceneData;
 use crate::shaders::constant;
+use ash::vk;
 use std::sync::Arc;
 
 /// The passes of scenes with lines.
@@ -79,10 +80,12 @@ pub(crate) struct EdgeStage {
     starts: Buffer,
     chords: Buffer,
     draw: Buffer,
-    /// A word a pixel.
-    best: Buffer,
+    /// Of each pixel.
+    best: Image,
 }
 
+/// Format of the image of each pixel's best line.
+const BEST_FORMAT: vk::Format = vk::Format::R32_UINT;
 /// Beyond the picture, lines are this much wider: for the pixels' own size, and what chords and rounding are off.
 const BESIDE_PX: f32 = 2.0;
 
@@ -98,7 +101,7 @@ impl EdgeStage {
             starts: room.words("edge chord starts", items + 1)?,
             chords: room.structs::<Chord>("edge chords", room.capacities.edges.chords)?,
             draw: room.indirect::<u32>("edge draw", divide::DRAW_WORDS)?,
-            best: room.words("best lines", room.size.0 * room.size.1)?,
+            best: room.image("best lines", BEST_FORMAT, COUNTED)?,
         })
     }
 
@@ -134,8 +137,10 @@ impl EdgeStage {
     /// Lines over the host's colour, which is whole, and their numbers.
     pub(super) fn draw(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let (s, v, passes) = (frame.scene, &frame.stages.visibility, &self.passes);
-        cmd.fill(&self.best, 0);
-        barrier::buffers(cmd, &[(&self.best, Access::TRANSFER_WRITE, Access::FRAGMENT_WRITE)]);
+        let (written, read) = (Access::FRAGMENT_WRITE, Access::FRAGMENT_READ);
+        barrier::images(cmd, &[(&self.best, read.discarded(), Access::TRANSFER_WRITE)]);
+        cmd.clear(&self.best, 0);
+        barrier::images(cmd, &[(&self.best, Access::TRANSFER_WRITE, written)]);
         if let (Some(edges), Some(sources)) = (&s.edges, &s.sources) {
             let bindings = line::Bindings {
                 frame: frame.constants,
@@ -160,10 +165,10 @@ impl EdgeStage {
                 best: &self.best,
                 meshes: s.meshes.as_ref(),
             };
-            barrier::buffers(cmd, &[(&self.best, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
+            barrier::images(cmd, &[(&self.best, written, written)]);
             fold.record(cmd, &bindings, self.half_px[0]);
         }
-        barrier::buffers(cmd, &[(&self.best, Access::FRAGMENT_WRITE, Access::FRAGMENT_READ)]);
+        barrier::images(cmd, &[(&self.best, written, read)]);
         let bindings = show::Bindings {
             frame: frame.constants,
             best: &self.best,

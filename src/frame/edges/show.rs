@@ -22,7 +22,7 @@ pub(crate) struct Show {
 /// Its buffers and images, in binding order.
 pub(crate) struct Bindings<'a> {
     pub frame: &'a Buffer,
-    pub best: &'a Buffer,
+    pub best: &'a Image,
     pub chords: &'a Buffer,
     /// Where lines are drawn along edges.
     pub edges: Option<&'a EdgeBuffers>,
@@ -58,10 +58,10 @@ impl Show {
     /// One triangle over the targets.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, colours: Colours, into: &[Attachment<'_>]) {
         // not read without
-        let edges = b.edges.map_or([b.best; 3], |e| [&e.items, &e.pieces, &e.lines]).map(Resource::from);
-        let buffers = [b.frame, b.best, b.chords].map(Resource::from).into_iter().chain(edges);
+        let edges = b.edges.map_or([b.frame; 3], |e| [&e.items, &e.pieces, &e.lines]).map(Resource::from);
+        let lists = [b.frame.into(), b.best.into(), b.chords.into()].into_iter().chain(edges);
         let images = [b.visibility, b.others].map(Resource::from);
-        let resources: Vec<_> = buffers.chain(images).collect();
+        let resources: Vec<_> = lists.chain(images).collect();
         cmd.rendering(b.visibility.size(), into, None, || {
             cmd.bind(&self.pipeline, &resources, bytemuck::bytes_of(&colours));
             cmd.draw(3, 0, 1);

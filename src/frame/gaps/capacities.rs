@@ -2,7 +2,10 @@
 
 use crate::abi::{Counters, GapCandidate};
 use crate::frame::capacities::grown;
-use crate::frame::counts::Counts;
+use crate::frame::counts::{Counts, SMALLER, TooMany};
+
+/// Pixels of a picture of which one looks through a gap, in a scene with many narrow faces.
+const PIXELS_OF_A_CANDIDATE: u64 = 8;
 
 /// Room for what only the GPU can count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -16,8 +19,19 @@ impl Capacities {
         Self { candidates: u32::from(counts.trim.is_some()) * (1 << 14) }
     }
 
+    /// The same, with room for one of so many pixels of a picture where a storage buffer of `range` bytes has it: most often
+    /// that is enough.
+    pub(crate) fn for_picture(self, counts: Counts, size: (u32, u32), range: u32) -> Self {
+        let some = u64::from(size.0) * u64::from(size.1) / PIXELS_OF_A_CANDIDATE;
+        let most = range / size_of::<GapCandidate>() as u32;
+        let some = if counts.trim.is_some() { some.min(most.into()) as u32 } else { 0 };
+        Self { candidates: self.candidates.max(some) }
+    }
+
     /// What the frame that reported `c` would have needed.
-    pub(crate) fn grown(self, c: &Counters, range: u32) -> Self {
-        Self { candidates: grown(self.candidates, c.gap_candidates, range / size_of::<GapCandidate>() as u32) }
+    pub(crate) fn grown(self, c: &Counters, range: u32) -> Result<Self, TooMany> {
+        let (wanted, bytes) = (("pixels at gaps", c.gap_candidates), size_of::<GapCandidate>());
+        TooMany::of_bytes(wanted, bytes, range, SMALLER).map_or(Ok(()), Err)?;
+        Ok(Self { candidates: grown(self.candidates, c.gap_candidates, range / bytes as u32) })
     }
 }

@@ -39,7 +39,7 @@ pub(crate) struct FindBindings<'a> {
     pub dispatch: &'a Buffer,
     pub counters: &'a Buffer,
     pub depth: &'a Image,
-    pub border_depths: &'a TexelBuffer,
+    pub border_depths: &'a Image,
 }
 
 /// Of the second step, in binding order, and its dispatch.
@@ -111,7 +111,7 @@ impl GapFill {
             b.dispatch.into(),
             b.counters.into(),
             Resource::Sampled(b.depth, &self.nearest),
-            b.border_depths.into(),
+            Resource::Sampled(b.border_depths, &self.nearest),
         ];
         self.find.record_grid(cmd, &resources, [width.div_ceil(PART[0]), height.div_ceil(PART[1]), 1]);
     }

@@ -9,13 +9,17 @@ pub(crate) mod gap_fill;
 
 pub(crate) use capacities::Capacities;
 
-use super::common::room::Room;
+use super::common::room::{COUNTED, Room};
 use super::{Frame, WRITE_TO_READ};
 use crate::abi::GapCandidate;
-use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Resource, Texel, TexelBuffer, barrier};
+use crate::gpu::{Access, Buffer, Commands, Device, GpuError, Image, Resource, barrier};
 use crate::scene::{SceneData, SolidData};
 use crate::shaders::TrimTest;
+use ash::vk;
 use std::sync::Arc;
+
+/// Format of the image of how near skirts come: the bits of reversed depths.
+const BORDER_DEPTH_FORMAT: vk::Format = vk::Format::R32_UINT;
 
 /// The passes of scenes with trims, whose test is `test`.
 pub(super) fn passes(device: &Device, data: &SceneData, test: &TrimTest) -> Result<gap_fill::GapFill, GpuError> {
@@ -27,8 +31,8 @@ pub(super) fn passes(device: &Device, data: &SceneData, test: &TrimTest) -> Resu
 /// The stage.
 pub(crate) struct Gaps {
     passes: Arc<gap_fill::GapFill>,
-    /// How near the nearest skirt comes, a word a pixel.
-    pub border_depths: TexelBuffer,
+    /// How near the nearest skirt comes, of each pixel.
+    pub border_depths: Image,
     candidates: Buffer,
     dispatch: Buffer,
 }
@@ -37,7 +41,7 @@ impl Gaps {
     pub(super) fn new(room: &Room<'_>, passes: &Arc<gap_fill::GapFill>) -> Result<Self, GpuError> {
         Ok(Self {
             passes: Arc::clone(passes),
-            border_depths: room.texels::<u32>("border depths", room.size.0 * room.size.1, Texel::Numbers)?,
+            border_depths: room.image("border depths", BORDER_DEPTH_FORMAT, COUNTED)?,
             candidates: room.structs::<GapCandidate>("gap candidates", room.capacities.gaps.candidates)?,
             dispatch: room.indirect::<[u32; 3]>("gap dispatch", 1)?,
         })
@@ -46,25 +50,22 @@ impl Gaps {
     /// Before each drawing.
     pub(super) fn clear(&self, cmd: &Commands<'_>) {
         cmd.fill(&self.dispatch, 0);
-        cmd.fill(&self.border_depths, 0);
+        let (read, cleared, drawn) = (Access::COMPUTE_READ, Access::TRANSFER_WRITE, Access::FRAGMENT_WRITE);
+        barrier::images(cmd, &[(&self.border_depths, (read | drawn).discarded(), cleared)]);
+        cmd.clear(&self.border_depths, 0);
+        barrier::images(cmd, &[(&self.border_depths, cleared, drawn)]);
     }
 
     /// Pixels that look through a gap between faces get the face that belongs there.
     pub(super) fn record(&self, frame: &Frame<'_>, cmd: &Commands<'_>, test: &[Resource<'_>]) {
         let (s, c, v) = (frame.scene, &frame.stages.common, &frame.stages.visibility);
         let (w, r) = WRITE_TO_READ;
-        barrier::images(cmd, &[(&v.image, Access::COLOUR_WRITE, w), (&v.depth, Access::DEPTH_WRITE, r)]);
+        let borders = (&self.border_depths, Access::FRAGMENT_WRITE, r);
+        barrier::images(cmd, &[(&v.image, Access::COLOUR_WRITE, w), (&v.depth, Access::DEPTH_WRITE, r), borders]);
         if let Some(others) = &v.others {
             barrier::images(cmd, &[(others, Access::COLOUR_WRITE, Access::COMPUTE_READ | Access::FRAGMENT_READ)]);
         }
-        barrier::buffers(
-            cmd,
-            &[
-                (&self.border_depths, Access::FRAGMENT_WRITE, r),
-                (&c.counters, Access::INDIRECT_READ, w),
-                (&self.dispatch, Access::TRANSFER_WRITE, w),
-            ],
-        );
+        barrier::buffers(cmd, &[(&c.counters, Access::INDIRECT_READ, w), (&self.dispatch, Access::TRANSFER_WRITE, w)]);
         let find = gap_fill::FindBindings {
             frame: frame.constants,
             visibility: &v.image,

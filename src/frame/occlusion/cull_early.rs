@@ -20,6 +20,8 @@ pub(crate) struct Bindings<'a> {
     pub taus: &'a Buffer,
     /// `hidden`.
     pub counters: &'a Buffer,
+    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
+    pub in_sight: &'a Buffer,
 }
 
 impl CullEarly {
@@ -28,9 +30,9 @@ impl CullEarly {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of `items`.
+    /// One thread for each of `items`, those in sight.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
-        let resources = [b.frame, b.hidden, b.taus, b.counters].map(Into::into);
+        let resources = [b.frame, b.hidden, b.taus, b.counters, b.in_sight].map(Into::into);
         self.kernel.record(cmd, &resources, items);
     }
 }

@@ -37,6 +37,8 @@ pub(crate) struct Bindings<'a> {
     pub outside: &'a Buffer,
     /// `hidden`.
     pub counters: &'a Buffer,
+    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
+    pub in_sight: &'a Buffer,
 }
 
 impl CullLate {
@@ -50,7 +52,7 @@ impl CullLate {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of `items`.
+    /// One thread for each of `items`, those in sight.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
         let resources = [
             b.frame.into(),
@@ -66,6 +68,7 @@ impl CullLate {
             b.hidden.into(),
             b.outside.into(),
             b.counters.into(),
+            b.in_sight.into(),
         ];
         self.kernel.record(cmd, &resources, items);
     }

@@ -65,7 +65,7 @@ impl Passes {
 /// The stage.
 pub(crate) struct Occlusion {
     passes: Arc<Passes>,
-    /// Whether a patch lay behind others, a word an item; from frame to frame.
+    /// Whether a patch lay behind others when it was in sight last, a word an item; from frame to frame.
     hidden: Buffer,
     /// A float a square of pixels, then a tile, then a block of tiles.
     farthest: Buffer,
@@ -94,8 +94,9 @@ impl Occlusion {
         let (w, r) = WRITE_TO_READ;
         let cleared = Access::TRANSFER_WRITE;
         barrier::buffers(cmd, &[(taus, w, w), (&self.hidden, cleared | w, r), (counters, w, w)]);
-        let bindings = cull_early::Bindings { frame: frame.constants, hidden: &self.hidden, taus, counters };
-        self.passes.cull_early.record(cmd, &bindings, frame.counts.items);
+        let (in_sight, items) = frame.in_sight;
+        let bindings = cull_early::Bindings { frame: frame.constants, hidden: &self.hidden, taus, counters, in_sight };
+        self.passes.cull_early.record(cmd, &bindings, items);
         cmd.after(w, w);
     }
 
@@ -115,6 +116,7 @@ impl Occlusion {
         let pyramid = depth_pyramid::Bindings { frame: frame.constants, depth: &v.depth, farthest: &self.farthest };
         self.passes.depth_pyramid.record(cmd, &pyramid);
         cmd.after(w | Access::INDIRECT_READ, r | w);
+        let (in_sight, items) = frame.in_sight;
         let bindings = cull_late::Bindings {
             frame: frame.constants,
             views: frame.views,
@@ -129,8 +131,9 @@ impl Occlusion {
             hidden: &self.hidden,
             outside: s.outside(),
             counters: &c.counters,
+            in_sight,
         };
-        self.passes.cull_late.record(cmd, &bindings, frame.counts.items);
+        self.passes.cull_late.record(cmd, &bindings, items);
         barrier::images(cmd, &[(&v.depth, r, Access::DEPTH_WRITE)]);
         if frame.occlusion != OcclusionState::Moved {
             cmd.after(w, Access::INDIRECT_READ);

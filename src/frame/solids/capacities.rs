@@ -138,15 +138,11 @@ impl Capacities {
             _ => self.ray_segments,
         };
         let rows = self.band_rows.saturating_mul(TILE).min(size.1);
-        let (pixels, most) = (size.0.saturating_mul(rows), range / size_of::<u32>() as u32);
-        if grown > 1 && pixels > most {
-            let what = "pixels whose rays go on in segments";
-            return Err(TooMany {
-                what,
-                count: pixels,
-                most,
-                help: "draw a smaller picture, or by a smaller solid budget",
-            });
+        let pixels = size.0.saturating_mul(rows);
+        if grown > 1 {
+            let help = "draw a smaller picture, or by a smaller solid budget";
+            let wanted = ("pixels whose rays go on in segments", pixels);
+            TooMany::of_bytes(wanted, size_of::<u32>(), range, help).map_or(Ok(()), Err)?;
         }
         Ok(grown.min(MOST_RAY_SEGMENTS))
     }
@@ -161,13 +157,13 @@ impl Capacities {
     /// What the frame that reported `c` would have needed; see [`Capacities::grown`](crate::frame::capacities::Capacities::grown).
     pub(crate) fn grown(self, c: &Counters, counts: Counts, size: (u32, u32), range: u32) -> Result<Self, TooMany> {
         let most_leaves = range / size_of::<TileLeaf>() as u32;
-        if !counts.events && c.band_tile_leaves > most_leaves {
-            let what = "primitives in tiles";
-            return Err(TooMany { what, count: c.band_tile_leaves, most: most_leaves, help: SMALLER });
+        if !counts.events {
+            let wanted = ("primitives in tiles", c.band_tile_leaves);
+            TooMany::of_bytes(wanted, size_of::<TileLeaf>(), range, SMALLER).map_or(Ok(()), Err)?;
         }
         if c.failed & FAILED_LAYERS != 0 && self.layers >= MOST_LAYERS {
             let help = "draw the solids by the way `events`";
-            return Err(TooMany { what: "layers of faces", count: c.layers, most: MOST_LAYERS, help });
+            return Err(TooMany { what: "layers of faces", count: c.layers, most: MOST_LAYERS, bytes: None, help });
         }
         let lists = match counts.events {
             true => self.banded(c, &counts.lists(size, range))?,

@@ -113,9 +113,9 @@ impl Lists {
     pub fn hold(&self, rows: u32, entries: Entries) -> bool {
         let [leaves, fragments] = entries.bytes();
         let range = u64::from(self.limits.range);
-        let counted = !self.has_fragments
-            || self.pixels(rows) <= u64::from(scan::MAX_COUNT)
-                && size_of::<u32>() as u64 * (self.pixels(rows) + 1) <= range;
+        // a word a pixel: of its crossings, or of where its ray goes on
+        let counted = self.pixels(rows) < u64::from(scan::MAX_COUNT)
+            && size_of::<u32>() as u64 * (self.pixels(rows) + 1) <= range;
         counted && leaves.max(fragments) <= range && self.counted_bytes(rows) + leaves + fragments <= self.limits.budget
     }
 
@@ -152,6 +152,7 @@ impl Lists {
             what,
             count: counted(wanted),
             most: self.limits.range / of_one as u32,
+            bytes: Some((wanted * of_one as u64, range)),
             help: SMALLER,
         };
         if fragments > range {
@@ -165,6 +166,7 @@ impl Lists {
             what: "bytes for the lists of one row of tiles",
             count: counted(bytes),
             most: counted(self.limits.budget),
+            bytes: None,
             help: "give a larger solid budget, or draw a smaller picture",
         }
     }
@@ -205,8 +207,8 @@ mod tests {
     #[test]
     fn one_buffer_is_a_limit_too() {
         let wide = Lists { size: (1 << 14, 1 << 14), limits: Limits { range: 1 << 27, budget: u64::MAX }, ..LISTS };
-        // a prefix sum counts 2^24 pixels
-        assert_eq!(wide.most_rows(Entries::NONE), 64);
+        // 2^25 words of 2^18 pixels a row, and one word more
+        assert_eq!(wide.most_rows(Entries::NONE), 127);
         let row = Entries { tile_leaves: 0, fragments: 1 << 21 };
         assert_eq!(wide.most_rows(row), 4);
         let over = wide.no_room(row.times(5, 1));

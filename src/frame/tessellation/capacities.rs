@@ -3,7 +3,7 @@
 use crate::abi::constants::scene::FAILED_DRAWS;
 use crate::abi::{Counters, SubPatch};
 use crate::frame::capacities::grown;
-use crate::frame::counts::Counts;
+use crate::frame::counts::{Counts, FEWER_PARTS, TooMany};
 
 /// In a view of the whole scene, where most items are a sub-patch of few segments.
 const VERTICES_OF_AN_ITEM: u64 = 16;
@@ -28,13 +28,15 @@ impl Capacities {
     }
 
     /// What the frame that reported `c` would have needed.
-    pub(crate) fn grown(self, c: &Counters, range: u32) -> Self {
+    pub(crate) fn grown(self, c: &Counters, range: u32) -> Result<Self, TooMany> {
         let wanted = c.plain.saturating_add(c.trimmed);
+        let bytes = size_of::<SubPatch>();
+        TooMany::of_bytes(("parts of patches", wanted), bytes, range, FEWER_PARTS).map_or(Ok(()), Err)?;
         let more_draws = if c.failed & FAILED_DRAWS != 0 { 4 } else { 1 };
-        Self {
-            sub_patches: grown(self.sub_patches, wanted, range / size_of::<SubPatch>() as u32),
+        Ok(Self {
+            sub_patches: grown(self.sub_patches, wanted, range / bytes as u32),
             draws: self.draws.saturating_mul(more_draws),
-        }
+        })
     }
 }
 

@@ -40,13 +40,14 @@ impl DividePass {
             counters: &frame.stages.common.counters,
             cones: s.cones.as_ref(),
             points: &s.points,
+            in_sight: frame.in_sight.0,
         };
         match self {
-            Self::Bound(pass) => pass.record(cmd, &bounded, frame.counts.items),
+            Self::Bound(pass) => pass.record(cmd, &bounded, frame.in_sight.1),
             #[cfg(feature = "baselines")]
             Self::Slefe(pass) => {
                 let bindings = slefe::Bindings { bounded, slefes: s.slefes() };
-                pass.record(cmd, &bindings, frame.counts.items);
+                pass.record(cmd, &bindings, frame.in_sight.1);
             }
         }
     }

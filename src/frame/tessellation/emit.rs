@@ -5,7 +5,7 @@
 //!    draw that gets it        |   0   |        1         |        2
 //! ```
 //!
-//! Reads: `frame`, `factors`, `sub_patch_starts`, `vertex_starts`. Writes: `sub_patches`, `draws`, `counters`.
+//! Reads: `frame`, `factors`, `sub_patch_starts`, `vertex_starts`, `in_sight`. Writes: `sub_patches`, `draws`, `counters`.
 //! Twin: `src/twin/emit.rs`.
 
 use crate::frame::common::kernel::Kernel;
@@ -29,6 +29,8 @@ pub(crate) struct Bindings<'a> {
     pub sub_patches: &'a Buffer,
     pub draws: &'a Buffer,
     pub counters: &'a Buffer,
+    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
+    pub in_sight: &'a Buffer,
 }
 
 impl Emit {
@@ -37,10 +39,10 @@ impl Emit {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of `items`.
+    /// One thread for each of `items`, those in sight.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
-        let resources = [b.frame, b.factors, b.sub_patch_starts, b.vertex_starts, b.sub_patches, b.draws, b.counters]
-            .map(Into::into);
+        let lists = [b.sub_patch_starts, b.vertex_starts, b.sub_patches, b.draws, b.counters, b.in_sight];
+        let resources: Vec<_> = [b.frame, b.factors].into_iter().chain(lists).map(Into::into).collect();
         self.kernel.record(cmd, &resources, items);
     }
 }

@@ -1,4 +1,4 @@
-//! How finely each patch is divided, and the sub-patches and draws that follow.
+//! How finely each patch of the placed parts in sight is divided, and the sub-patches and draws that follow.
 //!
 //! ```text
 //!   bound    tau per patch ──occlusion::cull_early──▶ 0 for what lay behind others
@@ -88,7 +88,7 @@ impl Tessellation {
     pub(super) fn split(&self, frame: &Frame<'_>, cmd: &Commands<'_>) {
         let Some(p) = &self.passes else { return };
         let (s, c) = (frame.scene, &frame.stages.common);
-        let items = frame.counts.items;
+        let (in_sight, items) = frame.in_sight;
         let (w, r) = WRITE_TO_READ;
         let split = split::Bindings {
             frame: frame.constants,
@@ -100,6 +100,7 @@ impl Tessellation {
             factors: &self.factors,
             sub_patch_counts: &self.sub_patch_counts,
             vertex_counts: &self.vertex_counts,
+            in_sight,
             links: s.links.as_ref(),
         };
         p.split.record(cmd, &split, items);
@@ -117,6 +118,7 @@ impl Tessellation {
             sub_patches: &self.sub_patches,
             draws: &c.draws,
             counters: &c.counters,
+            in_sight,
         };
         p.emit.record(cmd, &emit, items);
         cmd.after(w, Access::VERTEX_READ | Access::INDIRECT_READ | w);

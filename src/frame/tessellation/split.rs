@@ -10,7 +10,7 @@
 //!    └───────────┴───────────┘
 //! ```
 //!
-//! Reads: `frame`, `face_instances`, `faces`, `patches`, `items`, `taus`, `links`. Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
+//! Reads: `frame`, `face_instances`, `faces`, `patches`, `items`, `taus`, `in_sight`, `links`. Writes: `factors`, `sub_patch_counts`, `vertex_counts`.
 //! Twin: `src/twin/split.rs`.
 
 use crate::frame::common::kernel::Kernel;
@@ -32,10 +32,12 @@ pub(crate) struct Bindings<'a> {
     pub taus: &'a Buffer,
     /// [`Factors`](crate::abi::Factors) per item.
     pub factors: &'a Buffer,
-    /// Per item: plain, then trimmed.
+    /// Per item in sight: plain, then trimmed.
     pub sub_patch_counts: &'a Buffer,
     /// Likewise.
     pub vertex_counts: &'a Buffer,
+    /// [`ItemRun`](crate::abi::ItemRun)s of the items in sight.
+    pub in_sight: &'a Buffer,
     /// Sides that faces share; in scenes where they do.
     pub links: Option<&'a Buffer>,
 }
@@ -52,7 +54,7 @@ impl Split {
         Ok(Self { kernel })
     }
 
-    /// One thread for each of `items`.
+    /// One thread for each of `items`, those in sight.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, items: u32) {
         let resources = [
             b.frame,
@@ -64,6 +66,7 @@ impl Split {
             b.factors,
             b.sub_patch_counts,
             b.vertex_counts,
+            b.in_sight,
         ];
         let resources: Vec<_> = resources.into_iter().chain(b.links).map(Into::into).collect();
         self.kernel.record(cmd, &resources, items);

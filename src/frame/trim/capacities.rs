@@ -2,11 +2,12 @@
 
 use crate::abi::Counters;
 use crate::frame::capacities::grown;
-use crate::frame::counts::{Counts, EXACT, MOST_GROUPS, TooMany};
+use crate::frame::common::kernel::MOST_THREADS;
+use crate::frame::counts::{Counts, EXACT, TooMany};
 use crate::picture::TakenWay;
 
-/// Rows that pass `sort` takes, 128 to a workgroup.
-pub(crate) const MOST_ROWS: u32 = MOST_GROUPS * 128;
+/// The first flip and the number of flips.
+type Row = [u32; 2];
 
 /// Room for what only the GPU can count.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -21,24 +22,28 @@ impl Capacities {
         let table = u32::from(counts.trim == Some(TakenWay::Table));
         let counted = table.max(u32::from(counts.trim.is_some_and(TakenWay::is_texture)));
         Self {
-            rows: table * (1 << 16).max(2 * counts.bins).min(MOST_ROWS),
+            rows: table * (1 << 16).max(2 * counts.bins).min(MOST_THREADS),
             intercepts: counted * (1 << 18).max(4 * counts.bins),
         }
     }
 
     /// What the frame that reported `c` would have needed.
     pub(crate) fn grown(self, c: &Counters, counts: Counts, range: u32) -> Result<Self, TooMany> {
-        if c.wanted_rows > MOST_ROWS {
-            return Err(TooMany { what: "scan lines", count: c.wanted_rows, most: MOST_ROWS, help: EXACT });
-        }
-        let most_intercepts = range / size_of::<u32>() as u32;
-        if counts.trim == Some(TakenWay::Table) && c.intercepts > most_intercepts {
-            let what = "crossings of scan lines";
-            return Err(TooMany { what, count: c.intercepts, most: most_intercepts, help: EXACT });
-        }
+        let rows = ("scan lines", c.wanted_rows);
+        let intercepts = ("crossings of scan lines", c.intercepts);
+        let over = TooMany::of_numbers(rows.0, rows.1, MOST_THREADS, EXACT)
+            .or_else(|| TooMany::of_bytes(rows, size_of::<Row>(), range, EXACT));
+        let has_table = counts.trim == Some(TakenWay::Table);
+        let over = over.or_else(|| TooMany::of_bytes(intercepts, size_of::<u32>(), range, EXACT).filter(|_| has_table));
+        over.map_or(Ok(()), Err)?;
+        let most = |bytes: usize| range / bytes as u32;
+        // of rows without room crossings were not counted: as many as of the others
+        let share = u64::from(c.wanted_rows) * u64::from(c.intercepts) / u64::from(c.rows.max(1));
+        let most_intercepts = most(size_of::<u32>());
+        let intercepts = if c.wanted_rows > c.rows { share.min(most_intercepts.into()) as u32 } else { c.intercepts };
         Ok(Self {
-            rows: grown(self.rows, c.wanted_rows, MOST_ROWS),
-            intercepts: grown(self.intercepts, c.intercepts, most_intercepts),
+            rows: grown(self.rows, c.wanted_rows, most(size_of::<Row>()).min(MOST_THREADS)),
+            intercepts: grown(self.intercepts, intercepts, most_intercepts),
         })
     }
 }

@@ -36,6 +36,7 @@ impl Carry {
     /// One workgroup for each of `wide_strips`.
     pub(crate) fn record(&self, cmd: &Commands<'_>, b: &Bindings<'_>, wide_strips: u32) {
         let resources = [b.frame.into(), b.strips.into(), b.wide_strips.into(), b.row_windings.into()];
-        self.kernel.record_grid(cmd, &resources, [wide_strips, 1, 1]);
+        self.kernel.bind(cmd, &resources, bytemuck::bytes_of(&wide_strips));
+        cmd.dispatch(wide_strips);
     }
 }

@@ -31,6 +31,7 @@ use crate::picture::TakenWay;
 use crate::scene::{ExactScene, SceneData};
 use crate::shaders::{TRIM_EXACT, TRIM_TABLE, TrimTest};
 use std::sync::Arc;
+pub(crate) use table::BorderCells;
 use table::Table;
 
 /// The passes of the way that the scene uses.

@@ -21,7 +21,7 @@ use std::mem::offset_of;
 use std::sync::Arc;
 
 /// Where curves pass in a bin, a bit a cell: `glsl/include/border_cells.glsl`.
-type BorderCells = [u8; (BORDER_BANDS * BORDER_COLUMNS / 8) as usize];
+pub(crate) type BorderCells = [u8; (BORDER_BANDS * BORDER_COLUMNS / 8) as usize];
 
 /// The passes of the trim table.
 pub(crate) struct Passes {

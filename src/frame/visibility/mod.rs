@@ -140,8 +140,7 @@ impl Visibility {
         let border_depths = stages.gaps.as_ref().map(|gaps| &gaps.border_depths);
         cmd.after(Access::COMPUTE_WRITE, Access::INDIRECT_READ);
         if let Some(border_depths) = border_depths {
-            let before = if again { Access::FRAGMENT_WRITE } else { Access::TRANSFER_WRITE };
-            barrier::buffers(cmd, &[(border_depths, before, Access::FRAGMENT_WRITE)]);
+            barrier::images(cmd, &[(border_depths, Access::FRAGMENT_WRITE, Access::FRAGMENT_WRITE)]);
         }
         let bindings = patches::Bindings {
             frame: frame.constants,
@@ -149,7 +148,7 @@ impl Visibility {
             factors: &t.factors,
             sub_patches: &t.sub_patches,
             instances: &s.instances,
-            border_depths: border_depths.map(|border_depths| &**border_depths),
+            border_depths,
             trim: test,
             volume: frame.volume(),
             links: s.links.as_ref(),

@@ -13,7 +13,8 @@ use crate::abi::Counters;
 use crate::bindings::{Placed, Primitives};
 use crate::frame::common::draw::Draw;
 use crate::gpu::{
-    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Pipeline, Resource, TexelBuffer,
+    Attachment, Blend, Buffer, ColourTarget, Commands, DepthTest, Device, GpuError, Image, Pipeline, Resource,
+    TexelBuffer,
 };
 use crate::shaders::{self, TrimTest, constant};
 use ash::vk;
@@ -55,7 +56,7 @@ pub(crate) struct Bindings<'a> {
     pub sub_patches: &'a Buffer,
     pub instances: &'a TexelBuffer,
     /// The nearest depth of a border; in scenes with trims only.
-    pub border_depths: Option<&'a Buffer>,
+    pub border_depths: Option<&'a Image>,
     /// What the trim test reads, in its order.
     pub trim: &'a [Resource<'a>],
     /// The volume that trims the scene; `None` where there is none.

@@ -1,0 +1,27 @@
+//! Pass `gate`: where something that is drawn from had no room, no patch is drawn.
+//!
+//! ```text
+//!   trim table, sub-patches, draws, chords ──counters.failed──▶ draws: as they are, or none
+//! ```
+//!
+//! Reads: `counters`. Writes: `counters`. Twin: `src/twin/gate.rs`.
+
+use crate::frame::common::kernel::Kernel;
+use crate::gpu::{Buffer, Commands, Device, GpuError};
+use crate::shaders;
+
+/// The pass.
+pub(crate) struct Gate {
+    kernel: Kernel,
+}
+
+impl Gate {
+    pub(crate) fn new(device: &Device) -> Result<Self, GpuError> {
+        Ok(Self { kernel: Kernel::new(device, "gate", &shaders::GATE_COMP, &[])? })
+    }
+
+    /// One thread.
+    pub(crate) fn record(&self, cmd: &Commands<'_>, counters: &Buffer) {
+        self.kernel.record(cmd, &[counters.into()], 1);
+    }
+}

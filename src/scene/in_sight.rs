@@ -1,0 +1,181 @@
+//! Which placed parts a view may see: the GPU is told of their patches alone.
+//!
+//! ```text
+//!   part ─▶ box of its patches ──placement, camera──▶ beside the picture, before the near plane, behind the far one?
+//!                                                     no pixel's centre within reach?    ─▶ out of sight
+//!   in sight: runs of items that follow one another (abi::ItemRun), and the views of those parts
+//! ```
+//!
+//! A part's box holds those of its patches, and reaches farther than they do for pass `bound`. So that would leave out each
+//! patch of a part that is left out here, and the picture is the same bit for bit.
+//!
+//! Cost: a product of matrices and some sums a placed part, in double precision, on all cores where there are many.
+
+use super::data::SceneData;
+use super::view::view;
+use crate::abi::{self, ItemRun};
+use crate::model::Camera;
+use glam::{DAffine3, DMat4, DVec3, DVec4};
+use rayon::prelude::*;
+use std::collections::HashMap;
+
+/// Placed parts that one thread looks at.
+const CHUNK: usize = 2048;
+/// Pixels that the picture is wider than for pass `bound`: some of single precision's, of large parts.
+const SPARE_PX: f64 = 1.0;
+/// Pixels that boxes reach farther: twice what that pass adds for the rounding of a vertex.
+const ROUNDING_PX: f64 = 0.03125;
+/// Of what single precision makes of a depth, relative to what is added up for it.
+const SINGLE_ROUNDING: f64 = 1e-5;
+
+/// The patches of a placed part.
+#[derive(Clone, Copy, Debug, Default)]
+pub(super) struct PlacedBox {
+    /// Of a box of all of them, part coordinates.
+    centre: DVec3,
+    half: DVec3,
+    /// Items, from the first on.
+    first: u32,
+    count: u32,
+    /// It bounds an operand, which the far plane does not cut off.
+    is_operand: bool,
+}
+
+/// How far pass `bound` looks.
+#[derive(Clone, Copy, Debug)]
+pub(crate) struct Reach {
+    /// Pixels beside the picture.
+    pub beside_px: f64,
+    /// Pixels around the box of a patch, where something of it may be drawn.
+    pub beyond_px: f64,
+}
+
+/// What a view may see.
+#[derive(Clone, Debug, Default, PartialEq, Eq)]
+pub(crate) struct InSight {
+    /// Placed parts with patches, by number.
+    pub parts: Vec<u32>,
+    pub runs: Vec<ItemRun>,
+    /// Of all runs.
+    pub items: u32,
+}
+
+/// Boxes of all placed parts of a scene.
+pub(super) fn boxes(data: &SceneData) -> Vec<PlacedBox> {
+    let mut boxes = vec![PlacedBox::default(); data.instances.len()];
+    let mut known: HashMap<(u32, usize), (DVec3, DVec3)> = HashMap::new();
+    let items = data.items.len() as u32;
+    let mut end = items;
+    for faces in data.face_instances.chunk_by(|a, b| a.instance == b.instance).rev() {
+        let (first, last) = (faces[0], faces[faces.len() - 1]);
+        let from = data.faces[first.face as usize].first_patch as usize;
+        let to = data.faces.get(last.face as usize + 1).map_or(data.patches.len(), |next| next.first_patch as usize);
+        let (low, high) = *known.entry((first.face, faces.len())).or_insert_with(|| {
+            let nothing = (DVec3::INFINITY, DVec3::NEG_INFINITY);
+            data.patches[from..to].iter().fold(nothing, |(low, high), patch| {
+                let [least, most] = [patch.box_min, patch.box_max].map(|p| DVec3::from(p.map(f64::from)));
+                (low.min(least), high.max(most))
+            })
+        });
+        boxes[first.instance as usize] = PlacedBox {
+            centre: 0.5 * (low + high),
+            half: 0.5 * (high - low),
+            first: first.first_item,
+            count: end - first.first_item,
+            is_operand: data.faces[first.face as usize].flags & abi::FACE_OPERAND != 0,
+        };
+        end = first.first_item;
+    }
+    boxes
+}
+
+/// A linear function of a box: its value at the centre, how far others are from it, and what is added up for it.
+#[derive(Clone, Copy)]
+struct Range {
+    middle: f64,
+    reach: f64,
+    terms: f64,
+}
+
+impl PlacedBox {
+    fn range(&self, row: DVec4) -> Range {
+        let (linear, size) = (row.truncate(), row.truncate().abs());
+        let reach = size.dot(self.half);
+        let terms = size.dot(self.centre.abs()) + reach + row.w.abs();
+        Range { middle: linear.dot(self.centre) + row.w, reach, terms }
+    }
+
+    /// Whether pass `bound` may find a patch of the box in the picture.
+    fn is_in_sight(&self, pixels: DMat4, placement: DAffine3, camera: &Camera, reach: Reach) -> bool {
+        let (margin, beyond) = (reach.beside_px + SPARE_PX, reach.beyond_px + ROUNDING_PX);
+        let rows = (pixels * DMat4::from(placement)).transpose();
+        let [x, y, depth, w] = [rows.x_axis, rows.y_axis, rows.z_axis, rows.w_axis];
+        let of_depth = self.range(depth);
+        let rounding = SINGLE_ROUNDING * of_depth.terms;
+        let (near, far) = camera.depth_range;
+        let is_before = of_depth.middle + of_depth.reach < near - rounding;
+        let is_behind = of_depth.middle - of_depth.reach > far + rounding;
+        if is_before || is_behind && !self.is_operand {
+            return false;
+        }
+        let beside = |row: DVec4, size: u32| {
+            let (low, high) = (self.range(row + margin * w), self.range(row - (f64::from(size) + margin) * w));
+            low.middle + low.reach < 0.0 || high.middle - high.reach > 0.0
+        };
+        if beside(x, camera.size.0) || beside(y, camera.size.1) {
+            return false;
+        }
+        let of_w = self.range(w);
+        let least = of_w.middle - of_w.reach;
+        // in a parallel view W is 1
+        if least <= 0.0 || of_depth.middle - of_depth.reach < near {
+            return true;
+        }
+        let covers_a_centre = |row: DVec4| {
+            let pixel = self.range(row).middle / of_w.middle;
+            let around = self.range(row - pixel * w).reach / least + beyond;
+            (pixel - around - 0.5).ceil() <= (pixel + around - 0.5).floor()
+        };
+        covers_a_centre(x) && covers_a_centre(y)
+    }
+}
+
+impl SceneData {
+    /// What a camera may see of the placed parts.
+    pub(crate) fn in_sight(&self, camera: &Camera, reach: Reach) -> InSight {
+        let pixels = camera.pixel_matrix();
+        let is_in_sight = |n: &usize| {
+            let (placed, is_hidden) = (&self.boxes[*n], self.hidden.get(*n).is_some_and(|hidden| *hidden));
+            placed.count > 0 && !is_hidden && placed.is_in_sight(pixels, self.placements[*n], camera, reach)
+        };
+        let of_chunk = |first: usize| {
+            let all = first..(first + CHUNK).min(self.boxes.len());
+            all.filter(is_in_sight).map(|n| n as u32).collect::<Vec<_>>()
+        };
+        let firsts: Vec<usize> = (0..self.boxes.len()).step_by(CHUNK).collect();
+        let chunks: Vec<Vec<u32>> = match firsts.len() {
+            0 | 1 => firsts.into_iter().map(of_chunk).collect(),
+            _ => firsts.into_par_iter().map(of_chunk).collect(),
+        };
+        let parts = chunks.concat();
+        let mut runs: Vec<ItemRun> = Vec::new();
+        let mut items = 0;
+        for PlacedBox { first, count, .. } in parts.iter().map(|&n| self.boxes[n as usize]) {
+            let follows = runs.last().is_some_and(|run| run.item + (items - run.place) == first);
+            if !follows {
+                runs.push(ItemRun { place: items, item: first });
+            }
+            items += count;
+        }
+        InSight { parts, runs, items }
+    }
+
+    /// Views of the placed parts in sight, in their order.
+    pub(crate) fn views_of(&self, pixels: DMat4, parts: &[u32]) -> Vec<abi::View> {
+        let of = |&n: &u32| view(pixels, self.placements[n as usize]);
+        if parts.len() < CHUNK { parts.iter().map(of).collect() } else { parts.par_iter().map(of).collect() }
+    }
+}
+
+#[cfg(test)]
+mod tests;

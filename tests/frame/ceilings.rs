@@ -1,0 +1,121 @@
+//! No number of threads is too large for one dispatch: what does not fit into one row of workgroups has several.
+
+use crate::hidden::crowd;
+use crate::shapes::operands::splines;
+use crate::shapes::{self, solids};
+use crate::support::{assert_identical, assert_silent, perspective, watched_with};
+use crate::watched::limited;
+use glam::{DAffine3, DVec3, DVec4};
+use selvedge::gpu::LowerLimits;
+use selvedge::headless::HeadlessRenderer;
+use selvedge::model::{Camera, Face, Instance, Model, Part, Projection, SurfaceKind};
+use selvedge::picture::{
+    EdgeSettings, FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, SolidWay, TrimWay,
+};
+use selvedge::spline::Surface;
+
+/// Three workgroups a row: what a device has 65,535 of or more.
+const FEW_GROUPS: LowerLimits = LowerLimits { work_groups: Some(3), ..LowerLimits::NONE };
+
+fn draw(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
+    renderer.render(camera, &FrameSettings::default(), Outputs::ALL).unwrap()
+}
+
+/// Every pass that has a thread for each of what the scene or the picture has many of.
+#[test]
+fn several_rows_of_workgroups_draw_the_same() {
+    let plain = SceneSettings::default();
+    let by = |trim| SceneSettings { trim, ..plain };
+    let lines = SceneSettings { edges: Some(EdgeSettings::default()), ..plain };
+    let cases = [
+        ("patches by table", crowd(), by(TrimWay::Table)),
+        ("patches exactly", crowd(), by(TrimWay::Exact)),
+        ("samples", shapes::pair(), SceneSettings { samples: Samples::Four, ..plain }),
+        ("smooth borders", crowd(), SceneSettings { smooth: Smooth::Borders, ..plain }),
+        ("lines", crowd(), lines),
+        ("solids by events", solids::holes(90), SceneSettings { solids: SolidWay::Events, ..plain }),
+        ("solids by blister", solids::holes(9), SceneSettings { solids: SolidWay::Blister, ..plain }),
+        ("operands", splines().swap_remove(1).1, plain),
+    ];
+    for (name, model, settings) in cases {
+        let camera = perspective(&model, (320, 240));
+        let mut whole = watched_with(&model, settings);
+        let mut in_rows = limited(FEW_GROUPS);
+        in_rows.upload_with(&model, settings).unwrap();
+        // the second picture knows what lay behind others in the first
+        for nth in 0..2 {
+            let (a, b) = (draw(&mut whole, &camera), draw(&mut in_rows, &camera));
+            assert!(a.face.iter().any(|face| *face != 0), "{name} shows nothing");
+            assert_identical(&a, &b, &format!("{name}, {nth}"));
+            let told = |p: &Picture| (p.stats.sub_patches, p.stats.trim_rows, p.stats.hidden_patches, p.stats.clamps);
+            assert_eq!(told(&a), told(&b), "{name}, {nth}");
+        }
+        [whole, in_rows].into_iter().for_each(assert_silent);
+    }
+}
+
+/// One under another, the last of which is seen from above.
+fn stacked(part: Model, count: u32) -> Model {
+    let place = |i: u32| DAffine3::from_translation(DVec3::new(0.0, 0.0, 1e-3 * f64::from(i)));
+    Model { instances: (0..count).map(|i| shapes::placed(place(i), None)).collect(), ..part }
+}
+
+fn from_above(model: &Model, height: f64, size: (u32, u32)) -> Camera {
+    let above = Camera::around(model.control_bounds(), DVec3::Z, DVec3::Y, 0.6, size);
+    Camera { projection: Projection::Orthographic { height }, ..above }
+}
+
+/// A flat face of so many patches along each side.
+fn sheet(across: usize, down: usize) -> Part {
+    let knots = |patches: usize| {
+        let inner = (0..=patches).map(|k| k as f64);
+        std::iter::once(0.0).chain(inner).chain([patches as f64]).collect::<Vec<_>>()
+    };
+    let points = (0..=down).flat_map(|y| (0..=across).map(move |x| DVec4::new(x as f64, y as f64, 0.0, 1.0)));
+    let surface = Surface::new((1, 1), knots(across), knots(down), points.collect()).unwrap();
+    let face = Face { id: 2, kind: SurfaceKind::BSpline, surface, loops: vec![], same_sense: true, colour: None };
+    Part { faces: vec![face], ..Part::default() }
+}
+
+/// More patches than 65,535 workgroups of 64 threads have: all but the last of them are far beside the picture.
+#[test]
+#[ignore = "minutes, and a gigabyte"]
+fn five_million_patches() {
+    let one = shapes::wave();
+    let mut model = one.clone();
+    model.parts.push(sheet(100, 50));
+    let beside = |i: u32| DAffine3::from_translation(DVec3::new(1e4, 60.0 * f64::from(i), 0.0));
+    model.instances = (0..1020).map(|i| Instance { part: 1, ..shapes::placed(beside(i), None) }).collect();
+    model.instances.push(shapes::placed(DAffine3::IDENTITY, None));
+    let camera = perspective(&one, (320, 240));
+    let mut renderer = watched_with(&model, SceneSettings::default());
+    let picture = draw(&mut renderer, &camera);
+    assert_eq!(picture.stats.patches, 5_100_001);
+    assert_identical(&picture, &draw(&mut watched_with(&one, SceneSettings::default()), &camera), "alone");
+    // all of it from afar
+    let whole = perspective(&model, (320, 240));
+    assert!(draw(&mut renderer, &whole).face.contains(&2), "nothing is seen of the sheets");
+    assert_silent(renderer);
+}
+
+/// More scan lines than 65,535 workgroups of 128 threads have: of plates one under another, the last of which is seen.
+#[test]
+#[ignore = "minutes, and a gigabyte"]
+fn nine_million_scan_lines() {
+    let model = stacked(shapes::plate(), 120);
+    let height = model.control_bounds().diagonal() / 300.0;
+    let camera = from_above(&model, height, (64, 64));
+    let settings = SceneSettings { trim: TrimWay::Table, ..SceneSettings::default() };
+    let fine = FrameSettings { tolerance_px: 0.1, ..FrameSettings::default() };
+    let mut renderer = watched_with(&model, settings);
+    let picture = renderer.render(&camera, &fine, Outputs::ALL).unwrap();
+    assert!(picture.stats.trim_rows > 65_535 * 128, "{:?}", picture.stats);
+    // the first stays, so that the model is as large
+    let mut last = model.clone();
+    last.instances.drain(1..119);
+    let mut alone = watched_with(&last, settings);
+    let expected = alone.render(&camera, &fine, Outputs::ALL).unwrap();
+    assert!(expected.stats.trim_rows < 65_535 * 128, "{:?}", expected.stats);
+    assert_identical(&picture, &expected, "alone");
+    [renderer, alone].into_iter().for_each(assert_silent);
+}

@@ -1,0 +1,125 @@
+//! Assemblies of which little is in sight: the picture is that of what is in sight alone, bit for bit.
+
+use crate::shapes;
+use crate::support::{assert_identical, assert_silent, watched_with};
+use glam::{DAffine3, DVec3};
+use selvedge::headless::HeadlessRenderer;
+use selvedge::model::{Camera, Model};
+use selvedge::picture::{FrameSettings, Outputs, Picture, Samples, SceneSettings, Smooth, TrimWay};
+
+const SIZE: (u32, u32) = (200, 150);
+
+fn draw(renderer: &mut HeadlessRenderer, camera: &Camera) -> Picture {
+    let outputs = Outputs { face: true, depth: true, uv: true, normal: true, ..Outputs::default() };
+    renderer.render(camera, &FrameSettings::default(), outputs).unwrap()
+}
+
+/// Cubes, plates, waves and ripples in a block, far enough apart that none meets another.
+fn block(side: i32) -> Model {
+    let shapes = [shapes::cube(), shapes::plate(), shapes::wave(), shapes::ripple()];
+    let mut model = Model { parts: shapes.into_iter().flat_map(|shape| shape.parts).collect(), ..Model::default() };
+    for nth in 0..side * side * side {
+        let place = DVec3::new((nth % side).into(), (nth / side % side).into(), (nth / side / side).into()) * 9.0;
+        let part = nth as usize % model.parts.len();
+        let transform = DAffine3::from_translation(place) * DAffine3::from_rotation_y(0.7 * f64::from(nth));
+        model.instances.push(selvedge::model::Instance { part, ..shapes::placed(transform, None) });
+    }
+    model
+}
+
+/// Cameras that see all of a block, some of it from within, and a corner; the last has most parts below a pixel.
+fn cameras(model: &Model) -> Vec<Camera> {
+    let whole = Camera::around(model.control_bounds(), DVec3::new(1.0, -1.6, 1.1), DVec3::Z, 0.6, SIZE);
+    let middle = model.control_bounds().centre();
+    let at = |eye: DVec3, target: DVec3| Camera { eye, target, depth_range: (0.1, 400.0), ..whole };
+    let far = whole.target + 400.0 * (whole.eye - whole.target);
+    vec![
+        whole,
+        at(middle + DVec3::new(2.0, -3.0, 4.5), middle + DVec3::X * 40.0),
+        at(DVec3::new(-12.0, -9.0, 6.0), DVec3::ZERO),
+        Camera { depth_range: (whole.depth_range.0 * 100.0, whole.depth_range.1 * 1000.0), ..at(far, middle) },
+    ]
+}
+
+/// Of a scene with much besides, whose views follow one another in one renderer, and each view of what it shows alone.
+fn check(settings: SceneSettings) {
+    let model = block(6);
+    let mut renderer = watched_with(&model, settings);
+    let mut alone = watched_with(&Model::default(), settings);
+    let mut least = usize::MAX;
+    // what is out of sight comes back
+    let cameras = cameras(&model);
+    for (nth, camera) in cameras.iter().chain(&cameras[..2]).enumerate() {
+        let first = draw(&mut renderer, camera);
+        assert_identical(&first, &draw(&mut renderer, camera), &format!("view {nth}, again"));
+        // all that a wider picture shows, and nothing else
+        let wider = (SIZE.0 + 64, SIZE.1 + 64);
+        let shown = in_front(&model, camera, wider);
+        least = least.min(shown.instances.len());
+        alone.upload_with(&shown, settings).unwrap();
+        assert_identical(&first, &draw(&mut alone, camera), &format!("view {nth}, alone"));
+    }
+    assert!(least < model.instances.len() / 4, "a view shows {least} at least");
+    [renderer, alone].into_iter().for_each(assert_silent);
+}
+
+/// The instances whose spheres reach into a picture of that size, around the camera's.
+fn in_front(model: &Model, camera: &Camera, size: (u32, u32)) -> Model {
+    let pixels = camera.pixel_matrix();
+    let border = [size.0 - camera.size.0, size.1 - camera.size.1].map(|more| f64::from(more) / 2.0);
+    let is_seen = |i: &selvedge::model::Instance| {
+        let bounds = model.parts[i.part].control_bounds();
+        let (centre, radius) = (i.transform.transform_point3(bounds.centre()), 0.5 * bounds.diagonal());
+        let corners =
+            (0..8).map(|k| centre + radius * DVec3::from([0, 1, 2].map(|a| if k >> a & 1 == 0 { -1.0 } else { 1.0 })));
+        let seen: Vec<_> = corners.map(|c| pixels * c.extend(1.0)).collect();
+        let all = |beyond: &dyn Fn(&glam::DVec4) -> bool| seen.iter().all(beyond);
+        let (w, h) = (f64::from(camera.size.0), f64::from(camera.size.1));
+        !(all(&|q| q.x < -border[0] * q.w)
+            || all(&|q| q.x > (w + border[0]) * q.w)
+            || all(&|q| q.y < -border[1] * q.w)
+            || all(&|q| q.y > (h + border[1]) * q.w)
+            || all(&|q| q.z < camera.depth_range.0))
+    };
+    Model { instances: model.instances.iter().filter(|i| is_seen(i)).cloned().collect(), ..model.clone() }
+}
+
+/// Patches are cut alike whatever else there is, where edits may come.
+fn exact() -> SceneSettings {
+    SceneSettings { trim: TrimWay::Exact, editable: true, ..SceneSettings::default() }
+}
+
+#[test]
+fn trimmed_exactly() {
+    check(exact());
+}
+
+#[test]
+fn of_four_samples() {
+    check(SceneSettings { samples: Samples::Four, ..exact() });
+}
+
+#[test]
+fn with_smooth_borders() {
+    check(SceneSettings { smooth: Smooth::Borders, ..exact() });
+}
+
+/// Moved out of sight and back, hidden and shown.
+#[test]
+fn what_moves_is_where_it_is() {
+    let model = block(4);
+    let camera = cameras(&model)[2];
+    let mut renderer = watched_with(&model, exact());
+    let first = draw(&mut renderer, &camera);
+    let away = DAffine3::from_translation(DVec3::new(0.0, 1e4, 0.0));
+    renderer.set_transform(0, away).unwrap();
+    let gone = draw(&mut renderer, &camera);
+    assert!(gone.face != first.face, "the nearest part is seen");
+    renderer.set_transform(0, model.instances[0].transform).unwrap();
+    assert_identical(&first, &draw(&mut renderer, &camera), "back again");
+    renderer.set_visible(0, false).unwrap();
+    assert_identical(&gone, &draw(&mut renderer, &camera), "hidden");
+    renderer.set_visible(0, true).unwrap();
+    assert_identical(&first, &draw(&mut renderer, &camera), "shown again");
+    assert_silent(renderer);
+}
