@@ -101,7 +101,7 @@ fn near(gpu: &[u32], twin: &[u32], bounds: &[f32]) -> Result<(), Mismatch> {
         let beside = [i.checked_sub(1), Some(i + 1)].into_iter().flatten().filter_map(|k| twin.get(k));
         beside.into_iter().all(|other| (u_of(*other) - u_of(twin[i])).abs() > 2.0 * bounds[i])
     };
-    let wrong = |i: &usize| !(off(*i) <= bounds[*i]) || gpu[*i] & 1 != twin[*i] & 1 && is_alone(*i);
+    let wrong = |i: &usize| (off(*i) > bounds[*i] || off(*i).is_nan()) || gpu[*i] & 1 != twin[*i] & 1 && is_alone(*i);
     match (0..twin.len()).find(wrong) {
         None => Ok(()),
         Some(index) => {

@@ -8,6 +8,5 @@ mod host;
 mod memory;
 mod pictures;
 mod script;
-#[allow(dead_code)] // others use the rest
 #[path = "../shapes/mod.rs"]
 mod shapes;

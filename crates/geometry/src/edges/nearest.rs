@@ -124,7 +124,8 @@ mod tests {
                 let pixel = DVec2::splat(100.0) + towards * radius;
                 let found = nearest(&arc(), DMat4::IDENTITY, pixel, 40.0).expect("within reach");
                 let expected = DVec2::splat(100.0) + towards * 50.0;
-                assert!(found.pixel.distance(expected) < 1e-6, "{degrees} {radius}: {found:?}");
+                // where a distance is least is known to the root of what it is known to: 1e-8 of the arc
+                assert!(found.pixel.distance(expected) < 1e-5, "{degrees} {radius}: {found:?}");
                 assert!((found.distance_px - (radius - 50.0f64).abs()).abs() < 1e-9, "{found:?}");
             }
         }
