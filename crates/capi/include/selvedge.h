@@ -281,6 +281,9 @@ typedef struct SelvedgeView {
     double rotation[9];
     // The model's origin in its axes, millimetres: a point X is seen at K (R X + t).
     double translation[3];
+    // Radius of ambient occlusion, millimetres; 0: a twenty-fifth of the model's diagonal, but none with several samples;
+    // below 0: none.
+    double ambient;
 } SelvedgeView;
 
 // A point of a model near a place in a picture.
@@ -336,8 +339,8 @@ enum SelvedgeStatus selvedge_vulkan_features(void *core, void *vulkan12, void *v
 // Pointers are null or point to what they say; the handles are alive until the SelvedgeHost is freed.
 enum SelvedgeStatus selvedge_host_new(const struct SelvedgeVulkan *vulkan, struct SelvedgeHost **host);
 
-// Makes a model what the frames show. Of `view` samples, edges, line_width and sun count. Nothing waits: what frames in flight
-// use is freed with their slots.
+// Makes a model what the frames show. Of `view` samples, edges, line_width, ambient and sun count. Nothing waits: what
+// frames in flight use is freed with their slots.
 //
 // # Safety
 // Pointers are null or point to what they say.

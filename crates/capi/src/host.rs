@@ -320,8 +320,8 @@ impl SelvedgeHost {
     }
 }
 
-/// Makes a model what the frames show. Of `view` samples, edges, line_width, ambient and sun count. Nothing waits: what frames in flight
-/// use is freed with their slots.
+/// Makes a model what the frames show. Of `view` samples, edges, line_width, ambient and sun count. Nothing waits: what
+/// frames in flight use is freed with their slots.
 ///
 /// # Safety
 /// Pointers are null or point to what they say.
