@@ -88,7 +88,14 @@ mod tests {
 
     #[test]
     fn what_sufficed_stays() {
-        let c = Counters { plain: 900, trimmed: 100, wanted_rows: 65_536, intercepts: 262_144, ..Default::default() };
+        let c = Counters {
+            plain: 900,
+            trimmed: 100,
+            rows: 65_536,
+            wanted_rows: 65_536,
+            intercepts: 262_144,
+            ..Default::default()
+        };
         assert_eq!(grown(first(), &c).unwrap(), first());
     }
 
