@@ -118,7 +118,7 @@ fn tall() -> Model {
     model
 }
 
-/// A first frame without room counts what it needs and draws no patch; the second draws the picture.
+/// Frames without room count what they need and draw no patch; the one that has it draws the picture.
 #[test]
 fn no_picture_is_drawn_twice() {
     let (model, device) =
@@ -142,8 +142,13 @@ fn no_picture_is_drawn_twice() {
         let report = renderer.report(0).unwrap().unwrap();
         (report.complete, report.stats.triangles > 0, report.stats.sub_patches > 384)
     };
-    assert_eq!(frame(), (false, false, true));
-    assert_eq!(frame(), (true, true, true));
+    let mut frames = vec![frame()];
+    while frames.len() < 4 && !frames[frames.len() - 1].0 {
+        frames.push(frame());
+    }
+    let last = frames.pop().unwrap();
+    assert!(last == (true, true, true) && !frames.is_empty(), "{frames:?}, {last:?}");
+    assert!(frames.iter().all(|frame| *frame == (false, false, true)), "{frames:?}");
     drop((renderer, target));
     let messages = device.shutdown();
     assert!(messages.is_empty(), "{messages:?}");

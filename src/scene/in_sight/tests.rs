@@ -67,10 +67,11 @@ fn what_is_left_out_pass_bound_would_leave_out() {
         assert_eq!(told.iter().filter(|told| **told).count(), in_sight.items as usize, "each item once");
         let lost = taus.iter().zip(&told).filter(|(tau, told)| **tau != 0 && !**told).count();
         assert_eq!(lost, 0, "of {} in sight", in_sight.items);
-        // and the margins are thin: a part of four patches is in sight where one of them is, and seldom else
-        let parts = taus.chunks(4).filter(|of_part| of_part.iter().any(|tau| *tau != 0)).count();
+        // of hills as large as the scene, the box is in sight where no patch is; of the others seldom
+        let of_part = case.data.boxes[0].count as usize;
+        let parts = taus.chunks(of_part).filter(|of_part| of_part.iter().any(|tau| *tau != 0)).count();
         let told = in_sight.parts.len();
-        assert!(parts > 100 && told < 2500 && told < parts + parts / 4, "{parts} seen, {told} in sight");
+        assert!(parts > 100 && told < 2500 && told < 3 * parts, "{parts} seen, {told} in sight");
     }
 }
 
@@ -89,12 +90,13 @@ fn what_is_hidden_is_out_of_sight_and_what_moves_is_where_it_is() {
     let mut data = Case::new(&model, &camera, 0.5).data;
     let in_sight = |data: &SceneData| data.in_sight(&camera, Reach { beside_px: 1.0, beyond_px: 1.0 });
     assert_eq!(in_sight(&data).parts, [0, 2]);
+    let n = data.boxes[0].count;
     let run = |place, item| ItemRun { place, item };
-    assert_eq!((in_sight(&data).runs, in_sight(&data).items), (vec![run(0, 0), run(4, 8)], 8));
+    assert_eq!((in_sight(&data).runs, in_sight(&data).items), (vec![run(0, 0), run(n, 2 * n)], 2 * n));
     data.hidden = vec![true, false, false];
-    assert_eq!((in_sight(&data).parts, in_sight(&data).runs), (vec![2], vec![run(0, 8)]));
+    assert_eq!((in_sight(&data).parts, in_sight(&data).runs), (vec![2], vec![run(0, 2 * n)]));
     data.placements[1] = data.placements[2];
-    assert_eq!((in_sight(&data).parts, in_sight(&data).runs), (vec![1, 2], vec![run(0, 4)]));
+    assert_eq!((in_sight(&data).parts, in_sight(&data).runs), (vec![1, 2], vec![run(0, n)]));
     data.hidden = vec![true; 3];
     assert_eq!(in_sight(&data), InSight::default());
 }
