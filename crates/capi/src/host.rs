@@ -285,6 +285,8 @@ pub unsafe extern "C" fn selvedge_host_new(
             allocator: Arc::clone(&allocator),
             debug_names: false,
             pipeline_statistics: false,
+            pipeline_cache: vk::PipelineCache::null(),
+            memory_budget: None,
         };
         let slots = if vulkan.slots == 0 { 2 } else { vulkan.slots as usize };
         // SAFETY: as the caller promises
